@@ -1,0 +1,185 @@
+"""Everything on a picture that is not a grain or a wall: texts, scale bar, colour bar, gravity dial, live plot."""
+
+from functools import cache
+from pathlib import Path
+
+import matplotlib
+import numpy as np
+from matplotlib.ticker import MaxNLocator
+from PIL import Image, ImageDraw, ImageFont
+
+from lab.paint.colours import Colouring
+
+PAPER = (255, 255, 255)
+INK = (33, 41, 52)
+QUIET = (104, 114, 126)
+LINE = (176, 184, 193)
+GRID = (232, 235, 239)
+WALL = (86, 97, 110)
+HOLD = (246, 247, 249)
+SERIES = (  # curves and names of the beds (Okabe and Ito's colour-blind-safe palette, darkened where too light)
+    (0, 114, 178),
+    (213, 94, 0),
+    (0, 138, 100),
+    (180, 90, 145),
+    (176, 126, 0),
+    (60, 140, 190),
+)
+FINER = 3  # the plot and the dial are drawn this many times larger, then shrunk to smooth their lines
+
+
+@cache
+def font(size: float, bold: bool = False) -> ImageFont.FreeTypeFont:
+    """DejaVu Sans as it comes with matplotlib, `size` pixels high."""
+    name = "DejaVuSans-Bold.ttf" if bold else "DejaVuSans.ttf"
+    return ImageFont.truetype(Path(matplotlib.get_data_path()) / "fonts" / "ttf" / name, size)
+
+
+def number(value: float, digits: int) -> str:
+    """A number with so many decimals, a true minus sign, and no minus before zero."""
+    text = f"{value:.{digits}f}"
+    return text.replace("-", "\N{MINUS SIGN}" if float(text) else "")
+
+
+def plain(value: float) -> str:
+    """A round number for a tick or a scale."""
+    return f"{value:g}".replace("-", "\N{MINUS SIGN}")
+
+
+def shortened(text: str, width: float, face: ImageFont.FreeTypeFont) -> str:
+    """The text, cut with an ellipsis if it is wider than `width` pixels."""
+    if face.getlength(text) <= width:
+        return text
+    while text and face.getlength(text + "…") > width:
+        text = text[:-1]
+    return text.rstrip() + "…"
+
+
+def ticks(low: float, high: float, most: int) -> list[float]:
+    """At most `most` + 1 round numbers between low and high."""
+    places = MaxNLocator(nbins=most, steps=[1, 2, 5, 10]).tick_values(low, high)
+    slack = 1e-9 * (high - low)
+    return [float(place) for place in places if low - slack <= place <= high + slack]
+
+
+def round_length(longest: float) -> float:
+    """The longest of 1, 2, 5, 10, 20 ... (m) that is not longer than `longest`."""
+    power = 10.0 ** np.floor(np.log10(longest))
+    return float(power * max(step for step in (1, 2, 5) if step <= longest / power + 1e-9))
+
+
+def draw_scale_bar(
+    draw: ImageDraw.ImageDraw, corner: tuple, longest: float, scale: float, size: float
+) -> None:
+    """A bar of a round length with its length to the right; corner: its lower left, pixels; scale: pixels a metre."""
+    length = round_length(longest / scale)
+    left, bottom = corner
+    right, tick, thick = left + length * scale, 0.3 * size, max(1, round(size / 9))
+    draw.line([(left, bottom - tick), (right, bottom - tick)], fill=INK, width=thick)
+    for end in (left, right):
+        draw.line([(end, bottom - 2 * tick), (end, bottom)], fill=INK, width=thick)
+    text = f"{plain(length)} m" if length >= 1 else f"{plain(1000 * length)} mm"
+    draw.text((right + 0.6 * size, bottom - tick), text, INK, font(size), anchor="lm")
+
+
+def draw_colour_bar(
+    image: Image.Image, box: tuple, colouring: Colouring, size: float
+) -> None:
+    """Label, bar and ticks inside the box (left, top, right, bottom) of pixels."""
+    left, top, right, _ = (round(edge) for edge in box)
+    draw = ImageDraw.Draw(image)
+    draw.text((left, top), colouring.label, INK, font(size), anchor="la")
+    upper, lower = round(top + 1.7 * size), round(top + 2.5 * size)
+    columns = np.arange(right - left) * len(colouring.table) // (right - left)
+    bar = np.tile(colouring.table[columns].astype(np.uint8), (lower - upper, 1, 1))
+    image.paste(Image.fromarray(bar), (left, upper))
+    low, high = colouring.low, colouring.high
+    places = colouring.ticks or {place: plain(place) for place in ticks(low, high, 5)}
+    for place, text in places.items():
+        x = left + (right - left) * (place - low) / (high - low)
+        half = font(size).getlength(text) / 2
+        x_text = min(max(x, left + half), right - half)
+        draw.line([(x, lower), (x, lower + 0.3 * size)], fill=QUIET)
+        draw.text((x_text, lower + 0.5 * size), text, QUIET, font(size), anchor="ma")
+
+
+def gravity_dial(diameter: int, tilt: float) -> Image.Image:
+    """A dial with an arrow where gravity points for somebody who tilts with the tank (tilt in rad)."""
+    size = FINER * diameter
+    image = Image.new("RGB", (size, size), PAPER)
+    draw = ImageDraw.Draw(image)
+    middle, radius, thick = size / 2, 0.48 * size, max(FINER, size // 60)
+    down = np.array([-np.sin(tilt), np.cos(tilt)])  # R(-phi) (0, -1), the picture's rows downwards
+    level = np.array([down[1], -down[0]])
+
+    def place(along: float, across: float) -> tuple[float, float]:
+        return tuple(middle + radius * (along * down + across * level))
+
+    rim = (middle - radius, middle - radius, middle + radius, middle + radius)
+    draw.ellipse(rim, fill=HOLD, outline=LINE, width=thick)
+    draw.line([place(0, -0.96), place(0, 0.96)], fill=LINE, width=thick)
+    draw.line([place(-0.55, 0), place(0.45, 0)], fill=INK, width=2 * thick)
+    draw.polygon([place(0.8, 0), place(0.35, 0.2), place(0.35, -0.2)], fill=INK)
+    draw.text(place(-0.3, 0.35), "g", INK, font(0.24 * size), anchor="mm")
+    return image.reduce(FINER)
+
+
+class LivePlot:
+    """Curves that grow with the film; the axes are drawn once.
+
+    size: (width, height) in pixels; curves: pairs of arrays x, y; colours: one each; text: height of the letters, pixels.
+    """
+
+    def __init__(
+        self, size: tuple, curves: list, colours: list, labels: tuple[str, str], text: float
+    ) -> None:
+        self._text = FINER * text
+        width, height = (FINER * round(side) for side in size)
+        self._image = Image.new("RGB", (width, height), PAPER)
+        self._box = (2.6 * self._text, 1.7 * self._text, width - 0.7 * self._text, height - 3.1 * self._text)
+        self._low, self._high = _limits(curves)
+        self._curves = [self._place(np.column_stack(curve)) for curve in curves]
+        self._colours = colours
+        self._draw_axes(labels)
+
+    def picture(self, count: int) -> Image.Image:
+        """The plot with the first `count` samples of every curve."""
+        image = self._image.copy()
+        draw = ImageDraw.Draw(image)
+        thick, dot = round(0.16 * self._text), 0.32 * self._text
+        for curve, colour in zip(self._curves, self._colours, strict=True):
+            drawn = curve[:count]
+            draw.line([tuple(point) for point in drawn], fill=colour, width=thick, joint="curve")
+            x, y = drawn[-1]
+            draw.ellipse((x - dot, y - dot, x + dot, y + dot), fill=colour, outline=PAPER)
+        return image.reduce(FINER)
+
+    def _place(self, points: np.ndarray) -> np.ndarray:
+        left, top, right, bottom = self._box
+        share = (points - self._low) / (self._high - self._low)
+        return np.array([left, bottom]) + share * np.array([right - left, top - bottom])
+
+    def _draw_axes(self, labels: tuple[str, str]) -> None:
+        draw = ImageDraw.Draw(self._image)
+        face, thin = font(self._text), FINER
+        left, top, right, bottom = self._box
+        draw.text((0, 0), labels[1], INK, face, anchor="la")
+        draw.text((right, self._image.height), labels[0], INK, face, anchor="rd")
+        for value in ticks(self._low[1], self._high[1], 4):
+            y = self._place(np.array([[self._low[0], value]]))[0, 1]
+            draw.line([(left, y), (right, y)], fill=GRID, width=thin)
+            draw.text((left - 0.4 * self._text, y), plain(value), QUIET, face, anchor="rm")
+        for value in ticks(self._low[0], self._high[0], 5):
+            x = self._place(np.array([[value, self._low[1]]]))[0, 0]
+            draw.line([(x, bottom), (x, bottom + 0.3 * self._text)], fill=LINE, width=thin)
+            draw.text((x, bottom + 0.5 * self._text), plain(value), QUIET, face, anchor="ma")
+        draw.line([(left, top), (left, bottom), (right, bottom)], fill=LINE, width=thin)
+
+
+def _limits(curves: list) -> tuple[np.ndarray, np.ndarray]:
+    """Lower and upper end of both axes: x as it comes, y with air around it."""
+    x, y = (np.concatenate([np.asarray(curve[k], dtype=float) for curve in curves]) for k in (0, 1))
+    low, high = np.nanmin(y), np.nanmax(y)
+    air = max(0.06 * (high - low), 0.05)
+    far = max(np.nanmax(x), np.nanmin(x) + 1e-9)
+    return np.array([np.nanmin(x), low - air]), np.array([far, high + air])

@@ -1,0 +1,119 @@
+"""A running simulation: the scene's arrays, its clock, and the calls that advance and read it."""
+
+from collections.abc import Callable
+
+import numpy as np
+import taichi as ti
+
+from solvers import runtime, watch
+from solvers.contacts import Contacts
+from solvers.frame import Frame
+from solvers.grains import Grains
+from solvers.neighbours import Neighbours
+from solvers.observe import Observer
+from solvers.per_world import PerWorld
+from solvers.scene import Scene
+from solvers.walls import Walls
+
+SKIN = 0.2  # of the mean diameter; the fastest of 0.05 … 0.6 for settled and for shaken beds
+AT_REST = -1e9  # a time long before any motion starts
+
+
+@ti.data_oriented
+class Clock:
+    """Where each world stands: steps done, status of the watch, largest speed² of the last step."""
+
+    def __init__(self, worlds: int):
+        self.step, self.status, self.fresh = (ti.field(ti.i32, worlds) for _ in range(3))
+        self.fastest = ti.field(ti.f64, worlds)
+        self.fresh.fill(1)
+
+
+class Simulation:
+    """W worlds of one scene, from `position` (W, n, 2) m at rest."""
+
+    def __init__(self, scene: Scene, position: np.ndarray, threads: int = 0, skin: float | None = None):
+        runtime.initialise(threads)
+        self.scene, self.dt = scene, scene.time_step()
+        normal, tangential = scene.laws
+        pair, wall = scene.interfaces
+        worlds = len(scene.radius)
+        self.grains = Grains(scene.radius, scene.grain.density)
+        self.walls = Walls(scene.outline)
+        self.frame = Frame(scene.motions, scene.soft_start, scene.gravity)
+        moduli = np.tile([pair.young_modulus, wall.young_modulus], (worlds, 1))
+        skin = skin or SKIN * 2.0 * float(scene.radius.mean())
+        self.neighbours = Neighbours(self.grains, self.walls, skin, tangential.history, moduli)
+        self.contacts = Contacts(normal, tangential, [scene.interfaces] * worlds)
+        self.clock = Clock(worlds)
+        self.steps = 0
+        self.origin = 0.0
+        self.grains.place(np.asarray(position, dtype=np.float64).reshape(*scene.radius.shape, 2))
+        self._compile()
+
+    def _compile(self) -> None:
+        """Make the kernels anew; they keep the arrays they were made with."""
+        parts = self.grains, self.walls, self.neighbours, self.contacts, self.frame
+        self.schedule = PerWorld(*parts)
+        self.observer = Observer(*parts)
+
+    @property
+    def time(self) -> float:
+        """Model time (s)."""
+        return self.origin + self.steps * self.dt
+
+    @property
+    def grain_steps(self) -> int:
+        """Grains times steps of all worlds so far."""
+        return self.steps * self.scene.radius.size
+
+    def advance(self, steps: int) -> None:
+        """Take `steps` steps of Δt in every world.
+
+        Raises BadState where the watch stops a world; the state is kept as it is.
+        """
+        self.steps += steps
+        while True:
+            self.schedule.advance(self.clock, self.steps, self.origin, self.dt)
+            status = self.clock.status.to_numpy()
+            if not np.any(status == watch.NO_ROOM):
+                break
+            self.neighbours.grow()
+            self._compile()
+            self.clock.status.from_numpy(np.where(status == watch.NO_ROOM, watch.RUNNING, status))
+        time = self.origin + self.clock.step.to_numpy() * self.dt
+        watch.check_speed(status, self.clock.fastest.to_numpy(), time, self.dt)
+
+    def observe(self) -> dict[str, np.ndarray]:
+        """Numbers of every world now, each (W,), named as in `Observer.NAMES`. Raises BadState from the watch."""
+        self.observer.observe(self.time)
+        rows = dict(zip(Observer.NAMES, self.observer.rows.to_numpy().T, strict=True))
+        watch.check_state(rows["overlap"], rows["escaped"].astype(int), self.time)
+        return rows
+
+    def settle(self, rest: float, limit: float, tell: Callable[[float], None] = lambda _: None) -> bool:
+        """Let the grains come to rest in the upright tank; the clock then starts at zero. Returns whether they rest.
+
+        At rest the mean kinetic energy of a grain (spin included) is below `rest` times m g d in every world for two looks
+        in a row, 10 ms apart; at most `limit` s.
+        """
+        self.origin = AT_REST
+        look = max(1, round(0.01 / self.dt))
+        radius = self.scene.radius
+        scale = (self.grains.mass * self.scene.gravity * 2.0 * radius).mean(axis=1)
+        quiet = 0
+        while quiet < 2 and self.steps * self.dt < limit:
+            self.advance(look)
+            rows = self.observe()
+            energy = (rows["kinetic"] + rows["rotational"]) / radius.shape[1]
+            quiet = quiet + 1 if np.all(energy < rest * scale) else 0
+            tell(self.steps * self.dt)
+        self.origin = 0.0
+        self.steps = 0
+        self.clock.step.fill(0)
+        self.grains.angle.fill(0.0)
+        return quiet >= 2
+
+    def snapshot(self) -> dict[str, np.ndarray]:
+        """Positions, velocities (W, n, 2), angles and spins (W, n) now, in the tank's frame."""
+        return self.grains.read()

@@ -1,0 +1,57 @@
+"""The step size, derived from the scene: the stiffest contact at the highest credible speed, waves, dampers."""
+
+from dataclasses import dataclass
+from math import pi, sqrt
+
+import numpy as np
+
+from solvers.materials import Interface, Material
+
+# Steps a collision takes. Chosen by measurement: see tests/solvers/test_collisions.py.
+STEPS_A_COLLISION = 40.0
+RAYLEIGH_SHARE = 0.2
+
+
+@dataclass(frozen=True)
+class Limit:
+    """A bound on the step and what sets it."""
+
+    step: float  # s
+    reason: str
+
+
+def hertz_duration(mass: float, radius: float, young: float, speed: float) -> float:
+    """Duration (s) of an elastic Hertz collision, 2.87 (m*²/(R* E*² v))^(1/5) (Johnson 1985, eq. 11.24)."""
+    return 2.87 * (mass**2 / (radius * young**2 * speed)) ** 0.2
+
+
+def rayleigh_time(radius: float, density: float, shear: float, poisson: float) -> float:
+    """Time (s) of a Rayleigh wave over half a grain, π R √(ρ/G)/(0.1631 ν + 0.8766) (Thornton and Randall 1988)."""
+    return pi * radius * sqrt(density / shear) / (0.1631 * poisson + 0.8766)
+
+
+def limits(
+    radius: np.ndarray, grain: Material, interfaces: tuple[Interface, Interface], scale: float, speed: float
+) -> list[Limit]:
+    """All bounds on the step for grains of these radii (m) that meet at up to `speed` (m/s)."""
+    small = float(np.min(radius))
+    mass = 4.0 / 3.0 * pi * small**3 * grain.density
+    shear = grain.young * scale / (2.0 * (1.0 + grain.poisson))
+    found = [
+        Limit(
+            RAYLEIGH_SHARE * rayleigh_time(small, grain.density, shear, grain.poisson),
+            f"{RAYLEIGH_SHARE:g} of the Rayleigh time of the smallest grain",
+        )
+    ]
+    for between, m_eff, r_eff, name in (
+        (interfaces[0], mass / 2.0, small / 2.0, "two of the smallest grains"),
+        (interfaces[1], mass, small, "the smallest grain and a wall"),
+    ):
+        collision = hertz_duration(m_eff, r_eff, between.young_modulus, speed)
+        found.append(
+            Limit(
+                collision / STEPS_A_COLLISION,
+                f"1/{STEPS_A_COLLISION:g} of the Hertz collision of {name} at {speed:.3g} m/s",
+            )
+        )
+    return sorted(found, key=lambda limit: limit.step)

@@ -1,0 +1,39 @@
+"""The watch: states that are no longer physics, what they are called and what helps."""
+
+import numpy as np
+
+from solvers.errors import BadState
+
+RUNNING, NO_ROOM, TOO_FAST = 0, 1, 2
+
+# A grain that crosses a tenth of the smallest radius in a step is not colliding, it is being thrown.
+FASTEST_STEP = 0.1
+DEEPEST_OVERLAP = 0.3
+
+
+def check_speed(status: np.ndarray, fastest: np.ndarray, time: np.ndarray, dt: float) -> None:
+    """Stop where the time loop stopped itself: a speed too large for the step, or not a number."""
+    for w in np.flatnonzero(status == TOO_FAST):
+        speed = np.sqrt(fastest[w])
+        what = f"a grain moves at {speed:.3g} m/s" if np.isfinite(speed) else "a grain's speed is not a number"
+        raise BadState(
+            f"world {w}: {what} at t = {time[w]:.4g} s, too fast for the step of {dt:.3g} s; "
+            "use a smaller run.step or check the motion's amplitude."
+        )
+
+
+def check_state(deepest: np.ndarray, escaped: np.ndarray, time: float) -> None:
+    """Stop when a grain has left the tank or two grains overlap far beyond elastic contact.
+
+    `deepest` (W,) overlap in radii, `escaped` (W,) index of a grain outside the walls or −1.
+    """
+    for w in np.flatnonzero(escaped >= 0):
+        raise BadState(
+            f"world {w}: grain {escaped[w]} left the tank by t = {time:.4g} s; "
+            "use a smaller run.step or a larger contact.stiffness_scale."
+        )
+    for w in np.flatnonzero(~(deepest <= DEEPEST_OVERLAP)):
+        raise BadState(
+            f"world {w}: grains overlap by {100 * deepest[w]:.3g} % of a radius at t = {time:.4g} s, too soft for these "
+            "impacts; use a larger contact.stiffness_scale."
+        )
