@@ -1,6 +1,9 @@
 """Contact forces: overlaps and slips of listed contacts, and the laws of the scene on them."""
 
+import numpy as np
 import taichi as ti
+
+from solvers.runtime import Arrays
 
 PAIR, WALL = 0, 1
 
@@ -13,20 +16,20 @@ class Contacts:
     distance of the centres: angular momentum is exact. (Spandonidis 2016, eq. 4.7, takes whole radii.)
     """
 
-    def __init__(self, normal, tangential, interfaces):
+    def __init__(self, arrays: Arrays, normal, tangential, interfaces):
         self.normal, self.tangential = normal, tangential
-        self.normal_table = self.tabulate(normal, interfaces)
-        self.tangential_table = self.tabulate(tangential, interfaces)
+        self.normal_table = self._tabulate(arrays, normal, interfaces)
+        self.tangential_table = self._tabulate(arrays, tangential, interfaces)
 
     @staticmethod
-    def tabulate(law, interfaces) -> ti.Field:
-        """A law's coefficients (W, 2): of grain–grain and grain–wall contacts, `interfaces[w] = (pair, wall)`."""
-        rows = [[law.coefficients(between) for between in world] for world in interfaces]
-        table = ti.Vector.field(len(rows[0][0]), ti.f64, (len(rows), 2))
-        for w, world in enumerate(rows):
-            for kind, coefficients in enumerate(world):
-                table[w, kind] = coefficients
-        return table
+    def _tabulate(arrays: Arrays, law, interfaces) -> ti.Field:
+        """A law's coefficients (W, 2, number) of grain–grain and grain–wall contacts, `interfaces[w] = (pair, wall)`."""
+        return arrays.holding(np.array([[law.coefficients(between) for between in world] for world in interfaces]))
+
+    @ti.func
+    def coefficients(self, table: ti.template(), w, kind: ti.template()):
+        """The coefficients of one law in world w for grain–grain (PAIR) or grain–wall (WALL) contacts."""
+        return ti.Vector([table[w, kind, k] for k in ti.static(range(table.shape[2]))])
 
     @ti.func
     def law(self, normal_c, tangential_c, contacts: ti.template(), w, p, overlap, rate, slip, dt):
@@ -43,7 +46,8 @@ class Contacts:
     @ti.func
     def pair_forces(self, g: ti.template(), pairs: ti.template(), w, dt):
         """Forces between the grains g."""
-        normal_c, tangential_c = self.normal_table[w, PAIR], self.tangential_table[w, PAIR]
+        normal_c = self.coefficients(self.normal_table, w, PAIR)
+        tangential_c = self.coefficients(self.tangential_table, w, PAIR)
         for p in range(pairs.length[w]):
             i, j = pairs.grain[w, p], pairs.mate[w, p]
             dy, dz = g.y[w, i] - g.y[w, j], g.z[w, i] - g.z[w, j]
@@ -67,7 +71,8 @@ class Contacts:
     @ti.func
     def wall_forces(self, g: ti.template(), walls: ti.template(), contacts: ti.template(), w, dt):
         """Forces of the walls on the grains g."""
-        normal_c, tangential_c = self.normal_table[w, WALL], self.tangential_table[w, WALL]
+        normal_c = self.coefficients(self.normal_table, w, WALL)
+        tangential_c = self.coefficients(self.tangential_table, w, WALL)
         for p in range(contacts.length[w]):
             i = contacts.grain[w, p]
             gap = walls.gap(contacts.mate[w, p], g.y[w, i], g.z[w, i])
@@ -90,7 +95,7 @@ class Contacts:
         energy = 0.0
         if overlap > 0.0:
             stiffness, root = contacts.stiffness[w, p], ti.sqrt(overlap)
-            tangential_c = self.tangential_table[w, kind]
+            tangential_c = self.coefficients(self.tangential_table, w, kind)
             energy = self.normal.energy(stiffness, overlap, root)
             energy += self.tangential.energy(tangential_c, stiffness, root, contacts.past[w, p])
         return energy
@@ -116,5 +121,3 @@ class Contacts:
                 deepest = ti.max(deepest, overlap / g.radius[w, i])
                 energy += self.stored(lists.contacts, WALL, w, p, overlap)
         return ti.Vector([touching, deepest, energy])
-
-

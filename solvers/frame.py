@@ -10,6 +10,8 @@ from collections.abc import Sequence
 import numpy as np
 import taichi as ti
 
+from solvers.runtime import Arrays
+
 
 @ti.func
 def turned(y, z, phi):
@@ -26,7 +28,7 @@ class Frame:
     followed by a sway is a tilting table on a swaying deck.
     """
 
-    def __init__(self, motions: Sequence[Sequence], soft_start: float, gravity: float):
+    def __init__(self, arrays: Arrays, motions: Sequence[Sequence], soft_start: float, gravity: float):
         self.kinds = tuple(motions[0])
         rows = [[m.parameters(soft_start) for m in world] for world in motions]
         sizes = [len(p) for p in rows[0]]
@@ -35,9 +37,7 @@ class Frame:
         self.moving = bool(self.kinds)
         self.gravity = gravity
         table = np.array([[value for p in row for value in p] for row in rows]).reshape(len(rows), -1)
-        self.table = ti.field(ti.f64, shape=(len(rows), max(1, table.shape[1])))
-        if table.size:
-            self.table.from_numpy(table)
+        self.table = arrays.holding(table if table.size else np.zeros((len(rows), 1)))
 
     @ti.func
     def kinematics(self, w, t):

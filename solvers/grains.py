@@ -3,6 +3,8 @@
 import numpy as np
 import taichi as ti
 
+from solvers.runtime import Arrays
+
 
 @ti.data_oriented
 class Grains:
@@ -12,21 +14,18 @@ class Grains:
     time, predicted with the last acceleration, for forces that depend on velocity.
     """
 
-    def __init__(self, radius: np.ndarray, density: float):
+    def __init__(self, arrays: Arrays, radius: np.ndarray, density: float):
         self.worlds, self.count = radius.shape
         shape = radius.shape
-        self.y, self.z, self.angle = (ti.field(ti.f64, shape) for _ in range(3))
-        self.velocity_y, self.velocity_z, self.spin = (ti.field(ti.f64, shape) for _ in range(3))
-        self.now_y, self.now_z, self.spin_now = (ti.field(ti.f64, shape) for _ in range(3))
-        self.force_y, self.force_z, self.torque = (ti.field(ti.f64, shape) for _ in range(3))
-        self.radius, self.inverse_mass, self.inverse_inertia = (
-            ti.field(ti.f64, shape) for _ in range(3)
-        )
-        mass = 4.0 / 3.0 * np.pi * radius**3 * density
-        self.radius.from_numpy(radius)
-        self.inverse_mass.from_numpy(1.0 / mass)
-        self.inverse_inertia.from_numpy(2.5 / (mass * radius**2))
-        self.mass = mass
+        self.y, self.z, self.angle = arrays.reals(3, shape)
+        self.velocity_y, self.velocity_z, self.spin = arrays.reals(3, shape)
+        self.now_y, self.now_z, self.spin_now = arrays.reals(3, shape)
+        self.force_y, self.force_z, self.torque = arrays.reals(3, shape)
+        self.mass = 4.0 / 3.0 * np.pi * radius**3 * density
+        self.radius = arrays.holding(radius)
+        self.inverse_mass = arrays.holding(1.0 / self.mass)
+        self.inverse_inertia = arrays.holding(2.5 / (self.mass * radius**2))
+        self.largest, self.smallest = float(radius.max()), float(radius.min())
 
     def place(self, position: np.ndarray) -> None:
         """Put the grains at `position` (W, n, 2) m, at rest and without history."""

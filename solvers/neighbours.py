@@ -7,6 +7,7 @@ import numpy as np
 import taichi as ti
 
 from solvers.grains import Grains
+from solvers.runtime import Arrays
 from solvers.walls import Walls
 
 
@@ -18,26 +19,13 @@ class ContactList:
     contact is listed. `past` is the tangential law's history, zero while the two do not touch.
     """
 
-    def __init__(self, worlds: int, grains: int, capacity: int, history: int):
+    def __init__(self, arrays: Arrays, worlds: int, grains: int, capacity: int, history: int):
         self.capacity, self.history = capacity, history
-        self.length = ti.field(ti.i32, worlds)
-        self.grain, self.mate, self.old_mate = (ti.field(ti.i32, (worlds, capacity)) for _ in range(3))
-        self.stiffness, self.mass = (ti.field(ti.f64, (worlds, capacity)) for _ in range(2))
-        self.past, self.old_past = (
-            ti.Vector.field(history, ti.f64, (worlds, capacity)) for _ in range(2)
-        )
-        self.first = ti.field(ti.i32, (worlds, grains + 1))
-        self.old_first = ti.field(ti.i32, (worlds, grains + 1))
-
-    def copy_from(self, other: "ContactList") -> None:
-        """Take over a list of smaller capacity."""
-        for name in ("length", "first"):
-            getattr(self, name).copy_from(getattr(other, name))
-        for name in ("grain", "mate", "stiffness", "mass", "past"):
-            kept = getattr(other, name).to_numpy()
-            grown = np.zeros((kept.shape[0], self.capacity, *kept.shape[2:]), kept.dtype)
-            grown[:, : other.capacity] = kept
-            getattr(self, name).from_numpy(grown)
+        (self.length,) = arrays.integers(1, (worlds,))
+        self.grain, self.mate, self.old_mate = arrays.integers(3, (worlds, capacity))
+        self.stiffness, self.mass = arrays.reals(2, (worlds, capacity))
+        self.past, self.old_past = arrays.vectors(2, history, (worlds, capacity))
+        self.first, self.old_first = arrays.integers(2, (worlds, grains + 1))
 
     @ti.func
     def set_aside(self, w, grains):
@@ -78,22 +66,27 @@ class ContactList:
 class Neighbours:
     """The two contact lists of every world and when to build them anew."""
 
-    def __init__(self, grains: Grains, walls: Walls, skin: float, history: int, modulus: np.ndarray):
+    def __init__(
+        self,
+        arrays: Arrays,
+        grains: Grains,
+        walls: Walls,
+        skin: float,
+        history: int,
+        modulus: np.ndarray,
+        room: int,
+    ):
         self.grains, self.walls, self.skin = grains, walls, skin
         worlds, count = grains.worlds, grains.count
-        self.history = history
-        self.pairs = ContactList(worlds, count, 4 * count + 16, history)
-        self.contacts = ContactList(worlds, count, 2 * count + 16, history)
+        self.pairs = ContactList(arrays, worlds, count, room * (4 * count + 16), history)
+        self.contacts = ContactList(arrays, worlds, count, room * (2 * count + 16), history)
         # k = (4/3) E* √R_eff of grain–grain and grain–wall contacts in each world
-        self.modulus = ti.field(ti.f64, (worlds, 2))
-        self.modulus.from_numpy(4.0 / 3.0 * modulus)
-        largest = float(grains.radius.to_numpy().max())
-        self.make_grid(2.0 * largest + skin)
-        self.built_y, self.built_z = (ti.field(ti.f64, (worlds, count)) for _ in range(2))
-        self.travel = ti.field(ti.f64, worlds)  # no grain has moved farther than this since
-        self.travel.fill(np.inf)
+        self.modulus = arrays.holding(4.0 / 3.0 * modulus)
+        self.make_grid(arrays, 2.0 * grains.largest + skin)
+        self.built_y, self.built_z = arrays.reals(2, (worlds, count))
+        self.travel = arrays.holding(np.full(worlds, np.inf))  # no grain has moved farther than this since
 
-    def make_grid(self, reach: float) -> None:
+    def make_grid(self, arrays: Arrays, reach: float) -> None:
         """Cells no smaller than the reach of a contact, and no more of them than a few a grain."""
         lower, upper = self.walls.outline.min(axis=0), self.walls.outline.max(axis=0)
         extent = upper - lower
@@ -102,17 +95,8 @@ class Neighbours:
         self.columns = int(extent[0] / size) + 1
         self.rows = int(extent[1] / size) + 1
         worlds, cells = self.grains.worlds, self.columns * self.rows
-        self.cell_first = ti.field(ti.i32, (worlds, cells + 1))
-        self.cell_of = ti.field(ti.i32, (worlds, self.grains.count))
-        self.sorted = ti.field(ti.i32, (worlds, self.grains.count))
-
-    def grow(self) -> None:
-        """Double the room of both lists, keeping what they hold."""
-        for name in ("pairs", "contacts"):
-            old = getattr(self, name)
-            new = ContactList(self.grains.worlds, self.grains.count, 2 * old.capacity, self.history)
-            new.copy_from(old)
-            setattr(self, name, new)
+        (self.cell_first,) = arrays.integers(1, (worlds, cells + 1))
+        self.cell_of, self.sorted = arrays.integers(2, (worlds, self.grains.count))
 
     def forget(self) -> None:
         """Drop all history, for grains that were put somewhere else."""

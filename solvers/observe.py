@@ -7,6 +7,7 @@ from solvers.frame import Frame
 from solvers.grains import Grains
 from solvers.neighbours import Neighbours
 from solvers.per_world import ITERATIONS_A_THREAD
+from solvers.runtime import Arrays
 from solvers.walls import Walls
 
 
@@ -33,11 +34,17 @@ class Observer:
     )
 
     def __init__(
-        self, grains: Grains, walls: Walls, neighbours: Neighbours, contacts: Contacts, frame: Frame
+        self,
+        arrays: Arrays,
+        grains: Grains,
+        walls: Walls,
+        neighbours: Neighbours,
+        contacts: Contacts,
+        frame: Frame,
     ):
         self.grains, self.walls, self.neighbours = grains, walls, neighbours
         self.contacts, self.frame = contacts, frame
-        self.rows = ti.field(ti.f64, (grains.worlds, len(self.NAMES)))
+        (self.rows,) = arrays.reals(1, (grains.worlds, len(self.NAMES)))
 
     @ti.kernel
     def observe(self, time: ti.f64):

@@ -17,12 +17,9 @@ ITERATIONS_A_THREAD = 512
 class PerWorld:
     """Advances all worlds. What a world does depends on nothing but itself: the same bits on any number of threads."""
 
-    def __init__(
-        self, grains: Grains, walls: Walls, neighbours: Neighbours, contacts: Contacts, frame: Frame
-    ):
+    def __init__(self, grains: Grains, walls: Walls, neighbours: Neighbours, contacts: Contacts, frame: Frame):
         self.grains, self.walls, self.neighbours = grains, walls, neighbours
         self.contacts, self.frame = contacts, frame
-        self.smallest = float(grains.radius.to_numpy().min())
 
     @ti.kernel
     def advance(
@@ -39,19 +36,17 @@ class PerWorld:
 
     @ti.func
     def advance_world(self, clock: ti.template(), w, target, origin, dt):
-        limit = (FASTEST_STEP * self.smallest / dt) ** 2
+        limit = (FASTEST_STEP * self.grains.smallest / dt) ** 2
         while clock.step[w] < target and clock.status[w] == RUNNING:
             fits = True
             if self.neighbours.stale(w):
                 fits = self.neighbours.rebuild(w)
             if fits:
                 self.contacts.pair_forces(self.grains, self.neighbours.pairs, w, dt)
-                self.contacts.wall_forces(
-                    self.grains, self.walls, self.neighbours.contacts, w, dt
-                )
+                self.contacts.wall_forces(self.grains, self.walls, self.neighbours.contacts, w, dt)
                 body = self.frame.body_force(w, origin + clock.step[w] * dt)
-                kick = 0.5 * dt if clock.fresh[w] == 1 else dt
-                clock.fresh[w] = 0
+                kick = dt if clock.kicked[w] == 1 else 0.5 * dt
+                clock.kicked[w] = 1
                 fastest = self.grains.kick_and_drift(w, body, self.frame.rotating, kick, dt)
                 self.neighbours.travel[w] += ti.sqrt(fastest) * dt
                 clock.fastest[w] = fastest

@@ -15,7 +15,7 @@ class Scene:
     """A batch of W worlds of n grains in equal tanks.
 
     `radius` (W, n) m; `outline` (m, 2) m, counter-clockwise; `motions[w]` the tank's motions in world w, the same kinds in
-    every world; `step` Δt in s, or None for the derived one.
+    every world; `step` Δt in s, or None for the derived one; `start_speed` (m/s) of the fastest grain at the start.
     """
 
     radius: np.ndarray
@@ -29,6 +29,7 @@ class Scene:
     motions: Sequence[Sequence] = ()
     soft_start: float = 0.0
     step: float | None = None
+    start_speed: float = 0.0
     interfaces: tuple[Interface, Interface] = field(init=False)
 
     def __post_init__(self):
@@ -51,7 +52,7 @@ class Scene:
     def credible_speed(self) -> float:
         """Highest speed (m/s) at which grains may be expected to meet: a fall through the tank, and the tank's own."""
         height = np.ptp(self.outline[:, 1])
-        speed = float(np.sqrt(2.0 * self.gravity * height))
+        speed = max(self.start_speed, float(np.sqrt(2.0 * self.gravity * height)))
         for motion in (m for world in self.motions for m in world):
             fastest, _ = motion.fastest()
             lever = 1.0

@@ -12,6 +12,7 @@ from solvers.grains import Grains
 from solvers.neighbours import Neighbours
 from solvers.observe import Observer
 from solvers.per_world import PerWorld
+from solvers.runtime import Arrays
 from solvers.scene import Scene
 from solvers.walls import Walls
 
@@ -21,41 +22,53 @@ AT_REST = -1e9  # a time long before any motion starts
 
 @ti.data_oriented
 class Clock:
-    """Where each world stands: steps done, status of the watch, largest speed² of the last step."""
+    """Where each world stands: steps done, status of the watch, whether its first kick is due, last largest speed²."""
 
-    def __init__(self, worlds: int):
-        self.step, self.status, self.fresh = (ti.field(ti.i32, worlds) for _ in range(3))
-        self.fastest = ti.field(ti.f64, worlds)
-        self.fresh.fill(1)
+    def __init__(self, arrays: Arrays, worlds: int):
+        self.step, self.status = arrays.integers(2, (worlds,))
+        self.kicked = arrays.integers(1, (worlds,))[0]
+        self.fastest = arrays.reals(1, (worlds,))[0]
 
 
 class Simulation:
-    """W worlds of one scene, from `position` (W, n, 2) m at rest."""
+    """W worlds of one scene, from `position` (W, n, 2) m at rest.
+
+    `threads` 0 uses all cores; `skin` (m) of the Verlet lists affects speed alone.
+    """
 
     def __init__(self, scene: Scene, position: np.ndarray, threads: int = 0, skin: float | None = None):
         runtime.initialise(threads)
         self.scene, self.dt = scene, scene.time_step()
+        self.skin = skin or SKIN * 2.0 * float(scene.radius.mean())
+        self.steps, self.origin, self.room = 0, 0.0, 1
+        self._build()
+        self.grains.place(np.asarray(position, dtype=np.float64).reshape(*scene.radius.shape, 2))
+
+    def _build(self) -> None:
+        """Make the arrays and the kernels that work on them."""
+        scene, worlds = self.scene, len(self.scene.radius)
         normal, tangential = scene.laws
         pair, wall = scene.interfaces
-        worlds = len(scene.radius)
-        self.grains = Grains(scene.radius, scene.grain.density)
-        self.walls = Walls(scene.outline)
-        self.frame = Frame(scene.motions, scene.soft_start, scene.gravity)
         moduli = np.tile([pair.young_modulus, wall.young_modulus], (worlds, 1))
-        skin = skin or SKIN * 2.0 * float(scene.radius.mean())
-        self.neighbours = Neighbours(self.grains, self.walls, skin, tangential.history, moduli)
-        self.contacts = Contacts(normal, tangential, [scene.interfaces] * worlds)
-        self.clock = Clock(worlds)
-        self.steps = 0
-        self.origin = 0.0
-        self.grains.place(np.asarray(position, dtype=np.float64).reshape(*scene.radius.shape, 2))
-        self._compile()
-
-    def _compile(self) -> None:
-        """Make the kernels anew; they keep the arrays they were made with."""
+        self.arrays = arrays = Arrays()
+        self.grains = Grains(arrays, scene.radius, scene.grain.density)
+        self.walls = Walls(arrays, scene.outline)
+        self.neighbours = Neighbours(arrays, self.grains, self.walls, self.skin, tangential.history, moduli, self.room)
+        self.contacts = Contacts(arrays, normal, tangential, [scene.interfaces] * worlds)
+        self.frame = Frame(arrays, scene.motions, scene.soft_start, scene.gravity)
+        self.clock = Clock(arrays, worlds)
         parts = self.grains, self.walls, self.neighbours, self.contacts, self.frame
         self.schedule = PerWorld(*parts)
-        self.observer = Observer(*parts)
+        self.observer = Observer(arrays, *parts)
+        arrays.finish()
+
+    def _make_room(self) -> None:
+        """Double the room of the contact lists; what the worlds hold stays as it is."""
+        old = self.arrays
+        self.room *= 2
+        self._build()
+        self.arrays.take_over(old)
+        old.release()
 
     @property
     def time(self) -> float:
@@ -78,8 +91,7 @@ class Simulation:
             status = self.clock.status.to_numpy()
             if not np.any(status == watch.NO_ROOM):
                 break
-            self.neighbours.grow()
-            self._compile()
+            self._make_room()
             self.clock.status.from_numpy(np.where(status == watch.NO_ROOM, watch.RUNNING, status))
         time = self.origin + self.clock.step.to_numpy() * self.dt
         watch.check_speed(status, self.clock.fastest.to_numpy(), time, self.dt)
@@ -113,6 +125,10 @@ class Simulation:
         self.clock.step.fill(0)
         self.grains.angle.fill(0.0)
         return quiet >= 2
+
+    def close(self) -> None:
+        """Give the arrays back; the simulation must not be used after it."""
+        self.arrays.release()
 
     def snapshot(self) -> dict[str, np.ndarray]:
         """Positions, velocities (W, n, 2), angles and spins (W, n) now, in the tank's frame."""

@@ -3,6 +3,8 @@
 import numpy as np
 import taichi as ti
 
+from solvers.runtime import Arrays
+
 
 @ti.data_oriented
 class Walls:
@@ -13,7 +15,7 @@ class Walls:
     counts twice.
     """
 
-    def __init__(self, outline: np.ndarray):
+    def __init__(self, arrays: Arrays, outline: np.ndarray):
         start = np.asarray(outline, dtype=np.float64)
         edge = np.roll(start, -1, axis=0) - start
         length = np.hypot(edge[:, 0], edge[:, 1])
@@ -26,8 +28,7 @@ class Walls:
         rows = np.zeros((self.features, 6))
         rows[: self.segments] = np.column_stack([start, along, length, np.zeros(len(start))])
         rows[self.segments :] = np.column_stack([start[reflex], before[reflex], along[reflex]])
-        self.table = ti.field(ti.f64, shape=rows.shape)
-        self.table.from_numpy(rows)
+        self.table = arrays.holding(rows)
 
     @ti.func
     def gap(self, feature, y, z):

@@ -1,5 +1,7 @@
 """Viscoelastic Hertz contact: the normal force of Brilliantov, Spahn, Hertzsch and Pöschel (1996)."""
 
+from functools import cache
+
 import taichi as ti
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
@@ -47,15 +49,27 @@ def restitution(beta_v: float) -> float:
 
     force_ends.terminal, force_ends.direction = True, -1
     path = solve_ivp(
-        motion, (0.0, 100.0), [0.0, 1.0], events=force_ends, rtol=1e-10, atol=1e-12, max_step=0.05
+        motion,
+        (0.0, 100.0),
+        [0.0, 1.0],
+        events=force_ends,
+        method="DOP853",
+        rtol=1e-9,
+        atol=1e-12,
+        max_step=0.2,
     )
     return -float(path.y[1, -1])
+
+
+@cache
+def damping_for(e: float) -> float:
+    """The x = β v^(1/5) that gives restitution e < 1."""
+    return brentq(lambda x: restitution(x) - e, 1e-6, 60.0, xtol=1e-9)
 
 
 def dissipative_time_for(e: float, speed: float, stiffness: float, mass: float) -> float:
     """The dissipative time A (s) that gives restitution e at an impact speed (m/s), k in N/m^1.5, m_eff in kg."""
     if e >= 1.0:
         return 0.0
-    x = brentq(lambda trial: restitution(trial) - e, 1e-6, 60.0, xtol=1e-10)
     # x = β v^(1/5) with γ_n = (3/2) A k
-    return x * speed**-0.2 * (mass / stiffness) ** 0.4 / 1.5
+    return damping_for(e) * speed**-0.2 * (mass / stiffness) ** 0.4 / 1.5
