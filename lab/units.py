@@ -1,7 +1,7 @@
-"""Quantities as people write them ("3.2e9 Pa", "0.3 deg/s", "30 %") to SI numbers, and back to pleasant text.
+"""Quantities as people write them ("3.2e9 Pa", "0.3 deg/s", "30 %") to SI numbers and back.
 
-The registry is a short list of our own. Pint's default one takes angles for pure numbers, so "3 deg/s" would pass for a
-frequency and 60 rpm would be 6.28 Hz; here an angle is a dimension of its own.
+The registry is a short list of our own. Pint's default one takes angles for pure numbers, so
+"3 deg/s" would pass for a frequency and 60 rpm would be 6.28 Hz; here an angle is a dimension.
 """
 
 import math
@@ -40,7 +40,7 @@ percent = 0.01 = %
 
 
 class Kind(NamedTuple):
-    """How people speak of an SI unit: the name of what it measures, the unit they would use, an example."""
+    """How people speak of an SI unit: what it measures, the unit they would use, an example."""
 
     name: str
     unit: str
@@ -64,7 +64,14 @@ KINDS = {
     "N s/m": Kind("a damping coefficient", "N s/m", "20 N s/m"),
 }
 PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
-PREFIXED = {"m": -9, "s": -9, "Pa": 0, "N": -9, "J": -9, "Hz": 0}  # symbol: smallest power of ten shown
+PREFIXED = {
+    "m": -9,
+    "s": -9,
+    "Pa": 0,
+    "N": -9,
+    "J": -9,
+    "Hz": 0,
+}  # symbol: smallest power of ten shown
 
 NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 FACTOR = re.compile(r"\s*([*/·]?)\s*([^\W\d]+|[%°]|1(?=\s*/))(?:\s*(?:\^|\*\*)\s*(-?[1-9]))?")
@@ -97,7 +104,7 @@ def needed(symbol: str) -> str:
 def quoted(value: object) -> str:
     """A person's value on one line, no longer than an error can bear."""
     try:
-        text = str(value)
+        text = str(value).lower() if isinstance(value, bool) else str(value)
     except ValueError:  # an integer of more than 4300 digits
         return "the number"
     text = text if len(text) <= QUOTED else f"{text[:QUOTED]}…"
@@ -106,9 +113,10 @@ def quoted(value: object) -> str:
 
 
 def parse(value: object, symbol: str) -> float:
-    """The SI number, in the unit `symbol`, of a text such as "3 mm"; plain numbers are taken where `symbol` is "1".
+    """The SI number, in the unit `symbol`, of a text such as "3 mm".
 
-    Raises LabError: a wrong dimension, no unit, an unknown unit, nonsense, or a number that is not finite.
+    Plain numbers are taken where `symbol` is "1". Raises LabError: a wrong dimension, no unit, an
+    unknown unit, nonsense, or a number that is not finite.
     """
     if isinstance(value, str):
         number, unit = _split(value, symbol)
@@ -127,7 +135,7 @@ def parse(value: object, symbol: str) -> float:
 def show(value: float, symbol: str) -> str:
     """A number in the SI unit `symbol` as people like to read it: show(0.003, "m") is "3 mm"."""
     unit = kind(symbol).unit
-    if symbol in PREFIXED:
+    if symbol in PREFIXED and math.isfinite(value):
         return _with_prefix(value, symbol)
     if symbol == "1":
         return _digits(value)
@@ -141,18 +149,18 @@ def _split(text: str, symbol: str) -> tuple[float, str]:
         return float(match[0]), text[match.end() :].strip()
     if re.match(r"[+-]?(nan|inf)", text, re.IGNORECASE):
         raise LabError(f"{quoted(text)} is not a finite number; {needed(symbol)}.")
-    raise LabError(f"{quoted(text)} does not begin with a number; {needed(symbol)}.")
+    raise LabError(f"{quoted(text)} cannot be read; {needed(symbol)}.")
 
 
 def _factor(unit: str, value: str, symbol: str) -> float:
-    """What a number in `unit` is multiplied by to be in `symbol`; `value` is the text to quote in errors."""
+    """What turns a number in `unit` into one in `symbol`; `value` is the text that errors quote."""
     if not unit and symbol != "1":
         raise LabError(f"{quoted(value)} has no unit; {needed(symbol)}.")
-    given, wanted = _unit(unit, value, symbol), _unit("" if symbol == "1" else symbol, value, symbol)
-    if given.dimensionality != wanted.dimensionality:
+    given = _unit(unit, value, symbol)
+    if given.dimensionality != _si(symbol).dimensionality:
         raise LabError(f"{_mismatch(value, given, symbol)}.")
     try:
-        return (1 * given).to(wanted).magnitude
+        return (1 * given).to(_si(symbol)).magnitude
     except OverflowError:
         return math.inf
 
@@ -177,21 +185,19 @@ def _unit(text: str, value: str, symbol: str):
 
 
 def _named(name: str):
-    """The pint unit of one name, or None. Only words have a plural: "Pas" is more likely meant as "Pa s"."""
+    """The pint unit of one name, or None. Only words have a plural: "Pas" may well mean "Pa s"."""
     registry = _registry()
     name = {"%": "percent", "°": "degree"}.get(name, name)
     found = registry.parse_unit_name(name)
     if not found:
         return None
-    abbreviation_with_s = len(name) <= 4 and name.endswith("s") and len(name) > 1
-    if abbreviation_with_s and registry.parse_unit_name(name[:-1]) == found:
-        return None
-    return registry.Unit(name)
+    plural = name.endswith("s") and registry.parse_unit_name(name[:-1]) == found
+    return None if plural and len(name) <= 4 else registry.Unit(name)
 
 
 def _mismatch(value: str, given, symbol: str) -> str:
     name, unit, example = kind(symbol)
-    what = next((k.name for s, k in KINDS.items() if _dimension(s) == given.dimensionality), None)
+    what = next((k.name for s, k in KINDS.items() if _si(s).dimensionality == given.dimensionality), None)
     is_what = f"is {what}" if what else "is of another kind"
     if symbol == "1":
         return f"{quoted(value)} {is_what}, but {needed(symbol)}"
@@ -199,8 +205,8 @@ def _mismatch(value: str, given, symbol: str) -> str:
 
 
 @cache
-def _dimension(symbol: str):
-    return _unit("" if symbol == "1" else symbol, symbol, symbol).dimensionality
+def _si(symbol: str):
+    return _unit("" if symbol == "1" else symbol, symbol, symbol)
 
 
 def _as_float(value: float) -> float:
@@ -211,13 +217,12 @@ def _as_float(value: float) -> float:
 
 
 def _digits(value: float) -> str:
-    """Four significant digits, without an exponent where five to seven places of zeros can be read."""
+    """Four significant digits, with an exponent only from ten million on."""
     text = f"{value:.4g}"
     return f"{float(text):.0f}" if "e+" in text and abs(value) < 1e7 else text
 
 
 def _with_prefix(value: float, symbol: str) -> str:
-    rounded = float(f"{value:.4g}")
-    power = 0 if rounded == 0.0 else 3 * math.floor(math.log10(abs(rounded)) / 3 + 1e-9)
+    power = 3 * (int(f"{value:.3e}".split("e")[1]) // 3)
     power = min(max(power, PREFIXED[symbol]), 0 if symbol == "s" else 9)
-    return f"{_digits(rounded / 10.0**power)} {PREFIXES[power]}{symbol}"
+    return f"{_digits(value / 10.0**power)} {PREFIXES[power]}{symbol}"

@@ -86,6 +86,11 @@ class Arrays:
             field.from_numpy(values)
         self._contents = []
 
+    @property
+    def bytes(self) -> int:
+        """Memory of the declared fields."""
+        return sum(int(np.prod(f.shape)) * getattr(f, "n", 1) * (4 if f.dtype == ti.i32 else 8) for f in self._fields)
+
     def take_over(self, smaller: "Arrays") -> None:
         """Copy what the same declarations hold in arrays of smaller or equal shapes."""
         for field, source in zip(self._fields, smaller._fields, strict=True):

@@ -1,4 +1,7 @@
-"""What the colour of a grain says. A new way to colour: one function from footage to `Colouring`, one line in MODES."""
+"""What the colour of a grain says.
+
+A new way to colour takes one function from footage to `Colouring` and one line in MODES.
+"""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -15,8 +18,11 @@ LIGHT, DARK = (255.0, 255.0, 255.0), (25.0, 30.0, 40.0)  # spin marks
 
 @dataclass(frozen=True)
 class Colouring:
-    """label: with its unit; low, high: ends of the scale, fixed for the whole film; table (k, 3) in 0..255;
-    values: from frame and world to a number (n,) a grain; ticks: places and texts, or None for round numbers."""
+    """A scale that stays the same through the film, and a number on it for each grain.
+
+    label: with its unit; low, high: ends of the scale; table: its colours (k, 3) in 0..255;
+    values: from frame and world to numbers (n,); ticks: places and texts (None: round numbers).
+    """
 
     label: str
     low: float
@@ -33,7 +39,7 @@ class Colouring:
 
 
 def speed(footage: Footage) -> Colouring:
-    """|v| relative to the tank; the scale ends at the 98th percentile of the liveliest frame, one diameter/s at least."""
+    """|v| relative to the tank; the scale ends at the 98th percentile of the liveliest frame."""
     looks = [
         np.nanpercentile(footage.speed(frame, world), 98)
         for frame in _spread(footage)
@@ -57,9 +63,7 @@ def displacement(footage: Footage) -> Colouring:
         return np.hypot(*moved.T) / footage.diameter
 
     looks = [
-        np.nanpercentile(values(frame, world), 98)
-        for frame in _spread(footage)
-        for world in range(footage.worlds)
+        np.nanpercentile(values(frame, world), 98) for frame in _spread(footage) for world in range(footage.worlds)
     ]
     top = _round_up(max(*looks, 1.0))
     return Colouring("displacement (diameters)", 0.0, top, _table("plasma"), values)
@@ -79,9 +83,7 @@ def layer(footage: Footage, most: int = 8) -> Colouring:
 
     ticks = {k + 0.5: str(k + 1) for k in range(count)}
     wide = "1 diameter" if thickness == 1 else f"{thickness} diameters"
-    return Colouring(
-        f"layer at the start ({wide})", 0.0, count, _table("viridis", count), values, ticks
-    )
+    return Colouring(f"starting layer ({wide})", 0.0, count, _table("viridis", count), values, ticks)
 
 
 MODES: dict[str, Callable[[Footage], Colouring]] = {
@@ -99,7 +101,7 @@ def colouring(name: str, footage: Footage) -> Colouring:
 
 
 def mark_colours(colours: np.ndarray) -> np.ndarray:
-    """Spin marks (n, 3) that stand out: light on dark grains, dark on light ones (luma of ITU-R BT.709)."""
+    """Spin marks (n, 3): light on dark grains, dark on light ones (luma of ITU-R BT.709)."""
     luma = colours @ np.array([0.2126, 0.7152, 0.0722])
     return np.where(luma[:, None] < 120.0, LIGHT, DARK)
 

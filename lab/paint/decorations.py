@@ -1,4 +1,4 @@
-"""Everything on a picture that is not a grain or a wall: texts, scale bar, colour bar, gravity dial, live plot."""
+"""What is on a picture beside grains and walls: scale bar, colour bar, gravity dial, live plot."""
 
 from functools import cache
 from pathlib import Path
@@ -17,7 +17,7 @@ LINE = (176, 184, 193)
 GRID = (232, 235, 239)
 WALL = (86, 97, 110)
 HOLD = (246, 247, 249)
-SERIES = (  # curves and names of the beds (Okabe and Ito's colour-blind-safe palette, darkened where too light)
+SERIES = (  # curves and names of the beds: Okabe and Ito's colour-blind-safe palette, darkened
     (0, 114, 178),
     (213, 94, 0),
     (0, 138, 100),
@@ -46,13 +46,15 @@ def plain(value: float) -> str:
     return f"{value:g}".replace("-", "\N{MINUS SIGN}")
 
 
-def shortened(text: str, width: float, face: ImageFont.FreeTypeFont) -> str:
-    """The text, cut with an ellipsis if it is wider than `width` pixels."""
-    if face.getlength(text) <= width:
-        return text
-    while text and face.getlength(text + "…") > width:
-        text = text[:-1]
-    return text.rstrip() + "…"
+def draw_title(draw: ImageDraw.ImageDraw, corner: tuple, text: str, width: float, size: float) -> None:
+    """A bold title: made smaller, then cut, if it is wider than `width` pixels."""
+    size = min(size, max(0.75 * size, 0.99 * size * width / font(size, bold=True).getlength(text)))
+    face = font(size, bold=True)
+    whole = text
+    while text and face.getlength(text) > width:
+        whole = whole[:-1].rstrip()
+        text = whole + "…"
+    draw.text(corner, text, INK, face, anchor="la")
 
 
 def ticks(low: float, high: float, most: int) -> list[float]:
@@ -68,10 +70,11 @@ def round_length(longest: float) -> float:
     return float(power * max(step for step in (1, 2, 5) if step <= longest / power + 1e-9))
 
 
-def draw_scale_bar(
-    draw: ImageDraw.ImageDraw, corner: tuple, longest: float, scale: float, size: float
-) -> None:
-    """A bar of a round length with its length to the right; corner: its lower left, pixels; scale: pixels a metre."""
+def draw_scale_bar(draw: ImageDraw.ImageDraw, corner: tuple, longest: float, scale: float, size: float) -> None:
+    """A bar of a round length with its length to the right.
+
+    corner: its lower left, longest: its length at most (pixels); scale: pixels a metre.
+    """
     length = round_length(longest / scale)
     left, bottom = corner
     right, tick, thick = left + length * scale, 0.3 * size, max(1, round(size / 9))
@@ -82,9 +85,7 @@ def draw_scale_bar(
     draw.text((right + 0.6 * size, bottom - tick), text, INK, font(size), anchor="lm")
 
 
-def draw_colour_bar(
-    image: Image.Image, box: tuple, colouring: Colouring, size: float
-) -> None:
+def draw_colour_bar(image: Image.Image, box: tuple, colouring: Colouring, size: float) -> None:
     """Label, bar and ticks inside the box (left, top, right, bottom) of pixels."""
     left, top, right, _ = (round(edge) for edge in box)
     draw = ImageDraw.Draw(image)
@@ -104,7 +105,7 @@ def draw_colour_bar(
 
 
 def gravity_dial(diameter: int, tilt: float) -> Image.Image:
-    """A dial with an arrow where gravity points for somebody who tilts with the tank (tilt in rad)."""
+    """A dial with an arrow where gravity points for one who tilts with the tank (tilt in rad)."""
     size = FINER * diameter
     image = Image.new("RGB", (size, size), PAPER)
     draw = ImageDraw.Draw(image)
@@ -127,17 +128,19 @@ def gravity_dial(diameter: int, tilt: float) -> Image.Image:
 class LivePlot:
     """Curves that grow with the film; the axes are drawn once.
 
-    size: (width, height) in pixels; curves: pairs of arrays x, y; colours: one each; text: height of the letters, pixels.
+    size: (width, height) in pixels; curves: pairs of arrays x, y; colours: one each;
+    labels: of x and y; text: height of the letters in pixels.
     """
 
-    def __init__(
-        self, size: tuple, curves: list, colours: list, labels: tuple[str, str], text: float
-    ) -> None:
+    def __init__(self, size: tuple, curves: list, colours: list, labels: tuple[str, str], text: float) -> None:
         self._text = FINER * text
         width, height = (FINER * round(side) for side in size)
         self._image = Image.new("RGB", (width, height), PAPER)
-        self._box = (2.6 * self._text, 1.7 * self._text, width - 0.7 * self._text, height - 3.1 * self._text)
         self._low, self._high = _limits(curves)
+        self._levels = ticks(self._low[1], self._high[1], 4)
+        widest = max(font(self._text).getlength(plain(level)) for level in self._levels)
+        left, right = widest + 0.5 * self._text, width - 0.4 * self._text
+        self._box = (left, 1.7 * self._text, right, height - 3.1 * self._text)
         self._curves = [self._place(np.column_stack(curve)) for curve in curves]
         self._colours = colours
         self._draw_axes(labels)
@@ -148,7 +151,7 @@ class LivePlot:
         draw = ImageDraw.Draw(image)
         thick, dot = round(0.16 * self._text), 0.32 * self._text
         for curve, colour in zip(self._curves, self._colours, strict=True):
-            drawn = curve[:count]
+            drawn = curve[:count][np.isfinite(curve[:count]).all(axis=1)]
             draw.line([tuple(point) for point in drawn], fill=colour, width=thick, joint="curve")
             x, y = drawn[-1]
             draw.ellipse((x - dot, y - dot, x + dot, y + dot), fill=colour, outline=PAPER)
@@ -165,14 +168,15 @@ class LivePlot:
         left, top, right, bottom = self._box
         draw.text((0, 0), labels[1], INK, face, anchor="la")
         draw.text((right, self._image.height), labels[0], INK, face, anchor="rd")
-        for value in ticks(self._low[1], self._high[1], 4):
+        for value in self._levels:
             y = self._place(np.array([[self._low[0], value]]))[0, 1]
             draw.line([(left, y), (right, y)], fill=GRID, width=thin)
             draw.text((left - 0.4 * self._text, y), plain(value), QUIET, face, anchor="rm")
         for value in ticks(self._low[0], self._high[0], 5):
             x = self._place(np.array([[value, self._low[1]]]))[0, 0]
             draw.line([(x, bottom), (x, bottom + 0.3 * self._text)], fill=LINE, width=thin)
-            draw.text((x, bottom + 0.5 * self._text), plain(value), QUIET, face, anchor="ma")
+            text_x = min(x, self._image.width - face.getlength(plain(value)) / 2)
+            draw.text((text_x, bottom + 0.5 * self._text), plain(value), QUIET, face, anchor="ma")
         draw.line([(left, top), (left, bottom), (right, bottom)], fill=LINE, width=thin)
 
 

@@ -1,7 +1,7 @@
 """One film: where everything stands on the page, and the picture of any frame.
 
-Lengths on the page are counted in units u, 1/36 of the height of a 16:9 picture, so that every size looks alike:
-the tanks on the left, a column of readings, plot and colour bar on the right.
+Lengths on the page are counted in units u, 1/36 of the height of a 16:9 picture, so that every size
+looks alike: the tanks on the left, a column of readings, plot and colour bar on the right.
 """
 
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ from lab.errors import LabError
 from lab.paint import decorations as deco
 from lab.paint.colours import colouring, mark_colours
 from lab.paint.footage import Footage
-from lab.paint.painter import Camera, paint_grains, paint_tank
+from lab.paint.painter import Camera, paint_grains, paint_tank, to_discs
 
 FALLBACK = {"width": 1280, "height": 720, "colour": "speed", "frame": "tank", "speed": 1.0}
 FRAMES = ("tank", "earth")
@@ -21,15 +21,18 @@ SMALLEST = (320, 180)  # pixels
 MOST_BEDS = 6  # shown side by side
 MOST_SAMPLES = 800  # of a curve of the plot
 
-MARGIN, COLUMN, GAP, WALL = 2.0, 17.0, 2.5, 0.45  # in u
+MARGIN, COLUMN, GAP, WALL = 2.0, 17.0, 2.5, 0.36  # in u
 TEXT, READING, TITLE = 1.1, 1.35, 1.45  # heights of letters in u
 ALIKE = 1e-9  # poses that differ by less (m, rad) are the same
 
 
 @dataclass(frozen=True)
 class Look:
-    """What a person may choose: size in pixels, colour and frame by name, playback speed (1: real time),
-    world by its number from 0 (None: all)."""
+    """What a person may choose.
+
+    Size in pixels, colour and frame by name, playback speed (1: real time), world by its number
+    from 0 (None: all).
+    """
 
     width: int
     height: int
@@ -60,7 +63,7 @@ def choose_look(footage: Footage, world: int | None = None, **wishes: object) ->
 
 
 class Film:
-    """The pictures of one recording in one look. Taichi must be running (`solvers.runtime.initialise`)."""
+    """The pictures of one recording in one look; Taichi must be running (`solvers.runtime`)."""
 
     def __init__(self, footage: Footage, look: Look) -> None:
         self._footage, self._look = footage, look
@@ -77,8 +80,7 @@ class Film:
     def picture(self, frame: int) -> np.ndarray:
         """The picture (height, width, 3), u8, of one frame."""
         picture = self._page.copy()
-        for k in range(len(self._worlds)):
-            self._paint_bed(picture, k, frame)
+        self._paint_beds(picture, frame)
         image = Image.fromarray(picture)
         self._draw_readings(image, frame)
         sampled = np.searchsorted(self._samples, self._footage.time[frame] + 1e-9, "right")
@@ -95,44 +97,46 @@ class Film:
 
     def _plot_box(self) -> tuple[int, int, int, int]:
         left, right = self._column()
-        return left, self._u(12.0), right, self._look.height - self._u(MARGIN + 4.6 + 2.2)
+        lowest = self._look.height - self._u(MARGIN + 4.6 + 2.2)
+        return left, self._u(12.0), right, min(lowest, self._u(12.0 + 16.0))
 
     def _stage(self) -> tuple[int, int, int, int]:
         """The part of the page where the tanks stand."""
         right, bottom = self._column()[0] - self._u(GAP), self._look.height - self._u(MARGIN + 2.8)
         return self._u(MARGIN), self._u(MARGIN + TITLE + 1.5), right, bottom
 
-    def _place_beds(self) -> tuple[list[Camera], list[tuple[float, float]]]:
-        """A camera and the place of the name of each bed, in the grid of cells that shows the beds largest."""
+    def _ground(self) -> tuple[np.ndarray, np.ndarray]:
+        """Lower and upper corner (m) of the box that holds the tank in every frame."""
         corners = self._footage.outline
         if self._look.frame == "earth":
             corners = _carried(corners, self._pose).reshape(-1, 2)
-        low, high = corners.min(axis=0), corners.max(axis=0)
-        count = len(self._worlds)
-        grids = [self._cells(columns) for columns in range(1, count + 1)]
-        sets = [[Camera.showing(low, high, cell) for cell in cells[:count]] for cells in grids]
-        cameras = max(sets, key=lambda cameras: cameras[0].scale)
-        wall = self._u(WALL)
-        corners = [camera.pixels([[low[0], high[1]]])[0] for camera in cameras]
-        return cameras, [(x - wall, y - wall - self._u(0.5)) for x, y in corners]
+        return corners.min(axis=0), corners.max(axis=0)
 
-    def _cells(self, columns: int) -> list[tuple]:
-        """Boxes of a grid with so many columns, room left for walls and names."""
+    def _place_beds(self) -> tuple[list[Camera], list[tuple[float, float]]]:
+        """Camera and place of the name of each bed, in the grid that shows the beds largest."""
+        low, high = self._ground()
         left, top, right, bottom = self._stage()
-        rows = -(-len(self._worlds) // columns)
-        wall, gap = self._u(WALL), self._u(1.5)
-        name = self._u(1.8) if self._footage.worlds > 1 else 0
-        width, height = (right - left + gap) / columns, (bottom - top + gap) / rows
-        return [
-            (
-                left + column * width + wall,
-                top + row * height + wall + name,
-                left + (column + 1) * width - gap - wall,
-                top + (row + 1) * height - gap - wall,
-            )
-            for row in range(rows)
-            for column in range(columns)
-        ]
+        stage = np.array([right - left, bottom - top])
+        wall, gap = WALL * self._unit, 1.5 * self._unit
+        name = 1.8 * self._unit if self._footage.worlds > 1 else 0.0
+        around = np.array([2 * wall, 2 * wall + name])
+        count = len(self._worlds)
+
+        def grid(columns: int) -> np.ndarray:
+            return np.array([columns, -(-count // columns)])
+
+        def scale(columns: int) -> float:
+            cell = (stage - gap * (grid(columns) - 1)) / grid(columns)
+            return float(((cell - around) / (high - low)).min())
+
+        columns = max(range(1, count + 1), key=scale)
+        largest = scale(columns)
+        pitch = largest * (high - low) + around + gap
+        start = np.array([left, top]) + (stage - pitch * grid(columns) + gap) / 2
+        cells = [start + pitch * (k % columns, k // columns) for k in range(count)]
+        inner = np.array([wall, wall + name]) + largest * np.array([-low[0], high[1]])
+        names = [(x, y + name - 0.5 * self._unit) for x, y in cells]
+        return [Camera(largest, tuple(cell + inner)) for cell in cells], names
 
     def _prepare_plot(self, worlds: list[int]) -> tuple[deco.LivePlot, np.ndarray]:
         """The plot of the shift of the centres of mass, and the times of its samples."""
@@ -161,9 +165,7 @@ class Film:
         left, _, right, _ = self._stage()
         column_left, column_right = self._column()
         bottom = look.height - self._u(MARGIN)
-        bold = deco.font(TITLE * self._unit, bold=True)
-        title = deco.shortened(self._footage.title, right - left, bold)
-        draw.text((left, self._u(MARGIN)), title, deco.INK, bold, anchor="la")
+        deco.draw_title(draw, (left, self._u(MARGIN)), self._footage.title, right - left, TITLE * self._unit)
         longest = 0.25 * (right - left)
         deco.draw_scale_bar(draw, (left, bottom), longest, self._cameras[0].scale, text)
         note = self._note(beds)
@@ -171,9 +173,9 @@ class Film:
         bar = column_left, bottom - self._u(4.6), column_right, bottom
         deco.draw_colour_bar(image, bar, self._colouring, text)
         page = np.array(image)
-        if look.frame == "tank":
-            for camera in self._cameras:
-                self._paint_tank(page, camera)
+        colours = (deco.WALL, deco.HOLD) if look.frame == "tank" else (deco.GRID, deco.PAPER)
+        for camera in self._cameras:  # in the earth frame a faint tank stays where it was at rest
+            self._paint_tank(page, camera, *colours)
         return page
 
     def _note(self, beds: int) -> str:
@@ -185,19 +187,21 @@ class Film:
             notes.append(f"{len(self._worlds)} of {beds} beds")
         return ", ".join(notes)
 
-    def _paint_bed(self, picture: np.ndarray, k: int, frame: int) -> None:
-        world, camera = self._worlds[k], self._cameras[k]
-        if self._look.frame == "earth":
-            camera = camera.carried(self._pose[frame, k])
-            self._paint_tank(picture, camera)
-        colours = self._colouring.colours(frame, world)
-        place = self._footage.position(frame, world)
-        angle, radius = self._footage.angle(frame, world), self._footage.radius[world]
-        paint_grains(picture, camera, place, radius, angle, colours, mark_colours(colours))
+    def _paint_beds(self, picture: np.ndarray, frame: int) -> None:
+        footage, discs, colours = self._footage, [], []
+        for k, world in enumerate(self._worlds):
+            camera = self._cameras[k]
+            if self._look.frame == "earth":
+                camera = camera.carried(self._pose[frame, k])
+                self._paint_tank(picture, camera, deco.WALL, deco.HOLD)
+            place, angle = footage.position(frame, world), footage.angle(frame, world)
+            discs.append(to_discs(camera, place, footage.radius[world], angle))
+            colours.append(self._colouring.colours(frame, world))
+        colour = np.concatenate(colours)
+        paint_grains(picture, np.concatenate(discs), colour, mark_colours(colour))
 
-    def _paint_tank(self, picture: np.ndarray, camera: Camera) -> None:
-        outline, wall = self._footage.outline, WALL * self._unit
-        paint_tank(picture, camera, outline, wall, deco.WALL, deco.HOLD)
+    def _paint_tank(self, picture: np.ndarray, camera: Camera, wall: tuple, hold: tuple) -> None:
+        paint_tank(picture, camera, self._footage.outline, WALL * self._unit, wall, hold)
 
     def _draw_readings(self, image: Image.Image, frame: int) -> None:
         """Clock, tilt, displacement and gravity in the column, names above the beds."""
@@ -206,7 +210,7 @@ class Film:
         top, face = self._u(MARGIN), deco.font(READING * self._unit)
         readings = [f"t = {deco.number(self._footage.time[frame], 2)} s"]
         if self._together:
-            readings += self._pose_readings(frame, 0)
+            readings += [f"{name} {value}" for name, value in self._pose_readings(frame, 0)]
             if self._look.frame == "tank":
                 dial = deco.gravity_dial(self._u(5.6), float(self._pose[frame, 0, 2]))
                 image.paste(dial, (right - dial.width, top))
@@ -217,23 +221,23 @@ class Film:
             self._draw_names(draw, frame)
 
     def _draw_names(self, draw: ImageDraw.ImageDraw, frame: int) -> None:
-        face = deco.font(TEXT * self._unit)
-        for k, camera in enumerate(self._cameras):
-            name = f"bed {self._worlds[k] + 1}"
-            words = [name] if self._together else [name, *self._pose_readings(frame, k)]
-            x, y = self._names_at[k]
-            draw.text((x, y), "   ".join(words), deco.SERIES[k], face, anchor="ls")
+        """The beds' names, and what tells their poses apart."""
+        for k, world in enumerate(self._worlds):
+            readings = self._pose_readings(frame, k)
+            aside = "" if self._together else f" ({readings[0][1]})"
+            text, face = f"bed {world + 1}{aside}", deco.font(TEXT * self._unit)
+            draw.text(self._names_at[k], text, deco.SERIES[k], face, anchor="ls")
 
-    def _pose_readings(self, frame: int, k: int) -> list[str]:
-        """Tilt, sway and heave of a shown bed, each only if it ever moves that way."""
+    def _pose_readings(self, frame: int, k: int) -> list[tuple[str, str]]:
+        """Names and values of tilt, sway and heave of a shown bed, of those that are ever used."""
         sway, heave, tilt = self._pose[frame, k]
-        moves = np.ptp(self._pose, axis=0).max(axis=0) > ALIKE
+        moves = (np.abs(self._pose) > ALIKE).any(axis=(0, 1))[[2, 0, 1]]
         readings = [
-            f"φ = {deco.number(np.degrees(tilt), 1)}°",
-            f"sway {deco.number(1000 * sway, 1)} mm",
-            f"heave {deco.number(1000 * heave, 1)} mm",
+            ("φ =", f"{deco.number(np.degrees(tilt), 1)}°"),
+            ("sway", f"{deco.number(1000 * sway, 1)} mm"),
+            ("heave", f"{deco.number(1000 * heave, 1)} mm"),
         ]
-        return [readings[axis] for axis in range(3) if moves[(2, 0, 1)[axis]]]
+        return [reading for reading, moving in zip(readings, moves, strict=True) if moving]
 
 
 def _carried(points: np.ndarray, pose: np.ndarray) -> np.ndarray:

@@ -13,7 +13,7 @@ from lab.paint.film import Film, choose_look
 from lab.paint.footage import open_footage
 from solvers.runtime import initialise
 
-FASTEST, SLOWEST = 60.0, 1.0  # pictures a second of a video
+FASTEST = 60.0  # pictures a second of a video
 BT709 = "scale=out_color_matrix=bt709:out_range=tv"
 ENCODING = (
     *("-crf", "20", "-preset", "veryfast", "-movflags", "+faststart", "-vf", BT709),
@@ -38,15 +38,13 @@ def render_recording(
 ) -> Path:
     """Film a recording (its file or its run's folder) and return what was written.
 
-    out: an .mp4 file (video.mp4 beside the recording), or with png a folder of PNG files (pictures).
-    What is not given comes from the preset's [video]. world: one bed, from 0; None: up to six side by side.
-    progress(done, of) is called after each picture. Raises LabError.
+    out: an .mp4 file (default: video.mp4 beside the recording), or with png a folder of PNG files
+    (pictures). What is not given comes from the preset's [video]. world: one bed, from 0; None: up
+    to six side by side. progress(done, of) is called after each picture. Raises LabError.
     """
     initialise()
     with open_footage(path) as footage:
-        look = choose_look(
-            footage, world, colour=colour, frame=frame, width=width, height=height, speed=speed
-        )
+        look = choose_look(footage, world, colour=colour, frame=frame, width=width, height=height, speed=speed)
         film = Film(footage, look)
         rate, stride = playback(footage.time, look.speed)
         shown = range(0, len(footage.time), stride)
@@ -68,8 +66,10 @@ def poster(
     height: int | None = None,
     world: int | None = None,
 ) -> Path:
-    """One picture of a recording as a PNG file (poster.png beside it): the frame nearest to `time` (s), or at this
-    fraction of the film. Raises LabError."""
+    """One picture of a recording as a PNG file (default: poster.png beside it).
+
+    The frame nearest to `time` (s), or else at this fraction of the film. Raises LabError.
+    """
     initialise()
     with open_footage(path) as footage:
         look = choose_look(footage, world, colour=colour, frame=frame, width=width, height=height)
@@ -84,11 +84,11 @@ def poster(
 
 
 def playback(time: np.ndarray, speed: float) -> tuple[float, int]:
-    """Pictures a second of the video, and of how many frames one is shown, for frame times (F,) in s."""
+    """Pictures a second of the video, and of how many frames one is shown; time (F,) in s."""
     interval = float(np.median(np.diff(time))) if len(time) > 1 else 0.04
     wanted = speed / interval
     stride = max(1, math.ceil(wanted / FASTEST - 1e-9))
-    return max(round(wanted / stride, 3), SLOWEST), stride
+    return round(wanted / stride, 3), stride
 
 
 def _counted(film: Film, shown: range, progress: Progress | None) -> Iterator[np.ndarray]:
@@ -121,20 +121,22 @@ def _write_video(out: Path, pictures: Iterator[np.ndarray], rate: float) -> Path
     if out.suffix != ".mp4":
         raise LabError(f"{out} cannot be written: a video is an .mp4 file.")
     part = out.with_suffix(".part.mp4")
+    writer = imageio.get_writer(
+        part,
+        fps=rate,
+        codec="libx264",
+        quality=None,
+        pixelformat="yuv420p",
+        macro_block_size=2,
+        ffmpeg_log_level="error",
+        output_params=list(ENCODING),
+    )
     try:
-        with imageio.get_writer(
-            part,
-            fps=rate,
-            codec="libx264",
-            quality=None,
-            pixelformat="yuv420p",
-            macro_block_size=2,
-            ffmpeg_log_level="error",
-            output_params=list(ENCODING),
-        ) as writer:
-            for picture in pictures:
-                writer.append_data(picture)
+        for picture in pictures:
+            writer.append_data(picture)
+        writer.close()
         part.replace(out)
     finally:
+        writer.close()
         part.unlink(missing_ok=True)
     return out

@@ -1,11 +1,12 @@
 """Videos, pictures and posters of a recording, and what is said when there can be none."""
 
-import json
+import shutil
 
 import h5py
 import imageio.v2 as imageio
 import numpy as np
 import pytest
+from synthetic import box, frame, recorder, sample
 
 from lab.errors import LabError
 from lab.paint.colours import MODES
@@ -17,50 +18,208 @@ from solvers.runtime import initialise
 WIDTH, HEIGHT, DIAMETER = 0.18, 0.09, 4e-3
 
 
-def make_recording(path, worlds=1, frames=6, samples=40, tilt=0.6, sway=0.0, duration=8.0):
-    """Write a made-up recording: a bed whose upper layers slide the more the further the tank tilts."""
-    random = np.random.default_rng(1)
+def make_recording(folder, worlds=1, frames=6, samples=40, tilt=0.6, sway=0.0, duration=8.0):
+    """Record a made-up run in a folder: the upper layers slide the more the further the tank tilts."""
     y, z = np.meshgrid(
         np.arange(-WIDTH / 2 + DIAMETER / 2, WIDTH / 2 - DIAMETER / 4, DIAMETER),
         np.arange(DIAMETER / 2, 0.5 * HEIGHT, DIAMETER),
     )
     start = np.column_stack([y.ravel(), z.ravel()])
-    grains = len(start)
+    radius = DIAMETER / 2 * np.random.default_rng(1).uniform(0.9, 1.0, (worlds, len(start)))
+    late = 0.3 + 0.05 * np.arange(worlds)[:, None]
 
-    def slide(time, world):
-        share = np.clip(time / duration - 0.3 - 0.05 * world, 0, 1)
-        return -0.4 * WIDTH * share[..., None] * np.exp((start[:, 1] - 0.5 * HEIGHT) / 0.012)
+    def slide(time):
+        share = np.clip(time / duration - late, 0, 1)
+        return -0.4 * WIDTH * share * np.exp((start[:, 1] - 0.5 * HEIGHT) / 0.012)
 
-    def poses(time):
-        swing = sway * np.sin(2 * np.pi * time)
-        return np.repeat(
-            np.stack([swing, 0 * time, tilt * time / duration], axis=-1)[:, None], worlds, axis=1
-        )
+    def place(time):
+        y = np.clip(start[:, 0] + slide(time), -WIDTH / 2 + DIAMETER / 2, None)
+        return np.stack([y, np.broadcast_to(start[:, 1], y.shape)], axis=-1)
 
-    with h5py.File(path, "w") as file:
-        file.attrs.update(format="cargo-shift-lab 1", preset="made-up", status="complete")
-        resolved = {"title": "A made-up bed of discs", "video": {"width": 640, "height": 360}}
-        file["preset/resolved"] = json.dumps(resolved)
-        radius = DIAMETER / 2 * random.uniform(0.9, 1.0, (worlds, grains))
-        file["grains/radius"] = radius
-        w, h = WIDTH / 2, HEIGHT
-        file["tank/outline"] = np.array([(-w, 0.0), (w, 0.0), (w, h), (-w, h)])
-        for group, count in (("series", samples), ("frames", frames)):
-            time = np.linspace(0, duration, count)
-            moved = np.stack([slide(time, world) for world in range(worlds)], axis=1)
-            file[f"{group}/time"] = time
-            file[f"{group}/pose"] = poses(time)
-            if group == "series":
-                centre = np.stack([moved.mean(axis=2), 0 * moved.mean(axis=2)], axis=-1)
-                file["series/centre_of_mass"] = centre
-                continue
-            place = np.broadcast_to(start, (count, worlds, grains, 2)).copy()
-            place[..., 0] += moved
-            np.clip(place[..., 0], -w + DIAMETER / 2, w - DIAMETER / 2, out=place[..., 0])
-            velocity = np.zeros_like(place)
-            velocity[1:, ..., 0] = np.diff(place[..., 0], axis=0) * (count - 1) / duration
-            file["frames/position"] = place.astype("f4")
-            file["frames/velocity"] = velocity.astype("f4")
-            file["frames/angle"] = (moved / radius).astype("f4")
-            file["frames/spin"] = np.zeros_like(moved, dtype="f4")
-    return path
+    def pose(time):
+        return np.tile([sway * np.sin(2 * np.pi * time), 0.0, tilt * time / duration], (worlds, 1))
+
+    video = {"width": 640, "height": 360}
+    settings = {"resolved": {"title": "A made-up bed of discs", "video": video}, "radius": radius}
+    with recorder(folder, outline=box(WIDTH, HEIGHT), **settings) as run:
+        for time in np.linspace(0, duration, samples):
+            centre = np.stack([slide(time).mean(axis=1), np.zeros(worlds)], axis=-1)
+            run.sample(sample(time, worlds, pose=pose(time), centre_of_mass=centre))
+        step = duration / max(frames - 1, 1)
+        for k in range(frames):
+            now, then = place(step * k), place(step * max(k - 1, 0))
+            moved = {"position": now, "velocity": (now - then) / step, "angle": slide(step * k) / radius}
+            run.frame(frame(step * k, worlds, len(start), pose=pose(step * k), **moved))
+    return run.path
+
+
+@pytest.fixture(scope="module")
+def recording(tmp_path_factory):
+    """A small recording of one bed."""
+    return make_recording(tmp_path_factory.mktemp("run"))
+
+
+@pytest.fixture(scope="module")
+def four_beds(tmp_path_factory):
+    """A small recording of four beds, tilting and swaying."""
+    return make_recording(tmp_path_factory.mktemp("run"), worlds=4, sway=0.02)
+
+
+def pictures_of(recording, frames, **wishes):
+    """Pictures of some frames of a recording."""
+    initialise()
+    with open_footage(recording) as footage:
+        film = Film(footage, choose_look(footage, **wishes))
+        return [film.picture(frame).astype(int) for frame in frames]
+
+
+def test_a_video_has_the_frames_the_size_and_the_colours_of_its_pictures(recording, tmp_path):
+    told = []
+    out = tmp_path / "film.mp4"
+    written = render_recording(recording, out, progress=lambda *done: told.append(done))
+    assert written == out and list(tmp_path.iterdir()) == [out]
+    film = [frame.astype(int) for frame in imageio.get_reader(out)]
+    assert len(film) == 6 and film[0].shape == (360, 640, 3)
+    assert told == [(k, 6) for k in range(1, 7)]
+    (last,) = pictures_of(recording, [5])
+    assert np.abs(film[5] - last).mean() < 3
+
+
+def test_an_interrupted_video_leaves_nothing_behind(recording, tmp_path):
+    def interrupt(done, of):
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        render_recording(recording, tmp_path / "film.mp4", progress=interrupt)
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_run_folder_gets_its_pictures_and_its_poster(recording):
+    folder = recording.parent
+    (folder / "pictures").mkdir()
+    (folder / "pictures" / "picture_00099.png").write_bytes(b"of an older film")
+    made = render_recording(folder, png=True, width=320, height=180)
+    assert made == folder / "pictures"
+    names = sorted(file.name for file in made.iterdir())
+    assert names == [f"picture_{k:05d}.png" for k in range(6)]
+    assert imageio.imread(made / names[0]).shape == (180, 320, 3)
+    end = imageio.imread(poster(folder, width=320, height=180))
+    np.testing.assert_array_equal(end, imageio.imread(made / names[5]))
+    middle = poster(folder, folder / "middle.png", time=3.3, width=320, height=180)
+    np.testing.assert_array_equal(imageio.imread(middle), imageio.imread(made / names[2]))
+
+
+def test_playback_keeps_time():
+    time = np.arange(0, 4, 0.04)
+    assert playback(time, 1.0) == (25.0, 1)
+    assert playback(time, 0.5) == (12.5, 1)
+    assert playback(time, 8.0) == (50.0, 4)
+    assert playback(time[:1], 1.0) == (25.0, 1)
+
+
+@pytest.mark.parametrize("frame", ["tank", "earth"])
+def test_nothing_moves_outside_the_stage_and_the_column(four_beds, frame):
+    first, *others = pictures_of(four_beds, range(6), frame=frame, width=640, height=360)
+    changed = np.any([(other != first).any(axis=2) for other in others], axis=0)
+    assert changed[:, 20:425].any() and changed[:, 450:620].any()
+    edges = np.ones_like(changed)
+    edges[20:342, 20:426] = edges[20:342, 450:621] = False
+    assert not changed[edges].any() and (first[edges] == 255).all()
+
+
+@pytest.mark.parametrize(("frame", "tilt"), [("tank", 0.0), ("earth", 0.6)])
+def test_the_tank_is_drawn_at_its_pose_with_the_grains_inside(recording, frame, tilt):
+    (picture,) = pictures_of(recording, [5], width=640, height=360, frame=frame)
+    wall = (np.abs(picture - (86, 97, 110)).max(axis=2) == 0)[:, :430]
+    rows, columns = np.nonzero(wall)
+    tall = HEIGHT * np.cos(tilt) + WIDTH * np.sin(tilt)
+    wide = WIDTH * np.cos(tilt) + HEIGHT * np.sin(tilt)
+    ratio = np.ptp(rows) / np.ptp(columns)
+    assert ratio == pytest.approx(tall / wide, abs=0.02)
+    grains = np.nonzero((np.ptp(picture, axis=2) > 60)[:, :430])
+    for grain, edge in zip(grains, (rows, columns), strict=True):
+        assert edge.min() < grain.min() and edge.max() - 12 < grain.max() < edge.max()
+
+
+def test_one_of_four_beds_is_shown_larger(four_beds):
+    all_beds, one_bed = (
+        (np.ptp(pictures_of(four_beds, [0], world=world)[0][:, :430], axis=2) > 60).sum() for world in (None, 2)
+    )
+    assert one_bed > 0.9 * all_beds
+    assert not np.array_equal(*(pictures_of(four_beds, [5], world=k)[0] for k in (0, 3)))
+
+
+def test_every_colour_mode_has_one_scale_for_the_whole_film(four_beds):
+    with open_footage(four_beds) as footage:
+        for name, mode in MODES.items():
+            colouring = mode(footage)
+            values = [colouring.values(frame, 1) for frame in range(6)]
+            assert np.min(values) >= 0 and np.max(values) <= 1.1 * colouring.high, name
+            tables = [colouring.colours(frame, 1) for frame in range(6)]
+            assert all(table.shape == (len(footage.radius[1]), 3) for table in tables)
+        moved = MODES["displacement"](footage).values(5, 0).max()
+        farthest = 0.4 * WIDTH * 0.7 * np.exp(-0.003 / 0.012)  # of the uppermost layer
+        assert moved == pytest.approx(farthest / footage.diameter, rel=1e-3)
+        layers = MODES["layer"](footage).values(3, 0)
+        assert np.ptp(layers[footage.position(0, 0)[:, 1] < DIAMETER]) == 0
+        assert len(np.unique(layers)) == MODES["layer"](footage).high == 6
+        assert MODES["layer"](footage).label == "starting layer (2 diameters)"
+
+
+def test_the_curves_grow_with_the_film(four_beds):
+    column = np.s_[100:280, 450:]
+    drawn = [(np.ptp(picture[column], axis=2) > 60).sum() for picture in pictures_of(four_beds, [0, 2, 5])]
+    assert 0 < drawn[0] < drawn[1] < drawn[2]
+
+
+def test_beds_that_move_apart_share_no_reading_but_the_clock(four_beds, tmp_path):
+    apart = shutil.copy(four_beds, tmp_path)
+    with h5py.File(apart, "r+") as file:
+        file["frames/pose"][:, 1] *= 0.5
+    together, alone = (pictures_of(path, [5])[0] for path in (four_beds, apart))
+    dial, names = np.s_[20:78, 560:625], np.s_[45:70, 20:430]
+    assert (together[dial] < 200).any() and (alone[dial] == 255).all()
+    assert (alone[names] < 200).sum() > 1.5 * (together[names] < 200).sum()
+
+
+def test_a_run_without_frames_or_a_file_cut_short_is_refused_in_one_sentence(tmp_path):
+    empty = make_recording(tmp_path / "empty", frames=0)
+    refused(empty, "holds no picture frames yet")
+    whole = make_recording(tmp_path / "cut")
+    whole.write_bytes(whole.read_bytes()[:4000])
+    refused(whole, "cannot be read as a recording")
+    refused(tmp_path / "nothing", "does not exist")
+
+
+def test_a_run_that_still_goes_on_can_be_filmed(tmp_path):
+    with recorder(tmp_path) as run:
+        run.sample(sample(0.0))
+        run.frame(frame(0.0, position=np.full((1, 4, 2), 0.02)))
+        run.flush()
+        film = render_recording(tmp_path, width=320, height=180)
+    assert sum(1 for _ in imageio.get_reader(film)) == 1
+
+
+@pytest.mark.parametrize(
+    ("wishes", "said"),
+    [
+        ({"width": 641}, "641 x 360 pixels cannot be filmed"),
+        ({"height": 90}, "640 x 90 pixels cannot be filmed"),
+        ({"colour": "taste"}, "Unknown colour 'taste': choose one of speed, displacement, layer"),
+        ({"frame": "moon"}, "Unknown frame 'moon': choose one of tank, earth"),
+        ({"world": 1}, "no world 1 in this recording: choose 0 to 0"),
+        ({"speed": 0.0}, "playback speed 0.0"),
+        ({"out": "film.gif"}, "a video is an .mp4 file"),
+    ],
+)
+def test_an_impossible_wish_is_refused_in_one_sentence(recording, wishes, said):
+    refused(recording, said, **wishes)
+
+
+def refused(path, said, **wishes):
+    """Filming raises a LabError of one sentence that says so."""
+    with pytest.raises(LabError) as caught:
+        render_recording(path, **wishes)
+    sentence = str(caught.value)
+    assert said in sentence and sentence.endswith(".") and "\n" not in sentence
+    assert not path.parent.joinpath("video.mp4").exists()

@@ -1,0 +1,214 @@
+"""The command `cargolab`: every fault of a person's making ends in one sentence and an exit code.
+
+Exit codes: 0 done; 1 the simulation could not go on; 2 what was asked for cannot be done;
+130 interrupted.
+"""
+
+import errno
+import os
+import sys
+import tomllib
+from pathlib import Path
+
+import click
+
+from lab.errors import LabError
+from solvers.errors import BadState
+
+os.environ.setdefault("ENABLE_TAICHI_HEADER_PRINT", "0")  # Taichi greets on stdout otherwise
+
+REMEDIES = {
+    errno.ENOSPC: "free some space or choose another folder with --out",
+    errno.EDQUOT: "free some space or choose another folder with --out",
+    errno.EACCES: "choose another folder with --out",
+    errno.EPERM: "choose another folder with --out",
+    errno.EROFS: "choose another folder with --out",
+}
+
+
+class Commands(click.Group):
+    """A group whose errors are one sentence on stderr."""
+
+    def main(self, *args, **kwargs):
+        """Run a command line and exit."""
+        try:
+            code = super().main(*args, **{**kwargs, "standalone_mode": False})
+        except click.exceptions.NoArgsIsHelpError as error:
+            error.show()
+            code = 2
+        except click.Abort:  # Ctrl-C
+            code = _say("interrupted; what was written until then is kept.", 130)
+        except click.ClickException as error:
+            code = _say(error.format_message(), 2)
+        except LabError as error:
+            code = _say(str(error), 2)
+        except BadState as error:
+            code = _say(str(error), 1)
+        except OSError as error:
+            code = _say(_os_sentence(error), 2)
+        sys.exit(code if isinstance(code, int) else 0)
+
+
+def _say(sentence: str, code: int) -> int:
+    click.echo(f"cargolab: {' '.join(sentence.split())}", err=True)
+    return code
+
+
+def _os_sentence(error: OSError) -> str:
+    where = f"{error.filename}: " if error.filename else ""
+    what = error.strerror or str(error) or type(error).__name__
+    remedy = REMEDIES.get(error.errno)
+    return f"{where}{what[0].lower()}{what[1:]}{f'; {remedy}' if remedy else ''}."
+
+
+def _version(context: click.Context, _, asked: bool) -> None:
+    if not asked or context.resilient_parsing:
+        return
+    from importlib.metadata import PackageNotFoundError, version
+
+    try:
+        number = version("cargo-shift-lab")
+    except PackageNotFoundError:
+        number = "not installed, run from its folder"
+    click.echo(f"cargolab {number}")
+    context.exit()
+
+
+def _overrides(_context, _option, texts: tuple[str, ...]) -> dict[str, object]:
+    """Overrides from KEY=VALUE texts; a value that is not TOML, such as 4 mm, is taken as text."""
+    overrides = {}
+    for text in texts:
+        key, equals, value = text.partition("=")
+        if not equals or not key.strip():
+            raise LabError(f"--set {text}: write it like --set grains.diameter='4 mm'.")
+        overrides[key.strip()] = _value(value.strip())
+    return overrides
+
+
+def _value(text: str) -> object:
+    try:
+        table = tomllib.loads(f"value = {text}")
+    except (ValueError, RecursionError):
+        return text
+    value = table["value"]
+    plain = len(table) == 1 and isinstance(value, bool | int | float | str | list | dict)
+    return value if plain else text
+
+
+def _progress(done: int, of: int) -> None:
+    if sys.stderr.isatty():
+        click.echo(f"\rpicture {done} of {of}", nl=done == of, err=True)
+
+
+set_option = click.option(
+    "--set",
+    "overrides",
+    multiple=True,
+    metavar="KEY=VALUE",
+    callback=_overrides,
+    help="Change a key of the preset; repeat for more.",
+)
+
+
+@click.group(cls=Commands, context_settings={"help_option_names": ["-h", "--help"]})
+@click.option(
+    "--version",
+    is_flag=True,
+    is_eager=True,
+    expose_value=False,
+    callback=_version,
+    help="Show the version.",
+)
+def main() -> None:
+    """Experiments on loose cargo: run one, watch it, get a number with its error.
+
+    \b
+    cargolab list                    what there is
+    cargolab run tilting/quick       run one, with video, plot and summary
+    cargolab explain tilting/quick   what it is and what it will cost
+    """
+
+
+@main.command("list")
+def list_presets() -> None:
+    """List the presets."""
+    from lab.presets import names
+
+    titles = names()
+    width = max(map(len, titles), default=0)
+    for name, title in titles.items():
+        click.echo(f"{name:<{width}}  {title}")
+
+
+@main.command()
+@click.argument("preset")
+@set_option
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path, file_okay=False),
+    metavar="DIR",
+    help="Folder for the results.  [default: renders/PRESET]",
+)
+@click.option("--no-video", is_flag=True, help="Do not paint a video.")
+@click.option("--quiet", is_flag=True, help="Say only where the results are.")
+def run(preset: str, overrides: dict, out: Path | None, no_video: bool, quiet: bool) -> None:
+    """Run PRESET: a name from `cargolab list`, or your own .toml file.
+
+    \b
+    cargolab run tilting/quick
+    cargolab run tilting/quick --set grains.diameter="4 mm" --set run.repeats=12
+    cargolab run shaking/roll --set motion.roll.centre='["0 mm", "0 mm"]' --out centre0
+    cargolab run my.toml --no-video
+    """
+    from lab.presets import load
+
+    load(preset, overrides)  # before the slow imports, so that a slip is answered at once
+    from lab.runner import run_preset
+
+    result = run_preset(preset, overrides, out, video=not no_video, quiet=quiet)
+    if not quiet:
+        click.echo(result.summary_text)
+    click.echo(result.folder)
+
+
+@main.command()
+@click.argument("recording", type=click.Path(path_type=Path))
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path),
+    metavar="FILE",
+    help="An .mp4 file, or with --png a folder.  [default: beside the recording]",
+)
+@click.option("--colour", help="What the colour says: speed, displacement or layer.")
+@click.option("--frame", help="Whose frame to draw in: tank or earth.")
+@click.option("--width", type=int, help="Pixels.")
+@click.option("--height", type=int, help="Pixels.")
+@click.option("--world", type=int, help="One of the repeats, from 0.  [default: side by side]")
+@click.option("--png/--mp4", default=False, help="Single pictures, or a video (the default).")
+def render(recording: Path, out: Path | None, png: bool, **look: object) -> None:
+    """Paint the video of RECORDING (a recording.h5 or the folder of a run) anew.
+
+    \b
+    cargolab render renders/tilting/quick --colour displacement --out shift.mp4
+    cargolab render renders/tilting/quick --frame earth --world 2
+    cargolab render renders/tilting/quick --png --out pictures
+    """
+    from lab.paint.video import render_recording
+
+    click.echo(render_recording(recording, out, png=png, progress=_progress, **look))
+
+
+@main.command()
+@click.argument("preset")
+@set_option
+def explain(preset: str, overrides: dict) -> None:
+    """Say what PRESET is, what it switches on and what it will cost.
+
+    \b
+    cargolab explain shaking/sway
+    cargolab explain shaking/sway --set motion.sway.frequency="0.8 Hz"
+    """
+    from lab.explain import explain as explained
+    from lab.presets import load
+
+    click.echo(explained(load(preset, overrides)))

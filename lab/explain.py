@@ -1,0 +1,102 @@
+"""What a preset is, what it switches on and what it will cost, before it runs."""
+
+from lab.presets import LoadedPreset
+from lab.scene import build
+from lab.units import show
+from solvers.runtime import available_cores
+from solvers.simulation import Simulation
+
+# Grain-steps a second of one core on settled beds (README, "Speed"); only the estimate of the run time rests on it.
+GRAIN_STEPS_PER_CORE = 12e6
+
+
+def explain(loaded: LoadedPreset) -> str:
+    """A page of text on a preset: scene, step and what limits it, what is compiled in, memory, expected run time."""
+    preset = loaded.resolved
+    scene, position = build(preset)
+    simulation = Simulation(scene, position, preset.run.threads)
+    blocks = [
+        f"{preset.title}  ({loaded.name})",
+        _section("Scene", _scene(preset, scene)),
+        _section("Step", _step(scene)),
+        _section("Compiled in", _parts(simulation)),
+        _section("Cost", _cost(preset, scene, simulation)),
+        "Preset in full\n" + "".join(f"    {line}\n" for line in loaded.given_text.strip().splitlines()),
+    ]
+    simulation.close()
+    return "\n".join(blocks)
+
+
+def _section(title: str, rows: list[tuple[str, str]]) -> str:
+    width = max(len(name) for name, _ in rows)
+    return title + "\n" + "".join(f"    {name:<{width}}  {text}\n" for name, text in rows)
+
+
+def _scene(preset, scene) -> list[tuple[str, str]]:
+    worlds, count = scene.radius.shape
+    small, large = 2 * scene.radius.min(), 2 * scene.radius.max()
+    pair, wall = scene.interfaces
+    rows = [
+        ("repeats", f"{worlds}, seeds {preset.run.seed} to {preset.run.seed + worlds - 1}"),
+        ("grains", f"{count} in each, {show(small, 'm')} to {show(large, 'm')}"),
+        ("tank", f"{show(preset.tank.width, 'm')} wide, {show(preset.tank.height, 'm')} high"),
+        ("Young's moduli", f"times {scene.stiffness_scale:g} of the material's"),
+        ("friction", f"{pair.friction:g} between grains, {wall.friction:g} on walls"),
+        ("dissipative time", f"{show(pair.dissipative_time, 's')} between grains, at this stiffness"),
+    ]
+    motions = preset.motion.parts
+    rows.append(("motion", ", then ".join(map(_motion, motions.items())) or "none"))
+    rows.append(("duration", show(preset.run.duration, "s") + " after settling"))
+    return rows
+
+
+def _motion(item: tuple[str, object]) -> str:
+    name, motion = item
+    speed, _ = motion.fastest()
+    return f"{name}, up to {show(speed, 'rad/s' if motion.coordinate == 'turn' else 'm/s')}"
+
+
+def _step(scene) -> list[tuple[str, str]]:
+    limits = scene.step_limits()
+    return [("step", show(scene.step, "s"))] + [
+        (f"limit {k + 1}", f"{show(limit.step, 's')}: {limit.reason}") for k, limit in enumerate(limits)
+    ]
+
+
+def _parts(simulation: Simulation) -> list[tuple[str, str]]:
+    scene, frame, walls = simulation.scene, simulation.frame, simulation.walls
+    normal, tangential = scene.laws
+    terms = "gravity"
+    if frame.moving:
+        terms += ", translation"
+    if frame.rotating:
+        terms += ", Euler, centrifugal and Coriolis terms"
+    return [
+        ("normal law", f"{scene.normal}"),
+        ("tangential law", f"{scene.tangential}, {tangential.history} number(s) of history a contact"),
+        ("body forces", terms),
+        ("walls", f"{walls.segments} segments, {walls.corners} corners jutting in"),
+        ("schedule", "per world: a serial time loop in each, worlds in parallel; 64-bit floats"),
+        ("skin", f"{show(simulation.skin, 'm')} of the neighbour lists"),
+    ]
+
+
+def _cost(preset, scene, simulation: Simulation) -> list[tuple[str, str]]:
+    worlds, count = scene.radius.shape
+    steps = preset.run.duration / scene.step
+    cores = min(worlds, preset.run.threads or available_cores())
+    waves = -(-worlds // cores)
+    seconds = waves * count * steps / GRAIN_STEPS_PER_CORE
+    frames = preset.run.duration * preset.record.picture_rate
+    return [
+        ("grain-steps", f"{worlds * count * steps:.3g}, and those of settling"),
+        ("memory", f"{simulation.arrays.bytes / 2**20:.1f} MiB"),
+        ("recording", f"{frames * worlds * count * 24 / 2**20:.0f} MiB"),
+        ("run time", f"about {_span(seconds)} on {cores} core(s), then {frames:.0f} pictures"),
+    ]
+
+
+def _span(seconds: float) -> str:
+    if seconds < 90:
+        return f"{seconds:.0f} s"
+    return f"{seconds / 60:.0f} min" if seconds < 5400 else f"{seconds / 3600:.1f} h"

@@ -1,0 +1,29 @@
+"""What is measured on a recording, one file a measure; a new one is a file and a line in MEASURES.
+
+A measure is a module with `applies(recording) -> bool` and `measure(recording) -> dict[str, Value]`;
+its docstring defines each number and says where its error comes from.
+"""
+
+from lab.measures import (
+    centre_of_mass,
+    critical_angle,
+    energies,
+    steady_amplitude,
+    surface_slope,
+)
+from lab.measures.value import Value
+from lab.recording import Recording
+
+# In the order in which a summary shows them.
+MEASURES = (critical_angle, surface_slope, steady_amplitude, centre_of_mass, energies)
+
+
+def measure_all(recording: Recording) -> dict[str, Value]:
+    """Every number that can be measured on this recording, by name. Raises LabError if damaged."""
+    found: dict[str, Value] = {}
+    if not len(recording.series["time"]):
+        return found
+    for measure in MEASURES:
+        if measure.applies(recording):
+            found |= measure.measure(recording)
+    return found

@@ -1,0 +1,176 @@
+"""The tilt at which the bed gives way, read from the shift of its centre of mass.
+
+**Scale.** Were the cargo a liquid, a tilt by d(phi) would shift its centre of mass by (I/A) d(phi),
+as a ship's centre of buoyancy moves by BM: I = L^3/12 of the free surface of width L, A = L h, so
+I/A = L^2/(12 h), h twice the height of the settled centre of mass. The shift s downhill over I/A is
+therefore the angle by which the free surface has turned in the tank, the *give* b(phi): a bed at
+rest has db/dphi = 0, a surface that stays at its angle of repose while the tank turns on has 1.
+On this scale one set of thresholds serves every grain, tank and depth.
+
+**Steps.** On the way out only (up to where the tilt is first largest), with the curve averaged over
+BIN of tilt, a step is where b rises faster than `creep + max(FLOW, 5 sigma)`. Creep and sigma are
+the median and 1.4826 MAD of the rates db/dphi over WINDOW that lie below the mean rate, those of
+the resting bed. The rise is detected by Page's cumulative sum (Page 1954): the running sum of
+(db - limit dphi) rises by DECISION from its lowest point. That point is the onset; the highest
+point before a fall by DECISION is the end. Nothing is differentiated sample by sample, so neither
+noise nor the sampling rate matters. A step that begins in the first WINDOW has no rest before it,
+hence no onset, and is left out.
+
+critical_angle: onset of the first step with a give of at least MAIN. It is the angle of repose of
+Spandonidis (2016, 5.2.1 and 5.3.1): where the surface flows on, "excluding initial reordering". Two
+degrees are what avalanches relieve; the heap before it turns the surface by less. A share of the
+curve's whole shift would serve as well, but would change with how far one goes on tilting.
+critical_step: the shift in that step (d, the mean grain diameter), creep left out.
+first_slip_angle: onset of the first step at all, a give of DECISION: the first reordering or heap.
+one_diameter_angle: where the shift first exceeds one d, creep and all; needs no detector.
+main_steps: number of steps of at least MAIN.
+
+Error of an onset: the spacing of the averaged samples, plus the tilt in which the sum rises from
+the onset by DECISION: sharp for an avalanche, wide where the bed begins to flow gently. Repeats
+differ by more: see the std.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import stats
+
+from lab.measures.motion import is_tilt, outward_leg
+from lab.measures.value import Value, over_worlds
+from lab.recording import Recording
+
+BIN = 0.05  # deg of tilt
+WINDOW = 0.5  # deg of tilt
+FLOW = 0.25  # of a liquid's rate
+DECISION = 0.2  # deg of give
+MAIN = 2.0  # deg of give
+NOISE = 8.0  # standard deviations that the sum may wander by chance
+LEAST_BINS = 20
+
+
+@dataclass(frozen=True)
+class Step:
+    """A rise of the give: where it begins and ends (deg of tilt), its height (deg of give)."""
+
+    onset: float
+    error: float
+    end: float
+    give: float
+
+
+def applies(recording: Recording) -> bool:
+    """The tank tilts."""
+    return is_tilt(recording)
+
+
+def measure(recording: Recording) -> dict[str, Value]:
+    """critical_angle, first_slip_angle, one_diameter_angle (deg), critical_step (d), main_steps."""
+    curves = [shift_curve(recording, world) for world in range(recording.worlds)]
+    liquid = liquid_shift(recording)
+    diameter = recording.mean_diameter
+    steps = [find_steps(tilt, shift / scale) for (tilt, shift), scale in zip(curves, liquid, strict=True)]
+    main = [[step for step in found if step.give >= MAIN] for found in steps]
+    reached = max(tilt[-1] for tilt, _ in curves)
+    shifted = [_first_beyond(tilt, shift, d) for (tilt, shift), d in zip(curves, diameter, strict=True)]
+    return {
+        "critical_angle": _onset(main, f"the bed does not flow up to {reached:.3g} deg"),
+        "first_slip_angle": _onset(steps, f"no slip up to {reached:.3g} deg"),
+        "one_diameter_angle": over_worlds(shifted, "deg", missing=f"no shift by one diameter up to {reached:.3g} deg"),
+        "critical_step": over_worlds(_firsts(main, "give") * liquid / diameter, "d", missing="no main step"),
+        "main_steps": over_worlds([len(found) for found in main], "1"),
+    }
+
+
+def shift_curve(recording: Recording, world: int) -> tuple[np.ndarray, np.ndarray]:
+    """Tilt (T',), deg, and shift of the centre of mass downhill (T',), m, on the way out."""
+    tilt = recording.series["pose"][:, world, 2]
+    leg = outward_leg(tilt)
+    y = recording.series["centre_of_mass"][: leg.end, world, 0]
+    turned = leg.direction * (tilt[: leg.end] - tilt[0])
+    return np.degrees(turned), -leg.direction * (y - y[0])
+
+
+def liquid_shift(recording: Recording) -> np.ndarray:
+    """Shift of a liquid cargo per tilt (W,), m/deg: L^2 / (12 h), see above."""
+    floor, width = recording.outline[:, 1].min(), np.ptp(recording.outline[:, 0])
+    depth = 2 * (recording.series["centre_of_mass"][0, :, 1] - floor)
+    return np.radians(width**2 / (12 * depth))
+
+
+def find_steps(tilt: np.ndarray, give: np.ndarray) -> list[Step]:
+    """Steps of a curve give (T,) over a tilt (T,) that never falls, both in deg, in their order."""
+    tilt, give = _averaged(tilt, give)
+    if len(tilt) < LEAST_BINS:
+        return []
+    creep, limit = _resting(tilt, give)
+    total = give - limit * tilt
+    least = max(DECISION, NOISE * _noise(give))
+    steps = []
+    for foot, alarm, peak in _rises(total, least):
+        if tilt[foot] - tilt[0] >= WINDOW:
+            spacing = float(np.median(np.diff(tilt)))
+            error = spacing + tilt[alarm] - tilt[foot]
+            risen = give[peak] - give[foot] - creep * (tilt[peak] - tilt[foot])
+            steps.append(Step(tilt[foot], error, tilt[peak], risen))
+    return steps
+
+
+def _averaged(tilt: np.ndarray, give: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The curve averaged over bins of tilt; a coarser one stays as it is."""
+    cells = np.floor((tilt - tilt[0]) / BIN).astype(int)
+    _, cell, count = np.unique(cells, return_inverse=True, return_counts=True)
+    return np.bincount(cell, tilt) / count, np.bincount(cell, give) / count
+
+
+def _resting(tilt: np.ndarray, give: np.ndarray) -> tuple[float, float]:
+    """Creep rate of the resting bed, and the rate beyond which it flows."""
+    starts = tilt[tilt <= tilt[-1] - WINDOW]
+    rates = (np.interp(starts + WINDOW, tilt, give) - np.interp(starts, tilt, give)) / WINDOW
+    resting = rates[rates <= rates.mean()]
+    creep = float(np.median(resting))
+    sigma = float(stats.median_abs_deviation(resting, scale="normal"))
+    return creep, creep + max(FLOW, 5 * sigma)
+
+
+def _noise(give: np.ndarray) -> float:
+    """Standard deviation of white noise on a smooth curve, from its second differences."""
+    return float(stats.median_abs_deviation(np.diff(give, 2), scale="normal")) / np.sqrt(6)
+
+
+def _rises(total: np.ndarray, least: float) -> list[tuple[int, int, int]]:
+    """Foot, alarm and peak of each rise of at least `least`, ended by a fall of as much or the end."""
+    rises, foot, alarm, peak = [], 0, None, 0
+    for k, value in enumerate(total):
+        if alarm is None:
+            if value <= total[foot]:
+                foot = k
+            elif value - total[foot] >= least:
+                alarm = peak = k
+        elif value >= total[peak]:
+            peak = k
+        elif total[peak] - value >= least:
+            rises.append((foot, alarm, peak))
+            foot, alarm = k, None
+    if alarm is not None:
+        rises.append((foot, alarm, peak))
+    return rises
+
+
+def _firsts(steps: list[list[Step]], name: str) -> np.ndarray:
+    return np.array([getattr(found[0], name) if found else np.nan for found in steps])
+
+
+def _onset(steps: list[list[Step]], missing: str) -> Value:
+    """Onset of the first step of each world."""
+    errors = _firsts(steps, "error")
+    return over_worlds(_firsts(steps, "onset"), "deg", uncertainties=errors, missing=missing)
+
+
+def _first_beyond(tilt: np.ndarray, shift: np.ndarray, limit: float) -> float:
+    """Tilt at which the shift first exceeds the limit, interpolated; NaN if it never does."""
+    beyond = np.flatnonzero(shift > limit)
+    if not len(beyond) or beyond[0] == 0:
+        return np.nan
+    k = beyond[0]
+    part = (limit - shift[k - 1]) / (shift[k] - shift[k - 1])
+    return float(tilt[k - 1] + part * (tilt[k] - tilt[k - 1]))

@@ -1,0 +1,88 @@
+"""How steep the free surface lies: its inclination against the horizontal while the tank tilts.
+
+The tank's width is cut into columns two mean diameters wide; the top of the highest grain of each
+is a point of the surface. Columns by the walls (a tenth of the width on either side, where the bed
+climbs or hollows) and columns where less than two grains lie on each other (bare floor) are left
+out. The Theil-Sen line (Sen 1968: the median of the slopes of all pairs) through the rest is not
+moved by a grain in the air. Its angle plus the tank's tilt is the inclination in the earth frame,
+counted positive in the direction of the tilt: a bed that moves as one with the tank has the tilt
+itself, a liquid zero.
+
+surface_slope: at the last picture frame, after the avalanches the heap's angle of repose;
+largest_surface_slope: the largest in any frame, the steepest surface that held.
+Error: half the 68 % confidence interval of the slope (Sen), as an angle. The largest of many noisy
+numbers lies above the true largest by about that error.
+"""
+
+import numpy as np
+from scipy import stats
+
+from lab.measures.motion import is_tilt, outward_leg
+from lab.measures.value import Value, over_worlds
+from lab.recording import Recording
+
+COLUMN = 2.0  # mean diameters
+MARGIN = 0.1  # of the tank's width
+LEAST_LAYER = 2.0  # mean diameters
+LEAST_COLUMNS = 5
+MOST_FRAMES = 400  # looked at for the course in time
+CONFIDENCE = 0.68
+
+
+def applies(recording: Recording) -> bool:
+    """The tank tilts."""
+    return is_tilt(recording) and len(recording.frames["time"]) > 0
+
+
+def measure(recording: Recording) -> dict[str, Value]:
+    """surface_slope and largest_surface_slope (deg, earth frame)."""
+    _, slope, error = surface_course(recording)
+    missing = "too little free surface"
+    worlds = range(recording.worlds)
+    steepest = np.argmax(np.nan_to_num(slope, nan=-np.inf), axis=0)
+    return {
+        "surface_slope": over_worlds(slope[-1], "deg", uncertainties=error[-1], missing=missing),
+        "largest_surface_slope": over_worlds(
+            slope[steepest, worlds], "deg", uncertainties=error[steepest, worlds], missing=missing
+        ),
+    }
+
+
+def surface_course(recording: Recording) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Frame numbers (K,), inclination and its error (K, W), deg; NaN where there is no surface."""
+    count = len(recording.frames["time"])
+    frames = np.unique(np.linspace(0, count - 1, min(count, MOST_FRAMES)).astype(int))
+    tilt = recording.frames["pose"][:][frames, :, 2]
+    slope, error = np.full(tilt.shape, np.nan), np.full(tilt.shape, np.nan)
+    for row, frame in enumerate(frames):
+        position = recording.frames["position"][int(frame)].astype(float)
+        for world in range(recording.worlds):
+            points = free_surface(position[world], recording.radius[world], recording.outline)
+            slope[row, world], error[row, world] = inclination(*points)
+    direction = [outward_leg(recording.series["pose"][:, w, 2]).direction for w in range(tilt.shape[1])]
+    return frames, np.degrees(slope + tilt) * direction, np.degrees(error)
+
+
+def free_surface(position: np.ndarray, radius: np.ndarray, outline: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Points y, z (k,), m, of the free surface of grains at position (n, 2), m, tank frame."""
+    diameter = 2 * radius.mean()
+    left, right = outline[:, 0].min(), outline[:, 0].max()
+    edges = np.arange(left, right, COLUMN * diameter)
+    column = np.clip(np.searchsorted(edges, position[:, 0], side="right") - 1, 0, len(edges) - 1)
+    top = position[:, 1] + radius
+    # The last of each column when sorted by column, then by height, is its highest grain.
+    order = np.lexsort((top, column))
+    highest = order[np.flatnonzero(np.diff(column[order], append=-1))]
+    y, z = position[highest, 0], top[highest]
+    margin = MARGIN * (right - left)
+    kept = (y > left + margin) & (y < right - margin)
+    kept &= z - outline[:, 1].min() > LEAST_LAYER * diameter
+    return y[kept], z[kept]
+
+
+def inclination(y: np.ndarray, z: np.ndarray) -> tuple[float, float]:
+    """Angle of the line through points (k,) and its error, rad; NaN for too few points."""
+    if len(y) < LEAST_COLUMNS:
+        return np.nan, np.nan
+    slope, _, low, high = stats.theilslopes(z, y, alpha=CONFIDENCE)
+    return float(np.arctan(slope)), float(np.arctan(high) - np.arctan(low)) / 2

@@ -1,0 +1,77 @@
+"""Recordings made up for the tests, with known answers."""
+
+from pathlib import Path
+
+import numpy as np
+
+from lab.recording import GRAIN_FRAMES, SERIES, Recorder
+
+WIDTH, DEPTH, DIAMETER = 0.180, 0.060, 0.003  # m
+
+
+def box(width: float = WIDTH, height: float = 0.15) -> np.ndarray:
+    """Outline (4, 2) of a rectangular tank."""
+    half = width / 2
+    return np.array([(-half, 0), (half, 0), (half, height), (-half, height)])
+
+
+def preset(**motion: dict) -> dict:
+    """A resolved preset with such motions."""
+    return {
+        "title": "Acetate grains in a tank",
+        "source": "Spandonidis 2016, 5.4",
+        "reports": "24 deg",
+        "motion": {"soft_start": 0.0, **motion},
+        "contact": {"stiffness_scale": 1.0},
+        "run": {"repeats": 1, "seed": 1},
+    }
+
+
+def recorder(folder: Path, worlds: int = 1, count: int = 4, **options: object) -> Recorder:
+    """An open recorder of a small scene."""
+    settings = {
+        "preset": "tilting/acetate",
+        "given": 'title = "Acetate grains in a tank"\n',
+        "resolved": preset(),
+        "radius": np.full((worlds, count), DIAMETER / 2),
+        "outline": box(),
+        "step": 1e-5,
+    }
+    return Recorder(folder, **{**settings, **options})
+
+
+def sample(time: float, worlds: int = 1, **values: object) -> dict:
+    """A row of the series; what is not given is zero."""
+    zeros = {name: np.zeros((worlds, *shape)) for name, shape in SERIES.items()}
+    return {"time": time, **zeros, **values}
+
+
+def frame(time: float, worlds: int = 1, count: int = 4, **values: object) -> dict:
+    """A picture frame; what is not given is zero."""
+    zeros = {name: np.zeros((worlds, count, *shape)) for name, shape in GRAIN_FRAMES.items()}
+    return {"time": time, "pose": np.zeros((worlds, 3)), **zeros, **values}
+
+
+def record(
+    folder: Path,
+    time: np.ndarray,
+    *,
+    pose: np.ndarray,
+    centre: np.ndarray,
+    frames: list[dict] | None = None,
+    kinetic: np.ndarray | None = None,
+    status: str = "complete",
+    **options: object,
+) -> Path:
+    """Record motions: time (T,), pose (T, 3) the same in all worlds, centre (T, W, 2) of mass."""
+    worlds = centre.shape[1]
+    kinetic = np.zeros(centre.shape[:2]) if kinetic is None else kinetic
+    writer = recorder(folder, worlds, **options)
+    writer.wall_s, writer.grain_steps = 12.5, 25_000_000
+    for k, now in enumerate(time):
+        moved = {"pose": np.tile(pose[k], (worlds, 1)), "centre_of_mass": centre[k]}
+        writer.sample(sample(now, worlds, kinetic=kinetic[k], **moved))
+    for row in frames or [frame(0.0, worlds)]:
+        writer.frame(row)
+    writer.close(status)
+    return folder

@@ -1,0 +1,194 @@
+"""The command line: exit codes, one sentence for every fault, and what reaches the runner and the painter."""
+
+import errno
+import subprocess
+import sys
+from pathlib import Path
+from types import ModuleType, SimpleNamespace
+
+import pytest
+from click.testing import CliRunner
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from lab.cli import main
+from lab.errors import LabError
+from solvers.errors import BadState
+
+
+def call(*arguments: str):
+    return CliRunner().invoke(main, list(arguments), prog_name="cargolab")
+
+
+def stand_in(monkeypatch, module: str, name: str, act):
+    """Put a function that records its arguments in place of a heavy one."""
+    calls = []
+
+    def function(*arguments, **options):
+        calls.append((arguments, options))
+        if isinstance(act, BaseException):
+            raise act
+        return act
+
+    fake = ModuleType(module)
+    setattr(fake, name, function)
+    monkeypatch.setitem(sys.modules, module, fake)
+    return calls
+
+
+@pytest.fixture
+def runner(monkeypatch):
+    result = SimpleNamespace(summary_text="12.3 deg", folder=Path("renders/tilting/quick"))
+    return stand_in(monkeypatch, "lab.run", "run_preset", result)
+
+
+def test_help_version_and_list():
+    for arguments in (["--help"], ["run", "--help"], ["render", "-h"], ["explain", "--help"]):
+        shown = call(*arguments)
+        assert shown.exit_code == 0 and "cargolab" in shown.stdout
+    assert call("--version").stdout.startswith("cargolab ")
+    listed = call("list")
+    assert listed.exit_code == 0
+    assert "tilting/quick    Quick tilt" in listed.stdout
+
+
+def test_without_a_command_the_help_is_shown():
+    shown = call()
+    assert shown.exit_code == 2 and "Commands:" in shown.output and "Traceback" not in shown.output
+
+
+def test_run_passes_everything_on(runner):
+    done = call("run", "tilting/quick", "--set", "grains.diameter=4 mm", "--set", "run.repeats=12",
+                "--set", 'motion.tilt.centre=["0 mm", "5 mm"]', "--set", "motion.tilt.reverse=true",
+                "--set", "title=4 = four", "--out", "there", "--no-video")  # fmt: skip
+    assert done.exit_code == 0, done.output
+    assert done.stdout == "12.3 deg\nrenders/tilting/quick\n"
+    overrides = {
+        "grains.diameter": "4 mm",
+        "run.repeats": 12,
+        "motion.tilt.centre": ["0 mm", "5 mm"],
+        "motion.tilt.reverse": True,
+        "title": "4 = four",
+    }
+    expected = ("tilting/quick", overrides, Path("there")), {"video": False, "quiet": False}
+    assert runner == [expected]
+
+
+def test_quiet_says_only_where(runner):
+    assert call("run", "tilting/quick", "--quiet").stdout == "renders/tilting/quick\n"
+    assert runner == [(("tilting/quick", {}, None), {"video": True, "quiet": True})]
+
+
+@pytest.mark.parametrize(
+    ("value", "read"),
+    [
+        ("4 mm", "4 mm"), ("'4 mm'", "4 mm"), ("4", 4), ("0.5", 0.5), ("false", False), ("", ""),
+        ("2020-01-01", "2020-01-01"), ("1\nrun.seed=2", "1\nrun.seed=2"), ("[" * 5000, "[" * 5000),
+        ("{a = 1}", {"a": 1}),
+    ],
+)  # fmt: skip
+def test_values_are_toml_or_text(value, read):
+    from lab.cli import _overrides
+
+    assert _overrides(None, None, (f"grains.x = {value}",)) == {"grains.x": read}
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["frobnicate"],
+        ["run"],
+        ["run", "tilting/quik"],
+        ["run", "tilting/quick", "--nope"],
+        ["run", "tilting/quick", "--set"],
+        ["run", "tilting/quick", "--set", "grains.diameter"],
+        ["run", "tilting/quick", "--set", "=3"],
+        ["run", "tilting/quick", "--set", "grains.diamter=3 mm"],
+        ["run", "tilting/quick", "--out", __file__],
+        ["run", "absent.toml"],
+        ["explain", "tilting/quick", "--set", "run.repeats=0"],
+        ["render"],
+        ["render", "x", "--width", "wide"],
+    ],
+)
+def test_bad_input_is_one_sentence_and_exit_code_2(arguments, monkeypatch):
+    runs = stand_in(monkeypatch, "lab.run", "run_preset", None)
+    stand_in(monkeypatch, "lab.explain", "explain", "")
+    result = call(*arguments)
+    assert result.exit_code == 2 and isinstance(result.exception, SystemExit)
+    assert result.stderr.startswith("cargolab: ") and result.stderr.count("\n") == 1
+    assert result.stdout == "" and runs == []
+
+
+@pytest.mark.parametrize(
+    ("error", "code", "sentence"),
+    [
+        (LabError("no\nsuch thing."), 2, "no such thing."),
+        (BadState("grain 3 left the tank at 0.2 s."), 1, "grain 3 left the tank at 0.2 s."),
+        (KeyboardInterrupt(), 130, "interrupted; what was written until then is kept."),
+        (OSError(errno.ENOSPC, "No space left on device", "/full/recording.h5"), 2,
+         "/full/recording.h5: no space left on device; free some space or choose another folder "
+         "with --out."),
+        (PermissionError(errno.EACCES, "Permission denied", "/etc/x"), 2,
+         "/etc/x: permission denied; choose another folder with --out."),
+        (OSError("unable to\nlock file"), 2, "unable to lock file."),
+    ],
+)  # fmt: skip
+def test_what_goes_wrong_underway(error, code, sentence, monkeypatch):
+    stand_in(monkeypatch, "lab.run", "run_preset", error)
+    result = call("run", "tilting/quick")
+    assert result.exit_code == code
+    assert result.stderr.strip().splitlines() == [f"cargolab: {sentence}"]
+
+
+def test_a_bug_is_not_hidden(monkeypatch):
+    stand_in(monkeypatch, "lab.run", "run_preset", ZeroDivisionError())
+    assert isinstance(call("run", "tilting/quick").exception, ZeroDivisionError)
+
+
+def test_render_passes_what_is_asked(monkeypatch):
+    calls = stand_in(monkeypatch, "lab.paint.video", "render_recording", Path("out.mp4"))
+    done = call("render", "there", "--out", "out.mp4", "--colour", "layer", "--frame", "earth",
+                "--width", "640", "--height", "360", "--world", "2")  # fmt: skip
+    assert done.exit_code == 0 and done.stdout == "out.mp4\n"
+    (arguments, options), = calls  # fmt: skip
+    assert arguments == (Path("there"), Path("out.mp4"))
+    assert callable(options.pop("progress"))
+    look = {"colour": "layer", "frame": "earth", "width": 640, "height": 360, "world": 2}
+    assert options == {**look, "png": False}
+    call("render", "there", "--png")
+    assert calls[1][0] == (Path("there"), None) and calls[1][1]["png"] is True
+
+
+def test_explain_gets_the_loaded_preset(monkeypatch):
+    calls = stand_in(monkeypatch, "lab.explain", "explain", "all about it")
+    assert call("explain", "tilting/quick", "--set", "run.seed=5").stdout == "all about it\n"
+    assert calls[0][0][0].resolved.run.seed == 5
+
+
+def test_help_and_list_need_no_slow_imports():
+    code = (
+        "import sys; from lab.cli import main\n"
+        "try: main(['list'])\n"
+        "except SystemExit: pass\n"
+        "sys.exit(any(m in sys.modules for m in ('taichi', 'matplotlib', 'pint', 'numpy')))"
+    )
+    root = Path(__file__).parents[2]
+    assert subprocess.run([sys.executable, "-c", code], cwd=root, check=False).returncode == 0
+
+
+def test_the_module_is_the_command():
+    root = Path(__file__).parents[2]
+    command = [sys.executable, "-m", "lab", "frobnicate"]
+    done = subprocess.run(command, cwd=root, capture_output=True, text=True, check=False)
+    assert done.returncode == 2 and done.stderr == "cargolab: No such command 'frobnicate'.\n"
+
+
+@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(st.lists(st.text() | st.sampled_from(["run", "explain", "--set", "tilting/quick"]), max_size=5))
+def test_any_command_line_ends_cleanly(monkeypatch, arguments):
+    stand_in(monkeypatch, "lab.run", "run_preset", SimpleNamespace(summary_text="", folder=""))
+    stand_in(monkeypatch, "lab.explain", "explain", "")
+    stand_in(monkeypatch, "lab.paint.video", "render_recording", "")
+    result = call(*arguments)
+    assert result.exit_code in (0, 2) and isinstance(result.exception, SystemExit | None)

@@ -1,0 +1,127 @@
+"""The raster: areas, symmetry, spin marks, walls, and bytes that do not depend on the threads."""
+
+import numpy as np
+import pytest
+
+from lab.paint.painter import Camera, paint_grains, paint_tank, to_discs
+from solvers.runtime import initialise
+
+WHITE, BLACK = 255.0, 0.0
+
+
+@pytest.fixture(autouse=True, scope="module")
+def _taichi():
+    initialise()
+
+
+def painted(discs, colour=BLACK, mark=BLACK, size=(64, 96)):
+    """A white picture with discs (x, y, radius, mark right, mark down) on it."""
+    picture = np.full((*size, 3), 255, dtype=np.uint8)
+    discs = np.atleast_2d(np.asarray(discs, dtype=float))
+    shape = len(discs), 3
+    paint_grains(picture, discs, np.full(shape, colour), np.full(shape, mark))
+    return picture
+
+
+def area(picture):
+    """Pixels covered by black."""
+    return (1.0 - picture[..., 0] / 255.0).sum()
+
+
+@pytest.mark.parametrize("radius", [4.0, 7.3, 15.5, 27.0])
+def test_a_disc_covers_its_area(radius):
+    places = np.random.default_rng(1).uniform(30, 31, (8, 2))
+    areas = [area(painted([*place, radius, 1, 0])) for place in places]
+    np.testing.assert_allclose(areas, np.pi * radius**2, rtol=5e-3)
+
+
+@pytest.mark.parametrize("radius", [0.2, 0.5, 0.7, 1.4, 2.2])
+def test_small_discs_cover_their_area_on_average(radius):
+    places = 4.0 + 8.0 * np.stack(np.meshgrid(np.arange(10), np.arange(6)), -1).reshape(-1, 2)
+    places += np.random.default_rng(2).uniform(0, 1, places.shape)
+    discs = np.column_stack([places, np.tile([radius, 1, 0], (len(places), 1))])
+    assert area(painted(discs)) / len(places) == pytest.approx(np.pi * radius**2, rel=0.03)
+
+
+def test_touching_discs_do_not_hide_each_other():
+    pair = painted([[20.3, 30.0, 8.0, 1, 0], [36.3, 30.0, 8.0, 1, 0]])
+    assert area(pair) == pytest.approx(2 * np.pi * 64, rel=5e-3)
+
+
+def test_where_discs_overlap_the_first_is_seen():
+    first, second = [40.0, 30.0, 20.0, 1, 0], [44.0, 30.0, 12.0, 0, 1]
+    once, both = painted([first], 90.0, 250.0), painted([first, second], 90.0, 250.0)
+    np.testing.assert_array_equal(both, once)
+
+
+def test_a_mirrored_scene_gives_the_mirrored_picture():
+    random = np.random.default_rng(3)
+    places = random.integers(0, [96 * 16, 64 * 16], (60, 2)) / 16  # exact in binary, on both sides
+    discs = np.column_stack([places, random.uniform(0.3, 9, 60), np.full(60, 0.6), np.full(60, 0.8)])
+    mirrored = discs * [-1, 1, 1, -1, 1] + [96, 0, 0, 0, 0]
+    there, here = painted(mirrored, 90.0, 250.0), painted(discs, 90.0, 250.0)
+    np.testing.assert_array_equal(there, here[:, ::-1])
+
+
+def test_the_spin_mark_points_where_the_grain_and_the_camera_have_turned():
+    for angle, turn in [(0.0, 0.0), (1.1, 0.0), (1.1, 0.9), (-2.5, 0.4)]:
+        camera = Camera(1000.0, (48.0, 32.0), turn)
+        disc = to_discs(camera, np.zeros((1, 2)), np.array([0.02]), np.array([angle]))
+        marked = painted(disc, 90.0, 250.0).astype(float) - painted(disc, 90.0, 90.0)
+        rows, columns = np.indices(marked.shape[:2]) + 0.5
+        weight = np.abs(marked[..., 0])
+        right = (weight * (columns - 48)).sum() / weight.sum()
+        up = (weight * (32 - rows)).sum() / weight.sum()
+        assert np.hypot(right, up) == pytest.approx(0.52 * 20, rel=0.02)
+        assert np.exp(1j * np.arctan2(up, right)) == pytest.approx(np.exp(1j * (angle + turn)), abs=0.02)
+
+
+def test_a_carried_camera_sees_tank_points_where_they_are_in_the_earth_frame():
+    camera, pose = Camera(300.0, (10.0, 20.0)), np.array([0.1, -0.05, 0.7])
+    point = np.array([0.03, 0.08])
+    cosine, sine = np.cos(0.7), np.sin(0.7)
+    earth = pose[:2] + np.array([[cosine, -sine], [sine, cosine]]) @ point
+    expected = [10 + 300 * earth[0], 20 - 300 * earth[1]]
+    np.testing.assert_allclose(camera.carried(pose).pixels(point[None])[0], expected)
+
+
+def test_the_wall_lies_outside_the_outline():
+    picture = np.full((64, 96, 3), 255, dtype=np.uint8)
+    outline = np.array([(0.0, 0.0), (0.04, 0.0), (0.04, 0.03), (0.0, 0.03)])
+    paint_tank(picture, Camera(1000.0, (20.0, 50.0)), outline, 5.0, (80, 80, 80), (240, 240, 240))
+    row = picture[35, :, 0]
+    assert (row[15:20] == 80).all() and (row[20:60] == 240).all() and (row[60:65] == 80).all()
+    assert row[14] == 255 and row[65] == 255
+    column = picture[:, 40, 0]
+    assert (column[50:55] == 80).all() and (column[20:50] == 240).all() and column[55] == 255
+
+
+def test_a_slanted_hold_has_its_area():
+    picture = np.full((64, 96, 3), 255, dtype=np.uint8)
+    outline = np.array([(0.0, 0.0), (0.05, 0.0), (0.03, 0.01), (0.04, 0.03), (0.0, 0.03)])
+    y, z = 1000 * outline.T
+    exact = 0.5 * (y * np.roll(z, -1) - z * np.roll(y, -1)).sum()
+    paint_tank(picture, Camera(1000.0, (30.3, 50.1), 0.3), outline, 3.0, (255,) * 3, (0,) * 3)
+    assert area(picture) == pytest.approx(exact, rel=5e-3)
+
+
+def test_grains_at_no_finite_place_or_off_the_page_are_left_out():
+    discs = [[np.nan, 3, 2, 1, 0], [1e12, 3, 2, 1, 0], [3, -1e12, 2, 1, 0], [np.inf, 3, 2, 1, 0]]
+    assert area(painted(discs)) == 0
+    assert area(painted(np.empty((0, 5)))) == 0
+
+
+def test_the_bytes_do_not_depend_on_the_threads():
+    random = np.random.default_rng(4)
+    count = 3000
+    place = random.uniform(-20, 420, (count, 2))
+    discs = np.column_stack([place, random.uniform(0.2, 12, count), np.ones(count), np.zeros(count)])
+    outline = np.array([(0.0, 0.0), (0.3, 0.0), (0.2, 0.3)])
+    pictures = []
+    for threads in (1, 2):
+        initialise(threads)
+        picture = painted(discs, 120.0, 30.0, (400, 400))
+        paint_tank(picture, Camera(900.0, (50.0, 300.0), 0.2), outline, 9.0, (9,) * 3, (99,) * 3)
+        pictures.append(picture)
+    initialise()
+    assert pictures[0].tobytes() == pictures[1].tobytes()

@@ -1,0 +1,218 @@
+import json
+import shutil
+import signal
+import subprocess
+import sys
+from collections import namedtuple
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+from synthetic import frame, recorder, sample
+
+from lab.errors import LabError
+from lab.recording import BUFFER_BYTES, SPARE_BYTES, open_recording
+
+KILLED_RUN = """
+import sys
+from pathlib import Path
+from synthetic import frame, recorder, sample
+
+run = recorder(Path(sys.argv[1]), count=500, flush_every=0.01)
+k = 0
+while True:
+    run.grain_steps = 1000 * k
+    run.sample(sample(float(k), kinetic=[float(k)], pose=[[float(k)] * 3]))
+    if k % 4 == 0:
+        run.frame(frame(float(k), count=500, angle=[[float(k)] * 500]))
+    if k == 2000:
+        print("under way", flush=True)
+    k += 1
+"""
+
+
+def test_what_is_written_is_read(tmp_path):
+    radius = np.array([[0.001, 0.002, 0.003], [0.002, 0.002, 0.005]])
+    resolved = {"title": "Füllung", "motion": {"tilt": {"rate": 0.1}}}
+    with recorder(tmp_path / "new", 2, 3, radius=radius, resolved=resolved) as run:
+        pose = np.zeros((2, 3))
+        for k in range(3):
+            pose[:] = k
+            run.sample(sample(0.1 * k, 2, pose=pose, kinetic=[k, 2 * k]))
+        run.frame(frame(0.0, 2, 3, spin=radius))
+        run.wall_s, run.grain_steps = 2.5, 600
+    with open_recording(tmp_path / "new") as recording:
+        assert recording.complete
+        assert recording.name == "tilting/acetate"
+        assert recording.preset == resolved
+        assert recording.given.startswith("title = ")
+        assert (recording.wall_s, recording.grain_steps, recording.step) == (2.5, 600, 1e-5)
+        assert recording.versions["numpy"] == np.__version__
+        assert recording.machine["cores"] >= 1
+        assert recording.worlds == 2
+        np.testing.assert_array_equal(recording.radius, radius)
+        np.testing.assert_allclose(recording.mean_diameter, [0.004, 0.006])
+        assert recording.outline.shape == (4, 2)
+        np.testing.assert_allclose(recording.series["time"], [0.0, 0.1, 0.2])
+        np.testing.assert_array_equal(recording.series["pose"][:, 1, 2], [0, 1, 2])
+        np.testing.assert_array_equal(recording.series["kinetic"], [[0, 0], [1, 2], [2, 4]])
+        assert recording.frames["position"].shape == (1, 2, 3, 2)
+        np.testing.assert_array_equal(recording.frames["spin"][-1], radius.astype("f4"))
+        with pytest.raises(IndexError):
+            recording.frames["spin"][1]
+
+
+def test_a_killed_run_is_read_up_to_its_last_flush(tmp_path):
+    writer = subprocess.Popen(
+        [sys.executable, "-c", KILLED_RUN, tmp_path],
+        stdout=subprocess.PIPE,
+        cwd=Path(__file__).parents[2],
+        env={"PYTHONPATH": f"{Path(__file__).parent}:{Path(__file__).parents[2]}"},
+    )
+    assert writer.stdout.readline() == b"under way\n"
+    with open_recording(tmp_path) as live:
+        assert len(live.series["time"]) > 0
+    writer.send_signal(signal.SIGKILL)
+    writer.communicate()
+    with open_recording(tmp_path) as recording:
+        assert recording.status == "running"
+        count = len(recording.series["time"])
+        frames = recording.frames["time"][:]
+        assert count > 1500
+        np.testing.assert_array_equal(recording.series["time"], np.arange(count))
+        np.testing.assert_array_equal(recording.series["kinetic"][:, 0], np.arange(count))
+        np.testing.assert_array_equal(recording.series["pose"][:, 0, 2], np.arange(count))
+        np.testing.assert_array_equal(frames, 4 * np.arange(len(frames)))
+        np.testing.assert_array_equal(recording.frames["angle"][:][:, 0, -1], frames)
+        assert 1500 * 1000 < recording.grain_steps < 1000 * count
+
+
+def test_rows_are_kept_in_memory_between_flushes(tmp_path):
+    with recorder(tmp_path, flush_every=3600.0) as run:
+        for k in range(10):
+            run.sample(sample(float(k)))
+        with open_recording(tmp_path) as recording:
+            assert len(recording.series["time"]) == 0
+        run.flush()
+        with open_recording(tmp_path) as recording:
+            assert len(recording.series["time"]) == 10
+
+
+def test_a_full_buffer_is_written_at_once(tmp_path):
+    count = BUFFER_BYTES // 24 // 3 + 1
+    with recorder(tmp_path, count=count, flush_every=3600.0) as run:
+        for k in range(3):
+            run.frame(frame(float(k), count=count))
+        with open_recording(tmp_path) as recording:
+            assert len(recording.frames["time"]) == 3
+
+
+def test_a_failed_run_says_why_it_stopped(tmp_path):
+    with pytest.raises(ZeroDivisionError), recorder(tmp_path) as run:
+        run.sample(sample(0.0))
+        raise ZeroDivisionError("Grain 7 left the hold at 1.2 s.\nmore")
+    with open_recording(tmp_path) as recording:
+        assert recording.status == "stopped: Grain 7 left the hold at 1.2 s."
+        assert len(recording.series["time"]) == 1
+
+
+def test_an_interrupted_run_says_so(tmp_path):
+    with pytest.raises(KeyboardInterrupt), recorder(tmp_path):
+        raise KeyboardInterrupt
+    with open_recording(tmp_path) as recording:
+        assert recording.status == "stopped: interrupted by the user"
+
+
+def test_series_end_with_their_shortest(tmp_path):
+    with recorder(tmp_path) as run:
+        for k in range(5):
+            run.sample(sample(float(k)))
+    with h5py.File(tmp_path / "recording.h5", "r+") as file:
+        file["series/overlap"].resize(3, axis=0)
+    with open_recording(tmp_path) as recording:
+        assert {len(values) for values in recording.series.values()} == {3}
+
+
+def test_a_wrong_row_is_refused(tmp_path):
+    with recorder(tmp_path) as run:
+        with pytest.raises(ValueError, match="kinetic"):
+            run.sample(sample(0.0, kinetic=np.zeros(2)))
+        with pytest.raises(ValueError, match="overlap"):
+            run.sample({"time": 0.0})
+
+
+def test_a_second_recording_does_not_overwrite_the_first(tmp_path):
+    recorder(tmp_path).close()
+    with pytest.raises(LabError, match="already holds a recording"):
+        recorder(tmp_path)
+
+
+def test_a_folder_that_cannot_be_written_is_named(tmp_path):
+    (tmp_path / "taken").touch()
+    with pytest.raises(LabError, match=r"taken.*choose another folder"):
+        recorder(tmp_path / "taken")
+    with pytest.raises(LabError, match="/proc/nowhere"):
+        recorder("/proc/nowhere")
+
+
+def test_a_full_disk_stops_the_run_and_keeps_what_was_written(tmp_path, monkeypatch):
+    usage = namedtuple("usage", "free")
+    with pytest.raises(LabError, match=f"{tmp_path.name} is full"), recorder(tmp_path) as run:
+        run.sample(sample(0.0))
+        run.flush()
+        run.sample(sample(1.0))
+        monkeypatch.setattr(shutil, "disk_usage", lambda path: usage(SPARE_BYTES))
+        run.flush()
+    monkeypatch.undo()
+    with open_recording(tmp_path) as recording:
+        np.testing.assert_array_equal(recording.series["time"], [0.0])
+        assert recording.status.startswith("stopped: The disk of")
+
+
+def make_foreign(path):
+    with h5py.File(path, "w") as file:
+        file["x"] = 1
+
+
+def make_older(path):
+    with h5py.File(path, "w") as file:
+        file.attrs["format"] = "cargo-shift-lab 0"
+
+
+def make_incomplete(path):
+    recorder(path.parent).close()
+    with h5py.File(path, "r+") as file:
+        del file["series/elastic"]
+
+
+def make_short(path):
+    recorder(path.parent).close()
+    path.write_bytes(path.read_bytes()[:1000])
+
+
+def make_bad_preset(path):
+    recorder(path.parent).close()
+    with h5py.File(path, "r+") as file:
+        del file["preset/resolved"]
+        file["preset/resolved"] = json.dumps({})[:1]
+
+
+@pytest.mark.parametrize(
+    ("make", "complaint"),
+    [
+        (lambda path: None, "does not exist"),
+        (lambda path: path.write_text("hello"), "another kind of file"),
+        (make_foreign, "not a recording of this lab"),
+        (make_older, "another version"),
+        (make_incomplete, "damaged"),
+        (make_bad_preset, "damaged"),
+        (make_short, "cut short"),
+    ],
+)
+def test_what_is_no_recording_is_refused_in_one_sentence(tmp_path, make, complaint):
+    make(tmp_path / "recording.h5")
+    with pytest.raises(LabError, match=complaint) as caught:
+        open_recording(tmp_path)
+    assert str(tmp_path) in str(caught.value)
+    assert "\n" not in str(caught.value)
