@@ -5,7 +5,6 @@ Exit codes: 0 done; 1 the simulation could not go on; 2 what was asked for canno
 """
 
 import errno
-import os
 import sys
 import tomllib
 from pathlib import Path
@@ -14,8 +13,6 @@ import click
 
 from lab.errors import LabError
 from solvers.errors import BadState
-
-os.environ.setdefault("ENABLE_TAICHI_HEADER_PRINT", "0")  # Taichi greets on stdout otherwise
 
 REMEDIES = {
     errno.ENOSPC: "free some space or choose another folder with --out",
@@ -93,11 +90,6 @@ def _value(text: str) -> object:
     value = table["value"]
     plain = len(table) == 1 and isinstance(value, bool | int | float | str | list | dict)
     return value if plain else text
-
-
-def _progress(done: int, of: int) -> None:
-    if sys.stderr.isatty():
-        click.echo(f"\rpicture {done} of {of}", nl=done == of, err=True)
 
 
 set_option = click.option(
@@ -194,8 +186,13 @@ def render(recording: Path, out: Path | None, png: bool, **look: object) -> None
     cargolab render renders/tilting/quick --png --out pictures
     """
     from lab.paint.video import render_recording
+    from lab.progress import Progress
 
-    click.echo(render_recording(recording, out, png=png, progress=_progress, **look))
+    with Progress(quiet=False) as progress:
+        progress.start("painting", None)
+        path = render_recording(recording, out, png=png, progress=progress.count, **look)
+        progress.finish()
+    click.echo(path)
 
 
 @main.command()

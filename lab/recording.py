@@ -43,9 +43,7 @@ WORLD_FRAMES = {"pose": (3,)}
 CHUNK_BYTES = 2**19  # about what one reads of a data set at a time
 CHUNK_ROWS = 1024
 BUFFER_BYTES = 2**25  # kept in memory at most before it is written
-SPARE_BYTES = (
-    2**23
-)  # room that must stay free on the disk: HDF5 cannot even close a file on a full one
+SPARE_BYTES = 2**23  # room that must stay free on the disk: HDF5 cannot even close a file on a full one
 PACKAGES = ("cargo-shift-lab", "taichi", "numpy", "scipy", "h5py")
 
 
@@ -139,9 +137,7 @@ class Recorder:
         if pending > BUFFER_BYTES or time.monotonic() - self._flushed > self._flush_every:
             self.flush()
 
-    def _write_head(
-        self, preset: str, given: str, resolved: Mapping, step: float, machine: Mapping
-    ) -> None:
+    def _write_head(self, preset: str, given: str, resolved: Mapping, step: float, machine: Mapping) -> None:
         attributes = {
             "format": FORMAT,
             "preset": preset,
@@ -171,14 +167,10 @@ class Recorder:
         try:
             yield
         except FileExistsError as error:
-            raise LabError(
-                f"{self.folder} already holds a recording or is a file: choose another folder."
-            ) from error
+            raise LabError(f"{self.folder} already holds a recording or is a file: choose another folder.") from error
         except (OSError, RuntimeError) as error:
             reason = os.strerror(error.errno) if getattr(error, "errno", None) else _sentence(error)
-            raise LabError(
-                f"{self.folder} cannot be written ({reason}): choose another folder."
-            ) from error
+            raise LabError(f"{self.folder} cannot be written ({reason}): choose another folder.") from error
 
 
 class _Table:
@@ -350,9 +342,7 @@ def _open(path: Path) -> h5py.File:
     except PermissionError as error:
         raise LabError(f"{path} may not be read: ask for the right to read it.") from error
     except OSError as error:
-        raise LabError(
-            f"{path} cannot be read as a recording: it is cut short or another kind of file."
-        ) from error
+        raise LabError(f"{path} cannot be read as a recording: it is cut short or another kind of file.") from error
     form = file.attrs.get("format")
     if form == FORMAT:
         return file

@@ -22,8 +22,8 @@ def grain_count(preset: Resolved) -> int:
 def build(preset: Resolved) -> tuple[Scene, np.ndarray]:
     """The scene of all repeats and positions (W, n, 2) m to settle from; repeat w has the seed run.seed + w.
 
-    The step divides the sampling interval of the series, so samples fall on steps. Raises LabError where the grains do not
-    fit or a given step is past the limit.
+    The step divides the sampling interval of the series, so samples fall on steps. Raises LabError where the grains
+    do not fit or a given step is past the limit.
     """
     outline = np.array(preset.tank.outline)
     count, size = grain_count(preset), preset.grains

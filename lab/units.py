@@ -64,14 +64,8 @@ KINDS = {
     "N s/m": Kind("a damping coefficient", "N s/m", "20 N s/m"),
 }
 PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
-PREFIXED = {
-    "m": -9,
-    "s": -9,
-    "Pa": 0,
-    "N": -9,
-    "J": -9,
-    "Hz": 0,
-}  # symbol: smallest power of ten shown
+# Units shown with a prefix, and the smallest power of ten they are shown with.
+PREFIXED = {"m": -9, "s": -9, "Pa": 0, "N": -9, "J": -9, "Hz": 0}
 
 NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 FACTOR = re.compile(r"\s*([*/·]?)\s*([^\W\d]+|[%°]|1(?=\s*/))(?:\s*(?:\^|\*\*)\s*(-?[1-9]))?")

@@ -12,8 +12,8 @@ PAIR, WALL = 0, 1
 class Contacts:
     """One normal and one tangential law at work on the contacts of every world.
 
-    The tangent is the normal turned counter-clockwise by 90°. Levers are the radii less half the overlap, which add up to the
-    distance of the centres: angular momentum is exact. (Spandonidis 2016, eq. 4.7, takes whole radii.)
+    The tangent is the normal turned counter-clockwise by 90°. Levers are the radii less half the overlap, which add
+    up to the distance of the centres: angular momentum is exact. (Spandonidis 2016, eq. 4.7, takes whole radii.)
     """
 
     def __init__(self, arrays: Arrays, normal, tangential, interfaces):

@@ -5,8 +5,8 @@ from math import pi
 import numpy as np
 from matplotlib.path import Path
 
-# Share of the area that settled frictional discs cover: 0.82 (random close packing of discs, Berryman 1983) less the loose layers
-# at walls and surface; used only to turn a depth into a count.
+# Share of the area that settled frictional discs cover: 0.82 (random close packing of discs, Berryman 1983) less the
+# loose layers at walls and surface; used only to turn a depth into a count.
 PACKING = 0.81
 SPACING = 1.04
 

@@ -24,8 +24,8 @@ def turned(y, z, phi):
 class Frame:
     """Prescribed motion of the tank in each of W worlds: motions applied one after the other.
 
-    `motions[w]` are the motions of world w, the same kinds in the same order in every world. The first is innermost: a tilt
-    followed by a sway is a tilting table on a swaying deck.
+    `motions[w]` are the motions of world w, the same kinds in the same order in every world. The first is innermost:
+    a tilt followed by a sway is a tilting table on a swaying deck.
     """
 
     def __init__(self, arrays: Arrays, motions: Sequence[Sequence], soft_start: float, gravity: float):
@@ -43,8 +43,8 @@ class Frame:
     def kinematics(self, w, t):
         """Pose (Y, Z, φ) of the frame's origin at time t, its velocity and its acceleration in the earth frame.
 
-        Composition of motions by relative kinematics: turning by θ about the earth point c takes p to c + R(p − c), v to
-        Rv + θ̇ × (p' − c) and a to Ra + 2 θ̇ × Rv + θ̈ × (p' − c) − θ̇²(p' − c).
+        Composition of motions by relative kinematics: turning by θ about the earth point c takes p to c + R(p − c), v
+        to Rv + θ̇ × (p' − c) and a to Ra + 2 θ̇ × Rv + θ̈ × (p' − c) − θ̇²(p' − c).
         """
         p, v, a = ti.Vector([0.0, 0.0]), ti.Vector([0.0, 0.0]), ti.Vector([0.0, 0.0])
         turn = ti.Vector([0.0, 0.0, 0.0])

@@ -10,8 +10,8 @@ from solvers.runtime import Arrays
 class Grains:
     """Arrays (W, n), SI, in the tank's frame. A disc has the mass and inertia of the sphere it stands for.
 
-    Leapfrog keeps `velocity` and `spin` half a step behind the positions; `*_now` are their values at the positions' own
-    time, predicted with the last acceleration, for forces that depend on velocity.
+    Leapfrog keeps `velocity` and `spin` half a step behind the positions; `*_now` are their values at the positions'
+    own time, predicted with the last acceleration, for forces that depend on velocity.
     """
 
     def __init__(self, arrays: Arrays, radius: np.ndarray, density: float):
@@ -66,8 +66,9 @@ class Grains:
     def kick_and_drift(self, w, body, rotating: ti.template(), kick, dt):
         """Leapfrog form of velocity Verlet (Hairer, Lubich and Wanner 2003): kick by `kick`, drift by `dt` (s).
 
-        `body` = (b_y, b_z, φ̇, φ̈) is the tank's motion; in its frame a grain feels b − φ̈ × r + φ̇² r − 2 φ̇ × u and its spin
-        changes by −φ̈. Returns the largest speed² (m²/s²), which is NaN or huge where the state is bad. Forces are cleared.
+        `body` = (b_y, b_z, φ̇, φ̈) is the tank's motion; in its frame a grain feels b − φ̈ × r + φ̇² r − 2 φ̇ × u and
+        its spin changes by −φ̈. Returns the largest speed² (m²/s²), which is NaN or huge where the state is bad.
+        Forces are cleared.
         """
         fastest = 0.0
         for i in range(self.count):

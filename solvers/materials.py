@@ -51,8 +51,8 @@ def interface(grain: Material, other: Material, mass: float, radius: float, scal
     """Contact of a grain with another material, for an effective mass (kg) and radius (m) typical of the scene.
 
     Friction, shear damping and dissipation are those of `other`: a wall's material says how grains touch that wall.
-    `scale` multiplies Young's moduli; the dissipative time then grows by scale^(−2/5), so that every collision keeps its
-    restitution (x = β v^(1/5) is unchanged).
+    `scale` multiplies Young's moduli; the dissipative time then grows by scale^(−2/5), so that every collision keeps
+    its restitution (x = β v^(1/5) is unchanged).
     """
     from solvers.laws.hertz_viscoelastic import dissipative_time_for
 

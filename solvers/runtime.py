@@ -33,6 +33,7 @@ def initialise(threads: int = 0, **options) -> None:
         cpu_max_num_threads=wanted,
         cfg_optimization=False,
         log_level=ti.WARN,
+        verbose=False,
         offline_cache=True,
         **options,
     )
@@ -43,9 +44,9 @@ def initialise(threads: int = 0, **options) -> None:
 class Arrays:
     """Fields of one simulation, in one Taichi field tree.
 
-    One tree, since each tree a kernel touches costs it a pointer to reload in the inner loops (three times slower with a tree
-    a field), and since Taichi holds at most 512 trees and frees none by itself. Fields are declared first, then
-    `finish` makes and fills them; the last index is contiguous.
+    One tree, since each tree a kernel touches costs it a pointer to reload in the inner loops (three times slower
+    with a tree a field), and since Taichi holds at most 512 trees and frees none by itself. Fields are declared
+    first, then `finish` makes and fills them; the last index is contiguous.
     """
 
     def __init__(self):

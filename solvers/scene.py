@@ -14,8 +14,9 @@ from solvers.timestep import Limit, limits
 class Scene:
     """A batch of W worlds of n grains in equal tanks.
 
-    `radius` (W, n) m; `outline` (m, 2) m, counter-clockwise; `motions[w]` the tank's motions in world w, the same kinds in
-    every world; `step` Δt in s, or None for the derived one; `start_speed` (m/s) of the fastest grain at the start.
+    `radius` (W, n) m; `outline` (m, 2) m, counter-clockwise; `motions[w]` the tank's motions in world w, the same
+    kinds in every world; `step` Δt in s, or None for the derived one; `start_speed` (m/s) of the fastest grain at the
+    start.
     """
 
     radius: np.ndarray

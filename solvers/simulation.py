@@ -106,8 +106,8 @@ class Simulation:
     def settle(self, rest: float, limit: float, tell: Callable[[float], None] = lambda _: None) -> bool:
         """Let the grains come to rest in the upright tank; the clock then starts at zero. Returns whether they rest.
 
-        At rest the mean kinetic energy of a grain (spin included) is below `rest` times m g d in every world for two looks
-        in a row, 10 ms apart; at most `limit` s.
+        At rest the mean kinetic energy of a grain (spin included) is below `rest` times m g d in every world for two
+        looks in a row, 10 ms apart; at most `limit` s.
         """
         self.origin = AT_REST
         look = max(1, round(0.01 / self.dt))

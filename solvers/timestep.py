@@ -10,7 +10,7 @@ from solvers.materials import Interface, Material
 # Steps a collision takes: an elastic one, and one with viscoelastic damping x = β v^(1/5) (times √x). The error of
 # the restitution falls as Δt² and grows with x; these keep it under 0.1 % wherever in a step the contact begins.
 ELASTIC_STEPS = 36.0
-DAMPED_STEPS = 95.0
+DAMPED_STEPS = 105.0
 RAYLEIGH_SHARE = 0.2
 
 

@@ -11,8 +11,8 @@ class Walls:
     """A simple polygon (m, 2), counter-clockwise, with the grains inside.
 
     Its features are m segments and, where the wall juts into the tank, the reflex corners. A grain touches a
-    segment only where its centre projects onto it, and a corner only beyond both of the corner's segments, so no contact
-    counts twice.
+    segment only where its centre projects onto it, and a corner only beyond both of the corner's segments, so no
+    contact counts twice.
     """
 
     def __init__(self, arrays: Arrays, outline: np.ndarray):
@@ -40,10 +40,7 @@ class Walls:
         ty, tz = self.table[feature, 2], self.table[feature, 3]
         along = py * ty + pz * tz
         distance, normal_y, normal_z = py * -tz + pz * ty, -tz, ty
-        if ti.static(self.corners == 0):
-            if along < 0.0 or along > self.table[feature, 4]:
-                distance = 1e30
-        elif feature < self.segments:
+        if ti.static(self.corners == 0) or feature < self.segments:
             if along < 0.0 or along > self.table[feature, 4]:
                 distance = 1e30
         else:

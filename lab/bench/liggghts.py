@@ -185,9 +185,7 @@ def _folder(workdir: Path | None) -> Iterator[Path]:
         yield workdir
 
 
-def _bed(
-    position: np.ndarray, radius: np.ndarray, density: float, width: float, height: float
-) -> str:
+def _bed(position: np.ndarray, radius: np.ndarray, density: float, width: float, height: float) -> str:
     """LIGGGHTS' data file: number, kind, diameter (m), density (kg/m^3) and x, y, z (m) a grain."""
     depth = 4 * float(np.max(radius))
     grains = (

@@ -42,7 +42,7 @@ from lab.recording import Recording
 BIN = 0.05  # deg of tilt
 WINDOW = 0.5  # deg of tilt
 FLOW = 0.25  # of a liquid's rate
-DECISION = 0.2  # deg of give
+DECISION = 0.1  # deg of give
 MAIN = 2.0  # deg of give
 NOISE = 8.0  # standard deviations that the sum may wander by chance
 LEAST_BINS = 20

@@ -16,9 +16,9 @@ class HaffWerner:
 
     γ_s = 20 N s/m stops the slip of a 3 mm grain within 1e-7 s, far below any step worth taking. So the damper is
     split: what the step Δt resolves, γ_f = min(γ_s, 0.2 m_t/Δt), acts at once; the rest acts on the slip through a
-    first-order low-pass, Ṡ = k_f [(γ_s − γ_f) u_s − S] / (γ_s − γ_f), whose stiffness k_f = 0.02 m_t/Δt² the step resolves as
-    well. Slip still stops within a few steps, and under a lasting load the slip is F_t/γ_s, the creep of the law
-    itself, whatever the step. With γ_s < 0.2 m_t/Δt the law is integrated as written.
+    first-order low-pass, Ṡ = k_f [(γ_s − γ_f) u_s − S] / (γ_s − γ_f), whose stiffness k_f = 0.02 m_t/Δt² the step
+    resolves as well. Slip still stops within a few steps, and under a lasting load the slip is F_t/γ_s, the creep of
+    the law itself, whatever the step. With γ_s < 0.2 m_t/Δt the law is integrated as written.
     """
 
     history = 1

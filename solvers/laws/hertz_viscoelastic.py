@@ -3,8 +3,6 @@
 from functools import cache
 
 import taichi as ti
-from scipy.integrate import solve_ivp
-from scipy.optimize import brentq
 
 from solvers.materials import Interface
 
@@ -14,8 +12,8 @@ class HertzViscoelastic:
     """F_n = k ξ^(3/2) + γ_n ξ^(1/2) ξ̇, with k = (4/3) E* √R_eff and γ_n = (3/2) A k.
 
     For equal materials k = 2Y√R_eff / (3(1 − ν²)), as Spandonidis (2016), eq. 4.4–4.5, writes it. A is the dissipative
-    time of the material (Brilliantov et al. 1996). Dry grains do not pull: the force is cut at zero, so a contact ends where
-    the force vanishes and not where the overlap does (Schwager and Pöschel 2008).
+    time of the material (Brilliantov et al. 1996). Dry grains do not pull: the force is cut at zero, so a contact
+    ends where the force vanishes and not where the overlap does (Schwager and Pöschel 2008).
     """
 
     def coefficients(self, between: Interface) -> list[float]:
@@ -36,9 +34,10 @@ class HertzViscoelastic:
 def restitution(beta_v: float) -> float:
     """Coefficient of restitution of the viscoelastic law against x = β v^(1/5).
 
-    β = (γ_n/m_eff)(m_eff/k)^(3/5). In units of the elastic collision the motion is ξ̈ = −ξ^(3/2) − x ξ^(1/2) ξ̇ from ξ = 0,
-    ξ̇ = 1; the contact ends where the force does.
+    β = (γ_n/m_eff)(m_eff/k)^(3/5). In units of the elastic collision the motion is ξ̈ = −ξ^(3/2) − x ξ^(1/2) ξ̇ from
+    ξ = 0, ξ̇ = 1; the contact ends where the force does.
     """
+    from scipy.integrate import solve_ivp  # slow to import, and only scenes that give a restitution need it
 
     def motion(_, state):
         overlap = max(state[0], 0.0)
@@ -64,6 +63,8 @@ def restitution(beta_v: float) -> float:
 @cache
 def damping_for(e: float) -> float:
     """The x = β v^(1/5) that gives restitution e < 1."""
+    from scipy.optimize import brentq
+
     return brentq(lambda x: restitution(x) - e, 1e-6, 60.0, xtol=1e-9)
 
 

@@ -10,9 +10,9 @@ class Mindlin:
     """F_t = −(S + A k_t u_s), |F_t| ≤ μ F_n, Ṡ = k_t u_s with k_t = 8 G* √(R_eff ξ) (Mindlin 1949).
 
     The history S is kept as a force. While the contact loads, it grows with the present stiffness; while it unloads it
-    shrinks with the stiffness, S ← S k_t(now)/k_t(before), as Thornton, Cummins and Cleary (2013) ask for, since otherwise a
-    changing overlap makes energy (Elata and Berryman 1996). The dashpot has the dissipative time A of the normal law. At the
-    cap S is cut to the cap: the spring slides.
+    shrinks with the stiffness, S ← S k_t(now)/k_t(before), as Thornton, Cummins and Cleary (2013) ask for, since
+    otherwise a changing overlap makes energy (Elata and Berryman 1996). The dashpot has the dissipative time A of the
+    normal law. At the cap S is cut to the cap: the spring slides.
     """
 
     history = 2

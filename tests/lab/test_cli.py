@@ -39,7 +39,7 @@ def stand_in(monkeypatch, module: str, name: str, act):
 @pytest.fixture
 def runner(monkeypatch):
     result = SimpleNamespace(summary_text="12.3 deg", folder=Path("renders/tilting/quick"))
-    return stand_in(monkeypatch, "lab.run", "run_preset", result)
+    return stand_in(monkeypatch, "lab.runner", "run_preset", result)
 
 
 def test_help_version_and_list():
@@ -112,7 +112,7 @@ def test_values_are_toml_or_text(value, read):
     ],
 )
 def test_bad_input_is_one_sentence_and_exit_code_2(arguments, monkeypatch):
-    runs = stand_in(monkeypatch, "lab.run", "run_preset", None)
+    runs = stand_in(monkeypatch, "lab.runner", "run_preset", None)
     stand_in(monkeypatch, "lab.explain", "explain", "")
     result = call(*arguments)
     assert result.exit_code == 2 and isinstance(result.exception, SystemExit)
@@ -135,14 +135,14 @@ def test_bad_input_is_one_sentence_and_exit_code_2(arguments, monkeypatch):
     ],
 )  # fmt: skip
 def test_what_goes_wrong_underway(error, code, sentence, monkeypatch):
-    stand_in(monkeypatch, "lab.run", "run_preset", error)
+    stand_in(monkeypatch, "lab.runner", "run_preset", error)
     result = call("run", "tilting/quick")
     assert result.exit_code == code
     assert result.stderr.strip().splitlines() == [f"cargolab: {sentence}"]
 
 
 def test_a_bug_is_not_hidden(monkeypatch):
-    stand_in(monkeypatch, "lab.run", "run_preset", ZeroDivisionError())
+    stand_in(monkeypatch, "lab.runner", "run_preset", ZeroDivisionError())
     assert isinstance(call("run", "tilting/quick").exception, ZeroDivisionError)
 
 
@@ -187,7 +187,7 @@ def test_the_module_is_the_command():
 @settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.lists(st.text() | st.sampled_from(["run", "explain", "--set", "tilting/quick"]), max_size=5))
 def test_any_command_line_ends_cleanly(monkeypatch, arguments):
-    stand_in(monkeypatch, "lab.run", "run_preset", SimpleNamespace(summary_text="", folder=""))
+    stand_in(monkeypatch, "lab.runner", "run_preset", SimpleNamespace(summary_text="", folder=""))
     stand_in(monkeypatch, "lab.explain", "explain", "")
     stand_in(monkeypatch, "lab.paint.video", "render_recording", "")
     result = call(*arguments)

@@ -16,9 +16,7 @@ WIDTH, HEIGHT = 61.5e-3, 0.2
 GRAVITY = 9.81
 ACETATE = Material(density=1319.0, young=3.2e6, poisson=0.28, friction=0.25, restitution=0.6)
 
-installed = pytest.mark.skipif(
-    liggghts.available() is None, reason="the peer code LIGGGHTS is not installed"
-)
+installed = pytest.mark.skipif(liggghts.available() is None, reason="the peer code LIGGGHTS is not installed")
 
 
 def run(position, *, material=ACETATE, dt=1e-5, steps=1000, **options):
@@ -80,9 +78,7 @@ def test_a_stacked_bed_of_500_stays_and_keeps_its_order(tmp_path):
     assert np.linalg.norm(stay.position - start, axis=1).max() < 0.5 * RADIUS
     assert stay.grain_steps_per_s == pytest.approx(500 * 4000 / stay.loop_s)
     np.testing.assert_allclose(stay.centre_of_mass[0], start.mean(axis=0), rtol=1e-12)
-    assert {"bed.data", "deck.in", "log.liggghts"} <= {
-        p.name for p in (tmp_path / "kept").iterdir()
-    }
+    assert {"bed.data", "deck.in", "log.liggghts"} <= {p.name for p in (tmp_path / "kept").iterdir()}
 
 
 @installed
