@@ -65,7 +65,7 @@ def _step(scene) -> list[tuple[str, str]]:
 
 def _parts(simulation: Simulation) -> list[tuple[str, str]]:
     scene, frame, walls = simulation.scene, simulation.frame, simulation.walls
-    normal, tangential = scene.laws
+    _, tangential = scene.laws
     terms = "gravity"
     if frame.moving:
         terms += ", translation"

@@ -38,7 +38,6 @@ STYLE = {
 SIZE = (6.4, 4.0)  # inches
 POINTS = 1500  # of a curve; more cannot be seen
 PERIODS = 4  # shown close up
-ENERGY = {"kinetic": "kinetic, in the tank", "rotational": "of spin", "elastic": "elastic"}
 
 DRIVE = {
     "sway": ("sway of the tank (mm)", 1e3),
@@ -75,19 +74,20 @@ def shift_figure(recording: Recording, values: Mapping[str, Value]) -> Figure:
 
 
 def energy_figure(recording: Recording, values: Mapping[str, Value]) -> Figure:
-    """Energies in time: those relative to the tank on a logarithmic scale, below the potential."""
-    figure, panels = _figure(recording, heights=(2, 1))
-    (upper,), (lower,) = panels
-    time = recording.series["time"]
-    for name, colour in (("kinetic", BLUE), ("rotational", GREEN), ("elastic", VERMILION)):
-        _range(upper, time, 1e3 * recording.series[name], colour, ENERGY[name])
+    """Energies in time: kinetic and elastic on a logarithmic scale, below the potential."""
+    figure, ((upper,), (lower,)) = _figure(recording, heights=(2, 1))
+    time, series = recording.series["time"], recording.series
+    kinetic = 1e6 * (series["kinetic"] + series["rotational"])
+    _range(upper, time, kinetic, BLUE, "kinetic, relative to the tank")
+    _range(upper, time, 1e6 * series["elastic"], VERMILION, "elastic")
     upper.set_yscale("log")
-    upper.set_ylabel("energy (mJ)")
-    upper.legend(ncols=3, loc="lower right")
-    potential = 1e3 * recording.series["potential"]
-    _band(lower, time, potential - potential[0], GREY)
-    lower.set_ylabel("potential,\nchange (mJ)")
+    upper.set_ylabel("energy (µJ)")
+    upper.legend(ncols=2, loc="lower right", bbox_to_anchor=(1.0, 0.98))
+    potential = 1e6 * (series["potential"] - series["potential"][0])
+    _band(lower, time, potential, GREY)
+    lower.set_ylabel("potential,\nchange (µJ)")
     lower.set_xlabel("time (s)")
+    lower.set_xlim(time[0], time[-1])
     return figure
 
 
@@ -144,15 +144,16 @@ def _shift_against_tilt(recording: Recording, values: Mapping[str, Value]) -> Fi
 
 
 def _way_back(axes: Axes, recording: Recording) -> None:
-    """The shift after the tilt was largest, while the tank is held or turns back, dashed."""
+    """The shift after the tilt was largest, while the tank turns back, dashed."""
     for world, diameter in enumerate(recording.mean_diameter):
         tilt = recording.series["pose"][:, world, 2]
         leg = outward_leg(tilt)
         back = leg.direction * np.degrees(tilt[leg.end - 1 :])
         y = recording.series["centre_of_mass"][:, world, 0]
         shift = -leg.direction * (y[leg.end - 1 :] - y[0]) / diameter
-        label = "way back" if not world and np.ptp(back) > 1 else None
-        axes.plot(*_thinned(back, shift), color=GREY, ls="--", lw=0.9, label=label)
+        if np.ptp(back) > 1:
+            label = None if world else "way back"
+            axes.plot(*_thinned(back, shift), color=GREY, ls="--", lw=0.9, label=label)
 
 
 def _shift_against_time(recording: Recording) -> Figure:
@@ -239,19 +240,20 @@ def _range(axes: Axes, x: np.ndarray, curves: np.ndarray, colour: str, label: st
 
 
 def _mark(axes: Axes, value: Value | None, name: str, colour: str, style: str = "-") -> None:
-    """An upright line at a measured angle, its error as a band, its number in the legend."""
+    """An upright line at a measured angle, its number in the legend; solid with a band of error."""
     if value is None or value.value is None:
         return
     error = value.uncertainty if value.std is None else value.std
     label = f"{name} {value.value:.1f} ± {error:.1f} deg"
     axes.axvline(value.value, color=colour, lw=1.0, ls=style, label=label)
-    axes.axvspan(value.value - error, value.value + error, color=colour, alpha=0.12, lw=0)
+    if style == "-":
+        axes.axvspan(value.value - error, value.value + error, color=colour, alpha=0.12, lw=0)
 
 
 def _millimetres(axes: Axes, scale: float) -> None:
     """A second scale on the right, in mm."""
     right = axes.secondary_yaxis("right", functions=(lambda y: y * scale, lambda y: y / scale))
-    right.set_ylabel("(mm)")
+    right.set_ylabel("(mm)", rotation=0, ha="left", va="bottom", y=1.0)
     right.spines["right"].set_visible(True)
 
 

@@ -87,9 +87,8 @@ def _settle(simulation: Simulation, preset, progress: Progress) -> None:
     progress.start("settling", preset.run.settle_limit)
     rests = simulation.settle(preset.run.rest, preset.run.settle_limit, progress.reach)
     if not rests:
-        progress.warn(
-            f"the grains still move after {preset.run.settle_limit:g} s of settling; raise run.settle_limit or run.rest."
-        )
+        limit = preset.run.settle_limit
+        progress.warn(f"the grains still move after {limit:g} s of settling; raise run.settle_limit or run.rest.")
     progress.finish()
 
 

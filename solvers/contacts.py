@@ -23,7 +23,7 @@ class Contacts:
 
     @staticmethod
     def _tabulate(arrays: Arrays, law, interfaces) -> ti.Field:
-        """A law's coefficients (W, 2, number) of grain–grain and grain–wall contacts, `interfaces[w] = (pair, wall)`."""
+        """Coefficients (W, 2, number) of a law on grain–grain and grain–wall contacts, `interfaces[w] = (pair, wall)`."""
         return arrays.holding(np.array([[law.coefficients(between) for between in world] for world in interfaces]))
 
     @ti.func

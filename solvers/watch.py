@@ -34,6 +34,6 @@ def check_state(deepest: np.ndarray, escaped: np.ndarray, time: float) -> None:
         )
     for w in np.flatnonzero(~(deepest <= DEEPEST_OVERLAP)):
         raise BadState(
-            f"world {w}: grains overlap by {100 * deepest[w]:.3g} % of a radius at t = {time:.4g} s, too soft for these "
-            "impacts; use a larger contact.stiffness_scale."
+            f"world {w}: grains overlap by {100 * deepest[w]:.3g} % of a radius at t = {time:.4g} s, "
+            "too soft for these impacts; use a larger contact.stiffness_scale."
         )

@@ -14,9 +14,9 @@ def applies(recording: Recording) -> bool:
 
 
 def measure(recording: Recording) -> dict[str, Value]:
-    """largest_kinetic_energy and final_kinetic_energy (mJ)."""
-    kinetic = 1e3 * (recording.series["kinetic"] + recording.series["rotational"])
+    """largest_kinetic_energy and final_kinetic_energy (µJ)."""
+    kinetic = 1e6 * (recording.series["kinetic"] + recording.series["rotational"])
     return {
-        "largest_kinetic_energy": over_worlds(kinetic.max(axis=0), "mJ"),
-        "final_kinetic_energy": over_worlds(kinetic[-1], "mJ"),
+        "largest_kinetic_energy": over_worlds(kinetic.max(axis=0), "µJ"),
+        "final_kinetic_energy": over_worlds(kinetic[-1], "µJ"),
     }

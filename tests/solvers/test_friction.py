@@ -24,13 +24,19 @@ def on_floor(run, radius: float) -> float:
 def test_slip_to_roll_ends_at_five_sevenths(law):
     """A sphere set sliding on a floor rolls in the end at 5/7 of its speed, whatever the friction (Euler)."""
     radius, speed = 3e-3, 0.2
-    run = simulation([[[-0.3, radius]]], radius, box(2.0, 0.1), material(friction=0.3), tangential=law,
-    stiffness_scale=1e-3) run.grains.place(np.array([[[-0.3, on_floor(run, radius)]]]))
-    run.grains.launch(np.array([[[speed, 0.0]]]), np.zeros((1, 1))) sliding = 2 / 7 * speed / (0.3 * G)
-    run.advance(int(0.5 * sliding / run.dt)) state = run.snapshot() assert state["velocity"][0, 0, 0] ==
-    pytest.approx(speed - 0.3 * G * run.time, rel=1e-3) run.advance(int(1.5 * sliding / run.dt)) state =
-    run.snapshot() assert state["velocity"][0, 0, 0] == pytest.approx(5 / 7 * speed, rel=1e-3) assert state["spin"][0,
-    0] * radius == pytest.approx(-5 / 7 * speed, rel=1e-3) run.close()
+    grain = material(friction=0.3)
+    run = simulation([[[-0.3, radius]]], radius, box(2.0, 0.1), grain, tangential=law, stiffness_scale=1e-3)
+    run.grains.place(np.array([[[-0.3, on_floor(run, radius)]]]))
+    run.grains.launch(np.array([[[speed, 0.0]]]), np.zeros((1, 1)))
+    sliding = 2 / 7 * speed / (0.3 * G)
+    run.advance(int(0.5 * sliding / run.dt))
+    state = run.snapshot()
+    assert state["velocity"][0, 0, 0] == pytest.approx(speed - 0.3 * G * run.time, rel=1e-3)
+    run.advance(int(1.5 * sliding / run.dt))
+    state = run.snapshot()
+    assert state["velocity"][0, 0, 0] == pytest.approx(5 / 7 * speed, rel=1e-3)
+    assert state["spin"][0, 0] * radius == pytest.approx(-5 / 7 * speed, rel=1e-3)
+    run.close()
 
 
 @pytest.mark.parametrize("law", LAWS)
