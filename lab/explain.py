@@ -73,7 +73,7 @@ def _parts(simulation: Simulation) -> list[tuple[str, str]]:
         terms += ", Euler, centrifugal and Coriolis terms"
     return [
         ("normal law", f"{scene.normal}"),
-        ("tangential law", f"{scene.tangential}, {tangential.history} number(s) of history a contact"),
+        ("tangential law", f"{scene.tangential}, remembers {len(tangential.memory)} number(s) a contact"),
         ("body forces", terms),
         ("walls", f"{walls.segments} segments, {walls.corners} corners jutting in"),
         ("schedule", "per world: a serial time loop in each, worlds in parallel; 64-bit floats"),

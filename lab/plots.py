@@ -30,7 +30,9 @@ STYLE = {
     "axes.axisbelow": True,
     "grid.color": "#e4e4e4",
     "grid.linewidth": 0.6,
-    "legend.frameon": False,
+    "legend.framealpha": 0.9,
+    "legend.edgecolor": "none",
+    "legend.fancybox": False,
     "legend.fontsize": 8,
     "lines.linewidth": 1.5,
     "savefig.dpi": 180,
@@ -40,13 +42,13 @@ POINTS = 1500  # of a curve; more cannot be seen
 PERIODS = 4  # shown close up
 
 DRIVE = {
-    "sway": ("sway of the tank (mm)", 1e3),
-    "heave": ("heave of the tank (mm)", 1e3),
-    "roll": ("roll of the tank (deg)", np.degrees(1.0)),
+    "sway": ("sway of the\ntank (mm)", 1e3),
+    "heave": ("heave of the\ntank (mm)", 1e3),
+    "roll": ("roll of the\ntank (deg)", np.degrees(1.0)),
 }
 
 
-def draw_all(recording: Recording, values: Mapping[str, Value], folder: Path | str) -> dict[str, Path]:
+def write_plots(recording: Recording, values: Mapping[str, Value], folder: Path | str) -> dict[str, Path]:
     """Draw every figure that applies as PNG in `folder`; returns the files by name.
 
     Raises LabError when the folder cannot be written.
@@ -73,16 +75,18 @@ def shift_figure(recording: Recording, values: Mapping[str, Value]) -> Figure:
     return _shift_against_time(recording)
 
 
-def energy_figure(recording: Recording, values: Mapping[str, Value]) -> Figure:
+def energy_figure(recording: Recording, values: Mapping[str, Value]) -> Figure | None:
     """Energies in time: kinetic and elastic on a logarithmic scale, below the potential."""
-    figure, ((upper,), (lower,)) = _figure(recording, heights=(2, 1))
     time, series = recording.series["time"], recording.series
     kinetic = 1e6 * (series["kinetic"] + series["rotational"])
+    if not kinetic.any():
+        return None
+    figure, ((upper,), (lower,)) = _figure(recording, heights=(2, 1))
     _range(upper, time, kinetic, BLUE, "kinetic, relative to the tank")
     _range(upper, time, 1e6 * series["elastic"], VERMILION, "elastic")
     upper.set_yscale("log")
     upper.set_ylabel("energy (µJ)")
-    upper.legend(ncols=2, loc="lower right", bbox_to_anchor=(1.0, 0.98))
+    upper.legend(ncols=2, loc="lower right", bbox_to_anchor=(1.0, 0.98), framealpha=0)
     potential = 1e6 * (series["potential"] - series["potential"][0])
     _band(lower, time, potential, GREY)
     lower.set_ylabel("potential,\nchange (µJ)")
@@ -136,10 +140,10 @@ def _shift_against_tilt(recording: Recording, values: Mapping[str, Value]) -> Fi
         if onset is not None:
             axes.plot(onset, np.interp(onset, *curve), "o", color=VERMILION, ms=3.5)
     axes.set_xlabel("tilt (deg)")
-    axes.set_xlim(left=0)
+    axes.set_xlim(0, max(tilt[-1] for tilt, _ in curves))
     axes.set_ylabel("shift of the centre of mass\ndownhill (mean diameters)")
     _millimetres(axes, 1e3 * diameters.mean())
-    axes.legend(loc="upper left")
+    axes.legend(loc="best")
     return figure
 
 

@@ -321,10 +321,8 @@ class Column:
         return self.shape[0]
 
     def __getitem__(self, index: int | slice) -> np.ndarray:
-        if isinstance(index, slice):
-            rows = slice(*index.indices(len(self)))
-        else:
-            rows = range(len(self))[index]
+        whole = range(len(self))
+        rows = slice(*index.indices(len(self))) if isinstance(index, slice) else whole[index]
         with _reading(self._path):
             return self._dataset[rows]
 

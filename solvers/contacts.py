@@ -1,123 +1,94 @@
 """Contact forces: overlaps and slips of listed contacts, and the laws of the scene on them."""
 
-import numpy as np
 import taichi as ti
 
-from solvers.runtime import Arrays
-
-PAIR, WALL = 0, 1
+from solvers.laws.chosen import PAIR, WALL, ChosenLaws
+from solvers.neighbours import LANES
 
 
 @ti.data_oriented
 class Contacts:
-    """One normal and one tangential law at work on the contacts of every world.
+    """What the listed contacts do to the grains, by the chosen laws.
 
-    The tangent is the normal turned counter-clockwise by 90°. Levers are the radii less half the overlap, which add
-    up to the distance of the centres: angular momentum is exact. (Spandonidis 2016, eq. 4.7, takes whole radii.)
+    The tangent is the normal turned counter-clockwise by 90°. Levers are the radii less half the overlap, which add up
+    to the distance of the centres: angular momentum is exact. (Spandonidis 2016, eq. 4.7, takes whole radii.)
     """
 
-    def __init__(self, arrays: Arrays, normal, tangential, interfaces):
-        self.normal, self.tangential = normal, tangential
-        self.normal_table = self._tabulate(arrays, normal, interfaces)
-        self.tangential_table = self._tabulate(arrays, tangential, interfaces)
-
-    @staticmethod
-    def _tabulate(arrays: Arrays, law, interfaces) -> ti.Field:
-        """Coefficients (W, 2, number) of a law on grain–grain and grain–wall contacts, `interfaces[w] = (pair, wall)`."""
-        return arrays.holding(np.array([[law.coefficients(between) for between in world] for world in interfaces]))
-
-    @ti.func
-    def coefficients(self, table: ti.template(), w, kind: ti.template()):
-        """The coefficients of one law in world w for grain–grain (PAIR) or grain–wall (WALL) contacts."""
-        return ti.Vector([table[w, kind, k] for k in ti.static(range(table.shape[2]))])
-
-    @ti.func
-    def law(self, normal_c, tangential_c, contacts: ti.template(), w, p, overlap, rate, slip, dt):
-        """Normal and tangential force (N) of contact p, whose history is brought up to date."""
-        stiffness, root = contacts.stiffness[w, p], ti.sqrt(overlap)
-        pressing = self.normal.force(normal_c, stiffness, overlap, root, rate)
-        past = contacts.past[w, p]
-        shearing, past = self.tangential.force(
-            tangential_c, stiffness, contacts.mass[w, p], root, pressing, slip, dt, past
-        )
-        contacts.past[w, p] = past
-        return pressing, shearing
+    def __init__(self, laws: ChosenLaws):
+        self.laws = laws
 
     @ti.func
     def pair_forces(self, g: ti.template(), pairs: ti.template(), w, dt):
-        """Forces between the grains g."""
-        normal_c = self.coefficients(self.normal_table, w, PAIR)
-        tangential_c = self.coefficients(self.tangential_table, w, PAIR)
-        for p in range(pairs.length[w]):
-            i, j = pairs.grain[w, p], pairs.mate[w, p]
-            dy, dz = g.y[w, i] - g.y[w, j], g.z[w, i] - g.z[w, j]
-            radius_i, radius_j = g.radius[w, i], g.radius[w, j]
-            reach, square = radius_i + radius_j, dy * dy + dz * dz
-            if square < reach * reach:
-                inverse = 1.0 / ti.sqrt(square)
-                ny, nz = dy * inverse, dz * inverse
-                overlap = reach - square * inverse
-                uy, uz = g.now_y[w, i] - g.now_y[w, j], g.now_z[w, i] - g.now_z[w, j]
-                lever_i, lever_j = radius_i - 0.5 * overlap, radius_j - 0.5 * overlap
-                rate = -(uy * ny + uz * nz)
-                slip = uz * ny - uy * nz - lever_i * g.spin_now[w, i] - lever_j * g.spin_now[w, j]
-                fn, ft = self.law(normal_c, tangential_c, pairs, w, p, overlap, rate, slip, dt)
-                fy, fz = fn * ny - ft * nz, fn * nz + ft * ny
-                g.push(w, i, fy, fz, -lever_i * ft)
-                g.push(w, j, -fy, -fz, -lever_j * ft)
-            else:
-                pairs.past[w, p] *= 0.0
+        """Forces between the grains g, a block of LANES pairs at a time.
+
+        Straight-line arithmetic on short vectors: the compiler turns it into SIMD instructions, and pairs that do not
+        touch come out with zero overlap, force and memory. Gathering and scattering grains stays scalar.
+        """
+        for block in range(pairs.blocks(w)):
+            i, j = pairs.grain[w, block], pairs.mate[w, block]
+            dy, dz = lanes(g.y, w, i) - lanes(g.y, w, j), lanes(g.z, w, i) - lanes(g.z, w, j)
+            radius_i, radius_j = lanes(g.radius, w, i), lanes(g.radius, w, j)
+            square = dy * dy + dz * dz
+            inverse = 1.0 / ti.sqrt(square)
+            ny, nz = dy * inverse, dz * inverse
+            overlap = ti.max(radius_i + radius_j - square * inverse, 0.0)
+            uy = lanes(g.now_y, w, i) - lanes(g.now_y, w, j)
+            uz = lanes(g.now_z, w, i) - lanes(g.now_z, w, j)
+            lever_i, lever_j = radius_i - 0.5 * overlap, radius_j - 0.5 * overlap
+            rate = -(uy * ny + uz * nz)
+            turning = lever_i * lanes(g.spin_now, w, i) + lever_j * lanes(g.spin_now, w, j)
+            slip = uz * ny - uy * nz - turning
+            fn, ft = self.laws.forces(PAIR, pairs, w, block, overlap, rate, slip, dt)
+            fy, fz = fn * ny - ft * nz, fn * nz + ft * ny
+            turn_i, turn_j = -lever_i * ft, -lever_j * ft
+            for k in ti.static(range(LANES)):
+                g.push(w, i[k], fy[k], fz[k], turn_i[k])
+                g.push(w, j[k], -fy[k], -fz[k], turn_j[k])
 
     @ti.func
     def wall_forces(self, g: ti.template(), walls: ti.template(), contacts: ti.template(), w, dt):
         """Forces of the walls on the grains g."""
-        normal_c = self.coefficients(self.normal_table, w, WALL)
-        tangential_c = self.coefficients(self.tangential_table, w, WALL)
         for p in range(contacts.length[w]):
-            i = contacts.grain[w, p]
-            gap = walls.gap(contacts.mate[w, p], g.y[w, i], g.z[w, i])
-            distance, ny, nz = gap[0], gap[1], gap[2]
-            radius = g.radius[w, i]
-            if ti.abs(distance) < radius:
-                overlap = radius - distance
-                uy, uz = g.now_y[w, i], g.now_z[w, i]
-                lever = radius - 0.5 * overlap
-                rate = -(uy * ny + uz * nz)
-                slip = uz * ny - uy * nz - lever * g.spin_now[w, i]
-                fn, ft = self.law(normal_c, tangential_c, contacts, w, p, overlap, rate, slip, dt)
-                g.push(w, i, fn * ny - ft * nz, fn * nz + ft * ny, -lever * ft)
-            else:
-                contacts.past[w, p] *= 0.0
-
-    @ti.func
-    def stored(self, contacts: ti.template(), kind: ti.template(), w, p, overlap):
-        """Elastic energy (J) of contact p, 0 without overlap."""
-        energy = 0.0
-        if overlap > 0.0:
-            stiffness, root = contacts.stiffness[w, p], ti.sqrt(overlap)
-            tangential_c = self.coefficients(self.tangential_table, w, kind)
-            energy = self.normal.energy(stiffness, overlap, root)
-            energy += self.tangential.energy(tangential_c, stiffness, root, contacts.past[w, p])
-        return energy
+            i = contacts.grain[w, p][0]
+            gap = walls.gap(contacts.mate[w, p][0], g.y[w, i], g.z[w, i])
+            ny, nz, radius = gap[1], gap[2], g.radius[w, i]
+            overlap = 0.0
+            if ti.abs(gap[0]) < radius:
+                overlap = radius - gap[0]
+            uy, uz = g.now_y[w, i], g.now_z[w, i]
+            lever = radius - 0.5 * overlap
+            rate = -(uy * ny + uz * nz)
+            slip = uz * ny - uy * nz - lever * g.spin_now[w, i]
+            fn, ft = self.laws.forces(
+                WALL, contacts, w, p, ti.Vector([overlap]), ti.Vector([rate]), ti.Vector([slip]), dt
+            )
+            fy, fz = fn[0] * ny - ft[0] * nz, fn[0] * nz + ft[0] * ny
+            g.push(w, i, fy, fz, -lever * ft[0])
 
     @ti.func
     def census(self, g: ti.template(), walls: ti.template(), lists: ti.template(), w):
         """Number of touching contacts, largest overlap in radii of the smaller grain, elastic energy (J)."""
         touching, deepest, energy = 0.0, 0.0, 0.0
         for p in range(lists.pairs.length[w]):
-            i, j = lists.pairs.grain[w, p], lists.pairs.mate[w, p]
+            i, j = lists.pairs.first_of(w, p), lists.pairs.second_of(w, p)
             dy, dz = g.y[w, i] - g.y[w, j], g.z[w, i] - g.z[w, j]
             overlap = g.radius[w, i] + g.radius[w, j] - ti.sqrt(dy * dy + dz * dz)
             if overlap > 0.0:
                 touching += 1.0
                 deepest = ti.max(deepest, overlap / ti.min(g.radius[w, i], g.radius[w, j]))
-                energy += self.stored(lists.pairs, PAIR, w, p, overlap)
+                energy += self.laws.energy(lists.pairs, w, p, overlap)
         for p in range(lists.contacts.length[w]):
-            i = lists.contacts.grain[w, p]
-            gap = walls.gap(lists.contacts.mate[w, p], g.y[w, i], g.z[w, i])
+            i = lists.contacts.first_of(w, p)
+            gap = walls.gap(lists.contacts.second_of(w, p), g.y[w, i], g.z[w, i])
             overlap = g.radius[w, i] - gap[0]
             if overlap > 0.0:
                 touching += 1.0
                 deepest = ti.max(deepest, overlap / g.radius[w, i])
-                energy += self.stored(lists.contacts, WALL, w, p, overlap)
+                energy += self.laws.energy(lists.contacts, w, p, overlap)
         return ti.Vector([touching, deepest, energy])
+
+
+@ti.func
+def lanes(field: ti.template(), w, index):
+    """The values of a grain field for LANES grains."""
+    return ti.Vector([field[w, index[k]] for k in ti.static(range(LANES))])

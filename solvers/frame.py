@@ -20,6 +20,11 @@ def turned(y, z, phi):
     return ti.Vector([c * y - s * z, s * y + c * z])
 
 
+def _centre(motion) -> tuple[float, float]:
+    """The earth point (m) a motion turns about; the origin for one that does not turn."""
+    return motion.centre if motion.coordinate == "turn" else (0.0, 0.0)
+
+
 @ti.data_oriented
 class Frame:
     """Prescribed motion of the tank in each of W worlds: motions applied one after the other.
@@ -30,12 +35,12 @@ class Frame:
 
     def __init__(self, arrays: Arrays, motions: Sequence[Sequence], soft_start: float, gravity: float):
         self.kinds = tuple(motions[0])
-        rows = [[m.parameters(soft_start) for m in world] for world in motions]
+        rows = [[[*_centre(m), *m.parameters(soft_start)] for m in world] for world in motions]
         sizes = [len(p) for p in rows[0]]
         self.first = tuple(int(k) for k in np.cumsum([0, *sizes])[:-1])
         self.rotating = any(m.coordinate == "turn" for m in self.kinds)
         self.moving = bool(self.kinds)
-        self.gravity = gravity
+        self.gravity = arrays.holding(np.array([gravity]))
         table = np.array([[value for p in row for value in p] for row in rows]).reshape(len(rows), -1)
         self.table = arrays.holding(table if table.size else np.zeros((len(rows), 1)))
 
@@ -49,9 +54,10 @@ class Frame:
         p, v, a = ti.Vector([0.0, 0.0]), ti.Vector([0.0, 0.0]), ti.Vector([0.0, 0.0])
         turn = ti.Vector([0.0, 0.0, 0.0])
         for k in ti.static(range(len(self.kinds))):
-            q = self.kinds[k].state(self.table, w, self.first[k], t)
+            first = self.first[k]
+            q = self.kinds[k].state(self.table, w, first + 2, t)
             if ti.static(self.kinds[k].coordinate == "turn"):
-                cy, cz = self.kinds[k].centre
+                cy, cz = self.table[w, first], self.table[w, first + 1]
                 arm = turned(p[0] - cy, p[1] - cz, q[0])
                 carried = turned(v[0], v[1], q[0])
                 pulled = turned(a[0], a[1], q[0])
@@ -77,9 +83,9 @@ class Frame:
     @ti.func
     def body_force(self, w, t):
         """What every grain feels per unit mass in the tank's frame: (b_y, b_z, φ̇, φ̈) with b = R(−φ)(g − P̈)."""
-        force = ti.Vector([0.0, -self.gravity, 0.0, 0.0])
+        force = ti.Vector([0.0, -self.gravity[0], 0.0, 0.0])
         if ti.static(self.moving):
             s = self.kinematics(w, t)
-            b = turned(-s[6], -self.gravity - s[7], -s[2])
+            b = turned(-s[6], -self.gravity[0] - s[7], -s[2])
             force = ti.Vector([b[0], b[1], s[5], s[8]])
         return force

@@ -5,6 +5,13 @@ import taichi as ti
 
 from solvers.runtime import Arrays
 
+FAR = 1e3  # m
+
+
+def _with_ghost(values: np.ndarray, ghost: float = 0.0) -> np.ndarray:
+    """Grain values (W, n) with the ghost's appended."""
+    return np.pad(np.asarray(values, dtype=np.float64), ((0, 0), (0, 1)), constant_values=ghost)
+
 
 @ti.data_oriented
 class Grains:
@@ -16,21 +23,22 @@ class Grains:
 
     def __init__(self, arrays: Arrays, radius: np.ndarray, density: float):
         self.worlds, self.count = radius.shape
-        shape = radius.shape
+        self.ghost = self.count  # index of a point far off, for pairs that stand for none
+        shape = (self.worlds, self.count + 1)
         self.y, self.z, self.angle = arrays.reals(3, shape)
         self.velocity_y, self.velocity_z, self.spin = arrays.reals(3, shape)
         self.now_y, self.now_z, self.spin_now = arrays.reals(3, shape)
         self.force_y, self.force_z, self.torque = arrays.reals(3, shape)
         self.mass = 4.0 / 3.0 * np.pi * radius**3 * density
-        self.radius = arrays.holding(radius)
-        self.inverse_mass = arrays.holding(1.0 / self.mass)
-        self.inverse_inertia = arrays.holding(2.5 / (self.mass * radius**2))
+        self.radius = arrays.holding(_with_ghost(radius))
+        self.inverse_mass = arrays.holding(_with_ghost(1.0 / self.mass))
+        self.inverse_inertia = arrays.holding(_with_ghost(2.5 / (self.mass * radius**2)))
         self.largest, self.smallest = float(radius.max()), float(radius.min())
 
     def place(self, position: np.ndarray) -> None:
         """Put the grains at `position` (W, n, 2) m, at rest and without history."""
-        self.y.from_numpy(np.ascontiguousarray(position[..., 0]))
-        self.z.from_numpy(np.ascontiguousarray(position[..., 1]))
+        self.y.from_numpy(_with_ghost(position[..., 0], FAR))
+        self.z.from_numpy(_with_ghost(position[..., 1], FAR))
         self.angle.fill(0.0)
         self.launch(np.zeros_like(position), np.zeros(position.shape[:2]))
 
@@ -42,25 +50,27 @@ class Grains:
             ((self.spin, self.spin_now), spin),
         ):
             for field in fields:
-                field.from_numpy(np.ascontiguousarray(values, dtype=np.float64))
+                field.from_numpy(_with_ghost(values))
         for field in (self.force_y, self.force_z, self.torque):
             field.fill(0.0)
 
     def read(self) -> dict[str, np.ndarray]:
         """Positions (W, n, 2), velocities (W, n, 2), angles (W, n) and spins (W, n) at the present time."""
+        fields = self.y, self.z, self.now_y, self.now_z, self.angle, self.spin_now
+        y, z, velocity_y, velocity_z, angle, spin = (field.to_numpy()[:, : self.count] for field in fields)
         return {
-            "position": np.stack([self.y.to_numpy(), self.z.to_numpy()], axis=-1),
-            "velocity": np.stack([self.now_y.to_numpy(), self.now_z.to_numpy()], axis=-1),
-            "angle": self.angle.to_numpy(),
-            "spin": self.spin_now.to_numpy(),
+            "position": np.stack([y, z], axis=-1),
+            "velocity": np.stack([velocity_y, velocity_z], axis=-1),
+            "angle": angle,
+            "spin": spin,
         }
 
     @ti.func
     def push(self, w, i, force_y, force_z, torque):
-        """Add a force (N) and a torque (N m) on grain i."""
-        self.force_y[w, i] += force_y
-        self.force_z[w, i] += force_z
-        self.torque[w, i] += torque
+        """Add a force (N) and a torque (N m) on grain i. Written out, since Taichi takes `+=` on a field as atomic."""
+        self.force_y[w, i] = self.force_y[w, i] + force_y
+        self.force_z[w, i] = self.force_z[w, i] + force_z
+        self.torque[w, i] = self.torque[w, i] + torque
 
     @ti.func
     def kick_and_drift(self, w, body, rotating: ti.template(), kick, dt):
@@ -85,9 +95,9 @@ class Grains:
             vz = self.velocity_z[w, i] + kick * az
             spin = self.spin[w, i] + kick * turn
             self.velocity_y[w, i], self.velocity_z[w, i], self.spin[w, i] = vy, vz, spin
-            self.y[w, i] += dt * vy
-            self.z[w, i] += dt * vz
-            self.angle[w, i] += dt * spin
+            self.y[w, i] = self.y[w, i] + dt * vy
+            self.z[w, i] = self.z[w, i] + dt * vz
+            self.angle[w, i] = self.angle[w, i] + dt * spin
             self.now_y[w, i] = vy + 0.5 * dt * ay
             self.now_z[w, i] = vz + 0.5 * dt * az
             self.spin_now[w, i] = spin + 0.5 * dt * turn

@@ -7,59 +7,107 @@ import numpy as np
 import taichi as ti
 
 from solvers.grains import Grains
+from solvers.laws.chosen import PAIR, WALL, ChosenLaws
 from solvers.runtime import Arrays
 from solvers.walls import Walls
+
+
+# Pairs that one pass of the force loop takes: as many 64-bit numbers as an AVX2 register holds.
+LANES = 4
+
+SKIN, ORIGIN_Y, ORIGIN_Z, CELL = range(4)
 
 
 @ti.data_oriented
 class ContactList:
     """Candidate contacts of one kind (grain–grain or grain–wall) in each world, sorted by their first grain.
 
-    `mate` is the other grain or the wall feature; `stiffness` k (N/m^1.5) and `mass` m_eff (kg) do not change while a
-    contact is listed. `past` is the tangential law's history, zero while the two do not touch.
+    Contact p stands in lane p % lanes of block p // lanes. `mate` is the other grain or the wall feature; `stiffness` k
+    (N/m^1.5) and the laws' constants do not change while a contact is listed; the laws' memory does, and is zero while the
+    two do not touch. What the laws keep are fields by the names they give.
     """
 
-    def __init__(self, arrays: Arrays, worlds: int, grains: int, capacity: int, history: int):
-        self.capacity, self.history = capacity, history
+    def __init__(self, arrays: Arrays, worlds: int, grains: int, room: int, lanes: int, laws: ChosenLaws):
+        self.lanes = lanes
+        blocks = -(-room // lanes)
+        self.capacity = blocks * lanes
+        shape = (worlds, blocks)
         (self.length,) = arrays.integers(1, (worlds,))
-        self.grain, self.mate, self.old_mate = arrays.integers(3, (worlds, capacity))
-        self.stiffness, self.mass = arrays.reals(2, (worlds, capacity))
-        self.past, self.old_past = arrays.vectors(2, history, (worlds, capacity))
+        self.grain, self.mate = arrays.integer_vectors(2, lanes, shape)
+        (self.stiffness,) = arrays.vectors(1, lanes, shape)
+        self.constants = arrays.vectors(len(laws.constants), lanes, shape)
+        self.memory = arrays.vectors(len(laws.memory), lanes, shape)
+        for name, field in zip((*laws.constants, *laws.memory), (*self.constants, *self.memory), strict=True):
+            setattr(self, name, field)
+        self.memories = len(self.memory)
         self.first, self.old_first = arrays.integers(2, (worlds, grains + 1))
+        (self.old_mate,) = arrays.integers(1, (worlds, self.capacity))
+        self.old_memory = arrays.reals(self.memories, (worlds, self.capacity))
+
+    @ti.func
+    def blocks(self, w):
+        """Blocks in use, the last maybe padded."""
+        return (self.length[w] + self.lanes - 1) // self.lanes
+
+    @ti.func
+    def first_of(self, w, p):
+        """The first grain of contact p."""
+        return self.grain[w, p // self.lanes][p % self.lanes]
+
+    @ti.func
+    def second_of(self, w, p):
+        """The other grain, or the wall feature, of contact p."""
+        return self.mate[w, p // self.lanes][p % self.lanes]
 
     @ti.func
     def set_aside(self, w, grains):
-        """Keep the present list as the old one, for `add` to find history in."""
+        """Keep the present list as the old one, for `add` to find memory in."""
         for i in range(grains + 1):
             self.old_first[w, i] = self.first[w, i]
         for p in range(self.length[w]):
-            self.old_mate[w, p] = self.mate[w, p]
-            self.old_past[w, p] = self.past[w, p]
+            block, lane = p // self.lanes, p % self.lanes
+            self.old_mate[w, p] = self.mate[w, block][lane]
+            for k in ti.static(range(self.memories)):
+                self.old_memory[k][w, p] = self.memory[k][w, block][lane]
 
     @ti.func
     def put_back(self, w, grains):
         """Undo a rebuild that ran out of room."""
         for i in range(grains + 1):
             self.first[w, i] = self.old_first[w, i]
-        self.length[w] = self.old_first[w, grains]
         for i in range(grains):
             for p in range(self.old_first[w, i], self.old_first[w, i + 1]):
-                self.grain[w, p] = i
-                self.mate[w, p] = self.old_mate[w, p]
-                self.past[w, p] = self.old_past[w, p]
+                block, lane = p // self.lanes, p % self.lanes
+                self.grain[w, block][lane] = i
+                self.mate[w, block][lane] = self.old_mate[w, p]
+                for k in ti.static(range(self.memories)):
+                    self.memory[k][w, block][lane] = self.old_memory[k][w, p]
 
     @ti.func
-    def add(self, w, p, i, mate, stiffness, mass):
-        """Write candidate p with the history it had, if any."""
-        self.grain[w, p] = i
-        self.mate[w, p] = mate
-        self.stiffness[w, p] = stiffness
-        self.mass[w, p] = mass
-        past = ti.Vector([0.0 for _ in ti.static(range(self.history))])
+    def write(self, w, p, i, mate):
+        """Contact p is between grain i and its mate, and remembers nothing."""
+        block, lane = p // self.lanes, p % self.lanes
+        self.grain[w, block][lane] = i
+        self.mate[w, block][lane] = mate
+        for k in ti.static(range(self.memories)):
+            self.memory[k][w, block][lane] = 0.0
+
+    @ti.func
+    def add(self, w, p, i, mate, stiffness):
+        """Write contact p with the memory it had, if any."""
+        self.write(w, p, i, mate)
+        block, lane = p // self.lanes, p % self.lanes
+        self.stiffness[w, block][lane] = stiffness
         for q in range(self.old_first[w, i], self.old_first[w, i + 1]):
             if self.old_mate[w, q] == mate:
-                past = self.old_past[w, q]
-        self.past[w, p] = past
+                for k in ti.static(range(self.memories)):
+                    self.memory[k][w, block][lane] = self.old_memory[k][w, q]
+
+    @ti.func
+    def pad(self, w, ghost):
+        """Fill the last block with pairs that never touch: of grain 0 and the far-off ghost."""
+        for p in range(self.length[w], self.blocks(w) * self.lanes):
+            self.write(w, p, 0, ghost)
 
 
 @ti.data_oriented
@@ -72,26 +120,27 @@ class Neighbours:
         grains: Grains,
         walls: Walls,
         skin: float,
-        history: int,
+        laws: ChosenLaws,
         modulus: np.ndarray,
         room: int,
     ):
-        self.grains, self.walls, self.skin = grains, walls, skin
+        self.grains, self.walls, self.laws = grains, walls, laws
         worlds, count = grains.worlds, grains.count
-        self.pairs = ContactList(arrays, worlds, count, room * (4 * count + 16), history)
-        self.contacts = ContactList(arrays, worlds, count, room * (2 * count + 16), history)
+        self.pairs = ContactList(arrays, worlds, count, room * (4 * count + 16), LANES, laws)
+        self.contacts = ContactList(arrays, worlds, count, room * (2 * count + 16), 1, laws)
         # k = (4/3) E* √R_eff of grain–grain and grain–wall contacts in each world
         self.modulus = arrays.holding(4.0 / 3.0 * modulus)
-        self.make_grid(arrays, 2.0 * grains.largest + skin)
+        self.make_grid(arrays, skin, 2.0 * grains.largest + skin)
         self.built_y, self.built_z = arrays.reals(2, (worlds, count))
         self.travel = arrays.holding(np.full(worlds, np.inf))  # no grain has moved farther than this since
 
-    def make_grid(self, arrays: Arrays, reach: float) -> None:
+    def make_grid(self, arrays: Arrays, skin: float, reach: float) -> None:
         """Cells no smaller than the reach of a contact, and no more of them than a few a grain."""
         lower, upper = self.walls.outline.min(axis=0), self.walls.outline.max(axis=0)
         extent = upper - lower
         size = max(reach, float(np.sqrt(extent[0] * extent[1] / (4.0 * self.grains.count + 64.0))))
-        self.origin_y, self.origin_z, self.cell = float(lower[0]), float(lower[1]), size
+        # In an array and not in the code, so that scenes that differ in lengths alone share a compiled kernel.
+        self.lengths = arrays.holding(np.array([skin, lower[0], lower[1], size]))
         self.columns = int(extent[0] / size) + 1
         self.rows = int(extent[1] / size) + 1
         worlds, cells = self.grains.worlds, self.columns * self.rows
@@ -108,8 +157,8 @@ class Neighbours:
     @ti.func
     def stale(self, w):
         """Whether two grains may have moved into reach unlisted: one of them farther than half the skin."""
-        old = False
-        if self.travel[w] > 0.5 * self.skin:
+        old, skin = False, self.lengths[SKIN]
+        if self.travel[w] > 0.5 * skin:
             old = True
             if self.travel[w] < 1e30:
                 # The running sum of speeds overestimates what shaking grains travel; look at where they are.
@@ -119,7 +168,7 @@ class Neighbours:
                     dz = self.grains.z[w, i] - self.built_z[w, i]
                     moved = ti.max(moved, dy * dy + dz * dz)
                 moved = ti.sqrt(moved)
-                if moved < 0.3 * self.skin:
+                if moved < 0.3 * skin:
                     old = False
                     self.travel[w] = moved
         return old
@@ -129,30 +178,36 @@ class Neighbours:
         """Sort the grains of a world into cells by counting."""
         for c in range(self.columns * self.rows + 1):
             self.cell_first[w, c] = 0
+        origin_y, origin_z, cell = self.lengths[ORIGIN_Y], self.lengths[ORIGIN_Z], self.lengths[CELL]
         for i in range(self.grains.count):
-            column = ti.cast((self.grains.y[w, i] - self.origin_y) / self.cell, ti.i32)
-            row = ti.cast((self.grains.z[w, i] - self.origin_z) / self.cell, ti.i32)
+            column = ti.cast((self.grains.y[w, i] - origin_y) / cell, ti.i32)
+            row = ti.cast((self.grains.z[w, i] - origin_z) / cell, ti.i32)
             column = ti.max(0, ti.min(self.columns - 1, column))
             row = ti.max(0, ti.min(self.rows - 1, row))
             self.cell_of[w, i] = row * self.columns + column
-            self.cell_first[w, self.cell_of[w, i]] += 1
+            self.count_up(w, self.cell_of[w, i], 1)
         total = 0
         for c in range(self.columns * self.rows + 1):
             total += self.cell_first[w, c]
             self.cell_first[w, c] = total
         for k in range(self.grains.count):
             i = self.grains.count - 1 - k
-            self.cell_first[w, self.cell_of[w, i]] -= 1
+            self.count_up(w, self.cell_of[w, i], -1)
             self.sorted[w, self.cell_first[w, self.cell_of[w, i]]] = i
 
     @ti.func
-    def list_pairs(self, w) -> ti.i32:
+    def count_up(self, w, cell, by):
+        """Add to a cell's count, with no atomic: a world is one thread's."""
+        self.cell_first[w, cell] = self.cell_first[w, cell] + by
+
+    @ti.func
+    def list_pairs(self, w, dt) -> ti.i32:
         """List the pairs of one world; returns their number, also where it exceeds the room there is."""
         found = 0
         for i in range(self.grains.count):
             self.pairs.first[w, i] = found
             y, z, radius = self.grains.y[w, i], self.grains.z[w, i], self.grains.radius[w, i]
-            mass = 1.0 / self.grains.inverse_mass[w, i]
+            inverse_mass = self.grains.inverse_mass[w, i]
             row, column = self.cell_of[w, i] // self.columns, self.cell_of[w, i] % self.columns
             for r in range(ti.max(0, row - 1), ti.min(self.rows, row + 2)):
                 # Three neighbouring cells of a row are one run of the sorted grains.
@@ -163,25 +218,20 @@ class Neighbours:
                     if j > i:
                         dy, dz = y - self.grains.y[w, j], z - self.grains.z[w, j]
                         other = self.grains.radius[w, j]
-                        reach = radius + other + self.skin
+                        reach = radius + other + self.lengths[SKIN]
                         if dy * dy + dz * dz < reach * reach:
                             if found < self.pairs.capacity:
-                                other_mass = 1.0 / self.grains.inverse_mass[w, j]
+                                mass = 1.0 / (inverse_mass + self.grains.inverse_mass[w, j])
                                 effective = ti.sqrt(radius * other / (radius + other))
-                                self.pairs.add(
-                                    w,
-                                    found,
-                                    i,
-                                    j,
-                                    self.modulus[w, 0] * effective,
-                                    mass * other_mass / (mass + other_mass),
-                                )
+                                self.pairs.add(w, found, i, j, self.modulus[w, PAIR] * effective)
+                                block, lane = found // self.pairs.lanes, found % self.pairs.lanes
+                                self.laws.prepare(PAIR, self.pairs, w, block, lane, mass, dt)
                             found += 1
         self.pairs.first[w, self.grains.count] = found
         return found
 
     @ti.func
-    def list_contacts(self, w) -> ti.i32:
+    def list_contacts(self, w, dt) -> ti.i32:
         """List the grains near walls; returns their number, also where it exceeds the room there is."""
         found = 0
         for i in range(self.grains.count):
@@ -189,29 +239,31 @@ class Neighbours:
             radius = self.grains.radius[w, i]
             for feature in range(self.walls.features):
                 # A wall contact may begin as the grain slides past a segment's end, so ask with a margin.
-                if self.walls.near(feature, self.grains.y[w, i], self.grains.z[w, i], radius + self.skin):
+                if self.walls.near(feature, self.grains.y[w, i], self.grains.z[w, i], radius + self.lengths[SKIN]):
                     if found < self.contacts.capacity:
-                        stiffness = self.modulus[w, 1] * ti.sqrt(radius)
                         mass = 1.0 / self.grains.inverse_mass[w, i]
-                        self.contacts.add(w, found, i, feature, stiffness, mass)
+                        self.contacts.add(w, found, i, feature, self.modulus[w, WALL] * ti.sqrt(radius))
+                        self.laws.prepare(WALL, self.contacts, w, found, 0, mass, dt)
                     found += 1
         self.contacts.first[w, self.grains.count] = found
         return found
 
     @ti.func
-    def rebuild(self, w):
+    def rebuild(self, w, dt):
         """List all contacts of a world anew; returns False, with the old lists in place, where they do not fit."""
         self.bin_grains(w)
         self.pairs.set_aside(w, self.grains.count)
         self.contacts.set_aside(w, self.grains.count)
-        pairs, contacts = self.list_pairs(w), self.list_contacts(w)
+        pairs, contacts = self.list_pairs(w, dt), self.list_contacts(w, dt)
         fits = pairs <= self.pairs.capacity and contacts <= self.contacts.capacity
         if fits:
             self.pairs.length[w], self.contacts.length[w] = pairs, contacts
+            self.pairs.pad(w, self.grains.ghost)
             for i in range(self.grains.count):
                 self.built_y[w, i], self.built_z[w, i] = self.grains.y[w, i], self.grains.z[w, i]
             self.travel[w] = 0.0
         else:
+            # The laws' constants are lost, but no force is worked out before the lists have been built with more room.
             self.pairs.put_back(w, self.grains.count)
             self.contacts.put_back(w, self.grains.count)
         return fits

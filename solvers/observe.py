@@ -76,6 +76,6 @@ class Observer:
             self.rows[w, k] = pose[k]
         self.rows[w, 6], self.rows[w, 7] = centre_y, centre_z
         self.rows[w, 8], self.rows[w, 9] = kinetic, rotational
-        self.rows[w, 10] = mass * self.frame.gravity * height
+        self.rows[w, 10] = mass * self.frame.gravity[0] * height
         self.rows[w, 11], self.rows[w, 12], self.rows[w, 13] = census[2], census[0], census[1]
         self.rows[w, 14] = escaped

@@ -7,7 +7,7 @@ from solvers.frame import Frame
 from solvers.grains import Grains
 from solvers.neighbours import Neighbours
 from solvers.walls import Walls
-from solvers.watch import FASTEST_STEP, NO_ROOM, RUNNING, TOO_FAST
+from solvers.watch import NO_ROOM, RUNNING, TOO_FAST
 
 # A parallel loop of Taichi's CPU backend gives each thread at least this many iterations.
 ITERATIONS_A_THREAD = 512
@@ -28,30 +28,30 @@ class PerWorld:
         target: ti.i32,
         origin: ti.f64,
         dt: ti.f64,
+        fastest: ti.f64,
     ):
-        """Take every world to step `target`; step k is the time origin + k dt (s)."""
+        """Take every world to step `target`; step k is the time origin + k dt (s). Faster than `fastest` m/s is bad."""
         for k in range(self.grains.worlds * ITERATIONS_A_THREAD):
             if k % ITERATIONS_A_THREAD == 0:
-                self.advance_world(clock, k // ITERATIONS_A_THREAD, target, origin, dt)
+                self.advance_world(clock, k // ITERATIONS_A_THREAD, target, origin, dt, fastest)
 
     @ti.func
-    def advance_world(self, clock: ti.template(), w, target, origin, dt):
-        limit = (FASTEST_STEP * self.grains.smallest / dt) ** 2
+    def advance_world(self, clock: ti.template(), w, target, origin, dt, fastest):
         while clock.step[w] < target and clock.status[w] == RUNNING:
             fits = True
             if self.neighbours.stale(w):
-                fits = self.neighbours.rebuild(w)
+                fits = self.neighbours.rebuild(w, dt)
             if fits:
                 self.contacts.pair_forces(self.grains, self.neighbours.pairs, w, dt)
                 self.contacts.wall_forces(self.grains, self.walls, self.neighbours.contacts, w, dt)
                 body = self.frame.body_force(w, origin + clock.step[w] * dt)
                 kick = dt if clock.kicked[w] == 1 else 0.5 * dt
                 clock.kicked[w] = 1
-                fastest = self.grains.kick_and_drift(w, body, self.frame.rotating, kick, dt)
-                self.neighbours.travel[w] += ti.sqrt(fastest) * dt
-                clock.fastest[w] = fastest
-                clock.step[w] += 1
-                if not fastest < limit:
+                square = self.grains.kick_and_drift(w, body, self.frame.rotating, kick, dt)
+                self.neighbours.travel[w] = self.neighbours.travel[w] + ti.sqrt(square) * dt
+                clock.fastest[w] = square
+                clock.step[w] = clock.step[w] + 1
+                if not square < fastest * fastest:
                     clock.status[w] = TOO_FAST
             else:
                 clock.status[w] = NO_ROOM

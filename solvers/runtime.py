@@ -68,6 +68,10 @@ class Arrays:
         """`count` fields of vectors of `size` 64-bit floats."""
         return [self._placed(ti.Vector.field(size, ti.f64), shape) for _ in range(count)]
 
+    def integer_vectors(self, count: int, size: int, shape: tuple[int, ...]) -> list[ti.Field]:
+        """`count` fields of vectors of `size` 32-bit integers."""
+        return [self._placed(ti.Vector.field(size, ti.i32), shape) for _ in range(count)]
+
     def holding(self, values: np.ndarray) -> ti.Field:
         """A field of 64-bit floats that starts with these values."""
         field = self._placed(ti.field(ti.f64), values.shape)

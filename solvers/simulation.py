@@ -9,6 +9,7 @@ from solvers import runtime, watch
 from solvers.contacts import Contacts
 from solvers.frame import Frame
 from solvers.grains import Grains
+from solvers.laws.chosen import ChosenLaws
 from solvers.neighbours import Neighbours
 from solvers.observe import Observer
 from solvers.per_world import PerWorld
@@ -53,8 +54,9 @@ class Simulation:
         self.arrays = arrays = Arrays()
         self.grains = Grains(arrays, scene.radius, scene.grain.density)
         self.walls = Walls(arrays, scene.outline)
-        self.neighbours = Neighbours(arrays, self.grains, self.walls, self.skin, tangential.history, moduli, self.room)
-        self.contacts = Contacts(arrays, normal, tangential, [scene.interfaces] * worlds)
+        laws = ChosenLaws(arrays, normal, tangential, [scene.interfaces] * worlds)
+        self.neighbours = Neighbours(arrays, self.grains, self.walls, self.skin, laws, moduli, self.room)
+        self.contacts = Contacts(laws)
         self.frame = Frame(arrays, scene.motions, scene.soft_start, scene.gravity)
         self.clock = Clock(arrays, worlds)
         parts = self.grains, self.walls, self.neighbours, self.contacts, self.frame
@@ -86,8 +88,9 @@ class Simulation:
         Raises BadState where the watch stops a world; the state is kept as it is.
         """
         self.steps += steps
+        fastest = watch.FASTEST_STEP * self.grains.smallest / self.dt
         while True:
-            self.schedule.advance(self.clock, self.steps, self.origin, self.dt)
+            self.schedule.advance(self.clock, self.steps, self.origin, self.dt, fastest)
             status = self.clock.status.to_numpy()
             if not np.any(status == watch.NO_ROOM):
                 break

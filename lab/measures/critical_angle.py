@@ -75,8 +75,8 @@ def measure(recording: Recording) -> dict[str, Value]:
     return {
         "critical_angle": _onset(main, f"the bed does not flow up to {reached:.3g} deg"),
         "first_slip_angle": _onset(steps, f"no slip up to {reached:.3g} deg"),
-        "one_diameter_angle": over_worlds(shifted, "deg", missing=f"no shift by one diameter up to {reached:.3g} deg"),
         "critical_step": over_worlds(_firsts(main, "give") * liquid / diameter, "d", missing="no main step"),
+        "one_diameter_angle": over_worlds(shifted, "deg", missing=f"no shift by one diameter up to {reached:.3g} deg"),
         "main_steps": over_worlds([len(found) for found in main], "1"),
     }
 

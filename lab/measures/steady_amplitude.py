@@ -88,8 +88,14 @@ def _amplitude(answers: np.ndarray, missing: str) -> Value:
 
 def _phase(answers: np.ndarray, still: np.ndarray, missing: str) -> Value:
     """Phase of complex answers (3, W), averaged on the circle; none for those below `still` (W,)."""
-    whole, first, second = np.where(np.abs(answers[0]) > still, answers, np.nan)
-    centre = np.angle(np.nansum(whole / np.abs(whole))) % (2 * np.pi)
-    phases = centre + np.angle(whole * np.exp(-1j * centre))
-    errors = np.abs(np.angle(first / second)) / 2
+    moving = np.abs(answers[0]) > still
+    whole, first, second = np.where(moving, np.angle(answers), np.nan)
+    centre = np.angle(np.exp(1j * whole[moving]).sum()) % (2 * np.pi)
+    phases = centre + _wrapped(whole - centre)
+    errors = np.abs(_wrapped(first - second)) / 2
     return over_worlds(np.degrees(phases), "deg", uncertainties=np.degrees(errors), missing=missing)
+
+
+def _wrapped(angle: np.ndarray) -> np.ndarray:
+    """The same angle between -pi and pi."""
+    return (angle + np.pi) % (2 * np.pi) - np.pi

@@ -1,7 +1,8 @@
 """Contact laws, one file each; the registries name them as presets do.
 
-A law is a class with `coefficients`, the numbers it needs of an interface between two materials, and `force`, the
-Taichi function the contact loop calls. Only the laws a scene names are compiled.
+A law is a class with `coefficients`, the numbers it needs of an interface between two materials; `constants` and
+`memory`, names of what it keeps for each listed contact; `prepare`, which works out the constants of a new
+contact; and `force` and `energy`, Taichi functions. Only the laws a scene names are compiled.
 """
 
 from solvers.laws.haff_werner import HaffWerner

@@ -21,32 +21,35 @@ class HaffWerner:
     the law itself, whatever the step. With γ_s < 0.2 m_t/Δt the law is integrated as written.
     """
 
-    history = 1
-    uses_mass = True
+    constants = ("at_once", "share")
+    memory = ("followed",)
 
     def coefficients(self, between: Interface) -> list[float]:
         """[μ, γ_s in N s/m]."""
         return [between.friction, between.shear_damping]
 
     @ti.func
-    def force(self, c: ti.template(), stiffness, mass, root, normal, slip, dt, past: ti.template()):
-        """F_t (N) on the first grain along the tangent, and the new history S (N).
-
-        `mass` is the effective mass m_eff (kg); m_t = (2/7) m_eff for spheres. `slip` u_s in m/s, `normal` F_n in N.
-        """
-        cap = c[0] * normal
+    def prepare(self, c: ti.template(), stiffness, mass, dt):
+        """γ_f (N s/m), and the share of the low-pass's way that a step Δt goes; m_t = (2/7) m_eff for spheres."""
         limit = (2.0 / 7.0) * mass / dt
         at_once = ti.min(c[1], AT_ONCE * limit)
         rest = c[1] - at_once
-        followed = 0.0
-        if rest > 0.0:
-            follow = ti.min(1.0, FOLLOWING * limit / rest)
-            followed = past[0] + follow * (rest * slip - past[0])
-            followed = ti.max(-cap, ti.min(cap, followed))
-        force = -ti.max(-cap, ti.min(cap, followed + at_once * slip))
-        return force, ti.Vector([followed])
+        share = 1.0
+        if rest > FOLLOWING * limit:
+            share = FOLLOWING * limit / rest
+        return ti.Vector([at_once, share])
 
     @ti.func
-    def energy(self, c: ti.template(), stiffness, root, past: ti.template()):
+    def force(self, c: ti.template(), contacts: ti.template(), w, block, root, normal, slip, dt):
+        """F_t (N) of a block of contacts on their first grains along the tangent; slip u_s in m/s, F_n in N."""
+        cap = c[0] * normal
+        at_once, followed = contacts.at_once[w, block], contacts.followed[w, block]
+        followed = followed + contacts.share[w, block] * ((c[1] - at_once) * slip - followed)
+        followed = ti.max(-cap, ti.min(cap, followed))
+        contacts.followed[w, block] = followed
+        return -ti.max(-cap, ti.min(cap, followed + at_once * slip))
+
+    @ti.func
+    def energy(self, contacts: ti.template(), w, block, lane, root):
         """The law stores no energy."""
         return 0.0

@@ -16,19 +16,22 @@ class HertzViscoelastic:
     ends where the force vanishes and not where the overlap does (Schwager and Pöschel 2008).
     """
 
+    constants = ()
+    memory = ()
+
     def coefficients(self, between: Interface) -> list[float]:
         """[(3/2) A in s]."""
         return [1.5 * between.dissipative_time]
 
     @ti.func
-    def force(self, c: ti.template(), stiffness, overlap, root, rate):
-        """F_n (N) from the stiffness k (N/m^1.5), overlap ξ (m), its root √ξ and its rate ξ̇ (m/s)."""
-        return ti.max(0.0, stiffness * root * (overlap + c[0] * rate))
+    def force(self, c: ti.template(), contacts: ti.template(), w, block, overlap, root, rate):
+        """F_n (N) of a block of contacts from the overlap ξ (m), its root √ξ and its rate ξ̇ (m/s)."""
+        return ti.max(0.0, contacts.stiffness[w, block] * root * (overlap + c[0] * rate))
 
     @ti.func
-    def energy(self, stiffness, overlap, root):
-        """Elastic energy (2/5) k ξ^(5/2) (J)."""
-        return 0.4 * stiffness * overlap * overlap * root
+    def energy(self, contacts: ti.template(), w, block, lane, overlap, root):
+        """Elastic energy (2/5) k ξ^(5/2) (J) of one contact."""
+        return 0.4 * contacts.stiffness[w, block][lane] * overlap * overlap * root
 
 
 def restitution(beta_v: float) -> float:

@@ -5,6 +5,9 @@ import taichi as ti
 from solvers.materials import Interface
 
 
+SMALLEST_ROOT = 1e-12  # √m; an overlap of 1e-24 m is none
+
+
 @ti.data_oriented
 class Mindlin:
     """F_t = −(S + A k_t u_s), |F_t| ≤ μ F_n, Ṡ = k_t u_s with k_t = 8 G* √(R_eff ξ) (Mindlin 1949).
@@ -15,8 +18,8 @@ class Mindlin:
     normal law. At the cap S is cut to the cap: the spring slides.
     """
 
-    history = 2
-    uses_mass = False
+    constants = ("spring_per_root",)
+    memory = ("stretched", "root_before")
 
     def coefficients(self, between: Interface) -> list[float]:
         """[μ, k_t / (k √ξ) = 6 G*/E*, A in s]."""
@@ -24,19 +27,24 @@ class Mindlin:
         return [between.friction, ratio, between.dissipative_time]
 
     @ti.func
-    def force(self, c: ti.template(), stiffness, mass, root, normal, slip, dt, past: ti.template()):
-        """F_t (N) on the first grain along the tangent, and the new history (S in N, √ξ in √m)."""
-        cap = c[0] * normal
-        spring = c[1] * stiffness * root
-        kept = past[0]
-        if root < past[1]:
-            kept *= root / past[1]
-        stretched = kept + spring * slip * dt
-        stretched = ti.max(-cap, ti.min(cap, stretched))
-        force = -ti.max(-cap, ti.min(cap, stretched + c[2] * spring * slip))
-        return force, ti.Vector([stretched, root])
+    def prepare(self, c: ti.template(), stiffness, mass, dt):
+        """k_t/√ξ (N/m^1.5)."""
+        return ti.Vector([c[1] * stiffness])
 
     @ti.func
-    def energy(self, c: ti.template(), stiffness, root, past: ti.template()):
-        """Elastic energy S²/(2 k_t) (J)."""
-        return 0.5 * past[0] * past[0] / (c[1] * stiffness * root)
+    def force(self, c: ti.template(), contacts: ti.template(), w, block, root, normal, slip, dt):
+        """F_t (N) of a block of contacts on their first grains along the tangent; slip u_s in m/s, F_n in N."""
+        cap = c[0] * normal
+        spring = contacts.spring_per_root[w, block] * root
+        before = ti.max(contacts.root_before[w, block], SMALLEST_ROOT)
+        stretched = contacts.stretched[w, block] * ti.min(1.0, root / before) + spring * slip * dt
+        stretched = ti.max(-cap, ti.min(cap, stretched))
+        contacts.stretched[w, block] = stretched
+        contacts.root_before[w, block] = root
+        return -ti.max(-cap, ti.min(cap, stretched + c[2] * spring * slip))
+
+    @ti.func
+    def energy(self, contacts: ti.template(), w, block, lane, root):
+        """Elastic energy S²/(2 k_t) (J) of one contact."""
+        stretched = contacts.stretched[w, block][lane]
+        return 0.5 * stretched * stretched / (contacts.spring_per_root[w, block][lane] * root)

@@ -1,3 +1,4 @@
+import errno
 import json
 import shutil
 import signal
@@ -168,6 +169,18 @@ def test_a_full_disk_stops_the_run_and_keeps_what_was_written(tmp_path, monkeypa
     with open_recording(tmp_path) as recording:
         np.testing.assert_array_equal(recording.series["time"], [0.0])
         assert recording.status.startswith("stopped: The disk of")
+
+
+def test_a_disk_that_fails_while_writing_is_named(tmp_path, monkeypatch):
+    def fail(*_, **__):
+        raise OSError(errno.EIO, "long words of HDF5")
+
+    run = recorder(tmp_path)
+    run.sample(sample(0.0))
+    with monkeypatch.context() as patch, pytest.raises(LabError, match=f"{tmp_path.name} cannot be written"):
+        patch.setattr(h5py.Dataset, "resize", fail)
+        run.flush()
+    run.close()
 
 
 def make_foreign(path):

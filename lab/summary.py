@@ -1,0 +1,231 @@
+"""What a run found, on one page: summary.md for people, summary.json for programs, a short text."""
+
+import json
+import os
+from collections.abc import Iterator, Mapping, Sequence
+from math import floor, log10
+from pathlib import Path
+from typing import get_type_hints
+
+import numpy as np
+
+from lab.errors import LabError
+from lab.measures.value import Value
+from lab.recording import Recording
+from lab.units import show
+from solvers.motions import MOTIONS
+from solvers.quantity import Unit
+
+HEADLINES = 3  # measures that are said first
+MOST_DECIMALS = 4
+LARGE_OVERLAP = 0.05  # of a radius
+SPREAD = "std of the beds"
+ERROR = "error of one bed"
+
+
+def write_summary(
+    recording: Recording,
+    values: Mapping[str, Value],
+    files: Mapping[str, Path],
+    folder: Path | str,
+    warnings: Sequence[str] = (),
+) -> dict[str, Path]:
+    """Write summary.md and summary.json into `folder`; returns both by name.
+
+    files: what else the run made, by name; pictures among them are shown. warnings: sentences that a
+    reader must know, beside those that follow from the recording. Raises LabError when the folder
+    cannot be written.
+    """
+    folder = Path(folder)
+    warnings = [*warnings, *_cautions(recording)]
+    links = {name: Path(os.path.relpath(path, folder)).as_posix() for name, path in files.items()}
+    page = "\n".join(_page(recording, values, links, warnings))
+    data = json.dumps(_data(recording, values, links, warnings), indent=2, allow_nan=False)
+    written = {"summary": folder / "summary.md", "summary_json": folder / "summary.json"}
+    try:
+        written["summary"].write_text(page, encoding="utf-8")
+        written["summary_json"].write_text(data + "\n", encoding="utf-8")
+    except OSError as error:
+        raise LabError(f"{folder} cannot be written ({error.strerror}): make room there.") from error
+    return written
+
+
+def terminal_summary(
+    recording: Recording,
+    values: Mapping[str, Value],
+    files: Mapping[str, Path],
+    warnings: Sequence[str] = (),
+) -> str:
+    """The summary as plain text of a few lines: numbers, cost, files, warnings."""
+    rows = {name.replace("_", " "): f"{number(value)}{_remark(value)}" for name, value in values.items()}
+    made = {name.replace("_", " "): os.path.relpath(path) for name, path in files.items()}
+    lines = [f"{recording.preset['title']} ({recording.name}): {_status(recording)}"]
+    lines += _aligned(rows)
+    lines += ["", f"  {_cost(recording)}"]
+    lines += _aligned(made)
+    lines += [f"  warning: {text}" for text in (*warnings, *_cautions(recording))]
+    return "\n".join(lines)
+
+
+def number(value: Value) -> str:
+    """A value with its error and unit: 25.0 ± 1.3 deg; the error is the std, else the uncertainty."""
+    if value.value is None:
+        return "none"
+    error = value.uncertainty if value.std is None else value.std
+    unit = "" if value.unit == "1" else f" {value.unit}"
+    if not error:
+        return f"{value.value:.4g}{unit}"
+    digits = max(0, 1 - floor(log10(error)))
+    if digits > MOST_DECIMALS:
+        return f"{value.value:.2g} ± {error:.2g}{unit}"
+    return f"{value.value:.{digits}f} ± {error:.{digits}f}{unit}"
+
+
+def _page(
+    recording: Recording,
+    values: Mapping[str, Value],
+    links: Mapping[str, str],
+    warnings: Sequence[str],
+) -> Iterator[str]:
+    """The lines of summary.md."""
+    preset = recording.preset
+    yield f"# {preset['title']}\n"
+    for name, value in list(values.items())[:HEADLINES]:
+        yield f"- {name.replace('_', ' ')}: **{number(value)}**{_remark(value)}"
+    yield f"\nThe run `{recording.name}` of {recording.created[:10]} is {_status(recording)}."
+    yield from (f"\n**Warning:** {text}" for text in warnings)
+    pictures = {name: link for name, link in links.items() if link.endswith(".png")}
+    yield from (f"\n![{name}]({link})" for name, link in pictures.items())
+    yield "\n## What was run\n"
+    yield from (f"- {line}" for line in _scene(recording))
+    if preset.get("source"):
+        yield f"\n## What the source reports\n\n{preset['source']}\n\n{preset.get('reports', '')}"
+    yield "\n## What was measured\n"
+    yield f"| measure | value | {SPREAD} | {ERROR} | unit | note |\n|---|---|---|---|---|---|"
+    yield from (_row(name, value) for name, value in values.items())
+    yield "\nA value is the mean over the beds; d is the mean grain diameter. `lab/measures` defines each."
+    yield f"\n## What it cost\n\n{_cost(recording)}, on {_machine(recording)}."
+    yield "\n## Files\n"
+    yield from (f"- [{name.replace('_', ' ')}]({link})" for name, link in links.items())
+    yield f"\n## The preset\n\n```toml\n{recording.given.strip()}\n```\n"
+
+
+def _row(name: str, value: Value) -> str:
+    numbers = (value.value, value.std, value.uncertainty)
+    cells = " | ".join("" if x is None else f"{x:.4g}" for x in numbers)
+    unit = "" if value.unit == "1" else value.unit
+    return f"| {name.replace('_', ' ')} | {cells} | {unit} | {value.note} |"
+
+
+def _data(
+    recording: Recording,
+    values: Mapping[str, Value],
+    links: Mapping[str, str],
+    warnings: Sequence[str],
+) -> dict:
+    """The content of summary.json."""
+    wall = recording.wall_s
+    return {
+        "preset": recording.name,
+        "status": recording.status,
+        "measures": {
+            name: {
+                "value": value.value,
+                "unit": value.unit,
+                "std": value.std,
+                "uncertainty": value.uncertainty,
+                "worlds": list(value.worlds),
+                "note": value.note,
+            }
+            for name, value in values.items()
+        },
+        "cost": {
+            "wall_s": wall,
+            "grain_steps": recording.grain_steps,
+            "grain_steps_per_s": recording.grain_steps / wall if wall else None,
+            "dt_s": recording.step,
+        },
+        "files": dict(links),
+        "warnings": list(warnings),
+    }
+
+
+def _scene(recording: Recording) -> Iterator[str]:
+    worlds, count = recording.radius.shape
+    low, high = show(2 * recording.radius.min(), "m"), show(2 * recording.radius.max(), "m")
+    size = low if low == high else f"{low} to {high}"
+    yield f"{_count(worlds, 'bed')} of {_count(count, 'grain')}, {size} in diameter"
+    width, height = (show(extent, "m") for extent in np.ptp(recording.outline, axis=0))
+    yield f"tank {width} wide and {height} high"
+    for name, settings in (recording.preset.get("motion") or {}).items():
+        if name in MOTIONS and settings:
+            yield f"{name}: {_settings(name, settings)}"
+    time = recording.series["time"]
+    if len(time):
+        yield f"{show(time[-1], 's')} of motion recorded, after the grains had settled"
+
+
+def _settings(name: str, settings: Mapping) -> str:
+    """Settings of a motion in the units people use, those that are zero left out."""
+    hints = get_type_hints(MOTIONS[name], include_extras=True)
+    units = {key: _unit(hint) for key, hint in hints.items()}
+    shown = [
+        f"{key} {show(value, units[key]) if units.get(key) else ''}".strip()
+        for key, value in settings.items()
+        if value and not isinstance(value, list | tuple)
+    ]
+    return ", ".join(shown)
+
+
+def _unit(hint: object) -> str | None:
+    marks = getattr(hint, "__metadata__", ())
+    return next((mark.symbol for mark in marks if isinstance(mark, Unit)), None)
+
+
+def _status(recording: Recording) -> str:
+    if recording.status == "running":
+        return "unfinished: it still goes on or was killed"
+    return recording.status.rstrip(".")
+
+
+def _cautions(recording: Recording) -> Iterator[str]:
+    """What a reader must know of the run that the numbers do not say."""
+    if not recording.complete:
+        yield f"The run is {_status(recording)}; the numbers cover what was recorded until then."
+    scale = (recording.preset.get("contact") or {}).get("stiffness_scale", 1.0)
+    if scale < 1:
+        yield f"The grains are softer than their material: Young's moduli times {scale:g}."
+    overlap = recording.series["overlap"].max(initial=0.0)
+    if overlap > LARGE_OVERLAP:
+        yield f"Grains overlapped by up to {100 * overlap:.1f} % of a radius."
+
+
+def _cost(recording: Recording) -> str:
+    rate = recording.grain_steps / recording.wall_s if recording.wall_s else 0.0
+    return (
+        f"{_duration(recording.wall_s)}: {recording.grain_steps:.3g} grain-steps at "
+        f"{rate / 1e6:.1f} million a second, time step {show(recording.step, 's')}"
+    )
+
+
+def _duration(seconds: float) -> str:
+    minutes, rest = divmod(round(seconds), 60)
+    return f"{minutes} min {rest} s" if minutes else f"{seconds:.1f} s"
+
+
+def _machine(recording: Recording) -> str:
+    machine = recording.machine
+    return f"{machine.get('cores')} cores, {machine.get('processor')}, {machine.get('system')}"
+
+
+def _remark(value: Value) -> str:
+    return f" ({value.note})" if value.note else ""
+
+
+def _count(count: int, noun: str) -> str:
+    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
+
+
+def _aligned(rows: Mapping[str, str]) -> list[str]:
+    width = max(map(len, rows), default=0)
+    return [f"  {name:<{width}}  {text}" for name, text in rows.items()]

@@ -1,0 +1,177 @@
+import json
+
+import numpy as np
+import pytest
+from PIL import Image
+from synthetic import DEPTH, preset, record, recorder
+
+from lab.errors import LabError
+from lab.measures import measure_all
+from lab.measures.value import Value
+from lab.plots import write_plots
+from lab.recording import open_recording
+from lab.summary import number, terminal_summary, write_summary
+
+
+def tilt_run(folder, worlds=2, **options):
+    """A recording of a tilt to 40 deg and back in which the bed steps at 21 deg."""
+    tilt = np.concatenate([np.linspace(0, 40, 801), np.linspace(40, 0, 801)])
+    pose = np.zeros((len(tilt), 3))
+    pose[:, 2] = np.radians(tilt)
+    centre = np.zeros((len(tilt), worlds, 2))
+    step = 0.004 * np.clip((tilt - 21) / 0.3, 0, 1)
+    centre[:, :, 0] = -np.maximum.accumulate(step)[:, None]
+    centre[:, :, 1] = DEPTH / 2
+    motion = {"tilt": {"rate": np.radians(4), "angle": np.radians(40), "hold": 0.0}}
+    options = {"resolved": preset(**motion), **options}
+    kinetic = np.where((tilt > 21) & (tilt < 22), 1e-6, 1e-12)[:, None] * np.ones(worlds)
+    time = np.linspace(0, 20, len(tilt))
+    record(folder, time, pose=pose, centre=centre, kinetic=kinetic, **options)
+    return folder
+
+
+def sway_run(folder):
+    """A recording of a tank that sways, its bed answering."""
+    time = np.linspace(0, 8, 801)
+    angle = 2 * np.pi * 1.5 * time
+    pose = np.zeros((len(time), 3))
+    pose[:, 0] = 0.04 * np.sin(angle)
+    centre = np.stack([-0.004 * np.sin(angle), 0.0005 * np.sin(2 * angle)], axis=1)[:, None]
+    kinetic = 1e-6 * np.cos(angle)[:, None] ** 2
+    motion = {"sway": {"amplitude": 0.04, "frequency": 1.5, "phase": 0.0}}
+    record(folder, time, pose=pose, centre=centre, kinetic=kinetic, resolved=preset(**motion))
+    return folder
+
+
+def summed_up(folder, **options):
+    """Page, data and terminal text of a recording."""
+    with open_recording(folder) as recording:
+        values = measure_all(recording)
+        files = {"recording": recording.path, "shift": folder / "pictures" / "shift.png"}
+        written = write_summary(recording, values, files, folder, **options)
+        text = terminal_summary(recording, values, files, **options)
+    page = written["summary"].read_text(encoding="utf-8")
+    return page, json.loads(written["summary_json"].read_text()), text
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (Value(24.96, "deg", std=1.34), "25.0 ± 1.3 deg"),
+        (Value(24.96, "deg", std=None, uncertainty=0.247), "24.96 ± 0.25 deg"),
+        (Value(1234.5, "mm", std=56.7), "1234 ± 57 mm"),
+        (Value(8.44e-6, "µJ", std=4.7e-6), "8.4e-06 ± 4.7e-06 µJ"),
+        (Value(2.25, "1", std=0.5), "2.25 ± 0.50"),
+        (Value(1.81144, "d"), "1.811 d"),
+        (Value(3.0, "1", std=0.0), "3"),
+        (Value(None, "deg"), "none"),
+    ],
+)
+def test_a_number_has_the_digits_its_error_allows(value, text):
+    assert number(value) == text
+
+
+def test_the_data_have_the_promised_form(tmp_path):
+    _, data, _ = summed_up(tilt_run(tmp_path))
+    assert data["preset"] == "tilting/acetate"
+    assert data["status"] == "complete"
+    assert data["cost"] == {
+        "wall_s": 12.5,
+        "grain_steps": 25_000_000,
+        "grain_steps_per_s": 2_000_000,
+        "dt_s": 1e-5,
+    }
+    angle = data["measures"]["critical_angle"]
+    assert angle["value"] == pytest.approx(21.0, abs=0.1)
+    assert (angle["unit"], angle["std"]) == ("deg", 0.0)
+    assert len(angle["worlds"]) == 2
+    assert data["files"] == {"recording": "recording.h5", "shift": "pictures/shift.png"}
+
+
+def test_the_page_says_the_number_first_then_the_rest(tmp_path):
+    page, _, _ = summed_up(tilt_run(tmp_path, worlds=1))
+    lines = page.splitlines()
+    assert lines[0] == "# Acetate grains in a tank"
+    assert lines[2].startswith("- critical angle: **21.0")
+    assert lines[2].endswith(" deg**")
+    for part in (
+        "is complete.",
+        "![shift](pictures/shift.png)",
+        "- 1 bed of 4 grains, 3 mm in diameter",
+        "- tank 180 mm wide and 150 mm high",
+        "- tilt: rate 4 deg/s, angle 40 deg",
+        "Spandonidis 2016, 5.4\n\n24 deg",
+        "2.0 million a second, time step 10 µs",
+        "[recording](recording.h5)",
+        'title = "Acetate grains in a tank"',
+    ):
+        assert part in page
+    assert "Warning" not in page
+
+
+def test_warnings_are_said_everywhere(tmp_path):
+    resolved = preset(tilt={"rate": 0.07, "angle": 0.7})
+    resolved["contact"]["stiffness_scale"] = 1e-3
+    folder = tilt_run(tmp_path, resolved=resolved, status="stopped: Grain 7 left the hold.")
+    said = ["The grains still moved."]
+    for text in summed_up(folder, warnings=said)[::2]:
+        assert "The grains still moved." in text
+        assert "Young's moduli times 0.001" in text
+        assert "stopped: Grain 7 left the hold; the numbers cover what was recorded" in text
+
+
+def test_a_missing_number_is_said_in_words(tmp_path):
+    tilt = np.linspace(0, 30, 301)
+    pose = np.zeros((301, 3))
+    pose[:, 2] = np.radians(tilt)
+    resolved = preset(tilt={"rate": 0.07, "angle": 0.5})
+    record(tmp_path, tilt / 4, pose=pose, centre=np.full((301, 1, 2), 0.03), resolved=resolved)
+    page, data, text = summed_up(tmp_path)
+    assert data["measures"]["critical_angle"]["value"] is None
+    for shown in (page, text):
+        assert "the bed does not flow up to 30 deg" in shown
+
+
+def test_the_terminal_is_told_numbers_cost_and_files(tmp_path):
+    _, _, text = summed_up(sway_run(tmp_path))
+    assert text.splitlines()[0] == "Acetate grains in a tank (tilting/acetate): complete"
+    assert "response amplitude" in text
+    assert "4 mm" in text
+    assert "180" in text
+    assert "recording.h5" in text
+    assert "million a second" in text
+
+
+def test_a_run_stopped_before_its_first_sample_has_a_summary(tmp_path):
+    recorder(tmp_path).close("stopped: interrupted by the user")
+    page, data, text = summed_up(tmp_path)
+    assert data["measures"] == {}
+    assert "interrupted by the user" in page
+    assert "interrupted by the user" in text
+
+
+@pytest.mark.parametrize("run", [tilt_run, sway_run])
+def test_figures_are_drawn(tmp_path, run):
+    with open_recording(run(tmp_path)) as recording:
+        drawn = write_plots(recording, measure_all(recording), tmp_path)
+    assert list(drawn) == ["shift", "energy"]
+    for path in drawn.values():
+        with Image.open(path) as picture:
+            assert picture.width > 1000
+            assert len(picture.convert("RGB").getcolors(2**24)) > 50
+
+
+def test_a_run_without_samples_or_motion_has_no_figures(tmp_path):
+    recorder(tmp_path / "a").close()
+    record(tmp_path / "b", np.arange(2.0), pose=np.zeros((2, 3)), centre=np.zeros((2, 1, 2)))
+    for name, figures in (("a", []), ("b", ["shift"])):
+        with open_recording(tmp_path / name) as recording:
+            assert list(write_plots(recording, {}, tmp_path)) == figures
+
+
+def test_a_lost_folder_is_named(tmp_path):
+    with open_recording(sway_run(tmp_path)) as recording:
+        with pytest.raises(LabError, match="nowhere"):
+            write_plots(recording, {}, tmp_path / "nowhere")
+        with pytest.raises(LabError, match="nowhere"):
+            write_summary(recording, {}, {}, tmp_path / "nowhere")
