@@ -37,7 +37,8 @@ STYLE = {
     "lines.linewidth": 1.5,
     "savefig.dpi": 180,
 }
-SIZE = (6.4, 4.0)  # inches
+SIZE = (6.4, 4.2)  # inches
+BELOW = "outside lower center"  # of a legend, where no curve can run through it
 POINTS = 1500  # of a curve; more cannot be seen
 PERIODS = 4  # shown close up
 
@@ -86,7 +87,7 @@ def energy_figure(recording: Recording, values: Mapping[str, Value]) -> Figure |
     _range(upper, time, 1e6 * series["elastic"], VERMILION, "elastic")
     upper.set_yscale("log")
     upper.set_ylabel("energy (µJ)")
-    upper.legend(ncols=2, loc="lower right", bbox_to_anchor=(1.0, 0.98), framealpha=0)
+    figure.legend(loc=BELOW, ncols=2)
     potential = 1e6 * (series["potential"] - series["potential"][0])
     _band(lower, time, potential, GREY)
     lower.set_ylabel("potential,\nchange (µJ)")
@@ -113,7 +114,7 @@ def slope_figure(recording: Recording, values: Mapping[str, Value]) -> Figure | 
     _mark(axes, values.get("critical_angle"), "critical angle", VERMILION)
     axes.set_xlabel("tilt (deg)")
     axes.set_ylabel("inclination of the surface\nagainst the horizontal (deg)")
-    axes.legend(loc="best")
+    figure.legend(loc=BELOW, ncols=3)
     return figure
 
 
@@ -143,7 +144,7 @@ def _shift_against_tilt(recording: Recording, values: Mapping[str, Value]) -> Fi
     axes.set_xlim(0, max(tilt[-1] for tilt, _ in curves))
     axes.set_ylabel("shift of the centre of mass\ndownhill (mean diameters)")
     _millimetres(axes, 1e3 * diameters.mean())
-    axes.legend(loc="best")
+    figure.legend(loc=BELOW, ncols=3)
     return figure
 
 

@@ -11,7 +11,6 @@ from solvers.laws.chosen import PAIR, WALL, ChosenLaws
 from solvers.runtime import Arrays
 from solvers.walls import Walls
 
-
 # Pairs that one pass of the force loop takes: as many 64-bit numbers as an AVX2 register holds.
 LANES = 4
 
@@ -23,8 +22,8 @@ class ContactList:
     """Candidate contacts of one kind (grain–grain or grain–wall) in each world, sorted by their first grain.
 
     Contact p stands in lane p % lanes of block p // lanes. `mate` is the other grain or the wall feature; `stiffness` k
-    (N/m^1.5) and the laws' constants do not change while a contact is listed; the laws' memory does, and is zero while the
-    two do not touch. What the laws keep are fields by the names they give.
+    (N/m^1.5) and the laws' constants do not change while a contact is listed; the laws' memory does, and is zero while
+    the two do not touch. What the laws keep are fields by the names they give.
     """
 
     def __init__(self, arrays: Arrays, worlds: int, grains: int, room: int, lanes: int, laws: ChosenLaws):

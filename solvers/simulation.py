@@ -17,7 +17,7 @@ from solvers.runtime import Arrays
 from solvers.scene import Scene
 from solvers.walls import Walls
 
-SKIN = 0.2  # of the mean diameter; the fastest of 0.05 … 0.6 for settled and for shaken beds
+SKIN = 0.05  # of the mean diameter; in settled and in shaken beds the fastest of 0.05 … 0.3
 AT_REST = -1e9  # a time long before any motion starts
 
 

@@ -16,14 +16,17 @@ point before a fall by DECISION is the end. Nothing is differentiated sample by 
 noise nor the sampling rate matters. A step that begins in the first WINDOW has no rest before it,
 hence no onset, and is left out.
 
-critical_angle: onset of the first step with a give of at least MAIN. It is the angle of repose of
-Spandonidis (2016, 5.2.1 and 5.3.1): where the surface flows on, "excluding initial reordering". Two
-degrees are what avalanches relieve; the heap before it turns the surface by less. A share of the
-curve's whole shift would serve as well, but would change with how far one goes on tilting.
+critical_angle: onset of the first main step, one with a give of at least MAIN and of at least SHARE of
+the largest step's. It is the angle of repose of Spandonidis (2016, 5.2.1 and 5.3.1): where the
+surface flows on, initial reordering and heaps excluded. A give of two degrees alone parts avalanches
+from reordering in wide tanks (trial beds: 0.2 to 1.1 deg for one, 2.3 to 16 for the other); in small
+tanks partial slides of the surface come before the avalanche, so a main step is also one of the
+run's large ones. Tilt well past the avalanche for SHARE to have it to compare with. A number of
+diameters would change with the size of the tank.
 critical_step: the shift in that step (d, the mean grain diameter), creep left out.
 first_slip_angle: onset of the first step at all, a give of DECISION: the first reordering or heap.
 one_diameter_angle: where the shift first exceeds one d, creep and all; needs no detector.
-main_steps: number of steps of at least MAIN.
+main_steps: number of main steps.
 
 Error of an onset: the spacing of the averaged samples, plus the tilt in which the sum rises from
 the onset by DECISION: sharp for an avalanche, wide where the bed begins to flow gently. Repeats
@@ -44,6 +47,7 @@ WINDOW = 0.5  # deg of tilt
 FLOW = 0.25  # of a liquid's rate
 DECISION = 0.1  # deg of give
 MAIN = 2.0  # deg of give
+SHARE = 0.5  # of the largest step's give
 NOISE = 8.0  # standard deviations that the sum may wander by chance
 LEAST_BINS = 20
 
@@ -69,7 +73,7 @@ def measure(recording: Recording) -> dict[str, Value]:
     liquid = liquid_shift(recording)
     diameter = recording.mean_diameter
     steps = [find_steps(tilt, shift / scale) for (tilt, shift), scale in zip(curves, liquid, strict=True)]
-    main = [[step for step in found if step.give >= MAIN] for found in steps]
+    main = [_main(found) for found in steps]
     reached = max(tilt[-1] for tilt, _ in curves)
     shifted = [_first_beyond(tilt, shift, d) for (tilt, shift), d in zip(curves, diameter, strict=True)]
     return {
@@ -79,6 +83,12 @@ def measure(recording: Recording) -> dict[str, Value]:
         "one_diameter_angle": over_worlds(shifted, "deg", missing=f"no shift by one diameter up to {reached:.3g} deg"),
         "main_steps": over_worlds([len(found) for found in main], "1"),
     }
+
+
+def _main(steps: list[Step]) -> list[Step]:
+    """The steps that are avalanches."""
+    least = max(MAIN, SHARE * max((step.give for step in steps), default=0.0))
+    return [step for step in steps if step.give >= least]
 
 
 def shift_curve(recording: Recording, world: int) -> tuple[np.ndarray, np.ndarray]:

@@ -4,7 +4,6 @@ import taichi as ti
 
 from solvers.materials import Interface
 
-
 SMALLEST_ROOT = 1e-12  # √m; an overlap of 1e-24 m is none
 
 

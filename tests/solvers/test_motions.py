@@ -15,7 +15,6 @@ from solvers.runtime import Arrays
 
 DEG = pi / 180
 GRAVITY = 9.81
-TILT_CENTRE, ROLL_CENTRE = (0.02, 0.07), (-0.3, 0.5)
 SOFT_START = 0.8
 
 
@@ -257,11 +256,11 @@ def test_programmes_fit_the_table():
     assert {len(tilt.parameters(0.0)) for tilt in TILTS.values()} == {2 * KNOTS}
 
 
-def chain(frequency=1.1):
+def chain(frequency, tilt_centre, roll_centre):
     """A tilting table on a rolling, swaying and heaving deck, about different centres."""
     return [
-        Tilt(0.3, 0.35, TILT_CENTRE, hold=0.4, reverse=True, ease=0.15),
-        Roll(0.25, frequency, 0.4, ROLL_CENTRE),
+        Tilt(0.3, 0.35, tilt_centre, hold=0.4, reverse=True, ease=0.15),
+        Roll(0.25, frequency, 0.4, roll_centre),
         Sway(0.04, 0.7 * frequency, 1.0),
         Heave(0.03, 1.6 * frequency, -0.5),
     ]
@@ -271,14 +270,14 @@ def chain_pose(motions, tilt, times):
     """Pose (T, 3) of the chain, its points written as y + iz; `tilt` (T,) is the first motion's angle."""
     roll, sway, heave = (wave(motion, times) for motion in motions[1:])
     point = np.zeros(len(times), dtype=complex)
-    for angle, (y, z) in ((tilt, TILT_CENTRE), (roll, ROLL_CENTRE)):
+    for angle, (y, z) in ((tilt, motions[0].centre), (roll, motions[1].centre)):
         point = complex(y, z) + np.exp(1j * angle) * (point - complex(y, z))
     point += sway + 1j * heave
     return np.column_stack([point.real, point.imag, tilt + roll])
 
 
 def test_chain_of_motions(probe):
-    worlds = [chain(), chain(1.9)]
+    worlds = [chain(1.1, (0.02, 0.07), (-0.3, 0.5)), chain(1.9, (-0.05, 0.1), (0.4, -0.2))]
     reading, tilting = probe(worlds, SOFT_START), probe([[worlds[0][0]]])
     knots = [time for time, _ in worlds[0][0].knots()] + [SOFT_START]
     times = np.linspace(0.05, 3.5, 300)
