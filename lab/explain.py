@@ -45,14 +45,14 @@ def _scene(preset, scene) -> list[tuple[str, str]]:
         ("dissipative time", f"{show(pair.dissipative_time, 's')} between grains, at this stiffness"),
     ]
     motions = preset.motion.parts
-    rows.append(("motion", ", then ".join(map(_motion, motions.items())) or "none"))
+    parts = [_motion(name, motion, scene.soft_start) for name, motion in motions.items()]
+    rows.append(("motion", ", then ".join(parts) or "none"))
     rows.append(("duration", show(preset.run.duration, "s") + " after settling"))
     return rows
 
 
-def _motion(item: tuple[str, object]) -> str:
-    name, motion = item
-    speed, _ = motion.fastest()
+def _motion(name: str, motion, soft_start: float) -> str:
+    speed = motion.fastest(soft_start)
     return f"{name}, up to {show(speed, 'rad/s' if motion.coordinate == 'turn' else 'm/s')}"
 
 

@@ -45,6 +45,7 @@ def build(preset: Resolved) -> tuple[Scene, np.ndarray]:
         gravity=preset.run.gravity,
         motions=[tuple(preset.motion.parts.values())] * len(radius),
         soft_start=preset.motion.soft_start,
+        sizes=(0.5 * size.diameter * (1.0 - size.spread), 0.5 * size.diameter * (1.0 + size.spread)),
     )
     scene.step = _step(preset, scene)
     return scene, position

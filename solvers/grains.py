@@ -33,7 +33,6 @@ class Grains:
         self.radius = arrays.holding(_with_ghost(radius))
         self.inverse_mass = arrays.holding(_with_ghost(1.0 / self.mass))
         self.inverse_inertia = arrays.holding(_with_ghost(2.5 / (self.mass * radius**2)))
-        self.largest, self.smallest = float(radius.max()), float(radius.min())
 
     def place(self, position: np.ndarray) -> None:
         """Put the grains at `position` (W, n, 2) m, at rest and without history."""
@@ -77,10 +76,13 @@ class Grains:
         """Leapfrog form of velocity Verlet (Hairer, Lubich and Wanner 2003): kick by `kick`, drift by `dt` (s).
 
         `body` = (b_y, b_z, φ̇, φ̈) is the tank's motion; in its frame a grain feels b − φ̈ × r + φ̇² r − 2 φ̇ × u and
-        its spin changes by −φ̈. Returns the largest speed² (m²/s²), which is NaN or huge where the state is bad.
-        Forces are cleared.
+        its spin changes by −φ̈. Forces are cleared.
+
+        Returns a bound on the speeds (m/s), their 16-norm: at most n^(1/16) times the largest (1.6 for 2000 grains),
+        and NaN or huge where the state is bad. The compiler turns the loop into SIMD instructions with a sum in it, but
+        not with a largest value.
         """
-        fastest = 0.0
+        total = 0.0
         for i in range(self.count):
             m, j = self.inverse_mass[w, i], self.inverse_inertia[w, i]
             ay = self.force_y[w, i] * m + body[0]
@@ -102,6 +104,8 @@ class Grains:
             self.now_z[w, i] = vz + 0.5 * dt * az
             self.spin_now[w, i] = spin + 0.5 * dt * turn
             self.force_y[w, i], self.force_z[w, i], self.torque[w, i] = 0.0, 0.0, 0.0
-            speed = vy * vy + vz * vz
-            fastest = ti.select(speed <= fastest, fastest, speed)  # a NaN is not <= and so is kept
-        return fastest
+            square = vy * vy + vz * vz
+            fourth = square * square
+            eighth = fourth * fourth
+            total += eighth * eighth
+        return ti.sqrt(ti.sqrt(ti.sqrt(ti.sqrt(total))))

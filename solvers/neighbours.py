@@ -119,6 +119,7 @@ class Neighbours:
         grains: Grains,
         walls: Walls,
         skin: float,
+        reach: float,
         laws: ChosenLaws,
         modulus: np.ndarray,
         room: int,
@@ -129,7 +130,7 @@ class Neighbours:
         self.contacts = ContactList(arrays, worlds, count, room * (2 * count + 16), 1, laws)
         # k = (4/3) E* √R_eff of grain–grain and grain–wall contacts in each world
         self.modulus = arrays.holding(4.0 / 3.0 * modulus)
-        self.make_grid(arrays, skin, 2.0 * grains.largest + skin)
+        self.make_grid(arrays, skin, reach)
         self.built_y, self.built_z = arrays.reals(2, (worlds, count))
         self.travel = arrays.holding(np.full(worlds, np.inf))  # no grain has moved farther than this since
 

@@ -47,11 +47,10 @@ class PerWorld:
                 body = self.frame.body_force(w, origin + clock.step[w] * dt)
                 kick = dt if clock.kicked[w] == 1 else 0.5 * dt
                 clock.kicked[w] = 1
-                square = self.grains.kick_and_drift(w, body, self.frame.rotating, kick, dt)
-                self.neighbours.travel[w] = self.neighbours.travel[w] + ti.sqrt(square) * dt
-                clock.fastest[w] = square
+                speed = self.grains.kick_and_drift(w, body, self.frame.rotating, kick, dt)
+                self.neighbours.travel[w] = self.neighbours.travel[w] + speed * dt
                 clock.step[w] = clock.step[w] + 1
-                if not square < fastest * fastest:
+                if not speed < fastest:
                     clock.status[w] = TOO_FAST
             else:
                 clock.status[w] = NO_ROOM

@@ -23,12 +23,11 @@ AT_REST = -1e9  # a time long before any motion starts
 
 @ti.data_oriented
 class Clock:
-    """Where each world stands: steps done, status of the watch, whether its first kick is due, last largest speed²."""
+    """Where each world stands: steps done, status of the watch, whether it has had its first kick."""
 
     def __init__(self, arrays: Arrays, worlds: int):
         self.step, self.status = arrays.integers(2, (worlds,))
         self.kicked = arrays.integers(1, (worlds,))[0]
-        self.fastest = arrays.reals(1, (worlds,))[0]
 
 
 class Simulation:
@@ -40,7 +39,7 @@ class Simulation:
     def __init__(self, scene: Scene, position: np.ndarray, threads: int = 0, skin: float | None = None):
         runtime.initialise(threads)
         self.scene, self.dt = scene, scene.time_step()
-        self.skin = skin or SKIN * 2.0 * float(scene.radius.mean())
+        self.skin = skin or SKIN * 2.0 * scene.mean_radius
         self.steps, self.origin, self.room = 0, 0.0, 1
         self._build()
         self.grains.place(np.asarray(position, dtype=np.float64).reshape(*scene.radius.shape, 2))
@@ -55,7 +54,8 @@ class Simulation:
         self.grains = Grains(arrays, scene.radius, scene.grain.density)
         self.walls = Walls(arrays, scene.outline)
         laws = ChosenLaws(arrays, normal, tangential, [scene.interfaces] * worlds)
-        self.neighbours = Neighbours(arrays, self.grains, self.walls, self.skin, laws, moduli, self.room)
+        reach = 2.0 * scene.sizes[1] + self.skin
+        self.neighbours = Neighbours(arrays, self.grains, self.walls, self.skin, reach, laws, moduli, self.room)
         self.contacts = Contacts(laws)
         self.frame = Frame(arrays, scene.motions, scene.soft_start, scene.gravity)
         self.clock = Clock(arrays, worlds)
@@ -88,7 +88,7 @@ class Simulation:
         Raises BadState where the watch stops a world; the state is kept as it is.
         """
         self.steps += steps
-        fastest = watch.FASTEST_STEP * self.grains.smallest / self.dt
+        fastest = watch.FASTEST_STEP * self.scene.sizes[0] / self.dt
         while True:
             self.schedule.advance(self.clock, self.steps, self.origin, self.dt, fastest)
             status = self.clock.status.to_numpy()
@@ -97,7 +97,8 @@ class Simulation:
             self._make_room()
             self.clock.status.from_numpy(np.where(status == watch.NO_ROOM, watch.RUNNING, status))
         time = self.origin + self.clock.step.to_numpy() * self.dt
-        watch.check_speed(status, self.clock.fastest.to_numpy(), time, self.dt)
+        if np.any(status == watch.TOO_FAST):
+            watch.report_speed(status, self.grains.read()["velocity"], time, self.dt)
 
     def observe(self) -> dict[str, np.ndarray]:
         """Numbers of every world now, each (W,), named as in `Observer.NAMES`. Raises BadState from the watch."""
@@ -107,27 +108,29 @@ class Simulation:
         return rows
 
     def settle(self, rest: float, limit: float, tell: Callable[[float], None] = lambda _: None) -> bool:
-        """Let the grains come to rest in the upright tank; the clock then starts at zero. Returns whether they rest.
+        """Let the grains come to rest in the upright tank; the clock then starts at zero. Returns whether all rest.
 
-        At rest the mean kinetic energy of a grain (spin included) is below `rest` times m g d in every world for two
-        looks in a row, 10 ms apart; at most `limit` s.
+        A world rests, and waits for the others, when the mean kinetic energy of its grains (spin included) is below
+        `rest` times m g d at two looks in a row, 10 ms apart. At most `limit` s.
         """
         self.origin = AT_REST
         look = max(1, round(0.01 / self.dt))
         radius = self.scene.radius
         scale = (self.grains.mass * self.scene.gravity * 2.0 * radius).mean(axis=1)
-        quiet = 0
-        while quiet < 2 and self.steps * self.dt < limit:
+        quiet = np.zeros(len(radius), dtype=int)
+        while np.any(quiet < 2) and self.steps * self.dt < limit:
             self.advance(look)
             rows = self.observe()
             energy = (rows["kinetic"] + rows["rotational"]) / radius.shape[1]
-            quiet = quiet + 1 if np.all(energy < rest * scale) else 0
+            quiet = np.where(energy < rest * scale, quiet + 1, 0)
+            self.clock.status.from_numpy(np.where(quiet < 2, watch.RUNNING, watch.WAITING).astype(np.int32))
             tell(self.steps * self.dt)
         self.origin = 0.0
         self.steps = 0
         self.clock.step.fill(0)
+        self.clock.status.fill(watch.RUNNING)
         self.grains.angle.fill(0.0)
-        return quiet >= 2
+        return bool(np.all(quiet >= 2))
 
     def close(self) -> None:
         """Give the arrays back; the simulation must not be used after it."""

@@ -3,8 +3,6 @@
 from dataclasses import dataclass
 from math import pi, sqrt
 
-import numpy as np
-
 from solvers.materials import Interface, Material
 
 # Steps a collision takes: an elastic one, and one with viscoelastic damping x = β v^(1/5) (times √x). The error of
@@ -39,25 +37,24 @@ def damping(between: Interface, mass: float, radius: float, speed: float) -> flo
 
 
 def limits(
-    radius: np.ndarray,
+    smallest: float,
     grain: Material,
     interfaces: tuple[Interface, Interface],
     scale: float,
     speed: float,
 ) -> list[Limit]:
-    """All bounds on the step for grains of these radii (m) that meet at up to `speed` (m/s)."""
-    small = float(np.min(radius))
-    mass = 4.0 / 3.0 * pi * small**3 * grain.density
+    """All bounds on the step for grains of at least the radius `smallest` (m) that meet at up to `speed` (m/s)."""
+    mass = 4.0 / 3.0 * pi * smallest**3 * grain.density
     shear = grain.young * scale / (2.0 * (1.0 + grain.poisson))
     found = [
         Limit(
-            RAYLEIGH_SHARE * rayleigh_time(small, grain.density, shear, grain.poisson),
+            RAYLEIGH_SHARE * rayleigh_time(smallest, grain.density, shear, grain.poisson),
             f"{RAYLEIGH_SHARE:g} of the Rayleigh time of the smallest grain",
         )
     ]
     for between, m_eff, r_eff, name in (
-        (interfaces[0], mass / 2.0, small / 2.0, "two of the smallest grains"),
-        (interfaces[1], mass, small, "the smallest grain and a wall"),
+        (interfaces[0], mass / 2.0, smallest / 2.0, "two of the smallest grains"),
+        (interfaces[1], mass, smallest, "the smallest grain and a wall"),
     ):
         collision = hertz_duration(m_eff, r_eff, between.young_modulus, speed)
         steps = max(ELASTIC_STEPS, DAMPED_STEPS * sqrt(damping(between, m_eff, r_eff, speed)))

@@ -4,17 +4,17 @@ import numpy as np
 
 from solvers.errors import BadState
 
-RUNNING, NO_ROOM, TOO_FAST = 0, 1, 2
+RUNNING, WAITING, NO_ROOM, TOO_FAST = range(4)
 
 # A grain that crosses a tenth of the smallest radius in a step is not colliding, it is being thrown.
 FASTEST_STEP = 0.1
 DEEPEST_OVERLAP = 0.3
 
 
-def check_speed(status: np.ndarray, fastest: np.ndarray, time: np.ndarray, dt: float) -> None:
-    """Stop where the time loop stopped itself: a speed too large for the step, or not a number."""
+def report_speed(status: np.ndarray, velocity: np.ndarray, time: np.ndarray, dt: float) -> None:
+    """Raise what stopped the time loop of a world: a speed too large for the step, or not a number."""
     for w in np.flatnonzero(status == TOO_FAST):
-        speed = np.sqrt(fastest[w])
+        speed = np.linalg.norm(velocity[w], axis=1).max()
         what = f"a grain moves at {speed:.3g} m/s" if np.isfinite(speed) else "a grain's speed is not a number"
         raise BadState(
             f"world {w}: {what} at t = {time[w]:.4g} s, too fast for the step of {dt:.3g} s; "

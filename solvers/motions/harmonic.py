@@ -8,6 +8,8 @@ import taichi as ti
 
 from solvers.quantity import Interval, Unit
 
+STEEPEST = 2.171  # largest slope of the transition function D(τ)
+
 
 @ti.func
 def soft_start(t, length):
@@ -58,10 +60,9 @@ class Harmonic:
         """The kernel's table: amplitude, angular frequency, phase, length of the soft start (s)."""
         return [self.amplitude, 2 * pi * self.frequency, self.phase, soft_start]
 
-    def fastest(self) -> tuple[float, float]:
-        """Largest speed and acceleration of the steady motion (per s, per s²)."""
-        omega = 2 * pi * self.frequency
-        return self.amplitude * omega, self.amplitude * omega**2
+    def fastest(self, soft_start: float) -> float:
+        """Bound on the speed (m/s or rad/s): Aω, and what the soft start adds."""
+        return self.amplitude * (2 * pi * self.frequency + (STEEPEST / soft_start if soft_start else 0.0))
 
 
 @dataclass(frozen=True)

@@ -75,6 +75,6 @@ class Tilt:
         knots += [knots[-1]] * (KNOTS - len(knots))
         return [value for knot in knots for value in knot]
 
-    def fastest(self) -> tuple[float, float]:
-        """Largest speed (rad/s) and acceleration (rad/s²)."""
-        return self.rate, self.rate / self.ease
+    def fastest(self, soft_start: float) -> float:
+        """Largest rate (rad/s)."""
+        return self.rate

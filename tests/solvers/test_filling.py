@@ -1,0 +1,145 @@
+"""Filling a tank: how many grains, their sizes, where they start, and the bed they settle to."""
+
+from math import pi
+
+import numpy as np
+import pytest
+from scenes import box, material
+
+from solvers.filling import DoesNotFit, count_for_depth, radii, start_positions
+from solvers.motions import Sway
+from solvers.scene import Scene
+from solvers.simulation import Simulation
+
+
+def hopper(*side: list[float]) -> np.ndarray:
+    """An outline from its starboard side, told from the floor up."""
+    return np.array([*side, *([-y, z] for y, z in reversed(side))])
+
+
+OUTLINES = {
+    "rectangle": box(0.2, 0.25),
+    "off the middle": box(0.2, 0.25) + np.array([0.31, -0.07]),
+    "hopper": hopper([0.025, 0.0], [0.1, 0.04], [0.1, 0.3]),
+    "steep hopper": hopper([0.02, 0.0], [0.1, 0.07], [0.1, 0.3]),
+    "L": np.array([[0.0, 0.0], [0.12, 0.0], [0.12, 0.3], [-0.1, 0.3], [-0.1, 0.1], [0.0, 0.1]]),
+}
+
+
+def wall_distance(points: np.ndarray, outline: np.ndarray) -> np.ndarray:
+    """Distance (n,) of points (n, 2) from the nearest segment."""
+    nearest = np.full(len(points), np.inf)
+    for a, b in zip(outline, np.roll(outline, -1, axis=0), strict=True):
+        edge = b - a
+        share = np.clip((points - a) @ edge / (edge @ edge), 0.0, 1.0)
+        nearest = np.minimum(nearest, np.linalg.norm(points - a - share[:, None] * edge, axis=1))
+    return nearest
+
+
+def inside(points: np.ndarray, outline: np.ndarray) -> np.ndarray:
+    """Whether points (n, 2) lie inside, by the angle the outline turns around them."""
+    arms = outline - points[:, None]
+    angle = np.arctan2(arms[..., 1], arms[..., 0])
+    turned = (np.roll(angle, -1, axis=1) - angle + pi) % (2.0 * pi) - pi
+    return turned.sum(axis=1) > pi
+
+
+@pytest.mark.parametrize("spread", [0.0, 0.4])
+@pytest.mark.parametrize("name", OUTLINES)
+def test_grains_start_apart_and_clear_of_the_walls(name, spread):
+    outline = OUTLINES[name]
+    for seed in range(20):
+        random = np.random.default_rng(seed)
+        radius = radii(220, 8e-3, spread, random)
+        position = start_positions(radius, outline, random)
+        first, second = np.triu_indices(len(radius), 1)
+        apart = np.linalg.norm(position[first] - position[second], axis=1)
+        assert np.all(apart > radius[first] + radius[second])
+        assert np.all(inside(position, outline))
+        assert np.all(wall_distance(position, outline) >= radius * (1.0 - 1e-9))
+
+
+def test_one_seed_one_bed():
+    def bed(seed):
+        random = np.random.default_rng(seed)
+        radius = radii(100, 6e-3, 0.1, random)
+        return radius, start_positions(radius, OUTLINES["rectangle"], random)
+
+    first, again, other = bed(1), bed(1), bed(2)
+    for same, different, values in zip(again, other, first, strict=True):
+        np.testing.assert_array_equal(values, same)
+        assert np.mean(values == different) < 0.25  # along walls, some stand in line
+    # Equal grains differ in where they start.
+    equal = [start_positions(np.full(100, 3e-3), OUTLINES["rectangle"], np.random.default_rng(s)) for s in (1, 2)]
+    assert np.mean(equal[0] == equal[1]) < 0.25
+
+
+@pytest.mark.parametrize(
+    ("count", "outline"),
+    [(2000, box(0.2, 0.2)), (1, box(7.9e-3, 1.0)), (1, box(1.0, 7.9e-3)), (300, OUTLINES["hopper"] * [1.0, 0.3])],
+    ids=["too many", "too narrow", "too low", "half a hopper"],
+)
+def test_too_many_do_not_fit(count, outline):
+    with pytest.raises(DoesNotFit, match=rf"^{count} grains of up to 8 mm do not fit .*\.$"):
+        start_positions(np.full(count, 4e-3), outline, np.random.default_rng(1))
+
+
+def test_diameters_are_uniform_around_the_mean():
+    diameter = 2.0 * radii(20000, 6e-3, 0.3, np.random.default_rng(1))
+    expected = 6e-3 * np.array([0.7, 0.775, 0.85, 0.925, 1.0, 1.075, 1.15, 1.225, 1.3])
+    np.testing.assert_allclose(np.quantile(diameter, np.linspace(0.0, 1.0, 9)), expected, rtol=5e-3)
+
+
+@pytest.mark.parametrize("spread", [0.0, 0.3, 0.5])
+def test_count_is_area_over_the_mean_area_of_a_grain(spread):
+    """Discs of the count asked for cover one and the same share of the area, whatever their spread."""
+    count = count_for_depth(0.5, 1.0, 4e-3, spread)
+    area = pi * (radii(count, 4e-3, spread, np.random.default_rng(3)) ** 2).sum()
+    assert area / (0.5 * 1.0) == pytest.approx(0.81, rel=5e-3)
+    assert count_for_depth(1e-4, 1e-3, 4e-3, spread) == 1
+
+
+def surface(position: np.ndarray, radius: np.ndarray, width: float) -> np.ndarray:
+    """Height of the highest disc above each of many places across the tank."""
+    y = np.linspace(-width / 2, width / 2, 1001)[1:-1, None]
+    square = radius**2 - (y - position[:, 0]) ** 2
+    return np.where(square > 0.0, position[:, 1] + np.sqrt(np.maximum(square, 0.0)), 0.0).max(axis=1)
+
+
+def test_a_bed_settles_to_the_depth_asked_for():
+    """Softened grains in a tank that will sway, but stands still until they rest."""
+    width, depth, diameter, spread, rest = 0.12, 0.05, 6e-3, 0.1, 1e-5
+    count = count_for_depth(depth, width, diameter, spread)
+    assert 150 <= count <= 200
+    random = [np.random.default_rng(seed) for seed in (1, 2)]
+    radius = np.stack([radii(count, diameter, spread, r) for r in random])
+    outline = box(width, 0.12)
+    position = np.stack([start_positions(radius[w], outline, random[w]) for w in range(2)])
+    grain = material(restitution=0.5)
+    motions = [(Sway(amplitude=0.05, frequency=3.0, phase=1.0),)] * 2
+    run = Simulation(Scene(radius, outline, grain, grain, stiffness_scale=1e-3, motions=motions), position, threads=1)
+
+    assert not run.settle(rest, 0.02)
+    told = []
+    assert run.settle(rest, 5.0, told.append)
+    assert np.all(np.diff(told) > 0.0) and told[-1] < 5.0
+    assert run.time == run.steps == 0
+    rows, state = run.observe(), run.snapshot()
+    assert not np.any(state["angle"])
+    still = rest * (run.grains.mass * 9.81 * 2.0 * radius).mean(axis=1)
+    assert np.all((rows["kinetic"] + rows["rotational"]) / count < still)
+    assert np.all(rows["contacts"] > 1.5 * count)
+    for w in range(2):
+        at, size = state["position"][w], radius[w]
+        top = surface(at, size, width)
+        middle = (size**2 * at[:, 1]).sum() / (size**2).sum()
+        assert top.mean() == pytest.approx(depth, rel=0.05)
+        assert 2.0 * middle == pytest.approx(depth, rel=0.06)
+        assert np.quantile(at[:, 1] + size, 0.95) == pytest.approx(depth, rel=0.08)
+
+    run.advance(round(0.05 / run.dt))  # now it sways
+    assert run.time == pytest.approx(0.05, rel=1e-3)
+    pose = 0.05 * np.sin(2.0 * pi * 3.0 * run.time + 1.0)
+    assert run.observe()["pose_y"] == pytest.approx(pose)
+    assert np.linalg.norm(run.snapshot()["velocity"], axis=-1).mean() > 1e-3
+    run.close()
