@@ -81,7 +81,7 @@ class Contacts:
             i = lists.contacts.first_of(w, p)
             gap = walls.gap(lists.contacts.second_of(w, p), g.y[w, i], g.z[w, i])
             overlap = g.radius[w, i] - gap[0]
-            if overlap > 0.0:
+            if ti.abs(gap[0]) < g.radius[w, i]:
                 touching += 1.0
                 deepest = ti.max(deepest, overlap / g.radius[w, i])
                 energy += self.laws.energy(lists.contacts, w, p, overlap)

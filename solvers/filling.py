@@ -47,9 +47,10 @@ def start_positions(radius: np.ndarray, outline: np.ndarray, random: np.random.G
         )
     chosen = sites[: len(radius)]
     shaken = chosen + random.uniform(-1.0, 1.0, chosen.shape) * (SPACING - 1.0) * reach * 0.7
-    inside = np.clip(shaken, lower + reach, upper - reach)
+    shaken = np.clip(shaken, lower + reach, upper - reach)
+    shaken = np.where(_clear_of_walls(shaken, outline, reach)[:, None], shaken, chosen)
     # Column by column, neighbours in space are neighbours in memory.
-    return inside[np.lexsort((chosen[:, 1], chosen[:, 0]))]
+    return shaken[np.lexsort((chosen[:, 1], chosen[:, 0]))]
 
 
 def _clear_of_walls(sites: np.ndarray, outline: np.ndarray, reach: float) -> np.ndarray:

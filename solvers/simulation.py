@@ -40,7 +40,8 @@ class Simulation:
         runtime.initialise(threads)
         self.scene, self.dt = scene, scene.time_step()
         self.skin = skin or SKIN * 2.0 * scene.mean_radius
-        self.steps, self.origin, self.room = 0, 0.0, 1
+        self.steps, self.room = 0, 1
+        self.origin = 0.0  # what the tank's motion takes for the time at step 0
         self._build()
         self.grains.place(np.asarray(position, dtype=np.float64).reshape(*scene.radius.shape, 2))
 
@@ -74,8 +75,8 @@ class Simulation:
 
     @property
     def time(self) -> float:
-        """Model time (s)."""
-        return self.origin + self.steps * self.dt
+        """Model time (s); while settling, since that began."""
+        return self.steps * self.dt
 
     @property
     def grain_steps(self) -> int:
@@ -96,13 +97,12 @@ class Simulation:
                 break
             self._make_room()
             self.clock.status.from_numpy(np.where(status == watch.NO_ROOM, watch.RUNNING, status))
-        time = self.origin + self.clock.step.to_numpy() * self.dt
         if np.any(status == watch.TOO_FAST):
-            watch.report_speed(status, self.grains.read()["velocity"], time, self.dt)
+            watch.report_speed(status, self.grains.read()["velocity"], self.clock.step.to_numpy() * self.dt, self.dt)
 
     def observe(self) -> dict[str, np.ndarray]:
         """Numbers of every world now, each (W,), named as in `Observer.NAMES`. Raises BadState from the watch."""
-        self.observer.observe(self.time)
+        self.observer.observe(self.origin + self.time)
         rows = dict(zip(Observer.NAMES, self.observer.rows.to_numpy().T, strict=True))
         watch.check_state(rows["overlap"], rows["escaped"].astype(int), self.time)
         return rows

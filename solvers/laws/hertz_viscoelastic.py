@@ -65,7 +65,9 @@ def restitution(beta_v: float) -> float:
 
 @cache
 def damping_for(e: float) -> float:
-    """The x = β v^(1/5) that gives restitution e < 1."""
+    """The x = β v^(1/5) that gives restitution e < 1; near 1, e = 1 − 1.15344 x (Schwager and Pöschel 1998)."""
+    if e > 1.0 - 1e-4:
+        return (1.0 - e) / 1.15344
     from scipy.optimize import brentq
 
     return brentq(lambda x: restitution(x) - e, 1e-6, 60.0, xtol=1e-9)
