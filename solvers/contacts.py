@@ -53,7 +53,7 @@ class Contacts:
             gap = walls.gap(contacts.mate[w, p][0], g.y[w, i], g.z[w, i])
             ny, nz, radius = gap[1], gap[2], g.radius[w, i]
             overlap = 0.0
-            if ti.abs(gap[0]) < radius:
+            if 0.0 < gap[0] < radius:
                 overlap = radius - gap[0]
             uy, uz = g.now_y[w, i], g.now_z[w, i]
             lever = radius - 0.5 * overlap
@@ -81,7 +81,7 @@ class Contacts:
             i = lists.contacts.first_of(w, p)
             gap = walls.gap(lists.contacts.second_of(w, p), g.y[w, i], g.z[w, i])
             overlap = g.radius[w, i] - gap[0]
-            if ti.abs(gap[0]) < g.radius[w, i]:
+            if 0.0 < gap[0] < g.radius[w, i]:
                 touching += 1.0
                 deepest = ti.max(deepest, overlap / g.radius[w, i])
                 energy += self.laws.energy(lists.contacts, w, p, overlap)

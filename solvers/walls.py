@@ -34,7 +34,7 @@ class Walls:
     def gap(self, feature, y, z):
         """Signed distance (m) of a point from a wall feature and the unit normal into the tank.
 
-        The distance is huge where the point does not face the feature.
+        The distance is huge where the point does not face the feature, negative behind a segment: no contact either.
         """
         py, pz = y - self.table[feature, 0], z - self.table[feature, 1]
         ty, tz = self.table[feature, 2], self.table[feature, 3]
@@ -47,7 +47,7 @@ class Walls:
             beyond = py * self.table[feature, 4] + pz * self.table[feature, 5]
             distance = ti.sqrt(py * py + pz * pz)
             normal_y, normal_z = py / distance, pz / distance
-            if along < 0.0 or beyond > 0.0:
+            if along <= 0.0 or beyond >= 0.0:
                 distance = 1e30
         return ti.Vector([distance, normal_y, normal_z])
 

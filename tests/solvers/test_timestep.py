@@ -142,3 +142,17 @@ def test_credible_speed_takes_motion_and_its_lever(motion, speed):
 
 def test_a_given_step_is_taken():
     assert scene(step=1.5e-7).time_step() == 1.5e-7
+
+
+@pytest.mark.parametrize("phase", [0.0, 0.5 * pi, 2.0])
+def test_credible_speed_covers_the_soft_start(phase):
+    """The speed of D(t/T) A sin(ωt + phase), D(τ) = exp(1 − 1/(1 − (τ − 1)²)), by differences, never exceeds it."""
+    amplitude, frequency, length = 0.2, 3.0, 0.05
+    t = np.linspace(0.0, 3.0 * length, 30001)
+    tau = np.clip(t / length, 1e-9, 1.0)
+    start = np.exp(1.0 - 1.0 / (1.0 - (tau - 1.0) ** 2))
+    place = amplitude * start * np.sin(2.0 * pi * frequency * t + phase)
+    fastest = np.abs(np.gradient(place, t)).max()
+    radius, grain = np.full((1, 4), 1.5e-3), material()
+    made = Scene(radius, TANK, grain, grain, motions=[(Sway(amplitude, frequency, phase),)], soft_start=length)
+    assert fastest <= made.credible_speed() <= 4.0 * fastest
