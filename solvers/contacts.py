@@ -10,8 +10,9 @@ from solvers.neighbours import LANES
 class Contacts:
     """What the listed contacts do to the grains, by the chosen laws.
 
-    The tangent is the normal turned counter-clockwise by 90°. Levers are the radii less half the overlap, which add up
-    to the distance of the centres: angular momentum is exact. (Spandonidis 2016, eq. 4.7, takes whole radii.)
+    The tangent is the normal turned counter-clockwise by 90°. The levers of two grains reach to where their undeformed
+    outlines cross, R_i − ξ R_j/(R_i + R_j) to first order, and add up to the distance of the centres: angular momentum
+    is exact. (Spandonidis 2016, eq. 4.7, takes whole radii.) A wall's takes half the overlap.
     """
 
     def __init__(self, laws: ChosenLaws):
@@ -27,14 +28,15 @@ class Contacts:
         for block in range(pairs.blocks(w)):
             i, j = pairs.grain[w, block], pairs.mate[w, block]
             dy, dz = lanes(g.y, w, i) - lanes(g.y, w, j), lanes(g.z, w, i) - lanes(g.z, w, j)
-            radius_i, radius_j = lanes(g.radius, w, i), lanes(g.radius, w, j)
-            square = dy * dy + dz * dz
-            inverse = 1.0 / ti.sqrt(square)
+            reach, share = pairs.reach[w, block], pairs.share[w, block]
+            distance = ti.sqrt(dy * dy + dz * dz)
+            inverse = 1.0 / distance
             ny, nz = dy * inverse, dz * inverse
-            overlap = ti.max(radius_i + radius_j - square * inverse, 0.0)
+            overlap = ti.max(reach - distance, 0.0)
             uy = lanes(g.now_y, w, i) - lanes(g.now_y, w, j)
             uz = lanes(g.now_z, w, i) - lanes(g.now_z, w, j)
-            lever_i, lever_j = radius_i - 0.5 * overlap, radius_j - 0.5 * overlap
+            lever_i = share * (reach + overlap) - overlap
+            lever_j = distance - lever_i
             rate = -(uy * ny + uz * nz)
             turning = lever_i * lanes(g.spin_now, w, i) + lever_j * lanes(g.spin_now, w, j)
             slip = uz * ny - uy * nz - turning
@@ -76,7 +78,7 @@ class Contacts:
             if overlap > 0.0:
                 touching += 1.0
                 deepest = ti.max(deepest, overlap / ti.min(g.radius[w, i], g.radius[w, j]))
-                energy += self.laws.energy(lists.pairs, w, p, overlap)
+                energy += self.laws.energy(PAIR, lists.pairs, w, p, overlap)
         for p in range(lists.contacts.length[w]):
             i = lists.contacts.first_of(w, p)
             gap = walls.gap(lists.contacts.second_of(w, p), g.y[w, i], g.z[w, i])
@@ -84,7 +86,7 @@ class Contacts:
             if 0.0 < gap[0] < g.radius[w, i]:
                 touching += 1.0
                 deepest = ti.max(deepest, overlap / g.radius[w, i])
-                energy += self.laws.energy(lists.contacts, w, p, overlap)
+                energy += self.laws.energy(WALL, lists.contacts, w, p, overlap)
         return ti.Vector([touching, deepest, energy])
 
 

@@ -5,6 +5,8 @@ Taichi 1.7.4 silently miscompiles reads of a local vector's element after the ve
 """
 
 import os
+from contextlib import redirect_stdout
+from io import StringIO
 
 import numpy as np
 import taichi as ti
@@ -27,20 +29,25 @@ def initialise(threads: int = 0, **options) -> None:
     wanted = threads or available_cores()
     if _threads == wanted and not options:
         return
-    ti.init(
-        arch=ti.cpu,
-        default_fp=ti.f64,
-        cpu_max_num_threads=wanted,
-        cfg_optimization=False,
-        log_level=ti.WARN,
-        verbose=False,
-        offline_cache=True,
-        **options,
-    )
+    with redirect_stdout(StringIO()):  # Taichi announces its backend, and has no switch for it
+        _start(wanted, options)
     _threads = None if options else wanted
     _starts += 1
 
 
+def _start(threads: int, options: dict) -> None:
+    ti.init(
+        arch=ti.cpu,
+        default_fp=ti.f64,
+        cpu_max_num_threads=threads,
+        cfg_optimization=False,
+        log_level=ti.WARN,
+        offline_cache=True,
+        **options,
+    )
+
+
+@ti.data_oriented
 class Arrays:
     """Fields of one simulation, in one Taichi field tree.
 
@@ -87,6 +94,7 @@ class Arrays:
     def finish(self) -> None:
         """Make the declared fields, zero but for what they are to hold."""
         self._tree = self._builder.finalize()
+        self._count = len(self._fields)
         for field, values in self._contents:
             field.from_numpy(values)
         self._contents = []
@@ -98,10 +106,13 @@ class Arrays:
 
     def take_over(self, smaller: "Arrays") -> None:
         """Copy what the same declarations hold in arrays of smaller or equal shapes."""
-        for field, source in zip(self._fields, smaller._fields, strict=True):
-            values = field.to_numpy()
-            values[tuple(slice(n) for n in source.shape)] = source.to_numpy()
-            field.from_numpy(values)
+        self._copy(smaller)
+
+    @ti.kernel
+    def _copy(self, smaller: ti.template()):
+        for k in ti.static(range(self._count)):
+            for place in ti.grouped(smaller._fields[k]):
+                self._fields[k][place] = smaller._fields[k][place]
 
     def release(self) -> None:
         """Give the memory back; the fields must not be used after it."""

@@ -60,8 +60,9 @@ class ChosenLaws:
         return pressing, shearing
 
     @ti.func
-    def energy(self, contacts: ti.template(), w, p, overlap):
+    def energy(self, kind: ti.template(), contacts: ti.template(), w, p, overlap):
         """Elastic energy (J) of contact p, which overlaps."""
         block, lane, root = p // contacts.lanes, p % contacts.lanes, ti.sqrt(overlap)
         pressed = self.normal.energy(contacts, w, block, lane, overlap, root)
-        return pressed + self.tangential.energy(contacts, w, block, lane, root)
+        tangential_c = self.coefficients(self.tangential_table, w, kind)
+        return pressed + self.tangential.energy(tangential_c, contacts, w, block, lane, root)

@@ -16,40 +16,37 @@ class HaffWerner:
 
     γ_s = 20 N s/m stops the slip of a 3 mm grain within 1e-7 s, far below any step worth taking. So the damper is
     split: what the step Δt resolves, γ_f = min(γ_s, 0.2 m_t/Δt), acts at once; the rest acts on the slip through a
-    first-order low-pass, Ṡ = k_f [(γ_s − γ_f) u_s − S] / (γ_s − γ_f), whose stiffness k_f = 0.02 m_t/Δt² the step
-    resolves as well. Slip still stops within a few steps, and under a lasting load the slip is F_t/γ_s, the creep of
-    the law itself, whatever the step. With γ_s < 0.2 m_t/Δt the law is integrated as written.
+    first-order low-pass, Ṡ = [(γ_s − γ_f) u_s − S]/T with T = γ_s Δt²/(0.02 m_t) but at least Δt, whose stiffness
+    (γ_s − γ_f)/T the step resolves as well. Slip still stops within a few steps, and under a lasting load the slip is
+    F_t/γ_s, the creep of the law itself, whatever the step. With γ_s < 0.2 m_t/Δt the law is integrated as written.
     """
 
-    constants = ("at_once", "share")
+    constants = ("limit",)
     memory = ("followed",)
 
     def coefficients(self, between: Interface) -> list[float]:
-        """[μ, γ_s in N s/m]."""
-        return [between.friction, between.shear_damping]
+        """[μ, γ_s in N s/m, 0.02/γ_s in m/(N s)]."""
+        damping = between.shear_damping
+        return [between.friction, damping, FOLLOWING / damping if damping else 0.0]
 
     @ti.func
     def prepare(self, c: ti.template(), stiffness, mass, dt):
-        """γ_f (N s/m), and the share of the low-pass's way that a step Δt goes; m_t = (2/7) m_eff for spheres."""
-        limit = (2.0 / 7.0) * mass / dt
-        at_once = ti.min(c[1], AT_ONCE * limit)
-        rest = c[1] - at_once
-        share = 1.0
-        if rest > FOLLOWING * limit:
-            share = FOLLOWING * limit / rest
-        return ti.Vector([at_once, share])
+        """m_t/Δt (N s/m), with m_t = (2/7) m_eff for spheres."""
+        return ti.Vector([(2.0 / 7.0) * mass / dt])
 
     @ti.func
     def force(self, c: ti.template(), contacts: ti.template(), w, block, root, normal, slip, dt):
         """F_t (N) of a block of contacts on their first grains along the tangent; slip u_s in m/s, F_n in N."""
-        cap = c[0] * normal
-        at_once, followed = contacts.at_once[w, block], contacts.followed[w, block]
-        followed = followed + contacts.share[w, block] * ((c[1] - at_once) * slip - followed)
+        cap, limit = c[0] * normal, contacts.limit[w, block]
+        at_once = ti.min(c[1], AT_ONCE * limit)
+        share = ti.min(1.0, c[2] * limit)
+        followed = contacts.followed[w, block]
+        followed = followed + share * ((c[1] - at_once) * slip - followed)
         followed = ti.max(-cap, ti.min(cap, followed))
         contacts.followed[w, block] = followed
         return -ti.max(-cap, ti.min(cap, followed + at_once * slip))
 
     @ti.func
-    def energy(self, contacts: ti.template(), w, block, lane, root):
+    def energy(self, c: ti.template(), contacts: ti.template(), w, block, lane, root):
         """The law stores no energy."""
         return 0.0

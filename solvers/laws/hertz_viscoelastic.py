@@ -70,7 +70,7 @@ def damping_for(e: float) -> float:
         return (1.0 - e) / 1.15344
     from scipy.optimize import brentq
 
-    return brentq(lambda x: restitution(x) - e, 1e-6, 60.0, xtol=1e-9)
+    return brentq(lambda x: restitution(x) - e, 1e-6, 1e4, xtol=1e-9)
 
 
 def dissipative_time_for(e: float, speed: float, stiffness: float, mass: float) -> float:

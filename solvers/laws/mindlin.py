@@ -17,7 +17,7 @@ class Mindlin:
     normal law. At the cap S is cut to the cap: the spring slides.
     """
 
-    constants = ("spring_per_root",)
+    constants = ()
     memory = ("stretched", "root_before")
 
     def coefficients(self, between: Interface) -> list[float]:
@@ -26,15 +26,10 @@ class Mindlin:
         return [between.friction, ratio, between.dissipative_time]
 
     @ti.func
-    def prepare(self, c: ti.template(), stiffness, mass, dt):
-        """k_t/√ξ (N/m^1.5)."""
-        return ti.Vector([c[1] * stiffness])
-
-    @ti.func
     def force(self, c: ti.template(), contacts: ti.template(), w, block, root, normal, slip, dt):
         """F_t (N) of a block of contacts on their first grains along the tangent; slip u_s in m/s, F_n in N."""
         cap = c[0] * normal
-        spring = contacts.spring_per_root[w, block] * root
+        spring = c[1] * contacts.stiffness[w, block] * root
         before = ti.max(contacts.root_before[w, block], SMALLEST_ROOT)
         stretched = contacts.stretched[w, block] * ti.min(1.0, root / before) + spring * slip * dt
         stretched = ti.max(-cap, ti.min(cap, stretched))
@@ -43,7 +38,7 @@ class Mindlin:
         return -ti.max(-cap, ti.min(cap, stretched + c[2] * spring * slip))
 
     @ti.func
-    def energy(self, contacts: ti.template(), w, block, lane, root):
+    def energy(self, c: ti.template(), contacts: ti.template(), w, block, lane, root):
         """Elastic energy S²/(2 k_t) (J) of one contact."""
         stretched = contacts.stretched[w, block][lane]
-        return 0.5 * stretched * stretched / (contacts.spring_per_root[w, block][lane] * root)
+        return 0.5 * stretched * stretched / (c[1] * contacts.stiffness[w, block][lane] * root)
