@@ -142,7 +142,9 @@ class Inertial:
         distance = np.hypot(*apart.T)
         normal = apart / distance[:, None]
         overlap = self.radius[i] + self.radius[j] - distance
-        lever_i, lever_j = self.radius[i] - overlap / 2, self.radius[j] - overlap / 2
+        both = self.radius[i] + self.radius[j]
+        lever_i = self.radius[i] - overlap * self.radius[j] / both
+        lever_j = self.radius[j] - overlap * self.radius[i] / both
         tangent = np.column_stack([-normal[:, 1], normal[:, 0]])
         relative = v[i] - v[j]
         slip = (relative * tangent).sum(1) - lever_i * spin[i] - lever_j * spin[j]
