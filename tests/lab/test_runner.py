@@ -1,0 +1,82 @@
+"""A whole run, small: what a person gets from one call."""
+
+import json
+
+import numpy as np
+import pytest
+
+import lab
+from lab.errors import LabError
+from lab.explain import explain
+from lab.presets import load
+from lab.recording import open_recording
+from lab.runner import run_preset
+from lab.scene import build
+from solvers.errors import BadState
+
+SMALL = {
+    "tank": {"width": "30 mm", "height": "30 mm"},
+    "grains": {"count": 25},
+    "motion": {"tilt": {"rate": "60 deg/s", "angle": "15 deg", "hold": "0.05 s"}},
+    "run": {"repeats": 2},
+}
+
+
+@pytest.fixture(scope="module")
+def result(tmp_path_factory):
+    return lab.run("tilting/quick", tmp_path_factory.mktemp("run") / "small", quiet=True, **SMALL)
+
+
+def test_a_run_leaves_recording_plots_video_and_summary(result):
+    data = json.loads((result.folder / "summary.json").read_text())
+    assert data["preset"] == "tilting/quick"
+    assert {"wall_s", "grain_steps", "grain_steps_per_s", "dt_s"} <= data["cost"].keys()
+    assert all((result.folder / name).exists() for name in data["files"].values())
+    assert (result.folder / "video.mp4").stat().st_size > 1000
+    assert "critical angle" in (result.folder / "summary.md").read_text()
+    assert data["measures"]["final_shift_y"]["value"] == pytest.approx(result.measures["final_shift_y"].value)
+
+
+def test_samples_and_frames_stand_at_their_times(result):
+    series, frames = result.recording.series, result.recording.frames
+    assert np.allclose(np.diff(series["time"]), 0.01, rtol=1e-9)
+    assert np.allclose(np.diff(frames["time"][:]), 0.04, rtol=1e-9)
+    assert np.degrees(series["pose"][-1, :, 2]) == pytest.approx(15.0, rel=1e-6)
+    weight = result.recording.radius**3
+    centre = (frames["position"][-1] * weight[:, :, None]).sum(axis=1) / weight.sum(axis=1)[:, None]
+    assert np.allclose(centre, series["centre_of_mass"][4 * (len(frames["time"]) - 1)], atol=1e-6)
+
+
+def test_steps_counted_are_steps_taken(result):
+    recording = result.recording
+    taken = recording.series["time"][-1] / recording.step
+    assert recording.grain_steps == pytest.approx(taken * recording.radius.size, rel=1e-9)
+
+
+def test_a_world_settles_alone_as_it_does_in_company():
+    """Repeat 0 starts from the same grains and the same step whatever the number of repeats."""
+    (alone, start), (among, starts) = (
+        build(load("tilting/quick", SMALL | {"run": {"repeats": n, "step": "auto"}}).resolved) for n in (1, 3)
+    )
+    assert np.array_equal(start[0], starts[0]) and np.array_equal(alone.radius[0], among.radius[0])
+    assert alone.step == among.step and alone.interfaces == among.interfaces
+    assert not np.array_equal(among.radius[0], among.radius[1])
+
+
+def test_a_step_past_the_limit_is_refused(tmp_path):
+    with pytest.raises(LabError, match=r"run\.step: .*past the limit.*force_step"):
+        run_preset("tilting/quick", SMALL | {"run": {"step": "1 ms", "force_step": False}}, tmp_path / "x", quiet=True)
+
+
+def test_a_run_the_watch_stops_keeps_its_recording_and_says_why(tmp_path):
+    wild = SMALL | {"run": {"repeats": 1, "step": "2 ms", "force_step": True}}
+    with pytest.raises(BadState, match="world 0"):
+        run_preset("tilting/quick", wild, tmp_path / "wild", video=False, quiet=True)
+    with open_recording(tmp_path / "wild") as recording:
+        assert recording.status.startswith("stopped: world 0")
+
+
+def test_explain_names_step_limit_parts_and_cost():
+    text = explain(load("tilting/quick", SMALL))
+    for words in ("1/", "of the Hertz collision", "haff-werner", "Coriolis", "memory", "about"):
+        assert words in text
