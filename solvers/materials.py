@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import Annotated
 
 from solvers.quantity import Interval, Unit
+from solvers.restitution import dissipative_time_for
 
 
 @dataclass(frozen=True)
@@ -54,8 +55,6 @@ def interface(grain: Material, other: Material, mass: float, radius: float, scal
     `scale` multiplies Young's moduli; the dissipative time then grows by scale^(−2/5), so that every collision keeps
     its restitution (x = β v^(1/5) is unchanged).
     """
-    from solvers.laws.hertz_viscoelastic import dissipative_time_for
-
     young = effective_young(grain, other)
     if other.restitution is not None:
         stiffness = 4.0 / 3.0 * young * radius**0.5

@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 from scenes import box, material
 from scipy.integrate import solve_ivp
 
-from solvers.laws.hertz_viscoelastic import dissipative_time_for, restitution
 from solvers.materials import Material, effective_shear, effective_young, interface
 from solvers.quantity import Interval
+from solvers.restitution import dissipative_time_for, restitution
 from solvers.scene import Scene
 
 MASS, RADIUS = 1e-5, 7.5e-4

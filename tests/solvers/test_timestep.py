@@ -113,7 +113,7 @@ def test_a_soft_wall_is_no_excuse_and_a_hard_one_counts():
 
 def test_damping_is_the_x_of_the_law():
     """x = β v^(1/5) gives back the restitution's own x at its own speed, and grows as v^(1/5) elsewhere."""
-    from solvers.laws.hertz_viscoelastic import restitution
+    from solvers.restitution import restitution
 
     made = scene(restitution=0.7)
     mass = 4.0 / 3.0 * pi * 1.5e-3**3 * 1319.0 / 2.0
