@@ -23,6 +23,7 @@ class Progress:
         )
         self.bar = Bar(*columns, console=self.console, disable=not self.live)
         self.task = None
+        self.warnings: list[str] = []
 
     def __enter__(self) -> "Progress":
         self.bar.start()
@@ -52,5 +53,6 @@ class Progress:
             self.bar.update(self.task, completed=task.total)
 
     def warn(self, sentence: str) -> None:
-        """A sentence a person should read."""
-        self.console.print(f"note: {sentence}")
+        """A sentence a person should read, now and in the summary."""
+        self.warnings.append(sentence)
+        self.console.print(f"note: {sentence}", soft_wrap=True)

@@ -88,7 +88,7 @@ def _settle(simulation: Simulation, preset, progress: Progress) -> None:
     rests = simulation.settle(preset.run.rest, preset.run.settle_limit, progress.reach)
     if not rests:
         limit = preset.run.settle_limit
-        progress.warn(f"the grains still move after {limit:g} s of settling; raise run.settle_limit or run.rest.")
+        progress.warn(f"The grains still moved after {limit:g} s of settling; raise run.settle_limit or run.rest.")
     progress.finish()
 
 
@@ -134,8 +134,8 @@ def _report(folder: Path, video: bool, progress: Progress) -> Result:
         files = {"recording": recording.path, **write_plots(recording, measures, folder)}
         if video:
             files["video"] = _film(folder, progress)
-        write_summary(recording, measures, files, folder)
-        return Result(folder, measures, terminal_summary(recording, measures, files))
+        write_summary(recording, measures, files, folder, progress.warnings)
+        return Result(folder, measures, terminal_summary(recording, measures, files, progress.warnings))
 
 
 def _film(folder: Path, progress: Progress) -> Path:

@@ -80,3 +80,9 @@ def test_explain_names_step_limit_parts_and_cost():
     text = explain(load("tilting/quick", SMALL))
     for words in ("1/", "of the Hertz collision", "haff-werner", "Coriolis", "memory", "about"):
         assert words in text
+
+
+def test_a_bed_that_has_not_settled_is_said_in_the_summary(tmp_path):
+    restless = SMALL | {"run": {"repeats": 1, "settle_limit": "0.01 s", "duration": "0.05 s"}}
+    result = run_preset("tilting/quick", restless, tmp_path / "restless", video=False, quiet=True)
+    assert "still moved after 0.01 s" in (result.folder / "summary.md").read_text()
