@@ -2,8 +2,11 @@
 
 import taichi as ti
 
+from solvers.grains import Grains
 from solvers.laws.chosen import PAIR, WALL, ChosenLaws
-from solvers.neighbours import LANES
+from solvers.neighbours import Neighbours
+from solvers.units import Units
+from solvers.walls import Walls
 
 
 @ti.data_oriented
@@ -15,82 +18,117 @@ class Contacts:
     is exact. (Spandonidis 2016, eq. 4.7, takes whole radii.) A wall's takes half the overlap.
     """
 
-    def __init__(self, laws: ChosenLaws):
-        self.laws = laws
+    def __init__(self, units: Units, grains: Grains, walls: Walls, lists: Neighbours, laws: ChosenLaws):
+        self.units, self.grains, self.walls, self.lists, self.laws = units, grains, walls, lists, laws
 
     @ti.func
-    def pair_forces(self, g: ti.template(), pairs: ti.template(), w, dt):
-        """Forces between the grains g, a block of LANES pairs at a time.
+    def forces(self, u, t, dt):
+        """Add up the forces on the grains of a unit at time t (s)."""
+        self.pair_forces(self.grains, self.lists.pairs, u, dt)
+        self.wall_forces(self.grains, self.lists.contacts, u, t, dt)
+
+    @ti.func
+    def pair_forces(self, g: ti.template(), pairs: ti.template(), u, dt):
+        """Forces between the grains g, a block of pairs at a time.
 
         Straight-line arithmetic on short vectors: the compiler turns it into SIMD instructions, and pairs that do not
         touch come out with zero overlap, force and memory. Gathering and scattering grains stays scalar.
         """
-        for block in range(pairs.blocks(w)):
-            i, j = pairs.grain[w, block], pairs.mate[w, block]
-            dy, dz = lanes(g.y, w, i) - lanes(g.y, w, j), lanes(g.z, w, i) - lanes(g.z, w, j)
-            reach, share = pairs.reach[w, block], pairs.share[w, block]
-            distance = ti.sqrt(dy * dy + dz * dz)
-            inverse = 1.0 / distance
-            ny, nz = dy * inverse, dz * inverse
-            overlap = ti.max(reach - distance, 0.0)
-            uy = lanes(g.now_y, w, i) - lanes(g.now_y, w, j)
-            uz = lanes(g.now_z, w, i) - lanes(g.now_z, w, j)
+        w = self.units.world(u)
+        for block in range(pairs.blocks(u)):
+            i, j = pairs.grain[u, block], pairs.mate[u, block]
+            reach, share = pairs.reach[u, block], pairs.share[u, block]
+            ny, nz, distance, overlap = self.geometry(g, w, i, j, reach, pairs.lanes)
+            uy = gathered(g.now_y, w, i, pairs.lanes) - gathered(g.now_y, w, j, pairs.lanes)
+            uz = gathered(g.now_z, w, i, pairs.lanes) - gathered(g.now_z, w, j, pairs.lanes)
+            spin_i, spin_j = gathered(g.spin_now, w, i, pairs.lanes), gathered(g.spin_now, w, j, pairs.lanes)
             lever_i = share * (reach + overlap) - overlap
             lever_j = distance - lever_i
             rate = -(uy * ny + uz * nz)
-            turning = lever_i * lanes(g.spin_now, w, i) + lever_j * lanes(g.spin_now, w, j)
-            slip = uz * ny - uy * nz - turning
-            fn, ft = self.laws.forces(PAIR, pairs, w, block, overlap, rate, slip, dt)
+            slip = uz * ny - uy * nz - (lever_i * spin_i + lever_j * spin_j)
+            fn, ft, roll = self.laws.forces(PAIR, pairs, u, block, overlap, rate, slip, spin_i - spin_j, dt)
             fy, fz = fn * ny - ft * nz, fn * nz + ft * ny
-            turn_i, turn_j = -lever_i * ft, -lever_j * ft
-            for k in ti.static(range(LANES)):
+            turn_i = roll - lever_i * ft
+            for k in ti.static(range(pairs.lanes)):
                 g.push(w, i[k], fy[k], fz[k], turn_i[k])
-                g.push(w, j[k], -fy[k], -fz[k], turn_j[k])
+            if ti.static(not self.units.single):
+                turn_j, target = -roll - lever_j * ft, pairs.target[u, block]
+                for k in ti.static(range(pairs.lanes)):
+                    g.push(w, target[k], -fy[k], -fz[k], turn_j[k])
 
     @ti.func
-    def wall_forces(self, g: ti.template(), walls: ti.template(), contacts: ti.template(), w, dt):
+    def geometry(self, g: ti.template(), w, i, j, reach, count: ti.template()):
+        """Normals (towards the first grains), distances (m) and overlaps (m) of `count` pairs."""
+        dy = gathered(g.y, w, i, count) - gathered(g.y, w, j, count)
+        dz = gathered(g.z, w, i, count) - gathered(g.z, w, j, count)
+        if ti.static(g.mixed):
+            # The difference of squares in 64 bits: an overlap of 1e-7 m keeps all digits of the force's 32.
+            whole = ti.cast(reach, ti.f64)
+            square = dy * dy + dz * dz
+            distance = ti.sqrt(ti.cast(square, g.real))
+            inverse = 1.0 / distance
+            overlap = ti.max(ti.cast(whole * whole - square, g.real) / (reach + distance), 0.0)
+            return ti.cast(dy, g.real) * inverse, ti.cast(dz, g.real) * inverse, distance, overlap
+        else:
+            distance = ti.sqrt(dy * dy + dz * dz)
+            inverse = 1.0 / distance
+            return dy * inverse, dz * inverse, distance, ti.max(reach - distance, 0.0)
+
+    @ti.func
+    def wall_forces(self, g: ti.template(), contacts: ti.template(), u, t, dt):
         """Forces of the walls on the grains g."""
-        for p in range(contacts.length[w]):
-            i = contacts.grain[w, p][0]
-            gap = walls.gap(contacts.mate[w, p][0], g.y[w, i], g.z[w, i])
-            ny, nz, radius = gap[1], gap[2], g.radius[w, i]
-            overlap = 0.0
+        w = self.units.world(u)
+        shift = self.walls.shift(w, t)
+        for p in range(contacts.length[u]):
+            i, feature = contacts.grain[u, p][0], contacts.mate[u, p][0]
+            gap = self.walls.gap(feature, shift, g.y[w, i], g.z[w, i])
+            ny, nz, radius = ti.cast(gap[1], g.real), ti.cast(gap[2], g.real), g.radius[w, i]
+            overlap = ti.cast(0.0, g.real)
             if 0.0 < gap[0] < radius:
-                overlap = radius - gap[0]
-            uy, uz = g.now_y[w, i], g.now_z[w, i]
+                overlap = ti.cast(radius - gap[0], g.real)
+            velocity = self.walls.velocity(feature, shift)
+            uy, uz = g.now_y[w, i] - velocity[0], g.now_z[w, i] - velocity[1]
+            spin = g.spin_now[w, i]
             lever = radius - 0.5 * overlap
             rate = -(uy * ny + uz * nz)
-            slip = uz * ny - uy * nz - lever * g.spin_now[w, i]
-            fn, ft = self.laws.forces(
-                WALL, contacts, w, p, ti.Vector([overlap]), ti.Vector([rate]), ti.Vector([slip]), dt
+            slip = uz * ny - uy * nz - lever * spin
+            fn, ft, roll = self.laws.forces(
+                WALL, contacts, u, p, ti.Vector([overlap]), ti.Vector([rate]), ti.Vector([slip]), ti.Vector([spin]), dt
             )
             fy, fz = fn[0] * ny - ft[0] * nz, fn[0] * nz + ft[0] * ny
-            g.push(w, i, fy, fz, -lever * ft[0])
+            g.push(w, i, fy, fz, roll[0] - lever * ft[0])
 
     @ti.func
-    def census(self, g: ti.template(), walls: ti.template(), lists: ti.template(), w):
-        """Number of touching contacts, largest overlap in radii of the smaller grain, elastic energy (J)."""
-        touching, deepest, energy = 0.0, 0.0, 0.0
-        for p in range(lists.pairs.length[w]):
-            i, j = lists.pairs.first_of(w, p), lists.pairs.second_of(w, p)
+    def census(self, g: ti.template(), pairs: ti.template(), contacts: ti.template(), u, t):
+        """Number of touching contacts, largest overlap in radii of the smaller grain, elastic energy (J) of a unit.
+
+        What two units share counts half in each.
+        """
+        w, start, end = self.units.world(u), self.units.first(u), self.units.end(u)
+        zero = ti.cast(0.0, g.exact)
+        touching, deepest, energy = zero, zero, zero
+        for p in range(pairs.length[u]):
+            i, j = pairs.first_of(u, p), pairs.second_of(u, p)
             dy, dz = g.y[w, i] - g.y[w, j], g.z[w, i] - g.z[w, j]
-            overlap = g.radius[w, i] + g.radius[w, j] - ti.sqrt(dy * dy + dz * dz)
+            overlap = ti.cast(g.radius[w, i] + g.radius[w, j] - ti.sqrt(dy * dy + dz * dz), g.real)
             if overlap > 0.0:
-                touching += 1.0
+                part = ti.select(start <= j < end or j >= g.mobile, 1.0, 0.5)
+                touching += part
                 deepest = ti.max(deepest, overlap / ti.min(g.radius[w, i], g.radius[w, j]))
-                energy += self.laws.energy(PAIR, lists.pairs, w, p, overlap)
-        for p in range(lists.contacts.length[w]):
-            i = lists.contacts.first_of(w, p)
-            gap = walls.gap(lists.contacts.second_of(w, p), g.y[w, i], g.z[w, i])
-            overlap = g.radius[w, i] - gap[0]
+                energy += part * self.laws.energy(PAIR, pairs, u, p, overlap)
+        shift = self.walls.shift(w, t)
+        for p in range(contacts.length[u]):
+            i = contacts.first_of(u, p)
+            gap = self.walls.gap(contacts.second_of(u, p), shift, g.y[w, i], g.z[w, i])
             if 0.0 < gap[0] < g.radius[w, i]:
+                overlap = ti.cast(g.radius[w, i] - gap[0], g.real)
                 touching += 1.0
                 deepest = ti.max(deepest, overlap / g.radius[w, i])
-                energy += self.laws.energy(WALL, lists.contacts, w, p, overlap)
+                energy += self.laws.energy(WALL, contacts, u, p, overlap)
         return ti.Vector([touching, deepest, energy])
 
 
 @ti.func
-def lanes(field: ti.template(), w, index):
-    """The values of a grain field for LANES grains."""
-    return ti.Vector([field[w, index[k]] for k in ti.static(range(LANES))])
+def gathered(field: ti.template(), w, index, count: ti.template()):
+    """The values of a grain field for `count` grains."""
+    return ti.Vector([field[w, index[k]] for k in ti.static(range(count))])

@@ -34,25 +34,27 @@ class Frame:
     """
 
     def __init__(self, arrays: Arrays, motions: Sequence[Sequence], soft_start: float, gravity: float):
+        self.exact, self.real = arrays.exact, arrays.real
         self.kinds = tuple(motions[0])
         rows = [[[*_centre(m), *m.parameters(soft_start)] for m in world] for world in motions]
         sizes = [len(p) for p in rows[0]]
         self.first = tuple(int(k) for k in np.cumsum([0, *sizes])[:-1])
         self.rotating = any(m.coordinate == "turn" for m in self.kinds)
         self.moving = bool(self.kinds)
-        self.gravity = arrays.holding(np.array([gravity]))
+        self.gravity = arrays.holding(np.array([gravity]), arrays.exact)
         table = np.array([[value for p in row for value in p] for row in rows]).reshape(len(rows), -1)
-        self.table = arrays.holding(table if table.size else np.zeros((len(rows), 1)))
+        self.table = arrays.holding(table if table.size else np.zeros((len(rows), 1)), arrays.exact)
 
     @ti.func
-    def kinematics(self, w, t):
-        """Pose (Y, Z, φ) of the frame's origin at time t, its velocity and its acceleration in the earth frame.
+    def kinematics(self, w, time):
+        """Pose (Y, Z, φ) of the frame's origin at a time (s), its velocity and its acceleration in the earth frame.
 
         Composition of motions by relative kinematics: turning by θ about the earth point c takes p to c + R(p − c), v
         to Rv + θ̇ × (p' − c) and a to Ra + 2 θ̇ × Rv + θ̈ × (p' − c) − θ̇²(p' − c).
         """
-        p, v, a = ti.Vector([0.0, 0.0]), ti.Vector([0.0, 0.0]), ti.Vector([0.0, 0.0])
-        turn = ti.Vector([0.0, 0.0, 0.0])
+        t, zero = ti.cast(time, self.exact), ti.cast(0.0, self.exact)
+        p, v, a = ti.Vector([zero, zero]), ti.Vector([zero, zero]), ti.Vector([zero, zero])
+        turn = ti.Vector([zero, zero, zero])
         for k in ti.static(range(len(self.kinds))):
             first = self.first[k]
             q = self.kinds[k].state(self.table, w, first + 2, t)
@@ -83,9 +85,10 @@ class Frame:
     @ti.func
     def body_force(self, w, t):
         """What every grain feels per unit mass in the tank's frame: (b_y, b_z, φ̇, φ̈) with b = R(−φ)(g − P̈)."""
-        force = ti.Vector([0.0, -self.gravity[0], 0.0, 0.0])
+        zero = ti.cast(0.0, self.exact)
+        force = ti.Vector([zero, -self.gravity[0], zero, zero])
         if ti.static(self.moving):
             s = self.kinematics(w, t)
             b = turned(-s[6], -self.gravity[0] - s[7], -s[2])
             force = ti.Vector([b[0], b[1], s[5], s[8]])
-        return force
+        return ti.cast(force, self.real)

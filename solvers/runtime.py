@@ -4,14 +4,37 @@ Taichi 1.7.4 silently miscompiles reads of a local vector's element after the ve
 8744); switching its control-flow-graph optimisation off cures it. Every kernel of the lab relies on this module.
 """
 
+import ctypes
 import os
+import sys
 from contextlib import redirect_stdout
+from dataclasses import dataclass
+from glob import glob
 from io import StringIO
 
 import numpy as np
 import taichi as ti
 
-_threads: int | None = None
+from solvers.errors import Unavailable
+
+ARCHES = ("auto", "cpu", "cuda", "vulkan")
+
+
+@dataclass(frozen=True)
+class Precision:
+    """Kinds of numbers: of places (m) and times, and of all the rest."""
+
+    place: object
+    real: object
+
+
+PRECISIONS = {
+    "f64": Precision(ti.f64, ti.f64),
+    "mixed": Precision(ti.f64, ti.f32),
+    "f32": Precision(ti.f32, ti.f32),
+}
+
+_running: tuple | None = None
 _starts = 0
 
 
@@ -20,99 +43,151 @@ def available_cores() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def initialise(threads: int = 0, **options) -> None:
-    """Start Taichi on the CPU with `threads` threads (0: all cores); nothing happens if it runs like that already.
+def choose_arch(wanted: str, precision: str) -> str:
+    """What "auto" stands for here: CUDA, else a real Vulkan GPU, else the CPU; else what is wanted, if it is there.
 
-    Starting it anew invalidates every field and kernel made before.
+    Taichi's Vulkan has no 64-bit functions, so it is for f32 alone; one that runs in software is 5 to 8 times slower
+    than the CPU, so it is used on request only. Raises Unavailable, one sentence.
     """
-    global _threads, _starts
-    wanted = threads or available_cores()
-    if _threads == wanted and not options:
+    if wanted == "auto":
+        if _cuda():
+            return "cuda"
+        return "vulkan" if precision == "f32" and _real_vulkan() else "cpu"
+    if wanted == "cuda" and not _cuda():
+        raise Unavailable("run.arch: there is no CUDA device here; use cpu or auto.")
+    if wanted == "vulkan":
+        if precision != "f32":
+            raise Unavailable('run.arch: vulkan computes in 32 bits only; set run.precision = "f32", or use cpu.')
+        if not ti._lib.core.with_vulkan():
+            raise Unavailable("run.arch: there is no Vulkan driver here; use cpu or auto.")
+    return wanted
+
+
+def _cuda() -> bool:
+    """Whether there is a CUDA driver; asked here first, since Taichi grumbles where there is none."""
+    try:
+        ctypes.CDLL("nvcuda.dll" if sys.platform == "win32" else "libcuda.so.1")
+    except OSError:
+        return False
+    return bool(ti._lib.core.with_cuda())
+
+
+def _real_vulkan() -> bool:
+    """Whether there is Vulkan and a graphics device behind it."""
+    device = not sys.platform.startswith("linux") or bool(glob("/dev/dri/renderD*"))
+    return device and bool(ti._lib.core.with_vulkan())
+
+
+def initialise(threads: int = 0, arch: str = "cpu", precision: str = "f64", **options) -> None:
+    """Start Taichi with `threads` threads (0: all cores); nothing happens if it runs like that already.
+
+    Starting it anew invalidates every field and kernel made before. Raises Unavailable (see `choose_arch`).
+    """
+    global _running, _starts
+    wanted = (threads or available_cores(), choose_arch(arch, precision), PRECISIONS[precision].real)
+    if _running == wanted and not options:
         return
     with redirect_stdout(StringIO()):  # Taichi announces its backend, and has no switch for it
-        _start(wanted, options)
-    _threads = None if options else wanted
+        _start(*wanted, options)
+    _running = None if options else wanted
     _starts += 1
 
 
-def _start(threads: int, options: dict) -> None:
+def _start(threads: int, arch: str, real, options: dict) -> None:
     ti.init(
-        arch=ti.cpu,
-        default_fp=ti.f64,
+        arch=getattr(ti, arch),
+        default_fp=real,
         cpu_max_num_threads=threads,
         cfg_optimization=False,
-        log_level=ti.WARN,
+        # In 32 bits Taichi warns of every place where a 64-bit time or position is meant to lose digits.
+        log_level=ti.WARN if real is ti.f64 else ti.ERROR,
         offline_cache=True,
         **options,
     )
 
 
-@ti.data_oriented
+def running_arch() -> str:
+    """The arch Taichi runs on, "cpu", "cuda" or "vulkan"."""
+    return _running[1] if _running else "cpu"
+
+
 class Arrays:
     """Fields of one simulation, in one Taichi field tree.
 
     One tree, since each tree a kernel touches costs it a pointer to reload in the inner loops (three times slower
     with a tree a field), and since Taichi holds at most 512 trees and frees none by itself. Fields are declared
-    first, then `finish` makes and fills them; the last index is contiguous.
+    first, then `finish` makes and fills them; the last index is contiguous, or with `across` the first.
     """
 
-    def __init__(self):
+    def __init__(self, precision: str = "f64"):
+        kinds = PRECISIONS[precision]
+        self.place, self.real = kinds.place, kinds.real
+        # Sums and times deserve 64 bits whatever the grains have, where the device can.
+        self.exact = ti.f32 if running_arch() == "vulkan" else ti.f64
         self._builder = ti.FieldsBuilder()
         self._fields: list[ti.Field] = []
         self._contents: list[tuple[ti.Field, np.ndarray]] = []
         self._tree = None
         self._born = _starts
 
-    def reals(self, count: int, shape: tuple[int, ...]) -> list[ti.Field]:
-        """`count` fields of 64-bit floats."""
-        return [self._placed(ti.field(ti.f64), shape) for _ in range(count)]
+    def reals(self, count: int, shape: tuple[int, ...], kind=None) -> list[ti.Field]:
+        """`count` fields of floats: of the reals' kind, or of another, such as `self.place`."""
+        return [self._placed(ti.field(kind or self.real), shape) for _ in range(count)]
 
-    def integers(self, count: int, shape: tuple[int, ...]) -> list[ti.Field]:
+    def integers(self, count: int, shape: tuple[int, ...], across: bool = False) -> list[ti.Field]:
         """`count` fields of 32-bit integers."""
-        return [self._placed(ti.field(ti.i32), shape) for _ in range(count)]
+        return [self._placed(ti.field(ti.i32), shape, across) for _ in range(count)]
 
-    def vectors(self, count: int, size: int, shape: tuple[int, ...]) -> list[ti.Field]:
-        """`count` fields of vectors of `size` 64-bit floats."""
-        return [self._placed(ti.Vector.field(size, ti.f64), shape) for _ in range(count)]
+    def vectors(self, count: int, size: int, shape: tuple[int, ...], across: bool = False) -> list[ti.Field]:
+        """`count` fields of vectors of `size` reals."""
+        return [self._placed(ti.Vector.field(size, self.real), shape, across) for _ in range(count)]
 
-    def integer_vectors(self, count: int, size: int, shape: tuple[int, ...]) -> list[ti.Field]:
+    def integer_vectors(self, count: int, size: int, shape: tuple[int, ...], across: bool = False) -> list[ti.Field]:
         """`count` fields of vectors of `size` 32-bit integers."""
-        return [self._placed(ti.Vector.field(size, ti.i32), shape) for _ in range(count)]
+        return [self._placed(ti.Vector.field(size, ti.i32), shape, across) for _ in range(count)]
 
-    def holding(self, values: np.ndarray) -> ti.Field:
-        """A field of 64-bit floats that starts with these values."""
-        field = self._placed(ti.field(ti.f64), values.shape)
+    def holding(self, values: np.ndarray, kind=None) -> ti.Field:
+        """A field of floats that starts with these values."""
+        field = self._placed(ti.field(kind or self.real), values.shape)
         self._contents.append((field, np.ascontiguousarray(values, dtype=np.float64)))
         return field
 
-    def _placed(self, field: ti.Field, shape: tuple[int, ...]) -> ti.Field:
-        axes = (ti.i, ti.ij, ti.ijk)[len(shape) - 1]
-        self._builder.dense(axes, shape).place(field)
+    def _placed(self, field: ti.Field, shape: tuple[int, ...], across: bool = False) -> ti.Field:
+        if across:
+            self._builder.dense(ti.j, shape[1]).dense(ti.i, shape[0]).place(field)
+        else:
+            self._builder.dense((ti.i, ti.ij, ti.ijk)[len(shape) - 1], shape).place(field)
         self._fields.append(field)
         return field
 
     def finish(self) -> None:
         """Make the declared fields, zero but for what they are to hold."""
         self._tree = self._builder.finalize()
-        self._count = len(self._fields)
         for field, values in self._contents:
-            field.from_numpy(values)
+            field.from_numpy(values.astype(np.float32) if field.dtype == ti.f32 else values)
         self._contents = []
 
     @property
     def bytes(self) -> int:
         """Memory of the declared fields."""
-        return sum(int(np.prod(f.shape)) * getattr(f, "n", 1) * (4 if f.dtype == ti.i32 else 8) for f in self._fields)
+        sizes = {ti.i32: 4, ti.f32: 4, ti.f64: 8}
+        return sum(int(np.prod(f.shape)) * getattr(f, "n", 1) * sizes[f.dtype] for f in self._fields)
+
+    def read(self) -> dict[str, np.ndarray]:
+        """All there is in the fields, by their numbers."""
+        return {f"{k:03}": field.to_numpy() for k, field in enumerate(self._fields)}
+
+    def write(self, contents: dict[str, np.ndarray]) -> None:
+        """Put back what `read` gave from the same declarations."""
+        for k, field in enumerate(self._fields):
+            field.from_numpy(np.ascontiguousarray(contents[f"{k:03}"]))
 
     def take_over(self, smaller: "Arrays") -> None:
         """Copy what the same declarations hold in arrays of smaller or equal shapes."""
-        self._copy(smaller)
-
-    @ti.kernel
-    def _copy(self, smaller: ti.template()):
-        for k in ti.static(range(self._count)):
-            for place in ti.grouped(smaller._fields[k]):
-                self._fields[k][place] = smaller._fields[k][place]
+        for field, old in zip(self._fields, smaller._fields, strict=True):
+            contents, held = field.to_numpy(), old.to_numpy()
+            contents[tuple(slice(size) for size in held.shape)] = held
+            field.from_numpy(contents)
 
     def release(self) -> None:
         """Give the memory back; the fields must not be used after it."""

@@ -1,12 +1,13 @@
 """A scene: everything the solver has to know of an experiment, in SI units."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from solvers.laws import NORMAL, TANGENTIAL
 from solvers.materials import Interface, Material, interface
+from solvers.parts import Part
 from solvers.timestep import Limit, limits
 
 
@@ -14,18 +15,22 @@ from solvers.timestep import Limit, limits
 class Scene:
     """A batch of W worlds of n grains in equal tanks.
 
-    `radius` (W, n) m; `outline` (m, 2) m, counter-clockwise; `motions[w]` the tank's motions in world w, the same
-    kinds in every world; `step` Δt in s, or None for the derived one; `start_speed` (m/s) of the fastest grain at the
-    start; `sizes` the smallest and largest radius (m) a world may hold. What is derived for all worlds follows from
-    `sizes`, so that a world does not depend on its company; it defaults to the range of `radius`.
+    `radius` (W, n) m; `outline` (m, 2) m, counter-clockwise; `grain`, `wall` materials, one or one a world;
+    `motions[w]` the tank's motions in world w, the same kinds in every world; `step` Δt in s, or None for the
+    derived one; `start_speed` (m/s) of the fastest grain at the start; `sizes` the smallest and largest radius (m) a
+    world may hold. What is derived for all worlds follows from `sizes`, so that a world does not depend on its company;
+    it defaults to the range of `radius`. `velocity` (W, n, 2) m/s and `spin` (W, n) rad/s at the start, or None: at
+    rest. `fixed` (k, 3) y, z and radius in m of grains that never move; `open_edges` the edges of the outline without
+    a wall, by their first corners; `parts` plates that move in the tank.
     """
 
     radius: np.ndarray
     outline: np.ndarray
-    grain: Material
-    wall: Material
+    grain: Material | Sequence[Material]
+    wall: Material | Sequence[Material]
     normal: str = "hertz-viscoelastic"
     tangential: str = "haff-werner"
+    rolling: str = "none"
     stiffness_scale: float = 1.0
     gravity: float = 9.81
     motions: Sequence[Sequence] = ()
@@ -33,21 +38,48 @@ class Scene:
     step: float | None = None
     start_speed: float = 0.0
     sizes: tuple[float, float] | None = None
-    interfaces: tuple[Interface, Interface] = field(init=False)
+    velocity: np.ndarray | None = None
+    spin: np.ndarray | None = None
+    fixed: np.ndarray = field(default_factory=lambda: np.zeros((0, 3)))
+    open_edges: tuple[int, ...] = ()
+    parts: tuple[Part, ...] = ()
+    integrator: str = "verlet"
+    precision: str = "f64"
+    schedule: str = "auto"
+    interfaces_of: list[tuple[Interface, Interface]] = field(init=False)  # (pair, wall) of each world
 
     def __post_init__(self):
         self.radius = np.atleast_2d(np.asarray(self.radius, dtype=np.float64))
         self.outline = np.asarray(self.outline, dtype=np.float64)
+        self.fixed = np.asarray(self.fixed, dtype=np.float64).reshape(-1, 3)
+        self.grain, self.wall = self._a_world(self.grain), self._a_world(self.wall)
         if not len(self.motions):
-            self.motions = [()] * len(self.radius)
+            self.motions = [()] * self.worlds
         if self.sizes is None:
             self.sizes = float(self.radius.min()), float(self.radius.max())
+        self.interfaces_of = [self._interfaces(*materials) for materials in zip(self.grain, self.wall, strict=True)]
+
+    def _a_world(self, material: Material | Sequence[Material]) -> tuple[Material, ...]:
+        return (material,) * self.worlds if isinstance(material, Material) else tuple(material)
+
+    def _interfaces(self, grain: Material, wall: Material) -> tuple[Interface, Interface]:
+        """Between two grains, and between a grain and a wall."""
         mean = self.mean_radius
-        mass = 4.0 / 3.0 * np.pi * mean**3 * self.grain.density
-        self.interfaces = (
-            interface(self.grain, self.grain, mass / 2.0, mean / 2.0, self.stiffness_scale),
-            interface(self.grain, self.wall, mass, mean, self.stiffness_scale),
+        mass = 4.0 / 3.0 * np.pi * mean**3 * grain.density
+        return (
+            interface(grain, grain, mass / 2.0, mean / 2.0, self.stiffness_scale),
+            interface(grain, wall, mass, mean, self.stiffness_scale),
         )
+
+    @property
+    def interfaces(self) -> tuple[Interface, Interface]:
+        """Between two grains, and between a grain and a wall, in the first world."""
+        return self.interfaces_of[0]
+
+    @property
+    def worlds(self) -> int:
+        """W."""
+        return len(self.radius)
 
     @property
     def mean_radius(self) -> float:
@@ -63,6 +95,7 @@ class Scene:
         """Highest speed (m/s) at which grains may be expected to meet: a fall through the tank, and the tank's own."""
         height = np.ptp(self.outline[:, 1])
         speed = max(self.start_speed, float(np.sqrt(2.0 * self.gravity * height)))
+        speed = max([speed, *(part.fastest() for part in self.parts)])
         for motion in (m for world in self.motions for m in world):
             fastest = motion.fastest(self.soft_start)
             lever = 1.0
@@ -74,8 +107,40 @@ class Scene:
     def step_limits(self) -> list[Limit]:
         """Bounds on the step, the tightest first."""
         speed = max(self.credible_speed(), 1e-3)
-        return limits(self.sizes[0], self.grain, self.interfaces, self.stiffness_scale, speed)
+        found: dict[tuple, list[Limit]] = {}
+        for grain, interfaces in zip(self.grain, self.interfaces_of, strict=True):
+            if (grain, interfaces) not in found:
+                found[grain, interfaces] = limits(self.sizes[0], grain, interfaces, self.stiffness_scale, speed)
+        return min(found.values(), key=lambda bounds: bounds[0].step)
 
     def time_step(self) -> float:
         """The step Δt (s) in use."""
         return self.step or self.step_limits()[0].step
+
+    def shared(self) -> tuple:
+        """All that must be equal for worlds of two scenes to run in one launch; the steps must be set."""
+        lengths = [table.tobytes() for table in (self.outline, self.fixed)]
+        kinds = tuple(
+            (type(motion), len(motion.parameters(self.soft_start)), motion.coordinate) for motion in self.motions[0]
+        )
+        words = self.normal, self.tangential, self.rolling, self.integrator, self.precision, self.schedule
+        numbers = self.radius.shape[1], self.gravity, self.soft_start, self.step, self.sizes, self.stiffness_scale
+        return (*lengths, kinds, *words, *numbers, self.open_edges, self.parts, self.velocity is None)
+
+    @classmethod
+    def joined(cls, scenes: "Sequence[Scene]") -> "Scene":
+        """One scene of the worlds of all, whose `shared()` must be equal."""
+        first = scenes[0]
+        if any(scene.shared() != first.shared() for scene in scenes):
+            raise ValueError("these scenes cannot run in one launch")
+        started = first.velocity is not None
+        return replace(
+            first,
+            radius=np.concatenate([scene.radius for scene in scenes]),
+            grain=[material for scene in scenes for material in scene.grain],
+            wall=[material for scene in scenes for material in scene.wall],
+            motions=[motions for scene in scenes for motions in scene.motions],
+            start_speed=max(scene.start_speed for scene in scenes),
+            velocity=np.concatenate([scene.velocity for scene in scenes]) if started else None,
+            spin=np.concatenate([scene.spin for scene in scenes]) if started else None,
+        )

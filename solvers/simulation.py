@@ -3,67 +3,98 @@
 from collections.abc import Callable
 
 import numpy as np
-import taichi as ti
 
 from solvers import runtime, watch
+from solvers.clock import Clock
 from solvers.contacts import Contacts
 from solvers.frame import Frame
 from solvers.grains import Grains
+from solvers.integrators import INTEGRATORS
 from solvers.laws.chosen import ChosenLaws
+from solvers.mover import Mover
 from solvers.neighbours import Neighbours
 from solvers.observe import Observer
-from solvers.per_world import PerWorld
 from solvers.runtime import Arrays
 from solvers.scene import Scene
+from solvers.schedules import SCHEDULES, choose_schedule, units_a_world
+from solvers.schedules.engine import Engine
+from solvers.units import Units
 from solvers.walls import Walls
 
 SKIN = 0.05  # of the mean diameter; in settled and in shaken beds the fastest of 0.05 … 0.3
 AT_REST = -1e9  # a time long before any motion starts
-
-
-@ti.data_oriented
-class Clock:
-    """Where each world stands: steps done, status of the watch, whether it has had its first kick."""
-
-    def __init__(self, arrays: Arrays, worlds: int):
-        self.step, self.status = arrays.integers(2, (worlds,))
-        self.kicked = arrays.integers(1, (worlds,))[0]
+LOAD = ("wall_y", "wall_z", "wall_moment")
 
 
 class Simulation:
-    """W worlds of one scene, from `position` (W, n, 2) m at rest.
+    """W worlds of one scene, from `position` (W, n, 2) m, at rest or with the scene's velocities.
 
-    `threads` 0 uses all cores; `skin` (m) of the Verlet lists affects speed alone.
+    `threads` 0 uses all cores; `arch` is one of `runtime.ARCHES`; `skin` (m) of the Verlet lists affects speed alone.
+    `units` is the number of units a world is cut into; None: as the schedule likes it here. Raises Unavailable.
     """
 
-    def __init__(self, scene: Scene, position: np.ndarray, threads: int = 0, skin: float | None = None):
-        runtime.initialise(threads)
+    def __init__(
+        self,
+        scene: Scene,
+        position: np.ndarray,
+        threads: int = 0,
+        skin: float | None = None,
+        arch: str = "auto",
+        units: int | None = None,
+    ):
+        self.threads = threads or runtime.available_cores()
+        self.arch = runtime.choose_arch(arch, scene.precision)
+        runtime.initialise(self.threads, self.arch, scene.precision)
+        worlds, count = scene.radius.shape
         self.scene, self.dt = scene, scene.time_step()
+        self.schedule_name = choose_schedule(scene.schedule, self.arch, worlds, count, self.threads)
+        self.units_a_world = units or units_a_world(self.schedule_name, worlds, count, self.threads)
         self.skin = skin or SKIN * 2.0 * scene.mean_radius
         self.steps, self.room = 0, 1
         self.origin = 0.0  # what the tank's motion takes for the time at step 0
+        self.unkicked = 0  # the step that is the grains' first
+        self.observed, self.load = 0, dict.fromkeys(LOAD, np.zeros(worlds))  # when last, and what the load was
         self._build()
-        self.grains.place(np.asarray(position, dtype=np.float64).reshape(*scene.radius.shape, 2))
+        self.place(np.asarray(position, dtype=np.float64).reshape(worlds, count, 2), scene.velocity, scene.spin)
 
     def _build(self) -> None:
         """Make the arrays and the kernels that work on them."""
-        scene, worlds = self.scene, len(self.scene.radius)
-        normal, tangential = scene.laws
-        pair, wall = scene.interfaces
-        moduli = np.tile([pair.young_modulus, wall.young_modulus], (worlds, 1))
-        self.arrays = arrays = Arrays()
-        self.grains = Grains(arrays, scene.radius, scene.grain.density)
-        self.walls = Walls(arrays, scene.outline)
-        laws = ChosenLaws(arrays, normal, tangential, [scene.interfaces] * worlds)
-        reach = 2.0 * scene.sizes[1] + self.skin
-        self.neighbours = Neighbours(arrays, self.grains, self.walls, self.skin, reach, laws, moduli, self.room)
-        self.contacts = Contacts(laws)
+        scene, worlds = self.scene, self.scene.worlds
+        self.arrays = arrays = Arrays(scene.precision)
+        count = scene.radius.shape[1]
+        units = Units(worlds, count, self.units_a_world, count + len(scene.fixed))
+        density = np.array([material.density for material in scene.grain])
+        self.grains = Grains(arrays, scene.radius, density, scene.fixed, units.ghosts, bool(scene.open_edges))
+        self.walls = Walls(arrays, scene.outline, scene.open_edges, scene.parts)
+        laws = ChosenLaws(arrays, units, *scene.laws, scene.interfaces_of)
+        moduli = np.array([[between.young_modulus for between in world] for world in scene.interfaces_of])
+        largest = max(scene.sizes[1], scene.fixed[:, 2].max(initial=0.0))
+        reach = 2.0 * largest + self.skin
+        self.neighbours = Neighbours(arrays, units, self.grains, self.walls, self.skin, reach, laws, moduli, self.room)
+        self.contacts = Contacts(units, self.grains, self.walls, self.neighbours, laws)
         self.frame = Frame(arrays, scene.motions, scene.soft_start, scene.gravity)
-        self.clock = Clock(arrays, worlds)
-        parts = self.grains, self.walls, self.neighbours, self.contacts, self.frame
-        self.schedule = PerWorld(*parts)
+        self.mover = Mover(arrays, units, self.grains, INTEGRATORS[scene.integrator](), self.frame.rotating)
+        self.clock = Clock(arrays, units)
+        engine = Engine(
+            units, self.grains, self.walls, self.neighbours, self.contacts, self.mover, self.frame, self.clock
+        )
+        self.schedule = SCHEDULES[self.schedule_name](engine, self.threads)
+        parts = units, self.grains, self.walls, self.neighbours, self.contacts, self.frame, self.mover
         self.observer = Observer(arrays, *parts)
         arrays.finish()
+
+    def place(self, position: np.ndarray, velocity: np.ndarray | None = None, spin: np.ndarray | None = None) -> None:
+        """Put the grains somewhere, (W, n, 2) m, without history: at rest, or at (W, n, 2) m/s and (W, n) rad/s."""
+        self.grains.place(position)
+        self.neighbours.forget()
+        self.launch(velocity, spin)
+
+    def launch(self, velocity: np.ndarray | None = None, spin: np.ndarray | None = None) -> None:
+        """Set the grains' velocities (W, n, 2) m/s and spins (W, n) rad/s; None is rest."""
+        velocity = np.zeros((*self.scene.radius.shape, 2)) if velocity is None else velocity
+        self.grains.launch(velocity, np.zeros(self.scene.radius.shape) if spin is None else spin)
+        self.mover.rest()
+        self.unkicked = self.steps
 
     def _make_room(self) -> None:
         """Double the room of the contact lists; what the worlds hold stays as it is."""
@@ -91,19 +122,22 @@ class Simulation:
         self.steps += steps
         fastest = watch.FASTEST_STEP * self.scene.sizes[0] / self.dt
         while True:
-            self.schedule.advance(self.clock, self.steps, self.origin, self.dt, fastest)
+            self.schedule.advance(self.steps, self.origin, self.unkicked, self.dt, fastest)
             status = self.clock.status.to_numpy()
             if not np.any(status == watch.NO_ROOM):
                 break
             self._make_room()
-            self.clock.status.from_numpy(np.where(status == watch.NO_ROOM, watch.RUNNING, status))
+            self.clock.status.from_numpy(np.where(status == watch.NO_ROOM, watch.RUNNING, status).astype(np.int32))
         if np.any(status == watch.TOO_FAST):
             watch.report_speed(status, self.grains.read()["velocity"], self.clock.step.to_numpy() * self.dt, self.dt)
 
     def observe(self) -> dict[str, np.ndarray]:
         """Numbers of every world now, each (W,), named as in `Observer.NAMES`. Raises BadState from the watch."""
-        self.observer.observe(self.origin + self.time)
-        rows = dict(zip(Observer.NAMES, self.observer.rows.to_numpy().T, strict=True))
+        self.observer.observe(self.origin + self.time, max(self.steps - self.observed, 1) * self.dt)
+        rows = dict(zip(Observer.NAMES, self.observer.rows.to_numpy().T.astype(float), strict=True))
+        if self.observed == self.steps:
+            rows |= self.load  # no time has passed to average over
+        self.observed, self.load = self.steps, {name: rows[name] for name in LOAD}
         watch.check_state(rows["overlap"], rows["escaped"].astype(int), self.time)
         return rows
 
@@ -125,17 +159,41 @@ class Simulation:
             quiet = np.where(energy < rest * scale, quiet + 1, 0)
             self.clock.status.from_numpy(np.where(quiet < 2, watch.RUNNING, watch.WAITING).astype(np.int32))
             tell(self.steps * self.dt)
-        self.origin = 0.0
-        self.steps = 0
+        self.start_clock()
+        return bool(np.all(quiet >= 2))
+
+    def start_clock(self) -> None:
+        """The tank's motion begins now, at time zero."""
+        self.unkicked -= self.steps
+        self.origin, self.steps, self.observed = 0.0, 0, 0
         self.clock.step.fill(0)
         self.clock.status.fill(watch.RUNNING)
         self.grains.angle.fill(0.0)
-        return bool(np.all(quiet >= 2))
-
-    def close(self) -> None:
-        """Give the arrays back; the simulation must not be used after it."""
-        self.arrays.release()
 
     def snapshot(self) -> dict[str, np.ndarray]:
         """Positions, velocities (W, n, 2), angles and spins (W, n) now, in the tank's frame."""
         return self.grains.read()
+
+    def part_places(self) -> np.ndarray:
+        """Displacements (W, P, 2) m of the scene's parts at the last `observe`; they are the same in every world."""
+        places = self.walls.places.to_numpy()[: len(self.scene.parts)].astype(float)
+        return np.tile(places, (self.scene.worlds, 1, 1))
+
+    def state(self) -> dict[str, np.ndarray]:
+        """All it takes to go on bit for bit, for `restore`."""
+        numbers = self.steps, self.room, self.unkicked, self.units_a_world, self.observed
+        return {"numbers": np.array(numbers), "origin": np.array(self.origin), **self.load, **self.arrays.read()}
+
+    def restore(self, state: dict[str, np.ndarray]) -> None:
+        """Become what `state` was told of, by a simulation of the same scene."""
+        self.steps, room, self.unkicked, units, self.observed = (int(number) for number in state["numbers"])
+        self.origin, self.load = float(state["origin"]), {name: np.array(state[name]) for name in LOAD}
+        if (room, units) != (self.room, self.units_a_world):
+            self.arrays.release()
+            self.room, self.units_a_world = room, units
+            self._build()
+        self.arrays.write(state)
+
+    def close(self) -> None:
+        """Give the arrays back; the simulation must not be used after it."""
+        self.arrays.release()

@@ -4,6 +4,7 @@ import numpy as np
 import taichi as ti
 
 from solvers.runtime import Arrays
+from solvers.units import Units
 
 PAIR, WALL = 0, 1
 
@@ -16,7 +17,8 @@ class ChosenLaws:
     a block is a vector of lanes.
     """
 
-    def __init__(self, arrays: Arrays, normal, tangential, interfaces):
+    def __init__(self, arrays: Arrays, units: Units, normal, tangential, interfaces):
+        self.units = units
         self.normal, self.tangential = normal, tangential
         self.normal_table = self._tabulate(arrays, normal, interfaces)
         self.tangential_table = self._tabulate(arrays, tangential, interfaces)
@@ -30,12 +32,13 @@ class ChosenLaws:
         return arrays.holding(np.array([[law.coefficients(between) for between in world] for world in interfaces]))
 
     @ti.func
-    def coefficients(self, table: ti.template(), w, kind: ti.template()):
-        """The coefficients of one law in world w."""
+    def coefficients(self, table: ti.template(), u, kind: ti.template()):
+        """The coefficients of one law in the world of unit u."""
+        w = self.units.world(u)
         return ti.Vector([table[w, kind, k] for k in ti.static(range(table.shape[2]))])
 
     @ti.func
-    def prepare(self, kind: ti.template(), contacts: ti.template(), w, block, lane, mass, dt):
+    def prepare(self, kind: ti.template(), contacts: ti.template(), w, block, lane, mass, radius, dt):
         """Work out the laws' constants of a newly listed contact, m_eff in kg, Δt in s."""
         stiffness = contacts.stiffness[w, block][lane]
         if ti.static(self.normal_constants > 0):
@@ -50,14 +53,14 @@ class ChosenLaws:
                 contacts.constants[self.normal_constants + k][w, block][lane] = values[k]
 
     @ti.func
-    def forces(self, kind: ti.template(), contacts: ti.template(), w, block, overlap, rate, slip, dt):
+    def forces(self, kind: ti.template(), contacts: ti.template(), w, block, overlap, rate, slip, turning, dt):
         """Normal and tangential forces (N) of a block of contacts, whose memory is brought up to date."""
         root = ti.sqrt(overlap)
         normal_c = self.coefficients(self.normal_table, w, kind)
         tangential_c = self.coefficients(self.tangential_table, w, kind)
         pressing = self.normal.force(normal_c, contacts, w, block, overlap, root, rate)
         shearing = self.tangential.force(tangential_c, contacts, w, block, root, pressing, slip, dt)
-        return pressing, shearing
+        return pressing, shearing, 0.0 * shearing
 
     @ti.func
     def energy(self, kind: ti.template(), contacts: ti.template(), w, p, overlap):

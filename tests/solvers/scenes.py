@@ -30,5 +30,5 @@ def simulation(position, radius, outline, grain=None, wall=None, velocity=None, 
     scene.setdefault("start_speed", float(np.abs(velocity).max()))
     radius = np.broadcast_to(radius, (worlds, count))
     made = Simulation(Scene(radius, outline, grain, wall or grain, **scene), position, threads)
-    made.grains.launch(np.array(velocity, dtype=float), np.array(spin, dtype=float))
+    made.launch(np.array(velocity, dtype=float), np.array(spin, dtype=float))
     return made

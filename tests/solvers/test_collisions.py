@@ -58,12 +58,9 @@ def test_restitution_and_duration(name, restitution):
         gap = (PHASES + 0.5) * run.dt * speed
         position = np.tile(centre, (len(PHASES), 1, 1))
         position[:, 0, 0] -= gap
-        run.neighbours.forget()
-        run.clock.kicked.fill(0)
-        run.grains.place(position)
         velocity = np.zeros_like(position)
         velocity[:, 0, 0] = speed
-        run.grains.launch(velocity, np.zeros((len(PHASES), 2)))
+        run.place(position, velocity)
         steps = int(1.5 * duration / run.dt) + 3
         run.advance(steps)
         state = run.snapshot()

@@ -27,7 +27,7 @@ def test_slip_to_roll_ends_at_five_sevenths(law):
     grain = material(friction=0.3)
     run = simulation([[[-0.3, radius]]], radius, box(2.0, 0.1), grain, tangential=law, stiffness_scale=1e-3)
     run.grains.place(np.array([[[-0.3, on_floor(run, radius)]]]))
-    run.grains.launch(np.array([[[speed, 0.0]]]), np.zeros((1, 1)))
+    run.launch(np.array([[[speed, 0.0]]]))
     sliding = 2 / 7 * speed / (0.3 * G)
     run.advance(int(0.5 * sliding / run.dt))
     state = run.snapshot()

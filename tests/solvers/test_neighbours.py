@@ -74,8 +74,7 @@ def test_lists_equal_brute_force():
     run = Simulation(Scene(radius, TANK, material(), material(), step=1e-15), position, threads=1, skin=skin)
     for shift in (0.0, 2e-3):
         moved = position + shift * rng.normal(size=position.shape)
-        run.neighbours.forget()
-        run.grains.place(moved)
+        run.place(moved)
         run.advance(1)
         for w in range(len(radius)):
             pairs, walls = listed(run.neighbours.pairs, w), listed(run.neighbours.contacts, w)
@@ -126,7 +125,7 @@ def shaken(skin: float, room: int = 1) -> Simulation:
         run.room = room
         run._build()
         run.grains.place(np.stack([stack, gas]))
-    run.grains.launch(velocity, np.zeros((2, COUNT)))
+    run.launch(velocity)
     return run
 
 
@@ -189,5 +188,6 @@ def test_room_grows_while_running_and_nothing_changes(usual):
     assert np.any(run.neighbours.pairs.length.to_numpy() > 4 * COUNT + 16)
     end = run.snapshot() | run.observe()
     run.close()
-    for name, values in usual[3].items():
+    for name in usual[3].keys() - {"wall_y", "wall_z", "wall_moment"}:  # these are means over another time
+        values = usual[3][name]
         np.testing.assert_array_equal(end[name], values, err_msg=name)

@@ -31,11 +31,12 @@ def probe(
 ):
     """Ask the walls about points (N, 2): gaps (N, features, 3), near (N, features), holds (N,)."""
     for i in range(points.shape[0]):
+        shift = walls.shift(0, 0.0)
         y, z = points[i, 0], points[i, 1]
         holds[i] = ti.cast(walls.holds(y, z), ti.i32)
         for feature in range(walls.features):
-            near[i, feature] = ti.cast(walls.near(feature, y, z, reach), ti.i32)
-            gap = walls.gap(feature, y, z)
+            near[i, feature] = ti.cast(walls.near(feature, shift, y, z, reach), ti.i32)
+            gap = walls.gap(feature, shift, y, z)
             for k in ti.static(range(3)):
                 gaps[i, feature, k] = gap[k]
 

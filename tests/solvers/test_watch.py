@@ -37,11 +37,9 @@ def start(run, **places) -> None:
     if places:
         position[2, 1] = places["grain"]
     run.steps = 0
-    for field in (run.clock.step, run.clock.status, run.clock.kicked):
+    for field in (run.clock.step, run.clock.status):
         field.fill(0)
-    run.neighbours.forget()
-    run.grains.place(position)
-    run.grains.launch(VELOCITY, np.zeros((3, 3)))
+    run.place(position, VELOCITY)
 
 
 def caught(action, *arguments) -> str:

@@ -1,0 +1,27 @@
+"""Where each world stands: steps done, and the status of the watch."""
+
+import numpy as np
+import taichi as ti
+
+from solvers.runtime import Arrays
+from solvers.units import Units
+from solvers.watch import RUNNING
+
+
+@ti.data_oriented
+class Clock:
+    """`step`, the steps of Δt done, and `status`, a word of `solvers.watch`, each (W,).
+
+    `says` (units,) and `arrived` (W,) are what bands tell each other, `fastest` and `farthest` (W,) what the
+    per-grain schedule looks up now and then: the highest speed (m/s), the longest way since the lists were built (m).
+    """
+
+    def __init__(self, arrays: Arrays, units: Units):
+        self.step, self.status, self.arrived = arrays.integers(3, (units.worlds,))
+        (self.says,) = arrays.integers(1, (units.count,))
+        self.fastest, self.farthest = arrays.reals(2, (units.worlds,))
+        self.body = arrays.reals(4, (units.worlds,))
+
+    def running(self) -> np.ndarray:
+        """Which worlds run (W,)."""
+        return self.status.to_numpy() == RUNNING

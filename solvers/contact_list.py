@@ -1,0 +1,116 @@
+"""The list of candidate contacts of each unit of work, with what the laws remember of each."""
+
+import taichi as ti
+
+from solvers.laws.chosen import ChosenLaws
+from solvers.runtime import Arrays
+from solvers.units import Units
+
+
+@ti.data_oriented
+class ContactList:
+    """Candidate contacts of one kind (grain–grain or grain–wall) of each unit u, sorted by their first grain.
+
+    Contact p stands in lane p % lanes of block p // lanes. `mate` is the other grain or the wall feature; `target` the
+    grain that takes the reaction, which is a ghost where the mate belongs to another unit. What does not change while a
+    contact is listed: `stiffness` k (N/m^1.5), `reach` (m), the distance at which the two touch, `share`, the
+    first grain's part of it, and the laws' constants. The laws' memory does change, and is zero while the two do not
+    touch. What the laws keep are fields by the names they give.
+    """
+
+    def __init__(self, arrays: Arrays, units: Units, room: int, lanes: int, laws: ChosenLaws):
+        self.units, self.lanes = units, lanes
+        blocks = -(-room // lanes)
+        self.capacity = blocks * lanes
+        shape, across = (units.count, blocks), units.single
+        (self.length,) = units.integers(arrays, 1)
+        self.grain, self.mate = arrays.integer_vectors(2, lanes, shape, across)
+        self.has_targets = not (units.whole or units.single) and lanes > 1
+        self.target = arrays.integer_vectors(1, lanes, shape)[0] if self.has_targets else self.mate
+        self.stiffness, self.reach, self.share = arrays.vectors(3, lanes, shape, across)
+        self.constants = arrays.vectors(len(laws.constants), lanes, shape, across)
+        self.memory = arrays.vectors(len(laws.memory), lanes, shape, across)
+        for name, field in zip((*laws.constants, *laws.memory), (*self.constants, *self.memory), strict=True):
+            setattr(self, name, field)
+        self.memories = len(self.memory)
+        self.first, self.old_first = arrays.integers(2, (units.count, units.size + 1), across)
+        (self.old_mate,) = arrays.integers(1, (units.count, self.capacity), across)
+        self.old_memory = arrays.vectors(self.memories, 1, (units.count, self.capacity), across)
+
+    def forget(self) -> None:
+        """Empty the list, history and all."""
+        self.length.fill(0)
+        self.first.fill(0)
+
+    @ti.func
+    def blocks(self, u):
+        """Blocks in use, the last maybe padded."""
+        return (self.length[u] + self.lanes - 1) // self.lanes
+
+    @ti.func
+    def first_of(self, u, p):
+        """The first grain of contact p."""
+        return self.grain[u, p // self.lanes][p % self.lanes]
+
+    @ti.func
+    def second_of(self, u, p):
+        """The other grain, or the wall feature, of contact p."""
+        return self.mate[u, p // self.lanes][p % self.lanes]
+
+    @ti.func
+    def set_aside(self, u):
+        """Keep the present list as the old one, for `add` to find memory in."""
+        for k in range(self.units.size + 1):
+            self.old_first[u, k] = self.first[u, k]
+        for p in range(self.length[u]):
+            block, lane = p // self.lanes, p % self.lanes
+            self.old_mate[u, p] = self.mate[u, block][lane]
+            for k in ti.static(range(self.memories)):
+                self.old_memory[k][u, p][0] = self.memory[k][u, block][lane]
+
+    @ti.func
+    def put_back(self, u):
+        """Undo a rebuild that ran out of room."""
+        start = self.units.first(u)
+        for k in range(self.units.size + 1):
+            self.first[u, k] = self.old_first[u, k]
+        for k in range(self.units.size):
+            for p in range(self.old_first[u, k], self.old_first[u, k + 1]):
+                block, lane = p // self.lanes, p % self.lanes
+                self.grain[u, block][lane] = start + k
+                self.mate[u, block][lane] = self.old_mate[u, p]
+                for m in ti.static(range(self.memories)):
+                    self.memory[m][u, block][lane] = self.old_memory[m][u, p][0]
+
+    @ti.func
+    def write(self, u, p, i, mate, target):
+        """Contact p is between grain i and its mate, and remembers nothing."""
+        block, lane = p // self.lanes, p % self.lanes
+        self.grain[u, block][lane] = i
+        self.mate[u, block][lane] = mate
+        if ti.static(self.has_targets):
+            self.target[u, block][lane] = target
+        for k in ti.static(range(self.memories)):
+            self.memory[k][u, block][lane] = 0.0
+
+    @ti.func
+    def add(self, u, p, i, mate, target, stiffness, reach, share):
+        """Write contact p with the memory it had, if any."""
+        self.write(u, p, i, mate, target)
+        block, lane = p // self.lanes, p % self.lanes
+        self.stiffness[u, block][lane] = stiffness
+        self.reach[u, block][lane] = reach
+        self.share[u, block][lane] = share
+        k = i - self.units.first(u)
+        for q in range(self.old_first[u, k], self.old_first[u, k + 1]):
+            if self.old_mate[u, q] == mate:
+                for m in ti.static(range(self.memories)):
+                    self.memory[m][u, block][lane] = self.old_memory[m][u, q][0]
+
+    @ti.func
+    def pad(self, u):
+        """Fill the last block with pairs that never touch: of the unit's first grain and a far-off ghost."""
+        i, ghost = self.units.first(u), self.units.ghost(u)
+        for p in range(self.length[u], self.blocks(u) * self.lanes):
+            self.write(u, p, i, ghost, ghost)
+            self.reach[u, p // self.lanes][p % self.lanes] = 0.0

@@ -1,0 +1,11 @@
+"""Integrators of the grains' motion, one file each; the registry names them as presets do.
+
+An integrator is a class with `extra`, the number of fields it keeps of each grain beyond position, velocity and spin,
+and a Taichi function `step` that takes one grain from the forces at its present place to its next place.
+"""
+
+from solvers.integrators.gear import Gear
+from solvers.integrators.symplectic_euler import SymplecticEuler
+from solvers.integrators.verlet import Verlet
+
+INTEGRATORS = {"verlet": Verlet, "symplectic-euler": SymplecticEuler, "gear": Gear}

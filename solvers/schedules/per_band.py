@@ -1,0 +1,127 @@
+"""The per-band schedule: the bands of a world on threads of their own, kept in step by a barrier."""
+
+import taichi as ti
+
+from solvers.schedules.engine import ITERATIONS_A_THREAD, Engine
+from solvers.watch import NO_ROOM, RUNNING, TOO_FAST
+
+FINE, STALE, FAST, FULL = range(4)  # what a band says of itself, the worst last
+
+
+@ti.data_oriented
+class PerBand:
+    """Advances worlds of several bands; each band's whole time loop is one task of the thread pool.
+
+    Bands meet twice a step: after the forces, which read what all grains do, and after the move, where they agree on
+    building the lists anew. They wait by spinning, since a wake-up takes longer than a step. With fewer threads than
+    bands one thread does them in turn. The bits depend on the number of bands and on nothing else.
+    """
+
+    def __init__(self, engine: Engine, threads: int):
+        self.units, self.neighbours, self.contacts = engine.units, engine.neighbours, engine.contacts
+        self.grains, self.mover, self.frame, self.clock = engine.grains, engine.mover, engine.frame, engine.clock
+        self.unseen, self.real, self.bands = engine.unseen, engine.grains.real, engine.units.a_world
+        self.together = threads >= engine.units.count
+
+    def advance(self, target: int, origin: float, unkicked: int, step: float, fastest: float) -> None:
+        """Take every running world to step `target`; see PerWorld."""
+        if self.together:
+            self.clock.arrived.fill(0)
+            self._advance_together(target, origin, unkicked, step, fastest)
+        else:
+            self._advance_in_turn(target, origin, unkicked, step, fastest)
+
+    @ti.kernel
+    def _advance_together(self, target: ti.i32, origin: ti.f64, unkicked: ti.i32, step: ti.f64, fastest: ti.f64):
+        for k in range(self.units.count * ITERATIONS_A_THREAD):
+            if k % ITERATIONS_A_THREAD == 0:
+                self.advance_band(k // ITERATIONS_A_THREAD, target, origin, unkicked, step, fastest)
+
+    @ti.kernel
+    def _advance_in_turn(self, target: ti.i32, origin: ti.f64, unkicked: ti.i32, step: ti.f64, fastest: ti.f64):
+        for k in range(self.grains.worlds * ITERATIONS_A_THREAD):
+            if k % ITERATIONS_A_THREAD == 0:
+                self.advance_world(k // ITERATIONS_A_THREAD, target, origin, unkicked, step, fastest)
+
+    @ti.func
+    def advance_band(self, u, target, origin, unkicked, step, fastest):
+        w, dt = self.units.world(u), ti.cast(step, self.real)
+        done, meetings, worst, says = self.clock.step[w], 0, FINE, FINE
+        running = self.clock.status[w] == RUNNING
+        while running and done < target:
+            t = origin + done * step
+            if says == FINE and self.neighbours.stale(u, t):
+                says = STALE
+            self.clock.says[u] = says
+            meetings = self.meet(w, meetings)
+            worst = self.worst(w)
+            if worst == STALE:
+                if u % self.bands == 0:
+                    self.neighbours.cells.sort_world(w)
+                meetings = self.meet(w, meetings)
+                says = FINE if self.neighbours.rebuild(u, t, dt) else FULL
+                self.clock.says[u] = says
+                meetings = self.meet(w, meetings)
+                worst = self.worst(w)
+            running = worst == FINE
+            if running:
+                self.contacts.forces(u, t, dt)
+                meetings = self.meet(w, meetings)
+                says = self.move(u, t, done == unkicked, dt, fastest)
+                done += 1
+        if u % self.bands == 0:
+            self.clock.step[w] = done
+        self.report(w, says)
+
+    @ti.func
+    def advance_world(self, w, target, origin, unkicked, step, fastest):
+        """The same on one thread, band after band."""
+        dt, first = ti.cast(step, self.real), w * self.bands
+        while self.clock.step[w] < target and self.clock.status[w] == RUNNING:
+            t, stale, worst = origin + self.clock.step[w] * step, False, FINE
+            for u in range(first, first + self.bands):
+                stale = self.neighbours.stale(u, t) or stale
+            if stale:
+                self.neighbours.cells.sort_world(w)
+                for u in range(first, first + self.bands):
+                    if not self.neighbours.rebuild(u, t, dt):
+                        worst = FULL
+            if worst == FINE:
+                for u in range(first, first + self.bands):
+                    self.contacts.forces(u, t, dt)
+                for u in range(first, first + self.bands):
+                    worst = ti.max(worst, self.move(u, t, self.clock.step[w] == unkicked, dt, fastest))
+                self.clock.step[w] = self.clock.step[w] + 1
+            self.report(w, worst)
+
+    @ti.func
+    def move(self, u, t, first, dt, fastest):
+        """Move the grains of a band; says whether they have become too fast."""
+        body = self.frame.body_force(self.units.world(u), t)
+        speed = self.mover.move(self.grains, u, body, first, dt)
+        self.neighbours.travel[u] = self.neighbours.travel[u] + (speed + self.unseen) * dt
+        return FINE if speed < fastest else FAST
+
+    @ti.func
+    def worst(self, w):
+        """The worst that a band of this world says."""
+        worst = FINE
+        for u in range(w * self.bands, (w + 1) * self.bands):
+            worst = ti.max(worst, self.clock.says[u])
+        return worst
+
+    @ti.func
+    def meet(self, w, meetings):
+        """Wait until all bands of the world are here; returns how often they have met."""
+        ti.atomic_add(self.clock.arrived[w], 1)
+        here = 0
+        while here < (meetings + 1) * self.bands:
+            here = ti.atomic_add(self.clock.arrived[w], 0)
+        return meetings + 1
+
+    @ti.func
+    def report(self, w, says):
+        if says == FAST:
+            self.clock.status[w] = TOO_FAST
+        if says == FULL:
+            self.clock.status[w] = NO_ROOM

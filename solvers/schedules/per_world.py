@@ -1,0 +1,45 @@
+"""The per-world schedule: one fused kernel, a serial time loop in each world, worlds in parallel on the cores."""
+
+import taichi as ti
+
+from solvers.schedules.engine import ITERATIONS_A_THREAD, Engine
+from solvers.watch import NO_ROOM, RUNNING, TOO_FAST
+
+
+@ti.data_oriented
+class PerWorld:
+    """Advances all worlds. What a world does depends on nothing but itself: the same bits on any number of threads."""
+
+    def __init__(self, engine: Engine, threads: int):
+        self.grains, self.neighbours, self.contacts = engine.grains, engine.neighbours, engine.contacts
+        self.mover, self.frame, self.clock = engine.mover, engine.frame, engine.clock
+        self.unseen, self.real = engine.unseen, engine.grains.real
+
+    @ti.kernel
+    def advance(self, target: ti.i32, origin: ti.f64, unkicked: ti.i32, step: ti.f64, fastest: ti.f64):
+        """Take every running world to step `target`; step k is the time origin + k·step (s).
+
+        The step `unkicked` is the grains' first; faster than `fastest` m/s is bad.
+        """
+        for k in range(self.grains.worlds * ITERATIONS_A_THREAD):
+            if k % ITERATIONS_A_THREAD == 0:
+                self.advance_world(k // ITERATIONS_A_THREAD, target, origin, unkicked, step, fastest)
+
+    @ti.func
+    def advance_world(self, w, target, origin, unkicked, step, fastest):
+        dt = ti.cast(step, self.real)
+        while self.clock.step[w] < target and self.clock.status[w] == RUNNING:
+            t, fits = origin + self.clock.step[w] * step, True
+            if self.neighbours.stale(w, t):
+                self.neighbours.cells.sort_world(w)
+                fits = self.neighbours.rebuild(w, t, dt)
+            if fits:
+                self.contacts.forces(w, t, dt)
+                body = self.frame.body_force(w, t)
+                speed = self.mover.move(self.grains, w, body, self.clock.step[w] == unkicked, dt)
+                self.neighbours.travel[w] = self.neighbours.travel[w] + (speed + self.unseen) * dt
+                self.clock.step[w] = self.clock.step[w] + 1
+                if not speed < fastest:
+                    self.clock.status[w] = TOO_FAST
+            else:
+                self.clock.status[w] = NO_ROOM
