@@ -40,7 +40,7 @@ class Cells:
         column = ti.max(0, ti.min(self.columns - 1, column))
         row = ti.max(0, ti.min(self.rows - 1, row))
         cell = row * self.columns + column
-        if ti.static(self.grains.may_leave):
+        if ti.static(self.grains.may_leave):  # noqa: SIM102 (compiled only for open tanks)
             if self.grains.present[w, i] == 0.0:
                 cell = self.cells
         return cell

@@ -69,7 +69,7 @@ class Observer:
 
     @ti.kernel
     def observe(self, time: ti.f64, since: ti.f64):
-        """Fill the rows with the state at `time` (s), which must be the grains' own, `since` (s) after the last look."""
+        """Fill the rows with the state at `time` (s), the grains' own, `since` (s) after the last look."""
         for u in range(self.units.count):
             census = self.contacts.census(self.grains, self.neighbours.pairs, self.neighbours.contacts, u, time)
             for k in ti.static(range(3)):

@@ -1,4 +1,4 @@
-"""Walls: the tank's outline, a polygon of straight segments some of which may be missing, and plates that move in it."""
+"""Walls: the tank's outline, a polygon of straight segments, some maybe missing, and plates that move in it."""
 
 from collections.abc import Sequence
 
@@ -125,7 +125,7 @@ class Walls:
         along = py * ty + pz * tz
         distance, normal_y, normal_z = py * -tz + pz * ty, -tz, ty
         if ti.static(self.corners == 0) or feature < self.segments:
-            if ti.static(self.open or self.parts > 0):
+            if ti.static(self.open or self.parts > 0):  # noqa: SIM102 (compiled only where there are plates)
                 if self.table[feature, TWO_SIDED] > 0.0 and distance < 0.0:
                     distance, normal_y, normal_z = -distance, -normal_y, -normal_z
             if along < 0.0 or along > self.table[feature, LENGTH]:

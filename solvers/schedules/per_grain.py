@@ -86,7 +86,7 @@ class PerGrain:
         """List all contacts anew."""
         for u in range(self.units.count):
             w = self.units.world(u)
-            if self.clock.status[w] != TOO_FAST:
+            if self.clock.status[w] != TOO_FAST:  # noqa: SIM102 (Taichi evaluates both sides of `and`)
                 if not self.neighbours.rebuild(u, time, ti.cast(step, self.real)):
                     self.clock.status[w] = NO_ROOM
 
