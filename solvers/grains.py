@@ -1,5 +1,7 @@
 """The grains: what is known of each of n discs in each of W worlds."""
 
+from collections.abc import Sequence
+
 import numpy as np
 import taichi as ti
 
@@ -90,6 +92,15 @@ class Grains:
             "angle": angle,
             "spin": spin,
         }
+
+    def permute(self, order: dict[int, np.ndarray], more: Sequence[ti.Field]) -> None:
+        """Put the moving grains of some worlds into another order, `order[w]` their old numbers, with `more` fields."""
+        fields = [field for field in vars(self).values() if isinstance(field, ti.Field)]
+        for field in (*fields, *more):
+            values = field.to_numpy()
+            for w, old in order.items():
+                values[w, : self.mobile] = values[w, old]
+            field.from_numpy(values)
 
     @ti.func
     def push(self, w, i, force_y, force_z, torque):

@@ -55,6 +55,10 @@ class Neighbours:
         """Drop all history, for grains that were put somewhere else."""
         self.pairs.forget()
         self.contacts.forget()
+        self.expire()
+
+    def expire(self) -> None:
+        """Have the lists built anew before the next step."""
         self.travel.fill(NEVER)
 
     @ti.func

@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from solvers import runtime, watch
+from solvers import renumber, runtime, watch
 from solvers.clock import Clock
 from solvers.contacts import Contacts
 from solvers.frame import Frame
@@ -21,6 +21,7 @@ from solvers.schedules.engine import Engine
 from solvers.units import Units
 from solvers.walls import Walls
 
+LOOK_FOR_MIXING = 0.25  # s, between looks at whether the grains' numbers still follow their places
 SKIN = 0.05  # of the mean diameter; in settled and in shaken beds the fastest of 0.05 … 0.3
 AT_REST = -1e9  # a time long before any motion starts
 LOAD = ("wall_y", "wall_z", "wall_moment")
@@ -87,6 +88,8 @@ class Simulation:
         """Put the grains somewhere, (W, n, 2) m, without history: at rest, or at (W, n, 2) m/s and (W, n) rad/s."""
         self.grains.place(position)
         self.neighbours.forget()
+        self.number = np.tile(np.arange(position.shape[1]), (len(position), 1))  # the grains' own, in solver order
+        self.ordered = position.copy()  # where they were when they got their places in the arrays
         self.launch(velocity, spin)
 
     def launch(self, velocity: np.ndarray | None = None, spin: np.ndarray | None = None) -> None:
@@ -119,6 +122,7 @@ class Simulation:
 
         Raises BadState where the watch stops a world; the state is kept as it is.
         """
+        self._keep_order(steps)
         self.steps += steps
         fastest = watch.FASTEST_STEP * self.scene.sizes[0] / self.dt
         while True:
@@ -130,6 +134,26 @@ class Simulation:
             self.clock.status.from_numpy(np.where(status == watch.NO_ROOM, watch.RUNNING, status).astype(np.int32))
         if np.any(status == watch.TOO_FAST):
             watch.report_speed(status, self.grains.read()["velocity"], self.clock.step.to_numpy() * self.dt, self.dt)
+
+    def _keep_order(self, steps: int) -> None:
+        """Number the grains of large worlds anew where they have mixed; now and then, before taking `steps`."""
+        often = max(1, round(LOOK_FOR_MIXING / self.dt))
+        if self.ordered.shape[1] < renumber.FEWEST or (self.steps + steps) // often == self.steps // often:
+            return
+        position, diameter = self.grains.read()["position"], 2.0 * self.scene.mean_radius
+        order = {
+            w: renumber.spatial_order(places, diameter)
+            for w, places in enumerate(position)
+            if renumber.has_mixed(places, self.ordered[w], diameter)
+        }
+        for w, old in order.items():
+            self.number[w], self.ordered[w] = self.number[w][old], position[w][old]
+        if order:
+            self.grains.permute(order, self.mover.extra)
+            lists, laws = self.neighbours, self.neighbours.laws
+            renumber.renumber_list(lists.pairs, lists.units, order, laws.odd, mates=True)
+            renumber.renumber_list(lists.contacts, lists.units, order, laws.odd, mates=False)
+            lists.expire()
 
     def observe(self) -> dict[str, np.ndarray]:
         """Numbers of every world now, each (W,), named as in `Observer.NAMES`. Raises BadState from the watch."""
@@ -172,7 +196,12 @@ class Simulation:
 
     def snapshot(self) -> dict[str, np.ndarray]:
         """Positions, velocities (W, n, 2), angles and spins (W, n) now, in the tank's frame."""
-        return self.grains.read()
+        worlds = np.arange(self.scene.worlds)[:, None]
+        found = {}
+        for name, values in self.grains.read().items():
+            found[name] = np.empty_like(values)
+            found[name][worlds, self.number] = values
+        return found
 
     def part_places(self) -> np.ndarray:
         """Displacements (W, P, 2) m of the scene's parts at the last `observe`; they are the same in every world."""
@@ -182,12 +211,20 @@ class Simulation:
     def state(self) -> dict[str, np.ndarray]:
         """All it takes to go on bit for bit, for `restore`."""
         numbers = self.steps, self.room, self.unkicked, self.units_a_world, self.observed
-        return {"numbers": np.array(numbers), "origin": np.array(self.origin), **self.load, **self.arrays.read()}
+        order = {"number": self.number, "ordered": self.ordered}
+        return {
+            "numbers": np.array(numbers),
+            "origin": np.array(self.origin),
+            **order,
+            **self.load,
+            **self.arrays.read(),
+        }
 
     def restore(self, state: dict[str, np.ndarray]) -> None:
         """Become what `state` was told of, by a simulation of the same scene."""
         self.steps, room, self.unkicked, units, self.observed = (int(number) for number in state["numbers"])
         self.origin, self.load = float(state["origin"]), {name: np.array(state[name]) for name in LOAD}
+        self.number, self.ordered = np.array(state["number"]), np.array(state["ordered"])
         if (room, units) != (self.room, self.units_a_world):
             self.arrays.release()
             self.room, self.units_a_world = room, units
