@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from lab.runner import Result
+    from lab.sweeps import SweepResult
 
 
 def run(
@@ -18,5 +20,34 @@ def run(
     """
     from lab.runner import run_preset
 
-    dotted = {key.replace("__", "."): value for key, value in overrides.items()}
-    return run_preset(preset, dotted, out, video=video, quiet=quiet)
+    return run_preset(preset, _dotted(overrides), out, video=video, quiet=quiet)
+
+
+def sweep(
+    preset: str,
+    axes: Mapping[str, str | Sequence],
+    out: Path | str | None = None,
+    *,
+    video: bool = True,
+    quiet: bool = False,
+    **overrides: object,
+) -> SweepResult:
+    """Run a preset at every combination of values: `lab.sweep("shaking/sway", {"motion.sway.frequency": "0.5:2:7Hz"})`.
+
+    axes: by key a range or list as a text, as `cargolab sweep` takes it, or a sequence of values; `overrides` as in
+    `run`.
+    """
+    from lab.sweeps import run_sweep
+
+    return run_sweep(preset, axes, _dotted(overrides), out, video=video, quiet=quiet)
+
+
+def resume(folder: Path | str, *, video: bool = True, quiet: bool = False) -> Result | SweepResult:
+    """Go on with the run or the sweep in a folder that was killed, interrupted or stopped, bit for bit."""
+    from lab.sweeps import resume_any
+
+    return resume_any(folder, video=video, quiet=quiet)
+
+
+def _dotted(overrides: Mapping[str, object]) -> dict[str, object]:
+    return {key.replace("__", "."): value for key, value in overrides.items()}

@@ -6,7 +6,6 @@ Exit codes: 0 done; 1 the simulation could not go on; 2 what was asked for canno
 
 import errno
 import sys
-import tomllib
 from pathlib import Path
 
 import click
@@ -33,8 +32,8 @@ class Commands(click.Group):
         except click.exceptions.NoArgsIsHelpError as error:
             error.show()
             code = 2
-        except click.Abort:  # Ctrl-C
-            code = _say("interrupted; what was written until then is kept.", 130)
+        except click.Abort as error:  # Ctrl-C
+            code = _say(str(error.__cause__ or "") or "interrupted; what was written until then is kept.", 130)
         except click.ClickException as error:
             code = _say(error.format_message(), 2)
         except LabError as error:
@@ -71,25 +70,30 @@ def _version(context: click.Context, _, asked: bool) -> None:
     context.exit()
 
 
-def _overrides(_context, _option, texts: tuple[str, ...]) -> dict[str, object]:
-    """Overrides from KEY=VALUE texts; a value that is not TOML, such as 4 mm, is taken as text."""
-    overrides = {}
+def _settings(texts: tuple[str, ...]) -> dict[str, str]:
+    """The texts of values by key, from KEY=VALUE texts."""
+    settings = {}
     for text in texts:
         key, equals, value = text.partition("=")
         if not equals or not key.strip():
             raise LabError(f"--set {text}: write it like --set grains.diameter='4 mm'.")
-        overrides[key.strip()] = _value(value.strip())
-    return overrides
+        settings[key.strip()] = value.strip()
+    return settings
 
 
-def _value(text: str) -> object:
-    try:
-        table = tomllib.loads(f"value = {text}")
-    except (ValueError, RecursionError):
-        return text
-    value = table["value"]
-    plain = len(table) == 1 and isinstance(value, bool | int | float | str | list | dict)
-    return value if plain else text
+def _overrides(_context, _option, texts: tuple[str, ...]) -> dict[str, object]:
+    """Overrides from KEY=VALUE texts; a value that is not TOML, such as 4 mm, is taken as text."""
+    if not texts:
+        return {}
+    from lab.axes import plain
+
+    return {key: plain(text) for key, text in _settings(texts).items()}
+
+
+def _shortcuts(repeats: int | None, arch: str | None) -> dict[str, object]:
+    """The overrides that have options of their own."""
+    wanted = {"run.repeats": repeats, "run.arch": arch}
+    return {key: value for key, value in wanted.items() if value is not None}
 
 
 set_option = click.option(
@@ -100,6 +104,18 @@ set_option = click.option(
     callback=_overrides,
     help="Change a key of the preset; repeat for more.",
 )
+repeats_option = click.option("--repeats", type=int, metavar="N", help="Beds, each with its own seed.")
+arch_option = click.option(
+    "--arch", type=click.Choice(["auto", "cpu", "cuda", "vulkan"]), help="What computes.  [default: as the preset says]"
+)
+quiet_option = click.option("--quiet", is_flag=True, help="Say only where the results are.")
+video_option = click.option("--no-video", is_flag=True, help="Do not paint a video.")
+
+
+def _show(result, quiet: bool) -> None:
+    if not quiet:
+        click.echo(result.summary_text)
+    click.echo(result.folder)
 
 
 @click.group(cls=Commands, context_settings={"help_option_names": ["-h", "--help"]})
@@ -118,6 +134,8 @@ def main() -> None:
     cargolab list                    what there is
     cargolab run tilting/quick       run one, with video, plot and summary
     cargolab explain tilting/quick   what it is and what it will cost
+    cargolab sweep shaking/sway ...  run one for many values of its keys
+    cargolab resume DIR              go on with a run or sweep that was cut short
     """
 
 
@@ -141,26 +159,90 @@ def list_presets() -> None:
     metavar="DIR",
     help="Folder for the results.  [default: renders/PRESET]",
 )
-@click.option("--no-video", is_flag=True, help="Do not paint a video.")
-@click.option("--quiet", is_flag=True, help="Say only where the results are.")
-def run(preset: str, overrides: dict, out: Path | None, no_video: bool, quiet: bool) -> None:
+@repeats_option
+@arch_option
+@video_option
+@quiet_option
+def run(
+    preset: str,
+    overrides: dict,
+    out: Path | None,
+    repeats: int | None,
+    arch: str | None,
+    no_video: bool,
+    quiet: bool,
+) -> None:
     """Run PRESET: a name from `cargolab list`, or your own .toml file.
 
     \b
     cargolab run tilting/quick
-    cargolab run tilting/quick --set grains.diameter="4 mm" --set run.repeats=12
+    cargolab run tilting/quick --set grains.diameter="4 mm" --repeats 12
     cargolab run shaking/roll --set motion.roll.centre='["0 mm", "0 mm"]' --out centre0
     cargolab run my.toml --no-video
     """
     from lab.presets import load
 
+    overrides |= _shortcuts(repeats, arch)
     load(preset, overrides)  # before the slow imports, so that a slip is answered at once
     from lab.runner import run_preset
 
-    result = run_preset(preset, overrides, out, video=not no_video, quiet=quiet)
-    if not quiet:
-        click.echo(result.summary_text)
-    click.echo(result.folder)
+    _show(run_preset(preset, overrides, out, video=not no_video, quiet=quiet), quiet)
+
+
+@main.command()
+@click.argument("preset")
+@click.option(
+    "--set",
+    "settings",
+    multiple=True,
+    metavar="KEY=VALUES",
+    help="Values of a key: a range FROM:TO:NUMBER, with :log for a logarithmic one, or a list; one value just sets it.",
+)
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path, file_okay=False),
+    metavar="DIR",
+    help="Folder for the results.  [default: renders/PRESET-sweep]",
+)
+@repeats_option
+@arch_option
+@video_option
+@quiet_option
+def sweep(
+    preset: str,
+    settings: tuple[str, ...],
+    out: Path | None,
+    repeats: int | None,
+    arch: str | None,
+    no_video: bool,
+    quiet: bool,
+) -> None:
+    """Run PRESET for every combination of the values of its keys.
+
+    \b
+    cargolab sweep shaking/sway --set motion.sway.frequency="0.2:1.5:14 Hz" --repeats 12
+    cargolab sweep tilting/quick --set grains.diameter="2, 3, 4 mm" --set material.friction=0.1:0.5:5
+    Asked again, it goes on where it was cut short.
+    """
+    from lab.sweeps import run_sweep
+
+    axes = _settings(settings)
+    _show(run_sweep(preset, axes, _shortcuts(repeats, arch), out, video=not no_video, quiet=quiet), quiet)
+
+
+@main.command()
+@click.argument("folder", type=click.Path(path_type=Path))
+@video_option
+@quiet_option
+def resume(folder: Path, no_video: bool, quiet: bool) -> None:
+    """Go on with the run or the sweep in FOLDER that was killed, interrupted or stopped.
+
+    \b
+    cargolab resume renders/tilting/quick
+    """
+    from lab.sweeps import resume_any
+
+    _show(resume_any(folder, video=not no_video, quiet=quiet), quiet)
 
 
 @main.command()

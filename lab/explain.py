@@ -9,12 +9,23 @@ from solvers.simulation import Simulation
 # Grain-steps a second of one core on settled beds (README, "Speed"); only the estimate of the run time rests on it.
 GRAIN_STEPS_PER_CORE = 12e6
 
+PRECISIONS = {
+    "f64": "64-bit floats",
+    "f32": "32-bit floats",
+    "mixed": "64-bit places and times, 32-bit forces and velocities",
+}
+SCHEDULES = {
+    "per-world": "per world: a serial time loop in each, worlds in parallel",
+    "per-band": "per band: each world cut into bands of grains, a core a band, in step",
+    "per-grain": "per grain: all grains in parallel, a launch a step",
+}
+
 
 def explain(loaded: LoadedPreset) -> str:
     """A page of text on a preset: scene, step and what limits it, what is compiled in, memory, expected run time."""
     preset = loaded.resolved
     scene, position = build(preset)
-    simulation = Simulation(scene, position, preset.run.threads)
+    simulation = Simulation(scene, position, preset.run.threads, arch=preset.run.arch)
     blocks = [
         f"{preset.title}  ({loaded.name})",
         _section("Scene", _scene(preset, scene)),
@@ -36,10 +47,11 @@ def _scene(preset, scene) -> list[tuple[str, str]]:
     worlds, count = scene.radius.shape
     small, large = 2 * scene.radius.min(), 2 * scene.radius.max()
     pair, wall = scene.interfaces
-    rows = [
+    rows = [("quick variant", preset.quick)] if preset.quick else []
+    rows += [
         ("repeats", f"{worlds}, seeds {preset.run.seed} to {preset.run.seed + worlds - 1}"),
         ("grains", f"{count} in each, {show(small, 'm')} to {show(large, 'm')}"),
-        ("tank", f"{show(preset.tank.width, 'm')} wide, {show(preset.tank.height, 'm')} high"),
+        ("tank", _tank(preset, scene)),
         ("Young's moduli", f"times {scene.stiffness_scale:g} of the material's"),
         ("friction", f"{pair.friction:g} between grains, {wall.friction:g} on walls"),
         ("dissipative time", f"{show(pair.dissipative_time, 's')} between grains, at this stiffness"),
@@ -49,6 +61,18 @@ def _scene(preset, scene) -> list[tuple[str, str]]:
     rows.append(("motion", ", then ".join(parts) or "none"))
     rows.append(("duration", show(preset.run.duration, "s") + " after settling"))
     return rows
+
+
+def _tank(preset, scene) -> str:
+    what = [f"{show(preset.tank.width, 'm')} wide, {show(preset.tank.height, 'm')} high"]
+    if preset.tank.open_edges:
+        what.append("open at the top")
+    if len(scene.fixed):
+        what.append(f"lined with {len(scene.fixed)} fixed grains")
+    moving = [f"{name} ({'moving' if part.fastest() else 'still'})" for name, part in preset.parts.items()]
+    if moving:
+        what.append(f"with {', '.join(moving)}")
+    return ", ".join(what)
 
 
 def _motion(name: str, motion, soft_start: float) -> str:
@@ -65,18 +89,23 @@ def _step(scene) -> list[tuple[str, str]]:
 
 def _parts(simulation: Simulation) -> list[tuple[str, str]]:
     scene, frame, walls = simulation.scene, simulation.frame, simulation.walls
-    _, tangential = scene.laws
+    remembered = len(simulation.neighbours.laws.memory)
     terms = "gravity"
     if frame.moving:
         terms += ", translation"
     if frame.rotating:
         terms += ", Euler, centrifugal and Coriolis terms"
+    laws = [("normal law", scene.normal), ("tangential law", scene.tangential)]
+    if scene.rolling != "none":
+        laws.append(("rolling law", scene.rolling))
     return [
-        ("normal law", f"{scene.normal}"),
-        ("tangential law", f"{scene.tangential}, remembers {len(tangential.memory)} number(s) a contact"),
+        *laws,
+        ("memory", f"{remembered} number(s) a contact"),
         ("body forces", terms),
-        ("walls", f"{walls.segments} segments, {walls.corners} corners jutting in"),
-        ("schedule", "per world: a serial time loop in each, worlds in parallel; 64-bit floats"),
+        ("walls", f"{walls.segments} segments, {walls.corners} corners that grains can touch"),
+        ("integrator", scene.integrator),
+        ("numbers", PRECISIONS[scene.precision]),
+        ("schedule", f"{SCHEDULES[simulation.schedule_name]}, on {simulation.arch}"),
         ("skin", f"{show(simulation.skin, 'm')} of the neighbour lists"),
     ]
 

@@ -4,6 +4,7 @@ A new figure is a function `(recording, values) -> Figure | None` and a line in 
 it does not apply. Import this module only where figures are drawn: Matplotlib is slow to load.
 """
 
+import textwrap
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -13,8 +14,19 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from lab.errors import LabError
-from lab.measures import critical_angle, surface_slope
+from lab.measures import (
+    contact_number,
+    critical_angle,
+    hysteresis,
+    spectrum,
+    spilled,
+    surface_slope,
+    top_altitude,
+    wall_force,
+    wave,
+)
 from lab.measures.motion import HARMONIC, driving, is_tilt, outward_leg
+from lab.measures.steady import steady_part
 from lab.measures.value import Value
 from lab.recording import Recording
 
@@ -41,6 +53,8 @@ SIZE = (6.4, 4.2)  # inches
 BELOW = "outside lower center"  # of a legend, where no curve can run through it
 POINTS = 1500  # of a curve; more cannot be seen
 PERIODS = 4  # shown close up
+TITLE = 88  # letters in a line
+QUIETEST = 1e-4  # of the largest peak: where a spectrum's scale begins
 
 DRIVE = {
     "sway": ("sway of the\ntank (mm)", 1e3),
@@ -118,7 +132,190 @@ def slope_figure(recording: Recording, values: Mapping[str, Value]) -> Figure | 
     return figure
 
 
-FIGURES = {"shift": shift_figure, "slope": slope_figure, "energy": energy_figure}
+def spilled_figure(recording: Recording, values: Mapping[str, Value]) -> Figure | None:
+    """Share of the grains that an open tank has lost: against the tilt, or against time."""
+    if not recording.series["spilled"].any():
+        return None
+    figure, ((axes,),) = _figure(recording)
+    tilts = is_tilt(recording)
+    time, share = recording.series["time"], spilled.spilled_share(recording)
+    for world in range(recording.worlds):
+        curve = spilled.spill_curve(recording, world) if tilts else (time, share[:, world])
+        label = None if world else f"each of {recording.worlds} beds" if recording.worlds > 1 else "bed"
+        axes.plot(curve[0], 100 * curve[1], color=BLUE, lw=1.0, alpha=0.8, drawstyle="steps-post", label=label)
+    _mark(axes, values.get("spill_start_angle"), f"first {100 * spilled.START:g} %", GREEN, ":")
+    _mark(axes, values.get("spill_upturn_angle"), "sharp upturn", VERMILION)
+    axes.set_xlabel("tilt (deg)" if tilts else "time (s)")
+    axes.set_xlim(left=0)
+    axes.set_ylim(bottom=0)
+    axes.set_ylabel("spilled grains (% of all movable)")
+    figure.legend(loc=BELOW, ncols=3)
+    return figure
+
+
+def hysteresis_figure(recording: Recording, values: Mapping[str, Value]) -> Figure | None:
+    """The shift against the tilt, out and back: what the bed keeps where the tank is upright again."""
+    if not hysteresis.applies(recording):
+        return None
+    figure, ((axes,),) = _figure(recording)
+    for world, diameter in enumerate(recording.mean_diameter):
+        tilt, shift, end = hysteresis.loop(recording, world)
+        out, back = slice(end), slice(end - 1, None)
+        names = (None, None) if world else ("way out", "way back")
+        axes.plot(*_thinned(tilt[out], shift[out] / diameter), color=BLUE, lw=1.2, alpha=0.8, label=names[0])
+        axes.plot(*_thinned(tilt[back], shift[back] / diameter), color=VERMILION, lw=1.2, alpha=0.8, label=names[1])
+    remains, kept = values.get("remaining_shift"), values.get("kept_shift")
+    for world, left in enumerate(remains.worlds if remains else ()):
+        if left is not None:
+            label = None if world or kept is None or kept.value is None else f"kept: {kept.value:.0f} % of the largest"
+            axes.plot(0, left, "o", color=VERMILION, ms=4, label=label, clip_on=False, zorder=3)
+    axes.axhline(0, color=GREY, lw=0.8)
+    axes.set_xlabel("tilt (deg)")
+    axes.set_ylabel("shift of the centre of mass\ndownhill (mean diameters)")
+    _millimetres(axes, 1e3 * recording.mean_diameter.mean())
+    figure.legend(loc=BELOW, ncols=3)
+    return figure
+
+
+def force_figure(recording: Recording, values: Mapping[str, Value]) -> Figure | None:
+    """Force and moment of the cargo on the tank; of a driven tank the last periods beside its motion."""
+    if not wall_force.applies(recording):
+        return None
+    drive, time = driving(recording), recording.series["time"][1:]
+    force = 1e3 * recording.series["wall_force"][1:]
+    heights, begin = ((2, 1), time[0]) if drive is None else ((1, 2, 1), _closer(time, drive[1]))
+    figure, panels = _figure(recording, heights=heights)
+    shown = time >= begin
+    if drive is not None:
+        label, scale = DRIVE[drive[0]]
+        moved = scale * recording.series["pose"][1:][shown][:, :, HARMONIC[drive[0]]]
+        _band(panels[0][0], time[shown], moved, GREY)
+        panels[0][0].set_ylabel(label)
+        panels[0][0].set_title(f"last {PERIODS} periods")
+    upper, lower = panels[-2][0], panels[-1][0]
+    _band(upper, time[shown], force[shown, :, 0], BLUE, "y, to starboard")
+    _band(upper, time[shown], force[shown, :, 1], VERMILION, "z, up")
+    weight = wall_force.cargo_weight(recording)
+    if weight is not None:
+        settled = -1e3 * weight[0].mean()
+        upper.axhline(settled, color=GREY, ls=":", lw=1.0, label="weight of the cargo at the start")
+    upper.set_ylabel("force on the tank\n(mN, a sheet of\none grain's thickness)")
+    _band(lower, time[shown], force[shown, :, 2], GREEN, "moment about the middle of the floor")
+    lower.set_ylabel("moment\n(mN m)")
+    lower.set_xlabel("time (s)")
+    lower.set_xlim(begin, time[-1])
+    figure.legend(loc=BELOW, ncols=2)
+    return figure
+
+
+def spectrum_figure(recording: Recording, values: Mapping[str, Value]) -> Figure | None:
+    """Amplitude spectrum of the centre of mass of a driven bed over its steady part."""
+    if not spectrum.applies(recording):
+        return None
+    time = recording.series["time"]
+    steady, frequency = steady_part(recording, time), driving(recording)[1]["frequency"]
+    if steady is None:
+        return None
+    centre = 1e3 * recording.series["centre_of_mass"][steady.rows]
+    centre = centre[:, np.isfinite(centre).all(axis=(0, 2))]
+    if not centre.any():
+        return None
+    figure, ((axes,),) = _figure(recording)
+    highest = 0.0
+    for axis, colour, name in ((0, BLUE, "y, to starboard"), (1, VERMILION, "z, up")):
+        frequencies, amplitudes = spectrum.amplitude_spectrum(time[steady.rows], centre[..., axis])
+        kept = (frequencies > 0) & (frequencies < 5.6 * frequency)
+        _range(axes, frequencies[kept], amplitudes[kept], colour, name)
+        highest = max(highest, amplitudes[kept].max(initial=0.0))
+    axes.set_yscale("log")
+    axes.set_ylim(QUIETEST * highest, 2 * highest)
+    axes.set_xlim(0, 5.6 * frequency)
+    for order in spectrum.ORDERS:
+        axes.axvline(order * frequency, color=GREY, ls=":", lw=0.8)
+        name = {0.5: "f/2", 1.0: "f"}.get(order, f"{order:g}f")
+        axes.annotate(
+            name,
+            (order * frequency, 1),
+            (2, -2),
+            xycoords=axes.get_xaxis_transform(),
+            textcoords="offset points",
+            va="top",
+            color=GREY,
+            fontsize=8,
+        )
+    axes.set_xlabel(f"frequency (Hz), driven at f = {frequency:.3g} Hz")
+    axes.set_ylabel("amplitude of the centre of mass\nin the tank (mm)")
+    figure.legend(loc=BELOW, ncols=2)
+    return figure
+
+
+def wave_figure(recording: Recording, values: Mapping[str, Value]) -> Figure | None:
+    """Elevation of the free surface at both walls and in the middle, and the first sloshing mode."""
+    if not wave.applies(recording):
+        return None
+    places, mode = wave.wave_course(recording)
+    time, drive = recording.frames["time"][:], driving(recording)
+    begin = time[0] if drive is None else _closer(time, drive[1])
+    figure, panels = _figure(recording, heights=(3, 2))
+    shown = time >= begin
+    for k, colour in enumerate((BLUE, GREY, VERMILION)):
+        name = f"{wave.PLACES[k]} wall" if k != 1 else wave.PLACES[k]
+        _band(panels[0][0], time[shown], 1e3 * places[shown][:, :, k], colour, name)
+    panels[0][0].set_ylabel("elevation of\nthe surface (mm)")
+    if drive is not None:
+        panels[0][0].set_title(f"last {PERIODS} periods")
+    _band(panels[1][0], time[shown], 1e3 * mode[shown], GREEN, "first mode cos(πy/L), higher at port")
+    panels[1][0].set_ylabel("mode (mm)")
+    panels[1][0].set_xlabel("time (s)")
+    panels[1][0].set_xlim(begin, time[-1])
+    figure.legend(loc=BELOW, ncols=4)
+    return figure
+
+
+def altitude_figure(recording: Recording, values: Mapping[str, Value]) -> Figure | None:
+    """The top of the cargo in time: its highest grain, and the height most grains stay below."""
+    count = len(recording.frames["time"])
+    if count < 2 or not top_altitude.applies(recording):
+        return None
+    tops = 1e3 * np.array([top_altitude.altitudes(recording, frame) for frame in range(count)])
+    figure, ((axes,),) = _figure(recording)
+    time = recording.frames["time"][:]
+    _band(axes, time, tops[..., 0], BLUE, "highest grain")
+    _band(axes, time, tops[..., 1], VERMILION, f"{top_altitude.BULK:g} % of the grains lie lower")
+    axes.set_xlabel("time (s)")
+    axes.set_xlim(time[0], time[-1])
+    axes.set_ylabel("altitude of the top\nin the tank (mm)")
+    figure.legend(loc=BELOW, ncols=2)
+    return figure
+
+
+def contact_figure(recording: Recording, values: Mapping[str, Value]) -> Figure | None:
+    """Mean coordination number in time."""
+    if not contact_number.applies(recording):
+        return None
+    figure, ((axes,),) = _figure(recording)
+    time, number = recording.series["time"], contact_number.contact_number(recording)
+    _band(axes, time, number, BLUE, "mean ± std" if recording.worlds > 1 else "bed")
+    axes.set_xlabel("time (s)")
+    axes.set_xlim(time[0], time[-1])
+    axes.set_ylabel("contacts of a grain")
+    if recording.worlds > 1:
+        figure.legend(loc=BELOW)
+    return figure
+
+
+FIGURES = {
+    "spilled": spilled_figure,
+    "shift": shift_figure,
+    "slope": slope_figure,
+    "hysteresis": hysteresis_figure,
+    "altitude": altitude_figure,
+    "wave": wave_figure,
+    "spectrum": spectrum_figure,
+    "force": force_figure,
+    "contacts": contact_figure,
+    "energy": energy_figure,
+}
 
 
 def _shift_against_tilt(recording: Recording, values: Mapping[str, Value]) -> Figure:
@@ -126,7 +323,6 @@ def _shift_against_tilt(recording: Recording, values: Mapping[str, Value]) -> Fi
     worlds, diameters = recording.worlds, recording.mean_diameter
     curves = [critical_angle.shift_curve(recording, world) for world in range(worlds)]
     curves = [(tilt, shift / d) for (tilt, shift), d in zip(curves, diameters, strict=True)]
-    _way_back(axes, recording)
     if worlds > 1:
         for world, curve in enumerate(curves):
             label = None if world else f"each of {worlds} beds"
@@ -148,19 +344,6 @@ def _shift_against_tilt(recording: Recording, values: Mapping[str, Value]) -> Fi
     return figure
 
 
-def _way_back(axes: Axes, recording: Recording) -> None:
-    """The shift after the tilt was largest, while the tank turns back, dashed."""
-    for world, diameter in enumerate(recording.mean_diameter):
-        tilt = recording.series["pose"][:, world, 2]
-        leg = outward_leg(tilt)
-        back = leg.direction * np.degrees(tilt[leg.end - 1 :])
-        y = recording.series["centre_of_mass"][:, world, 0]
-        shift = -leg.direction * (y[leg.end - 1 :] - y[0]) / diameter
-        if np.ptp(back) > 1:
-            label = None if world else "way back"
-            axes.plot(*_thinned(back, shift), color=GREY, ls="--", lw=0.9, label=label)
-
-
 def _shift_against_time(recording: Recording) -> Figure:
     """Tank above, bed below; on the right the last periods, where their phase can be seen."""
     drive, time = driving(recording), recording.series["time"]
@@ -169,14 +352,14 @@ def _shift_against_time(recording: Recording) -> Figure:
     if drive is None:
         figure, ((axes,),) = _figure(recording)
         _shift_curves(axes, time, moved)
-        axes.legend()
+        axes.set_xlim(time[0], time[-1])
+        figure.legend(loc=BELOW, ncols=2)
         return figure
     figure, panels = _figure(recording, heights=(1, 2), widths=(3, 2))
     name, settings = drive
     label, scale = DRIVE[name]
     pose = scale * recording.series["pose"][:, :, HARMONIC[name]]
-    closer = max(time[-1] - PERIODS / settings["frequency"], 0.0)
-    for column, begin in ((0, 0.0), (1, closer)):
+    for column, begin in ((0, time[0]), (1, _closer(time, settings))):
         shown = time >= begin
         _band(panels[0][column], time[shown], pose[shown], GREY)
         _shift_curves(panels[1][column], time[shown], moved[shown])
@@ -184,7 +367,7 @@ def _shift_against_time(recording: Recording) -> Figure:
     panels[0][0].set_ylabel(label)
     panels[0][1].set_title(f"last {PERIODS} periods")
     panels[1][1].set_ylabel("")
-    panels[1][0].legend(loc="best", ncols=2)
+    figure.legend(*panels[1][0].get_legend_handles_labels(), loc=BELOW, ncols=2)
     return figure
 
 
@@ -221,26 +404,34 @@ def _figure(recording: Recording, heights: tuple = (1,), widths: tuple = (1,)) -
     count = f"{recording.radius.shape[1]} grains"
     if recording.worlds > 1:
         count = f"{recording.worlds} beds of {count}"
-    figure.suptitle(f"{recording.preset['title']}: {count}", x=0.02, ha="left", fontsize=9.5)
+    title = textwrap.fill(f"{recording.preset['title']}: {count}", TITLE)
+    figure.suptitle(title, x=0.02, ha="left", fontsize=9.5)
     return figure, panels
 
 
+def _closer(time: np.ndarray, settings: Mapping) -> float:
+    """Where the last periods of a driven run begin (s)."""
+    return max(time[-1] - PERIODS / settings["frequency"], time[0])
+
+
 def _band(axes: Axes, x: np.ndarray, curves: np.ndarray, colour: str, label: str | None = None) -> None:
-    """Mean of curves (T, W) over x (T,), with their standard deviation as a band."""
+    """Mean of curves (T, W) over x (T,), with their standard deviation as a band; NaN in a world is left out."""
     x, curves = _thinned(x, curves)
-    mean = curves.mean(axis=1)
+    known = np.ma.masked_invalid(curves)
+    mean = known.mean(axis=1).filled(np.nan)
     axes.plot(x, mean, color=colour, label=label)
     if curves.shape[1] > 1:
-        std = curves.std(axis=1, ddof=1)
+        std = np.ma.filled(known.std(axis=1, ddof=1), 0.0)
         axes.fill_between(x, mean - std, mean + std, color=colour, alpha=0.2, lw=0)
 
 
 def _range(axes: Axes, x: np.ndarray, curves: np.ndarray, colour: str, label: str) -> None:
     """Median of positive curves (T, W) over x (T,), with all of them as a band."""
     x, curves = _thinned(x, np.where(curves > 0, curves, np.nan))
-    axes.plot(x, np.median(curves, axis=1), color=colour, label=label, lw=1.0)
+    middle = np.ma.median(np.ma.masked_invalid(curves), axis=1)
+    axes.plot(x, np.ma.filled(middle, np.nan), color=colour, label=label, lw=1.0)
     if curves.shape[1] > 1:
-        low, high = curves.min(axis=1), curves.max(axis=1)
+        low, high = np.fmin.reduce(curves, axis=1), np.fmax.reduce(curves, axis=1)
         axes.fill_between(x, low, high, color=colour, alpha=0.2, lw=0)
 
 
@@ -249,9 +440,9 @@ def _mark(axes: Axes, value: Value | None, name: str, colour: str, style: str = 
     if value is None or value.value is None:
         return
     error = value.uncertainty if value.std is None else value.std
-    label = f"{name} {value.value:.1f} ± {error:.1f} deg"
+    label = f"{name} {value.value:.1f}" + (f" ± {error:.1f} deg" if error is not None else " deg")
     axes.axvline(value.value, color=colour, lw=1.0, ls=style, label=label)
-    if style == "-":
+    if style == "-" and error is not None:
         axes.axvspan(value.value - error, value.value + error, color=colour, alpha=0.12, lw=0)
 
 

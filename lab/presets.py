@@ -2,14 +2,17 @@
 
 A preset is a TOML file: one of those shipped, called by name ("tilting/quick"), or a person's own,
 called by its path. It may be `based_on` another one; its keys go over the base's, and overrides go
-over both.
+over both. A path in a preset starts from the folder of the file that says it, one among the
+overrides from the working directory. A preset may have a table `quick`, keys that make it cheaper; by the name with
+QUICK behind it, "tilting/fill-deep-quick", these go over it.
 """
 
 import os
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from difflib import get_close_matches
+from functools import reduce
 from importlib.resources import files
 from importlib.resources.abc import Traversable
 from pathlib import Path
@@ -32,10 +35,19 @@ ALTERNATIVES = {
     "wall": ({"restitution"}, {"dissipative_time"}),
 }
 
+QUICK = "-quick"  # behind the name of a preset: its quick variant
+# What the quick variant of a preset may change: what it costs, and with it how exact it is, but not what it is about.
+QUICK_KEYS = ("run", "record", "contact.stiffness_scale", "motion.tilt.rate")
+
+PATH_KEYS = ("grains.bed", "motion.history.file")  # whose values are paths of files
+
 
 @dataclass(frozen=True)
 class LoadedPreset:
-    """A preset ready to run: its name, its TOML text with all merged in, what it resolves to."""
+    """A preset ready to run: its name, its TOML text with all merged in, what it resolves to.
+
+    In the text, paths are as written.
+    """
 
     name: str
     given_text: str
@@ -55,10 +67,43 @@ class Source:
         """A short name: a person's own file goes by its name without the ending."""
         return self.file.stem if self.own else self.shown
 
+    @property
+    def folder(self) -> Path:
+        """Where the paths in the preset start."""
+        return Path(str(self.file)).parent
+
+
+@dataclass(frozen=True)
+class Layer:
+    """A table of keys to be merged with others, and the folder where the paths in it start."""
+
+    table: dict
+    folder: Path
+
+    def located(self) -> dict:
+        """The table with full paths under PATH_KEYS."""
+        return reduce(self._with_full_path, PATH_KEYS, dict(self.table))
+
+    def _with_full_path(self, table: dict, dotted: str) -> dict:
+        key, _, rest = dotted.partition(".")
+        value = table.get(key)
+        if rest and isinstance(value, Mapping):
+            return table | {key: self._with_full_path(dict(value), rest)}
+        if not rest and isinstance(value, str):
+            return table | {key: os.path.abspath(self.folder / value)}
+        return table
+
 
 def names() -> dict[str, str]:
-    """The shipped presets, sorted: name and title."""
-    return {name: _gather(Source(name, file))["title"] for name, file in _shipped().items()}
+    """The shipped presets and their quick variants, sorted: name and title."""
+    found = {}
+    for name, file in _shipped().items():
+        layers = _layers(Source(name, file))
+        quick = any("quick" in layer.table for layer in layers)
+        found[name] = _written(layers)["title"]
+        if quick:
+            found[name + QUICK] = f"{found[name]}, cheaper and less exact"
+    return found
 
 
 def load(name_or_path: str | Path, overrides: Mapping | None = None) -> LoadedPreset:
@@ -68,14 +113,48 @@ def load(name_or_path: str | Path, overrides: Mapping | None = None) -> LoadedPr
     """
     from lab.schema import resolve  # brings the solvers; the list of presets does without
 
-    source = _find(str(name_or_path))
+    source, quick = _find_variant(str(name_or_path))
     try:
-        table = merged(_gather(source), nested(overrides or {}))
-        resolved = resolve(table)
+        layers = _layers(source)
+        variant = _quick_variant(source, layers)
+        if quick and not variant:
+            raise LabError(f"{source.shown}: has no quick variant; run {source.shown} itself.")
+        layers = [*layers, Layer(variant if quick else {}, Path()), Layer(nested(overrides or {}), Path())]
+        resolved = resolve(reduce(merged, (layer.located() for layer in layers)))
     except RecursionError:
         raise LabError(f"{source.shown}: nested too deeply.") from None
     heading = f"# {quoted(source.shown)}, with what it is based on and all overrides merged in.\n"
-    return LoadedPreset(source.name, heading + toml.dumps(table), resolved)
+    name = source.name + (QUICK if quick else "")
+    return LoadedPreset(name, heading + toml.dumps(_written(layers)), resolved)
+
+
+def _quick_variant(source: Source, layers: list[Layer]) -> dict:
+    """The keys that make a preset its quick variant, taken out of its layers; empty if it has none."""
+    # A text under `quick` says that the preset is one already.
+    tables = [layer.table.pop("quick") for layer in layers if not isinstance(layer.table.get("quick", ""), str)]
+    if not all(isinstance(table, Mapping) for table in tables):
+        raise LabError(f"{source.shown}: quick: a table of keys is needed.")
+    variant = reduce(merged, tables, {})
+    if not variant:
+        return {}
+    differs = variant.pop("differs", None)
+    if not isinstance(differs, str) or not differs.strip():
+        raise LabError(f"{source.shown}: quick.differs: missing; say in a text how the quick variant differs.")
+    for dotted in _leaves(variant):
+        if not any(dotted == key or dotted.startswith(f"{key}.") for key in QUICK_KEYS):
+            raise LabError(
+                f"{source.shown}: quick.{quoted(dotted)[1:-1]}: may not differ; only {', '.join(QUICK_KEYS)} may."
+            )
+    return {"quick": differs, **variant}
+
+
+def _leaves(table: Mapping, path: str = "") -> Iterator[str]:
+    """The dotted keys of a table's values."""
+    for key, value in table.items():
+        if isinstance(value, Mapping):
+            yield from _leaves(value, f"{path}{key}.")
+        else:
+            yield f"{path}{key}"
 
 
 def nested(overrides: Mapping) -> dict:
@@ -85,8 +164,8 @@ def nested(overrides: Mapping) -> dict:
         parts = str(key).split(".")
         if not all(parts):
             raise LabError(f"{quoted(key)} is not a key; write it like grains.diameter.")
-        if parts[0] == "based_on":
-            raise LabError("based_on: cannot be overridden; write a preset file that says it.")
+        if parts[0] in ("based_on", "quick"):
+            raise LabError(f"{parts[0]}: cannot be overridden; write a preset file that says it.")
         for part in reversed(parts):
             value = {part: value}
         result = merged(result, value, alternatives={})
@@ -122,6 +201,14 @@ def _shipped() -> dict[str, Traversable]:
     return dict(sorted(below(files("presets"), "")))
 
 
+def _find_variant(name: str) -> tuple[Source, bool]:
+    """The preset called by that name, and whether its quick variant is meant."""
+    plain = name.removesuffix(QUICK)
+    shipped = _shipped()
+    quick = plain != name and name not in shipped and plain in shipped
+    return _find(plain if quick else name), quick
+
+
 def _find(name: str, beside: Path | None = None) -> Source:
     """The shipped preset `name`, else the file at that path (relative to the folder `beside`)."""
     shipped = _shipped()
@@ -136,22 +223,28 @@ def _find(name: str, beside: Path | None = None) -> Source:
     raise LabError(f"there is no preset {quoted(name)}; {hint}")
 
 
-def _gather(source: Source, heirs: tuple[str, ...] = ()) -> dict:
-    """A preset's table with its base's under it; `heirs` are the files that led here."""
+def _layers(source: Source, heirs: tuple[str, ...] = ()) -> list[Layer]:
+    """What a preset is based on, bottom first, and itself on top; `heirs` are the files that led here."""
     table = _parsed(source)
     chain = (*heirs, os.path.realpath(str(source.file)))
     if chain[-1] in heirs:
         raise LabError(f"{source.shown}: based_on: the preset ends up based on itself.")
     base = table.pop("based_on", None)
+    own = Layer(table, source.folder)
     if base is None:
-        return table
+        return [own]
     if not isinstance(base, str):
         raise LabError(f"{source.shown}: based_on: the name or path of a preset is needed.")
     try:
-        parent = _find(base, Path(str(source.file)).parent if source.own else None)
+        parent = _find(base, source.folder if source.own else None)
     except LabError as error:
         raise LabError(f"{source.shown}: based_on: {error}") from None
-    return merged(_gather(parent, chain), table)
+    return [*_layers(parent, chain), own]
+
+
+def _written(layers: list[Layer]) -> dict:
+    """Each layer over those before it, the paths in them as written."""
+    return reduce(merged, (layer.table for layer in layers))
 
 
 def _parsed(source: Source) -> dict:

@@ -8,7 +8,7 @@ from rich.progress import Progress as Bar
 
 
 class Progress:
-    """Stages of a run, one after the other; silent when `quiet`."""
+    """Stages of a run, one after the other; silent when `quiet`. Of a whole of many runs the stages come and go."""
 
     def __init__(self, quiet: bool):
         self.console = Console(stderr=True, quiet=quiet, highlight=False)
@@ -21,9 +21,11 @@ class Progress:
             TextColumn("left"),
             TimeRemainingColumn(),
         )
-        self.bar = Bar(*columns, console=self.console, disable=not self.live)
-        self.task = None
+        self.bar = Bar(*columns, console=self.console, disable=not self.live, speed_estimate_period=600.0)
+        self.task, self.total, self.worth = None, None, 0.0
+        self.whole, self.done = None, 0.0
         self.warnings: list[str] = []
+        self.notes: list[str] = []
 
     def __enter__(self) -> "Progress":
         self.bar.start()
@@ -32,15 +34,21 @@ class Progress:
     def __exit__(self, *_) -> None:
         self.bar.stop()
 
-    def start(self, stage: str, total: float | None) -> None:
-        """Begin a stage that ends at `total`, in any unit."""
+    def begin_whole(self, name: str, total: float) -> None:
+        """Count stages that follow towards a whole, by what each is worth of its `total`."""
+        self.whole = self.bar.add_task(name, total=total)
+
+    def start(self, stage: str, total: float | None, worth: float = 0.0) -> None:
+        """Begin a stage that ends at `total`, in any unit, and is worth so much of the whole."""
         if not self.live:
-            self.console.print(f"{stage} …")
-        self.task = self.bar.add_task(stage, total=total)
+            self.say(f"{stage} …")
+        self.task, self.total, self.worth = self.bar.add_task(stage, total=total), total, worth
 
     def reach(self, done: float) -> None:
         """Say how far the stage is."""
         self.bar.update(self.task, completed=done)
+        if self.whole is not None and self.total:
+            self.bar.update(self.whole, completed=self.done + self.worth * min(done / self.total, 1.0))
 
     def count(self, done: int, total: int) -> None:
         """Say how far a stage is whose total was not known at its start."""
@@ -48,11 +56,23 @@ class Progress:
 
     def finish(self) -> None:
         """The stage is done, maybe before its total."""
-        task = self.bar.tasks[self.task] if self.live else None
-        if task is not None:
-            self.bar.update(self.task, completed=task.total)
+        if self.whole is not None:
+            self.done += self.worth
+            self.bar.update(self.whole, completed=self.done)
+            self.bar.remove_task(self.task)
+        elif self.live:
+            self.bar.update(self.task, completed=self.bar.tasks[self.task].total)
 
     def warn(self, sentence: str) -> None:
         """A sentence a person should read, now and in the summary."""
         self.warnings.append(sentence)
-        self.console.print(f"note: {sentence}", soft_wrap=True)
+        self.say(f"note: {sentence}")
+
+    def note(self, sentence: str) -> None:
+        """A sentence on how the run was made, which takes nothing from its numbers."""
+        self.notes.append(sentence)
+        self.say(f"note: {sentence}")
+
+    def say(self, sentence: str) -> None:
+        """A line for whoever watches."""
+        self.console.print(sentence, soft_wrap=True)

@@ -1,8 +1,8 @@
 """TOML tables into dataclasses: a field's annotation says what it takes, a fault is one sentence.
 
 A field is `bool`, `int`, `str`, a `Literal` of words, a number or a tuple of numbers with the
-markers of `solvers.quantity`, or another dataclass (a table). `X | None` may be left out; for a
-table, `false` leaves it out too.
+markers of `solvers.quantity`, another dataclass (a table), or a `dict[str, dataclass]` (tables that people name).
+`X | None` may be left out; for a table, `false` leaves it out too, and so it does for a named one.
 """
 
 import types
@@ -14,10 +14,13 @@ from typing import Annotated, Any, Literal, TypeVar, Union, get_args, get_origin
 from unicodedata import category
 
 from lab.errors import LabError
+from lab.toml import BARE_KEY
 from lab.units import needed, parse, quoted, show
 from solvers.quantity import Interval, Unit
 
 T = TypeVar("T")
+
+LONGEST_NAME = 40  # characters of a table's name that a person chooses
 
 
 @dataclass
@@ -65,6 +68,9 @@ def _check_keys(kind: type, table: object, path: str, everywhere: list[str]) -> 
             raise LabError(f"{wrong}: unknown key; {_hint(key, known, everywhere)}")
         if is_dataclass(known[key]):
             _check_keys(known[key], value, _join(path, key), everywhere)
+        elif inner := _named_kind(known[key]):
+            for name, table in value.items() if isinstance(value, Mapping) else ():
+                _check_keys(inner, table, _join(_join(path, key), quoted(str(name))[1:-1]), everywhere)
 
 
 def _hint(key: object, known: Mapping, everywhere: list[str]) -> str:
@@ -79,6 +85,13 @@ def _dotted(kind: type, path: str = "") -> Iterator[str]:
         yield _join(path, field.name)
         if is_dataclass(inner):
             yield from _dotted(inner, _join(path, field.name))
+        elif named := _named_kind(inner):
+            yield from _dotted(named, _join(path, f"{field.name}.NAME"))
+
+
+def _named_kind(kind: Any) -> type | None:
+    """The dataclass of the tables that people name, if the kind is a `dict` of such."""
+    return get_args(kind)[1] if get_origin(kind) is dict else None
 
 
 @cache
@@ -117,6 +130,8 @@ def _value(taken: Taken, raw: object, key: str) -> Any:
         return None if raw is False and taken.optional else read(taken.kind, raw, key)
     if get_origin(taken.kind) is tuple:
         return _tuple(taken, raw, key)
+    if inner := _named_kind(taken.kind):
+        return _named(inner, raw, key)
     value = _scalar(taken, raw, key)
     _check_interval(taken, value, raw, key)
     return value
@@ -136,13 +151,32 @@ def _scalar(taken: Taken, raw: object, key: str) -> Any:
     return raw
 
 
+def _named(kind: type, raw: object, key: str) -> dict[str, Any]:
+    """The tables that people name, in their order; one that is false is left out."""
+    if not isinstance(raw, Mapping):
+        raise LabError(f"{key}: tables with names of your own are needed (got {quoted(raw)}).")
+    for name in raw:
+        if not (isinstance(name, str) and len(name) <= LONGEST_NAME and BARE_KEY.fullmatch(name)):
+            raise LabError(
+                f"{key}: {quoted(str(name))} is no name; up to {LONGEST_NAME} letters A-Z, digits, - and _ make one."
+            )
+    return {name: read(kind, table, _join(key, name)) for name, table in raw.items() if table is not False}
+
+
 def _tuple(taken: Taken, raw: object, key: str) -> tuple:
     parts = get_args(taken.kind)
     length = None if parts[-1] is Ellipsis else len(parts)
     if not isinstance(raw, list | tuple) or length not in (None, len(raw)):
         raise LabError(f"{key}: {_needed(taken)} (got {quoted(raw)}).")
-    item = Taken(parts[0], symbol=taken.symbol, interval=taken.interval)
-    return tuple(_value(item, value, f"{key}[{i}]") for i, value in enumerate(raw))
+    kinds = parts[:1] * len(raw) if length is None else parts
+    return tuple(_value(_item(taken, kind), raw[i], f"{key}[{i}]") for i, kind in enumerate(kinds))
+
+
+def _item(taken: Taken, kind: Any) -> Taken:
+    """What an item of a list takes: what its own annotation says, else the unit and range of the whole list."""
+    if get_origin(kind) is Annotated:
+        return _taken(kind)
+    return Taken(kind, symbol=taken.symbol, interval=taken.interval)
 
 
 def _needed(taken: Taken) -> str:

@@ -1,16 +1,18 @@
 """What a run leaves behind: one HDF5 file, written as the run goes on and readable at any moment.
 
-The file is written in HDF5's single-writer/multiple-reader mode (SWMR): every flush leaves a whole
-file behind, so a run that is killed, or that still goes on, can be read up to its last flush. Other
-programs must ask for that mode too: `h5py.File(path, "r", swmr=True)`.
+`new_recording` makes the file, a `Recorder` adds to it, `mend_recording` readies what a dead run left for another
+Recorder, and `open_recording` reads it. The file is written in HDF5's single-writer/multiple-reader mode (SWMR):
+every flush leaves a whole file behind, so a run that is killed, or that still goes on, can be read up to its last
+flush. Other programs must ask for that mode too: `h5py.File(path, "r", swmr=True)`.
 """
 
+import errno
 import json
 import os
 import platform
 import shutil
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from datetime import datetime
 from importlib import metadata
@@ -21,7 +23,7 @@ import numpy as np
 
 from lab.errors import LabError
 
-FORMAT = "cargo-shift-lab 1"
+FORMAT = "cargo-shift-lab 2"
 FILE_NAME = "recording.h5"
 
 # Shapes after the leading axes: (T, W, *shape) of a series, (F, W, n, *shape) of what each grain
@@ -36,79 +38,164 @@ SERIES = {
     "elastic": (),
     "contacts": (),
     "overlap": (),
+    "spilled": (),
+    "wall_force": (3,),
 }
 GRAIN_FRAMES = {"position": (2,), "velocity": (2,), "angle": (), "spin": ()}
-WORLD_FRAMES = {"pose": (3,)}
+WORLD_FRAMES = {"pose": (3,)}  # and "part" (P, 2), the displacement of each moving part
 
 CHUNK_BYTES = 2**19  # about what one reads of a data set at a time
 CHUNK_ROWS = 1024
 BUFFER_BYTES = 2**25  # kept in memory at most before it is written
-SPARE_BYTES = 2**23  # room that must stay free on the disk: HDF5 cannot even close a file on a full one
+FLUSH_EVERY = 2.0  # s of wall-clock time between writings: what a run that is killed may lose
+SPARE_BYTES = 2**22  # room kept beside that for a chunk of each data set, to close the file and to sum up the run
+FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 PACKAGES = ("cargo-shift-lab", "taichi", "numpy", "scipy", "h5py")
 
 
-class Recorder:
-    """Writes the recording of a run; a context manager that closes it with the right status.
+def new_recording(
+    folder: Path | str,
+    *,
+    preset: str,
+    given: str,
+    resolved: Mapping,
+    radius: np.ndarray,
+    outline: np.ndarray,
+    step: float,
+    fixed: np.ndarray = (),
+    open_edges: Sequence[int] = (),
+    parts: Mapping[str, np.ndarray] | None = None,
+    machine: Mapping | None = None,
+) -> Path:
+    """Make the recording of a run, without rows yet; returns its file.
 
     folder: where recording.h5 is made, created if missing; preset: its name; given: its TOML text;
     resolved: all its values in SI; radius (W, n) m; outline (m, 2) m; step: the time step, s;
-    machine: what ran it (added to what is found out here); flush_every: wall-clock seconds between
-    writings. The runner keeps `wall_s` and `grain_steps` up to date; every flush writes them.
-    Raises LabError when the folder cannot be written, is full, or already holds a recording.
+    fixed (k, 3): y, z, radius m of grains that never move; open_edges: outline edges without a wall;
+    parts: moving parts by name, polylines at rest (m, 2) m; machine: what runs it (added to what is
+    found out here). The file appears under its name when it is whole, so that it is readable from then
+    on. Raises LabError when the folder cannot be written, is full, or already holds a recording.
+    """
+    path = Path(folder) / FILE_NAME
+    radius, parts = np.asarray(radius, dtype=float), parts or {}
+    attributes = {
+        "format": FORMAT,
+        "preset": preset,
+        "status": "running",
+        "created": datetime.now().astimezone().isoformat(timespec="seconds"),
+        "versions": json.dumps(versions()),
+        "machine": json.dumps({**_machine(), **(machine or {})}),
+        "step": float(step),
+        "wall_s": 0.0,
+        "grain_steps": 0,
+    }
+    with _writing(path.parent):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with h5py.File(_unfinished(path), "x", libver="latest") as file:
+            _reserve(file, radius.nbytes + len(given) + SPARE_BYTES)
+            if path.exists():
+                _unfinished(path).unlink()
+                raise FileExistsError(path)
+            file.attrs.update(attributes)
+            file["preset/given"] = given
+            file["preset/resolved"] = json.dumps(resolved)
+            file["grains/radius"] = radius
+            file["tank/outline"] = np.asarray(outline, dtype=float)
+            file["tank/fixed"] = np.asarray(fixed, dtype=float).reshape(-1, 3)
+            file["tank/open_edges"] = np.asarray(open_edges, dtype=int)
+            group = file.create_group("tank/parts", track_order=True)
+            for name, line in parts.items():
+                group[name] = np.asarray(line, dtype=float)
+            for name, shapes in _table_shapes(*radius.shape, len(parts)).items():
+                _create_table(file.create_group(name), shapes)
+        _publish(path)
+    return path
+
+
+def mend_recording(folder: Path | str) -> Path:
+    """Copy a recording that was killed or stopped into a sound one that a Recorder can go on with; returns its file.
+
+    All whole rows are kept. The old file stays until the copy is on the disk. Raises LabError when it cannot be read
+    or the folder not be written.
+    """
+    path = Path(folder) / FILE_NAME
+    size = path.stat().st_size if path.is_file() else 0
+    with (
+        open_recording(path) as old,
+        _writing(path.parent),
+        h5py.File(_unfinished(path), "w", libver="latest") as new,
+    ):
+        _reserve(new, size + SPARE_BYTES)
+        old.copy_into(new)
+        new.attrs["status"] = "running"
+    with _writing(path.parent):
+        _publish(path)
+    return path
+
+
+class Recorder:
+    """Adds rows to a recording; a context manager that closes it with the right status.
+
+    folder: of the recording, which `new_recording` or `mend_recording` has made; samples, frames: rows of the series
+    and of the frames that stand, those behind them are written over as they come again; flush_every: wall-clock
+    seconds between writings, so what a killed run loses; buffer: bytes kept in memory at most. The runner keeps
+    `wall_s` and `grain_steps` up to date; every flush writes them. Raises LabError when the folder cannot be written,
+    or when fewer rows are there than should stand.
     """
 
     def __init__(
         self,
         folder: Path | str,
         *,
-        preset: str,
-        given: str,
-        resolved: Mapping,
-        radius: np.ndarray,
-        outline: np.ndarray,
-        step: float,
-        machine: Mapping | None = None,
-        flush_every: float = 2.0,
+        samples: int = 0,
+        frames: int = 0,
+        flush_every: float = FLUSH_EVERY,
+        buffer: int = BUFFER_BYTES,
     ) -> None:
         self.folder = Path(folder)
         self.path = self.folder / FILE_NAME
-        self.wall_s, self.grain_steps = 0.0, 0
-        radius = np.asarray(radius, dtype=float)
-        worlds, count = radius.shape
-        shapes = _table_shapes(worlds, count)
-        self._tables = {name: _Table(shapes[name]) for name in shapes}
-        self._flush_every, self._flushed = flush_every, time.monotonic()
+        self._flush_every, self._flushed, self._buffer = flush_every, time.monotonic(), buffer
         with self._writing():
-            self.folder.mkdir(parents=True, exist_ok=True)
-            self._check_room(0)
-            self._file = h5py.File(self.path, "x", libver="latest")
-        with self._writing():
-            self._write_head(preset, given, resolved, step, machine or {})
-            self._file["grains/radius"] = radius
-            self._file["tank/outline"] = np.asarray(outline, dtype=float)
-            for name, table in self._tables.items():
-                table.create(self._file.create_group(name))
-            self._file.swmr_mode = True
+            self._file = _open_for_adding(self.path)
+            self.wall_s, self.grain_steps = float(self._file.attrs["wall_s"]), int(self._file.attrs["grain_steps"])
+            standing = {"series": samples, "frames": frames}
+            self._tables = {name: _Table(self._file[name], rows) for name, rows in standing.items()}
+            self._spare = SPARE_BYTES + sum(table.chunk_bytes for table in self._tables.values())
+            self._reserved = 0
+            self._make_room()
+        if any(table.short for table in self._tables.values()):
+            self._file.close()
+            raise LabError(f"{self.path} holds less than its checkpoint says: start the run anew.")
 
     def sample(self, values: Mapping[str, object]) -> None:
         """Add a row to the series: "time" (s) and every name of SERIES, (W, *shape) each."""
         self._add("series", values)
 
     def frame(self, values: Mapping[str, object]) -> None:
-        """Add a picture frame: "time" (s), "pose" (W, 3) and GRAIN_FRAMES, (W, n, *shape) each."""
+        """Add a picture frame: "time" (s), "pose" (W, 3), "part" (W, P, 2) m and GRAIN_FRAMES, (W, n, *shape) each."""
         self._add("frames", values)
+
+    @property
+    def rows(self) -> tuple[int, int]:
+        """Rows of the series and of the frames so far."""
+        return self._tables["series"].rows, self._tables["frames"].rows
 
     def flush(self) -> None:
         """Write what has been added so far. Raises LabError when the folder is full or lost."""
-        pending = sum(table.pending_bytes for table in self._tables.values())
         with self._writing():
-            self._check_room(pending)
+            self._make_room()
             for table in self._tables.values():
                 table.write()
             self._file.attrs.modify("wall_s", float(self.wall_s))
             self._file.attrs.modify("grain_steps", int(self.grain_steps))
             self._file.flush()
         self._flushed = time.monotonic()
+
+    def sync(self) -> None:
+        """Flush, and have the system put it all on the disk, where a power cut leaves it."""
+        self.flush()
+        with self._writing():
+            os.fsync(self._file.id.get_vfd_handle())
 
     def close(self, status: str = "complete") -> None:
         """Write the rest and the status, "complete" or "stopped: <sentence>"; once is enough."""
@@ -120,6 +207,7 @@ class Recorder:
             with self._writing():
                 self._file.attrs.modify("status", status)
                 self._file.close()
+                _give_back(self.path)
 
     def __enter__(self) -> "Recorder":
         return self
@@ -131,89 +219,82 @@ class Recorder:
         with suppress(LabError):  # what stopped the run is the news
             self.close(f"stopped: {_sentence(error)}")
 
+    @property
+    def _pending(self) -> int:
+        return sum(table.pending_bytes for table in self._tables.values())
+
+    def _make_room(self) -> None:
+        """Reserve what the rows to be written need and, by then, closing the file.
+
+        HDF5 can neither go on nor close a file once a writing has failed, so it must not come to that.
+        """
+        needed = self._file.id.get_filesize() + self._pending + self._spare
+        if needed > self._reserved:
+            _reserve(self._file, needed + self._spare)
+            self._reserved = needed + self._spare
+
     def _add(self, name: str, values: Mapping[str, object]) -> None:
         self._tables[name].add(values)
-        pending = sum(table.pending_bytes for table in self._tables.values())
-        if pending > BUFFER_BYTES or time.monotonic() - self._flushed > self._flush_every:
+        if self._pending > self._buffer or time.monotonic() - self._flushed > self._flush_every:
             self.flush()
 
-    def _write_head(self, preset: str, given: str, resolved: Mapping, step: float, machine: Mapping) -> None:
-        attributes = {
-            "format": FORMAT,
-            "preset": preset,
-            "status": "running",
-            "created": datetime.now().astimezone().isoformat(timespec="seconds"),
-            "versions": json.dumps(_versions()),
-            "machine": json.dumps({**_machine(), **machine}),
-            "step": float(step),
-            "wall_s": 0.0,
-            "grain_steps": 0,
-        }
-        self._file.attrs.update(attributes)
-        self._file["preset/given"] = given
-        self._file["preset/resolved"] = json.dumps(resolved)
-
-    def _check_room(self, pending: int) -> None:
-        free = shutil.disk_usage(self.folder).free
-        if free < pending + SPARE_BYTES:
-            raise LabError(
-                f"The disk of {self.folder} is full ({free / 2**20:.0f} MiB free): "
-                "make room there or choose another folder."
-            )
-
-    @contextmanager
-    def _writing(self) -> Iterator[None]:
-        """Turn what the system or HDF5 says against writing into one sentence."""
-        try:
-            yield
-        except FileExistsError as error:
-            raise LabError(f"{self.folder} already holds a recording or is a file: choose another folder.") from error
-        except (OSError, RuntimeError) as error:
-            reason = os.strerror(error.errno) if getattr(error, "errno", None) else _sentence(error)
-            raise LabError(f"{self.folder} cannot be written ({reason}): choose another folder.") from error
+    def _writing(self):
+        return _writing(self.folder)
 
 
 class _Table:
-    """Data sets that grow together along their first axis, and the rows not yet written."""
+    """Data sets that grow together along their first axis, and the rows not yet written.
 
-    def __init__(self, shapes: Mapping[str, tuple[tuple[int, ...], str]]) -> None:
-        self._shapes = shapes
-        self._rows: dict[str, list[np.ndarray]] = {name: [] for name in shapes}
-        self._datasets: dict[str, h5py.Dataset] = {}
-        self._row_bytes = sum(_row_bytes(*shape) for shape in shapes.values())
+    The first `rows` rows of the data sets stand; `short` says whether there are so many.
+    """
+
+    def __init__(self, group: h5py.Group, rows: int) -> None:
+        self._datasets: dict[str, h5py.Dataset] = {name: group[name] for name in group}
+        self._rows: dict[str, list[np.ndarray]] = {name: [] for name in group}
+        self._row_bytes = sum(_row_bytes(data.shape[1:], data.dtype) for data in self._datasets.values())
+        self._written = rows
+        self.chunk_bytes = sum(_row_bytes(data.chunks, data.dtype) for data in self._datasets.values())
+        self.short = any(len(data) < rows for data in self._datasets.values())
+
+    @property
+    def rows(self) -> int:
+        return self._written + len(self._rows["time"])
 
     @property
     def pending_bytes(self) -> int:
         return len(self._rows["time"]) * self._row_bytes
 
-    def create(self, group: h5py.Group) -> None:
-        for name, (shape, kind) in self._shapes.items():
-            rows = max(1, min(CHUNK_ROWS, CHUNK_BYTES // _row_bytes(shape, kind)))
-            self._datasets[name] = group.create_dataset(
-                name, (0, *shape), kind, maxshape=(None, *shape), chunks=(rows, *shape)
-            )
-
     def add(self, values: Mapping[str, object]) -> None:
-        if values.keys() != self._shapes.keys():
-            raise ValueError(f"a row has {sorted(values)}, the table {sorted(self._shapes)}")
+        if values.keys() != self._datasets.keys():
+            raise ValueError(f"a row has {sorted(values)}, the table {sorted(self._datasets)}")
         row = {}
-        for name, (shape, kind) in self._shapes.items():
-            row[name] = np.array(values[name], dtype=kind)  # a copy: the caller may reuse its array
-            if row[name].shape != shape:
-                raise ValueError(f"{name} has the shape {row[name].shape}, the table {shape}")
+        for name, data in self._datasets.items():
+            row[name] = np.array(values[name], dtype=data.dtype)  # a copy: the caller may reuse its array
+            if row[name].shape != data.shape[1:]:
+                raise ValueError(f"{name} has the shape {row[name].shape}, the table {data.shape[1:]}")
         for name, value in row.items():
             self._rows[name].append(value)
 
     def write(self) -> None:
-        count = len(self._rows["time"])
-        if not count:
+        if not self._rows["time"]:
             return
-        for name, dataset in self._datasets.items():
-            written = len(dataset)
-            dataset.resize(written + count, axis=0)
-            dataset[written:] = np.stack(self._rows[name])
+        end = self.rows
+        for name, data in self._datasets.items():
+            if len(data) < end:
+                data.resize(end, axis=0)
+            data[self._written : end] = np.stack(self._rows[name])
+        self._written = end
         for rows in self._rows.values():
             rows.clear()
+
+
+def _create_table(group: h5py.Group, shapes: Mapping[str, tuple[tuple[int, ...], str]]) -> None:
+    """Empty data sets with such rows, which can grow."""
+    for name, (shape, kind) in shapes.items():
+        rows = max(1, min(CHUNK_ROWS, CHUNK_BYTES // max(1, _row_bytes(shape, kind))))
+        chunk = (rows, *(max(1, size) for size in shape))
+        room = (None, *(size or None for size in shape))  # HDF5 wants chunks no larger than the data set may become
+        group.create_dataset(name, (0, *shape), kind, maxshape=room, chunks=chunk)
 
 
 class Recording:
@@ -221,7 +302,8 @@ class Recording:
 
     path, folder; name: of the preset; given: its TOML text; preset: all its values in SI, nested as
     in the TOML; status, created, versions, machine, step (s), wall_s, grain_steps;
-    radius (W, n) m; outline (m, 2) m.
+    radius (W, n) m; outline (m, 2) m; fixed (k, 3) y, z, radius m; open_edges; parts, polylines (m, 2) m
+    by name.
     series: "time" (T,) s and the names of SERIES, whole arrays (T, W, ...).
     frames: "time" (F,) s and the names of GRAIN_FRAMES and WORLD_FRAMES, (F, W, ...), read from the
     file by indexing: `recording.frames["position"][-1]`.
@@ -245,11 +327,11 @@ class Recording:
             self.grain_steps = int(attributes["grain_steps"])
             self.given = self._file["preset/given"].asstr()[()]
             self.preset = json.loads(self._file["preset/resolved"].asstr()[()])
-            self.radius, self.outline = (
-                self._file["grains/radius"][:],
-                self._file["tank/outline"][:],
-            )
-            shapes = _table_shapes(*self.radius.shape)
+            self.radius, tank = self._file["grains/radius"][:], self._file["tank"]
+            self.outline, self.fixed = tank["outline"][:], tank["fixed"][:]
+            self.open_edges = tuple(int(edge) for edge in tank["open_edges"][:])
+            self.parts = {name: line[:] for name, line in tank["parts"].items()}
+            shapes = _table_shapes(*self.radius.shape, len(self.parts))
             self.series = Series(self._file["series"], shapes["series"], self.path)
             self.frames = Frames(self._file["frames"], shapes["frames"], self.path)
 
@@ -267,6 +349,20 @@ class Recording:
     def complete(self) -> bool:
         """Whether the run came to its end."""
         return self.status == "complete"
+
+    def layout(self, name: str) -> tuple[tuple[int, ...], np.dtype]:
+        """Shape and kind of a data set of the file as it lies there."""
+        with _reading(self.path):
+            return self._file[name].shape, self._file[name].dtype
+
+    def copy_into(self, file: h5py.File) -> None:
+        """Copy everything into an empty file, each table as far as all its arrays go."""
+        with _reading(self.path):
+            file.attrs.update(self._file.attrs)
+            for name in ("preset", "grains", "tank"):
+                self._file.copy(name, file)
+            for name, table in {"series": self.series, "frames": self.frames}.items():
+                table.copy_into(file.create_group(name))
 
     def close(self) -> None:
         """Close the file; what was not read before cannot be read any more."""
@@ -295,6 +391,16 @@ class Frames(Mapping):
 
     def __len__(self) -> int:
         return len(self._columns)
+
+    def copy_into(self, group: h5py.Group) -> None:
+        """Copy the data sets into an empty group, in blocks."""
+        _create_table(group, {name: (data.shape[1:], data.dtype.str) for name, data in self._columns.items()})
+        for name, data in self._columns.items():
+            copy = group[name]
+            copy.resize(self._length, axis=0)
+            for begin in range(0, self._length, copy.chunks[0]):
+                end = min(begin + copy.chunks[0], self._length)
+                copy[begin:end] = data[begin:end]
 
 
 class Series(Frames):
@@ -332,6 +438,22 @@ def open_recording(path: Path | str) -> Recording:
     return Recording(path)
 
 
+def _open_for_adding(path: Path) -> h5py.File:
+    """Open a closed file as the writer in SWMR mode, in one stroke.
+
+    Opened first and switched to that mode then, as h5py does it, a file would be unreadable had the writer been killed
+    in between. A reader's lock is waited for: who reads opens and closes, or has the file that was mended.
+    """
+    access = h5py.h5p.create(h5py.h5p.FILE_ACCESS)
+    access.set_libver_bounds(h5py.h5f.LIBVER_LATEST, h5py.h5f.LIBVER_LATEST)
+    for _ in range(100):
+        try:
+            return h5py.File(h5py.h5f.open(os.fsencode(path), h5py.h5f.ACC_RDWR | h5py.h5f.ACC_SWMR_WRITE, access))
+        except BlockingIOError:
+            time.sleep(0.02)
+    raise LabError(f"{path} is open in another program: close it there.")
+
+
 def _open(path: Path) -> h5py.File:
     if not path.is_file():
         raise LabError(f"{path} does not exist: name a recording or the folder of a run.")
@@ -360,6 +482,47 @@ def _open_closed_or_live(path: Path) -> h5py.File:
         return h5py.File(path, "r", swmr=True)
 
 
+def _unfinished(path: Path) -> Path:
+    """The name a file goes by until it is whole."""
+    return path.with_name(f"{path.name}.new")
+
+
+def _publish(path: Path) -> None:
+    """Put the unfinished file on the disk and give it its name, in one stroke."""
+    with _unfinished(path).open("r+b") as file:
+        os.fsync(file.fileno())
+    _unfinished(path).replace(path)
+
+
+def _reserve(file: h5py.File, size: int) -> None:
+    """Have the system set aside `size` bytes for a file. Raises OSError where disk, quota or a limit have no room."""
+    if hasattr(os, "posix_fallocate"):
+        os.posix_fallocate(file.id.get_vfd_handle(), 0, size)
+    elif shutil.disk_usage(file.filename).free < size - file.id.get_filesize():
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+
+def _give_back(path: Path) -> None:
+    """Return what was reserved and not used: in SWMR mode HDF5 leaves it to the file."""
+    with path.open("r+b") as file:
+        head = file.read(36)  # of the superblock, whose last eight bytes here say where the file ends
+        file.truncate(int.from_bytes(head[28:], "little"))
+
+
+@contextmanager
+def _writing(folder: Path) -> Iterator[None]:
+    """Turn what the system or HDF5 says against writing into one sentence."""
+    try:
+        yield
+    except FileExistsError as error:
+        raise LabError(f"{folder} already holds a recording or is a file: choose another folder.") from error
+    except (OSError, RuntimeError) as error:
+        number = getattr(error, "errno", None)
+        reason = os.strerror(number) if number else _sentence(error)
+        remedy = "make room there" if number in FULL else "choose another folder"
+        raise LabError(f"{folder} cannot be written ({reason}): {remedy}.") from error
+
+
 @contextmanager
 def _reading(path: Path) -> Iterator[None]:
     try:
@@ -368,13 +531,14 @@ def _reading(path: Path) -> Iterator[None]:
         raise LabError(f"{path} is damaged ({_sentence(error)}): record the run again.") from error
 
 
-def _table_shapes(worlds: int, count: int) -> dict[str, dict[str, tuple[tuple[int, ...], str]]]:
+def _table_shapes(worlds: int, count: int, parts: int) -> dict[str, dict[str, tuple[tuple[int, ...], str]]]:
     """Shape of a row and kind of number of every data set that grows."""
     time = {"time": ((), "f8")}
     return {
         "series": time | {name: ((worlds, *shape), "f8") for name, shape in SERIES.items()},
         "frames": time
         | {name: ((worlds, *shape), "f8") for name, shape in WORLD_FRAMES.items()}
+        | {"part": ((worlds, parts, 2), "f8")}
         | {name: ((worlds, count, *shape), "f4") for name, shape in GRAIN_FRAMES.items()},
     }
 
@@ -383,7 +547,8 @@ def _row_bytes(shape: tuple[int, ...], kind: str) -> int:
     return int(np.prod(shape, dtype=int)) * np.dtype(kind).itemsize
 
 
-def _versions() -> dict[str, str]:
+def versions() -> dict[str, str]:
+    """Of Python and of the packages whose results a recording holds."""
     found = {"python": platform.python_version()}
     for package in PACKAGES:
         try:

@@ -1,25 +1,27 @@
-"""Runs an experiment: settle, move, record, measure, plot, paint, sum up."""
+"""Runs an experiment to its end: settle, move, record, measure, plot, paint, sum up; and goes on with one cut short."""
 
 import json
-import time
-from collections.abc import Mapping
+import shlex
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 
-import numpy as np
-
+from lab.checkpoint import FILE_NAME as CHECKPOINT
+from lab.checkpoint import Checkpoint, read_checkpoint, remove_checkpoint
 from lab.errors import LabError
+from lab.launch import Run, launch, prepare
+from lab.lock import only_one
 from lab.measures import measure_all
 from lab.measures.value import Value
 from lab.plots import write_plots
 from lab.presets import LoadedPreset, load
 from lab.progress import Progress
-from lab.recording import Recorder, Recording, open_recording
-from lab.scene import build
+from lab.recording import FILE_NAME, Recording, mend_recording, open_recording, versions
+from lab.schema import Resolved
 from lab.summary import terminal_summary, write_summary
-from solvers.errors import BadState
-from solvers.simulation import Simulation
+from lab.xdmf import write_xdmf
 
 RENDERS = Path("renders")
 
@@ -48,94 +50,100 @@ def run_preset(
 ) -> Result:
     """Run a preset and leave recording, plots, video and summary in a folder (default: renders/NAME).
 
-    Raises LabError for what a person can mend, BadState where the watch stopped the run; what was recorded until
-    then stays, with its summary.
+    Raises LabError for what a person can mend, BadState where the watch stopped the run, KeyboardInterrupt; what was
+    recorded until then stays, with its summary and what `resume_run` needs.
     """
     loaded = load(name, overrides)
     folder = Path(out) if out is not None else _free_folder(RENDERS / loaded.name)
-    with Progress(quiet) as progress:
-        try:
-            simulate(loaded, folder, progress)
-        except (BadState, KeyboardInterrupt):
-            _report(folder, False, progress)
-            raise
-        return _report(folder, video, progress)
+    with Progress(quiet) as progress, hint(folder):
+        run = prepare(loaded, folder)
+        run.make_recording()
+        with only_one(folder):
+            return _complete(run, None, progress, video)
 
 
-def simulate(loaded: LoadedPreset, folder: Path, progress: Progress) -> None:
-    """Settle the grains, run the motion and record both series and frames."""
-    preset = loaded.resolved
-    scene, position = build(preset)
-    with Recorder(
-        folder,
-        preset=loaded.name,
-        given=loaded.given_text,
-        resolved=json.loads(preset.model_dump_json()),
-        radius=scene.radius,
-        outline=scene.outline,
-        step=scene.step,
-    ) as recorder:
-        simulation = Simulation(scene, position, preset.run.threads)
-        try:
-            _settle(simulation, preset, progress)
-            _run(simulation, preset, recorder, progress)
-        finally:
-            simulation.close()
+def resume_run(folder: Path | str, *, video: bool = True, quiet: bool = False) -> Result:
+    """Go on with a run that was killed, interrupted or stopped, from its checkpoint, bit for bit.
+
+    The preset is the recording's own. A run that only lacks its results gets these. Raises as `run_preset` does, and
+    LabError where there is nothing to go on with.
+    """
+    folder = Path(folder)
+    with open_recording(folder) as recording:
+        loaded, complete = recorded_preset(recording), recording.complete
+        rows, changed = len(recording.series["time"]), recording.versions != versions()
+    if complete and reported(folder, "complete"):
+        raise LabError(f"{folder} is complete: there is nothing to resume.")
+    with Progress(quiet) as progress, hint(folder), only_one(folder):
+        if complete:
+            remove_checkpoint(folder)
+            return report(folder, progress, video=video)
+        kept = read_checkpoint(folder)
+        if kept is None and rows:
+            raise LabError(f"{folder} has no checkpoint to resume from: start the run anew, in another folder.")
+        if changed:
+            progress.warn("The run was begun with other versions of the lab or its libraries than it goes on with.")
+        run = prepare(loaded, folder)
+        mend_recording(folder)
+        return _complete(run, kept, progress, video)
 
 
-def _settle(simulation: Simulation, preset, progress: Progress) -> None:
-    progress.start("settling", preset.run.settle_limit)
-    rests = simulation.settle(preset.run.rest, preset.run.settle_limit, progress.reach)
-    if not rests:
-        limit = preset.run.settle_limit
-        progress.warn(f"The grains still moved after {limit:g} s of settling; raise run.settle_limit or run.rest.")
-    progress.finish()
+def recorded_preset(recording: Recording) -> LoadedPreset:
+    """The preset of a recording, ready to run again."""
+    resolved = Resolved.model_validate_json(json.dumps(recording.preset))
+    return LoadedPreset(recording.name, recording.given, resolved)
 
 
-def _run(simulation: Simulation, preset, recorder: Recorder, progress: Progress) -> None:
-    steps = round(1.0 / (preset.record.series_rate * simulation.dt))
-    samples = max(1, round(preset.run.duration * preset.record.series_rate))
-    a_frame = max(1, round(preset.record.series_rate / preset.record.picture_rate))
-    progress.start("running", preset.run.duration)
-    begun = time.perf_counter()
-    for k in range(samples + 1):
-        if k:
-            simulation.advance(steps)
-        rows = simulation.observe()
-        recorder.sample(_sample(simulation.time, rows))
-        if k % a_frame == 0:
-            recorder.frame({"time": simulation.time, "pose": _pose(rows), **simulation.snapshot()})
-        recorder.wall_s = time.perf_counter() - begun
-        recorder.grain_steps = simulation.grain_steps
-        progress.reach(simulation.time)
-    progress.finish()
-
-
-def _pose(rows: Mapping[str, np.ndarray]) -> np.ndarray:
-    return np.stack([rows["pose_y"], rows["pose_z"], rows["pose_angle"]], axis=-1)
-
-
-def _sample(now: float, rows: Mapping[str, np.ndarray]) -> dict[str, object]:
-    """The row of the series that an observation makes."""
-    kept = ("kinetic", "rotational", "potential", "elastic", "contacts", "overlap")
-    return {
-        "time": now,
-        "pose": _pose(rows),
-        "pose_rate": np.stack([rows["rate_y"], rows["rate_z"], rows["rate_angle"]], axis=-1),
-        "centre_of_mass": np.stack([rows["centre_y"], rows["centre_z"]], axis=-1),
-        **{name: rows[name] for name in kept},
-    }
-
-
-def _report(folder: Path, video: bool, progress: Progress) -> Result:
+def report(folder: Path, progress: Progress, *, video: bool, plots: bool = True) -> Result:
     """Measure the recording, plot and paint it, and write the summary."""
     with open_recording(folder) as recording:
         measures = measure_all(recording)
-        files = {"recording": recording.path, **write_plots(recording, measures, folder)}
+        files = {"recording": recording.path}
+        if plots:
+            files |= write_plots(recording, measures, folder)
         if video:
             files["video"] = _film(folder, progress)
+        if recording.preset["record"]["xdmf"]:
+            files["xdmf"] = write_xdmf(recording)
         write_summary(recording, measures, files, folder, progress.warnings)
         return Result(folder, measures, terminal_summary(recording, measures, files, progress.warnings))
+
+
+def reported(folder: Path, status: str) -> bool:
+    """Whether the folder's summary is that of its recording, which has this status."""
+    try:
+        return json.loads((folder / "summary.json").read_text(encoding="utf-8"))["status"] == status
+    except (OSError, ValueError, KeyError, TypeError):
+        return False
+
+
+@contextmanager
+def hint(folder: Path, begun: str = FILE_NAME) -> Iterator[None]:
+    """Tell a person whose run is cut short how to go on with it; `begun` is the file that says that it has begun."""
+    resume = f"cargolab resume {shlex.quote(str(folder))}"
+    try:
+        yield
+    except KeyboardInterrupt as error:
+        if not (folder / begun).exists():
+            raise KeyboardInterrupt("interrupted before the run began") from None
+        raise KeyboardInterrupt(f"{error or 'interrupted'}; go on with: {resume}") from None
+    except LabError as error:
+        if not (folder / CHECKPOINT).exists():
+            raise
+        raise LabError(f"{str(error).removesuffix('.')}; go on with: {resume}") from error
+
+
+def _complete(run: Run, kept: Checkpoint | None, progress: Progress, video: bool) -> Result:
+    """Run to the end, or on to it, and report."""
+    try:
+        stopped = launch([run], run.folder, progress, kept)
+    except KeyboardInterrupt:
+        report(run.folder, progress, video=False)
+        raise
+    result = report(run.folder, progress, video=video and not stopped)
+    for error in stopped.values():
+        raise error
+    return result
 
 
 def _film(folder: Path, progress: Progress) -> Path:
@@ -151,6 +159,6 @@ def _free_folder(wanted: Path) -> Path:
     """`wanted`, or the first of wanted-2, wanted-3 … that holds no recording yet."""
     for number in range(1, 10_000):
         folder = wanted if number == 1 else wanted.with_name(f"{wanted.name}-{number}")
-        if not (folder / "recording.h5").exists():
+        if not (folder / FILE_NAME).exists():
             return folder
     raise LabError(f"{wanted.parent} is full of runs of {wanted.name}; remove some or give --out.")

@@ -7,48 +7,106 @@ import numpy as np
 from lab.errors import LabError
 from lab.schema import Resolved
 from lab.units import show
-from solvers.filling import DoesNotFit, count_for_depth, radii, start_positions
+from solvers.filling import NONE_FIXED, DoesNotFit, count_for_depth, headroom, lattice, start_positions
 from solvers.scene import Scene
+from solvers.tank import lining, raised
 
 
 def grain_count(preset: Resolved) -> int:
-    """Number of grains in one tank."""
+    """Number of grains in one tank, fixed ones not counted."""
     grains = preset.grains
     if grains.count is not None:
         return grains.count
-    return count_for_depth(grains.depth, preset.tank.width, grains.diameter, grains.spread)
+    return count_for_depth(grains.depth, np.array(preset.tank.outline), grains.sizes, fixed_grains(preset))
+
+
+def fixed_grains(preset: Resolved) -> np.ndarray:
+    """The grains (k, 3) y, z, radius in m that line a rough tank, the same in all repeats: their seed is run.seed."""
+    tank = preset.tank
+    if tank.roughness is None:
+        return NONE_FIXED
+    return lining(np.array(tank.outline), tank.roughness, np.random.default_rng(preset.run.seed))
+
+
+def filling_outline(preset: Resolved) -> np.ndarray:
+    """The outline (m, 2) m of the tank that the grains settle in first.
+
+    Grains start higher than they will lie. Where they are thrown, or fill an open tank to its rim, or have no room to
+    start in a closed one, the walls go on upwards while the bed is made.
+    """
+    outline, grains = np.array(preset.tank.outline), preset.grains
+    if grains.listed or not preset.run.settle:
+        return outline
+    count, largest = grain_count(preset), 0.5 * grains.range[1]
+    low = not (grains.surface == "disturbed" or preset.tank.open_edges)
+    if low and len(lattice(largest, outline, fixed_grains(preset), _plates(preset))) >= count:
+        return outline
+    return raised(outline, headroom(count, largest, preset.tank.width))
 
 
 def build(preset: Resolved) -> tuple[Scene, np.ndarray]:
     """The scene of all repeats and positions (W, n, 2) m to settle from; repeat w has the seed run.seed + w.
 
-    The step divides the sampling interval of the series, so samples fall on steps. Raises LabError where the grains
-    do not fit or a given step is past the limit.
+    The positions lie within `filling_outline`. The step divides the sampling interval of the series, so samples fall
+    on steps. Raises LabError where the grains do not fit or a given step is past the limit.
     """
-    outline = np.array(preset.tank.outline)
-    count, size = grain_count(preset), preset.grains
-    worlds = range(preset.run.repeats)
-    random = [np.random.default_rng(preset.run.seed + w) for w in worlds]
-    radius = np.stack([radii(count, size.diameter, size.spread, r) for r in random])
-    try:
-        position = np.stack([start_positions(radius[w], outline, random[w]) for w in worlds])
-    except DoesNotFit as error:
-        raise LabError(f"grains.{'count' if size.count else 'depth'}: {error}") from None
+    radius, position, motion = _listed(preset) if preset.grains.listed else _filled(preset)
+    low, high = preset.grains.range
     scene = Scene(
         radius=radius,
-        outline=outline,
+        outline=np.array(preset.tank.outline),
         grain=preset.material,
         wall=preset.wall,
         normal=preset.contact.normal,
         tangential=preset.contact.tangential,
+        rolling=preset.contact.rolling,
         stiffness_scale=preset.contact.stiffness_scale,
         gravity=preset.run.gravity,
         motions=[tuple(preset.motion.parts.values())] * len(radius),
         soft_start=preset.motion.soft_start,
-        sizes=(0.5 * size.diameter * (1.0 - size.spread), 0.5 * size.diameter * (1.0 + size.spread)),
+        sizes=(0.5 * low, 0.5 * high),
+        fixed=fixed_grains(preset),
+        open_edges=preset.tank.open_edges,
+        parts=tuple(preset.parts.values()),
+        integrator=preset.run.integrator,
+        precision=preset.run.precision,
+        schedule=preset.run.schedule,
+        **motion,
     )
     scene.step = _step(preset, scene)
     return scene, position
+
+
+def _filled(preset: Resolved) -> tuple[np.ndarray, np.ndarray, dict]:
+    """Radii (W, n) and positions (W, n, 2) of a tank to be filled, each repeat by its own seed; nothing moves."""
+    grains, count = preset.grains, grain_count(preset)
+    random = [np.random.default_rng(preset.run.seed + w) for w in range(preset.run.repeats)]
+    radius = np.stack([grains.sizes.draw(count, r) for r in random])
+    outline, fixed = filling_outline(preset), fixed_grains(preset)
+    plates, thrown = _plates(preset), grains.surface == "disturbed"
+    try:
+        position = [
+            start_positions(size, outline, r, fixed, plates, thrown) for size, r in zip(radius, random, strict=True)
+        ]
+    except DoesNotFit as error:
+        raise LabError(f"grains.{'count' if grains.count else 'depth'}: {error}") from None
+    return radius, np.stack(position), {}
+
+
+def _plates(preset: Resolved) -> list[np.ndarray]:
+    """The tank's parts, polylines (m, 2) m at rest."""
+    return [np.array(part.points) for part in preset.parts.values()]
+
+
+def _listed(preset: Resolved) -> tuple[np.ndarray, np.ndarray, dict]:
+    """Radii and positions of the grains listed one by one, in all repeats, and how they move if they do."""
+    listed = np.array([preset.grains.listed] * preset.run.repeats)
+    velocity, spin = listed[..., 3:5], listed[..., 5]
+    motion = {}
+    if np.any(velocity) or np.any(spin):
+        fastest = float(np.linalg.norm(velocity, axis=-1).max())
+        motion = {"velocity": velocity, "spin": spin, "start_speed": fastest}
+    return listed[..., 2], listed[..., :2], motion
 
 
 def _step(preset: Resolved, scene: Scene) -> float:

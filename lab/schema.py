@@ -8,20 +8,31 @@ new motion or law in its registry is a new key or word here. Each section below 
 import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, make_dataclass, replace
+from pathlib import Path
 from typing import Annotated, Literal, get_type_hints
 
+import numpy as np
 from pydantic import BaseModel, ConfigDict
 
+from lab.bed_file import read_bed
 from lab.errors import LabError
+from lab.history import HistoryGiven, check_end, check_start, read_history
 from lab.outline import Point, area, rectangle, simple_polygon
+from lab.paint.colours import MODES
+from lab.parts import check_parts
 from lab.reader import check_keys, read
-from lab.units import show
-from solvers.laws import NORMAL, TANGENTIAL
+from lab.units import needed, show
+from solvers.laws import NORMAL, ROLLING, TANGENTIAL
 from solvers.materials import Material
 from solvers.motions import MOTIONS
+from solvers.motions.history import History
+from solvers.parts import Part
 from solvers.quantity import Interval, Unit
+from solvers.sizes import Sizes
+from solvers.tank import top_edges
 
 DENSEST = math.pi / math.sqrt(12)  # largest share of a plane that equal discs cover (Thue)
+MOST_LINING = 20_000  # grains that line a tank
 
 Length = Annotated[float, Unit("m"), Interval(gt=0)]
 Time = Annotated[float, Unit("s"), Interval(gt=0)]
@@ -30,18 +41,26 @@ Rate = Annotated[float, Unit("Hz"), Interval(gt=0)]
 
 @dataclass(frozen=True)
 class TankGiven:
-    """A tank as a preset gives it: width and height, or an outline."""
+    """A tank as a preset gives it: width and height, or an outline; whether it has a lid and a lining of grains."""
 
     width: Length | None = None
     height: Length | None = None
     outline: Annotated[tuple[tuple[float, float], ...], Unit("m")] | None = None
+    lid: bool = True
+    roughness: Length | None = None
 
 
 @dataclass(frozen=True)
 class Tank:
-    """The tank's outline (m) in its own frame, a simple polygon, counter-clockwise."""
+    """The tank's outline (m) in its own frame, a simple polygon, counter-clockwise.
+
+    `open_edges` carry no wall; edge k runs from corner k to corner k + 1. `roughness` is the diameter (m) of the fixed
+    grains that line floor and sides, None where these are smooth.
+    """
 
     outline: tuple[tuple[float, float], ...]
+    open_edges: tuple[int, ...] = ()
+    roughness: float | None = None
 
     @property
     def width(self) -> float:
@@ -57,13 +76,44 @@ class Tank:
 
 
 @dataclass(frozen=True)
-class Grains:
-    """Spheres in a plane, diameters uniform in diameter·(1 ± spread): so many, or so deep a bed."""
+class GrainsGiven:
+    """Spheres in a plane as a preset gives them: so many, or so deep a bed, or a file of single ones.
 
-    diameter: Length
+    Diameters are uniform in diameter·(1 ± spread), or normal with the relative standard deviation `spread`, cut at ± 3
+    of these and at a tenth of the diameter, or by a table of [diameter, share by number], each class uniform within
+    ± spread. `surface`, after Spandonidis (2016), section 5.3.1: `solvers/filling.py` says what is done for it.
+    """
+
+    diameter: Length | None = None
     spread: Annotated[float, Interval(ge=0, le=0.5)] = 0.0
+    distribution: Literal["uniform", "normal", "table"] = "uniform"
+    table: tuple[tuple[Length, Annotated[float, Interval(gt=0)]], ...] | None = None
     count: Annotated[int, Interval(ge=1, le=1_000_000)] | None = None
     depth: Length | None = None
+    surface: Literal["undisturbed", "slightly-disturbed", "disturbed"] = "slightly-disturbed"
+    bed: str | None = None
+    reuse_bed: bool = True
+
+
+@dataclass(frozen=True)
+class Grains(GrainsGiven):
+    """The grains in full: `diameter` (m) is the mean, `listed` what `bed` lists: y, z, radius, v_y, v_z, ω in SI."""
+
+    listed: tuple[tuple[float, float, float, float, float, float], ...] = ()
+
+    @property
+    def sizes(self) -> Sizes:
+        """The distribution that the diameters are drawn from."""
+        classes = self.table or ((self.diameter, 1.0),)
+        return Sizes(classes, self.spread, self.distribution == "normal")
+
+    @property
+    def range(self) -> tuple[float, float]:
+        """Smallest and largest diameter (m) that may come."""
+        if self.listed:
+            radius = [grain[2] for grain in self.listed]
+            return 2.0 * min(radius), 2.0 * max(radius)
+        return self.sizes.range
 
 
 WallGiven = make_dataclass(
@@ -83,6 +133,7 @@ class Contact:
 
     normal: Literal[*NORMAL] = "hertz-viscoelastic"
     tangential: Literal[*TANGENTIAL] = "haff-werner"
+    rolling: Literal[*ROLLING] = "none"
     stiffness_scale: Annotated[float, Interval(gt=0, le=1)] = 1.0
 
 
@@ -94,17 +145,23 @@ class MotionGroup:
 
     @property
     def parts(self) -> dict[str, object]:
-        """The motions in use, by name, innermost first."""
+        """The motions in use, by name, innermost first; those of a record are the outermost."""
         named = {name: getattr(self, name) for name in MOTIONS}
-        return {name: part for name, part in named.items() if part is not None}
+        used = {name: part for name, part in named.items() if part is not None}
+        recorded = self.history.motions if self.history else {}
+        return used | {f"history.{name}": part for name, part in recorded.items()}
 
 
-Motion = make_dataclass(
-    "Motion",
-    [(name, kind | None, None) for name, kind in MOTIONS.items()],
-    bases=(MotionGroup,),
-    frozen=True,
-)
+def _motions(name: str, history: type) -> type:
+    """A section with every registered motion and a `history`, any of which may be left out."""
+    kinds = {**MOTIONS, "history": history}
+    return make_dataclass(
+        name, [(key, kind | None, None) for key, kind in kinds.items()], bases=(MotionGroup,), frozen=True
+    )
+
+
+MotionGiven = _motions("MotionGiven", HistoryGiven)
+Motion = _motions("Motion", History)
 
 
 @dataclass(frozen=True)
@@ -114,20 +171,27 @@ class Run:
     duration: Time | None = None
     repeats: Annotated[int, Interval(ge=1, le=100_000)] = 1
     seed: Annotated[int, Interval(ge=0, le=2**31 - 1)] = 1
+    settle: bool = True
     step: Time | Literal["auto"] = "auto"
     force_step: bool = False
     gravity: Annotated[float, Unit("m/s^2"), Interval(gt=0)] = 9.81
     settle_limit: Time = 5.0
     rest: Annotated[float, Interval(gt=0)] = 1e-6
     threads: Annotated[int, Interval(ge=0, le=1024)] = 0
+    arch: Literal["auto", "cpu", "cuda", "vulkan"] = "auto"
+    schedule: Literal["auto", "per-world", "per-band", "per-grain"] = "auto"
+    precision: Literal["f64", "f32", "mixed"] = "f64"
+    integrator: Literal["verlet", "symplectic-euler", "gear"] = "verlet"
 
 
 @dataclass(frozen=True)
 class Record:
-    """How often the series and the frames are sampled."""
+    """How often the series and the frames are sampled, how often (wall clock) all is saved, what else is written."""
 
     series_rate: Rate = 100.0
     picture_rate: Rate = 25.0
+    checkpoint_every: Annotated[float, Unit("s"), Interval(ge=0)] = 60.0
+    xdmf: bool = False
 
 
 @dataclass(frozen=True)
@@ -136,7 +200,7 @@ class Video:
 
     width: Annotated[int, Interval(ge=320, le=7680)] = 1280
     height: Annotated[int, Interval(ge=180, le=4320)] = 720
-    colour: Literal["speed", "displacement", "layer"] = "speed"
+    colour: Literal[*MODES] = "speed"
     frame: Literal["tank", "earth"] = "tank"
     speed: Annotated[float, Interval(gt=0)] = 1.0
 
@@ -147,14 +211,16 @@ class Given:
 
     title: str
     tank: TankGiven
-    grains: Grains
+    grains: GrainsGiven
     material: Material
     source: str = ""
     reports: str = ""
     based_on: str = ""
+    quick: str = ""  # how a quick variant differs from its preset
     wall: WallGiven = field(default_factory=WallGiven)
     contact: Contact = field(default_factory=Contact)
-    motion: Motion = field(default_factory=Motion)
+    motion: MotionGiven = field(default_factory=MotionGiven)
+    parts: dict[str, Part] = field(default_factory=dict)
     run: Run = field(default_factory=Run)
     record: Record = field(default_factory=Record)
     video: Video = field(default_factory=Video)
@@ -168,12 +234,14 @@ class Resolved(BaseModel):
     title: str
     source: str
     reports: str
+    quick: str
     tank: Tank
     grains: Grains
     material: Material
     wall: Material
     contact: Contact
     motion: Motion
+    parts: dict[str, Part]
     run: Run
     record: Record
     video: Video
@@ -187,63 +255,114 @@ def resolve(table: Mapping) -> Resolved:
     check_keys(Given, table)
     given = read(Given, table)
     tank = _tank(given.tank)
-    _check_grains(given.grains, tank)
+    grains = _grains(given.grains, tank, given.run.settle)
     _check_dissipation(given.material, "material", needed=True)
     _check_dissipation(given.wall, "wall", needed=False)
+    motion = _motion(given.motion)
+    run = replace(given.run, duration=_duration(given.run, motion))
+    check_parts(given.parts, tank.outline)
     _check_video(given.video)
     return Resolved(
         title=given.title,
         source=given.source,
         reports=given.reports,
+        quick=given.quick,
         tank=tank,
-        grains=given.grains,
+        grains=grains,
         material=given.material,
         wall=_wall(given.wall, given.material),
         contact=given.contact,
-        motion=given.motion,
-        run=replace(given.run, duration=_duration(given)),
+        motion=motion,
+        parts=given.parts,
+        run=run,
         record=given.record,
         video=given.video,
     )
 
 
 def _tank(given: TankGiven) -> Tank:
+    outline = np.array(_outline(given))
+    height = float(np.ptp(outline[:, 1]))
+    open_edges = () if given.lid else top_edges(outline)
+    if not given.lid and not open_edges:
+        raise LabError("tank.lid: this outline has no edge along its top to leave open; leave lid out.")
+    if given.roughness is not None:
+        around = float(np.hypot(*(outline - np.roll(outline, 1, axis=0)).T).sum())
+        if given.roughness > 0.25 * min(height, float(np.ptp(outline[:, 0]))):
+            raise LabError(f"tank.roughness: grains of {show(given.roughness, 'm')} are too large to line the tank.")
+        if around > MOST_LINING * given.roughness:
+            raise LabError(f"tank.roughness: more than {MOST_LINING} grains of {show(given.roughness, 'm')} go around.")
+    return Tank(tuple(map(tuple, outline.tolist())), open_edges, given.roughness)
+
+
+def _outline(given: TankGiven) -> tuple[Point, ...]:
     sides = {"width": given.width, "height": given.height}
     if given.outline is not None:
         if any(sides.values()):
             raise LabError("tank.outline: give either an outline or a width and a height, not both.")
         try:
-            return Tank(simple_polygon(given.outline))
+            return simple_polygon(given.outline)
         except LabError as error:
             raise LabError(f"tank.outline: {error}") from None
     for name, side in sides.items():
         if side is None:
             raise LabError(f"tank.{name}: missing; give width and height, or an outline.")
-    return Tank(rectangle(given.width, given.height))
+    return rectangle(given.width, given.height)
+
+
+def _grains(given: GrainsGiven, tank: Tank, settle: bool) -> Grains:
+    """The grains in full, all sizes known; a file of grains takes the place of all that says how a bed is made."""
+    if given.surface != "slightly-disturbed" and not settle:
+        raise LabError(f"grains.surface: a bed is {given.surface} by how it settles; leave run.settle true.")
+    if given.bed is not None:
+        return _listed_grains(given, tank, settle)
+    if (given.distribution == "table") != (given.table is not None):
+        got = "no table" if given.table is None else f'distribution = "{given.distribution}"'
+        raise LabError(f'grains.table: goes with distribution = "table" (got {got}).')
+    if given.table is None and given.diameter is None:
+        raise LabError(f"grains.diameter: missing; {needed('m')}.")
+    if given.table == ():
+        raise LabError('grains.table: at least one class is needed, e.g. [["6 mm", 0.352], ["8 mm", 0.648]].')
+    grains = Grains(**asdict(given))
+    if grains.table is not None:
+        total = sum(share for _, share in grains.table)
+        shares = tuple((diameter, share / total) for diameter, share in grains.table)
+        grains = replace(grains, table=shares, diameter=Sizes(shares).mean)
+    _check_grains(grains, tank)
+    return grains
+
+
+def _listed_grains(given: GrainsGiven, tank: Tank, settle: bool) -> Grains:
+    if given.surface != "slightly-disturbed":
+        raise LabError("grains.surface: says how a bed is poured, but grains.bed lists its grains; leave one out.")
+    listed = read_bed(given.bed, tank.outline, moving=not settle)
+    mean = 2.0 * sum(grain[2] for grain in listed) / len(listed)
+    return Grains(diameter=mean, count=len(listed), bed=Path(given.bed).name, reuse_bed=given.reuse_bed, listed=listed)
 
 
 def _check_grains(grains: Grains, tank: Tank) -> None:
     if (grains.count is None) == (grains.depth is None):
         got = "neither" if grains.count is None else "both"
         raise LabError(f"grains.depth: give exactly one of depth and count (got {got}).")
-    largest = grains.diameter * (1 + grains.spread)
+    largest = grains.range[1]
     if largest >= min(tank.width, tank.height):
         size = show(largest, "m")
-        raise LabError(f"grains.diameter: grains of up to {size} do not fit into the tank.")
+        key = "diameter" if grains.table is None else "table"
+        raise LabError(f"grains.{key}: grains of up to {size} do not fit into the tank.")
+    height = show(tank.height, "m")
     if grains.depth is None:
         _check_room(grains, tank.outline)
-    elif grains.depth >= tank.height:
-        raise LabError(
-            f"grains.depth: {show(grains.depth, 'm')} must be less than the tank's height, {show(tank.height, 'm')}."
-        )
+    elif grains.depth > tank.height and tank.open_edges:
+        raise LabError(f"grains.depth: {show(grains.depth, 'm')} is more than the tank's height, {height}.")
+    elif grains.depth >= tank.height and not tank.open_edges:
+        raise LabError(f"grains.depth: {show(grains.depth, 'm')} must be less than the tank's height, {height}.")
     elif grains.depth < grains.diameter:
         raise LabError(f"grains.depth: {show(grains.depth, 'm')} is less than one grain, {show(grains.diameter, 'm')}.")
 
 
 def _check_room(grains: Grains, outline: tuple[Point, ...]) -> None:
     """Raise LabError for more grains than the tank has room for in the densest lattice."""
-    mean_square = grains.diameter * grains.diameter * (1 + grains.spread * grains.spread / 3)
-    if grains.count * math.pi / 4 * mean_square > DENSEST * area(outline):
+    if grains.count * math.pi / 4 * grains.sizes.mean_square > DENSEST * area(outline):
         raise LabError(f"grains.count: {grains.count} grains do not fit into the tank.")
 
 
@@ -271,15 +390,24 @@ def _wall(given: WallGiven, material: Material) -> Material:
     return replace(material, **own)
 
 
-def _duration(given: Given) -> float:
+def _motion(given: MotionGiven) -> Motion:
+    """The motions in full, a record read from its file."""
+    kept = {name: getattr(given, name) for name in ("soft_start", *MOTIONS)}
+    if given.history is None:
+        return Motion(**kept)
+    history = read_history(given.history)
+    check_start(history, given.soft_start)
+    return Motion(**kept, history=history)
+
+
+def _duration(run: Run, motion: Motion) -> float:
     """The run's duration (s): as given, else until the last motion that has an end is over."""
-    if given.run.duration is not None:
-        return given.run.duration
-    parts = given.motion.parts.values()
     try:
-        derived = max((part.duration() for part in parts), default=0.0)
+        derived = run.duration or max((part.duration() for part in motion.parts.values()), default=0.0)
     except ArithmeticError:
         derived = math.inf
     if not 0.0 < derived < math.inf:
         raise LabError('run.duration: missing, and no motion has an end of its own; give e.g. "8 s".')
+    if motion.history:
+        check_end(motion.history, derived)
     return derived

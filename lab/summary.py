@@ -16,8 +16,27 @@ from lab.units import show
 from solvers.motions import MOTIONS
 from solvers.quantity import Unit
 
-HEADLINES = 3  # measures that are said first
+# What answers the question of an experiment, the most telling first; a recording has only what applies to it.
+TELLING = (
+    "spill_upturn_angle",
+    "spilled_fraction",
+    "critical_angle",
+    "kept_shift",
+    "top_fall",
+    "response_amplitude",
+    "response_phase",
+    "effective_mass",
+    "surface_slope",
+    "wave_mode",
+    "top_altitude_end",
+    "final_shift",
+    "first_slip_angle",
+    "moment_amplitude",
+    "contact_number",
+)
+HEADLINES, TOLD = 3, 6  # measures that the page says first, and that the terminal is told
 MOST_DECIMALS = 4
+ROUNDING = 1e-9  # an error so small beside its value is that of the arithmetic
 LARGE_OVERLAP = 0.05  # of a radius
 SPREAD = "std of the beds"
 ERROR = "error of one bed"
@@ -56,15 +75,25 @@ def terminal_summary(
     files: Mapping[str, Path],
     warnings: Sequence[str] = (),
 ) -> str:
-    """The summary as plain text of a few lines: numbers, cost, files, warnings."""
-    rows = {name.replace("_", " "): f"{number(value)}{_remark(value)}" for name, value in values.items()}
+    """The summary as plain text of a few lines: the telling numbers, cost, files, warnings."""
+    told = headlines(values, TOLD)
+    rows = {name.replace("_", " "): f"{number(value)}{_remark(value)}" for name, value in told.items()}
     made = {name.replace("_", " "): os.path.relpath(path) for name, path in files.items()}
     lines = [f"{recording.preset['title']} ({recording.name}): {_status(recording)}"]
     lines += _aligned(rows)
+    if len(told) < len(values):
+        lines.append(f"  and {_count(len(values) - len(told), 'more number')} in the summary")
     lines += ["", f"  {_cost(recording)}"]
     lines += _aligned(made)
     lines += [f"  warning: {text}" for text in (*warnings, *_cautions(recording))]
     return "\n".join(lines)
+
+
+def headlines(values: Mapping[str, Value], most: int) -> dict[str, Value]:
+    """The most telling of the measured values, then others in their order, `most` in all."""
+    order = {name: place for place, name in enumerate(TELLING)}
+    names = sorted(values, key=lambda name: order.get(name, len(order)))
+    return {name: values[name] for name in names[:most]}
 
 
 def number(value: Value) -> str:
@@ -73,7 +102,7 @@ def number(value: Value) -> str:
         return "none"
     error = value.uncertainty if value.std is None else value.std
     unit = "" if value.unit == "1" else f" {value.unit}"
-    if not error:
+    if not error or error < ROUNDING * abs(value.value):
         return f"{value.value:.4g}{unit}"
     digits = max(0, 1 - floor(log10(error)))
     if digits > MOST_DECIMALS:
@@ -90,7 +119,7 @@ def _page(
     """The lines of summary.md."""
     preset = recording.preset
     yield f"# {preset['title']}\n"
-    for name, value in list(values.items())[:HEADLINES]:
+    for name, value in headlines(values, HEADLINES).items():
         yield f"- {name.replace('_', ' ')}: **{number(value)}**{_remark(value)}"
     yield f"\nThe run `{recording.name}` of {recording.created[:10]} is {_status(recording)}."
     yield from (f"\n**Warning:** {text}" for text in warnings)
@@ -156,7 +185,11 @@ def _scene(recording: Recording) -> Iterator[str]:
     size = low if low == high else f"{low} to {high}"
     yield f"{_count(worlds, 'bed')} of {_count(count, 'grain')}, {size} in diameter"
     width, height = (show(extent, "m") for extent in np.ptp(recording.outline, axis=0))
-    yield f"tank {width} wide and {height} high"
+    lidless = ", open at the top" if recording.open_edges else ""
+    rough = ", its walls lined with fixed grains" if len(recording.fixed) else ""
+    yield f"tank {width} wide and {height} high{lidless}{rough}"
+    if recording.parts:
+        yield f"moving parts: {', '.join(recording.parts)}"
     for name, settings in (recording.preset.get("motion") or {}).items():
         if name in MOTIONS and settings:
             yield f"{name}: {_settings(name, settings)}"
@@ -190,6 +223,8 @@ def _status(recording: Recording) -> str:
 
 def _cautions(recording: Recording) -> Iterator[str]:
     """What a reader must know of the run that the numbers do not say."""
+    if recording.preset.get("quick"):
+        yield f"A quick variant: {recording.preset['quick']}."
     if not recording.complete:
         yield f"The run is {_status(recording)}; the numbers cover what was recorded until then."
     scale = (recording.preset.get("contact") or {}).get("stiffness_scale", 1.0)

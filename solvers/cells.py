@@ -28,9 +28,9 @@ class Cells:
         self.rows = int(extent[1] / size) + 1
         self.cells = self.columns * self.rows
         self.chunks = -(-(self.cells + 2) // CHUNK)
-        (self.first,) = arrays.integers(1, (grains.worlds, self.chunks * CHUNK))
-        (self.chunk_first,) = arrays.integers(1, (grains.worlds, self.chunks))
-        self.cell_of, self.sorted = arrays.integers(2, (grains.worlds, grains.count))
+        (self.first,) = arrays.integers(1, (grains.worlds, self.chunks * CHUNK), kept=False)
+        (self.chunk_first,) = arrays.integers(1, (grains.worlds, self.chunks), kept=False)
+        self.cell_of, self.sorted = arrays.integers(2, (grains.worlds, grains.count), kept=False)
 
     @ti.func
     def find(self, w, i):

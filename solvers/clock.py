@@ -18,9 +18,9 @@ class Clock:
 
     def __init__(self, arrays: Arrays, units: Units):
         self.step, self.status, self.arrived = arrays.integers(3, (units.worlds,))
-        (self.says,) = arrays.integers(1, (units.count,))
-        self.fastest, self.farthest = arrays.reals(2, (units.worlds,))
-        self.body = arrays.reals(4, (units.worlds,))
+        (self.says,) = arrays.integers(1, (units.count,), kept=False)
+        self.fastest, self.farthest = arrays.reals(2, (units.worlds,), kept=False)
+        self.body = arrays.reals(4, (units.worlds,), kept=False)
 
     def running(self) -> np.ndarray:
         """Which worlds run (W,)."""

@@ -28,14 +28,18 @@ class ContactList:
         self.has_targets = not (units.whole or units.single) and lanes > 1
         self.target = arrays.integer_vectors(1, lanes, shape)[0] if self.has_targets else self.mate
         self.stiffness, self.reach, self.share = arrays.vectors(3, lanes, shape, across)
+        if laws.kinds > 1:
+            (self.row,) = arrays.integer_vectors(1, lanes, shape, across)  # of the interface
+        self.kinds = laws.kinds
         self.constants = arrays.vectors(len(laws.constants), lanes, shape, across)
         self.memory = arrays.vectors(len(laws.memory), lanes, shape, across)
         for name, field in zip((*laws.constants, *laws.memory), (*self.constants, *self.memory), strict=True):
             setattr(self, name, field)
         self.memories = len(self.memory)
-        self.first, self.old_first = arrays.integers(2, (units.count, units.size + 1), across)
-        (self.old_mate,) = arrays.integers(1, (units.count, self.capacity), across)
-        self.old_memory = arrays.vectors(self.memories, 1, (units.count, self.capacity), across)
+        (self.first,) = arrays.integers(1, (units.count, units.size + 1), across)
+        (self.old_first,) = arrays.integers(1, (units.count, units.size + 1), across, kept=False)
+        (self.old_mate,) = arrays.integers(1, (units.count, self.capacity), across, kept=False)
+        self.old_memory = arrays.vectors(self.memories, 1, (units.count, self.capacity), across, kept=False)
 
     def forget(self) -> None:
         """Empty the list, history and all."""
@@ -94,10 +98,12 @@ class ContactList:
             self.memory[k][u, block][lane] = 0.0
 
     @ti.func
-    def add(self, u, p, i, mate, target, stiffness, reach, share):
+    def add(self, u, p, i, mate, target, row, stiffness, reach, share):
         """Write contact p with the memory it had, if any."""
         self.write(u, p, i, mate, target)
         block, lane = p // self.lanes, p % self.lanes
+        if ti.static(self.kinds > 1):
+            self.row[u, block][lane] = row
         self.stiffness[u, block][lane] = stiffness
         self.reach[u, block][lane] = reach
         self.share[u, block][lane] = share
@@ -113,4 +119,6 @@ class ContactList:
         i, ghost = self.units.first(u), self.units.ghost(u)
         for p in range(self.length[u], self.blocks(u) * self.lanes):
             self.write(u, p, i, ghost, ghost)
+            if ti.static(self.kinds > 1):
+                self.row[u, p // self.lanes][p % self.lanes] = 0
             self.reach[u, p // self.lanes][p % self.lanes] = 0.0

@@ -27,6 +27,7 @@ class Grains:
         fixed: np.ndarray,
         ghosts: int,
         may_leave: bool,
+        kind: np.ndarray | None = None,
     ):
         self.worlds, self.mobile = radius.shape
         self.fixed = fixed
@@ -40,13 +41,16 @@ class Grains:
         self.velocity_y, self.velocity_z, self.spin = arrays.reals(3, shape)
         self.now_y, self.now_z, self.spin_now = arrays.reals(3, shape)
         self.force_y, self.force_z, self.torque = arrays.reals(3, shape)
-        self.mass = 4.0 / 3.0 * np.pi * radius**3 * np.reshape(density, (-1, 1))
-        self.radius = arrays.holding(self._filled(radius, fixed[:, 2], 0.0))
-        self.inverse_mass = arrays.holding(self._filled(1.0 / self.mass, 0.0, 0.0))
-        self.inverse_inertia = arrays.holding(self._filled(2.5 / (self.mass * radius**2), 0.0, 0.0))
+        self.mass = 4.0 / 3.0 * np.pi * radius**3 * density
+        self.radius = arrays.holding(self._filled(radius, fixed[:, 2], 0.0), kept=True)
+        self.inverse_mass = arrays.holding(self._filled(1.0 / self.mass, 0.0, 0.0), kept=True)
+        inverse_inertia = 2.5 / (self.mass * radius**2)
+        self.inverse_inertia = arrays.holding(self._filled(inverse_inertia, 0.0, 0.0), kept=True)
+        if kind is not None:
+            self.kind = arrays.holding(self._filled(kind, 0.0, 0.0), ti.i32, kept=True)
         if may_leave:
-            self.present = arrays.holding(np.ones(shape))
-            self.spilled = arrays.holding(np.zeros(shape))
+            self.present = arrays.holding(np.ones(shape), kept=True)
+            self.spilled = arrays.holding(np.zeros(shape), kept=True)
 
     def _filled(self, values: np.ndarray, fixed: np.ndarray | float, ghost: float) -> np.ndarray:
         """Values (W, n) of the grains that move, with those of the fixed ones and the ghosts after them."""

@@ -44,12 +44,14 @@ class Neighbours:
         lanes = 1 if units.single else LANES
         self.pairs = ContactList(arrays, units, room * (pairs * units.size + across + more_pairs), lanes, laws)
         self.contacts = ContactList(arrays, units, room * (contacts * units.size + more_contacts), 1, laws)
-        self.modulus = arrays.holding(4.0 / 3.0 * modulus)  # k = (4/3) E* √R_eff of (pair, wall) in each world
+        self.modulus = arrays.holding(4.0 / 3.0 * modulus)  # k = (4/3) E* √R_eff of each interface
         self.skin = arrays.holding(np.array([skin]))
         self.cells = Cells(arrays, grains, *walls.bounds, reach)
         self.built_y, self.built_z = arrays.reals(2, (grains.worlds, grains.count), arrays.place)
-        self.travel = arrays.holding(np.full(units.count, NEVER))  # no grain has moved farther than this since
-        self.built_at = arrays.holding(np.zeros(units.count), arrays.exact)  # s
+        self.travel = arrays.holding(
+            np.full(units.count, NEVER), kept=True
+        )  # no grain has moved farther than this since
+        self.built_at = arrays.holding(np.zeros(units.count), arrays.exact, kept=True)  # s
 
     def forget(self) -> None:
         """Drop all history, for grains that were put somewhere else."""
@@ -113,9 +115,10 @@ class Neighbours:
                             if found < self.pairs.capacity:
                                 effective = radius * g.radius[w, j] / touch
                                 mass = 1.0 / (inverse_mass + g.inverse_mass[w, j])
-                                stiffness = self.modulus[w, PAIR] * ti.sqrt(effective)
+                                row = self.laws.pair_row(g, w, i, j)
+                                stiffness = self.modulus[w, row] * ti.sqrt(effective)
                                 target = j if own else ghost
-                                self.pairs.add(u, found, i, j, target, stiffness, touch, radius / touch)
+                                self.pairs.add(u, found, i, j, target, row, stiffness, touch, radius / touch)
                                 block, lane = found // self.pairs.lanes, found % self.pairs.lanes
                                 self.laws.prepare(PAIR, self.pairs, u, block, lane, mass, effective, dt)
                             found += 1
@@ -136,8 +139,9 @@ class Neighbours:
                 if self.walls.near(feature, shift, self.grains.y[w, i], self.grains.z[w, i], radius + self.skin[0]):
                     if found < self.contacts.capacity:
                         mass = 1.0 / self.grains.inverse_mass[w, i]
-                        stiffness = self.modulus[w, WALL] * ti.sqrt(radius)
-                        self.contacts.add(u, found, i, feature, feature, stiffness, radius, 1.0)
+                        row = self.laws.wall_row(self.grains, w, i)
+                        stiffness = self.modulus[w, row] * ti.sqrt(radius)
+                        self.contacts.add(u, found, i, feature, feature, row, stiffness, radius, 1.0)
                         self.laws.prepare(WALL, self.contacts, u, found, 0, mass, radius, dt)
                     found += 1
         for k in range(end - start, self.units.size + 1):

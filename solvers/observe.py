@@ -63,9 +63,9 @@ class Observer:
         self.contacts, self.frame, self.mover = contacts, frame, mover
         self.exact, self.may_leave = arrays.exact, grains.may_leave
         self.chunks = -(-grains.mobile // CHUNK)
-        (self.rows,) = arrays.reals(1, (grains.worlds, len(self.NAMES)), arrays.exact)
-        self.sums = arrays.reals(7, (grains.worlds, self.chunks), arrays.exact)
-        self.counted = arrays.reals(3, (units.count,), arrays.exact)
+        (self.rows,) = arrays.reals(1, (grains.worlds, len(self.NAMES)), arrays.exact, kept=False)
+        self.sums = arrays.reals(7, (grains.worlds, self.chunks), arrays.exact, kept=False)
+        self.counted = arrays.reals(3, (units.count,), arrays.exact, kept=False)
 
     @ti.kernel
     def observe(self, time: ti.f64, since: ti.f64):

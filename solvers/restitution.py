@@ -1,22 +1,32 @@
-"""Restitution of viscoelastic spheres, and the dissipative time that gives it (Brilliantov et al. 1996)."""
+"""Restitution of damped contacts, and the damping that gives it. Every contact ends where its force does."""
 
 from functools import cache
+from math import acos, acosh, exp, log, sqrt
+
+# How the damping of a Hertz contact grows with the overlap ξ, as ξ to this power.
+VISCOELASTIC = 0.5  # Brilliantov et al. (1996)
+CONSTANT = 0.0  # a linear dashpot
+# 1 − e = C x for a little damping x, by power: C = 2 (5/4)^q B(q, 3/2)/(5/2), q = 2 (power + 1)/5, the work of the
+# damping along the elastic collision; 1.15344 in Schwager and Pöschel (1998).
+FIRST_ORDER = {VISCOELASTIC: 1.15344, CONSTANT: 1.78781}
 
 
-def restitution(beta_v: float) -> float:
-    """Coefficient of restitution of the viscoelastic law against x = β v^(1/5).
+@cache
+def restitution(damping: float, power: float = VISCOELASTIC) -> float:
+    """Coefficient of restitution of a Hertz contact with damping ∝ ξ^power, against that damping x.
 
-    β = (γ_n/m_eff)(m_eff/k)^(3/5). In units of the elastic collision the motion is ξ̈ = −ξ^(3/2) − x ξ^(1/2) ξ̇ from
-    ξ = 0, ξ̇ = 1; the contact ends where the force does.
+    In units of the elastic collision, time (m²/(k² v))^(1/5) and length v times that, the motion is
+    ξ̈ = −ξ^(3/2) − x ξ^power ξ̇ from ξ = 0, ξ̇ = 1. Of the viscoelastic law, x = β v^(1/5) with
+    β = (γ_n/m_eff)(m_eff/k)^(3/5).
     """
-    from scipy.integrate import solve_ivp  # slow to import, and only scenes that give a restitution need it
+    from scipy.integrate import solve_ivp  # slow to import, and only making a scene needs it
 
     def motion(_, state):
         overlap = max(state[0], 0.0)
-        return [state[1], -(overlap**1.5) - beta_v * overlap**0.5 * state[1]]
+        return [state[1], -(overlap**1.5) - damping * overlap**power * state[1]]
 
     def force_ends(t, state):
-        return state[0] + beta_v * state[1] if t > 1e-6 else 1.0
+        return max(state[0], 0.0) ** (1.5 - power) + damping * state[1] if t > 1e-6 else 1.0
 
     force_ends.terminal, force_ends.direction = True, -1
     path = solve_ivp(
@@ -33,13 +43,13 @@ def restitution(beta_v: float) -> float:
 
 
 @cache
-def damping_for(e: float) -> float:
-    """The x = β v^(1/5) that gives restitution e < 1; near 1, e = 1 − 1.15344 x (Schwager and Pöschel 1998)."""
+def damping_for(e: float, power: float = VISCOELASTIC) -> float:
+    """The damping x of a Hertz contact that gives restitution e."""
     if e > 1.0 - 1e-4:
-        return (1.0 - e) / 1.15344
+        return (1.0 - e) / FIRST_ORDER[power]
     from scipy.optimize import brentq
 
-    return brentq(lambda x: restitution(x) - e, 1e-6, 1e4, xtol=1e-9)
+    return brentq(lambda x: restitution(x, power) - e, 1e-6, 1e4, xtol=1e-9)
 
 
 def dissipative_time_for(e: float, speed: float, stiffness: float, mass: float) -> float:
@@ -48,3 +58,27 @@ def dissipative_time_for(e: float, speed: float, stiffness: float, mass: float) 
         return 0.0
     # x = β v^(1/5) with γ_n = (3/2) A k
     return damping_for(e) * speed**-0.2 * (mass / stiffness) ** 0.4 / 1.5
+
+
+def restitution_from(time: float, speed: float, stiffness: float, mass: float) -> float:
+    """The restitution at an impact speed (m/s) that a dissipative time A (s) gives, k in N/m^1.5, m_eff in kg."""
+    return restitution(1.5 * time * (stiffness / mass) ** 0.4 * speed**0.2)
+
+
+def linear_restitution(ratio: float) -> float:
+    """Restitution of a linear spring and dashpot of damping ratio ζ (Schwager and Pöschel 2007).
+
+    e = exp(−2 ζ θ) with θ = arccos ζ/√(1 − ζ²), which is arcosh ζ/√(ζ² − 1) past critical damping.
+    """
+    root = sqrt(abs(1.0 - ratio * ratio))
+    if root < 1e-6:
+        return exp(-2.0)
+    return exp(-2.0 * ratio * (acos(ratio) if ratio < 1.0 else acosh(ratio)) / root)
+
+
+@cache
+def damping_ratio_for(e: float) -> float:
+    """The damping ratio ζ of a linear spring and dashpot that gives restitution e."""
+    from scipy.optimize import brentq
+
+    return brentq(lambda ratio: log(linear_restitution(ratio) / e), 0.0, 1.0 + 1.0 / sqrt(e), xtol=1e-13)

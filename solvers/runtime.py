@@ -99,8 +99,8 @@ def _start(threads: int, arch: str, real, options: dict) -> None:
         default_fp=real,
         cpu_max_num_threads=threads,
         cfg_optimization=False,
-        # In 32 bits Taichi warns of every place where a 64-bit time or position is meant to lose digits.
-        log_level=ti.WARN if real is ti.f64 else ti.ERROR,
+        # Taichi warns of every place where a 64-bit time is meant to lose digits, and when two processes share a cache.
+        log_level=ti.ERROR,
         offline_cache=True,
         **options,
     )
@@ -116,7 +116,8 @@ class Arrays:
 
     One tree, since each tree a kernel touches costs it a pointer to reload in the inner loops (three times slower
     with a tree a field), and since Taichi holds at most 512 trees and frees none by itself. Fields are declared
-    first, then `finish` makes and fills them; the last index is contiguous, or with `across` the first.
+    first, then `finish` makes and fills them; the last index is contiguous, or with `across` the first. What is
+    `kept` makes up the state of a simulation; the rest is scratch, or follows from the scene.
     """
 
     def __init__(self, precision: str = "f64"):
@@ -126,37 +127,42 @@ class Arrays:
         self.exact = ti.f32 if running_arch() == "vulkan" else ti.f64
         self._builder = ti.FieldsBuilder()
         self._fields: list[ti.Field] = []
+        self._kept: dict[str, ti.Field] = {}
         self._contents: list[tuple[ti.Field, np.ndarray]] = []
         self._tree = None
         self._born = _starts
 
-    def reals(self, count: int, shape: tuple[int, ...], kind=None) -> list[ti.Field]:
+    def reals(self, count: int, shape: tuple[int, ...], kind=None, kept: bool = True) -> list[ti.Field]:
         """`count` fields of floats: of the reals' kind, or of another, such as `self.place`."""
-        return [self._placed(ti.field(kind or self.real), shape) for _ in range(count)]
+        return [self._placed(ti.field(kind or self.real), shape, kept=kept) for _ in range(count)]
 
-    def integers(self, count: int, shape: tuple[int, ...], across: bool = False) -> list[ti.Field]:
+    def integers(self, count: int, shape: tuple[int, ...], across: bool = False, kept: bool = True) -> list[ti.Field]:
         """`count` fields of 32-bit integers."""
-        return [self._placed(ti.field(ti.i32), shape, across) for _ in range(count)]
+        return [self._placed(ti.field(ti.i32), shape, across, kept) for _ in range(count)]
 
-    def vectors(self, count: int, size: int, shape: tuple[int, ...], across: bool = False) -> list[ti.Field]:
+    def vectors(
+        self, count: int, size: int, shape: tuple[int, ...], across: bool = False, kept: bool = True
+    ) -> list[ti.Field]:
         """`count` fields of vectors of `size` reals."""
-        return [self._placed(ti.Vector.field(size, self.real), shape, across) for _ in range(count)]
+        return [self._placed(ti.Vector.field(size, self.real), shape, across, kept) for _ in range(count)]
 
     def integer_vectors(self, count: int, size: int, shape: tuple[int, ...], across: bool = False) -> list[ti.Field]:
         """`count` fields of vectors of `size` 32-bit integers."""
         return [self._placed(ti.Vector.field(size, ti.i32), shape, across) for _ in range(count)]
 
-    def holding(self, values: np.ndarray, kind=None) -> ti.Field:
-        """A field of floats that starts with these values."""
-        field = self._placed(ti.field(kind or self.real), values.shape)
+    def holding(self, values: np.ndarray, kind=None, kept: bool = False) -> ti.Field:
+        """A field of reals, or of numbers of another kind, that starts with these values."""
+        field = self._placed(ti.field(kind or self.real), values.shape, kept=kept)
         self._contents.append((field, np.ascontiguousarray(values, dtype=np.float64)))
         return field
 
-    def _placed(self, field: ti.Field, shape: tuple[int, ...], across: bool = False) -> ti.Field:
+    def _placed(self, field: ti.Field, shape: tuple[int, ...], across: bool = False, kept: bool = True) -> ti.Field:
         if across:
             self._builder.dense(ti.j, shape[1]).dense(ti.i, shape[0]).place(field)
         else:
             self._builder.dense((ti.i, ti.ij, ti.ijk)[len(shape) - 1], shape).place(field)
+        if kept:
+            self._kept[f"{len(self._fields):03}"] = field
         self._fields.append(field)
         return field
 
@@ -164,7 +170,7 @@ class Arrays:
         """Make the declared fields, zero but for what they are to hold."""
         self._tree = self._builder.finalize()
         for field, values in self._contents:
-            field.from_numpy(values.astype(np.float32) if field.dtype == ti.f32 else values)
+            field.from_numpy(values.astype({ti.f32: np.float32, ti.i32: np.int32}.get(field.dtype, np.float64)))
         self._contents = []
 
     @property
@@ -174,13 +180,13 @@ class Arrays:
         return sum(int(np.prod(f.shape)) * getattr(f, "n", 1) * sizes[f.dtype] for f in self._fields)
 
     def read(self) -> dict[str, np.ndarray]:
-        """All there is in the fields, by their numbers."""
-        return {f"{k:03}": field.to_numpy() for k, field in enumerate(self._fields)}
+        """What is in the kept fields, by their numbers: all but scratch and what never changes."""
+        return {name: field.to_numpy() for name, field in self._kept.items()}
 
     def write(self, contents: dict[str, np.ndarray]) -> None:
         """Put back what `read` gave from the same declarations."""
-        for k, field in enumerate(self._fields):
-            field.from_numpy(np.ascontiguousarray(contents[f"{k:03}"]))
+        for name, field in self._kept.items():
+            field.from_numpy(np.ascontiguousarray(contents[name]))
 
     def take_over(self, smaller: "Arrays") -> None:
         """Copy what the same declarations hold in arrays of smaller or equal shapes."""

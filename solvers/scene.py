@@ -2,11 +2,12 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from itertools import product
 
 import numpy as np
 
-from solvers.laws import NORMAL, TANGENTIAL
-from solvers.materials import Interface, Material, interface
+from solvers.laws import NORMAL, ROLLING, TANGENTIAL
+from solvers.materials import Interface, Material, interface, touching
 from solvers.parts import Part
 from solvers.timestep import Limit, limits
 
@@ -20,8 +21,9 @@ class Scene:
     derived one; `start_speed` (m/s) of the fastest grain at the start; `sizes` the smallest and largest radius (m) a
     world may hold. What is derived for all worlds follows from `sizes`, so that a world does not depend on its company;
     it defaults to the range of `radius`. `velocity` (W, n, 2) m/s and `spin` (W, n) rad/s at the start, or None: at
-    rest. `fixed` (k, 3) y, z and radius in m of grains that never move; `open_edges` the edges of the outline without
-    a wall, by their first corners; `parts` plates that move in the tank.
+    rest. `kind` (W, n) numbers the kinds of grains, 0 of `grain` and the rest of `others`, None where all are of one;
+    `unlike` says how two kinds touch. `fixed` (k, 3) y, z and radius in m of grains that never move; `open_edges` the
+    edges of the outline without a wall, by their first corners; `parts` plates that move in the tank.
     """
 
     radius: np.ndarray
@@ -40,13 +42,16 @@ class Scene:
     sizes: tuple[float, float] | None = None
     velocity: np.ndarray | None = None
     spin: np.ndarray | None = None
+    kind: np.ndarray | None = None
+    others: tuple[Material, ...] = ()
+    unlike: tuple[tuple[tuple[int, int], Material], ...] = ()
     fixed: np.ndarray = field(default_factory=lambda: np.zeros((0, 3)))
     open_edges: tuple[int, ...] = ()
     parts: tuple[Part, ...] = ()
     integrator: str = "verlet"
     precision: str = "f64"
     schedule: str = "auto"
-    interfaces_of: list[tuple[Interface, Interface]] = field(init=False)  # (pair, wall) of each world
+    interfaces_of: list[tuple[Interface, ...]] = field(init=False)  # of each world, in the rows of `ChosenLaws`
 
     def __post_init__(self):
         self.radius = np.atleast_2d(np.asarray(self.radius, dtype=np.float64))
@@ -62,19 +67,36 @@ class Scene:
     def _a_world(self, material: Material | Sequence[Material]) -> tuple[Material, ...]:
         return (material,) * self.worlds if isinstance(material, Material) else tuple(material)
 
-    def _interfaces(self, grain: Material, wall: Material) -> tuple[Interface, Interface]:
-        """Between two grains, and between a grain and a wall."""
-        mean = self.mean_radius
-        mass = 4.0 / 3.0 * np.pi * mean**3 * grain.density
-        return (
-            interface(grain, grain, mass / 2.0, mean / 2.0, self.stiffness_scale),
-            interface(grain, wall, mass, mean, self.stiffness_scale),
-        )
+    def _interfaces(self, grain: Material, wall: Material) -> tuple[Interface, ...]:
+        """Between the kinds of grains, each with each, and between each and a wall."""
+        mean, scale, kinds = self.mean_radius, self.stiffness_scale, (grain, *self.others)
+        mass = [4.0 / 3.0 * np.pi * mean**3 * kind.density for kind in kinds]
+        unlike = {tuple(sorted(pair)): material for pair, material in self.unlike}
+        rows = []
+        for a, b in product(range(len(kinds)), repeat=2):
+            low, high = sorted((a, b))
+            other = kinds[b] if a == b else touching(kinds[low], kinds[high], unlike.get((low, high)))
+            rows.append(interface(kinds[low], other, mass[a] * mass[b] / (mass[a] + mass[b]), mean / 2.0, scale))
+        return (*rows, *(interface(kind, wall, m, mean, scale) for kind, m in zip(kinds, mass, strict=True)))
+
+    @property
+    def kinds(self) -> int:
+        """How many kinds of grains there are."""
+        return 1 + len(self.others)
 
     @property
     def interfaces(self) -> tuple[Interface, Interface]:
-        """Between two grains, and between a grain and a wall, in the first world."""
-        return self.interfaces_of[0]
+        """Between two grains of the first kind, and between one and a wall, in the first world."""
+        return self.interfaces_of[0][0], self.interfaces_of[0][self.kinds**2]
+
+    @property
+    def density(self) -> np.ndarray:
+        """Densities (W, n) of the grains, kg/m³."""
+        first = np.array([material.density for material in self.grain])
+        density = np.repeat(first[:, None], self.radius.shape[1], axis=1)
+        for number, material in enumerate(self.others, start=1):
+            density[self.kind == number] = material.density
+        return density
 
     @property
     def worlds(self) -> int:
@@ -88,8 +110,8 @@ class Scene:
 
     @property
     def laws(self) -> tuple:
-        """The normal and the tangential law."""
-        return NORMAL[self.normal](), TANGENTIAL[self.tangential]()
+        """The normal, the tangential and the rolling law."""
+        return NORMAL[self.normal](), TANGENTIAL[self.tangential](), ROLLING[self.rolling]()
 
     def credible_speed(self) -> float:
         """Highest speed (m/s) at which grains may be expected to meet: a fall through the tank, and the tank's own."""
@@ -108,9 +130,13 @@ class Scene:
         """Bounds on the step, the tightest first."""
         speed = max(self.credible_speed(), 1e-3)
         found: dict[tuple, list[Limit]] = {}
-        for grain, interfaces in zip(self.grain, self.interfaces_of, strict=True):
-            if (grain, interfaces) not in found:
-                found[grain, interfaces] = limits(self.sizes[0], grain, interfaces, self.stiffness_scale, speed)
+        for grain, rows in zip(self.grain, self.interfaces_of, strict=True):
+            for a, b in product(range(self.kinds), repeat=2):
+                # The lighter of two kinds of grains stands for both: its contacts are the faster.
+                lighter = min((grain, *self.others)[a], (grain, *self.others)[b], key=lambda kind: kind.density)
+                key = lighter, (rows[a * self.kinds + b], rows[self.kinds**2 + a])
+                if key not in found:
+                    found[key] = limits(self.sizes[0], *key, self.stiffness_scale, speed, self.laws)
         return min(found.values(), key=lambda bounds: bounds[0].step)
 
     def time_step(self) -> float:
@@ -125,7 +151,8 @@ class Scene:
         )
         words = self.normal, self.tangential, self.rolling, self.integrator, self.precision, self.schedule
         numbers = self.radius.shape[1], self.gravity, self.soft_start, self.step, self.sizes, self.stiffness_scale
-        return (*lengths, kinds, *words, *numbers, self.open_edges, self.parts, self.velocity is None)
+        materials = self.others, self.unlike
+        return (*lengths, kinds, *words, *numbers, *materials, self.open_edges, self.parts, self.velocity is None)
 
     @classmethod
     def joined(cls, scenes: "Sequence[Scene]") -> "Scene":
@@ -143,4 +170,5 @@ class Scene:
             start_speed=max(scene.start_speed for scene in scenes),
             velocity=np.concatenate([scene.velocity for scene in scenes]) if started else None,
             spin=np.concatenate([scene.spin for scene in scenes]) if started else None,
+            kind=np.concatenate([scene.kind for scene in scenes]) if first.kinds > 1 else None,
         )

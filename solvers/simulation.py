@@ -64,10 +64,10 @@ class Simulation:
         self.arrays = arrays = Arrays(scene.precision)
         count = scene.radius.shape[1]
         units = Units(worlds, count, self.units_a_world, count + len(scene.fixed))
-        density = np.array([material.density for material in scene.grain])
-        self.grains = Grains(arrays, scene.radius, density, scene.fixed, units.ghosts, bool(scene.open_edges))
+        may_leave = bool(scene.open_edges)
+        self.grains = Grains(arrays, scene.radius, scene.density, scene.fixed, units.ghosts, may_leave, scene.kind)
         self.walls = Walls(arrays, scene.outline, scene.open_edges, scene.parts)
-        laws = ChosenLaws(arrays, units, *scene.laws, scene.interfaces_of)
+        laws = ChosenLaws(arrays, units, *scene.laws, scene.interfaces_of, scene.kinds)
         moduli = np.array([[between.young_modulus for between in world] for world in scene.interfaces_of])
         largest = max(scene.sizes[1], scene.fixed[:, 2].max(initial=0.0))
         reach = 2.0 * largest + self.skin

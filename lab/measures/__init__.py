@@ -6,16 +6,36 @@ its docstring defines each number and says where its error comes from.
 
 from lab.measures import (
     centre_of_mass,
+    contact_number,
     critical_angle,
     energies,
+    hysteresis,
+    spectrum,
+    spilled,
     steady_amplitude,
     surface_slope,
+    top_altitude,
+    wall_force,
+    wave,
 )
 from lab.measures.value import Value
 from lab.recording import Recording
 
 # In the order in which a summary shows them.
-MEASURES = (critical_angle, surface_slope, steady_amplitude, centre_of_mass, energies)
+MEASURES = (
+    spilled,
+    critical_angle,
+    surface_slope,
+    hysteresis,
+    steady_amplitude,
+    spectrum,
+    wave,
+    top_altitude,
+    centre_of_mass,
+    wall_force,
+    contact_number,
+    energies,
+)
 
 
 def measure_all(recording: Recording) -> dict[str, Value]:

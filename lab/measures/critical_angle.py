@@ -92,12 +92,13 @@ def _main(steps: list[Step]) -> list[Step]:
 
 
 def shift_curve(recording: Recording, world: int) -> tuple[np.ndarray, np.ndarray]:
-    """Tilt (T',), deg, and shift of the centre of mass downhill (T',), m, on the way out."""
+    """Tilt (T',), deg, and shift of the centre of mass downhill (T',), m, on the way out, while there is a bed."""
     tilt = recording.series["pose"][:, world, 2]
     leg = outward_leg(tilt)
     y = recording.series["centre_of_mass"][: leg.end, world, 0]
-    turned = leg.direction * (tilt[: leg.end] - tilt[0])
-    return np.degrees(turned), -leg.direction * (y - y[0])
+    turned, shift = leg.direction * (tilt[: leg.end] - tilt[0]), -leg.direction * (y - y[0])
+    left = np.isfinite(shift)  # an open tank may have lost its last grain
+    return np.degrees(turned)[left], shift[left]
 
 
 def liquid_shift(recording: Recording) -> np.ndarray:

@@ -36,10 +36,18 @@ def outward_leg(tilt: np.ndarray) -> Leg:
 def driving(recording: Recording) -> tuple[str, dict] | None:
     """Name and settings of the harmonic motion that drives the tank, None without one.
 
-    With several, the first of sway, roll and heave.
+    With several, the first of sway, roll and heave. A motion from a file has no single frequency: None.
     """
     motions = _motions(recording)
+    if motions.get("history"):
+        return None
     return next(((name, motions[name]) for name in HARMONIC if motions.get(name)), None)
+
+
+def is_shaken(recording: Recording) -> bool:
+    """Whether the tank goes to and fro: a harmonic motion, or one from a file that moves it."""
+    moved = np.ptp(recording.series["pose"], axis=0).any()
+    return driving(recording) is not None or bool(_motions(recording).get("history") and moved)
 
 
 def soft_start(recording: Recording) -> float:

@@ -64,9 +64,11 @@ def surface_course(recording: Recording) -> tuple[np.ndarray, np.ndarray, np.nda
 
 
 def free_surface(position: np.ndarray, radius: np.ndarray, outline: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Points y, z (k,), m, of the free surface of grains at position (n, 2), m, tank frame."""
+    """Points y, z (k,), m, of the free surface of grains at position (n, 2), m, tank frame; spilled ones left out."""
     diameter = 2 * radius.mean()
-    left, right = outline[:, 0].min(), outline[:, 0].max()
+    (left, floor), (right, _) = outline.min(axis=0), outline.max(axis=0)
+    held = (position[:, 0] > left) & (position[:, 0] < right) & (position[:, 1] > floor)
+    position, radius = position[held], radius[held]
     edges = np.arange(left, right, COLUMN * diameter)
     column = np.clip(np.searchsorted(edges, position[:, 0], side="right") - 1, 0, len(edges) - 1)
     top = position[:, 1] + radius
@@ -76,7 +78,7 @@ def free_surface(position: np.ndarray, radius: np.ndarray, outline: np.ndarray) 
     y, z = position[highest, 0], top[highest]
     margin = MARGIN * (right - left)
     kept = (y > left + margin) & (y < right - margin)
-    kept &= z - outline[:, 1].min() > LEAST_LAYER * diameter
+    kept &= z - floor > LEAST_LAYER * diameter
     return y[kept], z[kept]
 
 

@@ -1,19 +1,26 @@
 """What the colour of a grain says.
 
-A new way to colour takes one function from footage to `Colouring` and one line in MODES.
+A new way to colour takes one function from beds to `Colouring` and one line in MODES, whose words a
+preset may say. Only what every preset needs is loaded here: Matplotlib comes with the first picture.
 """
 
-from collections.abc import Callable
-from dataclasses import dataclass, field
+from __future__ import annotations
 
-import matplotlib
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from lab.errors import LabError
-from lab.paint.footage import Footage
 
-LOOKED_AT = 100  # frames looked at to fix a scale
+if TYPE_CHECKING:
+    from lab.paint.footage import Bed
+
+LOOKED_AT = 100  # frames of a bed looked at to fix a scale
+LIVELIEST = 98.0  # percentile of the liveliest frame at which a scale ends
 LIGHT, DARK = (255.0, 255.0, 255.0), (25.0, 30.0, 40.0)  # spin marks
+MOST_LAYERS = 8
 
 
 @dataclass(frozen=True)
@@ -21,83 +28,99 @@ class Colouring:
     """A scale that stays the same through the film, and a number on it for each grain.
 
     label: with its unit; low, high: ends of the scale; table: its colours (k, 3) in 0..255;
-    values: from frame and world to numbers (n,); ticks: places and texts (None: round numbers).
+    values: from bed and frame to numbers (n,); ticks: places and texts (None: round numbers).
     """
 
     label: str
     low: float
     high: float
     table: np.ndarray
-    values: Callable[[int, int], np.ndarray]
+    values: Callable[[Bed, int], np.ndarray]
     ticks: dict[float, str] | None = field(default=None)
 
-    def colours(self, frame: int, world: int) -> np.ndarray:
+    def colours(self, bed: Bed, frame: int) -> np.ndarray:
         """Colours (n, 3) of the grains in 0..255."""
-        share = (self.values(frame, world) - self.low) / (self.high - self.low)
+        share = (self.values(bed, frame) - self.low) / (self.high - self.low)
         index = np.nan_to_num(share * len(self.table))
         return self.table[np.clip(index, 0, len(self.table) - 1).astype(int)]
 
 
-def speed(footage: Footage) -> Colouring:
-    """|v| relative to the tank; the scale ends at the 98th percentile of the liveliest frame."""
-    looks = [
-        np.nanpercentile(footage.speed(frame, world), 98)
-        for frame in _spread(footage)
-        for world in range(footage.worlds)
-    ]
-    top = _round_up(max(*looks, footage.diameter))
+def speed(beds: Sequence[Bed]) -> Colouring:
+    """|v| relative to the tank."""
+    top = _round_up(max(_liveliest(beds, lambda bed, frame: bed.speed(frame)), beds[0].diameter))
     factor, unit = (1.0, "m/s") if top >= 1.0 else (1000.0, "mm/s")
 
-    def values(frame: int, world: int) -> np.ndarray:
-        return factor * footage.speed(frame, world)
+    def values(bed: Bed, frame: int) -> np.ndarray:
+        return factor * bed.speed(frame)
 
     return Colouring(f"speed in the tank ({unit})", 0.0, factor * top, _table("viridis"), values)
 
 
-def displacement(footage: Footage) -> Colouring:
+def spin(beds: Sequence[Bed]) -> Colouring:
+    """|ω| relative to the tank, in turns a second."""
+
+    def values(bed: Bed, frame: int) -> np.ndarray:
+        return np.abs(bed.spin(frame)) / (2 * np.pi)
+
+    top = _round_up(max(_liveliest(beds, values), 0.1))
+    return Colouring("spin in the tank (turns a second)", 0.0, top, _table("magma", low=0.3), values)
+
+
+def displacement(beds: Sequence[Bed]) -> Colouring:
     """Distance from the place in the first frame, in mean grain diameters."""
-    starts = [footage.position(0, world) for world in range(footage.worlds)]
+    starts = {bed: bed.position(0) for bed in beds}
 
-    def values(frame: int, world: int) -> np.ndarray:
-        moved = footage.position(frame, world) - starts[world]
-        return np.hypot(*moved.T) / footage.diameter
+    def values(bed: Bed, frame: int) -> np.ndarray:
+        moved = bed.position(frame) - starts[bed]
+        return np.hypot(*moved.T) / bed.diameter
 
-    looks = [
-        np.nanpercentile(values(frame, world), 98) for frame in _spread(footage) for world in range(footage.worlds)
-    ]
-    top = _round_up(max(*looks, 1.0))
+    top = _round_up(max(_liveliest(beds, values), 1.0))
     return Colouring("displacement (diameters)", 0.0, top, _table("plasma"), values)
 
 
-def layer(footage: Footage, most: int = 8) -> Colouring:
-    """Height in the first frame, in bands of a whole number of mean grain diameters."""
-    floor = footage.outline[:, 1].min()
-    heights = [footage.position(0, world)[:, 1] - floor for world in range(footage.worlds)]
-    depth = max(np.nanmax(height) for height in heights)
-    thickness = max(1, int(np.ceil(depth / footage.diameter / most)))
-    band = thickness * footage.diameter
+def layer(beds: Sequence[Bed]) -> Colouring:
+    """Height over the lowest grain in the first frame, in bands of a whole number of mean grain diameters."""
+    bottoms = {bed: bed.position(0)[:, 1] - bed.radius for bed in beds}
+    heights = {bed: (low + bed.radius - np.nanmin(low)) / bed.diameter for bed, low in bottoms.items()}
+    depth = max(np.nanmax(height) for height in heights.values())
+    band = max(1, int(np.ceil(depth / MOST_LAYERS)))
     count = max(2, int(np.ceil(depth / band)))
 
-    def values(frame: int, world: int) -> np.ndarray:
-        return np.floor(heights[world] / band) + 0.5
+    def values(bed: Bed, frame: int) -> np.ndarray:
+        return np.floor(heights[bed] / band) + 0.5
 
     ticks = {k + 0.5: str(k + 1) for k in range(count)}
-    wide = "1 diameter" if thickness == 1 else f"{thickness} diameters"
+    wide = "1 diameter" if band == 1 else f"{band} diameters"
     return Colouring(f"starting layer ({wide})", 0.0, count, _table("viridis", count), values, ticks)
 
 
-MODES: dict[str, Callable[[Footage], Colouring]] = {
+def size(beds: Sequence[Bed]) -> Colouring:
+    """Diameter, from the smallest grain to the largest."""
+    radius = np.concatenate([bed.radius for bed in beds])
+    low, high = 2e3 * radius.min(), 2e3 * radius.max()
+    if high - low < 1e-3 * high:  # all alike: any scale around them will do
+        low, high = 0.9 * high, 1.1 * high
+
+    def values(bed: Bed, frame: int) -> np.ndarray:
+        return 2e3 * bed.radius
+
+    return Colouring("diameter (mm)", low, high, _table("cividis"), values)
+
+
+MODES: dict[str, Callable[[Sequence[Bed]], Colouring]] = {
     "speed": speed,
     "displacement": displacement,
     "layer": layer,
+    "size": size,
+    "spin": spin,
 }
 
 
-def colouring(name: str, footage: Footage) -> Colouring:
-    """The colouring of that name; raises LabError for an unknown one."""
+def colouring(name: str, beds: Sequence[Bed]) -> Colouring:
+    """The colouring of that name, one scale for all beds; raises LabError for an unknown one."""
     if name not in MODES:
         raise LabError(f"Unknown colour '{name}': choose one of {', '.join(MODES)}.")
-    return MODES[name](footage)
+    return MODES[name](beds)
 
 
 def mark_colours(colours: np.ndarray) -> np.ndarray:
@@ -106,15 +129,32 @@ def mark_colours(colours: np.ndarray) -> np.ndarray:
     return np.where(luma[:, None] < 120.0, LIGHT, DARK)
 
 
-def _spread(footage: Footage) -> np.ndarray:
-    """Frames spread evenly over the film."""
-    count = len(footage.time)
-    return np.unique(np.linspace(0, count - 1, min(count, LOOKED_AT)).astype(int))
+def bed_colours(count: int) -> list[tuple[int, int, int]]:
+    """Colours for the names and curves of so many beds, in an order that the eye can follow."""
+    from matplotlib import colormaps
+
+    shades = colormaps["turbo"](np.linspace(0.05, 0.95, count))[:, :3]
+    return [tuple(int(205 * part) for part in shade) for shade in shades]  # darkened for white paper
 
 
-def _table(name: str, size: int = 256) -> np.ndarray:
-    """One of matplotlib's perceptually uniform maps, (size, 3) in 0..255."""
-    return 255.0 * matplotlib.colormaps[name](np.linspace(0.06, 0.98, size))[:, :3]
+def _liveliest(beds: Sequence[Bed], values: Callable[[Bed, int], np.ndarray]) -> float:
+    """The largest of the percentiles LIVELIEST of all frames looked at; 0 where no grain is left."""
+    looks = [values(bed, frame) for bed, frame in spread(beds)]
+    seen = [look[np.isfinite(look)] for look in looks]
+    return max((float(np.percentile(look, LIVELIEST)) for look in seen if len(look)), default=0.0)
+
+
+def spread(beds: Sequence[Bed]) -> Iterator[tuple[Bed, int]]:
+    """Frames spread evenly over each bed's film, those of all beds at about one time together, as they are read."""
+    for share in np.linspace(0, 1, LOOKED_AT):
+        yield from ((bed, round(share * (bed.frames - 1))) for bed in beds)
+
+
+def _table(name: str, size: int = 256, low: float = 0.06) -> np.ndarray:
+    """One of matplotlib's perceptually uniform maps from `low` of its length on, (size, 3) in 0..255."""
+    from matplotlib import colormaps
+
+    return 255.0 * colormaps[name](np.linspace(low, 0.98, size))[:, :3]
 
 
 def _round_up(value: float) -> float:

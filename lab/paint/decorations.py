@@ -1,5 +1,6 @@
 """What is on a picture beside grains and walls: scale bar, colour bar, gravity dial, live plot."""
 
+from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
 
@@ -17,6 +18,8 @@ LINE = (176, 184, 193)
 GRID = (232, 235, 239)
 WALL = (86, 97, 110)
 HOLD = (246, 247, 249)
+FIXED = (158, 166, 175)
+PART = (128, 70, 27)
 SERIES = (  # curves and names of the beds: Okabe and Ito's colour-blind-safe palette, darkened
     (0, 114, 178),
     (213, 94, 0),
@@ -25,6 +28,7 @@ SERIES = (  # curves and names of the beds: Okabe and Ito's colour-blind-safe pa
     (176, 126, 0),
     (60, 140, 190),
 )
+SMALLER = 0.65  # of its size: how small a text may become before it is cut
 FINER = 3  # the plot and the dial are drawn this many times larger, then shrunk to smooth their lines
 
 
@@ -46,15 +50,15 @@ def plain(value: float) -> str:
     return f"{value:g}".replace("-", "\N{MINUS SIGN}")
 
 
-def draw_title(draw: ImageDraw.ImageDraw, corner: tuple, text: str, width: float, size: float) -> None:
-    """A bold title: made smaller, then cut, if it is wider than `width` pixels."""
-    size = min(size, max(0.75 * size, 0.99 * size * width / font(size, bold=True).getlength(text)))
-    face = font(size, bold=True)
+def fitted(text: str, width: float, size: float, bold: bool = False) -> tuple[str, ImageFont.FreeTypeFont]:
+    """A text that is `width` pixels wide at most, and its font: made smaller, then cut, if it is too long."""
+    natural = font(size, bold).getlength(text)
+    face = font(min(size, max(SMALLER * size, 0.99 * size * width / max(natural, 1.0))), bold)
     whole = text
-    while text and face.getlength(text) > width:
+    while whole and face.getlength(text) > width:
         whole = whole[:-1].rstrip()
         text = whole + "…"
-    draw.text(corner, text, INK, face, anchor="la")
+    return text, face
 
 
 def ticks(low: float, high: float, most: int) -> list[float]:
@@ -89,7 +93,8 @@ def draw_colour_bar(image: Image.Image, box: tuple, colouring: Colouring, size: 
     """Label, bar and ticks inside the box (left, top, right, bottom) of pixels."""
     left, top, right, _ = (round(edge) for edge in box)
     draw = ImageDraw.Draw(image)
-    draw.text((left, top), colouring.label, INK, font(size), anchor="la")
+    label, face = fitted(colouring.label, right - left, size)
+    draw.text((left, top), label, INK, face, anchor="la")
     upper, lower = round(top + 1.7 * size), round(top + 2.5 * size)
     columns = np.arange(right - left) * len(colouring.table) // (right - left)
     bar = np.tile(colouring.table[columns].astype(np.uint8), (lower - upper, 1, 1))
@@ -145,13 +150,15 @@ class LivePlot:
         self._colours = colours
         self._draw_axes(labels)
 
-    def picture(self, count: int) -> Image.Image:
-        """The plot with the first `count` samples of every curve."""
+    def picture(self, counts: Sequence[int]) -> Image.Image:
+        """The plot with the first so many samples of each curve."""
         image = self._image.copy()
         draw = ImageDraw.Draw(image)
         thick, dot = round(0.16 * self._text), 0.32 * self._text
-        for curve, colour in zip(self._curves, self._colours, strict=True):
+        for curve, colour, count in zip(self._curves, self._colours, counts, strict=True):
             drawn = curve[:count][np.isfinite(curve[:count]).all(axis=1)]
+            if not len(drawn):
+                continue
             draw.line([tuple(point) for point in drawn], fill=colour, width=thick, joint="curve")
             x, y = drawn[-1]
             draw.ellipse((x - dot, y - dot, x + dot, y + dot), fill=colour, outline=PAPER)
@@ -183,7 +190,8 @@ class LivePlot:
 def _limits(curves: list) -> tuple[np.ndarray, np.ndarray]:
     """Lower and upper end of both axes: x as it comes, y with air around it."""
     x, y = (np.concatenate([np.asarray(curve[k], dtype=float) for curve in curves]) for k in (0, 1))
-    low, high = np.nanmin(y), np.nanmax(y)
+    y = y[np.isfinite(y)] if np.isfinite(y).any() else np.zeros(1)
+    low, high = y.min(), y.max()
     air = max(0.06 * (high - low), 0.05)
     far = max(np.nanmax(x), np.nanmin(x) + 1e-9)
     return np.array([np.nanmin(x), low - air]), np.array([far, high + air])

@@ -4,49 +4,49 @@ Lengths on the page are counted in units u, 1/36 of the height of a 16:9 picture
 looks alike: the tanks on the left, a column of readings, plot and colour bar on the right.
 """
 
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass
+from typing import get_args, get_type_hints
 
 import numpy as np
 from PIL import Image, ImageDraw
 
 from lab.errors import LabError
 from lab.paint import decorations as deco
-from lab.paint.colours import colouring, mark_colours
-from lab.paint.footage import Footage
-from lab.paint.painter import Camera, paint_grains, paint_tank, to_discs
+from lab.paint.colours import bed_colours, colouring, mark_colours, spread
+from lab.paint.footage import Bed, Footage
+from lab.paint.painter import Camera, paint_grains, paint_plate, paint_tank, to_discs
+from lab.schema import Video
 
-FALLBACK = {"width": 1280, "height": 720, "colour": "speed", "frame": "tank", "speed": 1.0}
-FRAMES = ("tank", "earth")
+FALLBACK = asdict(Video())
+FRAMES = get_args(get_type_hints(Video)["frame"])
 SMALLEST = (320, 180)  # pixels
-MOST_BEDS = 6  # shown side by side
+MOST_BEDS = 6  # of one recording shown side by side
 MOST_SAMPLES = 800  # of a curve of the plot
 
-MARGIN, COLUMN, GAP, WALL = 2.0, 17.0, 2.5, 0.36  # in u
+MARGIN, COLUMN, GAP, WALL, PLATE = 2.0, 17.0, 2.5, 0.36, 0.3  # in u
 TEXT, READING, TITLE = 1.1, 1.35, 1.45  # heights of letters in u
+THICKEST = 0.04  # of the tank's smaller side: its wall at most
+ROOM = 0.3  # of the tank's larger side: shown beside and below an open tank at most; less of many
 ALIKE = 1e-9  # poses that differ by less (m, rad) are the same
 
 
 @dataclass(frozen=True)
 class Look:
-    """What a person may choose.
-
-    Size in pixels, colour and frame by name, playback speed (1: real time), world by its number
-    from 0 (None: all).
-    """
+    """What a person may choose: size in pixels, colour and frame by name, playback speed (1: real time)."""
 
     width: int
     height: int
     colour: str
     frame: str
     speed: float
-    world: int | None = None
 
 
-def choose_look(footage: Footage, world: int | None = None, **wishes: object) -> Look:
+def choose_look(footage: Footage, **wishes: object) -> Look:
     """The wishes that are not None, else the preset's [video], else FALLBACK; raises LabError."""
     wanted = {key: value for key, value in wishes.items() if value is not None}
     settings = {**FALLBACK, **footage.settings, **wanted}
-    look = Look(world=world, **{key: settings[key] for key in FALLBACK})
+    look = Look(**{key: settings[key] for key in FALLBACK})
     if look.width % 2 or look.height % 2 or look.width < SMALLEST[0] or look.height < SMALLEST[1]:
         raise LabError(
             f"Pictures of {look.width} x {look.height} pixels cannot be filmed: "
@@ -54,28 +54,43 @@ def choose_look(footage: Footage, world: int | None = None, **wishes: object) ->
         )
     if look.frame not in FRAMES:
         raise LabError(f"Unknown frame '{look.frame}': choose one of {', '.join(FRAMES)}.")
-    if world is not None and not 0 <= world < footage.worlds:
-        last = footage.worlds - 1
-        raise LabError(f"There is no world {world} in this recording: choose 0 to {last}.")
     if not look.speed > 0:
         raise LabError(f"The playback speed {look.speed} cannot be used: choose one above 0.")
     return look
 
 
-class Film:
-    """The pictures of one recording in one look; Taichi must be running (`solvers.runtime`)."""
+def choose_beds(footage: Footage, world: int | None = None) -> list[Bed]:
+    """The beds of a recording, or the one of that number from 0; raises LabError."""
+    if world is not None and not 0 <= world < footage.worlds:
+        last = footage.worlds - 1
+        raise LabError(f"There is no world {world} in this recording: choose 0 to {last}.")
+    worlds = range(footage.worlds) if world is None else [world]
+    return [Bed(footage, k, f"bed {k + 1}" if footage.worlds > 1 else "") for k in worlds]
 
-    def __init__(self, footage: Footage, look: Look) -> None:
-        self._footage, self._look = footage, look
+
+class Film:
+    """The pictures of some beds in one look; Taichi must be running (`solvers.runtime`).
+
+    beds: of one or several recordings, all drawn to one scale and on one clock, that of the recording that
+    lasts longest: the others stand still at their end. most: how many are shown; the plot has all.
+    time (F,): of the pictures, s.
+    """
+
+    def __init__(self, beds: Sequence[Bed], look: Look, title: str | None = None, most: int = MOST_BEDS) -> None:
+        self._look, self._all, self._beds = look, list(beds), list(beds)[:most]
+        self._title = title or beds[0].footage.title
         self._unit = min(look.width / 64, look.height / 36)
-        everyone = range(footage.worlds) if look.world is None else [look.world]
-        self._worlds = list(everyone)[:MOST_BEDS]
-        self._pose = footage.pose[:, self._worlds]
+        self.time = max((bed.footage.time for bed in self._beds), key=lambda time: time[-1])
+        self._rows = [_nearest(bed.footage.time, self.time) for bed in self._beds]
+        self._pose = np.stack([bed.pose[rows] for bed, rows in zip(self._beds, self._rows, strict=True)], axis=1)
         self._together = bool(np.ptp(self._pose, axis=1).max() < ALIKE)
-        self._colouring = colouring(look.colour, footage)
-        self._cameras, self._names_at = self._place_beds()
-        self._plot, self._samples = self._prepare_plot(list(everyone))
-        self._page = self._draw_page(len(everyone))
+        self._named = any(bed.name for bed in self._beds)
+        self._hues = deco.SERIES if len(self._beds) <= len(deco.SERIES) else bed_colours(len(self._beds))
+        self._colouring = colouring(look.colour, self._beds)
+        self._grounds = self._find_grounds()
+        self._cameras, self._names_at, self._name_width = self._place_beds()
+        self._plot, self._samples = self._prepare_plot()
+        self._page = self._draw_page()
 
     def picture(self, frame: int) -> np.ndarray:
         """The picture (height, width, 3), u8, of one frame."""
@@ -83,8 +98,9 @@ class Film:
         self._paint_beds(picture, frame)
         image = Image.fromarray(picture)
         self._draw_readings(image, frame)
-        sampled = np.searchsorted(self._samples, self._footage.time[frame] + 1e-9, "right")
-        image.paste(self._plot.picture(max(1, int(sampled))), self._plot_box()[:2])
+        now = self.time[frame] + 1e-9
+        counts = [max(1, int(np.searchsorted(samples, now, "right"))) for samples in self._samples]
+        image.paste(self._plot.picture(counts), self._plot_box()[:2])
         return np.asarray(image)
 
     def _u(self, units: float) -> int:
@@ -105,59 +121,78 @@ class Film:
         right, bottom = self._column()[0] - self._u(GAP), self._look.height - self._u(MARGIN + 2.8)
         return self._u(MARGIN), self._u(MARGIN + TITLE + 1.5), right, bottom
 
-    def _ground(self) -> tuple[np.ndarray, np.ndarray]:
-        """Lower and upper corner (m) of the box that holds the tank in every frame."""
-        corners = self._footage.outline
-        if self._look.frame == "earth":
-            corners = _carried(corners, self._pose).reshape(-1, 2)
-        return corners.min(axis=0), corners.max(axis=0)
+    def _find_grounds(self) -> list[tuple[np.ndarray, np.ndarray]]:
+        """Lower and upper corner (m) of the box that holds each tank, its parts and, within reason, its grains."""
+        tanks = [self._seen(bed.footage.outline, bed.pose).reshape(-1, 2) for bed in self._beds]
+        reached = {bed: [tank.min(axis=0), tank.max(axis=0)] for bed, tank in zip(self._beds, tanks, strict=True)}
+        for bed, frame in spread([bed for bed in self._beds if bed.footage.open_edges or bed.footage.parts]):
+            places = bed.plates(frame)
+            if bed.footage.open_edges:
+                places.append(bed.position(frame))
+            for points in places:
+                seen = self._seen(points, bed.pose[frame])
+                reached[bed] += [np.fmin.reduce(seen), np.fmax.reduce(seen)]
+        grounds = []
+        for bed, corners in reached.items():
+            room = ROOM / np.sqrt(len(self._beds)) * np.ptp(bed.footage.outline, axis=0).max()
+            within = np.clip(corners, corners[0] - room, corners[1] + room)
+            grounds.append((np.nanmin(within, axis=0), np.nanmax(within, axis=0)))
+        return grounds
 
-    def _place_beds(self) -> tuple[list[Camera], list[tuple[float, float]]]:
-        """Camera and place of the name of each bed, in the grid that shows the beds largest."""
-        low, high = self._ground()
+    def _seen(self, points: np.ndarray, pose: np.ndarray) -> np.ndarray:
+        """Tank points in the frame that is drawn."""
+        return _carried(points, pose) if self._look.frame == "earth" else np.asarray(points)
+
+    def _place_beds(self) -> tuple[list[Camera], list[tuple[float, float]], float]:
+        """Camera and place of the name of each bed, in the grid that shows them largest; the width of a cell."""
         left, top, right, bottom = self._stage()
         stage = np.array([right - left, bottom - top])
         wall, gap = WALL * self._unit, 1.5 * self._unit
-        name = 1.8 * self._unit if self._footage.worlds > 1 else 0.0
+        name = 1.8 * self._unit if self._named else 0.0
         around = np.array([2 * wall, 2 * wall + name])
-        count = len(self._worlds)
+        extent = np.max([high - low for low, high in self._grounds], axis=0)
+        count = len(self._beds)
 
         def grid(columns: int) -> np.ndarray:
             return np.array([columns, -(-count // columns)])
 
         def scale(columns: int) -> float:
             cell = (stage - gap * (grid(columns) - 1)) / grid(columns)
-            return float(((cell - around) / (high - low)).min())
+            return float(((cell - around) / extent).min())
 
         columns = max(range(1, count + 1), key=scale)
         largest = scale(columns)
-        pitch = largest * (high - low) + around + gap
+        pitch = largest * extent + around + gap
         start = np.array([left, top]) + (stage - pitch * grid(columns) + gap) / 2
         cells = [start + pitch * (k % columns, k // columns) for k in range(count)]
-        inner = np.array([wall, wall + name]) + largest * np.array([-low[0], high[1]])
+        cameras = []
+        for cell, (low, high) in zip(cells, self._grounds, strict=True):
+            spare = largest * (extent - (high - low)) * (0.5, 1.0)  # a smaller one stands in the middle, on the ground
+            inner = np.array([wall, wall + name]) + spare + largest * np.array([-low[0], high[1]])
+            cameras.append(Camera(largest, tuple(cell + inner)))
         names = [(x, y + name - 0.5 * self._unit) for x, y in cells]
-        return [Camera(largest, tuple(cell + inner)) for cell in cells], names
+        return cameras, names, float(pitch[0] - 0.5 * gap)
 
-    def _prepare_plot(self, worlds: list[int]) -> tuple[deco.LivePlot, np.ndarray]:
-        """The plot of the shift of the centres of mass, and the times of its samples."""
-        footage = self._footage
-        count = len(footage.series_time)
-        kept = np.unique(np.linspace(0, count - 1, min(count, MOST_SAMPLES)).astype(int))
-        time, tilt = footage.series_time[kept], footage.series_pose[kept][:, worlds, 2]
-        centre = footage.centre_of_mass[kept][:, worlds, 0]
-        shift = (centre - centre[0]) / footage.diameter
-        steady = _monotonic(tilt)
-        across = np.degrees(tilt) if steady else np.repeat(time[:, None], len(worlds), axis=1)
-        label = "tilt φ (°)" if steady else "time (s)"
-        order = range(len(worlds) - 1, -1, -1)  # the beds that are shown on top
-        curves = [(across[:, k], shift[:, k]) for k in order]
-        colours = [deco.SERIES[k] if k < MOST_BEDS else deco.LINE for k in order]
+    def _prepare_plot(self) -> tuple[deco.LivePlot, list[np.ndarray]]:
+        """The plot of what the beds do, and the times of the samples of each curve."""
+        steady = all(_monotonic(bed.footage.series_pose[:, bed.world, 2]) for bed in self._all)
+        label, measured = _quantity(self._all)
+        curves, colours, samples = [], [], []
+        for k in reversed(range(len(self._all))):  # the beds that are shown on top
+            footage, world = self._all[k].footage, self._all[k].world
+            count = len(footage.series_time)
+            kept = np.unique(np.linspace(0, count - 1, min(count, MOST_SAMPLES)).astype(int))
+            time = footage.series_time[kept]
+            across = np.degrees(footage.series_pose[kept, world, 2]) if steady else time
+            curves.append((across, measured(self._all[k])[kept]))
+            colours.append(self._hues[k] if k < len(self._beds) else deco.LINE)
+            samples.append(time)
         left, top, right, bottom = self._plot_box()
-        labels = (label, "shift Δy (diameters)")
+        labels = ("tilt φ (°)" if steady else "time (s)", label)
         size = right - left, bottom - top
-        return deco.LivePlot(size, curves, colours, labels, TEXT * self._unit), time
+        return deco.LivePlot(size, curves, colours, labels, TEXT * self._unit), samples
 
-    def _draw_page(self, beds: int) -> np.ndarray:
+    def _draw_page(self) -> np.ndarray:
         """What stays the same in all frames."""
         look, text = self._look, TEXT * self._unit
         image = Image.new("RGB", (look.width, look.height), deco.PAPER)
@@ -165,50 +200,65 @@ class Film:
         left, _, right, _ = self._stage()
         column_left, column_right = self._column()
         bottom = look.height - self._u(MARGIN)
-        deco.draw_title(draw, (left, self._u(MARGIN)), self._footage.title, right - left, TITLE * self._unit)
+        title, face = deco.fitted(self._title, right - left, TITLE * self._unit, bold=True)
+        draw.text((left, self._u(MARGIN)), title, deco.INK, face, anchor="la")
         longest = 0.25 * (right - left)
         deco.draw_scale_bar(draw, (left, bottom), longest, self._cameras[0].scale, text)
-        note = self._note(beds)
-        draw.text((right, bottom - 0.3 * text), note, deco.QUIET, deco.font(text), anchor="rm")
+        draw.text((right, bottom - 0.3 * text), self._note(), deco.QUIET, deco.font(text), anchor="rm")
         bar = column_left, bottom - self._u(4.6), column_right, bottom
         deco.draw_colour_bar(image, bar, self._colouring, text)
         page = np.array(image)
         colours = (deco.WALL, deco.HOLD) if look.frame == "tank" else (deco.GRID, deco.PAPER)
-        for camera in self._cameras:  # in the earth frame a faint tank stays where it was at rest
-            self._paint_tank(page, camera, *colours)
+        for bed, camera in zip(self._beds, self._cameras, strict=True):
+            self._paint_tank(page, bed, camera, *colours)  # in the earth frame a faint one stays where it was at rest
+            if look.frame == "tank":
+                _paint_fixed(page, bed, camera)
         return page
 
-    def _note(self, beds: int) -> str:
+    def _note(self) -> str:
         """What a person must know to read the film rightly."""
         notes = []
         if self._look.speed != 1:
             notes.append(f"played at {self._look.speed:g} times real time")
-        if beds > len(self._worlds):
-            notes.append(f"{len(self._worlds)} of {beds} beds")
+        if len(self._all) > len(self._beds):
+            notes.append(f"{len(self._beds)} of {len(self._all)} beds")
         return ", ".join(notes)
 
     def _paint_beds(self, picture: np.ndarray, frame: int) -> None:
-        footage, discs, colours = self._footage, [], []
-        for k, world in enumerate(self._worlds):
-            camera = self._cameras[k]
+        discs, colours = [], []
+        for k, bed in enumerate(self._beds):
+            row, camera = self._rows[k][frame], self._cameras[k]
             if self._look.frame == "earth":
                 camera = camera.carried(self._pose[frame, k])
-                self._paint_tank(picture, camera, deco.WALL, deco.HOLD)
-            place, angle = footage.position(frame, world), footage.angle(frame, world)
-            discs.append(to_discs(camera, place, footage.radius[world], angle))
-            colours.append(self._colouring.colours(frame, world))
+                self._paint_tank(picture, bed, camera, deco.WALL, deco.HOLD)
+                _paint_fixed(picture, bed, camera)
+            place = self._on_ground(k, bed.position(row), self._pose[frame, k])
+            discs.append(to_discs(camera, place, bed.radius, bed.angle(row)))
+            colours.append(self._colouring.colours(bed, row))
+            for line in bed.plates(row):
+                paint_plate(picture, camera, line, PLATE * self._unit, deco.PART)
         colour = np.concatenate(colours)
         paint_grains(picture, np.concatenate(discs), colour, mark_colours(colour))
 
-    def _paint_tank(self, picture: np.ndarray, camera: Camera, wall: tuple, hold: tuple) -> None:
-        paint_tank(picture, camera, self._footage.outline, WALL * self._unit, wall, hold)
+    def _on_ground(self, k: int, position: np.ndarray, pose: np.ndarray) -> np.ndarray:
+        """Grain places (n, 2), NaN for those that have fallen off the ground shown of bed k."""
+        low, high = self._grounds[k]
+        radius = self._beds[k].radius[:, None]
+        seen = self._seen(position, pose)
+        off = (seen < low - radius) | (seen > high + radius)
+        return np.where(off.any(axis=1, keepdims=True), np.nan, position)
+
+    def _paint_tank(self, picture: np.ndarray, bed: Bed, camera: Camera, wall: tuple, hold: tuple) -> None:
+        footage = bed.footage
+        thick = min(WALL * self._unit, max(1.0, THICKEST * camera.scale * np.ptp(footage.outline, axis=0).min()))
+        paint_tank(picture, camera, footage.outline, thick, wall, hold, footage.open_edges)
 
     def _draw_readings(self, image: Image.Image, frame: int) -> None:
         """Clock, tilt, displacement and gravity in the column, names above the beds."""
         draw = ImageDraw.Draw(image)
         left, right = self._column()
         top, face = self._u(MARGIN), deco.font(READING * self._unit)
-        readings = [f"t = {deco.number(self._footage.time[frame], 2)} s"]
+        readings = [f"t = {deco.number(self.time[frame], 2)} s"]
         if self._together:
             readings += [f"{name} {value}" for name, value in self._pose_readings(frame, 0)]
             if self._look.frame == "tank":
@@ -217,16 +267,16 @@ class Film:
         for line, reading in enumerate(readings):
             place = left, top + line * self._u(1.75 * READING)
             draw.text(place, reading, deco.INK, face, anchor="la")
-        if self._footage.worlds > 1:
+        if self._named:
             self._draw_names(draw, frame)
 
     def _draw_names(self, draw: ImageDraw.ImageDraw, frame: int) -> None:
-        """The beds' names, and what tells their poses apart."""
-        for k, world in enumerate(self._worlds):
-            readings = self._pose_readings(frame, k)
-            aside = "" if self._together else f" ({readings[0][1]})"
-            text, face = f"bed {world + 1}{aside}", deco.font(TEXT * self._unit)
-            draw.text(self._names_at[k], text, deco.SERIES[k], face, anchor="ls")
+        """The beds' names, and what tells the poses of a few apart."""
+        telling = not self._together and len(self._beds) <= MOST_BEDS
+        for k, bed in enumerate(self._beds):
+            aside = f" ({self._pose_readings(frame, k)[0][1]})" if telling else ""
+            text, face = deco.fitted(bed.name + aside, self._name_width, TEXT * self._unit)
+            draw.text(self._names_at[k], text, self._hues[k], face, anchor="ls")
 
     def _pose_readings(self, frame: int, k: int) -> list[tuple[str, str]]:
         """Names and values of tilt, sway and heave of a shown bed, of those that are ever used."""
@@ -240,8 +290,41 @@ class Film:
         return [reading for reading, moving in zip(readings, moves, strict=True) if moving]
 
 
+def _quantity(beds: Sequence[Bed]) -> tuple[str, Callable[[Bed], np.ndarray]]:
+    """What the plot shows, the same for all beds: its label and the values (T,) of a bed.
+
+    What has spilled where anything has; else the shift of the centre of mass, upwards where nothing but
+    heave or parts can move the grains, sideways otherwise.
+    """
+    if any(bed.footage.spilled[:, bed.world].any() for bed in beds):
+        return "spilled (%)", lambda bed: 100 * bed.footage.spilled[:, bed.world] / len(bed.radius)
+    upright = not any(np.ptp(bed.footage.series_pose[:, bed.world, ::2], axis=0).any() for bed in beds)
+    axis = 1 if upright else 0
+
+    def shift(bed: Bed) -> np.ndarray:
+        centre = bed.footage.centre_of_mass[:, bed.world, axis]
+        return (centre - centre[0]) / bed.diameter
+
+    return f"shift Δ{'yz'[axis]} (diameters)", shift
+
+
+def _paint_fixed(picture: np.ndarray, bed: Bed, camera: Camera) -> None:
+    """The fixed grains of a rough wall, grey and without marks."""
+    fixed = bed.footage.fixed
+    colour = np.tile(deco.FIXED, (len(fixed), 1))
+    paint_grains(picture, to_discs(camera, fixed[:, :2], fixed[:, 2], np.zeros(len(fixed))), colour, colour)
+
+
+def _nearest(there: np.ndarray, time: np.ndarray) -> np.ndarray:
+    """The rows of `there` (K,), ascending, that are nearest to each of `time` (F,)."""
+    after = np.clip(np.searchsorted(there, time), 1, max(len(there) - 1, 1))
+    before = after - 1
+    after = np.minimum(after, len(there) - 1)
+    return np.where(time - there[before] <= there[after] - time, before, after)
+
+
 def _carried(points: np.ndarray, pose: np.ndarray) -> np.ndarray:
-    """Earth-frame places (F, S, m, 2) of tank points (m, 2): (Y, Z) + R(phi) r, pose (F, S, 3)."""
+    """Earth-frame places (..., m, 2) of tank points (m, 2): (Y, Z) + R(phi) r, pose (..., 3)."""
     cosine, sine = np.cos(pose[..., 2, None]), np.sin(pose[..., 2, None])
     y, z = points.T
     across = pose[..., 0, None] + cosine * y - sine * z
@@ -250,7 +333,7 @@ def _carried(points: np.ndarray, pose: np.ndarray) -> np.ndarray:
 
 
 def _monotonic(tilt: np.ndarray) -> bool:
-    """Whether tilt (T, W) in rad moves by half a degree at least and never back."""
-    steps = np.diff(tilt, axis=0)
+    """Whether tilt (T,) in rad moves by half a degree at least and never back."""
+    steps = np.diff(tilt)
     one_way = bool((steps >= -ALIKE).all() or (steps <= ALIKE).all())
-    return one_way and bool(np.ptp(tilt, axis=0).min() > np.radians(0.5))
+    return one_way and bool(np.ptp(tilt) > np.radians(0.5))

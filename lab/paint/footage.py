@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -11,22 +12,23 @@ from lab.recording import Recording, open_recording
 
 
 class Footage:
-    """F frames and T samples of W worlds with n grains each.
+    """F frames and T samples of W worlds with n grains each, in a tank with k fixed grains and P moving parts.
 
     time (F,) s, pose (F, W, 3) m, m, rad; series_time (T,), series_pose (T, W, 3), centre_of_mass (T, W, 2) m;
-    radius (W, n) m; outline (m, 2) m; diameter: the mean of all grains, m; settings: the preset's [video]; title.
-    Raises LabError when there is no frame or no sample.
+    spilled (T, W) grains; radius (W, n) m; outline (m, 2) m; open_edges: those without a wall; fixed (k, 3) y, z,
+    radius m; parts: polylines at rest (m, 2) m by name; part (F, W, P, 2): their displacements, m;
+    settings: the preset's [video]; title. Raises LabError when there is no frame or no sample.
     """
 
     def __init__(self, recording: Recording) -> None:
         series, frames = recording.series, recording.frames
         if not len(frames["time"]) or not len(series["time"]):
             raise LabError(f"{recording.path} holds no picture frames yet: let the run get further.")
-        self.time, self.pose = frames["time"][:], frames["pose"][:]
+        self.time, self.pose, self.part = frames["time"][:], frames["pose"][:], frames["part"][:]
         self.series_time, self.series_pose = series["time"], series["pose"]
-        self.centre_of_mass = series["centre_of_mass"]
+        self.centre_of_mass, self.spilled = series["centre_of_mass"], series["spilled"]
         self.radius, self.outline = recording.radius, recording.outline
-        self.diameter = float(recording.mean_diameter.mean())
+        self.open_edges, self.fixed, self.parts = recording.open_edges, recording.fixed, recording.parts
         self.settings = recording.preset.get("video") or {}
         self.title = recording.preset.get("title") or recording.name
         self._frames = frames
@@ -37,22 +39,61 @@ class Footage:
         """W, the beds recorded side by side."""
         return len(self.radius)
 
-    def position(self, frame: int, world: int) -> np.ndarray:
-        """Grain positions (n, 2) in the tank frame, m."""
-        return self._grains("position", frame, world)
-
-    def speed(self, frame: int, world: int) -> np.ndarray:
-        """Grain speeds (n,) relative to the tank, m/s."""
-        return np.hypot(*self._grains("velocity", frame, world).T)
-
-    def angle(self, frame: int, world: int) -> np.ndarray:
-        """Grain angles (n,) in the tank frame, rad."""
-        return self._grains("angle", frame, world)
-
-    def _grains(self, name: str, frame: int, world: int) -> np.ndarray:
+    def grains(self, name: str, frame: int, world: int) -> np.ndarray:
+        """What each grain has in a frame: (n,) or (n, 2) of one of `recording.GRAIN_FRAMES`."""
         if self._read.get(name, (None,))[0] != frame:
             self._read[name] = frame, self._frames[name][frame].astype(float)
         return self._read[name][1][world]
+
+
+@dataclass(frozen=True, eq=False)
+class Bed:
+    """One world of a footage, and the name it goes by in a picture."""
+
+    footage: Footage
+    world: int
+    name: str
+
+    @property
+    def frames(self) -> int:
+        """F, the number of picture frames."""
+        return len(self.footage.time)
+
+    @property
+    def pose(self) -> np.ndarray:
+        """Pose of the tank (F, 3) in m, m, rad."""
+        return self.footage.pose[:, self.world]
+
+    @property
+    def radius(self) -> np.ndarray:
+        """Radii (n,), m."""
+        return self.footage.radius[self.world]
+
+    @property
+    def diameter(self) -> float:
+        """Mean grain diameter, m."""
+        return 2.0 * float(self.radius.mean())
+
+    def position(self, frame: int) -> np.ndarray:
+        """Grain positions (n, 2) in the tank frame, m; NaN for a grain that has left the scene."""
+        return self.footage.grains("position", frame, self.world)
+
+    def speed(self, frame: int) -> np.ndarray:
+        """Grain speeds (n,) relative to the tank, m/s."""
+        return np.hypot(*self.footage.grains("velocity", frame, self.world).T)
+
+    def angle(self, frame: int) -> np.ndarray:
+        """Grain angles (n,) in the tank frame, rad."""
+        return self.footage.grains("angle", frame, self.world)
+
+    def spin(self, frame: int) -> np.ndarray:
+        """Grain spins (n,) relative to the tank, rad/s."""
+        return self.footage.grains("spin", frame, self.world)
+
+    def plates(self, frame: int) -> list[np.ndarray]:
+        """The moving parts (m, 2) where they are in a frame, tank frame, m."""
+        moved = self.footage.part[frame, self.world]
+        return [line + shift for line, shift in zip(self.footage.parts.values(), moved, strict=True)]
 
 
 @contextmanager

@@ -10,6 +10,7 @@ Pixel coordinates: x to the right, y downwards; the pixel in row i and column j 
 Taichi must be running (`solvers.runtime.initialise`).
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -86,15 +87,34 @@ def paint_tank(
     wall: float,
     wall_colour: tuple,
     inner_colour: tuple,
+    open_edges: Sequence[int] = (),
 ) -> None:
-    """Paint the inside of a polygon, outline (m, 2) in m, and a wall (pixels thick) around it."""
+    """Paint the inside of a polygon, outline (m, 2) in m, and a wall (pixels thick) around it.
+
+    open_edges: edges k, from corner k to the next, without a wall.
+    """
     corners = camera.pixels(outline)
+    walled = np.ones(len(corners), dtype=np.int32)
+    walled[list(open_edges)] = 0
+    box = _box(picture, corners, wall)
+    if box[0] < box[2] and box[1] < box[3]:
+        _paint_walls(picture, corners, walled, box, wall, Colour(wall_colour), Colour(inner_colour))
+
+
+def paint_plate(picture: np.ndarray, camera: Camera, line: np.ndarray, thickness: float, colour: tuple) -> None:
+    """Paint a polyline (m, 2) in m as a plate, so many pixels thick, with round ends."""
+    corners = camera.pixels(line)
+    box = _box(picture, corners, thickness)
+    if box[0] < box[2] and box[1] < box[3]:
+        _paint_line(picture, corners, box, 0.5 * thickness, Colour(colour))
+
+
+def _box(picture: np.ndarray, corners: np.ndarray, reach: float) -> ti.Vector:
+    """The pixels (left, top, right, bottom) of a picture that lie within reach of the corners."""
     height, width, _ = picture.shape
-    left, top = np.clip(np.floor(corners.min(0) - wall - 1), 0, [width, height]).astype(int)
-    right, bottom = np.clip(np.ceil(corners.max(0) + wall + 1), 0, [width, height]).astype(int)
-    if left < right and top < bottom:
-        box = ti.Vector([left, top, right, bottom])
-        _paint_walls(picture, corners, box, wall, Colour(wall_colour), Colour(inner_colour))
+    left, top = np.clip(np.floor(corners.min(0) - reach - 1), 0, [width, height]).astype(int)
+    right, bottom = np.clip(np.ceil(corners.max(0) + reach + 1), 0, [width, height]).astype(int)
+    return ti.Vector([left, top, right, bottom])
 
 
 def _sort_into_bands(y: np.ndarray, reach: np.ndarray, height: int) -> tuple:
@@ -191,40 +211,83 @@ def _paint_bands(
 
 
 @ti.func
+def _past(x, y, corners: ti.template(), k, after):
+    """Distance to an edge of a chain of corners, and the place along it, in 0..1 between its ends."""
+    ex, ey = corners[after, 0] - corners[k, 0], corners[after, 1] - corners[k, 1]
+    px, py = x - corners[k, 0], y - corners[k, 1]
+    along = (px * ex + py * ey) / ti.max(ex * ex + ey * ey, 1e-30)
+    on = ti.math.clamp(along, 0.0, 1.0)
+    return ti.Vector([ti.sqrt((px - on * ex) ** 2 + (py - on * ey) ** 2), along])
+
+
+@ti.func
 def _outside(x, y, corners: ti.template()):
     """Distance to the polygon's edge, negative inside (even-odd crossing rule)."""
     nearest, sign = 1e30, 1.0
     for k in range(corners.shape[0]):
         after = (k + 1) % corners.shape[0]
+        nearest = ti.min(nearest, _past(x, y, corners, k, after)[0])
         ex, ey = corners[after, 0] - corners[k, 0], corners[after, 1] - corners[k, 1]
         px, py = x - corners[k, 0], y - corners[k, 1]
-        along = ti.math.clamp((px * ex + py * ey) / ti.max(ex * ex + ey * ey, 1e-30), 0.0, 1.0)
-        nearest = ti.min(nearest, (px - along * ex) ** 2 + (py - along * ey) ** 2)
         if (py >= 0.0) != (y >= corners[after, 1]) and (px < ex * py / ey):
             sign = -sign
-    return sign * ti.sqrt(nearest)
+    return sign * nearest
+
+
+@ti.func
+def _off_walls(x, y, corners: ti.template(), walled: ti.template(), wall):
+    """Distance to the nearest edge with a wall, made more than `wall` past an end at an open edge.
+
+    So a wall ends in a straight cut where its neighbour is open.
+    """
+    nearest, count = 1e30, corners.shape[0]
+    for k in range(count):
+        if walled[k] == 1:
+            after = (k + 1) % count
+            length = ti.sqrt((corners[after, 0] - corners[k, 0]) ** 2 + (corners[after, 1] - corners[k, 1]) ** 2)
+            place = _past(x, y, corners, k, after)
+            distance = place[0]
+            if walled[(k + count - 1) % count] == 0:
+                distance = ti.max(distance, wall - place[1] * length)
+            if walled[after] == 0:
+                distance = ti.max(distance, wall + (place[1] - 1.0) * length)
+            nearest = ti.min(nearest, distance)
+    return nearest
 
 
 @ti.kernel
 def _paint_walls(
     picture: Picture,
     corners: Table,
+    walled: Index,
     box: ti.types.vector(4, ti.i32),
     wall: ti.f64,
     wall_colour: Colour,
     inner_colour: Colour,
 ):
-    # The distance changes by at most one a pixel: far from the edge a whole run of pixels is alike.
+    # The distances change by at most one a pixel: far from the edges a whole run of pixels is alike.
     for row in range(box[1], box[3]):
         column = box[0]
         while column < box[2]:
-            outside = _outside(column + 0.5, row + 0.5, corners)
+            x, y = column + 0.5, row + 0.5
+            outside = _outside(x, y, corners)
             alike = ti.max(-outside, outside - wall) - 0.5
             stop = ti.min(column + ti.max(ti.cast(alike, ti.i32), 1), box[2])
             if alike < 0.0 or outside < 0.0:
-                walled = ti.math.clamp(wall - outside + 0.5, 0.0, 1.0)
                 inside = ti.math.clamp(0.5 - outside, 0.0, 1.0)
+                reached = (1.0 - inside) * ti.math.clamp(wall - _off_walls(x, y, corners, walled, wall) + 0.5, 0.0, 1.0)
                 for pixel in range(column, stop):
-                    change = walled * (wall_colour - _colour_of(picture, row, pixel))
-                    _mix(picture, row, pixel, change + inside * (inner_colour - wall_colour))
+                    under = _colour_of(picture, row, pixel)
+                    _mix(picture, row, pixel, reached * (wall_colour - under) + inside * (inner_colour - under))
             column = stop
+
+
+@ti.kernel
+def _paint_line(picture: Picture, corners: Table, box: ti.types.vector(4, ti.i32), reach: ti.f64, colour: Colour):
+    for row, column in ti.ndrange((box[1], box[3]), (box[0], box[2])):
+        nearest = 1e30
+        for k in range(corners.shape[0] - 1):
+            nearest = ti.min(nearest, _past(column + 0.5, row + 0.5, corners, k, k + 1)[0])
+        share = ti.math.clamp(reach - nearest + 0.5, 0.0, 1.0)
+        if share > 0.0:
+            _mix(picture, row, column, share * (colour - _colour_of(picture, row, column)))

@@ -1,7 +1,9 @@
 """From a recording to a video, a folder of pictures, or a poster."""
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack
+from dataclasses import replace
 from pathlib import Path
 
 import imageio.v2 as imageio
@@ -9,10 +11,11 @@ import numpy as np
 from PIL import Image
 
 from lab.errors import LabError
-from lab.paint.film import Film, choose_look
+from lab.paint.film import Film, choose_beds, choose_look
 from lab.paint.footage import open_footage
 from solvers.runtime import initialise
 
+MOST_IN_GRID = 24
 FASTEST = 60.0  # pictures a second of a video
 BT709 = "scale=out_color_matrix=bt709:out_range=tv"
 ENCODING = (
@@ -44,14 +47,52 @@ def render_recording(
     """
     initialise()
     with open_footage(path) as footage:
-        look = choose_look(footage, world, colour=colour, frame=frame, width=width, height=height, speed=speed)
-        film = Film(footage, look)
-        rate, stride = playback(footage.time, look.speed)
-        shown = range(0, len(footage.time), stride)
-        pictures = _counted(film, shown, progress)
-        if png:
-            return _write_folder(_target(path, out, "pictures"), pictures)
-        return _write_video(_target(path, out, "video.mp4"), pictures, rate)
+        beds = choose_beds(footage, world)
+        look = choose_look(footage, colour=colour, frame=frame, width=width, height=height, speed=speed)
+        target = _target(path, out, "pictures" if png else "video.mp4")
+        return _write(target, Film(beds, look), look.speed, png, progress)
+
+
+def render_grid(
+    beds: Sequence[Path | str | tuple[Path | str, int]],
+    captions: Sequence[str],
+    out: Path | str,
+    *,
+    title: str | None = None,
+    colour: str | None = None,
+    frame: str | None = None,
+    width: int | None = None,
+    height: int | None = None,
+    speed: float | None = None,
+    progress: Progress | None = None,
+) -> Path:
+    """Film up to 24 beds of one or several recordings in one grid, such as the points of a sweep, and return `out`.
+
+    beds: recordings (file or folder), or pairs of a recording and one of its worlds (else its first);
+    captions: one each; out: an .mp4 file, or a .png file for the last picture alone. All are drawn to one scale,
+    on one clock and with one scale of colours; a recording that ends sooner stands still at its end. What is not
+    given, the title too, comes from the first recording. Raises LabError.
+    """
+    if not 1 <= len(beds) <= MOST_IN_GRID:
+        raise LabError(f"A grid has room for 1 to {MOST_IN_GRID} beds (got {len(beds)}): choose some of them.")
+    chosen = [bed if isinstance(bed, tuple) else (bed, 0) for bed in beds]
+    initialise()
+    with ExitStack() as opened:
+        footages = {
+            path: opened.enter_context(open_footage(path)) for path in dict.fromkeys(path for path, _ in chosen)
+        }
+        shown = []
+        for (path, world), caption in zip(chosen, captions, strict=True):
+            (bed,) = choose_beds(footages[path], world)
+            shown.append(replace(bed, name=caption))
+        first = shown[0].footage
+        look = choose_look(first, colour=colour, frame=frame, width=width, height=height, speed=speed)
+        film = Film(shown, look, title, MOST_IN_GRID)
+        out = _made(Path(out))
+        if out.suffix == ".png":
+            Image.fromarray(film.picture(len(film.time) - 1)).save(out)
+            return out
+        return _write(out, film, look.speed, False, progress)
 
 
 def poster(
@@ -72,14 +113,15 @@ def poster(
     """
     initialise()
     with open_footage(path) as footage:
-        look = choose_look(footage, world, colour=colour, frame=frame, width=width, height=height)
+        beds = choose_beds(footage, world)
+        look = choose_look(footage, colour=colour, frame=frame, width=width, height=height)
         if time is None:
             time = footage.time[0] + fraction * (footage.time[-1] - footage.time[0])
         nearest = int(np.abs(footage.time - time).argmin())
         out = _target(path, out, "poster.png")
         if out.suffix != ".png":
             raise LabError(f"{out} cannot be written: a poster is a .png file.")
-        Image.fromarray(Film(footage, look).picture(nearest)).save(out)
+        Image.fromarray(Film(beds, look).picture(nearest)).save(out)
         return out
 
 
@@ -89,6 +131,12 @@ def playback(time: np.ndarray, speed: float) -> tuple[float, int]:
     wanted = speed / interval
     stride = max(1, math.ceil(wanted / FASTEST - 1e-9))
     return round(wanted / stride, 3), stride
+
+
+def _write(out: Path, film: Film, speed: float, png: bool, progress: Progress | None) -> Path:
+    rate, stride = playback(film.time, speed)
+    pictures = _counted(film, range(0, len(film.time), stride), progress)
+    return _write_folder(out, pictures) if png else _write_video(out, pictures, rate)
 
 
 def _counted(film: Film, shown: range, progress: Progress | None) -> Iterator[np.ndarray]:
@@ -102,7 +150,10 @@ def _target(path: Path | str, out: Path | str | None, name: str) -> Path:
     """Where to write; its folder is made."""
     path = Path(path)
     beside = (path if path.is_dir() else path.parent) / name
-    out = beside if out is None else Path(out)
+    return _made(beside if out is None else Path(out))
+
+
+def _made(out: Path) -> Path:
     out.parent.mkdir(parents=True, exist_ok=True)
     return out
 

@@ -1,13 +1,46 @@
 """Contact laws, one file each; the registries name them as presets do.
 
-A law is a class with `coefficients`, the numbers it needs of an interface between two materials; `constants` and
-`memory`, names of what it keeps for each listed contact; `prepare`, which works out the constants of a new
-contact; and `force` and `energy`, Taichi functions. Only the laws a scene names are compiled.
+A law is a class with
+- `coefficients`, the numbers it needs of an interface between two materials, and `limits`, the longest steps it bears;
+- `constants` and `memory`, names of what it keeps for each listed contact, which no other kind of law may use too;
+  `prepare` works out the constants of a new contact;
+- `force` (a rolling law: `torque`) and `energy`, Taichi functions. They take a block of contacts at once, as vectors of
+  lanes, and so hold element-wise arithmetic alone; a coefficient may be a number or a vector of lanes. A contact whose
+  overlap is zero must come out with no force and no memory.
+Only the laws a scene names are compiled.
 """
 
+from solvers.laws.constant_torque import ConstantTorque
+from solvers.laws.coulomb import Coulomb
+from solvers.laws.cundall_strack import CundallStrack
+from solvers.laws.elastic_plastic import ElasticPlastic
+from solvers.laws.frictionless import Frictionless
 from solvers.laws.haff_werner import HaffWerner
+from solvers.laws.hertz import Hertz
+from solvers.laws.hertz_dashpot import HertzDashpot
 from solvers.laws.hertz_viscoelastic import HertzViscoelastic
+from solvers.laws.hysteretic import Hysteretic
+from solvers.laws.linear import Linear
 from solvers.laws.mindlin import Mindlin
+from solvers.laws.no_rolling import NoRolling
+from solvers.laws.viscous import Viscous
 
-NORMAL = {"hertz-viscoelastic": HertzViscoelastic}
-TANGENTIAL = {"haff-werner": HaffWerner, "mindlin": Mindlin}
+# Along the line of the centres: what keeps grains apart and takes their energy.
+NORMAL = {
+    "hertz-viscoelastic": HertzViscoelastic,
+    "hertz": Hertz,
+    "hertz-dashpot": HertzDashpot,
+    "linear": Linear,
+    "hysteretic": Hysteretic,
+}
+# Across it: friction.
+TANGENTIAL = {
+    "haff-werner": HaffWerner,
+    "mindlin": Mindlin,
+    "cundall-strack": CundallStrack,
+    "coulomb": Coulomb,
+    "viscous": Viscous,
+    "none": Frictionless,
+}
+# Against turning on one another.
+ROLLING = {"none": NoRolling, "constant-torque": ConstantTorque, "elastic-plastic": ElasticPlastic}

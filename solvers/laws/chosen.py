@@ -6,19 +6,20 @@ import taichi as ti
 from solvers.runtime import Arrays
 from solvers.units import Units
 
-PAIR, WALL = 0, 1
+PAIR, WALL = 0, 1  # rows of the interfaces where all grains are of one kind
 
 
 @ti.data_oriented
 class ChosenLaws:
     """A normal, a tangential and a rolling law for grain–grain (PAIR) and grain–wall (WALL) contacts.
 
-    `interfaces[w]` = (pair, wall) in world w. Contacts come in blocks of lanes (`ContactList`); what a law returns for
-    a block is a vector of lanes.
+    `interfaces[w]` are those of world w: of kinds a and b of grains in row a·K + b, of kind a and a wall in row K² + a,
+    with K `kinds`. Contacts come in blocks of lanes (`ContactList`); what a law returns for a block is a vector of
+    lanes. With one kind of grains a law's coefficients are numbers, with several vectors of lanes.
     """
 
-    def __init__(self, arrays: Arrays, units: Units, normal, tangential, rolling, interfaces):
-        self.units = units
+    def __init__(self, arrays: Arrays, units: Units, normal, tangential, rolling, interfaces, kinds: int = 1):
+        self.units, self.kinds = units, kinds
         self.normal, self.tangential, self.rolling = laws = normal, tangential, rolling
         self.tables = [arrays.holding(self.tabulate(law, interfaces)) for law in laws]
         self.constants = tuple(name for law in laws for name in law.constants)
@@ -29,15 +30,45 @@ class ChosenLaws:
 
     @staticmethod
     def tabulate(law, interfaces) -> np.ndarray:
-        """Coefficients (W, 2, number) of a law; one zero for a law that has none."""
+        """Coefficients (W, rows, number) of a law; one zero for a law that has none."""
         return np.array([[law.coefficients(between) or [0.0] for between in world] for world in interfaces])
 
     @ti.func
-    def coefficients(self, which: ti.template(), u, kind: ti.template()):
-        """The coefficients of one law in the world of unit u."""
+    def pair_row(self, g: ti.template(), w, i, j):
+        """The row of the interface between grains i and j."""
+        row = PAIR
+        if ti.static(self.kinds > 1):
+            row = g.kind[w, i] * self.kinds + g.kind[w, j]
+        return row
+
+    @ti.func
+    def wall_row(self, g: ti.template(), w, i):
+        """The row of the interface between grain i and a wall."""
+        row = WALL
+        if ti.static(self.kinds > 1):
+            row = self.kinds * self.kinds + g.kind[w, i]
+        return row
+
+    @ti.func
+    def coefficients(self, which: ti.template(), u, kind: ti.template(), contacts: ti.template(), block):
+        """The coefficients of one law for a block of contacts in the world of unit u."""
         table = ti.static(self.tables[which])
         w = self.units.world(u)
-        return ti.Vector([table[w, kind, k] for k in ti.static(range(table.shape[2]))])
+        if ti.static(self.kinds == 1):
+            return [table[w, kind, k] for k in ti.static(range(table.shape[2]))]
+        else:
+            rows = contacts.row[u, block]
+            lanes = ti.static(range(contacts.lanes))
+            return [ti.Vector([table[w, rows[n], k] for n in lanes]) for k in ti.static(range(table.shape[2]))]
+
+    @ti.func
+    def coefficients_of_one(self, which: ti.template(), u, kind: ti.template(), contacts: ti.template(), block, lane):
+        """The coefficients of one law for one contact."""
+        table = ti.static(self.tables[which])
+        row = kind
+        if ti.static(self.kinds > 1):
+            row = contacts.row[u, block][lane]
+        return [table[self.units.world(u), row, k] for k in ti.static(range(table.shape[2]))]
 
     @ti.func
     def prepare(self, kind: ti.template(), contacts: ti.template(), u, block, lane, mass, radius, dt):
@@ -65,7 +96,7 @@ class ChosenLaws:
     ):
         """Work out one law's constants, which stand from `first` on."""
         if ti.static(self.counts[which] > 0):
-            c = self.coefficients(which, u, kind)
+            c = self.coefficients_of_one(which, u, kind, contacts, block, lane)
             values = law.prepare(c, contacts.stiffness[u, block][lane], mass, radius, dt)
             for k in ti.static(range(self.counts[which])):
                 contacts.constants[first + k][u, block][lane] = values[k]
@@ -78,8 +109,9 @@ class ChosenLaws:
         on the first grain, and its opposite on the second.
         """
         root = ti.sqrt(overlap)
-        normal_c, tangential_c = self.coefficients(0, u, kind), self.coefficients(1, u, kind)
-        rolling_c = self.coefficients(2, u, kind)
+        normal_c = self.coefficients(0, u, kind, contacts, block)
+        tangential_c = self.coefficients(1, u, kind, contacts, block)
+        rolling_c = self.coefficients(2, u, kind, contacts, block)
         pressing = self.normal.force(normal_c, contacts, u, block, overlap, root, rate, dt)
         shearing = self.tangential.force(tangential_c, contacts, u, block, root, pressing, slip, dt)
         torque = self.rolling.torque(rolling_c, contacts, u, block, pressing, turning, dt)
@@ -90,5 +122,6 @@ class ChosenLaws:
         """Elastic energy (J) of contact p, which overlaps."""
         block, lane, root = p // contacts.lanes, p % contacts.lanes, ti.sqrt(overlap)
         pressed = self.normal.energy(contacts, u, block, lane, overlap, root)
-        sheared = self.tangential.energy(self.coefficients(1, u, kind), contacts, u, block, lane, root)
+        tangential_c = self.coefficients_of_one(1, u, kind, contacts, block, lane)
+        sheared = self.tangential.energy(tangential_c, contacts, u, block, lane, root)
         return pressed + sheared + self.rolling.energy(contacts, u, block, lane)

@@ -2,12 +2,8 @@
 
 import taichi as ti
 
+from solvers.laws.splitting import AT_ONCE, FOLLOWING, lagging, within
 from solvers.materials import Interface
-
-# Shares of the contact's own limit m_t/Δt (damper) and m_t/Δt² (spring) that stay stable with every neighbour
-# of a grain in touch: the contact network's largest eigenvalue is 4.3 for six equal spheres around one in a plane.
-AT_ONCE = 0.2
-FOLLOWING = 0.02
 
 
 @ti.data_oriented
@@ -15,10 +11,8 @@ class HaffWerner:
     """F_t = −min(γ_s |u_s|, μ F_n) sign(u_s) (Spandonidis 2016, eq. 4.6).
 
     γ_s = 20 N s/m stops the slip of a 3 mm grain within 1e-7 s, far below any step worth taking. So the damper is
-    split: what the step Δt resolves, γ_f = min(γ_s, 0.2 m_t/Δt), acts at once; the rest acts on the slip through a
-    first-order low-pass, Ṡ = [(γ_s − γ_f) u_s − S]/T with T = γ_s Δt²/(0.02 m_t) but at least Δt, whose stiffness
-    (γ_s − γ_f)/T the step resolves as well. Slip still stops within a few steps, and under a lasting load the slip is
-    F_t/γ_s, the creep of the law itself, whatever the step. With γ_s < 0.2 m_t/Δt the law is integrated as written.
+    split as `splitting.lagging` says, on m_t = (2/7) m_eff. Under a lasting load the slip is F_t/γ_s, the creep of the
+    law itself, whatever the step.
     """
 
     constants = ("limit",)
@@ -29,8 +23,12 @@ class HaffWerner:
         damping = between.shear_damping
         return [between.friction, damping, FOLLOWING / damping if damping else 0.0]
 
+    def limits(self, between: Interface, mass: float, radius: float, speed: float) -> list[tuple[float, str]]:
+        """None: the damper is split to suit the step."""
+        return []
+
     @ti.func
-    def prepare(self, c: ti.template(), stiffness, mass, dt):
+    def prepare(self, c: ti.template(), stiffness, mass, radius, dt):
         """m_t/Δt (N s/m), with m_t = (2/7) m_eff for spheres."""
         return ti.Vector([(2.0 / 7.0) * mass / dt])
 
@@ -38,13 +36,11 @@ class HaffWerner:
     def force(self, c: ti.template(), contacts: ti.template(), w, block, root, normal, slip, dt):
         """F_t (N) of a block of contacts on their first grains along the tangent; slip u_s in m/s, F_n in N."""
         cap, limit = c[0] * normal, contacts.limit[w, block]
-        at_once = ti.min(c[1], AT_ONCE * limit)
         share = ti.min(1.0, c[2] * limit)
-        followed = contacts.followed[w, block]
-        followed = followed + share * ((c[1] - at_once) * slip - followed)
-        followed = ti.max(-cap, ti.min(cap, followed))
-        contacts.followed[w, block] = followed
-        return -ti.max(-cap, ti.min(cap, followed + at_once * slip))
+        at_once = ti.min(c[1], AT_ONCE * limit)
+        lag = lagging(c[1] - at_once, share, slip, contacts.followed[w, block], cap)
+        contacts.followed[w, block] = lag
+        return -within(lag + at_once * slip, cap)
 
     @ti.func
     def energy(self, c: ti.template(), contacts: ti.template(), w, block, lane, root):

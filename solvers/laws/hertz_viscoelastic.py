@@ -1,12 +1,23 @@
 """Viscoelastic Hertz contact: the normal force of Brilliantov, Spahn, Hertzsch and Pöschel (1996)."""
 
+from math import sqrt
+
 import taichi as ti
 
-from solvers.materials import Interface
+from solvers.laws.hertz import ELASTIC_STEPS, Hertz, hertz_duration
+from solvers.materials import Interface, hertz_stiffness
+
+DAMPED_STEPS = 105.0  # times √x: the error of the restitution falls as Δt² and grows with x
+
+
+def damping(between: Interface, mass: float, radius: float, speed: float) -> float:
+    """x = β v^(1/5), β = (γ_n/m_eff)(m_eff/k)^(3/5): how much of its energy a viscoelastic collision loses."""
+    k = hertz_stiffness(between.young_modulus, radius)
+    return 1.5 * between.dissipative_time * (k / mass) ** 0.4 * speed**0.2
 
 
 @ti.data_oriented
-class HertzViscoelastic:
+class HertzViscoelastic(Hertz):
     """F_n = k ξ^(3/2) + γ_n ξ^(1/2) ξ̇, with k = (4/3) E* √R_eff and γ_n = (3/2) A k.
 
     For equal materials k = 2Y√R_eff / (3(1 − ν²)), as Spandonidis (2016), eq. 4.4–4.5, writes it. A is the dissipative
@@ -14,19 +25,17 @@ class HertzViscoelastic:
     ends where the force vanishes and not where the overlap does (Schwager and Pöschel 2008).
     """
 
-    constants = ()
-    memory = ()
-
     def coefficients(self, between: Interface) -> list[float]:
         """[(3/2) A in s]."""
         return [1.5 * between.dissipative_time]
 
-    @ti.func
-    def force(self, c: ti.template(), contacts: ti.template(), w, block, overlap, root, rate):
-        """F_n (N) of a block of contacts from the overlap ξ (m), its root √ξ and its rate ξ̇ (m/s)."""
-        return ti.max(0.0, contacts.stiffness[w, block] * root * (overlap + c[0] * rate))
+    def limits(self, between: Interface, mass: float, radius: float, speed: float) -> list[tuple[float, str]]:
+        """Longest steps (s) and what sets them."""
+        collision = hertz_duration(mass, radius, between.young_modulus, speed)
+        steps = max(ELASTIC_STEPS, DAMPED_STEPS * sqrt(damping(between, mass, radius, speed)))
+        return [(collision / steps, f"1/{steps:.0f} of the Hertz collision")]
 
     @ti.func
-    def energy(self, contacts: ti.template(), w, block, lane, overlap, root):
-        """Elastic energy (2/5) k ξ^(5/2) (J) of one contact."""
-        return 0.4 * contacts.stiffness[w, block][lane] * overlap * overlap * root
+    def force(self, c: ti.template(), contacts: ti.template(), w, block, overlap, root, rate, dt):
+        """F_n (N) of a block of contacts from the overlap ξ (m), its root √ξ and its rate ξ̇ (m/s)."""
+        return ti.max(0.0, contacts.stiffness[w, block] * root * (overlap + c[0] * rate))

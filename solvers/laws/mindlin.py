@@ -25,6 +25,10 @@ class Mindlin:
         ratio = 6.0 * between.shear_modulus / between.young_modulus
         return [between.friction, ratio, between.dissipative_time]
 
+    def limits(self, between: Interface, mass: float, radius: float, speed: float) -> list[tuple[float, str]]:
+        """None: where the overlap is deepest, a step that resolves the Hertz collision resolves this spring."""
+        return []
+
     @ti.func
     def force(self, c: ti.template(), contacts: ti.template(), w, block, root, normal, slip, dt):
         """F_t (N) of a block of contacts on their first grains along the tangent; slip u_s in m/s, F_n in N."""

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-from lab.recording import GRAIN_FRAMES, SERIES, Recorder
+from lab.recording import GRAIN_FRAMES, SERIES, Recorder, new_recording
 
 WIDTH, DEPTH, DIAMETER = 0.180, 0.060, 0.003  # m
 
@@ -28,7 +28,8 @@ def preset(**motion: dict) -> dict:
 
 
 def recorder(folder: Path, worlds: int = 1, count: int = 4, **options: object) -> Recorder:
-    """An open recorder of a small scene."""
+    """An open recorder of a small scene; options of `new_recording` and of `Recorder`."""
+    writing = {name: options.pop(name) for name in ("flush_every", "buffer") if name in options}
     settings = {
         "preset": "tilting/acetate",
         "given": 'title = "Acetate grains in a tank"\n',
@@ -37,7 +38,8 @@ def recorder(folder: Path, worlds: int = 1, count: int = 4, **options: object) -
         "outline": box(),
         "step": 1e-5,
     }
-    return Recorder(folder, **{**settings, **options})
+    new_recording(folder, **{**settings, **options})
+    return Recorder(folder, **writing)
 
 
 def sample(time: float, worlds: int = 1, **values: object) -> dict:
@@ -47,9 +49,10 @@ def sample(time: float, worlds: int = 1, **values: object) -> dict:
 
 
 def frame(time: float, worlds: int = 1, count: int = 4, **values: object) -> dict:
-    """A picture frame; what is not given is zero."""
+    """A picture frame; what is not given is zero, and there are no parts."""
     zeros = {name: np.zeros((worlds, count, *shape)) for name, shape in GRAIN_FRAMES.items()}
-    return {"time": time, "pose": np.zeros((worlds, 3)), **zeros, **values}
+    zeros |= {"pose": np.zeros((worlds, 3)), "part": np.zeros((worlds, 0, 2))}
+    return {"time": time, **zeros, **values}
 
 
 def record(

@@ -1,6 +1,7 @@
 """The command line: exit codes, one sentence for every fault, and what reaches the runner and the painter."""
 
 import errno
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -43,13 +44,15 @@ def runner(monkeypatch):
 
 
 def test_help_version_and_list():
-    for arguments in (["--help"], ["run", "--help"], ["render", "-h"], ["explain", "--help"]):
+    for command in ("run", "render", "explain", "sweep", "resume"):
+        assert f"cargolab {command}" in call(command, "-h").stdout
+    for arguments in (["--help"], ["run", "--help"]):
         shown = call(*arguments)
         assert shown.exit_code == 0 and "cargolab" in shown.stdout
     assert call("--version").stdout.startswith("cargolab ")
     listed = call("list")
     assert listed.exit_code == 0
-    assert "tilting/quick    Quick tilt" in listed.stdout
+    assert re.search(r"^tilting/quick +Quick tilt", listed.stdout, re.MULTILINE)
 
 
 def test_without_a_command_the_help_is_shown():
@@ -72,6 +75,28 @@ def test_run_passes_everything_on(runner):
     }
     expected = ("tilting/quick", overrides, Path("there")), {"video": False, "quiet": False}
     assert runner == [expected]
+
+
+def test_repeats_and_arch_are_short_for_keys_and_go_over_them(runner):
+    assert call("run", "tilting/quick", "--set", "run.repeats=3", "--repeats", "12", "--arch", "cpu").exit_code == 0
+    assert runner[0][0][1] == {"run.repeats": 12, "run.arch": "cpu"}
+
+
+def test_sweep_passes_the_texts_of_the_values_on(monkeypatch):
+    result = SimpleNamespace(summary_text="4 points", folder=Path("there"))
+    calls = stand_in(monkeypatch, "lab.sweeps", "run_sweep", result)
+    done = call("sweep", "shaking/sway", "--set", "motion.sway.frequency=0.2:1.5:14 Hz", "--set", "run.seed=1,2",
+                "--repeats", "4", "--out", "there")  # fmt: skip
+    assert done.exit_code == 0 and done.stdout == "4 points\nthere\n"
+    axes = {"motion.sway.frequency": "0.2:1.5:14 Hz", "run.seed": "1,2"}
+    assert calls == [(("shaking/sway", axes, {"run.repeats": 4}, Path("there")), {"video": True, "quiet": False})]
+
+
+def test_resume_passes_the_folder_on(monkeypatch):
+    result = SimpleNamespace(summary_text="12.3 deg", folder=Path("there"))
+    calls = stand_in(monkeypatch, "lab.sweeps", "resume_any", result)
+    assert call("resume", "there", "--no-video", "--quiet").stdout == "there\n"
+    assert calls == [((Path("there"),), {"video": False, "quiet": True})]
 
 
 def test_quiet_says_only_where(runner):
@@ -100,6 +125,9 @@ def test_values_are_toml_or_text(value, read):
         ["run"],
         ["run", "tilting/quik"],
         ["run", "tilting/quick", "--nope"],
+        ["run", "tilting/quick", "--repeats", "0"],
+        ["run", "tilting/quick", "--repeats", "many"],
+        ["run", "tilting/quick", "--arch", "abacus"],
         ["run", "tilting/quick", "--set"],
         ["run", "tilting/quick", "--set", "grains.diameter"],
         ["run", "tilting/quick", "--set", "=3"],
@@ -121,11 +149,29 @@ def test_bad_input_is_one_sentence_and_exit_code_2(arguments, monkeypatch):
 
 
 @pytest.mark.parametrize(
+    "arguments",
+    [
+        ["sweep", "tilting/quick"],
+        ["sweep", "tilting/quick", "--set", "run.seed=1"],
+        ["sweep", "tilting/quick", "--set", "run.seed=1:9:1"],
+        ["sweep", "tilting/quick", "--set", "run.sed=1,2"],
+        ["sweep", "tilting/quick", "--set", "grains.diameter=2 m, 3 m"],
+        ["resume", "nowhere"],
+    ],
+)
+def test_bad_sweeps_and_folders_are_one_sentence_too(arguments):
+    result = call(*arguments)
+    assert result.exit_code == 2 and isinstance(result.exception, SystemExit)
+    assert result.stderr.startswith("cargolab: ") and result.stderr.count("\n") == 1
+
+
+@pytest.mark.parametrize(
     ("error", "code", "sentence"),
     [
         (LabError("no\nsuch thing."), 2, "no such thing."),
         (BadState("grain 3 left the tank at 0.2 s."), 1, "grain 3 left the tank at 0.2 s."),
         (KeyboardInterrupt(), 130, "interrupted; what was written until then is kept."),
+        (KeyboardInterrupt("interrupted at 1 s; go on"), 130, "interrupted at 1 s; go on"),
         (OSError(errno.ENOSPC, "No space left on device", "/full/recording.h5"), 2,
          "/full/recording.h5: no space left on device; free some space or choose another folder "
          "with --out."),

@@ -1,13 +1,15 @@
 import numpy as np
 import pytest
-from synthetic import DEPTH, DIAMETER, WIDTH, frame, preset, record, recorder
+from synthetic import DEPTH, DIAMETER, WIDTH, box, frame, preset, record, recorder, sample
 
 from lab.measures import measure_all
 from lab.measures.critical_angle import find_steps
-from lab.measures.steady_amplitude import steady_window
+from lab.measures.spectrum import amplitude_spectrum
+from lab.measures.steady import steady_window
 from lab.measures.surface_slope import free_surface, inclination
 from lab.measures.value import over_worlds
-from lab.recording import open_recording
+from lab.measures.wave import column_tops
+from lab.recording import SERIES, open_recording
 
 LIQUID = np.radians(WIDTH**2 / (12 * DEPTH))  # m of shift per deg of give
 TILT = preset(tilt={"rate": 0.035, "angle": 0.7})
@@ -378,3 +380,252 @@ def test_a_recording_without_samples_has_no_measures(tmp_path):
     recorder(tmp_path).close("stopped: interrupted by the user")
     with open_recording(tmp_path) as recording:
         assert measure_all(recording) == {}
+
+
+# --- spilling
+
+
+def written(folder, time, frames=(), **options):
+    """Measures of a recording with such series (T, W, ...) and the options of a recorder."""
+    series = {name: options.pop(name) for name in SERIES if name in options}
+    worlds = next(iter(series.values())).shape[1] if series else 1
+    with recorder(folder, worlds, **options) as writer:
+        for k, now in enumerate(time):
+            writer.sample(sample(now, worlds, **{name: values[k] for name, values in series.items()}))
+        for row in frames:
+            writer.frame(row)
+    with open_recording(folder) as recording:
+        return measure_all(recording)
+
+
+def spilling(folder, upturns, rate=0.012, sign=1.0, count=2000):
+    """An open tank that creeps by 2 % up to such tilts (deg), one a world, and then loses `rate` per deg."""
+    tilt = np.linspace(0, 40, 2001)
+    creep = 0.02 * np.clip((tilt - 12) / 8, 0, 1)
+    share = np.stack([creep + rate * np.maximum(tilt - upturn, 0) for upturn in upturns], axis=1)
+    pose = np.zeros((len(tilt), len(upturns), 3))
+    pose[..., 2] = sign * np.radians(tilt)[:, None]
+    centre = np.full((*share.shape, 2), DEPTH / 2)
+    scene = {"open_edges": (2,), "resolved": TILT, "count": count, "outline": box(height=DEPTH)}
+    return written(folder, tilt, pose=pose, centre_of_mass=centre, spilled=np.floor(share * count), **scene)
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_creeping_losses_begin_before_the_sharp_upturn(tmp_path, sign):
+    values = spilling(tmp_path, [21.0, 25.0], sign=sign)
+    assert values["spilled_fraction"].worlds == pytest.approx((2 + 1.2 * 19, 2 + 1.2 * 15), abs=0.05)
+    assert values["spill_start_angle"].value == pytest.approx(16.0, abs=0.05)  # half of the creep
+    assert 0.1 < values["spill_start_angle"].uncertainty < 0.5  # a grain is worth 0.2 deg
+    for upturn, expected in zip(values["spill_upturn_angle"].worlds, (21.0, 25.0), strict=True):
+        assert upturn == pytest.approx(expected, abs=values["spill_upturn_angle"].uncertainty)
+    assert values["spill_upturn_angle"].uncertainty < 0.7
+
+
+def test_a_tank_that_only_creeps_has_no_upturn_and_a_shut_one_spills_nothing(tmp_path):
+    values = spilling(tmp_path / "a", [50.0])
+    assert values["spill_upturn_angle"].value is None
+    assert values["spilled_fraction"].value == pytest.approx(2.0, abs=0.05)
+    values = spilling(tmp_path / "b", [50.0], count=40)  # not one grain of 40 in hundred
+    assert values["spill_start_angle"].value is None
+    assert "spilled_fraction" not in tilted(tmp_path / "c", [give_of(np.linspace(0, 40, 2001))])
+
+
+def test_an_empty_tank_has_no_centre_of_mass_and_the_rest_is_measured(tmp_path):
+    time = np.linspace(0, 8, 801)
+    y = np.stack([waves(time, 1.5, 0.003, 180.0)] * 2, axis=1)
+    centre = np.stack([y, 0 * y], axis=2)
+    centre[600:, 1] = np.nan
+    pose = np.zeros((801, 2, 3))
+    pose[..., 0] = 0.04 * np.sin(2 * np.pi * 1.5 * time)[:, None]
+    spilled = np.where(np.isnan(centre[..., 0]), 4.0, 0.0)
+    scene = {"pose": pose, "centre_of_mass": centre, "spilled": spilled, "resolved": preset(**SWAY), "open_edges": (2,)}
+    values = written(tmp_path, time, contacts=7.0 - spilled, **scene)
+    assert values["response_amplitude"].worlds == (pytest.approx(3.0, rel=0.01), None)
+    assert values["final_shift_y"].worlds[1] is None
+    assert "no grain is left in the tank in 1 of 2 worlds" in values["final_shift_y"].note
+    assert values["largest_shift"].worlds == pytest.approx((3.0, 3.0), rel=0.01)
+    assert values["contact_number"].worlds == (pytest.approx(3.5), None)
+
+
+# --- contacts and forces
+
+
+def test_the_contact_number_is_twice_the_contacts_over_the_grains_still_in_the_tank(tmp_path):
+    time, random = np.linspace(0, 10, 1001), np.random.default_rng(1)
+    contacts = np.where(time < 5, 190.0, 160.0)[:, None] + random.normal(0, 8, (1001, 2))
+    contacts[0] = 195.0
+    spilled = np.where(time < 5, 0.0, 20.0)[:, None] * np.array([1.0, 0.0])
+    values = written(tmp_path, time, contacts=contacts, spilled=spilled, count=100, open_edges=(2,))
+    assert values["contact_number_start"].value == pytest.approx(3.9)
+    number = values["contact_number"]
+    errors = np.array([16 / 80, 16 / 100]) / np.sqrt(500)
+    assert number.worlds == pytest.approx((4.0, 3.2), abs=4 * errors.max())
+    assert number.uncertainty == pytest.approx(np.sqrt(np.mean(errors**2)), rel=0.5)
+
+
+MASS = 4 * 1000.0 * 4 / 3 * np.pi * (DIAMETER / 2) ** 3  # of four grains
+WEIGHED = {"material": {"density": 1000.0}, "run": {"gravity": 9.81}}
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.4])
+def test_a_bed_at_rest_weighs_its_weight_in_any_tank(tmp_path, angle):
+    pose = np.tile([0.0, 0.0, angle], (101, 1, 1))
+    weight = MASS * 9.81
+    force = np.tile([-weight * np.sin(angle), -weight * np.cos(angle), 1e-6], (101, 1, 1))
+    values = written(tmp_path, np.linspace(0, 1, 101), pose=pose, wall_force=force, resolved={**preset(), **WEIGHED})
+    assert values["carried_weight"].value == pytest.approx(1.0, rel=1e-9)
+    assert values["largest_force"].value == pytest.approx(1e3 * weight)
+    assert values["mean_force_y"].value == pytest.approx(-1e3 * weight * np.sin(angle))
+    assert values["mean_moment"].value == pytest.approx(1e-3)
+    assert "one grain thick" in values["mean_force_y"].note
+
+
+@pytest.mark.parametrize(("name", "along", "axis"), [("sway", 0, 0), ("heave", 1, 1), ("roll", 2, 2)])
+def test_what_a_ship_feels_is_parted_into_mass_and_damping(tmp_path, name, along, axis):
+    frequency, amplitude, share, damping = 1.5, 0.04, 0.7, 0.02
+    inertia = share * MASS
+    time, omega = np.linspace(0, 12, 241), 2 * np.pi * frequency  # 13 samples a period
+    pose, force = np.zeros((241, 1, 3)), np.zeros((241, 1, 3))
+    pose[:, 0, axis] = amplitude * np.sin(omega * time)
+    # F = -A Y'' - B Y', averaged exactly since the sample before: -A (Y' - Y'_before)/dt - B (Y - Y_before)/dt
+    rate, dt = amplitude * omega * np.cos(omega * time), time[1]
+    force[1:, 0, along] = -inertia * np.diff(rate) / dt - damping * np.diff(pose[:, 0, axis]) / dt
+    force[:, 0, 1] -= MASS * 9.81
+    centre = (0.02, 0.5)
+    if name == "roll":  # work is done by the moment about the centre, the recorded one is about the floor
+        force[:, 0, 0] += 0.3 * np.sin(omega * time + 1)
+        force[:, 0, 2] -= centre[1] * force[:, 0, 0] - centre[0] * force[:, 0, 1]
+    resolved = {**preset(**{name: {"amplitude": amplitude, "frequency": frequency, "centre": centre}}), **WEIGHED}
+    values = written(tmp_path, time, pose=pose, wall_force=force, resolved=resolved)
+    averaging = np.sinc(frequency * dt)  # a mean over dt takes so much of an oscillation
+    assert values["cargo_damping"].value == pytest.approx(damping * averaging, rel=1e-4)
+    kind = "moment" if name == "roll" else "force"
+    expected = -(inertia * (1j * omega) ** 2 + damping * 1j * omega) * amplitude * averaging
+    assert values[f"{kind}_amplitude"].value == pytest.approx(1e3 * abs(expected), rel=1e-4)
+    assert values[f"{kind}_phase"].value == pytest.approx(np.degrees(np.angle(expected)) % 360, abs=0.01)
+    if name == "roll":
+        assert "effective_mass" not in values
+    else:
+        assert values["effective_mass"].value == pytest.approx(share * averaging, rel=1e-4)
+
+
+def test_a_frozen_cargo_in_sway_has_all_its_mass_and_no_damping(tmp_path):
+    time, omega = np.linspace(0, 10, 1001), 3 * np.pi
+    pose, force = np.zeros((1001, 1, 3)), np.zeros((1001, 1, 3))
+    pose[:, 0, 0] = 0.04 * np.sin(omega * time)
+    force[1:, 0, 0] = -MASS * 0.04 * omega * np.diff(np.cos(omega * time)) / time[1]
+    values = written(tmp_path, time, pose=pose, wall_force=force, resolved={**preset(**SWAY), **WEIGHED})
+    assert values["effective_mass"].value == pytest.approx(1.0, rel=1e-3)
+    assert values["cargo_damping"].value == pytest.approx(0.0, abs=1e-5 * MASS * omega)
+
+
+# --- wave, spectrum, top, hysteresis
+
+
+def test_the_wave_of_the_first_mode_is_found(tmp_path):
+    time, height = np.arange(0, 8.001, 0.04), 0.006
+    y, layer = np.meshgrid(np.arange(-WIDTH / 2 + DIAMETER / 2, WIDTH / 2, DIAMETER), np.arange(21.0))
+    y, layer = y.ravel(), layer.ravel()
+    mode = np.cos(np.pi * (y / WIDTH + 0.5))
+    radius = np.full((1, len(y)), DIAMETER / 2)
+    pose = np.zeros((1, 3))
+    frames = []
+    for now in time:
+        rise = height * mode * np.sin(2 * np.pi * 1.5 * now)
+        z = DIAMETER / 2 + layer / 20 * (DEPTH - DIAMETER + rise)
+        position = np.stack([y, z], axis=1)[None]
+        position[0, :2] = (0.0, 0.1), (-WIDTH / 2 + DIAMETER, 0.14 + 0.005 * np.sin(30 * now))  # in the air
+        frames.append(frame(now, count=len(y), position=position, pose=pose))
+    move = np.zeros((801, 1, 3))
+    move[:, 0, 0] = 0.04 * np.sin(3 * np.pi * np.linspace(0, 8, 801))
+    values = written(tmp_path, np.linspace(0, 8, 801), frames, pose=move, radius=radius, resolved=preset(**SWAY))
+    assert values["wave_mode"].value == pytest.approx(6.0, rel=0.05)
+    wall = 6.0 * np.sin(np.pi * 0.1) / (np.pi * 0.1)  # mean of the cosine over a tenth of the width
+    for name in ("wave_port", "wave_starboard"):
+        assert values[name].value == pytest.approx(wall, rel=0.05)
+    assert values["wave_middle"].value < 0.5
+    assert values["wave_frequency"].value == pytest.approx(1.5, abs=values["wave_frequency"].uncertainty)
+    assert values["wave_frequency"].uncertainty < 0.2
+
+
+def test_harmonics_and_distortion_of_a_known_sum(tmp_path):
+    time = np.linspace(0, 24, 2401)
+    parts = {0.5: 0.2, 1.0: 3.0, 2.0: 0.4, 3.0: 0.3, 4.0: 0.1, 5.0: 0.05}
+    y = sum(waves(time, 1.5 * order, 1e-3 * size, 70 * order) for order, size in parts.items()) + 1e-4 * time
+    values = shaken(tmp_path, y[:, None], np.zeros((2401, 1)), SWAY, time)
+    assert values["subharmonic"].value == pytest.approx(0.2, rel=0.02)
+    assert values["second_harmonic"].value == pytest.approx(0.4, rel=0.01)
+    assert values["third_harmonic"].value == pytest.approx(0.3, rel=0.01)
+    assert values["distortion"].value == pytest.approx(np.sqrt(0.16 + 0.09 + 0.01 + 0.0025) / 3, rel=0.01)
+
+
+def test_a_run_sampled_too_coarsely_has_no_harmonics(tmp_path):
+    time = np.linspace(0, 24, 241)
+    y = waves(time, 1.5, 0.003, 0.0)[:, None]
+    assert "distortion" not in shaken(tmp_path, y, np.zeros_like(y), SWAY, time)
+
+
+def test_a_spectrum_shows_the_amplitudes_of_its_oscillations():
+    time = np.linspace(0, 20, 2001)
+    frequencies, amplitudes = amplitude_spectrum(time, (waves(time, 1.5, 2.0, 30.0) + 5 + 3 * time)[:, None])
+    peak = amplitudes[:, 0].argmax()
+    assert frequencies[peak] == pytest.approx(1.5, abs=0.02)
+    assert amplitudes[peak, 0] == pytest.approx(2.0, rel=0.01)
+
+
+def test_a_motion_from_a_file_has_no_frequency_but_a_wave(tmp_path):
+    time = np.linspace(0, 8, 801)
+    pose = np.zeros((801, 1, 3))
+    pose[:, 0, 2] = 0.3 * np.sin(time)
+    frames = [frame(now, pose=pose[0]) for now in np.linspace(0, 8, 101)]
+    resolved = preset(history={"file": "x.csv"}, roll={"amplitude": 0.3, "frequency": 1.0})
+    values = written(tmp_path, time, frames, pose=pose, resolved=resolved)
+    assert "wave_mode" in values
+    assert not {"response_amplitude", "distortion", "force_amplitude"} & set(values)
+
+
+def test_the_top_is_that_of_the_highest_grain(tmp_path):
+    radius = np.array([[1e-3, 2e-3, 1e-3, 1e-3]])
+    first = [[(0, 0.01), (0, 0.05), (0, 0.0505), (0, 0.02)]]
+    last = [[(0, 0.01), (0, 0.03), (np.nan, np.nan), (0, 0.031)]]
+    parts = np.zeros((1, 1, 2))
+    frames = [frame(0.0, position=first, part=parts), frame(1.0, position=last, part=parts)]
+    values = written(tmp_path, [0.0, 1.0], frames, radius=radius, parts={"floor": np.zeros((2, 2))})
+    assert values["top_altitude_start"].value == pytest.approx(52.0)
+    assert values["top_altitude_end"].value == pytest.approx(32.0)
+    assert values["top_fall"].value == pytest.approx(20.0)
+    assert values["bulk_altitude_end"].value < 32.0
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_what_remains_of_the_shift_when_the_tank_is_upright_again(tmp_path, sign):
+    out = np.linspace(0, 40, 801)
+    tilt = np.concatenate([out, np.full(50, 40.0), out[::-1], -out[:401]])  # and on to the other side
+    give = np.concatenate([0.5 * out, np.full(50, 20.0), 15.0 + 5 * out[::-1] / 40, 15.0 - out[:401] / 2])
+    values = tilted(tmp_path, [give, 2 * give], tilt, sign=sign)
+    assert values["kept_shift"].worlds == pytest.approx((75.0, 75.0), abs=0.01)
+    shift = 15 * LIQUID / DIAMETER
+    assert values["remaining_shift"].worlds == pytest.approx((shift, 2 * shift), rel=1e-3)
+    last = 0.125 / 2 * LIQUID / DIAMETER  # half the change over the last degree
+    assert values["remaining_shift"].uncertainty == pytest.approx(last * np.sqrt(2.5), rel=0.01)
+
+
+def test_a_tilt_that_does_not_come_back_has_no_hysteresis(tmp_path):
+    out = np.linspace(0, 40, 801)
+    tilt = np.concatenate([out, np.linspace(40, 5, 200)])
+    assert "kept_shift" not in tilted(tmp_path, [0.5 * tilt], tilt)
+
+
+def test_grains_beside_an_open_tank_are_no_surface():
+    radius = np.full(2000, DIAMETER / 2)
+    outline = box(height=0.2)
+    grains = bed(10.0)
+    fallen = grains.copy()
+    fallen[:50] = np.nan
+    fallen[50:100] = (-0.15, 0.05)
+    fallen[100:150] = (0.03, -0.02)
+    rest = np.delete(np.arange(2000), np.arange(150))
+    np.testing.assert_array_equal(
+        free_surface(fallen, radius, outline), free_surface(grains[rest], radius[rest], outline)
+    )
+    assert np.isfinite(column_tops(fallen, radius, outline)).all()

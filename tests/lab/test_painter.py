@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lab.paint.painter import Camera, paint_grains, paint_tank, to_discs
+from lab.paint.painter import Camera, paint_grains, paint_plate, paint_tank, to_discs
 from solvers.runtime import initialise
 
 WHITE, BLACK = 255.0, 0.0
@@ -94,6 +94,26 @@ def test_the_wall_lies_outside_the_outline():
     assert row[14] == 255 and row[65] == 255
     column = picture[:, 40, 0]
     assert (column[50:55] == 80).all() and (column[20:50] == 240).all() and column[55] == 255
+
+
+def test_a_wall_ends_in_a_straight_cut_at_an_open_edge():
+    picture = np.full((64, 96, 3), 255, dtype=np.uint8)
+    outline = np.array([(0.0, 0.0), (0.04, 0.0), (0.04, 0.03), (0.0, 0.03)])
+    paint_tank(picture, Camera(1000.0, (20.0, 50.0)), outline, 5.0, (80,) * 3, (240,) * 3, open_edges=(2,))
+    assert (picture[:20] == 255).all()  # nothing above the open edge
+    assert (picture[20:50, 20:60] == 240).all()
+    for wall in (np.s_[20:50, 15:20], np.s_[20:50, 60:65], np.s_[50:55, 20:60]):
+        assert (picture[wall] == 80).all()
+
+
+def test_a_plate_covers_its_length_and_its_round_ends():
+    picture = np.full((64, 96, 3), 255, dtype=np.uint8)
+    line = np.array([(0.0, 0.0), (0.03, 0.01), (0.05, 0.01)])
+    paint_plate(picture, Camera(1000.0, (20.3, 40.2), 0.1), line, 6.0, (0, 0, 0))
+    length = np.hypot(30, 10) + 20
+    bend = np.arctan2(10, 30)  # the pieces overlap on its inner side, a round joint fills the outer
+    overlap = 9 * (np.tan(bend / 2) - bend / 2)
+    assert area(picture) == pytest.approx(6 * length + 9 * np.pi - overlap, rel=5e-3)
 
 
 def test_a_slanted_hold_has_its_area():

@@ -1,10 +1,10 @@
 import errno
 import json
-import shutil
-import signal
+import os
+import random
 import subprocess
 import sys
-from collections import namedtuple
+import time
 from pathlib import Path
 
 import h5py
@@ -13,10 +13,11 @@ import pytest
 from synthetic import frame, recorder, sample
 
 from lab.errors import LabError
-from lab.recording import BUFFER_BYTES, SPARE_BYTES, open_recording
+from lab.recording import BUFFER_BYTES, mend_recording, open_recording
 
 KILLED_RUN = """
 import sys
+import time
 from pathlib import Path
 from synthetic import frame, recorder, sample
 
@@ -64,29 +65,56 @@ def test_what_is_written_is_read(tmp_path):
             recording.frames["spin"][1]
 
 
-def test_a_killed_run_is_read_up_to_its_last_flush(tmp_path):
-    writer = subprocess.Popen(
-        [sys.executable, "-c", KILLED_RUN, tmp_path],
+def start_writer(folder):
+    """A process that records as fast as it can until it is killed."""
+    return subprocess.Popen(
+        [sys.executable, "-c", KILLED_RUN, folder],
         stdout=subprocess.PIPE,
         cwd=Path(__file__).parents[2],
         env={"PYTHONPATH": f"{Path(__file__).parent}:{Path(__file__).parents[2]}"},
     )
-    assert writer.stdout.readline() == b"under way\n"
-    with open_recording(tmp_path) as live:
-        assert len(live.series["time"]) > 0
-    writer.send_signal(signal.SIGKILL)
-    writer.communicate()
-    with open_recording(tmp_path) as recording:
-        assert recording.status == "running"
+
+
+def assert_whole(folder) -> int:
+    """Every row is what was recorded; returns their number."""
+    with open_recording(folder) as recording:
         count = len(recording.series["time"])
         frames = recording.frames["time"][:]
-        assert count > 1500
         np.testing.assert_array_equal(recording.series["time"], np.arange(count))
         np.testing.assert_array_equal(recording.series["kinetic"][:, 0], np.arange(count))
         np.testing.assert_array_equal(recording.series["pose"][:, 0, 2], np.arange(count))
         np.testing.assert_array_equal(frames, 4 * np.arange(len(frames)))
         np.testing.assert_array_equal(recording.frames["angle"][:][:, 0, -1], frames)
+        return count
+
+
+def test_a_killed_run_is_read_up_to_its_last_flush(tmp_path):
+    writer = start_writer(tmp_path)
+    assert writer.stdout.readline() == b"under way\n"
+    with open_recording(tmp_path) as live:
+        assert len(live.series["time"]) > 0
+    writer.kill()
+    writer.communicate()
+    count = assert_whole(tmp_path)
+    assert count > 1500
+    with open_recording(tmp_path) as recording:
+        assert recording.status == "running"
         assert 1500 * 1000 < recording.grain_steps < 1000 * count
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(60))
+def test_a_run_killed_at_any_time_is_read_and_mended(tmp_path, seed):
+    folder, chance = tmp_path / "run", random.Random(seed)
+    writer = start_writer(folder)
+    while not (folder / "recording.h5").exists():
+        time.sleep(0.0005)
+    time.sleep(chance.choice([0.001, 0.02, 0.3, 2.0]) * chance.random())
+    writer.kill()
+    writer.communicate()
+    count = assert_whole(folder)
+    mend_recording(folder)
+    assert assert_whole(folder) == count
 
 
 def test_rows_are_kept_in_memory_between_flushes(tmp_path):
@@ -158,17 +186,31 @@ def test_a_folder_that_cannot_be_written_is_named(tmp_path):
 
 
 def test_a_full_disk_stops_the_run_and_keeps_what_was_written(tmp_path, monkeypatch):
-    usage = namedtuple("usage", "free")
-    with pytest.raises(LabError, match=f"{tmp_path.name} is full"), recorder(tmp_path) as run:
+    def full(*_):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    sentence = f"{tmp_path.name} cannot be written .No space left on device.: make room there"
+    with pytest.raises(LabError, match=sentence), recorder(tmp_path, count=100_000) as run:
         run.sample(sample(0.0))
         run.flush()
-        run.sample(sample(1.0))
-        monkeypatch.setattr(shutil, "disk_usage", lambda path: usage(SPARE_BYTES))
-        run.flush()
+        monkeypatch.setattr(os, "posix_fallocate", full, raising=False)
+        for k in range(9):  # more than what was reserved
+            run.frame(frame(float(k), count=100_000))
+            run.flush()
     monkeypatch.undo()
     with open_recording(tmp_path) as recording:
         np.testing.assert_array_equal(recording.series["time"], [0.0])
-        assert recording.status.startswith("stopped: The disk of")
+        assert 0 < len(recording.frames["time"]) < 9
+        assert "No space left on device" in recording.status
+
+
+def test_a_closed_recording_takes_no_more_room_than_it_needs(tmp_path):
+    with recorder(tmp_path) as run:
+        run.sample(sample(0.0))
+    size = (tmp_path / "recording.h5").stat().st_size
+    assert size < 2**20
+    mend_recording(tmp_path)
+    assert (tmp_path / "recording.h5").stat().st_size < 1.2 * size
 
 
 def test_a_disk_that_fails_while_writing_is_named(tmp_path, monkeypatch):
@@ -190,7 +232,7 @@ def make_foreign(path):
 
 def make_older(path):
     with h5py.File(path, "w") as file:
-        file.attrs["format"] = "cargo-shift-lab 0"
+        file.attrs["format"] = "cargo-shift-lab 1"
 
 
 def make_incomplete(path):

@@ -2,15 +2,13 @@ import json
 
 import numpy as np
 import pytest
-from PIL import Image
-from synthetic import DEPTH, preset, record, recorder
+from synthetic import DEPTH, preset, record, recorder, sample
 
 from lab.errors import LabError
 from lab.measures import measure_all
 from lab.measures.value import Value
-from lab.plots import write_plots
 from lab.recording import open_recording
-from lab.summary import number, terminal_summary, write_summary
+from lab.summary import headlines, number, terminal_summary, write_summary
 
 
 def tilt_run(folder, worlds=2, **options):
@@ -150,28 +148,26 @@ def test_a_run_stopped_before_its_first_sample_has_a_summary(tmp_path):
     assert "interrupted by the user" in text
 
 
-@pytest.mark.parametrize("run", [tilt_run, sway_run])
-def test_figures_are_drawn(tmp_path, run):
-    with open_recording(run(tmp_path)) as recording:
-        drawn = write_plots(recording, measure_all(recording), tmp_path)
-    assert list(drawn) == ["shift", "energy"]
-    for path in drawn.values():
-        with Image.open(path) as picture:
-            assert picture.width > 1000
-            assert len(picture.convert("RGB").getcolors(2**24)) > 50
+def test_the_telling_numbers_come_first_and_the_terminal_is_spared_the_rest(tmp_path):
+    rest = {f"number_{k}": Value(float(k), "mm") for k in range(20)}
+    told = headlines({**rest, "response_amplitude": Value(1.0, "mm"), "spilled_fraction": Value(2.0, "%")}, 3)
+    assert list(told) == ["spilled_fraction", "response_amplitude", "number_0"]
+    _, data, text = summed_up(sway_run(tmp_path))
+    assert text.count("\n  ") < 12 < len(data["measures"])
+    assert f"and {len(data['measures']) - 6} more numbers in the summary" in text
 
 
-def test_a_run_without_samples_or_motion_has_no_figures(tmp_path):
-    recorder(tmp_path / "a").close()
-    record(tmp_path / "b", np.arange(2.0), pose=np.zeros((2, 3)), centre=np.zeros((2, 1, 2)))
-    for name, figures in (("a", []), ("b", ["shift"])):
-        with open_recording(tmp_path / name) as recording:
-            assert list(write_plots(recording, {}, tmp_path)) == figures
+def test_the_page_says_what_is_special_about_the_tank(tmp_path):
+    scene = {"open_edges": (2,), "fixed": np.array([(0.0, 0.0, 1e-3)]), "parts": {"gate": np.zeros((2, 2))}}
+    writer = recorder(tmp_path, **scene)
+    writer.sample(sample(0.0))
+    writer.close()
+    page, _, _ = summed_up(tmp_path)
+    assert "150 mm high, open at the top, its walls lined with fixed grains" in page
+    assert "moving parts: gate" in page
 
 
 def test_a_lost_folder_is_named(tmp_path):
-    with open_recording(sway_run(tmp_path)) as recording:
-        with pytest.raises(LabError, match="nowhere"):
-            write_plots(recording, {}, tmp_path / "nowhere")
+    with open_recording(sway_run(tmp_path)) as recording:  # noqa: SIM117
         with pytest.raises(LabError, match="nowhere"):
             write_summary(recording, {}, {}, tmp_path / "nowhere")

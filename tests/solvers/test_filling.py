@@ -6,10 +6,12 @@ import numpy as np
 import pytest
 from scenes import box, material
 
-from solvers.filling import DoesNotFit, count_for_depth, radii, start_positions
+from solvers.filling import DoesNotFit, count_for_depth, headroom, levelled, radii, start_positions
 from solvers.motions import Sway
 from solvers.scene import Scene
 from solvers.simulation import Simulation
+from solvers.sizes import Sizes
+from solvers.tank import lining, raised
 
 
 def hopper(*side: list[float]) -> np.ndarray:
@@ -45,18 +47,62 @@ def inside(points: np.ndarray, outline: np.ndarray) -> np.ndarray:
 
 
 @pytest.mark.parametrize("spread", [0.0, 0.4])
+@pytest.mark.parametrize("thrown", [False, True], ids=["lattice", "thrown"])
+@pytest.mark.parametrize("rough", [0.0, 5e-3], ids=["smooth", "rough"])
 @pytest.mark.parametrize("name", OUTLINES)
-def test_grains_start_apart_and_clear_of_the_walls(name, spread):
+def test_grains_start_apart_and_clear_of_the_walls(name, rough, thrown, spread):
     outline = OUTLINES[name]
-    for seed in range(20):
+    for seed in range(5):
         random = np.random.default_rng(seed)
-        radius = radii(220, 8e-3, spread, random)
-        position = start_positions(radius, outline, random)
+        radius = radii(200, 8e-3, spread, random)
+        fixed = lining(outline, rough, random) if rough else np.empty((0, 3))
+        room = raised(outline, headroom(200, radius.max(), 0.1))
+        plate = outline.mean(axis=0) + np.array([[-0.02, 0.0], [0.0, -0.015], [0.02, 0.0]])
+        position = start_positions(radius, room, random, fixed, [plate], thrown)
         first, second = np.triu_indices(len(radius), 1)
         apart = np.linalg.norm(position[first] - position[second], axis=1)
         assert np.all(apart > radius[first] + radius[second])
-        assert np.all(inside(position, outline))
-        assert np.all(wall_distance(position, outline) >= radius * (1.0 - 1e-9))
+        assert np.all(inside(position, room))
+        assert np.all(wall_distance(position, room) >= radius * (1.0 - 1e-9))
+        from_fixed = np.linalg.norm(position[:, None] - fixed[:, :2], axis=-1) - radius[:, None] - fixed[:, 2]
+        assert np.all(from_fixed >= -1e-12)
+        assert np.all(wall_distance(position, np.vstack([plate, plate[1]])) >= radius * (1.0 - 1e-9))
+
+
+def test_thrown_grains_come_down_uniformly_over_the_width_in_uneven_heaps():
+    """Columns get the same number of grains on average, but differ far more than those of a lattice."""
+    outline, width = box(0.1, 1.0), 0.1
+    columns = []
+    for seed in range(60):
+        random = np.random.default_rng(seed)
+        position = start_positions(np.full(400, 2e-3), outline, random, thrown=True)
+        columns.append(np.histogram(position[:, 0], bins=8, range=(-width / 2, width / 2))[0])
+    mean, scatter = np.mean(columns, axis=0), np.std(columns, axis=0)
+    np.testing.assert_allclose(mean, 50.0, rtol=0.15)
+    assert np.all(scatter > 5.0)
+
+
+@pytest.mark.parametrize("thrown", [False, True], ids=["lattice", "thrown"])
+def test_headroom_is_enough_and_starts_at_the_floor(thrown):
+    for count, width in ((1, 0.02), (30, 0.02), (900, 0.1)):
+        room = box(width, headroom(count, 2.2e-3, width))
+        for seed in range(10):
+            position = start_positions(np.full(count, 2.2e-3), room, np.random.default_rng(seed), thrown=thrown)
+            assert position[:, 1].min() < 3.0 * 2.2e-3
+
+
+def test_levelling_takes_what_stands_out_into_the_hollows():
+    """A row of grains on the floor with a gap in it, and a grain on top that fits the gap."""
+    row = [-7.0, -5.0, -3.0, -1.0, 1.0, 5.5, 7.5]
+    position = np.array([[y, 1.0] for y in row] + [[-4.0, 1.0 + 3.0**0.5]]) * 3e-3
+    radius = np.full(len(position), 3e-3)
+    outline = box(17.0 * 3e-3, 0.1)
+    level = levelled(position, radius, outline)
+    assert (level[:, 1] + radius).max() <= 2.01 * 3e-3
+    first, second = np.triu_indices(len(radius), 1)
+    assert np.all(np.linalg.norm(level[first] - level[second], axis=1) >= 2.0 * 3e-3 * (1.0 - 1e-9))
+    assert np.sum(np.any(level != position, axis=1)) == 1
+    np.testing.assert_array_equal(levelled(level, radius, outline), level)
 
 
 def test_one_seed_one_bed():
@@ -90,13 +136,39 @@ def test_diameters_are_uniform_around_the_mean():
     np.testing.assert_allclose(np.quantile(diameter, np.linspace(0.0, 1.0, 9)), expected, rtol=5e-3)
 
 
-@pytest.mark.parametrize("spread", [0.0, 0.3, 0.5])
-def test_count_is_area_over_the_mean_area_of_a_grain(spread):
-    """Discs of the count asked for cover one and the same share of the area, whatever their spread."""
-    count = count_for_depth(0.5, 1.0, 4e-3, spread)
-    area = pi * (radii(count, 4e-3, spread, np.random.default_rng(3)) ** 2).sum()
-    assert area / (0.5 * 1.0) == pytest.approx(0.81, rel=5e-3)
-    assert count_for_depth(1e-4, 1e-3, 4e-3, spread) == 1
+SIZES = {
+    "equal": Sizes(((4e-3, 1.0),)),
+    "uniform": Sizes(((4e-3, 1.0),), 0.5),
+    "normal": Sizes(((4e-3, 1.0),), 0.2, normal=True),
+    "wide normal": Sizes(((4e-3, 1.0),), 0.5, normal=True),
+    "table": Sizes(((2e-3, 3.0), (6e-3, 1.0))),
+    "spread table": Sizes(((2e-3, 3.0), (6e-3, 1.0)), 0.3),
+}
+
+
+@pytest.mark.parametrize("name", SIZES)
+def test_count_is_area_over_the_mean_area_of_a_grain(name):
+    """Discs of the count asked for cover one and the same share of the area, whatever their distribution."""
+    sizes, outline = SIZES[name], box(1.0, 0.9)
+    count = count_for_depth(0.5, outline, sizes)
+    area = pi * (sizes.draw(count, np.random.default_rng(3)) ** 2).sum()
+    assert area / (0.5 * 1.0) == pytest.approx(0.81, rel=6e-3)
+    assert count_for_depth(1e-4, box(1e-3, 0.9), sizes) == 1
+
+
+def test_a_lining_takes_its_room_from_the_bed():
+    outline, sizes = box(1.0, 0.9), SIZES["equal"]
+    fixed = lining(outline, 2e-2, np.random.default_rng(1))
+    wet = fixed[fixed[:, 1] < 0.5]
+    fewer = count_for_depth(0.5, outline, sizes) - count_for_depth(0.5, outline, sizes, fixed)
+    assert fewer * pi * 2e-3**2 == pytest.approx(0.81 * 0.5 * pi * (wet[:, 2] ** 2).sum(), rel=2e-3)
+
+
+def test_a_hopper_is_filled_by_its_own_area():
+    """A trapezium 0.2 m high, 0.2 m wide at the floor and 0.4 m at the top."""
+    outline = np.array([[-0.1, 0.0], [0.1, 0.0], [0.2, 0.2], [-0.2, 0.2]])
+    count = count_for_depth(0.1, outline, SIZES["equal"])
+    assert count == round(0.81 * 0.025 / (pi * 2e-3**2))
 
 
 def surface(position: np.ndarray, radius: np.ndarray, width: float) -> np.ndarray:
@@ -109,7 +181,7 @@ def surface(position: np.ndarray, radius: np.ndarray, width: float) -> np.ndarra
 def test_a_bed_settles_to_the_depth_asked_for():
     """Softened grains in a tank that will sway, but stands still until they rest."""
     width, depth, diameter, spread, rest = 0.12, 0.05, 6e-3, 0.1, 1e-5
-    count = count_for_depth(depth, width, diameter, spread)
+    count = count_for_depth(depth, box(width, 0.12), Sizes(((diameter, 1.0),), spread))
     assert 150 <= count <= 200
     random = [np.random.default_rng(seed) for seed in (1, 2)]
     radius = np.stack([radii(count, diameter, spread, r) for r in random])

@@ -5,11 +5,15 @@ from math import hypot, pi
 import numpy as np
 import pytest
 import taichi as ti
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from scipy.interpolate import CubicSpline
 
 from solvers import runtime
 from solvers.frame import Frame
 from solvers.motions import Heave, Roll, Sway, Tilt
 from solvers.motions.harmonic import soft_start
+from solvers.motions.history import History, Recorded
 from solvers.motions.tilt import KNOTS
 from solvers.runtime import Arrays
 
@@ -70,15 +74,15 @@ def slope(function, times, h=2e-4):
 def assert_derivatives(probe, times, tolerance=1e-8):
     """Velocity is the slope of the pose and acceleration that of the velocity, relative to the largest of each."""
     pose, velocity, acceleration, _ = probe.at(times)
-    for given, found in (
+    for claimed, found in (
         (velocity, slope(lambda t: probe.at(t)[0], times)),
         (acceleration, slope(lambda t: probe.at(t)[1], times)),
     ):
-        size = np.abs(given).max(axis=1, keepdims=True)
+        size = np.abs(claimed).max(axis=1, keepdims=True)
         assert np.all((size > 0).any(axis=2)), "a motion that does not move tests nothing"
-        assert np.abs(given - found).max() < tolerance * size.max()
-        moving = np.broadcast_to(size, given.shape) > 0
-        assert np.all(np.abs(given - found)[moving] < tolerance * np.broadcast_to(size, given.shape)[moving])
+        assert np.abs(claimed - found).max() < tolerance * size.max()
+        moving = np.broadcast_to(size, claimed.shape) > 0
+        assert np.all(np.abs(claimed - found)[moving] < tolerance * np.broadcast_to(size, claimed.shape)[moving])
     return pose
 
 
@@ -349,3 +353,146 @@ def test_a_negative_angle_tilts_to_starboard(probe, angle, to_starboard):
     body = probe([[Tilt(1.0, angle)]]).at([5.0])[3][0, 0]
     assert np.sign(body[0]) == to_starboard
     assert np.allclose(body[:2], GRAVITY * np.array([-np.sin(angle), -np.cos(angle)]), rtol=1e-12)
+
+
+def pulse(time, begin=0.5, end=3.5):
+    """Displacement (T,) that swings up and down at 1.1 Hz between two instants and rests outside them."""
+    within = np.clip((time - begin) / (end - begin), 0.0, 1.0)
+    return 0.1 * np.sin(pi * within) ** 4 * np.sin(2 * pi * 1.1 * (time - begin))
+
+
+def uneven(count, length, seed):
+    """`count` rising times (s) from 0 to `length`, up to ten times as far apart here as there."""
+    gaps = np.random.default_rng(seed).uniform(0.1, 1.0, count - 1)
+    return length * np.concatenate([[0.0], np.cumsum(gaps)]) / gaps.sum()
+
+
+def record(coordinate, time, values, centre=(0.0, 0.0)):
+    return Recorded(coordinate, tuple(np.asarray(time).tolist()), tuple(np.asarray(values).tolist()), centre)
+
+
+@pytest.mark.parametrize("coordinate, column", [("y", 0), ("z", 1), ("turn", 2)])
+def test_record_is_the_cubic_spline_through_its_samples(probe, coordinate, column):
+    times = [7.0 + uneven(4000, 4.0, seed) for seed in (1, 2)]
+    reading = probe([[record(coordinate, time, pulse(time - 7.0))] for time in times])
+    for w, time in enumerate(times):
+        knots = time - 7.0
+        spline = CubicSpline(knots, pulse(knots), bc_type="clamped")
+        where = np.sort(np.concatenate([knots, np.random.default_rng(w).uniform(0, 4.0, 3000)]))
+        for order, state in enumerate(reading.at(where)[:3]):
+            exact = spline(where, order)
+            assert np.abs(state[w, :, column] - exact).max() < 4e-15 * np.abs(exact).max()
+            assert np.all(np.delete(state[w], column, axis=1) == 0.0)
+        assert np.array_equal(reading.at(knots)[0][w, :, column], pulse(knots))
+
+
+def test_record_of_a_harmonic_motion_moves_the_tank_like_it(probe):
+    harmonic = Sway(0.04, 1.5, 0.3)
+    where = np.linspace(0.0, 3.8, 4000)  # not up to the end, where the spline knows its neighbours on one side alone
+    exact = [state[0, :, 0] for state in probe([[harmonic]], SOFT_START).at(where)[:3]]
+    errors = []
+    for spacing in (0.02, 0.01):
+        time = np.arange(0.0, 4.0 + spacing / 2, spacing)
+        samples = harmonic.amplitude * np.sin(2 * pi * harmonic.frequency * time + harmonic.phase)
+        states = probe([[record("y", time, samples)]], SOFT_START).at(where)[:3]
+        errors.append(
+            [np.abs(state[0, :, 0] - e).max() / np.abs(e).max() for state, e in zip(states, exact, strict=True)]
+        )
+    # A cubic spline is in error by h⁴ in displacement and by h² in acceleration (de Boor 1978).
+    assert errors[1][0] < 1e-6 and errors[1][2] < 2e-3
+    assert errors[0][0] / errors[1][0] > 12 and errors[0][2] / errors[1][2] > 3.5
+
+
+def test_derivatives_of_records_in_a_chain(probe):
+    time = uneven(60, 4.0, 3)
+    drift = 0.05 + 0.03 * np.cos(2 * time)  # neither starts nor ends at rest or at zero
+    worlds = [
+        [Tilt(0.3, 0.35, (0.02, 0.07), ease=0.15), *History(tuple(time), sway, heave, roll, centre).motions.values()]
+        for sway, heave, roll, centre in (
+            (tuple(pulse(time)), tuple(drift), tuple(2 * drift), (-0.3, 0.5)),
+            (tuple(drift), tuple(pulse(time)), tuple(pulse(time)), (0.4, -0.2)),
+        )
+    ]
+    knots = np.concatenate([time, [0.15, SOFT_START], [knot for knot, _ in worlds[0][0].knots()]])
+    where = np.linspace(0.05, 3.95, 300)
+    where = where[np.abs(where[:, None] - knots).min(axis=1) > 1e-3]
+    assert_derivatives(probe(worlds, SOFT_START), where, tolerance=1e-7)
+
+
+def test_acceleration_of_a_record_is_continuous(probe):
+    time = uneven(50, 4.0, 4)
+    reading = probe([[record("y", time, 0.1 * np.sin(3 * time))]])
+    inner = time[1:-1]
+    before, after = (reading.at(inner + side)[2][0, :, 0] for side in (-1e-9, 1e-9))
+    assert np.abs(after - before).max() < 1e-6 * np.abs(after).max()
+
+
+def test_record_is_at_rest_before_its_first_sample_and_stays_where_it_ends(probe):
+    time = np.linspace(0.0, 4.0, 100)
+    rising = 0.1 * np.sin(pi * time / 8.0) ** 2  # from rest at zero to rest at 0.1 m
+    motion = record("z", time, rising)
+    assert motion.rests == (True, True) and motion.duration() == 4.0
+    reading = probe([[motion]])
+    assert all(np.all(state == 0.0) for state in reading.at([-1e9, -1e-9])[:3])
+    pose, velocity, acceleration, _ = reading.at([0.0, 4.0 + 1e-12, 5.0, 1e6])
+    assert np.allclose(pose[0, :, 1], [0.0, 0.1, 0.1, 0.1], rtol=0, atol=1e-12)
+    assert np.abs(velocity).max() < 1e-13 and np.all(acceleration[0, 1:] == 0.0)
+
+
+def test_record_that_ends_in_motion_goes_on_without_a_jump(probe):
+    time = np.linspace(0.0, 4.0, 200)
+    motion = record("y", time, 0.1 * np.sin(3.0 * time))
+    assert motion.rests == (False, False)
+    pose, velocity, acceleration, _ = probe([[motion]]).at([4.0 - 1e-12, 4.0 + 1e-12, 4.5])
+    speed = 0.3 * np.cos(12.0)
+    assert velocity[0, :, 0] == pytest.approx([speed] * 3, rel=1e-4)
+    assert pose[0, 1, 0] == pytest.approx(pose[0, 0, 0], abs=1e-11)
+    assert pose[0, 2, 0] == pytest.approx(0.1 * np.sin(12.0) + 0.5 * velocity[0, 2, 0])
+    assert np.all(acceleration[0, 1:] == 0.0)
+
+
+def test_soft_start_brings_up_a_record_that_starts_anywhere(probe):
+    time = np.linspace(0.0, 4.0, 200)
+    values = 0.1 * np.cos(3.0 * time)
+    early, after = np.linspace(0.0, SOFT_START, 200), np.linspace(SOFT_START, 4.0, 200)
+    pose, velocity, acceleration, _ = probe([[record("y", time, values)]], SOFT_START).at(early)
+    assert pose[0, 0, 0] == velocity[0, 0, 0] == acceleration[0, 0, 0] == 0.0
+    spline = CubicSpline(time, values, bc_type=((1, 0.0), "not-a-knot"))  # it starts at rest and ends in motion
+    assert np.allclose(pose[0, :, 0], transition(early / SOFT_START) * spline(early), rtol=0, atol=1e-15)
+    pose = probe([[record("y", time[:100], values[:100])]], SOFT_START).at(after[after < time[99]])[0]
+    assert np.allclose(pose[0, :, 0], 0.1 * np.cos(3.0 * after[after < time[99]]), rtol=0, atol=1e-6)
+
+
+SAMPLES = st.lists(st.floats(-1.0, 1.0, allow_subnormal=False), min_size=4, max_size=12)
+
+
+@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(SAMPLES, st.integers(0, 100), st.sampled_from([0.0, 0.5, 3.0]))
+def test_fastest_bounds_the_speed_of_a_record(values, seed, start):
+    motion = record("y", uneven(len(values), 2.0, seed), values)
+    time = np.linspace(0.0, 2.0, 5001)
+    value, speed = motion.curve(time), motion.curve(time, 1)
+    slope = np.gradient(transition(time / start), time) if start else 0.0
+    reached = np.abs((transition(time / start) if start else 1.0) * speed + slope * value).max()
+    assert reached <= motion.fastest(start) * (1 + 1e-3) + 1e-12
+    if not start:
+        assert reached >= 0.999 * motion.fastest(0.0)
+
+
+def test_tank_rolls_about_a_centre_that_sways_and_heaves(probe):
+    time = np.linspace(0.0, 4.0, 500)
+    sway, heave, roll = 0.1 * np.sin(time) ** 2, 0.05 * np.sin(2 * time) ** 2, 0.4 * np.sin(1.5 * time) ** 2
+    centre = np.array([0.2, -0.3])
+    history = History(tuple(time), tuple(sway), tuple(heave), tuple(roll), tuple(centre))
+    assert list(history.motions) == ["roll", "sway", "heave"]
+    pose = probe([list(history.motions.values())]).at(time)[0][0]
+    assert np.allclose(pose[:, 2], roll, rtol=0, atol=1e-15)
+    # The tank's point that lies on the centre at rest follows sway and heave.
+    c, s = np.cos(pose[:, 2]), np.sin(pose[:, 2])
+    carried = pose[:, :2] + np.column_stack([c * 0.2 + s * 0.3, s * 0.2 - c * 0.3])
+    assert np.allclose(carried, centre + np.column_stack([sway, heave]), rtol=0, atol=1e-14)
+
+
+def test_what_was_not_recorded_does_not_move():
+    history = History((0.0, 1.0, 2.0, 3.0), heave=(0.0, 0.1, 0.1, 0.0))
+    assert [motion.coordinate for motion in history.motions.values()] == ["z"]

@@ -7,10 +7,13 @@ import pytest
 from scenes import box, material
 from scipy.integrate import quad
 
+from solvers.laws import NORMAL, ROLLING, TANGENTIAL
+from solvers.laws.hertz import ELASTIC_STEPS, hertz_duration
+from solvers.laws.hertz_viscoelastic import damping
 from solvers.materials import Material, effective_young
 from solvers.motions import Heave, Roll, Sway, Tilt
 from solvers.scene import Scene
-from solvers.timestep import ELASTIC_STEPS, damping, hertz_duration, rayleigh_time
+from solvers.timestep import rayleigh_time
 
 TANK = box(0.2, 0.1)
 FALL = sqrt(2.0 * 9.81 * 0.1)  # m/s, from the lid to the floor
@@ -156,3 +159,25 @@ def test_credible_speed_covers_the_soft_start(phase):
     radius, grain = np.full((1, 4), 1.5e-3), material()
     made = Scene(radius, TANK, grain, grain, motions=[(Sway(amplitude, frequency, phase),)], soft_start=length)
     assert fastest <= made.credible_speed() <= 4.0 * fastest
+
+
+@pytest.mark.parametrize("law", NORMAL)
+def test_every_normal_law_bounds_the_step_and_scales_with_stiffness(law):
+    """Softening stretches every collision by scale^(−2/5); damping and size shorten or stretch the step."""
+    step = scene(normal=law).time_step()
+    assert scene(normal=law, stiffness_scale=1e-3).time_step() == pytest.approx(step * 1e-3**-0.4, rel=1e-9)
+    assert scene(normal=law, diameter=6e-3).time_step() == pytest.approx(2.0 * step, rel=1e-9)
+    steps = [scene(normal=law, restitution=e).time_step() for e in (1.0, 0.6, 0.1)]
+    assert np.all(np.diff(steps) <= 0.0)
+    assert len(scene(normal=law).step_limits()) == 3
+
+
+@pytest.mark.parametrize("tangential", TANGENTIAL)
+@pytest.mark.parametrize("rolling", ROLLING)
+def test_springs_bound_the_step_only_where_they_are_stiff(tangential, rolling):
+    """Δt² k/m ≤ 0.1 of every spring, which the collision's own step keeps in ordinary scenes."""
+    laws = {"tangential": tangential, "rolling": rolling}
+    assert scene(**laws).time_step() == scene().time_step()
+    rough = material(rolling_friction=30.0)
+    stiff = Scene(np.full((1, 4), 1.5e-3), TANK, rough, rough, **laws)
+    assert (stiff.time_step() < scene().time_step()) == (rolling == "elastic-plastic")

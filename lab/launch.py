@@ -1,0 +1,264 @@
+"""A launch: runs whose worlds advance together in one simulation, each written to a recording of its own.
+
+What a run's recording holds does not depend on the company: it has the same bits as that of the run alone.
+"""
+
+import json
+import re
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+
+from lab.beds import settled, settling
+from lab.checkpoint import Checkpoint, remove_checkpoint
+from lab.interrupt import Interrupt
+from lab.presets import LoadedPreset
+from lab.progress import Progress
+from lab.recording import BUFFER_BYTES, FLUSH_EVERY, Recorder, new_recording
+from lab.scene import build
+from lab.units import show
+from solvers.errors import BadState
+from solvers.scene import Scene
+from solvers.simulation import Simulation
+
+CALL_S = 0.5  # wall-clock time of one call of the solver, roughly: so long Ctrl-C waits
+WORLD = re.compile(r"\bworld (\d+)\b")  # how the watch names the world that it stopped
+
+
+@dataclass(frozen=True)
+class Run:
+    """A run ready to start: its preset, the folder of its recording, its scene, the grains' places (W, n, 2) m."""
+
+    loaded: LoadedPreset
+    folder: Path
+    scene: Scene
+    position: np.ndarray
+
+    @property
+    def shared(self) -> tuple:
+        """All that must be equal for two runs to share a launch."""
+        preset = self.loaded.resolved
+        run, record = preset.run, preset.record
+        times = run.duration, record.series_rate, record.picture_rate, record.checkpoint_every
+        return self.scene.shared(), settling(preset), times, run.threads, run.arch
+
+    def make_recording(self) -> None:
+        """Make the recording, without rows yet. Raises LabError (see `new_recording`)."""
+        preset, scene = self.loaded.resolved, self.scene
+        new_recording(
+            self.folder,
+            preset=self.loaded.name,
+            given=self.loaded.given_text,
+            resolved=json.loads(preset.model_dump_json()),
+            radius=scene.radius,
+            outline=scene.outline,
+            step=scene.step,
+            fixed=scene.fixed,
+            open_edges=scene.open_edges,
+            parts={name: part.points for name, part in preset.parts.items()},
+        )
+
+
+def prepare(loaded: LoadedPreset, folder: Path) -> Run:
+    """A run of this preset with its recording in `folder`. Raises LabError where grains or step do not fit."""
+    return Run(loaded, folder, *build(loaded.resolved))
+
+
+def launch(runs: Sequence[Run], home: Path, progress: Progress, kept: Checkpoint | None = None) -> dict[Path, BadState]:
+    """Settle the beds of all runs, move them, and add to their recordings, which must be there.
+
+    home: the folder of the checkpoint, kept up to date until all is done; kept: one to go on from. Returns by folder
+    why the watch stopped a run; the others go on without it. Raises LabError where something cannot be written and
+    KeyboardInterrupt, both with a checkpoint left from when the beds had settled on.
+    """
+    with ExitStack() as stack:
+        together = Launch(runs, home, progress, stack)
+        together.start(kept)
+        with Interrupt() as interrupt:
+            together.run(interrupt)
+    remove_checkpoint(home)
+    return together.stopped
+
+
+class Launch:
+    """The runs that still go on, their recorders, and the simulation that holds their worlds one after the other."""
+
+    def __init__(self, runs: Sequence[Run], home: Path, progress: Progress, stack: ExitStack) -> None:
+        self.runs, self.home, self.progress, self._stack = list(runs), home, progress, stack
+        self.stopped: dict[Path, BadState] = {}
+        preset = runs[0].loaded.resolved  # the runs agree in all that is asked of it here
+        self._duration, self._record = preset.run.duration, preset.record
+        self._simulate = partial(Simulation, threads=preset.run.threads, arch=preset.run.arch)
+        self._settling = settling(preset)
+        self._a_call = 1  # steps of the next call of the solver
+        self._saved = time.monotonic()
+
+    def start(self, kept: Checkpoint | None) -> None:
+        """Settle the beds, or take up what a checkpoint has kept, and open the recordings."""
+        rows = kept.rows if kept else (0, 0)
+        count = len(self.runs)  # recordings that are written side by side are written in larger pieces, as often in all
+        opened = {"flush_every": count * FLUSH_EVERY, "buffer": BUFFER_BYTES // count}
+        self._recorders = [
+            self._stack.enter_context(Recorder(run.folder, samples=rows[0], frames=rows[1], **opened))
+            for run in self.runs
+        ]
+        self._stack.callback(lambda: self._simulation and self._simulation.close())
+        self._simulation = None
+        if kept:
+            self.progress.warnings.extend(kept.warnings)
+            self._simulation = self._simulate(self._scene(), self._position())
+            self._simulation.restore(kept.state)
+            return
+        while self.runs and self._simulation is None:
+            try:
+                self._simulation = settled(
+                    self._scene(), self._position(), self._settling, self._simulate, self.progress
+                )
+            except BadState as error:
+                self._leave_out(error)
+        if self.runs:
+            self.save()
+
+    def run(self, interrupt: Interrupt) -> None:
+        """Take sample after sample until the end. Raises KeyboardInterrupt when that is asked for, all saved."""
+        if not self.runs:
+            return
+        rate = self._record.series_rate
+        steps = round(1.0 / (rate * self._simulation.dt))
+        samples = max(1, round(self._duration * rate))
+        a_frame = max(1, round(rate / self._record.picture_rate))
+        worth = self._duration * sum(run.scene.radius.size for run in self.runs)
+        self.progress.start("running", self._duration, worth)
+        self._counted = time.perf_counter()
+        for k in range(self._recorders[0].rows[0], samples + 1):
+            rows = self._reach(k * steps, partial(self._pause, interrupt))
+            if not self.runs:
+                break
+            self._write(rows, k % a_frame == 0)
+            self._count_cost()
+            self.progress.reach(self._simulation.time)
+        self.progress.finish()
+
+    def save(self) -> None:
+        """Leave a checkpoint, and all that was recorded until it, on the disk."""
+        for recorder in self._recorders:
+            recorder.sync()
+        Checkpoint(
+            state=self._simulation.state(),
+            runs=tuple(run.folder.relative_to(self.home).as_posix() for run in self.runs),
+            rows=self._recorders[0].rows,
+            warnings=tuple(self.progress.warnings),
+        ).write(self.home)
+        self._saved = time.monotonic()
+
+    def _pause(self, interrupt: Interrupt) -> None:
+        if interrupt.asked:
+            self.save()
+            raise KeyboardInterrupt(f"interrupted at {show(self._simulation.time, 's')} of {show(self._duration, 's')}")
+        if time.monotonic() - self._saved >= self._record.checkpoint_every:
+            self.save()
+
+    def _reach(self, step: int, pause: Callable[[], None]) -> Mapping[str, np.ndarray]:
+        """Advance to a step and observe; runs that the watch stops are left out, in the end maybe all."""
+        while self.runs:
+            try:
+                self._simulation.advance(0)  # says what else the watch has stopped where a run was left out
+                while self._simulation.steps < step:
+                    self._advance(step - self._simulation.steps)
+                    pause()
+                return self._simulation.observe()
+            except BadState as error:
+                self._leave_out(error)
+        return {}
+
+    def _advance(self, most: int) -> None:
+        """Take some steps, about as many as CALL_S has time for."""
+        steps, begun = min(self._a_call, most), time.perf_counter()
+        self._simulation.advance(steps)
+        seconds = time.perf_counter() - begun
+        self._a_call = max(1, round(steps * min(8.0, CALL_S / seconds)))
+
+    def _write(self, rows: Mapping[str, np.ndarray], picture: bool) -> None:
+        """Add a row to every recording, and a frame where one is due."""
+        now = self._simulation.time
+        sample, frame = _sample(rows), {}
+        if picture:
+            frame = {"pose": _pose(rows), "part": self._simulation.part_places(), **self._simulation.snapshot()}
+        for recorder, worlds in zip(self._recorders, self._worlds(), strict=True):
+            recorder.sample({"time": now, **{name: values[worlds] for name, values in sample.items()}})
+            if picture:
+                recorder.frame({"time": now, **{name: values[worlds] for name, values in frame.items()}})
+
+    def _count_cost(self) -> None:
+        """Share the wall-clock time since the last count among the runs by their numbers of grains."""
+        now = time.perf_counter()
+        grains = [run.scene.radius.size for run in self.runs]
+        for recorder, count in zip(self._recorders, grains, strict=True):
+            recorder.wall_s += (now - self._counted) * count / sum(grains)
+            recorder.grain_steps = self._simulation.steps * count
+        self._counted = now
+
+    def _worlds(self) -> Iterator[slice]:
+        """Which worlds of the simulation are each run's."""
+        begin = 0
+        for run in self.runs:
+            yield slice(begin, begin + len(run.scene.radius))
+            begin += len(run.scene.radius)
+
+    def _scene(self) -> Scene:
+        return Scene.joined([run.scene for run in self.runs])
+
+    def _position(self) -> np.ndarray:
+        return np.concatenate([run.position for run in self.runs])
+
+    def _leave_out(self, error: BadState) -> None:
+        """Close the recording of the run that the watch has stopped, and go on with the others' worlds."""
+        world = int(WORLD.search(str(error))[1])
+        slices = list(self._worlds())
+        out = next(k for k, worlds in enumerate(slices) if worlds.start <= world < worlds.stop)
+        own = BadState(WORLD.sub(f"world {world - slices[out].start}", str(error), count=1))
+        run, recorder = self.runs.pop(out), self._recorders.pop(out)
+        recorder.close(f"stopped: {own}")
+        self.stopped[run.folder] = own
+        if self.runs and self._simulation:
+            before, all_worlds = self._simulation.state(), slices[-1].stop
+            self._simulation.close()
+            self._simulation = self._simulate(self._scene(), self._position())
+            state = _without(before, self._simulation.state(), all_worlds, slices[out])
+            self._simulation.restore(state)
+
+
+def _without(
+    state: Mapping[str, np.ndarray], fewer: Mapping[str, np.ndarray], worlds: int, out: slice
+) -> dict[str, np.ndarray]:
+    """A simulation's state less some of its worlds; `fewer` is one of a simulation of the others.
+
+    What has the same shape in both belongs to all worlds; the rest has the worlds one after the other.
+    """
+
+    def others(values: np.ndarray) -> np.ndarray:
+        blocks = np.split(values, worlds)
+        return np.concatenate(blocks[: out.start] + blocks[out.stop :])
+
+    return {name: values if values.shape == fewer[name].shape else others(values) for name, values in state.items()}
+
+
+def _pose(rows: Mapping[str, np.ndarray]) -> np.ndarray:
+    return np.stack([rows["pose_y"], rows["pose_z"], rows["pose_angle"]], axis=-1)
+
+
+def _sample(rows: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """What an observation adds to the series."""
+    kept = ("kinetic", "rotational", "potential", "elastic", "contacts", "overlap", "spilled")
+    return {
+        "pose": _pose(rows),
+        "pose_rate": np.stack([rows["rate_y"], rows["rate_z"], rows["rate_angle"]], axis=-1),
+        "centre_of_mass": np.stack([rows["centre_y"], rows["centre_z"]], axis=-1),
+        "wall_force": np.stack([rows["wall_y"], rows["wall_z"], rows["wall_moment"]], axis=-1),
+        **{name: rows[name] for name in kept},
+    }

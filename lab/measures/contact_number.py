@@ -1,0 +1,39 @@
+"""How many contacts a grain has: the mean coordination number Z = 2 contacts / grains of the grains in the tank.
+
+A contact with a wall, a fixed grain or a moving part counts like one between two grains, twice, although
+only one of its ends is a movable grain: Z lies above the mean number of neighbours by the wall contacts over the
+grains, a few per cent in a bed some twenty grains wide and deep.
+
+contact_number_start: of the settled bed, at the first sample; no error of its own.
+contact_number: mean over the steady part (`steady_part`; a tilt has none). Error: standard error of the
+means of blocks, a driving period each where there is one.
+"""
+
+import numpy as np
+
+from lab.measures.steady import averaged, steady_part
+from lab.measures.value import Value, over_worlds
+from lab.recording import Recording
+
+EMPTY = "no grain is left in the tank"
+
+
+def applies(recording: Recording) -> bool:
+    """Grains have touched."""
+    return bool(recording.series["contacts"].any())
+
+
+def measure(recording: Recording) -> dict[str, Value]:
+    """contact_number_start and, of a steady part, contact_number."""
+    number = contact_number(recording)
+    found = {"contact_number_start": over_worlds(number[0], "1", missing=EMPTY)}
+    steady = steady_part(recording, recording.series["time"])
+    if steady is not None:
+        found["contact_number"] = averaged(number, steady, "1", missing=EMPTY)
+    return found
+
+
+def contact_number(recording: Recording) -> np.ndarray:
+    """Mean coordination number (T, W); NaN for an empty tank."""
+    grains = recording.radius.shape[1] - recording.series["spilled"]
+    return 2 * recording.series["contacts"] / np.where(grains > 0, grains, np.nan)

@@ -1,0 +1,61 @@
+"""What remains of the shift when a tilted tank has come back upright (Spandonidis 2016, 5.3.4).
+
+remaining_shift: shift of the centre of mass downhill, from the settled bed, where the tank on its way back first
+stands at the angle it began with (d, the mean grain diameter); interpolated between samples.
+kept_shift: the same over the largest shift until then: 100 % for a bed that stays where it slid to, 0 for a
+liquid.
+Error: half the change of the shift over the last LAST of tilt before that, which is how far the bed still moved.
+"""
+
+import numpy as np
+
+from lab.measures.motion import is_tilt, outward_leg
+from lab.measures.value import Value, over_worlds
+from lab.recording import Recording
+
+UPRIGHT = 0.005  # of the largest tilt
+LAST = 1.0  # deg
+
+
+def applies(recording: Recording) -> bool:
+    """The tank tilts and comes back."""
+    return is_tilt(recording) and any(_upright(*loop(recording, w)[::2]) for w in range(recording.worlds))
+
+
+def measure(recording: Recording) -> dict[str, Value]:
+    """remaining_shift (d) and kept_shift (%)."""
+    kept = np.array([_kept(*loop(recording, world)) for world in range(recording.worlds)])
+    remains, error, largest = kept.T
+    diameter, missing = recording.mean_diameter, "the tank does not come back upright"
+    with np.errstate(divide="ignore", invalid="ignore"):
+        shares = [np.where(largest > 0, 100 * part / largest, np.nan) for part in (remains, error)]
+    return {
+        "remaining_shift": over_worlds(remains / diameter, "d", uncertainties=error / diameter, missing=missing),
+        "kept_shift": over_worlds(shares[0], "%", uncertainties=shares[1], missing=missing),
+    }
+
+
+def loop(recording: Recording, world: int) -> tuple[np.ndarray, np.ndarray, int]:
+    """Tilt (T,), deg, and shift downhill (T,), m, counted in the direction of the way out, and where that ends."""
+    tilt = recording.series["pose"][:, world, 2]
+    y = recording.series["centre_of_mass"][:, world, 0]
+    leg = outward_leg(tilt)
+    return leg.direction * np.degrees(tilt - tilt[0]), -leg.direction * (y - y[0]), leg.end
+
+
+def _upright(tilt: np.ndarray, end: int) -> int | None:
+    """The first row after `end` at which the tank stands upright again, at last within UPRIGHT; None without one."""
+    back = tilt[end:]
+    if not len(back) or back.min() > UPRIGHT * tilt.max():
+        return None
+    return end + int(np.argmax(back <= max(back.min(), 0.0)))
+
+
+def _kept(tilt: np.ndarray, shift: np.ndarray, end: int) -> tuple[float, float, float]:
+    """Shift that remains, its error, and the largest shift before (m); NaN for a tank that does not come back."""
+    row = _upright(tilt, end)
+    if row is None:
+        return np.nan, np.nan, np.nan
+    back = slice(end - 1, row + 1)
+    remains, before = np.interp([0.0, LAST], tilt[back][::-1], shift[back][::-1])
+    return float(remains), float(abs(remains - before) / 2), float(np.fmax.reduce(shift[: row + 1]))

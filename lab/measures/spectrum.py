@@ -1,0 +1,77 @@
+"""How far the bed's answer is from a pure oscillation: the harmonics of its centre of mass in the tank.
+
+Least-squares fit, over the last half of what follows the soft start, cut to a multiple of four whole driving
+periods, of the coordinate that the motion drives (y of sway and roll, z of heave) to a constant, a drift and
+oscillations at f/2, f, 2f, ... 5f. The terms do not disturb each other over such a window.
+
+subharmonic, second_harmonic, third_harmonic: amplitudes at f/2, 2f, 3f (the first is `response_amplitude`). A
+subharmonic is a bed that repeats itself only every other period.
+distortion: sqrt(sum of the squared amplitudes at 2f ... 5f) over that at f, the total harmonic distortion.
+Error: half the difference between the two halves of the window. Noise has some amplitude at any frequency:
+see the spectrum's figure for its level.
+"""
+
+import numpy as np
+
+from lab.measures.motion import driving, soft_start
+from lab.measures.steady import STILL, Steady, amplitude_value, harmonics, steady_window
+from lab.measures.value import Value, over_worlds
+from lab.recording import Recording
+
+ORDERS = (0.5, 1.0, 2.0, 3.0, 4.0, 5.0)
+PERIODS = 4  # the window is a multiple of them
+LEAST_SAMPLES = 12  # a period: the fifth harmonic must not be an alias
+PADDING = 4
+SHORT = "the run has less than four steady periods"
+
+
+def applies(recording: Recording) -> bool:
+    """A harmonic motion drives the tank and is sampled finely enough."""
+    drive, time = driving(recording), recording.series["time"]
+    if drive is None or len(time) < 2:
+        return False
+    return float(np.median(np.diff(time))) * drive[1]["frequency"] * LEAST_SAMPLES <= 1
+
+
+def measure(recording: Recording) -> dict[str, Value]:
+    """subharmonic, second_harmonic, third_harmonic (mm) and distortion."""
+    frequency = driving(recording)[1]["frequency"]
+    time, signal = recording.series["time"], driven_coordinate(recording)
+    rows = steady_window(time, soft_start(recording), frequency, PERIODS)
+    if rows is None:
+        answers = np.full((3, len(ORDERS), recording.worlds), np.nan, dtype=complex)
+    else:
+        parts = Steady(rows, PERIODS).parts
+        answers = 1e3 * np.array([harmonics(time[part], signal[part], frequency, ORDERS) for part in parts])
+    size = np.abs(answers)
+    moving = size[0, 1] > 1e3 * STILL * recording.mean_diameter
+    with np.errstate(divide="ignore", invalid="ignore"):
+        distortion = np.where(moving, np.sqrt((size[:, 2:] ** 2).sum(axis=1)) / size[:, 1], np.nan)
+    error = np.abs(distortion[1] - distortion[2]) / 2
+    follows = SHORT if rows is None else "the bed follows the tank"
+    return {
+        "subharmonic": amplitude_value(answers[:, 0], "mm", missing=SHORT),
+        "second_harmonic": amplitude_value(answers[:, 2], "mm", missing=SHORT),
+        "third_harmonic": amplitude_value(answers[:, 3], "mm", missing=SHORT),
+        "distortion": over_worlds(distortion[0], "1", uncertainties=error, missing=follows),
+    }
+
+
+def driven_coordinate(recording: Recording) -> np.ndarray:
+    """The coordinate (T, W) of the centre of mass that the motion drives, m."""
+    name, _ = driving(recording)
+    return recording.series["centre_of_mass"][..., 1 if name == "heave" else 0]
+
+
+def amplitude_spectrum(time: np.ndarray, signal: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Frequencies (K,), Hz, and amplitudes (K, W) of evenly sampled signals (T, W), less their straight line.
+
+    Hann's window, scaled so that an oscillation shows its amplitude, and padded with zeros so that a peak is drawn
+    by PADDING points for each that the length can tell apart.
+    """
+    count = len(time)
+    trend = np.stack([np.ones(count), np.linspace(-1, 1, count)], axis=1)
+    rest = signal - trend @ np.linalg.lstsq(trend, signal, rcond=None)[0]
+    window = np.hanning(count + 1)[:-1, None]
+    amplitude = 2 * np.abs(np.fft.rfft(window * rest, PADDING * count, axis=0)) / window.sum()
+    return np.fft.rfftfreq(PADDING * count, (time[-1] - time[0]) / (count - 1)), amplitude

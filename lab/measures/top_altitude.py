@@ -1,0 +1,46 @@
+"""How high the cargo reaches: the top of its highest grain, in the tank's frame (Spandonidis 2016, 4.5).
+
+top_altitude_start, top_altitude_end: the highest point of any grain at the first and the last picture frame.
+top_fall: the way between them.
+bulk_altitude_end: the height that BULK of the grains' tops do not exceed at the last frame; a single grain
+in the air does not move it.
+Grains that have left the scene do not count. Error: none of the simulation's own; a fall is known only at
+the picture frames.
+"""
+
+import numpy as np
+
+from lab.measures.value import Value, over_worlds
+from lab.recording import Recording
+
+BULK = 95.0  # per cent
+EMPTY = "no grain is left in the scene"
+
+
+def applies(recording: Recording) -> bool:
+    """Parts move in the tank, or nothing else moves the cargo than gravity."""
+    still = not np.ptp(recording.series["pose"], axis=0).any()
+    return len(recording.frames["time"]) > 0 and (bool(recording.parts) or still)
+
+
+def measure(recording: Recording) -> dict[str, Value]:
+    """top_altitude_start, top_altitude_end, top_fall and bulk_altitude_end (mm)."""
+    ends = np.array([altitudes(recording, frame) for frame in (0, len(recording.frames["time"]) - 1)])
+    (first, _), (last, bulk) = 1e3 * np.moveaxis(ends, 2, 1)
+    return {
+        "top_altitude_start": over_worlds(first, "mm", missing=EMPTY),
+        "top_altitude_end": over_worlds(last, "mm", missing=EMPTY),
+        "top_fall": over_worlds(first - last, "mm", missing=EMPTY),
+        "bulk_altitude_end": over_worlds(bulk, "mm", missing=EMPTY),
+    }
+
+
+def altitudes(recording: Recording, frame: int) -> np.ndarray:
+    """Altitude (W, 2), m, of the highest point and of the bulk in a frame; NaN for an empty scene."""
+    tops = recording.frames["position"][frame][..., 1].astype(float) + recording.radius
+    found = np.full((len(tops), 2), np.nan)
+    for world, top in enumerate(tops):
+        seen = top[np.isfinite(top)]
+        if len(seen):
+            found[world] = seen.max(), np.percentile(seen, BULK)
+    return found

@@ -1,0 +1,143 @@
+"""What the ship feels: force and moment of the cargo on the tank, its walls, fixed grains and parts together.
+
+The cargo is a sheet one grain thick: newtons are those of the sheet, and a hull of length l carries
+l over the grains' diameter of them. Axes y, z of the tank, moment about the middle of its floor,
+positive as roll is (port side down). Each sample is the mean since the one before.
+
+mean_force_y, mean_force_z, mean_moment: means over the steady part (`steady_part`; of a tilt over the whole run).
+Error: standard error of the means of blocks, a driving period each where there is one.
+largest_force, largest_moment: the largest at any sample of the same rows. A peak shorter than the sampling
+interval is averaged.
+carried_weight: the mean vertical force in the earth frame over the weight of the grains in the tank. It is
+1 wherever the cargo's momentum at the end is that at the beginning, so it checks the run: a bed at rest, and
+whole periods of a steady answer. Masses are those of spheres of the preset's density; spilled ones count as mean ones.
+
+Of a tank driven at one frequency w = 2 pi f further, by the fit of `harmonics` to the force along the
+motion (y of sway, z of heave, of roll the moment about the roll's centre c, M + c_z F_y - c_y F_z, which alone works
+on the cargo), with F, Y the complex amplitudes of force and motion:
+force_amplitude (moment_amplitude of roll): |F|; force_phase (moment_phase): that of F less that of Y.
+effective_mass: Re(F/Y)/w^2 over the cargo's mass, of sway and heave: 1 if it moves as one with the tank,
+as the added mass of a liquid cargo is counted (F = -A Y'' - B Y'; Faltinsen & Timokha 2009, "Sloshing").
+cargo_damping: B = -Im(F/Y)/w, the resistance in phase with the velocity: the work done on the cargo in a
+period is pi w B |Y|^2, none for a frozen cargo. Of roll per radian of angle; the in-phase moment of roll holds
+gravity's part as well and is not split.
+Error of these: half the difference between the two halves of the steady part.
+"""
+
+import numpy as np
+
+from lab.measures.motion import HARMONIC, driving
+from lab.measures.steady import (
+    BLOCKS,
+    SHORT,
+    Steady,
+    amplitude_value,
+    averaged,
+    harmonics,
+    phase_value,
+    steady_part,
+)
+from lab.measures.value import Value, over_worlds
+from lab.recording import Recording
+
+ALONG = {"sway": 0, "heave": 1}  # the column of wall_force that a motion works against
+SHEET = "of a sheet one grain thick"
+EMPTY = "no grain is left in the tank"
+LEAST_SAMPLES = 2 * BLOCKS
+
+
+def applies(recording: Recording) -> bool:
+    """Walls have been pushed, for some time."""
+    return bool(recording.series["wall_force"].any()) and len(recording.series["time"]) > LEAST_SAMPLES
+
+
+def measure(recording: Recording) -> dict[str, Value]:
+    """Means and largest values (mN, mN m); carried_weight; of a driven tank its share that moves with it."""
+    series = recording.series
+    steady = steady_part(recording, series["time"])
+    rows = steady or Steady(slice(1, len(series["time"])), BLOCKS)  # the first sample is the mean of nothing yet
+    force = 1e3 * series["wall_force"]
+    size = np.hypot(force[..., 0], force[..., 1])
+    found = {
+        "mean_force_y": averaged(force[..., 0], rows, "mN", note=SHEET),
+        "mean_force_z": averaged(force[..., 1], rows, "mN", note=SHEET),
+        "mean_moment": averaged(force[..., 2], rows, "mN m", note=SHEET),
+        "largest_force": over_worlds(size[rows.rows].max(axis=0), "mN", note=SHEET),
+        "largest_moment": over_worlds(np.abs(force[rows.rows, :, 2]).max(axis=0), "mN m", note=SHEET),
+    }
+    weight = cargo_weight(recording)
+    if weight is not None:
+        with np.errstate(divide="ignore", invalid="ignore"):
+            carried = -_vertical(recording) / np.where(weight > 0, weight, np.nan)
+        found["carried_weight"] = averaged(carried, rows, "1", missing=EMPTY)
+    if driving(recording) is not None:
+        found |= _driven(recording, steady, weight)
+    return found
+
+
+def cargo_weight(recording: Recording) -> np.ndarray | None:
+    """Weight (T, W) of the grains in the tank, N; None where the preset does not say density and gravity."""
+    density = (recording.preset.get("material") or {}).get("density")
+    gravity = (recording.preset.get("run") or {}).get("gravity")
+    if density is None or gravity is None:
+        return None
+    mass = density * 4 / 3 * np.pi * (recording.radius**3).sum(axis=1)
+    return gravity * mass * (1 - recording.series["spilled"] / recording.radius.shape[1])
+
+
+def _vertical(recording: Recording) -> np.ndarray:
+    """Upward force on the tank (T, W) in the earth frame, N."""
+    force, angle = recording.series["wall_force"], _between(recording.series["pose"][..., 2])
+    return np.sin(angle) * force[..., 0] + np.cos(angle) * force[..., 1]
+
+
+def _between(values: np.ndarray) -> np.ndarray:
+    """Values (T, W) in the middle of the interval that a mean since the sample before is of."""
+    return np.concatenate([values[:1], 0.5 * (values[1:] + values[:-1])])
+
+
+def _driven(recording: Recording, steady: Steady | None, weight: np.ndarray | None) -> dict[str, Value]:
+    """What depends on the driving frequency."""
+    name, settings = driving(recording)
+    kind, unit, per = ("moment", "mN m", "N m s") if name == "roll" else ("force", "mN", "N s/m")
+    omega = 2 * np.pi * settings["frequency"]
+    shape = 3, recording.worlds
+    force, ratio = np.full(shape, np.nan, dtype=complex), np.full(shape, np.nan, dtype=complex)
+    if steady is not None:
+        force, ratio = np.moveaxis([_transfer(recording, part) for part in steady.parts], 0, 1)
+    answer = np.abs(force) * np.exp(1j * np.angle(ratio))
+    found = {
+        f"{kind}_amplitude": amplitude_value(1e3 * answer, unit, note=SHEET, missing=SHORT),
+        f"{kind}_phase": phase_value(answer, np.zeros(recording.worlds), SHORT),
+    }
+    if name != "roll" and weight is not None:
+        mass = weight[-1] / recording.preset["run"]["gravity"]
+        found["effective_mass"] = _with_halves(ratio.real / omega**2 / mass, "1", SHORT)
+    found["cargo_damping"] = _with_halves(-ratio.imag / omega, per, SHORT, SHEET)
+    return found
+
+
+def _transfer(recording: Recording, part: slice) -> np.ndarray:
+    """Complex amplitudes (2, W) of the force along the motion, and of it over the motion's."""
+    name, settings = driving(recording)
+    time, frequency = recording.series["time"], settings["frequency"]
+    middles = _between(time[:, None])[part, 0]
+    force = harmonics(middles, _along_motion(recording)[part], frequency, (1, 2))[0]
+    moved = harmonics(time[part], recording.series["pose"][part, :, HARMONIC[name]], frequency, (1, 2))[0]
+    return np.stack([force, force / moved])
+
+
+def _along_motion(recording: Recording) -> np.ndarray:
+    """The force (T, W), N, or of roll the moment about its centre, N m, that does the motion's work."""
+    name, settings = driving(recording)
+    force = recording.series["wall_force"]
+    if name != "roll":
+        return force[..., ALONG[name]]
+    across, up = settings.get("centre") or (0.0, 0.0)
+    return force[..., 2] + up * force[..., 0] - across * force[..., 1]
+
+
+def _with_halves(numbers: np.ndarray, unit: str, missing: str, note: str = "") -> Value:
+    """Numbers (3, W) of the whole part and its halves."""
+    errors = np.abs(numbers[1] - numbers[2]) / 2
+    return over_worlds(numbers[0], unit, uncertainties=errors, note=note, missing=missing)

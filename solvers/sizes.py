@@ -1,0 +1,88 @@
+"""The sizes of grains: distributions of the diameter, by number."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+MOST_DEVIATIONS = 3.0  # a normal distribution is cut there, on both sides
+SMALLEST_SHARE = 0.1  # and no grain is smaller than this share of its class's diameter
+
+
+@dataclass(frozen=True)
+class Sizes:
+    """Diameters of one or several classes of grains, each class spread about its own diameter.
+
+    `classes`: (diameter m, share by number), the shares of any sum. `spread`: half-width of a uniform distribution
+    relative to the diameter or, if `normal`, the relative standard deviation of a normal one before it is cut at
+    ± 3 standard deviations and at a tenth of the diameter.
+    """
+
+    classes: tuple[tuple[float, float], ...]
+    spread: float = 0.0
+    normal: bool = False
+
+    @property
+    def mean(self) -> float:
+        """Mean diameter (m) by number."""
+        diameter, share = self._classes
+        return float(share @ diameter * self._moments[0])
+
+    @property
+    def mean_square(self) -> float:
+        """Mean of the squared diameter (m²) by number, which is what a grain covers of the plane, times 4/π."""
+        diameter, share = self._classes
+        return float(share @ diameter**2 * self._moments[1])
+
+    @property
+    def range(self) -> tuple[float, float]:
+        """Smallest and largest diameter (m) that may come."""
+        diameter = self._classes[0]
+        low, high = -self.spread, self.spread
+        if self.normal and self.spread:
+            low, high = (self.spread * bound for bound in self._cuts)
+        return float(diameter.min() * (1.0 + low)), float(diameter.max() * (1.0 + high))
+
+    def draw(self, count: int, random: np.random.Generator) -> np.ndarray:
+        """Radii (count,) m; of each class its share to within one grain, in random order."""
+        diameter, share = self._classes
+        each = np.repeat(diameter, apportion(share * count))
+        if len(diameter) > 1:
+            random.shuffle(each)
+        if self.normal and self.spread:
+            return 0.5 * each * (1.0 + self.spread * self._standard.rvs(count, random_state=random))
+        return 0.5 * each * (1.0 + self.spread * random.uniform(-1.0, 1.0, count))
+
+    @property
+    def _classes(self) -> tuple[np.ndarray, np.ndarray]:
+        diameter, share = np.array(self.classes, dtype=np.float64).T
+        return diameter, share / share.sum()
+
+    @property
+    def _cuts(self) -> tuple[float, float]:
+        """Where the standard normal distribution is cut."""
+        return max(-MOST_DEVIATIONS, (SMALLEST_SHARE - 1.0) / self.spread), MOST_DEVIATIONS
+
+    @property
+    def _standard(self):
+        from scipy.stats import truncnorm  # slow to import, and only normal sizes need it
+
+        return truncnorm(*self._cuts)
+
+    @property
+    def _moments(self) -> tuple[float, float]:
+        """Mean and mean square of a diameter relative to its class's."""
+        if self.normal and self.spread:
+            mean, variance = self._standard.stats("mv")
+            first = 1.0 + self.spread * mean
+            return float(first), float(first**2 + self.spread**2 * variance)
+        return 1.0, 1.0 + self.spread**2 / 3.0
+
+
+def apportion(wanted: Sequence[float]) -> np.ndarray:
+    """Whole numbers within one of those wanted, of the same sum: by the largest remainders (Hamilton's method)."""
+    wanted = np.asarray(wanted, dtype=np.float64)
+    whole = np.floor(wanted).astype(int)
+    missing = round(wanted.sum()) - whole.sum()
+    whole[np.argsort(whole - wanted, kind="stable")[:missing]] += 1
+    return whole

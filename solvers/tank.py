@@ -1,0 +1,98 @@
+"""The tank's outline as a filler sees it: its top, the room below a level, walls carried on upwards, a rough lining.
+
+An outline is a simple polygon (m, 2) in m, counter-clockwise; its edge k runs from corner k to corner k + 1.
+"""
+
+from math import pi
+
+import numpy as np
+
+# Grains of a lining: diameters uniform within ± this share, gaps up to this share of a diameter. Beds crystallise on
+# even rows of grains of their own size.
+UNEVEN = 0.1
+
+
+def top_edges(outline: np.ndarray) -> tuple[int, ...]:
+    """The edges both of whose ends lie at the outline's top: what a lid would cover."""
+    outline = np.asarray(outline)
+    at_top = outline[:, 1] > outline[:, 1].max() - 1e-9 * np.ptp(outline[:, 1])
+    return tuple(int(k) for k in np.flatnonzero(at_top & np.roll(at_top, -1)))
+
+
+def area_below(outline: np.ndarray, depth: float) -> float:
+    """Area (m²) of the tank up to `depth` m above its lowest point, by the shoelace formula."""
+    corners = []
+    floor = outline[:, 1].min()
+    for a, b in zip(outline, np.roll(outline, -1, axis=0), strict=True):
+        below_a, below_b = a[1] - floor <= depth, b[1] - floor <= depth
+        if below_a:
+            corners.append(a)
+        if below_a != below_b:
+            corners.append(a + (b - a) * (floor + depth - a[1]) / (b[1] - a[1]))
+    y, z = np.array(corners).T
+    return float(0.5 * abs(y @ np.roll(z, -1) - z @ np.roll(y, -1)))
+
+
+def free_area(outline: np.ndarray, depth: float, fixed: np.ndarray) -> float:
+    """Area (m²) up to `depth` that a lining of half-sunk grains `fixed` (k, 3) leaves to the bed."""
+    low = fixed[:, 1] - outline[:, 1].min() < depth
+    return area_below(outline, depth) - 0.5 * pi * float((fixed[low, 2] ** 2).sum())
+
+
+def raised(outline: np.ndarray, by: float) -> np.ndarray:
+    """The outline with upright walls of height `by` (m) set upon the ends of its top edges, and the lid upon them.
+
+    An outline that ends in a point at the top stays as it is.
+    """
+    lids = set(top_edges(outline))
+    up = np.array([0.0, by])
+    corners = []
+    for k, corner in enumerate(outline):
+        before, after = (k - 1) % len(outline) in lids, k in lids
+        if after and not before:
+            corners += [corner, corner + up]
+        elif before and not after:
+            corners += [corner + up, corner]
+        else:
+            corners.append(corner + up if before else corner)
+    return np.array(corners)
+
+
+def lining(outline: np.ndarray, diameter: float, random: np.random.Generator) -> np.ndarray:
+    """Fixed grains (k, 3) y, z, radius in m, side by side along all edges but the top ones.
+
+    Walls built of grains as in Spandonidis (2016), section 5.4, after Schäfer et al. (1996). The grains are half sunk
+    into the wall, their centres on the outline: the tank keeps its width, and no grain can hide behind them.
+    Diameters are uniform within ± 10 % and gaps up to a tenth of a diameter, so that no bed crystallises on them; a
+    grain stands on each corner, and what is left of an edge goes into its gaps.
+    """
+    lids = set(top_edges(outline))
+    count = len(outline)
+    corner_radius = 0.5 * diameter * (1.0 + UNEVEN * random.uniform(-1.0, 1.0, count))
+    grains = []
+    for k in range(count):
+        following = (k + 1) % count
+        if k not in lids or (k - 1) % count not in lids:
+            grains.append((*outline[k], corner_radius[k]))
+        if k in lids:
+            continue
+        edge = outline[following] - outline[k]
+        length = float(np.hypot(*edge))
+        for place, radius in _row(length, diameter, corner_radius[k], corner_radius[following], random):
+            grains.append((*(outline[k] + edge * (place / length)), radius))
+    return np.array(grains)
+
+
+def _row(length: float, diameter: float, first: float, last: float, random: np.random.Generator) -> list:
+    """Places along an edge of `length` (m) and radii of the grains between those on its two corners."""
+    row = []
+    end = first  # of the grain before
+    while True:
+        radius = 0.5 * diameter * (1.0 + UNEVEN * random.uniform(-1.0, 1.0))
+        gap = diameter * UNEVEN * random.uniform()
+        if end + gap + 2.0 * radius > length - last:
+            break
+        row.append((end + gap + radius, radius))
+        end += gap + 2.0 * radius
+    spare = max(0.0, length - last - end) / (len(row) + 1)
+    return [(place + spare * (n + 1), radius) for n, (place, radius) in enumerate(row)]
