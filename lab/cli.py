@@ -11,7 +11,7 @@ from pathlib import Path
 import click
 
 from lab.errors import LabError
-from solvers.errors import BadState
+from solvers.errors import BadState, Unavailable
 
 REMEDIES = {
     errno.ENOSPC: "free some space or choose another folder with --out",
@@ -36,7 +36,7 @@ class Commands(click.Group):
             code = _say(str(error.__cause__ or "") or "interrupted; what was written until then is kept.", 130)
         except click.ClickException as error:
             code = _say(error.format_message(), 2)
-        except LabError as error:
+        except (LabError, Unavailable) as error:
             code = _say(str(error), 2)
         except BadState as error:
             code = _say(str(error), 1)

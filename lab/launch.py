@@ -23,6 +23,7 @@ from lab.recording import BUFFER_BYTES, FLUSH_EVERY, Recorder, new_recording
 from lab.scene import build
 from lab.units import show
 from solvers.errors import BadState
+from solvers.runtime import choose_arch
 from solvers.scene import Scene
 from solvers.simulation import Simulation
 
@@ -58,6 +59,7 @@ class Run:
             radius=scene.radius,
             outline=scene.outline,
             step=scene.step,
+            kind=scene.kind,
             fixed=scene.fixed,
             open_edges=scene.open_edges,
             parts={name: part.points for name, part in preset.parts.items()},
@@ -65,7 +67,11 @@ class Run:
 
 
 def prepare(loaded: LoadedPreset, folder: Path) -> Run:
-    """A run of this preset with its recording in `folder`. Raises LabError where grains or step do not fit."""
+    """A run of this preset with its recording in `folder`.
+
+    Raises LabError where grains or step do not fit, Unavailable where this machine lacks what is to compute.
+    """
+    choose_arch(loaded.resolved.run.arch, loaded.resolved.run.precision)
     return Run(loaded, folder, *build(loaded.resolved))
 
 

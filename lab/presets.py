@@ -16,6 +16,7 @@ from functools import reduce
 from importlib.resources import files
 from importlib.resources.abc import Traversable
 from pathlib import Path
+from stat import S_ISREG
 from typing import TYPE_CHECKING
 
 from lab import toml
@@ -217,9 +218,10 @@ def _find(name: str, beside: Path | None = None) -> Source:
     path = (beside or Path()) / name
     if name.endswith(".toml") or path.is_file():
         return Source(name, path, own=True)
-    group = [known for known in shipped if known.startswith(f"{name}/")]
-    near = group or get_close_matches(name[:100], shipped, n=1, cutoff=0.4)
-    hint = f"did you mean {' or '.join(near)}?" if near else "`cargolab list` shows all."
+    if any(known.startswith(f"{name}/") for known in shipped):
+        raise LabError(f"{quoted(name)} is a group of presets; `cargolab list` shows those in it.")
+    near = get_close_matches(name[:100], shipped, n=1, cutoff=0.4)
+    hint = f"did you mean {near[0]}?" if near else "`cargolab list` shows all."
     raise LabError(f"there is no preset {quoted(name)}; {hint}")
 
 
@@ -259,6 +261,8 @@ def _parsed(source: Source) -> dict:
 
 def _text(source: Source) -> str:
     try:
+        if source.own and not S_ISREG(os.stat(source.file).st_mode):  # a folder, a device, a pipe that never ends
+            raise LabError(f"{source.shown}: is not a file.")
         with source.file.open("rb") as file:
             content = file.read(LARGEST_FILE + 1)
     except OSError as error:

@@ -62,6 +62,7 @@ def new_recording(
     radius: np.ndarray,
     outline: np.ndarray,
     step: float,
+    kind: np.ndarray | None = None,
     fixed: np.ndarray = (),
     open_edges: Sequence[int] = (),
     parts: Mapping[str, np.ndarray] | None = None,
@@ -71,6 +72,7 @@ def new_recording(
 
     folder: where recording.h5 is made, created if missing; preset: its name; given: its TOML text;
     resolved: all its values in SI; radius (W, n) m; outline (m, 2) m; step: the time step, s;
+    kind (W, n): numbers of the kinds of grains, 0 of the preset's material, or None;
     fixed (k, 3): y, z, radius m of grains that never move; open_edges: outline edges without a wall;
     parts: moving parts by name, polylines at rest (m, 2) m; machine: what runs it (added to what is
     found out here). The file appears under its name when it is whole, so that it is readable from then
@@ -100,6 +102,7 @@ def new_recording(
             file["preset/given"] = given
             file["preset/resolved"] = json.dumps(resolved)
             file["grains/radius"] = radius
+            file["grains/kind"] = np.zeros(radius.shape, dtype="u1") if kind is None else np.asarray(kind, dtype="u1")
             file["tank/outline"] = np.asarray(outline, dtype=float)
             file["tank/fixed"] = np.asarray(fixed, dtype=float).reshape(-1, 3)
             file["tank/open_edges"] = np.asarray(open_edges, dtype=int)
@@ -302,8 +305,8 @@ class Recording:
 
     path, folder; name: of the preset; given: its TOML text; preset: all its values in SI, nested as
     in the TOML; status, created, versions, machine, step (s), wall_s, grain_steps;
-    radius (W, n) m; outline (m, 2) m; fixed (k, 3) y, z, radius m; open_edges; parts, polylines (m, 2) m
-    by name.
+    radius (W, n) m; kind (W, n), 0 of the preset's material and further numbers in the order of its kinds;
+    outline (m, 2) m; fixed (k, 3) y, z, radius m; open_edges; parts, polylines (m, 2) m by name.
     series: "time" (T,) s and the names of SERIES, whole arrays (T, W, ...).
     frames: "time" (F,) s and the names of GRAIN_FRAMES and WORLD_FRAMES, (F, W, ...), read from the
     file by indexing: `recording.frames["position"][-1]`.
@@ -327,7 +330,8 @@ class Recording:
             self.grain_steps = int(attributes["grain_steps"])
             self.given = self._file["preset/given"].asstr()[()]
             self.preset = json.loads(self._file["preset/resolved"].asstr()[()])
-            self.radius, tank = self._file["grains/radius"][:], self._file["tank"]
+            self.radius, self.kind = self._file["grains/radius"][:], self._file["grains/kind"][:]
+            tank = self._file["tank"]
             self.outline, self.fixed = tank["outline"][:], tank["fixed"][:]
             self.open_edges = tuple(int(edge) for edge in tank["open_edges"][:])
             self.parts = {name: line[:] for name, line in tank["parts"].items()}

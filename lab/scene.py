@@ -57,6 +57,7 @@ def build(preset: Resolved) -> tuple[Scene, np.ndarray]:
         outline=np.array(preset.tank.outline),
         grain=preset.material,
         wall=preset.wall,
+        **_kinds(preset, radius.shape),
         normal=preset.contact.normal,
         tangential=preset.contact.tangential,
         rolling=preset.contact.rolling,
@@ -96,6 +97,22 @@ def _filled(preset: Resolved) -> tuple[np.ndarray, np.ndarray, dict]:
 def _plates(preset: Resolved) -> list[np.ndarray]:
     """The tank's parts, polylines (m, 2) m at rest."""
     return [np.array(part.points) for part in preset.parts.values()]
+
+
+def _kinds(preset: Resolved, shape: tuple[int, int]) -> dict:
+    """The kinds of grains, mixed at random, each repeat by its own seed; nothing where there is but one."""
+    if not preset.kinds:
+        return {}
+    worlds, count = shape
+    bounds = np.round(np.cumsum([kind.share for kind in preset.kinds.values()]) * count)
+    ordered = (np.searchsorted(bounds, np.arange(count), side="right") + 1) % (len(preset.kinds) + 1)
+    random = [np.random.default_rng([preset.run.seed + w, 1]) for w in range(worlds)]
+    against = [((0, k), kind.against) for k, kind in enumerate(preset.kinds.values(), start=1) if kind.against]
+    return {
+        "kind": np.stack([r.permutation(ordered) for r in random]),
+        "others": tuple(kind.material for kind in preset.kinds.values()),
+        "unlike": tuple(against),
+    }
 
 
 def _listed(preset: Resolved) -> tuple[np.ndarray, np.ndarray, dict]:

@@ -127,6 +127,29 @@ WallGiven = make_dataclass(
 )
 
 
+KindGiven = make_dataclass(
+    "KindGiven",
+    [
+        ("share", Annotated[float, Interval(gt=0, lt=1)]),
+        *((name, hint | None, None) for name, hint in get_type_hints(Material, include_extras=True).items()),
+        ("against", WallGiven | None, None),
+    ],
+    frozen=True,
+)
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A share of the grains, by number, that is of another material than the rest.
+
+    `against` says how a grain of this kind touches one of the rest; None: by the mean of the two materials.
+    """
+
+    share: float
+    material: Material
+    against: Material | None = None
+
+
 @dataclass(frozen=True)
 class Contact:
     """The contact laws, and the factor on Young's moduli that buys larger steps."""
@@ -218,6 +241,7 @@ class Given:
     based_on: str = ""
     quick: str = ""  # how a quick variant differs from its preset
     wall: WallGiven = field(default_factory=WallGiven)
+    kinds: dict[str, KindGiven] = field(default_factory=dict)
     contact: Contact = field(default_factory=Contact)
     motion: MotionGiven = field(default_factory=MotionGiven)
     parts: dict[str, Part] = field(default_factory=dict)
@@ -239,6 +263,7 @@ class Resolved(BaseModel):
     grains: Grains
     material: Material
     wall: Material
+    kinds: dict[str, Kind]
     contact: Contact
     motion: Motion
     parts: dict[str, Part]
@@ -270,7 +295,8 @@ def resolve(table: Mapping) -> Resolved:
         tank=tank,
         grains=grains,
         material=given.material,
-        wall=_wall(given.wall, given.material),
+        wall=_over(given.material, given.wall),
+        kinds=_kinds(given.kinds, given.material),
         contact=given.contact,
         motion=motion,
         parts=given.parts,
@@ -380,9 +406,35 @@ def _check_video(video: Video) -> None:
             raise LabError(f"video.{name}: must be even for H.264 (got {getattr(video, name)}).")
 
 
-def _wall(given: WallGiven, material: Material) -> Material:
-    """The wall's material: what is not given is the grains'."""
-    own = {name: value for name, value in asdict(given).items() if value is not None}
+def _kinds(given: Mapping[str, KindGiven], material: Material) -> dict[str, Kind]:
+    """The kinds of grains beside those of `material`."""
+    kinds = {}
+    for name, kind in given.items():
+        _check_dissipation(kind, f"kinds.{name}", needed=False)
+        own, against = _over(material, kind), None
+        if kind.against is not None:
+            _check_dissipation(kind.against, f"kinds.{name}.against", needed=False)
+            against = _over(own, kind.against)
+        elif (own.restitution is None) != (material.restitution is None):
+            raise LabError(
+                f"kinds.{name}.against: missing; a restitution and a dissipative time have no mean, so say how this "
+                "kind touches the rest."
+            )
+        kinds[name] = Kind(kind.share, own, against)
+    total = sum(kind.share for kind in kinds.values())
+    if total >= 1.0:
+        raise LabError(
+            f"kinds.{next(iter(kinds))}.share: the shares add up to {total:.3g}; keep them below 1 together."
+        )
+    if len({own.material.restitution is None for own in kinds.values()}) > 1:
+        raise LabError("kinds: give all of them a restitution, or all a dissipative time.")
+    return kinds
+
+
+def _over(material: Material, given: object) -> Material:
+    """A material with what is given in place of its own."""
+    names = {name for name in asdict(material)}
+    own = {name: value for name, value in asdict(given).items() if name in names and value is not None}
     if "restitution" in own:
         own["dissipative_time"] = None
     elif "dissipative_time" in own:

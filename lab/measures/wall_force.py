@@ -81,7 +81,8 @@ def cargo_weight(recording: Recording) -> np.ndarray | None:
     gravity = (recording.preset.get("run") or {}).get("gravity")
     if density is None or gravity is None:
         return None
-    mass = density * 4 / 3 * np.pi * (recording.radius**3).sum(axis=1)
+    kinds = [density, *(kind["material"]["density"] for kind in (recording.preset.get("kinds") or {}).values())]
+    mass = 4 / 3 * np.pi * (np.array(kinds)[recording.kind] * recording.radius**3).sum(axis=1)
     return gravity * mass * (1 - recording.series["spilled"] / recording.radius.shape[1])
 
 

@@ -107,11 +107,23 @@ def size(beds: Sequence[Bed]) -> Colouring:
     return Colouring("diameter (mm)", low, high, _table("cividis"), values)
 
 
+def kind(beds: Sequence[Bed]) -> Colouring:
+    """The kinds of grains that the preset mixes."""
+    names = beds[0].footage.kinds
+
+    def values(bed: Bed, frame: int) -> np.ndarray:
+        return bed.footage.kind[bed.world] + 0.5
+
+    ticks = {k + 0.5: name for k, name in enumerate(names)}
+    return Colouring("kind of grain", 0.0, len(names), _table("viridis", len(names)), values, ticks)
+
+
 MODES: dict[str, Callable[[Sequence[Bed]], Colouring]] = {
     "speed": speed,
     "displacement": displacement,
     "layer": layer,
     "size": size,
+    "kind": kind,
     "spin": spin,
 }
 

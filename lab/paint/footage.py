@@ -15,8 +15,9 @@ class Footage:
     """F frames and T samples of W worlds with n grains each, in a tank with k fixed grains and P moving parts.
 
     time (F,) s, pose (F, W, 3) m, m, rad; series_time (T,), series_pose (T, W, 3), centre_of_mass (T, W, 2) m;
-    spilled (T, W) grains; radius (W, n) m; outline (m, 2) m; open_edges: those without a wall; fixed (k, 3) y, z,
-    radius m; parts: polylines at rest (m, 2) m by name; part (F, W, P, 2): their displacements, m;
+    spilled (T, W) grains; radius (W, n) m; kind (W, n); kinds: their names; outline (m, 2) m; open_edges: those
+    without a wall; fixed (k, 3) y, z, radius m; parts: polylines at rest (m, 2) m by name; part (F, W, P, 2): their
+    displacements, m;
     settings: the preset's [video]; title. Raises LabError when there is no frame or no sample.
     """
 
@@ -27,7 +28,8 @@ class Footage:
         self.time, self.pose, self.part = frames["time"][:], frames["pose"][:], frames["part"][:]
         self.series_time, self.series_pose = series["time"], series["pose"]
         self.centre_of_mass, self.spilled = series["centre_of_mass"], series["spilled"]
-        self.radius, self.outline = recording.radius, recording.outline
+        self.radius, self.outline, self.kind = recording.radius, recording.outline, recording.kind
+        self.kinds = ["the rest", *(recording.preset.get("kinds") or {})]
         self.open_edges, self.fixed, self.parts = recording.open_edges, recording.fixed, recording.parts
         self.settings = recording.preset.get("video") or {}
         self.title = recording.preset.get("title") or recording.name

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from lab.cli import main
 from lab.errors import LabError
-from solvers.errors import BadState
+from solvers.errors import BadState, Unavailable
 
 
 def call(*arguments: str):
@@ -169,6 +169,7 @@ def test_bad_sweeps_and_folders_are_one_sentence_too(arguments):
     ("error", "code", "sentence"),
     [
         (LabError("no\nsuch thing."), 2, "no such thing."),
+        (Unavailable("no such device."), 2, "no such device."),
         (BadState("grain 3 left the tank at 0.2 s."), 1, "grain 3 left the tank at 0.2 s."),
         (KeyboardInterrupt(), 130, "interrupted; what was written until then is kept."),
         (KeyboardInterrupt("interrupted at 1 s; go on"), 130, "interrupted at 1 s; go on"),

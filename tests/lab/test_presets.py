@@ -2,6 +2,8 @@
 
 import tomllib
 from dataclasses import dataclass, replace
+from importlib.resources import files
+from shutil import copy
 from typing import Annotated
 
 import pytest
@@ -11,7 +13,8 @@ from hypothesis import strategies as st
 from lab import presets, reader, toml
 from lab.errors import LabError
 from lab.outline import area, simple_polygon
-from lab.presets import load, merged, names
+from lab.presets import QUICK, load, merged, names
+from lab.scene import build
 from lab.schema import Given, Resolved, resolve
 from solvers.motions import MOTIONS, Tilt
 from solvers.quantity import Interval, Unit
@@ -56,19 +59,42 @@ def write(folder, name: str, text: str) -> str:
 
 
 @pytest.mark.parametrize("name", names())
-def test_every_shipped_preset_resolves(name):
+def test_every_shipped_preset_resolves_and_says_what_it_is_about(name):
     preset = load(name)
     assert preset.name == name
-    assert preset.resolved.title and preset.resolved.source and preset.resolved.reports
-    assert preset.resolved.motion.parts and preset.resolved.run.duration > 0
+    said = preset.resolved
+    assert said.title.strip() and said.source.strip() and said.reports.strip()
+    moving = [motion.fastest(said.motion.soft_start) for motion in said.motion.parts.values()]
+    moving += [part.fastest() for part in said.parts.values()]
+    assert any(moving) and said.run.duration > 0
 
 
 @pytest.mark.parametrize("name", names())
 def test_given_text_is_the_same_preset(name, tmp_path):
     preset = load(name, {"grains.spread": "5 %", "material.dissipative_time": "1e-6 s"})
+    for table in (files("presets") / name).parent.glob("*.csv"):  # paths in the text are as written
+        copy(table, tmp_path)
     again = load(write(tmp_path, "again.toml", preset.given_text))
     assert again.name == "again"
     assert again.resolved == preset.resolved
+
+
+@pytest.mark.parametrize("name", [name for name in names() if name.endswith(QUICK)])
+def test_a_quick_variant_says_how_it_differs_and_differs_in_what_it_costs_alone(name):
+    whole, quick = load(name.removesuffix(QUICK)).resolved, load(name).resolved
+    assert quick.quick.strip() and not whole.quick
+    contact = replace(quick.contact, stiffness_scale=whole.contact.stiffness_scale)
+    motion = quick.motion
+    if motion.tilt:
+        motion = replace(motion, tilt=replace(motion.tilt, rate=whole.motion.tilt.rate))
+    alike = {"quick": "", "run": whole.run, "record": whole.record, "contact": contact, "motion": motion}
+    assert quick.model_copy(update=alike) == whole
+    assert cost(quick) < cost(whole)
+
+
+def cost(preset: Resolved) -> float:
+    """Steps of the run in all its repeats."""
+    return preset.run.repeats * preset.run.duration / build(preset)[0].step
 
 
 @pytest.mark.parametrize("name", names())
@@ -251,7 +277,9 @@ def test_neither_alternative_is_a_fault():
     [
         ("tiltng/quick", "did you mean tilting/quick?"),
         ("quick", "did you mean tilting/quick?"),
-        ("tilting", "did you mean tilting/acetate or tilting/quick?"),
+        ("tilting", '"tilting" is a group of presets; `cargolab list` shows those in it.'),
+        ("tilting/acetate-quick", "tilting/acetate: has no quick variant; run tilting/acetate itself."),
+        ("tilting/none-quick", 'there is no preset "tilting/none-quick"'),
         ("zzz", "`cargolab list`"),
         ("", "`cargolab list`"),
         ("absent.toml", "absent.toml: cannot be read: No such file"),
@@ -290,7 +318,7 @@ def test_files_that_cannot_be_used(content, words, tmp_path):
 
 def test_a_folder_is_no_preset(tmp_path):
     (tmp_path / "folder.toml").mkdir()
-    with pytest.raises(LabError, match=r"folder\.toml: cannot be read: Is a directory"):
+    with pytest.raises(LabError, match=r"folder\.toml: is not a file"):
         load(tmp_path / "folder.toml")
 
 

@@ -25,11 +25,11 @@ STEP = 2e-5
 EARLY, LATE = 3000, 12_000  # steps: 0.06 s, the stack has fallen into a heap; 0.24 s
 SKIN = 1.5e-3
 
-# A schedule, and the units it cuts a world into.
-SCHEDULES = {"per-world": 1, "two bands": 2, "three bands": 3, "per-grain": COUNT}
-# Closed and open tanks, with the one law and the other.
-TANKS = {"closed": ("mindlin", ()), "open": ("haff-werner", (LID,))}
-STORIES = [(name, "closed") for name in SCHEDULES][1:] + [("two bands", "open"), ("per-grain", "open")]
+# Schedules with the units they cut a world into, and the tank that each is tried in: open and with the one law, or
+# closed and with the other.
+UNITS = {"per-world": 1, "two bands": 2, "three bands": 3, "per-grain": COUNT}
+TANKS = {"open": ("mindlin", (LID,)), "closed": ("haff-werner", ())}
+TRIED = {"per-world": "open", "two bands": "open", "three bands": "closed", "per-grain": "open"}
 
 
 def start() -> tuple[np.ndarray, np.ndarray]:
@@ -49,8 +49,8 @@ def made(schedule: str, tank: str, threads: int = THREADS) -> Simulation:
     scene = Scene(
         radius,
         TANK,
-        material(young=4e6, dissipative_time=5e-5),
-        material(young=8e6, dissipative_time=2e-5, friction=0.4),
+        material(young=4e6, dissipative_time=2e-4),
+        material(young=8e6, dissipative_time=1e-4, friction=0.4),
         tangential=law,
         motions=motions,
         fixed=FIXED,
@@ -60,7 +60,7 @@ def made(schedule: str, tank: str, threads: int = THREADS) -> Simulation:
         schedule="per-band" if schedule.endswith("bands") else schedule,
         sizes=(0.75 * RADIUS, RADIUS),
     )
-    return Simulation(scene, place, threads, SKIN, arch="cpu", units=SCHEDULES[schedule])
+    return Simulation(scene, place, threads, SKIN, arch="cpu", units=UNITS[schedule])
 
 
 @dataclass
@@ -77,7 +77,7 @@ def told():
     """Stories by schedule and tank, each told once."""
     known: dict[tuple[str, str], Told] = {}
 
-    def tell(schedule: str, tank: str = "closed") -> Told:
+    def tell(schedule: str, tank: str) -> Told:
         if (schedule, tank) not in known:
             run = made(schedule, tank)
             if schedule.endswith("bands"):
@@ -94,10 +94,10 @@ def told():
         found.run.close()
 
 
-@pytest.fixture(scope="module", params=SCHEDULES)
-def used(request, told: Callable[..., Told]) -> Simulation:
-    """The simulation of a closed tank in each schedule."""
-    return told(request.param).run
+@pytest.fixture(scope="module", params=TRIED)
+def used(request, told: Callable[[str, str], Told]) -> Simulation:
+    """A simulation in each schedule."""
+    return told(request.param, TRIED[request.param]).run
 
 
 @pytest.fixture
@@ -110,14 +110,14 @@ def run(used) -> Simulation:
     return used
 
 
-@pytest.mark.parametrize(("schedule", "tank"), STORIES)
+@pytest.mark.parametrize(("schedule", "tank"), list(TRIED.items())[1:])
 def test_all_schedules_tell_the_same_story(told, schedule, tank):
     """To rounding while it is young, and as a whole later on: what differs grows tenfold in some hundredths of a
     second."""
     usual, found = told("per-world", tank), told(schedule, tank)
     moved = np.linalg.norm(usual.early["position"] - start()[1], axis=2)
     assert moved.min() > RADIUS
-    assert np.all(usual.early["contacts"] > 25)
+    assert np.all(usual.early["contacts"] > 15)
     assert np.abs(usual.early["angle"]).max() > 0.5
     for name, scale in (("position", 1.0), ("velocity", 1e3), ("angle", 1e3), ("spin", 1e6)):
         assert np.abs(found.early[name] - usual.early[name]).max() < 1e-12 * scale, name
@@ -147,8 +147,10 @@ def brute(run: Simulation, place: np.ndarray, radius: np.ndarray, t: float) -> t
 
     paddle = np.array(PADDLE.points) + travelled(t)
     segments = [*zip(TANK, np.roll(TANK, -1, axis=0), strict=True), paddle]
+    corners = TANK if run.scene.open_edges else TANK[[REFLEX]]
     distance = [segment_distance(place, a, b) for a, b in segments]
-    distance += [np.linalg.norm(place - corner, axis=1) for corner in (TANK[REFLEX], *paddle)]
+    distance = [gap for k, gap in enumerate(distance) if k not in run.scene.open_edges]
+    distance += [np.linalg.norm(place - corner, axis=1) for corner in (*corners, *paddle)]
     grain, feature = np.nonzero(np.stack(distance, axis=1) < (radius + skin)[:, None])
     return pairs, set(zip(grain.tolist(), feature.tolist(), strict=True))
 
@@ -169,7 +171,8 @@ def clouds(cell: float) -> list[np.ndarray]:
     rng, lower, upper = np.random.default_rng(5), TANK.min(axis=0), TANK.max(axis=0)
     size = (WORLDS, COUNT, 2)
     clumps = np.repeat(rng.uniform(lower, upper, (WORLDS, COUNT // 4, 2)), 4, axis=1)
-    borders = lower + cell * rng.integers(0, 8, size).astype(float)
+    sites = [rng.permutation(64)[:COUNT] for _ in range(WORLDS)]
+    borders = lower + cell * np.stack([np.stack([n % 8, n // 8], axis=1) for n in sites])
     borders[:, ::2] += rng.uniform(0.0, 0.5 * cell, borders[:, ::2].shape)
     return [
         rng.uniform(lower, [upper[0], 0.05], size),
@@ -188,7 +191,7 @@ def test_lists_equal_brute_force(run):
         assert run.room == 1
         for w in range(WORLDS):
             pairs, walls = brute(run, cloud[w], run.scene.radius[w], run.origin)
-            assert len(pairs) > 20
+            assert len(pairs) > 15
             assert len(walls) > 5
             for found, expected in ((run.neighbours.pairs, pairs), (run.neighbours.contacts, walls)):
                 rows = listed(found, w)
@@ -242,10 +245,10 @@ def test_lists_that_outgrow_their_room_lose_nothing(run):
     """A heap that rubs is asked to list far more than touches: its springs, its contacts and its steps stay."""
     run.advance(EARLY)
     before, contacts = remembered(run), run.observe()["contacts"]
-    assert len(before) > 60
+    assert len(before) > 25
     run.neighbours.skin.fill(1.0)
     run.neighbours.expire()
-    run.dt = 1e-15
+    run.origin, run.dt = run.time, 1e-15
     run.advance(1)
     run.neighbours.skin.fill(SKIN)
     assert run.room > 1
@@ -295,4 +298,4 @@ def test_the_watch_stops_a_bad_world(run, trouble):
     found = run.snapshot()
     assert np.isfinite(found["position"][0]).all()
     assert np.isfinite(np.delete(found["position"][1], 7, axis=0)).all()
-    assert np.linalg.norm(found["position"][0] - place[0], axis=1).max() < 0.1 * RADIUS
+    assert np.linalg.norm(found["position"][0] - place[0], axis=1).max() < RADIUS
