@@ -115,8 +115,8 @@ class Grains:
 
     @ti.func
     def remove(self, w, i):
-        """Take a grain out of the scene, to rest far away."""
+        """Take a grain out of the scene, to rest far away from all others: no two may be in one place."""
         self.present[w, i] = 0.0
-        self.y[w, i], self.z[w, i] = FAR, FAR
+        self.y[w, i], self.z[w, i] = 2.0 * FAR + 10.0 * i, FAR
         self.velocity_y[w, i], self.velocity_z[w, i], self.spin[w, i] = 0.0, 0.0, 0.0
         self.now_y[w, i], self.now_z[w, i], self.spin_now[w, i] = 0.0, 0.0, 0.0
