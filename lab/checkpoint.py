@@ -68,5 +68,6 @@ def read_checkpoint(folder: Path) -> Checkpoint | None:
 
 
 def remove_checkpoint(folder: Path) -> None:
-    """Remove the checkpoint, if there is one."""
+    """Remove the checkpoint, if there is one, and what a killed run has left of another."""
     (folder / FILE_NAME).unlink(missing_ok=True)
+    (folder / f"{FILE_NAME}.new").unlink(missing_ok=True)

@@ -11,6 +11,7 @@ from pathlib import Path
 import click
 
 from lab.errors import LabError
+from lab.units import quoted
 from solvers.errors import BadState, Unavailable
 
 REMEDIES = {
@@ -76,7 +77,7 @@ def _settings(texts: tuple[str, ...]) -> dict[str, str]:
     for text in texts:
         key, equals, value = text.partition("=")
         if not equals or not key.strip():
-            raise LabError(f"--set {text}: write it like --set grains.diameter='4 mm'.")
+            raise LabError(f"--set {quoted(text)[1:-1]}: write it like --set grains.diameter='4 mm'.")
         settings[key.strip()] = value.strip()
     return settings
 
@@ -271,9 +272,13 @@ def render(recording: Path, out: Path | None, png: bool, **look: object) -> None
     from lab.progress import Progress
 
     with Progress(quiet=False) as progress:
-        progress.start("painting", None)
-        path = render_recording(recording, out, png=png, progress=progress.count, **look)
-        progress.finish()
+
+        def count(done: int, total: int) -> None:
+            if done == 1:  # not before: what cannot be painted is said in one line
+                progress.start("painting", total)
+            progress.reach(done)
+
+        path = render_recording(recording, out, png=png, progress=count, **look)
     click.echo(path)
 
 

@@ -15,10 +15,15 @@ except ImportError:  # Windows cannot lock folders
 
 @contextmanager
 def only_one(folder: Path) -> Iterator[None]:
-    """Hold a folder, which must exist; the system lets go of it when the process ends in whatever way.
+    """Hold a folder, made if missing; the system lets go of it when the process ends in whatever way.
 
-    Raises LabError when another process holds it. Where folders cannot be locked nobody is kept out.
+    Raises LabError when another process holds it or it cannot be made. Where folders cannot be locked nobody is kept
+    out.
     """
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise LabError(f"{folder} cannot be written ({error.strerror}): choose another folder.") from error
     if fcntl is None:
         yield
         return

@@ -1,6 +1,7 @@
 """Progress for people: a bar with the time left where there is a terminal, a line a stage where there is none."""
 
 import sys
+import time
 
 from rich.console import Console
 from rich.progress import BarColumn, TaskProgressColumn, TextColumn, TimeElapsedColumn, TimeRemainingColumn
@@ -34,9 +35,18 @@ class Progress:
     def __exit__(self, *_) -> None:
         self.bar.stop()
 
-    def begin_whole(self, name: str, total: float) -> None:
-        """Count stages that follow towards a whole, by what each is worth of its `total`."""
-        self.whole = self.bar.add_task(name, total=total)
+    def begin_whole(self, name: str, total: float, done: float) -> None:
+        """Count stages that follow towards a whole, of which so much is done, by what each is worth of its `total`."""
+        self.whole = self.bar.add_task(name, total=total, completed=done)
+        self.whole_total, self.done, self.begun, self.since = total, done, done, time.monotonic()
+
+    def time_left(self) -> str:
+        """How long the rest of the whole takes at the pace so far, in words; empty at its beginning."""
+        if self.done == self.begun:
+            return ""
+        pace = (time.monotonic() - self.since) / (self.done - self.begun)
+        seconds = pace * (self.whole_total - self.done)
+        return f"about {seconds:.0f} s left" if seconds < 90 else f"about {seconds / 60:.0f} min left"
 
     def start(self, stage: str, total: float | None, worth: float = 0.0) -> None:
         """Begin a stage that ends at `total`, in any unit, and is worth so much of the whole."""

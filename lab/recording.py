@@ -93,11 +93,10 @@ def new_recording(
     }
     with _writing(path.parent):
         path.parent.mkdir(parents=True, exist_ok=True)
-        with h5py.File(_unfinished(path), "x", libver="latest") as file:
+        if path.exists():
+            raise FileExistsError(path)
+        with h5py.File(_unfinished(path), "w", libver="latest") as file:
             _reserve(file, radius.nbytes + len(given) + SPARE_BYTES)
-            if path.exists():
-                _unfinished(path).unlink()
-                raise FileExistsError(path)
             file.attrs.update(attributes)
             file["preset/given"] = given
             file["preset/resolved"] = json.dumps(resolved)

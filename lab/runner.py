@@ -57,8 +57,8 @@ def run_preset(
     folder = Path(out) if out is not None else _free_folder(RENDERS / loaded.name)
     with Progress(quiet) as progress, hint(folder):
         run = prepare(loaded, folder)
-        run.make_recording()
         with only_one(folder):
+            run.make_recording()
             return _complete(run, None, progress, video)
 
 

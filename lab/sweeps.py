@@ -199,10 +199,9 @@ class _Tour:
         """Run and report every point that is not done; a launch that was cut short comes first."""
         kept = read_checkpoint(self.folder)
         worth = [self.sweep.worth(number) for number in range(len(self.folders))]
-        self.progress.begin_whole("sweep", sum(worth))
         self._report(number for number, folder in enumerate(self.folders) if _status(folder) == "recorded")
         done = {number for number, folder in enumerate(self.folders) if _status(folder) == "done"}
-        self.progress.done = sum(worth[number] for number in done)
+        self.progress.begin_whole("sweep", sum(worth), sum(worth[number] for number in done))
         if kept and not all(_status(self.folder / run) == "done" for run in kept.runs):
             numbers = [self.folders.index(self.folder / run) for run in kept.runs]
             self._launch(numbers, kept)
@@ -213,8 +212,8 @@ class _Tour:
         remove_checkpoint(self.folder)
 
     def _launch(self, numbers: Sequence[int], kept: Checkpoint | None) -> None:
-        named = ", ".join(str(number) for number in numbers)
-        self.progress.say(f"points {named} of 0 to {len(self.folders) - 1} …")
+        left = self.progress.time_left()
+        self.progress.say(f"points {_named(numbers)} of 0 to {len(self.folders) - 1}{left and f', {left}'} …")
         runs = []
         for number in numbers:
             run = prepare(self.sweep.points[number], self.folders[number])
@@ -230,6 +229,17 @@ class _Tour:
         for number in numbers:
             report(self.folders[number], self.progress, video=False, plots=False)
         self.progress.warnings.clear()
+
+
+def _named(numbers: Sequence[int]) -> str:
+    """0 to 5, 8, 10 to 12."""
+    groups: list[list[int]] = []
+    for number in numbers:
+        if groups and number == groups[-1][-1] + 1:
+            groups[-1].append(number)
+        else:
+            groups.append([number])
+    return ", ".join(str(group[0]) if len(group) == 1 else f"{group[0]} to {group[-1]}" for group in groups)
 
 
 def _status(folder: Path) -> str:

@@ -78,14 +78,13 @@ def wave_course(recording: Recording, start: int = 0) -> tuple[np.ndarray, np.nd
 def surface_columns(recording: Recording, frame: int) -> np.ndarray:
     """Height (W, C) of the free surface in each column from port to starboard, m; NaN where there is no grain."""
     position = recording.frames["position"][frame].astype(float)
-    return np.array(
-        [column_tops(*grains, recording.outline) for grains in zip(position, recording.radius, strict=True)]
-    )
+    diameter = float(recording.mean_diameter.mean())  # of all beds, so that their columns are as many
+    beds = zip(position, recording.radius, strict=True)
+    return np.array([column_tops(*bed, recording.outline, diameter) for bed in beds])
 
 
-def column_tops(position: np.ndarray, radius: np.ndarray, outline: np.ndarray) -> np.ndarray:
-    """Height (C,) of the surface of grains at position (n, 2), m, in columns of equal width."""
-    diameter = 2 * radius.mean()
+def column_tops(position: np.ndarray, radius: np.ndarray, outline: np.ndarray, diameter: float) -> np.ndarray:
+    """Height (C,) of the surface of grains at position (n, 2), m, in columns about two diameters (m) wide."""
     (left, floor), (right, _) = outline.min(axis=0), outline.max(axis=0)
     count = max(3, int((right - left) / (COLUMN * diameter)))
     held = (position[:, 0] > left) & (position[:, 0] < right) & (position[:, 1] > floor)

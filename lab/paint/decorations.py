@@ -179,11 +179,14 @@ class LivePlot:
             y = self._place(np.array([[self._low[0], value]]))[0, 1]
             draw.line([(left, y), (right, y)], fill=GRID, width=thin)
             draw.text((left - 0.4 * self._text, y), plain(value), QUIET, face, anchor="rm")
+        free = 0.0  # where the last label ended
         for value in ticks(self._low[0], self._high[0], 5):
-            x = self._place(np.array([[value, self._low[1]]]))[0, 0]
+            x, half = self._place(np.array([[value, self._low[1]]]))[0, 0], face.getlength(plain(value)) / 2
             draw.line([(x, bottom), (x, bottom + 0.3 * self._text)], fill=LINE, width=thin)
-            text_x = min(x, self._image.width - face.getlength(plain(value)) / 2)
-            draw.text((text_x, bottom + 0.5 * self._text), plain(value), QUIET, face, anchor="ma")
+            text_x = min(x, self._image.width - half)
+            if text_x - half > free:  # labels must not touch
+                draw.text((text_x, bottom + 0.5 * self._text), plain(value), QUIET, face, anchor="ma")
+                free = text_x + half + 0.4 * self._text
         draw.line([(left, top), (left, bottom), (right, bottom)], fill=LINE, width=thin)
 
 

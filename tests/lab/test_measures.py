@@ -1,3 +1,5 @@
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from synthetic import DEPTH, DIAMETER, WIDTH, box, frame, preset, record, recorder, sample
@@ -8,7 +10,7 @@ from lab.measures.spectrum import amplitude_spectrum
 from lab.measures.steady import steady_window
 from lab.measures.surface_slope import free_surface, inclination
 from lab.measures.value import over_worlds
-from lab.measures.wave import column_tops
+from lab.measures.wave import column_tops, surface_columns
 from lab.recording import SERIES, open_recording
 
 LIQUID = np.radians(WIDTH**2 / (12 * DEPTH))  # m of shift per deg of give
@@ -628,4 +630,15 @@ def test_grains_beside_an_open_tank_are_no_surface():
     np.testing.assert_array_equal(
         free_surface(fallen, radius, outline), free_surface(grains[rest], radius[rest], outline)
     )
-    assert np.isfinite(column_tops(fallen, radius, outline)).all()
+    assert np.isfinite(column_tops(fallen, radius, outline, DIAMETER)).all()
+
+
+def test_waves_of_beds_with_unequal_grains_have_equal_columns():
+    """Beds of one run differ a little in their mean diameter; in a narrow tank that must not change their columns."""
+    rng = np.random.default_rng(4)
+    radius = np.stack([np.full(60, 1.4e-3), np.full(60, 1.7e-3)])
+    position = rng.uniform((-0.03, 0.0), (0.03, 0.01), (1, 2, 60, 2))
+    recording = SimpleNamespace(
+        frames={"position": position}, radius=radius, mean_diameter=2 * radius.mean(axis=1), outline=box(0.06, 0.05)
+    )
+    assert surface_columns(recording, 0).shape == (2, 9)

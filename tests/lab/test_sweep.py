@@ -3,7 +3,12 @@
 import csv
 import json
 import shutil
+import signal
+import subprocess
+import sys
+import time
 from itertools import product
+from pathlib import Path
 from xml.etree import ElementTree as Xml
 
 import h5py
@@ -26,6 +31,7 @@ from lab.sweep_report import numeric, write_report
 from lab.sweeps import ask, read_sweep, resume_any, run_sweep
 from lab.xdmf import write_xdmf
 
+ROOT = Path(__file__).parents[2]
 SMALL = {
     "tank": {"width": "24 mm", "height": "24 mm"},
     "grains": {"count": 16},
@@ -241,6 +247,42 @@ def test_every_grid_has_its_figure(tmp_path, others):
     assert (tmp_path / "critical_angle.png").stat().st_size > 5000
     assert f"{len(settings) - 1} of {len(settings)} points are complete" in text
     assert (tmp_path / "summary.md").read_text().count("Beware.") == 1
+
+
+@pytest.mark.slow
+def test_a_sweep_interrupted_and_killed_equals_the_undisturbed_one(tmp_path):
+    options = [("motion.sway.frequency", "1, 3 Hz"), ("material.friction", "0.1:0.3:2"), ("motion.tilt", "false")]
+    options += [("tank.width", "24 mm"), ("tank.height", "24 mm"), ("grains.depth", "12 mm"), ("run.duration", "3 s")]
+    options += [("motion.sway.amplitude", "4 mm"), ("record.checkpoint_every", "0 s")]
+    words = [word for key, value in options for word in ("--set", f"{key}={value}")]
+
+    def command(folder):
+        line = [sys.executable, "-m", "lab", "sweep", "tilting/quick", "--no-video", "--out", folder, *words]
+        return subprocess.Popen(line, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+
+    def samples():
+        try:
+            with open_recording(folder / "points" / "000") as recording:
+                return len(recording.series["time"])
+        except LabError:
+            return 0
+
+    whole, folder = tmp_path / "whole", tmp_path / "cut"
+    assert command(whole).wait() == 0
+    for blow, code in ((signal.SIGINT, 130), (signal.SIGKILL, -9), (signal.SIGINT, 130)):
+        sweep, before = command(folder), samples()
+        while sweep.poll() is None and samples() < before + 40:
+            time.sleep(0.01)
+        sweep.send_signal(blow)
+        said = sweep.communicate()[1]
+        assert sweep.returncode == code
+        assert "Traceback" not in said and (code < 0 or f"go on with: cargolab resume {folder}" in said)
+    resume_any(folder, video=False, quiet=True)
+    assert (folder / "results.csv").read_text() == (whole / "results.csv").read_text()
+    for number in range(4):
+        mine, reference = (data_sets(where / "points" / f"{number:03}") for where in (folder, whole))
+        assert mine[1] == reference[1] == "complete"
+        assert all(np.array_equal(mine[0][name], reference[0][name]) for name in reference[0])
 
 
 def test_a_damaged_request_is_refused(swept, tmp_path):
