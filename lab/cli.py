@@ -11,6 +11,7 @@ from pathlib import Path
 import click
 
 from lab.errors import LabError
+from lab.paint.colours import MODES
 from lab.units import quoted
 from solvers.errors import BadState, Unavailable
 
@@ -254,7 +255,7 @@ def resume(folder: Path, no_video: bool, quiet: bool) -> None:
     metavar="FILE",
     help="An .mp4 file, or with --png a folder.  [default: beside the recording]",
 )
-@click.option("--colour", help="What the colour says: speed, displacement or layer.")
+@click.option("--colour", help=f"What the colour says: {', '.join(MODES)}.")
 @click.option("--frame", help="Whose frame to draw in: tank or earth.")
 @click.option("--width", type=int, help="Pixels.")
 @click.option("--height", type=int, help="Pixels.")

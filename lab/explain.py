@@ -7,7 +7,7 @@ from solvers.runtime import available_cores
 from solvers.simulation import Simulation
 
 # Grain-steps a second of one core on settled beds (README, "Speed"); only the estimate of the run time rests on it.
-GRAIN_STEPS_PER_CORE = 12e6
+GRAIN_STEPS_PER_CORE = 20e6
 
 PRECISIONS = {
     "f64": "64-bit floats",
@@ -51,6 +51,7 @@ def _scene(preset, scene) -> list[tuple[str, str]]:
     rows += [
         ("repeats", f"{worlds}, seeds {preset.run.seed} to {preset.run.seed + worlds - 1}"),
         ("grains", f"{count} in each, {show(small, 'm')} to {show(large, 'm')}"),
+        ("bed", _bed(preset)),
         ("tank", _tank(preset, scene)),
         ("Young's moduli", f"times {scene.stiffness_scale:g} of the material's"),
         ("friction", f"{pair.friction:g} between grains, {wall.friction:g} on walls"),
@@ -61,6 +62,16 @@ def _scene(preset, scene) -> list[tuple[str, str]]:
     rows.append(("motion", ", then ".join(parts) or "none"))
     rows.append(("duration", show(preset.run.duration, "s") + " after settling"))
     return rows
+
+
+def _bed(preset) -> str:
+    grains, what = preset.grains, []
+    what.append(
+        f"listed in {grains.bed}" if grains.listed else f"poured, its surface {grains.surface.replace('-', ' ')}"
+    )
+    what.append("settled first" if preset.run.settle else "not settled")
+    what += [f"{100 * kind.share:g} % {name}" for name, kind in preset.kinds.items()]
+    return ", ".join(what)
 
 
 def _tank(preset, scene) -> str:

@@ -105,7 +105,7 @@ def report(folder: Path, progress: Progress, *, video: bool, plots: bool = True)
             files["video"] = _film(folder, progress)
         if recording.preset["record"]["xdmf"]:
             files["xdmf"] = write_xdmf(recording)
-        write_summary(recording, measures, files, folder, progress.warnings)
+        write_summary(recording, measures, files, folder, progress.warnings, progress.notes)
         return Result(folder, measures, terminal_summary(recording, measures, files, progress.warnings))
 
 

@@ -48,18 +48,20 @@ def write_summary(
     files: Mapping[str, Path],
     folder: Path | str,
     warnings: Sequence[str] = (),
+    notes: Sequence[str] = (),
 ) -> dict[str, Path]:
     """Write summary.md and summary.json into `folder`; returns both by name.
 
     files: what else the run made, by name; pictures among them are shown. warnings: sentences that a
-    reader must know, beside those that follow from the recording. Raises LabError when the folder
-    cannot be written.
+    reader must know, beside those that follow from the recording; notes: ones that may interest.
+    Raises LabError when the folder cannot be written.
     """
     folder = Path(folder)
     warnings = [*warnings, *_cautions(recording)]
     links = {name: Path(os.path.relpath(path, folder)).as_posix() for name, path in files.items()}
-    page = "\n".join(_page(recording, values, links, warnings))
-    data = json.dumps(_data(recording, values, links, warnings), indent=2, allow_nan=False)
+    page = "\n".join(_page(recording, values, links, warnings, notes))
+    data = _data(recording, values, links, warnings) | {"notes": list(notes)}
+    data = json.dumps(data, indent=2, allow_nan=False)
     written = {"summary": folder / "summary.md", "summary_json": folder / "summary.json"}
     try:
         written["summary"].write_text(page, encoding="utf-8")
@@ -115,6 +117,7 @@ def _page(
     values: Mapping[str, Value],
     links: Mapping[str, str],
     warnings: Sequence[str],
+    notes: Sequence[str],
 ) -> Iterator[str]:
     """The lines of summary.md."""
     preset = recording.preset
@@ -123,6 +126,7 @@ def _page(
         yield f"- {name.replace('_', ' ')}: **{number(value)}**{_remark(value)}"
     yield f"\nThe run `{recording.name}` of {recording.created[:10]} is {_status(recording)}."
     yield from (f"\n**Warning:** {text}" for text in warnings)
+    yield from (f"\n{text}" for text in notes)
     pictures = {name: link for name, link in links.items() if link.endswith(".png")}
     yield from (f"\n![{name}]({link})" for name, link in pictures.items())
     yield "\n## What was run\n"

@@ -117,7 +117,7 @@ def test_all_schedules_tell_the_same_story(told, schedule, tank):
     usual, found = told("per-world", tank), told(schedule, tank)
     moved = np.linalg.norm(usual.early["position"] - start()[1], axis=2)
     assert moved.min() > RADIUS
-    assert np.all(usual.early["contacts"] > 15)
+    assert usual.early["contacts"].sum() > 30
     assert np.abs(usual.early["angle"]).max() > 0.5
     for name, scale in (("position", 1.0), ("velocity", 1e3), ("angle", 1e3), ("spin", 1e6)):
         assert np.abs(found.early[name] - usual.early[name]).max() < 1e-12 * scale, name
@@ -185,18 +185,19 @@ def clouds(cell: float) -> list[np.ndarray]:
 def test_lists_equal_brute_force(run):
     """Taken with a step so short that nobody moves, when the paddle is under way."""
     run.dt, run.origin = 1e-15, 0.04
+    counted = np.zeros(2, dtype=int)
     for cloud in clouds(float(run.neighbours.cells.lengths.to_numpy()[2])):
         run.place(cloud)
         run.advance(1)
         assert run.room == 1
         for w in range(WORLDS):
             pairs, walls = brute(run, cloud[w], run.scene.radius[w], run.origin)
-            assert len(pairs) > 15
-            assert len(walls) > 5
+            counted += np.array([len(pairs), len(walls)])
             for found, expected in ((run.neighbours.pairs, pairs), (run.neighbours.contacts, walls)):
                 rows = listed(found, w)
                 assert len(rows) == len(set(rows))
                 assert set(rows) == expected
+    assert np.all(counted > 50)
 
 
 def momenta(run: Simulation) -> np.ndarray:
@@ -225,42 +226,26 @@ def test_momentum_is_kept_without_walls(run):
     assert max(np.abs(rows[name]).max() for name in ("wall_y", "wall_z")) < 1e-12
 
 
-def remembered(run: Simulation) -> dict[tuple[int, int, int], tuple[float, ...]]:
-    """What contacts (world, grain, mate; wall features negative) remember."""
-    kept = {}
-    for contacts, sign in ((run.neighbours.pairs, 1), (run.neighbours.contacts, -1)):
-        memory = [field.to_numpy() for field in contacts.memory]
-        for u in range(len(memory[0])):
-            w = u // contacts.units.a_world
-            length = contacts.length[u]
-            grain, mate = (field.to_numpy()[u].reshape(-1)[:length] for field in (contacts.grain, contacts.mate))
-            for p, (i, j) in enumerate(zip(grain.tolist(), mate.tolist(), strict=True)):
-                found = tuple(float(values[u].reshape(-1)[p]) for values in memory)
-                if any(found):
-                    kept[w, i, sign * (j + 1)] = found
-    return kept
-
-
-def test_lists_that_outgrow_their_room_lose_nothing(run):
-    """A heap that rubs is asked to list far more than touches: its springs, its contacts and its steps stay."""
-    run.advance(EARLY)
-    before, contacts = remembered(run), run.observe()["contacts"]
-    assert len(before) > 25
-    run.neighbours.skin.fill(1.0)
-    run.neighbours.expire()
-    run.origin, run.dt = run.time, 1e-15
-    run.advance(1)
-    run.neighbours.skin.fill(SKIN)
-    assert run.room > 1
-    after = remembered(run)
-    assert before.keys() == after.keys()
-    for contact, springs in before.items():
-        assert after[contact] == pytest.approx(springs, rel=1e-9), contact
-    np.testing.assert_array_equal(run.observe()["contacts"], contacts)
-    assert np.all(run.clock.step.to_numpy() == EARLY + 1)
-    for (w, i, j), springs in after.items():
-        twin = after.get((w, j - 1, i + 1))
-        assert twin is None or twin == pytest.approx(springs, rel=1e-9), "each side of a pair remembers the same"
+@pytest.mark.parametrize("schedule", ["two bands", "per-grain"])
+def test_lists_that_outgrow_their_room_change_nothing(told, schedule):
+    """A heap that rubs is asked to list far more than touches: its springs, contacts and steps stay, to the last bit."""
+    found, ends = told(schedule, TRIED[schedule]).run, []
+    for skin in (SKIN, 4.0 * SKIN):
+        found.start_clock()
+        found.place(start()[1])
+        found.advance(EARLY)
+        assert found.room == 1
+        found.neighbours.skin.fill(skin)
+        found.neighbours.expire()
+        found.advance(1)
+        found.neighbours.skin.fill(SKIN)
+        found.advance(100)
+        ends.append(found.snapshot() | found.observe())
+        assert np.all(found.clock.step.to_numpy() == EARLY + 101)
+    assert found.room == 2
+    assert ends[0]["contacts"].sum() > 30
+    for name in ends[0]:
+        assert ends[0][name].tobytes() == ends[1][name].tobytes(), name
 
 
 def test_worlds_at_rest_wait_for_the_others(run):
@@ -286,15 +271,13 @@ def test_worlds_at_rest_wait_for_the_others(run):
 
 @pytest.mark.parametrize("trouble", ["is not a number", "moves at"])
 def test_the_watch_stops_a_bad_world(run, trouble):
-    """A speed that is no number, and one that builds up in a few steps: two grains in one place fly apart."""
+    """A speed that is no number, and one that grows too large in a free fall of many steps."""
     place, velocity = start()[1], np.zeros((WORLDS, COUNT, 2))
-    if trouble == "moves at":
-        place[1, 1] = place[1, 0] + 0.3 * RADIUS
-    else:
-        velocity[1, 7, 0] = np.nan
+    place[1, 7] = 0.025, 0.11
+    velocity[1, 7, 1] = np.nan if trouble == "is not a number" else 0.02 - 0.1 * run.scene.sizes[0] / STEP
     run.place(place, velocity)
     with pytest.raises(BadState, match=f"world 1: a grain.* {trouble}"):
-        run.advance(400)
+        run.advance(300)
     found = run.snapshot()
     assert np.isfinite(found["position"][0]).all()
     assert np.isfinite(np.delete(found["position"][1], 7, axis=0)).all()
