@@ -25,19 +25,21 @@ class Checkpoint:
     """Where a launch stands.
 
     state: of the simulation (`Simulation.state`); runs: folders of the recordings whose worlds it advances, in their
-    order, relative to the checkpoint's; rows: of the series and of the frames that each of them has; warnings: what
-    was said of the run until then.
+    order, relative to the checkpoint's; rows: of the series and of the frames that each of them has; warnings, notes:
+    what was said of the run until then.
     """
 
     state: Mapping[str, np.ndarray]
     runs: tuple[str, ...]
     rows: tuple[int, int]
     warnings: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
 
     def write(self, folder: Path) -> None:
         """Put it on the disk in place of an earlier one, which stays if that fails. Raises LabError."""
         path, unfinished = folder / FILE_NAME, folder / f"{FILE_NAME}.new"
-        about = {"format": FORMAT, "runs": self.runs, "rows": self.rows, "warnings": self.warnings}
+        about = {"format": FORMAT, "runs": self.runs, "rows": self.rows}
+        about |= {"warnings": self.warnings, "notes": self.notes}
         try:
             with unfinished.open("wb") as file:
                 np.savez(file, about=np.array(json.dumps(about)), **{f"state/{k}": v for k, v in self.state.items()})
@@ -64,7 +66,7 @@ def read_checkpoint(folder: Path) -> Checkpoint | None:
     if about.get("format") != FORMAT:
         raise LabError(f"{path} was written by another version: start the run anew.")
     series, frames = about["rows"]
-    return Checkpoint(state, tuple(about["runs"]), (series, frames), tuple(about["warnings"]))
+    return Checkpoint(state, tuple(about["runs"]), (series, frames), tuple(about["warnings"]), tuple(about["notes"]))
 
 
 def remove_checkpoint(folder: Path) -> None:

@@ -11,7 +11,6 @@ from pathlib import Path
 import click
 
 from lab.errors import LabError
-from lab.paint.colours import MODES
 from lab.units import quoted
 from solvers.errors import BadState, Unavailable
 
@@ -112,6 +111,17 @@ arch_option = click.option(
 )
 quiet_option = click.option("--quiet", is_flag=True, help="Say only where the results are.")
 video_option = click.option("--no-video", is_flag=True, help="Do not paint a video.")
+
+
+class ColourOption(click.Option):
+    """An option whose help names the colourings; they are slow to import, and only help needs them."""
+
+    def get_help_record(self, context: click.Context) -> tuple[str, str] | None:
+        """Flags and help."""
+        from lab.paint.colours import MODES
+
+        self.help = f"What the colour says: {', '.join(MODES)}."
+        return super().get_help_record(context)
 
 
 def _show(result, quiet: bool) -> None:
@@ -255,7 +265,7 @@ def resume(folder: Path, no_video: bool, quiet: bool) -> None:
     metavar="FILE",
     help="An .mp4 file, or with --png a folder.  [default: beside the recording]",
 )
-@click.option("--colour", help=f"What the colour says: {', '.join(MODES)}.")
+@click.option("--colour", cls=ColourOption)
 @click.option("--frame", help="Whose frame to draw in: tank or earth.")
 @click.option("--width", type=int, help="Pixels.")
 @click.option("--height", type=int, help="Pixels.")

@@ -117,6 +117,7 @@ class Launch:
         self._simulation = None
         if kept:
             self.progress.warnings.extend(kept.warnings)
+            self.progress.notes.extend(kept.notes)
             self._simulation = self._simulate(self._scene(), self._position())
             self._simulation.restore(kept.state)
             return
@@ -159,6 +160,7 @@ class Launch:
             runs=tuple(run.folder.relative_to(self.home).as_posix() for run in self.runs),
             rows=self._recorders[0].rows,
             warnings=tuple(self.progress.warnings),
+            notes=tuple(self.progress.notes),
         ).write(self.home)
         self._saved = time.monotonic()
 

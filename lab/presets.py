@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING
 
 from lab import toml
 from lab.errors import LabError
-from lab.units import quoted
+from lab.units import quoted, shown_path
 
 if TYPE_CHECKING:
     from lab.schema import Resolved
@@ -167,6 +167,7 @@ def nested(overrides: Mapping) -> dict:
             raise LabError(f"{quoted(key)} is not a key; write it like grains.diameter.")
         if parts[0] in ("based_on", "quick"):
             raise LabError(f"{parts[0]}: cannot be overridden; write a preset file that says it.")
+        value = value.tolist() if hasattr(value, "tolist") else value  # numpy's numbers, as sweeps in Python have them
         for part in reversed(parts):
             value = {part: value}
         result = merged(result, value, alternatives={})
@@ -216,8 +217,8 @@ def _find(name: str, beside: Path | None = None) -> Source:
     if name in shipped:
         return Source(name, shipped[name])
     path = (beside or Path()) / name
-    if name.endswith(".toml") or path.is_file():
-        return Source(name, path, own=True)
+    if name.endswith(".toml") or os.path.isfile(path):  # Path.is_file raises on names that are too long
+        return Source(shown_path(name), path, own=True)
     if any(known.startswith(f"{name}/") for known in shipped):
         raise LabError(f"{quoted(name)} is a group of presets; `cargolab list` shows those in it.")
     near = get_close_matches(name[:100], shipped, n=1, cutoff=0.4)
@@ -268,7 +269,7 @@ def _text(source: Source) -> str:
     except OSError as error:
         raise LabError(f"{source.shown}: cannot be read: {error.strerror or error}.") from None
     except ValueError:
-        raise LabError(f"{quoted(source.shown)} is not a file name.") from None
+        raise LabError(f"{source.shown}: is not a file name.") from None
     if len(content) > LARGEST_FILE:
         raise LabError(f"{source.shown}: too large for a preset.")
     try:

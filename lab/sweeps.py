@@ -229,6 +229,7 @@ class _Tour:
         for number in numbers:
             report(self.folders[number], self.progress, video=False, plots=False)
         self.progress.warnings.clear()
+        self.progress.notes.clear()
 
 
 def _named(numbers: Sequence[int]) -> str:

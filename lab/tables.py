@@ -12,10 +12,9 @@ from stat import S_ISREG
 import numpy as np
 
 from lab.errors import LabError
-from lab.units import NUMBER, quoted
+from lab.units import NUMBER, quoted, shown_path
 
 LARGEST_FILE = 32_000_000  # bytes
-LONGEST_PATH = 100  # characters of a path that an error quotes
 
 Line = tuple[int, list[str]]
 
@@ -30,7 +29,7 @@ def read_table(path: str, needed: Sequence[str], optional: Sequence[str] = (), k
     try:
         return _columns(_text(path), needed, optional)
     except LabError as error:
-        raise LabError(f"{f'{key}: ' if key else ''}{_shown(path)}{error}") from None
+        raise LabError(f"{f'{key}: ' if key else ''}{shown_path(path)}{error}") from None
 
 
 def _columns(text: str, needed: Sequence[str], optional: Sequence[str]) -> dict[str, np.ndarray]:
@@ -114,9 +113,3 @@ def _number(cell: str, where: str) -> float:
     if not math.isfinite(value):
         raise LabError(f"{where} must be a finite number (got {quoted(cell)[1:-1]}).")
     return value
-
-
-def _shown(path: str) -> str:
-    """The path on one line, the end of one that is too long."""
-    text = "".join(c if c.isprintable() else "?" for c in str(path))
-    return text if len(text) <= LONGEST_PATH else f"…{text[-LONGEST_PATH:]}"

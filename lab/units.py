@@ -72,6 +72,7 @@ FACTOR = re.compile(r"\s*([*/·]?)\s*([^\W\d]+|[%°]|1(?=\s*/))(?:\s*(?:\^|\*\*)
 TYPOGRAPHY = str.maketrans({"\N{MINUS SIGN}": "-", "²": "^2", "³": "^3"})
 LONGEST = 100  # characters of a quantity
 QUOTED = 40  # characters of a person's text that an error quotes
+LONGEST_PATH = 100  # and of a path
 
 
 @cache
@@ -104,6 +105,12 @@ def quoted(value: object) -> str:
     text = text if len(text) <= QUOTED else f"{text[:QUOTED]}…"
     text = "".join(c if c.isprintable() else "?" for c in text)
     return f'"{text}"' if isinstance(value, str) else text
+
+
+def shown_path(path: object) -> str:
+    """A path on one line, the end of one that is too long."""
+    text = "".join(c if c.isprintable() else "?" for c in str(path))
+    return text if len(text) <= LONGEST_PATH else f"…{text[-LONGEST_PATH:]}"
 
 
 def parse(value: object, symbol: str) -> float:

@@ -6,6 +6,7 @@ from importlib.resources import files
 from shutil import copy
 from typing import Annotated
 
+import numpy as np
 import pytest
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
@@ -127,6 +128,13 @@ def test_nested_overrides_are_dotted_ones():
     dotted = load("tilting/quick", {"grains.diameter": "4 mm", "run.seed": 3})
     nested = load("tilting/quick", {"grains": {"diameter": "4 mm"}, "run": {"seed": 3}})
     assert dotted.resolved == nested.resolved
+
+
+def test_overrides_may_be_numbers_and_arrays_of_numpy(tmp_path):
+    given = {"run.repeats": np.int64(3), "grains.spread": np.float64(0.1), "run.settle": np.bool_(True)}
+    preset = load("tilting/quick", given)
+    assert preset.resolved.run.repeats == 3 and preset.resolved.grains.spread == 0.1
+    assert load(write(tmp_path, "again.toml", preset.given_text)).resolved == preset.resolved
 
 
 def test_alternatives_replace_what_is_inherited():
@@ -364,7 +372,9 @@ VALUES = (
     | st.sampled_from(["auto", "speed", "earth", "mindlin", "false"])
 )  # fmt: skip
 TREES = st.recursive(VALUES, lambda inner: st.lists(inner, max_size=4) | st.dictionaries(st.text(), inner, max_size=3))
-quickly = settings(max_examples=60, suppress_health_check=[HealthCheck.too_slow], deadline=None)
+quickly = settings(
+    max_examples=60, derandomize=True, database=None, suppress_health_check=[HealthCheck.too_slow], deadline=None
+)
 
 
 @quickly
