@@ -13,6 +13,8 @@ from solvers.filling import clear_of_walls
 NEEDED = ("y", "z", "radius")
 MOTION = ("vy", "vz", "omega")
 MOST = 100_000
+SMALLEST = 1e-7  # m, of a radius
+FASTEST = 1e6  # m/s or rad/s: numbers beyond are not what their units say
 DEEPEST = 0.01  # overlap of two grains, or of a grain and a wall, in radii of the smaller
 
 Grain = tuple[float, float, float, float, float, float]
@@ -41,12 +43,15 @@ def _check(grains: np.ndarray, outline: np.ndarray) -> None:
     if not 1 <= len(grains) <= MOST:
         raise LabError(f"grains.bed: from 1 to {MOST} grains are possible (got {len(grains)}).")
     position, radius = grains[:, :2], grains[:, 2]
-    wrong = np.flatnonzero(radius <= 0.0)
+    wrong = np.flatnonzero(radius < SMALLEST)
     if len(wrong):
-        raise LabError(
-            f"grains.bed: the radius in row {wrong[0] + 1} must be greater than 0 (got {radius[wrong[0]]:g})."
-        )
-    wrong = np.flatnonzero(~clear_of_walls(position, outline, (1.0 - DEEPEST) * radius))
+        least = "greater than 0" if radius[wrong[0]] <= 0.0 else f"at least {SMALLEST:g} m"
+        raise LabError(f"grains.bed: the radius in row {wrong[0] + 1} must be {least} (got {radius[wrong[0]]:g}).")
+    wrong = np.flatnonzero(np.abs(grains[:, 3:]).max(axis=1) > FASTEST)
+    if len(wrong):
+        raise LabError(f"grains.bed: the grain in row {wrong[0] + 1} is too fast; look at its numbers and their units.")
+    with np.errstate(over="ignore", invalid="ignore"):  # of places beyond all measure
+        wrong = np.flatnonzero(~clear_of_walls(position, outline, (1.0 - DEEPEST) * radius))
     if len(wrong):
         place = ", ".join(show(x, "m") for x in position[wrong[0]])
         raise LabError(f"grains.bed: the grain in row {wrong[0] + 1}, at {place}, is not inside the tank.")

@@ -23,11 +23,14 @@ from lab.recording import BUFFER_BYTES, FLUSH_EVERY, Recorder, new_recording
 from lab.scene import build
 from lab.units import show
 from solvers.errors import BadState
-from solvers.runtime import choose_arch
+from solvers.runtime import available_cores, choose_arch
 from solvers.scene import Scene
+from solvers.schedules import choose_schedule
 from solvers.simulation import Simulation
 
-CALL_S = 0.5  # wall-clock time of one call of the solver, roughly: so long Ctrl-C waits
+# Steps of a call of the solver, times the grains of a world: so long Ctrl-C waits, some tenths of a second for each
+# world on a core. It must not depend on the company or on the clock: between calls grains may get their numbers anew.
+A_CALL = 2_000_000
 WORLD = re.compile(r"\bworld (\d+)\b")  # how the watch names the world that it stopped
 
 
@@ -47,6 +50,13 @@ class Run:
         run, record = preset.run, preset.record
         times = run.duration, record.series_rate, record.picture_rate, record.checkpoint_every
         return self.scene.shared(), settling(preset), times, run.threads, run.arch
+
+    @property
+    def sociable(self) -> bool:
+        """Whether it may share a launch at all: a world is cut into bands for as many threads as it has to itself."""
+        settings, (worlds, count) = self.loaded.resolved.run, self.scene.radius.shape
+        arch, threads = choose_arch(settings.arch, settings.precision), settings.threads or available_cores()
+        return choose_schedule(settings.schedule, arch, worlds, count, threads) != "per-band"
 
     def make_recording(self) -> None:
         """Make the recording, without rows yet. Raises LabError (see `new_recording`)."""
@@ -101,7 +111,7 @@ class Launch:
         self._duration, self._record = preset.run.duration, preset.record
         self._simulate = partial(Simulation, threads=preset.run.threads, arch=preset.run.arch)
         self._settling = settling(preset)
-        self._a_call = 1  # steps of the next call of the solver
+        self._a_call = max(1, A_CALL // runs[0].scene.radius.shape[1])
         self._saved = time.monotonic()
 
     def start(self, kept: Checkpoint | None) -> None:
@@ -177,19 +187,12 @@ class Launch:
             try:
                 self._simulation.advance(0)  # says what else the watch has stopped where a run was left out
                 while self._simulation.steps < step:
-                    self._advance(step - self._simulation.steps)
+                    self._simulation.advance(min(self._a_call, step - self._simulation.steps))
                     pause()
                 return self._simulation.observe()
             except BadState as error:
                 self._leave_out(error)
         return {}
-
-    def _advance(self, most: int) -> None:
-        """Take some steps, about as many as CALL_S has time for."""
-        steps, begun = min(self._a_call, most), time.perf_counter()
-        self._simulation.advance(steps)
-        seconds = time.perf_counter() - begun
-        self._a_call = max(1, round(steps * min(8.0, CALL_S / seconds)))
 
     def _write(self, rows: Mapping[str, np.ndarray], picture: bool) -> None:
         """Add a row to every recording, and a frame where one is due."""

@@ -21,6 +21,7 @@ from solvers.quantity import Interval, Unit
 T = TypeVar("T")
 
 LONGEST_NAME = 40  # characters of a table's name that a person chooses
+BOUND = 1e15  # no SI number of a laboratory is larger, or as small as its inverse; squares and cubes stay finite
 
 
 @dataclass
@@ -140,10 +141,13 @@ def _value(taken: Taken, raw: object, key: str) -> Any:
 def _scalar(taken: Taken, raw: object, key: str) -> Any:
     if taken.kind is float:
         try:
-            return parse(raw, taken.symbol)
+            value = parse(raw, taken.symbol)
         except LabError as error:
             words = "".join(f' (or "{word}")' for word in taken.words)
             raise LabError(f"{key}: {str(error).removesuffix('.')}{words}.") from None
+        if value and not 1.0 / BOUND <= abs(value) <= BOUND:
+            raise LabError(f"{key}: {quoted(raw)} is beyond all measure; look at the number and its unit.")
+        return value
     if not isinstance(raw, taken.kind) or (taken.kind is int and isinstance(raw, bool)):
         raise LabError(f"{key}: {_needed(taken)} (got {quoted(raw)}).")
     if isinstance(raw, str) and any(category(c) in ("Cc", "Cs") for c in raw if c not in "\n\t"):

@@ -49,6 +49,8 @@ CHUNK_ROWS = 1024
 BUFFER_BYTES = 2**25  # kept in memory at most before it is written
 FLUSH_EVERY = 2.0  # s of wall-clock time between writings: what a run that is killed may lose
 SPARE_BYTES = 2**22  # room kept beside that for a chunk of each data set, to close the file and to sum up the run
+PATIENCE, A_MOMENT = 100, 0.02  # how often, and every how many s, a file is tried that another process has open
+LONGEST_STATUS = 500  # bytes
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 PACKAGES = ("cargo-shift-lab", "taichi", "numpy", "scipy", "h5py")
 
@@ -83,7 +85,7 @@ def new_recording(
     attributes = {
         "format": FORMAT,
         "preset": preset,
-        "status": "running",
+        "status": _status("running"),
         "created": datetime.now().astimezone().isoformat(timespec="seconds"),
         "versions": json.dumps(versions()),
         "machine": json.dumps({**_machine(), **(machine or {})}),
@@ -129,7 +131,7 @@ def mend_recording(folder: Path | str) -> Path:
     ):
         _reserve(new, size + SPARE_BYTES)
         old.copy_into(new)
-        new.attrs["status"] = "running"
+        new.attrs["status"] = _status("running")
     with _writing(path.parent):
         _publish(path)
     return path
@@ -207,7 +209,7 @@ class Recorder:
             self.flush()
         finally:
             with self._writing():
-                self._file.attrs.modify("status", status)
+                self._file.attrs.modify("status", _status(status))
                 self._file.close()
                 _give_back(self.path)
 
@@ -321,7 +323,8 @@ class Recording:
         self._file = _open(self.path)
         with _reading(self.path):
             attributes = dict(self._file.attrs)
-            self.name, self.status = str(attributes["preset"]), str(attributes["status"])
+            self.name, status = str(attributes["preset"]), attributes["status"]
+            self.status = status.decode(errors="ignore") if isinstance(status, bytes) else str(status)
             self.created = str(attributes["created"])
             self.versions = json.loads(attributes["versions"])
             self.machine = json.loads(attributes["machine"])
@@ -449,11 +452,11 @@ def _open_for_adding(path: Path) -> h5py.File:
     """
     access = h5py.h5p.create(h5py.h5p.FILE_ACCESS)
     access.set_libver_bounds(h5py.h5f.LIBVER_LATEST, h5py.h5f.LIBVER_LATEST)
-    for _ in range(100):
+    for _ in range(PATIENCE):
         try:
             return h5py.File(h5py.h5f.open(os.fsencode(path), h5py.h5f.ACC_RDWR | h5py.h5f.ACC_SWMR_WRITE, access))
         except BlockingIOError:
-            time.sleep(0.02)
+            time.sleep(A_MOMENT)
     raise LabError(f"{path} is open in another program: close it there.")
 
 
@@ -476,13 +479,29 @@ def _open(path: Path) -> h5py.File:
 
 
 def _open_closed_or_live(path: Path) -> h5py.File:
-    """Open in SWMR mode only what was never closed: HDF5 rereads a damaged file for ever in it."""
-    try:
-        return h5py.File(path, "r")
-    except OSError as error:
-        if "already open for write" not in str(error):
-            raise
-        return h5py.File(path, "r", swmr=True)
+    """Open in SWMR mode only what was never closed: HDF5 rereads a damaged file for ever in it.
+
+    A writer that opens or closes the file just now is waited for.
+    """
+    error: OSError | None = None
+    for _ in range(PATIENCE):
+        try:
+            return h5py.File(path, "r")
+        except BlockingIOError as locked:
+            error = locked
+        except OSError as open_elsewhere:
+            if "already open for write" not in str(open_elsewhere):
+                raise
+            with suppress(OSError):  # closed by now, or not yet in that mode
+                return h5py.File(path, "r", swmr=True)
+            error = open_elsewhere
+        time.sleep(A_MOMENT)
+    raise error
+
+
+def _status(text: str) -> np.ndarray:
+    """As it is stored: in a place of its own, so that it can be changed under a reader's eyes."""
+    return np.array(text.encode()[:LONGEST_STATUS], h5py.string_dtype(length=LONGEST_STATUS))
 
 
 def _unfinished(path: Path) -> Path:

@@ -126,7 +126,7 @@ def hint(folder: Path, begun: str = FILE_NAME) -> Iterator[None]:
     except KeyboardInterrupt as error:
         if not (folder / begun).exists():
             raise KeyboardInterrupt("interrupted before the run began") from None
-        raise KeyboardInterrupt(f"{error or 'interrupted'}; go on with: {resume}") from None
+        raise KeyboardInterrupt(f"{str(error) or 'interrupted'}; go on with: {resume}") from None
     except LabError as error:
         if not (folder / CHECKPOINT).exists():
             raise

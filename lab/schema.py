@@ -33,10 +33,12 @@ from solvers.tank import top_edges
 
 DENSEST = math.pi / math.sqrt(12)  # largest share of a plane that equal discs cover (Thue)
 MOST_LINING = 20_000  # grains that line a tank
+LONGEST_DISSIPATION = 0.1  # s
+MOST_PLACES = 2e7  # of the largest grains, in a tank that is filled: its lattice is held in memory
 
 Length = Annotated[float, Unit("m"), Interval(gt=0)]
 Time = Annotated[float, Unit("s"), Interval(gt=0)]
-Rate = Annotated[float, Unit("Hz"), Interval(gt=0)]
+Rate = Annotated[float, Unit("Hz"), Interval(gt=0, le=1e6)]
 
 
 @dataclass(frozen=True)
@@ -195,7 +197,7 @@ class Run:
     repeats: Annotated[int, Interval(ge=1, le=100_000)] = 1
     seed: Annotated[int, Interval(ge=0, le=2**31 - 1)] = 1
     settle: bool = True
-    step: Time | Literal["auto"] = "auto"
+    step: Annotated[float, Unit("s"), Interval(gt=0, le=1.0)] | Literal["auto"] = "auto"
     force_step: bool = False
     gravity: Annotated[float, Unit("m/s^2"), Interval(gt=0)] = 9.81
     settle_limit: Time = 5.0
@@ -375,6 +377,8 @@ def _check_grains(grains: Grains, tank: Tank) -> None:
         size = show(largest, "m")
         key = "diameter" if grains.table is None else "table"
         raise LabError(f"grains.{key}: grains of up to {size} do not fit into the tank.")
+    if tank.width * tank.height > MOST_PLACES * largest**2:
+        raise LabError(f"grains.diameter: grains of up to {show(largest, 'm')} are too small for so large a tank.")
     height = show(tank.height, "m")
     if grains.depth is None:
         _check_room(grains, tank.outline)
@@ -398,6 +402,9 @@ def _check_dissipation(material: Material | WallGiven, section: str, needed: boo
         raise LabError(f"{section}.restitution: give restitution or dissipative_time, not both.")
     if needed and given == [None, None]:
         raise LabError(f"{section}.restitution: missing; give restitution or dissipative_time.")
+    if (material.dissipative_time or 0.0) > LONGEST_DISSIPATION:
+        longest = show(LONGEST_DISSIPATION, "s")
+        raise LabError(f"{section}.dissipative_time: must be at most {longest}, far past where no grain rebounds.")
 
 
 def _check_video(video: Video) -> None:

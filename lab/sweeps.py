@@ -257,6 +257,9 @@ def _plan(sweep: Sweep) -> Iterator[list[int]]:
     begun: dict[tuple, dict[int, int]] = {}  # worlds by number of the launches that are not full yet
     for number, point in enumerate(sweep.points):
         run = prepare(point, Path())
+        if not run.sociable:
+            yield [number]
+            continue
         worlds, count = run.scene.radius.shape
         group = begun.setdefault(run.shared, {})
         if group and (sum(group.values()) + worlds > _most_worlds(run, count) or len(group) == MOST_RUNS):

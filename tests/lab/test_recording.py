@@ -146,6 +146,15 @@ def test_a_failed_run_says_why_it_stopped(tmp_path):
         assert len(recording.series["time"]) == 1
 
 
+def test_a_long_status_is_cut_and_a_reader_sees_it_change(tmp_path):
+    run = recorder(tmp_path)
+    with open_recording(tmp_path) as recording:
+        assert recording.status == "running"
+        run.close("stopped: " + "ä" * 500)
+    with open_recording(tmp_path) as recording:
+        assert recording.status == "stopped: " + "ä" * 245
+
+
 def test_an_interrupted_run_says_so(tmp_path):
     with pytest.raises(KeyboardInterrupt), recorder(tmp_path):
         raise KeyboardInterrupt

@@ -25,7 +25,7 @@ from lab.lock import only_one
 from lab.presets import load
 from lab.progress import Progress
 from lab.recording import Recorder, mend_recording, open_recording
-from lab.runner import resume_run, run_preset
+from lab.runner import hint, resume_run, run_preset
 
 ROOT = Path(__file__).parents[2]
 SMALL = {
@@ -62,7 +62,7 @@ def contents(folder: Path) -> dict[str, np.ndarray]:
             found[name] = item[()]
 
     with h5py.File(folder / "recording.h5", "r") as file:
-        assert file.attrs["status"] == "complete"
+        assert file.attrs["status"] == b"complete"
         file.visititems(keep)
     return found
 
@@ -224,6 +224,21 @@ def test_what_cannot_be_resumed_is_said(tmp_path):
         resume_run(folder, quiet=True)
     with only_one(folder), pytest.raises(LabError, match="in use by a run that still goes on"):
         resume_run(folder, quiet=True)
+
+
+def test_who_is_stopped_underway_is_told_how_to_go_on(tmp_path):
+    with pytest.raises(LabError, match=r"^the disk is full\.$"), hint(tmp_path):
+        raise LabError("the disk is full.")
+    with pytest.raises(KeyboardInterrupt, match=r"^interrupted before the run began$"), hint(tmp_path):
+        raise KeyboardInterrupt
+    folder = tmp_path / "my run"
+    recorder(folder).close()
+    Checkpoint({}, (), (0, 0)).write(folder)
+    how = f"go on with: cargolab resume '{folder}'$"
+    with pytest.raises(LabError, match=f"^the disk is full; {how}"), hint(folder):
+        raise LabError("the disk is full.")
+    with pytest.raises(KeyboardInterrupt, match=f"^interrupted; {how}"), hint(folder):
+        raise KeyboardInterrupt
 
 
 def fails(number: int):

@@ -19,6 +19,7 @@ SMALL = {
     "grains": {"count": 25},
     "motion": {"tilt": {"rate": "60 deg/s", "angle": "15 deg", "hold": "0.05 s"}},
     "run": {"repeats": 2},
+    "record": {"xdmf": True},
 }
 
 
@@ -33,6 +34,7 @@ def test_a_run_leaves_recording_plots_video_and_summary(result):
     assert {"wall_s", "grain_steps", "grain_steps_per_s", "dt_s"} <= data["cost"].keys()
     assert all((result.folder / name).exists() for name in data["files"].values())
     assert (result.folder / "video.mp4").stat().st_size > 1000
+    assert data["files"]["xdmf"] == "recording.xdmf"
     assert "critical angle" in (result.folder / "summary.md").read_text()
     assert data["measures"]["final_shift_y"]["value"] == pytest.approx(result.measures["final_shift_y"].value)
 
@@ -45,6 +47,15 @@ def test_samples_and_frames_stand_at_their_times(result):
     weight = result.recording.radius**3
     centre = (frames["position"][-1] * weight[:, :, None]).sum(axis=1) / weight.sum(axis=1)[:, None]
     assert np.allclose(centre, series["centre_of_mass"][4 * (len(frames["time"]) - 1)], atol=1e-6)
+
+
+def test_the_walls_carry_the_grains(result):
+    recording = result.recording
+    volume = (4 / 3 * np.pi * recording.radius**3).sum(axis=1)
+    weight = 9.81 * recording.preset["material"]["density"] * volume
+    assert np.allclose(-recording.series["wall_force"][1, :, 1], weight, rtol=0.02)
+    assert not recording.series["spilled"].any()
+    assert recording.frames["part"].shape == (len(recording.frames["time"]), 2, 0, 2)
 
 
 def test_steps_counted_are_steps_taken(result):

@@ -28,7 +28,7 @@ from lab.progress import Progress
 from lab.recording import open_recording
 from lab.runner import run_preset
 from lab.sweep_report import numeric, write_report
-from lab.sweeps import ask, read_sweep, resume_any, run_sweep
+from lab.sweeps import _plan, ask, read_sweep, resume_any, run_sweep
 from lab.xdmf import write_xdmf
 
 ROOT = Path(__file__).parents[2]
@@ -66,7 +66,7 @@ def data_sets(folder):
     found = {}
     with h5py.File(folder / "recording.h5", "r") as file:
         file.visititems(lambda name, item: found.update({name: item[()]}) if isinstance(item, h5py.Dataset) else None)
-        return found, file.attrs["status"]
+        return found, file.attrs["status"].decode()
 
 
 @pytest.mark.parametrize(
@@ -138,6 +138,22 @@ def test_the_grid_has_every_combination_and_the_last_key_changes_fastest():
     assert asked == [(1, 0.1), (1, 0.2), (2, 0.1), (2, 0.2), (3, 0.1), (3, 0.2)]
     assert all(point.resolved.run.repeats == 2 for point in sweep.points)
     assert sweep.settings[1] == {"run.seed": 1, "material.friction": 0.2}
+
+
+def test_points_share_launches_as_far_as_their_scenes_and_the_machine_allow(monkeypatch):
+    monkeypatch.setattr("lab.sweeps.available_cores", lambda: 2)
+    monkeypatch.setattr("lab.launch.available_cores", lambda: 2)
+
+    def plan(axes, **settings):
+        return list(_plan(ask("tilting/quick", axes, {"run.repeats": 2, "run.arch": "cpu", **settings})))
+
+    assert plan({"run.seed": "1:10:10"}) == [list(range(8)), [8, 9]]  # eight worlds a core
+    assert plan({"run.seed": "1:3:3"}, **{"run.repeats": 40}) == [[0], [1], [2]]
+    assert plan({"grains.count": "20, 30", "run.seed": "1:3:3"}) == [[0, 1, 2], [3, 4, 5]]
+    assert plan({"run.seed": "1, 2", "grains.count": "20, 30"}) == [[0, 2], [1, 3]]
+    assert plan({"run.duration": "1 s, 2 s"}) == [[0], [1]]
+    assert plan({"material.friction": "0.1:0.3:3"}) == [[0, 1, 2]]
+    assert plan({"run.seed": "1, 2"}, **{"run.schedule": "per-band"}) == [[0], [1]]
 
 
 @pytest.mark.parametrize(
