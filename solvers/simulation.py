@@ -122,8 +122,16 @@ class Simulation:
 
         Raises BadState where the watch stops a world; the state is kept as it is.
         """
-        self._keep_order(steps)
-        self.steps += steps
+        target, often = self.steps + steps, max(1, round(LOOK_FOR_MIXING / self.dt))
+        large = self.ordered.shape[1] >= renumber.FEWEST
+        while self.steps < target:
+            if large and self.steps % often == 0:
+                self._keep_order()  # before steps, which make new lists: the old ones are no good for looking at
+            self.steps = min(target, often * (self.steps // often + 1)) if large else target
+            self._reach_step()
+
+    def _reach_step(self) -> None:
+        """Take every running world to the step that `steps` says."""
         fastest = watch.FASTEST_STEP * self.scene.sizes[0] / self.dt
         while True:
             self.schedule.advance(self.steps, self.origin, self.unkicked, self.dt, fastest)
@@ -135,11 +143,8 @@ class Simulation:
         if np.any(status == watch.TOO_FAST):
             watch.report_speed(status, self.grains.read()["velocity"], self.clock.step.to_numpy() * self.dt, self.dt)
 
-    def _keep_order(self, steps: int) -> None:
-        """Number the grains of large worlds anew where they have mixed; now and then, before taking `steps`."""
-        often = max(1, round(LOOK_FOR_MIXING / self.dt))
-        if self.ordered.shape[1] < renumber.FEWEST or (self.steps + steps) // often == self.steps // often:
-            return
+    def _keep_order(self) -> None:
+        """Number the grains anew in worlds where they have mixed."""
         position, diameter = self.grains.read()["position"], 2.0 * self.scene.mean_radius
         order = {
             w: renumber.spatial_order(places, diameter)
@@ -159,8 +164,9 @@ class Simulation:
         """Numbers of every world now, each (W,), named as in `Observer.NAMES`. Raises BadState from the watch."""
         self.observer.observe(self.origin + self.time, max(self.steps - self.observed, 1) * self.dt)
         rows = dict(zip(Observer.NAMES, self.observer.rows.to_numpy().T.astype(float), strict=True))
-        if self.observed == self.steps:
-            rows |= self.load  # no time has passed to average over
+        # Where no time has passed there is nothing to average over.
+        still = (self.clock.status.to_numpy() == watch.WAITING) | (self.observed == self.steps)
+        rows |= {name: np.where(still, self.load[name], rows[name]) for name in LOAD}
         self.observed, self.load = self.steps, {name: rows[name] for name in LOAD}
         watch.check_state(rows["overlap"], rows["escaped"].astype(int), self.time)
         return rows
