@@ -52,6 +52,10 @@ class Checkpoint:
             raise LabError(f"{path} cannot be written ({os.strerror(error.errno)}): make room there.") from error
 
 
+class Useless(LabError):
+    """A checkpoint that no run can go on from."""
+
+
 def read_checkpoint(folder: Path) -> Checkpoint | None:
     """The checkpoint in a folder, or None where there is none. Raises LabError when it cannot be read."""
     path = folder / FILE_NAME
@@ -61,12 +65,13 @@ def read_checkpoint(folder: Path) -> Checkpoint | None:
         with np.load(path, allow_pickle=False) as file:
             about = json.loads(str(file["about"]))
             state = {name.removeprefix("state/"): file[name] for name in file.files if name != "about"}
-    except (OSError, ValueError, KeyError, EOFError, BadZipFile) as error:
-        raise LabError(f"{path} is damaged: start the run anew.") from error
-    if about.get("format") != FORMAT:
-        raise LabError(f"{path} was written by another version: start the run anew.")
-    series, frames = about["rows"]
-    return Checkpoint(state, tuple(about["runs"]), (series, frames), tuple(about["warnings"]), tuple(about["notes"]))
+            if about["format"] != FORMAT:
+                raise Useless(f"{path} was written by another version: start the run anew.")
+            series, frames = about["rows"]
+            said = tuple(about["warnings"]), tuple(about["notes"])
+            return Checkpoint(state, tuple(about["runs"]), (series, frames), *said)
+    except (OSError, ValueError, KeyError, TypeError, EOFError, BadZipFile) as error:
+        raise Useless(f"{path} is damaged: start the run anew.") from error
 
 
 def remove_checkpoint(folder: Path) -> None:

@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from lab.beds import settled, settling
-from lab.checkpoint import Checkpoint, remove_checkpoint
+from lab.checkpoint import Checkpoint, Useless, remove_checkpoint
 from lab.interrupt import Interrupt
 from lab.presets import LoadedPreset
 from lab.progress import Progress
@@ -129,7 +129,10 @@ class Launch:
             self.progress.warnings.extend(kept.warnings)
             self.progress.notes.extend(kept.notes)
             self._simulation = self._simulate(self._scene(), self._position())
-            self._simulation.restore(kept.state)
+            try:
+                self._simulation.restore(kept.state)
+            except (KeyError, ValueError, TypeError, IndexError) as error:
+                raise Useless(f"{self.home}: its checkpoint is of another scene: start the run anew.") from error
             return
         while self.runs and self._simulation is None:
             try:

@@ -13,7 +13,7 @@ import platform
 import shutil
 import time
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from datetime import datetime
 from importlib import metadata
 from pathlib import Path
@@ -321,7 +321,8 @@ class Recording:
             self.path = self.path / FILE_NAME
         self.folder = self.path.parent
         self._file = _open(self.path)
-        with _reading(self.path):
+        with ExitStack() as otherwise, _reading(self.path):
+            otherwise.callback(self._file.close)
             attributes = dict(self._file.attrs)
             self.name, status = str(attributes["preset"]), attributes["status"]
             self.status = status.decode(errors="ignore") if isinstance(status, bytes) else str(status)
@@ -340,6 +341,7 @@ class Recording:
             shapes = _table_shapes(*self.radius.shape, len(self.parts))
             self.series = Series(self._file["series"], shapes["series"], self.path)
             self.frames = Frames(self._file["frames"], shapes["frames"], self.path)
+            otherwise.pop_all()  # all is well: it stays open
 
     @property
     def worlds(self) -> int:
@@ -469,7 +471,8 @@ def _open(path: Path) -> h5py.File:
         raise LabError(f"{path} may not be read: ask for the right to read it.") from error
     except OSError as error:
         raise LabError(f"{path} cannot be read as a recording: it is cut short or another kind of file.") from error
-    form = file.attrs.get("format")
+    with _reading(path):
+        form = file.attrs.get("format")
     if form == FORMAT:
         return file
     file.close()
@@ -549,7 +552,7 @@ def _writing(folder: Path) -> Iterator[None]:
 def _reading(path: Path) -> Iterator[None]:
     try:
         yield
-    except (OSError, RuntimeError, KeyError, ValueError, TypeError) as error:
+    except (OSError, RuntimeError, KeyError, ValueError, TypeError, AttributeError) as error:
         raise LabError(f"{path} is damaged ({_sentence(error)}): record the run again.") from error
 
 

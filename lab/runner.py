@@ -9,7 +9,7 @@ from functools import cached_property
 from pathlib import Path
 
 from lab.checkpoint import FILE_NAME as CHECKPOINT
-from lab.checkpoint import Checkpoint, read_checkpoint, remove_checkpoint
+from lab.checkpoint import Checkpoint, Useless, read_checkpoint, remove_checkpoint
 from lab.errors import LabError
 from lab.launch import Run, launch, prepare
 from lab.lock import only_one
@@ -128,7 +128,7 @@ def hint(folder: Path, begun: str = FILE_NAME) -> Iterator[None]:
             raise KeyboardInterrupt("interrupted before the run began") from None
         raise KeyboardInterrupt(f"{str(error) or 'interrupted'}; go on with: {resume}") from None
     except LabError as error:
-        if not (folder / CHECKPOINT).exists():
+        if isinstance(error, Useless) or not (folder / CHECKPOINT).exists():
             raise
         raise LabError(f"{str(error).removesuffix('.')}; go on with: {resume}") from error
 

@@ -33,8 +33,8 @@ from solvers.tank import top_edges
 
 DENSEST = math.pi / math.sqrt(12)  # largest share of a plane that equal discs cover (Thue)
 MOST_LINING = 20_000  # grains that line a tank
-LONGEST_DISSIPATION = 0.1  # s
-MOST_PLACES = 2e7  # of the largest grains, in a tank that is filled: its lattice is held in memory
+LEAST_RESTITUTION, LONGEST_DISSIPATION = 1e-6, 0.1  # and s: beyond these nothing rebounds that one could see
+MOST_PLACES = 4e6  # of the largest grains, in a tank that is filled: its lattice is held in memory
 
 Length = Annotated[float, Unit("m"), Interval(gt=0)]
 Time = Annotated[float, Unit("s"), Interval(gt=0)]
@@ -402,6 +402,8 @@ def _check_dissipation(material: Material | WallGiven, section: str, needed: boo
         raise LabError(f"{section}.restitution: give restitution or dissipative_time, not both.")
     if needed and given == [None, None]:
         raise LabError(f"{section}.restitution: missing; give restitution or dissipative_time.")
+    if (material.restitution or 1.0) < LEAST_RESTITUTION:
+        raise LabError(f"{section}.restitution: must be at least {LEAST_RESTITUTION:g} (got {material.restitution:g}).")
     if (material.dissipative_time or 0.0) > LONGEST_DISSIPATION:
         longest = show(LONGEST_DISSIPATION, "s")
         raise LabError(f"{section}.dissipative_time: must be at most {longest}, far past where no grain rebounds.")

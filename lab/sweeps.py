@@ -12,6 +12,8 @@ from functools import cached_property
 from itertools import product
 from pathlib import Path
 
+import numpy as np
+
 from lab.axes import values
 from lab.checkpoint import Checkpoint, read_checkpoint, remove_checkpoint
 from lab.errors import LabError
@@ -97,7 +99,7 @@ def ask(name: str | Path, axes: Mapping[str, str | Sequence], overrides: Mapping
 
     Raises LabError where a point is no valid preset.
     """
-    listed = {key: values(key, said) if isinstance(said, str) else list(said) for key, said in axes.items()}
+    listed = {key: values(key, said) if isinstance(said, str) else _plain(said) for key, said in axes.items()}
     fixed = {key: found[0] for key, found in listed.items() if len(found) == 1}
     swept = {key: found for key, found in listed.items() if len(found) != 1}
     if not swept or not all(swept.values()):
@@ -114,6 +116,11 @@ def ask(name: str | Path, axes: Mapping[str, str | Sequence], overrides: Mapping
             said = ", ".join(f"{key} = {value}" for key, value in setting.items())
             raise LabError(f"point {said}: {error}") from None
     return Sweep(points[0].name, swept, points)
+
+
+def _plain(numbers: Sequence) -> list:
+    """The values without numpy's types, which no file takes."""
+    return [value.item() if isinstance(value, np.generic) else value for value in numbers]
 
 
 def run_sweep(
@@ -162,7 +169,10 @@ def read_sweep(folder: Path) -> Sweep:
             LoadedPreset(content["preset"], point["given"], Resolved.model_validate_json(json.dumps(point["resolved"])))
             for point in content["points"]
         ]
-        return Sweep(content["preset"], content["axes"], points)
+        sweep = Sweep(content["preset"], dict(content["axes"]), points)
+        if len(sweep.settings) != len(points):
+            raise ValueError("values and points do not belong together")
+        return sweep
     except OSError as error:
         raise LabError(f"{path} cannot be read ({error.strerror}): name the folder of a sweep.") from error
     except (ValueError, KeyError, TypeError) as error:

@@ -2,6 +2,7 @@
 
 import taichi as ti
 
+from solvers.runtime import available_cores
 from solvers.schedules.engine import ITERATIONS_A_THREAD, Engine
 from solvers.watch import NO_ROOM, RUNNING, TOO_FAST
 
@@ -21,7 +22,7 @@ class PerBand:
         self.units, self.neighbours, self.contacts = engine.units, engine.neighbours, engine.contacts
         self.grains, self.mover, self.frame, self.clock = engine.grains, engine.mover, engine.frame, engine.clock
         self.unseen, self.real, self.bands = engine.unseen, engine.grains.real, engine.units.a_world
-        self.together = threads >= engine.units.count
+        self.together = min(threads, available_cores()) >= engine.units.count
 
     def advance(self, target: int, origin: float, unkicked: int, step: float, fastest: float) -> None:
         """Take every running world to step `target`; see PerWorld."""

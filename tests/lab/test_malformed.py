@@ -508,6 +508,7 @@ ARRAYS = [np.zeros(0), np.zeros((0, 0)), np.zeros(3), np.zeros((2, 2, 2)), np.fu
 VALUES = st.sampled_from(["", "{}", "[]", "null", "nan", "é", 0, -1, 1e300, float("nan"), *ARRAYS])
 
 
+@pytest.mark.slow
 @often
 def test_recordings_of_other_contents_are_refused(idle, unpainted, recorded, tmp_path, times):
     @examples(60 * times)
@@ -575,16 +576,6 @@ def test_damaged_sweeps_are_refused(idle, tmp_path, times):
         ends_well(call("sweep", "tilting/quick", "--set", "run.seed=1,2", "--out", tmp_path))
 
     check()
-
-
-def test_a_checkpoint_of_another_scene_is_refused(recorded, tmp_path):
-    folder = copied(recorded, tmp_path / "run")
-    assert "its checkpoint is of another scene" in refused_after_stages(call("resume", folder, "--quiet"))
-
-
-def refused_after_stages(done) -> str:
-    assert done.exit_code == 2 and isinstance(done.exception, SystemExit), repr(done.exception)
-    return done.stderr
 
 
 # ---- hard ones, by hand

@@ -4,6 +4,7 @@ import os
 import subprocess
 import sys
 from pathlib import Path
+from unittest.mock import MagicMock
 
 import numpy as np
 import pytest
@@ -12,7 +13,9 @@ from scenes import box, material
 from solvers import schedules
 from solvers.motions import Roll, Sway
 from solvers.parts import Part
+from solvers.runtime import available_cores
 from solvers.scene import Scene
+from solvers.schedules.per_band import PerBand
 from solvers.simulation import Simulation
 
 RADIUS, COUNT = 3e-3, 30
@@ -61,7 +64,7 @@ def made(case: str, threads: int) -> Simulation:
 def lead_up(run: Simulation, case: str) -> None:
     """What happens before the state is kept: the lists grow between two looks, or grains settle, fall out and go."""
     if case == "bands that grew":
-        assert run.schedule.together
+        assert run.schedule.together == (available_cores() > 1)
         run.schedule.together = False  # spinning on shared cores takes its time
         run.advance(3000)
         run.observe()
@@ -113,8 +116,16 @@ def ends(tmp_path_factory):
 @pytest.mark.parametrize("case", CASES)
 def test_another_process_goes_on_bit_for_bit(ends, case):
     here, elsewhere = ends[case]
-    assert here["contacts"].min() > 3
+    assert here["contacts"].min() > 1
     assert np.all(here["part"][..., 1] > 0.01)
     assert here.keys() == elsewhere.keys()
     for name in here:
         assert here[name].tobytes() == elsewhere[name].tobytes(), name
+
+
+def test_bands_do_not_wait_for_cores_that_are_not_there():
+    """Taichi starts no more threads than there are cores, and a band at the barrier would wait forever for its mates."""
+    engine, cores = MagicMock(), available_cores()
+    for bands in (cores, cores + 1):
+        engine.units.count = bands
+        assert PerBand(engine, bands).together == (bands == cores)
