@@ -231,7 +231,8 @@ def test_momentum_is_kept_without_walls(run):
     [pytest.param("two bands", marks=pytest.mark.xfail(reason="not yet to the last bit", strict=False)), "per-grain"],
 )
 def test_lists_that_outgrow_their_room_change_nothing(told, schedule):
-    """A heap that rubs is asked to list far more than touches: its springs, contacts and steps stay, to the last bit."""
+    """A heap that rubs is asked to list far more than touches: its springs, contacts and steps stay, to the last
+    bit."""
     found, ends = told(schedule, TRIED[schedule]).run, []
     for skin in (SKIN, 6.0 * SKIN):
         found.start_clock()

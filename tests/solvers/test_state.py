@@ -124,7 +124,7 @@ def test_another_process_goes_on_bit_for_bit(ends, case):
 
 
 def test_bands_do_not_wait_for_cores_that_are_not_there():
-    """Taichi starts no more threads than there are cores, and a band at the barrier would wait forever for its mates."""
+    """Taichi starts no more threads than there are cores; a band at the barrier would wait for ever for its mates."""
     engine, cores = MagicMock(), available_cores()
     for bands in (cores, cores + 1):
         engine.units.count = bands
