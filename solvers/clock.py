@@ -13,13 +13,14 @@ class Clock:
     """`step`, the steps of Δt done, and `status`, a word of `solvers.watch`, each (W,).
 
     `says` (units,) and `arrived` (W,) are what bands tell each other, `fastest` and `farthest` (W,) what the
-    per-grain schedule looks up now and then: the highest speed (m/s), the longest way since the lists were built (m).
+    per-grain schedule looks up now and then: the highest speed (m/s), the longest way since the lists were built (m);
+    `pushed` (W,) is the largest acceleration (m/s²) by the frame to come.
     """
 
     def __init__(self, arrays: Arrays, units: Units):
         self.step, self.status, self.arrived = arrays.integers(3, (units.worlds,))
         (self.says,) = arrays.integers(1, (units.count,), kept=False)
-        self.fastest, self.farthest = arrays.reals(2, (units.worlds,), kept=False)
+        self.fastest, self.farthest, self.pushed = arrays.reals(3, (units.worlds,), kept=False)
         self.body = arrays.reals(4, (units.worlds,), kept=False)
 
     def running(self) -> np.ndarray:

@@ -48,10 +48,9 @@ class Neighbours:
         self.skin = arrays.holding(np.array([skin]))
         self.cells = Cells(arrays, grains, *walls.bounds, reach)
         self.built_y, self.built_z = arrays.reals(2, (grains.worlds, grains.count), arrays.place)
-        self.travel = arrays.holding(
-            np.full(units.count, NEVER), kept=True
-        )  # no grain has moved farther than this since
-        self.built_at = arrays.holding(np.zeros(units.count), arrays.exact, kept=True)  # s
+        # No grain has moved farther than `travel` (m) since the lists were built, at the time `built_at` (s).
+        self.travel = arrays.holding(np.full(units.count, NEVER), kept=True)
+        self.built_at = arrays.holding(np.zeros(units.count), arrays.exact, kept=True)
 
     def forget(self) -> None:
         """Drop all history, for grains that were put somewhere else."""

@@ -94,7 +94,7 @@ class Observer:
                     g.spilled[w, i] = 1.0
                 inside = g.spilled[w, i] == 0.0
                 spilled += g.spilled[w, i]
-                if g.present[w, i] == 1.0 and not self.walls.follows(g.y[w, i], g.z[w, i]):
+                if not inside and g.present[w, i] == 1.0 and not self.walls.follows(g.y[w, i], g.z[w, i]):
                     g.remove(w, i)
             elif not inside:
                 escaped = i

@@ -16,7 +16,8 @@ MIXED = 5.0  # mean way, in mean diameters, after which the order is taken for l
 def has_mixed(position: np.ndarray, ordered: np.ndarray, diameter: float) -> bool:
     """Whether the grains (n, 2) m of a world have left the places (n, 2) where they were numbered."""
     way = np.linalg.norm(position - ordered, axis=1)
-    return len(way) >= FEWEST and float(np.nanmean(way)) > MIXED * diameter
+    way = way[np.isfinite(way)]  # without those that have left
+    return len(way) >= FEWEST and float(way.mean()) > MIXED * diameter
 
 
 def spatial_order(position: np.ndarray, diameter: float) -> np.ndarray:

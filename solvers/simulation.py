@@ -97,7 +97,7 @@ class Simulation:
         velocity = np.zeros((*self.scene.radius.shape, 2)) if velocity is None else velocity
         self.grains.launch(velocity, np.zeros(self.scene.radius.shape) if spin is None else spin)
         self.mover.rest()
-        self.unkicked = self.steps
+        self.unkicked = self.observed = self.steps
 
     def _make_room(self) -> None:
         """Double the room of the contact lists; what the worlds hold stays as it is."""
@@ -216,7 +216,8 @@ class Simulation:
 
     def state(self) -> dict[str, np.ndarray]:
         """All it takes to go on bit for bit, for `restore`."""
-        numbers = self.steps, self.room, self.unkicked, self.units_a_world, self.observed
+        schedule = list(SCHEDULES).index(self.schedule_name)
+        numbers = self.steps, self.room, self.unkicked, self.observed, self.units_a_world, schedule
         order = {"number": self.number, "ordered": self.ordered}
         return {
             "numbers": np.array(numbers),
@@ -228,12 +229,12 @@ class Simulation:
 
     def restore(self, state: dict[str, np.ndarray]) -> None:
         """Become what `state` was told of, by a simulation of the same scene."""
-        self.steps, room, self.unkicked, units, self.observed = (int(number) for number in state["numbers"])
+        self.steps, room, self.unkicked, self.observed, units, schedule = (int(number) for number in state["numbers"])
         self.origin, self.load = float(state["origin"]), {name: np.array(state[name]) for name in LOAD}
         self.number, self.ordered = np.array(state["number"]), np.array(state["ordered"])
         if (room, units) != (self.room, self.units_a_world):
             self.arrays.release()
-            self.room, self.units_a_world = room, units
+            self.room, self.units_a_world, self.schedule_name = room, units, list(SCHEDULES)[schedule]
             self._build()
         self.arrays.write(state)
 

@@ -12,8 +12,8 @@ Y, Z, ALONG_Y, ALONG_Z, LENGTH, TWO_SIDED, PART = range(7)
 AFTER_Y, AFTER_Z = LENGTH, TWO_SIDED  # of a corner
 MOVE = 4  # where a part's parameters have its move (y, z; m)
 SHIFT = 4  # numbers a moving part: its displacement (m) and its velocity (m/s)
-BEYOND = 0.5  # how far beyond an open tank grains are followed, in its own width and height
-CHIMNEY = 100.0  # how far above an open edge a grain still counts as in the tank, in the tank's size
+BEYOND = 0.5  # how far beyond an open tank grains that have left it are followed, in its own width and height
+CHIMNEY = 5.0  # how far above an open edge a grain still counts as in the tank, in the tank's size
 
 
 @ti.data_oriented
@@ -56,7 +56,7 @@ class Walls:
 
     @property
     def bounds(self) -> tuple[np.ndarray, np.ndarray]:
-        """Lower and upper corner (m) of where grains are followed."""
+        """Lower and upper corner (m) of where grains that have left the tank are followed."""
         lower, upper = self.outline.min(axis=0), self.outline.max(axis=0)
         margin = BEYOND * (upper - lower) if self.open else 0.0
         return lower - margin, upper + margin
@@ -162,7 +162,7 @@ class Walls:
 
     @ti.func
     def follows(self, y, z):
-        """Whether a point is near enough to the tank to be followed."""
+        """Whether a point is so near the tank that a grain which has left is still followed."""
         return self.edge[0] <= y <= self.edge[2] and self.edge[1] <= z <= self.edge[3]
 
 

@@ -15,7 +15,8 @@ class PerBand:
 
     Bands meet twice a step: after the forces, which read what all grains do, and after the move, where they agree on
     building the lists anew. They wait by spinning, since a wake-up takes longer than a step. With fewer threads than
-    bands one thread does them in turn. The bits depend on the number of bands and on nothing else.
+    bands one thread does them in turn. The bits depend on the numbers of bands and of threads, for which the compiler
+    rounds differently here and there.
     """
 
     def __init__(self, engine: Engine, threads: int):

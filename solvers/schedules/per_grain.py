@@ -6,9 +6,10 @@ import taichi as ti
 from solvers.schedules.engine import Engine
 from solvers.watch import NO_ROOM, RUNNING, TOO_FAST
 
-# Until the next look no grain is expected to be faster than this times the fastest now, and than what this
-# acceleration (m/s²) adds: some times that of gravity in a shaken tank.
+# Until the next look no grain is expected to be faster than this times the fastest now, and than what this many times
+# the frame's acceleration, and this one of the contacts' own (m/s²), add.
 HASTE, RUSH = 2.0, 50.0
+GLIMPSES = 4  # of the frame's acceleration, between one look and the last time the next can be
 
 
 @ti.data_oriented
@@ -16,7 +17,7 @@ class PerGrain:
     """Advances all worlds together. Each side of a contact works out its own force, so nothing is summed by atomics.
 
     Reading from a graphics processor takes as long as several steps. So grains are looked at only as often as the
-    fastest of them (see HASTE and RUSH) could have used up half the lists' skin.
+    fastest of them (see HASTE, RUSH) could have used up half the lists' skin.
     """
 
     def __init__(self, engine: Engine, threads: int):
@@ -24,6 +25,7 @@ class PerGrain:
         self.neighbours, self.contacts = engine.neighbours, engine.contacts
         self.mover, self.frame, self.clock = engine.mover, engine.frame, engine.clock
         self.real = engine.grains.real
+        self.extent = float(np.hypot(*np.abs(self.walls.bounds).max(axis=0)))  # m, from the origin
 
     def advance(self, target: int, origin: float, unkicked: int, step: float, fastest: ti.f64) -> None:
         """Take every running world to step `target`; see PerWorld."""
@@ -52,21 +54,28 @@ class PerGrain:
 
     def safe_steps(self, half_skin: float, time: float, step: float, fastest: float) -> int:
         """Steps in which no grain can come into reach of another unlisted."""
-        self.look(time, fastest)
+        self.look(time, np.sqrt(2.0 * half_skin / RUSH), fastest)
         running = self.clock.running()
         if not running.any():
             return 1
         left = np.maximum(half_skin - self.clock.farthest.to_numpy()[running], 0.0)
         speed = HASTE * self.clock.fastest.to_numpy()[running] + self.walls.fastest
+        rush = RUSH + HASTE * self.clock.pushed.to_numpy()[running]
         # left = v T + a T²/2
-        time_left = (np.sqrt(speed**2 + 2.0 * RUSH * left) - speed) / RUSH
+        time_left = (np.sqrt(speed**2 + 2.0 * rush * left) - speed) / rush
         return int((time_left / step).min())
 
     @ti.kernel
-    def look(self, time: ti.f64, fastest: ti.f64):
-        """Find the highest speed and the longest way of every world."""
+    def look(self, time: ti.f64, ahead: ti.f64, fastest: ti.f64):
+        """Find the highest speed and the longest way in every world, and how the frame will push until `ahead` (s)."""
         for w in range(self.units.worlds):
-            self.clock.fastest[w], self.clock.farthest[w] = 0.0, 0.0
+            self.clock.fastest[w], self.clock.farthest[w], self.clock.pushed[w] = 0.0, 0.0, 0.0
+            for k in range(GLIMPSES):
+                body = self.frame.body_force(w, time + ahead * k / (GLIMPSES - 1))
+                push = ti.sqrt(body[0] * body[0] + body[1] * body[1])
+                # What turns a grain's way only (Coriolis) makes it no faster.
+                push += (ti.abs(body[3]) + body[2] * body[2]) * self.extent
+                self.clock.pushed[w] = ti.max(self.clock.pushed[w], push)
         for u in range(self.units.count):
             w = self.units.world(u)
             if self.clock.status[w] == RUNNING:

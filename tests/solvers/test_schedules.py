@@ -200,6 +200,24 @@ def test_lists_equal_brute_force(run):
     assert np.all(counted > 50)
 
 
+def test_single_grains_know_how_hard_the_tank_is_shaken():
+    """A grain that hangs in a tank in free space as that sets off with 20 g: it meets one at the wall just beyond the
+    lists' skin. The schedule of single grains looks at speeds now and then, and there are none to begin with.
+    """
+    push, radius = 200.0, 1.5e-3
+    sway = Sway(push / (20.0 * np.pi) ** 2, 10.0, phase=0.5 * np.pi)
+    half, grain = 0.02, material()
+    outline = np.array([[-half, 0.0], [half, 0.0], [half, 0.03], [-half, 0.03]])
+    scene = Scene(np.full((1, 2), radius), outline, grain, grain, gravity=0.0, motions=[(sway,)], schedule="per-grain")
+    run = Simulation(scene, np.zeros((1, 2, 2)), THREADS, arch="cpu")
+    gap = 1.1 * run.skin
+    run.place(np.array([[[half - radius, 0.01], [half - 3.0 * radius - gap, 0.01]]]))
+    run.advance(round(1.5 * np.sqrt(2.0 * gap / push) / run.dt))
+    speed = np.abs(run.snapshot()["velocity"]).max()
+    run.close()
+    assert 0.1 * np.sqrt(2.0 * push * gap) < speed < np.sqrt(2.0 * push * gap)
+
+
 def momenta(run: Simulation) -> np.ndarray:
     """Linear (N s) and angular (N m s) momentum of each world, (W, 3)."""
     state, mass = run.snapshot(), run.grains.mass
@@ -226,15 +244,15 @@ def test_momentum_is_kept_without_walls(run):
     assert max(np.abs(rows[name]).max() for name in ("wall_y", "wall_z")) < 1e-12
 
 
-@pytest.mark.parametrize(
-    "schedule",
-    [pytest.param("two bands", marks=pytest.mark.xfail(reason="not yet to the last bit", strict=False)), "per-grain"],
-)
+@pytest.mark.parametrize("schedule", ["two bands", "per-grain"])
 def test_lists_that_outgrow_their_room_change_nothing(told, schedule):
-    """A heap that rubs is asked to list far more than touches: its springs, contacts and steps stay, to the last
-    bit."""
+    """A heap that rubs is asked to list far more than touches: its springs, contacts and steps stay.
+
+    To the last bit where pairs are taken one by one; in a band a pair comes to stand in another lane of its block, and
+    the compiler does not round alike in all lanes.
+    """
     found, ends = told(schedule, TRIED[schedule]).run, []
-    for skin in (SKIN, 6.0 * SKIN):
+    for skin in (SKIN, 20.0 * SKIN):
         found.start_clock()
         found.place(start()[1])
         found.advance(EARLY)
@@ -246,10 +264,13 @@ def test_lists_that_outgrow_their_room_change_nothing(told, schedule):
         found.advance(100)
         ends.append(found.snapshot() | found.observe())
         assert np.all(found.clock.step.to_numpy() == EARLY + 101)
-    assert found.room == 2
+    assert found.room > 1
     assert ends[0]["contacts"].sum() > 30
     for name in ends[0]:
-        assert ends[0][name].tobytes() == ends[1][name].tobytes(), name
+        if schedule == "per-grain":
+            assert ends[0][name].tobytes() == ends[1][name].tobytes(), name
+        else:
+            np.testing.assert_allclose(ends[0][name], ends[1][name], rtol=1e-9, atol=1e-12, err_msg=name)
 
 
 def test_worlds_at_rest_wait_for_the_others(run):

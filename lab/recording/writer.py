@@ -1,10 +1,4 @@
-"""What a run leaves behind: one HDF5 file, written as the run goes on and readable at any moment.
-
-`new_recording` makes the file, a `Recorder` adds to it, `mend_recording` readies what a dead run left for another
-Recorder, and `open_recording` reads it. The file is written in HDF5's single-writer/multiple-reader mode (SWMR):
-every flush leaves a whole file behind, so a run that is killed, or that still goes on, can be read up to its last
-flush. Other programs must ask for that mode too: `h5py.File(path, "r", swmr=True)`.
-"""
+"""Writing recordings: a new one, rows added to it, and one mended that a dead run has left."""
 
 import errno
 import json
@@ -13,7 +7,7 @@ import platform
 import shutil
 import time
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import ExitStack, contextmanager, suppress
+from contextlib import contextmanager, suppress
 from datetime import datetime
 from importlib import metadata
 from pathlib import Path
@@ -22,34 +16,12 @@ import h5py
 import numpy as np
 
 from lab.errors import LabError
+from lab.recording.layout import A_MOMENT, FILE_NAME, FORMAT, PATIENCE, create_table, row_bytes, sentence, table_shapes
+from lab.recording.reader import open_recording
 
-FORMAT = "cargo-shift-lab 2"
-FILE_NAME = "recording.h5"
-
-# Shapes after the leading axes: (T, W, *shape) of a series, (F, W, n, *shape) of what each grain
-# has, (F, W, *shape) of what each world has. One line more records one quantity more.
-SERIES = {
-    "pose": (3,),
-    "pose_rate": (3,),
-    "centre_of_mass": (2,),
-    "kinetic": (),
-    "rotational": (),
-    "potential": (),
-    "elastic": (),
-    "contacts": (),
-    "overlap": (),
-    "spilled": (),
-    "wall_force": (3,),
-}
-GRAIN_FRAMES = {"position": (2,), "velocity": (2,), "angle": (), "spin": ()}
-WORLD_FRAMES = {"pose": (3,)}  # and "part" (P, 2), the displacement of each moving part
-
-CHUNK_BYTES = 2**19  # about what one reads of a data set at a time
-CHUNK_ROWS = 1024
 BUFFER_BYTES = 2**25  # kept in memory at most before it is written
 FLUSH_EVERY = 2.0  # s of wall-clock time between writings: what a run that is killed may lose
 SPARE_BYTES = 2**22  # room kept beside that for a chunk of each data set, to close the file and to sum up the run
-PATIENCE, A_MOMENT = 100, 0.02  # how often, and every how many s, a file is tried that another process has open
 LONGEST_STATUS = 500  # bytes
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 PACKAGES = ("cargo-shift-lab", "taichi", "numpy", "scipy", "h5py")
@@ -110,8 +82,8 @@ def new_recording(
             group = file.create_group("tank/parts", track_order=True)
             for name, line in parts.items():
                 group[name] = np.asarray(line, dtype=float)
-            for name, shapes in _table_shapes(*radius.shape, len(parts)).items():
-                _create_table(file.create_group(name), shapes)
+            for name, shapes in table_shapes(*radius.shape, len(parts)).items():
+                create_table(file.create_group(name), shapes)
         _publish(path)
     return path
 
@@ -221,7 +193,7 @@ class Recorder:
             self.close()
             return
         with suppress(LabError):  # what stopped the run is the news
-            self.close(f"stopped: {_sentence(error)}")
+            self.close(f"stopped: {sentence(error)}")
 
     @property
     def _pending(self) -> int:
@@ -255,9 +227,9 @@ class _Table:
     def __init__(self, group: h5py.Group, rows: int) -> None:
         self._datasets: dict[str, h5py.Dataset] = {name: group[name] for name in group}
         self._rows: dict[str, list[np.ndarray]] = {name: [] for name in group}
-        self._row_bytes = sum(_row_bytes(data.shape[1:], data.dtype) for data in self._datasets.values())
+        self._row_bytes = sum(row_bytes(data.shape[1:], data.dtype) for data in self._datasets.values())
         self._written = rows
-        self.chunk_bytes = sum(_row_bytes(data.chunks, data.dtype) for data in self._datasets.values())
+        self.chunk_bytes = sum(row_bytes(data.chunks, data.dtype) for data in self._datasets.values())
         self.short = any(len(data) < rows for data in self._datasets.values())
 
     @property
@@ -292,160 +264,6 @@ class _Table:
             rows.clear()
 
 
-def _create_table(group: h5py.Group, shapes: Mapping[str, tuple[tuple[int, ...], str]]) -> None:
-    """Empty data sets with such rows, which can grow."""
-    for name, (shape, kind) in shapes.items():
-        rows = max(1, min(CHUNK_ROWS, CHUNK_BYTES // max(1, _row_bytes(shape, kind))))
-        chunk = (rows, *(max(1, size) for size in shape))
-        room = (None, *(size or None for size in shape))  # HDF5 wants chunks no larger than the data set may become
-        group.create_dataset(name, (0, *shape), kind, maxshape=room, chunks=chunk)
-
-
-class Recording:
-    """A recording opened for reading: a context manager; arrays are read when they are asked for.
-
-    path, folder; name: of the preset; given: its TOML text; preset: all its values in SI, nested as
-    in the TOML; status, created, versions, machine, step (s), wall_s, grain_steps;
-    radius (W, n) m; kind (W, n), 0 of the preset's material and further numbers in the order of its kinds;
-    outline (m, 2) m; fixed (k, 3) y, z, radius m; open_edges; parts, polylines (m, 2) m by name.
-    series: "time" (T,) s and the names of SERIES, whole arrays (T, W, ...).
-    frames: "time" (F,) s and the names of GRAIN_FRAMES and WORLD_FRAMES, (F, W, ...), read from the
-    file by indexing: `recording.frames["position"][-1]`.
-    Both end where the shortest of their arrays ends. Raises LabError when the file is missing,
-    foreign or damaged.
-    """
-
-    def __init__(self, path: Path | str) -> None:
-        self.path = Path(path)
-        if self.path.is_dir():
-            self.path = self.path / FILE_NAME
-        self.folder = self.path.parent
-        self._file = _open(self.path)
-        with ExitStack() as otherwise, _reading(self.path):
-            otherwise.callback(self._file.close)
-            attributes = dict(self._file.attrs)
-            self.name, status = str(attributes["preset"]), attributes["status"]
-            self.status = status.decode(errors="ignore") if isinstance(status, bytes) else str(status)
-            self.created = str(attributes["created"])
-            self.versions = json.loads(attributes["versions"])
-            self.machine = json.loads(attributes["machine"])
-            self.step, self.wall_s = float(attributes["step"]), float(attributes["wall_s"])
-            self.grain_steps = int(attributes["grain_steps"])
-            self.given = self._file["preset/given"].asstr()[()]
-            self.preset = json.loads(self._file["preset/resolved"].asstr()[()])
-            self.radius, self.kind = self._file["grains/radius"][:], self._file["grains/kind"][:]
-            tank = self._file["tank"]
-            self.outline, self.fixed = tank["outline"][:], tank["fixed"][:]
-            self.open_edges = tuple(int(edge) for edge in tank["open_edges"][:])
-            self.parts = {name: line[:] for name, line in tank["parts"].items()}
-            shapes = _table_shapes(*self.radius.shape, len(self.parts))
-            self.series = Series(self._file["series"], shapes["series"], self.path)
-            self.frames = Frames(self._file["frames"], shapes["frames"], self.path)
-            otherwise.pop_all()  # all is well: it stays open
-
-    @property
-    def worlds(self) -> int:
-        """W, the beds recorded side by side."""
-        return len(self.radius)
-
-    @property
-    def mean_diameter(self) -> np.ndarray:
-        """Mean grain diameter of each world (W,), m."""
-        return 2.0 * self.radius.mean(axis=1)
-
-    @property
-    def complete(self) -> bool:
-        """Whether the run came to its end."""
-        return self.status == "complete"
-
-    def layout(self, name: str) -> tuple[tuple[int, ...], np.dtype]:
-        """Shape and kind of a data set of the file as it lies there."""
-        with _reading(self.path):
-            return self._file[name].shape, self._file[name].dtype
-
-    def copy_into(self, file: h5py.File) -> None:
-        """Copy everything into an empty file, each table as far as all its arrays go."""
-        with _reading(self.path):
-            file.attrs.update(self._file.attrs)
-            for name in ("preset", "grains", "tank"):
-                self._file.copy(name, file)
-            for name, table in {"series": self.series, "frames": self.frames}.items():
-                table.copy_into(file.create_group(name))
-
-    def close(self) -> None:
-        """Close the file; what was not read before cannot be read any more."""
-        self._file.close()
-
-    def __enter__(self) -> "Recording":
-        return self
-
-    def __exit__(self, *error: object) -> None:
-        self.close()
-
-
-class Frames(Mapping):
-    """The data sets of a group by name, each cut to the length that all of them have."""
-
-    def __init__(self, group: h5py.Group, names: Mapping, path: Path) -> None:
-        self._path = path
-        self._columns = {name: group[name] for name in names}
-        self._length = min(len(dataset) for dataset in self._columns.values())
-
-    def __getitem__(self, name: str) -> "Column":
-        return Column(self._columns[name], self._length, self._path)
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._columns)
-
-    def __len__(self) -> int:
-        return len(self._columns)
-
-    def copy_into(self, group: h5py.Group) -> None:
-        """Copy the data sets into an empty group, in blocks."""
-        _create_table(group, {name: (data.shape[1:], data.dtype.str) for name, data in self._columns.items()})
-        for name, data in self._columns.items():
-            copy = group[name]
-            copy.resize(self._length, axis=0)
-            for begin in range(0, self._length, copy.chunks[0]):
-                end = min(begin + copy.chunks[0], self._length)
-                copy[begin:end] = data[begin:end]
-
-
-class Series(Frames):
-    """As Frames, but whole arrays, read once and kept."""
-
-    def __init__(self, group: h5py.Group, names: Mapping, path: Path) -> None:
-        super().__init__(group, names, path)
-        self._read: dict[str, np.ndarray] = {}
-
-    def __getitem__(self, name: str) -> np.ndarray:
-        if name not in self._read:
-            self._read[name] = super().__getitem__(name)[:]
-        return self._read[name]
-
-
-class Column:
-    """One data set, read by indexing its first axis with a number or a slice."""
-
-    def __init__(self, dataset: h5py.Dataset, length: int, path: Path) -> None:
-        self._dataset, self._path = dataset, path
-        self.shape = (length, *dataset.shape[1:])
-
-    def __len__(self) -> int:
-        return self.shape[0]
-
-    def __getitem__(self, index: int | slice) -> np.ndarray:
-        whole = range(len(self))
-        rows = slice(*index.indices(len(self))) if isinstance(index, slice) else whole[index]
-        with _reading(self._path):
-            return self._dataset[rows]
-
-
-def open_recording(path: Path | str) -> Recording:
-    """Open a recording, given as its file or its run's folder. Raises LabError (see Recording)."""
-    return Recording(path)
-
-
 def _open_for_adding(path: Path) -> h5py.File:
     """Open a closed file as the writer in SWMR mode, in one stroke.
 
@@ -460,46 +278,6 @@ def _open_for_adding(path: Path) -> h5py.File:
         except BlockingIOError:
             time.sleep(A_MOMENT)
     raise LabError(f"{path} is open in another program: close it there.")
-
-
-def _open(path: Path) -> h5py.File:
-    if not path.is_file():
-        raise LabError(f"{path} does not exist: name a recording or the folder of a run.")
-    try:
-        file = _open_closed_or_live(path)
-    except PermissionError as error:
-        raise LabError(f"{path} may not be read: ask for the right to read it.") from error
-    except OSError as error:
-        raise LabError(f"{path} cannot be read as a recording: it is cut short or another kind of file.") from error
-    with _reading(path):
-        form = file.attrs.get("format")
-    if form == FORMAT:
-        return file
-    file.close()
-    if str(form).startswith(FORMAT.split()[0]):
-        raise LabError(f"{path} was written by another version ('{form}'): record the run again.")
-    raise LabError(f"{path} is not a recording of this lab: name another file.")
-
-
-def _open_closed_or_live(path: Path) -> h5py.File:
-    """Open in SWMR mode only what was never closed: HDF5 rereads a damaged file for ever in it.
-
-    A writer that opens or closes the file just now is waited for.
-    """
-    error: OSError | None = None
-    for _ in range(PATIENCE):
-        try:
-            return h5py.File(path, "r")
-        except BlockingIOError as locked:
-            error = locked
-        except OSError as open_elsewhere:
-            if "already open for write" not in str(open_elsewhere):
-                raise
-            with suppress(OSError):  # closed by now, or not yet in that mode
-                return h5py.File(path, "r", swmr=True)
-            error = open_elsewhere
-        time.sleep(A_MOMENT)
-    raise error
 
 
 def _status(text: str) -> np.ndarray:
@@ -543,33 +321,9 @@ def _writing(folder: Path) -> Iterator[None]:
         raise LabError(f"{folder} already holds a recording or is a file: choose another folder.") from error
     except (OSError, RuntimeError) as error:
         number = getattr(error, "errno", None)
-        reason = os.strerror(number) if number else _sentence(error)
+        reason = os.strerror(number) if number else sentence(error)
         remedy = "make room there" if number in FULL else "choose another folder"
         raise LabError(f"{folder} cannot be written ({reason}): {remedy}.") from error
-
-
-@contextmanager
-def _reading(path: Path) -> Iterator[None]:
-    try:
-        yield
-    except (OSError, RuntimeError, KeyError, ValueError, TypeError, AttributeError) as error:
-        raise LabError(f"{path} is damaged ({_sentence(error)}): record the run again.") from error
-
-
-def _table_shapes(worlds: int, count: int, parts: int) -> dict[str, dict[str, tuple[tuple[int, ...], str]]]:
-    """Shape of a row and kind of number of every data set that grows."""
-    time = {"time": ((), "f8")}
-    return {
-        "series": time | {name: ((worlds, *shape), "f8") for name, shape in SERIES.items()},
-        "frames": time
-        | {name: ((worlds, *shape), "f8") for name, shape in WORLD_FRAMES.items()}
-        | {"part": ((worlds, parts, 2), "f8")}
-        | {name: ((worlds, count, *shape), "f4") for name, shape in GRAIN_FRAMES.items()},
-    }
-
-
-def _row_bytes(shape: tuple[int, ...], kind: str) -> int:
-    return int(np.prod(shape, dtype=int)) * np.dtype(kind).itemsize
 
 
 def versions() -> dict[str, str]:
@@ -589,10 +343,3 @@ def _machine() -> dict[str, object]:
         "processor": platform.processor() or platform.machine(),
         "cores": os.cpu_count(),
     }
-
-
-def _sentence(error: BaseException) -> str:
-    """The first line of what an exception says, or its name."""
-    if isinstance(error, KeyboardInterrupt):
-        return "interrupted by the user"
-    return (str(error).strip().splitlines() or [type(error).__name__])[0]

@@ -1,0 +1,235 @@
+"""Reading recordings: the file checked as it is opened, arrays read when they are asked for."""
+
+import json
+import time
+from collections.abc import Iterator, Mapping
+from contextlib import ExitStack, contextmanager, suppress
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+from lab.errors import LabError
+from lab.recording.layout import A_MOMENT, FILE_NAME, FORMAT, PATIENCE, create_table, sentence, table_shapes
+
+
+class Recording:
+    """A recording opened for reading: a context manager; arrays are read when they are asked for.
+
+    path, folder; name: of the preset; given: its TOML text; preset: all its values in SI, nested as
+    in the TOML; status, created, versions, machine, step (s), wall_s, grain_steps;
+    radius (W, n) m; kind (W, n), 0 of the preset's material and further numbers in the order of its kinds;
+    outline (m, 2) m; fixed (k, 3) y, z, radius m; open_edges; parts, polylines (m, 2) m by name.
+    series: "time" (T,) s and the names of SERIES, whole arrays (T, W, ...).
+    frames: "time" (F,) s and the names of GRAIN_FRAMES and WORLD_FRAMES, (F, W, ...), read from the
+    file by indexing: `recording.frames["position"][-1]`.
+    Both end where the shortest of their arrays ends. Raises LabError when the file is missing,
+    foreign or damaged.
+    """
+
+    def __init__(self, path: Path | str) -> None:
+        self.path = Path(path)
+        if self.path.is_dir():
+            self.path = self.path / FILE_NAME
+        self.folder = self.path.parent
+        self._file = _open(self.path)
+        with ExitStack() as otherwise, _reading(self.path):
+            otherwise.callback(self._file.close)
+            attributes = dict(self._file.attrs)
+            self.name, status = str(attributes["preset"]), attributes["status"]
+            self.status = status.decode(errors="ignore") if isinstance(status, bytes) else str(status)
+            self.created = str(attributes["created"])
+            self.versions = json.loads(attributes["versions"])
+            self.machine = json.loads(attributes["machine"])
+            self.step, self.wall_s = float(attributes["step"]), float(attributes["wall_s"])
+            self.grain_steps = int(attributes["grain_steps"])
+            self.given = self._file["preset/given"].asstr()[()]
+            self.preset = json.loads(self._file["preset/resolved"].asstr()[()])
+            self.radius, self.kind = self._file["grains/radius"][:], self._file["grains/kind"][:]
+            tank = self._file["tank"]
+            self.outline, self.fixed = tank["outline"][:], tank["fixed"][:]
+            self.open_edges = tuple(int(edge) for edge in tank["open_edges"][:])
+            self.parts = {name: line[:] for name, line in tank["parts"].items()}
+            self._check_contents()
+            shapes = table_shapes(*self.radius.shape, len(self.parts))
+            self.series = Series(self._file["series"], shapes["series"], self.path)
+            self.frames = Frames(self._file["frames"], shapes["frames"], self.path)
+            otherwise.pop_all()  # all is well: it stays open
+
+    def _check_contents(self) -> None:
+        """Raises ValueError where something is not what a Recorder writes."""
+        worlds_and_grains = self.radius.shape
+        sound = {
+            "a number of its attributes": all(np.isfinite([self.step, self.wall_s])) and self.step > 0.0,
+            "attribute versions": isinstance(self.versions, dict),
+            "attribute machine": isinstance(self.machine, dict),
+            "preset/resolved": isinstance(self.preset, dict),
+            "grains/radius": _finite(self.radius, 2) and self.radius.size > 0 and self.radius.min() > 0.0,
+            "grains/kind": self.kind.shape == worlds_and_grains and self.kind.dtype == np.uint8,
+            "tank/outline": _finite(self.outline, 2, columns=2) and len(self.outline) > 2,
+            "tank/fixed": _finite(self.fixed, 2, columns=3),
+            "tank/open_edges": all(0 <= edge < len(self.outline) for edge in self.open_edges),
+            "tank/parts": all(_finite(line, 2, columns=2) and len(line) > 1 for line in self.parts.values()),
+        }
+        for name, is_sound in sound.items():
+            if not is_sound:
+                raise ValueError(f"{name} is not what the lab writes there")
+
+    @property
+    def worlds(self) -> int:
+        """W, the beds recorded side by side."""
+        return len(self.radius)
+
+    @property
+    def mean_diameter(self) -> np.ndarray:
+        """Mean grain diameter of each world (W,), m."""
+        return 2.0 * self.radius.mean(axis=1)
+
+    @property
+    def complete(self) -> bool:
+        """Whether the run came to its end."""
+        return self.status == "complete"
+
+    def layout(self, name: str) -> tuple[tuple[int, ...], np.dtype]:
+        """Shape and kind of a data set of the file as it lies there."""
+        with _reading(self.path):
+            return self._file[name].shape, self._file[name].dtype
+
+    def copy_into(self, file: h5py.File) -> None:
+        """Copy everything into an empty file, each table as far as all its arrays go."""
+        with _reading(self.path):
+            file.attrs.update(self._file.attrs)
+            for name in ("preset", "grains", "tank"):
+                self._file.copy(name, file)
+            for name, table in {"series": self.series, "frames": self.frames}.items():
+                table.copy_into(file.create_group(name))
+
+    def close(self) -> None:
+        """Close the file; what was not read before cannot be read any more."""
+        self._file.close()
+
+    def __enter__(self) -> "Recording":
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        self.close()
+
+
+class Frames(Mapping):
+    """The data sets of a group by name, each cut to the length that all of them have."""
+
+    def __init__(self, group: h5py.Group, names: Mapping, path: Path) -> None:
+        self._path = path
+        self._columns = {name: group[name] for name in names}
+        for name, (shape, kind) in names.items():
+            if self._columns[name].shape[1:] != shape or self._columns[name].dtype != kind:
+                raise ValueError(f"{group.name}/{name} is not what the lab writes there")
+        self._length = min(len(dataset) for dataset in self._columns.values())
+
+    def __getitem__(self, name: str) -> "Column":
+        return Column(self._columns[name], self._length, self._path)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._columns)
+
+    def __len__(self) -> int:
+        return len(self._columns)
+
+    def copy_into(self, group: h5py.Group) -> None:
+        """Copy the data sets into an empty group, in blocks."""
+        create_table(group, {name: (data.shape[1:], data.dtype.str) for name, data in self._columns.items()})
+        for name, data in self._columns.items():
+            copy = group[name]
+            copy.resize(self._length, axis=0)
+            for begin in range(0, self._length, copy.chunks[0]):
+                end = min(begin + copy.chunks[0], self._length)
+                copy[begin:end] = data[begin:end]
+
+
+class Series(Frames):
+    """As Frames, but whole arrays, read once and kept."""
+
+    def __init__(self, group: h5py.Group, names: Mapping, path: Path) -> None:
+        super().__init__(group, names, path)
+        self._read: dict[str, np.ndarray] = {}
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        if name not in self._read:
+            self._read[name] = super().__getitem__(name)[:]
+        return self._read[name]
+
+
+class Column:
+    """One data set, read by indexing its first axis with a number or a slice."""
+
+    def __init__(self, dataset: h5py.Dataset, length: int, path: Path) -> None:
+        self._dataset, self._path = dataset, path
+        self.shape = (length, *dataset.shape[1:])
+
+    def __len__(self) -> int:
+        return self.shape[0]
+
+    def __getitem__(self, index: int | slice) -> np.ndarray:
+        whole = range(len(self))
+        rows = slice(*index.indices(len(self))) if isinstance(index, slice) else whole[index]
+        with _reading(self._path):
+            return self._dataset[rows]
+
+
+def _finite(array: np.ndarray, axes: int, columns: int | None = None) -> bool:
+    """Whether an array holds finite numbers, along so many axes, the last of that length."""
+    right = array.ndim == axes and columns in (None, array.shape[-1]) and array.dtype.kind in "fiu"
+    return bool(right and np.isfinite(array).all())
+
+
+def open_recording(path: Path | str) -> Recording:
+    """Open a recording, given as its file or its run's folder. Raises LabError (see Recording)."""
+    return Recording(path)
+
+
+def _open(path: Path) -> h5py.File:
+    if not path.is_file():
+        raise LabError(f"{path} does not exist: name a recording or the folder of a run.")
+    try:
+        file = _open_closed_or_live(path)
+    except PermissionError as error:
+        raise LabError(f"{path} may not be read: ask for the right to read it.") from error
+    except OSError as error:
+        raise LabError(f"{path} cannot be read as a recording: it is cut short or another kind of file.") from error
+    with _reading(path):
+        form = file.attrs.get("format")
+    if form == FORMAT:
+        return file
+    file.close()
+    if str(form).startswith(FORMAT.split()[0]):
+        raise LabError(f"{path} was written by another version ('{form}'): record the run again.")
+    raise LabError(f"{path} is not a recording of this lab: name another file.")
+
+
+def _open_closed_or_live(path: Path) -> h5py.File:
+    """Open in SWMR mode only what was never closed: HDF5 rereads a damaged file for ever in it.
+
+    A writer that opens or closes the file just now is waited for.
+    """
+    error: OSError | None = None
+    for _ in range(PATIENCE):
+        try:
+            return h5py.File(path, "r")
+        except BlockingIOError as locked:
+            error = locked
+        except OSError as open_elsewhere:
+            if "already open for write" not in str(open_elsewhere):
+                raise
+            with suppress(OSError):  # closed by now, or not yet in that mode
+                return h5py.File(path, "r", swmr=True)
+            error = open_elsewhere
+        time.sleep(A_MOMENT)
+    raise error
+
+
+@contextmanager
+def _reading(path: Path) -> Iterator[None]:
+    try:
+        yield
+    except (OSError, RuntimeError, KeyError, ValueError, TypeError, AttributeError) as error:
+        raise LabError(f"{path} is damaged ({sentence(error)}): record the run again.") from error
