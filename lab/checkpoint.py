@@ -14,7 +14,7 @@ from zipfile import BadZipFile
 
 import numpy as np
 
-from lab.errors import LabError
+from lab.errors import LabError, Useless
 
 FORMAT = "cargo-shift-lab checkpoint 1"
 FILE_NAME = "checkpoint.npz"
@@ -50,10 +50,6 @@ class Checkpoint:
             with suppress(OSError):
                 unfinished.unlink(missing_ok=True)
             raise LabError(f"{path} cannot be written ({os.strerror(error.errno)}): make room there.") from error
-
-
-class Useless(LabError):
-    """A checkpoint that no run can go on from."""
 
 
 def read_checkpoint(folder: Path) -> Checkpoint | None:

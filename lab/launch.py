@@ -15,7 +15,8 @@ from pathlib import Path
 import numpy as np
 
 from lab.beds import settled, settling
-from lab.checkpoint import Checkpoint, Useless, remove_checkpoint
+from lab.checkpoint import Checkpoint, remove_checkpoint
+from lab.errors import Useless
 from lab.interrupt import Interrupt
 from lab.presets import LoadedPreset
 from lab.progress import Progress

@@ -9,8 +9,8 @@ from functools import cached_property
 from pathlib import Path
 
 from lab.checkpoint import FILE_NAME as CHECKPOINT
-from lab.checkpoint import Checkpoint, Useless, read_checkpoint, remove_checkpoint
-from lab.errors import LabError
+from lab.checkpoint import Checkpoint, read_checkpoint, remove_checkpoint
+from lab.errors import LabError, Useless
 from lab.launch import Run, launch, prepare
 from lab.lock import only_one
 from lab.measures import measure_all
@@ -89,8 +89,11 @@ def resume_run(folder: Path | str, *, video: bool = True, quiet: bool = False) -
 
 
 def recorded_preset(recording: Recording) -> LoadedPreset:
-    """The preset of a recording, ready to run again."""
-    resolved = Resolved.model_validate_json(json.dumps(recording.preset))
+    """The preset of a recording, ready to run again. Raises Useless where it is none."""
+    try:
+        resolved = Resolved.model_validate_json(json.dumps(recording.preset))
+    except ValueError as error:
+        raise Useless(f"{recording.path} holds no preset that this version can run: start the run anew.") from error
     return LoadedPreset(recording.name, recording.given, resolved)
 
 

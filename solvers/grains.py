@@ -60,11 +60,14 @@ class Grains:
         return whole
 
     def place(self, position: np.ndarray) -> None:
-        """Put the grains at `position` (W, n, 2) m, at rest and without history."""
+        """Put the grains at `position` (W, n, 2) m, all present, at rest and without history."""
         for field, axis in ((self.y, 0), (self.z, 1)):
             values = self._filled(position[..., axis], self.fixed[:, axis], FAR)
             field.from_numpy(values.astype(np.float32) if field.dtype == ti.f32 else values)
         self.angle.fill(0.0)
+        if self.may_leave:
+            self.present.fill(1.0)
+            self.spilled.fill(0.0)
         self.launch(np.zeros_like(position), np.zeros(position.shape[:2]))
 
     def launch(self, velocity: np.ndarray, spin: np.ndarray) -> None:

@@ -55,6 +55,7 @@ class Simulation:
         self.origin = 0.0  # what the tank's motion takes for the time at step 0
         self.unkicked = 0  # the step that is the grains' first
         self.observed, self.load = 0, dict.fromkeys(LOAD, np.zeros(worlds))  # when last, and what the load was
+        self.number = np.tile(np.arange(count), (worlds, 1))  # the grains' own, in solver order
         self._build()
         self.place(np.asarray(position, dtype=np.float64).reshape(worlds, count, 2), scene.velocity, scene.spin)
 
@@ -86,18 +87,23 @@ class Simulation:
 
     def place(self, position: np.ndarray, velocity: np.ndarray | None = None, spin: np.ndarray | None = None) -> None:
         """Put the grains somewhere, (W, n, 2) m, without history: at rest, or at (W, n, 2) m/s and (W, n) rad/s."""
+        position = self._in_solver_order(position)
         self.grains.place(position)
         self.neighbours.forget()
-        self.number = np.tile(np.arange(position.shape[1]), (len(position), 1))  # the grains' own, in solver order
         self.ordered = position.copy()  # where they were when they got their places in the arrays
         self.launch(velocity, spin)
 
     def launch(self, velocity: np.ndarray | None = None, spin: np.ndarray | None = None) -> None:
         """Set the grains' velocities (W, n, 2) m/s and spins (W, n) rad/s; None is rest."""
         velocity = np.zeros((*self.scene.radius.shape, 2)) if velocity is None else velocity
-        self.grains.launch(velocity, np.zeros(self.scene.radius.shape) if spin is None else spin)
+        spin = np.zeros(self.scene.radius.shape) if spin is None else spin
+        self.grains.launch(self._in_solver_order(velocity), self._in_solver_order(spin))
         self.mover.rest()
         self.unkicked = self.observed = self.steps
+
+    def _in_solver_order(self, values: np.ndarray) -> np.ndarray:
+        """Values (W, n, …) of the grains by their own numbers, as the arrays hold them."""
+        return values[np.arange(self.scene.worlds)[:, None], self.number]
 
     def _make_room(self) -> None:
         """Double the room of the contact lists; what the worlds hold stays as it is."""

@@ -13,7 +13,7 @@ AFTER_Y, AFTER_Z = LENGTH, TWO_SIDED  # of a corner
 MOVE = 4  # where a part's parameters have its move (y, z; m)
 SHIFT = 4  # numbers a moving part: its displacement (m) and its velocity (m/s)
 BEYOND = 0.5  # how far beyond an open tank grains that have left it are followed, in its own width and height
-CHIMNEY = 5.0  # how far above an open edge a grain still counts as in the tank, in the tank's size
+CHIMNEY = 5.0  # how far above its mouth a grain still counts as in the tank, in the tank's size
 
 
 @ti.data_oriented
@@ -152,7 +152,7 @@ class Walls:
 
     @ti.func
     def holds(self, y, z):
-        """Whether a point lies in the tank or above its open edges (even–odd rule)."""
+        """Whether a point lies in the tank or above its mouth (even–odd rule)."""
         inside = False
         for k in range(self.mouth_edges):
             ay, az, by, bz = self.mouth[k, 0], self.mouth[k, 1], self.mouth[k, 2], self.mouth[k, 3]
@@ -206,13 +206,13 @@ def _plate(part: Part, number: int) -> _Features:
 
 
 def _with_chimneys(outline: np.ndarray, open_edges: Sequence[int]) -> np.ndarray:
-    """The outline with a long shaft raised on each open edge: what is above the mouth has not been spilled."""
+    """The outline with a shaft raised on each open edge that faces up: what is above the mouth has not been spilled."""
     size = CHIMNEY * float(np.ptp(outline, axis=0).max())
     points = []
     for k, corner in enumerate(outline):
         points.append(corner)
-        if k in open_edges:
-            along = _direction(outline, k)
+        along = _direction(outline, k)
+        if k in open_edges and along[0] < 0.0:
             out = size * np.array([along[1], -along[0]])
             points += [corner + out, outline[(k + 1) % len(outline)] + out]
     return np.array(points)

@@ -9,7 +9,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from lab.errors import LabError
+from lab.errors import LabError, Useless
 from lab.recording.layout import A_MOMENT, FILE_NAME, FORMAT, PATIENCE, create_table, sentence, table_shapes
 
 
@@ -196,12 +196,16 @@ def _open(path: Path) -> h5py.File:
         raise LabError(f"{path} may not be read: ask for the right to read it.") from error
     except OSError as error:
         raise LabError(f"{path} cannot be read as a recording: it is cut short or another kind of file.") from error
-    with _reading(path):
-        form = file.attrs.get("format")
+    try:
+        with _reading(path):
+            form = str(file.attrs.get("format"))
+    except LabError:
+        file.close()
+        raise
     if form == FORMAT:
         return file
     file.close()
-    if str(form).startswith(FORMAT.split()[0]):
+    if form.startswith(FORMAT.split()[0]):
         raise LabError(f"{path} was written by another version ('{form}'): record the run again.")
     raise LabError(f"{path} is not a recording of this lab: name another file.")
 
@@ -232,4 +236,4 @@ def _reading(path: Path) -> Iterator[None]:
     try:
         yield
     except (OSError, RuntimeError, KeyError, ValueError, TypeError, AttributeError) as error:
-        raise LabError(f"{path} is damaged ({sentence(error)}): record the run again.") from error
+        raise Useless(f"{path} is damaged ({sentence(error)}): record the run again.") from error

@@ -508,7 +508,6 @@ ARRAYS = [np.zeros(0), np.zeros((0, 0)), np.zeros(3), np.zeros((2, 2, 2)), np.fu
 VALUES = st.sampled_from(["", "{}", "[]", "null", "nan", "é", 0, -1, 1e300, float("nan"), *ARRAYS])
 
 
-@pytest.mark.slow
 @often
 def test_recordings_of_other_contents_are_refused(idle, unpainted, recorded, tmp_path, times):
     @examples(60 * times)

@@ -1,7 +1,6 @@
 """Plates that move in the tank: collisions with them, a gate that holds a bed, a floor that drops away."""
 
 from dataclasses import dataclass
-
 from itertools import pairwise
 
 import numpy as np
