@@ -4,7 +4,6 @@ What a run's recording holds does not depend on the company: it has the same bit
 """
 
 import json
-import re
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack
@@ -32,7 +31,6 @@ from solvers.simulation import Simulation
 # Steps of a call of the solver, times the grains of a world: so long Ctrl-C waits, some tenths of a second for each
 # world on a core. It must not depend on the company or on the clock: between calls grains may get their numbers anew.
 A_CALL = 2_000_000
-WORLD = re.compile(r"\bworld (\d+)\b")  # how the watch names the world that it stopped
 
 
 @dataclass(frozen=True)
@@ -233,19 +231,17 @@ class Launch:
 
     def _leave_out(self, error: BadState) -> None:
         """Close the recording of the run that the watch has stopped, and go on with the others' worlds."""
-        world = int(WORLD.search(str(error))[1])
         slices = list(self._worlds())
-        out = next(k for k, worlds in enumerate(slices) if worlds.start <= world < worlds.stop)
-        own = BadState(WORLD.sub(f"world {world - slices[out].start}", str(error), count=1))
+        out = next(k for k, worlds in enumerate(slices) if worlds.start <= error.world < worlds.stop)
+        own = BadState(error.world - slices[out].start, error.what)
         run, recorder = self.runs.pop(out), self._recorders.pop(out)
         recorder.close(f"stopped: {own}")
         self.stopped[run.folder] = own
         if self.runs and self._simulation:
-            before, all_worlds = self._simulation.state(), slices[-1].stop
+            before = self._simulation.state()
             self._simulation.close()
             self._simulation = self._simulate(self._scene(), self._position())
-            state = _without(before, self._simulation.state(), all_worlds, slices[out])
-            self._simulation.restore(state)
+            self._simulation.restore(_without(before, self._simulation.state(), slices[-1].stop, slices[out]))
 
 
 def _without(

@@ -2,7 +2,14 @@
 
 
 class BadState(RuntimeError):
-    """A running simulation reached a state that is no longer physics; the message is one sentence with the remedy."""
+    """A running simulation reached a state that is no longer physics; the message is one sentence with the remedy.
+
+    `world` is the number of the world in the simulation, `what` the sentence without it.
+    """
+
+    def __init__(self, world: int, what: str):
+        super().__init__(f"world {world}: {what}")
+        self.world, self.what = world, what
 
 
 class Unavailable(ValueError):

@@ -17,8 +17,9 @@ def report_speed(status: np.ndarray, velocity: np.ndarray, time: np.ndarray, dt:
         speed = np.linalg.norm(velocity[w], axis=1).max()
         what = f"a grain moves at {speed:.3g} m/s" if np.isfinite(speed) else "a grain's speed is not a number"
         raise BadState(
-            f"world {w}: {what} at t = {time[w]:.4g} s, too fast for the step of {dt:.3g} s; "
-            "use a smaller run.step or check the motion's amplitude."
+            w,
+            f"{what} at t = {time[w]:.4g} s, too fast for the step of {dt:.3g} s; "
+            "use a smaller run.step or check the motion's amplitude.",
         )
 
 
@@ -29,11 +30,13 @@ def check_state(deepest: np.ndarray, escaped: np.ndarray, time: float) -> None:
     """
     for w in np.flatnonzero(escaped >= 0):
         raise BadState(
-            f"world {w}: grain {escaped[w]} left the tank by t = {time:.4g} s; "
-            "use a smaller run.step or a larger contact.stiffness_scale."
+            w,
+            f"grain {escaped[w]} left the tank by t = {time:.4g} s; "
+            "use a smaller run.step or a larger contact.stiffness_scale.",
         )
     for w in np.flatnonzero(~(deepest <= DEEPEST_OVERLAP)):
         raise BadState(
-            f"world {w}: grains overlap by {100 * deepest[w]:.3g} % of a radius at t = {time:.4g} s, "
-            "too soft for these impacts; use a larger contact.stiffness_scale."
+            w,
+            f"grains overlap by {100 * deepest[w]:.3g} % of a radius at t = {time:.4g} s, "
+            "too soft for these impacts; use a larger contact.stiffness_scale.",
         )

@@ -170,7 +170,7 @@ def test_bad_sweeps_and_folders_are_one_sentence_too(arguments):
     [
         (LabError("no\nsuch thing."), 2, "no such thing."),
         (Unavailable("no such device."), 2, "no such device."),
-        (BadState("grain 3 left the tank at 0.2 s."), 1, "grain 3 left the tank at 0.2 s."),
+        (BadState(0, "grain 3 left the tank at 0.2 s."), 1, "world 0: grain 3 left the tank at 0.2 s."),
         (KeyboardInterrupt(), 130, "interrupted; what was written until then is kept."),
         (KeyboardInterrupt("interrupted at 1 s; go on"), 130, "interrupted at 1 s; go on"),
         (OSError(errno.ENOSPC, "No space left on device", "/full/recording.h5"), 2,
