@@ -307,3 +307,54 @@ def explain(preset: str, overrides: dict) -> None:
     from lab.presets import load
 
     click.echo(explained(load(preset, overrides)))
+
+
+page_option = click.option(
+    "--out",
+    type=click.Path(path_type=Path, file_okay=False),
+    metavar="DIR",
+    default=Path("renders/bench"),
+    show_default=True,
+    help="Folder of the page and its figures.",
+)
+fast_option = click.option("--fast", is_flag=True, help="Only what takes seconds.")
+
+
+@main.command()
+@click.argument("cases", nargs=-1)
+@page_option
+@fast_option
+def verify(cases: tuple[str, ...], out: Path, fast: bool) -> None:
+    """Compare small scenes with closed forms, independent integrations and published numbers.
+
+    \b
+    cargolab verify                     all CASES, and a page with a table and figures
+    cargolab verify --fast
+    cargolab verify oblique incline     those whose names begin like this
+    """
+    from lab.verify import run_cases
+
+    if not run_cases(cases, out, fast):
+        sys.exit(1)
+
+
+@main.group()
+def bench() -> None:
+    """Measure what the lab's numbers cost and how far to trust them; each writes a page with tables and figures."""
+
+
+@bench.command()
+@click.argument("cases", nargs=-1)
+@page_option
+@fast_option
+def stability(cases: tuple[str, ...], out: Path, fast: bool) -> None:
+    """Hard cases at the automatic step and far beyond it: still right, or stopped with a sentence.
+
+    \b
+    cargolab bench stability
+    cargolab bench stability impact column
+    """
+    from lab.bench.stability import run_cases
+
+    if not run_cases(cases, out, fast):
+        sys.exit(1)

@@ -1,0 +1,75 @@
+"""A page of results: Markdown with tables and figures beside it, such as `cargolab bench` and `cargolab verify` write."""
+
+import platform
+from collections.abc import Sequence
+from pathlib import Path
+
+import matplotlib
+from matplotlib.figure import Figure
+
+from lab.plots import STYLE
+from lab.recording import versions
+from solvers.runtime import available_cores
+
+
+class Page:
+    """NAME.md in a folder, made if missing, and its figures NAME-FIGURE.png; `write` leaves it on the disk."""
+
+    def __init__(self, folder: Path | str, name: str, title: str) -> None:
+        self.folder, self.name = Path(folder), name
+        self.folder.mkdir(parents=True, exist_ok=True)
+        self._blocks = [f"# {title}", f"Made by `cargolab {title_command(name)}` on {machine()}."]
+
+    def section(self, title: str) -> None:
+        """Begin a section."""
+        self._blocks.append(f"## {title}")
+
+    def say(self, text: str) -> None:
+        """Add a paragraph."""
+        self._blocks.append(" ".join(text.split()))
+
+    def table(self, header: Sequence[str], rows: Sequence[Sequence[object]]) -> None:
+        """Add a table; numbers are written with three digits unless they come as text."""
+        lines = [header, ["---"] * len(header), *rows]
+        self._blocks.append("\n".join(f"| {' | '.join(_cell(cell) for cell in line)} |" for line in lines))
+
+    def figure(self, name: str, figure: Figure, caption: str) -> Path:
+        """Save a figure beside the page and show it there."""
+        path = self.folder / f"{self.name}-{name}.png"
+        with matplotlib.rc_context(STYLE):
+            figure.savefig(path, dpi=130)
+        self._blocks.append(f"![{caption}]({path.name})")
+        return path
+
+    def write(self) -> Path:
+        """Write the page; returns its file."""
+        path = self.folder / f"{self.name}.md"
+        path.write_text("\n\n".join(self._blocks) + "\n", encoding="utf-8")
+        return path
+
+
+def title_command(name: str) -> str:
+    """The command that makes the page of a name: verify, or one of the benches."""
+    return name if name == "verify" else f"bench {name}"
+
+
+def machine() -> str:
+    """What computes, in words."""
+    found = versions()
+    cores, system = available_cores(), f"Python {found['python']}, Taichi {found.get('taichi', '?')}"
+    return f"{cores} core{'s' if cores > 1 else ''} of {_processor()} ({system})"
+
+
+def _processor() -> str:
+    try:
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
+    except OSError:
+        return platform.processor() or platform.machine()
+    names = [line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")]
+    return names[0] if names else platform.machine()
+
+
+def _cell(value: object) -> str:
+    if isinstance(value, float):
+        return f"{value:.3g}"
+    return str(value).replace("|", "\\|")
