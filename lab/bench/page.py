@@ -1,4 +1,4 @@
-"""A page of results: Markdown with tables and figures beside it, such as `cargolab bench` and `cargolab verify` write."""
+"""A page of results, Markdown with tables and figures beside it, as `cargolab bench` and `cargolab verify` write it."""
 
 import platform
 from collections.abc import Sequence
