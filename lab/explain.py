@@ -1,5 +1,6 @@
 """What a preset is, what it switches on and what it will cost, before it runs."""
 
+from lab.accuracy import LEVELS
 from lab.presets import LoadedPreset
 from lab.scene import build
 from lab.units import show
@@ -29,6 +30,7 @@ def explain(loaded: LoadedPreset) -> str:
     blocks = [
         f"{preset.title}  ({loaded.name})",
         _section("Scene", _scene(preset, scene)),
+        _section("Accuracy", _accuracy(preset)),
         _section("Step", _step(scene)),
         _section("Compiled in", _parts(simulation)),
         _section("Cost", _cost(preset, scene, simulation)),
@@ -53,7 +55,6 @@ def _scene(preset, scene) -> list[tuple[str, str]]:
         ("grains", f"{count} in each, {show(small, 'm')} to {show(large, 'm')}"),
         ("bed", _bed(preset)),
         ("tank", _tank(preset, scene)),
-        ("Young's moduli", f"times {scene.stiffness_scale:g} of the material's"),
         ("friction", f"{pair.friction:g} between grains, {wall.friction:g} on walls"),
         ("dissipative time", f"{show(pair.dissipative_time, 's')} between grains, at this stiffness"),
     ]
@@ -89,6 +90,18 @@ def _tank(preset, scene) -> str:
 def _motion(name: str, motion, soft_start: float) -> str:
     speed = motion.fastest(soft_start)
     return f"{name}, up to {show(speed, 'rad/s' if motion.coordinate == 'turn' else 'm/s')}"
+
+
+def _accuracy(preset) -> list[tuple[str, str]]:
+    """The level, and what it sets where the preset does not."""
+    level, scale = LEVELS[preset.run.accuracy], preset.contact.stiffness_scale
+    own = "; the preset's own" if scale != level.stiffness_scale else ""
+    step = f"{level.longer_steps:g} times the derived one" if level.longer_steps != 1.0 else "the derived one"
+    return [
+        ("level", f"{preset.run.accuracy}: {level.error}"),
+        ("Young's moduli", f"times {scale:g} of the material's{own}"),
+        ("step", step if preset.run.step == "auto" else "the preset's own"),
+    ]
 
 
 def _step(scene) -> list[tuple[str, str]]:

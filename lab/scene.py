@@ -4,6 +4,7 @@ from math import ceil
 
 import numpy as np
 
+from lab.accuracy import LEVELS
 from lab.errors import LabError
 from lab.schema import Resolved
 from lab.units import show
@@ -47,8 +48,9 @@ def filling_outline(preset: Resolved) -> np.ndarray:
 def build(preset: Resolved) -> tuple[Scene, np.ndarray]:
     """The scene of all repeats and positions (W, n, 2) m to settle from; repeat w has the seed run.seed + w.
 
-    The positions lie within `filling_outline`. The step divides the sampling interval of the series, so samples fall
-    on steps. Raises LabError where the grains do not fit or a given step is past the limit.
+    The positions lie within `filling_outline`. The step, by the level of accuracy unless given, divides the sampling
+    interval of the series, so samples fall on steps. Raises LabError where the grains do not fit or a given step is
+    past the limit.
     """
     radius, position, motion = _listed(preset) if preset.grains.listed else _filled(preset)
     low, high = preset.grains.range
@@ -127,9 +129,9 @@ def _listed(preset: Resolved) -> tuple[np.ndarray, np.ndarray, dict]:
 
 
 def _step(preset: Resolved, scene: Scene) -> float:
-    limit = scene.step_limits()[0]
-    wanted = limit.step if preset.run.step == "auto" else preset.run.step
-    if wanted > limit.step and not preset.run.force_step:
+    limit, run = scene.step_limits()[0], preset.run
+    wanted = LEVELS[run.accuracy].longer_steps * limit.step if run.step == "auto" else run.step
+    if run.step != "auto" and run.step > limit.step and not run.force_step:
         raise LabError(
             f"run.step: {show(wanted, 's')} is past the limit of {show(limit.step, 's')} ({limit.reason}); "
             "leave it out, or set run.force_step = true."

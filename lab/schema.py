@@ -14,6 +14,7 @@ from typing import Annotated, Literal, get_type_hints
 import numpy as np
 from pydantic import BaseModel, ConfigDict
 
+from lab.accuracy import DEFAULT, LEVELS
 from lab.bed_file import read_bed
 from lab.errors import LabError
 from lab.history import HistoryGiven, check_end, check_start, read_history
@@ -159,7 +160,7 @@ class Contact:
     normal: Literal[*NORMAL] = "hertz-viscoelastic"
     tangential: Literal[*TANGENTIAL] = "haff-werner"
     rolling: Literal[*ROLLING] = "none"
-    stiffness_scale: Annotated[float, Interval(gt=0, le=1)] = 1.0
+    stiffness_scale: Annotated[float, Interval(gt=0, le=1)] | None = None  # None: as run.accuracy has it
 
 
 @dataclass(frozen=True)
@@ -199,6 +200,7 @@ class Run:
     settle: bool = True
     step: Annotated[float, Unit("s"), Interval(gt=0, le=1.0)] | Literal["auto"] = "auto"
     force_step: bool = False
+    accuracy: Literal[*LEVELS] = DEFAULT
     gravity: Annotated[float, Unit("m/s^2"), Interval(gt=0)] = 9.81
     settle_limit: Time = 5.0
     rest: Annotated[float, Interval(gt=0)] = 1e-6
@@ -299,7 +301,7 @@ def resolve(table: Mapping) -> Resolved:
         material=given.material,
         wall=_over(given.material, given.wall),
         kinds=_kinds(given.kinds, given.material),
-        contact=given.contact,
+        contact=_contact(given.contact, run),
         motion=motion,
         parts=given.parts,
         run=run,
@@ -459,6 +461,11 @@ def _motion(given: MotionGiven) -> Motion:
     history = read_history(given.history)
     check_start(history, given.soft_start)
     return Motion(**kept, history=history)
+
+
+def _contact(given: Contact, run: Run) -> Contact:
+    """The contact laws, the stiffness by the level of accuracy where it is not given."""
+    return given if given.stiffness_scale else replace(given, stiffness_scale=LEVELS[run.accuracy].stiffness_scale)
 
 
 def _duration(run: Run, motion: Motion) -> float:
