@@ -344,6 +344,22 @@ def bench() -> None:
 
 
 @bench.command()
+@click.argument("studies", nargs=-1)
+@page_option
+@fast_option
+def accuracy(studies: tuple[str, ...], out: Path, fast: bool) -> None:
+    """Error against cost: integrator, step, stiffness, precision, tilt rate, laws, repeats; why the defaults are so.
+
+    \b
+    cargolab bench accuracy                an hour or two on two cores; asked again, it goes on
+    cargolab bench accuracy stiffness rate
+    """
+    from lab.bench.accuracy import run_page
+
+    click.echo(run_page(studies, out, fast))
+
+
+@bench.command()
 @click.argument("cases", nargs=-1)
 @page_option
 @fast_option

@@ -1,0 +1,82 @@
+"""What a verification consists of: cases, and the lines of results that they give."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from math import isfinite
+
+from matplotlib.figure import Figure
+
+
+@dataclass(frozen=True)
+class Line:
+    """One quantity beside its reference, both in `unit`.
+
+    `source` says where the reference comes from: a closed form, an integration apart from the solver, a publication.
+    The error is relative to the reference, or where `relative` is false a difference; `reason` says why the
+    `tolerance` is what it is.
+    """
+
+    quantity: str
+    value: float
+    reference: float
+    source: str
+    tolerance: float
+    reason: str
+    unit: str = ""
+    relative: bool = True
+
+    @property
+    def error(self) -> float:
+        """How far the value is from its reference, with its sign."""
+        return self.value / self.reference - 1.0 if self.relative else self.value - self.reference
+
+    @property
+    def passed(self) -> bool:
+        """Whether the error is within the tolerance."""
+        return isfinite(self.error) and abs(self.error) <= self.tolerance
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A figure of the page and what it shows; the page's files are named after it."""
+
+    name: str
+    figure: Figure
+    caption: str
+
+
+@dataclass
+class Found:
+    """What a case gives: its lines, and what the page shows and says besides."""
+
+    lines: Sequence[Line]
+    pictures: Sequence[Picture] = ()
+    notes: Sequence[str] = ()
+
+
+@dataclass(frozen=True)
+class Case:
+    """A named comparison under a heading of the page.
+
+    `check(fast)` carries it out, the part that takes seconds if `fast`; a case without such a part is not `quick`.
+    """
+
+    name: str
+    section: str
+    title: str
+    check: Callable[[bool], Found]
+    quick: bool = True
+
+
+@dataclass
+class Outcome:
+    """A case that has run: what it found, or why it was cut short."""
+
+    case: Case
+    found: Found = field(default_factory=lambda: Found([]))
+    fault: str = ""
+
+    @property
+    def passed(self) -> bool:
+        """Whether it ran to its end and every line is within its tolerance; a case without lines has shown nothing."""
+        return not self.fault and bool(self.found.lines) and all(line.passed for line in self.found.lines)
