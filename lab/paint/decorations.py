@@ -68,6 +68,16 @@ def ticks(low: float, high: float, most: int) -> list[float]:
     return [float(place) for place in places if low - slack <= place <= high + slack]
 
 
+def clear_ticks(low: float, high: float, width: float, face: ImageFont.FreeTypeFont) -> list[float]:
+    """Round numbers between low and high, so few that they stand well apart on `width` pixels."""
+    for most in (5, 4, 3, 2, 1):
+        places = ticks(low, high, most)
+        widest = max((face.getlength(plain(place)) for place in places), default=0.0)
+        if len(places) < 2 or width * (places[1] - places[0]) / (high - low) > 1.9 * widest:
+            break
+    return places
+
+
 def round_length(longest: float) -> float:
     """The longest of 1, 2, 5, 10, 20 ... (m) that is not longer than `longest`."""
     power = 10.0 ** np.floor(np.log10(longest))
@@ -100,7 +110,7 @@ def draw_colour_bar(image: Image.Image, box: tuple, colouring: Colouring, size: 
     bar = np.tile(colouring.table[columns].astype(np.uint8), (lower - upper, 1, 1))
     image.paste(Image.fromarray(bar), (left, upper))
     low, high = colouring.low, colouring.high
-    places = colouring.ticks or {place: plain(place) for place in ticks(low, high, 5)}
+    places = colouring.ticks or {place: plain(place) for place in clear_ticks(low, high, right - left, font(size))}
     for place, text in places.items():
         x = left + (right - left) * (place - low) / (high - low)
         half = font(size).getlength(text) / 2
@@ -179,14 +189,11 @@ class LivePlot:
             y = self._place(np.array([[self._low[0], value]]))[0, 1]
             draw.line([(left, y), (right, y)], fill=GRID, width=thin)
             draw.text((left - 0.4 * self._text, y), plain(value), QUIET, face, anchor="rm")
-        free = 0.0  # where the last label ended
-        for value in ticks(self._low[0], self._high[0], 5):
+        for value in clear_ticks(self._low[0], self._high[0], right - left, face):
             x, half = self._place(np.array([[value, self._low[1]]]))[0, 0], face.getlength(plain(value)) / 2
             draw.line([(x, bottom), (x, bottom + 0.3 * self._text)], fill=LINE, width=thin)
             text_x = min(x, self._image.width - half)
-            if text_x - half > free:  # labels must not touch
-                draw.text((text_x, bottom + 0.5 * self._text), plain(value), QUIET, face, anchor="ma")
-                free = text_x + half + 0.4 * self._text
+            draw.text((text_x, bottom + 0.5 * self._text), plain(value), QUIET, face, anchor="ma")
         draw.line([(left, top), (left, bottom), (right, bottom)], fill=LINE, width=thin)
 
 

@@ -257,16 +257,18 @@ class Film:
         """Clock, tilt, displacement and gravity in the column, names above the beds."""
         draw = ImageDraw.Draw(image)
         left, right = self._column()
-        top, face = self._u(MARGIN), deco.font(READING * self._unit)
+        top, width = self._u(MARGIN), right - left
         readings = [f"t = {deco.number(self.time[frame], 2)} s"]
         if self._together:
             readings += [f"{name} {value}" for name, value in self._pose_readings(frame, 0)]
             if self._look.frame == "tank":
                 dial = deco.gravity_dial(self._u(5.6), float(self._pose[frame, 0, 2]))
                 image.paste(dial, (right - dial.width, top))
+                width -= dial.width + self._u(0.5)
         for line, reading in enumerate(readings):
             place = left, top + line * self._u(1.75 * READING)
-            draw.text(place, reading, deco.INK, face, anchor="la")
+            text, face = deco.fitted(reading, width, READING * self._unit)
+            draw.text(place, text, deco.INK, face, anchor="la")
         if self._named:
             self._draw_names(draw, frame)
 

@@ -15,10 +15,12 @@ def sphere_mass(radius: float, density: float) -> float:
     return 4.0 / 3.0 * pi * radius**3 * density
 
 
-def hertz_stiffness(young: float, poisson: float, radius: float, rigid: bool = False) -> float:
-    """k (N/m^1.5) of F = k ξ^(3/2), (4/3) E* √R_eff (Johnson 1985, eq. 4.22), of two equal materials or with a rigid
-    one."""
-    return 4.0 / 3.0 * young / (1.0 - poisson**2) / (1.0 if rigid else 2.0) * sqrt(radius)
+def hertz_stiffness(young: float, poisson: float, radius: float, other: float | None = None) -> float:
+    """k (N/m^1.5) of F = k ξ^(3/2), (4/3) E* √R_eff (Johnson 1985, eq. 4.22), of two solids with one Poisson ratio.
+
+    `other` is the second one's Young's modulus (Pa), None: the same.
+    """
+    return 4.0 / 3.0 * sqrt(radius) / ((1.0 - poisson**2) * (1.0 / young + 1.0 / (other or young)))
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from lab.scene import build
 from solvers.scene import Scene
 from solvers.simulation import Simulation
 
-WEIGHTLESS = 1e-30  # m/s²: a preset wants some gravity
+WEIGHTLESS = 1e-15  # m/s²: a preset wants some gravity, and takes no less
 UNITS = {
     "width": "m",
     "height": "m",

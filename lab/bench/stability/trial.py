@@ -6,6 +6,7 @@ import numpy as np
 
 from solvers.errors import BadState
 from solvers.materials import hertz_stiffness
+from solvers.observe import Observer
 from solvers.scene import Scene
 from solvers.simulation import Simulation
 
@@ -31,10 +32,19 @@ class Trial:
         return self.scene.radius.shape[1]
 
     @property
+    def mass(self) -> np.ndarray:
+        """Masses (n,) kg."""
+        return 4.0 / 3.0 * np.pi * self.scene.radius[0] ** 3 * self.scene.density[0]
+
+    @property
+    def weight(self) -> float:
+        """Weight (N) of all grains."""
+        return float(self.mass.sum() * self.scene.gravity)
+
+    @property
     def depth(self) -> float:
         """Height (m) of the centre of mass above the tank's lowest point at the start."""
-        mass = self.scene.radius[0] ** 3 * self.scene.density[0]
-        return float(mass @ self.position[:, 1] / mass.sum() - self.scene.outline[:, 1].min())
+        return float(self.mass @ self.position[:, 1] / self.mass.sum() - self.scene.outline[:, 1].min())
 
 
 @dataclass(frozen=True)
@@ -79,12 +89,13 @@ class _Look:
 
 def follow(run: Simulation, trial: Trial, step: float) -> Course:
     """Run a trial from its start with steps of `step` s until it ends or the watch stops it."""
-    _begin(run, trial, AN_INSTANT)
-    run.advance(1)
-    looks, work, stopped = [_look(run)], [0.0], None
-    _begin(run, trial, step)
+    looks, work, stopped = [], [0.0], None
     targets = np.unique(np.ceil(np.linspace(0.0, trial.duration / step, trial.looks + 1)[1:]).astype(int))
     try:
+        _begin(run, trial, AN_INSTANT)
+        run.advance(1)
+        looks.append(_look(run))
+        _begin(run, trial, step)
         for target in targets:
             run.advance(int(target) - run.steps)
             looks.append(_look(run))
@@ -94,11 +105,11 @@ def follow(run: Simulation, trial: Trial, step: float) -> Course:
     return Course(
         step=step,
         time=np.array([look.time for look in looks]),
-        rows={name: np.array([look.rows[name] for look in looks]) for name in looks[0].rows},
+        rows={name: np.array([look.rows[name] for look in looks]) for name in Observer.NAMES},
         position=np.array([look.position for look in looks]),
         spin=np.array([look.spin for look in looks]),
         energy=np.array([look.energy for look in looks]),
-        work=np.array(work),
+        work=np.array(work[: len(looks)]),
         stopped=stopped,
     )
 
