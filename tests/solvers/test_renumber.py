@@ -29,13 +29,14 @@ def bed():
 def scene(radius, schedule="per-world") -> Scene:
     """Soft grains with history in a strong sway."""
     motions = [[Sway(0.02, 3.0)]] * len(radius)
-    soft = material()
+    soft = material(rolling_friction=0.2)
     return Scene(
         radius,
         box(0.04, 0.12),
         soft,
         soft,
         tangential="mindlin",
+        rolling="elastic-plastic",
         stiffness_scale=1e-3,
         motions=motions,
         schedule=schedule,
