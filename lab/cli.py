@@ -374,3 +374,29 @@ def stability(cases: tuple[str, ...], out: Path, fast: bool) -> None:
 
     if not run_cases(cases, out, fast):
         sys.exit(1)
+
+
+@bench.command()
+@click.argument("studies", nargs=-1)
+@page_option
+@fast_option
+def speed(studies: tuple[str, ...], out: Path, fast: bool) -> None:
+    """Grain-steps a second by grains, worlds, precision, schedule and threads; where a step's time goes; other codes.
+
+    \b
+    cargolab bench speed
+    cargolab bench speed peers          beside LIGGGHTS and LAMMPS, where they are installed
+    """
+    from lab.bench.speed import run_page
+
+    click.echo(run_page(studies, out, fast))
+
+
+@bench.command()
+@page_option
+@fast_option
+def gpu(out: Path, fast: bool) -> None:
+    """Correctness against the CPU and speed on CUDA and Vulkan, where there is such a device."""
+    from lab.bench.gpu import run_page
+
+    click.echo(run_page(out, fast))
