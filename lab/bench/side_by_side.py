@@ -13,7 +13,7 @@ from dataclasses import replace
 import click
 import numpy as np
 
-from lab.bench.liggghts import available, run_liggghts
+from lab.bench.peers.liggghts import available, run_liggghts
 from solvers.filling import radii, start_positions
 from solvers.materials import Material
 from solvers.scene import Scene

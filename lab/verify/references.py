@@ -90,3 +90,9 @@ def damping_of(e: float) -> float:
 def dissipative_time(x: float, mass: float, stiffness: float, speed: float) -> float:
     """A (s) that makes a collision's damping x, γ = (3/2) A k; effective mass (kg), k (N/m^1.5), speed (m/s)."""
     return x / (1.5 * (stiffness / mass) ** 0.4 * speed**0.2)
+
+
+def mindlin_stiffness(young: float, poisson: float, radius: float) -> float:
+    """8 G* √R_eff (N/m^1.5) of the tangential stiffness 8 G* √(R_eff ξ), 1/G* = (2 − ν)/G, of a sphere on a rigid
+    wall (Mindlin 1949)."""
+    return 8.0 * young / (2.0 * (1.0 + poisson)) / (2.0 - poisson) * sqrt(radius)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from lab import bed_file
+from lab.accuracy import LEVELS
 from lab.errors import LabError
 from lab.presets import load
 from lab.scene import build, filling_outline, fixed_grains, grain_count
@@ -57,6 +58,24 @@ def test_the_scene_knows_the_range_of_its_sizes(keys, diameter, low, high):
     assert scene.sizes[0] <= scene.radius.min() and scene.radius.max() <= scene.sizes[1]
     assert position.shape == (*scene.radius.shape, 2)
     assert not np.array_equal(scene.radius[0], scene.radius[1])
+
+
+def test_a_level_of_accuracy_sets_stiffness_and_step_where_the_preset_does_not():
+    automatic = {"step": "auto", "force_step": False}
+    found = {
+        (level, scale): build(resolved(run={**automatic, "accuracy": level}, contact={"stiffness_scale": scale}))[0]
+        for level in LEVELS
+        for scale in (None, 3e-3)
+    }
+    for level, sets in LEVELS.items():
+        assert found[level, None].stiffness_scale == sets.stiffness_scale
+        assert found[level, 3e-3].stiffness_scale == 3e-3
+        longest = found[level, 3e-3].step_limits()[0].step * sets.longer_steps
+        assert 0.99 * longest < found[level, 3e-3].step <= longest
+    steps = [found[level, None].step for level in ("draft", "standard", "reference")]
+    assert steps == sorted(steps, reverse=True)
+    given = build(resolved(run={**automatic, "accuracy": "draft", "step": "1 us"}))[0]
+    assert given.step == pytest.approx(1e-6)
 
 
 def test_the_shares_of_a_table_add_up_to_one_and_may_be_any_numbers():

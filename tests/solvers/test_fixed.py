@@ -17,7 +17,7 @@ SLANT = np.radians(65.0)  # from the normal: the contact slides all the time
 SLOWER = 0.1  # so that the normal does not turn while the grain slides over the curve
 
 
-@pytest.fixture(scope="module", params=["per-world", "per-grain"])
+@pytest.fixture(scope="module", params=["per-world", pytest.param("per-grain", marks=pytest.mark.slow)])
 def struck(request):
     """A grain a speed hits the lone fixed grain head-on, another at a slant; a third rests far away.
 

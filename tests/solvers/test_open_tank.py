@@ -34,7 +34,7 @@ NAMES = list(WORLDS)
 LOOKS, EVERY = 100, 2.5e-3  # s
 
 
-@pytest.fixture(scope="module", params=["per-world", "per-grain"])
+@pytest.fixture(scope="module", params=["per-world", pytest.param("per-grain", marks=pytest.mark.slow)])
 def watched(request):
     """The worlds over a quarter of a second: rows and snapshots (T, W, …), their times, and the mass of a grain."""
     place = np.array([places for places, _ in WORLDS.values()])

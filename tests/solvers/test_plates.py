@@ -69,7 +69,10 @@ def shot(point: np.ndarray, away: np.ndarray, aside: float) -> tuple[np.ndarray,
     return path[start], -STAND * away
 
 
-@pytest.fixture(scope="module", params=["per-world", "per-band", "per-grain"])
+SLOW = [pytest.param(schedule, marks=pytest.mark.slow) for schedule in ("per-band", "per-grain")]
+
+
+@pytest.fixture(scope="module", params=["per-world", *SLOW])
 def flight(request) -> Flight:
     """Worlds of two grains without weight, each aim once elastic and once with friction and loss."""
     shots = [shot(*aim) for aim in AIMS.values()] * len(KINDS)
