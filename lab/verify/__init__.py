@@ -9,11 +9,18 @@ from pathlib import Path
 from rich.console import Console
 
 from lab.errors import LabError
-from lab.verify import collisions, oblique, restitution
+from lab.verify import collisions, columns, friction, oblique, restitution, rolling
 from lab.verify.case import Case, Outcome
 from lab.verify.report import show, write_report
 
-CASES: tuple[Case, ...] = (*collisions.CASES, *restitution.CASES, *oblique.CASES)
+CASES: tuple[Case, ...] = (
+    *collisions.CASES,
+    *restitution.CASES,
+    *oblique.CASES,
+    *rolling.CASES,
+    *friction.CASES,
+    *columns.CASES,
+)
 
 
 def run_cases(names: Sequence[str], out: Path | str, fast: bool) -> bool:

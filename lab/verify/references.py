@@ -96,3 +96,8 @@ def mindlin_stiffness(young: float, poisson: float, radius: float) -> float:
     """8 G* √R_eff (N/m^1.5) of the tangential stiffness 8 G* √(R_eff ξ), 1/G* = (2 − ν)/G, of a sphere on a rigid
     wall (Mindlin 1949)."""
     return 8.0 * young / (2.0 * (1.0 + poisson)) / (2.0 - poisson) * sqrt(radius)
+
+
+def resting_overlap(force: float, stiffness: float) -> float:
+    """The overlap (m) at which a Hertz contact carries a force (N)."""
+    return (force / stiffness) ** (2.0 / 3.0)

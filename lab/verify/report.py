@@ -12,7 +12,7 @@ from rich.console import Console
 from rich.table import Table
 
 from lab.bench.page import Page, machine
-from lab.plots import BELOW, BLUE, GREY, STYLE, VERMILION
+from lab.plots import BLUE, GREY, STYLE, VERMILION
 from lab.recording import versions
 from lab.verify.case import Line, Outcome
 
@@ -67,12 +67,11 @@ def _write_case(page: Page, outcome: Outcome) -> None:
 def cells(line: Line) -> tuple[str, ...]:
     """A line as the texts of HEADER's columns."""
     unit = f" {line.unit}" if line.unit else ""
-    sign = "±" if line.relative else f"±{'' if not unit else ''}"
     error = _share(line.error) if line.relative else f"{line.error:.2g}{unit}"
     allowed = _share(line.tolerance) if line.relative else f"{line.tolerance:.2g}{unit}"
     verdict = "pass" if line.passed else "FAIL"
     numbers = (f"{line.value:.6g}{unit}", f"{line.reference:.6g}{unit}")
-    return line.quantity, *numbers, line.source, error, f"{sign} {allowed}", line.reason, verdict
+    return line.quantity, *numbers, line.source, error, f"± {allowed}", line.reason, verdict
 
 
 def _share(value: float) -> str:

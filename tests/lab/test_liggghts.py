@@ -6,8 +6,8 @@ from math import pi, sin, sqrt
 import numpy as np
 import pytest
 
-from lab.bench import liggghts
-from lab.bench.liggghts import run_liggghts
+from lab.bench.peers import liggghts
+from lab.bench.peers.liggghts import run_liggghts
 from lab.errors import LabError
 from solvers.materials import Material
 

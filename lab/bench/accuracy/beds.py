@@ -12,11 +12,11 @@ from lab.sweeps import run_sweep
 
 CONFIDENCE = 0.95
 TANK = {"tank.width": "60 mm", "tank.height": "50 mm", "grains.depth": "30 mm"}  # some 200 grains of 3 mm
-AUTOMATIC = {"run.step": "auto", "run.force_step": False, "contact.stiffness_scale": 1e-3, "run.accuracy": "standard"}
-TILT = {**TANK, **AUTOMATIC, "motion.tilt.rate": "10 deg/s", "motion.tilt.angle": "40 deg", "run.repeats": 12}
+STIFF = {"contact.stiffness_scale": 1e-3, "run.accuracy": "standard"}
+TILT = {**TANK, **STIFF, "motion.tilt.rate": "10 deg/s", "motion.tilt.angle": "40 deg", "run.repeats": 12}
 SWAY = {
     **TANK,
-    **AUTOMATIC,
+    **STIFF,
     "motion.soft_start": "0.5 s",
     "motion.sway.amplitude": "15 mm",
     "motion.sway.frequency": "3 Hz",

@@ -8,7 +8,7 @@ from lab.bench.accuracy.beds import TILT, TILTED, plus_minus, sweep
 from lab.bench.page import Page
 from lab.plots import BLUE, GREEN
 
-RATES = (0.3, 1.0, 3.0, 10.0, 30.0)  # deg/s
+RATES = (1.0, 3.0, 10.0, 30.0)  # deg/s
 KEY = "motion.tilt.rate"
 
 

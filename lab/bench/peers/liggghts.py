@@ -23,23 +23,18 @@ Choices for speed, tried on 2000 grains of 3 mm within 10 %, on one core, at res
 `newton off` is no choice: the contact history demands it.
 """
 
-import os
-import re
 import shutil
-import subprocess
-import tempfile
-from collections.abc import Iterator
-from contextlib import contextmanager
-from dataclasses import dataclass
 from math import degrees
 from pathlib import Path
 from typing import Literal
 
 import numpy as np
 
+from lab.bench.peers.peer import BED, DECK, FINAL, TRACE, PeerRun, bed_file, execute, read_outcome, working_folder
 from lab.errors import LabError
 from solvers.materials import Material
 
+NAME = "LIGGGHTS"
 EXECUTABLE = "liggghts"
 SKIN = 0.1
 """Thickness of the skin of the neighbour lists over the grains' mean diameter."""
@@ -52,7 +47,7 @@ newton off
 communicate single vel yes
 units si
 soft_particles yes
-read_data bed.data
+read_data {bed}
 neighbor {skin:.17g} bin
 neigh_modify delay 0 every 1 check yes
 
@@ -75,31 +70,13 @@ timestep {dt:.17g}
 compute centre all com
 variable y equal c_centre[1]
 variable z equal c_centre[3]
-fix trace all print {every} "$(step) ${{y}} ${{z}}" file trace.txt screen no
+fix trace all print {every} "$(step) ${{y}} ${{z}}" file {trace} screen no
 thermo_style custom step atoms
 thermo_modify lost error
 thermo 0
 run {steps}
-write_dump all custom final.txt id x z modify format "%d %.17g %.17g"
+write_dump all custom {final} id x z modify format "%d %.17g %.17g"
 """
-
-
-@dataclass(frozen=True)
-class PeerRun:
-    """What a peer code made of a bed: how long it took and where the grains went.
-
-    loop_s: wall time of the stepping as the code itself reports it, without set-up (s).
-    grain_steps_per_s: grains times steps over that time (1/s).
-    time: (T,) instants of the trace (s).
-    centre_of_mass: (T, 2) centre of mass of all grains, (y, z) in the tank's frame (m).
-    position: (n, 2) grains at the end, (y, z) in the tank's frame, in the order given (m).
-    """
-
-    loop_s: float
-    grain_steps_per_s: float
-    time: np.ndarray
-    centre_of_mass: np.ndarray
-    position: np.ndarray
 
 
 def available() -> str | None:
@@ -156,75 +133,12 @@ def run_liggghts(
         dt=dt,
         every=min(sample_every, steps),
         steps=steps,
+        bed=BED,
+        trace=TRACE,
+        final=FINAL,
     )
-    with _folder(workdir) as folder:
-        bed = _bed(position, radius, material.density, outline_width, outline_height)
-        (folder / "bed.data").write_text(bed)
-        (folder / "deck.in").write_text(deck)
-        loop_s = _execute(folder)
-        trace = np.loadtxt(folder / "trace.txt", ndmin=2)
-        final = np.loadtxt(folder / "final.txt", skiprows=9, ndmin=2)
-    start = np.average(position, axis=0, weights=np.asarray(radius) ** 3)
-    return PeerRun(
-        loop_s=loop_s,
-        grain_steps_per_s=len(radius) * steps / loop_s,
-        time=np.append(0.0, trace[:, 0] * dt),
-        centre_of_mass=np.vstack((start, trace[:, 1:])),
-        position=final[np.argsort(final[:, 0]), 1:],
-    )
-
-
-@contextmanager
-def _folder(workdir: Path | None) -> Iterator[Path]:
-    """The folder to work in: the given one, made if need be, or a passing one."""
-    if workdir is None:
-        with tempfile.TemporaryDirectory() as passing:
-            yield Path(passing)
-    else:
-        workdir.mkdir(parents=True, exist_ok=True)
-        yield workdir
-
-
-def _bed(position: np.ndarray, radius: np.ndarray, density: float, width: float, height: float) -> str:
-    """LIGGGHTS' data file: number, kind, diameter (m), density (kg/m^3) and x, y, z (m) a grain."""
-    depth = 4 * float(np.max(radius))
-    grains = (
-        f"{number} 1 {2 * r:.17g} {density:.17g} {y:.17g} 0 {z:.17g}"
-        for number, ((y, z), r) in enumerate(zip(position, radius, strict=True), start=1)
-    )
-    return "\n".join(
-        (
-            "a bed of spheres in the plane y = 0",
-            "",
-            f"{len(radius)} atoms",
-            "1 atom types",
-            f"{-width / 2:.17g} {width / 2:.17g} xlo xhi",
-            f"{-depth / 2:.17g} {depth / 2:.17g} ylo yhi",
-            f"0 {height:.17g} zlo zhi",
-            "",
-            "Atoms",
-            "",
-            *grains,
-            "",
-        )
-    )
-
-
-def _execute(folder: Path) -> float:
-    """Run the deck in `folder` on one thread; return the loop time LIGGGHTS prints (s)."""
-    executable = available()
-    if executable is None:
-        raise LabError(f"`{EXECUTABLE}` is not on the PATH: install LIGGGHTS 3.8.")
-    done = subprocess.run(
-        [executable, "-in", "deck.in"],
-        cwd=folder,
-        env=os.environ | {"OMP_NUM_THREADS": "1"},
-        capture_output=True,
-        text=True,
-        errors="replace",  # it may print stray memory after an error
-    )
-    loop = re.search(r"^Loop time of (\S+) on 1 procs", done.stdout, re.MULTILINE)
-    if done.returncode != 0 or loop is None:
-        error = re.search(r"^ERROR.*", done.stdout, re.MULTILINE)
-        raise LabError(f"LIGGGHTS stopped: {error.group() if error else done.stderr.strip()}")
-    return float(loop.group(1))
+    with working_folder(workdir) as folder:
+        (folder / BED).write_text(bed_file(position, radius, material.density, outline_width, outline_height))
+        (folder / DECK).write_text(deck)
+        loop_s = execute(NAME, EXECUTABLE, ["-in", DECK], folder)
+        return read_outcome(folder, position, radius, dt, steps, loop_s)

@@ -1,4 +1,4 @@
-"""What peer codes have in common: the folder they work in, how they are run, and what is read of them."""
+"""What peer codes have in common: a folder, a file with the bed, how they are run, and what is read."""
 
 import os
 import re
@@ -14,7 +14,8 @@ import numpy as np
 
 from lab.errors import LabError
 
-TRACE, FINAL = "trace.txt", "final.txt"  # which a deck writes: step, y, z of the centre of mass; id, y, z of the grains
+DECK, BED = "deck.in", "bed.data"  # what a peer reads
+TRACE, FINAL = "trace.txt", "final.txt"  # what it writes: step, y, z of the centre of mass; id, y, z of the grains
 HEADER = 9  # lines of a dump before its rows
 
 
@@ -45,6 +46,31 @@ def working_folder(kept: Path | None) -> Iterator[Path]:
     else:
         kept.mkdir(parents=True, exist_ok=True)
         yield kept
+
+
+def bed_file(position: np.ndarray, radius: np.ndarray, density: float, width: float, height: float) -> str:
+    """The data file: number, kind, diameter (m), density (kg/m³) and x, y, z (m) a grain; our (y, z) are (x, z)."""
+    depth = 4 * float(np.max(radius))
+    grains = (
+        f"{number} 1 {2 * r:.17g} {density:.17g} {y:.17g} 0 {z:.17g}"
+        for number, ((y, z), r) in enumerate(zip(position, radius, strict=True), start=1)
+    )
+    return "\n".join(
+        (
+            "a bed of spheres in the plane y = 0",
+            "",
+            f"{len(radius)} atoms",
+            "1 atom types",
+            f"{-width / 2:.17g} {width / 2:.17g} xlo xhi",
+            f"{-depth / 2:.17g} {depth / 2:.17g} ylo yhi",
+            f"0 {height:.17g} zlo zhi",
+            "",
+            "Atoms",
+            "",
+            *grains,
+            "",
+        )
+    )
 
 
 def execute(name: str, executable: str, arguments: Sequence[str], folder: Path, processes: int = 1) -> float:
