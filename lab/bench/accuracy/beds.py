@@ -21,7 +21,7 @@ SWAY = {
     "motion.sway.amplitude": "15 mm",
     "motion.sway.frequency": "3 Hz",
     "run.duration": "4 s",
-    "run.repeats": 12,
+    "run.repeats": 6,
 }
 TILTED, SWAYED = "tilting/quick", "shaking/sway"
 
