@@ -9,18 +9,23 @@ from pathlib import Path
 from rich.console import Console
 
 from lab.errors import LabError
-from lab.verify import collisions, columns, friction, oblique, restitution, rolling
+from lab.verify import (
+    collisions,
+    columns,
+    conservation,
+    convergence,
+    frames,
+    friction,
+    oblique,
+    restitution,
+    rolling,
+    sameness,
+)
 from lab.verify.case import Case, Outcome
 from lab.verify.report import show, write_report
 
-CASES: tuple[Case, ...] = (
-    *collisions.CASES,
-    *restitution.CASES,
-    *oblique.CASES,
-    *rolling.CASES,
-    *friction.CASES,
-    *columns.CASES,
-)
+MODULES = (collisions, restitution, oblique, friction, rolling, columns, conservation, convergence, frames, sameness)
+CASES: tuple[Case, ...] = tuple(case for module in MODULES for case in module.CASES)
 
 
 def run_cases(names: Sequence[str], out: Path | str, fast: bool) -> bool:

@@ -36,6 +36,7 @@ UNITS = {
     "phase": "rad",
     "angle": "rad",
     "rate": "rad/s",
+    "soft_start": "s",
 }
 
 

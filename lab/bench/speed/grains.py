@@ -2,12 +2,12 @@
 
 from pathlib import Path
 
-import numpy as np
 from matplotlib.figure import Figure
 
 from lab.bench.page import Page
 from lab.bench.speed.beds import settled_bed
-from lab.bench.speed.workers import Speeds, Worker, in_turn, millions, ratio, workers
+from lab.bench.speed.drawing import draw_with_range
+from lab.bench.speed.workers import Speeds, Worker, compared, millions, ratio
 from lab.plots import BLUE, VERMILION
 from solvers.runtime import available_cores
 
@@ -39,8 +39,7 @@ def measured(work: Path, size: int, turns: int, seconds: float) -> Speeds:
         ONE: lambda: Worker(bed, 1, schedule="per-world"),
         BANDS: lambda: Worker(bed, available_cores(), schedule="per-band"),
     }
-    with workers(made) as found:
-        return in_turn({name: lambda w=worker: w.speed(seconds) for name, worker in found.items()}, turns)
+    return compared(made, turns, seconds)
 
 
 def plotted(found: dict[int, Speeds]) -> Figure:
@@ -48,10 +47,7 @@ def plotted(found: dict[int, Speeds]) -> Figure:
     figure = Figure(figsize=(6.4, 3.0), layout="constrained")
     axes = figure.subplots()
     for name, colour in COLOURS.items():
-        speeds = np.array([found[size][name] for size in found]) / 1e6
-        middle = np.median(speeds, axis=1)
-        around = np.abs(np.stack([speeds.min(axis=1), speeds.max(axis=1)]) - middle)
-        axes.errorbar(list(found), middle, around, marker="o", capsize=2, color=colour, label=name)
+        draw_with_range(axes, list(found), [found[size][name] for size in found], colour, name)
     axes.set(xscale="log", xlabel="grains", ylabel="million grain-steps a second", ylim=(0.0, None))
     axes.legend()
     return figure

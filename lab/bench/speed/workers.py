@@ -4,7 +4,7 @@ Taichi holds one number of threads and one precision a process; a simulation tha
 """
 
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Hashable, Iterator, Mapping
 from contextlib import contextmanager
 from multiprocessing import get_context
 from multiprocessing.connection import Connection
@@ -17,7 +17,7 @@ from solvers.errors import BadState, Unavailable
 from solvers.simulation import Simulation
 
 FEWEST = 5  # steps of a timing
-Speeds = dict[str, np.ndarray]
+Speeds = dict[Hashable, np.ndarray]
 
 
 class Worker:
@@ -83,9 +83,9 @@ def timed(run: Simulation, steps: int) -> float:
 
 
 @contextmanager
-def workers(made: Mapping[str, Callable[[], Worker]]) -> Iterator[dict[str, Worker]]:
+def workers(made: Mapping[Hashable, Callable[[], Worker]]) -> Iterator[dict[Hashable, Worker]]:
     """Workers by their names, all made before any is timed, and all ended at the end."""
-    found: dict[str, Worker] = {}
+    found: dict[Hashable, Worker] = {}
     try:
         for name, make in made.items():
             found[name] = make()
@@ -95,9 +95,14 @@ def workers(made: Mapping[str, Callable[[], Worker]]) -> Iterator[dict[str, Work
             worker.close()
 
 
-def in_turn(timings: Mapping[str, Callable[[], float]], turns: int) -> Speeds:
-    """What each timing gives (turns,), all of them once a turn, in their order; the first turn, a warming up, is
-    left out."""
+def compared(made: Mapping[Hashable, Callable[[], Worker]], turns: int, seconds: float) -> Speeds:
+    """Grain-steps a second (turns,) of workers, each timed for about so many seconds a turn."""
+    with workers(made) as found:
+        return in_turn({name: lambda w=worker: w.speed(seconds) for name, worker in found.items()}, turns)
+
+
+def in_turn(timings: Mapping[Hashable, Callable[[], float]], turns: int) -> Speeds:
+    """What each timing gives (turns,), all of them once a turn in their order, after a turn to warm up."""
     rows = [[timing() for timing in timings.values()] for _ in range(turns + 1)]
     return dict(zip(timings, np.array(rows[1:]).T, strict=True))
 

@@ -2,12 +2,12 @@
 
 from pathlib import Path
 
-import numpy as np
 from matplotlib.figure import Figure
 
 from lab.bench.page import Page
 from lab.bench.speed.beds import settled_bed
-from lab.bench.speed.workers import Speeds, Worker, in_turn, millions, ratio, workers
+from lab.bench.speed.drawing import draw_with_range
+from lab.bench.speed.workers import Speeds, Worker, compared, millions, ratio
 from lab.plots import BLUE, VERMILION
 from solvers.runtime import available_cores
 
@@ -42,8 +42,7 @@ def measured(work: Path, count: int, number: int, turns: int, seconds: float) ->
     print(f"worlds: {number} of {count} grains", flush=True)
     bed = settled_bed(work, count, COUNTS[count])
     made = {str(n): lambda n=n: Worker(bed, n, number, schedule="per-world") for n in THREADS}
-    with workers(made) as found:
-        return in_turn({name: lambda w=worker: w.speed(seconds) for name, worker in found.items()}, turns)
+    return compared(made, turns, seconds)
 
 
 def plotted(found: dict[int, dict[int, Speeds]]) -> Figure:
@@ -53,11 +52,8 @@ def plotted(found: dict[int, dict[int, Speeds]]) -> Figure:
         figure.subplots(1, len(found), sharey=True, squeeze=False)[0], found.items(), strict=True
     ):
         for threads, colour in THREADS.items():
-            speeds = np.array([v[str(threads)] for v in rows.values()]) / 1e6
-            middle = np.median(speeds, axis=1)
-            around = np.abs(np.stack([speeds.min(axis=1), speeds.max(axis=1)]) - middle)
             label = f"{threads} thread{'s' if threads > 1 else ''}"
-            axes.errorbar(list(rows), middle, around, marker="o", capsize=2, color=colour, label=label)
+            draw_with_range(axes, list(rows), [v[str(threads)] for v in rows.values()], colour, label)
         axes.set(title=f"worlds of {count} grains", xlabel="worlds", ylim=(0.0, None))
         axes.set_xscale("log", base=2)
         axes.set_xticks(list(rows), [str(number) for number in rows])

@@ -10,10 +10,11 @@ from solvers.materials import Material
 from solvers.scene import Scene
 
 G = 9.81  # m/s²
+RADIUS = 1.5e-3  # m, where nothing else is said
 SPREAD = 0.1  # of the diameters, each way
-# Spandonidis (2016), tables 5.1 and 5.2; the restitution is our choice.
-ACETATE = Material(density=1319.0, young=3.2e9, poisson=0.28, friction=0.25, restitution=0.6)
+# Spandonidis (2016), tables 5.1 (C) and 5.2; the restitution is our choice.
 GOLD_ORE = Material(density=17800.0, young=3.2e9, poisson=0.28, friction=0.25, restitution=0.6)
+ACETATE = Material(density=1319.0, young=3.2e9, poisson=0.28, friction=0.25, restitution=0.6)
 
 
 def tank(width: float, height: float) -> np.ndarray:
@@ -23,7 +24,13 @@ def tank(width: float, height: float) -> np.ndarray:
 
 
 def bed(
-    count: int, diameter: float, duration: float, material: Material = ACETATE, across: int = 10, **scene: object
+    count: int,
+    duration: float,
+    material: Material = ACETATE,
+    diameter: float = 2.0 * RADIUS,
+    across: int = 10,
+    looks: int = 200,
+    **scene: object,
 ) -> Trial:
     """Grains let go of on a loose lattice `across` grains wide (`start_positions`), in a tank twice as high as that."""
     random = np.random.default_rng(1)
@@ -31,8 +38,13 @@ def bed(
     pitch = SPACING * diameter * (1.0 + SPREAD)
     outline = tank((across + 0.5) * pitch, 2.0 * ceil(count / across) * pitch)
     position = start_positions(radius, outline, random)
-    made = Scene(radius, outline, material, material, **scene)
-    return Trial(made, position, duration)
+    return Trial(Scene(radius, outline, material, material, **scene), position, duration, looks=looks)
+
+
+def square(columns: int, rows: int, pitch: float) -> np.ndarray:
+    """Places (n, 2) m on a square lattice centred on y = 0, the lowest at half a pitch."""
+    column, row = (axis.ravel() for axis in np.meshgrid(np.arange(columns), np.arange(rows), indexing="ij"))
+    return pitch * np.column_stack([column - 0.5 * (columns - 1), row + 0.5])
 
 
 def hexagonal(columns: int, rows: int, radius: float) -> np.ndarray:

@@ -42,7 +42,7 @@ class Trial:
         return float(self.mass.sum() * self.scene.gravity)
 
     @property
-    def depth(self) -> float:
+    def height(self) -> float:
         """Height (m) of the centre of mass above the tank's lowest point at the start."""
         return float(self.mass @ self.position[:, 1] / self.mass.sum() - self.scene.outline[:, 1].min())
 

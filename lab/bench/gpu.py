@@ -1,0 +1,156 @@
+"""cargolab bench gpu: the same bed on graphics processors and on the processor, and what they do in a second."""
+
+from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from functools import partial
+from multiprocessing import get_context
+from pathlib import Path
+
+import matplotlib
+import numpy as np
+from matplotlib.figure import Figure
+
+from lab.bench.devices import Device, device
+from lab.bench.page import Page
+from lab.bench.speed.beds import DIAMETER, Bed, settled_bed
+from lab.bench.speed.drawing import draw_with_range
+from lab.bench.speed.workers import Worker, compared, millions
+from lab.errors import LabError
+from lab.plots import BLUE, GREEN, STYLE, VERMILION
+from solvers import runtime
+from solvers.errors import BadState, Unavailable
+from solvers.motions import Sway
+from solvers.simulation import Simulation
+
+ARCHES = {"cuda": ("f64", "mixed", "f32"), "vulkan": ("f32",)}
+COLOURS = {"f64": BLUE, "mixed": GREEN, "f32": VERMILION}
+COUNT, WIDTH = 2000, 192e-3  # of the bed that worlds are made of, m
+TRIED, TRIED_WIDTH = 500, 48e-3  # of the bed that is swayed
+COPIES = (5, 50, 500, 2000)  # side by side in one world, and worlds in a batch
+SWAY, TIME = Sway(0.015, 3.0), 0.02  # m, Hz; s
+ROUNDINGS = 10.0  # times what another order of sums changes on the processor, or than a place's last digit
+ONE, BATCH = "one world", "worlds of 2000 grains"
+
+
+def run_page(out: Path, fast: bool) -> Path:
+    """Measure each kind of device that is there and write the page; returns its file."""
+    page = Page(out, "gpu", "Graphics processors")
+    page.say("""Schedule per-grain: every grain on its own, a launch a step. M stands for a million grain-steps a
+        second, medians of several runs.""")
+    path, work = page.write(), out / "gpu"
+    with matplotlib.rc_context(STYLE):
+        for arch, precisions in ARCHES.items():
+            page.section(arch.upper() if arch == "cuda" else arch.capitalize())
+            study(page, work, arch, precisions, fast)
+            path = page.write()
+    return path
+
+
+def study(page: Page, work: Path, arch: str, precisions: tuple[str, ...], fast: bool) -> None:
+    """Add what there is to say of one kind of device."""
+    found, why_not = there(arch, precisions[-1])
+    if found is None:
+        page.say(f"Unmeasured: {why_not}")
+        return
+    page.say(f"Device: {found.name}{', which is software on the processor' if found.software else ''}.")
+    if found.software and not fast:
+        page.say("Unmeasured: software is no graphics processor; `cargolab bench gpu --fast` tries it on small beds.")
+        return
+    try:
+        _correctness(page, work, arch, precisions)
+        _speed(page, work, arch, precisions, COPIES[:1] if fast else COPIES, 3 if fast else 7)
+    except LabError as error:
+        page.say(f"It broke off: {error}")
+
+
+def there(arch: str, precision: str) -> tuple[Device | None, str]:
+    """The device of an arch, or none and the reason in a sentence."""
+    try:
+        runtime.choose_arch(arch, precision)
+    except Unavailable as error:
+        return None, str(error)
+    found = device(arch)
+    return found, "" if found else f"the driver of {arch} tells of no device."
+
+
+def _correctness(page: Page, work: Path, arch: str, precisions: tuple[str, ...]) -> None:
+    bed = settled_bed(work, TRIED, TRIED_WIDTH)
+    rows = []
+    for precision in precisions:
+        print(f"gpu: {arch}, {precision}, correctness", flush=True)
+        expected = places_of("cpu", bed, precision, "per-grain")
+        reordered = farthest(places_of("cpu", bed, precision, "per-world"), expected)
+        error = farthest(places_of(arch, bed, precision, "per-grain"), expected)
+        tolerance = ROUNDINGS * max(reordered, last_digit(precision, bed))
+        verdict = "pass" if error <= tolerance else "fail"
+        rows.append([precision, f"{error:.1e}", f"{reordered:.1e}", f"{tolerance:.1e}", verdict])
+    page.say(f"""A bed of {TRIED} grains swayed by {1e3 * SWAY.amplitude:g} mm at {SWAY.frequency:g} Hz for {TIME:g} s
+        without soft start, against the processor with the same schedule and precision: largest distance of a grain, in
+        diameters. The tolerance is rounding: {ROUNDINGS:g} times what another order of sums (schedule per-world) does
+        on the processor, or the last digit of a place if that is more.""")
+    page.table(["precision", "error (d)", "another order of sums (d)", "tolerance (d)", "verdict"], rows)
+
+
+def places_of(arch: str, bed: Bed, precision: str, schedule: str) -> np.ndarray:
+    """Places (n, 2) m of the swayed bed at the end, worked out in a process of its own. Raises LabError."""
+    with ProcessPoolExecutor(1, get_context("spawn")) as pool:
+        try:
+            return pool.submit(swayed, arch, bed, precision, schedule).result()
+        except BrokenProcessPool:
+            raise LabError(f"the process that ran on {arch} was lost.") from None
+        except (BadState, Unavailable) as error:
+            raise LabError(str(error)) from None
+
+
+def swayed(arch: str, bed: Bed, precision: str, schedule: str) -> np.ndarray:
+    """Places (n, 2) m of the swayed bed at the end."""
+    scene = bed.scene(precision=precision, schedule=schedule, motions=[(SWAY,)])
+    run = Simulation(scene, bed.places(), threads=1, arch=arch)
+    run.advance(round(TIME / run.dt))
+    place = run.snapshot()["position"][0].astype(float)
+    run.close()
+    return place
+
+
+def farthest(found: np.ndarray, expected: np.ndarray) -> float:
+    """The largest distance (d) of a grain from where it is expected."""
+    return float(np.linalg.norm(found - expected, axis=1).max() / DIAMETER)
+
+
+def last_digit(precision: str, bed: Bed) -> float:
+    """The last digit (d) of a place in the tank."""
+    kind = np.float32 if precision == "f32" else np.float64
+    return float(np.finfo(kind).eps * np.abs(bed.position).max() / DIAMETER)
+
+
+def _speed(page: Page, work: Path, arch: str, precisions: tuple[str, ...], copies: tuple[int, ...], turns: int) -> None:
+    bed = settled_bed(work, COUNT, WIDTH)
+    found = {}
+    for shape in (ONE, BATCH):
+        for number in copies:
+            print(f"gpu: {arch}, {number * COUNT} grains in {shape}", flush=True)
+            made = {
+                precision: partial(
+                    Worker,
+                    bed.times(number) if shape == ONE else bed,
+                    worlds=1 if shape == ONE else number,
+                    arch=arch,
+                    precision=precision,
+                    schedule="per-grain",
+                )
+                for precision in precisions
+            }
+            found[shape, number] = compared(made, turns, 0.3)
+    page.table(
+        ["grains", "in", *(f"M, {precision}" for precision in precisions)],
+        [[f"{n * COUNT:,}", shape, *(millions(s) for s in v.values())] for (shape, n), v in found.items()],
+    )
+    figure = Figure(figsize=(6.4, 3.0), layout="constrained")
+    for axes, shape in zip(figure.subplots(1, 2, sharey=True), (ONE, BATCH), strict=True):
+        for precision in precisions:
+            speeds = [found[shape, number][precision] for number in copies]
+            draw_with_range(axes, [n * COUNT for n in copies], speeds, COLOURS[precision], precision)
+        axes.set(title=shape, xscale="log", yscale="log", xlabel="grains")
+        axes.legend()
+    figure.axes[0].set_ylabel("million grain-steps a second")
+    page.figure(arch, figure, f"Grain-steps a second on {arch} against the number of grains")
