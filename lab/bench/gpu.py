@@ -12,11 +12,11 @@ from matplotlib.figure import Figure
 
 from lab.bench.devices import Device, device
 from lab.bench.page import Page
-from lab.bench.speed.beds import DIAMETER, Bed, settled_bed
+from lab.bench.speed.beds import DIAMETER, Bed, usual_bed
 from lab.bench.speed.drawing import draw_with_range
-from lab.bench.speed.workers import Worker, compared, millions
+from lab.bench.speed.workers import Speeds, Worker, compared, millions
 from lab.errors import LabError
-from lab.plots import BLUE, GREEN, STYLE, VERMILION
+from lab.plots import BELOW, BLUE, GREEN, STYLE, VERMILION
 from solvers import runtime
 from solvers.errors import BadState, Unavailable
 from solvers.motions import Sway
@@ -24,12 +24,11 @@ from solvers.simulation import Simulation
 
 ARCHES = {"cuda": ("f64", "mixed", "f32"), "vulkan": ("f32",)}
 COLOURS = {"f64": BLUE, "mixed": GREEN, "f32": VERMILION}
-COUNT, WIDTH = 2000, 192e-3  # of the bed that worlds are made of, m
-TRIED, TRIED_WIDTH = 500, 48e-3  # of the bed that is swayed
+COUNT, TRIED = 2000, 500  # grains of the bed that worlds are made of, and of the bed that is swayed
 COPIES = (5, 50, 500, 2000)  # side by side in one world, and worlds in a batch
 SWAY, TIME = Sway(0.015, 3.0), 0.02  # m, Hz; s
 ROUNDINGS = 10.0  # times what another order of sums changes on the processor, or than a place's last digit
-ONE, BATCH = "one world", "worlds of 2000 grains"
+ONE, BATCH = SHAPES = "one world", f"worlds of {COUNT} grains"
 
 
 def run_page(out: Path, fast: bool) -> Path:
@@ -74,7 +73,7 @@ def there(arch: str, precision: str) -> tuple[Device | None, str]:
 
 
 def _correctness(page: Page, work: Path, arch: str, precisions: tuple[str, ...]) -> None:
-    bed = settled_bed(work, TRIED, TRIED_WIDTH)
+    bed = usual_bed(work, TRIED)
     rows = []
     for precision in precisions:
         print(f"gpu: {arch}, {precision}, correctness", flush=True)
@@ -124,33 +123,44 @@ def last_digit(precision: str, bed: Bed) -> float:
 
 
 def _speed(page: Page, work: Path, arch: str, precisions: tuple[str, ...], copies: tuple[int, ...], turns: int) -> None:
-    bed = settled_bed(work, COUNT, WIDTH)
-    found = {}
-    for shape in (ONE, BATCH):
-        for number in copies:
-            print(f"gpu: {arch}, {number * COUNT} grains in {shape}", flush=True)
-            made = {
-                precision: partial(
-                    Worker,
-                    bed.times(number) if shape == ONE else bed,
-                    worlds=1 if shape == ONE else number,
-                    arch=arch,
-                    precision=precision,
-                    schedule="per-grain",
-                )
-                for precision in precisions
-            }
-            found[shape, number] = compared(made, turns, 0.3)
+    bed = usual_bed(work, COUNT)
+    page.say(f"""Grain-steps a second: {COUNT} settled grains and as many copies side by side in one world as it takes,
+        or as many worlds of them. At the ends of the longest, 32 bits resolve
+        {1e6 * DIAMETER * last_digit("f32", bed.times(copies[-1])):.2g} µm only: that is for speed, not for physics.""")
+    found: dict[tuple[str, int], Speeds] = {(shape, number): {} for shape in SHAPES for number in copies}
+    for (shape, number), speeds in found.items():
+        print(f"gpu: {arch}, {number * COUNT} grains, {shape}", flush=True)
+        for precision in precisions:  # one at a time, since the device may hold no more
+            try:
+                speeds |= compared({precision: partial(worker, bed, number, shape, arch, precision)}, turns, 0.3)
+            except LabError as error:
+                page.say(f"{number * COUNT:,} grains, {shape}, {precision}: {error}")
     page.table(
         ["grains", "in", *(f"M, {precision}" for precision in precisions)],
-        [[f"{n * COUNT:,}", shape, *(millions(s) for s in v.values())] for (shape, n), v in found.items()],
+        [
+            [f"{n * COUNT:,}", shape, *(millions(v[p]) if p in v else "–" for p in precisions)]
+            for (shape, n), v in found.items()
+        ],
     )
+    page.figure(arch, plotted(found), f"Grain-steps a second on {arch} against the number of grains")
+
+
+def worker(bed: Bed, number: int, shape: str, arch: str, precision: str) -> Worker:
+    """So many copies of a bed on a device, in one world or in one each."""
+    how = {"arch": arch, "precision": precision, "schedule": "per-grain"}
+    return Worker(bed.times(number), **how) if shape == ONE else Worker(bed, worlds=number, **how)
+
+
+def plotted(found: dict[tuple[str, int], Speeds]) -> Figure:
+    """Medians with their ranges against the number of grains, a panel a shape."""
     figure = Figure(figsize=(6.4, 3.0), layout="constrained")
-    for axes, shape in zip(figure.subplots(1, 2, sharey=True), (ONE, BATCH), strict=True):
-        for precision in precisions:
-            speeds = [found[shape, number][precision] for number in copies]
-            draw_with_range(axes, [n * COUNT for n in copies], speeds, COLOURS[precision], precision)
+    for axes, shape in zip(figure.subplots(1, len(SHAPES), sharey=True), SHAPES, strict=True):
+        for precision, colour in COLOURS.items():
+            done = {n * COUNT: v[precision] for (of, n), v in found.items() if of == shape and precision in v}
+            if done:
+                draw_with_range(axes, list(done), list(done.values()), colour, precision)
         axes.set(title=shape, xscale="log", yscale="log", xlabel="grains")
-        axes.legend()
+    handles, labels = figure.axes[0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc=BELOW, ncols=len(COLOURS))
     figure.axes[0].set_ylabel("million grain-steps a second")
-    page.figure(arch, figure, f"Grain-steps a second on {arch} against the number of grains")
+    return figure

@@ -13,7 +13,7 @@ class Line:
 
     `source` says where the reference comes from: a closed form, an integration apart from the solver, a publication.
     The error is relative to the reference, or where `relative` is false a difference; `reason` says why the
-    `tolerance` is what it is.
+    `tolerance` is what it is. Raises ValueError for an error relative to zero.
     """
 
     quantity: str
@@ -24,6 +24,10 @@ class Line:
     reason: str
     unit: str = ""
     relative: bool = True
+
+    def __post_init__(self):
+        if self.relative and self.reference == 0.0:
+            raise ValueError(f"{self.quantity}: nothing is relative to a reference of zero")
 
     @property
     def error(self) -> float:

@@ -69,7 +69,7 @@ def viscoelastic_rebound(x: float) -> tuple[float, float]:
     force_ends.direction = overlap_ends.direction = -1
     overlap_ends.terminal = True
     ends = force_ends, overlap_ends
-    path = solve_ivp(motion, (0.0, 100.0), [0.0, 1.0], "DOP853", events=ends, rtol=1e-12, atol=1e-14, max_step=0.1)
+    path = solve_ivp(motion, (0.0, 100.0), [0.0, 1.0], "DOP853", events=ends, rtol=1e-12, atol=1e-14, max_step=0.5)
     return -float(path.y_events[0][0][1]), -float(path.y_events[1][0][1])
 
 

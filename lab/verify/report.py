@@ -18,7 +18,7 @@ from lab.verify.case import Line, Outcome
 
 NAME = "verify"
 HEADER = ("quantity", "here", "reference", "from", "error", "allowed", "because of", "")
-SMALLEST = 1e-17  # of an error on the logarithmic axis: less is drawn there
+SMALLEST = 1e-6  # share of the tolerance; smaller errors are drawn there
 
 
 def show(outcome: Outcome, console: Console) -> None:
@@ -97,14 +97,15 @@ def errors_figure(outcomes: Sequence[Outcome]) -> Figure:
     figure = Figure(figsize=(6.4, 0.9 + 0.21 * len(shown)), layout="constrained")
     axes = figure.subplots()
     for row, outcome in enumerate(shown):
-        shares = [max(abs(line.error) / line.tolerance, 1e-6) for line in outcome.found.lines]
+        shares = [max(abs(line.error) / line.tolerance, SMALLEST) for line in outcome.found.lines]
         colours = [BLUE if line.passed else VERMILION for line in outcome.found.lines]
         axes.scatter(shares, np.full(len(shares), row), s=14, c=colours, alpha=0.7, linewidths=0)
     axes.axvline(1.0, color=GREY, lw=1.0)
     axes.set_xscale("log")
+    axes.set_xlim(0.6 * SMALLEST, max(3.0, 1.5 * axes.get_xlim()[1]))
     axes.set_yticks(range(len(shown)), [outcome.case.name for outcome in shown])
     axes.set_ylim(len(shown) - 0.5, -0.5)
-    axes.set_xlabel("error, in units of what is allowed")
+    axes.set_xlabel(f"error, in units of what is allowed (less than {SMALLEST:g} is drawn there)")
     return figure
 
 

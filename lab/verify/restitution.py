@@ -101,7 +101,7 @@ def damping_figure(places: np.ndarray) -> Figure:
     with matplotlib.rc_context(STYLE):
         figure = Figure(figsize=(6.4, 4.4), layout="constrained")
         upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(2, 1))
-        x = np.geomspace(DAMPINGS[0] * 0.9, places[:, 0].max() * 1.05, 120)
+        x = np.geomspace(DAMPINGS[0] * 0.9, places[:, 0].max() * 1.05, 40)
         ends = np.array([viscoelastic_rebound(float(value)) for value in x])
         upper.plot(x, ends[:, 0], color=BLUE, label="integration, contact ends with its force")
         upper.plot(x, ends[:, 1], color=GREY, ls="--", label="integration, contact ends with its overlap")

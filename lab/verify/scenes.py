@@ -93,25 +93,32 @@ def grain(y: float, z: float, radius: float, vy: float = 0.0, vz: float = 0.0, s
 @contextmanager
 def simulated(*setups: Setup, **options) -> Iterator[Simulation]:
     """A simulation with a world for each setup, at the smallest of their steps, on one core unless `options` differ."""
-    scenes, positions = zip(*(setup.build() for setup in setups), strict=True)
-    step = min(scene.step for scene in scenes)
-    for scene in scenes:
-        scene.step = step
-    run = Simulation(Scene.joined(scenes), np.concatenate(positions), **{"threads": 1, "arch": "cpu"} | options)
-    try:
+    with _together([setup.build() for setup in setups], options) as run:
         yield run
-    finally:
-        run.close()
 
 
 def each_at_its_step(*setups: Setup) -> Iterator[tuple[int, Simulation]]:
     """The number of each setup in turn, and a simulation whose world of that number runs at its own derived step."""
-    steps = [setup.build()[0].step for setup in setups]
-    with simulated(*setups) as run:
+    built = [setup.build() for setup in setups]
+    steps = [scene.step for scene, _ in built]
+    with _together(built, {}) as run:
         scene, position = run.scene, run.snapshot()["position"]
         for k, step in enumerate(steps):
             again(run, position, step, scene.velocity, scene.spin)
             yield k, run
+
+
+@contextmanager
+def _together(built: Sequence[tuple[Scene, np.ndarray]], options: Mapping) -> Iterator[Simulation]:
+    scenes, positions = zip(*built, strict=True)
+    step = min(scene.step for scene in scenes)
+    for scene in scenes:
+        scene.step = step
+    run = Simulation(Scene.joined(scenes), np.concatenate(positions), **{"threads": 1, "arch": "cpu"} | dict(options))
+    try:
+        yield run
+    finally:
+        run.close()
 
 
 def again(run: Simulation, position: np.ndarray, step: float, velocity=None, spin=None) -> None:

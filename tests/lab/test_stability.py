@@ -9,7 +9,7 @@ import pytest
 from lab.bench import stability
 from lab.bench.stability.beds import ACETATE, RADIUS, bed, tank
 from lab.bench.stability.case import Case, Check, Measure, judge, made_energy
-from lab.bench.stability.hard_moving import mean_height
+from lab.bench.stability.hard_beds import height
 from lab.bench.stability.limit_map import contacts, exact_limit, grows, longest, packing, scene
 from lab.bench.stability.pushed import RIGHT, STOPPED, WRONG, verdict
 from lab.bench.stability.records import Records
@@ -19,7 +19,9 @@ from solvers.motions import Sway
 from solvers.scene import Scene
 from solvers.simulation import Simulation
 
-SWAYED = Case("sway", "", lambda fast: None, measure=Measure("height", mean_height, 0.1, ""))
+pytestmark = pytest.mark.slow  # minutes of small scenes
+
+SWAYED = Case("sway", "", lambda fast: None, measure=Measure("height", height, 0.1, ""))
 
 
 @pytest.fixture(scope="module")
@@ -82,11 +84,8 @@ def test_a_case_that_breaks_off_fails_alone_and_is_not_kept(tmp_path, capsys, mo
     def broken(fast):
         raise ZeroDivisionError("of its own")
 
-    def record(name, fast):
-        return stability._run_case(stability.CASES[name], fast) if name == "corner" else {"rows": [], "passed": True}
-
     monkeypatch.setitem(stability.CASES, "corner", Case("corner", "", broken))
-    monkeypatch.setattr(stability, "_run", record)
+    monkeypatch.setattr(stability, "_run_map", lambda integrator, fast: {"rows": [], "passed": True})
     assert not stability.run_cases(("corner", "map-verlet"), tmp_path, True)
     assert "corner: FAIL, broke off: ZeroDivisionError: of its own" in capsys.readouterr().out
     assert set(json.loads((tmp_path / "stability.json").read_text())) == {"map-verlet"}
@@ -127,7 +126,7 @@ def test_other_faults_are_caught(swayed):
 
 def test_longer_steps_are_right_or_stopped_or_quietly_wrong(swayed):
     trial, course = swayed
-    found = mean_height(trial, course)
+    found = height(trial, course)
     assert verdict(SWAYED, trial, course, 4, 0.92 * found).outcome == RIGHT
     assert verdict(SWAYED, trial, course, 4, 0.9 * found).outcome == WRONG
     assert not verdict(SWAYED, trial, course, 4, 1.2 * found).passed

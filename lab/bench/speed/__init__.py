@@ -32,8 +32,8 @@ def run_page(names: Sequence[str], out: Path, fast: bool) -> Path:
         raise LabError(f"there is no study {', '.join(names)}: take {', '.join(STUDIES)}.")
     page = Page(out, "speed", "Speed")
     page.say("""All times are of runs taken in turn, so that a machine whose speed drifts slows all alike: medians, and
-        ratios of runs made right after one another, with the smallest and the largest in brackets. M stands for a
-        million grain-steps a second.""")
+        of the ratios of runs of the same turn the median, with the smallest and the largest in brackets. M stands for
+        a million grain-steps a second.""")
     with matplotlib.rc_context(STYLE):
         for name in chosen:
             STUDIES[name](page, out / "speed", fast)

@@ -13,6 +13,7 @@ from solvers.simulation import Simulation
 DIAMETER, SPREAD = 3e-3, 0.1  # m; share of it
 HEIGHT = 0.2  # m
 SCALE = 1e-3  # on Young's modulus
+WIDTHS = {500: 48e-3, 2000: 192e-3}  # m, of the tanks of the usual beds by their grains: some 30 diameters deep
 REST, LIMIT = 1e-8, 5.0  # of m g d; s of settling
 # Spandonidis (2016), table 5.2; the restitution is our choice.
 ACETATE = Material(density=1319.0, young=3.2e9, poisson=0.28, friction=0.25, restitution=0.6)
@@ -56,6 +57,11 @@ def tank(width: float) -> np.ndarray:
     """Outline (4, 2) m of a closed tank, its floor centred on the origin."""
     half = 0.5 * width
     return np.array([[-half, 0.0], [half, 0.0], [half, HEIGHT], [-half, HEIGHT]])
+
+
+def usual_bed(work: Path, count: int) -> Bed:
+    """The settled bed of so many grains, one of WIDTHS."""
+    return settled_bed(work, count, WIDTHS[count])
 
 
 def settled_bed(work: Path, count: int, width: float, seed: int = 1) -> Bed:

@@ -3,11 +3,10 @@
 from pathlib import Path
 
 from lab.bench.page import Page
-from lab.bench.speed.beds import settled_bed
+from lab.bench.speed.beds import usual_bed
 from lab.bench.speed.workers import Worker, compared, millions, ratio
 from solvers.runtime import available_cores
 
-COUNTS = {500: 48e-3, 2000: 192e-3}  # grains, width of the tank (m)
 PRECISIONS = ("f64", "mixed", "f32")
 SCHEDULES = ("per-world", "per-band", "per-grain")
 TANGENTIAL = ("haff-werner", "mindlin")
@@ -17,7 +16,7 @@ ROLLING = ("none", "constant-torque", "elastic-plastic")
 def study(page: Page, work: Path, fast: bool) -> None:
     """Add the section to the page."""
     count, turns, seconds = (500, 3, 0.1) if fast else (2000, 9, 0.4)
-    bed, cores = settled_bed(work, count, COUNTS[count]), available_cores()
+    bed, cores = usual_bed(work, count), available_cores()
     threads = {"per-world": 1, "per-band": cores, "per-grain": cores}
     page.section("Precision, schedule and law")
     page.say(f"""One world of {count} grains. A world runs on one core, its bands and its grains on {cores}; grains on

@@ -32,7 +32,7 @@ class Tilting:
     count: int = 300
     width: float = 0.12
     rate: float = 10.0
-    angle: float = 45.0
+    angle: float = 40.0
 
 
 @dataclass(frozen=True)
@@ -102,11 +102,13 @@ def kept(work: Path, name: str, how: Tilting, bed: Bed, number: int) -> Curve:
 
 def followed_here(how: Tilting, bed: Bed) -> Curve:
     """The lab's curve."""
-    tilt = Tilt(np.radians(how.rate), np.radians(how.angle))
+    # On beyond the angle, so that the rate is not eased out before it.
+    tilt = Tilt(np.radians(how.rate), np.radians(how.angle + how.rate * Tilt.ease))
     scene = bed.scene(material=GRAINS, schedule="per-world", motions=[(tilt,)])
     run = Simulation(scene, bed.places(), threads=1, arch="cpu")
     angle, centre = [], []
-    for _ in range(1 + round(tilt.duration() * how.rate / EVERY)):
+    duration = how.angle / how.rate + 0.5 * Tilt.ease
+    for _ in range(1 + round(duration * how.rate / EVERY)):
         rows = run.observe()
         angle.append(np.degrees(rows["pose_angle"][0]))
         centre.append(rows["centre_y"][0])

@@ -5,13 +5,13 @@ from pathlib import Path
 from matplotlib.figure import Figure
 
 from lab.bench.page import Page
-from lab.bench.speed.beds import settled_bed
+from lab.bench.speed.beds import usual_bed
 from lab.bench.speed.drawing import draw_with_range
 from lab.bench.speed.workers import Speeds, Worker, compared, millions, ratio
-from lab.plots import BLUE, VERMILION
+from lab.plots import BELOW, BLUE, VERMILION
 from solvers.runtime import available_cores
 
-COUNT, WIDTH = 500, 48e-3  # of the bed that is copied, m
+COUNT = 500  # of the bed that is copied
 SIZES = (500, 1000, 2000, 5000, 10_000, 100_000, 1_000_000)
 ONE, BANDS = "one core", "bands on all cores"
 COLOURS = {ONE: BLUE, BANDS: VERMILION}
@@ -34,7 +34,7 @@ def study(page: Page, work: Path, fast: bool) -> None:
 def measured(work: Path, size: int, turns: int, seconds: float) -> Speeds:
     """Grain-steps a second (turns,) of a world of so many grains on one core and on all."""
     print(f"grains: {size}", flush=True)
-    bed = settled_bed(work, COUNT, WIDTH).times(size // COUNT)
+    bed = usual_bed(work, COUNT).times(size // COUNT)
     made = {
         ONE: lambda: Worker(bed, 1, schedule="per-world"),
         BANDS: lambda: Worker(bed, available_cores(), schedule="per-band"),
@@ -49,5 +49,7 @@ def plotted(found: dict[int, Speeds]) -> Figure:
     for name, colour in COLOURS.items():
         draw_with_range(axes, list(found), [found[size][name] for size in found], colour, name)
     axes.set(xscale="log", xlabel="grains", ylabel="million grain-steps a second", ylim=(0.0, None))
-    axes.legend()
+    axes.set_xticks(list(found), [f"{size:,}" for size in found])
+    axes.minorticks_off()
+    figure.legend(loc=BELOW, ncols=len(COLOURS))
     return figure

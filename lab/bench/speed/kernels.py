@@ -1,6 +1,7 @@
 """Parts of a step, and parts of its force loop, run many times over on one state, so that they can be timed alone.
 
-They call the engine's own functions. With a step of zero these leave positions, velocities and history as they are.
+They call the engine's own functions. With a step of zero these leave places and velocities as they are, and from the
+second time on the history, too.
 """
 
 import numpy as np

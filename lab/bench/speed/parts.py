@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from lab.bench.page import Page
-from lab.bench.speed.beds import Bed, settled_bed
+from lab.bench.speed.beds import Bed, usual_bed
 from lab.bench.speed.counts import GRAIN, PAIR, REAL, total
 from lab.bench.speed.kernels import MULTIPLY_ADDS, Limits, Parts
 from lab.bench.speed.workers import in_turn
@@ -19,7 +19,6 @@ from solvers import runtime
 from solvers.motions import Sway
 from solvers.simulation import Simulation
 
-COUNTS = {500: 48e-3, 2000: 192e-3}  # grains, width of the tank (m)
 STEP = "whole step"
 WHOLE = ("pair_forces", "wall_forces", "move")  # what a step at rest is made of
 PIECES = ("gather", "laws", "scatter")  # what the pair forces are made of
@@ -58,7 +57,7 @@ class InFlow:
 def study(page: Page, work: Path, fast: bool) -> None:
     """Add the section to the page."""
     count, turns, seconds = (500, 3, 0.02) if fast else (2000, 15, 0.1)
-    bed = settled_bed(work, count, COUNTS[count])
+    bed = usual_bed(work, count)
     print("parts: at rest", flush=True)
     rest = at_rest(bed, turns, seconds)
     print("parts: in flow", flush=True)

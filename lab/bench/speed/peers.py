@@ -7,11 +7,10 @@ from pathlib import Path
 
 from lab.bench.page import Page
 from lab.bench.peers import lammps, liggghts
-from lab.bench.speed.beds import ACETATE, HEIGHT, SCALE, Bed, settled_bed
+from lab.bench.speed.beds import ACETATE, HEIGHT, SCALE, Bed, usual_bed
 from lab.bench.speed.workers import Speeds, Worker, in_turn, millions, ratio, workers
 from lab.errors import LabError
 
-COUNTS = {500: 48e-3, 2000: 192e-3}  # grains, width of the tank (m)
 COPIES = 100  # of the bed, of the large world
 RUNS = {liggghts: liggghts.run_liggghts, lammps: lammps.run_lammps}
 STYLES = {"history": "history", "no_history": "no history"}
@@ -33,7 +32,7 @@ def study(page: Page, work: Path, fast: bool) -> None:
         page.say(f"{name} is not installed here: the comparison with it is left out.")
     if len(missing) == len(RUNS):
         return
-    bed = settled_bed(work, count, COUNTS[count])
+    bed = usual_bed(work, count)
     page.say(f"""One core, a settled world of {count} grains, {SCALE:g} of the material's stiffness, our automatic step
         for every code, 64 bits. A peer starts each run from the settled places; its time is the loop time it prints,
         without set-up. With history its law is Hertz's with Mindlin's tangential spring, as ours; without, Hertz's in

@@ -5,7 +5,7 @@ Taichi holds one number of threads and one precision a process; a simulation tha
 
 import time
 from collections.abc import Callable, Hashable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from multiprocessing import get_context
 from multiprocessing.connection import Connection
 
@@ -37,7 +37,8 @@ class Worker:
 
     def speed(self, seconds: float) -> float:
         """Grain-steps a second over about so many seconds of stepping."""
-        self._pipe.send(seconds)
+        with suppress(BrokenPipeError):  # what it said last is still to be read
+            self._pipe.send(seconds)
         return self._answer()
 
     def close(self) -> None:
@@ -108,7 +109,7 @@ def in_turn(timings: Mapping[Hashable, Callable[[], float]], turns: int) -> Spee
 
 
 def ratio(speeds: np.ndarray, others: np.ndarray) -> str:
-    """The median of the ratios (turns,) of runs made right after one another, and their range, as text."""
+    """The median of the ratios (turns,) of runs of the same turn, and their range, as text."""
     found = speeds / others
     return f"{np.median(found):.2f} ({found.min():.2f} to {found.max():.2f})"
 

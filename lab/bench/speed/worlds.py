@@ -5,20 +5,19 @@ from pathlib import Path
 from matplotlib.figure import Figure
 
 from lab.bench.page import Page
-from lab.bench.speed.beds import settled_bed
+from lab.bench.speed.beds import WIDTHS, usual_bed
 from lab.bench.speed.drawing import draw_with_range
 from lab.bench.speed.workers import Speeds, Worker, compared, millions, ratio
-from lab.plots import BLUE, VERMILION
+from lab.plots import BELOW, BLUE, VERMILION
 from solvers.runtime import available_cores
 
-COUNTS = {500: 48e-3, 2000: 192e-3}  # grains, width of the tank (m)
 WORLDS = (1, 2, 4, 8, 16, 32, 64, 128, 256)
 THREADS = {1: BLUE, 2: VERMILION}
 
 
 def study(page: Page, work: Path, fast: bool) -> None:
     """Add the section to the page."""
-    counts, worlds, turns, seconds = ([500], WORLDS[:4], 3, 0.1) if fast else (list(COUNTS), WORLDS, 9, 0.4)
+    counts, worlds, turns, seconds = ([500], WORLDS[:4], 3, 0.1) if fast else (list(WIDTHS), WORLDS, 9, 0.4)
     page.section("Worlds")
     if available_cores() < 2:
         page.say("Only one core is there: what a second thread gives is unmeasured.")
@@ -29,7 +28,7 @@ def study(page: Page, work: Path, fast: bool) -> None:
     page.table(
         ["grains a world", "worlds", "M, one thread", "M, two threads", "gain of the second thread"],
         [
-            [n, number, *(millions(s) for s in v.values()), ratio(v["2"], v["1"])]
+            [n, number, *(millions(s) for s in v.values()), ratio(v[2], v[1])]
             for n, rows in found.items()
             for number, v in rows.items()
         ],
@@ -38,10 +37,10 @@ def study(page: Page, work: Path, fast: bool) -> None:
 
 
 def measured(work: Path, count: int, number: int, turns: int, seconds: float) -> Speeds:
-    """Grain-steps a second (turns,) of a batch by the number of threads, as text."""
+    """Grain-steps a second (turns,) of a batch by the number of threads."""
     print(f"worlds: {number} of {count} grains", flush=True)
-    bed = settled_bed(work, count, COUNTS[count])
-    made = {str(n): lambda n=n: Worker(bed, n, number, schedule="per-world") for n in THREADS}
+    bed = usual_bed(work, count)
+    made = {n: lambda n=n: Worker(bed, n, number, schedule="per-world") for n in THREADS}
     return compared(made, turns, seconds)
 
 
@@ -53,10 +52,10 @@ def plotted(found: dict[int, dict[int, Speeds]]) -> Figure:
     ):
         for threads, colour in THREADS.items():
             label = f"{threads} thread{'s' if threads > 1 else ''}"
-            draw_with_range(axes, list(rows), [v[str(threads)] for v in rows.values()], colour, label)
+            draw_with_range(axes, list(rows), [v[threads] for v in rows.values()], colour, label)
         axes.set(title=f"worlds of {count} grains", xlabel="worlds", ylim=(0.0, None))
         axes.set_xscale("log", base=2)
         axes.set_xticks(list(rows), [str(number) for number in rows])
-        axes.legend(loc="lower right")
+    figure.legend(*figure.axes[0].get_legend_handles_labels(), loc=BELOW, ncols=len(THREADS))
     figure.axes[0].set_ylabel("million grain-steps a second")
     return figure

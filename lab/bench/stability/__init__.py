@@ -1,7 +1,7 @@
 """cargolab bench stability: hard cases at the automatic step and far beyond it, and where steps do become unstable.
 
-Every case and every integrator's part of the map is a name in `TRIED`. What was found is kept in stability.json, and
-what is there from the same versions and the same speed is not run again.
+CASES and MAPS name what is tried: the cases, and each integrator's part of the map. What was found is kept in
+stability.json; what is there from the same versions, fast or in full as now, is not run again.
 """
 
 from collections.abc import Sequence
@@ -10,10 +10,10 @@ from pathlib import Path
 
 from lab.bench.page import Page
 from lab.bench.stability import hard_beds, hard_few, hard_moving, hard_starts, limit_map
-from lab.bench.stability.case import Case, Check, judge
+from lab.bench.stability.case import ENERGY, OVERLAP, Case, Check, judge
 from lab.bench.stability.pushed import push
 from lab.bench.stability.records import Records
-from lab.bench.stability.report import verdict, write_page
+from lab.bench.stability.report import word, write_page
 from lab.bench.stability.trial import follow
 from lab.errors import LabError
 from solvers.integrators import INTEGRATORS
@@ -34,12 +34,11 @@ def run_cases(names: Sequence[str], out: Path, fast: bool) -> bool:
     sound = True
     for name in chosen:
         if name in records:
-            print(f"{name}: {verdict(records[name]['passed'])}, kept from an earlier run", flush=True)
+            print(f"{name}: {word(records[name]['passed'])}, kept from an earlier run", flush=True)
         else:
-            try:
-                records.keep(name, _run(name, fast))
-            except Exception as error:  # whatever it is, the other cases are worth running
-                print(f"{name}: FAIL, broke off: {type(error).__name__}: {error}", flush=True)
+            record = _attempt(name, fast)
+            if record:
+                records.keep(name, record)
         sound &= name in records and records[name]["passed"]
     cases = {name: records[name] for name in CASES if name in records}
     maps = [row for name in MAPS if name in records for row in records[name]["rows"]]
@@ -59,10 +58,13 @@ def _chosen(names: Sequence[str], fast: bool) -> list[str]:
     return quick if fast else known
 
 
-def _run(name: str, fast: bool) -> dict[str, object]:
-    if name in MAPS:
-        return _run_map(MAPS[name], fast)
-    return _run_case(CASES[name], fast)
+def _attempt(name: str, fast: bool) -> dict[str, object] | None:
+    """The record of a case or a part of the map; None, and a line, where it breaks off."""
+    try:
+        return _run_map(MAPS[name], fast) if name in MAPS else _run_case(CASES[name], fast)
+    except Exception as error:  # whatever it is, the other cases are worth running
+        print(f"{name}: FAIL, broke off: {type(error).__name__}: {error}", flush=True)
+        return None
 
 
 def _run_case(case: Case, fast: bool) -> dict[str, object]:
@@ -78,7 +80,7 @@ def _run_case(case: Case, fast: bool) -> dict[str, object]:
         if case.measure and not course.stopped:
             for row in push(run, case, trial, case.measure.of(trial, course), fast):
                 said = f"{row.outcome}: {row.said}"
-                print(f"{case.name}, {row.factor:g} times the limit: {verdict(row.passed)}, {said}", flush=True)
+                print(f"{case.name}, {row.factor:g} times the limit: {word(row.passed)}, {said}", flush=True)
                 pushed.append({**asdict(row), "passed": row.passed})
     finally:
         run.close()
@@ -88,8 +90,8 @@ def _run_case(case: Case, fast: bool) -> dict[str, object]:
         "grains": trial.count,
         "time": float(course.time[-1]) if len(course.time) else 0.0,
         "step": course.step,
-        "overlap": by_name.get("largest overlap (radii)"),
-        "energy": by_name.get("energy made (share)"),
+        "overlap": by_name.get(OVERLAP),
+        "energy": by_name.get(ENERGY),
         "checks": [{**asdict(check), "passed": check.passed} for check in checks],
         "pushed": pushed,
         "passed": all(check.passed for check in checks) and all(row["passed"] for row in pushed),
@@ -98,7 +100,7 @@ def _run_case(case: Case, fast: bool) -> dict[str, object]:
 
 def _line(name: str, check: Check) -> str:
     error = f"error {check.error:.3g}, tolerance {check.tolerance:.3g}"
-    return f"{name}: {verdict(check.passed)}, {check.what} against {check.reference}: {error} ({check.why})"
+    return f"{name}: {word(check.passed)}, {check.what} against {check.reference}: {error} ({check.why})"
 
 
 def _run_map(integrator: str, fast: bool) -> dict[str, object]:
@@ -107,6 +109,6 @@ def _run_map(integrator: str, fast: bool) -> dict[str, object]:
     for found in limit_map.found(integrator, fast):
         laws = found.normal if found.tangential == "none" else f"{found.normal} and {found.tangential}"
         what = f"{laws}, {found.damping}: longest stable step {found.ratio:.3g} derived steps"
-        print(f"map-{integrator}: {verdict(found.passed)}, {what}", flush=True)
+        print(f"map-{integrator}: {word(found.passed)}, {what}", flush=True)
         rows.append(found.record())
     return {"rows": rows, "passed": all(row["passed"] and row["exact_passed"] for row in rows)}

@@ -7,6 +7,7 @@ import numpy as np
 
 from lab.bench.stability.trial import Course, Trial, overlap_of
 
+OVERLAP, ENERGY = "largest overlap (radii)", "energy made (share)"  # checks that every case has
 DEEPEST = 0.05  # radii: a contact of small strain, which Hertz's law is for
 IMPACTS = 3.0  # Hertz estimates: grains that push from behind deepen an impact
 RESTING_ENERGY = 1e-6  # of the scale: what a scheme of second order errs by in contacts, and rounding
@@ -99,9 +100,9 @@ def _overlap(trial: Trial, course: Course) -> Check:
     estimate = IMPACTS * overlap_of(trial.scene, speed, trial.load)
     bound = min(DEEPEST, estimate)
     why = "small strain" if bound == DEEPEST else f"3 times Hertz's at {speed:.3g} m/s"
-    return Check("largest overlap (radii)", "0", float(course.rows["overlap"].max()), bound, why)
+    return Check(OVERLAP, "0", float(course.rows["overlap"].max()), bound, why)
 
 
 def _energy(case: Case, trial: Trial, course: Course) -> Check:
     reference = "start and work of the tank" if trial.scene.motions[0] else "start"
-    return Check("energy made (share)", reference, made_energy(trial, course), *energy_bound(case, trial))
+    return Check(ENERGY, reference, made_energy(trial, course), *energy_bound(case, trial))

@@ -11,7 +11,7 @@ from solvers.scene import Scene
 
 LATE = 0.75  # of the run: when a bed has come to rest
 BOUNCES = 0.02  # of the weight: what the last bounces may do to its mean over a quarter of the run
-BIG, SMALL, RATIO = 12, 180, 10.0  # grains of the mixed bed
+BIG, SMALL, RATIO = 12, 120, 10.0  # grains of the mixed bed
 PROJECTILE = (2.0, -9.8)  # m/s, together 10
 
 
@@ -73,10 +73,10 @@ def mixed(fast: bool) -> Trial:
     """Grains of 0.3 mm under grains of 3 mm."""
     small = RADIUS / RATIO
     wide = tank(13.0 * RADIUS, 24.0 * RADIUS)
-    below = square(60, 3, 2.1 * small) + np.random.default_rng(1).uniform(-0.04, 0.04, (SMALL, 2)) * small
+    below = square(60, 2, 2.1 * small) + np.random.default_rng(1).uniform(-0.04, 0.04, (SMALL, 2)) * small
     above = square(6, 2, 2.1 * RADIUS) + np.array([0.0, 0.6 * RADIUS])
     radius = np.repeat([RADIUS, small], [BIG, SMALL])
-    return Trial(Scene(radius, wide, ACETATE, ACETATE), np.vstack([above, below]), 0.08)
+    return Trial(Scene(radius, wide, ACETATE, ACETATE), np.vstack([above, below]), 0.12)
 
 
 def struck(fast: bool) -> Trial:
@@ -131,7 +131,7 @@ CASES = (
     Case("rough", "100 grains of 3 mm ± 10 % with μ = 2 settle in 0.25 s.", made_of(friction=2.0), weighed, HEIGHT),
     Case(
         "mixed-sizes",
-        "12 grains of 3 mm fall upon 180 of 0.3 mm, 0.08 s; overlaps count in radii of the smaller grain.",
+        "12 grains of 3 mm fall upon 120 of 0.3 mm, 0.12 s; overlaps count in radii of the smaller grain.",
         mixed,
         weighed,
         HEIGHT,
