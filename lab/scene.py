@@ -4,10 +4,9 @@ from math import ceil
 
 import numpy as np
 
-from lab.accuracy import LEVELS
+from lab.accuracy import LEVELS, check_forced
 from lab.errors import LabError
 from lab.schema import Resolved
-from lab.units import show
 from solvers.filling import NONE_FIXED, DoesNotFit, count_for_depth, headroom, lattice, start_positions
 from solvers.scene import Scene
 from solvers.tank import lining, raised
@@ -130,11 +129,10 @@ def _listed(preset: Resolved) -> tuple[np.ndarray, np.ndarray, dict]:
 
 def _step(preset: Resolved, scene: Scene) -> float:
     limit, run = scene.step_limits()[0], preset.run
-    wanted = LEVELS[run.accuracy].longer_steps * limit.step if run.step == "auto" else run.step
-    if run.step != "auto" and run.step > limit.step and not run.force_step:
-        raise LabError(
-            f"run.step: {show(wanted, 's')} is past the limit of {show(limit.step, 's')} ({limit.reason}); "
-            "leave it out, or set run.force_step = true."
-        )
+    if run.step == "auto":
+        wanted = LEVELS[run.accuracy].longer_steps * limit.step
+    else:
+        wanted = run.step
+        check_forced(wanted, limit.step, limit.reason, run.force_step)
     interval = 1.0 / preset.record.series_rate
     return interval / ceil(interval / wanted - 1e-9)

@@ -153,14 +153,24 @@ class Kind:
     against: Material | None = None
 
 
+StiffnessScale = Annotated[float, Interval(gt=0, le=1)]
+
+
 @dataclass(frozen=True)
-class Contact:
-    """The contact laws, and the factor on Young's moduli that buys larger steps."""
+class ContactGiven:
+    """The contact laws, and the factor on Young's moduli that buys larger steps (None: as `run.accuracy` has it)."""
 
     normal: Literal[*NORMAL] = "hertz-viscoelastic"
     tangential: Literal[*TANGENTIAL] = "haff-werner"
     rolling: Literal[*ROLLING] = "none"
-    stiffness_scale: Annotated[float, Interval(gt=0, le=1)] | None = None  # None: as run.accuracy has it
+    stiffness_scale: StiffnessScale | None = None
+
+
+@dataclass(frozen=True)
+class Contact(ContactGiven):
+    """The contact laws and the stiffness in full."""
+
+    stiffness_scale: StiffnessScale = field(kw_only=True)
 
 
 @dataclass(frozen=True)
@@ -191,7 +201,7 @@ Motion = _motions("Motion", History)
 
 
 @dataclass(frozen=True)
-class Run:
+class RunGiven:
     """How long, how often and how finely; `duration` is derived where a motion has an end."""
 
     duration: Time | None = None
@@ -209,6 +219,13 @@ class Run:
     schedule: Literal["auto", "per-world", "per-band", "per-grain"] = "auto"
     precision: Literal["f64", "f32", "mixed"] = "f64"
     integrator: Literal["verlet", "symplectic-euler", "gear"] = "verlet"
+
+
+@dataclass(frozen=True)
+class Run(RunGiven):
+    """The run with its duration."""
+
+    duration: Time = field(kw_only=True)
 
 
 @dataclass(frozen=True)
@@ -246,10 +263,10 @@ class Given:
     quick: str = ""  # how a quick variant differs from its preset
     wall: WallGiven = field(default_factory=WallGiven)
     kinds: dict[str, KindGiven] = field(default_factory=dict)
-    contact: Contact = field(default_factory=Contact)
+    contact: ContactGiven = field(default_factory=ContactGiven)
     motion: MotionGiven = field(default_factory=MotionGiven)
     parts: dict[str, Part] = field(default_factory=dict)
-    run: Run = field(default_factory=Run)
+    run: RunGiven = field(default_factory=RunGiven)
     record: Record = field(default_factory=Record)
     video: Video = field(default_factory=Video)
 
@@ -288,7 +305,7 @@ def resolve(table: Mapping) -> Resolved:
     _check_dissipation(given.material, "material", needed=True)
     _check_dissipation(given.wall, "wall", needed=False)
     motion = _motion(given.motion)
-    run = replace(given.run, duration=_duration(given.run, motion))
+    run = Run(**{**vars(given.run), "duration": _duration(given.run, motion)})
     check_parts(given.parts, tank.outline)
     _check_video(given.video)
     return Resolved(
@@ -463,12 +480,13 @@ def _motion(given: MotionGiven) -> Motion:
     return Motion(**kept, history=history)
 
 
-def _contact(given: Contact, run: Run) -> Contact:
+def _contact(given: ContactGiven, run: Run) -> Contact:
     """The contact laws, the stiffness by the level of accuracy where it is not given."""
-    return given if given.stiffness_scale else replace(given, stiffness_scale=LEVELS[run.accuracy].stiffness_scale)
+    scale = given.stiffness_scale or LEVELS[run.accuracy].stiffness_scale
+    return Contact(**{**vars(given), "stiffness_scale": scale})
 
 
-def _duration(run: Run, motion: Motion) -> float:
+def _duration(run: RunGiven, motion: Motion) -> float:
     """The run's duration (s): as given, else until the last motion that has an end is over."""
     try:
         derived = run.duration or max((part.duration() for part in motion.parts.values()), default=0.0)

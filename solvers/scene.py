@@ -6,6 +6,7 @@ from itertools import product
 
 import numpy as np
 
+from solvers.integrators import INTEGRATORS
 from solvers.laws import NORMAL, ROLLING, TANGENTIAL
 from solvers.materials import Interface, Material, interface, touching
 from solvers.parts import Part
@@ -127,7 +128,7 @@ class Scene:
         return speed
 
     def step_limits(self) -> list[Limit]:
-        """Bounds on the step, the tightest first."""
+        """Bounds on the step, the tightest first; of what Verlet bears, an integrator's `reach`."""
         speed = max(self.credible_speed(), 1e-3)
         found: dict[tuple, list[Limit]] = {}
         for grain, rows in zip(self.grain, self.interfaces_of, strict=True):
@@ -137,7 +138,10 @@ class Scene:
                 key = lighter, (rows[a * self.kinds + b], rows[self.kinds**2 + a])
                 if key not in found:
                     found[key] = limits(self.sizes[0], *key, self.stiffness_scale, speed, self.laws)
-        return min(found.values(), key=lambda bounds: bounds[0].step)
+        reach = INTEGRATORS[self.integrator].reach
+        of = "" if reach == 1.0 else f"{reach:g} of "
+        tightest = min(found.values(), key=lambda bounds: bounds[0].step)
+        return [Limit(reach * limit.step, of + limit.reason) for limit in tightest]
 
     def time_step(self) -> float:
         """The step Δt (s) in use."""

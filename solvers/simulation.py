@@ -68,14 +68,15 @@ class Simulation:
         may_leave = bool(scene.open_edges)
         self.grains = Grains(arrays, scene.radius, scene.density, scene.fixed, units.ghosts, may_leave, scene.kind)
         self.walls = Walls(arrays, scene.outline, scene.open_edges, scene.parts)
-        laws = ChosenLaws(arrays, units, *scene.laws, scene.interfaces_of, scene.kinds)
+        integrator = INTEGRATORS[scene.integrator]()
+        laws = ChosenLaws(arrays, units, *scene.laws, scene.interfaces_of, scene.kinds, integrator.damping)
         moduli = np.array([[between.young_modulus for between in world] for world in scene.interfaces_of])
         largest = max(scene.sizes[1], scene.fixed[:, 2].max(initial=0.0))
         reach = 2.0 * largest + self.skin
         self.neighbours = Neighbours(arrays, units, self.grains, self.walls, self.skin, reach, laws, moduli, self.room)
         self.contacts = Contacts(units, self.grains, self.walls, self.neighbours, laws)
         self.frame = Frame(arrays, scene.motions, scene.soft_start, scene.gravity)
-        self.mover = Mover(arrays, units, self.grains, INTEGRATORS[scene.integrator](), self.frame.rotating)
+        self.mover = Mover(arrays, units, self.grains, integrator, self.frame.rotating)
         self.clock = Clock(arrays, units)
         engine = Engine(
             units, self.grains, self.walls, self.neighbours, self.contacts, self.mover, self.frame, self.clock

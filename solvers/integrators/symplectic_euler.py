@@ -7,7 +7,7 @@ import taichi as ti
 class SymplecticEuler:
     """Kick by a whole step, drift with the new velocity (Hairer, Lubich and Wanner 2006, I.1.9). First order."""
 
-    extra = 0
+    extra, reach, damping = 0, 1.0, 1.0
 
     @ti.func
     def step(self, g: ti.template(), extra: ti.template(), w, i, ay, az, turn, first, dt):

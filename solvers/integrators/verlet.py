@@ -11,7 +11,7 @@ class Verlet:
     predicted with the last acceleration.
     """
 
-    extra = 0
+    extra, reach, damping = 0, 1.0, 1.0
 
     @ti.func
     def step(self, g: ti.template(), extra: ti.template(), w, i, ay, az, turn, first, dt):

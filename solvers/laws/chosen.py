@@ -15,11 +15,12 @@ class ChosenLaws:
 
     `interfaces[w]` are those of world w: of kinds a and b of grains in row a·K + b, of kind a and a wall in row K² + a,
     with K `kinds`. Contacts come in blocks of lanes (`ContactList`); what a law returns for a block is a vector of
-    lanes. With one kind of grains a law's coefficients are numbers, with several vectors of lanes.
+    lanes. With one kind of grains a law's coefficients are numbers, with several vectors of lanes. `damping` is the
+    integrator's: laws are told of a step that much longer than it is, and keep their dampers within that.
     """
 
-    def __init__(self, arrays: Arrays, units: Units, normal, tangential, rolling, interfaces, kinds: int = 1):
-        self.units, self.kinds = units, kinds
+    def __init__(self, arrays: Arrays, units: Units, normal, tangential, rolling, interfaces, kinds=1, damping=1.0):
+        self.units, self.kinds, self.damping = units, kinds, damping
         self.normal, self.tangential, self.rolling = laws = normal, tangential, rolling
         self.tables = [arrays.holding(self.tabulate(law, interfaces)) for law in laws]
         self.constants = tuple(name for law in laws for name in law.constants)
@@ -97,7 +98,7 @@ class ChosenLaws:
         """Work out one law's constants, which stand from `first` on."""
         if ti.static(self.counts[which] > 0):
             c = self.coefficients_of_one(which, u, kind, contacts, block, lane)
-            values = law.prepare(c, contacts.stiffness[u, block][lane], mass, radius, dt)
+            values = law.prepare(c, contacts.stiffness[u, block][lane], mass, radius, dt / self.damping)
             for k in ti.static(range(self.counts[which])):
                 contacts.constants[first + k][u, block][lane] = values[k]
 

@@ -2,6 +2,7 @@
 
 import taichi as ti
 
+from solvers.laws.splitting import AT_ONCE
 from solvers.materials import Interface
 
 SMALLEST_ROOT = 1e-12  # √m; an overlap of 1e-24 m is none
@@ -14,10 +15,10 @@ class Mindlin:
     The history S is kept as a force. While the contact loads, it grows with the present stiffness; while it unloads it
     shrinks with the stiffness, S ← S k_t(now)/k_t(before), as Thornton, Cummins and Cleary (2013) ask for, since
     otherwise a changing overlap makes energy (Elata and Berryman 1996). The dashpot has the dissipative time A of the
-    normal law. At the cap S is cut to the cap: the spring slides.
+    normal law, as far as the step resolves it. At the cap S is cut to the cap: the spring slides.
     """
 
-    constants = ()
+    constants = ("shear_limit",)
     memory = ("stretched", "root_before")
 
     def coefficients(self, between: Interface) -> list[float]:
@@ -30,6 +31,11 @@ class Mindlin:
         return []
 
     @ti.func
+    def prepare(self, c: ti.template(), stiffness, mass, radius, dt):
+        """The strongest damper (N s/m) that the step resolves, on m_t = (2/7) m_eff."""
+        return ti.Vector([AT_ONCE * (2.0 / 7.0) * mass / dt])
+
+    @ti.func
     def force(self, c: ti.template(), contacts: ti.template(), w, block, root, normal, slip, dt):
         """F_t (N) of a block of contacts on their first grains along the tangent; slip u_s in m/s, F_n in N."""
         cap = c[0] * normal
@@ -39,7 +45,7 @@ class Mindlin:
         stretched = ti.max(-cap, ti.min(cap, stretched))
         contacts.stretched[w, block] = stretched
         contacts.root_before[w, block] = root
-        return -ti.max(-cap, ti.min(cap, stretched + c[2] * spring * slip))
+        return -ti.max(-cap, ti.min(cap, stretched + ti.min(c[2] * spring, contacts.shear_limit[w, block]) * slip))
 
     @ti.func
     def energy(self, c: ti.template(), contacts: ti.template(), w, block, lane, root):

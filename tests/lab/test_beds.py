@@ -47,43 +47,36 @@ def top(position: np.ndarray, radius: np.ndarray, width: float) -> np.ndarray:
 
 @pytest.fixture(scope="module")
 def surfaces():
-    """Of each surface: scene, state, observed rows and progress of its beds; and the simulation of the stored ones."""
+    """Of each surface: scene, state, observed rows and progress of its beds."""
     found = {}
     for surface in ("undisturbed", "slightly-disturbed", "disturbed"):
-        reuse = surface == "slightly-disturbed"
-        simulation, progress = make(resolved(grains={"surface": surface, "reuse_bed": reuse}))
+        simulation, progress = make(resolved(grains={"surface": surface, "reuse_bed": False}))
         found[surface] = simulation.scene, simulation.snapshot(), simulation.observe(), progress
-        if reuse:
-            stored = simulation
-        else:
-            simulation.close()
-    yield found | {"stored": stored}
-    stored.close()
+        simulation.close()
+    return found
 
 
-def of_each(surfaces):
-    """Names and beds of the surfaces."""
-    return [(name, beds) for name, beds in surfaces.items() if name != "stored"]
-
-
+@pytest.mark.slow
 def test_surfaces_are_as_rough_as_their_names_say(surfaces):
     """Standard deviation of the surface's height about its level, in diameters, mean of six beds."""
     rough = {
         name: np.mean([top(p, r, 0.072).std() / 3e-3 for p, r in zip(state["position"], scene.radius, strict=True)])
-        for name, (scene, state, _, _) in of_each(surfaces)
+        for name, (scene, state, _, _) in surfaces.items()
     }
     assert rough["undisturbed"] < 0.85 * rough["slightly-disturbed"]
     assert rough["slightly-disturbed"] < 0.75 * rough["disturbed"]
 
 
+@pytest.mark.slow
 def test_an_undisturbed_bed_has_the_least_void(surfaces):
-    middle = {name: state["position"][..., 1].mean() for name, (_, state, _, _) in of_each(surfaces)}
+    middle = {name: state["position"][..., 1].mean() for name, (_, state, _, _) in surfaces.items()}
     assert middle["undisturbed"] < 0.98 * min(middle["slightly-disturbed"], middle["disturbed"])
 
 
+@pytest.mark.slow
 def test_beds_of_all_surfaces_rest_in_their_tank_with_the_grains_they_were_given(surfaces):
     given = surfaces["slightly-disturbed"][0].radius
-    for _, (scene, state, rows, progress) in of_each(surfaces):
+    for scene, state, rows, progress in surfaces.values():
         np.testing.assert_array_equal(scene.radius, given)
         assert not progress.warnings
         assert np.all(rows["escaped"] < 0) and np.all(rows["overlap"] < 0.04)
@@ -98,19 +91,21 @@ def alike(first, second):
     return first.keys() == second.keys() and all(np.array_equal(first[name], second[name]) for name in first)
 
 
-def test_a_reused_bed_goes_on_bit_for_bit_as_the_one_that_was_stored(surfaces):
+def test_a_reused_bed_goes_on_bit_for_bit_as_the_one_that_was_stored():
     """The tangential law remembers, and the tank begins to tilt."""
-    simulation, said = make(resolved())
+    (stored, _), (reused, said) = (make(resolved(run={"repeats": 2})) for _ in range(2))
     assert any("was reused" in sentence for sentence in said.notes)
-    np.testing.assert_array_equal(simulation.snapshot()["position"], surfaces["slightly-disturbed"][1]["position"])
-    for one in (simulation, surfaces["stored"]):
+    np.testing.assert_array_equal(reused.snapshot()["position"], stored.snapshot()["position"])
+    for one in (stored, reused):
         one.advance(500)
-    assert alike(simulation.snapshot(), surfaces["stored"].snapshot())
-    simulation.close()
+    assert alike(reused.snapshot(), stored.snapshot())
+    for one in (stored, reused):
+        one.close()
 
 
 @pytest.mark.slow
-def test_a_reused_bed_goes_on_bit_for_bit_in_other_company_and_motion(surfaces):
+def test_a_reused_bed_goes_on_bit_for_bit_in_other_company_and_motion():
+    make(resolved(run={"repeats": 3}))[0].close()
     preset = resolved(run={"repeats": 2, "seed": 2}, motion={"tilt": {"angle": "5 deg"}})
     reused, said = make(preset)
     anew, silent = make(preset.model_copy(update={"grains": replace(preset.grains, reuse_bed=False)}))

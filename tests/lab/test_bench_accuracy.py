@@ -28,10 +28,12 @@ def test_points_come_in_the_order_of_a_sweep():
     assert [tuple(row.values()) for row in rows] == [(1, "x"), (1, "y"), (2, "x"), (2, "y")]
 
 
+@pytest.mark.slow
 def test_the_restitution_of_verlet_is_of_second_order():
     assert worst_error("verlet", 40) / worst_error("verlet", 80) == pytest.approx(4.0, rel=0.3)
 
 
+@pytest.mark.slow
 def test_a_hasty_study_leaves_a_page(tmp_path):
     path = run_page(["rate"], tmp_path, fast=True)
     text = path.read_text()

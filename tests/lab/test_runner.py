@@ -74,16 +74,26 @@ def test_a_world_settles_alone_as_it_does_in_company():
     assert not np.array_equal(among.radius[0], among.radius[1])
 
 
-def test_a_step_past_the_limit_is_refused(tmp_path):
+def test_a_step_past_the_limit_is_refused_unless_forced_and_far_past_it_in_any_case():
     with pytest.raises(LabError, match=r"run\.step: .*past the limit.*force_step"):
-        run_preset("tilting/quick", SMALL | {"run": {"step": "1 ms", "force_step": False}}, tmp_path / "x", quiet=True)
+        build(load("tilting/quick", SMALL | {"run": {"step": "20 us"}}).resolved)
+    forced = SMALL | {"run": {"step": "20 us", "force_step": True}}
+    assert build(load("tilting/quick", forced).resolved)[0].step == pytest.approx(2e-5)
+    with pytest.raises(LabError, match=r"run\.step: 1 ms is 212 times the limit.* at most 5 times"):
+        build(load("tilting/quick", SMALL | {"run": {"step": "1 ms", "force_step": True}}).resolved)
+
+
+def test_a_forced_step_is_said_in_the_summary(tmp_path):
+    forced = SMALL | {"run": {"repeats": 1, "step": "20 us", "force_step": True, "duration": "0.02 s"}}
+    folder = run_preset("tilting/quick", forced, tmp_path / "forced", video=False, quiet=True).folder
+    assert "The step is forced past the derived one" in (folder / "summary.md").read_text()
 
 
 def test_a_run_the_watch_stops_keeps_its_recording_and_says_why(tmp_path):
-    wild = SMALL | {"run": {"repeats": 1, "step": "2 ms", "force_step": True}}
-    with pytest.raises(BadState, match="world 0"):
-        run_preset("tilting/quick", wild, tmp_path / "wild", video=False, quiet=True)
-    with open_recording(tmp_path / "wild") as recording:
+    soft = SMALL | {"run": {"repeats": 1}, "contact": {"stiffness_scale": 1e-9}}
+    with pytest.raises(BadState, match=r"world 0: a grain moves at .* too fast for the step"):
+        run_preset("tilting/quick", soft, tmp_path / "soft", video=False, quiet=True)
+    with open_recording(tmp_path / "soft") as recording:
         assert recording.status.startswith("stopped: world 0")
 
 

@@ -60,7 +60,10 @@ def usual(bed):
     return shaken(bed)[0]
 
 
-@pytest.mark.parametrize(("schedule", "units"), [("per-world", None), ("per-band", 3), ("per-grain", None)])
+@pytest.mark.parametrize(
+    ("schedule", "units"),
+    [("per-world", None), pytest.param("per-band", 3, marks=pytest.mark.slow), ("per-grain", None)],
+)
 def test_new_numbers_change_rounding_alone(bed, usual, monkeypatch, schedule, units):
     """With history and all: contacts that rub keep their springs when their grains change numbers."""
     monkeypatch.setattr(renumber, "FEWEST", 10)

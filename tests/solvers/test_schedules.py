@@ -30,6 +30,8 @@ SKIN = 1.5e-3
 UNITS = {"per-world": 1, "two bands": 2, "three bands": 3, "per-grain": COUNT}
 TANKS = {"open": ("mindlin", (LID,)), "closed": ("haff-werner", ())}
 TRIED = {"per-world": "open", "two bands": "open", "three bands": "closed", "per-grain": "open"}
+COSTLY = pytest.mark.slow  # of schedules that another one stands for in the quick tests
+SCHEDULES = [pytest.param(name, marks=COSTLY if name == "three bands" else ()) for name in TRIED]
 
 
 def start() -> tuple[np.ndarray, np.ndarray]:
@@ -94,7 +96,7 @@ def told():
         found.run.close()
 
 
-@pytest.fixture(scope="module", params=TRIED)
+@pytest.fixture(scope="module", params=SCHEDULES)
 def used(request, told: Callable[[str, str], Told]) -> Simulation:
     """A simulation in each schedule."""
     return told(request.param, TRIED[request.param]).run
@@ -110,11 +112,11 @@ def run(used) -> Simulation:
     return used
 
 
-@pytest.mark.parametrize(("schedule", "tank"), list(TRIED.items())[1:])
-def test_all_schedules_tell_the_same_story(told, schedule, tank):
+@pytest.mark.parametrize("schedule", SCHEDULES[1:])
+def test_all_schedules_tell_the_same_story(told, schedule):
     """To rounding while it is young, and as a whole later on: what differs grows tenfold in some hundredths of a
     second."""
-    usual, found = told("per-world", tank), told(schedule, tank)
+    usual, found = (told(name, TRIED[schedule]) for name in ("per-world", schedule))
     moved = np.linalg.norm(usual.early["position"] - start()[1], axis=2)
     assert moved.min() > RADIUS
     assert usual.early["contacts"].sum() > 30
@@ -244,6 +246,7 @@ def test_momentum_is_kept_without_walls(run):
     assert max(np.abs(rows[name]).max() for name in ("wall_y", "wall_z")) < 1e-12
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("schedule", ["two bands", "per-grain"])
 def test_lists_that_outgrow_their_room_change_nothing(told, schedule):
     """A heap that rubs is asked to list far more than touches: its springs, contacts and steps stay.

@@ -82,39 +82,36 @@ def end(run: Simulation) -> dict[str, np.ndarray]:
     return run.observe() | run.snapshot() | {"part": run.part_places(), "time": np.array(run.time)}
 
 
-def go_on(folder: Path) -> None:
-    """Put back the states of all cases and go on."""
-    for case in CASES:
-        run = made(case, THREADS[case][1])
-        with np.load(folder / f"{case}.npz") as state:
-            run.restore(dict(state))
-        np.savez(folder / f"{case} end.npz", **end(run))
-        run.close()
+def go_on(folder: Path, case: str) -> None:
+    """Put back the state of a case and go on."""
+    run = made(case, THREADS[case][1])
+    with np.load(folder / "state.npz") as state:
+        run.restore(dict(state))
+    np.savez(folder / "end.npz", **end(run))
+    run.close()
 
 
-@pytest.fixture(scope="module")
-def ends(tmp_path_factory):
-    """Of each case the end here and the end elsewhere, of a process that began with this one's state."""
-    folder, here = tmp_path_factory.mktemp("states"), Path(__file__).parent
-    found = {}
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(schedules, "WORTH_BANDS", COUNT)
-        for case in CASES:
-            run = made(case, THREADS[case][0])
-            lead_up(run, case)
-            np.savez(folder / f"{case}.npz", **run.state())
-            found[case] = end(run)
-            run.close()
-    code = f"import pathlib, test_state; test_state.go_on(pathlib.Path({str(folder)!r}))"
+def ends(case: str, folder: Path) -> tuple[dict, dict]:
+    """The end of a case here, and elsewhere, of a process that began with this one's state."""
+    here = Path(__file__).parent
+    run = made(case, THREADS[case][0])
+    lead_up(run, case)
+    np.savez(folder / "state.npz", **run.state())
+    found = end(run)
+    run.close()
+    code = f"import pathlib, test_state; test_state.go_on(pathlib.Path({str(folder)!r}), {case!r})"
     environment = os.environ | {"PYTHONPATH": os.pathsep.join([str(here), str(here.parents[1])])}
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=300, env=environment)
     assert done.returncode == 0, done.stderr[-2000:]
-    return {case: (found[case], dict(np.load(folder / f"{case} end.npz"))) for case in CASES}
+    return found, dict(np.load(folder / "end.npz"))
 
 
-@pytest.mark.parametrize("case", CASES)
-def test_another_process_goes_on_bit_for_bit(ends, case):
-    here, elsewhere = ends[case]
+@pytest.mark.parametrize(
+    "case", [pytest.param(case, marks=pytest.mark.slow if case == "bands that grew" else ()) for case in CASES]
+)
+def test_another_process_goes_on_bit_for_bit(tmp_path, monkeypatch, case):
+    monkeypatch.setattr(schedules, "WORTH_BANDS", COUNT)
+    here, elsewhere = ends(case, tmp_path)
     assert here["contacts"].min() > 1
     assert np.all(here["part"][..., 1] > 0.01)
     assert here.keys() == elsewhere.keys()
@@ -122,6 +119,7 @@ def test_another_process_goes_on_bit_for_bit(ends, case):
         assert here[name].tobytes() == elsewhere[name].tobytes(), name
 
 
+@pytest.mark.slow
 def test_bands_go_on_in_bands_on_any_number_of_threads(monkeypatch):
     """`auto` stands for bands on two threads, and for the whole world on one. What differs is rounding."""
     case, ends = "bands that grew", []
