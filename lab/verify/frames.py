@@ -69,10 +69,7 @@ def moving_tank(fast: bool) -> Found:
     radius, place = scattered(5, 5, seed=8)
     rows = [grain(y, z, r) for (y, z), r in zip(place, radius, strict=True)]
     contact = {"tangential": "haff-werner"}
-    run = {"step": STEP, "force_step": True}
-    setup = Setup(
-        np.array(rows), SOFT, {"width": WIDTH, "height": HEIGHT}, contact=contact, motion=motion_tables(), run=run
-    )
+    setup = Setup(np.array(rows), SOFT, {"width": WIDTH, "height": HEIGHT}, contact=contact, motion=motion_tables())
     tank, steps = Tank(radius, SOFT, WIDTH, HEIGHT, pose), (STEP,) if fast else (STEP, STEP / 2.0)
     found = []
     with simulated(setup) as run:
@@ -137,9 +134,8 @@ def flight(_: bool) -> Found:
     """A grain that touches nothing in the moving tank flies a parabola in the earth frame, and its spin stays."""
     place, velocity, spin = np.array([0.05, 0.6]), np.array([0.4, 0.8]), 7.0
     rows, tank = [grain(*place, RADIUS, *velocity, spin)], {"width": 1.2, "height": 1.2}
-    with simulated(
-        Setup(np.array(rows), SOFT, tank, motion=motion_tables(), run={"step": STEP, "force_step": True})
-    ) as run:
+    with simulated(Setup(np.array(rows), SOFT, tank, motion=motion_tables())) as run:
+        again(run, run.snapshot()["position"], STEP, run.scene.velocity, run.scene.spin)
         run.advance(round(FLIGHT / STEP))
         state, time = run.snapshot(), run.time
     origin, angle, carried, rate = pose(0.0)

@@ -18,7 +18,7 @@ class Gear:
     its step), where Verlet with predicted velocities bears 2 and 1.
     """
 
-    extra, reach, damping = 3 * DERIVATIVES, 0.4, 0.15
+    extra, reach, damping = 3 * DERIVATIVES, 0.25, 0.15
 
     @ti.func
     def step(self, g: ti.template(), extra: ti.template(), w, i, ay, az, turn, first, dt):

@@ -21,8 +21,6 @@ from solvers import runtime
 from solvers.errors import Unavailable
 from solvers.simulation import Simulation
 
-pytestmark = pytest.mark.slow  # minutes of small scenes
-
 COUNT, WIDTH = 40, 24e-3
 
 
@@ -68,6 +66,7 @@ def test_copies_stand_side_by_side_without_touching_deeper_than_a_wall(bed):
     assert overlap[copy[:, None] != copy].max() <= 2.0 * deepest + 1e-12
 
 
+@pytest.mark.slow
 def test_a_worker_times_steps_and_says_what_it_cannot_do(bed):
     worker = Worker(bed, worlds=2, schedule="per-world")
     assert worker.dt == bed.scene().time_step()
@@ -182,6 +181,7 @@ def test_curves_tell_the_first_diameter_and_where_they_part():
     assert len(curves.plotted({curves.LAB: [one, other]}).axes) == 2
 
 
+@pytest.mark.slow
 def test_a_tilted_bed_shifts_downhill_and_its_curve_is_kept(tmp_path, bed, monkeypatch):
     how = Tilting(beds=1, count=COUNT, width=WIDTH, rate=200.0, angle=45.0)
     curve = curves.kept(tmp_path, curves.LAB, how, bed, 1)

@@ -11,15 +11,13 @@ from lab.bench.stability.beds import ACETATE, RADIUS, bed, tank
 from lab.bench.stability.case import Case, Check, Measure, judge, made_energy
 from lab.bench.stability.hard_beds import height
 from lab.bench.stability.limit_map import contacts, exact_limit, grows, longest, packing, scene
-from lab.bench.stability.pushed import RIGHT, STOPPED, WRONG, verdict
+from lab.bench.stability.pushed import REFUSED, RIGHT, STOPPED, WRONG, verdict
 from lab.bench.stability.records import Records
 from lab.bench.stability.trial import Trial, follow, overlap_of
 from lab.errors import LabError
 from solvers.motions import Sway
 from solvers.scene import Scene
 from solvers.simulation import Simulation
-
-pytestmark = pytest.mark.slow  # minutes of small scenes
 
 SWAYED = Case("sway", "", lambda fast: None, measure=Measure("height", height, 0.1, ""))
 
@@ -40,6 +38,7 @@ def swayed():
     run.close()
 
 
+@pytest.mark.slow
 def test_the_fast_part_passes_and_leaves_a_page(page):
     folder, passed = page
     text, data = (folder / "stability.md").read_text(), json.loads((folder / "stability.json").read_text())
@@ -55,6 +54,7 @@ def test_the_fast_part_passes_and_leaves_a_page(page):
     assert all(row["ratio"] > 1.0 for row in data["map-verlet"]["rows"])
 
 
+@pytest.mark.slow
 def test_what_is_there_is_not_run_again(page, capsys, monkeypatch):
     folder, _ = page
     monkeypatch.setattr(stability, "Simulation", None)
@@ -69,6 +69,13 @@ def test_what_is_there_is_not_run_again(page, capsys, monkeypatch):
     data["wedged"]["made_by"]["versions"]["taichi"] = "0"
     (folder / "older.json").write_text(json.dumps(data))
     assert "wedged" not in Records(folder / "older.json", fast=True)
+
+
+def test_a_case_passes_and_leaves_a_page(tmp_path):
+    assert stability.run_cases(("wedged",), tmp_path, True)
+    text, data = (tmp_path / "stability.md").read_text(), json.loads((tmp_path / "stability.json").read_text())
+    assert "**wedged**" in text and "FAIL" not in text
+    assert [row["outcome"] for row in data["wedged"]["pushed"]] == [RIGHT, REFUSED + RIGHT]
 
 
 def test_a_name_that_is_none_is_one_sentence(tmp_path):
@@ -132,6 +139,7 @@ def test_longer_steps_are_right_or_stopped_or_quietly_wrong(swayed):
     assert not verdict(SWAYED, trial, course, 4, 1.2 * found).passed
     hot = replace(course, energy=course.energy + np.linspace(0.0, 0.05, len(course.time)) * course.energy.max())
     assert verdict(SWAYED, trial, hot, 4, found).outcome == WRONG
+    assert verdict(SWAYED, trial, course, 10, 0.9 * found).passed, "no number comes out of the app"
     stopped = verdict(SWAYED, trial, replace(course, stopped="too fast."), 4, found)
     assert stopped.outcome == STOPPED and stopped.said == "too fast." and stopped.passed
 

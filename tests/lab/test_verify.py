@@ -13,8 +13,6 @@ from lab.verify.impacts import Sphere, sprung_impact, viscous_impact
 from lab.verify.plain import Tank
 from lab.verify.references import HertzCollision, viscoelastic_rebound
 
-pytestmark = pytest.mark.slow  # minutes of small scenes
-
 
 def told(folder) -> dict:
     """What verify.json says."""

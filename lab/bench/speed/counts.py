@@ -29,8 +29,8 @@ PAIR = (
     # The root of the overlap; the stiffness.
     Count("`ChosenLaws.forces`", 0, 1, REAL),
     Count("`HertzViscoelastic.force`", 5, 0, 0),
-    # Two memories, read and written.
-    Count("`Mindlin.force`", 16, 1, 4 * REAL),
+    # The damper's limit; two memories, read and written.
+    Count("`Mindlin.force`", 17, 1, 5 * REAL),
     Count("`Grains.push`, twice", 6, 0, 0),
 )
 GRAIN = (
