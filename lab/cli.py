@@ -338,6 +338,32 @@ def verify(cases: tuple[str, ...], out: Path, fast: bool) -> None:
         sys.exit(1)
 
 
+@main.command()
+@click.argument("what", type=click.Choice(["granular"]))
+@click.argument("experiments", nargs=-1)
+@click.option("--quick", is_flag=True, help="Fewer beds, faster tilts, draft accuracy: under 20 minutes on two cores.")
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path, file_okay=False),
+    metavar="DIR",
+    default=Path("renders/reproduce"),
+    show_default=True,
+    help="Folder of the report and of its runs.",
+)
+@quiet_option
+def reproduce(what: str, experiments: tuple[str, ...], quick: bool, out: Path, quiet: bool) -> None:
+    """Run the experiments of the source and write one report: what it states, what we get, the difference, the cost.
+
+    \b
+    cargolab reproduce granular --quick
+    cargolab reproduce granular                 hours on two cores; asked again, it goes on
+    cargolab reproduce granular tilt-fill stack EXPERIMENTS whose names begin like this
+    """
+    from lab.reproduce import reproduce as reproduced
+
+    click.echo(reproduced(experiments, out, quick, quiet))
+
+
 @main.group()
 def bench() -> None:
     """Measure what the lab's numbers cost and how far to trust them; each writes a page with tables and figures."""

@@ -125,10 +125,12 @@ def _taken(hint: Any) -> Taken:
 def _value(taken: Taken, raw: object, key: str) -> Any:
     if isinstance(raw, str) and raw in taken.words:
         return raw
+    if raw is False and taken.optional:  # takes back what a preset that this one is based on gives
+        return None
     if taken.kind is None:
         raise LabError(f"{key}: {quoted(raw)} is unknown; {_word_hint(taken, raw)}")
     if is_dataclass(taken.kind):
-        return None if raw is False and taken.optional else read(taken.kind, raw, key)
+        return read(taken.kind, raw, key)
     if get_origin(taken.kind) is tuple:
         return _tuple(taken, raw, key)
     if inner := _named_kind(taken.kind):

@@ -11,11 +11,11 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from lab.bench.devices import Device, device
-from lab.bench.page import Page
 from lab.bench.speed.beds import DIAMETER, Bed, usual_bed
 from lab.bench.speed.drawing import draw_with_range
 from lab.bench.speed.workers import Speeds, Worker, compared, millions
 from lab.errors import LabError
+from lab.page import Page
 from lab.plots import BELOW, BLUE, GREEN, STYLE, VERMILION
 from solvers import runtime
 from solvers.errors import BadState, Unavailable

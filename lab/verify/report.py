@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from rich.console import Console
 from rich.table import Table
 
-from lab.bench.page import Page, machine
+from lab.page import Page, machine
 from lab.plots import BLUE, GREY, STYLE, VERMILION
 from lab.recording import versions
 from lab.verify.case import Line, Outcome

@@ -10,8 +10,8 @@ from pathlib import Path
 import matplotlib
 
 from lab.bench.accuracy import collisions, creep, laws, levels, precision, rate, repeats, shaken, skin, stiffness
-from lab.bench.page import Page
 from lab.errors import LabError
+from lab.page import Page
 from lab.plots import STYLE
 
 # In the order of the page, which is also that of time.

@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from lab.bench.accuracy.settled import settled_scene
-from lab.bench.page import Page
+from lab.page import Page
 from lab.plots import BLUE, GREY, VERMILION
 from solvers.integrators import INTEGRATORS
 from solvers.materials import Material

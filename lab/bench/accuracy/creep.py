@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 
 from lab.bench.accuracy.beds import TILT, TILTED, Point, half_interval, sweep
 from lab.bench.accuracy.laws import KEY, LAWS
-from lab.bench.page import Page
+from lab.page import Page
 from lab.recording import open_recording
 
 RATE, ANGLE, HOLD, REST = 10.0, 10.0, 60.0, 5.0  # deg/s, deg, s, and the time (s) after which the hold is looked at

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from lab.bench.accuracy.beds import TILT, TILTED, plus_minus, sweep
-from lab.bench.page import Page
+from lab.page import Page
 
 LAWS = ("haff-werner", "mindlin", "cundall-strack", "coulomb", "viscous", "none")
 KEY = "contact.tangential"

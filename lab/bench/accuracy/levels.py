@@ -6,7 +6,7 @@ from lab.accuracy import LEVELS
 from lab.bench.accuracy.beds import SWAY, SWAYED, TILT, TILTED, Point, plus_minus, sweep
 from lab.bench.accuracy.stiffness import KEY as SCALE
 from lab.bench.accuracy.stiffness import SCALES
-from lab.bench.page import Page
+from lab.page import Page
 
 KEY = "run.accuracy"
 

@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 
 from lab.bench.accuracy.beds import TILT, TILTED, plus_minus, sweep
 from lab.bench.accuracy.settled import settled_scene
-from lab.bench.page import Page
+from lab.page import Page
 from lab.plots import BLUE, GREY, VERMILION
 from solvers.motions import Tilt
 from solvers.simulation import Simulation

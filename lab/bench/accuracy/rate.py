@@ -5,7 +5,7 @@ from pathlib import Path
 from matplotlib.figure import Figure
 
 from lab.bench.accuracy.beds import TILT, TILTED, plus_minus, sweep
-from lab.bench.page import Page
+from lab.page import Page
 from lab.plots import BLUE, GREEN
 
 RATES = (1.0, 3.0, 10.0, 30.0)  # deg/s

@@ -6,7 +6,7 @@ import numpy as np
 from scipy import stats
 
 from lab.bench.accuracy.beds import SWAY, SWAYED, TILT, TILTED, sweep
-from lab.bench.page import Page
+from lab.page import Page
 
 BEDS = 24
 WANTED = {"critical_angle": (2.0, 1.0, 0.5), "response_amplitude": (0.2, 0.1, 0.05)}  # half widths: deg, mm

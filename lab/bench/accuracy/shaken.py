@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 
 from lab.bench.accuracy.collisions import COLOURS, costs
 from lab.bench.accuracy.settled import deviation, settled_scene
-from lab.bench.page import Page
+from lab.page import Page
 from solvers.integrators import INTEGRATORS
 from solvers.simulation import Simulation
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from lab.bench.accuracy.settled import settled_scene
-from lab.bench.page import Page
+from lab.page import Page
 from solvers.simulation import SKIN, Simulation
 
 SKINS = (0.02, 0.05, 0.1, 0.2, 0.4)  # of the mean diameter

@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from lab.bench.accuracy.beds import SWAY, SWAYED, TILT, TILTED, Point, plus_minus, sweep
-from lab.bench.page import Page
+from lab.page import Page
 from lab.plots import BLUE, GREEN, VERMILION
 
 SCALES = (1e-4, 1e-3, 1e-2, 1e-1, 1.0)

@@ -9,9 +9,9 @@ from pathlib import Path
 
 import matplotlib
 
-from lab.bench.page import Page
 from lab.bench.speed import choices, curves, grains, parts, peers, worlds
 from lab.errors import LabError
+from lab.page import Page
 from lab.plots import STYLE
 
 # In the order of the page, which is also that of time.

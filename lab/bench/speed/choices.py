@@ -2,9 +2,9 @@
 
 from pathlib import Path
 
-from lab.bench.page import Page
 from lab.bench.speed.beds import usual_bed
 from lab.bench.speed.workers import Worker, compared, millions, ratio
+from lab.page import Page
 from solvers.runtime import available_cores
 
 PRECISIONS = ("f64", "mixed", "f32")

@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 from matplotlib.figure import Figure
 
-from lab.bench.page import Page
 from lab.bench.peers import lammps, liggghts
 from lab.bench.speed.beds import ACETATE, DIAMETER, HEIGHT, SCALE, Bed, settled_bed
+from lab.page import Page
 from lab.plots import BELOW, BLUE, GREEN, VERMILION
 from solvers.materials import Material
 from solvers.motions import Tilt

@@ -4,10 +4,10 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
-from lab.bench.page import Page
 from lab.bench.speed.beds import usual_bed
 from lab.bench.speed.drawing import draw_with_range
 from lab.bench.speed.workers import Speeds, Worker, compared, millions, ratio
+from lab.page import Page
 from lab.plots import BELOW, BLUE, VERMILION
 from solvers.runtime import available_cores
 

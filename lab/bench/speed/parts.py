@@ -9,11 +9,11 @@ from pathlib import Path
 import numpy as np
 from matplotlib.figure import Figure
 
-from lab.bench.page import Page
 from lab.bench.speed.beds import Bed, usual_bed
 from lab.bench.speed.counts import GRAIN, PAIR, REAL, total
 from lab.bench.speed.kernels import MULTIPLY_ADDS, Limits, Parts
 from lab.bench.speed.workers import in_turn
+from lab.page import Page
 from lab.plots import BLUE, GREY, VERMILION
 from solvers import runtime
 from solvers.motions import Sway

@@ -5,11 +5,11 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-from lab.bench.page import Page
 from lab.bench.peers import lammps, liggghts
 from lab.bench.speed.beds import ACETATE, HEIGHT, SCALE, Bed, usual_bed
 from lab.bench.speed.workers import Speeds, Worker, in_turn, millions, ratio, workers
 from lab.errors import LabError
+from lab.page import Page
 
 COPIES = 100  # of the bed, of the large world
 RUNS = {liggghts: liggghts.run_liggghts, lammps: lammps.run_lammps}

@@ -8,7 +8,6 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 
-from lab.bench.page import Page
 from lab.bench.stability import hard_beds, hard_few, hard_moving, hard_starts, limit_map
 from lab.bench.stability.case import ENERGY, OVERLAP, Case, Check, judge
 from lab.bench.stability.pushed import push
@@ -16,6 +15,7 @@ from lab.bench.stability.records import Records
 from lab.bench.stability.report import word, write_page
 from lab.bench.stability.trial import follow
 from lab.errors import LabError
+from lab.page import Page
 from solvers.integrators import INTEGRATORS
 from solvers.simulation import Simulation
 

@@ -5,10 +5,10 @@ from collections.abc import Mapping, Sequence
 import matplotlib
 from matplotlib.figure import Figure
 
-from lab.bench.page import Page
 from lab.bench.stability.case import DEEPEST, IMPACTS
 from lab.bench.stability.limit_map import DAMPINGS, DISTURBED, FINE, GROWTH, SPEED, STEPS, WIDEST
 from lab.bench.stability.pushed import RIPPLE
+from lab.page import Page
 from lab.plots import BELOW, BLUE, GREEN, GREY, STYLE, VERMILION
 
 TICKS = (0.5, 1, 2, 5, 10, 20, 50)  # derived steps

@@ -1,4 +1,4 @@
-"""A page of results, Markdown with tables and figures beside it, as `cargolab bench` and `cargolab verify` write it."""
+"""A page of results, Markdown with tables and figures beside it: what bench, verify and reproduce write."""
 
 import platform
 from collections.abc import Sequence
@@ -10,6 +10,8 @@ from matplotlib.figure import Figure
 from lab.plots import STYLE
 from lab.recording import versions
 from solvers.runtime import available_cores
+
+COMMANDS = {"verify": "verify", "granular": "reproduce granular", "granular-quick": "reproduce granular --quick"}
 
 
 class Page:
@@ -38,8 +40,12 @@ class Page:
         path = self.folder / f"{self.name}-{name}.png"
         with matplotlib.rc_context(STYLE):
             figure.savefig(path, dpi=130)
-        self._blocks.append(f"![{caption}]({path.name})")
+        self.show(path, caption)
         return path
+
+    def show(self, path: Path, caption: str) -> None:
+        """Show a picture that lies beside the page."""
+        self._blocks.append(f"![{caption}]({path.name})")
 
     def write(self) -> Path:
         """Write the page; returns its file."""
@@ -49,8 +55,8 @@ class Page:
 
 
 def title_command(name: str) -> str:
-    """The command that makes the page of a name: verify, or one of the benches."""
-    return name if name == "verify" else f"bench {name}"
+    """The command that makes the page of a name: one of COMMANDS, or a bench."""
+    return COMMANDS.get(name, f"bench {name}")
 
 
 def machine() -> str:

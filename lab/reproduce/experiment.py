@@ -1,0 +1,77 @@
+"""An experiment of the source: the runs it takes, and what is told of them beside what the source states."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+from matplotlib.figure import Figure
+
+from lab.measures.value import Value
+from lab.reproduce.runs import Batch, Outcome
+from lab.summary import number
+
+
+@dataclass(frozen=True)
+class Row:
+    """One line of the comparison. `agrees` is None where the source states nothing that could be held against it."""
+
+    quantity: str
+    source: str
+    ours: str
+    difference: str
+    agrees: bool | None
+
+
+@dataclass(frozen=True)
+class Told:
+    """What came of an experiment: rows, the figure, and a remark that one reads with them."""
+
+    rows: Sequence[Row]
+    figure: Figure | None = None
+    remark: str = ""
+
+
+@dataclass(frozen=True)
+class Experiment:
+    """`states` says in words what the source (its `section`) reports; `batches(quick)` what is run, by name.
+
+    `tell` compares the outcomes of the batches, each a list by the points of its grid. `lost` says what the quick runs
+    leave out; `shown` is the batch whose first point is pictured, at this fraction of its time.
+    """
+
+    name: str
+    title: str
+    section: str
+    states: str
+    batches: Callable[[bool], Mapping[str, Batch]]
+    tell: Callable[[Mapping[str, Sequence[Outcome]]], Told]
+    lost: str
+    shown: tuple[str, float]
+
+
+def stated(quantity: str, source: float, ours: Value | None, within: float) -> Row:
+    """A number of the source beside ours; they agree if they differ by at most `within`, in the same unit."""
+    if ours is None or ours.value is None:
+        return Row(quantity, f"{source:g}", "not found", "", False)
+    difference = ours.value - source
+    unit = "" if ours.unit == "1" else f" {ours.unit}"
+    return Row(quantity, f"{source:g}{unit}", counted(ours), f"{difference:+.3g}{unit}", abs(difference) <= within)
+
+
+def observed(quantity: str, source: str, ours: str, agrees: bool | None) -> Row:
+    """What the source says in words, beside what we see."""
+    return Row(quantity, source, ours, "", agrees)
+
+
+def counted(value: Value | None) -> str:
+    """A value with its error and the number of beds in which it was found."""
+    if value is None or value.value is None:
+        return "not found"
+    found = sum(world is not None for world in value.worlds)
+    return f"{number(value)} ({found} bed{'s' if found != 1 else ''})"
+
+
+def ordered(*values: Value | None) -> bool:
+    """Whether the means fall from one to the next."""
+    means = [value.value if value else None for value in values]
+    return None not in means and all(a > b for a, b in pairwise(means))

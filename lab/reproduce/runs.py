@@ -1,0 +1,86 @@
+"""The runs of an experiment: done once, gone on with where they were cut short, and read again."""
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+
+from lab.errors import LabError
+from lab.measures.value import Value
+from lab.presets import load
+from lab.recording import FILE_NAME, Recording, open_recording
+from lab.runner import reported, resume_run, run_preset
+from lab.sweeps import FILE_NAME as SWEEP
+from lab.sweeps import point_folder, read_sweep, run_sweep
+from solvers.errors import BadState
+
+
+@dataclass(frozen=True)
+class Batch:
+    """Runs of a preset with `changes` by dotted keys, one for each point of the grid of `axes` (see `lab.sweeps`)."""
+
+    preset: str
+    changes: Mapping[str, object] = field(default_factory=dict)
+    axes: Mapping[str, Sequence] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """A run that is done: the values of its grid's keys, its folder and measures, and what it cost."""
+
+    setting: Mapping[str, object]
+    folder: Path
+    status: str
+    measures: Mapping[str, Value]
+    cost: Mapping[str, float] = field(repr=False)
+
+    def __getitem__(self, name: str) -> Value | None:
+        return self.measures.get(name)
+
+    @cached_property
+    def recording(self) -> Recording:
+        """The recording: `series`, `frames`, `radius` …"""
+        return open_recording(self.folder)
+
+
+def carry_out(batch: Batch, folder: Path, quiet: bool) -> None:
+    """Run what has not been run yet. A bed that the watch stops ends its run and no other. Raises LabError."""
+    if batch.axes:
+        run_sweep(batch.preset, batch.axes, batch.changes, folder, video=False, quiet=quiet)
+        return
+    try:
+        if not (folder / FILE_NAME).exists():
+            run_preset(batch.preset, batch.changes, folder, video=False, quiet=quiet)
+            return
+        with open_recording(folder) as recording:
+            same = recording.preset == json.loads(load(batch.preset, batch.changes).resolved.model_dump_json())
+            done = reported(folder, recording.status) and recording.status != "running"
+        if not same:
+            raise LabError(f"{folder} holds another run than this experiment asks for: remove it.")
+        if not done:
+            resume_run(folder, video=False, quiet=quiet)
+    except BadState:  # the recording says so, and the report
+        pass
+
+
+def outcomes(folder: Path) -> list[Outcome]:
+    """The runs of a batch that are done, in the order of its grid."""
+    if (folder / SWEEP).exists():
+        settings = read_sweep(folder).settings
+        runs = [(setting, point_folder(folder, k)) for k, setting in enumerate(settings)]
+    else:
+        runs = [({}, folder)]
+    return [found for setting, where in runs if (found := _outcome(setting, where))]
+
+
+def _outcome(setting: Mapping[str, object], folder: Path) -> Outcome | None:
+    try:
+        data = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return None
+    measures = {
+        key: Value(m["value"], m["unit"], m["std"], m["uncertainty"], tuple(m["worlds"]), m["note"])
+        for key, m in data["measures"].items()
+    }
+    return Outcome(setting, folder, data["status"], measures, data["cost"])

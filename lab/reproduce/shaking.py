@@ -1,0 +1,232 @@
+"""Tanks that are swayed, heaved and rolled: materials, sizes of tanks, centres of roll."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from lab.measures.value import Value, over_worlds
+from lab.reproduce.curves import against, leading_number
+from lab.reproduce.experiment import Experiment, Told, counted, observed, stated
+from lab.reproduce.runs import Batch, Outcome
+
+FREQUENCY = "motion.sway.frequency"
+ONSET = 0.02  # of the amplitude of the tank: a response that is told from jitter
+STILL = 0.01  # of the amplitude: a bed that does not answer
+LOST = "1 bed for 4, 4 s of motion for 8, fewer frequencies, both at draft accuracy"
+Found = Mapping[str, Sequence[Outcome]]
+
+
+def shaken(preset: str, quick: bool, frequencies: Sequence[str] = (), motion: str = "sway", **changes: object) -> Batch:
+    """A preset at draft accuracy, at one frequency or several."""
+    cost = {"run.accuracy": "draft", "run.repeats": 1 if quick else 4, "run.duration": "4 s" if quick else "8 s"}
+    axes = {f"motion.{motion}.frequency": list(frequencies)} if frequencies else {}
+    return Batch(preset, {**cost, **changes}, axes)
+
+
+def materials_batches(motion: str, quick: bool) -> dict[str, Batch]:
+    """The three ores; a thousandth of the stiffness would let the gold ore overlap too far at 2 m/s."""
+    frequencies = ["0.2 Hz", "1.5 Hz"] if quick else ["0.2 Hz", "0.5 Hz", "0.8 Hz", "1.1 Hz", "1.5 Hz"]
+    stiffer = {"C": {"contact.stiffness_scale": 1e-2}}
+    return {
+        name: shaken(f"shaking/{motion}-materials-{name.lower()}", quick, frequencies, motion, **stiffer.get(name, {}))
+        for name in "ABC"
+    }
+
+
+def at(outcomes: Sequence[Outcome], key: str, frequency: float) -> Outcome | None:
+    """The outcome at a frequency (Hz)."""
+    return next((one for one in outcomes if abs(leading_number(one.setting[key]) - frequency) < 1e-9), None)
+
+
+def swayed(found: Found) -> Told:
+    """Inert when slow; y with the tank, z with half its period, in opposite phase."""
+    rows = []
+    for name, outcomes in found.items():
+        slow, fast = at(outcomes, FREQUENCY, 0.2), at(outcomes, FREQUENCY, 1.5)
+        response = slow and slow["response_amplitude"]
+        if response:
+            still = response.value is not None and response.value < STILL * 100.0
+            source = "inert" if name in "AB" else "answers a little"
+            rows.append(
+                observed(
+                    f"{name} at 0.2 Hz: amplitude of y", source, counted(response), still if name in "AB" else None
+                )
+            )
+        if fast:
+            rows.append(
+                observed(
+                    f"{name} at 1.5 Hz: amplitude of y",
+                    "swings with the tank",
+                    counted(fast["response_amplitude"]),
+                    None,
+                )
+            )
+            rows.append(stated(f"{name} at 1.5 Hz: phase", 180.0, fast["response_phase"], 90.0))
+            rows.append(
+                observed(
+                    f"{name} at 1.5 Hz: amplitude of z, half the period",
+                    "smaller than y's",
+                    counted(fast["response_amplitude_z"]),
+                    None,
+                )
+            )
+    families = {f"{name}": outcomes for name, outcomes in found.items()}
+    return Told(
+        rows,
+        against(FREQUENCY, "frequency (Hz)", families, "response_amplitude", "amplitude of the centre of mass (mm)"),
+    )
+
+
+def heaved(found: Found) -> Told:
+    """The tank's acceleration stays below gravity: nothing is lifted."""
+    key = "motion.heave.frequency"
+    rows = []
+    for name, outcomes in found.items():
+        for frequency in (0.2, 1.5):
+            one = at(outcomes, key, frequency)
+            if one:
+                source = "follows the tank" if frequency < 1.0 else "begins to swing"
+                rows.append(
+                    observed(
+                        f"{name} at {frequency} Hz: shift of the centre of mass",
+                        source,
+                        counted(one["largest_shift"]),
+                        None,
+                    )
+                )
+    return Told(
+        rows, against(key, "frequency (Hz)", dict(found), "largest_shift", "largest shift of the centre of mass (mm)")
+    )
+
+
+def centres(found: Found) -> Told:
+    """The higher the centre of roll, the larger the response, from 20 deg on."""
+    rows = []
+    for angle in ("10 deg", "20 deg", "30 deg"):
+        response = {name: amplitude(outcomes, angle) for name, outcomes in found.items()}
+        for name, value in response.items():
+            rows.append(observed(f"{angle}, centre {name}", "", counted(value), None))
+        low, high = response.get("0 mm"), response.get("500 mm")
+        if low and high and low.value and high.value is not None:
+            ratio = high.value / low.value
+            source = {"10 deg": "1: no dependence", "20 deg": "5", "30 deg": ""}[angle]
+            agrees = {"10 deg": None, "20 deg": 2.5 <= ratio <= 10.0, "30 deg": None}[angle]
+            rows.append(observed(f"{angle}: 500 mm over 0 mm", source, f"{ratio:.2g}", agrees))
+    key = "motion.roll.amplitude"
+    return Told(
+        rows,
+        against(
+            key,
+            "amplitude of the roll (deg)",
+            dict(found),
+            "response_amplitude",
+            "amplitude of the centre of mass (mm)",
+        ),
+    )
+
+
+def amplitude(outcomes: Sequence[Outcome], angle: str) -> Value | None:
+    """The response at an amplitude of roll."""
+    return next((one["response_amplitude"] for one in outcomes if one.setting["motion.roll.amplitude"] == angle), None)
+
+
+def onset(outcomes: Sequence[Outcome], tank: float) -> Value:
+    """Of each bed the frequency (Hz) at which its response first exceeds ONSET of the tank's amplitude (mm).
+
+    Between two frequencies it is taken to grow linearly; a bed that never answers has none.
+    """
+    frequencies = np.array([leading_number(one.setting[FREQUENCY]) for one in outcomes])
+    responses = np.array(
+        [[x if x is not None else np.nan for x in one["response_amplitude"].worlds] for one in outcomes]
+    )
+    return over_worlds([_crossing(frequencies, curve / tank) for curve in responses.T], "Hz", missing="never answers")
+
+
+def _crossing(x: np.ndarray, y: np.ndarray) -> float:
+    beyond = np.flatnonzero(y > ONSET)
+    if not len(beyond):
+        return float("nan")
+    k = int(beyond[0])
+    if k == 0:
+        return float(x[0])
+    return float(x[k - 1] + (ONSET - y[k - 1]) / (y[k] - y[k - 1]) * (x[k] - x[k - 1]))
+
+
+AMPLITUDES = {"60 mm": 40.0 / 3.0, "150 mm": 100.0 / 3.0, "180 mm": 40.0}  # mm, 40 mm on 180
+
+
+def scaled(found: Found) -> Told:
+    """The small tank answers at a much higher frequency."""
+    onsets = {name: onset(outcomes, AMPLITUDES[name]) for name, outcomes in found.items()}
+    rows = [
+        stated("180 mm: begins to flow at", 1.2, onsets["180 mm"], 0.3),
+        stated("150 mm: begins to flow at", 1.2, onsets["150 mm"], 0.3),
+    ]
+    small, large = onsets["60 mm"], onsets["180 mm"]
+    later = None not in (small.value, large.value) and small.value > large.value
+    rows.append(observed("60 mm: begins to flow at", "later, in two steps", counted(small), later))
+    figure = against(
+        FREQUENCY, "frequency (Hz)", dict(found), "response_amplitude", "amplitude of the centre of mass (mm)"
+    )
+    return Told(rows, figure)
+
+
+def scaled_batches(quick: bool) -> dict[str, Batch]:
+    """Three tanks over the frequencies."""
+    frequencies = [f"{f:g} Hz" for f in ((0.8, 1.2, 1.6, 2.4, 3.2) if quick else np.arange(0.4, 3.8, 0.2).round(1))]
+    return {name: shaken(f"shaking/scaling-{name.split()[0]}", quick, frequencies) for name in AMPLITUDES}
+
+
+EXPERIMENTS = [
+    Experiment(
+        "sway-materials",
+        "Sway of three ores",
+        "5.2.2",
+        "swayed by 100 mm at 0.2 to 1.5 Hz, A and B do not answer at 0.2 Hz; with the frequency the centre of mass "
+        "swings, y with the tank's period and z with half of it, in nearly opposite phase.",
+        lambda quick: materials_batches("sway", quick),
+        swayed,
+        LOST,
+        ("A", 0.7),
+    ),
+    Experiment(
+        "heave-materials",
+        "Heave of three ores",
+        "5.2.2",
+        "heaved by 100 mm the grains follow the tank at 0.2 Hz; at 1.5 Hz B begins to swing up and down, A and C "
+        "sideways, too.",
+        lambda quick: materials_batches("heave", quick),
+        heaved,
+        LOST,
+        ("B", 0.7),
+    ),
+    Experiment(
+        "roll-centres",
+        "Centres of roll",
+        "5.3.5",
+        "up to 10 deg the height of the centre does not matter; at 20 deg and 1.3 Hz the response about 500 mm is "
+        "five times that about 0; at 30 deg the bed is thrown from side to side.",
+        lambda quick: {
+            f"{centre} mm": Batch(
+                f"shaking/roll-centre-{centre}",
+                shaken("", quick).changes,
+                {"motion.roll.amplitude": ["10 deg", "20 deg", "30 deg"]},
+            )
+            for centre in (0, 100, 200, 500)
+        },
+        centres,
+        "1 bed for 4, 4 s of motion for 8, both at draft accuracy",
+        ("500 mm", 0.7),
+    ),
+    Experiment(
+        "sway-scaling",
+        "Sway of similar tanks",
+        "5.4.1",
+        "tanks of 60, 150 and 180 mm, lined with grains, swayed in proportion (40 mm on 180): the larger two begin "
+        "to flow at about 1.2 Hz, the smallest much later, with a lower minor step.",
+        scaled_batches,
+        scaled,
+        "1 bed for 4, 4 s of motion for 8, 5 frequencies for 17, both at draft accuracy",
+        ("180 mm", 0.7),
+    ),
+]
