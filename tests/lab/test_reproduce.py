@@ -1,0 +1,96 @@
+"""The report on the source's experiments: every batch can be run, results are read as they are, nothing runs twice."""
+
+import numpy as np
+import pytest
+
+from lab import reproduce as package
+from lab.errors import LabError
+from lab.measures.value import over_worlds
+from lab.presets import load
+from lab.reproduce import EXPERIMENTS, reproduce, runs
+from lab.reproduce.experiment import Experiment, Told, counted, observed, ordered, stated
+from lab.reproduce.runs import Batch, Outcome
+from lab.reproduce.shaking import FREQUENCY, onset
+from lab.scene import build
+from lab.sweeps import ask
+
+SMALL = {
+    "tank.width": "30 mm",
+    "tank.height": "30 mm",
+    "grains.count": 25,
+    "motion.tilt.angle": "15 deg",
+    "motion.tilt.rate": "60 deg/s",
+    "run.repeats": 2,
+    "run.accuracy": "draft",
+}
+
+
+def outcome(setting=None, **measures) -> Outcome:
+    """A run that gave these values."""
+    return Outcome(setting or {}, None, "complete", measures, {"wall_s": 1.0, "grain_steps": 1e6})
+
+
+@pytest.mark.parametrize("name", EXPERIMENTS)
+def test_every_batch_of_every_experiment_can_be_built(name):
+    for quick in (True, False):
+        for batch in EXPERIMENTS[name].batches(quick).values():
+            points = (
+                ask(batch.preset, batch.axes, batch.changes).points
+                if batch.axes
+                else [load(batch.preset, {**batch.changes, "run.repeats": 1})]
+            )
+            assert points[0].resolved.run.accuracy in ("draft", "standard")
+    assert EXPERIMENTS[name].shown[0] in EXPERIMENTS[name].batches(True)
+    one = load(batch.preset, {**batch.changes, "run.repeats": 1}).resolved
+    assert build(one)[0].step > 0.0
+
+
+@pytest.mark.slow
+def test_a_report_has_the_results_and_nothing_is_run_twice(tmp_path, monkeypatch):
+    def tell(found):
+        numbers = [one["contact_number_start"] for one in found["rates"]]
+        return Told([observed("contacts", "none", ", ".join(map(counted, numbers)), None)], remark="As it is.")
+
+    batches = {
+        "one": Batch("tilting/quick", SMALL),
+        "rates": Batch("tilting/quick", SMALL, {"motion.tilt.rate": ["60 deg/s", "90 deg/s"]}),
+    }
+    tried = Experiment("tried", "A trial", "0.0", "nothing.", lambda quick: batches, tell, "much", ("one", 1.0))
+    monkeypatch.setattr(package, "EXPERIMENTS", {"tried": tried})
+    text = reproduce(["tri"], tmp_path, quick=True, quiet=True).read_text()
+    assert "## A trial" in text and "Quick: much" in text and "As it is." in text
+    assert "(2 beds)" in text and "granular-quick-tried-picture.png" in text
+    assert (tmp_path / "granular-quick-tried-picture.png").stat().st_size > 5000
+    for name in ("run_preset", "resume_run"):
+        monkeypatch.setattr(runs, name, None)
+    assert reproduce([], tmp_path, quick=True, quiet=True).read_text() == text
+    monkeypatch.setitem(batches, "one", Batch("tilting/quick", {**SMALL, "run.seed": 2}))
+    with pytest.raises(LabError, match="holds another run than this experiment asks for: remove it"):
+        reproduce([], tmp_path, quick=True, quiet=True)
+
+
+def test_what_is_not_run_yet_is_said(tmp_path, monkeypatch):
+    monkeypatch.setattr(package, "carry_out", lambda *_: None)
+    text = reproduce(["stack"], tmp_path, quick=False, quiet=True).read_text()
+    assert text.count("| not run |") == len(EXPERIMENTS)
+    with pytest.raises(LabError, match="there is no experiment tilt-x; there are stack-fall, "):
+        reproduce(["tilt-x"], tmp_path, quick=False)
+
+
+def test_numbers_agree_within_what_is_allowed_and_trends_by_their_order():
+    value = over_worlds([20.0, 22.0], "deg")
+    row = stated("angle", 18.0, value, 3.0)
+    assert row.agrees and row.difference == "+3 deg" and row.ours == "21.0 ± 1.4 deg (2 beds)"
+    assert not stated("angle", 18.0, value, 2.9).agrees
+    assert not stated("angle", 18.0, over_worlds([np.nan], "deg"), 99.0).agrees
+    low = over_worlds([19.0], "deg")
+    assert ordered(value, low) and not ordered(low, value) and not ordered(value, None)
+
+
+def test_the_onset_is_each_beds_own_and_lies_between_two_frequencies():
+    def at(frequency, *responses):
+        return outcome({FREQUENCY: f"{frequency} Hz"}, response_amplitude=over_worlds(responses, "mm"))
+
+    found = onset([at(1, 0.0, 0.0), at(2, 0.0, 4.0), at(3, 1.6, 8.0)], 40.0)
+    assert found.worlds == pytest.approx((2.5, 1.2))  # 2 % of 40 mm is 0.8 mm
+    assert onset([at(1, 0.1), at(2, 0.2)], 40.0).value is None
