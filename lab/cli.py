@@ -243,6 +243,41 @@ def sweep(
 
 
 @main.command()
+@click.argument("preset")
+@click.option("--target", required=True, metavar="MEASURE=VALUE", help="What a measure shall be.")
+@click.option("--vary", required=True, metavar="KEY=FROM:TO", help="The key to find the value of, and its range.")
+@set_option
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path, file_okay=False),
+    metavar="DIR",
+    help="Folder for the results.  [default: renders/PRESET-calibration]",
+)
+@repeats_option
+@arch_option
+@quiet_option
+def calibrate(
+    preset: str,
+    target: str,
+    vary: str,
+    overrides: dict,
+    out: Path | None,
+    repeats: int | None,
+    arch: str | None,
+    quiet: bool,
+) -> None:
+    """Find the value of a key of PRESET at which a measure meets its target, with its error.
+
+    \b
+    cargolab calibrate tilting/chickpeas-quick --target "repose=41.3 deg" --vary friction=0.2:0.7 --repeats 8
+    cargolab calibrate shaking/sway --target "response_amplitude=2 mm" --vary "motion.sway.frequency=0.8 Hz:2 Hz"
+    """
+    from lab.calibrate import calibrate as calibrated
+
+    click.echo(calibrated(preset, target, vary, overrides | _shortcuts(repeats, arch), out, quiet=quiet).text())
+
+
+@main.command()
 @click.argument("folder", type=click.Path(path_type=Path))
 @video_option
 @quiet_option

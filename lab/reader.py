@@ -40,6 +40,18 @@ def check_keys(kind: type, table: object) -> None:
     _check_keys(kind, table, "", list(_dotted(kind)))
 
 
+def dotted_key(kind: type, given: str) -> str:
+    """The whole key of one that may be told by its last part alone. Raises LabError where that is none or several."""
+    known = list(_dotted(kind))
+    if given in known or "." in given:
+        return given
+    found = [key for key in known if key.split(".")[-1] == given and ".NAME" not in key]
+    if len(found) != 1 and f"material.{given}" not in found:
+        said = f"it could be {' or '.join(found)}" if found else "no preset has such a key"
+        raise LabError(f"{given}: {said}; give the whole key, e.g. material.friction.")
+    return found[0] if len(found) == 1 else f"material.{given}"
+
+
 def read(kind: type[T], table: object, path: str = "") -> T:
     """The dataclass `kind` from a table whose keys `check_keys` has passed.
 

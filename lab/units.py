@@ -63,6 +63,7 @@ KINDS = {
     "J": Kind("an energy", "J", "1 J"),
     "N s/m": Kind("a damping coefficient", "N s/m", "20 N s/m"),
 }
+MEASURED = {"deg": "rad", "mm": "m", "mN": "N", "µJ": "J", "Hz": "Hz", "s": "s", "%": "1"}  # units of measures
 PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
 # Units shown with a prefix, and the smallest power of ten they are shown with.
 PREFIXED = {"m": -9, "s": -9, "Pa": 0, "N": -9, "J": -9, "Hz": 0}
@@ -131,6 +132,17 @@ def parse(value: object, symbol: str) -> float:
     if not math.isfinite(number):
         raise LabError(f"{quoted(value)} is not a finite number; {needed(symbol)}.")
     return number
+
+
+def in_unit(text: str, unit: str, key: str) -> float:
+    """The number, in a unit that a measure comes in, of a text such as "0.72 rad". Raises LabError."""
+    symbol = MEASURED.get(unit)
+    try:
+        if symbol:
+            return parse(text, symbol) / parse(f"1 {unit}", symbol)
+        return parse(text.removesuffix(unit), "1")
+    except LabError as error:
+        raise LabError(f"{key}: {error}") from None
 
 
 def show(value: float, symbol: str) -> str:
