@@ -35,7 +35,7 @@ def filling_outline(preset: Resolved) -> np.ndarray:
     start in a closed one, the walls go on upwards while the bed is made.
     """
     outline, grains = np.array(preset.tank.outline), preset.grains
-    if grains.listed or not preset.run.settle:
+    if grains.listed or grains.region or not preset.run.settle:
         return outline
     count, largest = grain_count(preset), 0.5 * grains.range[1]
     low = not (grains.surface == "disturbed" or preset.tank.open_edges)
@@ -86,9 +86,11 @@ def _filled(preset: Resolved) -> tuple[np.ndarray, np.ndarray, dict]:
     radius = np.stack([grains.sizes.draw(count, r) for r in random])
     outline, fixed = filling_outline(preset), fixed_grains(preset)
     plates, thrown = _plates(preset), grains.surface == "disturbed"
+    region = np.array(grains.region) if grains.region else None
     try:
         position = [
-            start_positions(size, outline, r, fixed, plates, thrown) for size, r in zip(radius, random, strict=True)
+            start_positions(size, outline, r, fixed, plates, thrown, region)
+            for size, r in zip(radius, random, strict=True)
         ]
     except DoesNotFit as error:
         raise LabError(f"grains.{'count' if grains.count else 'depth'}: {error}") from None

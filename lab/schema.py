@@ -85,6 +85,7 @@ class GrainsGiven:
     Diameters are uniform in diameter·(1 ± spread), or normal with the relative standard deviation `spread`, cut at ± 3
     of these and at a tenth of the diameter, or by a table of [diameter, share by number], each class uniform within
     ± spread. `surface`, after Spandonidis (2016), section 5.3.1: `solvers/filling.py` says what is done for it.
+    `region`: corners (m) of the part of the tank, such as a funnel in it, in which the grains start.
     """
 
     diameter: Length | None = None
@@ -94,6 +95,7 @@ class GrainsGiven:
     count: Annotated[int, Interval(ge=1, le=1_000_000)] | None = None
     depth: Length | None = None
     surface: Literal["undisturbed", "slightly-disturbed", "disturbed"] = "slightly-disturbed"
+    region: Annotated[tuple[tuple[float, float], ...], Unit("m")] | None = None
     bed: str | None = None
     reuse_bed: bool = True
 
@@ -375,8 +377,22 @@ def _grains(given: GrainsGiven, tank: Tank, settle: bool) -> Grains:
         total = sum(share for _, share in grains.table)
         shares = tuple((diameter, share / total) for diameter, share in grains.table)
         grains = replace(grains, table=shares, diameter=Sizes(shares).mean)
+    if grains.region is not None:
+        grains = replace(grains, region=_region(grains))
     _check_grains(grains, tank)
     return grains
+
+
+def _region(grains: Grains) -> tuple[Point, ...]:
+    """The corners of the region that the grains start in."""
+    if grains.depth is not None:
+        raise LabError("grains.region: goes with a count of grains; a depth would fill the whole tank.")
+    if grains.surface != "slightly-disturbed":
+        raise LabError("grains.region: grains in a region settle as they lie; leave grains.surface out.")
+    try:
+        return simple_polygon(grains.region)
+    except LabError as error:
+        raise LabError(f"grains.region: {error}") from None
 
 
 def _listed_grains(given: GrainsGiven, tank: Tank, settle: bool) -> Grains:
@@ -400,7 +416,7 @@ def _check_grains(grains: Grains, tank: Tank) -> None:
         raise LabError(f"grains.diameter: grains of up to {show(largest, 'm')} are too small for so large a tank.")
     height = show(tank.height, "m")
     if grains.depth is None:
-        _check_room(grains, tank.outline)
+        _check_room(grains, grains.region or tank.outline)
     elif grains.depth > tank.height and tank.open_edges:
         raise LabError(f"grains.depth: {show(grains.depth, 'm')} is more than the tank's height, {height}.")
     elif grains.depth >= tank.height and not tank.open_edges:
@@ -412,7 +428,8 @@ def _check_grains(grains: Grains, tank: Tank) -> None:
 def _check_room(grains: Grains, outline: tuple[Point, ...]) -> None:
     """Raise LabError for more grains than the tank has room for in the densest lattice."""
     if grains.count * math.pi / 4 * grains.sizes.mean_square > DENSEST * area(outline):
-        raise LabError(f"grains.count: {grains.count} grains do not fit into the tank.")
+        room = "region" if grains.region else "tank"
+        raise LabError(f"grains.count: {grains.count} grains do not fit into the {room}.")
 
 
 def _check_dissipation(material: Material | WallGiven, section: str, needed: bool) -> None:

@@ -18,6 +18,9 @@ from solvers.quantity import Unit
 
 # What answers the question of an experiment, the most telling first; a recording has only what applies to it.
 TELLING = (
+    "heap_angle",
+    "flow_rate",
+    "clogged",
     "spill_upturn_angle",
     "spilled_fraction",
     "critical_angle",

@@ -61,19 +61,24 @@ def start_positions(
     fixed: np.ndarray = NONE_FIXED,
     plates: Sequence[np.ndarray] = (),
     thrown: bool = False,
+    region: np.ndarray | None = None,
 ) -> np.ndarray:
     """Positions (n, 2) m on a shaken square lattice from the floor up, no two touching, in columns.
 
-    They keep clear of the outline, of the `fixed` grains (k, 3) and of `plates`, polylines (m, 2). If `thrown`, heaps
-    of 3 by 3 grains come down at places uniform over the width, one upon the other. Raises DoesNotFit when the lattice
-    has fewer places than there are grains.
+    They keep clear of the outline, of the `fixed` grains (k, 3) and of `plates`, polylines (m, 2), and within the
+    polygon `region` (m, 2) if there is one. If `thrown`, heaps of 3 by 3 grains come down at places uniform over the
+    width, one upon the other. Raises DoesNotFit when the lattice has fewer places than there are grains.
     """
     reach = float(radius.max())
     lower, upper = outline.min(axis=0), outline.max(axis=0)
     sites = lattice(reach, outline, fixed, plates)
+    if region is not None:
+        sites = sites[Path(region).contains_points(sites)]
     if len(sites) < len(radius):
+        room = "tank" if region is None else "region"
+        size = f"{2e3 * reach:.3g} mm"
         raise DoesNotFit(
-            f"{len(radius)} grains of up to {2e3 * reach:.3g} mm do not fit the tank, which has room for {len(sites)}."
+            f"{len(radius)} grains of up to {size} do not fit the {room}, which has room for {len(sites)}."
         )
     chosen = sites[_thrown(sites[:, 0], len(radius), random)] if thrown else sites[: len(radius)]
     shaken = chosen + random.uniform(-1.0, 1.0, chosen.shape) * (SPACING - 1.0) * reach * 0.7

@@ -47,7 +47,7 @@ class Walls:
         self.moving = self.fastest > 0.0
         rows = np.array([part.parameters() for part in parts]) if parts else np.zeros((1, MOVE + 2))
         self.programmes = arrays.holding(rows, arrays.exact)
-        (self.places,) = arrays.reals(1, (max(1, len(parts)), 2))  # displacements (m) when last noted
+        (self.places,) = arrays.reals(1, (max(1, len(parts)), 2), kept=False)  # displacements (m) when last noted
         mouth = _with_chimneys(self.outline, open_edges)
         self.mouth_edges = len(mouth)
         self.mouth = arrays.holding(np.column_stack([mouth, np.roll(mouth, -1, axis=0)]), arrays.place)

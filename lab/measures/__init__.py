@@ -9,11 +9,14 @@ from lab.measures import (
     contact_number,
     critical_angle,
     energies,
+    flow_rate,
+    heap_angle,
     hysteresis,
     spectrum,
     spilled,
     steady_amplitude,
     surface_slope,
+    swelling,
     top_altitude,
     wall_force,
     wave,
@@ -23,6 +26,8 @@ from lab.recording import Recording
 
 # In the order in which a summary shows them.
 MEASURES = (
+    heap_angle,
+    flow_rate,
     spilled,
     critical_angle,
     surface_slope,
@@ -30,6 +35,7 @@ MEASURES = (
     steady_amplitude,
     spectrum,
     wave,
+    swelling,
     top_altitude,
     centre_of_mass,
     wall_force,

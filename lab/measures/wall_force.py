@@ -77,13 +77,19 @@ def measure(recording: Recording) -> dict[str, Value]:
 
 def cargo_weight(recording: Recording) -> np.ndarray | None:
     """Weight (T, W) of the grains in the tank, N; None where the preset does not say density and gravity."""
+    mass, gravity = grain_mass(recording), (recording.preset.get("run") or {}).get("gravity")
+    if mass is None or gravity is None:
+        return None
+    return gravity * mass.sum(axis=1) * (1 - recording.series["spilled"] / recording.radius.shape[1])
+
+
+def grain_mass(recording: Recording) -> np.ndarray | None:
+    """Mass (W, n) of each grain, a sphere, kg; None where the preset does not say the density."""
     density = (recording.preset.get("material") or {}).get("density")
-    gravity = (recording.preset.get("run") or {}).get("gravity")
-    if density is None or gravity is None:
+    if density is None:
         return None
     kinds = [density, *(kind["material"]["density"] for kind in (recording.preset.get("kinds") or {}).values())]
-    mass = 4 / 3 * np.pi * (np.array(kinds)[recording.kind] * recording.radius**3).sum(axis=1)
-    return gravity * mass * (1 - recording.series["spilled"] / recording.radius.shape[1])
+    return 4 / 3 * np.pi * np.array(kinds)[recording.kind] * recording.radius**3
 
 
 def _vertical(recording: Recording) -> np.ndarray:

@@ -63,16 +63,25 @@ def measure(recording: Recording) -> dict[str, Value]:
 def wave_course(recording: Recording, start: int = 0) -> tuple[np.ndarray, np.ndarray]:
     """Elevations (F', W, 3), m, at PLACES and of the first mode (F', W) in the frames from `start` on."""
     rest = surface_columns(recording, 0)
-    columns = np.array([surface_columns(recording, frame) for frame in range(start, len(recording.frames["time"]))])
-    elevation = columns - rest
-    share = (np.arange(columns.shape[2]) + 0.5) / columns.shape[2]
+    elevation = columns_in_time(recording, start) - rest
+    places = np.stack([finite_mean(elevation[:, :, place]) for place in stretches(elevation.shape[2])], axis=2)
+    share = (np.arange(elevation.shape[2]) + 0.5) / elevation.shape[2]
+    return places, 2 * finite_mean(elevation * np.cos(np.pi * share))
+
+
+def columns_in_time(recording: Recording, start: int = 0) -> np.ndarray:
+    """Height (F', W, C), m, of the free surface in the frames from `start` on (`surface_columns`)."""
+    return np.array([surface_columns(recording, frame) for frame in range(start, len(recording.frames["time"]))])
+
+
+def stretches(count: int) -> list[np.ndarray]:
+    """Which of so many columns are at each of PLACES."""
+    share = (np.arange(count) + 0.5) / count
     near = [share < END, np.abs(share - 0.5) < END / 2, share > 1 - END]
-    near = [
+    return [
         place if place.any() else np.abs(share - middle) <= np.abs(share - middle).min()
         for place, middle in zip(near, (0.0, 0.5, 1.0), strict=True)
     ]
-    places = np.stack([_mean(elevation[:, :, place]) for place in near], axis=2)
-    return places, 2 * _mean(elevation * np.cos(np.pi * share))
 
 
 def surface_columns(recording: Recording, frame: int) -> np.ndarray:
@@ -101,7 +110,7 @@ def column_tops(position: np.ndarray, radius: np.ndarray, outline: np.ndarray, d
     return tops
 
 
-def _mean(values: np.ndarray) -> np.ndarray:
+def finite_mean(values: np.ndarray) -> np.ndarray:
     """Mean over the last axis of what is finite; NaN where nothing is."""
     known = np.isfinite(values)
     count = known.sum(axis=-1)

@@ -103,6 +103,17 @@ def test_a_reused_bed_goes_on_bit_for_bit_as_the_one_that_was_stored():
         one.close()
 
 
+def test_where_parts_stand_does_not_belong_to_a_bed():
+    gate = {"points": [["0 mm", "0 mm"], ["0 mm", "30 mm"]], "move": ["0 mm", "-30 mm"], "start": "1 s"}
+    parts = {"gate": {**gate, "speed": "1 m/s", "acceleration": "10 m/s^2"}}
+    simulation = Simulation(*build(resolved(run={"repeats": 2}, parts=parts)))
+    before = simulation.state()
+    simulation.observe()
+    beds = made(before, simulation.state(), 2)  # of two worlds beside one part
+    assert lay(simulation, beds)
+    simulation.close()
+
+
 @pytest.mark.slow
 def test_a_reused_bed_goes_on_bit_for_bit_in_other_company_and_motion():
     make(resolved(run={"repeats": 3}))[0].close()

@@ -550,6 +550,27 @@ def test_the_wave_of_the_first_mode_is_found(tmp_path):
     assert values["wave_frequency"].uncertainty < 0.2
 
 
+def test_the_middle_of_the_surface_swells_at_a_frequency_of_its_own(tmp_path):
+    time = np.arange(0, 12.001, 0.04)
+    y, layer = np.meshgrid(np.arange(-WIDTH / 2 + DIAMETER / 2, WIDTH / 2, DIAMETER), np.arange(21.0))
+    y, layer = y.ravel(), layer.ravel()
+    frames = []
+    for now in time:
+        middle = 0.004 * np.sin(2 * np.pi * 0.7 * now) + 0.001 * np.sin(2 * np.pi * 3.0 * now)
+        rise = np.where(np.abs(y) < 0.2 * WIDTH, middle, 0.02 * np.sin(2 * np.pi * 1.5 * now))
+        z = DIAMETER / 2 + layer / 20 * (DEPTH - DIAMETER + rise)
+        frames.append(frame(now, count=len(y), position=np.stack([y, z], axis=1)[None], pose=np.zeros((1, 3))))
+    move = np.zeros((1201, 1, 3))
+    move[:, 0, 0] = 0.04 * np.sin(3 * np.pi * np.linspace(0, 12, 1201))
+    radius = np.full((1, len(y)), DIAMETER / 2)
+    values = written(tmp_path, np.linspace(0, 12, 1201), frames, pose=move, radius=radius, resolved=preset(**SWAY))
+    found = values["swelling_frequency"]
+    assert found.uncertainty < 0.1 and found.value == pytest.approx(0.7, abs=found.uncertainty)
+    assert values["swelling_ratio"].value == pytest.approx(found.value / 1.5)
+    assert values["swelling_amplitude"].value == pytest.approx(4.0, rel=0.1)
+    assert values["fill_height"].value == pytest.approx(1e3 * DEPTH, abs=1.0)
+
+
 def test_harmonics_and_distortion_of_a_known_sum(tmp_path):
     time = np.linspace(0, 24, 2401)
     parts = {0.5: 0.2, 1.0: 3.0, 2.0: 0.4, 3.0: 0.3, 4.0: 0.1, 5.0: 0.05}

@@ -89,6 +89,7 @@ def test_a_quick_variant_says_how_it_differs_and_differs_in_what_it_costs_alone(
     if motion.tilt:
         motion = replace(motion, tilt=replace(motion.tilt, rate=whole.motion.tilt.rate))
     alike = {"quick": "", "run": whole.run, "record": whole.record, "contact": contact, "motion": motion}
+    alike["grains"] = replace(quick.grains, diameter=whole.grains.diameter)
     assert quick.model_copy(update=alike) == whole
     assert cost(quick) < cost(whole)
 

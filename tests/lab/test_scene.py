@@ -14,6 +14,7 @@ from lab.schema import Resolved
 
 SMALL = {"tank": {"width": "30 mm", "height": "30 mm"}, "grains": {"depth": "12 mm"}, "run": {"repeats": 2}}
 PEAS = {"distribution": "table", "table": [["3 mm", 35.2], ["4 mm", 64.8]]}
+REGION = {"grains.region": [["0 mm", "2 mm"], ["10 mm", "2 mm"], ["10 mm", "12 mm"]]}
 TRIANGLE = [["0 mm", "0 mm"], ["40 mm", "0 mm"], ["20 mm", "40 mm"]]
 
 
@@ -171,6 +172,32 @@ def test_listed_grains_may_settle_and_lie_against_each_other_and_the_walls(tmp_p
 def test_what_a_file_of_grains_must_not_say(rows, sentence, tmp_path):
     header = "y,z,radius,vy,vz,omega" if rows[0].count(",") > 2 else "y,z,radius"
     assert fault(grains=csv(tmp_path, *rows, header=header)).startswith(sentence)
+
+
+def test_a_region_is_filled_and_the_walls_stay_as_they_are():
+    preset = load(
+        "tilting/quick", {**REGION, "grains.count": 3, "grains.diameter": "1.5 mm", "tank.lid": False}
+    ).resolved
+    _, position = build(preset)
+    y, z = position[..., 0], position[..., 1]
+    assert np.all((y > 0) & (y < 0.01) & (z > 0.002) & (z < 0.002 + y))
+    np.testing.assert_array_equal(filling_outline(preset), preset.tank.outline)
+
+
+@pytest.mark.parametrize(
+    ("keys", "sentence"),
+    [
+        ({"depth": "9 mm"}, "grains.region: goes with a count of grains; a depth would fill the whole tank."),
+        ({"count": 9, "surface": "disturbed"}, "grains.region: grains in a region settle as they lie;"),
+        ({"count": 9, "region": []}, "grains.region: from 3 to 200 corners are needed (got 0)."),
+        ({"count": 90}, "grains.count: 90 grains do not fit into the region."),
+        ({"count": 5}, "grains.count: 5 grains of up to 3.2"),
+    ],
+)
+def test_faults_of_a_region(keys, sentence):
+    with pytest.raises(LabError) as caught:
+        build(load("tilting/quick", {**REGION, "grains": keys}).resolved)
+    assert str(caught.value).startswith(sentence) and "\n" not in str(caught.value)
 
 
 def test_files_of_grains_that_cannot_be_used(tmp_path, monkeypatch):

@@ -69,6 +69,15 @@ def test_grains_start_apart_and_clear_of_the_walls(name, rough, thrown, spread):
         assert np.all(wall_distance(position, np.vstack([plate, plate[1]])) >= radius * (1.0 - 1e-9))
 
 
+def test_grains_start_in_their_region_or_do_not_fit():
+    room, region = box(0.4, 0.4), np.array([(0.0, 0.1), (0.1, 0.3), (-0.1, 0.3)])
+    position = start_positions(np.full(100, 4e-3), room, np.random.default_rng(1), region=region)
+    assert np.all(inside(position, region))
+    assert position[:, 1].min() < 0.15
+    with pytest.raises(DoesNotFit, match="do not fit the region, which has room for"):
+        start_positions(np.full(400, 4e-3), room, np.random.default_rng(1), region=region)
+
+
 def test_thrown_grains_come_down_uniformly_over_the_width_in_uneven_heaps():
     """Columns get the same number of grains on average, but differ far more than those of a lattice."""
     outline, width = box(0.1, 1.0), 0.1

@@ -1,0 +1,89 @@
+"""How steep the heap under an outlet lies: its angle of repose as in the shipboard test (IMSBC Code; Spandonidis 2016,
+appendix D), at the last picture frame.
+
+The heap is what lies above the base, the outline's edge straight below the outlet, and below the outlet's lips.
+The tank's width is cut into columns about two mean diameters wide; the surface of a column is the top of its highest
+grain that is reached from below without a gap (`column_tops`), so that grains in the air do not count. The highest
+column is the apex; the flank on either side of it is made up of the columns between LOW and HIGH of the apex's height
+above the base, around the half height at which the Code measures: the foot of stray grains and the top, blunt from
+the jet or from the funnel's tip, are left out. The Theil-Sen line (Sen 1968) through a flank of five columns or more
+gives its angle. A heap of up to LEAST has none.
+
+heap_angle_port, heap_angle_starboard: of the flanks, positive where the surface falls away from the apex.
+heap_angle: the mean of both. Error: half the 68 % confidence interval of the slope (Sen), as an angle.
+heap_height: of the apex above the base. Error: none of its own, but a grain more or less is a diameter.
+"""
+
+import numpy as np
+
+from lab.measures.outlet import Outlet, find_outlet
+from lab.measures.surface_slope import inclination
+from lab.measures.value import Value, over_worlds
+from lab.measures.wave import column_tops
+from lab.recording import Recording
+
+LOW, HIGH = 0.2, 0.8  # of the apex's height
+LEAST = 5.0  # mean diameters high: a lower heap is too few grains to have a slope
+MISSING = "no heap"
+
+
+def applies(recording: Recording) -> bool:
+    """Grains run out of an outlet."""
+    return len(recording.frames["time"]) > 0 and find_outlet(recording) is not None
+
+
+def measure(recording: Recording) -> dict[str, Value]:
+    """heap_angle, heap_angle_port, heap_angle_starboard (deg) and heap_height (d)."""
+    flanks, heights = heap(recording, find_outlet(recording), len(recording.frames["time"]) - 1)
+    angles, errors = np.degrees(flanks[:, :, 0]), np.degrees(flanks[:, :, 1])
+    found = {"heap_angle": _angle(angles.mean(axis=1), 0.5 * np.hypot(*errors.T))}
+    for side, name in enumerate(("port", "starboard")):
+        found[f"heap_angle_{name}"] = _angle(angles[:, side], errors[:, side])
+    found["heap_height"] = over_worlds(heights / recording.mean_diameter, "d", missing="no grain below the outlet")
+    return found
+
+
+def heap(recording: Recording, outlet: Outlet, frame: int) -> tuple[np.ndarray, np.ndarray]:
+    """Angle and its error (W, 2, 2), rad, of the port and the starboard flank in a frame, and heights (W,), m."""
+    position = recording.frames["position"][frame].astype(float)
+    lips = outlet.lips_at(recording, frame)
+    flanks, heights = np.full((recording.worlds, 2, 2), np.nan), np.full(recording.worlds, np.nan)
+    for world in range(recording.worlds):
+        y, z = _surface(position[world], recording.radius[world], recording.outline, lips[world])
+        if not len(z):
+            continue
+        apex, heights[world] = y[np.argmax(z)], z.max()
+        if heights[world] > LEAST * recording.mean_diameter[world]:
+            for side, sign in enumerate((-1.0, 1.0)):
+                flank = (sign * (y - apex) > 0) & (z > LOW * z.max()) & (z < HIGH * z.max())
+                slope, error = inclination(y[flank], z[flank])
+                flanks[world, side] = -sign * slope, error
+    return flanks, heights
+
+
+def _surface(
+    position: np.ndarray, radius: np.ndarray, outline: np.ndarray, lips: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Middles of the columns (k,), m, that the heap has, and its height (k,) above the base there."""
+    middle, level = lips.mean(axis=0)
+    base = base_below(outline, middle, level)
+    low = position[:, 1] < level
+    diameter = 2 * radius.mean()
+    tops = column_tops(position[low], radius[low], outline, diameter) - base
+    left, right = outline[:, 0].min(), outline[:, 0].max()
+    columns = left + (np.arange(len(tops)) + 0.5) * (right - left) / len(tops)
+    held = tops > 0.5 * diameter
+    return columns[held], tops[held]
+
+
+def base_below(outline: np.ndarray, y: float, z: float) -> float:
+    """Height (m) of the highest edge of the outline straight below a point in the tank."""
+    a, b = outline, np.roll(outline, -1, axis=0)
+    across = (a[:, 0] <= y) != (b[:, 0] <= y)
+    a, b = a[across], b[across]
+    heights = a[:, 1] + (y - a[:, 0]) / (b[:, 0] - a[:, 0]) * (b[:, 1] - a[:, 1])
+    return float(heights[heights <= z].max())
+
+
+def _angle(angles: np.ndarray, errors: np.ndarray) -> Value:
+    return over_worlds(angles, "deg", uncertainties=errors, missing=MISSING)

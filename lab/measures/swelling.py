@@ -1,0 +1,70 @@
+"""How the filling height in the middle of a swayed tank rises and falls (Pöschel & Rosenkranz 1997; Spandonidis 2016,
+section 4.5).
+
+The height is that of the free surface over the floor, the mean over the columns in the middle tenth of the width
+(`wave`), in the picture frames of the steady part (`steady_part`).
+
+fill_height: its mean; error: standard error of the means of blocks, a driving period each.
+swelling_frequency: where the spectrum of its course is highest, from two swings in the steady part up to half the
+picture rate; swelling_amplitude: the height of the spectrum there. Error of the frequency: half the resolution,
+1/(2 T) of a part T long; of the amplitude: half the difference between the two halves.
+swelling_ratio: that frequency over the drive's: 1 or 2 where the surface follows the sway, anything else where it does
+not.
+"""
+
+import numpy as np
+
+from lab.measures.motion import driving
+from lab.measures.spectrum import PADDING, amplitude_spectrum
+from lab.measures.steady import SHORT, Steady, averaged, steady_part
+from lab.measures.value import Value, over_worlds
+from lab.measures.wave import LEAST_FRAMES, PLACES, columns_in_time, finite_mean, stretches
+from lab.recording import Recording
+
+LEAST_RATE = 4.0  # pictures a driving period
+SWINGS = 2  # in the steady part, at least
+
+
+def applies(recording: Recording) -> bool:
+    """Sway drives the tank, and there are pictures enough of its periods."""
+    drive, time = driving(recording), recording.frames["time"][:]
+    if drive is None or drive[0] != "sway" or len(time) <= LEAST_FRAMES:
+        return False
+    return LEAST_RATE * drive[1]["frequency"] * float(np.median(np.diff(time))) <= 1
+
+
+def measure(recording: Recording) -> dict[str, Value]:
+    """fill_height (mm), swelling_frequency (Hz), swelling_amplitude (mm) and swelling_ratio."""
+    time, frequency = recording.frames["time"][:], driving(recording)[1]["frequency"]
+    steady = steady_part(recording, time)
+    if steady is None or steady.rows.stop - steady.rows.start < LEAST_FRAMES:
+        return {"fill_height": over_worlds(np.full(recording.worlds, np.nan), "mm", missing=SHORT)}
+    height = 1e3 * middle_height(recording, steady.rows.start)
+    whole = Steady(slice(0, len(height)), steady.blocks)
+    swelling, size = np.array([_dominant(time[steady.rows][part], height[part]) for part in whole.parts]).swapaxes(0, 1)
+    resolution = np.full(recording.worlds, 0.5 / (time[-1] - time[steady.rows.start]))
+    missing = "the middle of the tank ran bare"
+    return {
+        "fill_height": averaged(height, whole, "mm", missing=missing),
+        "swelling_frequency": over_worlds(swelling[0], "Hz", uncertainties=resolution, missing=missing),
+        "swelling_amplitude": over_worlds(size[0], "mm", uncertainties=np.abs(size[1] - size[2]) / 2, missing=missing),
+        "swelling_ratio": over_worlds(
+            swelling[0] / frequency, "1", uncertainties=resolution / frequency, missing=missing
+        ),
+    }
+
+
+def middle_height(recording: Recording, start: int = 0) -> np.ndarray:
+    """Height (F', W), m, of the surface over the floor in the middle of the tank, in the frames from `start` on."""
+    columns = columns_in_time(recording, start)
+    middle = stretches(columns.shape[2])[PLACES.index("middle")]
+    return finite_mean(columns[:, :, middle]) - recording.outline[:, 1].min()
+
+
+def _dominant(time: np.ndarray, height: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Frequency (W,), Hz, at which the spectrum of heights (F', W) is highest, and how high; NaN without a surface."""
+    known = np.isfinite(height).all(axis=0)
+    frequencies, amplitudes = amplitude_spectrum(time, np.where(known, height, 0.0))
+    highest = amplitudes[SWINGS * PADDING :].argmax(axis=0) + SWINGS * PADDING
+    size = amplitudes[highest, range(len(known))]
+    return np.where(known, frequencies[highest], np.nan), np.where(known, size, np.nan)
