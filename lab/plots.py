@@ -17,6 +17,8 @@ from lab.errors import LabError
 from lab.measures import (
     contact_number,
     critical_angle,
+    flow_rate,
+    heap_angle,
     hysteresis,
     spectrum,
     spilled,
@@ -26,6 +28,7 @@ from lab.measures import (
     wave,
 )
 from lab.measures.motion import HARMONIC, driving, is_tilt, outward_leg
+from lab.measures.outlet import find_outlet, passed
 from lab.measures.steady import steady_part
 from lab.measures.value import Value
 from lab.recording import Recording
@@ -289,6 +292,23 @@ def altitude_figure(recording: Recording, values: Mapping[str, Value]) -> Figure
     return figure
 
 
+def heap_figure(recording: Recording, values: Mapping[str, Value]) -> Figure | None:
+    """The heap under an outlet in time: how steep it lies, and below how many of the grains have passed."""
+    if not flow_rate.applies(recording):
+        return None
+    outlet, time = find_outlet(recording), recording.frames["time"][:]
+    flanks = [heap_angle.heap(recording, outlet, frame)[0][:, :, 0] for frame in range(len(time))]
+    figure, ((upper,), (lower,)) = _figure(recording, heights=(2, 1))
+    _band(upper, time, np.degrees(np.mean(flanks, axis=2)), BLUE)
+    upper.set_ylabel("angle of the heap (deg)")
+    upper.set_ylim(bottom=0)
+    _band(lower, time, 100 * passed(recording, outlet).mean(axis=2), VERMILION)
+    lower.set_ylabel("below the\noutlet (%)")
+    lower.set_xlabel("time (s)")
+    lower.set_xlim(time[0], time[-1])
+    return figure
+
+
 def contact_figure(recording: Recording, values: Mapping[str, Value]) -> Figure | None:
     """Mean coordination number in time."""
     if not contact_number.applies(recording):
@@ -305,6 +325,7 @@ def contact_figure(recording: Recording, values: Mapping[str, Value]) -> Figure 
 
 
 FIGURES = {
+    "heap": heap_figure,
     "spilled": spilled_figure,
     "shift": shift_figure,
     "slope": slope_figure,

@@ -104,7 +104,7 @@ def names() -> dict[str, str]:
         found[name] = _written(layers)["title"]
         if quick:
             found[name + QUICK] = f"{found[name]}, cheaper and less exact"
-    return found
+    return dict(sorted(found.items()))
 
 
 def load(name_or_path: str | Path, overrides: Mapping | None = None) -> LoadedPreset:

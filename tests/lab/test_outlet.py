@@ -120,6 +120,7 @@ def test_grains_in_a_funnel_stay_until_its_gate_opens_and_run_out(tmp_path):
     assert shut[..., 1].mean() < first[..., 1].mean() - 0.005
     assert result.measures["passed_fraction"].worlds == (100.0, 100.0)
     assert 200.0 < result.measures["flow_rate"].value < 1500.0
+    assert (tmp_path / "run" / "heap.png").is_file()
 
 
 @pytest.mark.slow
