@@ -64,8 +64,8 @@ EXPERIMENTS = [
         "funnel",
         "Heaps under a funnel",
         "appendix D",
-        "under a funnel raised at 25 mm/s the angle of repose is 21 ± 0.5 deg, some 4 deg below the tilting box, and less "
-        "at 50 mm/s; on a narrow base 22.5 deg; a tip of 2 diameters arches.",
+        "under a funnel raised at 25 mm/s the angle of repose is 21 ± 0.5 deg, some 4 deg below the tilting box, and "
+        "less at 50 mm/s; on a narrow base 22.5 deg; a tip of 2 diameters arches.",
         batches,
         tell,
         "2 heaps for 12, tips of 6 diameters only, draft accuracy",

@@ -240,8 +240,8 @@ EXPERIMENTS = [
         "tilt-chickpeas",
         "Chickpeas as spheres",
         "9.3",
-        "in the experiment a heap forms at 37 deg and the surface flows at 41.3 deg; spheres of the measured sizes flow "
-        "13 deg too early.",
+        "in the experiment a heap forms at 37 deg and the surface flows at 41.3 deg; spheres of the measured sizes "
+        "flow 13 deg too early.",
         lambda quick: {"spheres": tilted("tilting/chickpeas", quick, beds=6)},
         peas,
         "2 beds for 6, 10 deg/s for 3 (source: 0.5), draft accuracy",
