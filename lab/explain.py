@@ -1,9 +1,12 @@
 """What a preset is, what it switches on and what it will cost, before it runs."""
 
+from math import pi
+
 from lab.accuracy import LEVELS
 from lab.presets import LoadedPreset
 from lab.scene import build
 from lab.units import show
+from solvers.laws import COHESION
 from solvers.runtime import available_cores
 from solvers.simulation import Simulation
 
@@ -122,6 +125,8 @@ def _parts(simulation: Simulation) -> list[tuple[str, str]]:
     laws = [("normal law", scene.normal), ("tangential law", scene.tangential)]
     if scene.rolling != "none":
         laws.append(("rolling law", scene.rolling))
+    if scene.cohesion != "none":
+        laws.append(("cohesion", _cohesion(scene)))
     return [
         *laws,
         ("memory", f"{remembered} number(s) a contact"),
@@ -132,6 +137,17 @@ def _parts(simulation: Simulation) -> list[tuple[str, str]]:
         ("schedule", f"{SCHEDULES[simulation.schedule_name]}, on {simulation.arch}"),
         ("skin", f"{show(simulation.skin, 'm')} of the neighbour lists"),
     ]
+
+
+def _cohesion(scene) -> str:
+    """The law, and what it does to two mean grains."""
+    law, between, radius = COHESION[scene.cohesion](), scene.interfaces[0], scene.mean_radius
+    pull = law.coefficients(between)[0] * 0.5 * radius
+    weight = 4.0 / 3.0 * pi * radius**3 * scene.grain[0].density * scene.gravity
+    return (
+        f"{scene.cohesion}: {show(pull, 'N')}, {pull / weight:.2g} times a mean grain's weight, "
+        f"across gaps of up to {show(law.range(between), 'm')}"
+    )
 
 
 def _cost(preset, scene, simulation: Simulation) -> list[tuple[str, str]]:

@@ -62,6 +62,7 @@ def build(preset: Resolved) -> tuple[Scene, np.ndarray]:
         normal=preset.contact.normal,
         tangential=preset.contact.tangential,
         rolling=preset.contact.rolling,
+        cohesion=preset.contact.cohesion,
         stiffness_scale=preset.contact.stiffness_scale,
         gravity=preset.run.gravity,
         motions=[tuple(preset.motion.parts.values())] * len(radius),

@@ -23,7 +23,7 @@ from lab.paint.colours import MODES
 from lab.parts import check_parts
 from lab.reader import check_keys, read
 from lab.units import needed, show
-from solvers.laws import NORMAL, ROLLING, TANGENTIAL
+from solvers.laws import COHESION, NORMAL, ROLLING, TANGENTIAL
 from solvers.materials import Material
 from solvers.motions import MOTIONS
 from solvers.motions.history import History
@@ -165,6 +165,7 @@ class ContactGiven:
     normal: Literal[*NORMAL] = "hertz-viscoelastic"
     tangential: Literal[*TANGENTIAL] = "haff-werner"
     rolling: Literal[*ROLLING] = "none"
+    cohesion: Literal[*COHESION] = "none"
     stiffness_scale: StiffnessScale | None = None
 
 
@@ -306,6 +307,7 @@ def resolve(table: Mapping) -> Resolved:
     grains = _grains(given.grains, tank, given.run.settle)
     _check_dissipation(given.material, "material", needed=True)
     _check_dissipation(given.wall, "wall", needed=False)
+    _check_cohesion(given.contact.cohesion, given.material)
     motion = _motion(given.motion)
     run = Run(**{**vars(given.run), "duration": _duration(given.run, motion)})
     check_parts(given.parts, tank.outline)
@@ -443,6 +445,14 @@ def _check_dissipation(material: Material | WallGiven, section: str, needed: boo
     if (material.dissipative_time or 0.0) > LONGEST_DISSIPATION:
         longest = show(LONGEST_DISSIPATION, "s")
         raise LabError(f"{section}.dissipative_time: must be at most {longest}, far past where no grain rebounds.")
+
+
+def _check_cohesion(law: str, material: Material) -> None:
+    """Raise LabError where a law of cohesion lacks what it needs; walls and other kinds of grains inherit it."""
+    for name in COHESION[law].needs:
+        if getattr(material, name) is None:
+            example = {"humidity": "70 %", "bridge_volume": "0.002 mm^3"}[name]
+            raise LabError(f'material.{name}: missing; contact.cohesion = "{law}" needs it, e.g. "{example}".')
 
 
 def _check_video(video: Video) -> None:

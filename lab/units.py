@@ -61,6 +61,8 @@ KINDS = {
     "N": Kind("a force", "N", "1 N"),
     "Pa": Kind("a pressure", "Pa", "3.2e9 Pa"),
     "J": Kind("an energy", "J", "1 J"),
+    "N/m": Kind("a surface tension", "N/m", "0.072 N/m"),
+    "m^3": Kind("a volume", "mm^3", "0.002 mm^3"),
     "N s/m": Kind("a damping coefficient", "N s/m", "20 N s/m"),
 }
 MEASURED = {"deg": "rad", "mm": "m", "mN": "N", "µJ": "J", "Hz": "Hz", "s": "s", "%": "1"}  # units of measures

@@ -2,7 +2,7 @@
 
 import taichi as ti
 
-from solvers.grains import Grains
+from solvers.grains import FAR, Grains
 from solvers.laws.chosen import PAIR, WALL, ChosenLaws
 from solvers.neighbours import Neighbours
 from solvers.units import Units
@@ -38,7 +38,8 @@ class Contacts:
         for block in range(pairs.blocks(u)):
             i, j = pairs.grain[u, block], pairs.mate[u, block]
             reach, share = pairs.reach[u, block], pairs.share[u, block]
-            ny, nz, distance, overlap = self.geometry(g, w, i, j, reach, pairs.lanes)
+            ny, nz, distance, approach = self.geometry(g, w, i, j, reach, pairs.lanes)
+            overlap = ti.max(approach, 0.0)
             uy = gathered(g.now_y, w, i, pairs.lanes) - gathered(g.now_y, w, j, pairs.lanes)
             uz = gathered(g.now_z, w, i, pairs.lanes) - gathered(g.now_z, w, j, pairs.lanes)
             spin_i, spin_j = gathered(g.spin_now, w, i, pairs.lanes), gathered(g.spin_now, w, j, pairs.lanes)
@@ -47,6 +48,8 @@ class Contacts:
             rate = -(uy * ny + uz * nz)
             slip = uz * ny - uy * nz - (lever_i * spin_i + lever_j * spin_j)
             fn, ft, roll = self.laws.forces(PAIR, pairs, u, block, overlap, rate, slip, spin_i - spin_j, dt)
+            if ti.static(self.laws.cohesive):
+                fn = fn - self.laws.pull(pairs, u, block, approach, rate, dt)
             fy, fz = fn * ny - ft * nz, fn * nz + ft * ny
             turn_i = roll - lever_i * ft
             for k in ti.static(range(pairs.lanes)):
@@ -58,7 +61,7 @@ class Contacts:
 
     @ti.func
     def geometry(self, g: ti.template(), w, i, j, reach, count: ti.template()):
-        """Normals (towards the first grains), distances (m) and overlaps (m) of `count` pairs."""
+        """Normals (towards the first grains), distances (m) and overlaps (m; negative: gaps) of `count` pairs."""
         dy = gathered(g.y, w, i, count) - gathered(g.y, w, j, count)
         dz = gathered(g.z, w, i, count) - gathered(g.z, w, j, count)
         if ti.static(g.mixed):
@@ -67,12 +70,12 @@ class Contacts:
             square = dy * dy + dz * dz
             distance = ti.sqrt(ti.cast(square, g.real))
             inverse = 1.0 / distance
-            overlap = ti.max(ti.cast(whole * whole - square, g.real) / (reach + distance), 0.0)
-            return ti.cast(dy, g.real) * inverse, ti.cast(dz, g.real) * inverse, distance, overlap
+            approach = ti.cast(whole * whole - square, g.real) / (reach + distance)
+            return ti.cast(dy, g.real) * inverse, ti.cast(dz, g.real) * inverse, distance, approach
         else:
             distance = ti.sqrt(dy * dy + dz * dz)
             inverse = 1.0 / distance
-            return dy * inverse, dz * inverse, distance, ti.max(reach - distance, 0.0)
+            return dy * inverse, dz * inverse, distance, reach - distance
 
     @ti.func
     def wall_forces(self, g: ti.template(), contacts: ti.template(), u, t, dt):
@@ -95,14 +98,19 @@ class Contacts:
             fn, ft, roll = self.laws.forces(
                 WALL, contacts, u, p, ti.Vector([overlap]), ti.Vector([rate]), ti.Vector([slip]), ti.Vector([spin]), dt
             )
+            if ti.static(self.laws.cohesive):
+                approach = ti.cast(-FAR, g.real)
+                if gap[0] > 0.0:
+                    approach = ti.cast(radius - gap[0], g.real)
+                fn = fn - self.laws.pull(contacts, u, p, ti.Vector([approach]), ti.Vector([rate]), dt)
             fy, fz = fn[0] * ny - ft[0] * nz, fn[0] * nz + ft[0] * ny
             g.push(w, i, fy, fz, roll[0] - lever * ft[0])
 
     @ti.func
     def census(self, g: ti.template(), pairs: ti.template(), contacts: ti.template(), u, t):
-        """Number of touching contacts, largest overlap in radii of the smaller grain, elastic energy (J) of a unit.
+        """Number of touching contacts, largest overlap in radii of the smaller grain, their energy (J), of a unit.
 
-        What two units share counts half in each.
+        The energy is elastic, and that of liquid bridges. What two units share counts half in each.
         """
         w, start, end = self.units.world(u), self.units.first(u), self.units.end(u)
         zero = ti.cast(0.0, g.exact)
@@ -116,6 +124,9 @@ class Contacts:
                 touching += part
                 deepest = ti.max(deepest, overlap / ti.min(g.radius[w, i], g.radius[w, j]))
                 energy += part * self.laws.energy(PAIR, pairs, u, p, overlap)
+            if ti.static(self.laws.cohesive):
+                share = ti.select(start <= j < end or j >= g.mobile, 1.0, 0.5)
+                energy += share * self.laws.bridge_energy(pairs, u, p, overlap)
         shift = self.walls.shift(w, t)
         for p in range(contacts.length[u]):
             i = contacts.first_of(u, p)
@@ -125,6 +136,10 @@ class Contacts:
                 touching += 1.0
                 deepest = ti.max(deepest, overlap / g.radius[w, i])
                 energy += self.laws.energy(WALL, contacts, u, p, overlap)
+            if ti.static(self.laws.cohesive):  # noqa: SIM102 (compiled only for wet grains)
+                if gap[0] > 0.0:
+                    approach = ti.cast(g.radius[w, i] - gap[0], g.real)
+                    energy += self.laws.bridge_energy(contacts, u, p, approach)
         return ti.Vector([touching, deepest, energy])
 
 

@@ -1,13 +1,25 @@
 """What grains and walls are made of, and what two of them are to each other."""
 
 from dataclasses import dataclass, replace
+from math import pi
 from typing import Annotated
 
 from solvers.quantity import Interval, Unit
 from solvers.restitution import dissipative_time_for, restitution_from
 
 # Of two kinds of grains, what has a mean; the moduli have their own rule.
-MEANT = ("friction", "restitution_speed", "shear_damping", "rolling_friction", "rolling_damping")
+MEANT = (
+    "friction",
+    "restitution_speed",
+    "shear_damping",
+    "rolling_friction",
+    "rolling_damping",
+    "surface_tension",
+    "contact_angle",
+    "asperities",
+    "humidity",
+    "bridge_volume",
+)
 LEAST_RESTITUTION = 0.01  # stands for all less that a dissipative time may give; a law needs some
 
 
@@ -19,6 +31,9 @@ class Material:
     scene's mean diameter meeting head-on at `restitution_speed`; the dissipative time A of Brilliantov et al. (1996)
     follows from it, or it from A. Rolling friction μ_r is the tangent of the steepest slope that holds a sphere, and
     `rolling_damping` η_r a share of critical damping; only rolling laws use them.
+    Only laws of cohesion use the surface tension γ_s (of water unless given) and the contact angle θ of the liquid, the
+    height of the `asperities` that keep surfaces apart, the relative humidity of the air and the volume of a liquid
+    bridge.
     """
 
     density: Annotated[float, Unit("kg/m^3"), Interval(gt=0)]
@@ -31,6 +46,11 @@ class Material:
     shear_damping: Annotated[float, Unit("N s/m"), Interval(ge=0)] = 20.0
     rolling_friction: Annotated[float, Unit("1"), Interval(ge=0)] = 0.0
     rolling_damping: Annotated[float, Unit("1"), Interval(ge=0)] = 0.3
+    surface_tension: Annotated[float, Unit("N/m"), Interval(gt=0)] = 0.072
+    contact_angle: Annotated[float, Unit("rad"), Interval(ge=0, lt=pi / 2)] = 0.0
+    asperities: Annotated[float, Unit("m"), Interval(ge=0)] = 0.0
+    humidity: Annotated[float | None, Unit("1"), Interval(gt=0, lt=1)] = None
+    bridge_volume: Annotated[float | None, Unit("m^3"), Interval(gt=0)] = None
 
 
 @dataclass(frozen=True)
@@ -46,6 +66,11 @@ class Interface:
     shear_damping: float  # γ_s, N s/m
     rolling_friction: float  # μ_r
     rolling_damping: float  # η_r
+    surface_tension: float  # γ_s, N/m
+    contact_angle: float  # θ, rad
+    asperities: float  # h, m
+    humidity: float | None
+    bridge_volume: float | None  # V, m³
 
 
 def effective_young(a: Material, b: Material) -> float:
@@ -71,7 +96,8 @@ def touching(a: Material, b: Material, given: Material | None) -> Material:
     """
     if given is not None:
         return replace(given, young=b.young, poisson=b.poisson)
-    mean = {name: 0.5 * (getattr(a, name) + getattr(b, name)) for name in MEANT}
+    known = [name for name in MEANT if None not in (getattr(a, name), getattr(b, name))]
+    mean = {name: 0.5 * (getattr(a, name) + getattr(b, name)) for name in known}
     losses = "restitution" if a.restitution is not None and b.restitution is not None else "dissipative_time"
     other = "dissipative_time" if losses == "restitution" else "restitution"
     if None in (getattr(a, losses), getattr(b, losses)):
@@ -106,4 +132,9 @@ def interface(grain: Material, other: Material, mass: float, radius: float, scal
         shear_damping=other.shear_damping,
         rolling_friction=other.rolling_friction,
         rolling_damping=other.rolling_damping,
+        surface_tension=other.surface_tension,
+        contact_angle=other.contact_angle,
+        asperities=other.asperities,
+        humidity=other.humidity,
+        bridge_volume=other.bridge_volume,
     )

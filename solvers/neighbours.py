@@ -33,6 +33,7 @@ class Neighbours:
         grains: Grains,
         walls: Walls,
         skin: float,
+        bridges: float,
         reach: float,
         laws: ChosenLaws,
         modulus: np.ndarray,
@@ -46,6 +47,8 @@ class Neighbours:
         self.contacts = ContactList(arrays, units, room * (contacts * units.size + more_contacts), 1, laws)
         self.modulus = arrays.holding(4.0 / 3.0 * modulus)  # k = (4/3) E* √R_eff of each interface
         self.skin = arrays.holding(np.array([skin]))
+        if laws.cohesive:
+            self.bridges = arrays.holding(np.array([bridges]))  # the longest there may be, m
         self.cells = Cells(arrays, grains, *walls.bounds, reach)
         self.built_y, self.built_z = arrays.reals(2, (grains.worlds, grains.count), arrays.place)
         # No grain has moved farther than `travel` (m) since the lists were built, at the time `built_at` (s).
@@ -61,6 +64,14 @@ class Neighbours:
     def expire(self) -> None:
         """Have the lists built anew before the next step."""
         self.travel.fill(NEVER)
+
+    @ti.func
+    def margin(self):
+        """The gap (m) up to which two are listed: they may touch before the next lists, or hold a bridge now."""
+        wide = self.skin[0]
+        if ti.static(self.laws.cohesive):
+            wide = ti.max(wide, self.bridges[0])
+        return wide
 
     @ti.func
     def stale(self, u, t):
@@ -109,7 +120,7 @@ class Neighbours:
                     if j > i or (j < i and not own):
                         dy, dz = y - g.y[w, j], z - g.z[w, j]
                         touch = radius + g.radius[w, j]
-                        reach = touch + self.skin[0]
+                        reach = touch + self.margin()
                         if dy * dy + dz * dz < reach * reach:
                             if found < self.pairs.capacity:
                                 effective = radius * g.radius[w, j] / touch
@@ -135,7 +146,7 @@ class Neighbours:
             radius = self.grains.radius[w, i]
             for feature in range(self.walls.features):
                 # A wall contact may begin as the grain slides past a segment's end, so ask with a margin.
-                if self.walls.near(feature, shift, self.grains.y[w, i], self.grains.z[w, i], radius + self.skin[0]):
+                if self.walls.near(feature, shift, self.grains.y[w, i], self.grains.z[w, i], radius + self.margin()):
                     if found < self.contacts.capacity:
                         mass = 1.0 / self.grains.inverse_mass[w, i]
                         row = self.laws.wall_row(self.grains, w, i)

@@ -7,7 +7,7 @@ from itertools import product
 import numpy as np
 
 from solvers.integrators import INTEGRATORS
-from solvers.laws import NORMAL, ROLLING, TANGENTIAL
+from solvers.laws import COHESION, NORMAL, ROLLING, TANGENTIAL
 from solvers.materials import Interface, Material, interface, touching
 from solvers.parts import Part
 from solvers.timestep import Limit, limits
@@ -34,6 +34,7 @@ class Scene:
     normal: str = "hertz-viscoelastic"
     tangential: str = "haff-werner"
     rolling: str = "none"
+    cohesion: str = "none"
     stiffness_scale: float = 1.0
     gravity: float = 9.81
     motions: Sequence[Sequence] = ()
@@ -111,8 +112,18 @@ class Scene:
 
     @property
     def laws(self) -> tuple:
-        """The normal, the tangential and the rolling law."""
-        return NORMAL[self.normal](), TANGENTIAL[self.tangential](), ROLLING[self.rolling]()
+        """The normal, the tangential and the rolling law, and that of cohesion."""
+        return NORMAL[self.normal](), TANGENTIAL[self.tangential](), ROLLING[self.rolling](), COHESION[self.cohesion]()
+
+    @property
+    def longest_bridge(self) -> float:
+        """The longest gap (m) across which liquid may hold, to the next micrometre.
+
+        Worlds whose bridges differ by nanometres then have equal lists, and may run in one launch.
+        """
+        law = COHESION[self.cohesion]()
+        longest = max(law.range(between) for world in self.interfaces_of for between in world)
+        return 1e-6 * float(np.ceil(1e6 * longest))
 
     def credible_speed(self) -> float:
         """Highest speed (m/s) at which grains may be expected to meet: a fall through the tank, and the tank's own."""
@@ -153,10 +164,11 @@ class Scene:
         kinds = tuple(
             (type(motion), len(motion.parameters(self.soft_start)), motion.coordinate) for motion in self.motions[0]
         )
-        words = self.normal, self.tangential, self.rolling, self.integrator, self.precision, self.schedule
+        laws = self.normal, self.tangential, self.rolling, self.cohesion, self.longest_bridge
+        words = self.integrator, self.precision, self.schedule
         numbers = self.radius.shape[1], self.gravity, self.soft_start, self.step, self.sizes, self.stiffness_scale
-        materials = self.others, self.unlike
-        return (*lengths, kinds, *words, *numbers, *materials, self.open_edges, self.parts, self.velocity is None)
+        rest = self.others, self.unlike, self.open_edges, self.parts, self.velocity is None
+        return (*lengths, kinds, *laws, *words, *numbers, *rest)
 
     @classmethod
     def joined(cls, scenes: "Sequence[Scene]") -> "Scene":

@@ -72,8 +72,11 @@ class Simulation:
         laws = ChosenLaws(arrays, units, *scene.laws, scene.interfaces_of, scene.kinds, integrator.damping)
         moduli = np.array([[between.young_modulus for between in world] for world in scene.interfaces_of])
         largest = max(scene.sizes[1], scene.fixed[:, 2].max(initial=0.0))
-        reach = 2.0 * largest + self.skin
-        self.neighbours = Neighbours(arrays, units, self.grains, self.walls, self.skin, reach, laws, moduli, self.room)
+        bridges = scene.longest_bridge
+        reach = 2.0 * largest + max(self.skin, bridges)
+        self.neighbours = Neighbours(
+            arrays, units, self.grains, self.walls, self.skin, bridges, reach, laws, moduli, self.room
+        )
         self.contacts = Contacts(units, self.grains, self.walls, self.neighbours, laws)
         self.frame = Frame(arrays, scene.motions, scene.soft_start, scene.gravity)
         self.mover = Mover(arrays, units, self.grains, integrator, self.frame.rotating)

@@ -10,6 +10,7 @@ from rich.console import Console
 
 from lab.errors import LabError
 from lab.verify import (
+    cohesion,
     collisions,
     columns,
     conservation,
@@ -24,7 +25,19 @@ from lab.verify import (
 from lab.verify.case import Case, Outcome
 from lab.verify.report import show, write_report
 
-MODULES = (collisions, restitution, oblique, friction, rolling, columns, conservation, convergence, frames, sameness)
+MODULES = (
+    collisions,
+    restitution,
+    oblique,
+    friction,
+    rolling,
+    cohesion,
+    columns,
+    conservation,
+    convergence,
+    frames,
+    sameness,
+)
 CASES: tuple[Case, ...] = tuple(case for module in MODULES for case in module.CASES)
 
 

@@ -4,12 +4,15 @@ A law is a class with
 - `coefficients`, the numbers it needs of an interface between two materials, and `limits`, the longest steps it bears;
 - `constants` and `memory`, names of what it keeps for each listed contact, which no other kind of law may use too;
   `prepare` works out the constants of a new contact;
-- `force` (a rolling law: `torque`) and `energy`, Taichi functions. They take a block of contacts at once, as vectors of
-  lanes, and so hold element-wise arithmetic alone; a coefficient may be a number or a vector of lanes. A contact whose
-  overlap is zero must come out with no force and no memory.
+- `force` (a rolling law: `torque`, one of cohesion: `pull`) and `energy`, Taichi functions. They take a block of
+  contacts at once, as vectors of lanes, and so hold element-wise arithmetic alone; a coefficient may be a number or a
+  vector of lanes. A contact whose overlap is zero must come out with no force and no memory; under a law of cohesion,
+  one whose gap is beyond the law's `range`.
+  A law of cohesion names the keys of a material that it `needs`.
 Only the laws a scene names are compiled.
 """
 
+from solvers.laws.bridge import Bridge
 from solvers.laws.constant_torque import ConstantTorque
 from solvers.laws.coulomb import Coulomb
 from solvers.laws.cundall_strack import CundallStrack
@@ -19,9 +22,11 @@ from solvers.laws.haff_werner import HaffWerner
 from solvers.laws.hertz import Hertz
 from solvers.laws.hertz_dashpot import HertzDashpot
 from solvers.laws.hertz_viscoelastic import HertzViscoelastic
+from solvers.laws.humid import Humid
 from solvers.laws.hysteretic import Hysteretic
 from solvers.laws.linear import Linear
 from solvers.laws.mindlin import Mindlin
+from solvers.laws.no_cohesion import NoCohesion
 from solvers.laws.no_rolling import NoRolling
 from solvers.laws.viscous import Viscous
 
@@ -44,3 +49,5 @@ TANGENTIAL = {
 }
 # Against turning on one another.
 ROLLING = {"none": NoRolling, "constant-torque": ConstantTorque, "elastic-plastic": ElasticPlastic}
+# Across a gap: liquid that pulls.
+COHESION = {"none": NoCohesion, "humid": Humid, "bridge": Bridge}

@@ -11,7 +11,7 @@ PAIR, WALL = 0, 1  # rows of the interfaces where all grains are of one kind
 
 @ti.data_oriented
 class ChosenLaws:
-    """A normal, a tangential and a rolling law for grain–grain (PAIR) and grain–wall (WALL) contacts.
+    """A normal, a tangential, a rolling law and one of cohesion for grain–grain (PAIR) and grain–wall (WALL) contacts.
 
     `interfaces[w]` are those of world w: of kinds a and b of grains in row a·K + b, of kind a and a wall in row K² + a,
     with K `kinds`. Contacts come in blocks of lanes (`ContactList`); what a law returns for a block is a vector of
@@ -19,9 +19,13 @@ class ChosenLaws:
     integrator's: laws are told of a step that much longer than it is, and keep their dampers within that.
     """
 
-    def __init__(self, arrays: Arrays, units: Units, normal, tangential, rolling, interfaces, kinds=1, damping=1.0):
+    def __init__(
+        self, arrays: Arrays, units: Units, normal, tangential, rolling, cohesion, interfaces, kinds=1, damping=1.0
+    ):
         self.units, self.kinds, self.damping = units, kinds, damping
-        self.normal, self.tangential, self.rolling = laws = normal, tangential, rolling
+        self.normal, self.tangential, self.rolling, self.cohesion = normal, tangential, rolling, cohesion
+        self.cohesive = cohesion.pulls
+        laws = (normal, tangential, rolling, *([cohesion] if self.cohesive else []))
         self.tables = [arrays.holding(self.tabulate(law, interfaces)) for law in laws]
         self.constants = tuple(name for law in laws for name in law.constants)
         self.memory = tuple(name for law in laws for name in law.memory)
@@ -79,6 +83,9 @@ class ChosenLaws:
         self.prepare_law(self.tangential, 1, first, kind, contacts, u, block, lane, mass, radius, dt)
         first_rolling = ti.static(self.counts[0] + self.counts[1])
         self.prepare_law(self.rolling, 2, first_rolling, kind, contacts, u, block, lane, mass, radius, dt)
+        if ti.static(self.cohesive):
+            first_cohesion = ti.static(sum(self.counts[:3]))
+            self.prepare_law(self.cohesion, 3, first_cohesion, kind, contacts, u, block, lane, mass, radius, dt)
 
     @ti.func
     def prepare_law(
@@ -119,6 +126,14 @@ class ChosenLaws:
         return pressing, shearing, torque
 
     @ti.func
+    def pull(self, contacts: ti.template(), u, block, approach, rate, dt):
+        """Cohesion (N) of a block of contacts that approach by so much (m; negative: a gap), at a rate (m/s).
+
+        Memory is updated. Only where the scene is `cohesive`.
+        """
+        return self.cohesion.pull(contacts, u, block, approach, rate, dt)
+
+    @ti.func
     def energy(self, kind: ti.template(), contacts: ti.template(), u, p, overlap):
         """Elastic energy (J) of contact p, which overlaps."""
         block, lane, root = p // contacts.lanes, p % contacts.lanes, ti.sqrt(overlap)
@@ -126,3 +141,8 @@ class ChosenLaws:
         tangential_c = self.coefficients_of_one(1, u, kind, contacts, block, lane)
         sheared = self.tangential.energy(tangential_c, contacts, u, block, lane, root)
         return pressed + sheared + self.rolling.energy(contacts, u, block, lane)
+
+    @ti.func
+    def bridge_energy(self, contacts: ti.template(), u, p, approach):
+        """Energy (J) of the liquid between the two of contact p, only where the scene is `cohesive`."""
+        return self.cohesion.energy(contacts, u, p // contacts.lanes, p % contacts.lanes, approach)

@@ -248,6 +248,9 @@ def test_outlines_that_bound_nothing(corners, words):
         ({"tank.outline": [], "tank.width": "1 m"}, "tank.outline: give either"),
         ({"grains..depth": 3}, '"grains..depth" is not a key'),
         ({"based_on": "tilting/quick"}, "based_on: cannot be overridden"),
+        ({"contact.cohesion": "humid"}, "material.humidity: missing; contact.cohesion"),
+        ({"contact.cohesion": "bridge"}, "material.bridge_volume: missing; contact.cohesion"),
+        ({"material.humidity": "100 %"}, "material.humidity: must be less than 1"),
     ],
 )  # fmt: skip
 def test_faults_name_the_key(overrides, sentence):

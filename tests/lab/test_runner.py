@@ -103,6 +103,12 @@ def test_explain_names_step_limit_parts_and_cost():
         assert words in text
 
 
+def test_explain_says_how_wet_grains_pull():
+    """2π γ R_eff over (4/3) π R³ ρ g of grains of 3 mm, and the Kelvin radius at 70 %."""
+    text = explain(load("tilting/wet", SMALL))
+    assert "humid: 339.3 µN, 1.9 times a mean grain's weight, across gaps of up to 1.472 nm" in text
+
+
 def test_a_bed_that_has_not_settled_is_said_in_the_summary(tmp_path):
     restless = SMALL | {"run": {"repeats": 1, "settle_limit": "0.01 s", "duration": "0.05 s"}}
     result = run_preset("tilting/quick", restless, tmp_path / "restless", video=False, quiet=True)

@@ -10,7 +10,7 @@ from scenes import material
 from scipy.special import beta
 
 from solvers import runtime
-from solvers.laws import NORMAL, ROLLING, TANGENTIAL
+from solvers.laws import COHESION, NORMAL, ROLLING, TANGENTIAL
 from solvers.laws.chosen import PAIR, ChosenLaws
 from solvers.materials import hertz_stiffness, interface
 from solvers.restitution import CONSTANT, FIRST_ORDER, VISCOELASTIC, damping_for, linear_restitution, restitution
@@ -34,7 +34,7 @@ class Driven:
     def __init__(self, normal="hertz-viscoelastic", tangential="none", rolling="none", between=BETWEEN):
         runtime.initialise(1)
         arrays = Arrays()
-        laws = NORMAL[normal](), TANGENTIAL[tangential](), ROLLING[rolling]()
+        laws = NORMAL[normal](), TANGENTIAL[tangential](), ROLLING[rolling](), COHESION["none"]()
         self.laws = ChosenLaws(arrays, Units(1, 1, 1, 1), *laws, [(between, between)])
         (self.stiffness,) = arrays.vectors(1, self.lanes, (1, 1))
         self.constants = arrays.vectors(len(self.laws.constants), self.lanes, (1, 1))
