@@ -8,6 +8,7 @@ from lab.accuracy import LEVELS, check_forced
 from lab.errors import LabError
 from lab.schema import Resolved
 from solvers.filling import NONE_FIXED, DoesNotFit, count_for_depth, headroom, lattice, start_positions
+from solvers.relaxing import relaxed
 from solvers.scene import Scene
 from solvers.tank import lining, raised
 
@@ -47,9 +48,9 @@ def filling_outline(preset: Resolved) -> np.ndarray:
 def build(preset: Resolved) -> tuple[Scene, np.ndarray]:
     """The scene of all repeats and positions (W, n, 2) m to settle from; repeat w has the seed run.seed + w.
 
-    The positions lie within `filling_outline`. The step, by the level of accuracy unless given, divides the sampling
-    interval of the series, so samples fall on steps. Raises LabError where the grains do not fit or a given step is
-    past the limit.
+    The positions lie within `filling_outline`; listed grains that overlap too deeply to settle are moved apart. The
+    step, by the level of accuracy unless given, divides the sampling interval of the series, so samples fall on steps.
+    Raises LabError where the grains do not fit or a given step is past the limit.
     """
     radius, position, motion = _listed(preset) if preset.grains.listed else _filled(preset)
     low, high = preset.grains.range
@@ -77,6 +78,8 @@ def build(preset: Resolved) -> tuple[Scene, np.ndarray]:
         **motion,
     )
     scene.step = _step(preset, scene)
+    if preset.grains.listed and preset.run.settle:  # without settling it may be meant so
+        position = np.tile(relaxed(scene, position[0]), (len(radius), 1, 1))
     return scene, position
 
 
