@@ -9,12 +9,12 @@ from pathlib import Path
 
 from lab.errors import LabError
 from lab.progress import Progress
-from lab.reproduce import heaps, laws, shaking, tilting, validation
+from lab.reproduce import heaps, humidity, laws, shaking, tilting, validation
 from lab.reproduce.experiment import Experiment
 from lab.reproduce.report import write_report
 from lab.reproduce.runs import carry_out
 
-MODULES = (validation, tilting, laws, shaking, heaps)
+MODULES = (validation, tilting, humidity, laws, shaking, heaps)
 EXPERIMENTS: dict[str, Experiment] = {one.name: one for module in MODULES for one in module.EXPERIMENTS}
 
 
