@@ -208,18 +208,17 @@ def limits(size: int, turns: int, seconds: float) -> dict[str, float]:
 
 def repeated(do, seconds: float):
     """A timing: the seconds that doing something once takes, `do(times)` being done for about so many seconds."""
-    times = 1
-    do(times)  # compiles
 
-    def timing() -> float:
-        nonlocal times
+    def once(times: int) -> float:
         begun = time.perf_counter()
         do(times)
-        once = (time.perf_counter() - begun) / times
-        times = max(1, round(seconds / once))
-        return once
+        return (time.perf_counter() - begun) / times
 
-    return timing
+    do(1)  # compiles
+    times = 1
+    while times * once(times) < 0.5 * seconds:  # calling it takes its time, which is not what is asked
+        times *= 2
+    return lambda: once(times)
 
 
 def caches() -> str:
