@@ -30,16 +30,17 @@ def sweep(
     *,
     video: bool = True,
     quiet: bool = False,
+    cluster: str | None = None,
     **overrides: object,
 ) -> SweepResult:
     """Run a preset at every combination of values: `lab.sweep("shaking/sway", {"motion.sway.frequency": "0.5:2:7Hz"})`.
 
-    axes: by key a range or list as a text, as `cargolab sweep` takes it, or a sequence of values; `overrides` as in
-    `run`.
+    axes: by key a range or list as a text, as `cargolab sweep` takes it, or a sequence of values; cluster: the address
+    of a Dask scheduler whose workers are to run the points; `overrides` as in `run`.
     """
     from lab.sweeps import run_sweep
 
-    return run_sweep(preset, axes, _dotted(overrides), out, video=video, quiet=quiet)
+    return run_sweep(preset, axes, _dotted(overrides), out, video=video, quiet=quiet, cluster=cluster)
 
 
 def resume(folder: Path | str, *, video: bool = True, quiet: bool = False) -> Result | SweepResult:

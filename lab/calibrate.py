@@ -9,6 +9,7 @@ around it. The error of the root is that of the beds: the fit is repeated with b
 import json
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
+from functools import partial
 from itertools import pairwise
 from pathlib import Path
 
@@ -77,24 +78,27 @@ def calibrate(
     out: Path | str | None = None,
     *,
     quiet: bool = False,
+    cluster: str | None = None,
 ) -> Calibration:
     """Find the value of the key in `vary`, "friction=0.2:0.7", at which a measure is as in `target`, "repose=41.3 deg".
 
     Leaves calibration.json, calibration.png and both rounds' sweeps in a folder (default: renders/NAME-calibration);
-    asked again it goes on. Raises LabError: texts that cannot be read, a target out of reach, and as `run_sweep`.
+    asked again it goes on. cluster: as of `run_sweep`. Raises LabError: texts that cannot be read, a target out of
+    reach, and as `run_sweep`.
     """
     measure, wanted = _pair("--target", target, 'repose="41.3 deg"')
     given, span = _pair("--vary", vary, "friction=0.2:0.7")
     measure, key = ALIASES.get(measure, measure), dotted_key(Given, given)
     folder = Path(out) if out is not None else RENDERS / f"{Path(str(name)).stem}-calibration"
-    first = _round(name, key, values(key, _with_count(key, span)), overrides, folder / "round-1", quiet)
+    run = partial(run_sweep, video=False, quiet=quiet, cluster=cluster)
+    first = run(name, {key: values(key, _with_count(key, span))}, overrides, folder / "round-1")
     x, unit, beds, measure_unit = _responses(first, key, measure)
     goal = in_unit(wanted, measure_unit, "--target")
     near = _root(x, beds, goal, key, measure, measure_unit)
     half = CLOSER * float(np.ptp(x))
     around = np.linspace(max(x.min(), near - half), min(x.max(), near + half), POINTS)
     listed = [f"{value:.6g} {unit}".strip() if unit else float(f"{value:.6g}") for value in around]
-    second = _round(name, key, listed, overrides, folder / "round-2", quiet)
+    second = run(name, {key: listed}, overrides, folder / "round-2")
     more, _, further, _ = _responses(second, key, measure)
     found = _solved(np.concatenate([x, more]), np.vstack([beds, further]), goal, key, measure, measure_unit)
     made = Calibration(str(name), key, unit, measure, measure_unit, goal, **found)
@@ -115,12 +119,6 @@ def _with_count(key: str, span: str) -> str:
     if len(ends) != 2 or not all(ends):
         raise LabError(f'{key}: a range FROM:TO is needed, e.g. 0.2:0.7 (got "{span}").')
     return f"{ends[0]}:{ends[1]}:{POINTS}"
-
-
-def _round(
-    name: str | Path, key: str, listed: list, overrides: Mapping | None, folder: Path, quiet: bool
-) -> SweepResult:
-    return run_sweep(name, {key: listed}, overrides, folder, video=False, quiet=quiet)
 
 
 def _responses(result: SweepResult, key: str, measure: str) -> tuple[np.ndarray, str, np.ndarray, str]:

@@ -110,6 +110,9 @@ arch_option = click.option(
     "--arch", type=click.Choice(["auto", "cpu", "cuda", "vulkan"]), help="What computes.  [default: as the preset says]"
 )
 quiet_option = click.option("--quiet", is_flag=True, help="Say only where the results are.")
+cluster_option = click.option(
+    "--cluster", metavar="ADDRESS", help="Run on the workers of this Dask scheduler, e.g. tcp://node1:8786."
+)
 video_option = click.option("--no-video", is_flag=True, help="Do not paint a video.")
 
 
@@ -219,6 +222,7 @@ def run(
 @repeats_option
 @arch_option
 @video_option
+@cluster_option
 @quiet_option
 def sweep(
     preset: str,
@@ -227,6 +231,7 @@ def sweep(
     repeats: int | None,
     arch: str | None,
     no_video: bool,
+    cluster: str | None,
     quiet: bool,
 ) -> None:
     """Run PRESET for every combination of the values of its keys.
@@ -234,12 +239,14 @@ def sweep(
     \b
     cargolab sweep shaking/sway --set motion.sway.frequency="0.2:1.5:14 Hz" --repeats 12
     cargolab sweep tilting/quick --set grains.diameter="2, 3, 4 mm" --set material.friction=0.1:0.5:5
+    cargolab sweep shaking/sway --set run.seed=1:200:200 --cluster tcp://node1:8786
     Asked again, it goes on where it was cut short.
     """
     from lab.sweeps import run_sweep
 
     axes = _settings(settings)
-    _show(run_sweep(preset, axes, _shortcuts(repeats, arch), out, video=not no_video, quiet=quiet), quiet)
+    shortcuts = _shortcuts(repeats, arch)
+    _show(run_sweep(preset, axes, shortcuts, out, video=not no_video, quiet=quiet, cluster=cluster), quiet)
 
 
 @main.command()
@@ -255,6 +262,7 @@ def sweep(
 )
 @repeats_option
 @arch_option
+@cluster_option
 @quiet_option
 def calibrate(
     preset: str,
@@ -264,6 +272,7 @@ def calibrate(
     out: Path | None,
     repeats: int | None,
     arch: str | None,
+    cluster: str | None,
     quiet: bool,
 ) -> None:
     """Find the value of a key of PRESET at which a measure meets its target, with its error.
@@ -271,10 +280,12 @@ def calibrate(
     \b
     cargolab calibrate tilting/chickpeas-quick --target "repose=41.3 deg" --vary friction=0.2:0.7 --repeats 8
     cargolab calibrate shaking/sway --target "response_amplitude=2 mm" --vary "motion.sway.frequency=0.8 Hz:2 Hz"
+    cargolab calibrate tilting/acetate --target "repose=25 deg" --vary friction=0.2:0.7 --cluster tcp://node1:8786
     """
     from lab.calibrate import calibrate as calibrated
 
-    click.echo(calibrated(preset, target, vary, overrides | _shortcuts(repeats, arch), out, quiet=quiet).text())
+    overrides |= _shortcuts(repeats, arch)
+    click.echo(calibrated(preset, target, vary, overrides, out, quiet=quiet, cluster=cluster).text())
 
 
 @main.command()
@@ -385,18 +396,22 @@ def verify(cases: tuple[str, ...], out: Path, fast: bool) -> None:
     show_default=True,
     help="Folder of the report and of its runs.",
 )
+@cluster_option
 @quiet_option
-def reproduce(what: str, experiments: tuple[str, ...], quick: bool, out: Path, quiet: bool) -> None:
+def reproduce(
+    what: str, experiments: tuple[str, ...], quick: bool, out: Path, cluster: str | None, quiet: bool
+) -> None:
     """Run the experiments of the source and write one report: what it states, what we get, the difference, the cost.
 
     \b
     cargolab reproduce granular --quick
     cargolab reproduce granular                 hours on two cores; asked again, it goes on
     cargolab reproduce granular tilt-fill stack EXPERIMENTS whose names begin like this
+    cargolab reproduce granular --cluster tcp://node1:8786
     """
     from lab.reproduce import reproduce as reproduced
 
-    click.echo(reproduced(experiments, out, quick, quiet))
+    click.echo(reproduced(experiments, out, quick, quiet, cluster))
 
 
 @main.group()

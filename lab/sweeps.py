@@ -16,6 +16,7 @@ import numpy as np
 
 from lab.axes import values
 from lab.checkpoint import Checkpoint, read_checkpoint, remove_checkpoint
+from lab.cluster import Errand, fetch
 from lab.errors import LabError
 from lab.launch import Run, launch, prepare
 from lab.lock import only_one
@@ -131,20 +132,29 @@ def run_sweep(
     *,
     video: bool = True,
     quiet: bool = False,
+    cluster: str | None = None,
 ) -> SweepResult:
     """Run a preset at every point of a grid (see `ask`) and sum up in a folder (default: renders/NAME-sweep).
 
-    video: film the points side by side at the end. A folder that holds the same sweep is gone on with. Raises
-    LabError, one sentence, and KeyboardInterrupt; points that are done stay.
+    video: film the points side by side at the end; cluster: the address of a scheduler whose workers are to run the
+    points (see `lab.cluster`). A folder that holds the same sweep is gone on with. Raises LabError, one sentence, and
+    KeyboardInterrupt; points that are done stay.
     """
     sweep = ask(name, axes, overrides)
     folder = Path(out) if out is not None else RENDERS / f"{sweep.name}-sweep"
-    if (folder / FILE_NAME).exists():
-        if not read_sweep(folder).same_as(sweep):
-            raise LabError(f"{folder} holds another sweep than is asked for: choose another folder.")
-    elif (folder / RECORDING).exists():
-        raise LabError(f"{folder} holds a recording: choose another folder.")
-    return _complete(sweep, folder, video, quiet)
+    _check_folder(sweep, folder)
+    return _complete(sweep, folder, video, quiet, cluster)
+
+
+def errands(
+    name: str | Path, axes: Mapping[str, str | Sequence], overrides: Mapping | None, folder: Path
+) -> list[Errand]:
+    """What of a sweep, asked for as of `run_sweep`, is left for a cluster to run. Begins the sweep. Raises LabError."""
+    sweep = ask(name, axes, overrides)
+    _check_folder(sweep, folder)
+    plan = list(_plan(sweep))
+    sweep.write(folder)
+    return _errands(sweep, folder, plan)
 
 
 def resume_sweep(folder: Path | str, *, video: bool = True, quiet: bool = False) -> SweepResult:
@@ -184,13 +194,36 @@ def point_folder(folder: Path, number: int) -> Path:
     return folder / "points" / f"{number:03}"
 
 
-def _complete(sweep: Sweep, folder: Path, video: bool, quiet: bool) -> SweepResult:
-    """Run what has not been run yet, and sum up all."""
+def _check_folder(sweep: Sweep, folder: Path) -> None:
+    """Raise LabError where the folder holds something else."""
+    if (folder / FILE_NAME).exists():
+        if not read_sweep(folder).same_as(sweep):
+            raise LabError(f"{folder} holds another sweep than is asked for: choose another folder.")
+    elif (folder / RECORDING).exists():
+        raise LabError(f"{folder} holds a recording: choose another folder.")
+
+
+def _errands(sweep: Sweep, folder: Path, plan: Sequence[Sequence[int]]) -> list[Errand]:
+    """The launches of points that were not run yet; one that was cut short here is left to be finished here."""
+    kept = read_checkpoint(folder)
+    begun = {folder / run for run in kept.runs} if kept else set()
+    found = []
+    for numbers in plan:
+        places = {point_folder(folder, number): sweep.points[number] for number in numbers}
+        if left := {at: point for at, point in places.items() if at not in begun and _status(at) == "open"}:
+            found.append(Errand(left))
+    return found
+
+
+def _complete(sweep: Sweep, folder: Path, video: bool, quiet: bool, cluster: str | None = None) -> SweepResult:
+    """Run what has not been run yet, as far as it can be on the cluster, and sum up all."""
     plan = list(_plan(sweep))  # says early which point cannot be
     sweep.write(folder)
     folders = [point_folder(folder, number) for number in range(len(sweep.points))]
     with Progress(quiet) as progress, hint(folder, FILE_NAME), only_one(folder):
         try:
+            if cluster:
+                fetch(_errands(sweep, folder, plan), cluster, progress)
             _Tour(sweep, folder, folders, progress).go(plan)
         except KeyboardInterrupt:
             write_report(sweep.name, sweep.axes, sweep.settings, folder, folders, progress, video=False)

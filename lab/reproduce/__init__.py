@@ -4,24 +4,30 @@ An experiment is a module of this package with an EXPERIMENTS list, and a line i
 their own and are not run again; one that was cut short is gone on with.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from contextlib import ExitStack
 from pathlib import Path
 
+from lab.cluster import fetch
 from lab.errors import LabError
+from lab.lock import only_one
 from lab.progress import Progress
 from lab.reproduce import heaps, humidity, laws, shaking, tilting, validation
 from lab.reproduce.experiment import Experiment
 from lab.reproduce.report import write_report
-from lab.reproduce.runs import carry_out
+from lab.reproduce.runs import Batch, carry_out, errands
 
 MODULES = (validation, tilting, humidity, laws, shaking, heaps)
 EXPERIMENTS: dict[str, Experiment] = {one.name: one for module in MODULES for one in module.EXPERIMENTS}
 
 
-def reproduce(names: Sequence[str], out: Path | str, quick: bool, quiet: bool = False) -> Path:
+def reproduce(
+    names: Sequence[str], out: Path | str, quick: bool, quiet: bool = False, cluster: str | None = None
+) -> Path:
     """Run the experiments whose names begin like one of `names`, or all, and write the report of all that is there.
 
-    The report is written anew after each experiment. Returns its file. Raises LabError, one sentence, and
+    cluster: the address of a scheduler whose workers run all that was not begun yet, before anything runs here. The
+    report is written anew after each experiment. Returns its file. Raises LabError, one sentence, and
     KeyboardInterrupt; what was run stays.
     """
     for name in names:
@@ -30,9 +36,22 @@ def reproduce(names: Sequence[str], out: Path | str, quick: bool, quiet: bool = 
     out, work = Path(out), Path(out) / ("quick" if quick else "full")
     progress = Progress(quiet)
     chosen = [name for name in EXPERIMENTS if not names or name.startswith(tuple(names))]
+    batches = {
+        name: {work / name / key: batch for key, batch in EXPERIMENTS[name].batches(quick).items()} for name in chosen
+    }
+    if cluster:
+        _run_there({at: batch for group in batches.values() for at, batch in group.items()}, cluster, quiet)
     for number, name in enumerate(chosen, start=1):
         progress.say(f"{name} ({number} of {len(chosen)})")
-        for key, batch in EXPERIMENTS[name].batches(quick).items():
-            carry_out(batch, work / name / key, quiet)
+        for folder, batch in batches[name].items():
+            carry_out(batch, folder, quiet)
         page = write_report(EXPERIMENTS, work, out, quick)
     return page
+
+
+def _run_there(batches: Mapping[Path, Batch], cluster: str, quiet: bool) -> None:
+    """Run all batches on the cluster at once, so that its workers need not wait for one another."""
+    with Progress(quiet) as progress, ExitStack() as held:
+        for folder in batches:
+            held.enter_context(only_one(folder))
+        fetch([errand for folder, batch in batches.items() for errand in errands(batch, folder)], cluster, progress)

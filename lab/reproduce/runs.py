@@ -6,12 +6,14 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 
+from lab.cluster import Errand
 from lab.errors import LabError
 from lab.measures.value import Value
 from lab.presets import load
 from lab.recording import FILE_NAME, Recording, open_recording
 from lab.runner import reported, resume_run, run_preset
 from lab.sweeps import FILE_NAME as SWEEP
+from lab.sweeps import errands as sweep_errands
 from lab.sweeps import point_folder, read_sweep, run_sweep
 from solvers.errors import BadState
 
@@ -42,6 +44,15 @@ class Outcome:
     def recording(self) -> Recording:
         """The recording: `series`, `frames`, `radius` …"""
         return open_recording(self.folder)
+
+
+def errands(batch: Batch, folder: Path) -> list[Errand]:
+    """What of a batch was not begun yet and can be run on a cluster. Raises LabError."""
+    if batch.axes:
+        return sweep_errands(batch.preset, batch.axes, batch.changes, folder)
+    if (folder / FILE_NAME).exists():
+        return []
+    return [Errand({folder: load(batch.preset, batch.changes)}, plots=True)]
 
 
 def carry_out(batch: Batch, folder: Path, quiet: bool) -> None:

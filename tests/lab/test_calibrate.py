@@ -20,7 +20,7 @@ def response(monkeypatch):
     """Sweeps that are not run: 20 + 30 x - 10 x² deg, and of each bed an offset of its own."""
     asked = []
 
-    def sweep(name, axes, overrides, folder, *, video, quiet):
+    def sweep(name, axes, overrides, folder, *, video, quiet, cluster):
         ((key, listed),) = axes.items()
         asked.append(listed)
         offsets = SCATTER * np.random.default_rng(3).normal(size=BEDS)

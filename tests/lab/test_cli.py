@@ -86,10 +86,11 @@ def test_sweep_passes_the_texts_of_the_values_on(monkeypatch):
     result = SimpleNamespace(summary_text="4 points", folder=Path("there"))
     calls = stand_in(monkeypatch, "lab.sweeps", "run_sweep", result)
     done = call("sweep", "shaking/sway", "--set", "motion.sway.frequency=0.2:1.5:14 Hz", "--set", "run.seed=1,2",
-                "--repeats", "4", "--out", "there")  # fmt: skip
+                "--repeats", "4", "--out", "there", "--cluster", "tcp://node1:8786")  # fmt: skip
     assert done.exit_code == 0 and done.stdout == "4 points\nthere\n"
     axes = {"motion.sway.frequency": "0.2:1.5:14 Hz", "run.seed": "1,2"}
-    assert calls == [(("shaking/sway", axes, {"run.repeats": 4}, Path("there")), {"video": True, "quiet": False})]
+    options = {"video": True, "quiet": False, "cluster": "tcp://node1:8786"}
+    assert calls == [(("shaking/sway", axes, {"run.repeats": 4}, Path("there")), options)]
 
 
 def test_resume_passes_the_folder_on(monkeypatch):
