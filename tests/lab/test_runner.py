@@ -83,6 +83,7 @@ def test_a_step_past_the_limit_is_refused_unless_forced_and_far_past_it_in_any_c
         build(load("tilting/quick", SMALL | {"run": {"step": "1 ms", "force_step": True}}).resolved)
 
 
+@pytest.mark.slow
 def test_a_forced_step_is_said_in_the_summary(tmp_path):
     forced = SMALL | {"run": {"repeats": 1, "step": "20 us", "force_step": True, "duration": "0.02 s"}}
     folder = run_preset("tilting/quick", forced, tmp_path / "forced", video=False, quiet=True).folder

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from math import pi
 
 import numpy as np
+import pytest
 import taichi as ti
 from scenes import box, material, simulation
 
@@ -184,6 +185,7 @@ class Inertial:
         return x, v, spin, angle
 
 
+@pytest.mark.slow
 def test_tank_in_motion_is_a_box_of_moving_walls():
     random, outline, deck = np.random.default_rng(8), box(0.02, 0.03), Deck()
     radius = radii(20, 3e-3, 0.1, random)

@@ -65,6 +65,7 @@ def test_moduli_are_of_both_and_the_rest_is_the_pairs_own():
     assert rows[10] == interface(KINDS[1], material(restitution=0.8), mass, RADIUS, 1.0)
 
 
+@pytest.mark.slow
 def test_kinds_that_are_alike_are_as_one_kind():
     """The gathered coefficients of several kinds against the plain ones of one, with history, to rounding."""
     rng, outline = np.random.default_rng(2), box(0.03, 0.06)

@@ -173,6 +173,7 @@ def test_history_survives_rebuilds(usual):
     assert max(apart) < 1e-6
 
 
+@pytest.mark.slow
 def test_room_grows_while_running_and_nothing_changes(usual):
     """The heap outgrows its list of pairs while grains already press and rub. The run that had the room from the start
     must agree to the last bit, in that world and in the one beside it, and no step may be lost or doubled."""

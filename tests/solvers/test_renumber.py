@@ -62,7 +62,11 @@ def usual(bed):
 
 @pytest.mark.parametrize(
     ("schedule", "units"),
-    [("per-world", None), pytest.param("per-band", 3, marks=pytest.mark.slow), ("per-grain", None)],
+    [
+        ("per-world", None),
+        pytest.param("per-band", 3, marks=pytest.mark.slow),
+        pytest.param("per-grain", None, marks=pytest.mark.slow),
+    ],
 )
 def test_new_numbers_change_rounding_alone(bed, usual, monkeypatch, schedule, units):
     """With history and all: contacts that rub keep their springs when their grains change numbers."""

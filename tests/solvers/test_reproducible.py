@@ -78,6 +78,7 @@ def test_a_world_alone_does_what_it_does_among_others(batch):
     assert_same_bits(alone, {name: values[:1] for name, values in batch[-1].items()})
 
 
+@pytest.mark.slow
 def test_the_skin_of_the_lists_changes_rounding_alone(batch):
     (state,) = run(looks=(EARLY,), skin=1e-4)
     for name, values in batch[0].items():
