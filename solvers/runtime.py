@@ -13,6 +13,7 @@ from contextlib import redirect_stdout
 from dataclasses import dataclass
 from glob import glob
 from io import StringIO
+from weakref import WeakSet
 
 import numpy as np
 import taichi as ti
@@ -47,6 +48,8 @@ ASTTransformerContext.get_pos_info = _place
 
 _running: tuple | None = None
 _starts = 0
+_used = False  # whether arrays were made since the last start
+_live: WeakSet["Arrays"] = WeakSet()  # those that have not been released
 
 
 def available_cores() -> int:
@@ -92,12 +95,16 @@ def _real_vulkan() -> bool:
 def initialise(threads: int = 0, arch: str = "cpu", precision: str = "f64", **options) -> None:
     """Start Taichi with `threads` threads (0: all cores); nothing happens if it runs like that already.
 
-    Starting it anew invalidates every field and kernel made before. Raises Unavailable (see `choose_arch`).
+    Starting it anew invalidates every field and kernel made before. It is also done where no arrays are in use any
+    more: Taichi numbers its fields from the start on, and finds a kernel that it has compiled before only where the
+    fields have the same numbers. Raises Unavailable (see `choose_arch`).
     """
-    global _running, _starts
+    global _running, _starts, _used
     wanted = (threads or available_cores(), choose_arch(arch, precision), PRECISIONS[precision].real)
-    if _running == wanted and not options:
+    if _running == wanted and not options and (_live or not _used):
         return
+    _live.clear()
+    _used = False
     with redirect_stdout(StringIO()):  # Taichi announces its backend, and has no switch for it
         _start(*wanted, options)
     _running = None if options else wanted
@@ -179,7 +186,10 @@ class Arrays:
 
     def finish(self) -> None:
         """Make the declared fields, zero but for what they are to hold."""
+        global _used
         self._tree = self._builder.finalize()
+        _used = True
+        _live.add(self)
         for field, values in self._contents:
             field.from_numpy(values.astype({ti.f32: np.float32, ti.i32: np.int32}.get(field.dtype, np.float64)))
         self._contents = []
@@ -211,3 +221,4 @@ class Arrays:
         if self._tree is not None and self._born == _starts:
             self._tree.destroy()
         self._tree = None
+        _live.discard(self)

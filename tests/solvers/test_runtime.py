@@ -212,3 +212,27 @@ def test_larger_arrays_take_over_what_smaller_ones_hold():
 
 def test_available_cores():
     assert 1 <= runtime.available_cores() <= os.cpu_count()
+
+
+def test_what_is_in_use_stays_and_what_comes_after_all_is_released_has_the_same_numbers():
+    """Taichi knows compiled kernels by the numbers of their fields, which go on counting until it starts anew."""
+
+    def begun() -> tuple[runtime.Arrays, ti.Field]:
+        runtime.initialise(1)
+        arrays = runtime.Arrays()
+        (field,) = arrays.reals(1, (3,))
+        arrays.finish()
+        return arrays, field
+
+    runtime.initialise(2)  # whatever was there before
+    first, field = begun()
+    number = field.snode.ptr.id
+    second, other = begun()
+    field.fill(2.0)
+    assert other.snode.ptr.id > number
+    assert field.to_numpy().tolist() == [2.0, 2.0, 2.0]
+    first.release()
+    second.release()
+    third, field = begun()
+    assert field.snode.ptr.id == number
+    third.release()
