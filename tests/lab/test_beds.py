@@ -91,6 +91,7 @@ def alike(first, second):
     return first.keys() == second.keys() and all(np.array_equal(first[name], second[name]) for name in first)
 
 
+@pytest.mark.slow
 def test_a_reused_bed_goes_on_bit_for_bit_as_the_one_that_was_stored():
     """The tangential law remembers, and the tank begins to tilt."""
     (stored, _), (reused, said) = (make(resolved(run={"repeats": 2})) for _ in range(2))

@@ -19,6 +19,14 @@ def told(folder) -> dict:
     return json.loads((folder / "verify.json").read_text(encoding="utf-8"))
 
 
+def test_a_few_cases_pass(tmp_path):
+    assert verify.run_cases(
+        ("impact-wall", "restitution-hertz", "slip", "rolling-decay", "momentum"), tmp_path, fast=True
+    )
+    assert "FAIL" not in (tmp_path / "verify.md").read_text(encoding="utf-8")
+
+
+@pytest.mark.slow
 def test_fast_cases_pass_and_leave_a_page(tmp_path, capsys):
     assert verify.run_cases((), tmp_path, fast=True)
     page, printed = (tmp_path / "verify.md").read_text(encoding="utf-8"), capsys.readouterr().out

@@ -27,9 +27,11 @@ OUTLINE = np.array(
     ]
 )
 SPEED = 0.2
+SLOW = ("cundall-strack", "coulomb", "viscous")  # laws whose code the others have in common
+LAWS = [pytest.param(law, marks=pytest.mark.slow if law in SLOW else ()) for law in TANGENTIAL]
 
 
-@pytest.fixture(scope="module", params=TANGENTIAL)
+@pytest.fixture(scope="module", params=LAWS)
 def slipping(request):
     """Three grains that do not meet: one slides on the floor, one starts on the slope, one is squeezed in the chute.
 

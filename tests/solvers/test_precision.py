@@ -190,6 +190,7 @@ def shaken(arch: str) -> tuple[np.ndarray, dict[str, np.ndarray]]:
     return found
 
 
+@pytest.mark.slow
 def test_a_software_vulkan_agrees_with_the_processor():
     runtime.initialise(1)
     if not ti._lib.core.with_vulkan():

@@ -60,14 +60,8 @@ def usual(bed):
     return shaken(bed)[0]
 
 
-@pytest.mark.parametrize(
-    ("schedule", "units"),
-    [
-        ("per-world", None),
-        pytest.param("per-band", 3, marks=pytest.mark.slow),
-        pytest.param("per-grain", None, marks=pytest.mark.slow),
-    ],
-)
+@pytest.mark.slow
+@pytest.mark.parametrize(("schedule", "units"), [("per-world", None), ("per-band", 3), ("per-grain", None)])
 def test_new_numbers_change_rounding_alone(bed, usual, monkeypatch, schedule, units):
     """With history and all: contacts that rub keep their springs when their grains change numbers."""
     monkeypatch.setattr(renumber, "FEWEST", 10)

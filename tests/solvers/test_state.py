@@ -106,9 +106,8 @@ def ends(case: str, folder: Path) -> tuple[dict, dict]:
     return found, dict(np.load(folder / "end.npz"))
 
 
-@pytest.mark.parametrize(
-    "case", [pytest.param(case, marks=pytest.mark.slow if case == "bands that grew" else ()) for case in CASES]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("case", CASES)
 def test_another_process_goes_on_bit_for_bit(tmp_path, monkeypatch, case):
     monkeypatch.setattr(schedules, "WORTH_BANDS", COUNT)
     here, elsewhere = ends(case, tmp_path)
