@@ -210,7 +210,7 @@ def _errands(sweep: Sweep, folder: Path, plan: Sequence[Sequence[int]]) -> list[
     found = []
     for numbers in plan:
         places = {point_folder(folder, number): sweep.points[number] for number in numbers}
-        if left := {at: point for at, point in places.items() if at not in begun and _status(at) == "open"}:
+        if left := {at: point for at, point in places.items() if at not in begun and state_of(at) == "open"}:
             found.append(Errand(left))
     return found
 
@@ -242,10 +242,10 @@ class _Tour:
         """Run and report every point that is not done; a launch that was cut short comes first."""
         kept = read_checkpoint(self.folder)
         worth = [self.sweep.worth(number) for number in range(len(self.folders))]
-        self._report(number for number, folder in enumerate(self.folders) if _status(folder) == "recorded")
-        done = {number for number, folder in enumerate(self.folders) if _status(folder) == "done"}
+        self._report(number for number, folder in enumerate(self.folders) if state_of(folder) == "recorded")
+        done = {number for number, folder in enumerate(self.folders) if state_of(folder) == "done"}
         self.progress.begin_whole("sweep", sum(worth), sum(worth[number] for number in done))
-        if kept and not all(_status(self.folder / run) == "done" for run in kept.runs):
+        if kept and not all(state_of(self.folder / run) == "done" for run in kept.runs):
             numbers = [self.folders.index(self.folder / run) for run in kept.runs]
             self._launch(numbers, kept)
             done.update(numbers)
@@ -286,8 +286,8 @@ def _named(numbers: Sequence[int]) -> str:
     return ", ".join(str(group[0]) if len(group) == 1 else f"{group[0]} to {group[-1]}" for group in groups)
 
 
-def _status(folder: Path) -> str:
-    """ "done", "recorded" but without its summary, or "open"."""
+def state_of(folder: Path) -> str:
+    """What has become of the run in a folder: "done", "recorded" but without its summary, or "open"."""
     if not (folder / RECORDING).exists():
         return "open"
     with open_recording(folder) as recording:

@@ -11,10 +11,10 @@ from lab.errors import LabError
 from lab.measures.value import Value
 from lab.presets import load
 from lab.recording import FILE_NAME, Recording, open_recording
-from lab.runner import reported, resume_run, run_preset
+from lab.runner import resume_run, run_preset
 from lab.sweeps import FILE_NAME as SWEEP
 from lab.sweeps import errands as sweep_errands
-from lab.sweeps import point_folder, read_sweep, run_sweep
+from lab.sweeps import point_folder, read_sweep, run_sweep, state_of
 from solvers.errors import BadState
 
 
@@ -66,10 +66,9 @@ def carry_out(batch: Batch, folder: Path, quiet: bool) -> None:
             return
         with open_recording(folder) as recording:
             same = recording.preset == json.loads(load(batch.preset, batch.changes).resolved.model_dump_json())
-            done = reported(folder, recording.status) and recording.status != "running"
         if not same:
             raise LabError(f"{folder} holds another run than this experiment asks for: remove it.")
-        if not done:
+        if state_of(folder) != "done":
             resume_run(folder, video=False, quiet=quiet)
     except BadState:  # the recording says so, and the report
         pass

@@ -1,5 +1,8 @@
 """The report on the source's experiments: every batch can be run, results are read as they are, nothing runs twice."""
 
+import json
+
+import h5py
 import numpy as np
 import pytest
 
@@ -64,6 +67,14 @@ def test_a_report_has_the_results_and_nothing_is_run_twice(tmp_path, monkeypatch
     for name in ("run_preset", "resume_run"):
         monkeypatch.setattr(runs, name, None)
     assert reproduce([], tmp_path, quick=True, quiet=True).read_text() == text
+    said, resumed = "stopped: interrupted by the user", []
+    summary = tmp_path / "quick" / "tried" / "one" / "summary.json"
+    with h5py.File(summary.with_name("recording.h5"), "r+") as file:
+        file.attrs["status"] = said
+    summary.write_text(json.dumps(json.loads(summary.read_text()) | {"status": said}))
+    monkeypatch.setattr(runs, "resume_run", lambda folder, **_: resumed.append(folder))
+    assert "**Not complete** (one): stopped" in reproduce([], tmp_path, quick=True, quiet=True).read_text()
+    assert resumed == [summary.parent]
     monkeypatch.setitem(batches, "one", Batch("tilting/quick", {**SMALL, "run.seed": 2}))
     with pytest.raises(LabError, match="holds another run than this experiment asks for: remove it"):
         reproduce([], tmp_path, quick=True, quiet=True)
