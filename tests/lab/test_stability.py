@@ -6,11 +6,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from lab.accuracy import LEVELS
 from lab.bench import stability
 from lab.bench.stability.beds import ACETATE, RADIUS, bed, tank
 from lab.bench.stability.case import Case, Check, Measure, judge, made_energy
 from lab.bench.stability.hard_beds import height
-from lab.bench.stability.limit_map import contacts, exact_limit, grows, longest, packing, scene
+from lab.bench.stability.limit_map import contacts, exact_limit, grows, limits, longest, packing, scene
 from lab.bench.stability.pushed import REFUSED, RIGHT, STOPPED, WRONG, verdict
 from lab.bench.stability.records import Records
 from lab.bench.stability.trial import Trial, follow, overlap_of
@@ -168,6 +169,14 @@ def test_packing_is_in_equilibrium_and_explodes_beyond_its_limit():
     assert np.abs(run.snapshot()["position"] - places).max() < 1e-3 * contacts("linear")[0].overlap
     assert grows(run, places, 0, 1.03 * exact_limit("linear"))
     run.close()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("integrator", "friction"), [("gear", "haff-werner"), ("verlet", "mindlin")])
+def test_the_step_of_draft_accuracy_is_stable_where_dampers_are_strong(integrator, friction):
+    """Gear bears weaker dampers than Verlet; Mindlin's dashpot grows with the stiffness."""
+    for found in limits(integrator, "hertz-viscoelastic", friction):
+        assert found.ratio > LEVELS["draft"].longer_steps, found.damping
 
 
 def test_a_trial_weighs_its_grains():
