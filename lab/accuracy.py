@@ -22,8 +22,9 @@ LEVELS = {
 }
 DEFAULT = "standard"
 
-# A step may be forced this many times past the derived one, about 16 steps a collision: restitution is then right to
-# 2 %, and beds settle as they should. Beyond, runs go on without a sign of trouble while restitution is wrong by more.
+# A step may be forced this many times past the derived one, about 16 steps a collision: restitution then errs by some
+# 2 %, as the square of the step, and beds settle as they should. Beyond, runs go on without a sign of trouble while
+# restitution is wrong by more.
 FURTHEST = 5.0
 
 

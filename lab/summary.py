@@ -238,7 +238,7 @@ def _cautions(recording: Recording) -> Iterator[str]:
     if scale < 1:
         yield f"The grains are softer than their material: Young's moduli times {scale:g}."
     if (recording.preset.get("run") or {}).get("force_step"):
-        yield "The step is forced past the derived one: restitution errs by up to 2 %."
+        yield "The step is forced past the derived one: restitution errs by some 2 % at five times that."
     overlap = recording.series["overlap"].max(initial=0.0)
     if overlap > LARGE_OVERLAP:
         yield f"Grains overlapped by up to {100 * overlap:.1f} % of a radius."
