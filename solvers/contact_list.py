@@ -12,14 +12,16 @@ class ContactList:
     """Candidate contacts of one kind (grain–grain or grain–wall) of each unit u, sorted by their first grain.
 
     Contact p stands in lane p % lanes of block p // lanes. `mate` is the other grain or the wall feature; `target` the
-    grain that takes the reaction, which is a ghost where the mate belongs to another unit. What does not change while a
+    grain that takes the reaction, which is a ghost where the mate belongs to another unit. Grains go by their places in
+    the arrays of all worlds, `stride` numbers a world, which saves the forces an addition a number they read; with a
+    stride of 0 by their numbers in their world. What does not change while a
     contact is listed: `stiffness` k (N/m^1.5), `reach` (m), the distance at which the two touch, `share`, the
     first grain's part of it, and the laws' constants. The laws' memory does change, and is zero while the two do not
     touch. What the laws keep are fields by the names they give.
     """
 
-    def __init__(self, arrays: Arrays, units: Units, room: int, lanes: int, laws: ChosenLaws):
-        self.units, self.lanes = units, lanes
+    def __init__(self, arrays: Arrays, units: Units, room: int, lanes: int, stride: int, laws: ChosenLaws):
+        self.units, self.lanes, self.stride = units, lanes, stride
         blocks = -(-room // lanes)
         self.capacity = blocks * lanes
         shape, across = (units.count, blocks), units.single
@@ -53,13 +55,13 @@ class ContactList:
 
     @ti.func
     def first_of(self, u, p):
-        """The first grain of contact p."""
-        return self.grain[u, p // self.lanes][p % self.lanes]
+        """The first grain of contact p, in its world."""
+        return self.grain[u, p // self.lanes][p % self.lanes] - self.units.world(u) * self.stride
 
     @ti.func
     def second_of(self, u, p):
-        """The other grain, or the wall feature, of contact p."""
-        return self.mate[u, p // self.lanes][p % self.lanes]
+        """The other grain, or the wall feature, of contact p, in its world."""
+        return self.mate[u, p // self.lanes][p % self.lanes] - self.units.world(u) * self.stride
 
     @ti.func
     def set_aside(self, u):
@@ -75,7 +77,7 @@ class ContactList:
     @ti.func
     def put_back(self, u):
         """Undo a rebuild that ran out of room."""
-        start = self.units.first(u)
+        start = self.units.world(u) * self.stride + self.units.first(u)
         for k in range(self.units.size + 1):
             self.first[u, k] = self.old_first[u, k]
         for k in range(self.units.size):
@@ -89,11 +91,11 @@ class ContactList:
     @ti.func
     def write(self, u, p, i, mate, target):
         """Contact p is between grain i and its mate, and remembers nothing."""
-        block, lane = p // self.lanes, p % self.lanes
-        self.grain[u, block][lane] = i
-        self.mate[u, block][lane] = mate
+        block, lane, before = p // self.lanes, p % self.lanes, self.units.world(u) * self.stride
+        self.grain[u, block][lane] = before + i
+        self.mate[u, block][lane] = before + mate
         if ti.static(self.has_targets):
-            self.target[u, block][lane] = target
+            self.target[u, block][lane] = before + target
         for k in ti.static(range(self.memories)):
             self.memory[k][u, block][lane] = 0.0
 
@@ -107,9 +109,9 @@ class ContactList:
         self.stiffness[u, block][lane] = stiffness
         self.reach[u, block][lane] = reach
         self.share[u, block][lane] = share
-        k = i - self.units.first(u)
+        k, place = i - self.units.first(u), self.units.world(u) * self.stride + mate
         for q in range(self.old_first[u, k], self.old_first[u, k + 1]):
-            if self.old_mate[u, q] == mate:
+            if self.old_mate[u, q] == place:
                 for m in ti.static(range(self.memories)):
                     self.memory[m][u, block][lane] = self.old_memory[m][u, q][0]
 

@@ -4,7 +4,9 @@ import taichi as ti
 
 from solvers.grains import FAR, Grains
 from solvers.laws.chosen import PAIR, WALL, ChosenLaws
+from solvers.laws.extremes import greater
 from solvers.neighbours import Neighbours
+from solvers.runtime import Arrays
 from solvers.units import Units
 from solvers.walls import Walls
 
@@ -18,8 +20,11 @@ class Contacts:
     is exact. (Spandonidis 2016, eq. 4.7, takes whole radii.) A wall's takes half the overlap.
     """
 
-    def __init__(self, units: Units, grains: Grains, walls: Walls, lists: Neighbours, laws: ChosenLaws):
+    def __init__(self, arrays: Arrays, units: Units, grains: Grains, walls: Walls, lists: Neighbours, laws: ChosenLaws):
         self.units, self.grains, self.walls, self.lists, self.laws = units, grains, walls, lists, laws
+        # What a block of pairs does to its grains: forces (N) along y and z, torques (N m) on the first and the second.
+        # Nobody reads it. Neighbouring numbers that are written together are what makes the compiler look for SIMD.
+        self.given = arrays.vectors(4, lists.pairs.lanes, (units.count,), kept=False)
 
     @ti.func
     def forces(self, u, t, dt):
@@ -34,15 +39,14 @@ class Contacts:
         Straight-line arithmetic on short vectors: the compiler turns it into SIMD instructions, and pairs that do not
         touch come out with zero overlap, force and memory. Gathering and scattering grains stays scalar.
         """
-        w = self.units.world(u)
         for block in range(pairs.blocks(u)):
             i, j = pairs.grain[u, block], pairs.mate[u, block]
             reach, share = pairs.reach[u, block], pairs.share[u, block]
-            ny, nz, distance, approach = self.geometry(g, w, i, j, reach, pairs.lanes)
-            overlap = ti.max(approach, 0.0)
-            uy = gathered(g.now_y, w, i, pairs.lanes) - gathered(g.now_y, w, j, pairs.lanes)
-            uz = gathered(g.now_z, w, i, pairs.lanes) - gathered(g.now_z, w, j, pairs.lanes)
-            spin_i, spin_j = gathered(g.spin_now, w, i, pairs.lanes), gathered(g.spin_now, w, j, pairs.lanes)
+            ny, nz, distance, approach = self.geometry(g, i, j, reach, pairs.lanes)
+            overlap = greater(approach, 0.0)
+            uy = gathered(g.now_y, i, pairs.lanes) - gathered(g.now_y, j, pairs.lanes)
+            uz = gathered(g.now_z, i, pairs.lanes) - gathered(g.now_z, j, pairs.lanes)
+            spin_i, spin_j = gathered(g.spin_now, i, pairs.lanes), gathered(g.spin_now, j, pairs.lanes)
             lever_i = share * (reach + overlap) - overlap
             lever_j = distance - lever_i
             rate = -(uy * ny + uz * nz)
@@ -51,19 +55,21 @@ class Contacts:
             if ti.static(self.laws.cohesive):
                 fn = fn - self.laws.pull(pairs, u, block, approach, rate, dt)
             fy, fz = fn * ny - ft * nz, fn * nz + ft * ny
-            turn_i = roll - lever_i * ft
-            for k in ti.static(range(pairs.lanes)):
-                g.push(w, i[k], fy[k], fz[k], turn_i[k])
+            turn_i, turn_j = roll - lever_i * ft, -roll - lever_j * ft
             if ti.static(not self.units.single):
-                turn_j, target = -roll - lever_j * ft, pairs.target[u, block]
+                self.given[0][u], self.given[1][u], self.given[2][u], self.given[3][u] = fy, fz, turn_i, turn_j
+            for k in ti.static(range(pairs.lanes)):
+                g.push(0, i[k], fy[k], fz[k], turn_i[k])
+            if ti.static(not self.units.single):
+                target = pairs.target[u, block]
                 for k in ti.static(range(pairs.lanes)):
-                    g.push(w, target[k], -fy[k], -fz[k], turn_j[k])
+                    g.push(0, target[k], -fy[k], -fz[k], turn_j[k])
 
     @ti.func
-    def geometry(self, g: ti.template(), w, i, j, reach, count: ti.template()):
+    def geometry(self, g: ti.template(), i, j, reach, count: ti.template()):
         """Normals (towards the first grains), distances (m) and overlaps (m; negative: gaps) of `count` pairs."""
-        dy = gathered(g.y, w, i, count) - gathered(g.y, w, j, count)
-        dz = gathered(g.z, w, i, count) - gathered(g.z, w, j, count)
+        dy = gathered(g.y, i, count) - gathered(g.y, j, count)
+        dz = gathered(g.z, i, count) - gathered(g.z, j, count)
         if ti.static(g.mixed):
             # The difference of squares in 64 bits: an overlap of 1e-7 m keeps all digits of the force's 32.
             whole = ti.cast(reach, ti.f64)
@@ -144,6 +150,6 @@ class Contacts:
 
 
 @ti.func
-def gathered(field: ti.template(), w, index, count: ti.template()):
-    """The values of a grain field for `count` grains."""
-    return ti.Vector([field[w, index[k]] for k in ti.static(range(count))])
+def gathered(field: ti.template(), places, count: ti.template()):
+    """The values of a grain field (W, stride) for `count` grains, by their places in all of it."""
+    return ti.Vector([field[0, places[k]] for k in ti.static(range(count))])

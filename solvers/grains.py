@@ -35,7 +35,8 @@ class Grains:
         self.ghosts, self.may_leave = ghosts, may_leave
         self.real, self.exact = arrays.real, arrays.exact
         self.mixed = arrays.real is not arrays.place
-        shape = (self.worlds, self.count + ghosts)
+        self.stride = self.count + ghosts  # numbers from a grain of one world to its like of the next
+        shape = (self.worlds, self.stride)
         self.y, self.z = arrays.reals(2, shape, arrays.place)
         (self.angle,) = arrays.reals(1, shape)
         self.velocity_y, self.velocity_z, self.spin = arrays.reals(3, shape)

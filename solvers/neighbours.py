@@ -43,8 +43,10 @@ class Neighbours:
         (pairs, more_pairs), (contacts, more_contacts) = ROOM[units.single]
         across = 0 if units.whole or units.single else 8 * int(np.sqrt(units.mobile))  # pairs with other units
         lanes = 1 if units.single else LANES
-        self.pairs = ContactList(arrays, units, room * (pairs * units.size + across + more_pairs), lanes, laws)
-        self.contacts = ContactList(arrays, units, room * (contacts * units.size + more_contacts), 1, laws)
+        self.pairs = ContactList(
+            arrays, units, room * (pairs * units.size + across + more_pairs), lanes, grains.stride, laws
+        )
+        self.contacts = ContactList(arrays, units, room * (contacts * units.size + more_contacts), 1, 0, laws)
         self.modulus = arrays.holding(4.0 / 3.0 * modulus)  # k = (4/3) E* √R_eff of each interface
         self.skin = arrays.holding(np.array([skin]))
         if laws.cohesive:
@@ -74,10 +76,15 @@ class Neighbours:
         return wide
 
     @ti.func
+    def worn(self, u):
+        """Whether a grain may have moved farther than half the skin, so that two may be in reach unlisted."""
+        return self.travel[u] > 0.5 * self.skin[0]
+
+    @ti.func
     def stale(self, u, t):
-        """Whether two grains may have moved into reach unlisted: one of them farther than half the skin."""
+        """Whether one has."""
         old, skin = False, self.skin[0]
-        if self.travel[u] > 0.5 * skin:
+        if self.worn(u):
             old = True
             if self.travel[u] < 0.5 * NEVER:
                 # The running sum of speeds overestimates what shaking grains travel; look at where they are.

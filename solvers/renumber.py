@@ -39,8 +39,10 @@ def renumber_list(
     memory = [field.to_numpy() for field in contacts.memory]
     for w, old in order.items():
         mine = range(w * units.a_world, (w + 1) * units.a_world)
+        before = w * contacts.stride
         rows = [_rows(u, length, grain, mate, memory) for u in mine]
         i, j, kept = (np.concatenate(columns) for columns in zip(*rows, strict=True))
+        i, j = i - before, j - before
         new = np.empty(max(len(old), int(j.max(initial=0)) + 1), dtype=np.int64)
         new[:] = np.arange(len(new))  # fixed grains and wall features keep their numbers
         new[old] = np.arange(len(old))
@@ -48,7 +50,7 @@ def renumber_list(
         if mates:
             i, j, kept = _both_ways(i, j, kept, np.where(odd, -1.0, 1.0), len(old))
         for u in mine:
-            _fill(u, units, i, j, kept, mates, length, first, grain, mate, memory)
+            _fill(u, units, before, i, j, kept, mates, length, first, grain, mate, memory)
     contacts.length.from_numpy(length)
     contacts.first.from_numpy(first)
     for field, values in zip((contacts.grain, contacts.mate, *contacts.memory), (grain, mate, *memory), strict=True):
@@ -72,8 +74,8 @@ def _both_ways(i, j, kept, sign, mobile) -> tuple[np.ndarray, np.ndarray, np.nda
     return i[once], j[once], kept[once]
 
 
-def _fill(u, units, i, j, kept, mates, length, first, grain, mate, memory) -> None:
-    """The list of unit u: the contacts whose first grain is its own, a pair within it once."""
+def _fill(u, units, before, i, j, kept, mates, length, first, grain, mate, memory) -> None:
+    """The list of unit u: the contacts whose first grain is its own, a pair within it once; i and j in their world."""
     start = (u % units.a_world) * units.size
     end = min(units.mobile, start + units.size)
     own = (i >= start) & (i < end)
@@ -84,5 +86,5 @@ def _fill(u, units, i, j, kept, mates, length, first, grain, mate, memory) -> No
     count = len(rows)
     length[u] = count
     first[u] = np.searchsorted(i[rows] - start, np.arange(first.shape[1]))
-    for target, values in ((grain, i), (mate, j), *zip(memory, kept.T, strict=True)):
+    for target, values in ((grain, before + i), (mate, before + j), *zip(memory, kept.T, strict=True)):
         target[u].reshape(-1)[:count] = values[rows]

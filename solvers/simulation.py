@@ -77,7 +77,7 @@ class Simulation:
         self.neighbours = Neighbours(
             arrays, units, self.grains, self.walls, self.skin, bridges, reach, laws, moduli, self.room
         )
-        self.contacts = Contacts(units, self.grains, self.walls, self.neighbours, laws)
+        self.contacts = Contacts(arrays, units, self.grains, self.walls, self.neighbours, laws)
         self.frame = Frame(arrays, scene.motions, scene.soft_start, scene.gravity)
         self.mover = Mover(arrays, units, self.grains, integrator, self.frame.rotating)
         self.clock = Clock(arrays, units)

@@ -36,7 +36,9 @@ class Units:
     def world(self, u):
         """The world of unit u."""
         w = u
-        if ti.static(not self.whole):
+        if ti.static(self.worlds == 1):
+            w = 0  # a constant, which the compiler builds into every address
+        elif ti.static(not self.whole):
             w = u // self.a_world
         return w
 

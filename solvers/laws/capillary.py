@@ -4,6 +4,7 @@ from math import pi
 
 import taichi as ti
 
+from solvers.laws.extremes import greater, lesser
 from solvers.materials import Interface, hertz_stiffness
 
 STEPS = 36.0  # of a period of two grains that swing about where the pull and their elasticity balance
@@ -41,13 +42,13 @@ class Capillary:
     @ti.func
     def pull(self, contacts: ti.template(), w, block, approach, rate, dt):
         """The pull (N) of a block of contacts that approach by `approach` (m; negative: a gap) at a rate (m/s)."""
-        held, reach = contacts.bridged[w, block], ti.max(contacts.bridge_range[w, block], NO_RANGE)
-        way = ti.max(ti.abs(rate) * dt, SHORTEST * reach)
+        held, reach = contacts.bridged[w, block], greater(contacts.bridge_range[w, block], NO_RANGE)
+        way = greater(ti.abs(rate) * dt, SHORTEST * reach)
         near, far = -approach - 0.5 * way, -approach + 0.5 * way
         bridged = ti.select(near < 0.0, 1.0 + 0.0 * held, held)
         pulling = ti.select(rate < 0.0, bridged, held)  # a bridge forms where the overlap begins, not before
-        begin, end = ti.max(0.0, ti.min(near, reach)), ti.max(0.0, ti.min(far, reach))
-        overlapping = ti.max(0.0, ti.min(-near, way))
+        begin, end = greater(lesser(near, reach), 0.0), greater(lesser(far, reach), 0.0)
+        overlapping = greater(lesser(-near, way), 0.0)
         tail = pulling * (end - begin) * self.profile(contacts, w, block, 0.5 * (begin + end), reach)
         leaving = ti.select(rate < 0.0, far, near)
         contacts.bridged[w, block] = ti.select(leaving < reach, bridged, 0.0 * held)

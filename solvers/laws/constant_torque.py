@@ -2,7 +2,8 @@
 
 import taichi as ti
 
-from solvers.laws.splitting import AT_ONCE, FOLLOWING, lagging, within
+from solvers.laws.extremes import greater, lesser, within
+from solvers.laws.splitting import AT_ONCE, FOLLOWING, lagging
 from solvers.materials import Interface
 
 TURNING = 1e-3  # rad/s, where the ramp ends: a 3 mm grain creeps 5 mm an hour under the full torque
@@ -38,12 +39,12 @@ class ConstantTorque:
     def torque(self, c: ti.template(), contacts: ti.template(), w, block, normal, turning, dt):
         """M (N m) of a block of contacts on their first grains; turning ω_i − ω_j in rad/s, F_n in N."""
         cap, limit = contacts.rolling_radius[w, block] * normal, contacts.rolling_limit[w, block]
-        share = ti.min(1.0, FOLLOWING * TURNING * limit / ti.max(cap, SMALLEST_TORQUE))
+        share = lesser(FOLLOWING * TURNING * limit / greater(cap, SMALLEST_TORQUE), 1.0)
         damping = cap * (1.0 / TURNING)
-        at_once = ti.min(damping, AT_ONCE * limit)
+        at_once = lesser(damping, AT_ONCE * limit)
         lag = lagging(damping - at_once, share, turning, contacts.rolling_followed[w, block], cap)
         contacts.rolling_followed[w, block] = lag
-        return -within(lag + at_once * turning, cap)
+        return within(-lag - at_once * turning, cap)
 
     @ti.func
     def energy(self, contacts: ti.template(), w, block, lane):

@@ -2,7 +2,8 @@
 
 import taichi as ti
 
-from solvers.laws.splitting import AT_ONCE, FOLLOWING, lagging, within
+from solvers.laws.extremes import greater, lesser, within
+from solvers.laws.splitting import AT_ONCE, FOLLOWING, lagging
 from solvers.materials import Interface
 
 SLIP = 1e-6  # m/s, where the ramp ends: 4 mm an hour of creep under the full load that friction can hold
@@ -37,12 +38,12 @@ class Coulomb:
     def force(self, c: ti.template(), contacts: ti.template(), w, block, root, normal, slip, dt):
         """F_t (N) of a block of contacts on their first grains along the tangent; slip u_s in m/s, F_n in N."""
         cap, limit = c[0] * normal, contacts.limit[w, block]
-        share = ti.min(1.0, FOLLOWING * SLIP * limit / ti.max(cap, SMALLEST_FORCE))
+        share = lesser(FOLLOWING * SLIP * limit / greater(cap, SMALLEST_FORCE), 1.0)
         damping = cap * (1.0 / SLIP)
-        at_once = ti.min(damping, AT_ONCE * limit)
+        at_once = lesser(damping, AT_ONCE * limit)
         lag = lagging(damping - at_once, share, slip, contacts.followed[w, block], cap)
         contacts.followed[w, block] = lag
-        return -within(lag + at_once * slip, cap)
+        return within(-lag - at_once * slip, cap)
 
     @ti.func
     def energy(self, c: ti.template(), contacts: ti.template(), w, block, lane, root):

@@ -2,6 +2,7 @@
 
 import taichi as ti
 
+from solvers.laws.extremes import within
 from solvers.laws.linear_spring import spring_coefficient, spring_stiffness
 from solvers.laws.splitting import AT_ONCE, spring_limit
 from solvers.materials import Interface, hertz_stiffness
@@ -42,9 +43,9 @@ class CundallStrack:
         """F_t (N) of a block of contacts on their first grains along the tangent; slip u_s in m/s, F_n in N."""
         cap = c[0] * normal
         stretched = contacts.stretched[w, block] + contacts.shear_spring[w, block] * slip * dt
-        stretched = ti.max(-cap, ti.min(cap, stretched))
+        stretched = within(stretched, cap)
         contacts.stretched[w, block] = stretched
-        return -ti.max(-cap, ti.min(cap, stretched + contacts.shear_dashpot[w, block] * slip))
+        return within(-stretched - contacts.shear_dashpot[w, block] * slip, cap)
 
     @ti.func
     def energy(self, c: ti.template(), contacts: ti.template(), w, block, lane, root):

@@ -4,6 +4,7 @@ from math import sqrt
 
 import taichi as ti
 
+from solvers.laws.extremes import within
 from solvers.laws.linear_spring import spring_coefficient, spring_stiffness
 from solvers.laws.splitting import AT_ONCE, spring_limit
 from solvers.materials import Interface, hertz_stiffness
@@ -48,9 +49,9 @@ class ElasticPlastic:
         """M (N m) of a block of contacts on their first grains; turning ω_i − ω_j in rad/s, F_n in N."""
         cap = contacts.rolling_radius[w, block] * normal
         wound = contacts.wound[w, block] + contacts.rolling_spring[w, block] * turning * dt
-        wound = ti.max(-cap, ti.min(cap, wound))
+        wound = within(wound, cap)
         contacts.wound[w, block] = wound
-        return -ti.max(-cap, ti.min(cap, wound + contacts.rolling_dashpot[w, block] * turning))
+        return within(-wound - contacts.rolling_dashpot[w, block] * turning, cap)
 
     @ti.func
     def energy(self, contacts: ti.template(), w, block, lane):

@@ -2,7 +2,8 @@
 
 import taichi as ti
 
-from solvers.laws.splitting import AT_ONCE, FOLLOWING, lagging, within
+from solvers.laws.extremes import lesser, within
+from solvers.laws.splitting import AT_ONCE, FOLLOWING, lagging
 from solvers.materials import Interface
 
 
@@ -36,11 +37,11 @@ class HaffWerner:
     def force(self, c: ti.template(), contacts: ti.template(), w, block, root, normal, slip, dt):
         """F_t (N) of a block of contacts on their first grains along the tangent; slip u_s in m/s, F_n in N."""
         cap, limit = c[0] * normal, contacts.limit[w, block]
-        share = ti.min(1.0, c[2] * limit)
-        at_once = ti.min(c[1], AT_ONCE * limit)
+        share = lesser(c[2] * limit, 1.0)
+        at_once = lesser(AT_ONCE * limit, c[1])
         lag = lagging(c[1] - at_once, share, slip, contacts.followed[w, block], cap)
         contacts.followed[w, block] = lag
-        return -within(lag + at_once * slip, cap)
+        return within(-lag - at_once * slip, cap)
 
     @ti.func
     def energy(self, c: ti.template(), contacts: ti.template(), w, block, lane, root):

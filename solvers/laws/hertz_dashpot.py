@@ -2,6 +2,7 @@
 
 import taichi as ti
 
+from solvers.laws.extremes import greater
 from solvers.laws.hertz import Hertz, hertz_duration
 from solvers.laws.splitting import felt_rate
 from solvers.materials import Interface
@@ -42,4 +43,4 @@ class HertzDashpot(Hertz):
     def force(self, c: ti.template(), contacts: ti.template(), w, block, overlap, root, rate, dt):
         """F_n (N) of a block of contacts from the overlap ξ (m), its root √ξ and its rate ξ̇ (m/s)."""
         spring = contacts.stiffness[w, block] * root * overlap
-        return ti.max(0.0, spring + contacts.dashpot[w, block] * felt_rate(overlap, rate, dt))
+        return greater(spring + contacts.dashpot[w, block] * felt_rate(overlap, rate, dt), 0.0)

@@ -4,6 +4,7 @@ from math import sqrt
 
 import taichi as ti
 
+from solvers.laws.extremes import greater
 from solvers.laws.hertz import ELASTIC_STEPS, Hertz, hertz_duration
 from solvers.materials import Interface, hertz_stiffness
 
@@ -38,4 +39,4 @@ class HertzViscoelastic(Hertz):
     @ti.func
     def force(self, c: ti.template(), contacts: ti.template(), w, block, overlap, root, rate, dt):
         """F_n (N) of a block of contacts from the overlap ξ (m), its root √ξ and its rate ξ̇ (m/s)."""
-        return ti.max(0.0, contacts.stiffness[w, block] * root * (overlap + c[0] * rate))
+        return greater(contacts.stiffness[w, block] * root * (overlap + c[0] * rate), 0.0)

@@ -4,6 +4,7 @@ from math import pi, sqrt
 
 import taichi as ti
 
+from solvers.laws.extremes import greater
 from solvers.laws.linear_spring import spring_coefficient, spring_stiffness
 from solvers.materials import Interface, hertz_stiffness
 
@@ -42,10 +43,10 @@ class Hysteretic:
     @ti.func
     def force(self, c: ti.template(), contacts: ti.template(), w, block, overlap, root, rate, dt):
         """F_n (N) of a block of contacts from the overlap ξ (m)."""
-        plastic = ti.max(contacts.plastic[w, block], c[1] * overlap)
+        plastic = greater(contacts.plastic[w, block], c[1] * overlap)
         plastic = ti.select(overlap > 0.0, plastic, 0.0 * plastic)
         contacts.plastic[w, block] = plastic
-        return contacts.unloading[w, block] * ti.max(0.0, overlap - plastic)
+        return contacts.unloading[w, block] * greater(overlap - plastic, 0.0)
 
     @ti.func
     def energy(self, contacts: ti.template(), w, block, lane, overlap, root):

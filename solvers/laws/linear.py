@@ -4,6 +4,7 @@ from math import pi, sqrt
 
 import taichi as ti
 
+from solvers.laws.extremes import greater
 from solvers.laws.linear_spring import spring_coefficient, spring_stiffness
 from solvers.laws.splitting import felt_rate
 from solvers.materials import Interface, hertz_stiffness
@@ -46,7 +47,7 @@ class Linear:
     def force(self, c: ti.template(), contacts: ti.template(), w, block, overlap, root, rate, dt):
         """F_n (N) of a block of contacts from the overlap ξ (m) and its rate ξ̇ (m/s)."""
         dashpot = contacts.dashpot[w, block] * felt_rate(overlap, rate, dt)
-        return ti.max(0.0, contacts.spring[w, block] * overlap + dashpot)
+        return greater(contacts.spring[w, block] * overlap + dashpot, 0.0)
 
     @ti.func
     def energy(self, contacts: ti.template(), w, block, lane, overlap, root):

@@ -2,6 +2,7 @@
 
 import taichi as ti
 
+from solvers.laws.extremes import greater, lesser, within
 from solvers.laws.splitting import AT_ONCE
 from solvers.materials import Interface
 
@@ -40,12 +41,13 @@ class Mindlin:
         """F_t (N) of a block of contacts on their first grains along the tangent; slip u_s in m/s, F_n in N."""
         cap = c[0] * normal
         spring = c[1] * contacts.stiffness[w, block] * root
-        before = ti.max(contacts.root_before[w, block], SMALLEST_ROOT)
-        stretched = contacts.stretched[w, block] * ti.min(1.0, root / before) + spring * slip * dt
-        stretched = ti.max(-cap, ti.min(cap, stretched))
+        before = greater(contacts.root_before[w, block], SMALLEST_ROOT)
+        stretched = contacts.stretched[w, block] * lesser(root / before, 1.0) + spring * slip * dt
+        stretched = within(stretched, cap)
+        dashpot = lesser(c[2] * spring, contacts.shear_limit[w, block])
         contacts.stretched[w, block] = stretched
         contacts.root_before[w, block] = root
-        return -ti.max(-cap, ti.min(cap, stretched + ti.min(c[2] * spring, contacts.shear_limit[w, block]) * slip))
+        return within(-stretched - dashpot * slip, cap)
 
     @ti.func
     def energy(self, c: ti.template(), contacts: ti.template(), w, block, lane, root):

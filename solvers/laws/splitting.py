@@ -2,6 +2,8 @@
 
 import taichi as ti
 
+from solvers.laws.extremes import greater, lesser, within
+
 # Shares of a contact's own limit m/Δt (damper) and m/Δt² (spring) that stay stable with every neighbour of a grain in
 # touch: the contact network's largest eigenvalue is 4.3 for six equal spheres around one in a plane, and the scheme,
 # with velocities predicted by half a step, is stable while 4 × damper + spring in these units is less than 4.
@@ -13,12 +15,6 @@ SPRING = 0.1
 def spring_limit(stiffness: float, inertia: float) -> float:
     """The longest step (s) that keeps a spring (N/m or N m) on an inertia (kg or kg m²) stable."""
     return (SPRING * inertia / stiffness) ** 0.5 if stiffness > 0.0 else float("inf")
-
-
-@ti.func
-def within(force, cap):
-    """The force, or the cap where it is larger, with the force's sign."""
-    return ti.max(-cap, ti.min(cap, force))
 
 
 @ti.func
@@ -44,4 +40,4 @@ def felt_rate(overlap, rate, dt):
     overlap feel nothing.
     """
     crossed = overlap / dt
-    return ti.min(1.5 * crossed, ti.max(rate, 2.0 * rate - 0.5 * crossed))
+    return lesser(1.5 * crossed, greater(rate, 2.0 * rate - 0.5 * crossed))

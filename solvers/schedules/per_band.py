@@ -47,30 +47,33 @@ class PerBand:
 
     @ti.func
     def advance_band(self, u, target, origin, unkicked, step, fastest):
+        """As PerWorld does it; the bands of a world are at the same line wherever they meet."""
         w, dt = self.units.world(u), ti.cast(step, self.real)
-        done, meetings, worst, says = self.clock.step[w], 0, FINE, FINE
-        running = self.clock.status[w] == RUNNING
-        while running and done < target:
-            t = origin + done * step
-            if says == FINE and self.neighbours.stale(u, t):
-                says = STALE
-            self.clock.says[u] = says
-            meetings = self.meet(w, meetings)
-            worst = self.worst(w)
+        done, running = self.clock.step[w], self.clock.status[w] == RUNNING
+        says = STALE if self.neighbours.stale(u, origin + done * step) else FINE
+        self.clock.says[u] = says
+        meetings = self.meet(w, 0)
+        worst = self.worst(w)
+        while running and worst <= STALE and done < target:
             if worst == STALE:
                 if u % self.bands == 0:
                     self.neighbours.cells.sort_world(w)
                 meetings = self.meet(w, meetings)
-                says = FINE if self.neighbours.rebuild(u, t, dt) else FULL
+                says = FINE if self.neighbours.rebuild(u, origin + done * step, dt) else FULL
                 self.clock.says[u] = says
                 meetings = self.meet(w, meetings)
                 worst = self.worst(w)
-            running = worst == FINE
-            if running:
+            while worst == FINE and done < target:
+                t = origin + done * step
                 self.contacts.forces(u, t, dt)
                 meetings = self.meet(w, meetings)
                 says = self.move(u, t, done == unkicked, dt, fastest)
                 done += 1
+                if says == FINE and self.neighbours.stale(u, t + step):
+                    says = STALE
+                self.clock.says[u] = says
+                meetings = self.meet(w, meetings)
+                worst = self.worst(w)
         if u % self.bands == 0:
             self.clock.step[w] = done
         self.report(w, says)

@@ -11,7 +11,8 @@ class PerWorld:
     """Advances all worlds. What a world does depends on nothing but itself: the same bits on any number of threads."""
 
     def __init__(self, engine: Engine, threads: int):
-        self.grains, self.neighbours, self.contacts = engine.grains, engine.neighbours, engine.contacts
+        self.units, self.grains = engine.units, engine.grains
+        self.neighbours, self.contacts = engine.neighbours, engine.contacts
         self.mover, self.frame, self.clock = engine.mover, engine.frame, engine.clock
         self.unseen, self.real = engine.unseen, engine.grains.real
 
@@ -26,20 +27,26 @@ class PerWorld:
                 self.advance_world(k // ITERATIONS_A_THREAD, target, origin, unkicked, step, fastest)
 
     @ti.func
-    def advance_world(self, w, target, origin, unkicked, step, fastest):
-        dt = ti.cast(step, self.real)
+    def advance_world(self, unit, target, origin, unkicked, step, fastest):
+        """Build the lists where they are stale, then take steps for as long as they last.
+
+        The steps are a loop of their own: the compiler keeps at hand what they work with, and not what the lists need.
+        """
+        w, dt = self.units.world(unit), ti.cast(step, self.real)
         while self.clock.step[w] < target and self.clock.status[w] == RUNNING:
-            t, fits = origin + self.clock.step[w] * step, True
+            t, fresh = origin + self.clock.step[w] * step, True
             if self.neighbours.stale(w, t):
                 self.neighbours.cells.sort_world(w)
-                fits = self.neighbours.rebuild(w, t, dt)
-            if fits:
+                fresh = self.neighbours.rebuild(w, t, dt)
+                if not fresh:
+                    self.clock.status[w] = NO_ROOM
+            while fresh:
+                t = origin + self.clock.step[w] * step
                 self.contacts.forces(w, t, dt)
                 body = self.frame.body_force(w, t)
                 speed = self.mover.move(self.grains, w, body, self.clock.step[w] == unkicked, dt)
                 self.neighbours.travel[w] = self.neighbours.travel[w] + (speed + self.unseen) * dt
                 self.clock.step[w] = self.clock.step[w] + 1
+                fresh = self.clock.step[w] < target and not self.neighbours.worn(w)
                 if not speed < fastest:
-                    self.clock.status[w] = TOO_FAST
-            else:
-                self.clock.status[w] = NO_ROOM
+                    self.clock.status[w], fresh = TOO_FAST, False

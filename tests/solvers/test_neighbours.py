@@ -61,7 +61,7 @@ def brute_walls(position: np.ndarray, radius: np.ndarray, skin: float) -> set[tu
 def listed(contacts, w: int) -> np.ndarray:
     """The (grain, mate) rows of one world's list, with the index of first contacts checked against them."""
     grain, mate = (field.to_numpy()[w].reshape(-1) for field in (contacts.grain, contacts.mate))
-    rows = np.stack([grain, mate], axis=1)[: contacts.length[w]]
+    rows = np.stack([grain, mate], axis=1)[: contacts.length[w]] - w * contacts.stride
     first = contacts.first.to_numpy()[w]
     np.testing.assert_array_equal(first, np.searchsorted(rows[:, 0], np.arange(len(first))))
     return rows

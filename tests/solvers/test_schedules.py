@@ -164,7 +164,7 @@ def listed(contacts, w: int) -> list[tuple[int, int]]:
     for u in range(w * contacts.units.a_world, (w + 1) * contacts.units.a_world):
         pairs = grain[u].reshape(-1)[: length[u]], mate[u].reshape(-1)[: length[u]]
         assert np.all(np.diff(pairs[0]) >= 0)
-        rows += zip(*(numbers.tolist() for numbers in pairs), strict=True)
+        rows += zip(*((numbers - w * contacts.stride).tolist() for numbers in pairs), strict=True)
     return rows
 
 

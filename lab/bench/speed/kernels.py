@@ -69,10 +69,10 @@ class Parts:
         total = self.nothing()
         for block in range(pairs.blocks(0)):
             i, j = pairs.grain[0, block], pairs.mate[0, block]
-            ny, nz, distance, approach = self.contacts.geometry(g, 0, i, j, pairs.reach[0, block], pairs.lanes)
-            uy = gathered(g.now_y, 0, i, pairs.lanes) - gathered(g.now_y, 0, j, pairs.lanes)
-            uz = gathered(g.now_z, 0, i, pairs.lanes) - gathered(g.now_z, 0, j, pairs.lanes)
-            spin = gathered(g.spin_now, 0, i, pairs.lanes) + gathered(g.spin_now, 0, j, pairs.lanes)
+            ny, nz, distance, approach = self.contacts.geometry(g, i, j, pairs.reach[0, block], pairs.lanes)
+            uy = gathered(g.now_y, i, pairs.lanes) - gathered(g.now_y, j, pairs.lanes)
+            uz = gathered(g.now_z, i, pairs.lanes) - gathered(g.now_z, j, pairs.lanes)
+            spin = gathered(g.spin_now, i, pairs.lanes) + gathered(g.spin_now, j, pairs.lanes)
             total += distance + ti.max(approach, 0.0) + uy * ny + uz * nz + spin
         self.keep(total)
 
