@@ -34,7 +34,7 @@ PICTURED = "rising, 25 mm/s"
 
 def batches(quick: bool) -> dict[str, Batch]:
     """One run a funnel, and the same grains in a tilting box."""
-    cost = {"run.accuracy": "draft", "run.repeats": 2 if quick else 12}
+    cost = {"run.accuracy": "draft", "run.repeats": 1 if quick else 12}
     runs = {says: Batch(f"funnel/{name}", cost) for says, name in NAMES.items() if not (quick and says in SKIPPED)}
     rate = {"motion.tilt.rate": QUICK_RATE if quick else RATE}
     runs[EQUAL] = Batch("funnel/rising-slow", {**cost, "grains.spread": 0.0})
@@ -89,7 +89,7 @@ EXPERIMENTS = [
         "less at 50 mm/s; on a narrow base 22.5 deg; a tip of 2 diameters arches.",
         batches,
         tell,
-        "2 heaps for 12, tips of 6 diameters only, draft accuracy",
+        "1 heap for 12, tips of 6 diameters only, draft accuracy",
         (PICTURED, 0.6),
     )
 ]

@@ -50,7 +50,7 @@ EXPERIMENTS = [
         "below a humidity of about 60 % wet and dry cargo behave alike in the tilting box.",
         batches,
         tell,
-        "2 beds for 4, three humidities for seven, 10 deg/s for 3, draft accuracy",
+        "2 beds for 4, three humidities for seven, 20 deg/s for 3, draft accuracy",
         ("as printed", 0.8),
     )
 ]

@@ -8,6 +8,7 @@ from lab.measures.value import Value
 from lab.plots import BLUE, VERMILION
 from lab.reproduce.experiment import Experiment, Told, counted, observed
 from lab.reproduce.runs import Batch, Outcome
+from lab.reproduce.tilting import QUICK_RATE, RATE
 
 AXES = {
     "contact.tangential": ["haff-werner", "mindlin"],
@@ -22,7 +23,7 @@ def batches(quick: bool) -> dict[str, Batch]:
     cost = {
         "run.accuracy": "draft",
         "run.repeats": 4 if quick else 12,
-        "motion.tilt.rate": "10 deg/s" if quick else "3 deg/s",
+        "motion.tilt.rate": QUICK_RATE if quick else RATE,
     }
     return {"all": Batch("tilting/scaling-60" if quick else "tilting/scaling-150", cost, AXES)}
 
@@ -78,7 +79,7 @@ EXPERIMENTS = [
         "the packing's or the walls' is not asked.",
         batches,
         tell,
-        "a tank of 60 mm for 150, 4 beds for 12, 10 deg/s for 3, draft accuracy",
+        "a tank of 60 mm for 150, 4 beds for 12, 20 deg/s for 3, draft accuracy",
         ("all", 0.8),
     )
 ]

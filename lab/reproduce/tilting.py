@@ -8,9 +8,9 @@ from lab.reproduce.runs import Batch, Outcome
 
 # The source tilts at 0.15 to 3 deg/s; below 3 a bed costs hours here. `cargolab bench accuracy rate` sees no effect of
 # the rate between 1 and 30 deg/s.
-RATE, QUICK_RATE = "3 deg/s", "10 deg/s"
+RATE, QUICK_RATE = "3 deg/s", "20 deg/s"
 BEDS, QUICK_BEDS = 4, 2
-LOST = "2 beds for 4, 10 deg/s for 3, both at draft accuracy"
+LOST = "2 beds for 4, 20 deg/s for 3, both at draft accuracy"
 WITHIN = 3.0  # deg: what beds of one kind differ by
 Found = Mapping[str, Sequence[Outcome]]
 
@@ -233,7 +233,7 @@ EXPERIMENTS = [
             for width in (60, 150, 180)
         },
         sizes,
-        "4 beds for 12, 10 deg/s for 3, both at draft accuracy",
+        "4 beds for 12, 20 deg/s for 3, both at draft accuracy",
         ("60 mm", 0.8),
     ),
     Experiment(
@@ -244,7 +244,7 @@ EXPERIMENTS = [
         "flow 13 deg too early.",
         lambda quick: {"spheres": tilted("tilting/chickpeas", quick, beds=6)},
         peas,
-        "2 beds for 6, 10 deg/s for 3 (source: 0.5), draft accuracy",
+        "2 beds for 6, 20 deg/s for 3 (source: 0.5), draft accuracy",
         ("spheres", 0.8),
     ),
 ]
