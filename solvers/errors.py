@@ -14,3 +14,7 @@ class BadState(RuntimeError):
 
 class Unavailable(ValueError):
     """This machine or this scene has not what was asked for; the message is one sentence with the remedy."""
+
+
+class BadOutline(ValueError):
+    """No grain can have this outline, or no contact these outlines; the message is one sentence."""

@@ -1,0 +1,42 @@
+"""Sums of harmonics Σ_{n≥1} A_n cos(nθ + δ_n), given by amplitudes A and phases δ (N,)."""
+
+from math import pi
+
+import numpy as np
+
+STEPS = 8  # to a wave of the highest harmonic, and into how many a step is cut
+CLIMBS = 20  # where the curvature vanishes at a top each comes nearer only by a third
+TINY = 1e-300
+
+
+def harmonics(angle: np.ndarray, amplitudes: np.ndarray, phases: np.ndarray, derivative: int = 0) -> np.ndarray:
+    """The sum at these angles (rad, any shape), or its derivative of this order."""
+    n = np.arange(1, len(amplitudes) + 1)
+    turn = np.exp(1j * np.asarray(angle))[..., None]
+    waves = np.cumprod(np.broadcast_to(turn, (*turn.shape[:-1], len(n))), axis=-1)  # e^{inθ}, sooner than by cosines
+    return (waves @ (amplitudes * np.exp(1j * phases) * (1j * n) ** derivative)).real
+
+
+def coefficients(values: np.ndarray) -> tuple[float, np.ndarray, np.ndarray]:
+    """Mean, and amplitudes and phases up to n = (k − 1)//2, of the function with these values (k,) at even angles."""
+    spectrum = np.fft.rfft(values)[: (len(values) + 1) // 2] / len(values)
+    return float(spectrum[0].real), 2.0 * np.abs(spectrum[1:]), np.angle(spectrum[1:])
+
+
+def largest(amplitudes: np.ndarray, phases: np.ndarray) -> float:
+    """The largest value of the sum, to rounding.
+
+    Between two angles a step w apart the sum is at most the larger of its values there plus max|f''| w²/8. Only steps
+    that could hold more than what is found are cut into finer ones; from these Newton's method climbs to the tops.
+    """
+    curvature = np.abs(amplitudes) @ np.arange(1, len(amplitudes) + 1) ** 2.0
+    width = 2.0 * pi / (STEPS * max(1, len(amplitudes)))
+    angle = np.arange(0.0, 2.0 * pi, width)
+    ends = np.maximum(harmonics(angle, amplitudes, phases), harmonics(angle + width, amplitudes, phases))
+    angle = angle[ends + curvature * width**2 / 8.0 >= ends.max()]
+    width /= STEPS
+    angle = (angle[:, None] + width * np.arange(STEPS)).ravel()
+    for _ in range(CLIMBS):
+        slope, bend = (harmonics(angle, amplitudes, phases, order) for order in (1, 2))
+        angle = angle + slope / np.maximum(np.maximum(-bend, np.abs(slope) / width), TINY)  # uphill, by a step at most
+    return float(harmonics(angle, amplitudes, phases).max())
