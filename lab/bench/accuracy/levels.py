@@ -17,9 +17,9 @@ REASONS = {
         other by far more than either, which is why draft takes longer steps.""",
     "stiffness: a hundredth of the material's": """The softest scale whose angles and responses cannot be told from
         those of the full stiffness; the cost grows with the power 0.4 of it, 2.5 times a decade.""",
-    "precision: 64 bits": """Mixed follows 64 bits as long as chaos lets it and costs the same on a processor; 32 bits
-        drift early, and at the full stiffness lose the overlaps of grains at rest altogether. Both are for graphics
-        processors.""",
+    "precision: 64 bits": """Mixed follows 64 bits until chaos takes over and gains little on a processor. 32 bits are
+        off from the start, and at the full stiffness their beds never come quite to rest; the angles agree within the
+        scatter of beds all the same. Both are meant for graphics processors.""",
     "tangential law: the preset's": """The source's presets have the source's law, Haff and Werner's, which creeps
         under a lasting load, as the section on creep shows. Mindlin's with history costs the same and stands still:
         take it where a bed is to rest.""",
