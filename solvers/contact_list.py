@@ -1,5 +1,6 @@
 """The list of candidate contacts of each unit of work, with what the laws remember of each."""
 
+import numpy as np
 import taichi as ti
 
 from solvers.laws.chosen import ChosenLaws
@@ -26,9 +27,10 @@ class ContactList:
         self.capacity = blocks * lanes
         shape, across = (units.count, blocks), units.single
         (self.length,) = units.integers(arrays, 1)
-        self.grain, self.mate = arrays.integer_vectors(2, lanes, shape, across)
+        base = stride * (np.arange(units.count) // units.a_world)
+        self.grain, self.mate = arrays.integer_vectors(2, lanes, shape, across, base)
         self.has_targets = not (units.whole or units.single) and lanes > 1
-        self.target = arrays.integer_vectors(1, lanes, shape)[0] if self.has_targets else self.mate
+        self.target = arrays.integer_vectors(1, lanes, shape, False, base)[0] if self.has_targets else self.mate
         self.stiffness, self.reach, self.share = arrays.vectors(3, lanes, shape, across)
         if laws.kinds > 1:
             (self.row,) = arrays.integer_vectors(1, lanes, shape, across)  # of the interface

@@ -146,6 +146,7 @@ class Arrays:
         self._builder = ti.FieldsBuilder()
         self._fields: list[ti.Field] = []
         self._kept: dict[str, ti.Field] = {}
+        self._bases: dict[int, np.ndarray] = {}
         self._contents: list[tuple[ti.Field, np.ndarray]] = []
         self._tree = None
         self._born = _starts
@@ -164,9 +165,14 @@ class Arrays:
         """`count` fields of vectors of `size` reals."""
         return [self._placed(ti.Vector.field(size, self.real), shape, across, kept) for _ in range(count)]
 
-    def integer_vectors(self, count: int, size: int, shape: tuple[int, ...], across: bool = False) -> list[ti.Field]:
-        """`count` fields of vectors of `size` 32-bit integers."""
-        return [self._placed(ti.Vector.field(size, ti.i32), shape, across) for _ in range(count)]
+    def integer_vectors(
+        self, count: int, size: int, shape: tuple[int, ...], across: bool = False, base: np.ndarray | None = None
+    ) -> list[ti.Field]:
+        """`count` fields of vectors of `size` 32-bit integers; `read` and `write` count from `base` (shape[0],)."""
+        fields = [self._placed(ti.Vector.field(size, ti.i32), shape, across) for _ in range(count)]
+        if base is not None:
+            self._bases.update({id(field): base for field in fields})
+        return fields
 
     def holding(self, values: np.ndarray, kind=None, kept: bool = False) -> ti.Field:
         """A field of reals, or of numbers of another kind, that starts with these values."""
@@ -202,12 +208,16 @@ class Arrays:
 
     def read(self) -> dict[str, np.ndarray]:
         """What is in the kept fields, by their numbers: all but scratch and what never changes."""
-        return {name: field.to_numpy() for name, field in self._kept.items()}
+        return {name: field.to_numpy() - self._base(field) for name, field in self._kept.items()}
 
     def write(self, contents: dict[str, np.ndarray]) -> None:
         """Put back what `read` gave from the same declarations."""
         for name, field in self._kept.items():
-            field.from_numpy(np.ascontiguousarray(contents[name]))
+            field.from_numpy(np.ascontiguousarray(contents[name] + self._base(field)))
+
+    def _base(self, field: ti.Field) -> np.ndarray | int:
+        base = self._bases.get(id(field))
+        return 0 if base is None else base.astype(np.int32).reshape(-1, 1, 1)
 
     def take_over(self, smaller: "Arrays") -> None:
         """Copy what the same declarations hold in arrays of smaller or equal shapes."""

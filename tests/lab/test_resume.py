@@ -93,6 +93,7 @@ def rows(folder: Path) -> tuple[int, int]:
         return len(recording.series["time"]), len(recording.frames["time"])
 
 
+@pytest.mark.slow
 def test_a_run_cut_short_again_and_again_equals_the_undisturbed_one(whole, tmp_path, monkeypatch):
     folder = tmp_path / "run"
     prepare(load("tilting/quick", SMALL), folder).make_recording()  # as if killed before its beds had settled
