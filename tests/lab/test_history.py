@@ -98,6 +98,7 @@ def test_history_can_be_dropped_and_joined_by_other_motions(preset):
     assert list(both) == ["sway", "history.roll", "history.sway"]
 
 
+@pytest.mark.slow
 def test_a_run_moves_as_recorded_and_its_recording_needs_no_csv(preset, tmp_path, monkeypatch):
     monkeypatch.setenv("CARGOLAB_CACHE", str(tmp_path / "cache"))
     centre = (0.0, 0.1)

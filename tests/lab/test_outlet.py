@@ -109,6 +109,7 @@ def test_a_flow_that_stops_over_an_empty_space_has_clogged(tmp_path, end, below,
     assert values["clogged"].value == clogs
 
 
+@pytest.mark.slow
 def test_grains_in_a_funnel_stay_until_its_gate_opens_and_run_out(tmp_path):
     given = {"grains": {"count": 100}, "tank": {"roughness": "20 mm"}, "record": {"picture_rate": "100 Hz"}}
     run = {"repeats": 2, "duration": "0.7 s", "accuracy": "draft", "settle": False}

@@ -110,6 +110,7 @@ def test_explain_says_how_wet_grains_pull():
     assert "humid: 339.3 µN, 1.9 times a mean grain's weight, across gaps of up to 1.472 nm" in text
 
 
+@pytest.mark.slow
 def test_a_bed_that_has_not_settled_is_said_in_the_summary(tmp_path):
     restless = SMALL | {"run": {"repeats": 1, "settle_limit": "0.01 s", "duration": "0.05 s"}}
     result = run_preset("tilting/quick", restless, tmp_path / "restless", video=False, quiet=True)
