@@ -13,10 +13,11 @@ DRY = "dry"
 
 
 def batches(quick: bool) -> dict[str, Batch]:
-    """Both readings over the humidity, and the same bed dry."""
-    humidities = ["50 %", "90 %"] if quick else ["40 %", "50 %", "60 %", "65 %", "70 %", "80 %", "90 %"]
+    """Both readings over the humidity, and the same bed dry; two humidities do for the one that has no threshold."""
+    ends, between = ["50 %", "90 %"], ["50 %", "60 %", "65 %", "70 %", "80 %", "90 %"]
     runs = {DRY: tilted("tilting/wet", quick, **{"contact.cohesion": "none"})}
     for says, name in LAWS.items():
+        humidities = between if name == "wet-rough" and not quick else ends
         runs[says] = Batch(f"tilting/{name}", tilted("", quick).changes, {KEY: humidities})
     return runs
 
@@ -50,7 +51,7 @@ EXPERIMENTS = [
         "below a humidity of about 60 % wet and dry cargo behave alike in the tilting box.",
         batches,
         tell,
-        "2 beds for 4, two humidities for seven, 20 deg/s for 3, draft accuracy",
+        "2 beds for 4, two humidities for six, 20 deg/s for 3, draft accuracy",
         ("as printed", 0.8),
     )
 ]

@@ -22,7 +22,7 @@ def batches(quick: bool) -> dict[str, Batch]:
     """All eight combinations as the worlds of one sweep."""
     cost = {
         "run.accuracy": "draft",
-        "run.repeats": 2 if quick else 12,
+        "run.repeats": 2 if quick else 6,
         "motion.tilt.rate": QUICK_RATE if quick else RATE,
     }
     return {"all": Batch("tilting/scaling-60" if quick else "tilting/scaling-150", cost, AXES)}
@@ -79,7 +79,7 @@ EXPERIMENTS = [
         "the packing's or the walls' is not asked.",
         batches,
         tell,
-        "a tank of 60 mm for 150, 2 beds for 12, 20 deg/s for 3, draft accuracy",
+        "a tank of 60 mm for 150, 2 beds for 6, 20 deg/s for 3, draft accuracy",
         ("all", 0.8),
     )
 ]
