@@ -10,6 +10,7 @@ from solvers.integrators import INTEGRATORS
 from solvers.laws import COHESION, NORMAL, ROLLING, TANGENTIAL
 from solvers.materials import Interface, Material, interface, touching
 from solvers.parts import Part
+from solvers.shapes.given import Shapes
 from solvers.timestep import Limit, limits
 
 
@@ -24,7 +25,8 @@ class Scene:
     it defaults to the range of `radius`. `velocity` (W, n, 2) m/s and `spin` (W, n) rad/s at the start, or None: at
     rest. `kind` (W, n) numbers the kinds of grains, 0 of `grain` and the rest of `others`, None where all are of one;
     `unlike` says how two kinds touch. `fixed` (k, 3) y, z and radius in m of grains that never move; `open_edges` the
-    edges of the outline without a wall, by their first corners; `parts` plates that move in the tank.
+    edges of the outline without a wall, by their first corners; `parts` plates that move in the tank. `shapes` of
+    irregular grains, whose `radius` and `sizes` are those of discs of equal area; None for discs.
     """
 
     radius: np.ndarray
@@ -50,6 +52,7 @@ class Scene:
     fixed: np.ndarray = field(default_factory=lambda: np.zeros((0, 3)))
     open_edges: tuple[int, ...] = ()
     parts: tuple[Part, ...] = ()
+    shapes: Shapes | None = None
     integrator: str = "verlet"
     precision: str = "f64"
     schedule: str = "auto"
