@@ -1,0 +1,196 @@
+"""Contacts of two smooth outlines along their common normal, followed from step to step by Newton's method."""
+
+from math import pi
+
+import taichi as ti
+
+from solvers.laws.extremes import greater, lesser, within
+from solvers.shapes.pose import turned, turned_back
+from solvers.shapes.tables import Tables
+
+LOOKS = 128  # points of an outline from which contacts are sought
+TRIES = 40  # steps to a contact from where it is sought
+LONGEST = 0.1  # of the lesser bounding radius: the longest step along an outline
+FLATTEST = 1e-6  # of what two discs have: relative curvature, below which a step is not stretched further
+FACING = -0.9  # cosine between the normals
+CLOSE = 1e-3  # rad between the tangents, and m of offset to m of the lesser bounding radius, of a contact in hand
+SETTLED, ALIKE = 1e-4, 0.05  # cells: the last step to a contact, and by what two ways to the same one may differ
+
+# Elements of what `contact` gives.
+OVERLAP, NORMAL_Y, NORMAL_Z, POINT_Y, POINT_Z, PLACE_I, PLACE_J, MISS, HOLDS = range(9)
+
+
+@ti.data_oriented
+class Tracked:
+    """The gap between two outlines at one of its local minima, where both have one normal through both points.
+
+    The overlap is −(p_i − p_j) · n with n the outward normal of j at p_j. It is stationary in both places, so errors of
+    the places count squared, and its gradient by the grains' positions and angles is −n and the torque of −n about each
+    centre: a force U'(ξ) n is conservative. The places are two numbers for each contact to remember. Newton's method
+    solves t_i × t_j = 0 and t_j · (p_i − p_j) = 0, the second of which is first solved for the place on j, and what is
+    left is turned downhill where it leads to a maximum.
+    """
+
+    def __init__(self, tables: Tables):
+        self.tables, self.looks = tables, min(LOOKS, tables.cells)
+
+    @ti.func
+    def contact(
+        self, steps: ti.template(), shape_i, scale_i, turn_i, shape_j, scale_j, turn_j, apart, place_i, place_j
+    ):
+        """The contact that was at these places, after so many steps of Newton's method.
+
+        `turn` is (cos, sin) of a grain's angle, `apart` the centre of i less that of j (m). Gives overlap ξ (m,
+        negative: a gap), normal towards i (y, z), contact point from i's centre (y, z) m, halfway between the two
+        points, the new places, the angle left between the tangents (rad), and 1 if this is a contact: the normals face
+        each other, the gap is at a local minimum, and Newton's method has come CLOSE. Where it is 0 the pair has to be
+        scanned anew.
+        """
+        between, centre = turned_back(turn_j, turn_i), turned_back(turn_j, apart)
+        longest = LONGEST * lesser(scale_i * self.tables.bounding[shape_i], scale_j * self.tables.bounding[shape_j])
+        a, b, least = place_i, place_j, 1.0 + 0.0 * scale_i
+        for _ in ti.static(range(steps)):
+            step = self.step(
+                self.seen(shape_i, scale_i, between, a), scale_j * self.tables.trace(shape_j, b), centre, longest
+            )
+            a, b, least = a + step[0], b + step[1], step[2]
+        first, second = self.seen(shape_i, scale_i, between, a), scale_j * self.tables.trace(shape_j, b)
+        p, q = ti.Vector([first[0], first[1]]), ti.Vector([second[0], second[1]])
+        tangent = ti.Vector([second[2], second[3]]).normalized()
+        along = ti.Vector([first[2], first[3]]).normalized()
+        normal = ti.Vector([tangent[1], -tangent[0]])
+        gap = centre + p - q
+        offset, miss, facing = gap.dot(tangent), along.cross(tangent), along.dot(tangent)
+        close = ti.abs(offset) < CLOSE / LONGEST * longest and ti.abs(miss) < CLOSE
+        holds = ti.select(close and least > 0.0 and facing < FACING, 1.0, 0.0)
+        n, point = turned(turn_j, normal), turned(turn_j, p - 0.5 * gap)
+        a, b = self.tables.wrapped(a), self.tables.wrapped(b)
+        return ti.Vector([-gap.dot(normal), n[0], n[1], point[0], point[1], a, b, miss, holds])
+
+    @ti.func
+    def seen(self, shape, scale, between, place):
+        """Point of the first outline, from its centre, and derivatives, in the second grain's frame."""
+        own = scale * self.tables.trace(shape, place)
+        p = turned(between, ti.Vector([own[0], own[1]]))
+        d = turned(between, ti.Vector([own[2], own[3]]))
+        e = turned(between, ti.Vector([own[4], own[5]]))
+        return ti.Vector([p[0], p[1], d[0], d[1], e[0], e[1]])
+
+    @ti.func
+    def step(self, first, second, centre, longest):
+        """Changes of both places, and a number that is positive where the gap has a minimum near by."""
+        gap = centre + ti.Vector([first[0] - second[0], first[1] - second[1]])
+        d, e = ti.Vector([first[2], first[3]]), ti.Vector([first[4], first[5]])
+        g, h = ti.Vector([second[2], second[3]]), ti.Vector([second[4], second[5]])
+        size_i, size_j = d.norm_sqr(), g.norm_sqr()
+        # ∂/∂a and ∂/∂b of d × g and of gap · g.
+        turn_a, turn_b = e.cross(g), d.cross(h)
+        slide_a, slide_b = d.dot(g), gap.dot(h) - size_j
+        curved = slide_b < -0.1 * size_j  # the overlap is less than the radius of curvature of j
+        slide_b = lesser(slide_b, -0.1 * size_j)
+        slope = turn_a - turn_b * slide_a / slide_b
+        flattest = FLATTEST * size_i * ti.sqrt(size_j) / longest
+        rest = -d.cross(g) + turn_b * gap.dot(g) / slide_b
+        change_a = within(rest / greater(ti.abs(slope), flattest), longest / ti.sqrt(size_i))
+        change_b = within(-(gap.dot(g) + slide_a * change_a) / slide_b, longest / ti.sqrt(size_j))
+        return ti.Vector([change_a, change_b, ti.select(curved, slope, -1.0)])
+
+    @ti.func
+    def scan(
+        self,
+        shape_i,
+        scale_i,
+        turn_i,
+        shape_j,
+        scale_j,
+        turn_j,
+        apart,
+        skin,
+        places_i: ti.template(),
+        places_j: ti.template(),
+        row,
+    ):
+        """Find the contacts of a pair with a gap below `skin` (m); writes their places to `places_i[row, k]` and _j.
+
+        Gives their number, at most as many as there is room for. They are sought from those of LOOKS points of either
+        outline at which the distance from the other, by polar radius, has a local minimum.
+        """
+        found, points, stride = 0, ti.static(self.looks), ti.static(self.tables.cells // self.looks)
+        for side in range(2):
+            swap = side == 1
+            shape, other = ti.select(swap, shape_j, shape_i), ti.select(swap, shape_i, shape_j)
+            scale, other_scale = ti.select(swap, scale_j, scale_i), ti.select(swap, scale_i, scale_j)
+            turn, other_turn = ti.select(swap, turn_j, turn_i), ti.select(swap, turn_i, turn_j)
+            between = turned_back(other_turn, turn)
+            centre = turned_back(other_turn, ti.select(swap, -apart, apart))
+            spacing = scale * self.tables.bounding[shape] * (2.0 * pi / points)
+            far = other_scale * self.tables.bounding[other] + skin + 2.0 * spacing
+            earlier, last, facing = 0.0 * scale, 0.0 * scale, 0.0 * scale
+            for k in range(-2, points):
+                place = 0.0 * scale + k * stride
+                own = self.seen(shape, scale, between, place)
+                here = centre + ti.Vector([own[0], own[1]])
+                distance = here.norm()
+                away = distance - other_scale * self.tables.radius(other, here[0], here[1])
+                if k >= 0 and last <= earlier and last < away and distance < far:
+                    a, b = ti.select(swap, facing, place - stride), ti.select(swap, place - stride, facing)
+                    found = self.settle(
+                        shape_i,
+                        scale_i,
+                        turn_i,
+                        shape_j,
+                        scale_j,
+                        turn_j,
+                        apart,
+                        skin,
+                        a,
+                        b,
+                        places_i,
+                        places_j,
+                        row,
+                        found,
+                    )
+                facing = ti.atan2(here[1], here[0]) * (self.tables.cells / (2.0 * pi))
+                earlier, last = last, away
+        return found
+
+    @ti.func
+    def settle(
+        self,
+        shape_i,
+        scale_i,
+        turn_i,
+        shape_j,
+        scale_j,
+        turn_j,
+        apart,
+        skin,
+        place_i,
+        place_j,
+        places_i: ti.template(),
+        places_j: ti.template(),
+        row,
+        before,
+    ):
+        """Follow a pair of places to the contact near by, and write it down if it is new; gives how many there are."""
+        found, fresh, a, b = before, False, place_i, place_j
+        for _ in range(TRIES):
+            c = self.contact(1, shape_i, scale_i, turn_i, shape_j, scale_j, turn_j, apart, a, b)
+            settled = self.same(c[PLACE_I], a, SETTLED) and self.same(c[PLACE_J], b, SETTLED)
+            a, b = c[PLACE_I], c[PLACE_J]
+            if settled:
+                fresh = c[HOLDS] > 0.0 and -c[OVERLAP] < skin and before < places_i.shape[1]
+                break
+        for k in range(before):
+            if self.same(a, places_i[row, k], ALIKE) and self.same(b, places_j[row, k], ALIKE):
+                fresh = False
+        if fresh:
+            places_i[row, before], places_j[row, before] = a, b
+            found += 1
+        return found
+
+    @ti.func
+    def same(self, a, b, error):
+        """Whether two places on an outline differ by less than so many cells."""
+        between = self.tables.wrapped(a - b + 0.5 * self.tables.cells) - 0.5 * self.tables.cells
+        return ti.abs(between) < error

@@ -1,0 +1,177 @@
+"""Random pairs of grains, and kernels that ask the contact rules about all of them at once."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import taichi as ti
+
+from solvers import runtime
+from solvers.runtime import Arrays
+from solvers.shapes.contour import Contour
+from solvers.shapes.crossing import Placed
+from solvers.shapes.nodes import Nodes
+from solvers.shapes.tables import Tables
+from solvers.shapes.tracked import Tracked
+
+ROOM = 8  # contacts of a pair
+
+
+@dataclass
+class Pairs:
+    """Shape numbers (n, 2), scales (n, 2), angles (n, 2) and places (n, 2, 2), of the first and the second grain."""
+
+    shape: np.ndarray
+    scale: np.ndarray
+    angle: np.ndarray
+    place: np.ndarray
+
+    def placed(self, outlines: list[Contour], k: int) -> list[Placed]:
+        """Both grains of pair k."""
+        return [
+            Placed(outlines[self.shape[k, n]].scaled(self.scale[k, n]), *self.place[k, n], self.angle[k, n])
+            for n in range(2)
+        ]
+
+    def swapped(self) -> "Pairs":
+        """The first in place of the second."""
+        return Pairs(self.shape[:, ::-1], self.scale[:, ::-1], self.angle[:, ::-1], self.place[:, ::-1])
+
+    def turned(self, angle: float) -> "Pairs":
+        """All turned about the origin."""
+        matrix = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+        return Pairs(self.shape, self.scale, self.angle + angle, self.place @ matrix.T)
+
+    def mirrored(self, mirror: np.ndarray) -> "Pairs":
+        """y → −y, where `mirror[k]` is the number of the mirror image of shape k."""
+        return Pairs(mirror[self.shape], self.scale, -self.angle, self.place * [-1.0, 1.0])
+
+
+def random_pairs(outlines: list[Contour], count: int, seed: int, gap: tuple[float, float]) -> Pairs:
+    """Pairs at random angles whose polar radii towards each other leave so much of their sum between them."""
+    random = np.random.default_rng(seed)
+    shape = random.integers(0, len(outlines), (count, 2))
+    scale, angle = random.uniform(0.5, 2.0, (count, 2)), random.uniform(-np.pi, np.pi, (count, 2))
+    way = random.uniform(-np.pi, np.pi, count)
+    reach = np.array(
+        [
+            [scale[k, n] * float(outlines[shape[k, n]].polar(way[k] + n * np.pi - angle[k, n])) for n in range(2)]
+            for k in range(count)
+        ]
+    )
+    distance = reach.sum(axis=1) * (1.0 + random.uniform(*gap, count))
+    first = random.uniform(-1.0, 1.0, (count, 2))
+    second = first + distance[:, None] * np.stack([np.cos(way), np.sin(way)], axis=1)
+    return Pairs(shape, scale, angle, np.stack([first, second], axis=1))
+
+
+@ti.data_oriented
+class Asked:
+    """The contact rules for these outlines, asked about `count` pairs a launch."""
+
+    def __init__(self, outlines: list[Contour], count: int, nodes: int = 100, precision: str = "f64"):
+        runtime.initialise(1, precision=precision)
+        arrays = Arrays(precision)
+        self.tables = Tables(arrays, outlines)
+        self.nodes, self.tracked = Nodes(arrays, self.tables, outlines, nodes), Tracked(self.tables)
+        (self.shape,) = arrays.integers(1, (count, 2))
+        (self.scale,) = arrays.reals(1, (count, 2))
+        self.turn = arrays.reals(1, (count, 2, 2))[0]
+        (self.apart,) = arrays.reals(1, (count, 2))
+        self.at_i, self.at_j = arrays.reals(2, (count, ROOM))
+        (self.number,) = arrays.integers(1, (count,))
+        (self.found,) = arrays.reals(1, (count, ROOM, 9))
+        arrays.finish()
+        self.arrays = arrays
+
+    def load(self, pairs: Pairs) -> None:
+        """Take these pairs."""
+        self.shape.from_numpy(np.ascontiguousarray(pairs.shape, dtype=np.int32))
+        self.scale.from_numpy(np.ascontiguousarray(pairs.scale))
+        self.turn.from_numpy(np.stack([np.cos(pairs.angle), np.sin(pairs.angle)], axis=-1))
+        self.apart.from_numpy(np.ascontiguousarray(pairs.place[:, 0] - pairs.place[:, 1]))
+
+    def by_nodes(self, pairs: Pairs) -> np.ndarray:
+        """Overlap, normal and point (n, 5) by the discrete rule."""
+        self.load(pairs)
+        self._by_nodes()
+        return self.found.to_numpy()[:, 0, :5]
+
+    def scanned(self, pairs: Pairs, skin: float) -> tuple[np.ndarray, np.ndarray]:
+        """How many contacts each pair has (n,), and what they are (n, ROOM, 9)."""
+        self.load(pairs)
+        self._scan(skin)
+        return self.number.to_numpy(), self.found.to_numpy()
+
+    def followed(self, pairs: Pairs) -> np.ndarray:
+        """The contacts after one step from where they were last."""
+        self.load(pairs)
+        self._follow()
+        return self.found.to_numpy()
+
+    @ti.func
+    def pose(self, p, n: ti.template()):
+        """cos and sin of a grain's angle."""
+        return ti.Vector([self.turn[p, n, 0], self.turn[p, n, 1]])
+
+    @ti.func
+    def between(self, p):
+        """From the second grain to the first."""
+        return ti.Vector([self.apart[p, 0], self.apart[p, 1]])
+
+    @ti.kernel
+    def _by_nodes(self):
+        for p in self.number:
+            c = self.nodes.contact(
+                self.shape[p, 0],
+                self.scale[p, 0],
+                self.pose(p, 0),
+                self.shape[p, 1],
+                self.scale[p, 1],
+                self.pose(p, 1),
+                self.between(p),
+            )
+            for n in ti.static(range(5)):
+                self.found[p, 0, n] = c[n]
+
+    @ti.kernel
+    def _scan(self, skin: ti.f64):
+        for p in self.number:
+            self.number[p] = self.tracked.scan(
+                self.shape[p, 0],
+                self.scale[p, 0],
+                self.pose(p, 0),
+                self.shape[p, 1],
+                self.scale[p, 1],
+                self.pose(p, 1),
+                self.between(p),
+                skin,
+                self.at_i,
+                self.at_j,
+                p,
+            )
+            self.follow(p)
+
+    @ti.kernel
+    def _follow(self):
+        for p in self.number:
+            self.follow(p)
+
+    @ti.func
+    def follow(self, p):
+        """The contacts of a pair, one step on."""
+        for k in range(self.number[p]):
+            c = self.tracked.contact(
+                1,
+                self.shape[p, 0],
+                self.scale[p, 0],
+                self.pose(p, 0),
+                self.shape[p, 1],
+                self.scale[p, 1],
+                self.pose(p, 1),
+                self.between(p),
+                self.at_i[p, k],
+                self.at_j[p, k],
+            )
+            for n in ti.static(range(9)):
+                self.found[p, k, n] = c[n]
+            self.at_i[p, k], self.at_j[p, k] = c[5], c[6]

@@ -1,0 +1,282 @@
+"""Contact rules of outlines in kernels: all nodes, other solvers, closed forms, symmetry, and energy in collisions."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from outlines import ellipse, irregular, star
+from scipy import ndimage, optimize
+from shape_collisions import Collisions
+from shape_kernels import Asked, Pairs, random_pairs
+
+from solvers.errors import BadOutline
+from solvers.shapes.cargo import cargo, cargoes
+from solvers.shapes.contour import Contour
+from solvers.shapes.crossing import depth
+from solvers.shapes.penetration import penetrations
+from solvers.shapes.tables import ERROR, angle_of, cells_for, curve_cells, polar_cells
+
+COUNT = 2000
+NODES = 100
+SKIN = 0.1
+
+
+def mirrored(contour):
+    """R(π − θ) in place of R(θ)."""
+    n = np.arange(1, len(contour.phases) + 1)
+    return Contour(contour.radius, contour.descriptors, -np.array(contour.phases) - n * np.pi)
+
+
+def outline_of(name):
+    return cargo(name).outline(np.random.default_rng(7), 2.0)
+
+
+HALF = [star(5, 0.25), irregular(3, 9), outline_of("rice"), outline_of("corn"), outline_of("sand")]
+OUTLINES = [*HALF, *(mirrored(outline) for outline in HALF)]
+MIRROR = np.roll(np.arange(len(OUTLINES)), len(HALF))
+AXES = np.array([(1.0, 0.5), (1.4, 0.6), (0.8, 0.8)])
+
+
+@pytest.fixture(scope="module")
+def asked():
+    return Asked(OUTLINES, COUNT, NODES)
+
+
+@pytest.fixture(scope="module")
+def pairs():
+    return random_pairs(OUTLINES, COUNT, 1, (-0.05, 0.02))
+
+
+@pytest.mark.parametrize("name", cargoes())
+def test_tables_follow_the_outline_of_every_cargo(name):
+    outline = outline_of(name)
+    count = cells_for([outline])
+    place = np.random.default_rng(2).uniform(0.0, count, 4000)
+    cell, along = place.astype(int), place % 1.0
+    powers = along[:, None] ** np.arange(4)
+    curve, radii = curve_cells(outline, count)[cell], polar_cells(outline, count)[cell]
+    points = np.stack([(curve[:, :4] * powers).sum(axis=1), (curve[:, 4:] * powers).sum(axis=1)], axis=-1)
+    assert np.abs(points - outline.points(2.0 * np.pi * place / count)).max() < 1.05 * ERROR * outline.radius
+    assert np.abs((radii * powers).sum(axis=1) - outline.polar(angle_of(place, count))).max() < 1.05 * ERROR
+
+
+def test_an_outline_that_no_table_can_follow_is_refused():
+    with pytest.raises(BadOutline, match="sharply"):
+        cells_for([Contour(1.0, [0.0] * 2999 + [0.5], [0.0] * 3000)])
+
+
+def deepest_of_all(inner, outer):
+    """Overlap, the outer outline's normal and the node, by the source's table 8.1 over all nodes."""
+    node = inner.place(2.0 * np.pi / NODES * np.arange(NODES))
+    own = outer.seen(node)
+    depth = outer.contour.polar(np.angle(own)) - np.abs(own)
+    k = depth.argmax()
+    radius, slope = outer.contour.polar(np.angle(own[k])), outer.contour.polar(np.angle(own[k]), 1)
+    return depth[k] * radius / np.hypot(radius, slope), complex(outer.normal(np.angle(own[k]))), node[k]
+
+
+def by_all_nodes(first, second):
+    there, back = deepest_of_all(first, second), deepest_of_all(second, first)
+    overlap, normal, point = max(there, back, key=lambda found: found[0])
+    if overlap <= 0.0:
+        return np.zeros(5)
+    normal = normal if there[0] >= back[0] else -normal
+    point = point - complex(first.y, first.z)
+    return np.array([overlap, normal.real, normal.imag, point.real, point.imag])
+
+
+def test_few_nodes_are_looked_at_but_the_deepest_is_found(asked, pairs):
+    expected = np.array([by_all_nodes(*pairs.placed(OUTLINES, k)) for k in range(COUNT)])
+    found = asked.by_nodes(pairs)
+    assert 300 < (expected[:, 0] > 0.0).sum() < COUNT - 300
+    # The tables' errors: 2e-6 in radii of up to 2 × scale, their slopes, and the choice between nodes equally deep.
+    assert np.abs(found[:, 0] - expected[:, 0]).max() < 4.0 * ERROR
+    same = np.abs(found[:, 3:] - expected[:, 3:]).max(axis=1) < 1e-5
+    assert same.sum() > COUNT - 3
+    assert np.abs(found - expected)[same].max() < 1e-3
+
+
+def disc_pairs():
+    random = np.random.default_rng(4)
+    scale = random.uniform(0.5, 2.0, (COUNT, 2))
+    distance = scale.sum(axis=1) * (1.0 - random.choice([1e-2, 1e-4, 1e-6], COUNT))
+    way = random.uniform(-np.pi, np.pi, COUNT)
+    towards = np.stack([np.cos(way), np.sin(way)], axis=1)
+    place = np.stack([np.zeros((COUNT, 2)), distance[:, None] * towards], axis=1)
+    shape = np.zeros((COUNT, 2), dtype=int)
+    return Pairs(shape, scale, random.uniform(-np.pi, np.pi, (COUNT, 2)), place), distance, towards
+
+
+def test_discs():
+    """The smooth rule is exact; of n nodes the deepest is half a step π/n off at most, and its overlap too small.
+
+    The deepest of radius r and overlap ξ lies in another disc of radius R, at an angle a of the first, by
+    R − √(d² + r² − 2 d r cos a), which is ξ less d r a²/2R.
+    """
+    rules = Asked([Contour(1.0)], COUNT, NODES)
+    given, distance, towards = disc_pairs()
+    number, found = rules.scanned(given, 1e-3)
+    assert (number == 1).all()
+    overlap = given.scale.sum(axis=1) - distance
+    assert np.abs(found[:, 0, 0] - overlap).max() < 1e-9
+    assert np.abs(found[:, 0, 1:3] + towards).max() < 1e-9
+    assert np.abs(found[:, 0, 3:5] - (given.scale[:, :1] - 0.5 * overlap[:, None]) * towards).max() < 1e-8
+    nodes = rules.by_nodes(given)[:, 0]
+    small = given.scale.min(axis=1)
+    worst = 0.5 * distance * small / given.scale.max(axis=1) * (np.pi / NODES) ** 2
+    assert (nodes <= overlap + 1e-9).all() and (nodes >= np.maximum(overlap - 1.02 * worst, 0.0) - 1e-9).all()
+
+
+def overlap_of_ellipses(given, k):
+    """The least overlap of the two shadows over all directions, by their closed form; negative: a gap."""
+    axes, apart = AXES[given.shape[k]] * given.scale[k][:, None], given.place[k, 0] - given.place[k, 1]
+
+    def shadows(way):
+        half = [
+            np.hypot(a * np.cos(way - turn), b * np.sin(way - turn))
+            for (a, b), turn in zip(axes, given.angle[k], strict=True)
+        ]
+        return sum(half) - apart[0] * np.cos(way) - apart[1] * np.sin(way)
+
+    ways = np.linspace(-np.pi, np.pi, 721)
+    start = ways[shadows(ways).argmin()]
+    found = optimize.minimize_scalar(
+        shadows, bounds=(start - 0.01, start + 0.01), method="bounded", options={"xatol": 1e-9}
+    )
+    return found.fun, np.array([np.cos(found.x), np.sin(found.x)])
+
+
+def test_ellipses_against_the_least_overlap_of_their_shadows():
+    outlines = [ellipse(*axes) if axes[0] > axes[1] else Contour(axes[0]) for axes in AXES]
+    given = random_pairs(outlines, COUNT, 5, (-0.05, 0.05))
+    number, found = Asked(outlines, COUNT).scanned(given, 1.0)
+    assert (number >= 1).all()
+    for k in range(0, COUNT, 4):
+        best = found[k, : number[k], 0].argmax()
+        overlap, normal = overlap_of_ellipses(given, k)
+        assert found[k, best, 0] == pytest.approx(overlap, abs=1e-5)
+        assert found[k, best, 1:3] == pytest.approx(normal, abs=1e-3)
+
+
+def local_gaps(first, second, skin):
+    """Distances below a skin that are local minima of all distances between points of two outlines that are apart."""
+    theta = 2.0 * np.pi / 512 * np.arange(512)
+    distance = np.abs(first.place(theta)[:, None] - second.place(theta)[None, :])
+    least = distance == ndimage.minimum_filter(distance, 3, mode="wrap")
+
+    def half_square(at):
+        (p, d), (q, e) = first.trace(at[0]), second.trace(at[1])
+        away = p - q
+        return 0.5 * abs(away) ** 2, np.array([(away.conjugate() * d).real, -(away.conjugate() * e).real])
+
+    gaps = []
+    for a, b in np.argwhere(least & (distance < 1.2 * skin)):
+        found = optimize.minimize(half_square, theta[[a, b]], jac=True, method="BFGS", options={"gtol": 1e-10})
+        gaps.append(np.sqrt(2.0 * found.fun))
+    return np.array(sorted(gap for gap in gaps if gap < skin))
+
+
+def are_apart(first, second):
+    theta = 2.0 * np.pi / 512 * np.arange(512)
+    return all(depth(*pair, theta)[0].max() < 0.0 for pair in ((first, second), (second, first)))
+
+
+def test_a_scan_finds_every_local_minimum_of_the_gap(asked):
+    given = random_pairs(OUTLINES, COUNT, 6, (0.0, 0.15))
+    number, found = asked.scanned(given, SKIN)
+    seen = several = 0
+    for k in range(0, COUNT, 20):
+        placed = given.placed(OUTLINES, k)
+        if are_apart(*placed):
+            expected = local_gaps(*placed, SKIN)
+            gaps = np.sort(-found[k, : number[k], 0])
+            print(k, given.shape[k], expected, gaps)
+            seen, several = seen + len(expected), several + (len(expected) > 1)
+    assert seen > 50 and several > 10
+
+
+def in_order(number, found):
+    """Overlaps, normals and points (m, 5) of all contacts, pair by pair, in the order of the overlaps."""
+    return np.concatenate([found[k, :n][np.argsort(found[k, :n, 0])][:, :5] for k, n in enumerate(number)])
+
+
+def test_swapped_grains_have_the_same_contacts_with_opposite_normals(asked, pairs):
+    apart = pairs.place[:, 0] - pairs.place[:, 1]
+    (number, found), (back_number, back) = asked.scanned(pairs, SKIN), asked.scanned(pairs.swapped(), SKIN)
+    same = number == back_number
+    assert same.mean() > 0.99
+    there, other = in_order(number * same, found), in_order(number * same, back)
+    shift = np.repeat(apart, number * same, axis=0)
+    print(
+        np.abs(there[:, 0] - other[:, 0]).max(),
+        np.abs(there[:, 1:3] + other[:, 1:3]).max(),
+        np.abs(there[:, 3:] + shift - other[:, 3:]).max(),
+    )
+    nodes, back_nodes = asked.by_nodes(pairs), asked.by_nodes(pairs.swapped())
+    touching = nodes[:, 0] > 0.0
+    assert back_nodes[:, 0] == pytest.approx(nodes[:, 0], abs=1e-13)
+    assert back_nodes[:, 1:3] == pytest.approx(-nodes[:, 1:3], abs=1e-9)
+    assert back_nodes[touching, 3:] == pytest.approx((nodes[:, 3:] + apart)[touching], abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("change", "matrix"),
+    [
+        (lambda pairs: pairs.turned(1.1), np.array([[np.cos(1.1), -np.sin(1.1)], [np.sin(1.1), np.cos(1.1)]])),
+        (lambda pairs: pairs.mirrored(MIRROR), np.diag([-1.0, 1.0])),
+    ],
+)
+def test_contacts_turn_and_mirror_with_their_grains(asked, pairs, change, matrix):
+    (number, found), (there_number, there) = asked.scanned(pairs, SKIN), asked.scanned(change(pairs), SKIN)
+    same = number == there_number
+    assert same.mean() > 0.99
+    before, after = in_order(number * same, found), in_order(number * same, there)
+    print(np.abs(before[:, 0] - after[:, 0]).max(), np.abs(before[:, 1:3] @ matrix.T - after[:, 1:3]).max())
+    nodes, there_nodes = asked.by_nodes(pairs), asked.by_nodes(change(pairs))
+    print(np.abs(there_nodes[:, 0] - nodes[:, 0]).max())
+
+
+def test_the_smooth_rule_and_the_discrete_one_differ_by_the_overlap_squared(asked, pairs):
+    """A shift along the normal makes an overlap exactly so much larger; the polar depth has another second order."""
+    number, found = asked.scanned(pairs, SKIN)
+    chosen = np.flatnonzero(number == 1)[:40]
+    worst = []
+    for overlap in (1e-2, 1e-3, 1e-4):
+        place = pairs.place.copy()
+        place[:, 1] += (overlap - found[:, 0, :1]) * found[:, 0, 1:3]
+        moved = replace(pairs, place=place)
+        _, at = asked.scanned(moved, SKIN)
+        assert at[chosen, 0, 0] == pytest.approx(overlap, abs=1e-9)
+        deep = [penetrations(*moved.placed(OUTLINES, k)) for k in chosen]
+        print(overlap, [len(d) for d in deep])
+        off = np.array([d[0].overlap - overlap for d in deep])
+        turn = np.array(
+            [np.abs(np.array(d[0].normal) - at[k, 0, 1:3]).max() for k, d in zip(chosen, deep, strict=True)]
+        )
+        worst.append((np.abs(off).max(), np.median(np.abs(off)), turn.max(), np.median(turn)))
+    print(worst)
+
+
+STARTS = ((0.0, 0.0), (0.3, 0.2), (1.2, 0.5), (2.0, -0.3))  # angle (rad) and offset (m) of the second grain
+STEPS = np.array([2000, 4000, 8000, 16000, 32000])
+
+
+@pytest.mark.parametrize("outline", [outline_of("rice"), star(5, 0.25).with_diameter(2.0)], ids=["rice", "star"])
+def test_energy_in_collisions(outline):
+    """Followed contacts keep it with the square of the step; the deepest of the nodes jumps, whatever the step."""
+    reach = outline.bounding_radius + 0.05
+    place = np.array([[[-reach, 0.0, 0.0], [reach, offset, angle]] for angle, offset in STARTS for _ in STEPS])
+    rate = np.zeros_like(place)
+    rate[:, :, 0] = 0.5, -0.5
+    steps = np.tile(STEPS, len(STARTS))
+    drift = {}
+    for rule in ("tracked", "nodes"):
+        collisions = Collisions(outline, rule, len(steps), 2.5e5)
+        momentum = collisions.mass * rate
+        turning = (place[..., 0] * momentum[..., 1] - place[..., 1] * momentum[..., 0]).sum(axis=1)
+        outcome = collisions.run(place, rate, 4.0, steps)
+        assert (outcome.deepest > 1e-3).all()
+        assert np.abs(outcome.momentum).max() < 1e-11
+        assert np.abs(outcome.spin - turning).max() < 1e-11
+        drift[rule] = np.abs(outcome.energy / (0.5 * momentum * rate).sum(axis=(1, 2)) - 1.0).reshape(len(STARTS), -1)
+    print(drift)
