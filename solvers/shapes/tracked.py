@@ -125,15 +125,17 @@ class Tracked:
             centre = turned_back(other_turn, ti.select(swap, -apart, apart))
             spacing = scale * self.tables.bounding[shape] * (2.0 * pi / points)
             far = other_scale * self.tables.bounding[other] + skin + 2.0 * spacing
-            earlier, last, facing = 0.0 * scale, 0.0 * scale, 0.0 * scale
+            earlier, last, last_x, last_y = far, far, far, far
             for k in range(-2, points):
-                place = 0.0 * scale + k * stride
-                own = self.seen(shape, scale, between, place)
-                here = centre + ti.Vector([own[0], own[1]])
-                distance = here.norm()
-                away = distance - other_scale * self.tables.radius(other, here[0], here[1])
-                if k >= 0 and last <= earlier and last < away and distance < far:
-                    a, b = ti.select(swap, facing, place - stride), ti.select(swap, place - stride, facing)
+                at = (k & (points - 1)) * stride
+                point = ti.Vector([self.tables.curve[shape, at, 0], self.tables.curve[shape, at, 4]])
+                here = centre + turned(between, scale * point)
+                away = here.norm()
+                if away < far:
+                    away -= other_scale * self.tables.radius(other, here[0], here[1])
+                if k >= 0 and last <= earlier and last < away:
+                    own = 0.0 * scale + (k - 1) * stride
+                    facing = ti.atan2(last_y, last_x) * (self.tables.cells / (2.0 * pi))
                     found = self.settle(
                         shape_i,
                         scale_i,
@@ -143,15 +145,14 @@ class Tracked:
                         turn_j,
                         apart,
                         skin,
-                        a,
-                        b,
+                        ti.select(swap, facing, own),
+                        ti.select(swap, own, facing),
                         places_i,
                         places_j,
                         row,
                         found,
                     )
-                facing = ti.atan2(here[1], here[0]) * (self.tables.cells / (2.0 * pi))
-                earlier, last = last, away
+                earlier, last, last_x, last_y = last, away, here[0], here[1]
         return found
 
     @ti.func

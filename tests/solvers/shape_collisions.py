@@ -37,7 +37,7 @@ class Collisions:
     def __init__(self, outline: Contour, rule: str, count: int, stiffness: float, nodes: int = 200):
         runtime.initialise(1)
         self.rule, self.stiffness = rule, stiffness
-        self.mass = np.array([outline.mass(1.0)] * 2 + [outline.inertia(1.0)])
+        self.mass = [outline.mass(1.0), outline.mass(1.0), outline.inertia(1.0)]
         arrays = Arrays()
         self.tables = Tables(arrays, [outline])
         if rule == "nodes":
@@ -58,7 +58,7 @@ class Collisions:
         self.deepest.fill(0.0)
         self._run(time)
         place, rate = self.place.to_numpy(), self.rate.to_numpy()
-        momentum = self.mass * rate
+        momentum = np.array(self.mass) * rate
         about = place[..., 0] * momentum[..., 1] - place[..., 1] * momentum[..., 0] + momentum[..., 2]
         energy = 0.5 * (momentum * rate).sum(axis=(1, 2))
         return Outcome(energy, about.sum(axis=1), momentum[..., :2].sum(axis=1), self.deepest.to_numpy())
@@ -73,11 +73,11 @@ class Collisions:
                 if s == 0:
                     self.forces(p)
                 for g, n in ti.static(ti.ndrange(2, 3)):
-                    self.rate[p, g, n] += 0.5 * dt * self.push[p, g, n] / self.mass[n]
+                    self.rate[p, g, n] += 0.5 * dt * self.push[p, g, n] * ti.static(1.0 / self.mass[n])
                     self.place[p, g, n] += dt * self.rate[p, g, n]
                 self.forces(p)
                 for g, n in ti.static(ti.ndrange(2, 3)):
-                    self.rate[p, g, n] += 0.5 * dt * self.push[p, g, n] / self.mass[n]
+                    self.rate[p, g, n] += 0.5 * dt * self.push[p, g, n] * ti.static(1.0 / self.mass[n])
 
     @ti.func
     def turn(self, p, g: ti.template()):

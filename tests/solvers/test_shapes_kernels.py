@@ -16,7 +16,7 @@ from solvers.shapes.crossing import depth
 from solvers.shapes.penetration import penetrations
 from solvers.shapes.tables import ERROR, angle_of, cells_for, curve_cells, polar_cells
 
-COUNT = 2000
+COUNT, SOME = 2000, 500  # pairs; those that are looked at one by one
 NODES = 100
 SKIN = 0.1
 
@@ -62,7 +62,7 @@ def test_tables_follow_the_outline_of_every_cargo(name):
 
 def test_an_outline_that_no_table_can_follow_is_refused():
     with pytest.raises(BadOutline, match="sharply"):
-        cells_for([Contour(1.0, [0.0] * 2999 + [0.5], [0.0] * 3000)])
+        cells_for([Contour(1.0, [0.0] * 199 + [0.5], [0.0] * 200)])
 
 
 def deepest_of_all(inner, outer):
@@ -86,13 +86,13 @@ def by_all_nodes(first, second):
 
 
 def test_few_nodes_are_looked_at_but_the_deepest_is_found(asked, pairs):
-    expected = np.array([by_all_nodes(*pairs.placed(OUTLINES, k)) for k in range(COUNT)])
-    found = asked.by_nodes(pairs)
-    assert 300 < (expected[:, 0] > 0.0).sum() < COUNT - 300
+    expected = np.array([by_all_nodes(*pairs.placed(OUTLINES, k)) for k in range(SOME)])
+    found = asked.by_nodes(pairs)[:SOME]
+    assert 100 < (expected[:, 0] > 0.0).sum() < SOME - 100
     # The tables' errors: 2e-6 in radii of up to 2 × scale, their slopes, and the choice between nodes equally deep.
     assert np.abs(found[:, 0] - expected[:, 0]).max() < 4.0 * ERROR
     same = np.abs(found[:, 3:] - expected[:, 3:]).max(axis=1) < 1e-5
-    assert same.sum() > COUNT - 3
+    assert same.sum() > SOME - 3
     assert np.abs(found - expected)[same].max() < 1e-3
 
 
@@ -272,7 +272,7 @@ def test_energy_in_collisions(outline):
     drift = {}
     for rule in ("tracked", "nodes"):
         collisions = Collisions(outline, rule, len(steps), 2.5e5)
-        momentum = collisions.mass * rate
+        momentum = np.array(collisions.mass) * rate
         turning = (place[..., 0] * momentum[..., 1] - place[..., 1] * momentum[..., 0]).sum(axis=1)
         outcome = collisions.run(place, rate, 4.0, steps)
         assert (outcome.deepest > 1e-3).all()
