@@ -18,10 +18,19 @@ class ContactList:
     stride of 0 by their numbers in their world. What does not change while a
     contact is listed: `stiffness` k (N/m^1.5), `reach` (m), the distance at which the two touch, `share`, the
     first grain's part of it, and the laws' constants. The laws' memory does change, and is zero while the two do not
-    touch. What the laws keep are fields by the names they give.
+    touch. What the laws keep, and `more` memories that others do, are fields by the names they give.
     """
 
-    def __init__(self, arrays: Arrays, units: Units, room: int, lanes: int, stride: int, laws: ChosenLaws):
+    def __init__(
+        self,
+        arrays: Arrays,
+        units: Units,
+        room: int,
+        lanes: int,
+        stride: int,
+        laws: ChosenLaws,
+        more: tuple[str, ...] = (),
+    ):
         self.units, self.lanes, self.stride = units, lanes, stride
         blocks = -(-room // lanes)
         self.capacity = blocks * lanes
@@ -36,14 +45,16 @@ class ContactList:
             (self.row,) = arrays.integer_vectors(1, lanes, shape, across)  # of the interface
         self.kinds = laws.kinds
         self.constants = arrays.vectors(len(laws.constants), lanes, shape, across)
-        self.memory = arrays.vectors(len(laws.memory), lanes, shape, across)
-        for name, field in zip((*laws.constants, *laws.memory), (*self.constants, *self.memory), strict=True):
+        memory = (*laws.memory, *more)
+        self.memory = arrays.vectors(len(memory), lanes, shape, across)
+        for name, field in zip((*laws.constants, *memory), (*self.constants, *self.memory), strict=True):
             setattr(self, name, field)
-        self.memories = len(self.memory)
+        self.memories, self.more = len(self.memory), self.memory[len(laws.memory) :]
         (self.first,) = arrays.integers(1, (units.count, units.size + 1), across)
         (self.old_first,) = arrays.integers(1, (units.count, units.size + 1), across, kept=False)
         (self.old_mate,) = arrays.integers(1, (units.count, self.capacity), across, kept=False)
         self.old_memory = arrays.vectors(self.memories, 1, (units.count, self.capacity), across, kept=False)
+        self.old_more = self.old_memory[len(laws.memory) :]
 
     def forget(self) -> None:
         """Empty the list, history and all."""
@@ -104,6 +115,22 @@ class ContactList:
     @ti.func
     def add(self, u, p, i, mate, target, row, stiffness, reach, share):
         """Write contact p with the memory it had, if any."""
+        self.add_new(u, p, i, mate, target, row, stiffness, reach, share)
+        k, place = i - self.units.first(u), self.units.world(u) * self.stride + mate
+        for q in range(self.old_first[u, k], self.old_first[u, k + 1]):
+            if self.old_mate[u, q] == place:
+                self.recall(u, p, q)
+
+    @ti.func
+    def recall(self, u, p, q):
+        """Contact p remembers what contact q of the old list did."""
+        block, lane = p // self.lanes, p % self.lanes
+        for m in ti.static(range(self.memories)):
+            self.memory[m][u, block][lane] = self.old_memory[m][u, q][0]
+
+    @ti.func
+    def add_new(self, u, p, i, mate, target, row, stiffness, reach, share):
+        """Write contact p, which remembers nothing."""
         self.write(u, p, i, mate, target)
         block, lane = p // self.lanes, p % self.lanes
         if ti.static(self.kinds > 1):
@@ -111,11 +138,6 @@ class ContactList:
         self.stiffness[u, block][lane] = stiffness
         self.reach[u, block][lane] = reach
         self.share[u, block][lane] = share
-        k, place = i - self.units.first(u), self.units.world(u) * self.stride + mate
-        for q in range(self.old_first[u, k], self.old_first[u, k + 1]):
-            if self.old_mate[u, q] == place:
-                for m in ti.static(range(self.memories)):
-                    self.memory[m][u, block][lane] = self.old_memory[m][u, q][0]
 
     @ti.func
     def pad(self, u):

@@ -16,8 +16,11 @@ class Grains:
 
     A disc has the mass and inertia of the sphere it stands for. `velocity` and `spin` are what the integrator keeps;
     `now_*` are their values at the positions' own time, for forces that depend on velocity. Grains that may leave the
-    tank have `spilled` set once they are out of it, and `present` cleared once they are far away.
+    tank have `spilled` set once they are out of it, and `present` cleared once they are far away. `reach` (m) is how
+    far from its centre a grain can touch; `spread` its moment of inertia relative to that of the sphere.
     """
+
+    shaped = False  # whether grains have an orientation, `turn_y` and `turn_z` its cosine and sine
 
     def __init__(
         self,
@@ -28,6 +31,7 @@ class Grains:
         ghosts: int,
         may_leave: bool,
         kind: np.ndarray | None = None,
+        spread: np.ndarray | float = 1.0,
     ):
         self.worlds, self.mobile = radius.shape
         self.fixed = fixed
@@ -44,8 +48,9 @@ class Grains:
         self.force_y, self.force_z, self.torque = arrays.reals(3, shape)
         self.mass = 4.0 / 3.0 * np.pi * radius**3 * density
         self.radius = arrays.holding(self._filled(radius, fixed[:, 2], 0.0), kept=True)
+        self.reach = self.radius
         self.inverse_mass = arrays.holding(self._filled(1.0 / self.mass, 0.0, 0.0), kept=True)
-        inverse_inertia = 2.5 / (self.mass * radius**2)
+        inverse_inertia = 2.5 / (self.mass * radius**2 * spread)
         self.inverse_inertia = arrays.holding(self._filled(inverse_inertia, 0.0, 0.0), kept=True)
         if kind is not None:
             self.kind = arrays.holding(self._filled(kind, 0.0, 0.0), ti.i32, kept=True)
@@ -70,6 +75,10 @@ class Grains:
             self.present.fill(1.0)
             self.spilled.fill(0.0)
         self.launch(np.zeros_like(position), np.zeros(position.shape[:2]))
+
+    def count_turns_anew(self) -> None:
+        """Count the angles from here on: of discs, one is like another."""
+        self.angle.fill(0.0)
 
     def launch(self, velocity: np.ndarray, spin: np.ndarray) -> None:
         """Set the velocities (W, n, 2) m/s and spins (W, n) rad/s."""
@@ -103,8 +112,9 @@ class Grains:
 
     def permute(self, order: dict[int, np.ndarray], more: Sequence[ti.Field]) -> None:
         """Put the moving grains of some worlds into another order, `order[w]` their old numbers, with `more` fields."""
-        fields = [field for field in vars(self).values() if isinstance(field, ti.Field)]
-        for field in (*fields, *more):
+        # By identity, since some have two names.
+        fields = {id(field): field for field in vars(self).values() if isinstance(field, ti.Field)}
+        for field in (*fields.values(), *more):
             values = field.to_numpy()
             for w, old in order.items():
                 values[w, : self.mobile] = values[w, old]

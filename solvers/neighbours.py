@@ -26,6 +26,8 @@ NEVER = 1e30  # a travel so large that the lists are stale
 class Neighbours:
     """The two contact lists of every unit and when to build them anew."""
 
+    lanes = LANES
+
     def __init__(
         self,
         arrays: Arrays,
@@ -38,15 +40,16 @@ class Neighbours:
         laws: ChosenLaws,
         modulus: np.ndarray,
         room: int,
+        rule=None,
     ):
         self.units, self.grains, self.walls, self.laws = units, grains, walls, laws
         (pairs, more_pairs), (contacts, more_contacts) = ROOM[units.single]
         across = 0 if units.whole or units.single else 8 * int(np.sqrt(units.mobile))  # pairs with other units
-        lanes = 1 if units.single else LANES
-        self.pairs = ContactList(
-            arrays, units, room * (pairs * units.size + across + more_pairs), lanes, grains.stride, laws
-        )
-        self.contacts = ContactList(arrays, units, room * (contacts * units.size + more_contacts), 1, 0, laws)
+        lanes = 1 if units.single else self.lanes
+        pairs, contacts = pairs * units.size + across + more_pairs, contacts * units.size + more_contacts
+        more_pairs, more_contacts = (rule.pair_memory, rule.wall_memory) if rule else ((), ())
+        self.pairs = ContactList(arrays, units, room * pairs, lanes, grains.stride, laws, more_pairs)
+        self.contacts = ContactList(arrays, units, room * contacts, 1, 0, laws, more_contacts)
         self.modulus = arrays.holding(4.0 / 3.0 * modulus)  # k = (4/3) E* √R_eff of each interface
         self.skin = arrays.holding(np.array([skin]))
         if laws.cohesive:
@@ -99,13 +102,22 @@ class Neighbours:
         """How far (m) any grain of a unit has gone since its lists were built, and any part of the walls on top."""
         w, farthest = self.units.world(u), ti.cast(0.0, self.grains.real)
         for i in range(self.units.first(u), self.units.end(u)):
-            dy = ti.cast(self.grains.y[w, i] - self.built_y[w, i], self.grains.real)
-            dz = ti.cast(self.grains.z[w, i] - self.built_z[w, i], self.grains.real)
-            farthest = ti.max(farthest, dy * dy + dz * dz)
-        farthest = ti.sqrt(farthest)
+            farthest = ti.max(farthest, self.way(w, i))
         if ti.static(self.walls.moving):
             farthest += 2.0 * self.walls.gone(w, self.built_at[u], t)
         return farthest
+
+    @ti.func
+    def note_built(self, w, i):
+        """Remember where a grain is as the lists are built."""
+        self.built_y[w, i], self.built_z[w, i] = self.grains.y[w, i], self.grains.z[w, i]
+
+    @ti.func
+    def way(self, w, i):
+        """How far (m) a grain has gone since then."""
+        dy = ti.cast(self.grains.y[w, i] - self.built_y[w, i], self.grains.real)
+        dz = ti.cast(self.grains.z[w, i] - self.built_z[w, i], self.grains.real)
+        return ti.sqrt(dy * dy + dz * dz)
 
     @ti.func
     def list_pairs(self, g: ti.template(), c: ti.template(), u, dt) -> ti.i32:
@@ -114,8 +126,7 @@ class Neighbours:
         start, end = self.units.first(u), self.units.end(u)
         for i in range(start, end):
             self.pairs.first[u, i - start] = found
-            y, z, radius = g.y[w, i], g.z[w, i], g.radius[w, i]
-            inverse_mass = g.inverse_mass[w, i]
+            y, z, reach = g.y[w, i], g.z[w, i], g.reach[w, i] + self.margin()
             row, column = c.cell_of[w, i] // c.columns, c.cell_of[w, i] % c.columns
             for r in range(ti.max(0, row - 1), ti.min(c.rows, row + 2)):
                 # Three neighbouring cells of a row are one run of the sorted grains.
@@ -125,23 +136,34 @@ class Neighbours:
                     j = c.sorted[w, k]
                     own = start <= j < end
                     if j > i or (j < i and not own):
-                        dy, dz = y - g.y[w, j], z - g.z[w, j]
-                        touch = radius + g.radius[w, j]
-                        reach = touch + self.margin()
-                        if dy * dy + dz * dz < reach * reach:
-                            if found < self.pairs.capacity:
-                                effective = radius * g.radius[w, j] / touch
-                                mass = 1.0 / (inverse_mass + g.inverse_mass[w, j])
-                                row = self.laws.pair_row(g, w, i, j)
-                                stiffness = self.modulus[w, row] * ti.sqrt(effective)
-                                target = j if own else ghost
-                                self.pairs.add(u, found, i, j, target, row, stiffness, touch, radius / touch)
-                                block, lane = found // self.pairs.lanes, found % self.pairs.lanes
-                                self.laws.prepare(PAIR, self.pairs, u, block, lane, mass, effective, dt)
-                            found += 1
+                        dy, dz, far = y - g.y[w, j], z - g.z[w, j], reach + g.reach[w, j]
+                        if dy * dy + dz * dz < far * far:
+                            found = self.list_pair(g, u, found, i, j, j if own else ghost, dt)
         for k in range(end - start, self.units.size + 1):
             self.pairs.first[u, k] = found
         return found
+
+    @ti.func
+    def list_pair(self, g: ti.template(), u, found, i, j, target, dt):
+        """List the contact of two grains that are near each other; returns how many there are then."""
+        if found < self.pairs.capacity:
+            self.write_pair(g, u, found, i, j, target, True, dt)
+        return found + 1
+
+    @ti.func
+    def write_pair(self, g: ti.template(), u, p, i, j, target, recalled: ti.template(), dt):
+        """Write contact p of grains i and j, with the memory that the two had or without."""
+        w = self.units.world(u)
+        radius, touch = g.radius[w, i], g.radius[w, i] + g.radius[w, j]
+        effective = radius * g.radius[w, j] / touch
+        mass = 1.0 / (g.inverse_mass[w, i] + g.inverse_mass[w, j])
+        row = self.laws.pair_row(g, w, i, j)
+        stiffness = self.modulus[w, row] * ti.sqrt(effective)
+        if ti.static(recalled):
+            self.pairs.add(u, p, i, j, target, row, stiffness, touch, radius / touch)
+        else:
+            self.pairs.add_new(u, p, i, j, target, row, stiffness, touch, radius / touch)
+        self.laws.prepare(PAIR, self.pairs, u, p // self.pairs.lanes, p % self.pairs.lanes, mass, effective, dt)
 
     @ti.func
     def list_contacts(self, u, t, dt) -> ti.i32:
@@ -150,20 +172,34 @@ class Neighbours:
         shift = self.walls.shift(w, t)
         for i in range(start, end):
             self.contacts.first[u, i - start] = found
-            radius = self.grains.radius[w, i]
+            reach = self.grains.reach[w, i] + self.margin()
             for feature in range(self.walls.features):
                 # A wall contact may begin as the grain slides past a segment's end, so ask with a margin.
-                if self.walls.near(feature, shift, self.grains.y[w, i], self.grains.z[w, i], radius + self.margin()):
-                    if found < self.contacts.capacity:
-                        mass = 1.0 / self.grains.inverse_mass[w, i]
-                        row = self.laws.wall_row(self.grains, w, i)
-                        stiffness = self.modulus[w, row] * ti.sqrt(radius)
-                        self.contacts.add(u, found, i, feature, feature, row, stiffness, radius, 1.0)
-                        self.laws.prepare(WALL, self.contacts, u, found, 0, mass, radius, dt)
-                    found += 1
+                if self.walls.near(feature, shift, self.grains.y[w, i], self.grains.z[w, i], reach):
+                    found = self.list_contact(self.grains, u, found, i, feature, shift, dt)
         for k in range(end - start, self.units.size + 1):
             self.contacts.first[u, k] = found
         return found
+
+    @ti.func
+    def list_contact(self, g: ti.template(), u, found, i, feature, shift: ti.template(), dt):
+        """List the contact of a grain with a wall that is near; returns how many there are then."""
+        if found < self.contacts.capacity:
+            self.write_contact(g, u, found, i, feature, True, dt)
+        return found + 1
+
+    @ti.func
+    def write_contact(self, g: ti.template(), u, p, i, feature, recalled: ti.template(), dt):
+        """Write contact p of grain i with a wall, with the memory that the two had or without."""
+        w = self.units.world(u)
+        radius, mass = g.radius[w, i], 1.0 / g.inverse_mass[w, i]
+        row = self.laws.wall_row(g, w, i)
+        stiffness = self.modulus[w, row] * ti.sqrt(radius)
+        if ti.static(recalled):
+            self.contacts.add(u, p, i, feature, feature, row, stiffness, radius, 1.0)
+        else:
+            self.contacts.add_new(u, p, i, feature, feature, row, stiffness, radius, 1.0)
+        self.laws.prepare(WALL, self.contacts, u, p, 0, mass, radius, dt)
 
     @ti.func
     def rebuild(self, u, t, dt):
@@ -180,7 +216,7 @@ class Neighbours:
             self.pairs.length[u], self.contacts.length[u] = pairs, contacts
             self.pairs.pad(u)
             for i in range(self.units.first(u), self.units.end(u)):
-                self.built_y[w, i], self.built_z[w, i] = self.grains.y[w, i], self.grains.z[w, i]
+                self.note_built(w, i)
             self.travel[u] = 0.0
             self.built_at[u] = t
         else:

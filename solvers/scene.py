@@ -114,6 +114,14 @@ class Scene:
         return 0.5 * sum(self.sizes)
 
     @property
+    def farthest_reach(self) -> float:
+        """The farthest (m) that any grain may reach from its centre."""
+        bounding = (
+            max((outline.bounding_radius for outline in self.shapes.outlines), default=1.0) if self.shapes else 1.0
+        )
+        return max(self.sizes[1] * bounding, self.fixed[:, 2].max(initial=0.0))
+
+    @property
     def laws(self) -> tuple:
         """The normal, the tangential and the rolling law, and that of cohesion."""
         return NORMAL[self.normal](), TANGENTIAL[self.tangential](), ROLLING[self.rolling](), COHESION[self.cohesion]()
@@ -144,6 +152,7 @@ class Scene:
     def step_limits(self) -> list[Limit]:
         """Bounds on the step, the tightest first; of what Verlet bears, an integrator's `reach`."""
         speed = max(self.credible_speed(), 1e-3)
+        share = min((outline.least_mass for outline in self.shapes.outlines), default=1.0) if self.shapes else 1.0
         found: dict[tuple, list[Limit]] = {}
         for grain, rows in zip(self.grain, self.interfaces_of, strict=True):
             for a, b in product(range(self.kinds), repeat=2):
@@ -151,7 +160,7 @@ class Scene:
                 lighter = min((grain, *self.others)[a], (grain, *self.others)[b], key=lambda kind: kind.density)
                 key = lighter, (rows[a * self.kinds + b], rows[self.kinds**2 + a])
                 if key not in found:
-                    found[key] = limits(self.sizes[0], *key, self.stiffness_scale, speed, self.laws)
+                    found[key] = limits(self.sizes[0], *key, self.stiffness_scale, speed, self.laws, share)
         reach = INTEGRATORS[self.integrator].reach
         of = "" if reach == 1.0 else f"{reach:g} of "
         tightest = min(found.values(), key=lambda bounds: bounds[0].step)

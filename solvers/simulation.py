@@ -18,11 +18,17 @@ from solvers.runtime import Arrays
 from solvers.scene import Scene
 from solvers.schedules import SCHEDULES, choose_schedule, units_a_world
 from solvers.schedules.engine import Engine
+from solvers.shapes.contacts import ShapedContacts
+from solvers.shapes.continuous import Continuous
+from solvers.shapes.discrete import Discrete
+from solvers.shapes.grains import ShapedGrains
+from solvers.shapes.lists import ShapedNeighbours
 from solvers.units import Units
 from solvers.walls import Walls
 
 LOOK_FOR_MIXING = 0.25  # s, between looks at whether the grains' numbers still follow their places
 SKIN = 0.05  # of the mean diameter; in settled and in shaken beds the fastest of 0.05 … 0.3
+RULES = {"continuous": Continuous, "nodes": Discrete}  # of contact between outlines
 AT_REST = -1e9  # a time long before any motion starts
 LOAD = ("wall_y", "wall_z", "wall_moment")
 
@@ -66,18 +72,23 @@ class Simulation:
         count = scene.radius.shape[1]
         units = Units(worlds, count, self.units_a_world, count + len(scene.fixed))
         may_leave = bool(scene.open_edges)
-        self.grains = Grains(arrays, scene.radius, scene.density, scene.fixed, units.ghosts, may_leave, scene.kind)
+        grains = scene.radius, scene.density, scene.fixed, units.ghosts, may_leave, scene.kind
         self.walls = Walls(arrays, scene.outline, scene.open_edges, scene.parts)
         integrator = INTEGRATORS[scene.integrator]()
         laws = ChosenLaws(arrays, units, *scene.laws, scene.interfaces_of, scene.kinds, integrator.damping)
         moduli = np.array([[between.young_modulus for between in world] for world in scene.interfaces_of])
-        largest = max(scene.sizes[1], scene.fixed[:, 2].max(initial=0.0))
         bridges = scene.longest_bridge
-        reach = 2.0 * largest + max(self.skin, bridges)
-        self.neighbours = Neighbours(
-            arrays, units, self.grains, self.walls, self.skin, bridges, reach, laws, moduli, self.room
-        )
-        self.contacts = Contacts(arrays, units, self.grains, self.walls, self.neighbours, laws)
+        reach = 2.0 * scene.farthest_reach + max(self.skin, bridges)
+        lists = self.skin, bridges, reach, laws, moduli, self.room
+        if scene.shapes is None:
+            self.grains = Grains(arrays, *grains)
+            self.neighbours = Neighbours(arrays, units, self.grains, self.walls, *lists)
+            self.contacts = Contacts(arrays, units, self.grains, self.walls, self.neighbours, laws)
+        else:
+            rule = RULES[scene.shapes.contact](arrays, units, self.walls, scene.shapes)
+            self.grains = ShapedGrains(arrays, scene.shapes, *grains)
+            self.neighbours = ShapedNeighbours(arrays, units, self.grains, self.walls, *lists, rule)
+            self.contacts = ShapedContacts(arrays, units, self.grains, self.walls, self.neighbours, laws, rule)
         self.frame = Frame(arrays, scene.motions, scene.soft_start, scene.gravity)
         self.mover = Mover(arrays, units, self.grains, integrator, self.frame.rotating)
         self.clock = Clock(arrays, units)
@@ -133,7 +144,8 @@ class Simulation:
         Raises BadState where the watch stops a world; the state is kept as it is.
         """
         target, often = self.steps + steps, max(1, round(LOOK_FOR_MIXING / self.dt))
-        large = self.ordered.shape[1] >= renumber.FEWEST
+        # Contacts of outlines are remembered in the order of their grains' numbers, so these stay as they are.
+        large = self.ordered.shape[1] >= renumber.FEWEST and self.scene.shapes is None
         while self.steps < target:
             if large and self.steps % often == 0:
                 self._keep_order()  # before steps, which make new lists: the old ones are no good for looking at
@@ -208,7 +220,7 @@ class Simulation:
         self.origin, self.steps, self.observed = 0.0, 0, 0
         self.clock.step.fill(0)
         self.clock.status.fill(watch.RUNNING)
-        self.grains.angle.fill(0.0)
+        self.grains.count_turns_anew()
 
     def snapshot(self) -> dict[str, np.ndarray]:
         """Positions, velocities (W, n, 2), angles and spins (W, n) now, in the tank's frame."""

@@ -29,12 +29,14 @@ def limits(
     scale: float,
     speed: float,
     laws: Iterable,
+    share: float = 1.0,
 ) -> list[Limit]:
     """All bounds on the step for grains of at least the radius `smallest` (m) that meet at up to `speed` (m/s).
 
-    `laws` are the contact laws of the scene; each says which steps it bears (`limits`).
+    `laws` are the contact laws of the scene; each says which steps it bears (`limits`). `share` is the smallest part of
+    its mass with which a grain resists a push on its outline: less than 1 where the push also turns it.
     """
-    mass = 4.0 / 3.0 * pi * smallest**3 * grain.density
+    mass = share * 4.0 / 3.0 * pi * smallest**3 * grain.density
     shear = grain.young * scale / (2.0 * (1.0 + grain.poisson))
     found = [
         Limit(

@@ -42,7 +42,8 @@ class Walls:
         corners = [row for plate in plates for row in plate.corners]
         self.segments, self.corners = len(segments), len(corners)
         self.features = self.segments + self.corners
-        self.table = arrays.holding(np.array(segments + corners, dtype=np.float64), arrays.place)
+        self.rows = np.array(segments + corners, dtype=np.float64)
+        self.table = arrays.holding(self.rows, arrays.place)
         self.fastest = max((part.fastest() for part in parts), default=0.0)  # m/s
         self.moving = self.fastest > 0.0
         rows = np.array([part.parameters() for part in parts]) if parts else np.zeros((1, MOVE + 2))

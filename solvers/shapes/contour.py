@@ -11,6 +11,7 @@ from solvers.shapes import series
 
 ROUNDING = 1e-14  # of a radius: what differs by less is the same
 MOST_SAMPLES = 2**15
+LOOKS = 16  # at each wave of the last descriptor
 
 
 @dataclass(frozen=True)
@@ -127,6 +128,16 @@ class Contour:
     def inertia(self, density: float) -> float:
         """Moment of inertia (kg m²) about the centroid, 4/5 m J/A with J the polar moment of the area A, see `mass`."""
         return self.mass(density) * self.equivalent_radius**2 * self.spread / 2.5
+
+    @cached_property
+    def least_mass(self) -> float:
+        """The least mass, relative to its own, with which a grain resists a push along a normal of its outline.
+
+        1/(1 + m l²/I) with l the lever of the normal about the centroid, which must be the origin; 1 for a disc.
+        """
+        angle = _even(LOOKS * (1 + len(self.descriptors)))
+        lever = np.cross(self.points(angle), self.normals(angle)) / self.equivalent_radius
+        return float(1.0 / (1.0 + 2.5 / self.spread * (lever**2).max()))
 
     def scaled(self, factor: float) -> "Contour":
         """The similar outline `factor` times as large."""

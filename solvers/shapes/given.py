@@ -9,7 +9,7 @@ from solvers.shapes.contour import Contour
 
 @dataclass(frozen=True)
 class Shapes:
-    """Outlines of the grains of W worlds: grain i of world w has `outlines[which[w, i]]`, `radius[w, i]` times as large.
+    """Outlines of the grains of W worlds: of grain i in world w `outlines[which[w, i]]`, `radius[w, i]` times as large.
 
     `outlines` are about their centroids and have the area of a disc of radius 1; a scene's radii are those of discs of
     equal area. `angle` (W, n) rad is by how much each is turned at the start, counter-clockwise. `contact` is one of

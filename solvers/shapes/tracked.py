@@ -14,6 +14,7 @@ LONGEST = 0.1  # of the lesser bounding radius: the longest step along an outlin
 FLATTEST = 1e-6  # of what two discs have: relative curvature, below which a step is not stretched further
 FACING = -0.9  # cosine between the normals
 CLOSE = 1e-3  # rad between the tangents, and m of offset to m of the lesser bounding radius, of a contact in hand
+DEEP = 0.5  # of the lesser smallest polar radius: an overlap that is none
 SETTLED, ALIKE = 1e-4, 0.05  # cells: the last step to a contact, and by what two ways to the same one may differ
 
 # Elements of what `contact` gives.
@@ -62,7 +63,10 @@ class Tracked:
         gap = centre + p - q
         offset, miss, facing = gap.dot(tangent), along.cross(tangent), along.dot(tangent)
         close = ti.abs(offset) < CLOSE / LONGEST * longest and ti.abs(miss) < CLOSE
-        holds = ti.select(close and least > 0.0 and facing < FACING, 1.0, 0.0)
+        # The far sides of two grains have facing normals, too.
+        deep = DEEP * lesser(scale_i * self.tables.smallest[shape_i], scale_j * self.tables.smallest[shape_j])
+        near = -gap.dot(normal) < deep
+        holds = ti.select(close and near and least > 0.0 and facing < FACING, 1.0, 0.0)
         n, point = turned(turn_j, normal), turned(turn_j, p - 0.5 * gap)
         a, b = self.tables.wrapped(a), self.tables.wrapped(b)
         return ti.Vector([-gap.dot(normal), n[0], n[1], point[0], point[1], a, b, miss, holds])

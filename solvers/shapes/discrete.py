@@ -1,0 +1,108 @@
+"""The source's rule: of all nodes of two outlines the one that lies deepest in the other."""
+
+import taichi as ti
+
+from solvers.runtime import Arrays
+from solvers.shapes.given import Shapes
+from solvers.shapes.grains import with_disc
+from solvers.shapes.nodes import Nodes
+from solvers.shapes.pose import turned, turned_back
+from solvers.shapes.tables import Tables
+from solvers.shapes.wall import SeenWalls
+from solvers.units import Units
+from solvers.walls import Walls
+
+FAR = 1e3  # m
+
+
+@ti.data_oriented
+class Discrete:
+    """One contact of two grains, or of a grain and a wall, at the deepest node (Spandonidis 2016, table 8.1)."""
+
+    pair_memory, wall_memory = (), ()
+
+    def __init__(self, arrays: Arrays, units: Units, walls: Walls, shapes: Shapes):
+        outlines = with_disc(shapes)
+        self.tables = Tables(arrays, outlines)
+        self.nodes, self.walls = Nodes(arrays, self.tables, outlines, shapes.nodes), SeenWalls(arrays, walls)
+
+    @ti.func
+    def seek_pair(self, g: ti.template(), w, i, j, margin, u):
+        """How many contacts are to be listed."""
+        return 1
+
+    @ti.func
+    def seek_wall(self, g: ti.template(), w, i, feature, shift: ti.template(), margin, u):
+        """How many contacts are to be listed."""
+        return 1
+
+    @ti.func
+    def is_same(self, contacts: ti.template(), u, q, k):
+        """Whether contact q of an old list of the same two is the one that has been found."""
+        return True
+
+    @ti.func
+    def note(self, contacts: ti.template(), u, p, k):
+        """Nothing is to be remembered of a contact."""
+
+    @ti.func
+    def pair(self, g: ti.template(), pairs: ti.template(), w, i, j, u, p, moves: ti.template()):
+        """The contact of grains i and j: overlap (m), normal towards i, point from i's centre (m), 1.0: it holds."""
+        c = self.nodes.contact(
+            g.shape[w, i],
+            g.radius[w, i],
+            g.turn(w, i),
+            g.shape[w, j],
+            g.radius[w, j],
+            g.turn(w, j),
+            g.apart(w, i, j),
+        )
+        return ti.Vector([c[0], c[1], c[2], c[3], c[4], 1.0 + 0.0 * c[0]])
+
+    @ti.func
+    def wall(
+        self, g: ti.template(), contacts: ti.template(), w, i, feature, shift: ti.template(), u, p, moves: ti.template()
+    ):
+        """The contact of a grain with a wall, as `pair`; it does not count where it is another feature's."""
+        contact = ti.Vector([0.0 * g.radius[w, i], 0.0, 0.0, 0.0, 0.0, 1.0])
+        if feature < self.walls.walls.segments:
+            face = self.walls.facing(feature, shift, g.y[w, i], g.z[w, i])
+            normal = ti.Vector([ti.cast(face[0], g.real), ti.cast(face[1], g.real)])
+            node = turned(g.turn(w, i), self.lowest(g, w, i, turned_back(g.turn(w, i), normal)))
+            overlap = -ti.cast(face[2], g.real) - node.dot(normal)
+            if not self.walls.counts_on_segment(feature, shift, g.y[w, i] + node[0], g.z[w, i] + node[1]):
+                overlap = -FAR
+            contact = ti.Vector([overlap, normal[0], normal[1], node[0], node[1], 1.0])
+        else:
+            away = self.walls.walls.from_start(feature, shift, g.y[w, i], g.z[w, i])
+            corner = -ti.Vector([ti.cast(away[0], g.real), ti.cast(away[1], g.real)])
+            own = turned_back(g.turn(w, i), corner)
+            distance = own.norm()
+            radius = g.radius[w, i] * self.tables.radius_and_slope(g.shape[w, i], own[0], own[1])
+            tilt = radius[0] / ti.sqrt(radius[0] ** 2 + radius[1] ** 2)
+            outward = ti.Vector([radius[0] * own[0] + radius[1] * own[1], radius[0] * own[1] - radius[1] * own[0]])
+            normal = -turned(g.turn(w, i), outward * tilt / (radius[0] * distance))
+            overlap = (radius[0] - distance) * tilt
+            if not self.walls.counts_on_corner(feature, normal[0], normal[1]):
+                overlap = -FAR
+            point = corner - overlap * normal
+            contact = ti.Vector([overlap, normal[0], normal[1], point[0], point[1], 1.0])
+        return contact
+
+    @ti.func
+    def lowest(self, g: ti.template(), w, i, normal):
+        """The node of a grain, in its frame, that lies farthest against a unit vector."""
+        shape, scale = g.shape[w, i], g.radius[w, i]
+        best, found, k = FAR * scale, ti.Vector([0.0 * scale, 0.0 * scale]), 0
+        while k < self.nodes.length:
+            after = self.nodes.after[k]
+            place = ti.Vector([self.nodes.circle[shape, k, 0], self.nodes.circle[shape, k, 1]]) * scale
+            width = self.nodes.circle[shape, k, 2] * scale
+            height = place.dot(normal)
+            if height - width < best:
+                if width == 0.0:
+                    best, found = height, place
+                else:
+                    after = k + 1
+            k = after
+        return found
