@@ -42,7 +42,6 @@ class Errand:
     """A launch for a worker: the presets of its runs by the folders that these are to have here."""
 
     runs: Mapping[Path, LoadedPreset]
-    plots: bool = False
 
 
 @dataclass(frozen=True)
@@ -51,7 +50,6 @@ class Terms:
 
     threads: int
     arch: str
-    plots: bool
     versions: Mapping[str, str]
 
 
@@ -76,7 +74,7 @@ def _fetch(client: "Client", errands: Sequence[Errand], progress: Progress) -> N
     for errand in errands:
         presets = list(errand.runs.values())
         texts = [(one.name, one.given_text, one.resolved.model_dump_json()) for one in presets]
-        work = pickle.dumps(partial(run_launch, texts, _terms(presets[0], errand.plots)))
+        work = pickle.dumps(partial(run_launch, texts, _terms(presets[0])))
         done = client.submit(_unpacked(), work, pure=False)
         # One task more a run, before any further launch: runs go over the wire and leave the worker one by one.
         folders |= {client.submit(getitem, done, k, pure=False, priority=1): at for k, at in enumerate(errand.runs)}
@@ -92,9 +90,9 @@ def _fetch(client: "Client", errands: Sequence[Errand], progress: Progress) -> N
     progress.finish()
 
 
-def _terms(preset: LoadedPreset, plots: bool) -> Terms:
+def _terms(preset: LoadedPreset) -> Terms:
     run = preset.resolved.run
-    return Terms(run.threads or available_cores(), choose_arch(run.arch, run.precision), plots, versions())
+    return Terms(run.threads or available_cores(), choose_arch(run.arch, run.precision), versions())
 
 
 def _unpacked() -> Callable[[bytes], list[Files]]:
@@ -132,7 +130,7 @@ def run_launch(texts: Sequence[tuple[str, str, str]], terms: Terms) -> list[File
             run.make_recording()
         launch([_on_terms(run, terms) for run in runs], Path(home), progress)
         for run in runs:
-            report(run.folder, progress, video=False, plots=terms.plots)
+            report(run.folder, progress, video=False, plots=False)
         return [_taken(run.folder) for run in runs]
 
 

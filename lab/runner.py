@@ -46,6 +46,7 @@ def run_preset(
     out: Path | str | None = None,
     *,
     video: bool = True,
+    plots: bool = True,
     quiet: bool = False,
 ) -> Result:
     """Run a preset and leave recording, plots, video and summary in a folder (default: renders/NAME).
@@ -59,10 +60,10 @@ def run_preset(
         run = prepare(loaded, folder)
         with only_one(folder):
             run.make_recording()
-            return _complete(run, None, progress, video)
+            return _complete(run, None, progress, video, plots)
 
 
-def resume_run(folder: Path | str, *, video: bool = True, quiet: bool = False) -> Result:
+def resume_run(folder: Path | str, *, video: bool = True, plots: bool = True, quiet: bool = False) -> Result:
     """Go on with a run that was killed, interrupted or stopped, from its checkpoint, bit for bit.
 
     The preset is the recording's own. A run that only lacks its results gets these. Raises as `run_preset` does, and
@@ -77,7 +78,7 @@ def resume_run(folder: Path | str, *, video: bool = True, quiet: bool = False) -
     with Progress(quiet) as progress, hint(folder), only_one(folder):
         if complete:
             remove_checkpoint(folder)
-            return report(folder, progress, video=video)
+            return report(folder, progress, video=video, plots=plots)
         kept = read_checkpoint(folder)
         if kept is None and rows:
             raise LabError(f"{folder} has no checkpoint to resume from: start the run anew, in another folder.")
@@ -85,7 +86,7 @@ def resume_run(folder: Path | str, *, video: bool = True, quiet: bool = False) -
             progress.warn("The run was begun with other versions of the lab or its libraries than it goes on with.")
         run = prepare(loaded, folder)
         mend_recording(folder)
-        return _complete(run, kept, progress, video)
+        return _complete(run, kept, progress, video, plots)
 
 
 def recorded_preset(recording: Recording) -> LoadedPreset:
@@ -136,14 +137,14 @@ def hint(folder: Path, begun: str = FILE_NAME) -> Iterator[None]:
         raise LabError(f"{str(error).removesuffix('.')}; go on with: {resume}") from error
 
 
-def _complete(run: Run, kept: Checkpoint | None, progress: Progress, video: bool) -> Result:
+def _complete(run: Run, kept: Checkpoint | None, progress: Progress, video: bool, plots: bool) -> Result:
     """Run to the end, or on to it, and report."""
     try:
         stopped = launch([run], run.folder, progress, kept)
     except KeyboardInterrupt:
-        report(run.folder, progress, video=False)
+        report(run.folder, progress, video=False, plots=plots)
         raise
-    result = report(run.folder, progress, video=video and not stopped)
+    result = report(run.folder, progress, video=video and not stopped, plots=plots)
     for error in stopped.values():
         raise error
     return result

@@ -10,6 +10,9 @@ from solvers.runtime import Arrays
 from solvers.units import Units
 from solvers.walls import Walls
 
+# Vectors of different units stand this far apart, so that no two threads write to one cache line.
+GIVEN_APART = 2
+
 
 @ti.data_oriented
 class Contacts:
@@ -24,7 +27,7 @@ class Contacts:
         self.units, self.grains, self.walls, self.lists, self.laws = units, grains, walls, lists, laws
         # What a block of pairs does to its grains: forces (N) along y and z, torques (N m) on the first and the second.
         # Nobody reads it. Neighbouring numbers that are written together are what makes the compiler look for SIMD.
-        self.given = arrays.vectors(4, lists.pairs.lanes, (units.count,), kept=False)
+        self.given = arrays.vectors(4, lists.pairs.lanes, (GIVEN_APART * units.count,), kept=False)
 
     @ti.func
     def forces(self, u, t, dt):
@@ -57,7 +60,8 @@ class Contacts:
             fy, fz = fn * ny - ft * nz, fn * nz + ft * ny
             turn_i, turn_j = roll - lever_i * ft, -roll - lever_j * ft
             if ti.static(not self.units.single):
-                self.given[0][u], self.given[1][u], self.given[2][u], self.given[3][u] = fy, fz, turn_i, turn_j
+                at = GIVEN_APART * u
+                self.given[0][at], self.given[1][at], self.given[2][at], self.given[3][at] = fy, fz, turn_i, turn_j
             for k in ti.static(range(pairs.lanes)):
                 g.push(0, i[k], fy[k], fz[k], turn_i[k])
             if ti.static(not self.units.single):

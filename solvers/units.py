@@ -25,8 +25,8 @@ class Units:
 
     @property
     def ghosts(self) -> int:
-        """Far-off points a world needs for pairs that stand for none."""
-        return 1 if self.single else APART * (self.a_world - 1) + 1
+        """Far-off points of a world, for pairs that stand for none, and to keep it off the next one's cache lines."""
+        return 1 if self.single else APART * self.a_world
 
     def integers(self, arrays: Arrays, count: int) -> list[ti.Field]:
         """`count` fields of one integer a unit."""

@@ -52,7 +52,7 @@ def errands(batch: Batch, folder: Path) -> list[Errand]:
         return sweep_errands(batch.preset, batch.axes, batch.changes, folder)
     if (folder / FILE_NAME).exists():
         return []
-    return [Errand({folder: load(batch.preset, batch.changes)}, plots=True)]
+    return [Errand({folder: load(batch.preset, batch.changes)})]
 
 
 def carry_out(batch: Batch, folder: Path, quiet: bool) -> None:
@@ -62,14 +62,14 @@ def carry_out(batch: Batch, folder: Path, quiet: bool) -> None:
         return
     try:
         if not (folder / FILE_NAME).exists():
-            run_preset(batch.preset, batch.changes, folder, video=False, quiet=quiet)
+            run_preset(batch.preset, batch.changes, folder, video=False, plots=False, quiet=quiet)
             return
         with open_recording(folder) as recording:
             same = recording.preset == json.loads(load(batch.preset, batch.changes).resolved.model_dump_json())
         if not same:
             raise LabError(f"{folder} holds another run than this experiment asks for: remove it.")
         if state_of(folder) != "done":
-            resume_run(folder, video=False, quiet=quiet)
+            resume_run(folder, video=False, plots=False, quiet=quiet)
     except BadState:  # the recording says so, and the report
         pass
 

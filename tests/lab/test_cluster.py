@@ -109,7 +109,7 @@ def test_threads_and_device_are_those_of_the_asking_machine(monkeypatch):
     """A large world would be cut into other bands on a machine with other cores."""
     monkeypatch.setattr("lab.cluster.available_cores", lambda: 7)
     preset = load("tilting/quick", {**SMALL, "motion.sway.frequency": "1 Hz", "run.threads": 0, "run.arch": "cpu"})
-    run = cluster._on_terms(prepare(preset, Path()), cluster._terms(preset, plots=False))
+    run = cluster._on_terms(prepare(preset, Path()), cluster._terms(preset))
     assert (run.loaded.resolved.run.threads, run.loaded.resolved.run.arch) == (7, "cpu")
     assert preset.resolved.run.threads == 0
 
@@ -117,7 +117,7 @@ def test_threads_and_device_are_those_of_the_asking_machine(monkeypatch):
 def test_single_runs_of_experiments_are_sent_once(tmp_path):
     batch = Batch("tilting/quick", SINGLE)
     (errand,) = runs.errands(batch, tmp_path)
-    assert list(errand.runs) == [tmp_path] and errand.plots
+    assert list(errand.runs) == [tmp_path]
     (tmp_path / "recording.h5").touch()
     assert runs.errands(batch, tmp_path) == []
 
