@@ -28,7 +28,7 @@ def materials_batches(motion: str, quick: bool) -> dict[str, Batch]:
     """The three ores, in 2 beds; a thousandth of the stiffness would let the gold ore overlap too far at 2 m/s.
 
     Beds of so many grains differ little; and nothing lifts in heave, so few frequencies say it all. The gold ore, which
-    takes three times as many steps, has the fewest.
+    takes three times as many steps, has the fewest, and in the quick report no heave.
     """
     between = {"sway": ["0.5 Hz", "0.8 Hz", "1.1 Hz"], "heave": ["0.8 Hz"]}[motion]
     fewer = {"sway": ["0.8 Hz"], "heave": []}[motion]
@@ -42,7 +42,7 @@ def materials_batches(motion: str, quick: bool) -> dict[str, Batch]:
             **beds,
             **stiffer.get(name, {}),
         )
-        for name in "ABC"
+        for name in ("AB" if quick and motion == "heave" else "ABC")
     }
 
 
@@ -212,7 +212,7 @@ EXPERIMENTS = [
         "sideways, too.",
         lambda quick: materials_batches("heave", quick),
         heaved,
-        FEWER,
+        f"{FEWER}; no gold ore",
         ("B", 0.7),
     ),
     Experiment(
