@@ -179,7 +179,8 @@ class Scene:
         laws = self.normal, self.tangential, self.rolling, self.cohesion, self.longest_bridge
         words = self.integrator, self.precision, self.schedule
         numbers = self.radius.shape[1], self.gravity, self.soft_start, self.step, self.sizes, self.stiffness_scale
-        rest = self.others, self.unlike, self.open_edges, self.parts, self.velocity is None
+        shapes = (self.shapes.outlines, self.shapes.contact, self.shapes.nodes) if self.shapes else None
+        rest = self.others, self.unlike, self.open_edges, self.parts, self.velocity is None, shapes
         return (*lengths, kinds, *laws, *words, *numbers, *rest)
 
     @classmethod
@@ -188,7 +189,10 @@ class Scene:
         first = scenes[0]
         if any(scene.shared() != first.shared() for scene in scenes):
             raise ValueError("these scenes cannot run in one launch")
-        started = first.velocity is not None
+        started, shapes = first.velocity is not None, first.shapes
+        if shapes:
+            which, angle = ([getattr(scene.shapes, name) for scene in scenes] for name in ("which", "angle"))
+            shapes = replace(shapes, which=np.concatenate(which), angle=np.concatenate(angle))
         return replace(
             first,
             radius=np.concatenate([scene.radius for scene in scenes]),
@@ -199,4 +203,5 @@ class Scene:
             velocity=np.concatenate([scene.velocity for scene in scenes]) if started else None,
             spin=np.concatenate([scene.spin for scene in scenes]) if started else None,
             kind=np.concatenate([scene.kind for scene in scenes]) if first.kinds > 1 else None,
+            shapes=shapes,
         )

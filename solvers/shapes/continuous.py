@@ -2,7 +2,7 @@
 
 import taichi as ti
 
-from solvers.laws.extremes import within
+from solvers.laws.extremes import greater, within
 from solvers.runtime import Arrays
 from solvers.shapes.given import Shapes
 from solvers.shapes.grains import with_disc
@@ -11,6 +11,7 @@ from solvers.shapes.tables import Tables
 from solvers.shapes.tracked import (
     ALIKE,
     CLOSE,
+    FLATTEST,
     HOLDS,
     LONGEST,
     NORMAL_Y,
@@ -23,12 +24,16 @@ from solvers.shapes.tracked import (
     SETTLED,
     TRIES,
     Tracked,
+    advanced,
 )
 from solvers.shapes.wall import SeenWalls
 from solvers.units import Units
 from solvers.walls import Walls
 
 ROOM = 8  # contacts of a grain with another, or with one wall, at most
+FIRST, BORN, SECOND = range(3)  # what is remembered of a contact: see Continuous.pair_memory
+UNKNOWN = -1.0  # where it has yet to be seen how deep a contact is
+NEAR = 1.0 / 16.0  # of the outlines, together: how far a contact may go between lists and be known again
 
 
 @ti.data_oriented
@@ -39,12 +44,13 @@ class Continuous:
     step keeps it there. They are sought where lists are made.
     """
 
-    pair_memory, wall_memory = ("place_first", "place_second"), ("place_first",)
+    pair_memory, wall_memory = ("place_first", "born", "place_second"), ("place_first", "born")
 
     def __init__(self, arrays: Arrays, units: Units, walls: Walls, shapes: Shapes):
         self.units = units
         self.tables = Tables(arrays, with_disc(shapes))
         self.tracked, self.walls = Tracked(self.tables), SeenWalls(arrays, walls)
+        self.farthest = NEAR * self.tables.cells
         self.places_first, self.places_second = arrays.reals(2, (units.count, ROOM), kept=False)
 
     @ti.func
@@ -65,16 +71,36 @@ class Continuous:
         )
 
     @ti.func
-    def is_same(self, contacts: ti.template(), u, q, k):
-        """Whether contact q of an old list is the k-th that has been found."""
-        return self.tracked.same(contacts.old_more[0][u, q][0], self.places_first[u, k], ALIKE)
+    def away(self, contacts: ti.template(), u, q, k):
+        """How far (cells) contact q of an old list is from the k-th that has been found of the same two."""
+        far = self.tracked.distance(contacts.old_more[FIRST][u, q][0], self.places_first[u, k])
+        if ti.static(len(contacts.more) > SECOND):
+            far += self.tracked.distance(contacts.old_more[SECOND][u, q][0], self.places_second[u, k])
+        return far
 
     @ti.func
-    def note(self, contacts: ti.template(), u, p, k):
-        """Contact p is where the k-th has been found."""
-        contacts.more[0][u, p][0] = self.places_first[u, k]
-        if ti.static(len(contacts.more) > 1):
-            contacts.more[1][u, p][0] = self.places_second[u, k]
+    def note(self, contacts: ti.template(), u, p, k, late):
+        """Contact p is where the k-th has been found; it comes `late` where the two were in the old list without it."""
+        contacts.more[FIRST][u, p][0] = self.places_first[u, k]
+        if ti.static(len(contacts.more) > SECOND):
+            contacts.more[SECOND][u, p][0] = self.places_second[u, k]
+        if late:
+            contacts.more[BORN][u, p][0] = UNKNOWN
+
+    @ti.func
+    def counted(self, contacts: ti.template(), u, p, c: ti.template(), moves: ti.template()):
+        """The part of the overlap of contact p that counts.
+
+        Where two outlines overlap already, a bend of them can make a second contact of what was one. Counted from
+        nothing it would come with energy, so it counts from what it was at first, or has been at least since then.
+        """
+        born, whole = contacts.more[BORN][u, p][0], greater(c[OVERLAP], 0.0)
+        if born == UNKNOWN or born > whole:
+            born = whole
+        if ti.static(moves):  # noqa: SIM102 (compiled only there)
+            if c[HOLDS] > 0.0:
+                contacts.more[BORN][u, p][0] = born
+        return c[OVERLAP] - born
 
     @ti.func
     def pair(self, g: ti.template(), pairs: ti.template(), w, i, j, u, p, moves: ti.template()):
@@ -83,7 +109,7 @@ class Continuous:
         Unless it `moves`, it is looked at where it was found last.
         """
         c = self.tracked.contact(
-            ti.static(1 if moves else 0),
+            moves,
             g.shape[w, i],
             g.radius[w, i],
             g.turn(w, i),
@@ -91,12 +117,13 @@ class Continuous:
             g.radius[w, j],
             g.turn(w, j),
             g.apart(w, i, j),
-            pairs.more[0][u, p][0],
-            pairs.more[1][u, p][0],
+            pairs.more[FIRST][u, p][0],
+            pairs.more[SECOND][u, p][0],
         )
         if ti.static(moves):
-            pairs.more[0][u, p][0], pairs.more[1][u, p][0] = c[PLACE_I], c[PLACE_J]
-        return ti.Vector([c[OVERLAP], c[NORMAL_Y], c[NORMAL_Z], c[POINT_Y], c[POINT_Z], c[HOLDS]])
+            pairs.more[FIRST][u, p][0], pairs.more[SECOND][u, p][0] = c[PLACE_I], c[PLACE_J]
+        overlap = self.counted(pairs, u, p, c, moves)
+        return ti.Vector([overlap, c[NORMAL_Y], c[NORMAL_Z], c[POINT_Y], c[POINT_Z], c[HOLDS]])
 
     @ti.func
     def seek_wall(self, g: ti.template(), w, i, feature, shift: ti.template(), margin, u):
@@ -162,15 +189,17 @@ class Continuous:
     ):
         """Contact p of grain i with a wall, as `pair`; it does not count where it is another feature's."""
         target = self.target(g, w, i, feature, shift)
-        c = self.against(g, w, i, feature, target, contacts.more[0][u, p][0], moves)
+        c = self.against(g, w, i, feature, target, contacts.more[FIRST][u, p][0], moves)
         if ti.static(moves):
-            contacts.more[0][u, p][0] = c[PLACE_I]
+            contacts.more[FIRST][u, p][0] = c[PLACE_I]
         normal = turned(g.turn(w, i), ti.Vector([c[NORMAL_Y], c[NORMAL_Z]]))
         point = turned(g.turn(w, i), ti.Vector([c[POINT_Y], c[POINT_Z]]))
         counts = self.walls.counts_on_corner(feature, normal[0], normal[1])
         if feature < self.walls.walls.segments:
             counts = self.walls.counts_on_segment(feature, shift, g.y[w, i] + point[0], g.z[w, i] + point[1])
-        overlap = ti.select(counts, c[OVERLAP], -1.0)
+        overlap = self.counted(contacts, u, p, c, moves)
+        if not counts:
+            overlap = -g.reach[w, i]
         return ti.Vector([overlap, normal[0], normal[1], point[0], point[1], c[HOLDS]])
 
     @ti.func
@@ -181,13 +210,12 @@ class Continuous:
         """
         shape, scale = g.shape[w, i], g.radius[w, i]
         corner, longest = feature >= self.walls.walls.segments, LONGEST * g.reach[w, i]
-        a = place
-        if ti.static(moves):
-            s = self.slopes(scale * self.tables.trace(shape, place), target, corner)
-            stiff = ti.abs(s[1]) + 1e-6 * s[2]
-            a = place - within(s[0] / stiff, longest / ti.sqrt(s[2]))
-        own = scale * self.tables.trace(shape, a)
+        a, own = place, scale * self.tables.trace(shape, place)
         s = self.slopes(own, target, corner)
+        if ti.static(moves):
+            step = -within(s[0] / (ti.abs(s[1]) + FLATTEST * s[2]), longest / ti.sqrt(s[2]))
+            a, own = place + step, advanced(own, step)
+            s = self.slopes(own, target, corner)
         size = ti.sqrt(s[2])
         outward = ti.Vector([own[3], -own[2]]) / size
         gap = target[2] + own[0] * target[0] + own[1] * target[1]

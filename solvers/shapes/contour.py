@@ -136,7 +136,8 @@ class Contour:
         1/(1 + m l²/I) with l the lever of the normal about the centroid, which must be the origin; 1 for a disc.
         """
         angle = _even(LOOKS * (1 + len(self.descriptors)))
-        lever = np.cross(self.points(angle), self.normals(angle)) / self.equivalent_radius
+        (x, y), (ny, nz) = self.points(angle).T, self.normals(angle).T
+        lever = (x * nz - y * ny) / self.equivalent_radius
         return float(1.0 / (1.0 + 2.5 / self.spread * (lever**2).max()))
 
     def scaled(self, factor: float) -> "Contour":

@@ -19,7 +19,7 @@ FAR = 1e3  # m
 class Discrete:
     """One contact of two grains, or of a grain and a wall, at the deepest node (Spandonidis 2016, table 8.1)."""
 
-    pair_memory, wall_memory = (), ()
+    pair_memory, wall_memory, farthest = (), (), 1.0
 
     def __init__(self, arrays: Arrays, units: Units, walls: Walls, shapes: Shapes):
         outlines = with_disc(shapes)
@@ -37,12 +37,12 @@ class Discrete:
         return 1
 
     @ti.func
-    def is_same(self, contacts: ti.template(), u, q, k):
-        """Whether contact q of an old list of the same two is the one that has been found."""
-        return True
+    def away(self, contacts: ti.template(), u, q, k):
+        """How far contact q of an old list of the same two is from the one that has been found: it is the same."""
+        return 0.0 * contacts.stiffness[u, 0][0]
 
     @ti.func
-    def note(self, contacts: ti.template(), u, p, k):
+    def note(self, contacts: ti.template(), u, p, k, late):
         """Nothing is to be remembered of a contact."""
 
     @ti.func

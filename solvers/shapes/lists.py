@@ -24,10 +24,11 @@ class ShapedNeighbours(Neighbours):
     def list_pair(self, g: ti.template(), u, found, i, j, target, dt):
         """List the contacts of two grains that are near each other; returns how many there are then."""
         total, w = found, self.units.world(u)
-        for k in range(self.rule.seek_pair(g, w, ti.min(i, j), ti.max(i, j), self.margin(), u)):
+        count = self.rule.seek_pair(g, w, ti.min(i, j), ti.max(i, j), self.margin(), u)
+        for k in range(count):
             if total < self.pairs.capacity:
                 self.write_pair(g, u, total, i, j, target, False, dt)
-                self.recall(self.pairs, u, total, i, j, k)
+                self.recall(self.pairs, u, total, i, j, k, count)
             total += 1
         return total
 
@@ -35,21 +36,34 @@ class ShapedNeighbours(Neighbours):
     def list_contact(self, g: ti.template(), u, found, i, feature, shift: ti.template(), dt):
         """List the contacts of a grain with a wall that is near; returns how many there are then."""
         total, w = found, self.units.world(u)
-        for k in range(self.rule.seek_wall(g, w, i, feature, shift, self.margin(), u)):
+        count = self.rule.seek_wall(g, w, i, feature, shift, self.margin(), u)
+        for k in range(count):
             if total < self.contacts.capacity:
                 self.write_contact(g, u, total, i, feature, False, dt)
-                self.recall(self.contacts, u, total, i, feature, k)
+                self.recall(self.contacts, u, total, i, feature, k, count)
             total += 1
         return total
 
     @ti.func
-    def recall(self, contacts: ti.template(), u, p, i, mate, k):
-        """Contact p, the k-th that the rule has found, remembers what it did in the old list."""
+    def recall(self, contacts: ti.template(), u, p, i, mate, k, count):
+        """Contact p, the k-th of `count` that the rule has found of these two, remembers what it did in the old list.
+
+        That is what the nearest of the old contacts did, if none of the others found is nearer to that one.
+        """
         row, place = i - self.units.first(u), self.units.world(u) * contacts.stride + mate
+        best, known, nearest = -1, False, ti.cast(self.rule.farthest, self.grains.real)
         for q in range(contacts.old_first[u, row], contacts.old_first[u, row + 1]):
-            if contacts.old_mate[u, q] == place and self.rule.is_same(contacts, u, q, k):
-                contacts.recall(u, p, q)
-        self.rule.note(contacts, u, p, k)
+            if contacts.old_mate[u, q] == place:
+                known = True
+                away, taken = self.rule.away(contacts, u, q, k), False
+                for other in range(count):
+                    if other != k and self.rule.away(contacts, u, q, other) < away:
+                        taken = True
+                if away < nearest and not taken:
+                    best, nearest = q, away
+        if best >= 0:
+            contacts.recall(u, p, best)
+        self.rule.note(contacts, u, p, k, known and best < 0)
 
     @ti.func
     def note_built(self, w, i):

@@ -37,9 +37,11 @@ class Tracked:
 
     @ti.func
     def contact(
-        self, steps: ti.template(), shape_i, scale_i, turn_i, shape_j, scale_j, turn_j, apart, place_i, place_j
+        self, moves: ti.template(), shape_i, scale_i, turn_i, shape_j, scale_j, turn_j, apart, place_i, place_j
     ):
-        """The contact that was at these places, after so many steps of Newton's method.
+        """The contact that was at these places; if it `moves`, one step of Newton's method further.
+
+        That step is short, so the outlines' points there follow from their derivatives here.
 
         `turn` is (cos, sin) of a grain's angle, `apart` the centre of i less that of j (m). Gives overlap ξ (m,
         negative: a gap), normal towards i (y, z), contact point from i's centre (y, z) m, halfway between the two
@@ -50,12 +52,11 @@ class Tracked:
         between, centre = turned_back(turn_j, turn_i), turned_back(turn_j, apart)
         longest = LONGEST * lesser(scale_i * self.tables.bounding[shape_i], scale_j * self.tables.bounding[shape_j])
         a, b, least = place_i, place_j, 1.0 + 0.0 * scale_i
-        for _ in ti.static(range(steps)):
-            step = self.step(
-                self.seen(shape_i, scale_i, between, a), scale_j * self.tables.trace(shape_j, b), centre, longest
-            )
-            a, b, least = a + step[0], b + step[1], step[2]
         first, second = self.seen(shape_i, scale_i, between, a), scale_j * self.tables.trace(shape_j, b)
+        if ti.static(moves):
+            step = self.step(first, second, centre, longest)
+            a, b, least = a + step[0], b + step[1], step[2]
+            first, second = advanced(first, step[0]), advanced(second, step[1])
         p, q = ti.Vector([first[0], first[1]]), ti.Vector([second[0], second[1]])
         tangent = ti.Vector([second[2], second[3]]).normalized()
         along = ti.Vector([first[2], first[3]]).normalized()
@@ -180,7 +181,7 @@ class Tracked:
         """Follow a pair of places to the contact near by, and write it down if it is new; gives how many there are."""
         found, fresh, a, b = before, False, place_i, place_j
         for _ in range(TRIES):
-            c = self.contact(1, shape_i, scale_i, turn_i, shape_j, scale_j, turn_j, apart, a, b)
+            c = self.contact(True, shape_i, scale_i, turn_i, shape_j, scale_j, turn_j, apart, a, b)
             settled = self.same(c[PLACE_I], a, SETTLED) and self.same(c[PLACE_J], b, SETTLED)
             a, b = c[PLACE_I], c[PLACE_J]
             if settled:
@@ -195,7 +196,26 @@ class Tracked:
         return found
 
     @ti.func
+    def distance(self, a, b):
+        """How many cells two places on an outline are apart."""
+        return ti.abs(self.tables.wrapped(a - b + 0.5 * self.tables.cells) - 0.5 * self.tables.cells)
+
+    @ti.func
     def same(self, a, b, error):
         """Whether two places on an outline differ by less than so many cells."""
-        between = self.tables.wrapped(a - b + 0.5 * self.tables.cells) - 0.5 * self.tables.cells
-        return ti.abs(between) < error
+        return self.distance(a, b) < error
+
+
+@ti.func
+def advanced(own, step):
+    """Point of an outline and derivatives (`Tables.trace`) a short step onwards, to the second order."""
+    return ti.Vector(
+        [
+            own[0] + step * (own[2] + 0.5 * step * own[4]),
+            own[1] + step * (own[3] + 0.5 * step * own[5]),
+            own[2] + step * own[4],
+            own[3] + step * own[5],
+            own[4],
+            own[5],
+        ]
+    )

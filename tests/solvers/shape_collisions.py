@@ -105,7 +105,7 @@ class Collisions:
         apart, first, second = self.apart(p), self.turn(p, 0), self.turn(p, 1)
         if ti.static(self.rule == "tracked"):
             for k in range(self.number[p]):
-                c = self.tracked.contact(1, 0, 1.0, first, 0, 1.0, second, apart, self.at_i[p, k], self.at_j[p, k])
+                c = self.tracked.contact(True, 0, 1.0, first, 0, 1.0, second, apart, self.at_i[p, k], self.at_j[p, k])
                 self.at_i[p, k], self.at_j[p, k] = c[5], c[6]
                 if c[8] > 0.0:
                     self.press(p, c, apart)

@@ -161,7 +161,7 @@ class Asked:
         """The contacts of a pair, one step on."""
         for k in range(self.number[p]):
             c = self.tracked.contact(
-                1,
+                True,
                 self.shape[p, 0],
                 self.scale[p, 0],
                 self.pose(p, 0),

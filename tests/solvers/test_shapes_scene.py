@@ -1,0 +1,207 @@
+"""Irregular grains in whole scenes: the disc limit, conservation, walls, schedules, rest."""
+
+import numpy as np
+import pytest
+from outlines import ellipse, star
+from scenes import box, material
+from scipy import optimize
+
+from solvers.motions import Sway
+from solvers.scene import Scene
+from solvers.shapes.cargo import cargo
+from solvers.shapes.contour import Contour
+from solvers.shapes.given import CONTACTS, Shapes
+from solvers.simulation import Simulation
+
+RADIUS = 3e-3
+LEDGE = np.array([[-0.03, 0.0], [0.01, 0.0], [0.01, 0.01], [0.03, 0.01], [0.03, 0.1], [-0.03, 0.1]])
+SOFT = material(young=3e7, restitution=0.6, friction=0.4)
+LOSSLESS = material(young=3e7, friction=0.0, dissipative_time=0.0)
+ROUND = Contour(1.0)
+
+
+def unit(outline):
+    return outline.with_diameter(2.0)
+
+
+def rice():
+    return cargo("rice").outline(np.random.default_rng(1), 2.0)
+
+
+def corn():
+    return cargo("corn").outline(np.random.default_rng(1), 2.0)
+
+
+def shapes(outlines, count, worlds=1, contact="continuous", angle=None, nodes=120):
+    random = np.random.default_rng(3)
+    which = random.integers(0, len(outlines), (worlds, count))
+    turned = random.uniform(-np.pi, np.pi, (worlds, count)) if angle is None else np.full((worlds, count), angle)
+    return Shapes(tuple(outlines), which, turned, contact, nodes)
+
+
+def loose(columns, rows, pitch, worlds=1):
+    """Radii and places of a loose stack above the ledge."""
+    random = np.random.default_rng(5)
+    column, row = (axis.ravel() for axis in np.meshgrid(np.arange(columns), np.arange(rows), indexing="ij"))
+    sites = pitch * np.stack([column - 0.5 * (columns - 1), row + 0.6], axis=1) + [0.0, 0.01]
+    places = sites + 0.05 * RADIUS * random.uniform(-1.0, 1.0, (worlds, len(sites), 2))
+    return RADIUS * random.uniform(0.8, 1.0, (worlds, len(sites))), places
+
+
+def falling(given, places, radius, **scene):
+    motions = [(Sway(0.004, 6.0, phase=w),) for w in range(len(radius))]
+    made = Scene(radius, LEDGE, SOFT, SOFT, tangential="mindlin", motions=motions, shapes=given, step=2e-5, **scene)
+    return Simulation(made, places, threads=2)
+
+
+@pytest.mark.parametrize(("contact", "within"), [("continuous", 1e-6), ("nodes", 2e-3)])
+def test_round_outlines_are_discs(contact, within):
+    radius, places = loose(5, 4, 2.1 * RADIUS)
+    discs = falling(None, places, radius)
+    outlines = falling(shapes([ROUND], radius.size, contact=contact, nodes=500), places, radius)
+    for simulation in (discs, outlines):
+        simulation.start_clock()
+        simulation.advance(6000)
+    assert discs.observe()["contacts"] > 10
+    expected, found = discs.snapshot(), outlines.snapshot()
+    assert np.abs(found["position"] - expected["position"]).max() < within * RADIUS
+    turned = found["angle"] - outlines.scene.shapes.angle
+    assert np.abs(turned - expected["angle"]).max() < 2.0 * within
+
+
+def collision(contact, outlines, grain=SOFT, step=1e-5):
+    """Two grains that meet in free fall."""
+    given = Shapes(tuple(outlines), np.array([[0, len(outlines) - 1]]), np.array([[0.3, 1.9]]), contact)
+    places = np.array([[[-0.008, 0.05], [0.008, 0.052]]])
+    made = Scene(np.full((1, 2), RADIUS), box(0.1, 0.1), grain, grain, shapes=given, step=step, start_speed=1.0)
+    simulation = Simulation(made, places, threads=1)
+    simulation.launch(np.array([[[0.5, 0.0], [-0.5, 0.0]]]), np.array([[20.0, 35.0]]))
+    simulation.start_clock()
+    return simulation
+
+
+def momenta(simulation):
+    """Of both grains together: momentum (2,) and angular momentum about the common centre of mass."""
+    now, mass = simulation.snapshot(), simulation.grains.mass[0]
+    inertia = 1.0 / simulation.grains.inverse_inertia.to_numpy()[0, :2]
+    position, velocity = now["position"][0], now["velocity"][0]
+    centre = (mass[:, None] * position).sum(axis=0) / mass.sum()
+    away, momentum = position - centre, mass[:, None] * velocity
+    turning = (away[:, 0] * momentum[:, 1] - away[:, 1] * momentum[:, 0]).sum() + (inertia * now["spin"][0]).sum()
+    return momentum.sum(axis=0), turning
+
+
+@pytest.mark.parametrize("contact", CONTACTS)
+def test_momenta_are_kept_with_friction_and_losses(contact):
+    simulation = collision(contact, [rice(), corn()])
+    before, turning = momenta(simulation)
+    simulation.advance(1500)
+    after, turning_after = momenta(simulation)
+    weight = simulation.grains.mass.sum() * 9.81 * simulation.time
+    scale = simulation.grains.mass[0, 0] * 0.5
+    assert np.abs(simulation.snapshot()["velocity"][0, 0] - [0.5, -9.81 * simulation.time]).max() > 0.05  # they met
+    assert after - before == pytest.approx([0.0, -weight], abs=1e-12 * scale)
+    assert turning_after == pytest.approx(turning, abs=1e-12 * scale * RADIUS)
+
+
+def energy(simulation):
+    row = simulation.observe()
+    return float(sum(row[name][0] for name in ("kinetic", "rotational", "potential", "elastic")))
+
+
+def test_energy_of_a_smooth_collision_is_kept_with_the_square_of_the_step():
+    """Two rice grains, convex, without friction or losses."""
+    errors = []
+    for step in (1e-5, 5e-6):
+        simulation = collision("continuous", [rice()], LOSSLESS, step)
+        simulation.advance(1)
+        start, worst = energy(simulation), 0.0
+        moving = sum(simulation.observe()[name][0] for name in ("kinetic", "rotational"))
+        for _ in range(30):
+            simulation.advance(round(5e-4 / step))
+            worst = max(worst, abs(energy(simulation) - start) / moving)
+        errors.append([worst, abs(energy(simulation) - start) / moving])
+    during, after = np.array(errors).T
+    assert during[0] / during[1] == pytest.approx(4.0, rel=0.15)
+    assert after[0] < 2e-4 and after[1] < after[0] / 4.0
+
+
+AXES = 1.5, 1.0 / 1.5  # of an ellipse with the area of a disc of radius 1
+DEPTH = 0.01 * RADIUS
+CORNER, TOWARDS = np.array([0.01, 0.01]), np.array([-0.6, 0.8])  # between the normals of the ledge's two walls
+ANGLES = (0.0, 0.4, 1.2)  # at which its normal on the corner lies between those
+
+
+def nearest(place, angle):
+    """Distance (m) from the ledge's corner to an ellipse, positive outside it."""
+    tilt = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+    own = tilt.T @ (CORNER - place) / RADIUS
+
+    def away(t):
+        return np.hypot(AXES[0] * np.cos(t) - own[0], AXES[1] * np.sin(t) - own[1])
+
+    guess = min(np.linspace(0, 2 * np.pi, 400), key=away)
+    best = optimize.minimize_scalar(away, bounds=(guess - 0.02, guess + 0.02), method="bounded").fun
+    return RADIUS * best * (-1.0 if (own[0] / AXES[0]) ** 2 + (own[1] / AXES[1]) ** 2 < 1.0 else 1.0)
+
+
+@pytest.mark.parametrize(("contact", "floor", "corner"), [("continuous", 1e-4, 1e-3), ("nodes", 2e-3, 3e-2)])
+def test_ellipses_on_a_floor_and_on_a_corner_that_juts_in(contact, floor, corner):
+    """One reaches √(a² sin² + b² cos²) down from its middle; a corner is as deep in one as its nearest point is far.
+
+    The rule of nodes takes the polar depth, which is longer by the outline's slope there, to the second order.
+    """
+    places = [(-0.015, RADIUS * np.hypot(AXES[0] * np.sin(a), AXES[1] * np.cos(a)) - DEPTH) for a in ANGLES]
+    for angle in ANGLES:
+        away = optimize.brentq(lambda s, a=angle: nearest(CORNER + s * TOWARDS, a) + DEPTH, 0.3 * RADIUS, 2.0 * RADIUS)
+        places.append(CORNER + away * TOWARDS)
+    count = len(places)
+    given = Shapes((unit(ellipse(*AXES)),), np.zeros((count, 1), dtype=int), np.array([ANGLES * 2]).T, contact, 2000)
+    made = Scene(np.full((count, 1), RADIUS), LEDGE, SOFT, SOFT, shapes=given, step=1e-7)
+    simulation = Simulation(made, np.array(places)[:, None], threads=1)
+    simulation.advance(1)
+    found = simulation.observe()["overlap"] * RADIUS
+    assert found[: len(ANGLES)] == pytest.approx(DEPTH, rel=floor)
+    assert found[len(ANGLES) :] == pytest.approx(DEPTH, rel=corner)
+
+
+def test_schedules_agree():
+    """The same motion to rounding, until chaos sets in, also of pairs that two bands share."""
+    radius, places = loose(4, 3, 4.2 * RADIUS, worlds=2)
+    given = shapes([unit(rice()), unit(corn()), unit(star(5, 0.2))], radius.shape[1], worlds=2)
+    found = []
+    for schedule in ("per-world", "per-band", "per-grain"):
+        made = Scene(radius, LEDGE, SOFT, SOFT, tangential="mindlin", shapes=given, step=2e-5, schedule=schedule)
+        simulation = Simulation(made, places, threads=2, units=2 if schedule == "per-band" else None)
+        simulation.advance(6000)
+        assert simulation.observe()["contacts"].min() > 1
+        found.append(simulation.snapshot())
+    for other in found[1:]:
+        assert np.abs(other["position"] - found[0]["position"]).max() < 1e-6 * RADIUS
+
+
+def test_a_state_is_gone_on_with_bit_for_bit():
+    radius, places = loose(4, 3, 4.2 * RADIUS)
+    given = shapes([unit(rice()), unit(star(3, 0.1))], radius.shape[1])
+    first, second = (falling(given, places, radius) for _ in range(2))
+    first.advance(3000)
+    second.restore(first.state())
+    for simulation in (first, second):
+        simulation.advance(500)
+    assert np.array_equal(first.snapshot()["position"], second.snapshot()["position"])
+    assert np.array_equal(first.snapshot()["angle"], second.snapshot()["angle"])
+
+
+def test_a_grain_comes_to_rest_on_two_of_its_lobes():
+    """Its middle is then as high as the outline's support is least, and no more energy is in it."""
+    trefoil = unit(star(3, 0.2))
+    theta = np.linspace(0.0, 2.0 * np.pi, 20_000)
+    ways = np.linspace(0.0, 2.0 * np.pi, 1201)
+    support = (trefoil.points(theta) @ np.stack([np.cos(ways), np.sin(ways)])).max(axis=0)
+    rough = material(young=3e7, restitution=0.2, friction=0.5)
+    given = Shapes((trefoil,), np.array([[0]]), np.array([[0.3]]))
+    made = Scene(np.full((1, 1), RADIUS), box(0.1, 0.1), rough, rough, tangential="mindlin", shapes=given)
+    simulation = Simulation(made, np.array([[[0.0, 1.5 * RADIUS]]]), threads=1)
+    assert simulation.settle(1e-9, 2.0)
+    assert simulation.observe()["contacts"] == 2
+    assert simulation.snapshot()["position"][0, 0, 1] == pytest.approx(support.min() * RADIUS, rel=2e-3)
