@@ -30,6 +30,7 @@ from lab.units import show
 from solvers.filling import clear_of_walls, levelled
 from solvers.materials import Material
 from solvers.scene import Scene
+from solvers.shapes.given import Shapes
 from solvers.simulation import Simulation
 
 FORMAT = "cargo-shift-lab bed 1"
@@ -87,7 +88,7 @@ def settled(scene: Scene, position: np.ndarray, how: Settling, start: Start, pro
         return simulation
     if how.surface == "undisturbed" or how.outline != _corners(scene):
         simulation.close()
-        simulation = start(scene, _poured(scene, position, how, start, progress))
+        simulation = start(*_poured(scene, position, how, start, progress))
     try:
         before = simulation.state() if store else {}
         rests = _settle(simulation, how, "settling", progress)
@@ -111,11 +112,13 @@ def _settle(simulation: Simulation, how: Settling, stage: str, progress: Progres
     return rests
 
 
-def _poured(scene: Scene, position: np.ndarray, how: Settling, start: Start, progress: Progress) -> np.ndarray:
-    """Where the grains lie (W, n, 2) m once they are poured into a closed tank that stands still.
+def _poured(
+    scene: Scene, position: np.ndarray, how: Settling, start: Start, progress: Progress
+) -> tuple[Scene, np.ndarray]:
+    """The scene, and where its grains lie (W, n, 2) m once they are poured into a closed tank that stands still.
 
     Its walls go up as far as the grains do. An undisturbed bed is poured without friction, which packs it as densely as
-    shaking would, and is levelled then.
+    shaking would, and is levelled then. In the scene that is returned, irregular grains are turned as they lie.
     """
     pouring = replace(scene, outline=np.array(how.outline), open_edges=(), motions=())
     if how.surface == "undisturbed":
@@ -123,18 +126,22 @@ def _poured(scene: Scene, position: np.ndarray, how: Settling, start: Start, pro
     simulation = start(pouring, position)
     try:
         _settle(simulation, how, "pouring", progress)
-        poured = simulation.snapshot()["position"]
+        snapshot = simulation.snapshot()
     finally:
         simulation.close()
+    poured, inner = snapshot["position"], scene.radius
+    if scene.shapes:
+        inner = inner * np.array([outline.smallest_radius for outline in scene.shapes.outlines])[scene.shapes.which]
+        scene = replace(scene, shapes=replace(scene.shapes, angle=snapshot["angle"]))
     if how.surface == "undisturbed":
         beds = zip(poured, scene.radius, strict=True)
         poured = np.stack([levelled(bed, radius, pouring.outline, scene.fixed) for bed, radius in beds])
     if not scene.open_edges:
-        for bed, radius in zip(poured, scene.radius, strict=True):
+        for bed, radius in zip(poured, inner, strict=True):
             if not np.all(clear_of_walls(bed, scene.outline, FREE * radius)):
                 top = show(float((bed[:, 1] + radius).max() - scene.outline[:, 1].min()), "m")
                 raise LabError(f"grains: the bed is up to {top} high, too high for the tank; ask for fewer grains.")
-    return poured
+    return scene, poured
 
 
 def _frictionless(materials) -> tuple[Material, ...]:
@@ -154,11 +161,20 @@ def bed_key(simulation: Simulation, world: int, position: np.ndarray, how: Settl
     for field in fields(scene):
         if field.init and field.name not in UNRELATED:  # the rest is derived from these
             value = getattr(scene, field.name)
+            if isinstance(value, Shapes):
+                value = _shapes_of(value, world)
             parts.append((field.name, value[world] if field.name in PER_WORLD and value is not None else value))
     digest = hashlib.blake2b(digest_size=16)
     for part in parts:
         _feed(digest, part)
     return digest.hexdigest()
+
+
+def _shapes_of(shapes: Shapes, world: int) -> tuple:
+    """All that is said of the shapes in one world, whatever the others hold."""
+    used, which = np.unique(shapes.which[world], return_inverse=True)
+    outlines = tuple(shapes.outlines[k] for k in used)
+    return outlines, which, shapes.angle[world], shapes.contact, shapes.nodes
 
 
 def _feed(digest, value: object) -> None:

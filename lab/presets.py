@@ -40,7 +40,7 @@ QUICK = "-quick"  # behind the name of a preset: its quick variant
 # What the quick variant of a preset may change: what it costs, and with it how exact it is, but not what it is about.
 QUICK_KEYS = ("run", "record", "grains.diameter", "contact.stiffness_scale", "motion.tilt.rate")
 
-PATH_KEYS = ("grains.bed", "motion.history.file")  # whose values are paths of files
+PATH_KEYS = ("grains.bed", "motion.history.file", "shapes.*.contour")  # whose values are paths; *: any name
 
 
 @dataclass(frozen=True)
@@ -87,6 +87,9 @@ class Layer:
 
     def _with_full_path(self, table: dict, dotted: str) -> dict:
         key, _, rest = dotted.partition(".")
+        if key == "*":
+            names = [name for name in table if toml.BARE_KEY.fullmatch(str(name))]
+            return reduce(self._with_full_path, (f"{name}.{rest}" for name in names), table)
         value = table.get(key)
         if rest and isinstance(value, Mapping):
             return table | {key: self._with_full_path(dict(value), rest)}

@@ -1,15 +1,19 @@
 """From a resolved preset to the solver's scene and the grains' starting places."""
 
+from dataclasses import replace
 from math import ceil
 
 import numpy as np
 
 from lab.accuracy import LEVELS, check_forced
+from lab.drawn import classes, draw_shapes
 from lab.errors import LabError
 from lab.schema import Resolved
 from solvers.filling import NONE_FIXED, DoesNotFit, count_for_depth, headroom, lattice, start_positions
 from solvers.relaxing import relaxed
 from solvers.scene import Scene
+from solvers.shapes.given import Shapes
+from solvers.sizes import Sizes
 from solvers.tank import lining, raised
 
 
@@ -38,11 +42,19 @@ def filling_outline(preset: Resolved) -> np.ndarray:
     outline, grains = np.array(preset.tank.outline), preset.grains
     if grains.listed or grains.region or not preset.run.settle:
         return outline
-    count, largest = grain_count(preset), 0.5 * grains.range[1]
+    count, largest = grain_count(preset), _farthest(preset)
     low = not (grains.surface == "disturbed" or preset.tank.open_edges)
     if low and len(lattice(largest, outline, fixed_grains(preset), _plates(preset))) >= count:
         return outline
     return raised(outline, headroom(count, largest, preset.tank.width))
+
+
+def _farthest(preset: Resolved) -> float:
+    """No grain has an edge farther from its middle than this (m)."""
+    if not preset.shapes:
+        return 0.5 * preset.grains.range[1]
+    alone = [(replace(preset.grains, table=((shape.diameter, 1.0),)), shape) for shape in preset.shapes.values()]
+    return max(0.5 * grains.range[1] * shape.reach for grains, shape in alone)
 
 
 def build(preset: Resolved) -> tuple[Scene, np.ndarray]:
@@ -52,7 +64,7 @@ def build(preset: Resolved) -> tuple[Scene, np.ndarray]:
     step, by the level of accuracy unless given, divides the sampling interval of the series, so samples fall on steps.
     Raises LabError where the grains do not fit or a given step is past the limit.
     """
-    radius, position, motion = _listed(preset) if preset.grains.listed else _filled(preset)
+    radius, position, more = _listed(preset) if preset.grains.listed else _filled(preset)
     low, high = preset.grains.range
     scene = Scene(
         radius=radius,
@@ -75,7 +87,7 @@ def build(preset: Resolved) -> tuple[Scene, np.ndarray]:
         integrator=preset.run.integrator,
         precision=preset.run.precision,
         schedule=preset.run.schedule,
-        **motion,
+        **more,
     )
     scene.step = _step(preset, scene)
     if preset.grains.listed and preset.run.settle:  # without settling it may be meant so
@@ -84,21 +96,37 @@ def build(preset: Resolved) -> tuple[Scene, np.ndarray]:
 
 
 def _filled(preset: Resolved) -> tuple[np.ndarray, np.ndarray, dict]:
-    """Radii (W, n) and positions (W, n, 2) of a tank to be filled, each repeat by its own seed; nothing moves."""
+    """Radii (W, n) and positions (W, n, 2) of a tank to be filled, each repeat by its own seed, and their shapes.
+
+    Nothing moves, and grains of any shape are so far apart that they may turn.
+    """
     grains, count = preset.grains, grain_count(preset)
+    shapes = draw_shapes(preset, count)
     random = [np.random.default_rng(preset.run.seed + w) for w in range(preset.run.repeats)]
-    radius = np.stack([grains.sizes.draw(count, r) for r in random])
+    if shapes is None:
+        radius = reach = np.stack([grains.sizes.draw(count, r) for r in random])
+    else:
+        radius = _sized(preset, shapes, random)
+        reach = radius * np.array([outline.bounding_radius for outline in shapes.outlines])[shapes.which]
     outline, fixed = filling_outline(preset), fixed_grains(preset)
     plates, thrown = _plates(preset), grains.surface == "disturbed"
     region = np.array(grains.region) if grains.region else None
     try:
         position = [
             start_positions(size, outline, r, fixed, plates, thrown, region)
-            for size, r in zip(radius, random, strict=True)
+            for size, r in zip(reach, random, strict=True)
         ]
     except DoesNotFit as error:
         raise LabError(f"grains.{'count' if grains.count else 'depth'}: {error}") from None
-    return radius, np.stack(position), {}
+    return radius, np.stack(position), {"shapes": shapes} if shapes else {}
+
+
+def _sized(preset: Resolved, shapes: Shapes, random: list[np.random.Generator]) -> np.ndarray:
+    """Radii (W, n) of discs of equal area, spread about that of each grain's class."""
+    grains = preset.grains
+    diameter = np.array([shape.diameter for shape in preset.shapes.values()])[classes(preset)][shapes.which]
+    relative = Sizes(((2.0, 1.0),), grains.spread, grains.distribution == "normal")
+    return 0.5 * diameter * np.stack([relative.draw(shapes.which.shape[1], r) for r in random])
 
 
 def _plates(preset: Resolved) -> list[np.ndarray]:

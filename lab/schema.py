@@ -22,6 +22,7 @@ from lab.outline import Point, area, rectangle, simple_polygon
 from lab.paint.colours import MODES
 from lab.parts import check_parts
 from lab.reader import check_keys, read
+from lab.shapes import Shape, ShapeGiven, by_number, read_shapes
 from lab.units import needed, show
 from solvers.laws import COHESION, NORMAL, ROLLING, TANGENTIAL
 from solvers.materials import Material
@@ -29,6 +30,7 @@ from solvers.motions import MOTIONS
 from solvers.motions.history import History
 from solvers.parts import Part
 from solvers.quantity import Interval, Unit
+from solvers.shapes.given import CONTACTS
 from solvers.sizes import Sizes
 from solvers.tank import top_edges
 
@@ -83,15 +85,18 @@ class GrainsGiven:
     """Spheres in a plane as a preset gives them: so many, or so deep a bed, or a file of single ones.
 
     Diameters are uniform in diameter·(1 ± spread), or normal with the relative standard deviation `spread`, cut at ± 3
-    of these and at a tenth of the diameter, or by a table of [diameter, share by number], each class uniform within
-    ± spread. `surface`, after Spandonidis (2016), section 5.3.1: `solvers/filling.py` says what is done for it.
-    `region`: corners (m) of the part of the tank, such as a funnel in it, in which the grains start.
+    of these and at a tenth of the diameter, or by a table of [diameter, share], each class uniform within ± spread.
+    `shares` of a table or of shapes are by number or by mass. `orientation`: by how much irregular grains are turned
+    at the start (rad). `surface`, after Spandonidis (2016), section 5.3.1: `solvers/filling.py` says what is done for
+    it. `region`: corners (m) of the part of the tank, such as a funnel in it, in which the grains start.
     """
 
     diameter: Length | None = None
     spread: Annotated[float, Interval(ge=0, le=0.5)] = 0.0
     distribution: Literal["uniform", "normal", "table"] = "uniform"
     table: tuple[tuple[Length, Annotated[float, Interval(gt=0)]], ...] | None = None
+    shares: Literal["number", "mass"] = "number"
+    orientation: Annotated[float, Unit("rad")] | Literal["random"] = "random"
     count: Annotated[int, Interval(ge=1, le=1_000_000)] | None = None
     depth: Length | None = None
     surface: Literal["undisturbed", "slightly-disturbed", "disturbed"] = "slightly-disturbed"
@@ -102,7 +107,10 @@ class GrainsGiven:
 
 @dataclass(frozen=True)
 class Grains(GrainsGiven):
-    """The grains in full: `diameter` (m) is the mean, `listed` what `bed` lists: y, z, radius, v_y, v_z, ω in SI."""
+    """The grains in full: `diameter` (m) is the mean, `listed` what `bed` lists: y, z, radius, v_y, v_z, ω in SI.
+
+    The shares in `table` are by number. Of irregular grains it has the diameters and shares of all shapes.
+    """
 
     listed: tuple[tuple[float, float, float, float, float, float], ...] = ()
 
@@ -160,13 +168,18 @@ StiffnessScale = Annotated[float, Interval(gt=0, le=1)]
 
 @dataclass(frozen=True)
 class ContactGiven:
-    """The contact laws, and the factor on Young's moduli that buys larger steps (None: as `run.accuracy` has it)."""
+    """The contact laws, and the factor on Young's moduli that buys larger steps (None: as `run.accuracy` has it).
+
+    `outlines`: the rule by which irregular grains touch; `nodes`: on each outline, for the rule that has nodes.
+    """
 
     normal: Literal[*NORMAL] = "hertz-viscoelastic"
     tangential: Literal[*TANGENTIAL] = "haff-werner"
     rolling: Literal[*ROLLING] = "none"
     cohesion: Literal[*COHESION] = "none"
     stiffness_scale: StiffnessScale | None = None
+    outlines: Literal[*CONTACTS] = "continuous"
+    nodes: Annotated[int, Interval(ge=8, le=2000)] = 120
 
 
 @dataclass(frozen=True)
@@ -266,6 +279,7 @@ class Given:
     quick: str = ""  # how a quick variant differs from its preset
     wall: WallGiven = field(default_factory=WallGiven)
     kinds: dict[str, KindGiven] = field(default_factory=dict)
+    shapes: dict[str, ShapeGiven] = field(default_factory=dict)
     contact: ContactGiven = field(default_factory=ContactGiven)
     motion: MotionGiven = field(default_factory=MotionGiven)
     parts: dict[str, Part] = field(default_factory=dict)
@@ -288,6 +302,7 @@ class Resolved(BaseModel):
     material: Material
     wall: Material
     kinds: dict[str, Kind]
+    shapes: dict[str, Shape] = {}  # recordings of earlier versions have none
     contact: Contact
     motion: Motion
     parts: dict[str, Part]
@@ -304,7 +319,9 @@ def resolve(table: Mapping) -> Resolved:
     check_keys(Given, table)
     given = read(Given, table)
     tank = _tank(given.tank)
-    grains = _grains(given.grains, tank, given.run.settle)
+    (_check_shapely if given.shapes else _check_shapeless)(given)
+    shapes = read_shapes(given.shapes, given.grains.diameter, given.grains.shares)
+    grains = _grains(given.grains, shapes, tank, given.run.settle)
     _check_dissipation(given.material, "material", needed=True)
     _check_dissipation(given.wall, "wall", needed=False)
     _check_cohesion(given.contact.cohesion, given.material)
@@ -322,6 +339,7 @@ def resolve(table: Mapping) -> Resolved:
         material=given.material,
         wall=_over(given.material, given.wall),
         kinds=_kinds(given.kinds, given.material),
+        shapes=shapes,
         contact=_contact(given.contact, run),
         motion=motion,
         parts=given.parts,
@@ -361,7 +379,34 @@ def _outline(given: TankGiven) -> tuple[Point, ...]:
     return rectangle(given.width, given.height)
 
 
-def _grains(given: GrainsGiven, tank: Tank, settle: bool) -> Grains:
+def _check_shapeless(given: Given) -> None:
+    """Raise LabError for what goes with irregular grains alone, where there are none."""
+    said = (
+        ("grains.orientation", given.grains.orientation, GrainsGiven.orientation),
+        ("contact.outlines", given.contact.outlines, ContactGiven.outlines),
+        ("contact.nodes", given.contact.nodes, ContactGiven.nodes),
+    )
+    for key, value, default in said:
+        if value != default:
+            raise LabError(f"{key}: goes with irregular grains; add a table [shapes.NAME], or leave this out.")
+
+
+def _check_shapely(given: Given) -> None:
+    """Raise LabError for what goes with round grains alone, where there are others."""
+    if given.kinds:
+        raise LabError("kinds: irregular grains are of one material; leave out the kinds, or the shapes.")
+    if given.grains.bed is not None:
+        raise LabError("grains.bed: lists round grains; leave out the file, or the shapes.")
+    if given.grains.table is not None:
+        raise LabError("grains.table: shapes have diameters of their own; give these as shapes.NAME.diameter.")
+    if given.grains.surface == "undisturbed":
+        raise LabError(
+            "grains.surface: an undisturbed surface is levelled with round grains; take slightly-disturbed or "
+            "disturbed, or leave out the shapes."
+        )
+
+
+def _grains(given: GrainsGiven, shapes: Mapping[str, Shape], tank: Tank, settle: bool) -> Grains:
     """The grains in full, all sizes known; a file of grains takes the place of all that says how a bed is made."""
     if given.surface != "slightly-disturbed" and not settle:
         raise LabError(f"grains.surface: a bed is {given.surface} by how it settles; leave run.settle true.")
@@ -370,19 +415,29 @@ def _grains(given: GrainsGiven, tank: Tank, settle: bool) -> Grains:
     if (given.distribution == "table") != (given.table is not None):
         got = "no table" if given.table is None else f'distribution = "{given.distribution}"'
         raise LabError(f'grains.table: goes with distribution = "table" (got {got}).')
-    if given.table is None and given.diameter is None:
+    if given.table is None and given.diameter is None and not shapes:
         raise LabError(f"grains.diameter: missing; {needed('m')}.")
     if given.table == ():
         raise LabError('grains.table: at least one class is needed, e.g. [["6 mm", 0.352], ["8 mm", 0.648]].')
+    if given.shares == "mass" and given.table is None and not shapes:
+        raise LabError("grains.shares: goes with shapes, or with a table of sizes.")
     grains = Grains(**asdict(given))
+    classes = tuple((shape.diameter, shape.share) for shape in shapes.values())
     if grains.table is not None:
-        total = sum(share for _, share in grains.table)
-        shares = tuple((diameter, share / total) for diameter, share in grains.table)
-        grains = replace(grains, table=shares, diameter=Sizes(shares).mean)
+        classes = by_number(grains.table, grains.shares)
+    if classes:
+        grains = replace(grains, table=classes, diameter=Sizes(classes).mean)
     if grains.region is not None:
         grains = replace(grains, region=_region(grains))
-    _check_grains(grains, tank)
+    _check_grains(grains, tank, _size_key(grains, shapes))
     return grains
+
+
+def _size_key(grains: Grains, shapes: Mapping[str, Shape]) -> str:
+    """The key that says how large the largest grains are."""
+    if shapes:
+        return f"shapes.{max(shapes, key=lambda name: shapes[name].diameter)}.diameter"
+    return "grains.diameter" if grains.table is None else "grains.table"
 
 
 def _region(grains: Grains) -> tuple[Point, ...]:
@@ -405,17 +460,15 @@ def _listed_grains(given: GrainsGiven, tank: Tank, settle: bool) -> Grains:
     return Grains(diameter=mean, count=len(listed), bed=Path(given.bed).name, reuse_bed=given.reuse_bed, listed=listed)
 
 
-def _check_grains(grains: Grains, tank: Tank) -> None:
+def _check_grains(grains: Grains, tank: Tank, size_key: str) -> None:
     if (grains.count is None) == (grains.depth is None):
         got = "neither" if grains.count is None else "both"
         raise LabError(f"grains.depth: give exactly one of depth and count (got {got}).")
     largest = grains.range[1]
     if largest >= min(tank.width, tank.height):
-        size = show(largest, "m")
-        key = "diameter" if grains.table is None else "table"
-        raise LabError(f"grains.{key}: grains of up to {size} do not fit into the tank.")
+        raise LabError(f"{size_key}: grains of up to {show(largest, 'm')} do not fit into the tank.")
     if tank.width * tank.height > MOST_PLACES * largest**2:
-        raise LabError(f"grains.diameter: grains of up to {show(largest, 'm')} are too small for so large a tank.")
+        raise LabError(f"{size_key}: grains of up to {show(largest, 'm')} are too small for so large a tank.")
     height = show(tank.height, "m")
     if grains.depth is None:
         _check_room(grains, grains.region or tank.outline)
