@@ -15,11 +15,12 @@ import numpy as np
 
 from lab.beds import settled, settling
 from lab.checkpoint import Checkpoint, remove_checkpoint
+from lab.drawn import classes
 from lab.errors import Useless
 from lab.interrupt import Interrupt
 from lab.presets import LoadedPreset
 from lab.progress import Progress
-from lab.recording import BUFFER_BYTES, FLUSH_EVERY, Recorder, new_recording
+from lab.recording import BUFFER_BYTES, FLUSH_EVERY, Outlines, Recorder, new_recording
 from lab.scene import build
 from lab.units import show
 from solvers.errors import BadState
@@ -72,6 +73,7 @@ class Run:
             fixed=scene.fixed,
             open_edges=scene.open_edges,
             parts={name: part.points for name, part in preset.parts.items()},
+            shapes=Outlines(scene.shapes.outlines, classes(preset), scene.shapes.which) if scene.shapes else None,
         )
 
 

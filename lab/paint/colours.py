@@ -109,13 +109,12 @@ def size(beds: Sequence[Bed]) -> Colouring:
 
 def kind(beds: Sequence[Bed]) -> Colouring:
     """The kinds of grains that the preset mixes."""
-    names = beds[0].footage.kinds
+    return _named("kind of grain", beds[0].footage.kinds, lambda bed: bed.footage.kind[bed.world])
 
-    def values(bed: Bed, frame: int) -> np.ndarray:
-        return bed.footage.kind[bed.world] + 0.5
 
-    ticks = {k + 0.5: name for k, name in enumerate(names)}
-    return Colouring("kind of grain", 0.0, len(names), _table("viridis", len(names)), values, ticks)
+def shape(beds: Sequence[Bed]) -> Colouring:
+    """The classes of outlines that the preset mixes."""
+    return _named("shape", beds[0].footage.shape_names, lambda bed: bed.shape)
 
 
 MODES: dict[str, Callable[[Sequence[Bed]], Colouring]] = {
@@ -124,6 +123,7 @@ MODES: dict[str, Callable[[Sequence[Bed]], Colouring]] = {
     "layer": layer,
     "size": size,
     "kind": kind,
+    "shape": shape,
     "spin": spin,
 }
 
@@ -147,6 +147,16 @@ def bed_colours(count: int) -> list[tuple[int, int, int]]:
 
     shades = colormaps["turbo"](np.linspace(0.05, 0.95, count))[:, :3]
     return [tuple(int(205 * part) for part in shade) for shade in shades]  # darkened for white paper
+
+
+def _named(label: str, names: Sequence[str], number: Callable[[Bed], np.ndarray]) -> Colouring:
+    """A colour for each of these names, the grains numbered in their order."""
+
+    def values(bed: Bed, frame: int) -> np.ndarray:
+        return number(bed) + 0.5
+
+    ticks = {k + 0.5: name for k, name in enumerate(names)}
+    return Colouring(label, 0.0, len(names), _table("viridis", len(names)), values, ticks)
 
 
 def _liveliest(beds: Sequence[Bed], values: Callable[[Bed, int], np.ndarray]) -> float:

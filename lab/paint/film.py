@@ -15,7 +15,7 @@ from lab.errors import LabError
 from lab.paint import decorations as deco
 from lab.paint.colours import bed_colours, colouring, mark_colours, spread
 from lab.paint.footage import Bed, Footage
-from lab.paint.painter import Camera, paint_grains, paint_plate, paint_tank, to_discs
+from lab.paint.painter import Camera, Edges, paint_grains, paint_plate, paint_tank, to_discs
 from lab.schema import Video
 
 FALLBACK = asdict(Video())
@@ -87,6 +87,7 @@ class Film:
         self._named = any(bed.name for bed in self._beds)
         self._hues = deco.SERIES if len(self._beds) <= len(deco.SERIES) else bed_colours(len(self._beds))
         self._colouring = colouring(look.colour, self._beds)
+        self._sorts = _sort_by_shape(self._beds)
         self._grounds = self._find_grounds()
         self._cameras, self._names_at, self._name_width = self._place_beds()
         self._plot, self._samples = self._prepare_plot()
@@ -237,8 +238,9 @@ class Film:
             colours.append(self._colouring.colours(bed, row))
             for line in bed.plates(row):
                 paint_plate(picture, camera, line, PLATE * self._unit, deco.PART)
-        colour = np.concatenate(colours)
-        paint_grains(picture, np.concatenate(discs), colour, mark_colours(colour))
+        for painted, edges in self._sorts:
+            colour = np.concatenate([colours[k] for k in painted])
+            paint_grains(picture, np.concatenate([discs[k] for k in painted]), colour, mark_colours(colour), edges)
 
     def _on_ground(self, k: int, position: np.ndarray, pose: np.ndarray) -> np.ndarray:
         """Grain places (n, 2), NaN for those that have fallen off the ground shown of bed k."""
@@ -308,6 +310,14 @@ def _quantity(beds: Sequence[Bed]) -> tuple[str, Callable[[Bed], np.ndarray]]:
         return (centre - centre[0]) / bed.diameter
 
     return f"shift Δ{'yz'[axis]} (diameters)", shift
+
+
+def _sort_by_shape(beds: Sequence[Bed]) -> list[tuple[list[int], Edges | None]]:
+    """Numbers of the beds of discs, and of those of irregular grains with the edges of all these, as far as any are."""
+    round_ones = [k for k, bed in enumerate(beds) if bed.edges is None]
+    others = [k for k, bed in enumerate(beds) if bed.edges is not None]
+    groups = [(round_ones, None)] if round_ones else []
+    return [*groups, (others, Edges.joined([beds[k].edges for k in others]))] if others else groups
 
 
 def _paint_fixed(picture: np.ndarray, bed: Bed, camera: Camera) -> None:

@@ -3,11 +3,13 @@
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
 
 from lab.errors import LabError
+from lab.paint.painter import Edges
 from lab.recording import Recording, open_recording
 
 
@@ -15,9 +17,9 @@ class Footage:
     """F frames and T samples of W worlds with n grains each, in a tank with k fixed grains and P moving parts.
 
     time (F,) s, pose (F, W, 3) m, m, rad; series_time (T,), series_pose (T, W, 3), centre_of_mass (T, W, 2) m;
-    spilled (T, W) grains; radius (W, n) m; kind (W, n); kinds: their names; outline (m, 2) m; open_edges: those
-    without a wall; fixed (k, 3) y, z, radius m; parts: polylines at rest (m, 2) m by name; part (F, W, P, 2): their
-    displacements, m;
+    spilled (T, W) grains; radius (W, n) m; kind (W, n); kinds: their names; shapes: the outlines of irregular grains,
+    None where all are discs; shape_names: of their classes; outline (m, 2) m; open_edges: those without a wall;
+    fixed (k, 3) y, z, radius m; parts: polylines at rest (m, 2) m by name; part (F, W, P, 2): their displacements, m;
     settings: the preset's [video]; title. Raises LabError when there is no frame or no sample.
     """
 
@@ -30,6 +32,8 @@ class Footage:
         self.centre_of_mass, self.spilled = series["centre_of_mass"], series["spilled"]
         self.radius, self.outline, self.kind = recording.radius, recording.outline, recording.kind
         self.kinds = ["the rest", *(recording.preset.get("kinds") or {})]
+        self.shapes = recording.shapes
+        self.shape_names = list(recording.preset.get("shapes") or {}) if self.shapes else ["disc"]
         self.open_edges, self.fixed, self.parts = recording.open_edges, recording.fixed, recording.parts
         self.settings = recording.preset.get("video") or {}
         self.title = recording.preset.get("title") or recording.name
@@ -75,6 +79,21 @@ class Bed:
     def diameter(self) -> float:
         """Mean grain diameter, m."""
         return 2.0 * float(self.radius.mean())
+
+    @cached_property
+    def edges(self) -> Edges | None:
+        """The edges of irregular grains, None where all are discs."""
+        shapes = self.footage.shapes
+        if shapes is None:
+            return None
+        used, which = np.unique(shapes.which[self.world], return_inverse=True)
+        return Edges.of([shapes.contours[k] for k in used], which)
+
+    @property
+    def shape(self) -> np.ndarray:
+        """The class of each grain's outline (n,), a number in the order of the footage's names of shapes."""
+        shapes = self.footage.shapes
+        return shapes.kind[shapes.which[self.world]] if shapes else np.zeros(len(self.radius), dtype=int)
 
     def position(self, frame: int) -> np.ndarray:
         """Grain positions (n, 2) in the tank frame, m; NaN for a grain that has left the scene."""

@@ -11,6 +11,7 @@ import numpy as np
 
 from lab.errors import LabError, Useless
 from lab.recording.layout import A_MOMENT, FILE_NAME, FORMAT, PATIENCE, create_table, sentence, table_shapes
+from lab.recording.outlines import GROUP, read_outlines
 
 
 class Recording:
@@ -19,7 +20,8 @@ class Recording:
     path, folder; name: of the preset; given: its TOML text; preset: all its values in SI, nested as
     in the TOML; status, created, versions, machine, step (s), wall_s, grain_steps;
     radius (W, n) m; kind (W, n), 0 of the preset's material and further numbers in the order of its kinds;
-    outline (m, 2) m; fixed (k, 3) y, z, radius m; open_edges; parts, polylines (m, 2) m by name.
+    outline (m, 2) m; fixed (k, 3) y, z, radius m; open_edges; parts, polylines (m, 2) m by name;
+    shapes: the Outlines of irregular grains, None where all are discs.
     series: "time" (T,) s and the names of SERIES, whole arrays (T, W, ...).
     frames: "time" (F,) s and the names of GRAIN_FRAMES and WORLD_FRAMES, (F, W, ...), read from the
     file by indexing: `recording.frames["position"][-1]`.
@@ -50,6 +52,7 @@ class Recording:
             self.outline, self.fixed = tank["outline"][:], tank["fixed"][:]
             self.open_edges = tuple(int(edge) for edge in tank["open_edges"][:])
             self.parts = {name: line[:] for name, line in tank["parts"].items()}
+            self.shapes = read_outlines(self._file[GROUP]) if GROUP in self._file else None
             self._check_contents()
             shapes = table_shapes(*self.radius.shape, len(self.parts))
             self.series = Series(self._file["series"], shapes["series"], self.path)
@@ -66,6 +69,7 @@ class Recording:
             "preset/resolved": isinstance(self.preset, dict),
             "grains/radius": _finite(self.radius, 2) and self.radius.size > 0 and self.radius.min() > 0.0,
             "grains/kind": self.kind.shape == worlds_and_grains and self.kind.dtype == np.uint8,
+            "shapes/which": self.shapes is None or self.shapes.which.shape == worlds_and_grains,
             "tank/outline": _finite(self.outline, 2, columns=2) and len(self.outline) > 2,
             "tank/fixed": _finite(self.fixed, 2, columns=3),
             "tank/open_edges": all(0 <= edge < len(self.outline) for edge in self.open_edges),
@@ -99,8 +103,9 @@ class Recording:
         """Copy everything into an empty file, each table as far as all its arrays go."""
         with _reading(self.path):
             file.attrs.update(self._file.attrs)
-            for name in ("preset", "grains", "tank"):
-                self._file.copy(name, file)
+            for name in ("preset", "grains", "tank", GROUP):
+                if name in self._file:
+                    self._file.copy(name, file)
             for name, table in {"series": self.series, "frames": self.frames}.items():
                 table.copy_into(file.create_group(name))
 

@@ -17,6 +17,7 @@ import numpy as np
 
 from lab.errors import LabError
 from lab.recording.layout import A_MOMENT, FILE_NAME, FORMAT, PATIENCE, create_table, row_bytes, sentence, table_shapes
+from lab.recording.outlines import GROUP, Outlines, outline_tables
 from lab.recording.reader import open_recording
 
 BUFFER_BYTES = 2**25  # kept in memory at most before it is written
@@ -40,6 +41,7 @@ def new_recording(
     fixed: np.ndarray = (),
     open_edges: Sequence[int] = (),
     parts: Mapping[str, np.ndarray] | None = None,
+    shapes: Outlines | None = None,
     machine: Mapping | None = None,
 ) -> Path:
     """Make the recording of a run, without rows yet; returns its file.
@@ -48,12 +50,14 @@ def new_recording(
     resolved: all its values in SI; radius (W, n) m; outline (m, 2) m; step: the time step, s;
     kind (W, n): numbers of the kinds of grains, 0 of the preset's material, or None;
     fixed (k, 3): y, z, radius m of grains that never move; open_edges: outline edges without a wall;
-    parts: moving parts by name, polylines at rest (m, 2) m; machine: what runs it (added to what is
-    found out here). The file appears under its name when it is whole, so that it is readable from then
-    on. Raises LabError when the folder cannot be written, is full, or already holds a recording.
+    parts: moving parts by name, polylines at rest (m, 2) m; shapes: outlines of irregular grains, None
+    where all are discs; machine: what runs it (added to what is found out here). The file appears under
+    its name when it is whole, so that it is readable from then on. Raises LabError when the folder
+    cannot be written, is full, or already holds a recording.
     """
     path = Path(folder) / FILE_NAME
     radius, parts = np.asarray(radius, dtype=float), parts or {}
+    tables = outline_tables(shapes) if shapes else {}
     attributes = {
         "format": FORMAT,
         "preset": preset,
@@ -70,7 +74,8 @@ def new_recording(
         if path.exists():
             raise FileExistsError(path)
         with h5py.File(_unfinished(path), "w", libver="latest") as file:
-            _reserve(file, radius.nbytes + len(given) + SPARE_BYTES)
+            tables_bytes = sum(table.nbytes for table in tables.values())
+            _reserve(file, radius.nbytes + tables_bytes + len(given) + SPARE_BYTES)
             file.attrs.update(attributes)
             file["preset/given"] = given
             file["preset/resolved"] = json.dumps(resolved)
@@ -82,8 +87,10 @@ def new_recording(
             group = file.create_group("tank/parts", track_order=True)
             for name, line in parts.items():
                 group[name] = np.asarray(line, dtype=float)
-            for name, shapes in table_shapes(*radius.shape, len(parts)).items():
-                create_table(file.create_group(name), shapes)
+            for name, table in tables.items():
+                file[f"{GROUP}/{name}"] = table
+            for name, rows in table_shapes(*radius.shape, len(parts)).items():
+                create_table(file.create_group(name), rows)
         _publish(path)
     return path
 

@@ -1,0 +1,56 @@
+"""The outlines of irregular grains in a recording: their Fourier descriptors, and which outline each grain has."""
+
+from dataclasses import dataclass
+
+import h5py
+import numpy as np
+
+from solvers.shapes.contour import Contour
+
+GROUP = "shapes"
+
+
+@dataclass(frozen=True)
+class Outlines:
+    """K outlines about their centroids, with the area of a disc of radius 1.
+
+    `kind` (K,): the class of each, a number in the order of the preset's shapes; `which` (W, n): the outline of each
+    grain, as many times as large as its radius says.
+    """
+
+    contours: tuple[Contour, ...]
+    kind: np.ndarray
+    which: np.ndarray
+
+
+def outline_tables(outlines: Outlines) -> dict[str, np.ndarray]:
+    """The arrays that are stored: `radius` (K,) R0, `descriptors` (K, N), `phases` (K, N) rad, `kind`, `which`.
+
+    Outlines of fewer descriptors than N have zeros in the place of the rest.
+    """
+    most = max(len(contour.descriptors) for contour in outlines.contours)
+    filled = {name: np.zeros((len(outlines.contours), most)) for name in ("descriptors", "phases")}
+    for name, rows in filled.items():
+        for row, contour in zip(rows, outlines.contours, strict=True):
+            row[: len(contour.descriptors)] = getattr(contour, name)
+    return {
+        "radius": np.array([contour.radius for contour in outlines.contours]),
+        **filled,
+        "kind": np.asarray(outlines.kind, dtype="u2"),
+        "which": np.asarray(outlines.which, dtype="i4"),
+    }
+
+
+def read_outlines(group: h5py.Group) -> Outlines:
+    """The outlines that `outline_tables` has made tables of. Raises KeyError or ValueError where they are none."""
+    tables = {name: group[name][:] for name in ("radius", "descriptors", "phases", "kind", "which")}
+    kind, which = tables["kind"], tables["which"]
+    if len(kind) != len(tables["radius"]) or which.size == 0 or not 0 <= which.min() <= which.max() < len(kind):
+        raise ValueError(f"{group.name} is not what the lab writes there")
+    rows = zip(tables["radius"], tables["descriptors"], tables["phases"], strict=True)
+    return Outlines(tuple(Contour(float(r), d[: _needed(d)], p[: _needed(d)]) for r, d, p in rows), kind, which)
+
+
+def _needed(descriptors: np.ndarray) -> int:
+    """How many descriptors there are before those that are all zero."""
+    return int(np.flatnonzero(descriptors)[-1]) + 1 if np.any(descriptors) else 0
