@@ -2,12 +2,16 @@
 
 from math import pi
 
+import numpy as np
+
 from lab.accuracy import LEVELS
 from lab.presets import LoadedPreset
 from lab.scene import build
+from lab.shapes import Shape
 from lab.units import show
 from solvers.laws import COHESION
 from solvers.runtime import available_cores
+from solvers.shapes.given import Shapes
 from solvers.simulation import Simulation
 
 # Grain-steps a second of one core on settled beds (README, "Speed"); only the estimate of the run time rests on it.
@@ -56,6 +60,7 @@ def _scene(preset, scene) -> list[tuple[str, str]]:
     rows += [
         ("repeats", f"{worlds}, seeds {preset.run.seed} to {preset.run.seed + worlds - 1}"),
         ("grains", f"{count} in each, {show(small, 'm')} to {show(large, 'm')}"),
+        *(("shape", _shape(name, shape)) for name, shape in preset.shapes.items()),
         ("bed", _bed(preset)),
         ("tank", _tank(preset, scene)),
         ("friction", f"{pair.friction:g} between grains, {wall.friction:g} on walls"),
@@ -68,12 +73,23 @@ def _scene(preset, scene) -> list[tuple[str, str]]:
     return rows
 
 
+def _shape(name: str, shape: Shape) -> str:
+    """What is known of a class of outlines."""
+    outlines = f"{len(shape.descriptors)} descriptors" if np.any(shape.descriptors) else "a disc"
+    if shape.random:
+        outlines += f", phases at random, {shape.draws} outlines a repeat"
+    return f"{100 * shape.share:.3g} % {name}, the area of a disc of {show(shape.diameter, 'm')}: {outlines}"
+
+
 def _bed(preset) -> str:
     grains, what = preset.grains, []
     what.append(
         f"listed in {grains.bed}" if grains.listed else f"poured, its surface {grains.surface.replace('-', ' ')}"
     )
     what.append("settled first" if preset.run.settle else "not settled")
+    if preset.shapes:
+        turned = grains.orientation
+        what.append("turned at random" if turned == "random" else f"all turned by {show(turned, 'rad')} at the start")
     what += [f"{100 * kind.share:g} % {name}" for name, kind in preset.kinds.items()]
     return ", ".join(what)
 
@@ -123,6 +139,8 @@ def _parts(simulation: Simulation) -> list[tuple[str, str]]:
     if frame.rotating:
         terms += ", Euler, centrifugal and Coriolis terms"
     laws = [("normal law", scene.normal), ("tangential law", scene.tangential)]
+    if scene.shapes:
+        laws.insert(0, ("outlines", _outlines(scene.shapes)))
     if scene.rolling != "none":
         laws.append(("rolling law", scene.rolling))
     if scene.cohesion != "none":
@@ -137,6 +155,11 @@ def _parts(simulation: Simulation) -> list[tuple[str, str]]:
         ("schedule", f"{SCHEDULES[simulation.schedule_name]}, on {simulation.arch}"),
         ("skin", f"{show(simulation.skin, 'm')} of the neighbour lists"),
     ]
+
+
+def _outlines(shapes: Shapes) -> str:
+    rule = f"{shapes.nodes} nodes on each" if shapes.contact == "nodes" else shapes.contact
+    return f"{len(shapes.outlines)} different ones, {rule}"
 
 
 def _cohesion(scene) -> str:

@@ -191,6 +191,10 @@ def _scene(recording: Recording) -> Iterator[str]:
     low, high = show(2 * recording.radius.min(), "m"), show(2 * recording.radius.max(), "m")
     size = low if low == high else f"{low} to {high}"
     yield f"{_count(worlds, 'bed')} of {_count(count, 'grain')}, {size} in diameter"
+    shapes = recording.preset.get("shapes") or {}
+    if shapes:
+        parts = [f"{100 * shape['share']:.3g} % {name}" for name, shape in shapes.items()]
+        yield f"irregular grains, diameters those of discs of equal area: {', '.join(parts)}"
     width, height = (show(extent, "m") for extent in np.ptp(recording.outline, axis=0))
     lidless = ", open at the top" if recording.open_edges else ""
     rough = ", its walls lined with fixed grains" if len(recording.fixed) else ""

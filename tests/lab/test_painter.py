@@ -3,8 +3,10 @@
 import numpy as np
 import pytest
 
-from lab.paint.painter import Camera, paint_grains, paint_plate, paint_tank, to_discs
+from lab.paint.painter import Camera, Edges, paint_grains, paint_plate, paint_tank, to_discs
 from solvers.runtime import initialise
+from solvers.shapes.cargo import cargo, cargoes
+from solvers.shapes.contour import Contour
 
 WHITE, BLACK = 255.0, 0.0
 
@@ -14,13 +16,18 @@ def _taichi():
     initialise()
 
 
-def painted(discs, colour=BLACK, mark=BLACK, size=(64, 96)):
-    """A white picture with discs (x, y, radius, mark right, mark down) on it."""
+def painted(discs, colour=BLACK, mark=BLACK, size=(64, 96), edges=None):
+    """A white picture with discs (x, y, radius, mark right, mark down) on it, or outlines of these sizes."""
     picture = np.full((*size, 3), 255, dtype=np.uint8)
     discs = np.atleast_2d(np.asarray(discs, dtype=float))
     shape = len(discs), 3
-    paint_grains(picture, discs, np.full(shape, colour), np.full(shape, mark))
+    paint_grains(picture, discs, np.full(shape, colour), np.full(shape, mark), edges)
     return picture
+
+
+def outline(name):
+    """An outline of a cargo with the area of a disc of radius 1."""
+    return cargo(name).outline(np.random.default_rng(1), 2.0)
 
 
 def area(picture):
@@ -52,6 +59,56 @@ def test_where_discs_overlap_the_first_is_seen():
     first, second = [40.0, 30.0, 20.0, 1, 0], [44.0, 30.0, 12.0, 0, 1]
     once, both = painted([first], 90.0, 250.0), painted([first, second], 90.0, 250.0)
     np.testing.assert_array_equal(both, once)
+
+
+@pytest.mark.parametrize("name", cargoes())
+def test_an_outline_covers_its_area_however_it_is_turned(name):
+    random = np.random.default_rng(5)
+    edges, radius = Edges.of([outline(name)], np.zeros(1, dtype=int)), 14.0
+    for angle in random.uniform(0, 2 * np.pi, 6):
+        disc = [*random.uniform(31.5, 32.5, 2), radius, np.cos(angle), np.sin(angle)]
+        assert area(painted(disc, edges=edges)) == pytest.approx(np.pi * radius**2, abs=1.0)
+
+
+def test_an_outline_lies_where_its_points_do():
+    contour = outline("beans")
+    camera, angle, radius = Camera(1000.0, (46.3, 31.1), 0.4), 1.9, 0.016
+    disc = to_discs(camera, np.zeros((1, 2)), np.array([radius]), np.array([angle]))
+    there = painted(disc, edges=Edges.of([contour], np.zeros(1, dtype=int)))[..., 0]
+    finer = 6  # each pixel is asked so many times across and down whether it is inside
+    right, down = np.meshgrid((np.arange(96 * finer) + 0.5) / finer, (np.arange(64 * finer) + 0.5) / finer)
+    y, z = (right - 46.3) / 1000.0, (31.1 - down) / 1000.0
+    inside = np.hypot(y, z) < radius * contour.polar(np.arctan2(z, y) - angle - 0.4)
+    share = inside.reshape(64, finer, 96, finer).mean(axis=(1, 3))
+    np.testing.assert_allclose(1.0 - there / 255.0, share, atol=0.12)
+
+
+def test_small_outlines_cover_their_area_on_average():
+    random = np.random.default_rng(6)
+    places = 6.0 + 12.0 * np.stack(np.meshgrid(np.arange(7), np.arange(5)), -1).reshape(-1, 2)
+    angle = random.uniform(0, 2 * np.pi, len(places))
+    edges = Edges.of([outline("corn"), outline("soybeans")], np.arange(len(places)) % 2)
+    for radius in (0.3, 0.8, 2.0):
+        put = places + random.uniform(0, 1, places.shape)
+        discs = np.column_stack([put, np.full(len(put), radius), np.cos(angle), np.sin(angle)])
+        assert area(painted(discs, edges=edges)) / len(put) == pytest.approx(np.pi * radius**2, rel=0.05)
+
+
+def test_a_round_outline_looks_like_a_disc():
+    random = np.random.default_rng(7)
+    place = random.uniform([0, 0], [96, 64], (30, 2))
+    discs = np.column_stack([place, random.uniform(0.3, 12, 30), np.full(30, 0.6), np.full(30, 0.8)])
+    there = painted(discs, 90.0, 250.0, edges=Edges.of([Contour(1.0)], np.zeros(30, dtype=int)))
+    here = painted(discs, 90.0, 250.0)
+    np.testing.assert_allclose(there.astype(int), here.astype(int), atol=3)  # the rim is set off by its width alone
+
+
+def test_outlines_of_several_beds_keep_their_grains():
+    one = Edges.of([outline("rice"), Contour(1.0)], np.array([1, 0, 1]))
+    two = Edges.of([outline("corn")], np.array([0, 0]))
+    both = Edges.joined([one, two])
+    np.testing.assert_array_equal(both.radii[both.which[:3]], one.radii[one.which])
+    np.testing.assert_array_equal(both.radii[both.which[3:]], two.radii[two.which])
 
 
 def test_a_mirrored_scene_gives_the_mirrored_picture():

@@ -223,7 +223,10 @@ def test_a_run_that_still_goes_on_can_be_filmed(tmp_path):
     [
         ({"width": 641}, "641 x 360 pixels cannot be filmed"),
         ({"height": 90}, "640 x 90 pixels cannot be filmed"),
-        ({"colour": "taste"}, "Unknown colour 'taste': choose one of speed, displacement, layer, size, kind, spin"),
+        (
+            {"colour": "taste"},
+            "Unknown colour 'taste': choose one of speed, displacement, layer, size, kind, shape, spin",
+        ),
         ({"frame": "moon"}, "Unknown frame 'moon': choose one of tank, earth"),
         ({"world": 1}, "no world 1 in this recording: choose 0 to 0"),
         ({"speed": 0.0}, "playback speed 0.0"),
