@@ -33,6 +33,8 @@ def draw_shapes(preset: Resolved, count: int) -> Shapes | None:
         angle=np.stack([_angles(preset, count, r) for r in random]),
         contact=preset.contact.outlines,
         nodes=preset.contact.nodes,
+        reach=max(shape.reach for shape in preset.shapes.values()),
+        least_mass=min(shape.least_mass for shape in preset.shapes.values()),
     )
 
 

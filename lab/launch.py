@@ -53,12 +53,7 @@ class Run:
 
     @property
     def sociable(self) -> bool:
-        """Whether it may share a launch at all: a world is cut into bands for as many threads as it has to itself.
-
-        Irregular grains run alone, since scenes are joined without their outlines.
-        """
-        if self.scene.shapes:
-            return False
+        """Whether it may share a launch at all: a world is cut into bands for as many threads as it has to itself."""
         settings, (worlds, count) = self.loaded.resolved.run, self.scene.radius.shape
         arch, threads = choose_arch(settings.arch, settings.precision), settings.threads or available_cores()
         return choose_schedule(settings.schedule, arch, worlds, count, threads) != "per-band"

@@ -17,6 +17,7 @@ from solvers.shapes.fitting import fit
 from solvers.shapes.spectrum import draw, spectrum
 
 MOST_DESCRIPTORS = 100
+TRIED, BELOW = 16, 0.8  # outlines that are drawn to see how easily such grains are turned; what lies below all
 MOST_POINTS = 1000  # of an outline in a file
 DESCRIBED = ("cargo", "descriptors", "contour", "spectrum", "disc")  # the keys of which a class has exactly one
 
@@ -86,6 +87,18 @@ class Shape:
         sizes = np.abs(self.descriptors)
         total, squares = float(sizes.sum()), float(sizes @ sizes)
         return 1.0 + total + float(sizes[:1].sum()) + (1.0 + total / 3.0) * squares
+
+    @property
+    def least_mass(self) -> float:
+        """With what part of its mass a grain resists a push on its outline at least, see `Contour.least_mass`.
+
+        Exact for given phases. For random ones, a little less than the least of some that are drawn with a seed of
+        their own, so that it does not depend on which repeats there are.
+        """
+        if not self.random:
+            return self.outlines()[0].least_mass
+        tried = replace(self, draws=TRIED).outlines(np.random.default_rng(0))
+        return BELOW * min(outline.least_mass for outline in tried)
 
     def outlines(self, random: np.random.Generator | None = None) -> list[Contour]:
         """The outlines of one repeat, centred, with the area of a disc of radius 1. Raises BadOutline."""

@@ -116,10 +116,8 @@ class Scene:
     @property
     def farthest_reach(self) -> float:
         """The farthest (m) that any grain may reach from its centre."""
-        bounding = (
-            max((outline.bounding_radius for outline in self.shapes.outlines), default=1.0) if self.shapes else 1.0
-        )
-        return max(self.sizes[1] * bounding, self.fixed[:, 2].max(initial=0.0))
+        reach = self.shapes.reach if self.shapes else 1.0
+        return max(self.sizes[1] * reach, self.fixed[:, 2].max(initial=0.0))
 
     @property
     def laws(self) -> tuple:
@@ -152,7 +150,7 @@ class Scene:
     def step_limits(self) -> list[Limit]:
         """Bounds on the step, the tightest first; of what Verlet bears, an integrator's `reach`."""
         speed = max(self.credible_speed(), 1e-3)
-        share = min((outline.least_mass for outline in self.shapes.outlines), default=1.0) if self.shapes else 1.0
+        share = self.shapes.least_mass if self.shapes else 1.0
         found: dict[tuple, list[Limit]] = {}
         for grain, rows in zip(self.grain, self.interfaces_of, strict=True):
             for a, b in product(range(self.kinds), repeat=2):

@@ -13,7 +13,8 @@ class Shapes:
 
     `outlines` are about their centroids and have the area of a disc of radius 1; a scene's radii are those of discs of
     equal area. `angle` (W, n) rad is by how much each is turned at the start, counter-clockwise. `contact` is one of
-    CONTACTS; `nodes` are those of an outline for the rule that has nodes.
+    CONTACTS; `nodes` are those of an outline for the rule that has nodes. `reach` and `least_mass` are bounds on the
+    outlines' bounding radius and least mass, their own by default: given where a world must not depend on its company.
     """
 
     outlines: tuple[Contour, ...]
@@ -21,6 +22,14 @@ class Shapes:
     angle: np.ndarray
     contact: str = "continuous"
     nodes: int = 120
+    reach: float | None = None
+    least_mass: float | None = None
+
+    def __post_init__(self):
+        if self.reach is None:
+            object.__setattr__(self, "reach", max(outline.bounding_radius for outline in self.outlines))
+        if self.least_mass is None:
+            object.__setattr__(self, "least_mass", min(outline.least_mass for outline in self.outlines))
 
 
 CONTACTS = ("continuous", "nodes")

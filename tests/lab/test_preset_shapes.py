@@ -305,10 +305,6 @@ def test_discs_and_outlines_are_filmed_side_by_side(tmp_path):
     assert np.asarray(Image.open(both)).std() > 10
 
 
-def test_irregular_grains_share_no_launch(tmp_path):
-    assert prepare(loaded({}), tmp_path).sociable and not prepare(loaded(TWO), tmp_path).sociable
-
-
 def test_explain_tells_the_shapes():
     text = explain(loaded(TWO))
     assert "25 % oval, the area of a disc of 3 mm: 3 descriptors" in text
