@@ -19,6 +19,7 @@ RADIUS = 3e-3
 LEDGE = np.array([[-0.03, 0.0], [0.01, 0.0], [0.01, 0.01], [0.03, 0.01], [0.03, 0.1], [-0.03, 0.1]])
 SOFT = material(young=3e7, restitution=0.6, friction=0.4)
 LOSSLESS = material(young=3e7, friction=0.0, dissipative_time=0.0)
+AXES = 1.5, 1.0 / 1.5  # of an ellipse with the area of a disc of radius 1
 ROUND = Contour(1.0)
 
 
@@ -145,7 +146,6 @@ def test_energy_of_a_smooth_collision_is_kept_with_the_square_of_the_step():
     assert after[0] < 2e-4 and after[1] < after[0] / 4.0
 
 
-AXES = 1.5, 1.0 / 1.5  # of an ellipse with the area of a disc of radius 1
 DEPTH = 0.01 * RADIUS
 CORNER, TOWARDS = np.array([0.01, 0.01]), np.array([-0.6, 0.8])  # between the normals of the ledge's two walls
 ANGLES = (0.0, 0.4, 1.2)  # at which its normal on the corner lies between those
@@ -186,9 +186,12 @@ def test_ellipses_on_a_floor_and_on_a_corner_that_juts_in(contact, floor, corner
 
 @pytest.mark.slow
 def test_schedules_agree():
-    """The same motion to rounding, also of pairs that two bands share."""
+    """Bands to rounding, also of pairs that two share. Grain by grain, contacts are looked for at other times.
+
+    The outlines are convex: of others some contacts come late, the sooner they are looked for the less so.
+    """
     radius, places = loose(4, 3, 4.2 * RADIUS, worlds=2)
-    given = shapes([unit(rice()), unit(corn()), unit(star(5, 0.2))], radius.shape[1], worlds=2)
+    given = shapes([unit(rice()), unit(ellipse(*AXES))], radius.shape[1], worlds=2)
     start = falling(given, places, radius)
     start.advance(5000)
     now, found = start.snapshot(), []
@@ -197,8 +200,8 @@ def test_schedules_agree():
         simulation.advance(600)
         found.append(simulation.snapshot())
     assert simulation.observe()["contacts"].sum() > 3
-    for other in found[1:]:
-        assert np.abs(other["position"] - found[0]["position"]).max() < 1e-9 * RADIUS
+    for other, within in zip(found[1:], (1e-9, 1e-6), strict=True):
+        assert np.abs(other["position"] - found[0]["position"]).max() < within * RADIUS
 
 
 @pytest.mark.slow
