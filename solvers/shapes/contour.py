@@ -130,6 +130,13 @@ class Contour:
         return self.mass(density) * self.equivalent_radius**2 * self.spread / 2.5
 
     @cached_property
+    def convex(self) -> bool:
+        """Whether the outline bends one way only, R² + 2 R'² − R R'' ≥ 0 at all angles that are looked at."""
+        angle = _even(LOOKS * (1 + len(self.descriptors)))
+        radius, slope, bend = (self.polar(angle, order) for order in range(3))
+        return bool((radius**2 + 2.0 * slope**2 - radius * bend).min() >= 0.0)
+
+    @cached_property
     def least_mass(self) -> float:
         """The least mass, relative to its own, with which a grain resists a push along a normal of its outline.
 

@@ -28,6 +28,7 @@ class Tables:
         self.curve = arrays.holding(np.array([curve_cells(outline, self.cells) for outline in outlines]))
         self.radii = arrays.holding(np.array([polar_cells(outline, self.cells) for outline in outlines]))
         self.bounding = arrays.holding(np.array([outline.bounding_radius for outline in outlines]))
+        self.convex = arrays.holding(np.array([float(outline.convex) for outline in outlines]))
         self.smallest = arrays.holding(np.array([outline.smallest_radius for outline in outlines]))
 
     @ti.func

@@ -120,8 +120,27 @@ class Tracked:
         Gives their number, at most as many as there is room for. They are sought from those of LOOKS points of either
         outline at which the distance from the other, by polar radius, has a local minimum.
         """
-        found, points, stride = 0, ti.static(self.looks), ti.static(self.tables.cells // self.looks)
-        for side in range(2):
+        found, sides, points, stride = 0, 2, ti.static(self.looks), ti.static(self.tables.cells // self.looks)
+        if self.tables.convex[shape_i] * self.tables.convex[shape_j] > 0.0:
+            # They have but one contact, which is found from the line of their centres.
+            toward, back = turned_back(turn_i, -apart), turned_back(turn_j, apart)
+            c = self.followed(
+                shape_i,
+                scale_i,
+                turn_i,
+                shape_j,
+                scale_j,
+                turn_j,
+                apart,
+                ti.atan2(toward[1], toward[0]) * (self.tables.cells / (2.0 * pi)),
+                ti.atan2(back[1], back[0]) * (self.tables.cells / (2.0 * pi)),
+            )
+            if c[HOLDS] > 0.0:
+                sides = 0
+                if -c[OVERLAP] < skin:
+                    places_i[row, 0], places_j[row, 0] = c[PLACE_I], c[PLACE_J]
+                    found = 1
+        for side in range(sides):
             swap = side == 1
             shape, other = ti.select(swap, shape_j, shape_i), ti.select(swap, shape_i, shape_j)
             scale, other_scale = ti.select(swap, scale_j, scale_i), ti.select(swap, scale_i, scale_j)
@@ -179,14 +198,10 @@ class Tracked:
         before,
     ):
         """Follow a pair of places to the contact near by, and write it down if it is new; gives how many there are."""
-        found, fresh, a, b = before, False, place_i, place_j
-        for _ in range(TRIES):
-            c = self.contact(True, shape_i, scale_i, turn_i, shape_j, scale_j, turn_j, apart, a, b)
-            settled = self.same(c[PLACE_I], a, SETTLED) and self.same(c[PLACE_J], b, SETTLED)
-            a, b = c[PLACE_I], c[PLACE_J]
-            if settled:
-                fresh = c[HOLDS] > 0.0 and -c[OVERLAP] < skin and before < places_i.shape[1]
-                break
+        found = before
+        c = self.followed(shape_i, scale_i, turn_i, shape_j, scale_j, turn_j, apart, place_i, place_j)
+        a, b = c[PLACE_I], c[PLACE_J]
+        fresh = c[HOLDS] > 0.0 and -c[OVERLAP] < skin and before < places_i.shape[1]
         for k in range(before):
             if self.same(a, places_i[row, k], ALIKE) and self.same(b, places_j[row, k], ALIKE):
                 fresh = False
@@ -194,6 +209,21 @@ class Tracked:
             places_i[row, before], places_j[row, before] = a, b
             found += 1
         return found
+
+    @ti.func
+    def followed(self, shape_i, scale_i, turn_i, shape_j, scale_j, turn_j, apart, place_i, place_j):
+        """The contact to which Newton's method leads from these places; it does not hold where it leads to none."""
+        c = self.contact(False, shape_i, scale_i, turn_i, shape_j, scale_j, turn_j, apart, place_i, place_j)
+        settled = False
+        for _ in range(TRIES):
+            a, b = c[PLACE_I], c[PLACE_J]
+            c = self.contact(True, shape_i, scale_i, turn_i, shape_j, scale_j, turn_j, apart, a, b)
+            settled = self.same(c[PLACE_I], a, SETTLED) and self.same(c[PLACE_J], b, SETTLED)
+            if settled:
+                break
+        if not settled:
+            c[HOLDS] = 0.0
+        return c
 
     @ti.func
     def distance(self, a, b):
