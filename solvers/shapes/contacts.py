@@ -31,7 +31,7 @@ class ShapedContacts(Contacts):
             i, j = ti.min(listed, mate), ti.max(listed, mate)
             c = self.rule.pair(g, pairs, w, i, j, u, p, True)
             if c[HOLDS] == 0.0:
-                self.lists.renew(u)
+                self.lists.lose(pairs, u, p)
                 c[OVERLAP] = -g.reach[w, i]
             ny, nz, overlap = c[NORMAL_Y], c[NORMAL_Z], greater(c[OVERLAP], 0.0)
             # From the middle of the overlap to where the outlines of discs would cross.
@@ -68,7 +68,7 @@ class ShapedContacts(Contacts):
             i, feature = contacts.first_of(u, p), contacts.second_of(u, p)
             c = self.rule.wall(g, contacts, w, i, feature, shift, u, p, True)
             if c[HOLDS] == 0.0:
-                self.lists.renew(u)
+                self.lists.lose(contacts, u, p)
                 c[OVERLAP] = -g.reach[w, i]
             ny, nz, overlap = c[NORMAL_Y], c[NORMAL_Z], greater(c[OVERLAP], 0.0)
             lever_y, lever_z = c[POINT_Y] + 0.5 * overlap * ny, c[POINT_Z] + 0.5 * overlap * nz

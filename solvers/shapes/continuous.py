@@ -32,6 +32,7 @@ from solvers.walls import Walls
 
 ROOM = 8  # contacts of a grain with another, or with one wall, at most
 FIRST, BORN, SECOND = range(3)  # what is remembered of a contact: see Continuous.pair_memory
+LOST = -1.0  # a place that is none
 UNKNOWN = -1.0  # where it has yet to be seen how deep a contact is
 NEAR = 1.0 / 16.0  # of the outlines, together: how far a contact may go between lists and be known again
 
@@ -74,6 +75,8 @@ class Continuous:
     def away(self, contacts: ti.template(), u, q, k):
         """How far (cells) contact q of an old list is from the k-th that has been found of the same two."""
         far = self.tracked.distance(contacts.old_more[FIRST][u, q][0], self.places_first[u, k])
+        if contacts.old_more[FIRST][u, q][0] == LOST:
+            far = 2.0 * self.tables.cells
         if ti.static(len(contacts.more) > SECOND):
             far += self.tracked.distance(contacts.old_more[SECOND][u, q][0], self.places_second[u, k])
         return far
@@ -86,6 +89,16 @@ class Continuous:
             contacts.more[SECOND][u, p][0] = self.places_second[u, k]
         if late:
             contacts.more[BORN][u, p][0] = UNKNOWN
+
+    @ti.func
+    def is_lost(self, contacts: ti.template(), u, p):
+        """Whether contact p has been lost sight of."""
+        return contacts.more[FIRST][u, p][0] == LOST
+
+    @ti.func
+    def lose(self, contacts: ti.template(), u, p):
+        """Remember that it has."""
+        contacts.more[FIRST][u, p][0] = LOST
 
     @ti.func
     def counted(self, contacts: ti.template(), u, p, c: ti.template(), moves: ti.template()):
@@ -108,22 +121,25 @@ class Continuous:
 
         Unless it `moves`, it is looked at where it was found last.
         """
-        c = self.tracked.contact(
-            moves,
-            g.shape[w, i],
-            g.radius[w, i],
-            g.turn(w, i),
-            g.shape[w, j],
-            g.radius[w, j],
-            g.turn(w, j),
-            g.apart(w, i, j),
-            pairs.more[FIRST][u, p][0],
-            pairs.more[SECOND][u, p][0],
-        )
-        if ti.static(moves):
-            pairs.more[FIRST][u, p][0], pairs.more[SECOND][u, p][0] = c[PLACE_I], c[PLACE_J]
-        overlap = self.counted(pairs, u, p, c, moves)
-        return ti.Vector([overlap, c[NORMAL_Y], c[NORMAL_Z], c[POINT_Y], c[POINT_Z], c[HOLDS]])
+        contact = ti.Vector([-g.reach[w, i], 0.0, 0.0, 0.0, 0.0, 0.0])
+        if not self.is_lost(pairs, u, p):
+            c = self.tracked.contact(
+                moves,
+                g.shape[w, i],
+                g.radius[w, i],
+                g.turn(w, i),
+                g.shape[w, j],
+                g.radius[w, j],
+                g.turn(w, j),
+                g.apart(w, i, j),
+                pairs.more[FIRST][u, p][0],
+                pairs.more[SECOND][u, p][0],
+            )
+            if ti.static(moves):
+                pairs.more[FIRST][u, p][0], pairs.more[SECOND][u, p][0] = c[PLACE_I], c[PLACE_J]
+            overlap = self.counted(pairs, u, p, c, moves)
+            contact = ti.Vector([overlap, c[NORMAL_Y], c[NORMAL_Z], c[POINT_Y], c[POINT_Z], c[HOLDS]])
+        return contact
 
     @ti.func
     def seek_wall(self, g: ti.template(), w, i, feature, shift: ti.template(), margin, u):
@@ -188,19 +204,22 @@ class Continuous:
         self, g: ti.template(), contacts: ti.template(), w, i, feature, shift: ti.template(), u, p, moves: ti.template()
     ):
         """Contact p of grain i with a wall, as `pair`; it does not count where it is another feature's."""
-        target = self.target(g, w, i, feature, shift)
-        c = self.against(g, w, i, feature, target, contacts.more[FIRST][u, p][0], moves)
-        if ti.static(moves):
-            contacts.more[FIRST][u, p][0] = c[PLACE_I]
-        normal = turned(g.turn(w, i), ti.Vector([c[NORMAL_Y], c[NORMAL_Z]]))
-        point = turned(g.turn(w, i), ti.Vector([c[POINT_Y], c[POINT_Z]]))
-        counts = self.walls.counts_on_corner(feature, normal[0], normal[1])
-        if feature < self.walls.walls.segments:
-            counts = self.walls.counts_on_segment(feature, shift, g.y[w, i] + point[0], g.z[w, i] + point[1])
-        overlap = self.counted(contacts, u, p, c, moves)
-        if not counts:
-            overlap = -g.reach[w, i]
-        return ti.Vector([overlap, normal[0], normal[1], point[0], point[1], c[HOLDS]])
+        contact = ti.Vector([-g.reach[w, i], 0.0, 0.0, 0.0, 0.0, 0.0])
+        if not self.is_lost(contacts, u, p):
+            target = self.target(g, w, i, feature, shift)
+            c = self.against(g, w, i, feature, target, contacts.more[FIRST][u, p][0], moves)
+            if ti.static(moves):
+                contacts.more[FIRST][u, p][0] = c[PLACE_I]
+            normal = turned(g.turn(w, i), ti.Vector([c[NORMAL_Y], c[NORMAL_Z]]))
+            point = turned(g.turn(w, i), ti.Vector([c[POINT_Y], c[POINT_Z]]))
+            counts = self.walls.counts_on_corner(feature, normal[0], normal[1])
+            if feature < self.walls.walls.segments:
+                counts = self.walls.counts_on_segment(feature, shift, g.y[w, i] + point[0], g.z[w, i] + point[1])
+            overlap = self.counted(contacts, u, p, c, moves)
+            if not counts:
+                overlap = -g.reach[w, i]
+            contact = ti.Vector([overlap, normal[0], normal[1], point[0], point[1], c[HOLDS]])
+        return contact
 
     @ti.func
     def against(self, g: ti.template(), w, i, feature, target, place, moves: ti.template()):

@@ -46,6 +46,15 @@ class Discrete:
         """Nothing is to be remembered of a contact."""
 
     @ti.func
+    def is_lost(self, contacts: ti.template(), u, p):
+        """Whether a contact has been lost sight of: none is."""
+        return False
+
+    @ti.func
+    def lose(self, contacts: ti.template(), u, p):
+        """Remember that it has."""
+
+    @ti.func
     def pair(self, g: ti.template(), pairs: ti.template(), w, i, j, u, p, moves: ti.template()):
         """The contact of grains i and j: overlap (m), normal towards i, point from i's centre (m), 1.0: it holds."""
         c = self.nodes.contact(

@@ -14,6 +14,7 @@ LONGEST = 0.1  # of the lesser bounding radius: the longest step along an outlin
 FLATTEST = 1e-6  # of what two discs have: relative curvature, below which a step is not stretched further
 FACING = -0.9  # cosine between the normals
 CLOSE = 1e-3  # rad between the tangents, and m of offset to m of the lesser bounding radius, of a contact in hand
+STEEPEST = 4.0  # by how much a distance by polar radius may exceed a gap
 DEEP = 0.5  # of the lesser smallest polar radius: an overlap that is none
 SETTLED, ALIKE = 1e-4, 0.05  # cells: the last step to a contact, and by what two ways to the same one may differ
 
@@ -149,6 +150,7 @@ class Tracked:
             centre = turned_back(other_turn, ti.select(swap, -apart, apart))
             spacing = scale * self.tables.bounding[shape] * (2.0 * pi / points)
             far = other_scale * self.tables.bounding[other] + skin + 2.0 * spacing
+            near = STEEPEST * skin + 2.0 * spacing
             earlier, last, last_x, last_y = far, far, far, far
             for k in range(-2, points):
                 at = (k & (points - 1)) * stride
@@ -157,7 +159,7 @@ class Tracked:
                 away = here.norm()
                 if away < far:
                     away -= other_scale * self.tables.radius(other, here[0], here[1])
-                if k >= 0 and last <= earlier and last < away:
+                if k >= 0 and last <= earlier and last < away and last < near:
                     own = 0.0 * scale + (k - 1) * stride
                     facing = ti.atan2(last_y, last_x) * (self.tables.cells / (2.0 * pi))
                     found = self.settle(
