@@ -19,6 +19,7 @@ from solvers.shapes.tables import ERROR, angle_of, cells_for, curve_cells, polar
 COUNT, SOME = 2000, 500  # pairs; those that are looked at one by one
 NODES = 100
 SKIN = 0.1
+SHALLOW = 0.05
 
 
 def mirrored(contour):
@@ -44,7 +45,13 @@ def asked():
 
 @pytest.fixture(scope="module")
 def pairs():
-    return random_pairs(OUTLINES, COUNT, 1, (-0.05, 0.02))
+    return random_pairs(OUTLINES, COUNT, 1, (-0.005, 0.02))
+
+
+@pytest.fixture(scope="module")
+def shallow(asked, pairs):
+    """Which pairs overlap no deeper than grains may: beyond, one contact may have become another's far side."""
+    return asked.by_nodes(pairs)[:, 0] < SHALLOW
 
 
 @pytest.mark.parametrize("name", cargoes())
@@ -88,9 +95,9 @@ def by_all_nodes(first, second):
 def test_few_nodes_are_looked_at_but_the_deepest_is_found(asked, pairs):
     expected = np.array([by_all_nodes(*pairs.placed(OUTLINES, k)) for k in range(SOME)])
     found = asked.by_nodes(pairs)[:SOME]
-    assert 100 < (expected[:, 0] > 0.0).sum() < SOME - 100
-    # The tables' errors: 2e-6 in radii of up to 2 × scale, their slopes, and the choice between nodes equally deep.
-    assert np.abs(found[:, 0] - expected[:, 0]).max() < 4.0 * ERROR
+    assert 100 < (expected[:, 0] > 0.0).sum() < SOME
+    # The tables' errors in radii of up to 2, in slopes, and in the choice between nodes equally deep.
+    assert np.abs(found[:, 0] - expected[:, 0]).max() < 8.0 * ERROR
     same = np.abs(found[:, 3:] - expected[:, 3:]).max(axis=1) < 1e-5
     assert same.sum() > SOME - 3
     assert np.abs(found - expected)[same].max() < 1e-3
@@ -118,9 +125,9 @@ def test_discs():
     number, found = rules.scanned(given, 1e-3)
     assert (number == 1).all()
     overlap = given.scale.sum(axis=1) - distance
-    assert np.abs(found[:, 0, 0] - overlap).max() < 1e-9
-    assert np.abs(found[:, 0, 1:3] + towards).max() < 1e-9
-    assert np.abs(found[:, 0, 3:5] - (given.scale[:, :1] - 0.5 * overlap[:, None]) * towards).max() < 1e-8
+    assert np.abs(found[:, 0, 0] - overlap).max() < 4.0 * ERROR
+    # The table's slopes are off by its error over a quarter of a cell.
+    assert np.abs(found[:, 0, 1:3] + towards).max() < 4.0 * ERROR * rules.tables.cells / (2.0 * np.pi)
     nodes = rules.by_nodes(given)[:, 0]
     small = given.scale.min(axis=1)
     worst = 0.5 * distance * small / given.scale.max(axis=1) * (np.pi / NODES) ** 2
@@ -148,14 +155,17 @@ def overlap_of_ellipses(given, k):
 
 def test_ellipses_against_the_least_overlap_of_their_shadows():
     outlines = [ellipse(*axes) if axes[0] > axes[1] else Contour(axes[0]) for axes in AXES]
-    given = random_pairs(outlines, COUNT, 5, (-0.05, 0.05))
+    given = random_pairs(outlines, COUNT, 5, (-0.01, 0.05))
     number, found = Asked(outlines, COUNT).scanned(given, 1.0)
-    assert (number >= 1).all()
+    tried = 0
     for k in range(0, COUNT, 4):
-        best = found[k, : number[k], 0].argmax()
         overlap, normal = overlap_of_ellipses(given, k)
-        assert found[k, best, 0] == pytest.approx(overlap, abs=1e-5)
-        assert found[k, best, 1:3] == pytest.approx(normal, abs=1e-3)
+        if overlap < SHALLOW:
+            tried += 1
+            assert number[k] == 1  # they are convex
+            assert found[k, 0, 0] == pytest.approx(overlap, abs=1e-5)
+            assert found[k, 0, 1:3] == pytest.approx(normal, abs=1e-3)
+    assert tried > 300
 
 
 def local_gaps(first, second, skin):
@@ -190,7 +200,8 @@ def test_a_scan_finds_every_local_minimum_of_the_gap(asked):
         if are_apart(*placed):
             expected = local_gaps(*placed, SKIN)
             gaps = np.sort(-found[k, : number[k], 0])
-            print(k, given.shape[k], expected, gaps)
+            assert len(gaps) >= len(np.unique(expected.round(6))) and gaps[:1] == pytest.approx(expected[:1], abs=1e-5)
+            assert all(np.abs(gaps - gap).min() < 1e-5 for gap in expected)
             seen, several = seen + len(expected), several + (len(expected) > 1)
     assert seen > 50 and several > 10
 
@@ -200,18 +211,15 @@ def in_order(number, found):
     return np.concatenate([found[k, :n][np.argsort(found[k, :n, 0])][:, :5] for k, n in enumerate(number)])
 
 
-def test_swapped_grains_have_the_same_contacts_with_opposite_normals(asked, pairs):
+def test_swapped_grains_have_the_same_contacts_with_opposite_normals(asked, pairs, shallow):
     apart = pairs.place[:, 0] - pairs.place[:, 1]
     (number, found), (back_number, back) = asked.scanned(pairs, SKIN), asked.scanned(pairs.swapped(), SKIN)
-    same = number == back_number
-    assert same.mean() > 0.99
-    there, other = in_order(number * same, found), in_order(number * same, back)
-    shift = np.repeat(apart, number * same, axis=0)
-    print(
-        np.abs(there[:, 0] - other[:, 0]).max(),
-        np.abs(there[:, 1:3] + other[:, 1:3]).max(),
-        np.abs(there[:, 3:] + shift - other[:, 3:]).max(),
-    )
+    assert np.array_equal(number[shallow], back_number[shallow])
+    there, other = in_order(number * shallow, found), in_order(number * shallow, back)
+    shift = np.repeat(apart, number * shallow, axis=0)
+    assert there[:, 0] == pytest.approx(other[:, 0], abs=1e-8)
+    assert there[:, 1:3] == pytest.approx(-other[:, 1:3], abs=1e-6)
+    assert there[:, 3:] + shift == pytest.approx(other[:, 3:], abs=1e-6)
     nodes, back_nodes = asked.by_nodes(pairs), asked.by_nodes(pairs.swapped())
     touching = nodes[:, 0] > 0.0
     assert back_nodes[:, 0] == pytest.approx(nodes[:, 0], abs=1e-13)
@@ -226,35 +234,30 @@ def test_swapped_grains_have_the_same_contacts_with_opposite_normals(asked, pair
         (lambda pairs: pairs.mirrored(MIRROR), np.diag([-1.0, 1.0])),
     ],
 )
-def test_contacts_turn_and_mirror_with_their_grains(asked, pairs, change, matrix):
+def test_contacts_turn_and_mirror_with_their_grains(asked, pairs, shallow, change, matrix):
     (number, found), (there_number, there) = asked.scanned(pairs, SKIN), asked.scanned(change(pairs), SKIN)
-    same = number == there_number
-    assert same.mean() > 0.99
-    before, after = in_order(number * same, found), in_order(number * same, there)
-    print(np.abs(before[:, 0] - after[:, 0]).max(), np.abs(before[:, 1:3] @ matrix.T - after[:, 1:3]).max())
-    nodes, there_nodes = asked.by_nodes(pairs), asked.by_nodes(change(pairs))
-    print(np.abs(there_nodes[:, 0] - nodes[:, 0]).max())
+    assert np.array_equal(number[shallow], there_number[shallow])
+    before, after = in_order(number * shallow, found), in_order(number * shallow, there)
+    assert after[:, 0] == pytest.approx(before[:, 0], abs=1e-8)
+    assert after[:, 1:3] == pytest.approx(before[:, 1:3] @ matrix.T, abs=1e-6)
+    assert asked.by_nodes(change(pairs))[:, 0] == pytest.approx(asked.by_nodes(pairs)[:, 0], abs=1e-12)
 
 
-def test_the_smooth_rule_and_the_discrete_one_differ_by_the_overlap_squared(asked, pairs):
+def test_the_smooth_rule_and_the_discrete_one_differ_by_the_overlap_squared(asked, pairs, shallow):
     """A shift along the normal makes an overlap exactly so much larger; the polar depth has another second order."""
     number, found = asked.scanned(pairs, SKIN)
-    chosen = np.flatnonzero(number == 1)[:40]
-    worst = []
-    for overlap in (1e-2, 1e-3, 1e-4):
+    chosen, off = np.flatnonzero((number == 1) & shallow)[:40], []
+    for overlap in (1e-2, 1e-3):
         place = pairs.place.copy()
         place[:, 1] += (overlap - found[:, 0, :1]) * found[:, 0, 1:3]
         moved = replace(pairs, place=place)
-        _, at = asked.scanned(moved, SKIN)
-        assert at[chosen, 0, 0] == pytest.approx(overlap, abs=1e-9)
-        deep = [penetrations(*moved.placed(OUTLINES, k)) for k in chosen]
-        print(overlap, [len(d) for d in deep])
-        off = np.array([d[0].overlap - overlap for d in deep])
-        turn = np.array(
-            [np.abs(np.array(d[0].normal) - at[k, 0, 1:3]).max() for k, d in zip(chosen, deep, strict=True)]
-        )
-        worst.append((np.abs(off).max(), np.median(np.abs(off)), turn.max(), np.median(turn)))
-    print(worst)
+        now, at = asked.scanned(moved, SKIN)
+        single = chosen[now[chosen] == 1]
+        assert at[single, 0, 0] == pytest.approx(overlap, abs=1e-6)
+        deep = [penetrations(*moved.placed(OUTLINES, k))[0].overlap for k in single]
+        off.append(np.median(np.abs(np.array(deep) - overlap)))
+    assert len(single) > 20
+    assert off[0] / off[1] == pytest.approx(100.0, rel=0.3)
 
 
 STARTS = ((0.0, 0.0), (0.3, 0.2), (1.2, 0.5), (2.0, -0.3))  # angle (rad) and offset (m) of the second grain
@@ -279,4 +282,7 @@ def test_energy_in_collisions(outline):
         assert np.abs(outcome.momentum).max() < 1e-11
         assert np.abs(outcome.spin - turning).max() < 1e-11
         drift[rule] = np.abs(outcome.energy / (0.5 * momentum * rate).sum(axis=(1, 2)) - 1.0).reshape(len(STARTS), -1)
-    print(drift)
+    tracked, nodes = drift["tracked"].max(axis=0), drift["nodes"].max(axis=0)
+    assert tracked[-1] < 1e-4
+    assert tracked[-1] < 0.05 * tracked[0]
+    assert nodes[-1] > 10.0 * tracked[-1]
