@@ -385,7 +385,7 @@ def verify(cases: tuple[str, ...], out: Path, fast: bool) -> None:
 
 
 @main.command()
-@click.argument("what", type=click.Choice(["granular"]))
+@click.argument("what", metavar="REPORT", type=click.Choice(["granular", "shapes"]))
 @click.argument("experiments", nargs=-1)
 @click.option("--quick", is_flag=True, help="Fewer beds, faster tilts, draft accuracy: under 20 minutes on two cores.")
 @click.option(
@@ -407,11 +407,12 @@ def reproduce(
     cargolab reproduce granular --quick
     cargolab reproduce granular                 hours on two cores; asked again, it goes on
     cargolab reproduce granular tilt-fill stack EXPERIMENTS whose names begin like this
+    cargolab reproduce shapes --quick           those with irregular grains
     cargolab reproduce granular --cluster tcp://node1:8786
     """
     from lab.reproduce import reproduce as reproduced
 
-    click.echo(reproduced(experiments, out, quick, quiet, cluster))
+    click.echo(reproduced(what, experiments, out, quick, quiet, cluster))
 
 
 @main.group()

@@ -1,7 +1,7 @@
-"""cargolab reproduce: every granular experiment of the source, run, and held against what the source states.
+"""cargolab reproduce: every experiment of the source, run, and held against what the source states.
 
-An experiment is a module of this package with an EXPERIMENTS list, and a line in MODULES. Its runs lie in a folder of
-their own and are not run again; one that was cut short is gone on with.
+An experiment is an entry of the EXPERIMENTS list of a module of this package, which has its place in REPORTS. Its runs
+lie in a folder of their own and are not run again; one that was cut short is gone on with.
 """
 
 from collections.abc import Mapping, Sequence
@@ -12,40 +12,43 @@ from lab.cluster import fetch
 from lab.errors import LabError
 from lab.lock import only_one
 from lab.progress import Progress
-from lab.reproduce import heaps, humidity, laws, shaking, tilting, validation
+from lab.reproduce import heaps, humidity, laws, outlines, shaking, tilting, validation
 from lab.reproduce.experiment import Experiment
 from lab.reproduce.report import write_report
 from lab.reproduce.runs import Batch, carry_out, errands
 
-MODULES = (validation, tilting, humidity, laws, shaking, heaps)
-EXPERIMENTS: dict[str, Experiment] = {one.name: one for module in MODULES for one in module.EXPERIMENTS}
+REPORTS = {"granular": (validation, tilting, humidity, laws, shaking, heaps), "shapes": (outlines,)}
+
+
+def experiments(report: str) -> dict[str, Experiment]:
+    """The experiments of a report by name."""
+    return {one.name: one for module in REPORTS[report] for one in module.EXPERIMENTS}
 
 
 def reproduce(
-    names: Sequence[str], out: Path | str, quick: bool, quiet: bool = False, cluster: str | None = None
+    report: str, names: Sequence[str], out: Path | str, quick: bool, quiet: bool = False, cluster: str | None = None
 ) -> Path:
-    """Run the experiments whose names begin like one of `names`, or all, and write the report of all that is there.
+    """Run a report's experiments whose names begin like one of `names`, or all, and write it of all that is there.
 
     cluster: the address of a scheduler whose workers run all that was not begun yet, before anything runs here. The
     report is written anew after each experiment. Returns its file. Raises LabError, one sentence, and
     KeyboardInterrupt; what was run stays.
     """
+    known = experiments(report)
     for name in names:
-        if not any(known.startswith(name) for known in EXPERIMENTS):
-            raise LabError(f"there is no experiment {name}; there are {', '.join(EXPERIMENTS)}.")
+        if not any(one.startswith(name) for one in known):
+            raise LabError(f"there is no experiment {name}; there are {', '.join(known)}.")
     out, work = Path(out), Path(out) / ("quick" if quick else "full")
     progress = Progress(quiet)
-    chosen = [name for name in EXPERIMENTS if not names or name.startswith(tuple(names))]
-    batches = {
-        name: {work / name / key: batch for key, batch in EXPERIMENTS[name].batches(quick).items()} for name in chosen
-    }
+    chosen = [name for name in known if not names or name.startswith(tuple(names))]
+    batches = {name: {work / name / key: batch for key, batch in known[name].batches(quick).items()} for name in chosen}
     if cluster:
         _run_there({at: batch for group in batches.values() for at, batch in group.items()}, cluster, quiet)
     for number, name in enumerate(chosen, start=1):
         progress.say(f"{name} ({number} of {len(chosen)})")
         for folder, batch in batches[name].items():
             carry_out(batch, folder, quiet)
-        page = write_report(EXPERIMENTS, work, out, quick)
+        page = write_report(report, known, work, out, quick)
     return page
 
 

@@ -14,22 +14,26 @@ from lab.reproduce.experiment import Experiment, Told
 from lab.reproduce.runs import Outcome, outcomes
 
 PICTURE = (640, 360)  # pixels
+TITLES = {
+    "granular": "The granular experiments of the source, reproduced",
+    "shapes": "The source's experiments with irregular grains, reproduced",
+}
 VERDICTS = {True: "yes", False: "**no**", None: ""}
 
 
-def write_report(experiments: Mapping[str, Experiment], work: Path, out: Path, quick: bool) -> Path:
-    """Write granular.md (quick: granular-quick.md) and its pictures about all experiments whose runs are done."""
-    page = Page(out, "granular-quick" if quick else "granular", "The granular experiments of the source, reproduced")
+def write_report(name: str, experiments: Mapping[str, Experiment], work: Path, out: Path, quick: bool) -> Path:
+    """Write NAME.md (quick: NAME-quick.md) and its pictures about all experiments whose runs are done."""
+    page = Page(out, f"{name}-quick" if quick else name, TITLES[name])
     done = {}
-    for name, experiment in experiments.items():
-        found = {key: outcomes(work / name / key) for key in experiment.batches(quick)}
+    for one, experiment in experiments.items():
+        found = {key: outcomes(work / one / key) for key in experiment.batches(quick)}
         if all(found.values()):
-            done[name] = found
+            done[one] = found
     with matplotlib.rc_context(STYLE):
-        told = {name: experiments[name].tell(found) for name, found in done.items()}
+        told = {one: experiments[one].tell(found) for one, found in done.items()}
         _overview(page, experiments, told, done, quick)
-        for name, found in done.items():
-            _section(page, experiments[name], told[name], found, quick)
+        for one, found in done.items():
+            _section(page, experiments[one], told[one], found, quick)
     return page.write()
 
 
@@ -44,8 +48,8 @@ def _overview(
             "The quick report: fewer and smaller beds, faster tilts, draft accuracy; each section says what is lost."
         )
     else:
-        page.say(f"""Beds are run at draft accuracy ({LEVELS["draft"].error}) and tilted at 3 deg/s where the source
-            has 0.15 to 3, mostly four where it has up to 12: within the scatter of beds neither shows (`cargolab bench
+        page.say(f"""Beds are run at draft accuracy ({LEVELS["draft"].error}) and mostly tilted at 3 deg/s where the
+            source has 0.15 to 3, often four where it has 12: within the scatter of beds neither shows (`cargolab bench
             accuracy`).""")
     rows = []
     for name, experiment in experiments.items():

@@ -126,11 +126,11 @@ def test_all_experiments_are_sent_at_once_before_anything_runs_here(tmp_path, mo
     done = []
     batches = {"one": Batch("tilting/quick", SINGLE), "two": Batch("tilting/quick", SINGLE, {"run.seed": [1, 2]})}
     tried = Experiment("tried", "A trial", "0.0", "nothing.", lambda quick: batches, None, "", ("one", 1.0))
-    monkeypatch.setattr(package, "EXPERIMENTS", {"tried": tried})
+    monkeypatch.setattr(package, "experiments", lambda _: {"tried": tried})
     monkeypatch.setattr(package, "fetch", lambda errands, address, _: done.append((len(errands), address)))
     monkeypatch.setattr(package, "carry_out", lambda batch, *_: done.append(batch))
     monkeypatch.setattr(package, "write_report", lambda *_: None)
-    package.reproduce([], tmp_path, quick=True, quiet=True, cluster="tcp://node1:8786")
+    package.reproduce("granular", [], tmp_path, quick=True, quiet=True, cluster="tcp://node1:8786")
     assert done == [(2, "tcp://node1:8786"), *batches.values()]
 
 
@@ -194,7 +194,7 @@ def test_an_address_where_nobody_answers_is_named(address, monkeypatch, tmp_path
 def test_a_worker_with_several_threads_is_refused(monkeypatch):
     monkeypatch.setattr(distributed, "get_worker", lambda: SimpleNamespace(state=SimpleNamespace(nthreads=4)))
     with pytest.raises(LabError, match=r"a worker has 4 threads.* start workers with --nthreads 1"):
-        cluster.run_launch([], cluster.Terms(1, "cpu", False, {}))
+        cluster.run_launch([], cluster.Terms(1, "cpu", {}))
 
 
 @pytest.mark.slow

@@ -10,7 +10,7 @@ from lab import reproduce as package
 from lab.errors import LabError
 from lab.measures.value import over_worlds
 from lab.presets import load
-from lab.reproduce import EXPERIMENTS, reproduce, runs
+from lab.reproduce import REPORTS, experiments, reproduce, runs
 from lab.reproduce.experiment import Experiment, Told, counted, observed, ordered, stated
 from lab.reproduce.runs import Batch, Outcome
 from lab.reproduce.shaking import FREQUENCY, onset
@@ -31,6 +31,9 @@ SMALL = {
 def outcome(setting=None, **measures) -> Outcome:
     """A run that gave these values."""
     return Outcome(setting or {}, None, "complete", measures, {"wall_s": 1.0, "grain_steps": 1e6})
+
+
+EXPERIMENTS = {name: one for report in REPORTS for name, one in experiments(report).items()}
 
 
 @pytest.mark.parametrize("name", EXPERIMENTS)
@@ -59,33 +62,33 @@ def test_a_report_has_the_results_and_nothing_is_run_twice(tmp_path, monkeypatch
         "rates": Batch("tilting/quick", SMALL, {"motion.tilt.rate": ["60 deg/s", "90 deg/s"]}),
     }
     tried = Experiment("tried", "A trial", "0.0", "nothing.", lambda quick: batches, tell, "much", ("one", 1.0))
-    monkeypatch.setattr(package, "EXPERIMENTS", {"tried": tried})
-    text = reproduce(["tri"], tmp_path, quick=True, quiet=True).read_text()
+    monkeypatch.setattr(package, "experiments", lambda _: {"tried": tried})
+    text = reproduce("granular", ["tri"], tmp_path, quick=True, quiet=True).read_text()
     assert "## A trial" in text and "Quick: much" in text and "As it is." in text
     assert "(2 beds)" in text and "granular-quick-tried-picture.png" in text
     assert (tmp_path / "granular-quick-tried-picture.png").stat().st_size > 5000
     for name in ("run_preset", "resume_run"):
         monkeypatch.setattr(runs, name, None)
-    assert reproduce([], tmp_path, quick=True, quiet=True).read_text() == text
+    assert reproduce("granular", [], tmp_path, quick=True, quiet=True).read_text() == text
     said, resumed = "stopped: interrupted by the user", []
     summary = tmp_path / "quick" / "tried" / "one" / "summary.json"
     with h5py.File(summary.with_name("recording.h5"), "r+") as file:
         file.attrs["status"] = said
     summary.write_text(json.dumps(json.loads(summary.read_text()) | {"status": said}))
     monkeypatch.setattr(runs, "resume_run", lambda folder, **_: resumed.append(folder))
-    assert "**Not complete** (one): stopped" in reproduce([], tmp_path, quick=True, quiet=True).read_text()
+    assert "**Not complete** (one): stopped" in reproduce("granular", [], tmp_path, quick=True, quiet=True).read_text()
     assert resumed == [summary.parent]
     monkeypatch.setitem(batches, "one", Batch("tilting/quick", {**SMALL, "run.seed": 2}))
     with pytest.raises(LabError, match="holds another run than this experiment asks for: remove it"):
-        reproduce([], tmp_path, quick=True, quiet=True)
+        reproduce("granular", [], tmp_path, quick=True, quiet=True)
 
 
 def test_what_is_not_run_yet_is_said(tmp_path, monkeypatch):
     monkeypatch.setattr(package, "carry_out", lambda *_: None)
-    text = reproduce(["stack"], tmp_path, quick=False, quiet=True).read_text()
-    assert text.count("| not run |") == len(EXPERIMENTS)
+    text = reproduce("granular", ["stack"], tmp_path, quick=False, quiet=True).read_text()
+    assert text.count("| not run |") == len(experiments("granular"))
     with pytest.raises(LabError, match="there is no experiment tilt-x; there are stack-fall, "):
-        reproduce(["tilt-x"], tmp_path, quick=False)
+        reproduce("granular", ["tilt-x"], tmp_path, quick=False)
 
 
 def test_numbers_agree_within_what_is_allowed_and_trends_by_their_order():
