@@ -177,3 +177,20 @@ def test_a_radius_that_only_just_stays_positive_is_an_outline():
 
 def test_equal_outlines_are_equal_and_can_be_keys():
     assert len({Contour(1.0, np.array([0.1]), np.array([0.2])), Contour(1.0, (0.1,), (0.2,)), Contour(1.0)}) == 2
+
+
+def test_an_ellipse_resists_a_push_least_where_its_normal_passes_farthest_from_its_middle():
+    """By a − b, the largest distance of a normal of an ellipse from its centre."""
+    a, b = 2.0, 0.5
+    spread = (a**2 + b**2) / (2.0 * a * b)
+    expected = 1.0 / (1.0 + 2.5 / spread * (a - b) ** 2 / (a * b))
+    assert ellipse(a, b).least_mass == pytest.approx(expected, rel=1e-3)
+    assert Contour(0.7).least_mass == 1.0
+
+
+@pytest.mark.parametrize("lobes", [2, 3, 5, 8])
+def test_a_star_is_convex_up_to_a_height_of_its_lobes(lobes):
+    """Where R = 1 − D is least the curvature is that of 1 − D − n² D."""
+    height = 1.0 / (lobes**2 + 1.0)
+    assert star(lobes, 0.999 * height).convex
+    assert not star(lobes, 1.001 * height).convex
