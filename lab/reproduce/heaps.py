@@ -50,7 +50,8 @@ def batches(quick: bool) -> dict[str, Batch]:
 def cost(says: str, quick: bool) -> dict[str, object]:
     """Twelve heaps of those the source has a number for, fewer of the others."""
     heaps = 12 if says in (PICTURED, EQUAL, BOX) else 4 if "3 d" in says else 6
-    return {"run.accuracy": "draft", "run.repeats": 1 if quick else heaps}
+    less = {} if says == BOX else {"grains.count": 1500}
+    return {"run.accuracy": "draft", **({"run.repeats": 1, **less} if quick else {"run.repeats": heaps})}
 
 
 def tell(found: Mapping[str, Sequence[Outcome]]) -> Told:
@@ -99,7 +100,8 @@ EXPERIMENTS = [
         "less at 50 mm/s; on a narrow base 22.5 deg; a tip of 2 diameters arches.",
         batches,
         tell,
-        "1 heap for 4 to 12, tips of 6 diameters only, none at rest above a wide base, no equal grains, draft accuracy",
+        "1 heap of 1500 grains for 4 to 12 of 2500, tips of 6 diameters only, none at rest above a wide base, no equal "
+        "grains, draft accuracy",
         (PICTURED, 0.6),
     )
 ]

@@ -16,7 +16,7 @@ def batches(quick: bool) -> dict[str, Batch]:
     """Both readings over the humidity, and the same bed dry; two humidities do for the one that has no threshold."""
     ends, between = ["50 %", "90 %"], ["50 %", "60 %", "65 %", "70 %", "80 %", "90 %"]
     runs = {DRY: tilted("tilting/wet", quick, **{"contact.cohesion": "none"})}
-    for says, name in LAWS.items():
+    for says, name in list(LAWS.items())[quick:]:
         humidities = between if name == "wet-rough" and not quick else ends
         runs[says] = Batch(f"tilting/{name}", tilted("", quick).changes, {KEY: humidities})
     return runs
@@ -26,7 +26,7 @@ def tell(found: Mapping[str, Sequence[Outcome]]) -> Told:
     """No effect below some 60 %, by either reading."""
     dry = found[DRY][0]["critical_angle"]
     rows = [observed("dry", "", counted(dry), None)]
-    for says in LAWS:
+    for says in (name for name in LAWS if name in found):
         for one in found[says]:
             angle = one["critical_angle"]
             below = float(str(one.setting[KEY]).split()[0]) < 60.0
@@ -34,7 +34,7 @@ def tell(found: Mapping[str, Sequence[Outcome]]) -> Told:
             scatter = 2.0 * max(dry.std or 0.0, angle.std or 0.0) if same else 0.0
             agrees = abs(angle.value - dry.value) <= scatter if same else None
             rows.append(observed(f"{says}, {one.setting[KEY]}", "as dry" if below else "", counted(angle), agrees))
-    families = {says: found[says] for says in LAWS}
+    families = {says: outcomes for says, outcomes in found.items() if says != DRY}
     figure = against(KEY, "humidity (%)", families, "critical_angle", "critical angle (deg)")
     if dry and dry.value is not None:
         figure.axes[0].axhline(dry.value, color="0.5", ls=":", lw=1.0, label="dry")
@@ -51,7 +51,7 @@ EXPERIMENTS = [
         "below a humidity of about 60 % wet and dry cargo behave alike in the tilting box.",
         batches,
         tell,
-        "2 beds for 4, two humidities for six, 20 deg/s for 3, draft accuracy",
-        ("as printed", 0.8),
+        "the law with asperities only, 2 beds for 4, two humidities for six, 20 deg/s for 3, draft accuracy",
+        ("with asperities of 1 nm", 0.8),
     )
 ]

@@ -18,8 +18,9 @@ Found = Mapping[str, Sequence[Outcome]]
 
 
 def shaken(preset: str, quick: bool, frequencies: Sequence[str] = (), motion: str = "sway", **changes: object) -> Batch:
-    """A preset at draft accuracy, at one frequency or several."""
+    """A preset at draft accuracy, at one frequency or several; single beds of several runs have a core each."""
     cost = {"run.accuracy": "draft", "run.repeats": 1 if quick else 4, "run.duration": "3 s" if quick else "8 s"}
+    cost |= {"run.schedule": "per-world"} if quick else {}
     axes = {f"motion.{motion}.frequency": list(frequencies)} if frequencies else {}
     return Batch(preset, {**cost, **changes}, axes)
 

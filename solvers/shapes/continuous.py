@@ -1,5 +1,7 @@
 """The rule of smooth outlines: contacts along common normals, each followed from step to step."""
 
+from math import pi
+
 import taichi as ti
 
 from solvers.laws.extremes import greater, within
@@ -7,11 +9,11 @@ from solvers.runtime import Arrays
 from solvers.shapes.given import Shapes
 from solvers.shapes.grains import with_disc
 from solvers.shapes.pose import turned, turned_back
-from solvers.shapes.tables import Tables
+from solvers.shapes.tables import TINY, Tables
 from solvers.shapes.tracked import (
     ALIKE,
     CLOSE,
-    FLATTEST,
+    DEEP,
     HOLDS,
     LONGEST,
     NORMAL_Y,
@@ -227,25 +229,24 @@ class Continuous:
 
         The gap to a segment of normal m is least where p' · m = 0, that to a corner q where p' · (p − q) = 0.
         """
-        shape, scale = g.shape[w, i], g.radius[w, i]
-        corner, longest = feature >= self.walls.walls.segments, LONGEST * g.reach[w, i]
+        shape, scale, corner = g.shape[w, i], g.radius[w, i], feature >= self.walls.walls.segments
         a, own = place, scale * self.tables.trace(shape, place)
         s = self.slopes(own, target, corner)
         if ti.static(moves):
-            step = -within(s[0] / (ti.abs(s[1]) + FLATTEST * s[2]), longest / ti.sqrt(s[2]))
+            step = -within(s[0] / (ti.abs(s[1]) + TINY), ti.static(LONGEST * self.tables.cells / (2.0 * pi)))
             a, own = place + step, advanced(own, step)
             s = self.slopes(own, target, corner)
-        size = ti.sqrt(s[2])
-        outward = ti.Vector([own[3], -own[2]]) / size
+        inverse = 1.0 / ti.sqrt(s[2])
+        outward = ti.Vector([own[3], -own[2]]) * inverse
         gap = target[2] + own[0] * target[0] + own[1] * target[1]
-        ny, nz, miss = target[0], target[1], s[0] / size
+        ny, nz, miss = target[0], target[1], s[0] * inverse
         if corner:
             gap = (target[0] - own[0]) * outward[0] + (target[1] - own[1]) * outward[1]
-            ny, nz, miss = -outward[0], -outward[1], s[0] / size / (LONGEST * longest)
+            ny, nz, miss = -outward[0], -outward[1], miss / (scale * self.tables.smallest[shape])
         facing = outward[0] * ny + outward[1] * nz
-        holds = ti.select(s[1] > 0.0 and ti.abs(miss) < CLOSE and facing < 0.0, 1.0, 0.0)
-        a = self.tables.wrapped(a)
-        return ti.Vector([-gap, ny, nz, own[0], own[1], a, 0.0 * a, miss, holds])
+        near = -gap < DEEP * scale * self.tables.smallest[shape]
+        holds = ti.select(near and s[1] > 0.0 and ti.abs(miss) < CLOSE and facing < 0.0, 1.0, 0.0)
+        return ti.Vector([-gap, ny, nz, own[0], own[1], self.tables.wrapped(a), 0.0 * a, holds])
 
     @ti.func
     def slopes(self, own, target, corner):

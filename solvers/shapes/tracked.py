@@ -10,16 +10,15 @@ from solvers.shapes.tables import Tables
 
 LOOKS = 128  # points of an outline from which contacts are sought
 TRIES = 40  # steps to a contact from where it is sought
-LONGEST = 0.1  # of the lesser bounding radius: the longest step along an outline
-FLATTEST = 1e-6  # of what two discs have: relative curvature, below which a step is not stretched further
-FACING = -0.9  # cosine between the normals
-CLOSE = 1e-3  # rad between the tangents, and m of offset to m of the lesser bounding radius, of a contact in hand
+LONGEST = 0.1  # rad by polar angle: the longest step along an outline
+FLATTEST = 1e-5  # of what two discs have: relative curvature, below which a step is not stretched further
+CLOSE = 1e-3  # rad between the tangents, and m of offset to m of the lesser smallest radius, of a contact in hand
 STEEPEST = 4.0  # by how much a distance by polar radius may exceed a gap
 DEEP = 0.5  # of the lesser smallest polar radius: an overlap that is none
 SETTLED, ALIKE = 1e-4, 0.05  # cells: the last step to a contact, and by what two ways to the same one may differ
 
 # Elements of what `contact` gives.
-OVERLAP, NORMAL_Y, NORMAL_Z, POINT_Y, POINT_Z, PLACE_I, PLACE_J, MISS, HOLDS = range(9)
+OVERLAP, NORMAL_Y, NORMAL_Z, POINT_Y, POINT_Z, PLACE_I, PLACE_J, HOLDS = range(8)
 
 
 @ti.data_oriented
@@ -35,6 +34,7 @@ class Tracked:
 
     def __init__(self, tables: Tables):
         self.tables, self.looks = tables, min(LOOKS, tables.cells)
+        self.flattest = FLATTEST * 2.0 * pi / tables.cells
 
     @ti.func
     def contact(
@@ -46,32 +46,30 @@ class Tracked:
 
         `turn` is (cos, sin) of a grain's angle, `apart` the centre of i less that of j (m). Gives overlap ξ (m,
         negative: a gap), normal towards i (y, z), contact point from i's centre (y, z) m, halfway between the two
-        points, the new places, the angle left between the tangents (rad), and 1 if this is a contact: the normals face
-        each other, the gap is at a local minimum, and Newton's method has come CLOSE. Where it is 0 the pair has to be
-        scanned anew.
+        points, the new places, and 1 if this is a contact: the normals face each other, the gap is at a local minimum,
+        and Newton's method has come CLOSE. Where it is 0 the pair has to be scanned anew.
         """
         between, centre = turned_back(turn_j, turn_i), turned_back(turn_j, apart)
-        longest = LONGEST * lesser(scale_i * self.tables.bounding[shape_i], scale_j * self.tables.bounding[shape_j])
         a, b, least = place_i, place_j, 1.0 + 0.0 * scale_i
         first, second = self.seen(shape_i, scale_i, between, a), scale_j * self.tables.trace(shape_j, b)
         if ti.static(moves):
-            step = self.step(first, second, centre, longest)
+            step = self.step(first, second, centre)
             a, b, least = a + step[0], b + step[1], step[2]
             first, second = advanced(first, step[0]), advanced(second, step[1])
         p, q = ti.Vector([first[0], first[1]]), ti.Vector([second[0], second[1]])
-        tangent = ti.Vector([second[2], second[3]]).normalized()
-        along = ti.Vector([first[2], first[3]]).normalized()
+        along, tangent = ti.Vector([first[2], first[3]]), ti.Vector([second[2], second[3]])
+        tangent *= 1.0 / ti.sqrt(tangent.norm_sqr())
         normal = ti.Vector([tangent[1], -tangent[0]])
         gap = centre + p - q
-        offset, miss, facing = gap.dot(tangent), along.cross(tangent), along.dot(tangent)
-        close = ti.abs(offset) < CLOSE / LONGEST * longest and ti.abs(miss) < CLOSE
+        facing = along.dot(tangent)
+        smallest = lesser(scale_i * self.tables.smallest[shape_i], scale_j * self.tables.smallest[shape_j])
+        close = ti.abs(gap.dot(tangent)) < CLOSE * smallest and ti.abs(along.cross(tangent)) < -CLOSE * facing
         # The far sides of two grains have facing normals, too.
-        deep = DEEP * lesser(scale_i * self.tables.smallest[shape_i], scale_j * self.tables.smallest[shape_j])
-        near = -gap.dot(normal) < deep
-        holds = ti.select(close and near and least > 0.0 and facing < FACING, 1.0, 0.0)
+        near = -gap.dot(normal) < DEEP * smallest
+        holds = ti.select(close and near and least > 0.0, 1.0, 0.0)
         n, point = turned(turn_j, normal), turned(turn_j, p - 0.5 * gap)
         a, b = self.tables.wrapped(a), self.tables.wrapped(b)
-        return ti.Vector([-gap.dot(normal), n[0], n[1], point[0], point[1], a, b, miss, holds])
+        return ti.Vector([-gap.dot(normal), n[0], n[1], point[0], point[1], a, b, holds])
 
     @ti.func
     def seen(self, shape, scale, between, place):
@@ -83,22 +81,23 @@ class Tracked:
         return ti.Vector([p[0], p[1], d[0], d[1], e[0], e[1]])
 
     @ti.func
-    def step(self, first, second, centre, longest):
+    def step(self, first, second, centre):
         """Changes of both places, and a number that is positive where the gap has a minimum near by."""
         gap = centre + ti.Vector([first[0] - second[0], first[1] - second[1]])
         d, e = ti.Vector([first[2], first[3]]), ti.Vector([first[4], first[5]])
         g, h = ti.Vector([second[2], second[3]]), ti.Vector([second[4], second[5]])
-        size_i, size_j = d.norm_sqr(), g.norm_sqr()
+        size_j = g.norm_sqr()
         # ∂/∂a and ∂/∂b of d × g and of gap · g.
         turn_a, turn_b = e.cross(g), d.cross(h)
         slide_a, slide_b = d.dot(g), gap.dot(h) - size_j
         curved = slide_b < -0.1 * size_j  # the overlap is less than the radius of curvature of j
-        slide_b = lesser(slide_b, -0.1 * size_j)
-        slope = turn_a - turn_b * slide_a / slide_b
-        flattest = FLATTEST * size_i * ti.sqrt(size_j) / longest
-        rest = -d.cross(g) + turn_b * gap.dot(g) / slide_b
-        change_a = within(rest / greater(ti.abs(slope), flattest), longest / ti.sqrt(size_i))
-        change_b = within(-(gap.dot(g) + slide_a * change_a) / slide_b, longest / ti.sqrt(size_j))
+        inverse = 1.0 / lesser(slide_b, -0.1 * size_j)
+        along = gap.dot(g)
+        slope = turn_a - turn_b * slide_a * inverse
+        rest = -d.cross(g) + turn_b * along * inverse
+        longest = ti.static(LONGEST * self.tables.cells / (2.0 * pi))
+        change_a = within(rest / greater(ti.abs(slope), self.flattest * d.norm_sqr()), longest)
+        change_b = within(-(along + slide_a * change_a) * inverse, longest)
         return ti.Vector([change_a, change_b, ti.select(curved, slope, -1.0)])
 
     @ti.func

@@ -107,7 +107,7 @@ class Collisions:
             for k in range(self.number[p]):
                 c = self.tracked.contact(True, 0, 1.0, first, 0, 1.0, second, apart, self.at_i[p, k], self.at_j[p, k])
                 self.at_i[p, k], self.at_j[p, k] = c[5], c[6]
-                if c[8] > 0.0:
+                if c[7] > 0.0:
                     self.press(p, c, apart)
         else:
             self.press(p, self.nodes.contact(0, 1.0, first, 0, 1.0, second, apart), apart)

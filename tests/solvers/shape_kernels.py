@@ -79,7 +79,7 @@ class Asked:
         (self.apart,) = arrays.reals(1, (count, 2))
         self.at_i, self.at_j = arrays.reals(2, (count, ROOM))
         (self.number,) = arrays.integers(1, (count,))
-        (self.found,) = arrays.reals(1, (count, ROOM, 9))
+        (self.found,) = arrays.reals(1, (count, ROOM, 8))
         arrays.finish()
         self.arrays = arrays
 
@@ -97,7 +97,7 @@ class Asked:
         return self.found.to_numpy()[:, 0, :5]
 
     def scanned(self, pairs: Pairs, skin: float) -> tuple[np.ndarray, np.ndarray]:
-        """How many contacts each pair has (n,), and what they are (n, ROOM, 9)."""
+        """How many contacts each pair has (n,), and what they are (n, ROOM, 8)."""
         self.load(pairs)
         self._scan(skin)
         return self.number.to_numpy(), self.found.to_numpy()
@@ -172,6 +172,6 @@ class Asked:
                 self.at_i[p, k],
                 self.at_j[p, k],
             )
-            for n in ti.static(range(9)):
+            for n in ti.static(range(8)):
                 self.found[p, k, n] = c[n]
             self.at_i[p, k], self.at_j[p, k] = c[5], c[6]

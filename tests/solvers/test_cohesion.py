@@ -174,7 +174,7 @@ def clump(skin: float | None = None, schedule: str = "per-world", units: int = 1
     [
         pytest.param({"schedule": "per-band", "units": 3}, 1e-12, marks=pytest.mark.slow),
         pytest.param({"schedule": "per-grain", "units": 30}, 1e-12, marks=pytest.mark.slow),
-        ({"skin": 2e-5}, 1e-12),
+        pytest.param({"skin": 2e-5}, 1e-12, marks=pytest.mark.slow),
         pytest.param({"precision": "mixed"}, 2e-6, marks=pytest.mark.slow),
     ],
     ids=["bands", "grains", "skin", "mixed"],

@@ -45,6 +45,7 @@ def rotation(angle: float) -> np.ndarray:
     return np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
 
 
+@pytest.mark.slow
 def test_tank_held_at_an_angle_is_a_turned_tank():
     outline, angle = box(0.03, 0.06), -1.1
     turn = rotation(angle)
