@@ -17,7 +17,7 @@ from solvers.shapes.fitting import fit
 from solvers.shapes.spectrum import draw, spectrum
 
 MOST_DESCRIPTORS = 100
-TRIED, BELOW = 16, 0.8  # outlines that are drawn to see how easily such grains are turned; what lies below all
+TRIED, BELOW = 6, 0.75  # outlines that are drawn to see how easily such grains are turned; what lies below all
 MOST_POINTS = 1000  # of an outline in a file
 DESCRIBED = ("cargo", "descriptors", "contour", "spectrum", "disc")  # the keys of which a class has exactly one
 

@@ -104,6 +104,7 @@ def test_a_reused_bed_goes_on_bit_for_bit_as_the_one_that_was_stored():
         one.close()
 
 
+@pytest.mark.slow
 def test_where_parts_stand_does_not_belong_to_a_bed():
     gate = {"points": [["0 mm", "0 mm"], ["0 mm", "30 mm"]], "move": ["0 mm", "-30 mm"], "start": "1 s"}
     parts = {"gate": {**gate, "speed": "1 m/s", "acceleration": "10 m/s^2"}}

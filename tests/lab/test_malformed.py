@@ -296,7 +296,7 @@ def test_a_mangled_preset_is_refused_in_a_sentence_or_can_be_built(folder, sound
 def test_mangled_overrides_are_refused_in_a_sentence_or_can_be_built(folder, times):
     (folder / "rich.toml").write_text(RICH)
 
-    @examples(500 * times)
+    @examples(300 * times)
     @given(st.dictionaries(st.sampled_from(KEYS) | st.text(max_size=9), ODD_TREES, min_size=1, max_size=3))
     def check(overrides):
         tried(folder / "rich.toml", overrides)
@@ -306,7 +306,7 @@ def test_mangled_overrides_are_refused_in_a_sentence_or_can_be_built(folder, tim
 
 @often
 def test_damaged_bytes_of_a_preset_are_refused_in_a_sentence_or_can_be_built(folder, sound, times):
-    @examples(500 * times)
+    @examples(300 * times)
     @given(st.sampled_from(sound), st.data())
     def check(text, data):
         (folder / "bytes.toml").write_bytes(damaged(data.draw, text.encode()))

@@ -234,6 +234,7 @@ def test_an_l_with_two_open_edges_keeps_and_spills(stepped):
 BIN = np.array([[-HALF, 0.0], [0.0, 0.0], [HALF, 0.0], [HALF, HIGH], [-HALF, HIGH]])
 
 
+@pytest.mark.slow
 def test_what_jumps_above_the_mouth_stays_and_what_leaves_by_the_outlet_does_not(monkeypatch):
     """A grain that leaps higher than others are followed comes back; one that falls through the floor is spilled there.
 
