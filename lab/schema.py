@@ -395,6 +395,8 @@ def _check_shapely(given: Given) -> None:
     """Raise LabError for what goes with round grains alone, where there are others."""
     if given.kinds:
         raise LabError("kinds: irregular grains are of one material; leave out the kinds, or the shapes.")
+    if given.contact.cohesion != "none":
+        raise LabError("contact.cohesion: no liquid between irregular grains yet; leave it out, or the shapes.")
     if given.grains.bed is not None:
         raise LabError("grains.bed: lists round grains; leave out the file, or the shapes.")
     if given.grains.table is not None:

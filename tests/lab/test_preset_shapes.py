@@ -86,6 +86,7 @@ def test_a_shape_that_cannot_be_is_refused_by_its_key(shape, key, said):
         ({"grains": {"surface": "undisturbed"}}, "grains.surface"),
         ({"grains": {"distribution": "table", "table": [["3 mm", 1]]}}, "grains.table"),
         ({"kinds": {"stones": {"share": 0.1, "friction": 0.5}}}, "kinds"),
+        ({"contact": {"cohesion": "humid"}, "material": {"humidity": "70 %"}}, "contact.cohesion"),
         ({"contact": {"nodes": 4}}, "contact.nodes"),
         ({"contact": {"outlines": "polygons"}}, "contact.outlines"),
         ({"grains": {"orientation": "30 mm"}}, "grains.orientation"),
