@@ -81,21 +81,7 @@ class ShapedNeighbours(Neighbours):
 
     @ti.func
     def lose(self, contacts: ti.template(), u, p):
-        """Contact p has been lost sight of. Have the lists built anew unless the two have another contact.
-
-        Then it is one of two that have become one as the outlines rolled over each other.
-        """
+        """Contact p has been lost sight of: have the lists built anew before the next step."""
         if not self.rule.is_lost(contacts, u, p):
             self.rule.lose(contacts, u, p)
-            if not (self.is_with(contacts, u, p, p - 1) or self.is_with(contacts, u, p, p + 1)):
-                self.travel[u] = NEVER
-
-    @ti.func
-    def is_with(self, contacts: ti.template(), u, p, other):
-        """Whether another contact is of the same two as contact p, and has not been lost."""
-        here = other >= 0 and other < contacts.length[u]
-        if here:
-            same_grain = contacts.first_of(u, p) == contacts.first_of(u, other)
-            same_mate = contacts.second_of(u, p) == contacts.second_of(u, other)
-            here = same_grain and same_mate and not self.rule.is_lost(contacts, u, other)
-        return here
+            self.travel[u] = NEVER
