@@ -34,7 +34,7 @@ from solvers.walls import Walls
 
 ROOM = 8  # contacts of a grain with another, or with one wall, at most
 FIRST, BORN, SECOND = range(3)  # what is remembered of a contact: see Continuous.pair_memory
-LOST = -1.0  # a place that is none
+LOOSE = 1.0 / 8.0  # what counts of the way that a contact has gone since it was lost sight of
 UNKNOWN = -1.0  # where it has yet to be seen how deep a contact is
 NEAR = 1.0 / 16.0  # of the outlines, together: how far a contact may go between lists and be known again
 
@@ -77,10 +77,10 @@ class Continuous:
     def away(self, contacts: ti.template(), u, q, k):
         """How far (cells) contact q of an old list is from the k-th that has been found of the same two."""
         far = self.tracked.distance(contacts.old_more[FIRST][u, q][0], self.places_first[u, k])
-        if contacts.old_more[FIRST][u, q][0] == LOST:
-            far = 2.0 * self.tables.cells
         if ti.static(len(contacts.more) > SECOND):
             far += self.tracked.distance(contacts.old_more[SECOND][u, q][0], self.places_second[u, k])
+        if contacts.old_more[FIRST][u, q][0] < 0.0:
+            far *= LOOSE
         return far
 
     @ti.func
@@ -95,12 +95,12 @@ class Continuous:
     @ti.func
     def is_lost(self, contacts: ti.template(), u, p):
         """Whether contact p has been lost sight of."""
-        return contacts.more[FIRST][u, p][0] == LOST
+        return contacts.more[FIRST][u, p][0] < 0.0
 
     @ti.func
     def lose(self, contacts: ti.template(), u, p):
-        """Remember that it has."""
-        contacts.more[FIRST][u, p][0] = LOST
+        """Remember that it has: its place, where it was last seen, is said a whole turn too low."""
+        contacts.more[FIRST][u, p][0] = self.tables.wrapped(contacts.more[FIRST][u, p][0]) - self.tables.cells
 
     @ti.func
     def counted(self, contacts: ti.template(), u, p, c: ti.template(), moves: ti.template()):
@@ -137,8 +137,9 @@ class Continuous:
                 pairs.more[FIRST][u, p][0],
                 pairs.more[SECOND][u, p][0],
             )
-            if ti.static(moves):
-                pairs.more[FIRST][u, p][0], pairs.more[SECOND][u, p][0] = c[PLACE_I], c[PLACE_J]
+            if ti.static(moves):  # noqa: SIM102 (compiled only there)
+                if c[HOLDS] > 0.0:
+                    pairs.more[FIRST][u, p][0], pairs.more[SECOND][u, p][0] = c[PLACE_I], c[PLACE_J]
             overlap = self.counted(pairs, u, p, c, moves)
             contact = ti.Vector([overlap, c[NORMAL_Y], c[NORMAL_Z], c[POINT_Y], c[POINT_Z], c[HOLDS]])
         return contact
@@ -210,8 +211,9 @@ class Continuous:
         if not self.is_lost(contacts, u, p):
             target = self.target(g, w, i, feature, shift)
             c = self.against(g, w, i, feature, target, contacts.more[FIRST][u, p][0], moves)
-            if ti.static(moves):
-                contacts.more[FIRST][u, p][0] = c[PLACE_I]
+            if ti.static(moves):  # noqa: SIM102 (compiled only there)
+                if c[HOLDS] > 0.0:
+                    contacts.more[FIRST][u, p][0] = c[PLACE_I]
             normal = turned(g.turn(w, i), ti.Vector([c[NORMAL_Y], c[NORMAL_Z]]))
             point = turned(g.turn(w, i), ti.Vector([c[POINT_Y], c[POINT_Z]]))
             counts = self.walls.counts_on_corner(feature, normal[0], normal[1])
