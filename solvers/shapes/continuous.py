@@ -89,8 +89,8 @@ class Continuous:
         contacts.more[FIRST][u, p][0] = self.places_first[u, k]
         if ti.static(len(contacts.more) > SECOND):
             contacts.more[SECOND][u, p][0] = self.places_second[u, k]
-        if late:
-            contacts.more[BORN][u, p][0] = UNKNOWN
+            if late:  # of two grains alone: what rolls on a wall would sink into it
+                contacts.more[BORN][u, p][0] = UNKNOWN
 
     @ti.func
     def is_lost(self, contacts: ti.template(), u, p):
