@@ -60,6 +60,13 @@ class Progress:
         if self.whole is not None and self.total:
             self.bar.update(self.whole, completed=self.done + self.worth * min(done / self.total, 1.0))
 
+    def count_one(self, sentence: str) -> None:
+        """One more of the whole is done, of which each is worth 1."""
+        self.done += 1.0
+        self.bar.update(self.whole, completed=self.done)
+        left = self.time_left() if self.done < self.whole_total else ""
+        self.say(f"{sentence} ({self.done:.0f} of {self.whole_total:.0f}{left and f', {left}'})")
+
     def count(self, done: int, total: int) -> None:
         """Say how far a stage is whose total was not known at its start."""
         self.bar.update(self.task, completed=done, total=total)

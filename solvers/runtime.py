@@ -46,15 +46,23 @@ def _place(context: ASTTransformerContext, node) -> str:
 
 ASTTransformerContext.get_pos_info = _place
 
+_most_cores = 2**31
 _running: tuple | None = None
 _starts = 0
 _used = False  # whether arrays were made since the last start
 _live: WeakSet["Arrays"] = WeakSet()  # those that have not been released
 
 
+def use_cores(most: int) -> None:
+    """Have `available_cores` say no more than this, in a process that shares the machine with others like it."""
+    global _most_cores
+    _most_cores = most
+
+
 def available_cores() -> int:
     """Cores this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    return min(cores, _most_cores)
 
 
 def choose_arch(wanted: str, precision: str) -> str:

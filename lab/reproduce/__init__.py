@@ -4,6 +4,7 @@ An experiment is an entry of the EXPERIMENTS list of a module of this package, w
 lie in a folder of their own and are not run again; one that was cut short is gone on with.
 """
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
 from pathlib import Path
@@ -15,7 +16,8 @@ from lab.progress import Progress
 from lab.reproduce import heaps, humidity, laws, outlines, shaking, tilting, validation
 from lab.reproduce.experiment import Experiment
 from lab.reproduce.report import write_report
-from lab.reproduce.runs import Batch, carry_out, errands
+from lab.reproduce.runs import Batch, errands
+from lab.reproduce.workers import carry_out_all
 
 REPORTS = {"granular": (validation, tilting, humidity, laws, shaking, heaps), "shapes": (outlines,)}
 
@@ -39,16 +41,15 @@ def reproduce(
         if not any(one.startswith(name) for one in known):
             raise LabError(f"there is no experiment {name}; there are {', '.join(known)}.")
     out, work = Path(out), Path(out) / ("quick" if quick else "full")
-    progress = Progress(quiet)
     chosen = [name for name in known if not names or name.startswith(tuple(names))]
-    batches = {name: {work / name / key: batch for key, batch in known[name].batches(quick).items()} for name in chosen}
+    batches = {work / name / key: batch for name in chosen for key, batch in known[name].batches(quick).items()}
     if cluster:
-        _run_there({at: batch for group in batches.values() for at, batch in group.items()}, cluster, quiet)
-    for number, name in enumerate(chosen, start=1):
-        progress.say(f"{name} ({number} of {len(chosen)})")
-        for folder, batch in batches[name].items():
-            carry_out(batch, folder, quiet)
-        page = write_report(report, known, work, out, quick)
+        _run_there(batches, cluster, quiet)
+    left = Counter(folder.parent.name for folder in batches)
+    for folder in carry_out_all(batches, Progress(quiet)):
+        left[folder.parent.name] -= 1
+        if not left[folder.parent.name]:
+            page = write_report(report, known, work, out, quick)
     return page
 
 

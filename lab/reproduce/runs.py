@@ -11,7 +11,7 @@ from lab.errors import LabError
 from lab.measures.value import Value
 from lab.presets import load
 from lab.recording import FILE_NAME, Recording, open_recording
-from lab.runner import resume_run, run_preset
+from lab.runner import recorded_preset, resume_run, run_preset
 from lab.sweeps import FILE_NAME as SWEEP
 from lab.sweeps import errands as sweep_errands
 from lab.sweeps import point_folder, read_sweep, run_sweep, state_of
@@ -65,8 +65,8 @@ def carry_out(batch: Batch, folder: Path, quiet: bool) -> None:
             run_preset(batch.preset, batch.changes, folder, video=False, plots=False, quiet=quiet)
             return
         with open_recording(folder) as recording:
-            same = recording.preset == json.loads(load(batch.preset, batch.changes).resolved.model_dump_json())
-        if not same:
+            recorded = recorded_preset(recording).resolved
+        if recorded != load(batch.preset, batch.changes).resolved:
             raise LabError(f"{folder} holds another run than this experiment asks for: remove it.")
         if state_of(folder) != "done":
             resume_run(folder, video=False, plots=False, quiet=quiet)

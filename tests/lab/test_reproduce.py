@@ -1,6 +1,10 @@
 """The report on the source's experiments: every batch can be run, results are read as they are, nothing runs twice."""
 
 import json
+import signal
+import subprocess
+import sys
+import time
 
 import h5py
 import numpy as np
@@ -10,12 +14,13 @@ from lab import reproduce as package
 from lab.errors import LabError
 from lab.measures.value import over_worlds
 from lab.presets import load
-from lab.reproduce import REPORTS, experiments, reproduce, runs
+from lab.reproduce import REPORTS, experiments, reproduce, runs, workers
 from lab.reproduce.experiment import Experiment, Told, counted, observed, ordered, stated
 from lab.reproduce.runs import Batch, Outcome
 from lab.reproduce.shaking import FREQUENCY, onset
 from lab.scene import build
 from lab.sweeps import ask
+from solvers import runtime
 
 SMALL = {
     "tank.width": "30 mm",
@@ -53,6 +58,8 @@ def test_every_batch_of_every_experiment_can_be_built(name):
 
 @pytest.mark.slow
 def test_a_report_has_the_results_and_nothing_is_run_twice(tmp_path, monkeypatch):
+    monkeypatch.setattr(runtime, "available_cores", lambda: 1)  # all in this process
+
     def tell(found):
         numbers = [one["contact_number_start"] for one in found["rates"]]
         return Told([observed("contacts", "none", ", ".join(map(counted, numbers)), None)], remark="As it is.")
@@ -83,8 +90,27 @@ def test_a_report_has_the_results_and_nothing_is_run_twice(tmp_path, monkeypatch
         reproduce("granular", [], tmp_path, quick=True, quiet=True)
 
 
+@pytest.mark.slow
+def test_batches_run_side_by_side_stop_and_go_on(tmp_path):
+    """By Ctrl-C to the process that gives out the work, as by a person; workers save what they have, and none stays."""
+    ask_for = [sys.executable, "-m", "lab", "reproduce", "granular", "stack", "swelling", "--quick", "--out", tmp_path]
+    process = subprocess.Popen(ask_for, stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
+    begun = [tmp_path / "quick" / name / "checkpoint.npz" for name in ("stack-fall/stack", "swelling/shaken")]
+    deadline = time.monotonic() + 300.0
+    while not all(path.exists() for path in begun) and time.monotonic() < deadline:
+        time.sleep(0.2)
+    process.send_signal(signal.SIGINT)
+    assert process.wait(60.0) != 0
+    before = [h5py.File(path.with_name("recording.h5"))["series/time"].shape[0] for path in begun]
+    assert min(before) > 0
+    subprocess.run(ask_for, check=True, capture_output=True, timeout=300.0)
+    text = (tmp_path / "granular-quick.md").read_text()
+    assert "## Guided fall" in text and "## Swelling" in text and "Not complete" not in text
+
+
 def test_what_is_not_run_yet_is_said(tmp_path, monkeypatch):
-    monkeypatch.setattr(package, "carry_out", lambda *_: None)
+    monkeypatch.setattr(workers, "carry_out", lambda *_: None)
+    monkeypatch.setattr(runtime, "available_cores", lambda: 1)
     text = reproduce("granular", ["stack"], tmp_path, quick=False, quiet=True).read_text()
     assert text.count("| not run |") == len(experiments("granular"))
     with pytest.raises(LabError, match="there is no experiment tilt-x; there are stack-fall, "):
