@@ -49,12 +49,13 @@ class ContactList:
         self.memory = arrays.vectors(len(memory), lanes, shape, across)
         for name, field in zip((*laws.constants, *memory), (*self.constants, *self.memory), strict=True):
             setattr(self, name, field)
-        self.memories, self.more = len(self.memory), self.memory[len(laws.memory) :]
+        self.memories = len(self.memory)
         (self.first,) = arrays.integers(1, (units.count, units.size + 1), across)
         (self.old_first,) = arrays.integers(1, (units.count, units.size + 1), across, kept=False)
         (self.old_mate,) = arrays.integers(1, (units.count, self.capacity), across, kept=False)
         self.old_memory = arrays.vectors(self.memories, 1, (units.count, self.capacity), across, kept=False)
-        self.old_more = self.old_memory[len(laws.memory) :]
+        for name, field in zip(memory, self.old_memory, strict=True):
+            setattr(self, f"old_{name}", field)
 
     def forget(self) -> None:
         """Empty the list, history and all."""

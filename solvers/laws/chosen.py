@@ -116,14 +116,24 @@ class ChosenLaws:
         `overlap` in m, its `rate` and the `slip` in m/s, `turning` ω_i − ω_j (ω_i at a wall) in rad/s. The torque acts
         on the first grain, and its opposite on the second.
         """
-        root = ti.sqrt(overlap)
-        normal_c = self.coefficients(0, u, kind, contacts, block)
+        pressing = self.press(kind, contacts, u, block, overlap, rate, dt)
+        shearing, torque = self.rub(kind, contacts, u, block, overlap, pressing, slip, turning, dt)
+        return pressing, shearing, torque
+
+    @ti.func
+    def press(self, kind: ti.template(), contacts: ti.template(), u, block, overlap, rate, dt):
+        """Normal forces (N) alone."""
+        coefficients = self.coefficients(0, u, kind, contacts, block)
+        return self.normal.force(coefficients, contacts, u, block, overlap, ti.sqrt(overlap), rate, dt)
+
+    @ti.func
+    def rub(self, kind: ti.template(), contacts: ti.template(), u, block, overlap, pressing, slip, turning, dt):
+        """Tangential forces (N) and rolling torques (N m) under normal forces `pressing` (N)."""
         tangential_c = self.coefficients(1, u, kind, contacts, block)
         rolling_c = self.coefficients(2, u, kind, contacts, block)
-        pressing = self.normal.force(normal_c, contacts, u, block, overlap, root, rate, dt)
-        shearing = self.tangential.force(tangential_c, contacts, u, block, root, pressing, slip, dt)
+        shearing = self.tangential.force(tangential_c, contacts, u, block, ti.sqrt(overlap), pressing, slip, dt)
         torque = self.rolling.torque(rolling_c, contacts, u, block, pressing, turning, dt)
-        return pressing, shearing, torque
+        return shearing, torque
 
     @ti.func
     def pull(self, contacts: ti.template(), u, block, approach, rate, dt):
@@ -137,10 +147,15 @@ class ChosenLaws:
     def energy(self, kind: ti.template(), contacts: ti.template(), u, p, overlap):
         """Elastic energy (J) of contact p, which overlaps."""
         block, lane, root = p // contacts.lanes, p % contacts.lanes, ti.sqrt(overlap)
-        pressed = self.normal.energy(contacts, u, block, lane, overlap, root)
+        pressed = self.pressed_energy(contacts, u, p, overlap)
         tangential_c = self.coefficients_of_one(1, u, kind, contacts, block, lane)
         sheared = self.tangential.energy(tangential_c, contacts, u, block, lane, root)
         return pressed + sheared + self.rolling.energy(contacts, u, block, lane)
+
+    @ti.func
+    def pressed_energy(self, contacts: ti.template(), u, p, overlap):
+        """Elastic energy (J) of the normal force alone."""
+        return self.normal.energy(contacts, u, p // contacts.lanes, p % contacts.lanes, overlap, ti.sqrt(overlap))
 
     @ti.func
     def bridge_energy(self, contacts: ti.template(), u, p, approach):

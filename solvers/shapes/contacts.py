@@ -15,7 +15,8 @@ class ShapedContacts(Contacts):
 
     The force acts at one point on both grains, so angular momentum is exact: between their outlines, where it is for
     discs, too (see `Contacts`). Slip and rate are of that point. The laws' effective radius is that of the discs of
-    equal area, so that the elastic energy depends on the overlap alone.
+    equal area, so that the elastic energy depends on the overlap alone. Where a rule knows saddles, a contact's normal
+    force is less by what the law says of the saddle's overlap (`Tracked`); what is left is what friction has.
     """
 
     def __init__(self, arrays, units, grains, walls, lists, laws, rule):
@@ -30,34 +31,70 @@ class ShapedContacts(Contacts):
             listed, mate = pairs.first_of(u, p), pairs.second_of(u, p)
             i, j = ti.min(listed, mate), ti.max(listed, mate)
             c = self.rule.pair(g, pairs, w, i, j, u, p, True)
-            if c[HOLDS] == 0.0:
-                self.lists.lose(pairs, u, p)
+            if self.unsettled(pairs, u, p, c):
                 c[OVERLAP] = -g.reach[w, i]
-            ny, nz, overlap = c[NORMAL_Y], c[NORMAL_Z], greater(c[OVERLAP], 0.0)
             # From the middle of the overlap to where the outlines of discs would cross.
-            back = (0.5 - pairs.share[u, p][0] if listed == i else pairs.share[u, p][0] - 0.5) * overlap
-            lever_y, lever_z = c[POINT_Y] + back * ny, c[POINT_Z] + back * nz
-            apart = g.apart(w, i, j)
-            far_y, far_z = lever_y + apart[0], lever_z + apart[1]
-            spin_i, spin_j = g.spin_now[w, i], g.spin_now[w, j]
-            uy = g.now_y[w, i] - g.now_y[w, j] - spin_i * lever_z + spin_j * far_z
-            uz = g.now_z[w, i] - g.now_z[w, j] + spin_i * lever_y - spin_j * far_y
-            fn, ft, roll = self.laws.forces(
-                PAIR,
-                pairs,
-                u,
-                p,
-                ti.Vector([overlap]),
-                ti.Vector([-(uy * ny + uz * nz)]),
-                ti.Vector([uz * ny - uy * nz]),
-                ti.Vector([spin_i - spin_j]),
-                dt,
-            )
-            fy, fz = fn[0] * ny - ft[0] * nz, fn[0] * nz + ft[0] * ny
+            back = pairs.share[u, p][0] - 0.5
+            if listed == i:
+                back = -back
+            lever = lever_of(c, back)
+            slip, pressing = self.pair_pressed(g, pairs, w, i, j, u, p, c, lever, dt)
+            n = ti.Vector([c[NORMAL_Y], c[NORMAL_Z]])
+            force, torque = pressing * n, pressing * lever.cross(n)
+            if ti.static(self.rule.bent):
+                d = self.rule.pair_saddle(g, pairs, w, i, j, u, p, True)
+                if d[OVERLAP] > 0.0 and c[OVERLAP] > 0.0:
+                    arm, m = lever_of(d, back), ti.Vector([d[NORMAL_Y], d[NORMAL_Z]])
+                    less = self.pair_pressed(g, pairs, w, i, j, u, p, d, arm, dt)[1]
+                    force, torque, pressing = force - less * m, torque - less * arm.cross(m), pressing - less
+            turning = g.spin_now[w, i] - g.spin_now[w, j]
+            ft, roll = self.rubbed(PAIR, pairs, u, p, c, pressing, slip, turning, dt)
+            force += ft * ti.Vector([-n[1], n[0]])
+            torque += ft * lever.dot(n)
             if start <= i < end:
-                g.push(w, i, fy, fz, lever_y * fz - lever_z * fy + roll[0])
+                g.push(w, i, force[0], force[1], torque + roll)
             if start <= j < end:
-                g.push(w, j, -fy, -fz, far_z * fy - far_y * fz - roll[0])
+                g.push(w, j, -force[0], -force[1], -torque - g.apart(w, i, j).cross(force) - roll)
+
+    @ti.func
+    def unsettled(self, contacts: ti.template(), u, p, c):
+        """Whether contact p does not hold any more; asks for new lists if it has been lost, or others have come up."""
+        if c[HOLDS] == 0.0:
+            self.lists.lose(contacts, u, p)
+        elif c[HOLDS] > 1.0:
+            self.lists.want(u)
+        return c[HOLDS] == 0.0
+
+    @ti.func
+    def pair_pressed(self, g: ti.template(), pairs: ti.template(), w, i, j, u, p, c, lever, dt):
+        """Slip (m/s) of two grains at a point `lever` (m) from the centre of i, and the normal force (N) there."""
+        far, spin_i, spin_j = lever + g.apart(w, i, j), g.spin_now[w, i], g.spin_now[w, j]
+        uy = g.now_y[w, i] - g.now_y[w, j] - spin_i * lever[1] + spin_j * far[1]
+        uz = g.now_z[w, i] - g.now_z[w, j] + spin_i * lever[0] - spin_j * far[0]
+        return self.pressed(PAIR, pairs, u, p, c, ti.Vector([uy, uz]), dt)
+
+    @ti.func
+    def pressed(self, kind: ti.template(), contacts: ti.template(), u, p, c, velocity, dt):
+        """Slip (m/s) and normal force (N) of a contact whose bodies pass each other at a velocity (m/s)."""
+        n = ti.Vector([c[NORMAL_Y], c[NORMAL_Z]])
+        overlap, rate = ti.Vector([greater(c[OVERLAP], 0.0)]), ti.Vector([-velocity.dot(n)])
+        return n.cross(velocity), self.laws.press(kind, contacts, u, p, overlap, rate, dt)[0]
+
+    @ti.func
+    def rubbed(self, kind: ti.template(), contacts: ti.template(), u, p, c, pressing, slip, turning, dt):
+        """Tangential force (N) and rolling torque (N m) of a contact."""
+        ft, roll = self.laws.rub(
+            kind,
+            contacts,
+            u,
+            p,
+            ti.Vector([greater(c[OVERLAP], 0.0)]),
+            ti.Vector([greater(pressing, 0.0)]),
+            ti.Vector([slip]),
+            ti.Vector([turning]),
+            dt,
+        )
+        return ft[0], roll[0]
 
     @ti.func
     def wall_forces(self, g: ti.template(), contacts: ti.template(), u, t, dt):
@@ -67,27 +104,31 @@ class ShapedContacts(Contacts):
         for p in range(contacts.length[u]):
             i, feature = contacts.first_of(u, p), contacts.second_of(u, p)
             c = self.rule.wall(g, contacts, w, i, feature, shift, u, p, True)
-            if c[HOLDS] == 0.0:
-                self.lists.lose(contacts, u, p)
+            if self.unsettled(contacts, u, p, c):
                 c[OVERLAP] = -g.reach[w, i]
-            ny, nz, overlap = c[NORMAL_Y], c[NORMAL_Z], greater(c[OVERLAP], 0.0)
-            lever_y, lever_z = c[POINT_Y] + 0.5 * overlap * ny, c[POINT_Z] + 0.5 * overlap * nz
-            velocity, spin = self.walls.velocity(feature, shift), g.spin_now[w, i]
-            uy = g.now_y[w, i] - velocity[0] - spin * lever_z
-            uz = g.now_z[w, i] - velocity[1] + spin * lever_y
-            fn, ft, roll = self.laws.forces(
-                WALL,
-                contacts,
-                u,
-                p,
-                ti.Vector([overlap]),
-                ti.Vector([-(uy * ny + uz * nz)]),
-                ti.Vector([uz * ny - uy * nz]),
-                ti.Vector([spin]),
-                dt,
-            )
-            fy, fz = fn[0] * ny - ft[0] * nz, fn[0] * nz + ft[0] * ny
-            g.push(w, i, fy, fz, lever_y * fz - lever_z * fy + roll[0])
+            velocity = self.walls.velocity(feature, shift)
+            lever = lever_of(c, 0.5)
+            slip, pressing = self.wall_pressed(g, contacts, w, i, u, p, c, lever, velocity, dt)
+            n = ti.Vector([c[NORMAL_Y], c[NORMAL_Z]])
+            force, torque = pressing * n, pressing * lever.cross(n)
+            if ti.static(self.rule.bent):
+                d = self.rule.wall_saddle(g, contacts, w, i, feature, shift, u, p, True)
+                if d[OVERLAP] > 0.0 and c[OVERLAP] > 0.0:
+                    arm, m = lever_of(d, 0.5), ti.Vector([d[NORMAL_Y], d[NORMAL_Z]])
+                    less = self.wall_pressed(g, contacts, w, i, u, p, d, arm, velocity, dt)[1]
+                    force, torque, pressing = force - less * m, torque - less * arm.cross(m), pressing - less
+            ft, roll = self.rubbed(WALL, contacts, u, p, c, pressing, slip, g.spin_now[w, i], dt)
+            force += ft * ti.Vector([-n[1], n[0]])
+            g.push(w, i, force[0], force[1], torque + ft * lever.dot(n) + roll)
+
+    @ti.func
+    def wall_pressed(
+        self, g: ti.template(), contacts: ti.template(), w, i, u, p, c, lever, velocity: ti.template(), dt
+    ):
+        """Slip (m/s) of a grain on a wall that moves at a velocity (m/s), and the normal force (N)."""
+        uy = g.now_y[w, i] - velocity[0] - g.spin_now[w, i] * lever[1]
+        uz = g.now_z[w, i] - velocity[1] + g.spin_now[w, i] * lever[0]
+        return self.pressed(WALL, contacts, u, p, c, ti.Vector([uy, uz]), dt)
 
     @ti.func
     def census(self, g: ti.template(), pairs: ti.template(), contacts: ti.template(), u, t):
@@ -103,6 +144,9 @@ class ShapedContacts(Contacts):
                 touching += part
                 deepest = ti.max(deepest, overlap / ti.min(g.radius[w, i], g.radius[w, j]))
                 energy += part * self.laws.energy(PAIR, pairs, u, p, overlap)
+                if ti.static(self.rule.bent):
+                    saddle = self.rule.pair_saddle(g, pairs, w, ti.min(i, j), ti.max(i, j), u, p, False)[OVERLAP]
+                    energy -= part * self.laws.pressed_energy(pairs, u, p, greater(saddle, 0.0))
         shift = self.walls.shift(w, t)
         for p in range(contacts.length[u]):
             i, feature = contacts.first_of(u, p), contacts.second_of(u, p)
@@ -111,4 +155,18 @@ class ShapedContacts(Contacts):
                 touching += 1.0
                 deepest = ti.max(deepest, overlap / g.radius[w, i])
                 energy += self.laws.energy(WALL, contacts, u, p, overlap)
+                if ti.static(self.rule.bent):
+                    saddle = self.rule.wall_saddle(g, contacts, w, i, feature, shift, u, p, False)[OVERLAP]
+                    energy -= self.laws.pressed_energy(contacts, u, p, greater(saddle, 0.0))
         return ti.Vector([touching, deepest, energy])
+
+
+@ti.func
+def lever_of(c, back):
+    """From a grain's centre (y, z) m to where the force of a contact acts, that part of the overlap from its middle."""
+    return ti.Vector(
+        [
+            c[POINT_Y] + back * greater(c[OVERLAP], 0.0) * c[NORMAL_Y],
+            c[POINT_Z] + back * greater(c[OVERLAP], 0.0) * c[NORMAL_Z],
+        ]
+    )

@@ -4,10 +4,11 @@ from math import pi
 
 import taichi as ti
 
-from solvers.laws.extremes import greater, within
+from solvers.laws.extremes import within
 from solvers.runtime import Arrays
 from solvers.shapes.given import Shapes
 from solvers.shapes.grains import with_disc
+from solvers.shapes.kept import LOOSE, Kept
 from solvers.shapes.pose import turned, turned_back
 from solvers.shapes.tables import TINY, Tables
 from solvers.shapes.tracked import (
@@ -16,6 +17,8 @@ from solvers.shapes.tracked import (
     DEEP,
     HOLDS,
     LONGEST,
+    MINIMUM,
+    NONE,
     NORMAL_Y,
     NORMAL_Z,
     OVERLAP,
@@ -23,6 +26,7 @@ from solvers.shapes.tracked import (
     PLACE_J,
     POINT_Y,
     POINT_Z,
+    SADDLE,
     SETTLED,
     TRIES,
     Tracked,
@@ -33,28 +37,36 @@ from solvers.units import Units
 from solvers.walls import Walls
 
 ROOM = 8  # contacts of a grain with another, or with one wall, at most
-FIRST, BORN, SECOND = range(3)  # what is remembered of a contact: see Continuous.pair_memory
-LOOSE = 1.0 / 8.0  # what counts of the way that a contact has gone since it was lost sight of
-UNKNOWN = -1.0  # where it has yet to be seen how deep a contact is
 NEAR = 1.0 / 16.0  # of the outlines, together: how far a contact may go between lists and be known again
+PLACES, WIDE = (
+    8,
+    1.0 / 8.0,
+)  # on either side of a contact, where others may come up, and how much of an outline they span
+ATTEMPTS = 8  # of Newton's method to find a contact again before it has ended or been lost
+GROWN = 2.0  # a contact that holds and wants new lists
+SELDOM = 4  # steps from one look at such a place to the next
 
 
 @ti.data_oriented
 class Continuous:
     """Every local minimum of the gap between two outlines, or between one and a wall, is a contact of its own.
 
-    A contact is remembered by the places on the outlines where it is (`Tracked`); one step of Newton's method a time
-    step keeps it there. They are sought where lists are made.
+    A contact is remembered by the places on the outlines where it is, and where the saddle before it is (`Tracked`);
+    one step of Newton's method a time step keeps it there. They are sought where lists are made, and where outlines
+    are `bent` also beside those that are known, a place at a time. Only these have saddles.
     """
-
-    pair_memory, wall_memory = ("place_first", "born", "place_second"), ("place_first", "born")
 
     def __init__(self, arrays: Arrays, units: Units, walls: Walls, shapes: Shapes):
         self.units = units
         self.tables = Tables(arrays, with_disc(shapes))
         self.tracked, self.walls = Tracked(self.tables), SeenWalls(arrays, walls)
+        self.bent = not all(outline.convex for outline in shapes.outlines)
+        self.kept = Kept(self.tracked, self.bent)
+        self.pair_memory, self.wall_memory = self.kept.pair_memory, self.kept.wall_memory
         self.farthest = NEAR * self.tables.cells
-        self.places_first, self.places_second = arrays.reals(2, (units.count, ROOM), kept=False)
+        # Of the contacts that are being sought.
+        self.first, self.second = arrays.reals(2, (units.count, ROOM), kept=False)
+        self.first_saddle, self.second_saddle = arrays.reals(2, (units.count, ROOM), kept=False)
 
     @ti.func
     def seek_pair(self, g: ti.template(), w, i, j, margin, u):
@@ -68,65 +80,129 @@ class Continuous:
             g.turn(w, j),
             g.apart(w, i, j),
             margin,
-            self.places_first,
-            self.places_second,
+            self.first,
+            self.second,
+            self.first_saddle,
+            self.second_saddle,
             u,
         )
 
     @ti.func
     def away(self, contacts: ti.template(), u, q, k):
         """How far (cells) contact q of an old list is from the k-th that has been found of the same two."""
-        far = self.tracked.distance(contacts.old_more[FIRST][u, q][0], self.places_first[u, k])
-        if ti.static(len(contacts.more) > SECOND):
-            far += self.tracked.distance(contacts.old_more[SECOND][u, q][0], self.places_second[u, k])
-        if contacts.old_more[FIRST][u, q][0] < 0.0:
+        place = contacts.old_place_first[u, q][0]
+        far = self.tracked.distance(place, self.first[u, k])
+        if ti.static(hasattr(contacts, "place_second")):
+            far += self.tracked.distance(contacts.old_place_second[u, q][0], self.second[u, k])
+        if place < 0.0:
             far *= LOOSE
         return far
 
     @ti.func
-    def note(self, contacts: ti.template(), u, p, k, late):
-        """Contact p is where the k-th has been found; it comes `late` where the two were in the old list without it."""
-        contacts.more[FIRST][u, p][0] = self.places_first[u, k]
-        if ti.static(len(contacts.more) > SECOND):
-            contacts.more[SECOND][u, p][0] = self.places_second[u, k]
-            if late:  # of two grains alone: what rolls on a wall would sink into it
-                contacts.more[BORN][u, p][0] = UNKNOWN
+    def note(self, contacts: ti.template(), u, p, k):
+        """Contact p is where the k-th has been found; it is free where there are not so many."""
+        contacts.place_first[u, p][0] = self.first[u, k]
+        if ti.static(hasattr(contacts, "place_second")):
+            contacts.place_second[u, p][0] = self.second[u, k]
+        if ti.static(self.bent):
+            contacts.saddle_first[u, p][0] = self.first_saddle[u, k]
+            if ti.static(hasattr(contacts, "saddle_second")):
+                contacts.saddle_second[u, p][0] = self.second_saddle[u, k]
 
     @ti.func
     def is_lost(self, contacts: ti.template(), u, p):
-        """Whether contact p has been lost sight of."""
-        return contacts.more[FIRST][u, p][0] < 0.0
+        """Whether contact p has ended or been lost sight of."""
+        return self.kept.is_lost(contacts, u, p)
 
     @ti.func
     def lose(self, contacts: ti.template(), u, p):
-        """Remember that it has: its place, where it was last seen, is said a whole turn too low."""
-        contacts.more[FIRST][u, p][0] = self.tables.wrapped(contacts.more[FIRST][u, p][0]) - self.tables.cells
-
-    @ti.func
-    def counted(self, contacts: ti.template(), u, p, c: ti.template(), moves: ti.template()):
-        """The part of the overlap of contact p that counts.
-
-        Where two outlines overlap already, a bend of them can make a second contact of what was one. Counted from
-        nothing it would come with energy, so it counts from what it was at first, or has been at least since then.
-        """
-        born, whole = contacts.more[BORN][u, p][0], greater(c[OVERLAP], 0.0)
-        if born == UNKNOWN or born > whole:
-            born = whole
-        if ti.static(moves):  # noqa: SIM102 (compiled only there)
-            if c[HOLDS] > 0.0:
-                contacts.more[BORN][u, p][0] = born
-        return c[OVERLAP] - born
+        """Remember that it has."""
+        self.kept.lose(contacts, u, p)
 
     @ti.func
     def pair(self, g: ti.template(), pairs: ti.template(), w, i, j, u, p, moves: ti.template()):
         """Contact p of grains i and j: overlap (m), normal towards i, point from i's centre (m), whether it holds.
 
-        Unless it `moves`, it is looked at where it was found last.
+        This is 0 if not, 1 if so, and GROWN if there are others beside it that are not listed. Unless it `moves`, it
+        is looked at where it was found last.
         """
-        contact = ti.Vector([-g.reach[w, i], 0.0, 0.0, 0.0, 0.0, 0.0])
+        contact = self.nothing(g, w, i)
         if not self.is_lost(pairs, u, p):
-            c = self.tracked.contact(
-                moves,
+            c, a, b = self.no_place(g, w, i), pairs.place_first[u, p][0], pairs.place_second[u, p][0]
+            if ti.static(moves):
+                tries = 0
+                while c[HOLDS] == 0.0 and tries < ATTEMPTS:
+                    c = self.between(g, MINIMUM, True, w, i, j, a, b)
+                    a, b, tries = c[PLACE_I], c[PLACE_J], tries + 1
+                c[HOLDS] = self.keep(pairs, u, p, c, tries)
+                if c[HOLDS] > 0.0:
+                    pairs.place_second[u, p][0] = b
+                    if ti.static(self.bent):  # noqa: SIM102 (compiled only there)
+                        if c[OVERLAP] > 0.0:
+                            c[HOLDS] = ti.select(self.grown(g, pairs, w, i, j, u, p), GROWN, 1.0)
+            else:
+                c = self.between(g, MINIMUM, False, w, i, j, a, b)
+            contact = ti.Vector([c[OVERLAP], c[NORMAL_Y], c[NORMAL_Z], c[POINT_Y], c[POINT_Z], c[HOLDS]])
+        return contact
+
+    @ti.func
+    def keep(self, contacts: ti.template(), u, p, c, tries):
+        """Note where contact p has gone in so many steps of Newton's method, or that it has ended; returns if it holds.
+
+        One that has come far may have come to another: it is then the same.
+        """
+        holds = c[HOLDS]
+        if ti.static(self.bent):
+            far = tries > 1 or not self.tracked.same(c[PLACE_I], contacts.place_first[u, p][0], ALIKE)
+            if holds > 0.0 and far and self.kept.has_twin(contacts, u, p, c[PLACE_I]):
+                holds = 0.0
+            if holds == 0.0:
+                self.kept.end(contacts, u, p, c[HOLDS] > 0.0)
+        if holds > 0.0:
+            contacts.place_first[u, p][0] = c[PLACE_I]
+        return holds
+
+    @ti.func
+    def no_place(self, g: ti.template(), w, i):
+        """What `Tracked.contact` gives where there is nothing."""
+        return ti.Vector([-g.reach[w, i], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0])
+
+    @ti.func
+    def pair_saddle(self, g: ti.template(), pairs: ti.template(), w, i, j, u, p, moves: ti.template()):
+        """The saddle before contact p of grains i and j, as `pair`."""
+        contact, a = self.nothing(g, w, i), pairs.saddle_first[u, p][0]
+        if a >= 0.0:
+            # It counts a last time where it ends, as the contact does that ends with it.
+            c = self.between(g, SADDLE, moves, w, i, j, a, pairs.saddle_second[u, p][0])
+            contact = ti.Vector([c[OVERLAP], c[NORMAL_Y], c[NORMAL_Z], c[POINT_Y], c[POINT_Z], c[HOLDS]])
+            if ti.static(moves):
+                if c[HOLDS] > 0.0:
+                    pairs.saddle_first[u, p][0], pairs.saddle_second[u, p][0] = c[PLACE_I], c[PLACE_J]
+                else:
+                    self.kept.end_saddle(pairs, u, p)
+        return contact
+
+    @ti.func
+    def next_look(self, contacts: ti.template(), u, p):
+        """Where to look beside contact p now: so many cells from it, to either side by turns; mostly 0: nowhere."""
+        k = contacts.looked[u, p][0] + 1.0
+        k = ti.select(k < SELDOM * 2.0 * PLACES, k, 0.0)
+        contacts.looked[u, p][0] = k
+        turn = ti.cast(k, ti.i32)
+        look = turn // SELDOM
+        away = (1.0 + look // 2) * ti.static(WIDE * self.tables.cells / PLACES)
+        return ti.select(turn % SELDOM == 0, ti.select(look % 2 == 0, away, -away), 0.0 * away)
+
+    @ti.func
+    def grown(self, g: ti.template(), pairs: ti.template(), w, i, j, u, p):
+        """Whether beside a contact that overlaps another has come up with a saddle, or a saddle is missing."""
+        away, new = self.next_look(pairs, u, p), False
+        if away != 0.0 and self.tables.convex[g.shape[w, i]] * self.tables.convex[g.shape[w, j]] == 0.0:
+            side, before = ti.select(away > 0.0, 1.0, -1.0), self.kept.beside(pairs, u, p, -1.0)
+            back = ti.select(before == p, 0.0, self.kept.way_back(pairs, u, p, before))
+            missing = side < 0.0 and back > 0.0 and back < 0.5 * self.tables.cells and pairs.saddle_first[u, p][0] < 0.0
+            away = ti.select(missing, -0.5 * back, away)
+            c = self.tracked.fall(
                 g.shape[w, i],
                 g.radius[w, i],
                 g.turn(w, i),
@@ -134,15 +210,33 @@ class Continuous:
                 g.radius[w, j],
                 g.turn(w, j),
                 g.apart(w, i, j),
-                pairs.more[FIRST][u, p][0],
-                pairs.more[SECOND][u, p][0],
+                pairs.place_first[u, p][0] + away,
+                pairs.place_second[u, p][0] - away * g.radius[w, i] / g.radius[w, j],
             )
-            if ti.static(moves):  # noqa: SIM102 (compiled only there)
-                if c[HOLDS] > 0.0:
-                    pairs.more[FIRST][u, p][0], pairs.more[SECOND][u, p][0] = c[PLACE_I], c[PLACE_J]
-            overlap = self.counted(pairs, u, p, c, moves)
-            contact = ti.Vector([overlap, c[NORMAL_Y], c[NORMAL_Z], c[POINT_Y], c[POINT_Z], c[HOLDS]])
-        return contact
+            new = c[2] < 0.0 and (missing or (side * c[0] > 0.0 and not self.kept.beyond(pairs, u, p, away)))
+        return new
+
+    @ti.func
+    def nothing(self, g: ti.template(), w, i):
+        """No contact."""
+        return ti.Vector([-g.reach[w, i], 0.0, 0.0, 0.0, 0.0, 0.0])
+
+    @ti.func
+    def between(self, g: ti.template(), way: ti.template(), moves: ti.template(), w, i, j, a, b):
+        """What there is between two grains at these places; see `Tracked.contact`."""
+        return self.tracked.contact(
+            moves,
+            way,
+            g.shape[w, i],
+            g.radius[w, i],
+            g.turn(w, i),
+            g.shape[w, j],
+            g.radius[w, j],
+            g.turn(w, j),
+            g.apart(w, i, j),
+            a,
+            b,
+        )
 
     @ti.func
     def seek_wall(self, g: ti.template(), w, i, feature, shift: ti.template(), margin, u):
@@ -157,24 +251,42 @@ class Continuous:
             if last <= earlier and last < gap:
                 found = self.settle(g, w, i, feature, target, 0.0 * margin + (k - 1) * stride, margin, u, found)
             earlier, last = last, gap
+        if ti.static(self.bent):
+            self.tracked.put_in_order(self.first, self.second, u, found)
+            for k in range(found):
+                self.first_saddle[u, k] = NONE
+                if found > 1 and feature < self.walls.walls.segments:
+                    along = self.tables.wrapped(self.first[u, k] - self.first[u, (k + found - 1) % found])
+                    c = self.followed(g, w, i, feature, target, SADDLE, self.first[u, k] - 0.5 * along)
+                    between = self.tables.wrapped(self.first[u, k] - c[PLACE_I]) < along
+                    if c[HOLDS] > 0.0 and between and -c[OVERLAP] < margin:
+                        self.first_saddle[u, k] = c[PLACE_I]
         return found
+
+    @ti.func
+    def followed(self, g: ti.template(), w, i, feature, target, way: ti.template(), start):
+        """What Newton's method leads to from a place; it does not hold where it leads to nothing."""
+        c, place, settled = ti.Vector([0.0 * start for _ in ti.static(range(HOLDS + 1))]), start, False
+        for _ in range(TRIES):
+            c = self.against(g, w, i, feature, target, way, place, True)
+            settled = self.tracked.same(c[PLACE_I], place, SETTLED)
+            place = c[PLACE_I]
+            if settled:
+                break
+        if not settled:
+            c[HOLDS] = 0.0
+        return c
 
     @ti.func
     def settle(self, g: ti.template(), w, i, feature, target, start, margin, u, before):
         """Follow a place to the contact near by, write it down if it is new; returns how many there are."""
-        found, fresh, place = before, False, start
-        for _ in range(TRIES):
-            c = self.against(g, w, i, feature, target, place, True)
-            settled = self.tracked.same(c[PLACE_I], place, SETTLED)
-            place = c[PLACE_I]
-            if settled:
-                fresh = c[HOLDS] > 0.0 and -c[OVERLAP] < margin and before < ROOM
-                break
+        found, c = before, self.followed(g, w, i, feature, target, MINIMUM, start)
+        place, fresh = c[PLACE_I], c[HOLDS] > 0.0 and -c[OVERLAP] < margin and before < ROOM
         for k in range(before):
-            if self.tracked.same(place, self.places_first[u, k], ALIKE):
+            if self.tracked.same(place, self.first[u, k], ALIKE):
                 fresh = False
         if fresh:
-            self.places_first[u, before] = place
+            self.first[u, before] = place
             found += 1
         return found
 
@@ -207,26 +319,67 @@ class Continuous:
         self, g: ti.template(), contacts: ti.template(), w, i, feature, shift: ti.template(), u, p, moves: ti.template()
     ):
         """Contact p of grain i with a wall, as `pair`; it does not count where it is another feature's."""
-        contact = ti.Vector([-g.reach[w, i], 0.0, 0.0, 0.0, 0.0, 0.0])
+        contact = self.nothing(g, w, i)
         if not self.is_lost(contacts, u, p):
-            target = self.target(g, w, i, feature, shift)
-            c = self.against(g, w, i, feature, target, contacts.more[FIRST][u, p][0], moves)
-            if ti.static(moves):  # noqa: SIM102 (compiled only there)
-                if c[HOLDS] > 0.0:
-                    contacts.more[FIRST][u, p][0] = c[PLACE_I]
-            normal = turned(g.turn(w, i), ti.Vector([c[NORMAL_Y], c[NORMAL_Z]]))
-            point = turned(g.turn(w, i), ti.Vector([c[POINT_Y], c[POINT_Z]]))
-            counts = self.walls.counts_on_corner(feature, normal[0], normal[1])
-            if feature < self.walls.walls.segments:
-                counts = self.walls.counts_on_segment(feature, shift, g.y[w, i] + point[0], g.z[w, i] + point[1])
-            overlap = self.counted(contacts, u, p, c, moves)
-            if not counts:
-                overlap = -g.reach[w, i]
-            contact = ti.Vector([overlap, normal[0], normal[1], point[0], point[1], c[HOLDS]])
+            c, place = self.no_place(g, w, i), contacts.place_first[u, p][0]
+            if ti.static(moves):
+                tries = 0
+                while c[HOLDS] == 0.0 and tries < ATTEMPTS:
+                    c = self.at_wall(g, MINIMUM, True, w, i, feature, shift, place)
+                    place, tries = c[PLACE_I], tries + 1
+                c[HOLDS] = self.keep(contacts, u, p, c, tries)
+                if ti.static(self.bent):  # noqa: SIM102 (compiled only there)
+                    if c[HOLDS] > 0.0 and c[OVERLAP] > 0.0 and feature < self.walls.walls.segments:
+                        c[HOLDS] = ti.select(self.grown_on_wall(g, contacts, w, i, feature, shift, u, p), GROWN, 1.0)
+            else:
+                c = self.at_wall(g, MINIMUM, False, w, i, feature, shift, place)
+            contact = ti.Vector([c[OVERLAP], c[NORMAL_Y], c[NORMAL_Z], c[POINT_Y], c[POINT_Z], c[HOLDS]])
         return contact
 
     @ti.func
-    def against(self, g: ti.template(), w, i, feature, target, place, moves: ti.template()):
+    def wall_saddle(
+        self, g: ti.template(), contacts: ti.template(), w, i, feature, shift: ti.template(), u, p, moves: ti.template()
+    ):
+        """The saddle before contact p of grain i with a wall, as `wall`."""
+        contact, place = self.nothing(g, w, i), contacts.saddle_first[u, p][0]
+        if place >= 0.0:
+            c = self.at_wall(g, SADDLE, moves, w, i, feature, shift, place)
+            contact = ti.Vector([c[OVERLAP], c[NORMAL_Y], c[NORMAL_Z], c[POINT_Y], c[POINT_Z], c[HOLDS]])
+            if ti.static(moves):
+                if c[HOLDS] > 0.0:
+                    contacts.saddle_first[u, p][0] = c[PLACE_I]
+                else:
+                    self.kept.end_saddle(contacts, u, p)
+        return contact
+
+    @ti.func
+    def grown_on_wall(self, g: ti.template(), contacts: ti.template(), w, i, feature, shift: ti.template(), u, p):
+        """As `grown`, of a grain on a segment."""
+        away, new = self.next_look(contacts, u, p), False
+        if away != 0.0 and self.tables.convex[g.shape[w, i]] == 0.0:
+            target, a = self.target(g, w, i, feature, shift), contacts.place_first[u, p][0] + away
+            own = g.radius[w, i] * self.tables.trace(g.shape[w, i], a)
+            inside = target[2] + own[0] * target[0] + own[1] * target[1] < 0.0
+            falls = away * (own[2] * target[0] + own[3] * target[1]) < 0.0
+            new = inside and falls and not self.kept.beyond(contacts, u, p, away)
+        return new
+
+    @ti.func
+    def at_wall(
+        self, g: ti.template(), way: ti.template(), moves: ti.template(), w, i, feature, shift: ti.template(), place
+    ):
+        """What there is between a grain and a wall near a place, in the tank's frame; see `against`."""
+        c = self.against(g, w, i, feature, self.target(g, w, i, feature, shift), way, place, moves)
+        normal = turned(g.turn(w, i), ti.Vector([c[NORMAL_Y], c[NORMAL_Z]]))
+        point = turned(g.turn(w, i), ti.Vector([c[POINT_Y], c[POINT_Z]]))
+        counts = self.walls.counts_on_corner(feature, normal[0], normal[1])
+        if feature < self.walls.walls.segments:
+            counts = self.walls.counts_on_segment(feature, shift, g.y[w, i] + point[0], g.z[w, i] + point[1])
+        overlap = ti.select(counts, c[OVERLAP], -g.reach[w, i])
+        return ti.Vector([overlap, normal[0], normal[1], point[0], point[1], c[PLACE_I], c[PLACE_J], c[HOLDS]])
+
+    @ti.func
+    def against(self, g: ti.template(), w, i, feature, target, way: ti.template(), place, moves: ti.template()):
         """The contact of an outline with a wall near a place, all in the grain's frame; see `Tracked.contact`.
 
         The gap to a segment of normal m is least where p' · m = 0, that to a corner q where p' · (p − q) = 0.
@@ -235,7 +388,7 @@ class Continuous:
         a, own = place, scale * self.tables.trace(shape, place)
         s = self.slopes(own, target, corner)
         if ti.static(moves):
-            step = -within(s[0] / (ti.abs(s[1]) + TINY), ti.static(LONGEST * self.tables.cells / (2.0 * pi)))
+            step = -way * within(s[0] / (ti.abs(s[1]) + TINY), ti.static(LONGEST * self.tables.cells / (2.0 * pi)))
             a, own = place + step, advanced(own, step)
             s = self.slopes(own, target, corner)
         inverse = 1.0 / ti.sqrt(s[2])
@@ -247,7 +400,7 @@ class Continuous:
             ny, nz, miss = -outward[0], -outward[1], miss / (scale * self.tables.smallest[shape])
         facing = outward[0] * ny + outward[1] * nz
         near = -gap < DEEP * scale * self.tables.smallest[shape]
-        holds = ti.select(near and s[1] > 0.0 and ti.abs(miss) < CLOSE and facing < 0.0, 1.0, 0.0)
+        holds = ti.select(near and way * s[1] > 0.0 and ti.abs(miss) < CLOSE and facing < 0.0, 1.0, 0.0)
         return ti.Vector([-gap, ny, nz, own[0], own[1], self.tables.wrapped(a), 0.0 * a, holds])
 
     @ti.func

@@ -19,7 +19,7 @@ FAR = 1e3  # m
 class Discrete:
     """One contact of two grains, or of a grain and a wall, at the deepest node (Spandonidis 2016, table 8.1)."""
 
-    pair_memory, wall_memory, farthest = (), (), 1.0
+    pair_memory, wall_memory, farthest, bent = (), (), 1.0, False
 
     def __init__(self, arrays: Arrays, units: Units, walls: Walls, shapes: Shapes):
         outlines = with_disc(shapes)
@@ -42,7 +42,7 @@ class Discrete:
         return 0.0 * contacts.stiffness[u, 0][0]
 
     @ti.func
-    def note(self, contacts: ti.template(), u, p, k, late):
+    def note(self, contacts: ti.template(), u, p, k):
         """Nothing is to be remembered of a contact."""
 
     @ti.func

@@ -51,10 +51,9 @@ class ShapedNeighbours(Neighbours):
         That is what the nearest of the old contacts did, if none of the others found is nearer to that one.
         """
         row, place = i - self.units.first(u), self.units.world(u) * contacts.stride + mate
-        best, known, nearest = -1, False, ti.cast(self.rule.farthest, self.grains.real)
+        best, nearest = -1, ti.cast(self.rule.farthest, self.grains.real)
         for q in range(contacts.old_first[u, row], contacts.old_first[u, row + 1]):
             if contacts.old_mate[u, q] == place:
-                known = True
                 away, taken = self.rule.away(contacts, u, q, k), False
                 for other in range(count):
                     if other != k and self.rule.away(contacts, u, q, other) < away:
@@ -63,7 +62,7 @@ class ShapedNeighbours(Neighbours):
                     best, nearest = q, away
         if best >= 0:
             contacts.recall(u, p, best)
-        self.rule.note(contacts, u, p, k, known and best < 0)
+        self.rule.note(contacts, u, p, k)
 
     @ti.func
     def note_built(self, w, i):
@@ -84,4 +83,9 @@ class ShapedNeighbours(Neighbours):
         """Contact p has been lost sight of: have the lists built anew before the next step."""
         if not self.rule.is_lost(contacts, u, p):
             self.rule.lose(contacts, u, p)
-            self.travel[u] = NEVER
+            self.want(u)
+
+    @ti.func
+    def want(self, u):
+        """Have the lists of a unit built anew before the next step."""
+        self.travel[u] = NEVER

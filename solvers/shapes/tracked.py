@@ -16,6 +16,9 @@ CLOSE = 1e-3  # rad between the tangents, and m of offset to m of the lesser sma
 STEEPEST = 4.0  # by how much a distance by polar radius may exceed a gap
 DEEP = 0.5  # of the lesser smallest polar radius: an overlap that is none
 SETTLED, ALIKE = 1e-4, 0.05  # cells: the last step to a contact, and by what two ways to the same one may differ
+MINIMUM, SADDLE = 1.0, -1.0  # ways to turn
+NONE = -1.0  # a place that is none
+HALVINGS, NEARER = 6, 2  # on the way to a saddle, and steps to a place on j that is nearest to one on i
 
 # Elements of what `contact` gives.
 OVERLAP, NORMAL_Y, NORMAL_Z, POINT_Y, POINT_Z, PLACE_I, PLACE_J, HOLDS = range(8)
@@ -28,8 +31,12 @@ class Tracked:
     The overlap is −(p_i − p_j) · n with n the outward normal of j at p_j. It is stationary in both places, so errors of
     the places count squared, and its gradient by the grains' positions and angles is −n and the torque of −n about each
     centre: a force U'(ξ) n is conservative. The places are two numbers for each contact to remember. Newton's method
-    solves t_i × t_j = 0 and t_j · (p_i − p_j) = 0, the second of which is first solved for the place on j, and what is
-    left is turned downhill where it leads to a maximum.
+    solves t_i × t_j = 0 and t_j · (p_i − p_j) = 0, turned the way that leads to a MINIMUM, or to a SADDLE: between two
+    minima, where the gap is stationary, too, and along the outlines largest.
+
+    Where outlines bend, minima and saddles come and go in twos, at equal gaps (Morse 1934). So the sum of U(ξ) over
+    the minima less that over the saddles has no jumps; it is the energy, and a minimum in a dent that is but a trifle
+    deeper than the saddle beside it counts for that trifle only.
     """
 
     def __init__(self, tables: Tables):
@@ -38,22 +45,22 @@ class Tracked:
 
     @ti.func
     def contact(
-        self, moves: ti.template(), shape_i, scale_i, turn_i, shape_j, scale_j, turn_j, apart, place_i, place_j
+        self, moves: ti.template(), way, shape_i, scale_i, turn_i, shape_j, scale_j, turn_j, apart, place_i, place_j
     ):
-        """The contact that was at these places; if it `moves`, one step of Newton's method further.
+        """The contact, or saddle, that was at these places; if it `moves`, one step of Newton's method further.
 
         That step is short, so the outlines' points there follow from their derivatives here.
 
         `turn` is (cos, sin) of a grain's angle, `apart` the centre of i less that of j (m). Gives overlap ξ (m,
         negative: a gap), normal towards i (y, z), contact point from i's centre (y, z) m, halfway between the two
-        points, the new places, and 1 if this is a contact: the normals face each other, the gap is at a local minimum,
-        and Newton's method has come CLOSE. Where it is 0 the pair has to be scanned anew.
+        points, the new places, and 1 if this is what is sought: the normals face each other, the gap is stationary of
+        that kind, and Newton's method has come CLOSE.
         """
         between, centre = turned_back(turn_j, turn_i), turned_back(turn_j, apart)
         a, b, least = place_i, place_j, 1.0 + 0.0 * scale_i
         first, second = self.seen(shape_i, scale_i, between, a), scale_j * self.tables.trace(shape_j, b)
         if ti.static(moves):
-            step = self.step(first, second, centre)
+            step = self.step(way, first, second, centre)
             a, b, least = a + step[0], b + step[1], step[2]
             first, second = advanced(first, step[0]), advanced(second, step[1])
         p, q = ti.Vector([first[0], first[1]]), ti.Vector([second[0], second[1]])
@@ -81,24 +88,84 @@ class Tracked:
         return ti.Vector([p[0], p[1], d[0], d[1], e[0], e[1]])
 
     @ti.func
-    def step(self, first, second, centre):
-        """Changes of both places, and a number that is positive where the gap has a minimum near by."""
+    def step(self, way, first, second, centre):
+        """Changes of both places, and a number that is positive where what is sought is near by."""
         gap = centre + ti.Vector([first[0] - second[0], first[1] - second[1]])
         d, e = ti.Vector([first[2], first[3]]), ti.Vector([first[4], first[5]])
         g, h = ti.Vector([second[2], second[3]]), ti.Vector([second[4], second[5]])
-        size_j = g.norm_sqr()
+        size_i, size_j = d.norm_sqr(), g.norm_sqr()
         # ∂/∂a and ∂/∂b of d × g and of gap · g.
         turn_a, turn_b = e.cross(g), d.cross(h)
         slide_a, slide_b = d.dot(g), gap.dot(h) - size_j
-        curved = slide_b < -0.1 * size_j  # the overlap is less than the radius of curvature of j
-        inverse = 1.0 / lesser(slide_b, -0.1 * size_j)
-        along = gap.dot(g)
-        slope = turn_a - turn_b * slide_a * inverse
-        rest = -d.cross(g) + turn_b * along * inverse
+        # Negative where 1/R_i + 1/R_j − ξ/(R_i R_j) > 0, with R the radii of curvature: there is a minimum.
+        bend = turn_a * slide_b - turn_b * slide_a
+        along, turned_by = gap.dot(g), d.cross(g)
         longest = ti.static(LONGEST * self.tables.cells / (2.0 * pi))
-        change_a = within(rest / greater(ti.abs(slope), self.flattest * d.norm_sqr()), longest)
-        change_b = within(-(along + slide_a * change_a) * inverse, longest)
-        return ti.Vector([change_a, change_b, ti.select(curved, slope, -1.0)])
+        steep = greater(ti.abs(bend), self.flattest * size_i * size_j)
+        change_a = within(way * (turned_by * slide_b - along * turn_b) / steep, longest)
+        # The overlap may exceed the radius of curvature of j; then j turns so much more.
+        shallow = slide_b < -0.1 * size_j
+        over = ti.select(shallow, along + slide_a * change_a, turned_by + turn_a * change_a)
+        under = ti.select(shallow, slide_b, turn_b)
+        change_b = within(-over / ti.select(under == 0.0, 1.0, under), longest)
+        return ti.Vector([change_a, change_b, -way * bend])
+
+    @ti.func
+    def fall(self, shape_i, scale_i, turn_i, shape_j, scale_j, turn_j, apart, place_i, place_j):
+        """By how much the gap gets less along i at a place (m per cell times |t_j|); the nearest place on j; the gap.
+
+        The latter's sign alone is of use.
+        """
+        between, centre = turned_back(turn_j, turn_i), turned_back(turn_j, apart)
+        first, b = self.seen(shape_i, scale_i, between, place_i), place_j
+        second = scale_j * self.tables.trace(shape_j, b)
+        for _ in range(NEARER):
+            b += self.nearer(first, second, centre)
+            second = scale_j * self.tables.trace(shape_j, b)
+        d, g = ti.Vector([first[2], first[3]]), ti.Vector([second[2], second[3]])
+        gap = centre + ti.Vector([first[0] - second[0], first[1] - second[1]])
+        return ti.Vector([-d.cross(g), b, gap.cross(g)])
+
+    @ti.func
+    def saddle(self, shape_i, scale_i, turn_i, shape_j, scale_j, turn_j, apart, low_i, low_j, high_i, high_j):
+        """The saddle between two minima, of which the one at `high` comes after that at `low` along i.
+
+        Halving what lies between them, uphill, leads near it (Bolzano), whatever the outlines do there.
+        """
+        wide = self.tables.wrapped(high_i - low_i)
+        a, b, bottom, top = low_i, low_j, 0.0 * wide, wide
+        back = self.way_from(low_j, high_j)
+        if wide < 0.5 * self.tables.cells:
+            for _ in range(HALVINGS):
+                middle = 0.5 * (bottom + top)
+                c = self.fall(
+                    shape_i,
+                    scale_i,
+                    turn_i,
+                    shape_j,
+                    scale_j,
+                    turn_j,
+                    apart,
+                    low_i + middle,
+                    low_j + back * middle / wide,
+                )
+                a, b = low_i + middle, c[1]
+                if c[0] > 0.0:
+                    top = middle
+                else:
+                    bottom = middle
+        c = self.followed(SADDLE, shape_i, scale_i, turn_i, shape_j, scale_j, turn_j, apart, a, b)
+        if wide >= 0.5 * self.tables.cells or self.tables.wrapped(c[PLACE_I] - low_i) > wide:
+            c[HOLDS] = 0.0
+        return c
+
+    @ti.func
+    def nearer(self, first, second, centre):
+        """By how much (cells) a place on j is to change to be nearest to that on i, by one step of Newton's method."""
+        gap = centre + ti.Vector([first[0] - second[0], first[1] - second[1]])
+        g, h = ti.Vector([second[2], second[3]]), ti.Vector([second[4], second[5]])
+        inverse = 1.0 / lesser(gap.dot(h) - g.norm_sqr(), -0.1 * g.norm_sqr())
+        return within(-gap.dot(g) * inverse, ti.static(LONGEST * self.tables.cells / (2.0 * pi)))
 
     @ti.func
     def scan(
@@ -113,34 +180,21 @@ class Tracked:
         skin,
         places_i: ti.template(),
         places_j: ti.template(),
+        saddles_i: ti.template(),
+        saddles_j: ti.template(),
         row,
     ):
         """Find the contacts of a pair with a gap below `skin` (m); writes their places to `places_i[row, k]` and _j.
 
         Gives their number, at most as many as there is room for. They are sought from those of LOOKS points of either
-        outline at which the distance from the other, by polar radius, has a local minimum.
+        outline at which the distance from the other, by polar radius, has a local minimum. They come in their order
+        along i, each with the saddle between it and the one before, or NONE, in `saddles_i` and _j.
         """
-        found, sides, points, stride = 0, 2, ti.static(self.looks), ti.static(self.tables.cells // self.looks)
-        if self.tables.convex[shape_i] * self.tables.convex[shape_j] > 0.0:
-            # They have but one contact, which is found from the line of their centres.
-            toward, back = turned_back(turn_i, -apart), turned_back(turn_j, apart)
-            c = self.followed(
-                shape_i,
-                scale_i,
-                turn_i,
-                shape_j,
-                scale_j,
-                turn_j,
-                apart,
-                ti.atan2(toward[1], toward[0]) * (self.tables.cells / (2.0 * pi)),
-                ti.atan2(back[1], back[0]) * (self.tables.cells / (2.0 * pi)),
-            )
-            if c[HOLDS] > 0.0:
-                sides = 0
-                if -c[OVERLAP] < skin:
-                    places_i[row, 0], places_j[row, 0] = c[PLACE_I], c[PLACE_J]
-                    found = 1
-        for side in range(sides):
+        found, points, stride = 0, ti.static(self.looks), ti.static(self.tables.cells // self.looks)
+        convex = self.tables.convex[shape_i] * self.tables.convex[shape_j] > 0.0
+        done = False
+        # Convex ones have but one contact, which is found from the line of their centres; else all round either.
+        for side in range(ti.select(convex, -1, 0), 2):
             swap = side == 1
             shape, other = ti.select(swap, shape_j, shape_i), ti.select(swap, shape_i, shape_j)
             scale, other_scale = ti.select(swap, scale_j, scale_i), ti.select(swap, scale_i, scale_j)
@@ -151,17 +205,22 @@ class Tracked:
             far = other_scale * self.tables.bounding[other] + skin + 2.0 * spacing
             near = STEEPEST * skin + 2.0 * spacing
             earlier, last, last_x, last_y = far, far, far, far
-            for k in range(-2, points):
+            toward = turned_back(turn_i, -apart)
+            for k in range(-2, ti.select(done, -2, ti.select(side < 0, -1, points))):
                 at = (k & (points - 1)) * stride
                 point = ti.Vector([self.tables.curve[shape, at, 0], self.tables.curve[shape, at, 4]])
                 here = centre + turned(between, scale * point)
                 away = here.norm()
                 if away < far:
                     away -= other_scale * self.tables.radius(other, here[0], here[1])
-                if k >= 0 and last <= earlier and last < away and last < near:
-                    own = 0.0 * scale + (k - 1) * stride
-                    facing = ti.atan2(last_y, last_x) * (self.tables.cells / (2.0 * pi))
-                    found = self.settle(
+                if side < 0 or (k >= 0 and last <= earlier and last < away and last < near):
+                    own, facing = 0.0 * scale + (k - 1) * stride, ti.atan2(last_y, last_x)
+                    if side < 0:
+                        own = ti.atan2(toward[1], toward[0]) * (self.tables.cells / (2.0 * pi))
+                        facing = ti.atan2(centre[1], centre[0])
+                    facing *= self.tables.cells / (2.0 * pi)
+                    c = self.followed(
+                        MINIMUM,
                         shape_i,
                         scale_i,
                         turn_i,
@@ -169,57 +228,64 @@ class Tracked:
                         scale_j,
                         turn_j,
                         apart,
-                        skin,
                         ti.select(swap, facing, own),
                         ti.select(swap, own, facing),
-                        places_i,
-                        places_j,
-                        row,
-                        found,
                     )
+                    done = done or (side < 0 and c[HOLDS] > 0.0)
+                    if -c[OVERLAP] < skin and self.is_new(c, places_i, places_j, row, found):
+                        places_i[row, found], places_j[row, found] = c[PLACE_I], c[PLACE_J]
+                        found += 1
                 earlier, last, last_x, last_y = last, away, here[0], here[1]
+        self.put_in_order(places_i, places_j, row, found)
+        for k in range(found):
+            saddles_i[row, k], saddles_j[row, k] = NONE, NONE
+            if found > 1:
+                before = (k + found - 1) % found
+                c = self.saddle(
+                    shape_i,
+                    scale_i,
+                    turn_i,
+                    shape_j,
+                    scale_j,
+                    turn_j,
+                    apart,
+                    places_i[row, before],
+                    places_j[row, before],
+                    places_i[row, k],
+                    places_j[row, k],
+                )
+                if c[HOLDS] > 0.0 and -c[OVERLAP] < skin:
+                    saddles_i[row, k], saddles_j[row, k] = c[PLACE_I], c[PLACE_J]
         return found
 
     @ti.func
-    def settle(
-        self,
-        shape_i,
-        scale_i,
-        turn_i,
-        shape_j,
-        scale_j,
-        turn_j,
-        apart,
-        skin,
-        place_i,
-        place_j,
-        places_i: ti.template(),
-        places_j: ti.template(),
-        row,
-        before,
-    ):
-        """Follow a pair of places to the contact near by, and write it down if it is new; gives how many there are."""
-        found = before
-        c = self.followed(shape_i, scale_i, turn_i, shape_j, scale_j, turn_j, apart, place_i, place_j)
-        a, b = c[PLACE_I], c[PLACE_J]
-        fresh = c[HOLDS] > 0.0 and -c[OVERLAP] < skin and before < places_i.shape[1]
-        for k in range(before):
+    def put_in_order(self, places_i: ti.template(), places_j: ti.template(), row, count):
+        """Sort contacts by their places on i."""
+        for n in range(1, count):
+            a, b, k = places_i[row, n], places_j[row, n], n
+            while k > 0 and places_i[row, ti.max(k - 1, 0)] > a:
+                places_i[row, k], places_j[row, k] = places_i[row, k - 1], places_j[row, k - 1]
+                k -= 1
+            places_i[row, k], places_j[row, k] = a, b
+
+    @ti.func
+    def is_new(self, c, places_i: ti.template(), places_j: ti.template(), row, found):
+        """Whether this is a contact, is none of those that have been found, and there is room for it."""
+        new, a, b = c[HOLDS] > 0.0 and found < places_i.shape[1], c[PLACE_I], c[PLACE_J]
+        for k in range(found):
             if self.same(a, places_i[row, k], ALIKE) and self.same(b, places_j[row, k], ALIKE):
-                fresh = False
-        if fresh:
-            places_i[row, before], places_j[row, before] = a, b
-            found += 1
-        return found
+                new = False
+        return new
 
     @ti.func
-    def followed(self, shape_i, scale_i, turn_i, shape_j, scale_j, turn_j, apart, place_i, place_j):
-        """The contact to which Newton's method leads from these places; it does not hold where it leads to none."""
-        c = self.contact(False, shape_i, scale_i, turn_i, shape_j, scale_j, turn_j, apart, place_i, place_j)
-        settled = False
+    def followed(self, way, shape_i, scale_i, turn_i, shape_j, scale_j, turn_j, apart, place_i, place_j):
+        """What Newton's method leads to from these places; it does not hold where it leads to nothing."""
+        a, b, settled = place_i, place_j, False
+        c = ti.Vector([0.0 * scale_i for _ in ti.static(range(HOLDS + 1))])
         for _ in range(TRIES):
-            a, b = c[PLACE_I], c[PLACE_J]
-            c = self.contact(True, shape_i, scale_i, turn_i, shape_j, scale_j, turn_j, apart, a, b)
+            c = self.contact(True, way, shape_i, scale_i, turn_i, shape_j, scale_j, turn_j, apart, a, b)
             settled = self.same(c[PLACE_I], a, SETTLED) and self.same(c[PLACE_J], b, SETTLED)
+            a, b = c[PLACE_I], c[PLACE_J]
             if settled:
                 break
         if not settled:
@@ -227,9 +293,14 @@ class Tracked:
         return c
 
     @ti.func
+    def way_from(self, a, b):
+        """How many cells it is from place a on an outline to b, the shorter way round."""
+        return self.tables.wrapped(b - a + 0.5 * self.tables.cells) - 0.5 * self.tables.cells
+
+    @ti.func
     def distance(self, a, b):
         """How many cells two places on an outline are apart."""
-        return ti.abs(self.tables.wrapped(a - b + 0.5 * self.tables.cells) - 0.5 * self.tables.cells)
+        return ti.abs(self.way_from(a, b))
 
     @ti.func
     def same(self, a, b, error):

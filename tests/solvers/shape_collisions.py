@@ -10,7 +10,7 @@ from solvers.runtime import Arrays
 from solvers.shapes.contour import Contour
 from solvers.shapes.nodes import Nodes
 from solvers.shapes.tables import Tables
-from solvers.shapes.tracked import Tracked
+from solvers.shapes.tracked import MINIMUM, SADDLE, Tracked
 
 ROOM = 8
 SKIN = 0.05
@@ -45,7 +45,7 @@ class Collisions:
         else:
             self.tracked = Tracked(self.tables)
         self.place, self.rate, self.push = arrays.reals(3, (count, 2, 3))
-        self.at_i, self.at_j = arrays.reals(2, (count, ROOM))
+        self.at_i, self.at_j, self.saddle_i, self.saddle_j = arrays.reals(4, (count, ROOM))
         (self.number, self.steps) = arrays.integers(2, (count,))
         (self.deepest,) = arrays.reals(1, (count,))
         arrays.finish()
@@ -94,7 +94,19 @@ class Collisions:
         """List the contacts, where the rule wants a list."""
         if ti.static(self.rule == "tracked"):
             self.number[p] = self.tracked.scan(
-                0, 1.0, self.turn(p, 0), 0, 1.0, self.turn(p, 1), self.apart(p), SKIN, self.at_i, self.at_j, p
+                0,
+                1.0,
+                self.turn(p, 0),
+                0,
+                1.0,
+                self.turn(p, 1),
+                self.apart(p),
+                SKIN,
+                self.at_i,
+                self.at_j,
+                self.saddle_i,
+                self.saddle_j,
+                p,
             )
 
     @ti.func
@@ -105,18 +117,26 @@ class Collisions:
         apart, first, second = self.apart(p), self.turn(p, 0), self.turn(p, 1)
         if ti.static(self.rule == "tracked"):
             for k in range(self.number[p]):
-                c = self.tracked.contact(True, 0, 1.0, first, 0, 1.0, second, apart, self.at_i[p, k], self.at_j[p, k])
+                c = self.tracked.contact(
+                    True, MINIMUM, 0, 1.0, first, 0, 1.0, second, apart, self.at_i[p, k], self.at_j[p, k]
+                )
                 self.at_i[p, k], self.at_j[p, k] = c[5], c[6]
                 if c[7] > 0.0:
-                    self.press(p, c, apart)
+                    self.press(p, c, apart, 1.0)
+                if self.saddle_i[p, k] >= 0.0:
+                    a, b = self.saddle_i[p, k], self.saddle_j[p, k]
+                    c = self.tracked.contact(True, SADDLE, 0, 1.0, first, 0, 1.0, second, apart, a, b)
+                    self.saddle_i[p, k], self.saddle_j[p, k] = c[5], c[6]
+                    if c[7] > 0.0:
+                        self.press(p, c, apart, -1.0)
         else:
-            self.press(p, self.nodes.contact(0, 1.0, first, 0, 1.0, second, apart), apart)
+            self.press(p, self.nodes.contact(0, 1.0, first, 0, 1.0, second, apart), apart, 1.0)
 
     @ti.func
-    def press(self, p, c, apart):
-        """Hertz's force of a contact."""
+    def press(self, p, c, apart, sign):
+        """Hertz's force of a contact, or less by that of a saddle."""
         overlap = ti.max(c[0], 0.0)
-        force = self.stiffness * overlap**1.5 * ti.Vector([c[1], c[2]])
+        force = sign * self.stiffness * overlap**1.5 * ti.Vector([c[1], c[2]])
         lever = ti.Vector([c[3], c[4]])
         for n in ti.static(range(2)):
             self.push[p, 0, n] += force[n]

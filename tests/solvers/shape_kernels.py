@@ -11,7 +11,7 @@ from solvers.shapes.contour import Contour
 from solvers.shapes.crossing import Placed
 from solvers.shapes.nodes import Nodes
 from solvers.shapes.tables import Tables
-from solvers.shapes.tracked import Tracked
+from solvers.shapes.tracked import MINIMUM, SADDLE, Tracked
 
 ROOM = 8  # contacts of a pair
 
@@ -77,9 +77,10 @@ class Asked:
         (self.scale,) = arrays.reals(1, (count, 2))
         self.turn = arrays.reals(1, (count, 2, 2))[0]
         (self.apart,) = arrays.reals(1, (count, 2))
-        self.at_i, self.at_j = arrays.reals(2, (count, ROOM))
+        self.at_i, self.at_j, self.saddle_i, self.saddle_j = arrays.reals(4, (count, ROOM))
         (self.number,) = arrays.integers(1, (count,))
         (self.found,) = arrays.reals(1, (count, ROOM, 8))
+        (self.shallow,) = arrays.reals(1, (count, ROOM))
         arrays.finish()
         self.arrays = arrays
 
@@ -101,6 +102,10 @@ class Asked:
         self.load(pairs)
         self._scan(skin)
         return self.number.to_numpy(), self.found.to_numpy()
+
+    def saddles(self) -> np.ndarray:
+        """Overlaps (n, ROOM) at the saddles before the contacts that were scanned last, 0 where there is none."""
+        return self.shallow.to_numpy()
 
     def followed(self, pairs: Pairs) -> np.ndarray:
         """The contacts after one step from where they were last."""
@@ -147,6 +152,8 @@ class Asked:
                 skin,
                 self.at_i,
                 self.at_j,
+                self.saddle_i,
+                self.saddle_j,
                 p,
             )
             self.follow(p)
@@ -158,10 +165,16 @@ class Asked:
 
     @ti.func
     def follow(self, p):
-        """The contacts of a pair, one step on."""
-        for k in range(self.number[p]):
+        """The contacts of a pair and the saddles between them, one step on."""
+        for n in range(2 * self.number[p]):
+            k = n // 2
+            saddle = n % 2 == 1
+            self.shallow[p, k] = ti.select(saddle, self.shallow[p, k], 0.0)
+            if saddle and self.saddle_i[p, k] < 0.0:
+                continue
             c = self.tracked.contact(
                 True,
+                ti.select(saddle, SADDLE, MINIMUM),
                 self.shape[p, 0],
                 self.scale[p, 0],
                 self.pose(p, 0),
@@ -169,9 +182,12 @@ class Asked:
                 self.scale[p, 1],
                 self.pose(p, 1),
                 self.between(p),
-                self.at_i[p, k],
-                self.at_j[p, k],
+                ti.select(saddle, self.saddle_i[p, k], self.at_i[p, k]),
+                ti.select(saddle, self.saddle_j[p, k], self.at_j[p, k]),
             )
-            for n in ti.static(range(8)):
-                self.found[p, k, n] = c[n]
-            self.at_i[p, k], self.at_j[p, k] = c[5], c[6]
+            if saddle:
+                self.shallow[p, k] = ti.max(c[0], 0.0)
+            else:
+                for m in ti.static(range(8)):
+                    self.found[p, k, m] = c[m]
+                self.at_i[p, k], self.at_j[p, k] = c[5], c[6]

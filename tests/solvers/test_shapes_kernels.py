@@ -260,6 +260,40 @@ def test_the_smooth_rule_and_the_discrete_one_differ_by_the_overlap_squared(aske
     assert off[0] / off[1] == pytest.approx(100.0, rel=0.3)
 
 
+PATHS = 20
+
+
+def test_energy_less_that_of_saddles_has_no_jumps(asked):
+    """Grains that overlap turn past each other: bends make contacts come and go, Hertz's energy U = ξ^(5/2)."""
+    random = np.random.default_rng(8)
+    angle = np.linspace(0.0, 0.5, COUNT // PATHS)
+    turned = np.tile(angle, PATHS)
+    shape = np.repeat(random.integers(0, len(OUTLINES), (PATHS, 2)), len(angle), axis=0)
+    start = np.repeat(random.uniform(-np.pi, np.pi, (PATHS, 2)), len(angle), axis=0)
+    place = np.zeros((COUNT, 2, 2))
+    given = Pairs(shape, np.ones((COUNT, 2)), start + np.stack([turned, 0.0 * turned], axis=1), place)
+    facing = np.array([0.0, np.pi])
+    reach = [
+        [OUTLINES[k].polar(way) for k, way in zip(*row, strict=True)]
+        for row in zip(shape, facing - given.angle, strict=True)
+    ]
+    place[:, 1, 0] = np.sum(reach, axis=1) - 0.3 * SHALLOW
+    number, found = asked.scanned(given, SKIN)
+    listed = np.arange(found.shape[1]) < number[:, None]
+    minima = np.where(listed, np.maximum(found[:, :, 0], 0.0), 0.0)
+    contacts = (minima**2.5).sum(axis=1).reshape(PATHS, -1)
+    energy = contacts - (np.where(listed, asked.saddles(), 0.0) ** 2.5).sum(axis=1).reshape(PATHS, -1)
+    deepest = minima.max(axis=1).reshape(PATHS, -1)
+    fair = (deepest[:, :-2] < SHALLOW) & (deepest[:, 2:] < SHALLOW)
+
+    def jumps(values):
+        return np.abs(np.diff(values, 2, axis=1))[fair] / SHALLOW**2.5
+
+    assert fair.sum() > 400
+    assert jumps(energy).max() < 0.08  # what 0.3° do to a smooth curve
+    assert jumps(contacts).max() > 0.2
+
+
 STARTS = ((0.0, 0.0), (0.3, 0.2), (1.2, 0.5), (2.0, -0.3))  # angle (rad) and offset (m) of the second grain
 STEPS = np.array([2000, 4000, 8000, 16000, 32000])
 

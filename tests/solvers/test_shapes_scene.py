@@ -88,13 +88,13 @@ def test_round_outlines_are_discs(contact, within):
     assert np.abs(outlines["angle"] - now["angle"] - discs["angle"]).max() < 2.0 * within
 
 
-def collision(contact, outlines, grain=SOFT, step=1e-5):
+def collision(contact, outlines, grain=SOFT, step=1e-5, angles=(0.3, 1.9), speed=0.5):
     """Two grains that meet in free fall."""
-    given = Shapes(tuple(outlines), np.array([[0, len(outlines) - 1]]), np.array([[0.3, 1.9]]), contact)
+    given = Shapes(tuple(outlines), np.array([[0, len(outlines) - 1]]), np.array([angles]), contact)
     places = np.array([[[-0.008, 0.05], [0.008, 0.052]]])
-    made = Scene(np.full((1, 2), RADIUS), box(0.1, 0.1), grain, grain, shapes=given, step=step, start_speed=1.0)
+    made = Scene(np.full((1, 2), RADIUS), box(0.1, 0.1), grain, grain, shapes=given, step=step, start_speed=2.0 * speed)
     simulation = Simulation(made, places, threads=1)
-    simulation.launch(np.array([[[0.5, 0.0], [-0.5, 0.0]]]), np.array([[20.0, 35.0]]))
+    simulation.launch(np.array([[[speed, 0.0], [-speed, 0.0]]]), np.array([[20.0, 35.0]]))
     simulation.start_clock()
     return simulation
 
@@ -144,6 +144,50 @@ def test_energy_of_a_smooth_collision_is_kept_with_the_square_of_the_step():
     during, after = np.array(errors).T
     assert during[0] / during[1] == pytest.approx(4.0, rel=0.15)
     assert after[0] < 2e-4 and after[1] < after[0] / 4.0
+
+
+def test_a_tip_may_be_pressed_in_farther_than_it_is_round():
+    """The tip of one rice grain meets the side of another at 5 m/s each, without friction or losses."""
+    outline = rice()
+    theta = np.linspace(0.0, 2.0 * np.pi, 2000)
+    p, d, dd = outline.polar(theta), outline.polar(theta, 1), outline.polar(theta, 2)
+    roundness = ((p**2 + d**2) ** 1.5 / (p**2 + 2.0 * d**2 - p * dd)).min()
+    long_way = theta[p.argmax()]
+    simulation = collision("continuous", [outline], LOSSLESS, 2e-6, (0.5 * np.pi - long_way, np.pi - long_way), 5.0)
+    simulation.advance(1)
+    start, deepest, worst = energy(simulation), 0.0, 0.0
+    for _ in range(60):
+        simulation.advance(10)
+        worst = max(worst, abs(energy(simulation) / start - 1.0))
+        deepest = max(deepest, simulation.observe()["overlap"][0])
+    assert deepest > 1.2 * roundness
+    assert worst < 1e-3
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["corn", "sunflower"])
+def test_energy_of_a_bed_of_bent_grains_that_loses_none(name):
+    """It falls 10 diameters and is stirred by that for 0.2 s; contacts of bends come and go all the time."""
+    random = np.random.default_rng(2)
+    outlines = [cargo(name).outline(random, 2.0) for _ in range(4)]
+    columns, rows = 4, 8
+    site = np.stack(np.meshgrid(np.arange(columns), np.arange(rows)), axis=-1).reshape(-1, 2)
+    pitch = 2.2 * max(outline.bounding_radius for outline in outlines) * RADIUS
+    places = pitch * (site - [0.5 * (columns - 1), -0.6]) + random.uniform(-1e-4, 1e-4, site.shape)
+    made = Scene(
+        np.full((1, len(site)), RADIUS),
+        box(columns * pitch, 2.0 * rows * pitch),
+        LOSSLESS,
+        LOSSLESS,
+        shapes=shapes(outlines, len(site)),
+    )
+    simulation = Simulation(made, places[None], threads=1)
+    start, moved = energy(simulation), 0.0
+    for _ in range(40):
+        simulation.advance(round(5e-3 / simulation.dt))
+        moved = max(moved, simulation.observe()["rotational"][0] / start)
+    assert moved > 0.02
+    assert energy(simulation) == pytest.approx(start, rel=0.02)
 
 
 DEPTH = 0.01 * RADIUS
