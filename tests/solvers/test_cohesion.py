@@ -186,6 +186,7 @@ def test_bridges_are_the_same_in_every_schedule_and_list(other, near):
     assert found["elastic"] == pytest.approx(usual["elastic"], rel=1e-7 if near < 1e-9 else 1e-2)
 
 
+@pytest.mark.slow
 def test_bridges_hold_across_gaps_where_lists_are_made_anew():
     """Many pairs that do not touch are bridged, or the test above would show little."""
     found = clump(skin=2e-5)

@@ -153,6 +153,7 @@ def overlap_of_ellipses(given, k):
     return found.fun, np.array([np.cos(found.x), np.sin(found.x)])
 
 
+@pytest.mark.slow
 def test_ellipses_against_the_least_overlap_of_their_shadows():
     outlines = [ellipse(*axes) if axes[0] > axes[1] else Contour(axes[0]) for axes in AXES]
     given = random_pairs(outlines, COUNT, 5, (-0.01, 0.05))
@@ -298,6 +299,7 @@ STARTS = ((0.0, 0.0), (0.3, 0.2), (1.2, 0.5), (2.0, -0.3))  # angle (rad) and of
 STEPS = np.array([2000, 4000, 8000, 16000, 32000])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("outline", [outline_of("rice"), star(5, 0.25).with_diameter(2.0)], ids=["rice", "star"])
 def test_energy_in_collisions(outline):
     """Followed contacts keep it with the square of the step; the deepest of the nodes jumps, whatever the step."""

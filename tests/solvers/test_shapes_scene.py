@@ -208,9 +208,10 @@ def nearest(place, angle):
     return RADIUS * best * (-1.0 if (own[0] / AXES[0]) ** 2 + (own[1] / AXES[1]) ** 2 < 1.0 else 1.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("contact", "floor", "corner"),
-    [("continuous", 1e-4, 1e-3), pytest.param("nodes", 2e-3, 3e-2, marks=pytest.mark.slow)],
+    [("continuous", 1e-4, 1e-3), ("nodes", 2e-3, 3e-2)],
 )
 def test_ellipses_on_a_floor_and_on_a_corner_that_juts_in(contact, floor, corner):
     """One reaches √(a² sin² + b² cos²) down from its middle; a corner is as deep in one as its nearest point is far.
