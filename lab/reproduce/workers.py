@@ -78,6 +78,7 @@ def _hand_out(
 def _begin() -> None:
     """In a worker: take one core, leave Ctrl-C to the process that gives out work, and end with that."""
     runtime.use_cores(1)
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # what runs in the background may be deaf to it
     if hasattr(os, "setpgrp"):
         os.setpgrp()
     threading.Thread(target=_end_with_parent, daemon=True).start()

@@ -76,6 +76,7 @@ def test_a_worker_times_steps_and_says_what_it_cannot_do(bed):
         Worker(bed, arch="vulkan", precision="f64")
 
 
+@pytest.mark.slow
 def test_the_walls_carry_the_bed_in_the_parts_that_are_timed(resting):
     run, kernels = resting, Parts(resting)
     forces = {}
@@ -89,6 +90,7 @@ def test_the_walls_carry_the_bed_in_the_parts_that_are_timed(resting):
     assert forces["wall_forces"][1].sum() == pytest.approx(weight, rel=1e-3)  # at rest up to what settling leaves
 
 
+@pytest.mark.slow
 def test_parts_done_often_leave_the_bed_as_it_is(resting):
     run, kernels = resting, Parts(resting)
     kernels.move(1, 0.0)
@@ -112,6 +114,7 @@ def test_parts_done_often_leave_the_bed_as_it_is(resting):
         np.testing.assert_array_equal(field.to_numpy().ravel()[:length], values.ravel()[:length])
 
 
+@pytest.mark.slow
 def test_bytes_are_counted_as_the_lists_and_the_grains_hold_them(resting):
     lists = resting.neighbours.pairs
     reals = 3 + len(lists.constants) + 2 * len(lists.memory)  # stiffness, reach, share; memory is read and written

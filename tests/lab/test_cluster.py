@@ -20,10 +20,11 @@ from lab.checkpoint import Checkpoint
 from lab.errors import LabError
 from lab.launch import prepare
 from lab.presets import load
-from lab.reproduce import runs
+from lab.reproduce import runs, workers
 from lab.reproduce.experiment import Experiment
 from lab.reproduce.runs import Batch
 from lab.sweeps import errands, resume_any, run_sweep
+from solvers import runtime
 
 distributed = pytest.importorskip("distributed", reason="the extra `cluster` is not installed")
 
@@ -128,7 +129,8 @@ def test_all_experiments_are_sent_at_once_before_anything_runs_here(tmp_path, mo
     tried = Experiment("tried", "A trial", "0.0", "nothing.", lambda quick: batches, None, "", ("one", 1.0))
     monkeypatch.setattr(package, "experiments", lambda _: {"tried": tried})
     monkeypatch.setattr(package, "fetch", lambda errands, address, _: done.append((len(errands), address)))
-    monkeypatch.setattr(package, "carry_out", lambda batch, *_: done.append(batch))
+    monkeypatch.setattr(workers, "carry_out", lambda batch, *_: done.append(batch))
+    monkeypatch.setattr(runtime, "available_cores", lambda: 1)
     monkeypatch.setattr(package, "write_report", lambda *_: None)
     package.reproduce("granular", [], tmp_path, quick=True, quiet=True, cluster="tcp://node1:8786")
     assert done == [(2, "tcp://node1:8786"), *batches.values()]

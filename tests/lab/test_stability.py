@@ -104,6 +104,7 @@ def failed(checks: list[Check]) -> list[str]:
     return [check.what for check in checks if not check.passed]
 
 
+@pytest.mark.slow
 def test_energy_is_what_the_tank_has_done(swayed):
     """The bed is thrown against the walls, and its energy follows the tank's work but for what collisions take."""
     trial, course = swayed
@@ -112,6 +113,7 @@ def test_energy_is_what_the_tank_has_done(swayed):
     assert made_energy(trial, course) < 1e-3
 
 
+@pytest.mark.slow
 def test_energy_from_nowhere_is_caught(swayed):
     """Without the tank's work, or with a little more than there is, the energy has no source."""
     trial, course = swayed
@@ -122,6 +124,7 @@ def test_energy_from_nowhere_is_caught(swayed):
     assert failed(judge(SWAYED, trial, replace(course, energy=warmer))) == ["energy made (share)"]
 
 
+@pytest.mark.slow
 def test_other_faults_are_caught(swayed):
     trial, course = swayed
     assert failed(judge(SWAYED, trial, replace(course, stopped="it exploded."))) == ["the run"]
@@ -132,6 +135,7 @@ def test_other_faults_are_caught(swayed):
     assert failed(judge(SWAYED, trial, lost)) == ["energy made (share)"]
 
 
+@pytest.mark.slow
 def test_longer_steps_are_right_or_stopped_or_quietly_wrong(swayed):
     trial, course = swayed
     found = height(trial, course)

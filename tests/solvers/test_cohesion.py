@@ -195,6 +195,7 @@ def test_bridges_hold_across_gaps_where_lists_are_made_anew():
     assert touching + 10 < found["bridges"] <= near
 
 
+@pytest.mark.slow
 def test_nothing_is_kept_for_cohesion_where_there_is_none():
     place, kept = np.array([[[0.0, RADIUS], [0.0, 3.0 * RADIUS]]]), []
     for grain, law in ((material(), "none"), (wet(asperities=1e-9), "none"), (wet(), "bridge")):

@@ -37,7 +37,11 @@ def test_every_law_is_tried():
         assert set(kind) == set(registry)
 
 
-@pytest.fixture(scope="module", params=LAWS, ids="-".join)
+@pytest.fixture(
+    scope="module",
+    params=[pytest.param(laws, marks=pytest.mark.slow if laws[0] in ("hertz", "linear") else ()) for laws in LAWS],
+    ids="-".join,
+)
 def bench(request):
     """A simulation of a world of two equal grains for each of CASES, under one choice of laws."""
     grain = [material(restitution=e, rolling_friction=0.1) for e in CASES[:, 0]]

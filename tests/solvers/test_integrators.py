@@ -26,7 +26,10 @@ NEAREST = {"symplectic-euler": 3e-2, "verlet": 1e-3, "gear": 1e-4}  # overlaps, 
 DRIFTS = {"symplectic-euler": 2e-3, "verlet": 1e-3, "gear": 1e-2}  # of the energy of the swing
 
 
-@pytest.fixture(scope="module", params=ORDERS)
+@pytest.fixture(
+    scope="module",
+    params=[pytest.param(name, marks=pytest.mark.slow if name == "symplectic-euler" else ()) for name in ORDERS],
+)
 def bench(request):
     """Four worlds of two grains under one integrator."""
     materials = [SOFT, SOFT, LOSSY, SOFT]

@@ -204,6 +204,7 @@ def stepped():
     return felt, contacts, looks, mass
 
 
+@pytest.mark.slow
 def test_plates_of_an_open_tank_push_as_geometry_says(stepped):
     """A rim pushes as a point, a wall square to itself from either side, with the force of Hertz; nothing pushes twice.
 
@@ -217,6 +218,7 @@ def test_plates_of_an_open_tank_push_as_geometry_says(stepped):
         assert rows["contacts"][k] == np.any(way), name
 
 
+@pytest.mark.slow
 def test_an_l_with_two_open_edges_keeps_and_spills(stepped):
     """Into the step, from its air into the tall part or back, into the tall part: kept; beside either: spilled."""
     _, _, looks, _ = stepped

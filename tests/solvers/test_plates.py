@@ -178,6 +178,7 @@ def machine():
     return looks, (mass * G / stiffness) ** (2 / 3), mass
 
 
+@pytest.mark.slow
 def test_a_gate_holds_a_bed_and_lets_it_go(machine):
     looks, *_ = machine
     for time, position, moved, _ in looks:
@@ -190,6 +191,7 @@ def test_a_gate_holds_a_bed_and_lets_it_go(machine):
     assert looks[-1][1][:BEHIND, 1].max() < looks[15][1][:BEHIND, 1].max() - RADIUS
 
 
+@pytest.mark.slow
 def test_grains_on_a_floor_that_drops_at_three_g_fall_freely(machine):
     """They leave it once it has moved by their overlap; until then it carries them with less than their weight."""
     looks, overlap, _ = machine

@@ -117,6 +117,7 @@ def column_errors(told: Told, world: int) -> np.ndarray:
     return np.abs(found / resting(world) - 1.0).max(axis=0)
 
 
+@pytest.mark.slow
 def test_restitution(told):
     """Mixed is as good as f64 at any speed and stiffness; f32 is for fast grains."""
     for world in (SOFT, FULL):
@@ -127,6 +128,7 @@ def test_restitution(told):
         assert errors["f32"][-2] < 0.1
 
 
+@pytest.mark.slow
 def test_grains_stand_still_in_32_bits_where_a_step_is_less_than_a_digit(told):
     """Places at 0.3 m come in steps of 3e-8 m, so that 2 cm/s at a step of 0.2 µs is lost: why there is mixed."""
     digit = float(np.spacing(np.float32(AWAY - 0.02)))
@@ -136,6 +138,7 @@ def test_grains_stand_still_in_32_bits_where_a_step_is_less_than_a_digit(told):
     assert told["mixed"].position[-1, FULL, COLUMN + 1, 0] - first > 0.1 * SPEEDS[0] * TIME
 
 
+@pytest.mark.slow
 def test_a_column_rests_on_its_overlaps(told):
     """Overlaps of 2e-6 to 5e-6 m, and of 2e-8 to 5e-8 m at full stiffness."""
     for world, (f64, mixed, f32) in ((SOFT, (1e-9, 1e-4, 0.05)), (FULL, (1e-7, 5e-3, 3.0))):
@@ -146,6 +149,7 @@ def test_a_column_rests_on_its_overlaps(told):
         assert 30.0 * errors["mixed"] < errors["f32"]
 
 
+@pytest.mark.slow
 def test_a_lift_carries_a_grain_on_its_overlap(told):
     """A plate under way is where it is to the digits of a place, and so its force is smooth."""
     for world, allowed in ((SOFT, 0.01), (FULL, 0.03)):
@@ -156,6 +160,7 @@ def test_a_lift_carries_a_grain_on_its_overlap(told):
             assert np.abs(found / overlap - 1.0).max() < limit, (name, world)
 
 
+@pytest.mark.slow
 def test_slow_grains_meet_in_all_precisions(told):
     """Below 5 mm/s the speeds' 16th powers vanish in 32 bits; the lists must know of them still."""
     usual = told["f64"].velocity[-1, :, CRAWLER:, 0]

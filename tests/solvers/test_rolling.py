@@ -15,7 +15,9 @@ LEFT, RIGHT = np.array([[-0.5, 0.0], [0.5, 0.0]])
 OUTLINE = np.array([LEFT, RIGHT, [1.5, np.tan(STEEP)], [1.5, 1.5], [-1.5, 1.5], [-1.5, np.tan(GENTLE)]])
 UP_STEEP = np.array([np.cos(STEEP), np.sin(STEEP)])
 UP_GENTLE = np.array([-np.cos(GENTLE), np.sin(GENTLE)])
-LAWS = [law for law in ROLLING if law != "none"]
+LAWS = [
+    pytest.param(law, marks=pytest.mark.slow if law == "constant-torque" else ()) for law in ROLLING if law != "none"
+]
 
 
 @pytest.fixture(scope="module", params=LAWS)
