@@ -1,0 +1,196 @@
+"""A hull's section: a polygon, and the part of it under a calm or sloping water surface at any pose.
+
+Under a surface z = ζ + s (y − Y) (Y the sway of the hull's origin) a point's depth is d = ζ + s (y − Y) − z. In the
+coordinates (y, d), a shear that keeps areas, every integral over the immersed part is one along the outline alone, by
+Green's theorem: the surface itself has d = 0 and adds nothing. So the pieces need neither sorting nor closing.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from solvers.errors import Unavailable
+
+ROUNDING = 1e-12  # of the section's size: shorter than this is nothing
+
+
+@dataclass(frozen=True)
+class Immersion:
+    """The immersed part: area ∫∫dA (m²), ∫∫y dA (m³) with y from the hull's origin, and ∫∫d dA (m³), d the depth.
+
+    Arrays of the poses' shape; `elevation` (m) and `slope` are those of the surface.
+    """
+
+    area: np.ndarray
+    moment: np.ndarray
+    depth_moment: np.ndarray
+    elevation: np.ndarray
+    slope: np.ndarray
+
+    @property
+    def centroid(self) -> np.ndarray:
+        """Its centroid (…, 2) m in the earth's axes, y from the hull's origin, z from the calm surface; nan if dry."""
+        with np.errstate(invalid="ignore", divide="ignore"):
+            y, depth = self.moment / self.area, self.depth_moment / self.area
+        return np.stack([y, self.elevation + self.slope * y - depth], axis=-1)
+
+
+@dataclass(frozen=True)
+class Waterplane:
+    """What the surface cuts: breadth ∫dy (m), ∫y dy (m²) and ∫y² dy (m³), y from the hull's origin."""
+
+    breadth: np.ndarray
+    moment: np.ndarray
+    second_moment: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class Section:
+    """A simple polygon (m, 2) of y, z in m, counter-clockwise, in the hull's own frame.
+
+    Raises `Unavailable` where it is anything else.
+    """
+
+    outline: np.ndarray
+
+    def __post_init__(self):
+        outline = np.array(self.outline, dtype=float)
+        object.__setattr__(self, "outline", outline)
+        _check(outline)
+
+    @cached_property
+    def size(self) -> float:
+        """The larger of its width and height (m)."""
+        return float(np.ptp(self.outline, axis=0).max())
+
+    @cached_property
+    def area(self) -> float:
+        """Its whole area (m²)."""
+        return _enclosed(self.outline)
+
+    def immersion(self, heave, roll, elevation=0.0, slope=0.0) -> Immersion:
+        """The part under the surface `elevation` (m) + `slope` (∂ζ/∂y) × y at poses that broadcast together."""
+        y, depth, elevation, slope = self._below(heave, roll, elevation, slope)
+        y0, d0, y1, d1 = _clipped(y, depth)
+        along = y1 - y0
+        area = 0.5 * along * (d0 + d1)
+        moment = along / 6.0 * (y0 * (2.0 * d0 + d1) + y1 * (d0 + 2.0 * d1))
+        depth_moment = along / 6.0 * (d0 * d0 + d0 * d1 + d1 * d1)
+        return Immersion(area.sum(-1), moment.sum(-1), depth_moment.sum(-1), elevation, slope)
+
+    def waterplane(self, heave, roll, elevation=0.0, slope=0.0) -> Waterplane:
+        """Moments of the waterline's pieces, at poses that broadcast together."""
+        y, depth, _, _ = self._below(heave, roll, elevation, slope)
+        crossing, sign = _crossings(y, depth)
+        powers = [(sign * crossing**n / n).sum(-1) for n in (1, 2, 3)]
+        return Waterplane(*powers)
+
+    def waterlines(self, heave: float, roll: float, elevation: float = 0.0, slope: float = 0.0) -> np.ndarray:
+        """Ends (k, 2, 2) m of the waterline's k pieces at one pose, from port to starboard, in the earth's axes.
+
+        Each end is y from the hull's origin and z.
+        """
+        y, depth, _, _ = self._below(heave, roll, elevation, slope)
+        crossing, sign = _crossings(y, depth)
+        ends = np.sort(crossing[sign != 0.0]).reshape(-1, 2)
+        ends = ends[np.ptp(ends, axis=1) > ROUNDING * self.size]
+        return np.stack([ends, elevation + slope * ends], axis=-1)
+
+    def wet_edges(self, heave: float, roll: float) -> np.ndarray:
+        """Start and end (k, 2, 2) m of each edge's part under calm water, the water to its right, earth's axes."""
+        y, depth, _, _ = self._below(heave, roll, 0.0, 0.0)
+        y0, d0, y1, d1 = _clipped(y, depth)
+        wet = np.hypot(y1 - y0, d1 - d0) > ROUNDING * self.size
+        return np.stack([np.stack([y0, -d0], axis=-1), np.stack([y1, -d1], axis=-1)], axis=1)[wet]
+
+    def _below(self, heave, roll, elevation, slope):
+        """Corners' y from the hull's origin and depth (…, m), the first corner once more at the end; the surface."""
+        heave, roll, elevation, slope = np.broadcast_arrays(heave, roll, elevation, slope)
+        corners = np.concatenate([self.outline, self.outline[:1]])
+        cos, sin = np.cos(roll)[..., None], np.sin(roll)[..., None]
+        y = cos * corners[:, 0] - sin * corners[:, 1]
+        z = heave[..., None] + sin * corners[:, 0] + cos * corners[:, 1]
+        return y, elevation[..., None] + slope[..., None] * y - z, elevation, slope
+
+
+def box(width: float, height: float) -> Section:
+    """A rectangular section (m) whose origin is the middle of its bottom."""
+    half = 0.5 * width
+    return Section(np.array([[-half, 0.0], [half, 0.0], [half, height], [-half, height]]))
+
+
+def _clipped(y: np.ndarray, depth: np.ndarray):
+    """Start y, depth and end y, depth (…, m) of the edges' parts with depth > 0, of no length where there is none."""
+    y0, d0, y1, d1 = y[..., :-1], depth[..., :-1], y[..., 1:], depth[..., 1:]
+    crossing = _crossing(y0, d0, y1, d1)
+    in0, in1 = d0 > 0.0, d1 > 0.0
+    # A dry end moves to the crossing; an edge that is all dry shrinks to a point of the surface.
+    start_y, end_y = np.where(in0, y0, crossing), np.where(in1, y1, crossing)
+    return start_y, np.where(in0, d0, 0.0), end_y, np.where(in1, d1, 0.0)
+
+
+def _crossing(y0, d0, y1, d1) -> np.ndarray:
+    """Where edges cross the surface; of those that do not, some point."""
+    cuts = (d0 > 0.0) != (d1 > 0.0)
+    share = np.where(cuts, d0 / np.where(cuts, d0 - d1, 1.0), 0.0)
+    return y0 + share * (y1 - y0)
+
+
+def _crossings(y: np.ndarray, depth: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The y (…, m) where each edge leaves (sign 1) or enters (−1) the water; sign 0 where it does neither."""
+    y0, d0, y1, d1 = y[..., :-1], depth[..., :-1], y[..., 1:], depth[..., 1:]
+    sign = (d0 > 0.0).astype(float) - (d1 > 0.0)
+    return np.where(sign != 0.0, _crossing(y0, d0, y1, d1), 0.0), sign
+
+
+def _check(outline: np.ndarray) -> None:
+    """One sentence where an outline is not a simple polygon, counter-clockwise."""
+    if outline.ndim != 2 or outline.shape[1] != 2 or len(outline) < 3:
+        raise Unavailable("the hull's outline needs at least three corners of two coordinates (y, z).")
+    if not np.isfinite(outline).all():
+        raise Unavailable("the hull's outline has a coordinate that is not a finite number.")
+    size = float(np.ptp(outline, axis=0).max())
+    edges = np.roll(outline, -1, axis=0) - outline
+    short = np.flatnonzero(np.hypot(*edges.T) <= ROUNDING * size)
+    if len(short):
+        raise Unavailable(f"the hull's outline has the same corner twice in a row, at number {short[0] + 1}.")
+    crossed = _first_crossing(outline, edges)
+    if crossed is not None:
+        raise Unavailable(f"the hull's outline crosses or touches itself: edges {crossed[0] + 1} and {crossed[1] + 1}.")
+    if _enclosed(outline) <= 0.0:
+        raise Unavailable("the hull's outline runs clockwise; list its corners the other way round.")
+
+
+def _enclosed(outline: np.ndarray) -> float:
+    """Signed area (m²) by the shoelace formula."""
+    y, z = outline.T
+    return float(0.5 * (y @ np.roll(z, -1) - z @ np.roll(y, -1)))
+
+
+def _first_crossing(outline: np.ndarray, edges: np.ndarray) -> tuple[int, int] | None:
+    """The first two edges that share a point they should not, or None."""
+    count = len(outline)
+    for k in range(count):
+        after = (k + 1) % count
+        turn, ahead = _cross(edges[k], edges[after]), edges[k] @ edges[after]
+        if ahead < 0.0 and abs(turn) <= ROUNDING * -ahead:
+            return min(k, after), max(k, after)  # folds back upon itself
+        others = np.array([j for j in range(k + 2, count) if (j + 1) % count != k], dtype=int)
+        meets = _meet(outline[k], edges[k], outline[others], edges[others])
+        if meets.any():
+            return k, int(others[meets.argmax()])
+    return None
+
+
+def _meet(start: np.ndarray, along: np.ndarray, starts: np.ndarray, alongs: np.ndarray) -> np.ndarray:
+    """Whether a segment shares a point with each of several others."""
+    a, b = _cross(along, starts - start), _cross(along, starts + alongs - start)
+    c, d = _cross(alongs, start - starts), _cross(alongs, start + along - starts)
+    lower, upper = np.minimum(start, start + along), np.maximum(start, start + along)
+    boxes = (np.minimum(starts, starts + alongs) <= upper) & (np.maximum(starts, starts + alongs) >= lower)
+    return (a * b <= 0.0) & (c * d <= 0.0) & boxes.all(axis=-1)
+
+
+def _cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
