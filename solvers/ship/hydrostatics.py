@@ -29,7 +29,10 @@ class Loading:
 def turned(point: tuple[float, float], roll) -> np.ndarray:
     """A point (y, z) of the hull's frame from the hull's origin, in the earth's axes: (…, 2) m."""
     cos, sin = np.cos(roll), np.sin(roll)
-    return np.stack([cos * point[0] - sin * point[1], sin * point[0] + cos * point[1]], axis=-1)
+    y = cos * point[0] - sin * point[1]
+    arm = np.empty((*np.shape(y), 2))  # sooner done than stacking them
+    arm[..., 0], arm[..., 1] = y, sin * point[0] + cos * point[1]
+    return arm
 
 
 def buoyancy(

@@ -26,21 +26,22 @@ class Waves:
 
     def elevation(self, y, time) -> np.ndarray:
         """Height (m) of the surface at y (m) and times (s) that broadcast together."""
-        return self._sum(self.amplitude, y, time)
+        return self.sums(np.ones((len(self.amplitude), 1)), y, time)[..., 0]
 
     def slope(self, y, time) -> np.ndarray:
         """Slope ∂ζ/∂y of the surface."""
-        return self._sum(1j * self.wave_number * self.amplitude, y, time)
+        return self.sums(1j * self.wave_number[:, None], y, time)[..., 0]
 
     def force(self, excitation: np.ndarray, y, time) -> np.ndarray:
         """Force and moment (…, 3) on a hull whose origin is at y, from its excitation (n, 3) at these frequencies."""
-        modes = np.asarray(excitation).T
-        return np.stack([self._sum(mode * self.amplitude, y, time) for mode in modes], axis=-1)
+        return self.sums(excitation, y, time)
 
-    def _sum(self, factor: np.ndarray, y, time) -> np.ndarray:
-        y, time = np.broadcast_arrays(np.asarray(y, dtype=float), np.asarray(time, dtype=float))
+    def sums(self, factors: np.ndarray, y, time) -> np.ndarray:
+        """D(t) Σ Re f a e^(i(ky − ωt)) (…, m) for m complex factors f of each component (n, m)."""
+        y, time = np.asarray(y, dtype=float), np.asarray(time, dtype=float)
         phase = self.wave_number * y[..., None] - self.frequency * time[..., None]
-        return soft_start(time, self.soft_start) * (np.exp(1j * phase) @ factor).real
+        start = soft_start(time, self.soft_start)[..., None]
+        return start * ((self.amplitude * np.exp(1j * phase)) @ factors).real
 
 
 def soft_start(time, length: float) -> np.ndarray:

@@ -1,0 +1,31 @@
+"""A rigid body in the plane, and bodies bolted together: a hull with frozen cargo. All per metre of length."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from solvers.ship.hydrostatics import Loading
+
+
+@dataclass(frozen=True)
+class Body:
+    """Mass (kg/m), centre of gravity y, z (m) in the hull's frame, moment of inertia (kg m) about that centre."""
+
+    mass: float
+    centre: tuple[float, float]
+    inertia: float
+
+    @property
+    def loading(self) -> Loading:
+        """What hydrostatics needs of it."""
+        return Loading(self.mass, self.centre)
+
+
+def bolted(*bodies: Body) -> Body:
+    """Bodies as one, by the parallel-axis theorem (Huygens and Steiner)."""
+    mass = np.array([body.mass for body in bodies])
+    centres = np.array([body.centre for body in bodies])
+    centre = mass @ centres / mass.sum()
+    apart = ((centres - centre) ** 2).sum(axis=1)
+    inertia = sum(body.inertia for body in bodies) + mass @ apart
+    return Body(float(mass.sum()), (float(centre[0]), float(centre[1])), float(inertia))

@@ -1,0 +1,71 @@
+"""The water's force on a hull in waves, apart from what its motion radiates: buoyancy and excitation."""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from solvers.ship.hydrostatics import buoyancy, surface_force, turned
+from solvers.ship.radiation import Hydrodynamics
+from solvers.ship.section import Section
+from solvers.ship.water import Water
+from solvers.ship.waves import Waves
+
+NO_WAVES = Waves(np.zeros(0, complex), np.zeros(0), np.zeros(0))
+
+
+@dataclass(frozen=True, eq=False)
+class Floating:
+    """Buoyancy of the section clipped at the sloping surface of the waves, and the rest of their linear force.
+
+    `about` (m) is the point of the hull whose pose (y, z, roll) is given and about which moments are taken; `excess`
+    (n, 3), complex, is the force and moment per metre of amplitude of each wave over what the slope's buoyancy gives.
+    """
+
+    section: Section
+    water: Water
+    about: tuple[float, float] = (0.0, 0.0)
+    waves: Waves = NO_WAVES
+    excess: np.ndarray | None = None
+
+    def force(self, pose: np.ndarray, time: float) -> np.ndarray:
+        """Force y, z (N/m) and moment (N), (3,), at a pose (m, m, rad) and time (s)."""
+        arm = turned(self.about, pose[2])
+        y, heave = pose[0] - arm[0], pose[1] - arm[1]
+        if not len(self.waves.amplitude):
+            return buoyancy(self.section, self.water, heave, pose[2], about=self.about)
+        elevation, slope, *excess = self.waves.sums(self._factors, y, time)
+        return buoyancy(self.section, self.water, heave, pose[2], elevation, slope, self.about) + np.array(excess)
+
+    @cached_property
+    def _factors(self) -> np.ndarray:
+        """Of elevation, slope, and the force over what these give: (n, 5)."""
+        number = self.waves.wave_number[:, None]
+        excess = np.zeros((len(number), 3)) if self.excess is None else self.excess
+        return np.hstack([np.ones_like(number), 1j * number, excess])
+
+    @cached_property
+    def still(self) -> "Floating":
+        """The same in calm water."""
+        return replace(self, waves=NO_WAVES, excess=None)
+
+
+def floating_in_waves(
+    section: Section,
+    water: Water,
+    about: tuple[float, float],
+    waves: Waves,
+    table: Hydrodynamics,
+    rest: tuple[float, float],
+    diffraction: bool = True,
+) -> Floating:
+    """A hull in waves whose force in small ones is the table's: all of it, or the Froude–Krylov part alone.
+
+    The table's moments are about `about`, its pose the heave (m) and roll (rad) `rest`. Buoyancy under the sloping
+    surface is the long waves' Froude–Krylov force already; it is taken off the table's, else it would count twice.
+    """
+    here = table.at(waves.frequency)
+    wanted = here.excitation if diffraction else here.froude_krylov
+    level, slope = surface_force(section, water, *rest, about)
+    excess = wanted - (level + 1j * waves.wave_number[:, None] * slope)
+    return Floating(section, water, about, waves, excess)
