@@ -42,7 +42,7 @@ Bed = dict[str, np.ndarray]
 
 # Fields of a scene that beds do not follow from: no tank moves while its bed settles. A motion comes in by the step
 # that it asks for, and by its kind, which chooses the compiled kernel.
-UNRELATED = ("motions", "soft_start", "start_speed", "step")
+UNRELATED = ("motions", "soft_start", "start_speed", "step", "vessels", "interval")
 PER_WORLD = ("radius", "grain", "wall", "velocity", "spin")
 
 CLOCK = ("numbers", "origin")  # entries of a simulation's state that all its worlds share
@@ -158,6 +158,8 @@ def bed_key(simulation: Simulation, world: int, position: np.ndarray, how: Settl
     parts = [FORMAT, _engine(), repr(how), position, simulation.dt]
     parts += [simulation.arch, simulation.schedule_name, simulation.units_a_world, simulation.skin]
     parts += [(type(motion).__name__, motion.coordinate) for motion in scene.motions[world]]
+    if scene.vessels:
+        parts.append(simulation.frame.sizes)  # by which its arrays, and with them the bed's, are numbered
     for field in fields(scene):
         if field.init and field.name not in UNRELATED:  # the rest is derived from these
             value = getattr(scene, field.name)

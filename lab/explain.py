@@ -8,6 +8,7 @@ from lab.accuracy import LEVELS
 from lab.presets import LoadedPreset
 from lab.scene import build
 from lab.shapes import Shape
+from lab.ship import describe
 from lab.units import show
 from solvers.laws import COHESION
 from solvers.runtime import available_cores
@@ -38,6 +39,7 @@ def explain(loaded: LoadedPreset) -> str:
     blocks = [
         f"{preset.title}  ({loaded.name})",
         _section("Scene", _scene(preset, scene)),
+        *_ship(preset, simulation),
         _section("Accuracy", _accuracy(preset)),
         _section("Step", _step(scene)),
         _section("Compiled in", _parts(simulation)),
@@ -72,6 +74,14 @@ def _scene(preset, scene) -> list[tuple[str, str]]:
     rows.append(("motion", ", then ".join(parts) or "none"))
     rows.append(("duration", show(preset.run.duration, "s") + " after settling"))
     return rows
+
+
+def _ship(preset, simulation: Simulation) -> list[str]:
+    """The ship, if there is one."""
+    if not simulation.afloat:
+        return []
+    every = int(simulation.frame.every[0]) * simulation.dt
+    return [_section("Ship", describe(preset.ship, simulation.scene.vessels[0], preset.waves, every))]
 
 
 def _shape(name: str, shape: Shape) -> str:

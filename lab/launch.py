@@ -21,6 +21,7 @@ from lab.interrupt import Interrupt
 from lab.presets import LoadedPreset
 from lab.progress import Progress
 from lab.recording import BUFFER_BYTES, FLUSH_EVERY, Outlines, Recorder, new_recording
+from lab.recording.layout import SHIP_SERIES
 from lab.scene import build
 from lab.units import show
 from solvers.errors import BadState
@@ -56,7 +57,8 @@ class Run:
         """Whether it may share a launch at all: a world is cut into bands for as many threads as it has to itself."""
         settings, (worlds, count) = self.loaded.resolved.run, self.scene.radius.shape
         arch, threads = choose_arch(settings.arch, settings.precision), settings.threads or available_cores()
-        return choose_schedule(settings.schedule, arch, worlds, count, threads) != "per-band"
+        afloat = bool(self.scene.vessels)
+        return choose_schedule(settings.schedule, arch, worlds, count, threads, afloat) != "per-band"
 
     def make_recording(self) -> None:
         """Make the recording, without rows yet. Raises LabError (see `new_recording`)."""
@@ -273,5 +275,5 @@ def _sample(rows: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
         "pose_rate": np.stack([rows["rate_y"], rows["rate_z"], rows["rate_angle"]], axis=-1),
         "centre_of_mass": np.stack([rows["centre_y"], rows["centre_z"]], axis=-1),
         "wall_force": np.stack([rows["wall_y"], rows["wall_z"], rows["wall_moment"]], axis=-1),
-        **{name: rows[name] for name in kept},
+        **{name: rows[name] for name in (*kept, *SHIP_SERIES) if name in rows},
     }

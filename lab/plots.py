@@ -20,6 +20,7 @@ from lab.measures import (
     flow_rate,
     heap_angle,
     hysteresis,
+    ship_roll,
     spectrum,
     spilled,
     surface_slope,
@@ -57,6 +58,8 @@ BELOW = "outside lower center"  # of a legend, where no curve can run through it
 POINTS = 1500  # of a curve; more cannot be seen
 PERIODS = 4  # shown close up
 TITLE = 88  # letters in a line
+LEAST_PORTRAIT = 20  # samples
+HIGHEST_ROLL = 3.0  # Hz
 QUIETEST = 1e-4  # of the largest peak: where a spectrum's scale begins
 
 DRIVE = {
@@ -324,7 +327,80 @@ def contact_figure(recording: Recording, values: Mapping[str, Value]) -> Figure 
     return figure
 
 
+def roll_figure(recording: Recording, values: Mapping[str, Value]) -> Figure | None:
+    """Roll of a ship in time, with loose and with frozen cargo, and below the shift of the cargo."""
+    if not ship_roll.applies(recording):
+        return None
+    figure, ((upper,), (lower,)) = _figure(recording, heights=(2, 1))
+    time, roll = recording.series["time"], np.degrees(recording.series["pose"][..., 2])
+    alone = ship_roll.frozen(recording)
+    if alone is not None:
+        upper.plot(*_thinned(alone[0], np.degrees(alone[1])), color=GREY, lw=0.9, label="cargo frozen")
+    for world, when in enumerate(recording.series["capsized"][-1]):
+        upper.plot(*_thinned(time, roll[:, world]), color=BLUE, lw=1.0, label=None if world else "cargo loose")
+        if when >= 0.0:
+            upper.plot(when, np.interp(when, time, roll[:, world]), "x", color=VERMILION)
+    upper.set_ylabel("roll (deg), positive to port")
+    centre = 1e3 * recording.series["centre_of_mass"][..., 0]
+    _band(lower, time, centre - centre[0], VERMILION)
+    lower.set_ylabel("shift of the\ncargo (mm)")
+    lower.set_xlabel("time (s)")
+    lower.set_xlim(time[0], time[-1])
+    figure.legend(loc=BELOW, ncols=2)
+    return figure
+
+
+def portrait_figure(recording: Recording, values: Mapping[str, Value]) -> Figure | None:
+    """Phase portrait of a ship's roll, the last half of the run darker."""
+    if not ship_roll.applies(recording):
+        return None
+    figure, ((axes,),) = _figure(recording)
+    roll, rate = (np.degrees(recording.series[name][..., 2]) for name in ("pose", "pose_rate"))
+    half = len(roll) // 2
+    alone = ship_roll.frozen(recording)
+    if alone is not None and len(alone[1]) > LEAST_PORTRAIT:
+        later = slice(len(alone[1]) // 2, None)
+        turned = np.degrees(alone[1])
+        axes.plot(turned[later], np.gradient(turned, alone[0])[later], color=GREY, lw=0.8, label="cargo frozen")
+    for world in range(recording.worlds):
+        axes.plot(*_thinned(roll[: half + 1, world], rate[: half + 1, world]), color=BLUE, lw=0.5, alpha=0.3)
+        label = None if world else "cargo loose, last half"
+        axes.plot(*_thinned(roll[half:, world], rate[half:, world]), color=BLUE, lw=0.9, label=label)
+    axes.set_xlabel("roll (deg)")
+    axes.set_ylabel("rate of roll (deg/s)")
+    figure.legend(loc=BELOW, ncols=2)
+    return figure
+
+
+def roll_spectrum_figure(recording: Recording, values: Mapping[str, Value]) -> Figure | None:
+    """Amplitude spectrum of a ship's roll over the last half of the run."""
+    if not ship_roll.applies(recording) or (recording.series["capsized"][-1] >= 0.0).any():
+        return None
+    time, roll = recording.series["time"], np.degrees(recording.series["pose"][..., 2])
+    half = len(time) // 2
+    if len(time) - half < LEAST_PORTRAIT:
+        return None
+    frequencies, amplitudes = spectrum.amplitude_spectrum(time[half:], roll[half:])
+    if not amplitudes.any():
+        return None
+    figure, ((axes,),) = _figure(recording)
+    kept = (frequencies > 0.0) & (frequencies < HIGHEST_ROLL)
+    _range(axes, 2.0 * np.pi * frequencies[kept], amplitudes[kept], BLUE, "roll")
+    axes.set_yscale("log")
+    axes.set_ylim(QUIETEST * amplitudes.max(), 2.0 * amplitudes.max())
+    driven = ship_roll.wave_frequency(recording)
+    if driven is not None:
+        axes.axvline(driven, color=GREY, ls=":", lw=0.8, label="waves")
+    axes.set_xlabel("frequency (rad/s)")
+    axes.set_ylabel("amplitude of roll (deg)")
+    figure.legend(loc=BELOW, ncols=2)
+    return figure
+
+
 FIGURES = {
+    "roll": roll_figure,
+    "portrait": portrait_figure,
+    "roll-spectrum": roll_spectrum_figure,
     "heap": heap_figure,
     "spilled": spilled_figure,
     "shift": shift_figure,

@@ -34,6 +34,7 @@ ALTERNATIVES = {
     "grains": ({"count"}, {"depth"}),
     "material": ({"restitution"}, {"dissipative_time"}),
     "wall": ({"restitution"}, {"dissipative_time"}),
+    "ship": ({"gyradius"}, {"roll_period"}),
 }
 
 QUICK = "-quick"  # behind the name of a preset: its quick variant

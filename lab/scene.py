@@ -9,10 +9,12 @@ from lab.accuracy import LEVELS, check_forced
 from lab.drawn import classes, draw_shapes
 from lab.errors import LabError
 from lab.schema import Resolved
+from lab.ship import make_vessel
 from solvers.filling import NONE_FIXED, DoesNotFit, count_for_depth, headroom, lattice, start_positions
 from solvers.relaxing import relaxed
 from solvers.scene import Scene
 from solvers.shapes.given import Shapes
+from solvers.ship.vessel import Vessel
 from solvers.sizes import Sizes
 from solvers.tank import lining, raised
 
@@ -84,6 +86,7 @@ def build(preset: Resolved) -> tuple[Scene, np.ndarray]:
         fixed=fixed_grains(preset),
         open_edges=preset.tank.open_edges,
         parts=tuple(preset.parts.values()),
+        vessels=vessels(preset) * len(radius),
         integrator=preset.run.integrator,
         precision=preset.run.precision,
         schedule=preset.run.schedule,
@@ -93,6 +96,14 @@ def build(preset: Resolved) -> tuple[Scene, np.ndarray]:
     if preset.grains.listed and preset.run.settle:  # without settling it may be meant so
         position = np.tile(relaxed(scene, position[0]), (len(radius), 1, 1))
     return scene, position
+
+
+def vessels(preset: Resolved) -> list[Vessel]:
+    """The ship whose hold the tank is, if there is one. Raises LabError where she does not float."""
+    if preset.ship is None:
+        return []
+    sheet = preset.ship.sheet or preset.grains.diameter
+    return [make_vessel(preset.ship, preset.water, preset.waves, sheet, preset.run.gravity)]
 
 
 def _filled(preset: Resolved) -> tuple[np.ndarray, np.ndarray, dict]:

@@ -23,6 +23,7 @@ from lab.paint.colours import MODES
 from lab.parts import check_parts
 from lab.reader import check_keys, read
 from lab.shapes import Shape, ShapeGiven, by_number, read_shapes
+from lab.ship import ShipGiven, WaterGiven, WavesGiven, check_ship
 from lab.units import needed, show
 from solvers.laws import COHESION, NORMAL, ROLLING, TANGENTIAL
 from solvers.materials import Material
@@ -283,6 +284,9 @@ class Given:
     contact: ContactGiven = field(default_factory=ContactGiven)
     motion: MotionGiven = field(default_factory=MotionGiven)
     parts: dict[str, Part] = field(default_factory=dict)
+    ship: ShipGiven | None = None
+    water: WaterGiven = field(default_factory=WaterGiven)
+    waves: WavesGiven | None = None
     run: RunGiven = field(default_factory=RunGiven)
     record: Record = field(default_factory=Record)
     video: Video = field(default_factory=Video)
@@ -306,6 +310,9 @@ class Resolved(BaseModel):
     contact: Contact
     motion: Motion
     parts: dict[str, Part]
+    ship: ShipGiven | None = None
+    water: WaterGiven = WaterGiven()
+    waves: WavesGiven | None = None
     run: Run
     record: Record
     video: Video
@@ -328,6 +335,7 @@ def resolve(table: Mapping) -> Resolved:
     motion = _motion(given.motion)
     run = Run(**{**vars(given.run), "duration": _duration(given.run, motion)})
     check_parts(given.parts, tank.outline)
+    check_ship(given.ship, given.waves, bool(motion.parts))
     _check_video(given.video)
     return Resolved(
         title=given.title,
@@ -343,6 +351,9 @@ def resolve(table: Mapping) -> Resolved:
         contact=_contact(given.contact, run),
         motion=motion,
         parts=given.parts,
+        ship=given.ship,
+        water=given.water,
+        waves=given.waves,
         run=run,
         record=given.record,
         video=given.video,

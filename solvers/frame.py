@@ -33,6 +33,8 @@ class Frame:
     a tilt followed by a sway is a tilting table on a swaying deck.
     """
 
+    afloat = False  # whether it follows from what the grains do to it (`ship.afloat.Afloat`)
+
     def __init__(self, arrays: Arrays, motions: Sequence[Sequence], soft_start: float, gravity: float):
         self.exact, self.real = arrays.exact, arrays.real
         self.kinds = tuple(motions[0])

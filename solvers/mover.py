@@ -16,8 +16,9 @@ class Mover:
     origin (N m s), with the sign of the cargo on the tank.
     """
 
-    def __init__(self, arrays: Arrays, units: Units, grains: Grains, integrator, rotating: bool):
+    def __init__(self, arrays: Arrays, units: Units, grains: Grains, integrator, rotating: bool, weighed: bool = False):
         self.units, self.grains, self.integrator, self.rotating = units, grains, integrator, rotating
+        self.weighed = weighed  # before every move, by `weigh`
         shape = (grains.worlds, grains.count + grains.ghosts)
         self.extra = arrays.reals(integrator.extra, shape)
         self.load_y, self.load_z, self.load_moment = arrays.reals(3, (units.count,), arrays.exact)
@@ -26,6 +27,25 @@ class Mover:
         """Forget higher derivatives and the load, for grains that were put somewhere or launched."""
         for field in (*self.extra, self.load_y, self.load_z, self.load_moment):
             field.fill(0.0)
+
+    @ti.func
+    def weigh(self, g: ti.template(), u, dt):
+        """Force (N) of a unit's grains on the tank and its moment (N m), before the move; adds up their impulse."""
+        w = self.units.world(u)
+        load_y, load_z, moment = ti.cast(0.0, g.real), ti.cast(0.0, g.real), ti.cast(0.0, g.real)
+        for i in range(self.units.first(u), self.units.end(u)):
+            force_y, force_z = g.force_y[w, i], g.force_z[w, i]
+            load_y -= force_y
+            load_z -= force_z
+            moment -= ti.cast(g.y[w, i], g.real) * force_z - ti.cast(g.z[w, i], g.real) * force_y + g.torque[w, i]
+        self.add_up(u, load_y, load_z, moment, dt)
+        return ti.Vector([load_y, load_z, moment])
+
+    @ti.func
+    def add_up(self, u, load_y, load_z, moment, dt):
+        self.load_y[u] = self.load_y[u] + load_y * dt
+        self.load_z[u] = self.load_z[u] + load_z * dt
+        self.load_moment[u] = self.load_moment[u] + moment * dt
 
     @ti.func
     def move(self, g: ti.template(), u, body, first, dt):
@@ -44,9 +64,10 @@ class Mover:
         for i in range(self.units.first(u), self.units.end(u)):
             force_y, force_z, torque = g.force_y[w, i], g.force_z[w, i], g.torque[w, i]
             y, z = ti.cast(g.y[w, i], g.real), ti.cast(g.z[w, i], g.real)
-            load_y -= force_y
-            load_z -= force_z
-            moment -= y * force_z - z * force_y + torque
+            if ti.static(not self.weighed):
+                load_y -= force_y
+                load_z -= force_z
+                moment -= y * force_z - z * force_y + torque
             by, bz, spin_up = body[0], body[1], zero
             if ti.static(self.rotating):
                 rate = body[2]
@@ -65,9 +86,8 @@ class Mover:
             fourth = square * square
             eighth = fourth * fourth
             total += eighth * eighth
-        self.load_y[u] = self.load_y[u] + load_y * dt
-        self.load_z[u] = self.load_z[u] + load_z * dt
-        self.load_moment[u] = self.load_moment[u] + moment * dt
+        if ti.static(not self.weighed):
+            self.add_up(u, load_y, load_z, moment, dt)
         return ti.sqrt(ti.sqrt(ti.sqrt(ti.sqrt(total))))
 
     @ti.func

@@ -11,6 +11,7 @@ from solvers.laws import COHESION, NORMAL, ROLLING, TANGENTIAL
 from solvers.materials import Interface, Material, interface, touching
 from solvers.parts import Part
 from solvers.shapes.given import Shapes
+from solvers.ship.vessel import Vessel
 from solvers.timestep import Limit, limits
 
 
@@ -26,7 +27,8 @@ class Scene:
     rest. `kind` (W, n) numbers the kinds of grains, 0 of `grain` and the rest of `others`, None where all are of one;
     `unlike` says how two kinds touch. `fixed` (k, 3) y, z and radius in m of grains that never move; `open_edges` the
     edges of the outline without a wall, by their first corners; `parts` plates that move in the tank. `shapes` of
-    irregular grains, whose `radius` and `sizes` are those of discs of equal area; None for discs.
+    irregular grains, whose `radius` and `sizes` are those of discs of equal area; None for discs. `vessels` the ships
+    (W,) whose holds the tanks are, in place of motions; `interval` (s) of the water's forces, None: as they need it.
     """
 
     radius: np.ndarray
@@ -53,6 +55,8 @@ class Scene:
     open_edges: tuple[int, ...] = ()
     parts: tuple[Part, ...] = ()
     shapes: Shapes | None = None
+    vessels: Sequence[Vessel] = ()
+    interval: float | None = None
     integrator: str = "verlet"
     precision: str = "f64"
     schedule: str = "auto"
@@ -178,7 +182,8 @@ class Scene:
         words = self.integrator, self.precision, self.schedule
         numbers = self.radius.shape[1], self.gravity, self.soft_start, self.step, self.sizes, self.stiffness_scale
         shapes = (self.shapes.outlines, self.shapes.contact, self.shapes.nodes) if self.shapes else None
-        rest = self.others, self.unlike, self.open_edges, self.parts, self.velocity is None, shapes
+        afloat = bool(self.vessels), self.interval
+        rest = afloat, self.others, self.unlike, self.open_edges, self.parts, self.velocity is None, shapes
         return (*lengths, kinds, *laws, *words, *numbers, *rest)
 
     @classmethod
@@ -197,6 +202,7 @@ class Scene:
             grain=[material for scene in scenes for material in scene.grain],
             wall=[material for scene in scenes for material in scene.wall],
             motions=[motions for scene in scenes for motions in scene.motions],
+            vessels=[vessel for scene in scenes for vessel in scene.vessels],
             start_speed=max(scene.start_speed for scene in scenes),
             velocity=np.concatenate([scene.velocity for scene in scenes]) if started else None,
             spin=np.concatenate([scene.spin for scene in scenes]) if started else None,

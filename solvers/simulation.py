@@ -23,6 +23,8 @@ from solvers.shapes.continuous import Continuous
 from solvers.shapes.discrete import Discrete
 from solvers.shapes.grains import ShapedGrains
 from solvers.shapes.lists import ShapedNeighbours
+from solvers.ship.afloat import Afloat, steps_an_interval
+from solvers.ship.body import Body
 from solvers.units import Units
 from solvers.walls import Walls
 
@@ -50,11 +52,12 @@ class Simulation:
         units: int | None = None,
     ):
         self.threads = threads or runtime.available_cores()
-        self.arch = runtime.choose_arch(arch, scene.precision)
+        self.afloat = bool(scene.vessels)
+        self.arch = "cpu" if self.afloat and arch == "auto" else runtime.choose_arch(arch, scene.precision)
         runtime.initialise(self.threads, self.arch, scene.precision)
         worlds, count = scene.radius.shape
         self.scene, self.dt = scene, scene.time_step()
-        self.schedule_name = choose_schedule(scene.schedule, self.arch, worlds, count, self.threads)
+        self.schedule_name = choose_schedule(scene.schedule, self.arch, worlds, count, self.threads, self.afloat)
         self.units_a_world = units or units_a_world(self.schedule_name, worlds, count, self.threads)
         self.skin = skin or SKIN * 2.0 * scene.mean_radius
         self.steps, self.room = 0, 1
@@ -89,8 +92,12 @@ class Simulation:
             self.grains = ShapedGrains(arrays, scene.shapes, *grains)
             self.neighbours = ShapedNeighbours(arrays, units, self.grains, self.walls, *lists, rule)
             self.contacts = ShapedContacts(arrays, units, self.grains, self.walls, self.neighbours, laws, rule)
-        self.frame = Frame(arrays, scene.motions, scene.soft_start, scene.gravity)
-        self.mover = Mover(arrays, units, self.grains, integrator, self.frame.rotating)
+        if self.afloat:
+            every = steps_an_interval(scene.vessels, scene.interval, self.dt)
+            self.frame = Afloat(arrays, scene.vessels, scene.gravity, every)
+        else:
+            self.frame = Frame(arrays, scene.motions, scene.soft_start, scene.gravity)
+        self.mover = Mover(arrays, units, self.grains, integrator, self.frame.rotating, self.frame.afloat)
         self.clock = Clock(arrays, units)
         engine = Engine(
             units, self.grains, self.walls, self.neighbours, self.contacts, self.mover, self.frame, self.clock
@@ -115,6 +122,7 @@ class Simulation:
         self.grains.launch(self._in_solver_order(velocity), self._in_solver_order(spin))
         self.mover.rest()
         self.unkicked = self.observed = self.steps
+        self.moored = False
 
     def _in_solver_order(self, values: np.ndarray) -> np.ndarray:
         """Values (W, n, …) of the grains by their own numbers, as the arrays hold them."""
@@ -143,6 +151,7 @@ class Simulation:
 
         Raises BadState where the watch stops a world; the state is kept as it is.
         """
+        self._moor()
         target, often = self.steps + steps, max(1, round(LOOK_FOR_MIXING / self.dt))
         # Contacts of outlines are remembered in the order of their grains' numbers, so these stay as they are.
         large = self.ordered.shape[1] >= renumber.FEWEST and self.scene.shapes is None
@@ -184,11 +193,15 @@ class Simulation:
 
     def observe(self) -> dict[str, np.ndarray]:
         """Numbers of every world now, each (W,), named as in `Observer.NAMES`. Raises BadState from the watch."""
+        self._moor()
         self.observer.observe(self.origin + self.time, max(self.steps - self.observed, 1) * self.dt)
         rows = dict(zip(Observer.NAMES, self.observer.rows.to_numpy().T.astype(float), strict=True))
         # Where no time has passed there is nothing to average over.
-        still = (self.clock.status.to_numpy() == watch.WAITING) | (self.observed == self.steps)
+        ended = np.isin(self.clock.status.to_numpy(), (watch.WAITING, watch.CAPSIZED))
+        still = ended | (self.observed == self.steps)
         rows |= {name: np.where(still, self.load[name], rows[name]) for name in LOAD}
+        if self.afloat:
+            rows |= self.frame.account()
         self.observed, self.load = self.steps, {name: rows[name] for name in LOAD}
         watch.check_state(rows["overlap"], rows["escaped"].astype(int), self.time)
         return rows
@@ -221,6 +234,25 @@ class Simulation:
         self.clock.step.fill(0)
         self.clock.status.fill(watch.RUNNING)
         self.grains.count_turns_anew()
+        self.moored = False
+
+    def _moor(self) -> None:
+        """Have ships float with their cargo where it lies, once it has settled. Raises Unavailable if they cannot."""
+        if self.afloat and not self.moored and self.origin == 0.0:
+            self.frame.begin(self.cargo())
+            self.moored = True
+
+    def cargo(self) -> list[Body]:
+        """The grains of each world as they lie, as if frozen: per metre of a ship's length, in the tank's frame."""
+        place, mass = self.grains.read()["position"], self._in_solver_order(self.grains.mass)
+        own = 1.0 / self.grains.inverse_inertia.to_numpy()[:, : mass.shape[1]]
+        total = mass.sum(axis=1)
+        centre = (mass[..., None] * place).sum(axis=1) / total[:, None]
+        apart = ((place - centre[:, None]) ** 2).sum(axis=2)
+        inertia = (mass * apart + own).sum(axis=1)
+        thick = [vessel.thickness for vessel in self.scene.vessels]
+        rows = zip(total, centre.tolist(), inertia, thick, strict=True)
+        return [Body(float(m / d), tuple(c), float(i / d)) for m, c, i, d in rows]
 
     def snapshot(self) -> dict[str, np.ndarray]:
         """Positions, velocities (W, n, 2), angles and spins (W, n) now, in the tank's frame."""
@@ -259,6 +291,7 @@ class Simulation:
             self.room, self.units_a_world, self.schedule_name = room, units, list(SCHEDULES)[schedule]
             self._build()
         self.arrays.write(state)
+        self.moored = self.steps > 0
 
     def close(self) -> None:
         """Give the arrays back; the simulation must not be used after it."""

@@ -12,6 +12,7 @@ from lab.measures import (
     flow_rate,
     heap_angle,
     hysteresis,
+    ship_roll,
     spectrum,
     spilled,
     steady_amplitude,
@@ -26,6 +27,7 @@ from lab.recording import Recording
 
 # In the order in which a summary shows them.
 MEASURES = (
+    ship_roll,
     heap_angle,
     flow_rate,
     spilled,

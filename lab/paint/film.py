@@ -16,6 +16,7 @@ from lab.paint import decorations as deco
 from lab.paint.colours import bed_colours, colouring, mark_colours, spread
 from lab.paint.footage import Bed, Footage
 from lab.paint.painter import Camera, Edges, paint_grains, paint_plate, paint_tank, to_discs
+from lab.paint.sea import LINE
 from lab.schema import Video
 
 FALLBACK = asdict(Video())
@@ -83,6 +84,8 @@ class Film:
         self.time = max((bed.footage.time for bed in self._beds), key=lambda time: time[-1])
         self._rows = [_nearest(bed.footage.time, self.time) for bed in self._beds]
         self._pose = np.stack([bed.pose[rows] for bed, rows in zip(self._beds, self._rows, strict=True)], axis=1)
+        # A ship's tank is counted from where it stood at first, in calm water.
+        self._calm = np.array([bed.pose[0] * (1, 1, 0) * bool(bed.footage.sea) for bed in self._beds])
         self._together = bool(np.ptp(self._pose, axis=1).max() < ALIKE)
         self._named = any(bed.name for bed in self._beds)
         self._hues = deco.SERIES if len(self._beds) <= len(deco.SERIES) else bed_colours(len(self._beds))
@@ -137,6 +140,9 @@ class Film:
         for bed, corners in reached.items():
             room = ROOM / np.sqrt(len(self._beds)) * np.ptp(bed.footage.outline, axis=0).max()
             within = np.clip(corners, corners[0] - room, corners[1] + room)
+            if bed.footage.sea and self._look.frame == "earth":
+                grounds.append(bed.footage.sea.ground(self._seen(bed.footage.sea.hull, bed.pose).reshape(-1, 2)))
+                continue
             grounds.append((np.nanmin(within, axis=0), np.nanmax(within, axis=0)))
         return grounds
 
@@ -176,7 +182,8 @@ class Film:
 
     def _prepare_plot(self) -> tuple[deco.LivePlot, list[np.ndarray]]:
         """The plot of what the beds do, and the times of the samples of each curve."""
-        steady = all(_monotonic(bed.footage.series_pose[:, bed.world, 2]) for bed in self._all)
+        afloat = any(bed.footage.sea for bed in self._all)
+        steady = not afloat and all(_monotonic(bed.footage.series_pose[:, bed.world, 2]) for bed in self._all)
         label, measured = _quantity(self._all)
         curves, colours, samples = [], [], []
         for k in reversed(range(len(self._all))):  # the beds that are shown on top
@@ -211,7 +218,8 @@ class Film:
         page = np.array(image)
         colours = (deco.WALL, deco.HOLD) if look.frame == "tank" else (deco.GRID, deco.PAPER)
         for bed, camera in zip(self._beds, self._cameras, strict=True):
-            self._paint_tank(page, bed, camera, *colours)  # in the earth frame a faint one stays where it was at rest
+            if not (bed.footage.sea and look.frame == "earth"):
+                self._paint_tank(page, bed, camera, *colours)  # in the earth frame a faint one stays where it rested
             if look.frame == "tank":
                 _paint_fixed(page, bed, camera)
         return page
@@ -230,6 +238,8 @@ class Film:
         for k, bed in enumerate(self._beds):
             row, camera = self._rows[k][frame], self._cameras[k]
             if self._look.frame == "earth":
+                if bed.footage.sea:
+                    self._paint_ship(picture, k, frame)
                 camera = camera.carried(self._pose[frame, k])
                 self._paint_tank(picture, bed, camera, deco.WALL, deco.HOLD)
                 _paint_fixed(picture, bed, camera)
@@ -241,6 +251,14 @@ class Film:
         for painted, edges in self._sorts:
             colour = np.concatenate([colours[k] for k in painted])
             paint_grains(picture, np.concatenate([discs[k] for k in painted]), colour, mark_colours(colour), edges)
+
+    def _paint_ship(self, picture: np.ndarray, k: int, frame: int) -> None:
+        """The sea around bed k, and the hull in it."""
+        sea, camera = self._beds[k].footage.sea, self._cameras[k]
+        sea.paint(picture, camera, self._grounds[k], self.time[frame], LINE * self._unit)
+        hull = sea.hull
+        thick = min(WALL * self._unit, max(1.0, THICKEST * camera.scale * np.ptp(hull, axis=0).min()))
+        paint_tank(picture, camera.carried(self._pose[frame, k]), hull, thick, deco.WALL, deco.LINE)
 
     def _on_ground(self, k: int, position: np.ndarray, pose: np.ndarray) -> np.ndarray:
         """Grain places (n, 2), NaN for those that have fallen off the ground shown of bed k."""
@@ -284,8 +302,8 @@ class Film:
 
     def _pose_readings(self, frame: int, k: int) -> list[tuple[str, str]]:
         """Names and values of tilt, sway and heave of a shown bed, of those that are ever used."""
-        sway, heave, tilt = self._pose[frame, k]
-        moves = (np.abs(self._pose) > ALIKE).any(axis=(0, 1))[[2, 0, 1]]
+        sway, heave, tilt = (self._pose[frame, k] - self._calm[k]).tolist()
+        moves = (np.abs(self._pose - self._calm) > ALIKE).any(axis=(0, 1))[[2, 0, 1]]
         readings = [
             ("φ =", f"{deco.number(np.degrees(tilt), 1)}°"),
             ("sway", f"{deco.number(1000 * sway, 1)} mm"),
@@ -297,9 +315,11 @@ class Film:
 def _quantity(beds: Sequence[Bed]) -> tuple[str, Callable[[Bed], np.ndarray]]:
     """What the plot shows, the same for all beds: its label and the values (T,) of a bed.
 
-    What has spilled where anything has; else the shift of the centre of mass, upwards where nothing but
-    heave or parts can move the grains, sideways otherwise.
+    The roll of ships; what has spilled where anything has; else the shift of the centre of mass, upwards where nothing
+    but heave or parts can move the grains, sideways otherwise.
     """
+    if any(bed.footage.sea for bed in beds):
+        return "roll φ (°)", lambda bed: np.degrees(bed.footage.series_pose[:, bed.world, 2])
     if any(bed.footage.spilled[:, bed.world].any() for bed in beds):
         return "spilled (%)", lambda bed: 100 * bed.footage.spilled[:, bed.world] / len(bed.radius)
     upright = not any(np.ptp(bed.footage.series_pose[:, bed.world, ::2], axis=0).any() for bed in beds)

@@ -10,6 +10,7 @@ import numpy as np
 
 from lab.errors import LabError
 from lab.paint.painter import Edges
+from lab.paint.sea import Sea
 from lab.recording import Recording, open_recording
 
 
@@ -20,6 +21,7 @@ class Footage:
     spilled (T, W) grains; radius (W, n) m; kind (W, n); kinds: their names; shapes: the outlines of irregular grains,
     None where all are discs; shape_names: of their classes; outline (m, 2) m; open_edges: those without a wall;
     fixed (k, 3) y, z, radius m; parts: polylines at rest (m, 2) m by name; part (F, W, P, 2): their displacements, m;
+    sea: the ship whose hold the tank is, and her waves, or None;
     settings: the preset's [video]; title. Raises LabError when there is no frame or no sample.
     """
 
@@ -35,6 +37,7 @@ class Footage:
         self.shapes = recording.shapes
         self.shape_names = list(recording.preset.get("shapes") or {}) if self.shapes else ["disc"]
         self.open_edges, self.fixed, self.parts = recording.open_edges, recording.fixed, recording.parts
+        self.sea = Sea(recording.preset) if recording.preset.get("ship") else None
         self.settings = recording.preset.get("video") or {}
         self.title = recording.preset.get("title") or recording.name
         self._frames = frames

@@ -23,6 +23,8 @@ SERIES = {
     "spilled": (),
     "wall_force": (3,),
 }
+# Of a ship further: works (J/m) of waves, against radiation and viscosity, of the cargo; when (s) she capsized, or -1.
+SHIP_SERIES = {"ship_works": (4,), "capsized": ()}
 GRAIN_FRAMES = {"position": (2,), "velocity": (2,), "angle": (), "spin": ()}
 WORLD_FRAMES = {"pose": (3,)}  # and "part" (P, 2), the displacement of each moving part
 
@@ -31,11 +33,13 @@ CHUNK_ROWS = 1024
 PATIENCE, A_MOMENT = 100, 0.02  # how often, and every how many s, a file is tried that another process has open
 
 
-def table_shapes(worlds: int, count: int, parts: int) -> dict[str, dict[str, tuple[tuple[int, ...], str]]]:
+def table_shapes(
+    worlds: int, count: int, parts: int, afloat: bool = False
+) -> dict[str, dict[str, tuple[tuple[int, ...], str]]]:
     """Shape of a row and kind of number of every data set that grows."""
-    time = {"time": ((), "f8")}
+    time, series = {"time": ((), "f8")}, SERIES | (SHIP_SERIES if afloat else {})
     return {
-        "series": time | {name: ((worlds, *shape), "f8") for name, shape in SERIES.items()},
+        "series": time | {name: ((worlds, *shape), "f8") for name, shape in series.items()},
         "frames": time
         | {name: ((worlds, *shape), "f8") for name, shape in WORLD_FRAMES.items()}
         | {"part": ((worlds, parts, 2), "f8")}

@@ -54,7 +54,7 @@ class Recording:
             self.parts = {name: line[:] for name, line in tank["parts"].items()}
             self.shapes = read_outlines(self._file[GROUP]) if GROUP in self._file else None
             self._check_contents()
-            shapes = table_shapes(*self.radius.shape, len(self.parts))
+            shapes = table_shapes(*self.radius.shape, len(self.parts), bool(self.preset.get("ship")))
             self.series = Series(self._file["series"], shapes["series"], self.path)
             self.frames = Frames(self._file["frames"], shapes["frames"], self.path)
             otherwise.pop_all()  # all is well: it stays open

@@ -89,7 +89,7 @@ def new_recording(
                 group[name] = np.asarray(line, dtype=float)
             for name, table in tables.items():
                 file[f"{GROUP}/{name}"] = table
-            for name, rows in table_shapes(*radius.shape, len(parts)).items():
+            for name, rows in table_shapes(*radius.shape, len(parts), bool(resolved.get("ship"))).items():
                 create_table(file.create_group(name), rows)
         _publish(path)
     return path

@@ -5,6 +5,7 @@
 - per-grain: every grain on its own, a launch a step; for graphics processors.
 """
 
+from solvers.errors import Unavailable
 from solvers.schedules.per_band import PerBand
 from solvers.schedules.per_grain import PerGrain
 from solvers.schedules.per_world import PerWorld
@@ -15,8 +16,15 @@ SCHEDULES = {"per-world": PerWorld, "per-band": PerBand, "per-grain": PerGrain}
 WORTH_BANDS = 2000
 
 
-def choose_schedule(wanted: str, arch: str, worlds: int, grains: int, threads: int) -> str:
-    """What "auto" stands for: on a graphics processor per-grain; on the CPU bands for few large worlds."""
+def choose_schedule(wanted: str, arch: str, worlds: int, grains: int, threads: int, afloat: bool = False) -> str:
+    """What "auto" stands for: on a graphics processor per-grain; on the CPU bands for few large worlds.
+
+    A ship follows from its whole cargo, step by step, on one thread. Raises Unavailable for her on others.
+    """
+    if afloat:
+        if wanted not in ("auto", "per-world"):
+            raise Unavailable("run.schedule: ships run per-world; leave run.schedule out.")
+        return "per-world"
     if wanted != "auto":
         return wanted
     if arch != "cpu":

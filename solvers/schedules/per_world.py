@@ -3,7 +3,7 @@
 import taichi as ti
 
 from solvers.schedules.engine import ITERATIONS_A_THREAD, Engine
-from solvers.watch import NO_ROOM, RUNNING, TOO_FAST
+from solvers.watch import CAPSIZED, NO_ROOM, RUNNING, TOO_FAST
 
 
 @ti.data_oriented
@@ -43,10 +43,17 @@ class PerWorld:
             while fresh:
                 t = origin + self.clock.step[w] * step
                 self.contacts.forces(w, t, dt)
+                first = self.clock.step[w] == unkicked
+                if ti.static(self.frame.afloat):
+                    kick = ti.select(first, 0.5 * dt, dt)
+                    self.frame.follow(w, t, dt, kick, self.mover.weigh(self.grains, w, dt))
                 body = self.frame.body_force(w, t)
-                speed = self.mover.move(self.grains, w, body, self.clock.step[w] == unkicked, dt)
+                speed = self.mover.move(self.grains, w, body, first, dt)
                 self.neighbours.travel[w] = self.neighbours.travel[w] + (speed + self.unseen) * dt
                 self.clock.step[w] = self.clock.step[w] + 1
                 fresh = self.clock.step[w] < target and not self.neighbours.worn(w)
                 if not speed < fastest:
                     self.clock.status[w], fresh = TOO_FAST, False
+                if ti.static(self.frame.afloat):  # noqa: SIM102 (compiled only for ships)
+                    if fresh and not self.frame.goes_on(w):
+                        self.clock.status[w], fresh = CAPSIZED, False

@@ -1,6 +1,7 @@
 """A rigid body in the plane, and bodies bolted together: a hull with frozen cargo. All per metre of length."""
 
 from dataclasses import dataclass
+from math import sqrt
 
 import numpy as np
 
@@ -14,6 +15,11 @@ class Body:
     mass: float
     centre: tuple[float, float]
     inertia: float
+
+    @property
+    def gyradius(self) -> float:
+        """Radius of gyration (m) about the centre of gravity."""
+        return sqrt(self.inertia / self.mass)
 
     @property
     def loading(self) -> Loading:

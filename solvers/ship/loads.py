@@ -34,11 +34,11 @@ class Floating:
         y, heave = pose[0] - arm[0], pose[1] - arm[1]
         if not len(self.waves.amplitude):
             return buoyancy(self.section, self.water, heave, pose[2], about=self.about)
-        elevation, slope, *excess = self.waves.sums(self._factors, y, time)
+        elevation, slope, *excess = self.waves.sums(self.factors, y, time)
         return buoyancy(self.section, self.water, heave, pose[2], elevation, slope, self.about) + np.array(excess)
 
     @cached_property
-    def _factors(self) -> np.ndarray:
+    def factors(self) -> np.ndarray:
         """Of elevation, slope, and the force over what these give: (n, 5)."""
         number = self.waves.wave_number[:, None]
         excess = np.zeros((len(number), 3)) if self.excess is None else self.excess

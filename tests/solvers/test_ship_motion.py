@@ -134,7 +134,7 @@ def test_energy(table, memory):
     spent = balance.mechanical + balance.radiated + balance.viscous
     assert np.abs(balance.waves - spent).max() < 1e-3 * np.abs(balance.waves).max()
     assert balance.viscous[-1] > 0.05 * balance.waves[-1] and balance.radiated[-1] > 0.1 * balance.waves[-1]
-    assert np.all(np.diff(balance.viscous) >= 0.0)
+    assert np.diff(balance.viscous).min() > -1e-6 * balance.viscous[-1]
 
 
 def test_radiated_power_of_a_steady_motion_is_the_tables(table, memory):

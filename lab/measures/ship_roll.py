@@ -1,0 +1,127 @@
+"""How a ship with cargo rolls.
+
+largest_roll: the largest |roll| of the run; capsized_at: when her roll left its limits.
+Of regular waves, over their last ten periods (`solvers.ship.outcome`): roll_amplitude, the mean over periods of half
+the way from one side to the other; roll_bias, the mean roll, positive to port; both none where she capsized. Their note
+says what became of her: upright, biased (by half a degree or more) or capsized, and where roll has several frequencies:
+a tenth or more of its rms at others than the waves' and their multiples.
+roll_period: mean time between upward crossings of the mean roll in the last half of the run.
+frozen_amplitude: roll_amplitude of the same ship with her cargo frozen as it lay at the start, by herself
+(`solvers.ship.motion.sail`).
+"""
+
+from collections import Counter
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+
+from lab.errors import LabError
+from lab.measures.value import Value, over_worlds
+from lab.recording import Recording
+from solvers.errors import BadState, Unavailable
+from solvers.ship.motion import sail, start
+from solvers.ship.outcome import Outcome, outcome
+
+LEAST_CROSSINGS = 3
+FROZEN_INTERVAL = 0.01  # s
+
+
+def applies(recording: Recording) -> bool:
+    """There is a ship."""
+    return bool(recording.preset.get("ship")) and len(recording.series["time"]) > 2
+
+
+def measure(recording: Recording) -> dict[str, Value]:
+    """largest_roll, roll_amplitude, roll_bias (deg), roll_period, capsized_at (s)."""
+    time, roll = recording.series["time"], recording.series["pose"][..., 2]
+    capsized = recording.series["capsized"][-1]
+    found = {
+        "largest_roll": over_worlds(np.degrees(np.abs(roll).max(axis=0)), "deg"),
+        "capsized_at": over_worlds(np.where(capsized >= 0.0, capsized, np.nan), "s", missing="did not capsize"),
+        "roll_period": over_worlds([_period(time, r) for r in roll.T], "s", missing="too few swings"),
+    }
+    outcomes = [_outcome(recording, world) for world in range(recording.worlds)]
+    if wave_frequency(recording) is None:
+        return found
+    steady = [(o.amplitude, o.mean) if o and o.kind != "capsized" else (np.nan, np.nan) for o in outcomes]
+    kinds = Counter(describe(o) for o in outcomes if o)
+    note = ", ".join(kind if count == recording.worlds else f"{count} {kind}" for kind, count in kinds.items())
+    amplitude, mean = np.degrees(np.array(steady).T)
+    found["roll_amplitude"] = over_worlds(amplitude, "deg", note=note, missing="no steady roll")
+    found["roll_bias"] = over_worlds(mean, "deg", missing="no steady roll")
+    alone = frozen(recording)
+    if alone is not None:
+        time, roll, when = alone
+        one = _classed(time, roll, wave_frequency(recording), when is not None)
+        size = [np.degrees(one.amplitude) if one and when is None else np.nan]
+        found["frozen_amplitude"] = over_worlds(
+            size, "deg", note=describe(one) if one else "", missing="no steady roll"
+        )
+    return found
+
+
+def wave_frequency(recording: Recording) -> float | None:
+    """Angular frequency (rad/s) of regular waves, None without."""
+    waves = recording.preset.get("waves") or {}
+    return waves["frequency"] if waves.get("kind") == "regular" and waves.get("amplitude") else None
+
+
+def describe(found: Outcome) -> str:
+    """In words."""
+    return found.kind + (", several frequencies" if found.several and found.kind != "capsized" else "")
+
+
+def frozen(recording: Recording) -> tuple[np.ndarray, np.ndarray, float | None] | None:
+    """Times (s), roll (rad) and when she capsized, of the ship with her cargo frozen; None where she cannot be made."""
+    return _frozen(recording.path, float(recording.series["time"][-1]))
+
+
+@lru_cache(maxsize=4)
+def _frozen(path: Path, duration: float):
+    from lab.recording import open_recording
+    from lab.scene import vessels
+    from lab.schema import Resolved
+
+    try:
+        with open_recording(path) as recording:
+            (vessel,) = vessels(Resolved.model_validate(recording.preset))
+        ship, given = vessel.ship, recording.preset["ship"]
+        if not vessel.laden:
+            return None
+        heave = vessel.heave(ship.body, vessel.heel)
+        state = start(ship, heave, vessel.heel)
+        voyage = sail(ship, state, FROZEN_INTERVAL, duration - given["release"], vessel.limits)
+    except (LabError, Unavailable, BadState, ValueError):
+        return None
+    return voyage.time + given["release"], voyage.roll, voyage.capsized
+
+
+def _outcome(recording: Recording, world: int) -> Outcome | None:
+    capsized = recording.series["capsized"][-1, world]
+    frequency = wave_frequency(recording)
+    if frequency is None:
+        return None
+    time, roll = recording.series["time"], recording.series["pose"][:, world, 2]
+    if capsized >= 0.0:
+        kept = time <= capsized
+        time, roll = time[kept], roll[kept]
+    return _classed(time, roll, frequency, capsized >= 0.0)
+
+
+def _classed(time: np.ndarray, roll: np.ndarray, frequency: float, capsized: bool) -> Outcome | None:
+    try:
+        return outcome(time, roll, frequency, capsized)
+    except Unavailable:
+        return None
+
+
+def _period(time: np.ndarray, roll: np.ndarray) -> float:
+    """Mean time (s) between upward crossings of the mean in the last half."""
+    half = len(time) // 2
+    t, x = time[half:], roll[half:] - roll[half:].mean()
+    up = np.flatnonzero((x[:-1] < 0.0) & (x[1:] >= 0.0))
+    if len(up) < LEAST_CROSSINGS:
+        return np.nan
+    crossing = t[up] - x[up] / (x[up + 1] - x[up]) * (t[up + 1] - t[up])
+    return float(np.diff(crossing).mean())

@@ -1,0 +1,57 @@
+"""The ship and the sea in a picture: her hull around the tank, the water up to the waves that pass."""
+
+from collections.abc import Mapping
+from functools import cached_property
+
+import numpy as np
+from pydantic import TypeAdapter
+
+from lab.paint.painter import Camera
+from lab.ship import ShipGiven, WaterGiven, WavesGiven, make_water, make_waves
+
+WATER, SURFACE = (214, 230, 243), (70, 130, 180)
+LINE = 0.12  # thickness of the surface's line, in the units of a page
+AROUND = np.array([0.45, 0.2])  # of the hull's size: how much of the sea is shown beside her and above and below
+
+
+class Sea:
+    """What the recording of a ship (its preset in full) says of hull and waves."""
+
+    def __init__(self, preset: Mapping) -> None:
+        self._ship = TypeAdapter(ShipGiven).validate_python(preset["ship"])
+        self._water = TypeAdapter(WaterGiven).validate_python(preset.get("water") or {})
+        self._sea = preset.get("waves") and TypeAdapter(WavesGiven).validate_python(preset["waves"])
+        self._gravity = preset["run"]["gravity"]
+
+    @property
+    def hull(self) -> np.ndarray:
+        """The hull's outline (m, 2) in the tank's frame, m."""
+        return self._ship.corners - np.array(self._ship.hold)
+
+    @cached_property
+    def _waves(self):
+        return make_waves(self._sea or None, make_water(self._water, self._gravity))
+
+    def elevation(self, y: np.ndarray, time: float) -> np.ndarray:
+        """Height (k,) m of the surface over the calm one at places y (k,) m, earth's axes."""
+        return np.zeros(len(y)) if self._waves is None else self._waves.elevation(y, time)
+
+    def ground(self, hulls: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Lower and upper corner (m) of what is shown, from all places (k, 2) m of the hull's corners."""
+        room = AROUND * np.ptp(self.hull, axis=0).max()
+        return hulls.min(axis=0) - room, hulls.max(axis=0) + room * (1.0, 0.5)
+
+    def paint(self, picture: np.ndarray, camera: Camera, ground: tuple, time: float, thick: float) -> None:
+        """Paint the water into the ground's box of a picture, in place."""
+        height, width, _ = picture.shape
+        (left, bottom), (right, top) = camera.pixels(np.array(ground))
+        columns = np.arange(max(0, round(left)), min(width, round(right)))
+        rows = np.arange(max(0, round(top)), min(height, round(bottom)))
+        y = (columns + 0.5 - camera.offset[0]) / camera.scale
+        surface = camera.offset[1] - camera.scale * self.elevation(y, time)
+        box = picture[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1].astype(float)
+        below = np.clip(rows[:, None] + 1.0 - surface, 0.0, 1.0)[..., None]
+        box += below * (np.array(WATER) - box)
+        line = np.clip(0.5 * thick + 0.5 - np.abs(rows[:, None] + 0.5 - surface), 0.0, 1.0)[..., None]
+        box += line * (np.array(SURFACE) - box)
+        picture[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1] = np.round(box).astype(np.uint8)

@@ -1,0 +1,69 @@
+"""A ship that carries grains: what the solver must know of it before they are laid in her hold."""
+
+from dataclasses import dataclass, replace
+from math import inf
+
+import numpy as np
+
+from solvers.errors import Unavailable
+from solvers.ship.body import Body, bolted
+from solvers.ship.hydrostatics import balanced_heave
+from solvers.ship.motion import Ship
+
+LONGEST_INTERVAL = 1e-3  # s
+SHORTEST_MEMORY = 0.02  # of the fastest memory's time: Runge and Kutta's error of an interval is then under 1e-10
+
+
+@dataclass(frozen=True, eq=False)
+class Vessel:
+    """A hull in water (`ship`, its load a `Floating`) with a hold; the cargo is a sheet `thickness` (m) thick.
+
+    `hold` is the tank's origin in the hull's frame (m). With `laden` the ship's body is that of hull and cargo together
+    as they are when she is let go, and the hull is what is left of it without the cargo; else it is the hull alone. She
+    is let go at `release` (s), until then heeled softly to `heel` (rad), and has capsized where her roll leaves
+    `limits` (rad). `height` (m) is where the hull's origin is until then, None: where she floats in balance.
+    """
+
+    ship: Ship
+    hold: tuple[float, float]
+    thickness: float
+    laden: bool = False
+    heel: float = 0.0
+    release: float = 0.0
+    limits: tuple[float, float] = (-inf, inf)
+    height: float | None = None
+
+    @property
+    def interval(self) -> float:
+        """Longest step (s) of the water's forces: that of her fastest memory, a millisecond at most."""
+        memory = self.ship.radiation.memory
+        fastest = 0.0 if memory is None else np.abs(np.linalg.eigvals(memory.matrix)).max()
+        return min(LONGEST_INTERVAL, SHORTEST_MEMORY / max(fastest, 1e-9))
+
+    def hull(self, cargo: Body) -> Body:
+        """The hull alone. Raises Unavailable where the cargo (hull's frame) leaves it no mass or no inertia."""
+        body = self.ship.body
+        if not self.laden:
+            return body
+        mass = body.mass - cargo.mass
+        if mass <= 0.0:
+            raise Unavailable(
+                f"the cargo of {cargo.mass:.4g} kg/m is heavier than the whole ship of {body.mass:.4g} kg/m."
+            )
+        centre = (body.mass * np.array(body.centre) - cargo.mass * np.array(cargo.centre)) / mass
+        bare = Body(mass, (float(centre[0]), float(centre[1])), 0.0)
+        inertia = body.inertia - bolted(bare, cargo).inertia
+        if inertia <= 0.0:
+            raise Unavailable("the cargo has more moment of inertia than the whole ship; give her a larger one.")
+        return replace(bare, inertia=inertia)
+
+    def whole(self, cargo: Body) -> Body:
+        """Hull and cargo as one."""
+        return self.ship.body if self.laden else bolted(self.ship.body, cargo)
+
+    def heave(self, cargo: Body, roll: float) -> float:
+        """Of the hull's origin (m) at a roll (rad) before she is let go."""
+        if self.height is not None:
+            return self.height
+        load = self.ship.load
+        return balanced_heave(load.section, self.whole(cargo).loading, load.water, roll)

@@ -1,0 +1,303 @@
+"""Ships and their cargo in one time loop: against the ship alone, frozen cargo, and what must be conserved."""
+
+from dataclasses import replace
+from math import inf, pi
+
+import numpy as np
+import pytest
+from scenes import box as tank
+from scenes import material
+
+from solvers.errors import Unavailable
+from solvers.scene import Scene
+from solvers.ship.body import Body, bolted
+from solvers.ship.energy import mechanical_energy
+from solvers.ship.loads import Floating
+from solvers.ship.memory import Memory
+from solvers.ship.motion import Radiation, Rig, RollDamping, Ship, sail, start
+from solvers.ship.section import box
+from solvers.ship.vessel import Vessel
+from solvers.ship.water import Water
+from solvers.ship.waves import regular
+from solvers.simulation import Simulation
+
+WATER, G = Water(), 9.81
+BARGE = box(0.34, 0.30)
+AXIS, HOLD = (0.0, 0.11), (0.0, 0.02)  # m above the keel
+RADIUS, ACROSS, DEEP = 0.01, 15, 4
+SITES = RADIUS * np.array(
+    [(2 * k - ACROSS + 1 + row % 2, 1.0 + np.sqrt(3.0) * row) for row in range(DEEP) for k in range(ACROSS - row % 2)]
+)  # in a triangular lattice from wall to wall, which does not shift at small angles
+COUNT = len(SITES)
+SHEET = 2.0 * RADIUS
+NO_CARGO = 1e15  # m thick: nothing of it counts a metre
+GRAIN = material(young=5e7, friction=0.6, restitution=0.3)
+ELASTIC = material(young=5e7, friction=0.0, dissipative_time=0.0)
+CARGO = COUNT * 4.0 / 3.0 * pi * RADIUS**3 * GRAIN.density / SHEET  # kg/m
+ADDED = Radiation(np.diag([40.0, 52.0, 0.2]), np.diag([20.0, 100.0, 0.05]))
+NONE = Radiation(np.zeros((3, 3)), np.zeros((3, 3)))
+ALONE, TINY, LIVELY, VACUUM, OVER, RESONANT, ROLLING = range(7)
+LASTS = 6.0  # s
+HEEL, RELEASE = 0.006, 0.5  # rad, s
+
+
+def memory() -> Memory:
+    """A memory of two states a mode that couples sway and roll, as made-up as any."""
+    block = np.array([[-3.0, 4.0], [-4.0, -3.0]])
+    matrix, entry = np.kron(np.eye(3), block), np.kron(np.eye(3), [[2.0], [0.0]])
+    leave = np.array([[60.0, 20.0, 0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 90.0, 30.0, 0.0, 0.0], [1.0, 0, 0, 0, 0.4, 0.1]])
+    return Memory(matrix, entry, leave, np.full(3, 2), np.zeros((3, 3)), 0.0)
+
+
+def floating(amplitude: float, frequency: float, water: Water = WATER) -> Floating:
+    waves = regular(amplitude, frequency, water, soft_start=1.0)
+    excess = np.array([[-30.0j, -400.0 + 100.0j, 2.0 + 1.0j]]) * (water.density > 0.0)
+    return Floating(BARGE, water, AXIS, waves, excess)
+
+
+def fleet() -> list[Vessel]:
+    """One ship a world."""
+    hull = Body(0.5 * CARGO, (0.004, 0.10), 0.35)
+    rig = Rig(np.full(3, 0.5), np.array([3.0, 0.0, 0.1]), np.array([30.0, 0.0, 0.0]))
+    tiny = Ship(replace(hull, centre=(0.0, 0.10)), floating(0.0, 4.0), ADDED, AXIS)
+    rolling = replace(
+        tiny, body=Body(0.8 * CARGO, (0.0, 0.3), 0.3), radiation=Radiation(ADDED.added_mass, 0.1 * ADDED.damping)
+    )
+    laden = Body(37.0, (0.0, 0.092), 0.65)
+    return [
+        Vessel(
+            Ship(
+                Body(37.0, (0.01, 0.09), 0.6),
+                floating(0.02, 4.4),
+                Radiation(ADDED.added_mass, 0.1 * ADDED.damping, memory()),
+                AXIS,
+                RollDamping(0.2, 0.3),
+                rig,
+            ),
+            HOLD,
+            NO_CARGO,
+        ),
+        Vessel(tiny, HOLD, SHEET, heel=HEEL, release=RELEASE),
+        Vessel(
+            Ship(hull, floating(0.03, 5.0), ADDED, AXIS, RollDamping(0.1, 0.1), rig),
+            HOLD,
+            SHEET,
+        ),
+        Vessel(Ship(hull, floating(0.0, 4.0, Water(density=0.0)), NONE, AXIS), HOLD, SHEET, height=0.0),
+        Vessel(
+            Ship(laden, floating(0.03, 5.5), Radiation(ADDED.added_mass, 0.0 * ADDED.damping), AXIS),
+            HOLD,
+            SHEET,
+            laden=True,
+            limits=(-0.3, 0.3),
+        ),
+        Vessel(
+            Ship(Body(37.0, (0.0, 0.09), 0.6), floating(0.03, 5.4), NONE, AXIS, free=(False, False, True)),
+            HOLD,
+            NO_CARGO,
+            limits=(-0.5, 0.5),
+        ),
+        Vessel(rolling, HOLD, SHEET, heel=2.0, release=RELEASE),
+    ]
+
+
+class Run:
+    """A simulation of the fleet, its beds settled, that can start again and again."""
+
+    def __init__(self):
+        vessels = fleet()
+        elastic = [ELASTIC if w in (LIVELY, VACUUM) else GRAIN for w in range(len(vessels))]
+        scene = Scene(
+            np.full((len(vessels), COUNT), RADIUS),
+            tank(2.0 * ACROSS * RADIUS * 0.9999, 0.25),
+            elastic,
+            elastic,
+            tangential="mindlin",
+            vessels=vessels,
+            step=2e-5,
+        )
+        self.simulation = Simulation(scene, np.tile(SITES, (len(vessels), 1, 1)), 1)
+        self.simulation.settle(1e-7, 0.8)
+        self.settled = self.simulation.state()
+        self.every = int(self.simulation.frame.every[0])
+
+    def sail(self, every: int, lasts: float, looks: int = 60):
+        """Times, rows of observations, and what is asked of the frame and the grains, at even looks."""
+        run = self.simulation
+        run.restore(self.settled)
+        velocity = np.zeros((*run.scene.radius.shape, 2))
+        velocity[VACUUM] = np.random.default_rng(2).normal(0.0, 0.5, velocity.shape[1:])
+        run.launch(velocity)
+        run.frame.every.fill(every)
+        steps = every * max(1, round(lasts / (run.dt * every * looks)))
+        found = [self.look()]
+        for _ in range(looks):
+            run.advance(steps)
+            found.append(self.look())
+        return {name: np.array([look[name] for look in found]) for name in found[0]}
+
+    def look(self):
+        run = self.simulation
+        snapshot, rows = run.snapshot(), run.observe()
+        frame = {name: getattr(run.frame, name).to_numpy() for name in ("tank", "state", "given", "capsized", "pose")}
+        motion = frame["tank"]
+        speed, spin = earth(snapshot, motion)
+        mass = run.grains.mass
+        kinetic = 0.5 * (mass[..., None] * speed**2).sum((1, 2)) + 0.2 * (mass * RADIUS**2 * spin**2).sum(1)
+        energy = kinetic + rows["potential"] + rows["elastic"]
+        momentum = (mass[..., None] * speed).sum(axis=1)
+        return {"time": run.time, "roll": motion[:, 2], "cargo": energy, "momentum": momentum, **frame}
+
+    def hull(self, world: int) -> Ship:
+        """A ship with her hull's body alone."""
+        mass, y, z, inertia = self.simulation.frame.body.to_numpy()[world]
+        ship = self.simulation.scene.vessels[world].ship
+        return replace(ship, body=Body(mass, (y + AXIS[0], z + AXIS[1]), inertia))
+
+
+def earth(snapshot, motion):
+    """Velocities (W, n, 2) and spins (W, n) of grains in the earth's axes."""
+    phi, rate = motion[:, None, 2], motion[:, None, 5]
+    y, z = np.moveaxis(snapshot["position"], -1, 0)
+    u, v = np.moveaxis(snapshot["velocity"], -1, 0)
+    u, v = u - rate * z, v + rate * y
+    speed = np.stack([np.cos(phi) * u - np.sin(phi) * v, np.sin(phi) * u + np.cos(phi) * v], axis=-1)
+    return speed + motion[:, None, 3:5], snapshot["spin"] + rate
+
+
+@pytest.fixture(scope="module")
+def run():
+    made = Run()
+    yield made
+    made.simulation.close()
+
+
+@pytest.fixture(scope="module")
+def voyage(run):
+    return run.sail(run.every, LASTS)
+
+
+@pytest.fixture(scope="module")
+def finer(run):
+    return run.sail(run.every // 2, 3.0, 30)
+
+
+def test_a_ship_without_cargo_sails_as_by_herself(run, voyage):
+    """Waves, memory, springs, viscous damping: the method of Runge and Kutta to rounding."""
+    vessel = run.simulation.scene.vessels[ALONE]
+    interval = run.every * run.simulation.dt
+    state = start(vessel.ship, vessel.heave(Body(0.0, (0.0, 0.0), 0.0), 0.0))
+    alone = sail(vessel.ship, state, interval, voyage["time"][-1])
+    at = np.round(voyage["time"] / interval).astype(int)
+    assert np.abs(alone.roll).max() > 0.1
+    assert voyage["pose"][1:, ALONE] == pytest.approx(alone.state[at[1:], :3], abs=1e-10)
+
+
+def test_cargo_that_does_not_move_is_a_body_bolted_on(run, voyage):
+    """Twice as heavy as the hull, at a roll of a third of a degree: as one body, to the bed's own give."""
+    vessel = run.simulation.scene.vessels[TINY]
+    run.simulation.restore(run.settled)
+    cargo = run.simulation.cargo()[TINY]
+    aboard = Body(cargo.mass, tuple(np.add(cargo.centre, HOLD)), cargo.inertia)
+    assert aboard.mass == pytest.approx(2.0 * vessel.ship.body.mass)
+    ship = replace(vessel.ship, body=bolted(vessel.ship.body, aboard))
+    frozen = sail(ship, start(ship, vessel.heave(aboard, HEEL), HEEL), 0.005, LASTS - RELEASE)
+    later = voyage["time"] > RELEASE + 0.01
+    wanted = np.interp(voyage["time"][later] - RELEASE, frozen.time, frozen.roll)
+    assert np.ptp(wanted) > 1.5 * HEEL
+    assert voyage["roll"][later, TINY] == pytest.approx(wanted, abs=0.02 * np.ptp(wanted))
+
+
+def test_half_the_interval_is_the_same_motion(voyage, finer):
+    """To a thousandth of the roll, while loose grains have not yet made the most of rounding."""
+    for world in (ALONE, TINY, LIVELY):
+        rough = np.interp(finer["time"], voyage["time"], np.arange(len(voyage["time"])))
+        assert np.abs(rough - np.round(rough)).max() < 1e-6
+        known = voyage["roll"][np.round(rough).astype(int), world]
+        largest = np.abs(known).max()
+        early = finer["time"] < 2.0
+        assert finer["roll"][early, world] == pytest.approx(known[early], abs=1e-3 * largest)
+
+
+def test_momentum_of_ship_and_cargo_without_water(run, voyage):
+    """Nothing but weight: m (v_G + g t) stays, however the grains knock against the hull."""
+    ship = run.hull(VACUUM)
+    motion = voyage["tank"][:, VACUUM]
+    arm = np.array([ship.lever(roll) for roll in motion[:, 2]])
+    hold = np.subtract(HOLD, AXIS)
+    c, s = np.cos(motion[:, 2]), np.sin(motion[:, 2])
+    arm -= np.stack([c * hold[0] - s * hold[1], s * hold[0] + c * hold[1]], axis=1)
+    centre = motion[:, 3:5] + motion[:, 5:6] * np.stack([-arm[:, 1], arm[:, 0]], axis=1)
+    total = ship.body.mass * SHEET * centre + voyage["momentum"][:, VACUUM]
+    mass = (ship.body.mass + CARGO) * SHEET
+    total[:, 1] += mass * G * voyage["time"]
+    assert np.ptp(motion[:, 2]) > 0.05
+    assert total == pytest.approx(np.tile(total[0], (len(total), 1)), abs=1e-3 * mass)
+
+
+def test_energy(run, voyage):
+    """Elastic, smooth grains, light hull, waves: works of waves and losses to the water are what all has gained."""
+    ship = run.hull(LIVELY)
+    state = np.concatenate([voyage["pose"][:, LIVELY], voyage["tank"][:, LIVELY, 3:6]], axis=1)
+    hold = np.subtract(HOLD, AXIS)
+    c, s = np.cos(state[:, 2]), np.sin(state[:, 2])
+    arm = np.stack([c * hold[0] - s * hold[1], s * hold[0] + c * hold[1]], axis=1)
+    state[:, 3] += state[:, 5] * arm[:, 1]
+    state[:, 4] -= state[:, 5] * arm[:, 0]
+    state[0, :3] = run.simulation.frame.upright.to_numpy()[LIVELY]
+    energy = np.array([mechanical_energy(ship, row) for row in state]) + voyage["cargo"][:, LIVELY] / SHEET
+    waves, radiated, viscous = voyage["state"][:, LIVELY, -3:].T
+    assert np.ptp(voyage["roll"][:, LIVELY]) > 0.1
+    assert radiated[-1] > 0.1 * np.abs(waves).max()
+    assert energy - energy[0] == pytest.approx(waves - radiated - viscous, abs=0.01 * np.abs(waves).max())
+
+
+def test_a_hull_lighter_than_her_cargo_rolls_over(run, voyage):
+    """Top-heavy, let go at a heel of 115°: through 180° and back, all finite."""
+    roll = voyage["roll"][:, ROLLING]
+    assert np.isfinite(voyage["tank"][:, ROLLING]).all()
+    assert np.abs(roll).max() > 1.05 * pi
+    assert voyage["capsized"][-1, ROLLING] < 0.0
+
+
+def test_capsize_ends_a_world_and_no_other(run, voyage):
+    """Resonance without damping: when roll leaves its limits, at the step, and the rest sail on."""
+    for world, limit in ((RESONANT, 0.5), (OVER, 0.3)):
+        when = voyage["capsized"][-1, world]
+        assert 0.0 < when < LASTS
+        after = voyage["time"] > when
+        assert np.ptp(voyage["roll"][after, world]) == 0.0
+        assert abs(voyage["roll"][-1, world]) == pytest.approx(limit, abs=0.01)
+    assert voyage["capsized"][-1, LIVELY] == -1.0
+
+
+def test_a_laden_ship_is_what_was_said(run, voyage):
+    """Hull and cargo together have the body that was given for both."""
+    run.simulation.restore(run.settled)
+    cargo = run.simulation.cargo()[OVER]
+    aboard = Body(cargo.mass, tuple(np.add(cargo.centre, HOLD)), cargo.inertia)
+    vessel = run.simulation.scene.vessels[OVER]
+    whole, wanted = bolted(vessel.hull(aboard), aboard), vessel.ship.body
+    assert (whole.mass, whole.inertia) == (pytest.approx(wanted.mass), pytest.approx(wanted.inertia))
+    assert whole.centre == pytest.approx(wanted.centre)
+    with pytest.raises(Unavailable, match="heavier"):
+        vessel.hull(replace(aboard, mass=40.0))
+    with pytest.raises(Unavailable, match="inertia"):
+        vessel.hull(replace(aboard, inertia=1.0))
+
+
+def test_ships_run_per_world():
+    place = np.zeros((1, 1, 2)) + RADIUS
+    scene = Scene([[RADIUS]], tank(0.3, 0.25), GRAIN, GRAIN, vessels=fleet()[:1], schedule="per-band")
+    with pytest.raises(Unavailable, match="per-world"):
+        Simulation(scene, place, 1)
+
+
+def test_intervals():
+    """A millisecond, less where the memory is faster."""
+    vessel = fleet()[ALONE]
+    assert vessel.interval == 1e-3
+    quick = replace(memory(), matrix=20.0 * memory().matrix)
+    ship = replace(vessel.ship, radiation=Radiation(ADDED.added_mass, ADDED.damping, quick))
+    assert replace(vessel, ship=ship).interval == pytest.approx(0.02 / 100.0)
+    assert vessel.limits == (-inf, inf)
