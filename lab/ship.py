@@ -49,7 +49,8 @@ class ShipGiven:
     The origin of the hull's own axes is the middle of the keel of a box of `breadth` and `height`, or as the
     `outline`'s corners have it. `draught`, `gravity_height` (above that origin) and `gyradius` or `roll_period` are of
     ship and cargo together, as it lies at the start. `hold`: where the tank's origin is. `axis`: the point whose sway
-    and heave are held, or not, and about which she then rolls; the middle of the waterline unless given. `damping` is a
+    and heave are held, or not, and about which she then rolls; the middle of the waterline unless given. The source's
+    model has `radiation` at the waves' frequency, and as `excitation` of roll the waves' slope. `damping` is a
     share of the critical, `quadratic_damping` per rad: φ̈ + 2 ζ ω₀ φ̇ + b φ̇|φ̇| + ω₀² φ. `scale`: how many times as long
     the ship is that she is a model of; nothing but words depends on it.
     """
@@ -66,7 +67,7 @@ class ShipGiven:
     freedom: Literal[*FREEDOM] = "sway-heave-roll"
     sheet: Length | None = None  # thickness of the cargo's sheet; the grains' mean diameter unless given
     radiation: Literal["memory", "at-frequency", "none"] = "memory"
-    excitation: Literal["diffraction", "froude-krylov"] = "diffraction"
+    excitation: Literal["diffraction", "froude-krylov", "wave-slope"] = "diffraction"
     damping: Annotated[float, Interval(ge=0, le=1)] = 0.0
     quadratic_damping: Annotated[float, Interval(ge=0)] = 0.0
     heel: Annotated[float, Unit("rad"), Interval(ge=-pi, le=pi)] = 0.0
@@ -202,6 +203,8 @@ def _vessel(given: ShipGiven, water: Water, sea: WavesGiven | None, sheet: float
     if waves is not None:
         rest, scattered = (given.heave, 0.0), given.excitation == "diffraction"
         load = floating_in_waves(section, water, about, waves, table, rest, scattered)
+        if given.excitation == "wave-slope":
+            load = _by_slope(load, table, body)
     ship = Ship(body, load, _radiation(given, table, sea), about, free=FREEDOM[given.freedom], gravity=water.gravity)
     ship = _with_rig(ship, given.rig)
     if given.roll_period:
@@ -210,6 +213,14 @@ def _vessel(given: ShipGiven, water: Water, sea: WavesGiven | None, sheet: float
     ship = replace(ship, damping=_damping(given, ship, water, table))
     limits = (-given.capsize, given.capsize) if given.capsize else (-inf, inf)
     return Vessel(ship, given.hold, sheet, True, given.heel, given.release, limits)
+
+
+def _by_slope(load: Floating, table, body: Body) -> Floating:
+    """The roll moment W GM ∂ζ/∂y in place of the Froude–Krylov one: eq. 7.1 of Spandonidis (2016) with r = 1."""
+    righting = body.mass * load.water.gravity * metacentric_height(load.section, body.loading, load.water)
+    change = np.zeros_like(load.excess)
+    change[:, 2] = 1j * load.waves.wave_number * righting - table.at(load.waves.frequency).froude_krylov[:, 2]
+    return replace(load, excess=load.excess + change)
 
 
 def _with_rig(ship: Ship, given: RigGiven) -> Ship:

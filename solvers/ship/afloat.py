@@ -94,7 +94,8 @@ class Afloat:
         self.felt = arrays.holding(np.array([[0.0, -gravity, 0.0, 0.0]] * worlds), arrays.exact, kept=True)
         (self.done,) = arrays.integers(1, (worlds,))
         # When (s) she capsized, or −1; the cargo's work on her (J/m)
-        (self.capsized, self.given) = arrays.reals(2, (worlds,), arrays.exact)
+        self.capsized = arrays.holding(np.full(worlds, -1.0), arrays.exact, kept=True)
+        (self.given,) = arrays.reals(1, (worlds,), arrays.exact)
 
     @property
     def sizes(self) -> tuple[int, int, int]:
