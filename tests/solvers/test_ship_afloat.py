@@ -116,7 +116,7 @@ class Run:
             vessels=vessels,
             step=2e-5,
         )
-        self.simulation = Simulation(scene, np.tile(SITES + [0.0, 0.1 * RADIUS], (len(vessels), 1, 1)), 1)
+        self.simulation = Simulation(scene, np.tile(np.add(SITES, [0.0, 0.1 * RADIUS]), (len(vessels), 1, 1)), 1)
         self.simulation.settle(1e-7, 0.8)
         self.height = self.simulation.snapshot()["position"][TINY, :, 1].mean()
         self.settled = self.simulation.state()

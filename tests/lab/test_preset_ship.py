@@ -1,0 +1,201 @@
+"""Ships in presets: what is refused and in which words, the vessel that comes of them, her sea, her measures."""
+
+from math import inf, pi, radians
+
+import numpy as np
+import pytest
+from synthetic import frame, preset, recorder, sample
+
+from lab.errors import LabError
+from lab.measures import ship_roll
+from lab.paint.painter import Camera
+from lab.paint.sea import SURFACE, WATER, Sea
+from lab.presets import load
+from lab.recording import open_recording
+from lab.ship import ShipGiven, WaterGiven, WavesGiven, describe, make_vessel, make_water, make_waves, natural_roll
+from lab.ship_tables import stored_table
+from solvers.ship import radiation
+from solvers.ship.hydrostatics import metacentric_height
+from solvers.ship.linear import oscillations
+from solvers.ship.motion import start
+
+BARGE = "ship/barge-roll"
+OMEGA = 4.4
+
+
+def fault(changes: dict, name: str = BARGE) -> str:
+    with pytest.raises(LabError) as caught:
+        load(name, changes)
+    sentence = str(caught.value)
+    assert sentence[-1] in ".?" and "\n" not in sentence and len(sentence) < 400
+    return sentence
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"ship": False}, "waves: there is no ship in them"),
+        ({"motion.sway.amplitude": "1 mm", "motion.sway.frequency": "1 Hz"}, "motion: a ship moves her hold herself"),
+        ({"ship.outline": [["0 mm", "0 mm"], ["1 m", "0 mm"], ["0 mm", "1 m"]]}, "ship.breadth: give breadth"),
+        ({"ship.breadth": False}, "ship.breadth: give breadth"),
+        ({"ship.gyradius": "1 m", "ship.roll_period": "1 s"}, "ship.gyradius: give exactly one"),
+        ({"ship.roll_period": False}, "ship.gyradius: give exactly one"),
+        ({"ship.draught": "30 cm"}, "ship.draught: must be less than the hull's height, 300 mm."),
+        ({"ship.heel": "5 deg"}, "ship.release: she is heeled until then"),
+        ({"waves": False}, 'ship.radiation: "at-frequency" takes the frequency of waves'),
+        ({"waves.amplitude": False}, 'waves.amplitude: missing; waves.kind = "regular" needs it.'),
+        ({"waves.kind": "jonswap"}, 'waves.height: missing; waves.kind = "jonswap" needs it.'),
+        ({"waves.kind": "packet"}, 'waves.spread: missing; waves.kind = "packet" needs it.'),
+        ({"waves.frequency": "0.7 Hz"}, 'waves.frequency: "0.7 Hz" is a frequency, but deg/s'),
+        ({"ship.freedom": "pitch"}, "ship.freedom: "),
+        ({"ship.draft": "1 m"}, "ship.draft: unknown key; did you mean 'draught'?"),
+    ],
+)
+def test_faults_name_the_key(changes, words):
+    assert fault(changes).startswith(words)
+
+
+@pytest.fixture(scope="module")
+def barge():
+    said = load(BARGE).resolved
+    return said, make_vessel(said.ship, said.water, said.waves, said.grains.diameter, said.run.gravity)
+
+
+def test_barge_is_as_given(barge):
+    """Displacement by the draught, GM by closed form, natural roll of the given period, alone about the axis."""
+    said, vessel = barge
+    ship = vessel.ship
+    assert ship.body.mass == pytest.approx(1000.0 * 0.34 * 0.11)
+    height = 0.055 + 0.34**2 / (12.0 * 0.11) - 0.0926
+    assert metacentric_height(ship.load.section, ship.body.loading, ship.load.water) == pytest.approx(height)
+    assert (vessel.laden, vessel.thickness, vessel.hold) == (True, 0.003, (0.0, 0.02))
+    assert vessel.limits == (-0.5 * pi, 0.5 * pi)
+    memory = make_vessel(
+        ShipGiven(**{**vars(said.ship), "radiation": "memory", "damping": 0.0, "quadratic_damping": 0.0}),
+        said.water,
+        None,
+        0.003,
+        9.81,
+    )
+    found = oscillations(memory.ship, start(memory.ship, -0.11)).imag
+    assert np.abs(found - 2.0 * pi / 1.282).min() < 0.02
+
+
+def test_damping_is_a_share_of_the_critical(barge):
+    said, vessel = barge
+    ship, water = vessel.ship, vessel.ship.load.water
+    grid = np.linspace(2.0, 8.0, 13)
+    table = stored_table(ship.load.section, water, -0.11, grid, ship.about)
+    frequency, inertia = natural_roll(ship, -0.11, table)
+    assert frequency == pytest.approx(2.0 * pi / 1.282, rel=2e-3)
+    assert ship.damping.linear == pytest.approx(2.0 * 0.01 * frequency * inertia, rel=2e-3)
+    assert ship.damping.quadratic == pytest.approx(said.ship.quadratic_damping * inertia, rel=2e-3)
+
+
+def test_the_waves_slope_drives_the_roll(barge):
+    """W GM ∂ζ/∂y at the first crossing of the crest by a quarter period, beyond the soft start."""
+    _, vessel = barge
+    load, k = vessel.ship.load, OMEGA**2 / 9.81
+    height = 0.055 + 0.34**2 / (12.0 * 0.11) - 0.0926
+    for time in (10.0, 10.3, 11.1):
+        pose = np.zeros(3)
+        change = load.force(pose, time)[2] - load.still.force(pose, time)[2]
+        slope = -0.01 * k * np.sin(-OMEGA * time)
+        assert change == pytest.approx(1000.0 * 0.34 * 0.11 * 9.81 * height * slope, rel=0.01, abs=1e-4)
+
+
+def test_tables_are_stored(barge, monkeypatch):
+    """What was solved once is read back, to the bit; another frequency is another table."""
+    _, vessel = barge
+    section, water, about = vessel.ship.load.section, vessel.ship.load.water, vessel.ship.about
+    first = stored_table(section, water, -0.11, np.array([3.0, 4.0]), about)
+    monkeypatch.setattr("lab.ship_tables.hydrodynamics", lambda *a, **b: pytest.fail("solved again"))
+    again = stored_table(section, water, -0.11, np.array([3.0, 4.0]), about)
+    assert np.array_equal(first.excitation, again.excitation) and np.array_equal(first.damping, again.damping)
+    with pytest.raises(pytest.fail.Exception):
+        stored_table(section, water, -0.11, np.array([3.0, 4.1]), about)
+    assert radiation.hydrodynamics is not None
+
+
+def test_seas_are_what_they_are_called():
+    """Significant height of random seas; a packet's crest where and when it was asked for."""
+    water = make_water(WaterGiven(), 9.81)
+    for kind in ("jonswap", "pierson-moskowitz"):
+        sea = make_waves(WavesGiven(4.5, kind, height=0.03, seed=3), water)
+        assert 4.0 * np.sqrt((np.abs(sea.amplitude) ** 2).sum() / 2.0) == pytest.approx(0.03, rel=0.01)
+    crest = make_waves(WavesGiven(4.5, "packet", amplitude=0.02, spread=0.5, time=7.0), water)
+    assert crest.elevation(0.0, 7.0) == pytest.approx(0.02, rel=1e-6)
+
+
+def test_words_on_a_ship(barge):
+    said, vessel = barge
+    given = ShipGiven(**{**vars(said.ship), "scale": 100.0})
+    rows = dict(describe(given, vessel, said.waves, 1e-3))
+    assert "GM 49.98 mm" in rows["with her cargo"] and rows["capsized"] == "beyond 90 deg"
+    assert "333.3 times a metre" in rows["cargo's sheet"]
+    full = rows["full scale 1:100"]
+    assert "draught 11 m" in full and "times 10 as long" in full and "waves of 1 m" in full and "14.28 s" in full
+
+
+SHIP = {
+    "draught": 0.11,
+    "gravity_height": 0.09,
+    "breadth": 0.34,
+    "height": 0.3,
+    "gyradius": 0.12,
+    "hold": [0.0, 0.02],
+    "release": 0.0,
+}
+
+
+def test_the_sea_in_a_picture():
+    """Water below the wave that passes, its line on it, paper above; the hull stands about the tank."""
+    waves = {"frequency": OMEGA, "amplitude": 0.02, "kind": "regular"}
+    sea = Sea({"ship": SHIP, "waves": waves, "run": {"gravity": 9.81}})
+    assert sea.hull.min(axis=0) == pytest.approx([-0.17, -0.02])
+    picture = np.full((200, 300, 3), 255, dtype=np.uint8)
+    camera = Camera(500.0, (150.0, 100.0))
+    sea.paint(picture, camera, (np.array([-0.3, -0.2]), np.array([0.3, 0.2])), 0.0, 2.0)
+    k = OMEGA**2 / 9.81
+    for column in (5, 150, 290):
+        top = 100.0 - 500.0 * 0.02 * np.cos(k * (column + 0.5 - 150.0) / 500.0)
+        assert tuple(picture[int(top) + 4, column]) == WATER and tuple(picture[int(top) - 4, column]) == (255,) * 3
+        assert np.abs(picture[int(top), column].astype(int) - SURFACE).max() < 60
+    calm = Sea({"ship": SHIP, "run": {"gravity": 9.81}})
+    assert np.array_equal(calm.elevation(np.zeros(3), 1.0), np.zeros(3))
+
+
+@pytest.fixture
+def rolling(tmp_path):
+    """A recording of two ships: one rolls by 10° about a bias of 2°, the other is gone at 30 s."""
+    said = {**preset(), "ship": SHIP, "waves": {"frequency": OMEGA, "amplitude": 0.01, "kind": "regular"}}
+    time = np.arange(0.0, 40.0, 0.02)
+    with recorder(tmp_path, 2, resolved=said) as writer:
+        for now in time:
+            roll = radians(2.0) + radians(10.0) * np.cos(OMEGA * now)
+            lost = radians(80.0) * min(1.0, now / 30.0)
+            pose = np.array([[0.0, 0.0, roll], [0.0, 0.0, lost]])
+            capsized = [-1.0, 30.0 if now >= 30.0 else -1.0]
+            writer.sample(sample(now, 2, pose=pose, ship_works=np.zeros((2, 4)), capsized=capsized))
+        writer.frame(frame(0.0, 2))
+    with open_recording(tmp_path) as recording:
+        yield recording
+
+
+def test_measures_of_roll(rolling):
+    found = ship_roll.measure(rolling)
+    assert found["roll_amplitude"].worlds == (pytest.approx(10.0, rel=2e-3), None)
+    assert found["roll_bias"].worlds == (pytest.approx(2.0, rel=0.01), None)
+    assert found["largest_roll"].worlds == (pytest.approx(12.0, rel=1e-3), pytest.approx(80.0))
+    assert found["capsized_at"].worlds == (None, 30.0)
+    assert found["roll_period"].worlds[0] == pytest.approx(2.0 * pi / OMEGA, rel=1e-3)
+    assert found["roll_amplitude"].note.startswith("1 biased, 1 capsized")
+
+
+def test_vessels_without_a_limit():
+    said = load("ship/model-test").resolved
+    assert said.ship.capsize is None
+    vessel = make_vessel(said.ship, said.water, said.waves, said.grains.diameter, said.run.gravity)
+    assert vessel.limits == (-inf, inf)
+    assert vessel.ship.load.water.depth == 1.0
+    assert vessel.ship.body.mass == pytest.approx(46.8 / 0.586, rel=0.02)
