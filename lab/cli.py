@@ -385,7 +385,7 @@ def verify(cases: tuple[str, ...], out: Path, fast: bool) -> None:
 
 
 @main.command()
-@click.argument("what", metavar="REPORT", type=click.Choice(["granular", "shapes"]))
+@click.argument("what", metavar="REPORT", type=click.Choice(["granular", "shapes", "ship"]))
 @click.argument("experiments", nargs=-1)
 @click.option("--quick", is_flag=True, help="Fewer beds, faster tilts, draft accuracy: under 20 minutes on two cores.")
 @click.option(
@@ -408,6 +408,7 @@ def reproduce(
     cargolab reproduce granular                 hours on two cores; asked again, it goes on
     cargolab reproduce granular tilt-fill stack EXPERIMENTS whose names begin like this
     cargolab reproduce shapes --quick           those with irregular grains
+    cargolab reproduce ship --quick             those with ships in waves
     cargolab reproduce granular --cluster tcp://node1:8786
     """
     from lab.reproduce import reproduce as reproduced

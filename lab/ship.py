@@ -1,11 +1,13 @@
 """A ship in a preset: what may be said of her, her water and waves, and the vessel that the solver is given."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from math import inf, pi, sqrt
 from typing import Annotated, Literal
 
 import numpy as np
+from pydantic import TypeAdapter
 
 from lab.errors import LabError
 from lab.ship_tables import stored_table
@@ -13,7 +15,7 @@ from lab.units import show
 from solvers.errors import Unavailable
 from solvers.quantity import Interval, Unit
 from solvers.ship.body import Body
-from solvers.ship.hydrostatics import metacentric_height
+from solvers.ship.hydrostatics import metacentric_height, turned
 from solvers.ship.linear import impedance, inertia_for_roll
 from solvers.ship.loads import Floating, floating_in_waves
 from solvers.ship.memory import fit_memory
@@ -264,6 +266,18 @@ def natural_roll(ship: Ship, heave: float, table) -> tuple[float, float]:
 def _damping(given: ShipGiven, ship: Ship, water: Water, table) -> RollDamping:
     frequency, inertia = natural_roll(ship, given.heave, table)
     return RollDamping(2.0 * given.damping * frequency * inertia, given.quadratic_damping * inertia)
+
+
+def recorded_ship(preset: Mapping) -> ShipGiven:
+    """The ship of a recorded preset (all values in SI)."""
+    return TypeAdapter(ShipGiven).validate_python(preset["ship"])
+
+
+def axis_motion(ship: ShipGiven, pose: np.ndarray) -> np.ndarray:
+    """Sway, heave (m) of the ship's axis from where it is at rest, and roll (rad), from the tank's poses (…, 3)."""
+    arm = turned(tuple(np.subtract(ship.hold, ship.about)), pose[..., 2])
+    rest = np.array([ship.about[0], ship.heave + ship.about[1]])
+    return np.concatenate([pose[..., :2] - arm - rest, pose[..., 2:]], axis=-1)
 
 
 def describe(given: ShipGiven, vessel: Vessel, waves: WavesGiven | None, every: float) -> list[tuple[str, str]]:

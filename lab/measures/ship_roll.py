@@ -5,6 +5,7 @@ Of regular waves, over their last ten periods (`solvers.ship.outcome`): roll_amp
 the way from one side to the other; roll_bias, the mean roll, positive to port; both none where she capsized. Their note
 says what became of her: upright, biased (by half a degree or more) or capsized, and where roll has several frequencies:
 a tenth or more of its rms at others than the waves' and their multiples.
+sway_amplitude, heave_amplitude, roll_fundamental: of the motion of the axis at the waves' frequency, by least squares.
 roll_period: mean time between upward crossings of the mean roll in the last half of the run.
 frozen_amplitude: roll_amplitude of the same ship with her cargo frozen as it lay at the start, by herself
 (`solvers.ship.motion.sail`).
@@ -19,9 +20,10 @@ import numpy as np
 from lab.errors import LabError
 from lab.measures.value import Value, over_worlds
 from lab.recording import Recording
+from lab.ship import axis_motion, recorded_ship
 from solvers.errors import BadState, Unavailable
 from solvers.ship.motion import sail, start
-from solvers.ship.outcome import Outcome, outcome
+from solvers.ship.outcome import CYCLES, Outcome, outcome
 
 LEAST_CROSSINGS = 3
 FROZEN_INTERVAL = 0.01  # s
@@ -50,6 +52,13 @@ def measure(recording: Recording) -> dict[str, Value]:
     amplitude, mean = np.degrees(np.array(steady).T)
     found["roll_amplitude"] = over_worlds(amplitude, "deg", note=note, missing="no steady roll")
     found["roll_bias"] = over_worlds(mean, "deg", missing="no steady roll")
+    parts = np.where(capsized[:, None] >= 0.0, np.nan, _fundamental(recording))
+    for name, scale, unit, numbers in (
+        ("sway_amplitude", 1e3, "mm", parts[:, 0]),
+        ("heave_amplitude", 1e3, "mm", parts[:, 1]),
+        ("roll_fundamental", np.degrees(1.0), "deg", parts[:, 2]),
+    ):
+        found[name] = over_worlds(scale * numbers, unit, missing="no steady motion")
     alone = frozen(recording)
     if alone is not None:
         time, roll, when = alone
@@ -95,6 +104,17 @@ def _frozen(path: Path, duration: float):
     except (LabError, Unavailable, BadState, ValueError):
         return None
     return voyage.time + given["release"], voyage.roll, voyage.capsized
+
+
+def _fundamental(recording: Recording) -> np.ndarray:
+    """Amplitudes (W, 3), m and rad, of sway, heave and roll at the waves' frequency over the last cycles."""
+    time, frequency = recording.series["time"], wave_frequency(recording)
+    last = time > time[-1] - CYCLES * 2.0 * np.pi / frequency
+    moved = axis_motion(recorded_ship(recording.preset), recording.series["pose"][last])
+    phase = frequency * time[last, None]
+    waves = np.hstack([np.ones_like(phase), phase, np.cos(phase), np.sin(phase)])
+    fitted = np.linalg.lstsq(waves, moved.reshape(len(moved), -1))[0]
+    return np.hypot(fitted[2], fitted[3]).reshape(recording.worlds, 3)
 
 
 def _outcome(recording: Recording, world: int) -> Outcome | None:

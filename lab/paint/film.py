@@ -18,6 +18,7 @@ from lab.paint.footage import Bed, Footage
 from lab.paint.painter import Camera, Edges, paint_grains, paint_plate, paint_tank, to_discs
 from lab.paint.sea import LINE
 from lab.schema import Video
+from lab.ship import axis_motion
 
 FALLBACK = asdict(Video())
 FRAMES = get_args(get_type_hints(Video)["frame"])
@@ -84,8 +85,7 @@ class Film:
         self.time = max((bed.footage.time for bed in self._beds), key=lambda time: time[-1])
         self._rows = [_nearest(bed.footage.time, self.time) for bed in self._beds]
         self._pose = np.stack([bed.pose[rows] for bed, rows in zip(self._beds, self._rows, strict=True)], axis=1)
-        # A ship's tank is counted from where it stood at first, in calm water.
-        self._calm = np.array([bed.pose[0] * (1, 1, 0) * bool(bed.footage.sea) for bed in self._beds])
+        self._moved = np.stack([_motion(bed, self._pose[:, k]) for k, bed in enumerate(self._beds)], axis=1)
         self._together = bool(np.ptp(self._pose, axis=1).max() < ALIKE)
         self._named = any(bed.name for bed in self._beds)
         self._hues = deco.SERIES if len(self._beds) <= len(deco.SERIES) else bed_colours(len(self._beds))
@@ -302,14 +302,19 @@ class Film:
 
     def _pose_readings(self, frame: int, k: int) -> list[tuple[str, str]]:
         """Names and values of tilt, sway and heave of a shown bed, of those that are ever used."""
-        sway, heave, tilt = (self._pose[frame, k] - self._calm[k]).tolist()
-        moves = (np.abs(self._pose - self._calm) > ALIKE).any(axis=(0, 1))[[2, 0, 1]]
+        sway, heave, tilt = self._moved[frame, k].tolist()
+        moves = (np.abs(self._moved) > ALIKE).any(axis=(0, 1))[[2, 0, 1]]
         readings = [
             ("φ =", f"{deco.number(np.degrees(tilt), 1)}°"),
             ("sway", f"{deco.number(1000 * sway, 1)} mm"),
             ("heave", f"{deco.number(1000 * heave, 1)} mm"),
         ]
         return [reading for reading, moving in zip(readings, moves, strict=True) if moving]
+
+
+def _motion(bed: Bed, pose: np.ndarray) -> np.ndarray:
+    """Sway, heave and roll (F, 3) that is told of: of a ship that of her axis, in place of her tank."""
+    return axis_motion(bed.footage.sea.ship, pose) if bed.footage.sea else pose
 
 
 def _quantity(beds: Sequence[Bed]) -> tuple[str, Callable[[Bed], np.ndarray]]:

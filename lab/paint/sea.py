@@ -7,7 +7,7 @@ import numpy as np
 from pydantic import TypeAdapter
 
 from lab.paint.painter import Camera
-from lab.ship import ShipGiven, WaterGiven, WavesGiven, make_water, make_waves
+from lab.ship import WaterGiven, WavesGiven, make_water, make_waves, recorded_ship
 
 WATER, SURFACE = (214, 230, 243), (70, 130, 180)
 LINE = 0.12  # thickness of the surface's line, in the units of a page
@@ -18,7 +18,7 @@ class Sea:
     """What the recording of a ship (its preset in full) says of hull and waves."""
 
     def __init__(self, preset: Mapping) -> None:
-        self._ship = TypeAdapter(ShipGiven).validate_python(preset["ship"])
+        self.ship = recorded_ship(preset)
         self._water = TypeAdapter(WaterGiven).validate_python(preset.get("water") or {})
         self._sea = preset.get("waves") and TypeAdapter(WavesGiven).validate_python(preset["waves"])
         self._gravity = preset["run"]["gravity"]
@@ -26,7 +26,7 @@ class Sea:
     @property
     def hull(self) -> np.ndarray:
         """The hull's outline (m, 2) in the tank's frame, m."""
-        return self._ship.corners - np.array(self._ship.hold)
+        return self.ship.corners - np.array(self.ship.hold)
 
     @cached_property
     def _waves(self):

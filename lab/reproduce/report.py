@@ -17,6 +17,7 @@ PICTURE = (640, 360)  # pixels
 TITLES = {
     "granular": "The granular experiments of the source, reproduced",
     "shapes": "The source's experiments with irregular grains, reproduced",
+    "ship": "The source's ships with loose cargo, reproduced",
 }
 VERDICTS = {True: "yes", False: "**no**", None: ""}
 
