@@ -20,6 +20,7 @@ from solvers.quantity import Interval, Unit
 
 T = TypeVar("T")
 
+LIKELY = 0.7  # likeness of a word that is meant, rather than a key of that very name elsewhere
 LONGEST_NAME = 40  # characters of a table's name that a person chooses
 BOUND = 1e15  # no SI number of a laboratory is larger, or as small as its inverse; squares and cubes stay finite
 
@@ -87,8 +88,9 @@ def _check_keys(kind: type, table: object, path: str, everywhere: list[str]) -> 
 
 
 def _hint(key: object, known: Mapping, everywhere: list[str]) -> str:
-    near = get_close_matches(str(key)[:100], known, n=1)
+    near = get_close_matches(str(key)[:100], known, n=1, cutoff=LIKELY)
     near = near or [dotted for dotted in everywhere if dotted.endswith(f".{key}")][:1]
+    near = near or get_close_matches(str(key)[:100], known, n=1)
     return f"did you mean '{near[0]}'?" if near else f"known here: {', '.join(known)}."
 
 
