@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Annotated, Literal, get_type_hints
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict
+from pydantic import BaseModel, ConfigDict, model_validator
 
 from lab.accuracy import DEFAULT, LEVELS
 from lab.bed_file import read_bed
@@ -316,6 +316,14 @@ class Resolved(BaseModel):
     run: Run
     record: Record
     video: Video
+
+    @model_validator(mode="after")
+    def _rebounds(self) -> "Resolved":
+        """What a damaged or changed file may lack: a material that says nothing of its rebound is none."""
+        given = [self.material, self.wall, *(kind.material for kind in self.kinds.values())]
+        if any(material.restitution is None and material.dissipative_time is None for material in given):
+            raise ValueError("a material has neither restitution nor dissipative_time")
+        return self
 
 
 def resolve(table: Mapping) -> Resolved:
