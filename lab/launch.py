@@ -165,6 +165,7 @@ class Launch:
             self._write(rows, k % a_frame == 0)
             self._count_cost()
             self.progress.reach(self._simulation.time)
+            self._end_capsized(rows, k % a_frame == 0)
         self.progress.finish()
 
     def save(self) -> None:
@@ -205,11 +206,29 @@ class Launch:
         now = self._simulation.time
         sample, frame = _sample(rows), {}
         if picture:
-            frame = {"pose": _pose(rows), "part": self._simulation.part_places(), **self._simulation.snapshot()}
+            frame = self._frame(rows)
         for recorder, worlds in zip(self._recorders, self._worlds(), strict=True):
             recorder.sample({"time": now, **{name: values[worlds] for name, values in sample.items()}})
             if picture:
                 recorder.frame({"time": now, **{name: values[worlds] for name, values in frame.items()}})
+
+    def _frame(self, rows: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+        """What is pictured of all worlds now."""
+        return {"pose": _pose(rows), "part": self._simulation.part_places(), **self._simulation.snapshot()}
+
+    def _end_capsized(self, rows: Mapping[str, np.ndarray], pictured: bool) -> None:
+        """End the runs all of whose ships have capsized, with a last picture; the others go on."""
+        if "capsized" not in rows:
+            return
+        over = [bool((rows["capsized"][worlds] >= 0.0).all()) for worlds in self._worlds()]
+        slices, now = list(self._worlds()), self._simulation.time
+        frame = {} if pictured or not any(over) else self._frame(rows)
+        for out in reversed(range(len(over))):
+            if over[out]:
+                if frame:
+                    row = {name: values[slices[out]] for name, values in frame.items()}
+                    self._recorders[out].frame({"time": now, **row})
+                self._close(out, "complete")
 
     def _count_cost(self) -> None:
         """Share the wall-clock time since the last count among the runs by their numbers of grains."""
@@ -238,9 +257,14 @@ class Launch:
         slices = list(self._worlds())
         out = next(k for k, worlds in enumerate(slices) if worlds.start <= error.world < worlds.stop)
         own = BadState(error.world - slices[out].start, error.what)
-        run, recorder = self.runs.pop(out), self._recorders.pop(out)
-        recorder.close(f"stopped: {own}")
-        self.stopped[run.folder] = own
+        self.stopped[self.runs[out].folder] = own
+        self._close(out, f"stopped: {own}")
+
+    def _close(self, out: int, status: str) -> None:
+        """Close the recording of a run, and go on with the others' worlds."""
+        slices = list(self._worlds())
+        self.runs.pop(out)
+        self._recorders.pop(out).close(status)
         if self.runs and self._simulation:
             before = self._simulation.state()
             self._simulation.close()

@@ -12,7 +12,7 @@ mean acceleration, and on top, at each step, what the load's difference from tha
 
     a = (v(t + H) − v(t))/H + M(φ)⁻¹ (F − F̄),
 
-M with the added mass of infinite frequency. A smaller H alters nothing but the water's share, by its fourth order, and
+M with the added mass. A smaller H alters nothing but the water's share, by its fourth order, and
 what the deviation within one H does to the water's force, by its second.
 """
 

@@ -12,8 +12,10 @@ from lab.paint.painter import Camera
 from lab.paint.sea import SURFACE, WATER, Sea
 from lab.presets import load
 from lab.recording import open_recording
+from lab.runner import run_preset
 from lab.ship import ShipGiven, WaterGiven, WavesGiven, describe, make_vessel, make_water, make_waves, natural_roll
 from lab.ship_tables import stored_table
+from lab.sweeps import point_folder, run_sweep
 from solvers.ship import radiation
 from solvers.ship.hydrostatics import metacentric_height
 from solvers.ship.linear import oscillations
@@ -199,3 +201,55 @@ def test_vessels_without_a_limit():
     assert vessel.limits == (-inf, inf)
     assert vessel.ship.load.water.depth == 1.0
     assert vessel.ship.body.mass == pytest.approx(46.8 / 0.586, rel=0.02)
+
+
+FEW = {
+    "grains.diameter": "20 mm",
+    "grains.depth": "60 mm",
+    "run.accuracy": "draft",
+    "run.duration": "3 s",
+    "ship.capsize": "1 deg",
+    "waves.frequency": "4.8 rad/s",
+    "waves.soft_start": "0 s",
+}  # a ship that is soon past her limit in waves of 40 mm, and not in those of 1 mm
+
+
+@pytest.fixture(scope="module")
+def lost(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("lost")
+    run_preset(BARGE, {**FEW, "waves.amplitude": "40 mm"}, folder, video=False, plots=False, quiet=True)
+    with open_recording(folder) as recording:
+        yield recording
+
+
+def check_lost(recording):
+    """She capsized before the end, at the limit, and the last picture is of that."""
+    when = recording.series["capsized"][-1, 0]
+    assert recording.complete
+    assert 0.0 < when <= recording.series["time"][-1] < min(when + 0.011, 3.0)
+    assert recording.frames["time"][-1] == recording.series["time"][-1]
+    assert abs(recording.series["pose"][-1, 0, 2]) == pytest.approx(radians(1.0), rel=0.02)
+
+
+def test_a_run_ends_when_its_ship_has_capsized(lost):
+    check_lost(lost)
+
+
+def test_a_recorded_ship_floats_and_rolls(lost):
+    """Her tank stands 20 mm above the keel; frozen by herself she rolls as with grains that hardly move."""
+    assert lost.series["pose"][0, 0] == pytest.approx([0.0, -0.09, 0.0], abs=2e-4)
+    time, roll, _ = ship_roll.frozen(lost)
+    loose = np.interp(time, lost.series["time"], lost.series["pose"][:, 0, 2])
+    assert np.abs(roll).max() > radians(0.5)
+    assert np.abs(loose - roll).max() < 0.2 * np.abs(roll).max()
+    assert lost.series["ship_works"][-1, 0, 0] > 0.0
+
+
+@pytest.mark.slow
+def test_others_go_on_when_a_ship_has_capsized(tmp_path):
+    """Two in one launch."""
+    run_sweep(BARGE, {"waves.amplitude": ["1 mm", "40 mm"]}, FEW, tmp_path, video=False, quiet=True)
+    with open_recording(point_folder(tmp_path, 0)) as calm, open_recording(point_folder(tmp_path, 1)) as rough:
+        assert calm.complete and calm.series["time"][-1] == pytest.approx(3.0)
+        assert (calm.series["capsized"] < 0.0).all()
+        check_lost(rough)

@@ -18,7 +18,7 @@ from solvers.ship.motion import Radiation, Rig, RollDamping, Ship, sail, start
 from solvers.ship.section import box
 from solvers.ship.vessel import Vessel
 from solvers.ship.water import Water
-from solvers.ship.waves import regular
+from solvers.ship.waves import jonswap, random_sea, regular
 from solvers.simulation import Simulation
 
 WATER, G = Water(), 9.81
@@ -256,6 +256,15 @@ def test_energy(run, voyage):
     assert energy - energy[0] == pytest.approx(waves - radiated - viscous, abs=1e-4 * np.abs(waves).max())
 
 
+def test_what_grains_lose(voyage):
+    """Their own energy and the work they do on the hull: elastic, smooth ones lose nothing, others ever more."""
+    lost = -(voyage["cargo"] - voyage["cargo"][0]) / SHEET - voyage["given"]
+    assert np.abs(lost[:, LIVELY]).max() < 1e-4 * np.ptp(voyage["given"][:, LIVELY])
+    tumbling = lost[voyage["time"] > RELEASE + 0.05, ROLLING]
+    assert np.ptp(tumbling) > 0.2 * np.ptp(voyage["given"][:, ROLLING])
+    assert np.diff(tumbling).min() > -1e-3 * np.ptp(tumbling)
+
+
 def test_a_hull_lighter_than_her_cargo_rolls_over(run, voyage):
     """Top-heavy, let go at a heel of 115°: through 180° and back, all finite."""
     roll = voyage["roll"][:, ROLLING]
@@ -292,6 +301,26 @@ def test_a_laden_ship_is_what_was_said(run, voyage):
         vessel.hull(replace(aboard, mass=40.0))
     with pytest.raises(Unavailable, match="inertia"):
         vessel.hull(replace(aboard, inertia=1.0))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("height", [0.0005, 0.05])
+def test_half_an_hour_in_an_irregular_sea(height):
+    """One soft grain for a cargo: roll stays finite and steady, in small waves as large as they are."""
+    sea = random_sea(jonswap(height, 4.5), 4.5, WATER, 1, 20.0)
+    load = Floating(BARGE, WATER, AXIS, sea, np.tile([[30.0j, 300.0, 4.0]], (len(sea.amplitude), 1)))
+    rig = Rig(damping=np.array([5.0, 0.0, 0.0]), spring=np.array([30.0, 0.0, 0.0]))
+    ship = Ship(Body(37.0, (0.0, 0.09), 0.6), load, Radiation(ADDED.added_mass, ADDED.damping, memory()), AXIS, rig=rig)
+    vessel = Vessel(replace(ship, damping=RollDamping(0.2, 0.2)), HOLD, SHEET)
+    scene = Scene([[RADIUS]], tank(0.3, 0.25), material(young=1e5), material(young=1e5), vessels=[vessel], step=1e-4)
+    run = Simulation(scene, np.array([[[0.0, RADIUS]]]), 1)
+    rolls = []
+    for _ in range(36):
+        run.advance(round(50.0 / run.dt))
+        rolls.append(run.observe()["pose_angle"][0])
+    run.close()
+    assert np.isfinite(rolls).all() and np.ptp(rolls) > 0.1 * height
+    assert np.abs(rolls).max() < 12.0 * height + 0.05
 
 
 def test_ships_run_per_world():
