@@ -55,7 +55,7 @@ def period(voyage, mode):
     return np.diff(t[up] - x[up] / (x[up + 1] - x[up]) * (t[1] - t[0])).mean()
 
 
-@pytest.mark.parametrize("free", [LOCKED, (True, True, True)])
+@pytest.mark.parametrize("free", [LOCKED, pytest.param((True, True, True), marks=pytest.mark.slow)])
 def test_free_roll_has_the_frequency_its_inertia_was_chosen_for(table, memory, free):
     """Chosen from the frequency domain, seen in time by Cummins' equation and by coefficients of that frequency."""
     wanted = 4.8
@@ -110,6 +110,7 @@ def test_small_waves_push_as_the_table_says(table, diffraction):
         assert force == pytest.approx((wanted * np.exp(-1j * omega * time)).real, rel=1e-4, abs=1e-4 * abs(wanted[2]))
 
 
+@pytest.mark.slow
 def test_frozen_coefficients_are_exact_at_their_frequency(table):
     omega = 4.5
     load = floating_in_waves(BARGE, WATER, AXIS, regular(1e-6, omega, WATER, 4.0), table, (-DRAUGHT, 0.0))
@@ -137,6 +138,7 @@ def test_energy(table, memory):
     assert np.diff(balance.viscous).min() > -1e-6 * balance.viscous[-1]
 
 
+@pytest.mark.slow
 def test_radiated_power_of_a_steady_motion_is_the_tables(table, memory):
     """In small waves, over a period: ½ Re v* B v, B from the boundary elements."""
     omega = 4.5

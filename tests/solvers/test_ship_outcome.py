@@ -37,6 +37,7 @@ def test_decay_gives_its_damping_back(linear, quadratic):
     assert found.quadratic == pytest.approx(quadratic, abs=0.02)
 
 
+@pytest.mark.slow
 def test_decay_of_a_hull_gives_its_damping_back():
     """B₁ and B₂ of the equations of motion, by the inertia with added mass; from 6°, where a box is still linear."""
     added, damping = np.diag([40.0, 50.0, 0.2]), RollDamping(0.08, 0.3)

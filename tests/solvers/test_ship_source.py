@@ -74,6 +74,7 @@ def test_levers_of_a_box(fixed_body):
     assert afloat.lever(-rolls) == pytest.approx(-afloat.lever(rolls), abs=1e-9)
 
 
+@pytest.mark.slow
 def test_small_roll_of_the_first_model(fixed_body):
     """|φ| = W GM A k r / |W GM − ω² (I + δI) − iωB|, I about P."""
     omega, amplitude, slope, linear = 4.4, 1e-5, 0.7, 1.0
