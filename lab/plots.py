@@ -397,10 +397,28 @@ def roll_spectrum_figure(recording: Recording, values: Mapping[str, Value]) -> F
     return figure
 
 
+def lever_figure(recording: Recording, values: Mapping[str, Value]) -> Figure | None:
+    """Righting lever of a ship with her cargo frozen as it lay at the start, against her heel."""
+    levers = ship_roll.levers(recording) if ship_roll.applies(recording) else None
+    if levers is None:
+        return None
+    figure, ((axes,),) = _figure(recording)
+    heel, lever = levers
+    axes.plot(np.degrees(heel), 1e3 * lever, color=BLUE, label="cargo frozen")
+    axes.axhline(0, color=GREY, lw=0.8)
+    largest = np.degrees(np.abs(recording.series["pose"][..., 2]).max())
+    axes.axvline(largest, color=VERMILION, ls=":", lw=1.0, label="largest roll of the run")
+    axes.set_xlabel("heel (deg)")
+    axes.set_ylabel("righting lever GZ (mm)")
+    figure.legend(loc=BELOW, ncols=2)
+    return figure
+
+
 FIGURES = {
     "roll": roll_figure,
     "portrait": portrait_figure,
     "roll-spectrum": roll_spectrum_figure,
+    "lever": lever_figure,
     "heap": heap_figure,
     "spilled": spilled_figure,
     "shift": shift_figure,

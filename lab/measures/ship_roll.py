@@ -7,6 +7,9 @@ says what became of her: upright, biased (by half a degree or more) or capsized,
 a tenth or more of its rms at others than the waves' and their multiples.
 sway_amplitude, heave_amplitude, roll_fundamental: of the motion of the axis at the waves' frequency, by least squares.
 roll_period: mean time between upward crossings of the mean roll in the last half of the run.
+wave_power: what the waves put into her; radiated_power, viscous_power: what goes into waves and into friction of the
+water; granular_power: what her loose cargo takes, lost in the grains once the motion is steady. Means over the last ten
+periods, per metre of length; in a steady motion the first is the sum of the others.
 frozen_amplitude: roll_amplitude of the same ship with her cargo frozen as it lay at the start, by herself
 (`solvers.ship.motion.sail`).
 """
@@ -22,11 +25,14 @@ from lab.measures.value import Value, over_worlds
 from lab.recording import Recording
 from lab.ship import axis_motion, recorded_ship
 from solvers.errors import BadState, Unavailable
+from solvers.ship.hydrostatics import righting_levers
 from solvers.ship.motion import sail, start
 from solvers.ship.outcome import CYCLES, Outcome, outcome
+from solvers.ship.vessel import Vessel
 
 LEAST_CROSSINGS = 3
 FROZEN_INTERVAL = 0.01  # s
+HEELS = 91  # of the curve of righting levers
 
 
 def applies(recording: Recording) -> bool:
@@ -59,6 +65,7 @@ def measure(recording: Recording) -> dict[str, Value]:
         ("roll_fundamental", np.degrees(1.0), "deg", parts[:, 2]),
     ):
         found[name] = over_worlds(scale * numbers, unit, missing="no steady motion")
+    found |= _powers(recording)
     alone = frozen(recording)
     if alone is not None:
         time, roll, when = alone
@@ -88,22 +95,50 @@ def frozen(recording: Recording) -> tuple[np.ndarray, np.ndarray, float | None] 
 
 @lru_cache(maxsize=4)
 def _frozen(path: Path, duration: float):
+    vessel = _vessel(path)
+    if vessel is None:
+        return None
+    ship = vessel.ship
+    try:
+        state = start(ship, vessel.heave(ship.body, vessel.heel), vessel.heel)
+        voyage = sail(ship, state, FROZEN_INTERVAL, duration - vessel.release, vessel.limits)
+    except (Unavailable, BadState):
+        return None
+    return voyage.time + vessel.release, voyage.roll, voyage.capsized
+
+
+@lru_cache(maxsize=4)
+def _vessel(path: Path) -> Vessel | None:
+    """The ship of a recording with her cargo as it lay at the start."""
     from lab.recording import open_recording
     from lab.scene import vessels
     from lab.schema import Resolved
 
     try:
         with open_recording(path) as recording:
-            (vessel,) = vessels(Resolved.model_validate(recording.preset))
-        ship, given = vessel.ship, recording.preset["ship"]
-        if not vessel.laden:
-            return None
-        heave = vessel.heave(ship.body, vessel.heel)
-        state = start(ship, heave, vessel.heel)
-        voyage = sail(ship, state, FROZEN_INTERVAL, duration - given["release"], vessel.limits)
-    except (LabError, Unavailable, BadState, ValueError):
+            return vessels(Resolved.model_validate(recording.preset))[0]
+    except (LabError, ValueError):
         return None
-    return voyage.time + given["release"], voyage.roll, voyage.capsized
+
+
+def levers(recording: Recording) -> tuple[np.ndarray, np.ndarray] | None:
+    """Heels (n,) rad and righting levers (n,) m of the ship with her cargo frozen."""
+    vessel = _vessel(recording.path)
+    if vessel is None:
+        return None
+    load = vessel.ship.load
+    heel = np.radians(np.linspace(0.0, 180.0, HEELS))
+    return heel, righting_levers(load.section, vessel.ship.body.loading, load.water, heel)
+
+
+def _powers(recording: Recording) -> dict[str, Value]:
+    """Mean powers (mW/m) over the last cycles."""
+    time, works = recording.series["time"], recording.series["ship_works"]
+    begin = np.searchsorted(time, time[-1] - CYCLES * 2.0 * np.pi / wave_frequency(recording))
+    power = 1e3 * (works[-1] - works[begin]) / max(time[-1] - time[begin], 1e-9) * (1.0, 1.0, 1.0, -1.0)
+    power[recording.series["capsized"][-1] >= 0.0] = np.nan
+    names = "wave_power", "radiated_power", "viscous_power", "granular_power"
+    return {name: over_worlds(power[:, k], "mW/m", missing="no steady motion") for k, name in enumerate(names)}
 
 
 def _fundamental(recording: Recording) -> np.ndarray:

@@ -171,14 +171,14 @@ def test_the_sea_in_a_picture():
 def rolling(tmp_path):
     """A recording of two ships: one rolls by 10° about a bias of 2°, the other is gone at 30 s."""
     said = {**preset(), "ship": SHIP, "waves": {"frequency": OMEGA, "amplitude": 0.01, "kind": "regular"}}
-    time = np.arange(0.0, 40.0, 0.02)
+    time, works = np.arange(0.0, 40.0, 0.02), 1e-3 * np.array([[40.0, 10.0, 5.0, -25.0]] * 2)
     with recorder(tmp_path, 2, resolved=said) as writer:
         for now in time:
             roll = radians(2.0) + radians(10.0) * np.cos(OMEGA * now)
             lost = radians(80.0) * min(1.0, now / 30.0)
             pose = np.array([[0.0, 0.0, roll], [0.0, 0.0, lost]])
             capsized = [-1.0, 30.0 if now >= 30.0 else -1.0]
-            writer.sample(sample(now, 2, pose=pose, ship_works=np.zeros((2, 4)), capsized=capsized))
+            writer.sample(sample(now, 2, pose=pose, ship_works=works * now, capsized=capsized))
         writer.frame(frame(0.0, 2))
     with open_recording(tmp_path) as recording:
         yield recording
@@ -192,6 +192,8 @@ def test_measures_of_roll(rolling):
     assert found["capsized_at"].worlds == (None, 30.0)
     assert found["roll_period"].worlds[0] == pytest.approx(2.0 * pi / OMEGA, rel=1e-3)
     assert found["roll_amplitude"].note.startswith("1 biased, 1 capsized")
+    powers = [found[f"{name}_power"].worlds[0] for name in ("wave", "radiated", "viscous", "granular")]
+    assert powers == pytest.approx([40.0, 10.0, 5.0, 25.0], rel=1e-6)
 
 
 def test_vessels_without_a_limit():
@@ -243,6 +245,11 @@ def test_a_recorded_ship_floats_and_rolls(lost):
     assert np.abs(roll).max() > radians(0.5)
     assert np.abs(loose - roll).max() < 0.2 * np.abs(roll).max()
     assert lost.series["ship_works"][-1, 0, 0] > 0.0
+    heel, lever = ship_roll.levers(lost)
+    height = 0.055 + 0.34**2 / (12.0 * 0.11) - 0.0926
+    small = slice(1, 12)  # until the bilge emerges: sin φ (GM + ½ BM tan² φ)
+    wall = np.sin(heel) * (height + 0.5 * 0.34**2 / (12.0 * 0.11) * np.tan(heel) ** 2)
+    assert lever[small] == pytest.approx(wall[small], abs=1e-6)
 
 
 @pytest.mark.slow

@@ -303,6 +303,43 @@ def test_a_laden_ship_is_what_was_said(run, voyage):
         vessel.hull(replace(aboard, inertia=1.0))
 
 
+def later(run, steps=1500):
+    """All that a simulation holds some steps on."""
+    run.advance(steps)
+    run.observe()
+    return run.state()
+
+
+def test_a_state_goes_on_bit_for_bit(run):
+    """From the middle of an interval, as after an interruption."""
+    simulation = run.simulation
+    simulation.restore(run.settled)
+    simulation.advance(40_017)
+    kept = simulation.state()
+    first = later(simulation)
+    simulation.restore(kept)
+    second = later(simulation)
+    assert first.keys() == second.keys()
+    assert all(np.array_equal(first[name], second[name]) for name in first)
+    assert not all(np.array_equal(first[name], kept[name]) for name in first)
+
+
+@pytest.mark.slow
+def test_more_room_for_contacts_alters_nothing():
+    """The arrays are made anew in the middle of a voyage; the ship does not notice."""
+    found = []
+    for grow in (False, True):
+        run = Run().simulation
+        run.advance(40_017)
+        if grow:
+            run._make_room()
+        run.advance(1000)
+        found.append((run.snapshot()["position"], run.frame.pose.to_numpy(), run.frame.given.to_numpy()))
+        run.close()
+    for one, other in zip(*found, strict=True):
+        assert np.array_equal(one, other)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("height", [0.0005, 0.05])
 def test_half_an_hour_in_an_irregular_sea(height):
