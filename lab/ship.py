@@ -16,10 +16,10 @@ from solvers.errors import Unavailable
 from solvers.quantity import Interval, Unit
 from solvers.ship.body import Body
 from solvers.ship.hydrostatics import metacentric_height, turned
-from solvers.ship.linear import impedance, inertia_for_roll
+from solvers.ship.linear import impedance, inertia_for_roll, require_damped
 from solvers.ship.loads import Floating, floating_in_waves
 from solvers.ship.memory import fit_memory
-from solvers.ship.motion import Radiation, Rig, RollDamping, Ship, frozen_at, remembered
+from solvers.ship.motion import Radiation, Rig, RollDamping, Ship, frozen_at, remembered, start
 from solvers.ship.section import Section
 from solvers.ship.vessel import Vessel
 from solvers.ship.water import Water
@@ -207,12 +207,21 @@ def _vessel(given: ShipGiven, water: Water, sea: WavesGiven | None, sheet: float
         load = floating_in_waves(section, water, about, waves, table, rest, scattered)
         if given.excitation == "wave-slope":
             load = _by_slope(load, table, body)
-    ship = Ship(body, load, _radiation(given, table, sea), about, free=FREEDOM[given.freedom], gravity=water.gravity)
+    ship = Ship(
+        body,
+        load,
+        _radiation(given, table, sea, water.depth == inf),
+        about,
+        free=FREEDOM[given.freedom],
+        gravity=water.gravity,
+    )
     ship = _with_rig(ship, given.rig)
     if given.roll_period:
         one = table.at([2.0 * pi / given.roll_period])
         ship = replace(ship, body=inertia_for_roll(ship, section, water, given.heave, one))
     ship = replace(ship, damping=_damping(given, ship, water, table))
+    if given.radiation == "memory":
+        require_damped(ship, start(ship, given.heave))
     limits = (-given.capsize, given.capsize) if given.capsize else (-inf, inf)
     return Vessel(ship, given.hold, sheet, True, given.heel, given.release, limits)
 
@@ -243,12 +252,12 @@ def _frequencies(given: ShipGiven, water: Water, waves: Waves | None) -> np.ndar
     return np.linspace(low, high, FREQUENCIES)
 
 
-def _radiation(given: ShipGiven, table, sea: WavesGiven | None) -> Radiation:
+def _radiation(given: ShipGiven, table, sea: WavesGiven | None, deep: bool) -> Radiation:
     if given.radiation == "none":
         return Radiation(table.infinite_added_mass, np.zeros((3, 3)))
     if given.radiation == "at-frequency":
         return frozen_at(table, sea.frequency)
-    return remembered(table, fit_memory(table, MEMORY_ORDER))
+    return remembered(table, fit_memory(table, MEMORY_ORDER, deep))
 
 
 def natural_roll(ship: Ship, heave: float, table) -> tuple[float, float]:

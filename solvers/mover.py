@@ -4,7 +4,7 @@ import taichi as ti
 
 from solvers.grains import Grains
 from solvers.runtime import Arrays
-from solvers.units import Units
+from solvers.units import APART, Units
 
 
 @ti.data_oriented
@@ -19,6 +19,8 @@ class Mover:
     def __init__(self, arrays: Arrays, units: Units, grains: Grains, integrator, rotating: bool, weighed: bool = False):
         self.units, self.grains, self.integrator, self.rotating = units, grains, integrator, rotating
         self.weighed = weighed  # before every move, by `weigh`
+        if weighed:
+            self.weights = arrays.reals(3, (APART * units.count,), arrays.exact, kept=False)
         shape = (grains.worlds, grains.count + grains.ghosts)
         self.extra = arrays.reals(integrator.extra, shape)
         self.load_y, self.load_z, self.load_moment = arrays.reals(3, (units.count,), arrays.exact)
@@ -30,7 +32,7 @@ class Mover:
 
     @ti.func
     def weigh(self, g: ti.template(), u, dt):
-        """Force (N) of a unit's grains on the tank and its moment (N m), before the move; adds up their impulse."""
+        """Note a unit's force (N) on the tank and its moment (N m), before the move; adds up their impulse."""
         w = self.units.world(u)
         load_y, load_z, moment = ti.cast(0.0, g.real), ti.cast(0.0, g.real), ti.cast(0.0, g.real)
         for i in range(self.units.first(u), self.units.end(u)):
@@ -39,7 +41,12 @@ class Mover:
             load_z -= force_z
             moment -= ti.cast(g.y[w, i], g.real) * force_z - ti.cast(g.z[w, i], g.real) * force_y + g.torque[w, i]
         self.add_up(u, load_y, load_z, moment, dt)
-        return ti.Vector([load_y, load_z, moment])
+        self.weights[0][APART * u], self.weights[1][APART * u], self.weights[2][APART * u] = load_y, load_z, moment
+
+    @ti.func
+    def weight(self, u):
+        """What `weigh` has noted."""
+        return ti.Vector([self.weights[k][APART * u] for k in ti.static(range(3))])
 
     @ti.func
     def add_up(self, u, load_y, load_z, moment, dt):

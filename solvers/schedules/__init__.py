@@ -19,12 +19,12 @@ WORTH_BANDS = 2000
 def choose_schedule(wanted: str, arch: str, worlds: int, grains: int, threads: int, afloat: bool = False) -> str:
     """What "auto" stands for: on a graphics processor per-grain; on the CPU bands for few large worlds.
 
-    A ship follows from its whole cargo, step by step, on one thread. Raises Unavailable for her on others.
+    A ship follows from her whole cargo at every step. Raises Unavailable for her on per-grain schedules.
     """
     if afloat:
-        if wanted not in ("auto", "per-world"):
-            raise Unavailable("run.schedule: ships run per-world; leave run.schedule out.")
-        return "per-world"
+        if wanted == "per-grain" or arch != "cpu":
+            raise Unavailable('run.schedule: ships run per-world or per-band, on the processor; set run.arch = "cpu".')
+        wanted = "per-world" if wanted == "auto" and not 2 * worlds <= threads else wanted
     if wanted != "auto":
         return wanted
     if arch != "cpu":

@@ -4,9 +4,9 @@ import taichi as ti
 
 from solvers.runtime import available_cores
 from solvers.schedules.engine import ITERATIONS_A_THREAD, Engine
-from solvers.watch import NO_ROOM, RUNNING, TOO_FAST
+from solvers.watch import CAPSIZED, NO_ROOM, RUNNING, TOO_FAST
 
-FINE, STALE, FAST, FULL = range(4)  # what a band says of itself, the worst last
+FINE, STALE, OVER, FAST, FULL = range(5)  # what a band says of itself, the worst last
 
 
 @ti.data_oriented
@@ -14,9 +14,9 @@ class PerBand:
     """Advances worlds of several bands; each band's whole time loop is one task of the thread pool.
 
     Bands meet twice a step: after the forces, which read what all grains do, and after the move, where they agree on
-    building the lists anew. They wait by spinning, since a wake-up takes longer than a step. With fewer threads than
-    bands one thread does them in turn. The bits depend on the numbers of bands and of threads, for which the compiler
-    rounds differently here and there.
+    building the lists anew; in a ship once more in between, after the first one has steered her. They wait by spinning,
+    since a wake-up takes longer than a step. With fewer threads than bands one thread does them in turn. The bits
+    depend on the numbers of bands and of threads, for which the compiler rounds differently here and there.
     """
 
     def __init__(self, engine: Engine, threads: int):
@@ -66,11 +66,20 @@ class PerBand:
             while worst == FINE and done < target:
                 t = origin + done * step
                 self.contacts.forces(u, t, dt)
+                if ti.static(self.frame.afloat):
+                    self.mover.weigh(self.grains, u, dt)
                 meetings = self.meet(w, meetings)
+                if ti.static(self.frame.afloat):
+                    if u % self.bands == 0:
+                        self.steer(w, t, done == unkicked, dt)
+                    meetings = self.meet(w, meetings)
                 says = self.move(u, t, done == unkicked, dt, fastest)
                 done += 1
                 if says == FINE and self.neighbours.stale(u, t + step):
                     says = STALE
+                if ti.static(self.frame.afloat):  # noqa: SIM102 (compiled only for ships)
+                    if says <= STALE and not self.frame.goes_on(w):
+                        says = OVER
                 self.clock.says[u] = says
                 meetings = self.meet(w, meetings)
                 worst = self.worst(w)
@@ -94,9 +103,16 @@ class PerBand:
             if worst == FINE:
                 for u in range(first, first + self.bands):
                     self.contacts.forces(u, t, dt)
+                    if ti.static(self.frame.afloat):
+                        self.mover.weigh(self.grains, u, dt)
+                if ti.static(self.frame.afloat):
+                    self.steer(w, t, self.clock.step[w] == unkicked, dt)
                 for u in range(first, first + self.bands):
                     worst = ti.max(worst, self.move(u, t, self.clock.step[w] == unkicked, dt, fastest))
                 self.clock.step[w] = self.clock.step[w] + 1
+                if ti.static(self.frame.afloat):  # noqa: SIM102
+                    if worst == FINE and not self.frame.goes_on(w):
+                        worst = OVER
             self.report(w, worst)
 
     @ti.func
@@ -106,6 +122,14 @@ class PerBand:
         speed = self.mover.move(self.grains, u, body, first, dt)
         self.neighbours.travel[u] = self.neighbours.travel[u] + (speed + self.unseen) * dt
         return FINE if speed < fastest else FAST
+
+    @ti.func
+    def steer(self, w, t, first, dt):
+        """Take a world's ship through the step with the load of all its bands."""
+        load = self.mover.weight(w * self.bands)
+        for u in range(w * self.bands + 1, (w + 1) * self.bands):
+            load += self.mover.weight(u)
+        self.frame.follow(w, t, dt, ti.select(first, 0.5 * dt, dt), load)
 
     @ti.func
     def worst(self, w):
@@ -126,6 +150,8 @@ class PerBand:
 
     @ti.func
     def report(self, w, says):
+        if says == OVER:
+            self.clock.status[w] = CAPSIZED
         if says == FAST:
             self.clock.status[w] = TOO_FAST
         if says == FULL:

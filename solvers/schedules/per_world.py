@@ -46,7 +46,8 @@ class PerWorld:
                 first = self.clock.step[w] == unkicked
                 if ti.static(self.frame.afloat):
                     kick = ti.select(first, 0.5 * dt, dt)
-                    self.frame.follow(w, t, dt, kick, self.mover.weigh(self.grains, w, dt))
+                    self.mover.weigh(self.grains, w, dt)
+                    self.frame.follow(w, t, dt, kick, self.mover.weight(w))
                 body = self.frame.body_force(w, t)
                 speed = self.mover.move(self.grains, w, body, first, dt)
                 self.neighbours.travel[w] = self.neighbours.travel[w] + (speed + self.unseen) * dt

@@ -31,12 +31,19 @@ from solvers.ship.vessel import Vessel
 
 POSE, VELOCITY, MEMORY = 0, 3, 6  # where in a state
 WORKS = 3  # its last entries: work (J/m) of the waves, against what is radiated, against viscosity
+APART = 16  # numbers from what is written of one ship at each step to what is of the next
 STAGES = 4  # of the method of Runge and Kutta
 
 
 def steps_an_interval(vessels: Sequence[Vessel], interval: float | None, dt: float) -> int:
     """Steps of dt (s) in an interval H: of the given one (s), else of the shortest that a ship needs."""
     return max(1, round((interval or min(vessel.interval for vessel in vessels)) / dt))
+
+
+def _apart(rows: Sequence[Sequence[float]]) -> np.ndarray:
+    """Rows (W, k) in rows of APART: no two worlds write to one cache line."""
+    values = np.array(rows, dtype=float)
+    return np.pad(values, ((0, 0), (0, APART - values.shape[1])))
 
 
 @ti.data_oriented
@@ -86,16 +93,14 @@ class Afloat:
         # Pose at the time of the step to come and velocity half a step before; the interval's accelerations now and
         # before, its drift, its mean load and the one before; the load so far; motion of the tank, accelerations last.
         names = "pose", "velocity", "steady", "steady_before", "drift", "mean", "mean_before", "load"
-        for name in names:
-            (field,) = arrays.reals(1, (worlds, 3), arrays.exact)
+        for name in (*names, "last", "tank"):
+            (field,) = arrays.reals(1, (worlds, APART), arrays.exact)
             setattr(self, name, field)
-        (self.last,) = arrays.reals(1, (worlds, 3), arrays.exact)
-        (self.tank,) = arrays.reals(1, (worlds, 9), arrays.exact)
-        self.felt = arrays.holding(np.array([[0.0, -gravity, 0.0, 0.0]] * worlds), arrays.exact, kept=True)
-        (self.done,) = arrays.integers(1, (worlds,))
+        self.felt = arrays.holding(_apart([[0.0, -gravity, 0.0, 0.0]] * worlds), arrays.exact, kept=True)
+        (self.done,) = arrays.integers(1, (worlds, APART))
         # When (s) she capsized, or −1; the cargo's work on her (J/m)
         self.capsized = arrays.holding(np.full(worlds, -1.0), arrays.exact, kept=True)
-        (self.given,) = arrays.reals(1, (worlds,), arrays.exact)
+        (self.given,) = arrays.reals(1, (worlds, APART), arrays.exact)
 
     @property
     def sizes(self) -> tuple[int, int, int]:
@@ -136,7 +141,7 @@ class Afloat:
         self.state.fill(0.0)
         holds = [np.subtract(vessel.hold, vessel.ship.about) for vessel in self.vessels]
         still = [[*np.add(pose[:2], hold), *[0.0] * 7] for pose, hold in zip(upright, holds, strict=True)]
-        self.tank.from_numpy(self._typed(still))
+        self.tank.from_numpy(self._typed(_apart(still)))
 
     def _typed(self, values) -> np.ndarray:
         return np.array(values, dtype=np.float64 if self.exact is ti.f64 else np.float32)
@@ -147,7 +152,7 @@ class Afloat:
         And when (s) each capsized (W,), −1 where she has not.
         """
         works = self.state.to_numpy()[:, -WORKS:]
-        given = self.given.to_numpy()[:, None]
+        given = self.given.to_numpy()[:, :1]
         return {"ship_works": np.hstack([works, given]).astype(float), "capsized": self.capsized.to_numpy()}
 
     @ti.func
@@ -194,7 +199,7 @@ class Afloat:
     @ti.func
     def move(self, w, t, step, kick, load):
         """One step of the leapfrog: velocities half a step behind the poses, as those of the grains."""
-        first = self.done[w] == 0
+        first = self.done[w, 0] == 0
         if first:
             self.put(self.pose, w, self.vector(self.heeled, w))
             for k in ti.static(range(3)):
@@ -203,7 +208,7 @@ class Afloat:
         force = self.aboard(w, pose[2], load)
         share = ti.cast(1.0, self.exact)
         steady, mean = self.vector(self.steady, w), self.vector(self.mean, w)
-        if self.done[w] % self.every[0] == 0:
+        if self.done[w, 0] % self.every[0] == 0:
             now = before + 0.5 * step * self.vector(self.last, w)
             if first:
                 now, share = before, 0.5 * share
@@ -219,13 +224,13 @@ class Afloat:
             velocity = before
         self.feel(w, pose, velocity, acceleration, step / kick)
         after = before + step * acceleration
-        self.given[w] = self.given[w] + step * share * force.dot(0.5 * (before + after))
+        self.given[w, 0] = self.given[w, 0] + step * share * force.dot(0.5 * (before + after))
         self.put(self.velocity, w, after)
         self.put(self.last, w, acceleration / share)
         self.put(self.load, w, self.vector(self.load, w) + force)
         pose = pose + step * (after + self.vector(self.drift, w))
         self.put(self.pose, w, pose)
-        self.done[w] = self.done[w] + 1
+        self.done[w, 0] = self.done[w, 0] + 1
         self.note(w, pose, after + 0.5 * step * acceleration / share, acceleration / share)
         if not (self.limits[w, 0] < pose[2] < self.limits[w, 1]):
             self.capsized[w] = t + step

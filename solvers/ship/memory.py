@@ -74,11 +74,12 @@ class Memory:
         return np.einsum("is,ts,sj->tij", left, decay, right).real
 
 
-def fit_memory(table: Hydrodynamics, order: int) -> Memory:
+def fit_memory(table: Hydrodynamics, order: int, deep: bool = True) -> Memory:
     """The system of `order` states a mode that is nearest to a table's memory, by least squares.
 
     Vector fitting (Gustavsen and Semlyen 1999): modes that act on each other share their poles, which are kept stable;
-    the residues are symmetric and such that K̂(0) = 0, for a steady motion makes no waves.
+    the residues are symmetric and in `deep` water such that K̂(0) = 0, for a steady motion makes no waves there. In
+    water of finite depth h a slow heave of breadth b does: it pushes long waves away, K̂(0) = ρ b² √(g h)/2h.
     """
     transfer = table.damping + 1j * table.frequency[:, None, None] * (table.added_mass - table.infinite_added_mass)
     transfer = 0.5 * (transfer + transfer.transpose(0, 2, 1))
@@ -91,7 +92,7 @@ def fit_memory(table: Hydrodynamics, order: int) -> Memory:
         pairs = [(i, j) for i in group for j in group if i <= j and size[i, j] > COUPLED]
         wanted = np.array([scaled[:, i, j] for i, j in pairs])
         poles = _poles(table.frequency, wanted, order)
-        residues = _residues(table.frequency, wanted, poles)
+        residues = _residues(table.frequency, wanted, poles, deep)
         block, drive = _real_system(poles)
         for j in group:
             own = slice(j * order, (j + 1) * order)
@@ -133,11 +134,11 @@ def _poles(frequency: np.ndarray, wanted: np.ndarray, order: int) -> np.ndarray:
     return poles
 
 
-def _residues(frequency: np.ndarray, wanted: np.ndarray, poles: np.ndarray) -> np.ndarray:
-    """Real residues (f, order) in the basis of the poles, of least squares among those with no force at ω = 0."""
+def _residues(frequency: np.ndarray, wanted: np.ndarray, poles: np.ndarray, deep: bool) -> np.ndarray:
+    """Real residues (f, order) in the basis of the poles, of least squares; in deep water of no force at ω = 0."""
     from scipy.linalg import null_space
 
-    free = null_space(_basis(np.zeros(1), poles).real)
+    free = null_space(_basis(np.zeros(1), poles).real) if deep else np.eye(len(poles))
     solution = np.linalg.lstsq(_split(_basis(frequency, poles)) @ free, _split(wanted.T))[0]
     return (free @ solution).T
 

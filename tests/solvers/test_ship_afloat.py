@@ -145,6 +145,7 @@ class Run:
             name: getattr(run.frame, name).to_numpy()
             for name in ("tank", "state", "given", "capsized", "pose", "body", "upright")
         }
+        frame |= {"pose": frame["pose"][:, :3], "tank": frame["tank"][:, :9], "given": frame["given"][:, 0]}
         motion = frame["tank"]
         speed, spin = earth(snapshot, motion)
         mass = run.grains.mass
@@ -360,11 +361,41 @@ def test_half_an_hour_in_an_irregular_sea(height):
     assert np.abs(rolls).max() < 12.0 * height + 0.05
 
 
-def test_ships_run_per_world():
+def test_ships_do_not_run_per_grain():
     place = np.zeros((1, 1, 2)) + RADIUS
-    scene = Scene([[RADIUS]], tank(0.3, 0.25), GRAIN, GRAIN, vessels=fleet()[:1], schedule="per-band")
+    scene = Scene([[RADIUS]], tank(0.3, 0.25), GRAIN, GRAIN, vessels=fleet()[:1], schedule="per-grain")
     with pytest.raises(Unavailable, match="per-world"):
         Simulation(scene, place, 1)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("together", [True, False])
+def test_bands_steer_the_same_ship(together):
+    """Two bands in step, or one after the other, against the whole: to rounding, until grains make the most of it."""
+    found = []
+    for schedule in ("per-world", "per-band"):
+        vessel = replace(fleet()[TINY], heel=0.1, release=0.1)
+        scene = Scene(
+            np.full((1, COUNT), RADIUS),
+            tank(2.0 * ACROSS * RADIUS * 0.9999, 0.25),
+            GRAIN,
+            GRAIN,
+            tangential="mindlin",
+            vessels=[vessel],
+            step=2e-5,
+            schedule=schedule,
+        )
+        run = Simulation(scene, SITES[None] + [0.0, 1e-4], 2, arch="cpu")
+        if schedule == "per-band":
+            assert run.units_a_world == 2
+            run.schedule.together = together
+        run.settle(1e-7, 0.1)
+        run.advance(25_000)
+        found.append((run.frame.pose.to_numpy(), run.snapshot()["position"]))
+        run.close()
+    assert abs(found[0][0][0, 2]) > 0.01
+    for one, other in zip(*found, strict=True):
+        assert other == pytest.approx(one, abs=1e-9)
 
 
 def test_intervals():

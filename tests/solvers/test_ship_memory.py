@@ -152,3 +152,14 @@ def steady_motion(inertia, viscous, spring, system, omega, force):
         state = state + step / 6.0 * (first + 2.0 * second + 2.0 * third + fourth)
     last = np.array(last)
     return 2.0 * np.exp(1j * omega * last[:, 0]) @ last[:, 1:] / steps
+
+
+def test_memory_in_water_of_finite_depth():
+    """A slow heave pushes long waves away, K̂(0) = ρ b² √(g h)/2h: the wall of a piston in shallow water, two sides."""
+    depth, water = 1.0, Water(depth=1.0)
+    table = hydrodynamics(box(0.4, 0.3), water, -0.2, np.linspace(0.4, 24.0, 40), about=(0.0, 0.1), count=40)
+    memory = fit_memory(table, 8, deep=False)
+    assert memory.error.max() < 0.01
+    piston = water.density * 0.4**2 * np.sqrt(9.81 * depth) / (2.0 * depth)
+    assert memory.transfer(np.zeros(1))[0, 1, 1].real == pytest.approx(piston, rel=0.05)
+    assert fit_memory(table, 8).error.max() > 10.0 * memory.error.max()
