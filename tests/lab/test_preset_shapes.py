@@ -131,6 +131,7 @@ def test_an_outline_from_a_file_is_found_beside_its_preset(tmp_path):
         load(path)
 
 
+@pytest.mark.slow
 def test_shares_by_mass_are_those_of_the_masses():
     preset = resolved(TWO, grains={"shares": "mass", "count": 4000}, tank={"width": "1 m", "height": "1 m"})
     scene = build(preset)[0]

@@ -233,10 +233,12 @@ def check_lost(recording):
     assert abs(recording.series["pose"][-1, 0, 2]) == pytest.approx(radians(1.0), rel=0.02)
 
 
+@pytest.mark.slow
 def test_a_run_ends_when_its_ship_has_capsized(lost):
     check_lost(lost)
 
 
+@pytest.mark.slow
 def test_a_recorded_ship_floats_and_rolls(lost):
     """Her tank stands 20 mm above the keel; frozen by herself she rolls as with grains that hardly move."""
     assert lost.series["pose"][0, 0] == pytest.approx([0.0, -0.09, 0.0], abs=2e-4)

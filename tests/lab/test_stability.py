@@ -164,6 +164,7 @@ def test_bisection_finds_a_limit_above_and_below_and_none():
     assert longest(lambda step: False, 1.0) > 50.0
 
 
+@pytest.mark.slow
 def test_packing_is_in_equilibrium_and_explodes_beyond_its_limit():
     """At a stable step no grain moves by as much as a thousandth of an overlap; a little beyond 2/ω they fly apart."""
     made = scene([1.0], "verlet", "linear", "none")

@@ -1,12 +1,14 @@
 """Neighbours that leave an open tank together are let go of without a trace."""
 
 import numpy as np
+import pytest
 from scenes import box, material
 
 from solvers.scene import Scene
 from solvers.simulation import Simulation
 
 
+@pytest.mark.slow
 def test_neighbours_that_leave_together_are_let_go_of():
     """Grain 0, which stands in for missing pairs too, and two that touch it fall beside the tank until out of sight."""
     radius = np.full((1, 4), 2e-3)

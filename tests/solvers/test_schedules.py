@@ -202,6 +202,7 @@ def test_lists_equal_brute_force(run):
     assert np.all(counted > 50)
 
 
+@pytest.mark.slow
 def test_single_grains_know_how_hard_the_tank_is_shaken():
     """A grain that hangs in a tank in free space as that sets off with 20 g: it meets one at the wall just beyond the
     lists' skin. The schedule of single grains looks at speeds now and then, and there are none to begin with.

@@ -110,9 +110,12 @@ def momenta(simulation):
     return momentum.sum(axis=0), turning
 
 
-@pytest.mark.parametrize("contact", ["continuous", pytest.param("nodes", marks=pytest.mark.slow)])
-def test_momenta_are_kept_with_friction_and_losses(contact):
-    simulation = collision(contact, [rice(), corn()])
+@pytest.mark.parametrize(
+    ("contact", "other"),
+    [("continuous", rice), *(pytest.param(rule, corn, marks=pytest.mark.slow) for rule in ("continuous", "nodes"))],
+)
+def test_momenta_are_kept_with_friction_and_losses(contact, other):
+    simulation = collision(contact, [rice(), other()])
     before, turning = momenta(simulation)
     simulation.advance(1500)
     after, turning_after = momenta(simulation)
@@ -128,6 +131,7 @@ def energy(simulation):
     return float(sum(row[name][0] for name in ("kinetic", "rotational", "potential", "elastic")))
 
 
+@pytest.mark.slow
 def test_energy_of_a_smooth_collision_is_kept_with_the_square_of_the_step():
     """Two rice grains, convex, without friction or losses."""
     errors = []
@@ -146,6 +150,7 @@ def test_energy_of_a_smooth_collision_is_kept_with_the_square_of_the_step():
     assert after[0] < 2e-4 and after[1] < after[0] / 4.0
 
 
+@pytest.mark.slow
 def test_a_tip_may_be_pressed_in_farther_than_it_is_round():
     """The tip of one rice grain meets the side of another at 5 m/s each, without friction or losses."""
     outline = rice()
