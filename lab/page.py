@@ -11,16 +11,17 @@ from lab.plots import STYLE
 from lab.recording import versions
 from solvers.runtime import available_cores
 
-COMMANDS = {"verify": "verify", "granular": "reproduce granular", "granular-quick": "reproduce granular --quick"}
-
 
 class Page:
-    """NAME.md in a folder, made if missing, and its figures NAME-FIGURE.png; `write` leaves it on the disk."""
+    """NAME.md in a folder, made if missing, and its figures NAME-FIGURE.png; `write` leaves it on the disk.
 
-    def __init__(self, folder: Path | str, name: str, title: str) -> None:
+    `command` is what makes it; by default the bench of that name.
+    """
+
+    def __init__(self, folder: Path | str, name: str, title: str, command: str | None = None) -> None:
         self.folder, self.name = Path(folder), name
         self.folder.mkdir(parents=True, exist_ok=True)
-        self._blocks = [f"# {title}", f"Made by `cargolab {title_command(name)}` on {machine()}."]
+        self._blocks = [f"# {title}", f"Made by `cargolab {command or f'bench {name}'}` on {machine()}."]
 
     def section(self, title: str) -> None:
         """Begin a section."""
@@ -52,11 +53,6 @@ class Page:
         path = self.folder / f"{self.name}.md"
         path.write_text("\n\n".join(self._blocks) + "\n", encoding="utf-8")
         return path
-
-
-def title_command(name: str) -> str:
-    """The command that makes the page of a name: one of COMMANDS, or a bench."""
-    return COMMANDS.get(name, f"bench {name}")
 
 
 def machine() -> str:

@@ -24,7 +24,8 @@ VERDICTS = {True: "yes", False: "**no**", None: ""}
 
 def write_report(name: str, experiments: Mapping[str, Experiment], work: Path, out: Path, quick: bool) -> Path:
     """Write NAME.md (quick: NAME-quick.md) and its pictures about all experiments whose runs are done."""
-    page = Page(out, f"{name}-quick" if quick else name, TITLES[name])
+    command = f"reproduce {name}{' --quick' if quick else ''}"
+    page = Page(out, f"{name}-quick" if quick else name, TITLES[name], command)
     done = {}
     for one, experiment in experiments.items():
         found = {key: outcomes(work / one / key) for key in experiment.batches(quick)}

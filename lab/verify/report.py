@@ -37,7 +37,9 @@ def show(outcome: Outcome, console: Console) -> None:
 
 def write_report(outcomes: Sequence[Outcome], folder: Path | str) -> Path:
     """Write verify.md with its figures and verify.json; returns the page's file."""
-    page = Page(folder, NAME, "The physics against closed forms, independent integrations and published numbers")
+    page = Page(
+        folder, NAME, "The physics against closed forms, independent integrations and published numbers", "verify"
+    )
     lines = [line for outcome in outcomes for line in outcome.found.lines]
     page.say(_verdict(outcomes, lines))
     if lines:
