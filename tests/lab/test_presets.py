@@ -92,6 +92,7 @@ def test_a_quick_variant_says_how_it_differs_and_differs_in_what_it_costs_alone(
     alike["grains"] = replace(quick.grains, diameter=whole.grains.diameter)
     if whole.shapes:  # their diameter is the grains' where they have none of their own
         sizes = {name: shape.diameter for name, shape in whole.shapes.items()}
+        alike["grains"] = replace(alike["grains"], table=whole.grains.table)
         alike["shapes"] = {name: replace(shape, diameter=sizes[name]) for name, shape in quick.shapes.items()}
     assert quick.model_copy(update=alike) == whole
     assert cost(quick) < cost(whole)

@@ -73,6 +73,7 @@ def test_new_numbers_change_rounding_alone(bed, usual, monkeypatch, schedule, un
         np.testing.assert_allclose(state[name], usual[name], rtol=1e-9, atol=1e-10, err_msg=name)
 
 
+@pytest.mark.slow
 def test_small_and_unmixed_beds_keep_their_numbers(bed):
     """Order is worth its price only in large worlds that have mixed."""
     assert np.all(shaken(bed)[1] == np.arange(COUNT))
