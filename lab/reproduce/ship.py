@@ -13,10 +13,8 @@ from lab.ship import WaterGiven, make_water
 FREQUENCY, AMPLITUDE = "waves.frequency", "waves.amplitude"
 COARSE = {"grains.diameter": "6 mm", "run.accuracy": "draft"}
 LOST = "grains of 6 mm for 3 mm, one bed for four, shorter runs, draft accuracy"
-SMALL, LARGE = (
-    5.0,
-    30.0,
-)  # deg: rolls that the source calls of low importance; that it gives as reached with loose cargo
+# deg: rolls that the source calls of low importance; that it says are not reached with loose cargo
+SMALL, LARGE = 5.0, 30.0
 Found = Mapping[str, Sequence[Outcome]]
 
 

@@ -17,6 +17,8 @@ class ShapedContacts(Contacts):
     discs, too (see `Contacts`). Slip and rate are of that point. The laws' effective radius is that of the discs of
     equal area, so that the elastic energy depends on the overlap alone. Where a rule knows saddles, a contact's normal
     force is less by what the law says of the saddle's overlap (`Tracked`); what is left is what friction has.
+    A law that remembers, the hysteretic one, takes what it knows of the contact for its saddle, too: where two contacts
+    become one its force may jump.
     """
 
     def __init__(self, arrays, units, grains, walls, lists, laws, rule):

@@ -21,7 +21,7 @@ class Kept:
     """
 
     def __init__(self, tracked: Tracked, bent: bool):
-        self.tracked, self.tables, self.bent = tracked, tracked.tables, bent
+        self.tracked, self.tables = tracked, tracked.tables
         self.met = MET * self.tables.cells
         self.wall_memory = WALL + (WALL_BENT if bent else ())
         self.pair_memory = self.wall_memory + PAIR + (PAIR_BENT if bent else ())

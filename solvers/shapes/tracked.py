@@ -112,9 +112,9 @@ class Tracked:
 
     @ti.func
     def fall(self, shape_i, scale_i, turn_i, shape_j, scale_j, turn_j, apart, place_i, place_j):
-        """By how much the gap gets less along i at a place (m per cell times |t_j|); the nearest place on j; the gap.
+        """How the gap gets less along i at a place, the place on j nearest to it, and the gap there.
 
-        The latter's sign alone is of use.
+        Fall and gap have the factor |t_j| (m per cell): their signs are of use.
         """
         between, centre = turned_back(turn_j, turn_i), turned_back(turn_j, apart)
         first, b = self.seen(shape_i, scale_i, between, place_i), place_j
