@@ -75,13 +75,14 @@ def carry_out(batch: Batch, folder: Path, quiet: bool) -> None:
 
 
 def outcomes(folder: Path) -> list[Outcome]:
-    """The runs of a batch that are done, in the order of its grid."""
+    """The runs of a batch in the order of its grid; none unless all are done."""
     if (folder / SWEEP).exists():
         settings = read_sweep(folder).settings
         runs = [(setting, point_folder(folder, k)) for k, setting in enumerate(settings)]
     else:
         runs = [({}, folder)]
-    return [found for setting, where in runs if (found := _outcome(setting, where))]
+    found = [_outcome(setting, where) for setting, where in runs]
+    return found if all(found) else []
 
 
 def _outcome(setting: Mapping[str, object], folder: Path) -> Outcome | None:

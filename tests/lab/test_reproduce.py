@@ -16,6 +16,7 @@ from lab.measures.value import over_worlds
 from lab.presets import load
 from lab.reproduce import REPORTS, experiments, reproduce, runs, workers
 from lab.reproduce.experiment import Experiment, Told, counted, observed, ordered, stated
+from lab.reproduce.report import write_report
 from lab.reproduce.runs import Batch, Outcome
 from lab.reproduce.shaking import FREQUENCY, onset
 from lab.scene import build
@@ -77,6 +78,11 @@ def test_a_report_has_the_results_and_nothing_is_run_twice(tmp_path, monkeypatch
     for name in ("run_preset", "resume_run"):
         monkeypatch.setattr(runs, name, None)
     assert reproduce("granular", [], tmp_path, quick=True, quiet=True).read_text() == text
+    point = tmp_path / "quick" / "tried" / "rates" / "points" / "001" / "summary.json"
+    point.rename(point.with_suffix(".kept"))
+    half = write_report("granular", {"tried": tried}, tmp_path / "quick", tmp_path, True).read_text()
+    assert "| A trial | 0.0 | not run |" in half
+    point.with_suffix(".kept").rename(point)
     said, resumed = "stopped: interrupted by the user", []
     summary = tmp_path / "quick" / "tried" / "one" / "summary.json"
     with h5py.File(summary.with_name("recording.h5"), "r+") as file:
