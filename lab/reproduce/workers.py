@@ -15,7 +15,7 @@ from multiprocessing.connection import wait as wait_for
 from pathlib import Path
 
 from lab.progress import Progress
-from lab.reproduce.runs import Batch, carry_out
+from lab.reproduce.runs import Batch, carry_out, outcomes
 from solvers import runtime
 
 GRACE = 60.0  # s in which a worker can save what it has when nobody waits for it any more
@@ -44,7 +44,8 @@ def named(folder: Path) -> str:
 
 def _by_workers(batches: Mapping[Path, Batch], cores: int, progress: Progress) -> Iterator[Path]:
     with progress, ProcessPoolExecutor(cores, get_context("spawn"), _begin) as workers:
-        progress.begin_whole("batches", len(batches), 0)
+        known = {folder for folder in batches if outcomes(folder)}  # these are only looked at
+        progress.begin_whole("batches", len(batches), len(known))
         left, running = iter(batches.items()), {}
         try:
             _hand_out(workers, left, running, cores, progress)
@@ -53,7 +54,8 @@ def _by_workers(batches: Mapping[Path, Batch], cores: int, progress: Progress) -
                     folder = running.pop(future)
                     future.result()
                     _hand_out(workers, left, running, cores, progress)
-                    progress.count_one(f"{named(folder)} is done")
+                    if folder not in known:
+                        progress.count_one(f"{named(folder)} is done")
                     yield folder
         except BaseException:
             for worker in active_children():
