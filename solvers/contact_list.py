@@ -18,7 +18,8 @@ class ContactList:
     stride of 0 by their numbers in their world. What does not change while a
     contact is listed: `stiffness` k (N/m^1.5), `reach` (m), the distance at which the two touch, `share`, the
     first grain's part of it, and the laws' constants. The laws' memory does change, and is zero while the two do not
-    touch. What the laws keep, and `more` memories that others do, are fields by the names they give.
+    touch. What the laws keep, and `more` memories that others do, are fields by the names they give; `fleeting` ones
+    are not handed on to the next list.
     """
 
     def __init__(
@@ -30,6 +31,7 @@ class ContactList:
         stride: int,
         laws: ChosenLaws,
         more: tuple[str, ...] = (),
+        fleeting: tuple[str, ...] = (),
     ):
         self.units, self.lanes, self.stride = units, lanes, stride
         blocks = -(-room // lanes)
@@ -50,6 +52,8 @@ class ContactList:
         for name, field in zip((*laws.constants, *memory), (*self.constants, *self.memory), strict=True):
             setattr(self, name, field)
         self.memories = len(self.memory)
+        for name, field in zip(fleeting, arrays.vectors(len(fleeting), lanes, shape, across), strict=True):
+            setattr(self, name, field)
         (self.first,) = arrays.integers(1, (units.count, units.size + 1), across)
         (self.old_first,) = arrays.integers(1, (units.count, units.size + 1), across, kept=False)
         (self.old_mate,) = arrays.integers(1, (units.count, self.capacity), across, kept=False)
@@ -83,15 +87,28 @@ class ContactList:
         for k in range(self.units.size + 1):
             self.old_first[u, k] = self.first[u, k]
         for p in range(self.length[u]):
-            block, lane = p // self.lanes, p % self.lanes
-            self.old_mate[u, p] = self.mate[u, block][lane]
-            for k in ti.static(range(self.memories)):
-                self.old_memory[k][u, p][0] = self.memory[k][u, block][lane]
+            self.keep_old(u, p)
+
+    @ti.func
+    def set_aside_some(self, u, row, start, end):
+        """Keep only these contacts of a grain as the old list."""
+        self.old_first[u, row], self.old_first[u, row + 1] = start, end
+        for p in range(start, end):
+            self.keep_old(u, p)
+
+    @ti.func
+    def keep_old(self, u, p):
+        """Copy contact p to its place in the old list."""
+        block, lane = p // self.lanes, p % self.lanes
+        self.old_mate[u, p] = self.mate[u, block][lane]
+        for k in ti.static(range(self.memories)):
+            self.old_memory[k][u, p][0] = self.memory[k][u, block][lane]
 
     @ti.func
     def put_back(self, u):
         """Undo a rebuild that ran out of room."""
         start = self.units.world(u) * self.stride + self.units.first(u)
+        self.length[u] = self.old_first[u, self.units.size]
         for k in range(self.units.size + 1):
             self.first[u, k] = self.old_first[u, k]
         for k in range(self.units.size):
@@ -110,8 +127,13 @@ class ContactList:
         self.mate[u, block][lane] = before + mate
         if ti.static(self.has_targets):
             self.target[u, block][lane] = before + target
+        self.clear(u, p)
+
+    @ti.func
+    def clear(self, u, p):
+        """Contact p remembers nothing."""
         for k in ti.static(range(self.memories)):
-            self.memory[k][u, block][lane] = 0.0
+            self.memory[k][u, p // self.lanes][p % self.lanes] = 0.0
 
     @ti.func
     def add(self, u, p, i, mate, target, row, stiffness, reach, share):

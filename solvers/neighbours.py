@@ -27,6 +27,7 @@ class Neighbours:
     """The two contact lists of every unit and when to build them anew."""
 
     lanes = LANES
+    pair_fleeting, wall_fleeting = (), ()  # what is remembered of contacts for as long as a list lasts
 
     def __init__(
         self,
@@ -48,8 +49,9 @@ class Neighbours:
         lanes = 1 if units.single else self.lanes
         pairs, contacts = pairs * units.size + across + more_pairs, contacts * units.size + more_contacts
         more_pairs, more_contacts = (rule.pair_memory, rule.wall_memory) if rule else ((), ())
-        self.pairs = ContactList(arrays, units, room * pairs, lanes, grains.stride, laws, more_pairs)
-        self.contacts = ContactList(arrays, units, room * contacts, 1, 0, laws, more_contacts)
+        fleeting, more_fleeting = self.pair_fleeting, self.wall_fleeting
+        self.pairs = ContactList(arrays, units, room * pairs, lanes, grains.stride, laws, more_pairs, fleeting)
+        self.contacts = ContactList(arrays, units, room * contacts, 1, 0, laws, more_contacts, more_fleeting)
         self.modulus = arrays.holding(4.0 / 3.0 * modulus)  # k = (4/3) E* √R_eff of each interface
         self.skin = arrays.holding(np.array([skin]))
         if laws.cohesive:
@@ -202,11 +204,31 @@ class Neighbours:
         self.laws.prepare(WALL, self.contacts, u, p, 0, mass, radius, dt)
 
     @ti.func
-    def rebuild(self, u, t, dt):
-        """List all contacts of a unit anew, the grains being sorted into cells; t in s.
+    def asked(self, u):
+        """Whether some contacts of a unit are to be sought anew, though its lists are good."""
+        return False
+
+    @ti.func
+    def rebuild(self, u, t, dt, whole):
+        """List all contacts of a unit anew, the grains being sorted into cells, or those asked for; t in s.
 
         Returns False, with the old lists in place, where they do not fit.
         """
+        fits = True
+        if whole:
+            fits = self.list_all(u, t, dt)
+        if fits:
+            fits = self.seek(u, t, whole)
+        return fits
+
+    @ti.func
+    def seek(self, u, t, whole):
+        """Discs that are near each other have a contact: there is nothing to seek."""
+        return True
+
+    @ti.func
+    def list_all(self, u, t, dt):
+        """List who is near whom; returns False, with the old lists in place, where they do not fit."""
         w = self.units.world(u)
         self.pairs.set_aside(u)
         self.contacts.set_aside(u)
@@ -220,8 +242,15 @@ class Neighbours:
             self.travel[u] = 0.0
             self.built_at[u] = t
         else:
-            # The laws' constants are lost, but no force is worked out before the lists have been built with more room.
-            self.pairs.put_back(u)
-            self.contacts.put_back(u)
-            self.travel[u] = NEVER
+            self.put_back(u)
         return fits
+
+    @ti.func
+    def put_back(self, u):
+        """Undo `list_all`, which ran out of room: the lists are to be built anew with more.
+
+        The laws' constants are lost, but no force is worked out before.
+        """
+        self.pairs.put_back(u)
+        self.contacts.put_back(u)
+        self.travel[u] = NEVER

@@ -6,7 +6,7 @@ from solvers.runtime import available_cores
 from solvers.schedules.engine import ITERATIONS_A_THREAD, Engine
 from solvers.watch import CAPSIZED, NO_ROOM, RUNNING, TOO_FAST
 
-FINE, STALE, OVER, FAST, FULL = range(5)  # what a band says of itself, the worst last
+FINE, ASKED, STALE, OVER, FAST, FULL = range(6)  # what a band says of itself, the worst last
 
 
 @ti.data_oriented
@@ -50,16 +50,16 @@ class PerBand:
         """As PerWorld does it; the bands of a world are at the same line wherever they meet."""
         w, dt = self.units.world(u), ti.cast(step, self.real)
         done, running = self.clock.step[w], self.clock.status[w] == RUNNING
-        says = STALE if self.neighbours.stale(u, origin + done * step) else FINE
+        says = self.freshness(u, origin + done * step)
         self.clock.says[u] = says
         meetings = self.meet(w, 0)
         worst = self.worst(w)
         while running and worst <= STALE and done < target:
-            if worst == STALE:
-                if u % self.bands == 0:
+            if worst != FINE:
+                if worst == STALE and u % self.bands == 0:
                     self.neighbours.cells.sort_world(w)
                 meetings = self.meet(w, meetings)
-                says = FINE if self.neighbours.rebuild(u, origin + done * step, dt) else FULL
+                says = FINE if self.neighbours.rebuild(u, origin + done * step, dt, worst == STALE) else FULL
                 self.clock.says[u] = says
                 meetings = self.meet(w, meetings)
                 worst = self.worst(w)
@@ -75,8 +75,8 @@ class PerBand:
                     meetings = self.meet(w, meetings)
                 says = self.move(u, t, done == unkicked, dt, fastest)
                 done += 1
-                if says == FINE and self.neighbours.stale(u, t + step):
-                    says = STALE
+                if says == FINE:
+                    says = self.freshness(u, t + step)
                 if ti.static(self.frame.afloat):  # noqa: SIM102 (compiled only for ships)
                     if says <= STALE and not self.frame.goes_on(w):
                         says = OVER
@@ -92,13 +92,15 @@ class PerBand:
         """The same on one thread, band after band."""
         dt, first = ti.cast(step, self.real), w * self.bands
         while self.clock.step[w] < target and self.clock.status[w] == RUNNING:
-            t, stale, worst = origin + self.clock.step[w] * step, False, FINE
+            t, worst = origin + self.clock.step[w] * step, FINE
             for u in range(first, first + self.bands):
-                stale = self.neighbours.stale(u, t) or stale
-            if stale:
-                self.neighbours.cells.sort_world(w)
+                worst = ti.max(worst, self.freshness(u, t))
+            if worst != FINE:
+                whole, worst = worst == STALE, FINE
+                if whole:
+                    self.neighbours.cells.sort_world(w)
                 for u in range(first, first + self.bands):
-                    if not self.neighbours.rebuild(u, t, dt):
+                    if not self.neighbours.rebuild(u, t, dt, whole):
                         worst = FULL
             if worst == FINE:
                 for u in range(first, first + self.bands):
@@ -114,6 +116,16 @@ class PerBand:
                     if worst == FINE and not self.frame.goes_on(w):
                         worst = OVER
             self.report(w, worst)
+
+    @ti.func
+    def freshness(self, u, t):
+        """Whether a band's lists are FINE, or some or all contacts are to be sought anew."""
+        says = FINE
+        if self.neighbours.asked(u):
+            says = ASKED
+        if self.neighbours.stale(u, t):
+            says = STALE
+        return says
 
     @ti.func
     def move(self, u, t, first, dt, fastest):

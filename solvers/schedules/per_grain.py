@@ -96,7 +96,7 @@ class PerGrain:
         for u in range(self.units.count):
             w = self.units.world(u)
             if self.clock.status[w] != TOO_FAST:  # noqa: SIM102 (Taichi evaluates both sides of `and`)
-                if not self.neighbours.rebuild(u, time, ti.cast(step, self.real)):
+                if not self.neighbours.rebuild(u, time, ti.cast(step, self.real), True):
                     self.clock.status[w] = NO_ROOM
 
     @ti.kernel

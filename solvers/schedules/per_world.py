@@ -35,9 +35,11 @@ class PerWorld:
         w, dt = self.units.world(unit), ti.cast(step, self.real)
         while self.clock.step[w] < target and self.clock.status[w] == RUNNING:
             t, fresh = origin + self.clock.step[w] * step, True
-            if self.neighbours.stale(w, t):
-                self.neighbours.cells.sort_world(w)
-                fresh = self.neighbours.rebuild(w, t, dt)
+            stale = self.neighbours.stale(w, t)
+            if stale or self.neighbours.asked(w):
+                if stale:
+                    self.neighbours.cells.sort_world(w)
+                fresh = self.neighbours.rebuild(w, t, dt, stale)
                 if not fresh:
                     self.clock.status[w] = NO_ROOM
             while fresh:
@@ -52,7 +54,7 @@ class PerWorld:
                 speed = self.mover.move(self.grains, w, body, first, dt)
                 self.neighbours.travel[w] = self.neighbours.travel[w] + (speed + self.unseen) * dt
                 self.clock.step[w] = self.clock.step[w] + 1
-                fresh = self.clock.step[w] < target and not self.neighbours.worn(w)
+                fresh = self.clock.step[w] < target and not self.neighbours.worn(w) and not self.neighbours.asked(w)
                 if not speed < fastest:
                     self.clock.status[w], fresh = TOO_FAST, False
                 if ti.static(self.frame.afloat):  # noqa: SIM102 (compiled only for ships)

@@ -5,8 +5,7 @@ import taichi as ti
 from solvers.contacts import Contacts
 from solvers.laws.chosen import PAIR, WALL
 from solvers.laws.extremes import greater
-
-OVERLAP, NORMAL_Y, NORMAL_Z, POINT_Y, POINT_Z, HOLDS = range(6)
+from solvers.shapes.rest import HOLDS, NORMAL_Y, NORMAL_Z, OVERLAP, POINT_Y, POINT_Z, Rest
 
 
 @ti.data_oriented
@@ -23,48 +22,66 @@ class ShapedContacts(Contacts):
 
     def __init__(self, arrays, units, grains, walls, lists, laws, rule):
         super().__init__(arrays, units, grains, walls, lists, laws)
-        self.rule = rule
+        self.rule, self.rest = rule, Rest(rule.bent)
 
     @ti.func
     def pair_forces(self, g: ti.template(), pairs: ti.template(), u, dt):
         """Forces between the grains g, a contact at a time; one across two units is worked out in both."""
-        w, start, end = self.units.world(u), self.units.first(u), self.units.end(u)
+        w = self.units.world(u)
         for p in range(pairs.length[u]):
             listed, mate = pairs.first_of(u, p), pairs.second_of(u, p)
             i, j = ti.min(listed, mate), ti.max(listed, mate)
-            c = self.rule.pair(g, pairs, w, i, j, u, p, True)
-            if self.unsettled(pairs, u, p, c):
-                c[OVERLAP] = -g.reach[w, i]
-            # From the middle of the overlap to where the outlines of discs would cross.
-            back = pairs.share[u, p][0] - 0.5
-            if listed == i:
-                back = -back
-            lever = lever_of(c, back)
-            slip, pressing = self.pair_pressed(g, pairs, w, i, j, u, p, c, lever, dt)
-            n = ti.Vector([c[NORMAL_Y], c[NORMAL_Z]])
-            force, torque = pressing * n, pressing * lever.cross(n)
-            if ti.static(self.rule.bent):
-                d = self.rule.pair_saddle(g, pairs, w, i, j, u, p, True)
-                if d[OVERLAP] > 0.0 and c[OVERLAP] > 0.0:
-                    arm, m = lever_of(d, back), ti.Vector([d[NORMAL_Y], d[NORMAL_Z]])
-                    less = self.pair_pressed(g, pairs, w, i, j, u, p, d, arm, dt)[1]
-                    force, torque, pressing = force - less * m, torque - less * arm.cross(m), pressing - less
-            turning = g.spin_now[w, i] - g.spin_now[w, j]
-            ft, roll = self.rubbed(PAIR, pairs, u, p, c, pressing, slip, turning, dt)
-            force += ft * ti.Vector([-n[1], n[0]])
-            torque += ft * lever.dot(n)
-            if start <= i < end:
-                g.push(w, i, force[0], force[1], torque + roll)
-            if start <= j < end:
-                g.push(w, j, -force[0], -force[1], -torque - g.apart(w, i, j).cross(force) - roll)
+            if not self.rule.is_lost(pairs, u, p):
+                # From the middle of the overlap to where the outlines of discs would cross.
+                back = pairs.share[u, p][0] - 0.5
+                self.pair_force(g, pairs, w, i, j, u, p, ti.select(listed == i, -back, back), dt)
+
+    @ti.func
+    def pair_force(self, g: ti.template(), pairs: ti.template(), w, i, j, u, p, back, dt):
+        """The force of contact p on grains i and j; none if it was open and they have hardly moved since."""
+        moved = self.rest.moved(g, pairs, w, i, j, u, p)
+        way = self.rest.way(g, w, i, j, moved)
+        hardly, touching = way < pairs.still[u, p][0], -pairs.was_overlap[u, p][0] < way
+        if not hardly or touching:
+            c, d = self.rest.contact(g, pairs, w, i, j, u, p, moved), self.rest.saddle(g, pairs, w, i, j, u, p, moved)
+            if not hardly:
+                c = self.rule.pair(g, pairs, w, i, j, u, p, True)
+                if self.unsettled(pairs, u, p, c):
+                    c[OVERLAP] = -g.reach[w, i]
+                if ti.static(self.rule.bent):
+                    d = self.rule.pair_saddle(g, pairs, w, i, j, u, p, True)
+                self.rest.note(g, pairs, w, i, j, u, p, c, d, dt)
+            self.push_pair(g, pairs, w, i, j, u, p, c, d, back, dt)
+
+    @ti.func
+    def push_pair(self, g: ti.template(), pairs: ti.template(), w, i, j, u, p, c, d, back, dt):
+        """Push grains i and j apart at a contact c, by so much less as the saddle d before it says."""
+        start, end = self.units.first(u), self.units.end(u)
+        lever = lever_of(c, back)
+        slip, pressing = self.pair_pressed(g, pairs, w, i, j, u, p, c, lever, dt)
+        n = ti.Vector([c[NORMAL_Y], c[NORMAL_Z]])
+        force, torque = pressing * n, pressing * lever.cross(n)
+        if ti.static(self.rule.bent):  # noqa: SIM102 (compiled only there)
+            if d[OVERLAP] > 0.0 and c[OVERLAP] > 0.0:
+                arm, m = lever_of(d, back), ti.Vector([d[NORMAL_Y], d[NORMAL_Z]])
+                less = self.pair_pressed(g, pairs, w, i, j, u, p, d, arm, dt)[1]
+                force, torque, pressing = force - less * m, torque - less * arm.cross(m), pressing - less
+        turning = g.spin_now[w, i] - g.spin_now[w, j]
+        ft, roll = self.rubbed(PAIR, pairs, u, p, c, pressing, slip, turning, dt)
+        force += ft * ti.Vector([-n[1], n[0]])
+        torque += ft * lever.dot(n)
+        if start <= i < end:
+            g.push(w, i, force[0], force[1], torque + roll)
+        if start <= j < end:
+            g.push(w, j, -force[0], -force[1], -torque - g.apart(w, i, j).cross(force) - roll)
 
     @ti.func
     def unsettled(self, contacts: ti.template(), u, p, c):
-        """Whether contact p does not hold any more; asks for new lists if it has been lost, or others have come up."""
+        """Whether contact p does not hold any more; asks for a new look if it has been lost, or others have come up."""
         if c[HOLDS] == 0.0:
             self.lists.lose(contacts, u, p)
         elif c[HOLDS] > 1.0:
-            self.lists.want(u)
+            self.lists.want(contacts, u, p)
         return c[HOLDS] == 0.0
 
     @ti.func
@@ -104,24 +121,30 @@ class ShapedContacts(Contacts):
         w = self.units.world(u)
         shift = self.walls.shift(w, t)
         for p in range(contacts.length[u]):
-            i, feature = contacts.first_of(u, p), contacts.second_of(u, p)
-            c = self.rule.wall(g, contacts, w, i, feature, shift, u, p, True)
-            if self.unsettled(contacts, u, p, c):
-                c[OVERLAP] = -g.reach[w, i]
-            velocity = self.walls.velocity(feature, shift)
-            lever = lever_of(c, 0.5)
-            slip, pressing = self.wall_pressed(g, contacts, w, i, u, p, c, lever, velocity, dt)
-            n = ti.Vector([c[NORMAL_Y], c[NORMAL_Z]])
-            force, torque = pressing * n, pressing * lever.cross(n)
-            if ti.static(self.rule.bent):
-                d = self.rule.wall_saddle(g, contacts, w, i, feature, shift, u, p, True)
-                if d[OVERLAP] > 0.0 and c[OVERLAP] > 0.0:
-                    arm, m = lever_of(d, 0.5), ti.Vector([d[NORMAL_Y], d[NORMAL_Z]])
-                    less = self.wall_pressed(g, contacts, w, i, u, p, d, arm, velocity, dt)[1]
-                    force, torque, pressing = force - less * m, torque - less * arm.cross(m), pressing - less
-            ft, roll = self.rubbed(WALL, contacts, u, p, c, pressing, slip, g.spin_now[w, i], dt)
-            force += ft * ti.Vector([-n[1], n[0]])
-            g.push(w, i, force[0], force[1], torque + ft * lever.dot(n) + roll)
+            if not self.rule.is_lost(contacts, u, p):
+                self.wall_force(g, contacts, w, u, p, shift, dt)
+
+    @ti.func
+    def wall_force(self, g: ti.template(), contacts: ti.template(), w, u, p, shift: ti.template(), dt):
+        """The force of contact p on a grain."""
+        i, feature = contacts.first_of(u, p), contacts.second_of(u, p)
+        c = self.rule.wall(g, contacts, w, i, feature, shift, u, p, True)
+        if self.unsettled(contacts, u, p, c):
+            c[OVERLAP] = -g.reach[w, i]
+        velocity = self.walls.velocity(feature, shift)
+        lever = lever_of(c, 0.5)
+        slip, pressing = self.wall_pressed(g, contacts, w, i, u, p, c, lever, velocity, dt)
+        n = ti.Vector([c[NORMAL_Y], c[NORMAL_Z]])
+        force, torque = pressing * n, pressing * lever.cross(n)
+        if ti.static(self.rule.bent):
+            d = self.rule.wall_saddle(g, contacts, w, i, feature, shift, u, p, True)
+            if d[OVERLAP] > 0.0 and c[OVERLAP] > 0.0:
+                arm, m = lever_of(d, 0.5), ti.Vector([d[NORMAL_Y], d[NORMAL_Z]])
+                less = self.wall_pressed(g, contacts, w, i, u, p, d, arm, velocity, dt)[1]
+                force, torque, pressing = force - less * m, torque - less * arm.cross(m), pressing - less
+        ft, roll = self.rubbed(WALL, contacts, u, p, c, pressing, slip, g.spin_now[w, i], dt)
+        force += ft * ti.Vector([-n[1], n[0]])
+        g.push(w, i, force[0], force[1], torque + ft * lever.dot(n) + roll)
 
     @ti.func
     def wall_pressed(

@@ -63,7 +63,7 @@ class Continuous:
         self.bent = not all(outline.convex for outline in shapes.outlines)
         self.kept = Kept(self.tracked, self.bent)
         self.pair_memory, self.wall_memory = self.kept.pair_memory, self.kept.wall_memory
-        self.farthest = NEAR * self.tables.cells
+        self.farthest, self.most = NEAR * self.tables.cells, ROOM
         # Of the contacts that are being sought.
         self.first, self.second = arrays.reals(2, (units.count, ROOM), kept=False)
         self.first_saddle, self.second_saddle = arrays.reals(2, (units.count, ROOM), kept=False)
@@ -108,6 +108,23 @@ class Continuous:
             contacts.saddle_first[u, p][0] = self.first_saddle[u, k]
             if ti.static(hasattr(contacts, "saddle_second")):
                 contacts.saddle_second[u, p][0] = self.second_saddle[u, k]
+
+    @ti.func
+    def places_for_pair(self, g: ti.template(), w, i, j, most):
+        """Room to leave for contacts of two grains: convex ones have but one, for others there is room for `most`."""
+        return ti.select(self.tables.convex[g.shape[w, i]] * self.tables.convex[g.shape[w, j]] > 0.0, 1, most)
+
+    @ti.func
+    def places_for_wall(self, g: ti.template(), w, i, most):
+        """The same for a grain and a wall."""
+        return ti.select(self.tables.convex[g.shape[w, i]] > 0.0, 1, most)
+
+    @ti.func
+    def free(self, contacts: ti.template(), u, p):
+        """Contact p is none."""
+        contacts.place_first[u, p][0] = -self.tables.cells
+        if ti.static(self.bent):
+            contacts.saddle_first[u, p][0] = NONE
 
     @ti.func
     def is_lost(self, contacts: ti.template(), u, p):

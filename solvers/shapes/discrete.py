@@ -5,21 +5,28 @@ import taichi as ti
 from solvers.runtime import Arrays
 from solvers.shapes.given import Shapes
 from solvers.shapes.grains import with_disc
-from solvers.shapes.nodes import Nodes
+from solvers.shapes.nodes import ALL, Nodes
 from solvers.shapes.pose import turned, turned_back
 from solvers.shapes.tables import Tables
 from solvers.shapes.wall import SeenWalls
 from solvers.units import Units
 from solvers.walls import Walls
 
-FAR = 1e3  # m
+FAR = 1e3  # of an outline's size
+SELDOM = 64  # steps from one look at all nodes to the next
 
 
 @ti.data_oriented
 class Discrete:
-    """One contact of two grains, or of a grain and a wall, at the deepest node (Spandonidis 2016, table 8.1)."""
+    """One contact of two grains, or of a grain and a wall, at the deepest node (Spandonidis 2016, table 8.1).
 
-    pair_memory, wall_memory, farthest, bent = (), (), 1.0, False
+    All nodes are looked at where lists are made and every SELDOM steps; in between the deepest of either grain is
+    followed from node to node. `looked` counts steps.
+    """
+
+    wall_memory = ("looked", "node_first")
+    pair_memory = (*wall_memory, "node_second")
+    farthest, bent, most = 1.0, False, 1
 
     def __init__(self, arrays: Arrays, units: Units, walls: Walls, shapes: Shapes):
         outlines = with_disc(shapes)
@@ -43,7 +50,22 @@ class Discrete:
 
     @ti.func
     def note(self, contacts: ti.template(), u, p, k):
-        """Nothing is to be remembered of a contact."""
+        """All nodes of contact p are to be looked at."""
+        contacts.looked[u, p][0] = 0.0
+
+    @ti.func
+    def places_for_pair(self, g: ti.template(), w, i, j, most):
+        """Room to leave for contacts of two grains."""
+        return 1
+
+    @ti.func
+    def places_for_wall(self, g: ti.template(), w, i, most):
+        """Room to leave for contacts of a grain and a wall."""
+        return 1
+
+    @ti.func
+    def free(self, contacts: ti.template(), u, p):
+        """Nothing: it is a contact."""
 
     @ti.func
     def is_lost(self, contacts: ti.template(), u, p):
@@ -55,9 +77,20 @@ class Discrete:
         """Remember that it has."""
 
     @ti.func
+    def count_look(self, contacts: ti.template(), u, p):
+        """Steps since all nodes of contact p were looked at, which is done SELDOM."""
+        k = ti.cast(contacts.looked[u, p][0], ti.i32)
+        contacts.looked[u, p][0] = (k + 1) % SELDOM
+        return k
+
+    @ti.func
     def pair(self, g: ti.template(), pairs: ti.template(), w, i, j, u, p, moves: ti.template()):
         """The contact of grains i and j: overlap (m), normal towards i, point from i's centre (m), 1.0: it holds."""
-        c = self.nodes.contact(
+        look, first, second = ALL, 0, 0
+        if ti.static(moves):
+            look = self.nodes.next_look(self.count_look(pairs, u, p))
+            first, second = ti.cast(pairs.node_first[u, p][0], ti.i32), ti.cast(pairs.node_second[u, p][0], ti.i32)
+        c, first, second = self.nodes.contact(
             g.shape[w, i],
             g.radius[w, i],
             g.turn(w, i),
@@ -65,7 +98,12 @@ class Discrete:
             g.radius[w, j],
             g.turn(w, j),
             g.apart(w, i, j),
+            first,
+            second,
+            look,
         )
+        if ti.static(moves):
+            pairs.node_first[u, p][0], pairs.node_second[u, p][0] = first, second
         return ti.Vector([c[0], c[1], c[2], c[3], c[4], 1.0 + 0.0 * c[0]])
 
     @ti.func
@@ -77,7 +115,18 @@ class Discrete:
         if feature < self.walls.walls.segments:
             face = self.walls.facing(feature, shift, g.y[w, i], g.z[w, i])
             normal = ti.Vector([ti.cast(face[0], g.real), ti.cast(face[1], g.real)])
-            node = turned(g.turn(w, i), self.lowest(g, w, i, turned_back(g.turn(w, i), normal)))
+            own, k, lowest = turned_back(g.turn(w, i), normal), 0, 0
+            if ti.static(moves):
+                k, lowest = self.count_look(contacts, u, p), ti.cast(contacts.node_first[u, p][0], ti.i32)
+            if k == 0:
+                lowest = self.lowest(g.shape[w, i], own)
+            else:
+                beside = self.nodes.beside(lowest, 2 * (k % 2) - 1)
+                if self.nodes.place(g.shape[w, i], beside).dot(own) < self.nodes.place(g.shape[w, i], lowest).dot(own):
+                    lowest = beside
+            if ti.static(moves):
+                contacts.node_first[u, p][0] = lowest
+            node = g.radius[w, i] * turned(g.turn(w, i), self.nodes.place(g.shape[w, i], lowest))
             overlap = -ti.cast(face[2], g.real) - node.dot(normal)
             if not self.walls.counts_on_segment(feature, shift, g.y[w, i] + node[0], g.z[w, i] + node[1]):
                 overlap = -FAR
@@ -99,18 +148,16 @@ class Discrete:
         return contact
 
     @ti.func
-    def lowest(self, g: ti.template(), w, i, normal):
-        """The node of a grain, in its frame, that lies farthest against a unit vector."""
-        shape, scale = g.shape[w, i], g.radius[w, i]
-        best, found, k = FAR * scale, ti.Vector([0.0 * scale, 0.0 * scale]), 0
+    def lowest(self, shape, normal):
+        """The node of an outline that lies farthest against a unit vector."""
+        best, found, k = FAR, 0, 0
         while k < self.nodes.length:
             after = self.nodes.after[k]
-            place = ti.Vector([self.nodes.circle[shape, k, 0], self.nodes.circle[shape, k, 1]]) * scale
-            width = self.nodes.circle[shape, k, 2] * scale
-            height = place.dot(normal)
+            height = ti.Vector([self.nodes.circle[shape, k, 0], self.nodes.circle[shape, k, 1]]).dot(normal)
+            width = self.nodes.circle[shape, k, 2]
             if height - width < best:
                 if width == 0.0:
-                    best, found = height, place
+                    best, found = height, self.nodes.start[k]
                 else:
                     after = k + 1
             k = after

@@ -1,48 +1,104 @@
 """Who may touch whom where grains have outlines: one entry a contact, of which two grains may have several."""
 
+import numpy as np
 import taichi as ti
 
 from solvers.neighbours import NEVER, Neighbours
+from solvers.shapes.rest import STILL, Rest
+
+WANTED = ("wanted",)  # whether, at the first contact of two, theirs are to be sought anew
+BENT_PLACES = 4  # for contacts of two of whose outlines one bends, for a start
 
 
 @ti.data_oriented
 class ShapedNeighbours(Neighbours):
     """Neighbour lists of grains whose bounding circles are near each other; a rule says how many contacts they have.
 
-    The two grains of a pair are put to the rule in the order of their numbers, so that units that share a pair work
-    out the same numbers.
+    Two that are near are given as much room as they may need, side by side, and their contacts are sought: with all
+    others where lists are built, or alone where one of them is lost or more come up. The two grains of a pair are put
+    to the rule in the order of their numbers, so that units that share a pair work out the same numbers.
     """
 
     lanes = 1  # an outline's tables are read contact by contact
+    wall_fleeting = WANTED
 
     def __init__(self, arrays, units, grains, walls, skin, bridges, reach, laws, modulus, room, rule):
+        self.pair_fleeting = (*WANTED, *Rest(rule.bent).memory)
+        self.places = min(rule.most, BENT_PLACES * room)
+        room *= BENT_PLACES if rule.bent else 1
         super().__init__(arrays, units, grains, walls, skin, bridges, reach, laws, modulus, room, rule)
         self.rule = rule
         (self.built_angle,) = arrays.reals(1, (grains.worlds, grains.count))
+        self.asking = arrays.holding(np.zeros(units.count), ti.i32, kept=True)
 
     @ti.func
     def list_pair(self, g: ti.template(), u, found, i, j, target, dt):
-        """List the contacts of two grains that are near each other; returns how many there are then."""
-        total, w = found, self.units.world(u)
-        count = self.rule.seek_pair(g, w, ti.min(i, j), ti.max(i, j), self.margin(), u)
-        for k in range(count):
-            if total < self.pairs.capacity:
-                self.write_pair(g, u, total, i, j, target, False, dt)
-                self.recall(self.pairs, u, total, i, j, k, count)
-            total += 1
-        return total
+        """Make room for the contacts of two grains that are near each other; returns how many there are then."""
+        places = self.rule.places_for_pair(g, self.units.world(u), i, j, self.places)
+        for p in range(found, ti.min(found + places, self.pairs.capacity)):
+            self.write_pair(g, u, p, i, j, target, False, dt)
+            self.rule.free(self.pairs, u, p)
+            self.pairs.wanted[u, p][0] = ti.select(p == found, 1.0, 0.0)
+        return found + places
 
     @ti.func
     def list_contact(self, g: ti.template(), u, found, i, feature, shift: ti.template(), dt):
-        """List the contacts of a grain with a wall that is near; returns how many there are then."""
-        total, w = found, self.units.world(u)
-        count = self.rule.seek_wall(g, w, i, feature, shift, self.margin(), u)
-        for k in range(count):
-            if total < self.contacts.capacity:
-                self.write_contact(g, u, total, i, feature, False, dt)
-                self.recall(self.contacts, u, total, i, feature, k, count)
-            total += 1
-        return total
+        """Make room for the contacts of a grain with a wall that is near; returns how many there are then."""
+        places = self.rule.places_for_wall(g, self.units.world(u), i, self.places)
+        for p in range(found, ti.min(found + places, self.contacts.capacity)):
+            self.write_contact(g, u, p, i, feature, False, dt)
+            self.rule.free(self.contacts, u, p)
+            self.contacts.wanted[u, p][0] = ti.select(p == found, 1.0, 0.0)
+        return found + places
+
+    @ti.func
+    def asked(self, u):
+        """Whether some contacts of a unit are to be sought anew, though its lists are good."""
+        return self.asking[u] != 0
+
+    @ti.func
+    def seek(self, u, t, whole):
+        """Seek the contacts of all pairs that are wanted; returns False where two have more than there is room for."""
+        g, w, fits = self.grains, self.units.world(u), True
+        shift = self.walls.shift(w, t)
+        for p in range(self.pairs.length[u]):
+            if self.pairs.wanted[u, p][0] > 0.0:
+                i, j = self.pairs.first_of(u, p), self.pairs.second_of(u, p)
+                count = self.rule.seek_pair(g, w, ti.min(i, j), ti.max(i, j), self.margin(), u)
+                fits = self.replace(self.pairs, u, p, i, j, count, whole) and fits
+        for p in range(self.contacts.length[u]):
+            if self.contacts.wanted[u, p][0] > 0.0:
+                i, feature = self.contacts.first_of(u, p), self.contacts.second_of(u, p)
+                count = self.rule.seek_wall(g, w, i, feature, shift, self.margin(), u)
+                fits = self.replace(self.contacts, u, p, i, feature, count, whole) and fits
+        self.asking[u] = 0
+        if not fits:
+            self.travel[u] = NEVER
+            if whole:
+                self.put_back(u)
+        return fits
+
+    @ti.func
+    def replace(self, contacts: ti.template(), u, head, i, mate, count, whole):
+        """The contacts of these two, from `head` on, are now the `count` that the rule has found, if they fit.
+
+        What these remember is in the old lists; there, or if not the `whole` list is new, in the present ones.
+        """
+        row, end = i - self.units.first(u), head
+        while end < contacts.first[u, row + 1] and contacts.second_of(u, end) == mate:
+            end += 1
+        if not whole:
+            contacts.set_aside_some(u, row, head, end)
+        contacts.wanted[u, head][0] = 0.0
+        for p in range(head, end):
+            contacts.clear(u, p)
+            if ti.static(hasattr(contacts, STILL)):
+                contacts.still[u, p][0] = 0.0
+            if p - head < count:
+                self.recall(contacts, u, p, i, mate, p - head, count)
+            else:
+                self.rule.free(contacts, u, p)
+        return count <= end - head
 
     @ti.func
     def recall(self, contacts: ti.template(), u, p, i, mate, k, count):
@@ -80,12 +136,24 @@ class ShapedNeighbours(Neighbours):
 
     @ti.func
     def lose(self, contacts: ti.template(), u, p):
-        """Contact p has been lost sight of: have the lists built anew before the next step."""
+        """Contact p has been lost sight of: look for it before the next step."""
         if not self.rule.is_lost(contacts, u, p):
             self.rule.lose(contacts, u, p)
-            self.want(u)
+            self.want(contacts, u, p)
 
     @ti.func
-    def want(self, u):
-        """Have the lists of a unit built anew before the next step."""
-        self.travel[u] = NEVER
+    def want(self, contacts: ti.template(), u, p):
+        """Have the contacts of the two that touch at p sought anew before the next step."""
+        contacts.wanted[u, self.head(contacts, u, p)][0] = 1.0
+        if ti.static(self.units.single):
+            self.travel[u] = NEVER
+        else:
+            self.asking[u] = 1
+
+    @ti.func
+    def head(self, contacts: ti.template(), u, p):
+        """The first contact of the two that touch at p."""
+        first, start = p, contacts.first[u, contacts.first_of(u, p) - self.units.first(u)]
+        while first > start and contacts.second_of(u, ti.max(first - 1, 0)) == contacts.second_of(u, p):
+            first -= 1
+        return first

@@ -14,67 +14,117 @@ from solvers.shapes.tables import TINY, Tables
 PARTS = 4  # into which a run of nodes is cut
 ARCS = 8  # at the top
 SLACK = 1.0 + 1e-6  # on bounds, for the tables' errors and rounding
+NEARBY = 0.1  # of the other grain's bounding radius: nodes farther outside than this are not told apart
+DEPTH = 0  # an element of what `Nodes.seen` gives
+ALL = 0  # nodes to look at
 
 
 @ti.data_oriented
 class Nodes:
     """`count` nodes on each outline, evenly by polar angle, in runs within runs with a circle about each.
 
-    A run is passed over if no point of its circle can lie deeper in the other grain than what has been found. So few
-    nodes are looked at, but the result is that of Spandonidis (2016), table 8.1, over all of them. The exception is
-    step 6, for which the tangent is the other outline's at the node's polar angle, not a chord of two nodes.
+    The result is that of Spandonidis (2016), table 8.1, over all nodes, but for step 6: the tangent is the other
+    outline's at the node's polar angle, not a chord of two nodes. A look at all of them passes over a run if no point
+    of its circle can lie deeper in the other grain than what has been found. Between such looks the deepest nodes of
+    either grain are followed: at each step one of their two neighbours is asked if it lies deeper.
     """
 
     def __init__(self, arrays: Arrays, tables: Tables, outlines: list[Contour], count: int):
-        self.tables = tables
+        self.tables, self.count = tables, count
         runs = _runs(count)
         self.length = len(runs)
         self.after = arrays.holding(np.array([after for _, _, after in runs]), ti.i32)
+        self.start = arrays.holding(np.array([first for first, _, _ in runs]), ti.i32)
         self.circle = arrays.holding(np.array([_circles(outline, count, runs) for outline in outlines]))
+        self.point = arrays.holding(np.array([_points(outline, count) for outline in outlines]))
         self.steepest = arrays.holding(SLACK * np.array([_steepest(outline) for outline in outlines]))
+        self.least = arrays.holding(np.array([_least(outline) for outline in outlines]))
 
     @ti.func
-    def contact(self, shape_i, scale_i, turn_i, shape_j, scale_j, turn_j, apart):
-        """Overlap ξ (m; 0 if none), normal towards i (y, z) and contact point from i's centre (y, z) m.
+    def contact(self, shape_i, scale_i, turn_i, shape_j, scale_j, turn_j, apart, node_i, node_j, look):
+        """Overlap ξ (m; negative: no gap is smaller; 0: open), normal towards i, contact point from i's centre, nodes.
 
         `turn` is (cos, sin) of a grain's angle, `apart` the centre of i less that of j (m). The contact point is the
-        deepest node.
+        deepest node, of which either grain's is given, too. `look` is ALL, or which of the neighbours of `node_i` and
+        `node_j` is asked: 1 or −1 for the next or the last on i, 2 or −2 on j.
         """
+        between, back = turned_back(turn_j, turn_i), turned_back(turn_i, turn_j)
+        centre, centre_back = turned_back(turn_j, apart), turned_back(turn_i, -apart)
+        a, b = node_i, node_j
+        first = self.seen(shape_i, scale_i, between, shape_j, scale_j, centre, a)
+        second = self.seen(shape_j, scale_j, back, shape_i, scale_i, centre_back, b)
+        if look == ALL:
+            a = self.search(shape_i, scale_i, between, shape_j, scale_j, centre, a, first[DEPTH])
+            b = self.search(shape_j, scale_j, back, shape_i, scale_i, centre_back, b, second[DEPTH])
+        elif ti.abs(look) == 1:
+            c = self.beside(a, look)
+            if self.depth(shape_i, scale_i, between, shape_j, scale_j, centre, c) > first[DEPTH]:
+                a = c
+        else:
+            c = self.beside(b, look // 2)
+            if self.depth(shape_j, scale_j, back, shape_i, scale_i, centre_back, c) > second[DEPTH]:
+                b = c
+        if a != node_i:
+            first = self.seen(shape_i, scale_i, between, shape_j, scale_j, centre, a)
+        if b != node_j:
+            second = self.seen(shape_j, scale_j, back, shape_i, scale_i, centre_back, b)
         contact = ti.Vector([0.0 * scale_i, 0.0, 0.0, 0.0, 0.0])
-        reach_i, reach_j = scale_i * self.tables.bounding[shape_i], scale_j * self.tables.bounding[shape_j]
-        if apart.norm_sqr() < (reach_i + reach_j) ** 2:
-            there = self.deepest(shape_i, scale_i, turn_i, shape_j, scale_j, turn_j, apart)
-            back = self.deepest(shape_j, scale_j, turn_j, shape_i, scale_i, turn_i, -apart)
-            if there[0] > 0.0 and there[0] >= back[0]:
-                contact = ti.Vector([there[0], there[1], there[2], there[3] - apart[0], there[4] - apart[1]])
-            elif back[0] > 0.0:
-                contact = ti.Vector([back[0], -back[1], -back[2], back[3], back[4]])
-        return contact
+        there, here = overlap_of(first), overlap_of(second)
+        if there > 0.0 and there >= here:
+            normal, point = normal_of(first, turn_j), turned(turn_j, own_of(first))
+            contact = ti.Vector([there, normal[0], normal[1], point[0] - apart[0], point[1] - apart[1]])
+        elif here > 0.0:
+            normal, point = -normal_of(second, turn_i), turned(turn_i, own_of(second))
+            contact = ti.Vector([here, normal[0], normal[1], point[0], point[1]])
+        elif look == ALL:
+            far_i, far_j = self.nearby(shape_i, scale_i), self.nearby(shape_j, scale_j)
+            gap_i = ti.min(-first[DEPTH], far_j) * self.least[shape_j]
+            contact[0] = -ti.min(gap_i, ti.min(-second[DEPTH], far_i) * self.least[shape_i])
+        return contact, a, b
 
     @ti.func
-    def deepest(self, shape, scale, turn, other, other_scale, other_turn, apart):
-        """Overlap, the other outline's normal and the node from the other's centre, for the nodes of one grain."""
-        k = self.search(shape, scale, turn, other, other_scale, other_turn, apart)
-        found = ti.Vector([0.0 * scale, 0.0, 0.0, 0.0, 0.0])
-        if k >= 0:
-            own = self.seen(shape, scale, turn, other_turn, apart, k)
-            distance = own.norm()
-            radius = other_scale * self.tables.radius_and_slope(other, own[0], own[1])
-            # The normal R e_r − R' e_θ.
-            ny, nz = radius[0] * own[0] + radius[1] * own[1], radius[0] * own[1] - radius[1] * own[0]
-            tilt = radius[0] / ti.sqrt(radius[0] ** 2 + radius[1] ** 2)
-            size = tilt / (radius[0] * ti.max(distance, TINY))
-            normal, point = turned(other_turn, ti.Vector([ny, nz]) * size), turned(other_turn, own)
-            found = ti.Vector([(radius[0] - distance) * tilt, normal[0], normal[1], point[0], point[1]])
-        return found
+    def next_look(self, k):
+        """What is looked at after so many steps since all nodes were."""
+        side = 1 - 2 * (k // 2 % 2)
+        return ti.select(k == 0, ALL, ti.select(k % 2 == 0, side, 2 * side))
 
     @ti.func
-    def search(self, shape, scale, turn, other, other_scale, other_turn, apart):
-        """Place in `circle` of the node that lies deepest by polar radius; −1 if none lies inside."""
-        between = turned_back(other_turn, turn)
-        centre = turned_back(other_turn, apart)
+    def place(self, shape, n):
+        """A node of an outline."""
+        return ti.Vector([self.point[shape, n, 0], self.point[shape, n, 1]])
+
+    @ti.func
+    def nearby(self, shape, scale):
+        """How far outside (m) of a grain nodes are told apart."""
+        return NEARBY * scale * self.tables.bounding[shape]
+
+    @ti.func
+    def beside(self, node, side):
+        """The next node on one side, 1 or −1."""
+        n = node + side
+        return ti.select(n < 0, self.count - 1, ti.select(n == self.count, 0, n))
+
+    @ti.func
+    def depth(self, shape, scale, between, other, other_scale, centre, n):
+        """Depth by polar radius (m) of a node in the other grain."""
+        own = centre + scale * turned(between, self.place(shape, n))
+        return other_scale * self.tables.radius(other, own[0], own[1]) - own.norm()
+
+    @ti.func
+    def seen(self, shape, scale, between, other, other_scale, centre, n):
+        """Depth by polar radius (m) of a node in the other grain, R and R' there (m), the node in the other's frame."""
+        own = centre + scale * turned(between, self.place(shape, n))
+        radius = other_scale * self.tables.radius_and_slope(other, own[0], own[1])
+        return ti.Vector([radius[0] - own.norm(), radius[0], radius[1], own[0], own[1]])
+
+    @ti.func
+    def search(self, shape, scale, between, other, other_scale, centre, known, depth_known):
+        """The node that lies deepest by polar radius, even if that is outside, unless none is NEARBY.
+
+        The deeper the node that is `known`, the fewer others are looked at.
+        """
         reach, steepest = other_scale * self.tables.bounding[other], other_scale * self.steepest[other]
-        best, which, k = 0.0 * scale, -1, 0
+        best, which, k = ti.max(depth_known, -self.nearby(other, other_scale)), known, 0
         while k < self.length:
             after = self.after[k]
             place = ti.Vector([self.circle[shape, k, 0], self.circle[shape, k, 1]]) * scale
@@ -85,7 +135,7 @@ class Nodes:
                 depth = other_scale * self.tables.radius(other, own[0], own[1]) - distance
                 if width == 0.0:
                     if depth > best:
-                        best, which = depth, k
+                        best, which = depth, self.start[k]
                 else:
                     # From the circle's middle R changes by R' times the angle asin(s), which is less than this.
                     s = width / ti.max(distance, TINY)
@@ -94,11 +144,25 @@ class Nodes:
             k = after
         return which
 
-    @ti.func
-    def seen(self, shape, scale, turn, other_turn, apart, k):
-        """A node from the centre of another grain, in that grain's frame."""
-        place = ti.Vector([self.circle[shape, k, 0], self.circle[shape, k, 1]]) * scale
-        return turned_back(other_turn, apart) + turned(turned_back(other_turn, turn), place)
+
+@ti.func
+def own_of(node):
+    """A node's place in the other grain's frame."""
+    return ti.Vector([node[3], node[4]])
+
+
+@ti.func
+def overlap_of(node):
+    """How far a node is from the other outline's tangent at its polar angle."""
+    return node[DEPTH] * node[1] / ti.sqrt(node[1] * node[1] + node[2] * node[2])
+
+
+@ti.func
+def normal_of(node, turn):
+    """The other outline's normal R e_r − R' e_θ there, that grain being turned so far."""
+    own = own_of(node)
+    size = 1.0 / (ti.sqrt(node[1] * node[1] + node[2] * node[2]) * ti.max(own.norm(), TINY))
+    return turned(turn, ti.Vector([node[1] * own[0] + node[2] * own[1], node[1] * own[1] - node[2] * own[0]]) * size)
 
 
 def _runs(count: int) -> list[tuple[int, int, int]]:
@@ -123,13 +187,25 @@ def _runs(count: int) -> list[tuple[int, int, int]]:
 
 def _circles(outline: Contour, count: int, runs: list[tuple[int, int, int]]) -> np.ndarray:
     """Middle (x, y) and radius (m) of a circle about each run, (n, 3); a node's radius is 0."""
-    points = outline.points(2.0 * np.pi / count * np.arange(count))
-    circles = []
+    points, circles = _points(outline, count), []
     for first, end, _ in runs:
         part = points[first:end]
         middle = 0.5 * (part.min(axis=0) + part.max(axis=0))
         circles.append((*middle, SLACK * np.linalg.norm(part - middle, axis=1).max()))
     return np.array(circles)
+
+
+def _points(outline: Contour, count: int) -> np.ndarray:
+    """The nodes (count, 2), m."""
+    return outline.points(2.0 * np.pi / count * np.arange(count))
+
+
+def _least(outline: Contour) -> float:
+    """At least how far a point outside is from an outline, relative to its distance by polar radius.
+
+    The gradient of |p| − R(θ) is (1, −R'/|p|) along and across the radius, and |p| exceeds the smallest R outside.
+    """
+    return 1.0 / (SLACK * np.hypot(1.0, _steepest(outline) / outline.smallest_radius))
 
 
 def _steepest(outline: Contour) -> float:

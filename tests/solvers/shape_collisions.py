@@ -130,7 +130,7 @@ class Collisions:
                     if c[7] > 0.0:
                         self.press(p, c, apart, -1.0)
         else:
-            self.press(p, self.nodes.contact(0, 1.0, first, 0, 1.0, second, apart), apart, 1.0)
+            self.press(p, self.nodes.contact(0, 1.0, first, 0, 1.0, second, apart, 0, 0, 0)[0], apart, 1.0)
 
     @ti.func
     def press(self, p, c, apart, sign):

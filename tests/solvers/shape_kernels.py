@@ -9,7 +9,7 @@ from solvers import runtime
 from solvers.runtime import Arrays
 from solvers.shapes.contour import Contour
 from solvers.shapes.crossing import Placed
-from solvers.shapes.nodes import Nodes
+from solvers.shapes.nodes import ALL, Nodes
 from solvers.shapes.tables import Tables
 from solvers.shapes.tracked import MINIMUM, SADDLE, Tracked
 
@@ -73,7 +73,7 @@ class Asked:
         arrays = Arrays(precision)
         self.tables = Tables(arrays, outlines)
         self.nodes, self.tracked = Nodes(arrays, self.tables, outlines, nodes), Tracked(self.tables)
-        (self.shape,) = arrays.integers(1, (count, 2))
+        self.shape, self.node = arrays.integers(2, (count, 2))
         (self.scale,) = arrays.reals(1, (count, 2))
         self.turn = arrays.reals(1, (count, 2, 2))[0]
         (self.apart,) = arrays.reals(1, (count, 2))
@@ -92,9 +92,14 @@ class Asked:
         self.apart.from_numpy(np.ascontiguousarray(pairs.place[:, 0] - pairs.place[:, 1]))
 
     def by_nodes(self, pairs: Pairs) -> np.ndarray:
-        """Overlap, normal and point (n, 5) by the discrete rule."""
+        """Overlap, normal and point (n, 5) by the discrete rule, of all nodes."""
+        self.node.fill(0)
+        return self.by_nodes_beside(pairs, ALL)
+
+    def by_nodes_beside(self, pairs: Pairs, look: int) -> np.ndarray:
+        """The same of those of the last time and one neighbour; see `Nodes.contact`."""
         self.load(pairs)
-        self._by_nodes()
+        self._by_nodes(look)
         return self.found.to_numpy()[:, 0, :5]
 
     def scanned(self, pairs: Pairs, skin: float) -> tuple[np.ndarray, np.ndarray]:
@@ -124,9 +129,9 @@ class Asked:
         return ti.Vector([self.apart[p, 0], self.apart[p, 1]])
 
     @ti.kernel
-    def _by_nodes(self):
+    def _by_nodes(self, look: ti.i32):
         for p in self.number:
-            c = self.nodes.contact(
+            c, first, second = self.nodes.contact(
                 self.shape[p, 0],
                 self.scale[p, 0],
                 self.pose(p, 0),
@@ -134,7 +139,11 @@ class Asked:
                 self.scale[p, 1],
                 self.pose(p, 1),
                 self.between(p),
+                self.node[p, 0],
+                self.node[p, 1],
+                look,
             )
+            self.node[p, 0], self.node[p, 1] = first, second
             for n in ti.static(range(5)):
                 self.found[p, 0, n] = c[n]
 

@@ -10,6 +10,7 @@ from scipy import optimize
 
 from solvers.motions import Sway
 from solvers.scene import Scene
+from solvers.shapes import rest
 from solvers.shapes.cargo import cargo
 from solvers.shapes.contour import Contour
 from solvers.shapes.given import Shapes
@@ -255,6 +256,26 @@ def test_schedules_agree():
     assert simulation.observe()["contacts"].sum() > 3
     for other in found[1:]:
         assert np.abs(other["position"] - found[0]["position"]).max() < 1e-6 * RADIUS
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("contact", ["continuous", "nodes"])
+def test_contacts_of_grains_that_hardly_move_are_as_if_looked_at_each_step(contact, monkeypatch):
+    """In a tank that stands still and one that shakes a little; of nodes, the step from one to the next comes late."""
+    radius, places = loose(4, 3, 4.2 * RADIUS, worlds=2)
+    given = shapes([unit(rice()), unit(ellipse(*AXES))], radius.shape[1], 2, contact)
+    start = falling(given, places, radius)
+    start.advance(10000)
+    now, found = start.snapshot(), []
+    for hardly in (rest.HARDLY, 0.0):
+        monkeypatch.setattr(rest, "HARDLY", hardly)
+        simulation = going_on({**now, "velocity": 0.0 * now["velocity"], "spin": 0.0 * now["spin"]}, given, radius)
+        simulation.advance(500)
+        found.append(simulation.snapshot())
+    assert simulation.observe()["contacts"].sum() > 20
+    went = np.abs(found[0]["position"] - now["position"]).max()
+    assert went > 1e-3 * RADIUS
+    assert np.abs(found[1]["position"] - found[0]["position"]).max() < 1e-4 * went
 
 
 @pytest.mark.slow

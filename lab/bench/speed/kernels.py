@@ -55,7 +55,7 @@ class Parts:
         ti.loop_config(serialize=True)
         for _ in range(times):
             self.neighbours.cells.sort_world(0)
-            self.neighbours.rebuild(0, 0.0, ti.cast(step, self.real))
+            self.neighbours.rebuild(0, 0.0, ti.cast(step, self.real), True)
 
     @ti.kernel
     def gather(self, times: ti.i32, step: ti.f64):
