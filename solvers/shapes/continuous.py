@@ -36,7 +36,7 @@ from solvers.shapes.wall import SeenWalls
 from solvers.units import Units
 from solvers.walls import Walls
 
-ROOM = 8  # contacts of a grain with another, or with one wall, at most
+ROOM = 32  # contacts of a grain with another, or with one wall, at most
 NEAR = 1.0 / 16.0  # of the outlines, together: how far a contact may go between lists and be known again
 PLACES, WIDE = (
     8,
