@@ -52,6 +52,7 @@ def test_a_bed_is_settled_once(tmp_path, monkeypatch):
     assert [path.name for path in tmp_path.iterdir()] == ["bed-40-24-1.npz"]
 
 
+@pytest.mark.slow
 def test_copies_stand_side_by_side_without_touching_deeper_than_a_wall(bed):
     three = bed.times(3)
     assert (three.count, three.width) == (3 * COUNT, pytest.approx(3 * WIDTH))

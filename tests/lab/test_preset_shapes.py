@@ -223,6 +223,7 @@ def test_a_depth_is_filled_by_area():
     assert area == pytest.approx(0.81 * 60e-3 * 20e-3, rel=0.01)
 
 
+@pytest.mark.slow
 def test_beds_of_other_outlines_or_angles_are_other_beds():
     def key(**sections) -> str:
         preset = resolved({"rough": ROUGH}, **{"run": {"repeats": 1, "accuracy": "draft"}, **sections})
