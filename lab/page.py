@@ -38,10 +38,15 @@ class Page:
 
     def figure(self, name: str, figure: Figure, caption: str) -> Path:
         """Save a figure beside the page and show it there."""
+        path = self.save(name, figure)
+        self.show(path, caption)
+        return path
+
+    def save(self, name: str, figure: Figure) -> Path:
+        """Save a figure beside the page."""
         path = self.folder / f"{self.name}-{name}.png"
         with matplotlib.rc_context(STYLE):
             figure.savefig(path, dpi=130)
-        self.show(path, caption)
         return path
 
     def show(self, path: Path, caption: str) -> None:

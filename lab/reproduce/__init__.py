@@ -4,7 +4,6 @@ An experiment is an entry of the EXPERIMENTS list of a module of this package, w
 lie in a folder of their own and are not run again; one that was cut short is gone on with.
 """
 
-from collections import Counter
 from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
 from pathlib import Path
@@ -15,7 +14,8 @@ from lab.lock import only_one
 from lab.progress import Progress
 from lab.reproduce import heaps, humidity, laws, outlines, shaking, ship, tilting, validation
 from lab.reproduce.experiment import Experiment
-from lab.reproduce.report import write_report
+from lab.reproduce.findings import read_findings
+from lab.reproduce.report import kept_file, write_report
 from lab.reproduce.runs import Batch, errands
 from lab.reproduce.workers import carry_out_all
 
@@ -32,6 +32,7 @@ def reproduce(
 ) -> Path:
     """Run a report's experiments whose names begin like one of `names`, or all, and write it of all that is there.
 
+    Without names, an experiment that the report tells of already is not run again where its runs have been removed.
     cluster: the address of a scheduler whose workers run all that was not begun yet, before anything runs here. The
     report is written anew after each experiment. Returns its file. Raises LabError, one sentence, and
     KeyboardInterrupt; what was run stays.
@@ -41,16 +42,34 @@ def reproduce(
         if not any(one.startswith(name) for one in known):
             raise LabError(f"there is no experiment {name}; there are {', '.join(known)}.")
     out, work = Path(out), Path(out) / ("quick" if quick else "full")
-    chosen = [name for name in known if not names or name.startswith(tuple(names))]
-    batches = {work / name / key: batch for name in chosen for key, batch in known[name].batches(quick).items()}
+    folders = places(known, work, quick)
+    told = read_findings(kept_file(report, out, quick), known, quick)
+    removed = [name for name in told if not any(folder.exists() for folder in folders[name].values())]
+    chosen = [name for name in known if (name.startswith(tuple(names)) if names else name not in removed)]
+    batches = {folders[name][key]: batch for name in chosen for key, batch in known[name].batches(quick).items()}
     if cluster:
         _run_there(batches, cluster, quiet)
-    left = Counter(folder.parent.name for folder in batches)
+    page = write_report(report, known, {}, out, quick)
+    left = {name: set(folders[name].values()) for name in chosen}
     for folder in carry_out_all(batches, Progress(quiet)):
-        left[folder.parent.name] -= 1
-        if not left[folder.parent.name]:
-            page = write_report(report, known, work, out, quick)
+        ended = [name for name, missing in left.items() if missing == {folder}]
+        left = {name: missing - {folder} for name, missing in left.items()}
+        if ended:
+            page = write_report(report, known, {name: folders[name] for name in ended}, out, quick)
     return page
+
+
+def places(known: Mapping[str, Experiment], work: Path, quick: bool) -> dict[str, dict[str, Path]]:
+    """Of each experiment the folders of its batches, by their names; what two experiments share is run once."""
+    taken: list[tuple[Batch, Path]] = []
+    folders = {}
+    for name, experiment in known.items():
+        folders[name] = {}
+        for key, batch in experiment.batches(quick).items():
+            place = next((there for other, there in taken if other == batch), work / name / key)
+            taken.append((batch, place))
+            folders[name][key] = place
+    return folders
 
 
 def _run_there(batches: Mapping[Path, Batch], cluster: str, quiet: bool) -> None:

@@ -24,11 +24,10 @@ class Row:
 
 @dataclass(frozen=True)
 class Told:
-    """What came of an experiment: rows, the figure, and a remark that one reads with them."""
+    """What came of an experiment: rows and the figure."""
 
     rows: Sequence[Row]
     figure: Figure | None = None
-    remark: str = ""
 
 
 @dataclass(frozen=True)
@@ -36,7 +35,8 @@ class Experiment:
     """`states` says in words what the source (its `section`) reports; `batches(quick)` what is run, by name.
 
     `tell` compares the outcomes of the batches, each a list by the points of its grid. `lost` says what the quick runs
-    leave out; `shown` is the batch whose first point is pictured, at this fraction of its time.
+    leave out; `shown` is the batch whose first point is pictured, at this fraction of its time; `remark` what one has
+    to know to read the rows, and why they differ where they do.
     """
 
     name: str
@@ -47,15 +47,23 @@ class Experiment:
     tell: Callable[[Mapping[str, Sequence[Outcome]]], Told]
     lost: str
     shown: tuple[str, float]
+    remark: str = ""
 
 
 def stated(quantity: str, source: float, ours: Value | None, within: float) -> Row:
-    """A number of the source beside ours; they agree if they differ by at most `within`, in the same unit."""
+    """A number of the source beside ours; they agree if they differ by at most `within`, in the same unit.
+
+    The difference comes with the standard error of our mean over beds.
+    """
     if ours is None or ours.value is None:
         return Row(quantity, f"{source:g}", "not found", "", False)
     difference = ours.value - source
     unit = "" if ours.unit == "1" else f" {ours.unit}"
-    return Row(quantity, f"{source:g}{unit}", counted(ours), f"{difference:+.3g}{unit}", abs(difference) <= within)
+    said = f"{difference:+.3g}"
+    if ours.std:
+        error = f"{ours.std / sum(world is not None for world in ours.worlds) ** 0.5:#.2g}".rstrip(".")
+        said = f"{difference:+.{len(error.partition('.')[2])}f} ± {error}"
+    return Row(quantity, f"{source:g}{unit}", counted(ours), said + unit, abs(difference) <= within)
 
 
 def observed(quantity: str, source: str, ours: str, agrees: bool | None) -> Row:

@@ -8,7 +8,7 @@ from lab.measures.value import Value
 from lab.plots import BLUE, VERMILION
 from lab.reproduce.experiment import Experiment, Told, counted, observed
 from lab.reproduce.runs import Batch, Outcome
-from lab.reproduce.tilting import QUICK_RATE, RATE
+from lab.reproduce.tilting import ANGLE_RATE, BEDS, QUICK_BEDS, QUICK_RATE
 
 WALLED = "tank.roughness"
 AXES = {
@@ -23,8 +23,8 @@ def batches(quick: bool) -> dict[str, Batch]:
     """All combinations as the worlds of one sweep; in the quick report those with rough walls."""
     cost = {
         "run.accuracy": "draft",
-        "run.repeats": 2 if quick else 6,
-        "motion.tilt.rate": QUICK_RATE if quick else RATE,
+        "run.repeats": QUICK_BEDS if quick else BEDS,
+        "motion.tilt.rate": QUICK_RATE if quick else ANGLE_RATE,
     }
     if not quick:
         return {"all": Batch("tilting/scaling-150", cost, AXES)}
@@ -84,7 +84,7 @@ EXPERIMENTS = [
         "the packing's or the walls' is not asked.",
         batches,
         tell,
-        "rough walls only, a tank of 60 mm for 150, 2 beds for 6, 20 deg/s for 3, draft accuracy",
+        "rough walls only, a tank of 60 mm for 150, 2 beds for 4, 20 deg/s for 5, draft accuracy",
         ("all", 0.8),
     )
 ]

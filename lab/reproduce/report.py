@@ -1,7 +1,6 @@
 """The report: an overview, and of each experiment what the source states, what we get, a figure and a picture."""
 
 from collections.abc import Mapping
-from contextlib import suppress
 from pathlib import Path
 
 import matplotlib
@@ -10,7 +9,8 @@ from lab.accuracy import LEVELS
 from lab.errors import LabError
 from lab.page import Page
 from lab.plots import STYLE
-from lab.reproduce.experiment import Experiment, Told
+from lab.reproduce.experiment import Experiment
+from lab.reproduce.findings import Finding, asked, read_findings, write_findings
 from lab.reproduce.runs import Outcome, outcomes
 
 PICTURE = (640, 360)  # pixels
@@ -22,26 +22,55 @@ TITLES = {
 VERDICTS = {True: "yes", False: "**no**", None: ""}
 
 
-def write_report(name: str, experiments: Mapping[str, Experiment], work: Path, out: Path, quick: bool) -> Path:
-    """Write NAME.md (quick: NAME-quick.md) and its pictures about all experiments whose runs are done."""
+def write_report(
+    name: str, experiments: Mapping[str, Experiment], ended: Mapping[str, Mapping[str, Path]], out: Path, quick: bool
+) -> Path:
+    """Write NAME.md (quick: NAME-quick.md) of the experiments whose runs have ended, and of what was kept of others.
+
+    ended: of each the folders of its batches. Beside the page are its pictures, and NAME.json, what is kept.
+    """
     command = f"reproduce {name}{' --quick' if quick else ''}"
-    page = Page(out, f"{name}-quick" if quick else name, TITLES[name], command)
-    done = {}
-    for one, experiment in experiments.items():
-        found = {key: outcomes(work / one / key) for key in experiment.batches(quick)}
+    page = Page(out, page_name(name, quick), TITLES[name], command)
+    kept = read_findings(kept_file(name, out, quick), experiments, quick)
+    for one, folders in ended.items():
+        found = {key: outcomes(folder) for key, folder in folders.items()}
         if all(found.values()):
-            done[one] = found
-    with matplotlib.rc_context(STYLE):
-        told = {one: experiments[one].tell(found) for one, found in done.items()}
-        _overview(page, experiments, told, done, quick)
-        for one, found in done.items():
-            _section(page, experiments[one], told[one], found, quick)
+            kept[one] = _finding(page, experiments[one], found, quick)
+    findings = {one: kept[one] for one in experiments if one in kept}
+    _overview(page, experiments, findings, quick)
+    for one, finding in findings.items():
+        _section(page, experiments[one], finding, quick)
+    write_findings(kept_file(name, out, quick), findings)
     return page.write()
 
 
-def _overview(
-    page: Page, experiments: Mapping[str, Experiment], told: Mapping[str, Told], done: Mapping, quick: bool
-) -> None:
+def page_name(report: str, quick: bool) -> str:
+    """Of the page of a report, and of the files beside it."""
+    return f"{report}-quick" if quick else report
+
+
+def kept_file(report: str, out: Path, quick: bool) -> Path:
+    """Where what was found is kept."""
+    return out / f"{page_name(report, quick)}.json"
+
+
+def _finding(page: Page, experiment: Experiment, found: Mapping[str, list[Outcome]], quick: bool) -> Finding:
+    with matplotlib.rc_context(STYLE):
+        told = experiment.tell(found)
+    runs = [one for batch in found.values() for one in batch]
+    figure = "" if told.figure is None else page.save(experiment.name, told.figure).name
+    return Finding(
+        asked(experiment.batches(quick)),
+        tuple(told.rows),
+        tuple((one.folder.name, one.status) for one in runs if one.status != "complete"),
+        sum(one.cost["grain_steps"] for one in runs),
+        sum(one.cost["wall_s"] for one in runs),
+        figure,
+        _picture(page, experiment, found),
+    )
+
+
+def _overview(page: Page, experiments: Mapping[str, Experiment], findings: Mapping[str, Finding], quick: bool) -> None:
     page.say("""The source is Spandonidis (2016), doctoral thesis, NTUA. Its numbers are compared as numbers,
         ± the standard deviation over beds that differ in nothing but their seed; what it gives in words or curves is
         compared as a trend.""")
@@ -50,56 +79,49 @@ def _overview(
             "The quick report: fewer and smaller beds, faster tilts, draft accuracy; each section says what is lost."
         )
     else:
-        page.say(f"""Beds are run at draft accuracy ({LEVELS["draft"].error}) and mostly tilted at 3 deg/s where the
-            source has 0.15 to 3, often four where it has 12: within the scatter of beds neither shows (`cargolab bench
-            accuracy`).""")
+        page.say(f"""Beds are run at draft accuracy ({LEVELS["draft"].error}) and tilted at 3 or 5 deg/s where
+            the source has 0.15 to 3, often four where it has 12: within the scatter of beds neither shows (`cargolab
+            bench accuracy`).""")
     rows = []
     for name, experiment in experiments.items():
-        if name not in told:
+        if name not in findings:
             rows.append([experiment.title, experiment.section, "not run", "", ""])
             continue
-        judged = [row.agrees for row in told[name].rows if row.agrees is not None]
-        spent = sum(o.cost["wall_s"] for found in done[name].values() for o in found)
-        rows.append(
-            [
-                experiment.title,
-                experiment.section,
-                f"{sum(judged)} of {len(judged)}",
-                _work(done[name]),
-                f"{spent:.0f} s",
-            ]
-        )
-    page.table(["experiment", "section", "statements that agree", "grain-steps", "time here"], rows)
+        finding = findings[name]
+        judged = [row.agrees for row in finding.rows if row.agrees is not None]
+        agree = f"{sum(judged)} of {len(judged)}"
+        cost = f"{finding.grain_steps:.2g}", f"{finding.wall_s:.0f} s"
+        rows.append([experiment.title, experiment.section, agree, *cost])
+    page.table(["experiment", "section", "statements that agree", "grain-steps", "time"], rows)
 
 
-def _section(page: Page, experiment: Experiment, told: Told, found: Mapping[str, list[Outcome]], quick: bool) -> None:
+def _section(page: Page, experiment: Experiment, finding: Finding, quick: bool) -> None:
     page.section(experiment.title)
     page.say(f"Source ({experiment.section}): {experiment.states}")
     if quick:
         page.say(f"Quick: {experiment.lost}")
     page.table(
         ["quantity", "source", "here", "difference", "agrees"],
-        [[r.quantity, r.source, r.ours, r.difference, VERDICTS[r.agrees]] for r in told.rows],
+        [[r.quantity, r.source, r.ours, r.difference, VERDICTS[r.agrees]] for r in finding.rows],
     )
-    if told.remark:
-        page.say(told.remark)
-    stopped = [o for batch in found.values() for o in batch if o.status != "complete"]
-    for outcome in stopped:
-        page.say(f"**Not complete** ({outcome.folder.name}): {outcome.status}")
-    if told.figure is not None:
-        page.figure(experiment.name, told.figure, experiment.title)
-    batch, fraction = experiment.shown
-    _picture(page, found[batch][0], experiment, fraction)
+    if experiment.remark:
+        page.say(experiment.remark)
+    for name, status in finding.stopped:
+        page.say(f"**Not complete** ({name}): {status}")
+    if finding.figure:
+        page.show(page.folder / finding.figure, experiment.title)
+    if finding.picture:
+        page.show(page.folder / finding.picture, f"{experiment.title}: a picture")
 
 
-def _picture(page: Page, outcome: Outcome, experiment: Experiment, fraction: float) -> None:
+def _picture(page: Page, experiment: Experiment, found: Mapping[str, list[Outcome]]) -> str:
+    """The file of the picture; "" where a run was stopped before its first."""
     from lab.paint.video import poster  # slow to load
 
+    batch, fraction = experiment.shown
     path = page.folder / f"{page.name}-{experiment.name}-picture.png"
-    with suppress(LabError):  # a run that was stopped before its first picture
-        poster(outcome.folder, path, fraction=fraction, width=PICTURE[0], height=PICTURE[1], world=0)
-        page.show(path, f"{experiment.title}: a picture")
-
-
-def _work(found: Mapping[str, list[Outcome]]) -> str:
-    return f"{sum(o.cost['grain_steps'] for batch in found.values() for o in batch):.2g}"
+    try:
+        poster(found[batch][0].folder, path, fraction=fraction, width=PICTURE[0], height=PICTURE[1], world=0)
+    except LabError:
+        return ""
+    return path.name

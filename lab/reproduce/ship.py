@@ -39,9 +39,7 @@ def free_tell(found: Found) -> Told:
         stated("period about the axis (s)", 1.28, found["axis"][0]["roll_period"], 0.03),
         stated("period in three degrees of freedom (s)", 1.35, found["free"][0]["roll_period"], 0.03),
     ]
-    remark = """The inertia of each was chosen for the source's period with frozen cargo, so it is the loose cargo that
-        could differ."""
-    return Told(rows, remark=remark)
+    return Told(rows)
 
 
 def response_batches(quick: bool) -> dict[str, Batch]:
@@ -70,10 +68,7 @@ def response_tell(found: Found) -> Told:
     less = loose is not None and loose[0] < min(LARGE, frozen[0])
     rows.append(observed("largest with loose cargo", "less than 30 deg, and less than frozen", _told(loose), less))
     figure = against(FREQUENCY, "frequency of the waves (rad/s)", found, "roll_amplitude", "roll (deg)")
-    remark = """The source's barge rolls most below its natural frequency. Ours does above it: a box's righting lever
-        grows faster than the heel, by ½ BM tan² φ, until its bilge emerges. Damping is our choice: with 1 % of the
-        critical and 0.05 per rad frozen cargo rolls nearly as far as the source's."""
-    return Told(rows, figure, remark)
+    return Told(rows, figure)
 
 
 def _largest(runs: Sequence[Outcome], name: str) -> tuple[float, str] | None:
@@ -107,8 +102,7 @@ def capsize_tell(found: Found) -> Told:
             says = "capsizes" if name == "19 mm" and at in ("4.4 rad/s", "4.5 rad/s", "4.7 rad/s") else says
             agrees = one["capsized_at"].value is not None if says else None
             rows.append(observed(f"{name}, {at}", says, _end(one), agrees))
-    remark = """A closed box as deep as this one rights itself from any angle; here it has capsized beyond 90 deg."""
-    return Told(rows, remark=remark)
+    return Told(rows)
 
 
 def _end(one: Outcome) -> str:
@@ -186,9 +180,7 @@ def model_tell(found: Found) -> Told:
             ratio = None if ours.value is None else Value(ours.value / per, "1", worlds=(ours.value / per,))
             measured = MEASURED[at][k]
             rows.append(stated(f"{name.split('_')[0]} at {at}", measured, ratio, max(0.2 * measured, 0.1)))
-    remark = """Near the natural heave, which potential flow damps too little, ours heaves more; near the natural roll
-        all depends on the viscous damping, our choice."""
-    return Told(rows, remark=remark)
+    return Told(rows)
 
 
 EXPERIMENTS = [
@@ -201,6 +193,8 @@ EXPERIMENTS = [
         free_tell,
         LOST,
         ("axis", 0.3),
+        "The inertia of each was chosen for the source's period with frozen cargo, so it is the loose cargo that "
+        "could differ.",
     ),
     Experiment(
         "barge-roll",
@@ -211,6 +205,9 @@ EXPERIMENTS = [
         response_tell,
         LOST,
         ("10 mm", 0.9),
+        "The source's barge rolls most below its natural frequency. Ours does above it: a box's righting lever "
+        "grows faster than the heel, by ½ BM tan² φ, until its bilge emerges. Damping is our choice: with 1 % of "
+        "the critical and 0.05 per rad frozen cargo rolls nearly as far as the source's.",
     ),
     Experiment(
         "barge-capsize",
@@ -221,6 +218,7 @@ EXPERIMENTS = [
         capsize_tell,
         LOST,
         ("19 mm", 1.0),
+        "A closed box as deep as this one rights itself from any angle; here it has capsized beyond 90 deg.",
     ),
     Experiment(
         "barge-3dof",
@@ -241,5 +239,7 @@ EXPERIMENTS = [
         model_tell,
         "draft accuracy of the few grains",
         ("section", 0.9),
+        "Near the natural heave, which potential flow damps too little, ours heaves more; near the natural roll "
+        "all depends on the viscous damping, our choice.",
     ),
 ]

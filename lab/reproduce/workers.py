@@ -28,7 +28,7 @@ def carry_out_all(batches: Mapping[Path, Batch], progress: Progress) -> Iterator
     LabError, one sentence, and KeyboardInterrupt: what is under way is then stopped where it can be gone on with.
     """
     cores = min(runtime.available_cores(), len(batches))
-    if cores == 1 or runtime.choose_arch("auto", "f64") != "cpu":
+    if cores <= 1 or runtime.choose_arch("auto", "f64") != "cpu":
         for folder, batch in batches.items():
             progress.say(f"{named(folder)} …")
             carry_out(batch, folder, progress.console.quiet)

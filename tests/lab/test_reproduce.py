@@ -63,13 +63,15 @@ def test_a_report_has_the_results_and_nothing_is_run_twice(tmp_path, monkeypatch
 
     def tell(found):
         numbers = [one["contact_number_start"] for one in found["rates"]]
-        return Told([observed("contacts", "none", ", ".join(map(counted, numbers)), None)], remark="As it is.")
+        return Told([observed("contacts", "none", ", ".join(map(counted, numbers)), None)])
 
     batches = {
         "one": Batch("tilting/quick", SMALL),
         "rates": Batch("tilting/quick", SMALL, {"motion.tilt.rate": ["60 deg/s", "90 deg/s"]}),
     }
-    tried = Experiment("tried", "A trial", "0.0", "nothing.", lambda quick: batches, tell, "much", ("one", 1.0))
+    tried = Experiment(
+        "tried", "A trial", "0.0", "nothing.", lambda quick: batches, tell, "much", ("one", 1.0), "As it is."
+    )
     monkeypatch.setattr(package, "experiments", lambda _: {"tried": tried})
     text = reproduce("granular", ["tri"], tmp_path, quick=True, quiet=True).read_text()
     assert "## A trial" in text and "Quick: much" in text and "As it is." in text
@@ -80,7 +82,9 @@ def test_a_report_has_the_results_and_nothing_is_run_twice(tmp_path, monkeypatch
     assert reproduce("granular", [], tmp_path, quick=True, quiet=True).read_text() == text
     point = tmp_path / "quick" / "tried" / "rates" / "points" / "001" / "summary.json"
     point.rename(point.with_suffix(".kept"))
-    half = write_report("granular", {"tried": tried}, tmp_path / "quick", tmp_path, True).read_text()
+    (tmp_path / "granular-quick.json").unlink()
+    folders = package.places({"tried": tried}, tmp_path / "quick", True)
+    half = write_report("granular", {"tried": tried}, folders, tmp_path, True).read_text()
     assert "| A trial | 0.0 | not run |" in half
     point.with_suffix(".kept").rename(point)
     said, resumed = "stopped: interrupted by the user", []
@@ -89,11 +93,16 @@ def test_a_report_has_the_results_and_nothing_is_run_twice(tmp_path, monkeypatch
         file.attrs["status"] = said
     summary.write_text(json.dumps(json.loads(summary.read_text()) | {"status": said}))
     monkeypatch.setattr(runs, "resume_run", lambda folder, **_: resumed.append(folder))
-    assert "**Not complete** (one): stopped" in reproduce("granular", [], tmp_path, quick=True, quiet=True).read_text()
+    told = reproduce("granular", [], tmp_path, quick=True, quiet=True).read_text()
+    assert "**Not complete** (one): stopped" in told
     assert resumed == [summary.parent]
+    (tmp_path / "quick").rename(tmp_path / "removed")  # what was told of them stays
+    assert reproduce("granular", [], tmp_path, quick=True, quiet=True).read_text() == told
+    (tmp_path / "removed").rename(tmp_path / "quick")
     monkeypatch.setitem(batches, "one", Batch("tilting/quick", {**SMALL, "run.seed": 2}))
     with pytest.raises(LabError, match="holds another run than this experiment asks for: remove it"):
         reproduce("granular", [], tmp_path, quick=True, quiet=True)
+    assert "| A trial | 0.0 | not run |" in (tmp_path / "granular-quick.md").read_text()
 
 
 @pytest.mark.slow
@@ -114,6 +123,16 @@ def test_batches_run_side_by_side_stop_and_go_on(tmp_path):
     assert "## Guided fall" in text and "## Swelling" in text and "Not complete" not in text
 
 
+def test_what_two_experiments_share_is_run_once(tmp_path, monkeypatch):
+    ran = []
+    monkeypatch.setattr(workers, "carry_out", lambda batch, folder, quiet: ran.append(folder.relative_to(tmp_path)))
+    monkeypatch.setattr(runtime, "available_cores", lambda: 1)
+    reproduce("granular", ["tilt-surface", "tilt-low-walls"], tmp_path, quick=False, quiet=True)
+    assert len(ran) == len(set(ran)) == 4
+    shared = tmp_path / "full" / "tilt-surface" / "slightly disturbed"
+    assert package.places(experiments("granular"), tmp_path / "full", False)["tilt-low-walls"]["high walls"] == shared
+
+
 def test_what_is_not_run_yet_is_said(tmp_path, monkeypatch):
     monkeypatch.setattr(workers, "carry_out", lambda *_: None)
     monkeypatch.setattr(runtime, "available_cores", lambda: 1)
@@ -126,7 +145,7 @@ def test_what_is_not_run_yet_is_said(tmp_path, monkeypatch):
 def test_numbers_agree_within_what_is_allowed_and_trends_by_their_order():
     value = over_worlds([20.0, 22.0], "deg")
     row = stated("angle", 18.0, value, 3.0)
-    assert row.agrees and row.difference == "+3 deg" and row.ours == "21.0 ± 1.4 deg (2 beds)"
+    assert row.agrees and row.difference == "+3.0 ± 1.0 deg" and row.ours == "21.0 ± 1.4 deg (2 beds)"
     assert not stated("angle", 18.0, value, 2.9).agrees
     assert not stated("angle", 18.0, over_worlds([np.nan], "deg"), 99.0).agrees
     low = over_worlds([19.0], "deg")
