@@ -17,7 +17,7 @@ from solvers.simulation import Simulation
 
 # Grain-steps a second of one core on settled beds (README, "Speed"); only the estimate of the run time rests on it.
 GRAIN_STEPS_PER_CORE = 20e6
-OUTLINES_PER_CORE = {"continuous": 3e6, "nodes": 0.5e6}  # of irregular grains
+OUTLINES_PER_CORE = {"continuous": 3e6, "nodes": 3e6, "area": 3e6}  # of irregular grains
 
 PRECISIONS = {
     "f64": "64-bit floats",
@@ -169,7 +169,7 @@ def _parts(simulation: Simulation) -> list[tuple[str, str]]:
 
 
 def _outlines(shapes: Shapes) -> str:
-    rule = f"{shapes.nodes} nodes on each" if shapes.contact == "nodes" else shapes.contact
+    rule = shapes.contact if shapes.contact == "continuous" else f"{shapes.contact}, {shapes.nodes} nodes on each"
     return f"{len(shapes.outlines)} different ones, {rule}"
 
 

@@ -171,7 +171,8 @@ StiffnessScale = Annotated[float, Interval(gt=0, le=1)]
 class ContactGiven:
     """The contact laws, and the factor on Young's moduli that buys larger steps (None: as `run.accuracy` has it).
 
-    `outlines`: the rule by which irregular grains touch; `nodes`: on each outline, for the rule that has nodes.
+    `outlines`: the rule by which irregular grains touch; `nodes`: on each outline, for the rules
+    that have nodes.
     """
 
     normal: Literal[*NORMAL] = "hertz-viscoelastic"

@@ -18,6 +18,7 @@ from solvers.runtime import Arrays
 from solvers.scene import Scene
 from solvers.schedules import SCHEDULES, choose_schedule, units_a_world
 from solvers.schedules.engine import Engine
+from solvers.shapes.area import Area
 from solvers.shapes.contacts import ShapedContacts
 from solvers.shapes.continuous import Continuous
 from solvers.shapes.discrete import Discrete
@@ -30,7 +31,7 @@ from solvers.walls import Walls
 
 LOOK_FOR_MIXING = 0.25  # s, between looks at whether the grains' numbers still follow their places
 SKIN = 0.05  # of the mean diameter; in settled and in shaken beds the fastest of 0.05 … 0.3
-RULES = {"continuous": Continuous, "nodes": Discrete}  # of contact between outlines
+RULES = {"continuous": Continuous, "nodes": Discrete, "area": Area}  # of contact between outlines
 AT_REST = -1e9  # a time long before any motion starts
 LOAD = ("wall_y", "wall_z", "wall_moment")
 

@@ -8,7 +8,7 @@ from solvers.laws.extremes import within
 from solvers.runtime import Arrays
 from solvers.shapes.given import Shapes
 from solvers.shapes.grains import with_disc
-from solvers.shapes.kept import LOOSE, Kept
+from solvers.shapes.kept import Kept
 from solvers.shapes.pose import turned, turned_back
 from solvers.shapes.tables import TINY, Tables
 from solvers.shapes.tracked import (
@@ -94,9 +94,8 @@ class Continuous:
         far = self.tracked.distance(place, self.first[u, k])
         if ti.static(hasattr(contacts, "place_second")):
             far += self.tracked.distance(contacts.old_place_second[u, q][0], self.second[u, k])
-        if place < 0.0:
-            far *= LOOSE
-        return far
+        # One that has been lost has nothing to hand on.
+        return ti.select(place < 0.0, self.farthest, far)
 
     @ti.func
     def note(self, contacts: ti.template(), u, p, k):

@@ -7,26 +7,25 @@ from solvers.shapes.given import Shapes
 from solvers.shapes.grains import with_disc
 from solvers.shapes.nodes import ALL, Nodes
 from solvers.shapes.pose import turned, turned_back
+from solvers.shapes.single import Single
 from solvers.shapes.tables import Tables
-from solvers.shapes.wall import SeenWalls
+from solvers.shapes.wall import FAR, SeenWalls
 from solvers.units import Units
 from solvers.walls import Walls
 
-FAR = 1e3  # of an outline's size
 SELDOM = 64  # steps from one look at all nodes to the next
 
 
 @ti.data_oriented
-class Discrete:
+class Discrete(Single):
     """One contact of two grains, or of a grain and a wall, at the deepest node (Spandonidis 2016, table 8.1).
 
-    All nodes are looked at where lists are made and every SELDOM steps; in between the deepest of either grain is
-    followed from node to node. `looked` counts steps.
+    All nodes are looked at where lists are made and every SELDOM times that the contact is asked for; in between the
+    deepest of either grain is followed from node to node. `looked` counts those times.
     """
 
     wall_memory = ("looked", "node_first")
     pair_memory = (*wall_memory, "node_second")
-    farthest, bent, most = 1.0, False, 1
 
     def __init__(self, arrays: Arrays, units: Units, walls: Walls, shapes: Shapes):
         outlines = with_disc(shapes)
@@ -34,47 +33,9 @@ class Discrete:
         self.nodes, self.walls = Nodes(arrays, self.tables, outlines, shapes.nodes), SeenWalls(arrays, walls)
 
     @ti.func
-    def seek_pair(self, g: ti.template(), w, i, j, margin, u):
-        """How many contacts are to be listed."""
-        return 1
-
-    @ti.func
-    def seek_wall(self, g: ti.template(), w, i, feature, shift: ti.template(), margin, u):
-        """How many contacts are to be listed."""
-        return 1
-
-    @ti.func
-    def away(self, contacts: ti.template(), u, q, k):
-        """How far contact q of an old list of the same two is from the one that has been found: it is the same."""
-        return 0.0 * contacts.stiffness[u, 0][0]
-
-    @ti.func
     def note(self, contacts: ti.template(), u, p, k):
         """All nodes of contact p are to be looked at."""
         contacts.looked[u, p][0] = 0.0
-
-    @ti.func
-    def places_for_pair(self, g: ti.template(), w, i, j, most):
-        """Room to leave for contacts of two grains."""
-        return 1
-
-    @ti.func
-    def places_for_wall(self, g: ti.template(), w, i, most):
-        """Room to leave for contacts of a grain and a wall."""
-        return 1
-
-    @ti.func
-    def free(self, contacts: ti.template(), u, p):
-        """Nothing: it is a contact."""
-
-    @ti.func
-    def is_lost(self, contacts: ti.template(), u, p):
-        """Whether a contact has been lost sight of: none is."""
-        return False
-
-    @ti.func
-    def lose(self, contacts: ti.template(), u, p):
-        """Remember that it has."""
 
     @ti.func
     def count_look(self, contacts: ti.template(), u, p):
@@ -132,19 +93,7 @@ class Discrete:
                 overlap = -FAR
             contact = ti.Vector([overlap, normal[0], normal[1], node[0], node[1], 1.0])
         else:
-            away = self.walls.walls.from_start(feature, shift, g.y[w, i], g.z[w, i])
-            corner = -ti.Vector([ti.cast(away[0], g.real), ti.cast(away[1], g.real)])
-            own = turned_back(g.turn(w, i), corner)
-            distance = own.norm()
-            radius = g.radius[w, i] * self.tables.radius_and_slope(g.shape[w, i], own[0], own[1])
-            tilt = radius[0] / ti.sqrt(radius[0] ** 2 + radius[1] ** 2)
-            outward = ti.Vector([radius[0] * own[0] + radius[1] * own[1], radius[0] * own[1] - radius[1] * own[0]])
-            normal = -turned(g.turn(w, i), outward * tilt / (radius[0] * distance))
-            overlap = (radius[0] - distance) * tilt
-            if not self.walls.counts_on_corner(feature, normal[0], normal[1]):
-                overlap = -FAR
-            point = corner - overlap * normal
-            contact = ti.Vector([overlap, normal[0], normal[1], point[0], point[1], 1.0])
+            contact = self.walls.corner_contact(g, self.tables, w, i, feature, shift)
         return contact
 
     @ti.func

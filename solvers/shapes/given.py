@@ -13,7 +13,7 @@ class Shapes:
 
     `outlines` are about their centroids and have the area of a disc of radius 1; a scene's radii are those of discs of
     equal area. `angle` (W, n) rad is by how much each is turned at the start, counter-clockwise. `contact` is one of
-    CONTACTS; `nodes` are those of an outline for the rule that has nodes. `reach` and `least_mass` are bounds on the
+    CONTACTS; `nodes` are those of an outline for the rules that have nodes. `reach` and `least_mass` are bounds on the
     outlines' bounding radius and least mass, their own by default: given where a world must not depend on its company.
     """
 
@@ -32,4 +32,4 @@ class Shapes:
             object.__setattr__(self, "least_mass", min(outline.least_mass for outline in self.outlines))
 
 
-CONTACTS = ("continuous", "nodes")
+CONTACTS = ("continuous", "nodes", "area")

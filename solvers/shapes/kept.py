@@ -2,12 +2,12 @@
 
 import taichi as ti
 
+from solvers.shapes.rest import STILL
 from solvers.shapes.tracked import NONE, Tracked
 
 # Of a contact with a wall, and more of one between two grains; the second pair of each for outlines that bend.
 WALL, WALL_BENT = ("place_first",), ("saddle_first", "looked")
 PAIR, PAIR_BENT = ("place_second",), ("saddle_second",)
-LOOSE = 1.0 / 8.0  # what counts of the way that a contact has gone since it was lost sight of
 MET = 1.0 / 64.0  # of an outline: nearer a saddle than this, a contact that is not found any more has ended in it
 
 
@@ -111,6 +111,8 @@ class Kept:
         contacts.saddle_first[u, p][0] = contacts.saddle_first[u, q][0]
         if ti.static(hasattr(contacts, "saddle_second")):
             contacts.saddle_second[u, p][0] = contacts.saddle_second[u, q][0]
+        if ti.static(hasattr(contacts, STILL)):
+            contacts.still[u, p][0] = 0.0  # what was seen of it was another
 
     @ti.func
     def way_back(self, contacts: ti.template(), u, p, q):

@@ -89,7 +89,7 @@ class Rest:
     @ti.func
     def note(self, g: ti.template(), pairs: ti.template(), w, i, j, u, p, c, d, dt):
         """Remember contact p and the saddle before it as the rule has just seen them, if that is of use."""
-        still = self.still(g, pairs, w, i, j, u, p, c)
+        still = self.still(g, pairs, w, i, j, u, p, c, d)
         turns = g.reach[w, i] * ti.abs(g.spin_now[w, i]) + g.reach[w, j] * ti.abs(g.spin_now[w, j])
         speed = ti.abs(g.now_y[w, i] - g.now_y[w, j]) + ti.abs(g.now_z[w, i] - g.now_z[w, j]) + turns
         still = ti.select(speed * dt < still, still, 0.0 * still)
@@ -107,7 +107,7 @@ class Rest:
                 pairs.saddle_point_y[u, p][0], pairs.saddle_point_z[u, p][0] = d[POINT_Y], d[POINT_Z]
 
     @ti.func
-    def still(self, g: ti.template(), pairs: ti.template(), w, i, j, u, p, c):
+    def still(self, g: ti.template(), pairs: ti.template(), w, i, j, u, p, c, d):
         """How far (m) the grains of a contact that the rule has just seen may move before it is asked again."""
         hardly = HARDLY * lesser(g.radius[w, i], g.radius[w, j])
         # A rule may know that there is a gap, and not where.
@@ -116,4 +116,5 @@ class Rest:
         if ti.static(self.bent):
             watched = pairs.saddle_first[u, p][0] >= 0.0
         still = ti.select(watched, still, greater(still, -c[OVERLAP]))
-        return ti.select(c[HOLDS] == 1.0, still, 0.0 * still)
+        ended = d[OVERLAP] > 0.0 and d[HOLDS] == 0.0  # a saddle that counts a last time
+        return ti.select(c[HOLDS] == 1.0 and not ended, still, 0.0 * still)

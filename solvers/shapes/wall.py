@@ -4,9 +4,11 @@ import numpy as np
 import taichi as ti
 
 from solvers.runtime import Arrays
+from solvers.shapes.pose import turned, turned_back
 from solvers.walls import AFTER_Y, AFTER_Z, ALONG_Y, ALONG_Z, LENGTH, PART, TWO_SIDED, Walls, Y, Z
 
 ENDLESS = 1e3  # m
+FAR = 1e3  # of an outline's size
 
 
 @ti.data_oriented
@@ -46,6 +48,23 @@ class SeenWalls:
         before = ny * self.walls.table[feature, ALONG_Y] + nz * self.walls.table[feature, ALONG_Z]
         after = ny * self.walls.table[feature, AFTER_Y] + nz * self.walls.table[feature, AFTER_Z]
         return before > 0.0 and after < 0.0
+
+    @ti.func
+    def corner_contact(self, g: ti.template(), tables: ti.template(), w, i, feature, shift: ti.template()):
+        """A corner in grain i by polar radius: overlap (m), normal, point from its centre (m), 1.0: it holds."""
+        away = self.walls.from_start(feature, shift, g.y[w, i], g.z[w, i])
+        corner = -ti.Vector([ti.cast(away[0], g.real), ti.cast(away[1], g.real)])
+        own = turned_back(g.turn(w, i), corner)
+        distance = own.norm()
+        radius = g.radius[w, i] * tables.radius_and_slope(g.shape[w, i], own[0], own[1])
+        tilt = radius[0] / ti.sqrt(radius[0] ** 2 + radius[1] ** 2)
+        outward = ti.Vector([radius[0] * own[0] + radius[1] * own[1], radius[0] * own[1] - radius[1] * own[0]])
+        normal = -turned(g.turn(w, i), outward * tilt / (radius[0] * distance))
+        overlap = (radius[0] - distance) * tilt
+        if not self.counts_on_corner(feature, normal[0], normal[1]):
+            overlap = -FAR
+        point = corner - overlap * normal
+        return ti.Vector([overlap, normal[0], normal[1], point[0], point[1], 1.0])
 
 
 def _ends(walls: Walls) -> np.ndarray:

@@ -89,6 +89,24 @@ def test_energy_of_collisions_at_the_automatic_step(outline, speed, young, withi
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize(
+    ("outline", "speed", "young", "nodes"),
+    [
+        pytest.param(ROUGH, 0.3, ACETATE, 500, id="rough"),
+        pytest.param(ROUGH, 1.0, 3e7, 500, id="soft and rough"),
+        pytest.param(NEEDLE, 10.0, ACETATE, 200, id="needles, 10 m/s"),
+        pytest.param(TRIANGLE, 10.0, ACETATE, 200, id="triangles, 10 m/s"),
+        pytest.param(star(5, 0.25), 1.0, 3e7, 200, id="stars that interlock"),
+        pytest.param(STAR, 1.0, 3e7, 200, id="D3 and D8"),
+    ],
+)
+def test_energy_of_collisions_by_shared_areas(outline, speed, young, nodes):
+    change, met = collisions(outline, "area", speed, young, nodes)
+    assert met > WORLDS // 2
+    assert np.abs(change).max() < 1e-2
+
+
+@pytest.mark.slow
 @pytest.mark.xfail(reason="the deepest node jumps from lobe to lobe, and energy with it", strict=True)
 def test_a_rough_disc_of_500_nodes_keeps_its_energy():
     change, met = collisions(ROUGH, "nodes", 1.0, 3e7, 500)
