@@ -473,6 +473,16 @@ def speed(studies: tuple[str, ...], out: Path, fast: bool) -> None:
 @bench.command()
 @page_option
 @fast_option
+def outlines(out: Path, fast: bool) -> None:
+    """How irregular grains touch: what energy each rule loses, by nodes, and what a step costs."""
+    from lab.bench.outlines import run_page
+
+    click.echo(run_page(out, fast))
+
+
+@bench.command()
+@page_option
+@fast_option
 def gpu(out: Path, fast: bool) -> None:
     """Correctness against the CPU and speed on CUDA and Vulkan, where there is such a device."""
     from lab.bench.gpu import run_page
