@@ -72,6 +72,7 @@ def test_what_is_there_is_not_run_again(page, capsys, monkeypatch):
     assert "wedged" not in Records(folder / "older.json", fast=True)
 
 
+@pytest.mark.slow
 def test_a_case_passes_and_leaves_a_page(tmp_path):
     assert stability.run_cases(("wedged",), tmp_path, True)
     text, data = (tmp_path / "stability.md").read_text(), json.loads((tmp_path / "stability.json").read_text())

@@ -205,6 +205,7 @@ def test_energy_never_increases_and_momentum_is_kept(bench):
     assert np.all(np.abs(momenta(bench) - before)[:, free] < [[1e-12], [1e-12], [1e-9]] * scale)
 
 
+@pytest.mark.slow
 def test_momentum_is_exact_without_walls():
     """Many grains at once, of many sizes, with every kind of memory."""
     random = np.random.default_rng(3)

@@ -73,6 +73,7 @@ def test_another_process_on_two_threads_gives_the_same_bits(batch, tmp_path):
         assert_same_bits(batch[-1], dict(state))
 
 
+@pytest.mark.slow
 def test_a_world_alone_does_what_it_does_among_others(batch):
     (alone,) = run(worlds=range(1))
     assert_same_bits(alone, {name: values[:1] for name, values in batch[-1].items()})

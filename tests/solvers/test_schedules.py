@@ -31,7 +31,7 @@ UNITS = {"per-world": 1, "two bands": 2, "three bands": 3, "per-grain": COUNT}
 TANKS = {"open": ("mindlin", (LID,)), "closed": ("haff-werner", ())}
 TRIED = {"per-world": "open", "two bands": "open", "three bands": "closed", "per-grain": "open"}
 COSTLY = pytest.mark.slow  # of schedules that another one stands for in the quick tests
-SCHEDULES = [pytest.param(name, marks=COSTLY if name in ("three bands", "per-grain") else ()) for name in TRIED]
+SCHEDULES = [pytest.param(name, marks=() if name == "per-world" else COSTLY) for name in TRIED]
 
 
 def start() -> tuple[np.ndarray, np.ndarray]:

@@ -1,5 +1,7 @@
 """The rule of shared areas: exact for the polygons that stand for outlines, of which it keeps the energy."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 import taichi as ti
@@ -15,7 +17,7 @@ from solvers.shapes.overlap_area import area_contacts
 from solvers.shapes.polygons import AREA, PUSH_X, PUSH_Y, XY, YX, Polygons
 from solvers.shapes.pose import turned_back
 
-COUNT, SOME = 400, 80  # pairs; those that are looked at one by one
+COUNT, SOME = 400, 40  # pairs; those that are looked at one by one
 MARGIN = 0.1
 SHAKEN = 1e-6  # m and rad, to see gradients
 ROUGH = Contour(1.0, [0.0] * 49 + [0.0133], [0.0] * 50)
@@ -120,9 +122,14 @@ class Shared:
             self.contact[p, n] = contact[n]
 
 
+@cache
+def shared(nodes):
+    return Shared(nodes)
+
+
 @pytest.fixture(scope="module")
 def polygons():
-    return Shared(100)
+    return shared(100)
 
 
 @pytest.fixture(scope="module")
@@ -204,7 +211,7 @@ def test_force_and_torque_are_the_gradient_of_the_area(polygons, pairs, wall):
 
 def test_areas_come_to_those_of_the_outlines_with_the_square_of_the_nodes(pairs):
     smooth = np.array([sum(one.area for one in area_contacts(*pairs.placed(OUTLINES, k))) for k in range(SOME)])
-    error = [np.abs(Shared(nodes).of(pairs)[0][:SOME, AREA] - smooth) for nodes in (200, 400)]
+    error = [np.abs(shared(nodes).of(pairs)[0][:SOME, AREA] - smooth) for nodes in (200, 400)]
     # Of the mean, since an outline with 50 lobes is not seen by so few nodes; and of most that is 2.
     assert np.median(error[1]) < 1e-4
     assert np.median(error[0]) / np.median(error[1]) == pytest.approx(4.0, rel=0.25)
@@ -216,7 +223,7 @@ def test_discs_and_ellipses_against_closed_forms():
     way, angle = random.uniform(-np.pi, np.pi, COUNT), random.uniform(-np.pi, np.pi, (COUNT, 2))
     towards, shape = np.stack([np.cos(way), np.sin(way)], axis=1), np.full((COUNT, 2), DISC)
     overlap = random.uniform(1e-3, 0.03, COUNT)
-    scale, polygons = random.uniform(0.5, 2.0, (COUNT, 2)), Shared(400)
+    scale, polygons = random.uniform(0.5, 2.0, (COUNT, 2)), shared(400)
     place = np.stack([0.0 * towards, (scale.sum(axis=1) - overlap)[:, None] * towards], axis=1)
     contact = polygons.of(Pairs(shape, scale, angle, place))[1]
     assert np.abs(contact[:, 0] / overlap - 1.0).max() < 0.02

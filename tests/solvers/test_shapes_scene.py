@@ -113,7 +113,11 @@ def momenta(simulation):
 
 @pytest.mark.parametrize(
     ("contact", "other"),
-    [("continuous", rice), *(pytest.param(rule, corn, marks=pytest.mark.slow) for rule in CONTACTS)],
+    [
+        ("area", rice),
+        pytest.param("continuous", rice, marks=pytest.mark.slow),
+        *(pytest.param(rule, corn, marks=pytest.mark.slow) for rule in CONTACTS),
+    ],
 )
 def test_momenta_are_kept_with_friction_and_losses(contact, other):
     simulation = collision(contact, [rice(), other()])
