@@ -187,6 +187,7 @@ def surface(position: np.ndarray, radius: np.ndarray, width: float) -> np.ndarra
     return np.where(square > 0.0, position[:, 1] + np.sqrt(np.maximum(square, 0.0)), 0.0).max(axis=1)
 
 
+@pytest.mark.slow
 def test_a_bed_settles_to_the_depth_asked_for():
     """Softened grains in a tank that will sway, but stands still until they rest."""
     width, depth, diameter, spread, rest = 0.12, 0.05, 6e-3, 0.1, 1e-5

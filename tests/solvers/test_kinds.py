@@ -30,10 +30,9 @@ def scene(kind, outline, **more) -> Scene:
     return Scene(radius, outline, KINDS[0], material(restitution=0.8), kind=np.asarray(kind), **kinds, **more)
 
 
-@pytest.mark.parametrize("schedule", ["per-world", pytest.param("per-grain", marks=pytest.mark.slow)])
-@pytest.mark.parametrize(
-    ("normal", "tangential"), [LAWS[0], *(pytest.param(*laws, marks=pytest.mark.slow) for laws in LAWS[1:])]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("schedule", ["per-world", "per-grain"])
+@pytest.mark.parametrize(("normal", "tangential"), LAWS)
 def test_each_pair_of_kinds_has_its_own_collision(normal, tangential, schedule):
     """Head-on, by masses as they are: the restitution is that of the pair, from either side, exactly where the law has
     the pair's own masses in it and elsewhere by the mass that the scene takes for the pair, which is the same."""

@@ -63,6 +63,7 @@ def batch():
     return early, last
 
 
+@pytest.mark.slow
 def test_another_process_on_two_threads_gives_the_same_bits(batch, tmp_path):
     here, file = Path(__file__).parent, tmp_path / "state.npz"
     code = f"import numpy, test_reproducible; numpy.savez({str(file)!r}, **test_reproducible.run(threads=2)[-1])"
