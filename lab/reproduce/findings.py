@@ -50,9 +50,11 @@ def read_findings(path: Path, experiments: Mapping[str, Experiment], quick: bool
 
 
 def write_findings(path: Path, findings: Mapping[str, Finding]) -> None:
-    """Keep what was found."""
+    """Keep what was found; the old file stays until the new one is whole."""
     text = json.dumps({name: asdict(finding) for name, finding in findings.items()}, indent=1, ensure_ascii=False)
-    path.write_text(text + "\n", encoding="utf-8")
+    part = path.with_suffix(".part")
+    part.write_text(text + "\n", encoding="utf-8")
+    part.replace(path)
 
 
 def asked(batches: Mapping[str, Batch]) -> str:

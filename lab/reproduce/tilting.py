@@ -212,9 +212,8 @@ EXPERIMENTS = [
         similar,
         LOST,
         ("B", 0.8),
-        "The three have the same friction, so in tanks of as many diameters they differ by how far their weight "
-        "presses them into each other alone, and slopes of hard grains do not know that: A and B slide alike "
-        "within the scatter.",
+        "The three have the same friction, so in tanks of as many diameters they differ mostly by how far their weight "
+        "presses them into each other, which slopes of hard grains do not know: A and B slide alike within scatter.",
     ),
     Experiment(
         "tilt-surface",
@@ -243,7 +242,7 @@ EXPERIMENTS = [
         LOST,
         ("low walls", 0.7),
         "Here grains reach the rim in numbers only once the bed slides. The source compares single beds at several "
-        "rates, and slides scatter among beds by as much as the lead that it sees.",
+        "rates, and slides scatter by 2.3 deg among ours: four beds do not settle whether there is a lead.",
     ),
     Experiment(
         "tilt-fill",
