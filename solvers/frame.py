@@ -10,6 +10,7 @@ from collections.abc import Sequence
 import numpy as np
 import taichi as ti
 
+from solvers.motions.steered import Steered
 from solvers.runtime import Arrays
 
 
@@ -45,7 +46,20 @@ class Frame:
         self.moving = bool(self.kinds)
         self.gravity = arrays.holding(np.array([gravity]), arrays.exact)
         table = np.array([[value for p in row for value in p] for row in rows]).reshape(len(rows), -1)
-        self.table = arrays.holding(table if table.size else np.zeros((len(rows), 1)), arrays.exact)
+        self.table = arrays.holding(table if table.size else np.zeros((len(rows), 1)), arrays.exact, kept=self.steered)
+
+    @property
+    def steered(self) -> bool:
+        """Whether a hand moves the tank."""
+        return any(isinstance(motion, Steered) for motion in self.kinds)
+
+    def steer(self, time: float, pieces: Sequence[np.ndarray]) -> None:
+        """Have each motion follow its polynomial (6,) from a time (s) on, in every world; all must be steered."""
+        table = self.table.to_numpy()
+        for first, coefficients in zip(self.first, pieces, strict=True):
+            table[:, first + 2] = time
+            table[:, first + 3 : first + 3 + len(coefficients)] = coefficients
+        self.table.from_numpy(table)
 
     @ti.func
     def kinematics(self, w, time):

@@ -1,12 +1,14 @@
 """A running simulation: the scene's arrays, its clock, and the calls that advance and read it."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from solvers import renumber, runtime, watch
 from solvers.clock import Clock
 from solvers.contacts import Contacts
+from solvers.errors import Unavailable
 from solvers.frame import Frame
 from solvers.grains import Grains
 from solvers.integrators import INTEGRATORS
@@ -32,6 +34,7 @@ from solvers.walls import Walls
 LOOK_FOR_MIXING = 0.25  # s, between looks at whether the grains' numbers still follow their places
 SKIN = 0.05  # of the mean diameter; in settled and in shaken beds the fastest of 0.05 … 0.3
 RULES = {"continuous": Continuous, "nodes": Discrete, "area": Area}  # of contact between outlines
+SHORTER = 0.9  # of the limit on the step: how much shorter one may come to be while the grains move
 AT_REST = -1e9  # a time long before any motion starts
 LOAD = ("wall_y", "wall_z", "wall_moment")
 
@@ -58,6 +61,7 @@ class Simulation:
         runtime.initialise(self.threads, self.arch, scene.precision)
         worlds, count = scene.radius.shape
         self.scene, self.dt = scene, scene.time_step()
+        self.longest_step = scene.step_limits()[0].step  # s, at which it was made
         self.schedule_name = choose_schedule(scene.schedule, self.arch, worlds, count, self.threads, self.afloat)
         self.units_a_world = units or units_a_world(self.schedule_name, worlds, count, self.threads)
         self.skin = skin or SKIN * 2.0 * scene.mean_radius
@@ -227,6 +231,25 @@ class Simulation:
             tell(self.steps * self.dt)
         self.start_clock()
         return bool(np.all(quiet >= 2))
+
+    def steer(self, pieces: Sequence[np.ndarray]) -> None:
+        """From now on, have the scene's motions, all of them steered, follow these polynomials (6,)."""
+        self.frame.steer(self.time, pieces)
+
+    def alter(self, **changes: object) -> None:
+        """Go on with other materials or another gravity: fields of the scene. The grains stay as they are.
+
+        Raises Unavailable for what asks for shorter steps, or lets liquid reach farther, than the arrays were made for.
+        """
+        altered = replace(self.scene, **changes)
+        if altered.step_limits()[0].step < SHORTER * self.longest_step:
+            raise Unavailable("this asks for shorter time steps: start the experiment anew with it")
+        if altered.longest_bridge > self.scene.longest_bridge:
+            raise Unavailable("this lets the liquid reach farther: start the experiment anew with it")
+        self.scene = altered
+        self.frame.gravity.fill(altered.gravity)
+        self.neighbours.laws.learn(altered.interfaces_of)
+        self.neighbours.expire()  # what was worked out for each contact is worked out anew
 
     def start_clock(self) -> None:
         """The tank's motion begins now, at time zero."""

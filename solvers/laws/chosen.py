@@ -26,12 +26,18 @@ class ChosenLaws:
         self.normal, self.tangential, self.rolling, self.cohesion = normal, tangential, rolling, cohesion
         self.cohesive = cohesion.pulls
         laws = (normal, tangential, rolling, *([cohesion] if self.cohesive else []))
+        self.laws = laws
         self.tables = [arrays.holding(self.tabulate(law, interfaces)) for law in laws]
         self.constants = tuple(name for law in laws for name in law.constants)
         self.memory = tuple(name for law in laws for name in law.memory)
         self.counts = tuple(len(law.constants) for law in laws)
         # A torque turns its sign where the first and the second grain change places; forces along n and t do not.
         self.odd = [law is rolling for law in laws for _ in law.memory]
+
+    def learn(self, interfaces) -> None:
+        """Have the coefficients of other interfaces from the next lists of contacts on."""
+        for law, table in zip(self.laws, self.tables, strict=True):
+            table.from_numpy(self.tabulate(law, interfaces))
 
     @staticmethod
     def tabulate(law, interfaces) -> np.ndarray:
