@@ -60,8 +60,8 @@ class Run:
         afloat = bool(self.scene.vessels)
         return choose_schedule(settings.schedule, arch, worlds, count, threads, afloat) != "per-band"
 
-    def make_recording(self) -> None:
-        """Make the recording, without rows yet. Raises LabError (see `new_recording`)."""
+    def make_recording(self, steered: bool = False) -> None:
+        """Make the recording, without rows yet, of a run that a hand may steer. Raises LabError (`new_recording`)."""
         preset, scene = self.loaded.resolved, self.scene
         new_recording(
             self.folder,
@@ -76,6 +76,7 @@ class Run:
             open_edges=scene.open_edges,
             parts={name: part.points for name, part in preset.parts.items()},
             shapes=Outlines(scene.shapes.outlines, classes(preset), scene.shapes.which) if scene.shapes else None,
+            steered=steered,
         )
 
 
@@ -204,7 +205,7 @@ class Launch:
     def _write(self, rows: Mapping[str, np.ndarray], picture: bool) -> None:
         """Add a row to every recording, and a frame where one is due."""
         now = self._simulation.time
-        sample, frame = _sample(rows), {}
+        sample, frame = sampled(rows), {}
         if picture:
             frame = self._frame(rows)
         for recorder, worlds in zip(self._recorders, self._worlds(), strict=True):
@@ -214,7 +215,7 @@ class Launch:
 
     def _frame(self, rows: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
         """What is pictured of all worlds now."""
-        return {"pose": _pose(rows), "part": self._simulation.part_places(), **self._simulation.snapshot()}
+        return {"pose": pose_of(rows), "part": self._simulation.part_places(), **self._simulation.snapshot()}
 
     def _end_capsized(self, rows: Mapping[str, np.ndarray], pictured: bool) -> None:
         """End the runs all of whose ships have capsized, with a last picture; the others go on."""
@@ -287,15 +288,15 @@ def _without(
     return {name: values if values.shape == fewer[name].shape else others(values) for name, values in state.items()}
 
 
-def _pose(rows: Mapping[str, np.ndarray]) -> np.ndarray:
+def pose_of(rows: Mapping[str, np.ndarray]) -> np.ndarray:
     return np.stack([rows["pose_y"], rows["pose_z"], rows["pose_angle"]], axis=-1)
 
 
-def _sample(rows: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+def sampled(rows: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
     """What an observation adds to the series."""
     kept = ("kinetic", "rotational", "potential", "elastic", "contacts", "overlap", "spilled")
     return {
-        "pose": _pose(rows),
+        "pose": pose_of(rows),
         "pose_rate": np.stack([rows["rate_y"], rows["rate_z"], rows["rate_angle"]], axis=-1),
         "centre_of_mass": np.stack([rows["centre_y"], rows["centre_z"]], axis=-1),
         "wall_force": np.stack([rows["wall_y"], rows["wall_z"], rows["wall_moment"]], axis=-1),

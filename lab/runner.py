@@ -55,7 +55,7 @@ def run_preset(
     recorded until then stays, with its summary and what `resume_run` needs.
     """
     loaded = load(name, overrides)
-    folder = Path(out) if out is not None else _free_folder(RENDERS / loaded.name)
+    folder = Path(out) if out is not None else free_folder(RENDERS / loaded.name)
     with Progress(quiet) as progress, hint(folder):
         run = prepare(loaded, folder)
         with only_one(folder):
@@ -159,7 +159,7 @@ def _film(folder: Path, progress: Progress) -> Path:
     return path
 
 
-def _free_folder(wanted: Path) -> Path:
+def free_folder(wanted: Path) -> Path:
     """`wanted`, or the first of wanted-2, wanted-3 … that holds no recording yet."""
     for number in range(1, 10_000):
         folder = wanted if number == 1 else wanted.with_name(f"{wanted.name}-{number}")

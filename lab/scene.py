@@ -1,5 +1,6 @@
 """From a resolved preset to the solver's scene and the grains' starting places."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 from math import ceil
 
@@ -11,6 +12,7 @@ from lab.errors import LabError
 from lab.schema import Resolved
 from lab.ship import make_vessel
 from solvers.filling import NONE_FIXED, DoesNotFit, count_for_depth, headroom, lattice, start_positions
+from solvers.motions.steered import Steered
 from solvers.relaxing import relaxed
 from solvers.scene import Scene
 from solvers.shapes.given import Shapes
@@ -59,8 +61,10 @@ def _farthest(preset: Resolved) -> float:
     return max(0.5 * grains.range[1] * shape.reach for grains, shape in alone)
 
 
-def build(preset: Resolved) -> tuple[Scene, np.ndarray]:
+def build(preset: Resolved, hands: Sequence[Steered] | None = None) -> tuple[Scene, np.ndarray]:
     """The scene of all repeats and positions (W, n, 2) m to settle from; repeat w has the seed run.seed + w.
+
+    hands: what moves the tanks in place of the preset's motions.
 
     The positions lie within `filling_outline`; listed grains that overlap too deeply to settle are moved apart. The
     step, by the level of accuracy unless given, divides the sampling interval of the series, so samples fall on steps.
@@ -80,7 +84,7 @@ def build(preset: Resolved) -> tuple[Scene, np.ndarray]:
         cohesion=preset.contact.cohesion,
         stiffness_scale=preset.contact.stiffness_scale,
         gravity=preset.run.gravity,
-        motions=[tuple(preset.motion.parts.values())] * len(radius),
+        motions=[tuple(preset.motion.parts.values() if hands is None else hands)] * len(radius),
         soft_start=preset.motion.soft_start,
         sizes=(0.5 * low, 0.5 * high),
         fixed=fixed_grains(preset),

@@ -27,6 +27,8 @@ SERIES = {
 SHIP_SERIES = {"ship_works": (4,), "capsized": ()}
 GRAIN_FRAMES = {"position": (2,), "velocity": (2,), "angle": (), "spin": ()}
 WORLD_FRAMES = {"pose": (3,)}  # and "part" (P, 2), the displacement of each moving part
+# What a hand did in `cargolab view`: which control (see `lab.view.controls`) it set to which value (SI), and when.
+STEERING = {"time": ((), "f8"), "name": ((), "S32"), "value": ((), "f8")}
 
 CHUNK_BYTES = 2**19  # about what one reads of a data set at a time
 CHUNK_ROWS = 1024

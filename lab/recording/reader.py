@@ -10,7 +10,7 @@ import h5py
 import numpy as np
 
 from lab.errors import LabError, Useless
-from lab.recording.layout import A_MOMENT, FILE_NAME, FORMAT, PATIENCE, create_table, sentence, table_shapes
+from lab.recording.layout import A_MOMENT, FILE_NAME, FORMAT, PATIENCE, STEERING, create_table, sentence, table_shapes
 from lab.recording.outlines import GROUP, read_outlines
 
 
@@ -25,7 +25,8 @@ class Recording:
     series: "time" (T,) s and the names of SERIES, whole arrays (T, W, ...).
     frames: "time" (F,) s and the names of GRAIN_FRAMES and WORLD_FRAMES, (F, W, ...), read from the
     file by indexing: `recording.frames["position"][-1]`.
-    Both end where the shortest of their arrays ends. Raises LabError when the file is missing,
+    steering: what a hand did, as (time (s), control, value in SI), None where none moved the tank.
+    The tables end where the shortest of their arrays ends. Raises LabError when the file is missing,
     foreign or damaged.
     """
 
@@ -57,6 +58,8 @@ class Recording:
             shapes = table_shapes(*self.radius.shape, len(self.parts), bool(self.preset.get("ship")))
             self.series = Series(self._file["series"], shapes["series"], self.path)
             self.frames = Frames(self._file["frames"], shapes["frames"], self.path)
+            steering = Series(self._file["steering"], STEERING, self.path) if "steering" in self._file else None
+            self._steering = steering
             otherwise.pop_all()  # all is well: it stays open
 
     def _check_contents(self) -> None:
@@ -78,6 +81,14 @@ class Recording:
         for name, is_sound in sound.items():
             if not is_sound:
                 raise ValueError(f"{name} is not what the lab writes there")
+
+    @property
+    def steering(self) -> list[tuple[float, str, float]] | None:
+        """What a hand did, in its order."""
+        if self._steering is None:
+            return None
+        time, name, value = (self._steering[column].tolist() for column in STEERING)
+        return [(t, word.decode(errors="replace"), v) for t, word, v in zip(time, name, value, strict=True)]
 
     @property
     def worlds(self) -> int:
@@ -106,8 +117,10 @@ class Recording:
             for name in ("preset", "grains", "tank", GROUP):
                 if name in self._file:
                     self._file.copy(name, file)
-            for name, table in {"series": self.series, "frames": self.frames}.items():
-                table.copy_into(file.create_group(name))
+            tables = {"series": self.series, "frames": self.frames, "steering": self._steering}
+            for name, table in tables.items():
+                if table is not None:
+                    table.copy_into(file.create_group(name))
 
     def close(self) -> None:
         """Close the file; what was not read before cannot be read any more."""

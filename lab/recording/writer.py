@@ -16,7 +16,17 @@ import h5py
 import numpy as np
 
 from lab.errors import LabError
-from lab.recording.layout import A_MOMENT, FILE_NAME, FORMAT, PATIENCE, create_table, row_bytes, sentence, table_shapes
+from lab.recording.layout import (
+    A_MOMENT,
+    FILE_NAME,
+    FORMAT,
+    PATIENCE,
+    STEERING,
+    create_table,
+    row_bytes,
+    sentence,
+    table_shapes,
+)
 from lab.recording.outlines import GROUP, Outlines, outline_tables
 from lab.recording.reader import open_recording
 
@@ -43,6 +53,7 @@ def new_recording(
     parts: Mapping[str, np.ndarray] | None = None,
     shapes: Outlines | None = None,
     machine: Mapping | None = None,
+    steered: bool = False,
 ) -> Path:
     """Make the recording of a run, without rows yet; returns its file.
 
@@ -51,7 +62,8 @@ def new_recording(
     kind (W, n): numbers of the kinds of grains, 0 of the preset's material, or None;
     fixed (k, 3): y, z, radius m of grains that never move; open_edges: outline edges without a wall;
     parts: moving parts by name, polylines at rest (m, 2) m; shapes: outlines of irregular grains, None
-    where all are discs; machine: what runs it (added to what is found out here). The file appears under
+    where all are discs; machine: what runs it (added to what is found out here); steered: whether a hand
+    moves the tank. The file appears under
     its name when it is whole, so that it is readable from then on. Raises LabError when the folder
     cannot be written, is full, or already holds a recording.
     """
@@ -91,6 +103,8 @@ def new_recording(
                 file[f"{GROUP}/{name}"] = table
             for name, rows in table_shapes(*radius.shape, len(parts), bool(resolved.get("ship"))).items():
                 create_table(file.create_group(name), rows)
+            if steered:
+                create_table(file.create_group("steering"), STEERING)
         _publish(path)
     return path
 
@@ -142,6 +156,7 @@ class Recorder:
             self._file = _open_for_adding(self.path)
             self.wall_s, self.grain_steps = float(self._file.attrs["wall_s"]), int(self._file.attrs["grain_steps"])
             standing = {"series": samples, "frames": frames}
+            standing |= {"steering": 0} if "steering" in self._file else {}
             self._tables = {name: _Table(self._file[name], rows) for name, rows in standing.items()}
             self._spare = SPARE_BYTES + sum(table.chunk_bytes for table in self._tables.values())
             self._reserved = 0
@@ -157,6 +172,10 @@ class Recorder:
     def frame(self, values: Mapping[str, object]) -> None:
         """Add a picture frame: "time" (s), "pose" (W, 3), "part" (W, P, 2) m and GRAIN_FRAMES, (W, n, *shape) each."""
         self._add("frames", values)
+
+    def steer(self, time: float, name: str, value: float) -> None:
+        """Add what a hand did: it set a control to a value (SI) at a time (s)."""
+        self._add("steering", {"time": time, "name": name.encode(), "value": value})
 
     @property
     def rows(self) -> tuple[int, int]:

@@ -1,0 +1,107 @@
+"""What can be changed while an experiment runs, one line each; and what makes it start anew."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from math import pi
+
+from lab.schema import Resolved
+from solvers.scene import Scene
+
+MOVES, ALTERS, RESTARTS = "moves the tank", "at once", "starts anew"
+
+
+@dataclass(frozen=True)
+class Control:
+    """Something to be changed, from `low` to `high` (SI), shown in `unit`.
+
+    `own` tells a preset's own value, None where the control has no place in it. What ALTERS the scene has `changes`,
+    from scene and value to the fields that change; what RESTARTS names the preset's `key`.
+    """
+
+    label: str
+    unit: str
+    low: float
+    high: float
+    kind: str
+    own: Callable[[Resolved], float | None]
+    changes: Callable[[Scene, float], dict] | None = None
+    key: str = ""
+
+
+def _motion(name: str, quantity: str, otherwise: float) -> Callable[[Resolved], float | None]:
+    """A quantity of one of the preset's motions, or else what stands ready for it; ships move by themselves."""
+
+    def own(preset: Resolved) -> float | None:
+        part = getattr(preset.motion, name)
+        return None if preset.ship else getattr(part, quantity) if part else otherwise
+
+    return own
+
+
+def _centre(axis: int) -> Callable[[Resolved], float | None]:
+    def own(preset: Resolved) -> float | None:
+        part = preset.motion.roll or preset.motion.tilt
+        return None if preset.ship else part.centre[axis] if part else 0.0
+
+    return own
+
+
+def _materials(name: str) -> Callable[[Scene, float], dict]:
+    """The same value for all grains and walls."""
+
+    def changes(scene: Scene, value: float) -> dict:
+        return {
+            "grain": tuple(replace(material, **{name: value}) for material in scene.grain),
+            "wall": tuple(replace(material, **{name: value}) for material in scene.wall),
+            "others": tuple(replace(material, **{name: value}) for material in scene.others),
+        }
+
+    return changes
+
+
+def _humidity(preset: Resolved) -> float | None:
+    return preset.material.humidity if preset.contact.cohesion == "humid" else None
+
+
+def _waves(name: str) -> Callable[[Resolved], float | None]:
+    return lambda preset: getattr(preset.waves, name, None) if preset.ship and preset.waves else None
+
+
+CONTROLS: dict[str, Control] = {
+    "tilt": Control("tilt", "deg", -pi / 2, pi / 2, MOVES, _motion("tilt", "angle", 0.0)),
+    "tilt_rate": Control("rate of tilt", "deg/s", pi / 1800, pi / 3, MOVES, _motion("tilt", "rate", pi / 36)),
+    "sway": Control("sway", "mm", 0.0, 0.1, MOVES, _motion("sway", "amplitude", 0.0)),
+    "sway_frequency": Control("its frequency", "Hz", 0.1, 4.0, MOVES, _motion("sway", "frequency", 1.0)),
+    "heave": Control("heave", "mm", 0.0, 0.1, MOVES, _motion("heave", "amplitude", 0.0)),
+    "heave_frequency": Control("its frequency", "Hz", 0.1, 4.0, MOVES, _motion("heave", "frequency", 1.0)),
+    "roll": Control("roll", "deg", 0.0, pi / 4, MOVES, _motion("roll", "amplitude", 0.0)),
+    "roll_frequency": Control("its frequency", "Hz", 0.1, 3.0, MOVES, _motion("roll", "frequency", 0.5)),
+    "centre_y": Control("centre of roll, across", "mm", -0.5, 0.5, MOVES, _centre(0)),
+    "centre_z": Control("centre of roll, up", "mm", -0.5, 1.0, MOVES, _centre(1)),
+    "friction": Control(
+        "friction", "1", 0.0, 1.0, ALTERS, lambda preset: preset.material.friction, _materials("friction")
+    ),
+    "humidity": Control("humidity", "%", 0.3, 0.99, ALTERS, _humidity, _materials("humidity")),
+    "gravity": Control(
+        "gravity",
+        "m/s^2",
+        0.1,
+        9.81,
+        ALTERS,
+        lambda preset: None if preset.ship else preset.run.gravity,
+        lambda _, value: {"gravity": value},
+    ),
+    "wave_amplitude": Control("waves", "mm", 0.0, 0.05, RESTARTS, _waves("amplitude"), key="waves.amplitude"),
+    "wave_frequency": Control(
+        "their frequency", "rad/s", 2.0, 10.0, RESTARTS, _waves("frequency"), key="waves.frequency"
+    ),
+    "diameter": Control(
+        "grains", "mm", 1e-3, 1e-2, RESTARTS, lambda preset: preset.grains.diameter, key="grains.diameter"
+    ),
+}
+
+
+def offered(preset: Resolved) -> dict[str, float]:
+    """The controls that have a place in a preset, and its own values (SI)."""
+    found = {name: control.own(preset) for name, control in CONTROLS.items()}
+    return {name: float(value) for name, value in found.items() if value is not None}

@@ -1,0 +1,130 @@
+"""An experiment under a hand: it runs piece by piece, and records what it does and what is done to it.
+
+A piece is a sampling interval of the series. What a hand changes counts from the next piece on, so that the same
+changes at the same pieces give the same bits again, whoever gives them and whenever (`lab.view.replay`).
+"""
+
+from collections.abc import Callable, Mapping
+from contextlib import ExitStack
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from lab.beds import settled, settling
+from lab.errors import LabError
+from lab.launch import Run, pose_of, sampled
+from lab.presets import LoadedPreset
+from lab.progress import Progress
+from lab.recording import Recorder
+from lab.scene import build
+from lab.schema import Motion, Resolved
+from lab.view.controls import ALTERS, CONTROLS, MOVES, offered
+from lab.view.helm import Helm
+from solvers.errors import Unavailable
+from solvers.simulation import Simulation
+
+PICTURES = 25.0  # Hz at least, of the frames of what is watched
+
+
+@dataclass(frozen=True)
+class Seen:
+    """What stands at the end of a piece: its time (s), the observed rows (W,) and the grains (W, n) by name."""
+
+    time: float
+    rows: Mapping[str, np.ndarray]
+    grains: Mapping[str, np.ndarray]
+
+
+def under_a_hand(loaded: LoadedPreset) -> LoadedPreset:
+    """The preset without motions of its own, in one bed, with pictures often enough to be watched."""
+    preset = loaded.resolved
+    record = replace(preset.record, picture_rate=max(preset.record.picture_rate, PICTURES))
+    changes = {"motion": Motion(), "run": replace(preset.run, repeats=1), "record": record}
+    return LoadedPreset(loaded.name, loaded.given_text, preset.model_copy(update=changes))
+
+
+class Live:
+    """The experiment; a context manager. It starts with the tank at rest.
+
+    loaded: a preset as `under_a_hand` leaves it. Raises LabError and Unavailable where it cannot be run, BadState where
+    its bed cannot settle.
+    """
+
+    def __init__(self, loaded: LoadedPreset, folder: Path, progress: Progress) -> None:
+        preset = loaded.resolved
+        self.preset, self.folder, self.pieces = preset, folder, 0
+        self.helm = None if preset.ship else Helm(offered(preset))
+        self.run = Run(loaded, folder, *build(preset, Helm.hands() if self.helm else None))
+        self._end = ExitStack()
+        with ExitStack() as otherwise:
+            self.simulation = settled(self.run.scene, self.run.position, settling(preset), self._start, progress)
+            otherwise.callback(self.simulation.close)
+            self.run.make_recording(steered=True)
+            self.recorder = otherwise.enter_context(Recorder(folder))
+            self._end.push(otherwise.pop_all())
+        self.steps_a_piece = round(1.0 / (preset.record.series_rate * self.simulation.dt))
+        self._a_frame = max(1, round(preset.record.series_rate / preset.record.picture_rate))
+        self.seen = self._record()
+
+    def _start(self, scene, position) -> Simulation:
+        settings = self.preset.run
+        return Simulation(scene, position, threads=settings.threads, arch=settings.arch)
+
+    @property
+    def time(self) -> float:
+        """Model time (s)."""
+        return self.simulation.time
+
+    def set(self, name: str, value: float) -> None:
+        """Set a control, from the next piece on. Raises LabError for what cannot be changed while grains move."""
+        control = CONTROLS[name]
+        if control.kind == MOVES and self.helm:
+            self.helm.wanted[name] = value
+        elif control.kind == ALTERS:
+            try:
+                self.simulation.alter(**control.changes(self.simulation.scene, value))
+            except Unavailable as error:
+                raise LabError(f"{control.label}: {error}.") from None
+        else:
+            raise LabError(f"{control.label}: start the experiment anew with it.")
+        self.recorder.steer(self.time, name, value)
+
+    def advance(self, pause: Callable[[], None] = lambda: None, most: int | None = None) -> Seen:
+        """Take a piece, in calls of `most` steps with a pause after each. Raises BadState; what was recorded stays."""
+        if self.helm:
+            self.simulation.steer(self.helm.follow(self.steps_a_piece * self.simulation.dt))
+        target = self.simulation.steps + self.steps_a_piece
+        while self.simulation.steps < target:
+            self.simulation.advance(min(most or self.steps_a_piece, target - self.simulation.steps))
+            pause()
+        self.pieces += 1
+        self.seen = self._record()
+        return self.seen
+
+    def _record(self) -> Seen:
+        """Look, and add a row to the series and, where one is due, to the frames."""
+        rows, now = self.simulation.observe(), self.time
+        self.recorder.sample({"time": now, **sampled(rows)})
+        grains = self.simulation.snapshot()
+        if self.pieces % self._a_frame == 0:
+            part = self.simulation.part_places()
+            self.recorder.frame({"time": now, "pose": pose_of(rows), "part": part, **grains})
+        self.recorder.grain_steps = self.simulation.grain_steps
+        return Seen(now, {**rows, "part": self.simulation.part_places()}, grains)
+
+    def close(self, status: str = "complete") -> None:
+        """End the recording."""
+        self.recorder.close(status)
+        self._end.close()
+
+    def __enter__(self) -> "Live":
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        self._end.__exit__(*error)
+
+
+def own_motion(preset: Resolved) -> dict[str, float]:
+    """What sets the tank moving as the preset itself would."""
+    return {name: value for name, value in offered(preset).items() if CONTROLS[name].kind == MOVES}
