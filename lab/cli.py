@@ -148,6 +148,7 @@ def main() -> None:
     \b
     cargolab list                    what there is
     cargolab run tilting/quick       run one, with video, plot and summary
+    cargolab view tilting/quick      run one live in a window, under your hand
     cargolab explain tilting/quick   what it is and what it will cost
     cargolab sweep shaking/sway ...  run one for many values of its keys
     cargolab resume DIR              go on with a run or sweep that was cut short
@@ -166,8 +167,14 @@ def list_presets() -> None:
 
 
 @main.command()
-@click.argument("preset")
+@click.argument("preset", required=False)
 @set_option
+@click.option(
+    "--replay",
+    type=click.Path(path_type=Path),
+    metavar="DIR",
+    help="Instead of a preset: a recording of `cargolab view`, steered again as it was, bit for bit.",
+)
 @click.option(
     "--out",
     type=click.Path(path_type=Path, file_okay=False),
@@ -179,8 +186,9 @@ def list_presets() -> None:
 @video_option
 @quiet_option
 def run(
-    preset: str,
+    preset: str | None,
     overrides: dict,
+    replay: Path | None,
     out: Path | None,
     repeats: int | None,
     arch: str | None,
@@ -194,14 +202,64 @@ def run(
     cargolab run tilting/quick --set grains.diameter="4 mm" --repeats 12
     cargolab run shaking/roll --set motion.roll.centre='["0 mm", "0 mm"]' --out centre0
     cargolab run my.toml --no-video
+    cargolab run --replay renders/view/tilting/quick
     """
+    overrides |= _shortcuts(repeats, arch)
+    if replay is not None:
+        if preset is not None or overrides:
+            raise LabError("--replay: repeats a recording as it was; leave out the preset and all changes.")
+        from lab.view.replay import replay as replayed
+
+        _show(replayed(replay, out, video=not no_video, quiet=quiet), quiet)
+        return
+    if preset is None:
+        raise LabError("run: which preset? `cargolab list` shows all.")
     from lab.presets import load
 
-    overrides |= _shortcuts(repeats, arch)
     load(preset, overrides)  # before the slow imports, so that a slip is answered at once
     from lab.runner import run_preset
 
     _show(run_preset(preset, overrides, out, video=not no_video, quiet=quiet), quiet)
+
+
+@main.command()
+@click.argument("preset")
+@set_option
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path, file_okay=False),
+    metavar="DIR",
+    help="Folder for what is recorded.  [default: renders/view/PRESET]",
+)
+@click.option("--size", default="1280x720", show_default=True, metavar="WIDTHxHEIGHT", help="Of the window, in pixels.")
+@click.option(
+    "--window",
+    type=click.Choice(["auto", "ggui", "gui"]),
+    default="auto",
+    help="GGUI needs Vulkan; gui is drawn by the processor.  [default: the first that opens]",
+)
+def view(preset: str, overrides: dict, out: Path | None, size: str, window: str) -> None:
+    """Run PRESET live in a window: tilt and shake the tank, change friction, look back, keep what you saw.
+
+    \b
+    cargolab view tilting/quick
+    cargolab view shaking/sway-quick --set grains.diameter="4 mm" --size 1920x1080
+    cargolab run --replay renders/view/tilting/quick      the same again, without a window
+    """
+    from lab.presets import load
+
+    load(preset, overrides)
+    from lab.view.windows import open_window
+
+    click.echo(open_window(preset, overrides, _pixels(size), out, window))
+
+
+def _pixels(text: str) -> tuple[int, int]:
+    """Width and height from 1280x720."""
+    width, _, height = text.lower().partition("x")
+    if not (width.isdigit() and height.isdigit() and 640 <= int(width) <= 7680 and 360 <= int(height) <= 4320):
+        raise LabError(f"--size {quoted(text)[1:-1]}: write it like --size 1280x720; at least 640x360.")
+    return int(width), int(height)
 
 
 @main.command()

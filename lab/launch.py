@@ -60,6 +60,12 @@ class Run:
         afloat = bool(self.scene.vessels)
         return choose_schedule(settings.schedule, arch, worlds, count, threads, afloat) != "per-band"
 
+    @property
+    def outlines(self) -> Outlines | None:
+        """The outlines of irregular grains, None where all are discs."""
+        shapes = self.scene.shapes
+        return Outlines(shapes.outlines, classes(self.loaded.resolved), shapes.which) if shapes else None
+
     def make_recording(self, steered: bool = False) -> None:
         """Make the recording, without rows yet, of a run that a hand may steer. Raises LabError (`new_recording`)."""
         preset, scene = self.loaded.resolved, self.scene
@@ -75,7 +81,7 @@ class Run:
             fixed=scene.fixed,
             open_edges=scene.open_edges,
             parts={name: part.points for name, part in preset.parts.items()},
-            shapes=Outlines(scene.shapes.outlines, classes(preset), scene.shapes.which) if scene.shapes else None,
+            shapes=self.outlines,
             steered=steered,
         )
 

@@ -7,6 +7,7 @@ from math import pi
 from lab.schema import Resolved
 from solvers.scene import Scene
 
+UNITS = {"deg": pi / 180, "deg/s": pi / 180, "mm": 1e-3, "%": 1e-2}  # in SI; all others are SI
 MOVES, ALTERS, RESTARTS = "moves the tank", "at once", "starts anew"
 
 
@@ -26,6 +27,11 @@ class Control:
     own: Callable[[Resolved], float | None]
     changes: Callable[[Scene, float], dict] | None = None
     key: str = ""
+
+    def shown(self, value: float) -> str:
+        """A value (SI) with its unit."""
+        number = f"{value / UNITS.get(self.unit, 1.0):.3g}"
+        return number if self.unit == "1" else f"{number} {self.unit}".replace("^2", "²").replace(" deg", "°")
 
 
 def _motion(name: str, quantity: str, otherwise: float) -> Callable[[Resolved], float | None]:
@@ -76,8 +82,8 @@ CONTROLS: dict[str, Control] = {
     "heave_frequency": Control("its frequency", "Hz", 0.1, 4.0, MOVES, _motion("heave", "frequency", 1.0)),
     "roll": Control("roll", "deg", 0.0, pi / 4, MOVES, _motion("roll", "amplitude", 0.0)),
     "roll_frequency": Control("its frequency", "Hz", 0.1, 3.0, MOVES, _motion("roll", "frequency", 0.5)),
-    "centre_y": Control("centre of roll, across", "mm", -0.5, 0.5, MOVES, _centre(0)),
-    "centre_z": Control("centre of roll, up", "mm", -0.5, 1.0, MOVES, _centre(1)),
+    "centre_y": Control("centre of roll, y", "mm", -0.5, 0.5, MOVES, _centre(0)),
+    "centre_z": Control("centre of roll, z", "mm", -0.5, 1.0, MOVES, _centre(1)),
     "friction": Control(
         "friction", "1", 0.0, 1.0, ALTERS, lambda preset: preset.material.friction, _materials("friction")
     ),

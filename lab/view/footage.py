@@ -1,0 +1,118 @@
+"""What has been seen of a live experiment, as the painter looks at it (`lab.paint.footage.Footage`), growing."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+from lab.launch import pose_of
+from lab.paint.footage import Bed
+from lab.paint.painter import Edges
+from lab.paint.sea import Sea
+from lab.recording import Outlines
+from lab.view.live import Live, Seen
+
+MOST_BYTES = 2**30  # of grains kept in memory; the recording has all
+
+
+@dataclass(frozen=True)
+class Scenery:
+    """What stays the same in a live experiment; fields as of a `Footage`, for one world."""
+
+    preset: dict
+    name: str
+    folder: Path
+    radius: np.ndarray
+    kind: np.ndarray
+    outline: np.ndarray
+    open_edges: tuple[int, ...]
+    fixed: np.ndarray
+    parts: Mapping[str, np.ndarray]
+    shapes: Outlines | None
+    step: float
+
+    @classmethod
+    def of(cls, live: Live, preset: dict, name: str) -> "Scenery":
+        """That of an experiment that has just begun."""
+        scene, shapes = live.run.scene, live.run.outlines
+        kind = np.zeros(scene.radius.shape, dtype=int) if scene.kind is None else scene.kind
+        parts = {name: part.points for name, part in live.preset.parts.items()}
+        lines = {name: np.array(points) for name, points in parts.items()}
+        bounds = scene.outline, tuple(scene.open_edges), scene.fixed
+        return cls(preset, name, live.folder, scene.radius, kind, *bounds, lines, shapes, live.simulation.dt)
+
+
+class LiveFootage:
+    """The frames seen so far, of one world; the oldest go where they grow too many."""
+
+    worlds = 1
+
+    def __init__(self, scenery: Scenery) -> None:
+        self.scenery = scenery
+        for name in ("radius", "kind", "outline", "open_edges", "fixed", "parts", "shapes"):
+            setattr(self, name, getattr(scenery, name))
+        self.kinds = ["the rest", *(scenery.preset.get("kinds") or {})]
+        self.shape_names = list(scenery.preset.get("shapes") or {}) if self.shapes else ["disc"]
+        self.sea = Sea(scenery.preset) if scenery.preset.get("ship") else None
+        self.settings, self.title = scenery.preset["video"], scenery.preset["title"]
+        self._seen: list[Seen] = []
+        self._most = max(50, MOST_BYTES // (48 * self.radius.size))
+        self.lost = 0  # of the first frames
+
+    def add(self, seen: Seen) -> None:
+        """One more frame."""
+        self._seen.append(seen)
+        if len(self._seen) > self._most:
+            dropped = self._most // 10
+            del self._seen[:dropped]
+            self.lost += dropped
+
+    def __len__(self) -> int:
+        return len(self._seen)
+
+    @property
+    def time(self) -> np.ndarray:
+        """(F,) s."""
+        return np.array([seen.time for seen in self._seen])
+
+    @property
+    def pose(self) -> np.ndarray:
+        """(F, 1, 3) m, m, rad."""
+        return np.stack([pose_of(seen.rows) for seen in self._seen])
+
+    @property
+    def part(self) -> np.ndarray:
+        """(F, 1, P, 2) m."""
+        return np.stack([seen.rows["part"] for seen in self._seen])
+
+    def row(self, frame: int, name: str) -> float:
+        """A number of a frame."""
+        return float(self._seen[frame].rows[name][0])
+
+    def row_time(self, frame: int) -> float:
+        """When a frame was (s)."""
+        return self._seen[frame].time
+
+    def moved_parts(self, frame: int) -> np.ndarray:
+        """Displacements (P, 2) m of the parts in a frame."""
+        return self._seen[frame].rows["part"][0]
+
+    def curve(self, name: str, frames: np.ndarray) -> np.ndarray:
+        """A number of some frames."""
+        return np.array([self._seen[frame].rows[name][0] for frame in frames])
+
+    def grains(self, name: str, frame: int, world: int = 0) -> np.ndarray:
+        """What each grain has in a frame."""
+        return self._seen[frame].grains[name][world]
+
+    @cached_property
+    def bed(self) -> Bed:
+        """The only one."""
+        return Bed(self, 0, "")
+
+    @cached_property
+    def edges(self) -> Edges | None:
+        """The edges of irregular grains."""
+        return self.bed.edges

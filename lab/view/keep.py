@@ -1,0 +1,11 @@
+"""Video, figures and summary of what was kept of a live experiment, in a process of its own."""
+
+import sys
+from pathlib import Path
+
+from lab.progress import Progress
+from lab.runner import report
+
+if __name__ == "__main__":
+    with Progress(quiet=True) as progress:
+        report(Path(sys.argv[1]), progress, video=True)

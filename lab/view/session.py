@@ -1,0 +1,335 @@
+"""What a person has before them: the experiment as it is seen, and what keys, mouse and sliders do to it.
+
+A front end calls `tick`, shows `picture`, and passes on events in pixels of that picture and in names of keys.
+"""
+
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from lab.errors import LabError
+from lab.paint.colours import MODES
+from lab.runner import RENDERS, free_folder
+from lab.view.controls import CONTROLS, RESTARTS, offered
+from lab.view.footage import LiveFootage, Scenery
+from lab.view.page import Page
+from lab.view.worker import begin
+
+PACES = (0.02, 0.05, 0.1, 0.25, 0.5, 1.0, 2.0, 5.0, np.inf)
+NUDGE = np.radians(5.0)  # of the tilt, by a key
+CLICK = 4.0  # pixels: a mouse that moves less was not dragged
+ZOOM = 1.25
+SAID_FOR = 6.0  # s
+PATIENCE = 5.0  # s for the experiment to end
+OVERLAYS = ("nothing", "forces", "velocities")
+INSETS = ("shift", "tilt", "energy", "contacts", "nothing")
+
+
+@dataclass
+class Look:
+    """How the experiment is shown; `pan` in pixels."""
+
+    colour: str
+    frame: str
+    zoom: float = 1.0
+    pan: tuple[float, float] = (0.0, 0.0)
+    overlay: str = "nothing"
+    inset: str = "shift"
+    picked: int | None = None
+    help: bool = False
+
+
+@dataclass
+class Session:
+    """A preset under `overrides`, live in a window of `size` pixels; `panel`: whether the picture has the sliders.
+
+    playhead: the frame shown, None for the newest. Raises LabError where the preset cannot be run.
+    """
+
+    name: str
+    overrides: dict
+    size: tuple[int, int] = (1280, 720)
+    out: Path | None = None
+    panel: bool = True
+    ended: bool = field(default=False, init=False)
+
+    def __post_init__(self) -> None:
+        from lab.presets import load
+
+        video = load(self.name, self.overrides).resolved.video
+        self.look = Look(video.colour, video.frame)
+        self.page = Page(self.size, self.panel)
+        self.pace, self._said, self._grip = 1.0, ("", 0.0), None
+        self._restart(self.overrides)
+
+    def _restart(self, overrides: Mapping) -> None:
+        """Begin anew, with what a restart was asked for."""
+        self.overrides = dict(overrides)
+        self.footage: LiveFootage | None = None
+        self.values: dict[str, float] = {}
+        self.going, self.playhead, self.factor, self.over = False, None, 0.0, ""
+        self.status = "starting …"
+        folder = self.out or RENDERS / "view" / self.name.removesuffix(".toml")
+        self.folder = free_folder(folder)
+        self._process, self._pipe = begin(self.name, self.overrides, self.folder)
+
+    # What comes from the experiment
+
+    def tick(self) -> None:
+        """Take in what the experiment has sent."""
+        try:
+            while not self.over and self._pipe.poll():
+                word, what = self._pipe.recv()
+                getattr(self, f"_on_{word}")(what)
+        except (EOFError, ConnectionResetError):
+            self.over = self.over or "the experiment has ended unexpectedly."
+
+    def _on_told(self, sentence: str) -> None:
+        if self.footage is None:
+            self.status = sentence
+        else:
+            self.say(sentence)
+
+    def _on_ready(self, what: tuple[Scenery, dict]) -> None:
+        scenery, own = what
+        self.footage = LiveFootage(scenery)
+        self.values = offered(_resolved(scenery.preset)) | own
+        self._own = own
+        for name, value in own.items():
+            self._send("set", (name, value))
+        self._send("pace", self.pace)
+        self.go(True)
+
+    def _on_seen(self, what: tuple) -> None:
+        seen, self.factor = what
+        self.footage.add(seen)
+
+    def _on_kept(self, folder: Path) -> None:
+        self.say(f"kept in {folder}; its video and summary follow")
+        log = (folder / "report.log").open("wb")
+        subprocess.Popen([sys.executable, "-m", "lab.view.keep", str(folder)], stdout=log, stderr=log)
+
+    def _on_over(self, sentence: str) -> None:
+        self.over, self.going = sentence, False
+
+    def _send(self, word: str, what: object = None) -> None:
+        if not self.over:
+            try:
+                self._pipe.send((word, what))
+            except (BrokenPipeError, ConnectionResetError):
+                self.over = "the experiment has ended unexpectedly."
+
+    # What a person does
+
+    def say(self, sentence: str) -> None:
+        """Show a sentence for a while."""
+        self._said = sentence, time.monotonic()
+
+    @property
+    def said(self) -> str:
+        """The sentence to be shown now."""
+        sentence, when = self._said
+        return self.over or (sentence if time.monotonic() - when < SAID_FOR else "")
+
+    def go(self, going: bool) -> None:
+        """Run or pause; who goes on is back at the newest frame."""
+        self.going = going
+        if going:
+            self.playhead = None
+        self._send("go", going)
+
+    def set(self, name: str, value: float) -> None:
+        """Set a control (SI), within its range; what needs a restart waits for `restart`."""
+        if name not in self.values:
+            return
+        control = CONTROLS[name]
+        value = float(np.clip(value, control.low, control.high))
+        self.values[name] = value
+        if control.kind == RESTARTS:
+            self.say(f"{control.label}: {control.shown(value)} from the next start on; press R to start anew")
+        else:
+            self._send("set", (name, value))
+
+    def restart(self) -> None:
+        """Start anew with what was asked for; what was recorded stays where it is."""
+        asked = {
+            control.key: control.shown(self.values[name])
+            for name, control in CONTROLS.items()
+            if control.kind == RESTARTS and name in self.values and self._changed(name)
+        }
+        self._end_experiment()
+        try:
+            self._restart({**self.overrides, **asked})
+        except LabError as error:
+            self.over = str(error)
+
+    def _changed(self, name: str) -> bool:
+        given = offered(_resolved(self.footage.scenery.preset)).get(name) if self.footage else None
+        return given is not None and abs(given - self.values[name]) > 1e-9 * abs(given)
+
+    def keep(self) -> None:
+        """Have what was seen kept in a folder of its own, with video, figures and summary."""
+        self._send("keep", free_folder(self.folder.with_name(f"{self.folder.name}-kept")))
+
+    def rewind(self, frames: int) -> None:
+        """Go back or forth in what was seen, paused."""
+        if not self.footage or not len(self.footage):
+            return
+        if self.going:
+            self.go(False)
+        last = len(self.footage) - 1
+        now = last if self.playhead is None else self.playhead
+        wanted = int(np.clip(now + frames, 0, last))
+        self.playhead = None if wanted == last else wanted
+
+    def key(self, name: str) -> None:
+        """A key was pressed, by its name: a letter, space, left, right, up, down, end, escape."""
+        action = KEYS.get(name)
+        if action:
+            action[1](self)
+
+    def press(self, x: float, y: float, button: str = "left") -> None:
+        """The mouse was pressed."""
+        slider = self.page.slider_at(x, y)
+        centre = self.page.centre_at(self, x, y)
+        self._grip = ("slider", slider) if slider else ("centre",) if centre else ("stage", button)
+        self._start = self._last = (x, y)
+        self.drag(x, y)
+
+    def drag(self, x: float, y: float) -> None:
+        """The mouse was moved with its button down."""
+        if not self._grip:
+            return
+        what, (x0, y0) = self._grip[0], self._last
+        if what == "slider":
+            name = self._grip[1]
+            control = CONTROLS[name]
+            share = self.page.share_of_slider(name, x)
+            self.set(name, control.low + share * (control.high - control.low))
+        elif what == "centre":
+            y_centre, z_centre = self.page.earth_place(self, x, y)
+            self.set("centre_y", y_centre)
+            self.set("centre_z", z_centre)
+        elif self._grip[1] == "right":
+            self.set("tilt", self.values.get("tilt", 0.0) - np.radians(0.2) * (x - x0))
+        elif np.hypot(x - self._start[0], y - self._start[1]) > CLICK:
+            self.look.pan = (self.look.pan[0] + x - x0, self.look.pan[1] + y - y0)
+        self._last = (x, y)
+
+    def release(self, x: float, y: float) -> None:
+        """The mouse was let go; a click picks the grain below it."""
+        clicked = self._grip == ("stage", "left") and np.hypot(x - self._start[0], y - self._start[1]) <= CLICK
+        self._grip = None
+        if clicked and self.footage and len(self.footage):
+            self.look.picked = self.page.grain_at(self, x, y)
+
+    def wheel(self, turns: float) -> None:
+        """Zoom."""
+        self.look.zoom = float(np.clip(self.look.zoom * ZOOM**turns, 0.2, 50.0))
+
+    def picture(self) -> np.ndarray:
+        """The picture (height, width, 3), u8."""
+        return self.page.picture(self)
+
+    @property
+    def frame(self) -> int:
+        """The number of the frame shown."""
+        return len(self.footage) - 1 if self.playhead is None else min(self.playhead, len(self.footage) - 1)
+
+    def close(self) -> None:
+        """End the experiment; its recording is complete."""
+        self._end_experiment()
+        self.ended = True
+
+    def _end_experiment(self) -> None:
+        self._send("end")
+        until = time.monotonic() + PATIENCE
+        while self._process.is_alive() and time.monotonic() < until:
+            try:  # what it still has to say must not hold it up
+                while self._pipe.poll(0.02):
+                    self._pipe.recv()
+            except (EOFError, ConnectionResetError):
+                break
+        self._process.join(PATIENCE)
+        if self._process.is_alive():
+            self._process.terminate()
+        self._pipe.close()
+
+
+def _resolved(preset: Mapping):
+    from lab.schema import Resolved
+
+    return Resolved.model_validate(preset)
+
+
+def _next(words: tuple, now: str) -> str:
+    return words[(words.index(now) + 1) % len(words)]
+
+
+def _faster(steps: int) -> Callable[[Session], None]:
+    def action(session: Session) -> None:
+        place = int(np.clip(PACES.index(session.pace) + steps, 0, len(PACES) - 1))
+        session.pace = PACES[place]
+        session._send("pace", session.pace)
+
+    return action
+
+
+def _look(name: str, words: Callable[[Session], tuple]) -> Callable[[Session], None]:
+    return lambda session: setattr(session.look, name, _next(words(session), getattr(session.look, name)))
+
+
+def _tilt(nudge: float | None) -> Callable[[Session], None]:
+    return lambda session: session.set("tilt", 0.0 if nudge is None else session.values.get("tilt", 0.0) + nudge)
+
+
+def _calm(session: Session) -> None:
+    for name in ("sway", "heave", "roll", "tilt"):
+        session.set(name, 0.0)
+
+
+def _as_preset(session: Session) -> None:
+    for name, value in session._own.items():
+        session.set(name, value)
+
+
+def _one_piece(session: Session) -> None:
+    if session.going:
+        session.go(False)
+    session.playhead = None
+    session._send("piece")
+
+
+def _whole(session: Session) -> None:
+    session.look.zoom, session.look.pan = 1.0, (0.0, 0.0)
+
+
+# What each key does, and how the help says it, in its order.
+KEYS: dict[str, tuple[str, Callable[[Session], None]]] = {
+    "space": ("run or pause", lambda session: session.go(not session.going)),
+    "n": ("one sampling interval further", _one_piece),
+    "left": ("back in what was seen", lambda session: session.rewind(-1)),
+    "right": ("forth", lambda session: session.rewind(1)),
+    "end": ("to the newest picture", lambda session: setattr(session, "playhead", None)),
+    "up": ("faster", _faster(1)),
+    "down": ("slower", _faster(-1)),
+    "a": ("tilt to port by 5°", _tilt(NUDGE)),
+    "d": ("tilt to starboard by 5°", _tilt(-NUDGE)),
+    "w": ("hold everything upright and still", _calm),
+    "m": ("move as the preset does", _as_preset),
+    "c": ("another colouring", _look("colour", lambda session: tuple(MODES))),
+    "f": ("frame of the tank or the earth", _look("frame", lambda _: ("tank", "earth"))),
+    "o": ("overlay of forces or velocities", _look("overlay", lambda _: OVERLAYS)),
+    "i": ("another curve", _look("inset", lambda _: INSETS)),
+    "z": ("see the whole", _whole),
+    "k": ("keep: video and data of what was seen", lambda session: session.keep()),
+    "r": ("start anew", lambda session: session.restart()),
+    "h": ("this help", lambda session: setattr(session.look, "help", not session.look.help)),
+    "escape": ("close", lambda session: session.close()),
+}
+"""What keys do; front ends give their own keys these names."""

@@ -1,0 +1,42 @@
+"""Front ends: each shows the pictures of a session and turns a window's events into its calls."""
+
+import os
+import sys
+from pathlib import Path
+
+from lab.errors import LabError
+from lab.view.session import Session
+from lab.view.windows import ggui, plain
+
+FRONT_ENDS = {"ggui": ggui, "gui": plain}  # in the order in which they are tried
+PICTURES = 30.0  # Hz
+
+
+def open_window(
+    name: str, overrides: dict, size: tuple[int, int], out: Path | None = None, front_end: str = "auto"
+) -> Path:
+    """Show a preset live until its window is closed; returns the folder of the last recording.
+
+    Raises LabError where there is no display, one sentence that names what does without.
+    """
+    if not has_display():
+        raise LabError(f"there is no display for a window here: `cargolab run {name}` runs it and films it.")
+    from solvers.runtime import initialise
+
+    initialise()
+    tried = FRONT_ENDS if front_end == "auto" else {front_end: FRONT_ENDS[front_end]}
+    window = next(filter(None, (module.open_window(size) for module in tried.values())), None)
+    if window is None:
+        raise LabError(f"no window can be opened on this display: `cargolab run {name}` runs it and films it.")
+    session = Session(name, overrides, size, out, panel=window.needs_panel)
+    try:
+        window.run(session)
+    finally:
+        if not session.ended:
+            session.close()
+    return session.folder
+
+
+def has_display() -> bool:
+    """Whether windows can be opened at all: X11 or Wayland, or a system that always has them."""
+    return sys.platform in ("win32", "darwin") or bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))

@@ -1,0 +1,98 @@
+"""A window of Taichi's GGUI with imgui's sliders: where there is Vulkan, of a graphics processor or in software."""
+
+import time
+
+import numpy as np
+import taichi as ti
+
+from lab.view.controls import CONTROLS, RESTARTS, UNITS
+from lab.view.page import COLUMN, MARGIN
+from lab.view.session import KEYS, Session
+
+NAMES = {
+    ti.ui.SPACE: "space",
+    ti.ui.LEFT: "left",
+    ti.ui.RIGHT: "right",
+    ti.ui.UP: "up",
+    ti.ui.DOWN: "down",
+    ti.ui.ESCAPE: "escape",
+}
+BUTTONS = {ti.ui.LMB: "left", ti.ui.RMB: "right"}
+TOP, BOTTOM = 0.30, 0.80  # of the window's height: where its panel stands
+BUTTON_KEYS = ("space", "n", "m", "w", "k", "r", "c", "f", "o", "i")
+
+
+class VulkanWindow:
+    """The window; imgui has the sliders."""
+
+    needs_panel = False
+
+    def __init__(self, size: tuple[int, int]) -> None:
+        self._size = size
+        self._window = ti.ui.Window("Cargo Shift Lab", size, vsync=False)
+        self._canvas, self._gui = self._window.get_canvas(), self._window.get_gui()
+        self._shown = ti.Vector.field(3, ti.f32, size)
+        self._held: str | None = None
+
+    def run(self, session: Session) -> None:
+        """Until the window or the session ends."""
+        from lab.view.windows import PICTURES
+
+        while self._window.running and not session.ended:
+            begun = time.monotonic()
+            session.tick()
+            self._pass_on(session)
+            if session.ended:
+                break
+            picture = session.picture()[::-1].swapaxes(0, 1).astype(np.float32) / 255.0
+            self._shown.from_numpy(np.ascontiguousarray(picture))
+            self._canvas.set_image(self._shown)
+            self._panel(session)
+            self._window.show()
+            time.sleep(max(0.0, 1.0 / PICTURES - (time.monotonic() - begun)))
+        self._window.destroy()
+
+    def _panel(self, session: Session) -> None:
+        """A slider a control, in its unit, and buttons for the keys."""
+        width = (COLUMN + 0.5 * MARGIN) / 64.0
+        with self._gui.sub_window("steer", 1.0 - width, TOP, width, BOTTOM - TOP):
+            for name in list(session.values):
+                control, value = CONTROLS[name], session.values[name]
+                scale = UNITS.get(control.unit, 1.0)
+                label = f"{control.label} ({control.unit})" + ("*" if control.kind == RESTARTS else "")
+                shown = self._gui.slider_float(
+                    f"{label}##{name}", value / scale, control.low / scale, control.high / scale
+                )
+                if abs(shown - value / scale) > 1e-5 * (control.high - control.low) / scale:
+                    session.set(name, shown * scale)
+            for name in BUTTON_KEYS:
+                if self._gui.button(f"{name}: {KEYS[name][0]}"):
+                    session.key(name)
+
+    def _pass_on(self, session: Session) -> None:
+        x, y = self._cursor()
+        for event in self._window.get_events(ti.ui.PRESS):
+            if event.key in BUTTONS:
+                if x < self._size[0] * (1.0 - COLUMN / 64.0):  # else it is imgui's
+                    self._held = event.key
+                    session.press(x, y, BUTTONS[event.key])
+            else:
+                session.key(NAMES.get(event.key, str(event.key).lower()))
+        for event in self._window.get_events(ti.ui.RELEASE):
+            if event.key == self._held:
+                self._held = None
+                session.release(x, y)
+        if self._held:
+            session.drag(x, y)
+
+    def _cursor(self) -> tuple[float, float]:
+        across, up = self._window.get_cursor_pos()
+        return across * self._size[0], (1.0 - up) * self._size[1]
+
+
+def open_window(size: tuple[int, int]) -> VulkanWindow | None:
+    """The window, None where there is no Vulkan."""
+    try:
+        return VulkanWindow(size)
+    except Exception:  # Taichi raises what its parts raise: no loader, no device, no surface
+        return None

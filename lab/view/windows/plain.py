@@ -1,0 +1,70 @@
+"""A window of `ti.GUI`, drawn by the processor: wherever there is a display."""
+
+import time
+
+import numpy as np
+import taichi as ti
+
+from lab.view.session import Session
+
+# Names that ti.GUI gives to keys, and ours.
+NAMES = {
+    ti.GUI.SPACE: "space",
+    ti.GUI.LEFT: "left",
+    ti.GUI.RIGHT: "right",
+    ti.GUI.UP: "up",
+    ti.GUI.DOWN: "down",
+    ti.GUI.ESCAPE: "escape",
+    "End": "end",
+}
+BUTTONS = {ti.GUI.LMB: "left", ti.GUI.RMB: "right"}
+A_TURN = 120.0  # what a turn of the wheel counts
+
+
+class PlainWindow:
+    """The window; it shows the whole picture, sliders and all."""
+
+    needs_panel = True
+
+    def __init__(self, size: tuple[int, int]) -> None:
+        self._size = size
+        self._window = ti.GUI("Cargo Shift Lab", size, fast_gui=True)
+        self._shown = ti.Vector.field(3, ti.u8, size)
+
+    def run(self, session: Session) -> None:
+        """Until the window or the session ends."""
+        from lab.view.windows import PICTURES
+
+        while self._window.running and not session.ended:
+            begun = time.monotonic()
+            session.tick()
+            self._pass_on(session)
+            if session.ended:
+                break
+            self._shown.from_numpy(np.ascontiguousarray(session.picture()[::-1].swapaxes(0, 1)))
+            self._window.set_image(self._shown)
+            self._window.show()
+            time.sleep(max(0.0, 1.0 / PICTURES - (time.monotonic() - begun)))
+        self._window.close()
+
+    def _pass_on(self, session: Session) -> None:
+        for event in self._window.get_events():
+            x, y = event.pos[0] * self._size[0], (1.0 - event.pos[1]) * self._size[1]
+            if event.type == ti.GUI.PRESS and event.key in BUTTONS:
+                session.press(x, y, BUTTONS[event.key])
+            elif event.type == ti.GUI.PRESS:
+                session.key(NAMES.get(event.key, str(event.key).lower()))
+            elif event.type == ti.GUI.RELEASE and event.key in BUTTONS:
+                session.release(x, y)
+            elif event.type == ti.GUI.MOTION and event.key == ti.GUI.MOVE:
+                session.drag(x, y)
+            elif event.type == ti.GUI.MOTION and event.key == ti.GUI.WHEEL:
+                session.wheel(event.delta[1] / A_TURN)
+
+
+def open_window(size: tuple[int, int]) -> PlainWindow | None:
+    """The window, None where the display refuses one."""
+    try:
+        return PlainWindow(size)
+    except RuntimeError:
+        return None

@@ -1,0 +1,169 @@
+"""The live experiment in a process of its own, so that pictures and grains do not wait for each other.
+
+Between the processes go pairs of a word and what belongs to it. To the experiment: `set` (name, value), `go`, `pace`,
+`piece`, `keep` (folder), `end`. From it: `told`, `ready` (Scenery), `seen` (Seen, pace), `kept` (folder),
+`over` (sentence).
+"""
+
+import json
+import math
+import shutil
+import signal
+import time
+from collections.abc import Mapping
+from multiprocessing import get_context
+from multiprocessing.connection import Connection
+from pathlib import Path
+
+from lab.errors import LabError
+from lab.presets import load
+from lab.progress import Progress
+from lab.recording import FILE_NAME, Recorder, mend_recording
+from lab.view.footage import Scenery
+from lab.view.live import Live, own_motion, under_a_hand
+from solvers import runtime
+from solvers.errors import BadState, Unavailable
+
+A_LOOK = 0.03  # s, the shortest time between two pictures sent
+IDLE = 0.01  # s between looks at what is asked, while nothing runs
+A_CALL = 100_000  # grain-steps between looks at what is asked, some milliseconds
+
+
+class Told(Progress):
+    """Progress that goes to the person at the window."""
+
+    def __init__(self, pipe: Connection) -> None:
+        super().__init__(quiet=True)
+        self._pipe, self._stage = pipe, ""
+
+    def start(self, stage: str, total: float | None, worth: float = 0.0) -> None:
+        """Begin a stage."""
+        super().start(stage, total, worth)
+        self._stage = stage
+        self._pipe.send(("told", f"{stage} …"))
+
+    def reach(self, done: float) -> None:
+        """Say how far it is."""
+        super().reach(done)
+        self._pipe.send(("told", f"{self._stage}: {done:.2f} s"))
+
+
+class Worker:
+    """The experiment's end of the pipe."""
+
+    def __init__(self, live: Live, pipe: Connection) -> None:
+        self._live, self._pipe = live, pipe
+        self._going, self._pieces, self._pace, self._ended = False, 0, 1.0, False
+        self._wishes: list[tuple[str, float]] = []
+        self._most = max(1, A_CALL // live.run.scene.radius.size)
+        self._sent = -math.inf
+        self._anchor = (time.monotonic(), live.time)
+        self._factor = 0.0
+
+    def serve(self) -> None:
+        """Run until the window closes. Raises BadState."""
+        self._send()
+        while not self._ended:
+            self._listen()
+            if not (self._going or self._pieces):
+                time.sleep(IDLE)
+                self._anchor = (time.monotonic(), self._live.time)
+                continue
+            self._take_piece()
+
+    def _take_piece(self) -> None:
+        for name, value in self._wishes:
+            try:
+                self._live.set(name, value)
+            except LabError as error:
+                self._pipe.send(("told", str(error)))
+        self._wishes.clear()
+        begun = time.monotonic()
+        seen = self._live.advance(self._listen, self._most)
+        taken = time.monotonic() - begun
+        length = self._live.steps_a_piece * self._live.simulation.dt
+        self._factor += 0.2 * (length / max(taken, 1e-9) - self._factor)
+        self._pieces = max(0, self._pieces - 1)
+        if seen.rows.get("capsized", [-1.0])[0] >= 0.0:
+            self._going = False
+            self._pipe.send(("told", "she has capsized"))
+        if time.monotonic() - self._sent >= A_LOOK or not self._going:
+            self._send()
+        self._wait()
+
+    def _wait(self) -> None:
+        """Keep the pace that is asked for; who is behind starts counting anew."""
+        wall, model = self._anchor
+        due = wall + (self._live.time - model) / self._pace
+        if time.monotonic() > due + 0.1:
+            self._anchor = (time.monotonic(), self._live.time)
+        while self._going and not self._ended and time.monotonic() < due:
+            time.sleep(min(IDLE, max(0.0, due - time.monotonic())))
+            self._listen()
+
+    def _send(self) -> None:
+        self._pipe.send(("seen", (self._live.seen, min(self._factor, self._pace))))
+        self._sent = time.monotonic()
+
+    def _listen(self) -> None:
+        while self._pipe.poll():
+            word, what = self._pipe.recv()
+            if word == "set":
+                self._wishes.append(what)
+            elif word == "go":
+                self._going = what
+            elif word == "pace":
+                self._pace, self._anchor = what, (time.monotonic(), self._live.time)
+            elif word == "piece":
+                self._pieces += 1
+            elif word == "keep":
+                self._keep(what)
+            else:
+                self._ended = True
+
+    def _keep(self, folder: Path) -> None:
+        """Copy what was recorded so far into a folder, as a recording that is complete."""
+        try:
+            self._live.recorder.sync()
+            folder.mkdir(parents=True)
+            shutil.copy2(self._live.folder / FILE_NAME, folder / FILE_NAME)
+            mend_recording(folder)
+            rows = self._live.recorder.rows
+            Recorder(folder, samples=rows[0], frames=rows[1]).close()
+        except (LabError, OSError) as error:
+            self._pipe.send(("told", f"nothing was kept: {error}"))
+            return
+        self._pipe.send(("kept", folder))
+
+
+def serve(pipe: Connection, name: str, overrides: Mapping, folder: Path, cores: int) -> None:
+    """Begin the experiment and run it for the window at the other end."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # who closes the window closes this
+    runtime.use_cores(cores)
+    try:
+        loaded = load(name, overrides)
+        with Live(under_a_hand(loaded), folder, Told(pipe)) as live:
+            preset = json.loads(live.preset.model_dump_json())
+            pipe.send(("ready", (Scenery.of(live, preset, loaded.name), own_motion(loaded.resolved))))
+            try:
+                Worker(live, pipe).serve()
+            except BadState as error:
+                live.close(f"stopped: {error}")
+                pipe.send(("over", str(error)))
+            else:
+                live.close()
+    except (LabError, BadState, Unavailable) as error:
+        pipe.send(("over", str(error)))
+    except (EOFError, BrokenPipeError, ConnectionResetError):  # the window is gone
+        pass
+
+
+def begin(name: str, overrides: Mapping, folder: Path) -> tuple[object, Connection]:
+    """Start the process; gives it and the window's end of the pipe. One core is left to the pictures."""
+    context = get_context("spawn")
+    here, there = context.Pipe()
+    cores = max(1, runtime.available_cores() - 1)
+    process = context.Process(target=serve, args=(there, name, dict(overrides), folder, cores), daemon=True)
+    process.start()
+    there.close()
+    return process, here
