@@ -1,0 +1,252 @@
+"""What a person sees and does in a window, driven by events without one."""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+import time
+from multiprocessing import Pipe
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from lab.presets import load
+from lab.scene import build
+from lab.view import session as sessions
+from lab.view.controls import CONTROLS
+from lab.view.footage import Scenery
+from lab.view.live import Seen, own_motion, under_a_hand
+from lab.view.session import KEYS, Session
+from solvers.runtime import initialise
+
+PRESET = "tilting/quick"
+SMALL = {"tank.width": "60 mm", "tank.height": "40 mm", "grains.depth": "15 mm"}
+SIZE = 1280, 720
+
+
+class NoProcess:
+    def is_alive(self) -> bool:
+        return False
+
+    def join(self, _: float) -> None:
+        pass
+
+
+@pytest.fixture
+def opened(monkeypatch, tmp_path):
+    """A session whose experiment is played by the test: the session, the other end of its pipe, the scene's places."""
+    initialise()
+    pipes = []
+
+    def begin(name, overrides, folder):
+        here, there = Pipe()
+        pipes.append(there)
+        return NoProcess(), here
+
+    monkeypatch.setattr(sessions, "begin", begin)
+    session = Session(PRESET, SMALL, SIZE, tmp_path / "out")
+    loaded = load(PRESET, SMALL)
+    live = under_a_hand(loaded)
+    scene, place = build(live.resolved)
+    preset = json.loads(live.resolved.model_dump_json())
+    plain = np.zeros(scene.radius.shape, dtype=int), scene.outline, (), scene.fixed, {}, None, 1e-5
+    scenery = Scenery(preset, PRESET, tmp_path, scene.radius, *plain)
+    pipes[-1].send(("ready", (scenery, own_motion(loaded.resolved))))
+    for k in range(5):
+        pipes[-1].send(("seen", (seen(place, 0.1 * k), 0.5)))
+    session.tick()
+    yield session, pipes, place
+    session.close()
+
+
+def seen(place: np.ndarray, time: float) -> Seen:
+    """Grains that move to starboard, spinning, in a tank that stands still."""
+    still = np.zeros(place.shape[:2])
+    grains = {
+        "position": place + np.array([1e-3 * time, 0.0]),
+        "velocity": np.full_like(place, 1e-3) * [1.0, 0.0],
+        "angle": still,
+        "spin": still,
+    }
+    names = "pose_y", "pose_z", "pose_angle", "centre_y", "centre_z", "kinetic", "contacts"
+    rows = {name: np.array([time if name.startswith("centre") else 0.0]) for name in names}
+    return Seen(time, {**rows, "part": np.zeros((1, 0, 2))}, grains)
+
+
+def asked(pipe) -> list:
+    """What has come to the experiment's end of the pipe."""
+    found = []
+    try:
+        while pipe.poll():
+            found.append(pipe.recv())
+    except EOFError:  # the other end is closed
+        pass
+    return found
+
+
+def test_it_starts_as_the_preset_moves_and_runs(opened):
+    session, pipes, _ = opened
+    said = asked(pipes[-1])
+    assert ("set", ("tilt", pytest.approx(np.radians(40.0)))) in said
+    assert said[-1] == ("go", True)
+    assert session.going
+
+
+def test_the_picture_has_the_grains_and_says_how_it_runs(opened):
+    session, _, place = opened
+    picture = session.picture()
+    assert picture.shape == (SIZE[1], SIZE[0], 3)
+    camera = session.page.tank_camera(session)
+    at = np.round(camera.pixels(place[0] + [4e-4, 0.0])).astype(int)
+    painted = picture[at[:, 1], at[:, 0]].astype(int)
+    assert np.mean(np.abs(painted - [246, 247, 249]).max(axis=1) > 20) > 0.95
+
+
+def test_keys_pause_go_back_and_come_forth(opened):
+    session, pipes, _ = opened
+    newest = session.picture()
+    asked(pipes[-1])
+    session.key("left")
+    session.key("left")
+    assert asked(pipes[-1]) == [("go", False)]
+    assert session.frame == 2
+    assert np.any(session.picture() != newest)
+    session.key("end")
+    assert session.frame == 4
+    session.key("space")
+    assert asked(pipes[-1]) == [("go", True)]
+
+
+def test_a_slider_that_is_dragged_sets_its_control(opened):
+    session, pipes, _ = opened
+    session.picture()
+    asked(pipes[-1])
+    left, top, right, bottom = session.page._sliders["friction"]
+    session.press(left + 0.25 * (right - left), 0.5 * (top + bottom))
+    session.drag(left + 0.75 * (right - left), 0.0)
+    session.release(right, top)
+    session.drag(left, top)  # let go: nothing more
+    values = [value for word, (name, value) in asked(pipes[-1]) if (word, name) == ("set", "friction")]
+    assert values == [pytest.approx(0.25, abs=0.02), pytest.approx(0.75, abs=0.02)]
+    assert session.values["friction"] == values[-1]
+
+
+def test_no_hand_gets_a_control_out_of_its_range(opened):
+    session, _, _ = opened
+    session.set("friction", 17.0)
+    assert session.values["friction"] == CONTROLS["friction"].high
+
+
+def test_the_centre_of_roll_is_dragged(opened):
+    session, pipes, _ = opened
+    session.look.frame = "earth"
+    session.picture()
+    x, y = session.page._centre(session)
+    scale = session.page.camera(session).scale
+    asked(pipes[-1])
+    session.press(x, y)
+    session.drag(x + 0.02 * scale, y - 0.03 * scale)
+    session.release(x, y)
+    last = dict(what for word, what in asked(pipes[-1]) if word == "set")
+    assert last == {"centre_y": pytest.approx(0.02), "centre_z": pytest.approx(0.03)}
+
+
+def test_a_click_picks_the_grain_below_it(opened):
+    session, _, place = opened
+    session.picture()
+    x, y = session.page.tank_camera(session).pixels(place[0][7][None] + [4e-4, 0.0])[0]
+    session.press(x, y)
+    session.release(x, y)
+    assert session.look.picked == 7
+    assert any("grain 7: 1 mm/s" in reading for reading in session.page._readings(session))
+
+
+def test_what_needs_a_restart_waits_for_it(opened):
+    session, pipes, _ = opened
+    asked(pipes[-1])
+    session.set("diameter", 4e-3)
+    assert asked(pipes[-1]) == []
+    assert "start anew" in session.said
+    session.key("r")
+    assert asked(pipes[0])[-1] == ("end", None)
+    assert session.overrides["grains.diameter"] == "4 mm"
+
+
+def test_what_ends_the_experiment_is_said_and_can_be_looked_back_from(opened):
+    session, pipes, _ = opened
+    pipes[-1].send(("over", "world 0: a grain is too fast"))
+    session.tick()
+    assert session.said == "world 0: a grain is too fast"
+    session.key("left")
+    assert session.frame == 3
+
+
+@pytest.mark.parametrize("overlay", ["c", "f", "o", "i", "h"])
+def test_keys_change_the_picture(opened, overlay):
+    session, _, _ = opened
+    before = session.picture()
+    session.key(overlay)
+    assert np.any(session.picture() != before)
+
+
+def test_help_tells_every_key():
+    assert all(says and callable(action) for says, action in KEYS.values())
+
+
+def test_without_a_display_one_sentence_names_what_does_without(monkeypatch):
+    from lab.cli import main
+
+    for name in ("DISPLAY", "WAYLAND_DISPLAY"):
+        monkeypatch.delenv(name, raising=False)
+    result = CliRunner().invoke(main, ["view", PRESET])
+    assert result.exit_code == 2
+    assert result.output.strip().splitlines() == [
+        f"cargolab: there is no display for a window here: `cargolab run {PRESET}` runs it and films it."
+    ]
+
+
+TOOLS = [name for name in ("Xvfb", "xdotool") if not shutil.which(name)]
+
+
+@pytest.mark.skipif(bool(TOOLS), reason=f"{' and '.join(TOOLS)} not installed")
+@pytest.mark.parametrize("window", ["gui", pytest.param("ggui", marks=pytest.mark.slow)])
+def test_a_real_window_takes_a_key_and_a_slider(window, tmp_path):
+    """On a virtual screen: forces appear with O, friction follows the mouse, Escape closes."""
+    from PIL import ImageGrab
+
+    display = f":{90 + os.getpid() % 900}"
+    screen = subprocess.Popen(["Xvfb", display, "-screen", "0", "1400x900x24"], stderr=subprocess.DEVNULL)
+    environment = {**os.environ, "DISPLAY": display}
+
+    def tool(*words: str) -> str:
+        return subprocess.run(["xdotool", *words], env=environment, capture_output=True, text=True).stdout
+
+    def reds() -> int:
+        seen = np.asarray(ImageGrab.grab(xdisplay=display)).astype(int)
+        return int(((seen[..., 0] > 180) & (seen[..., 1] < 60)).sum())
+
+    settings = [word for key, value in SMALL.items() for word in ("--set", f"{key}={value}")]
+    command = [sys.executable, "-m", "lab", "view", PRESET, *settings, "--window", window, "--out", str(tmp_path / "v")]
+    program = subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    try:
+        recording, until = tmp_path / "v" / "recording.h5", time.monotonic() + 150
+        while not recording.exists() and program.poll() is None and time.monotonic() < until:
+            time.sleep(0.5)
+        time.sleep(3.0)
+        found = tool("search", "--name", "Cargo Shift Lab").split()
+        assert found, program.communicate(timeout=5)[0] if program.poll() is not None else "no window"
+        tool("windowfocus", found[0])
+        before = reds()
+        tool("key", "--window", found[0], "o")
+        while reds() <= before and time.monotonic() < until:
+            time.sleep(0.3)
+        assert reds() > before + 100
+        tool("key", "--window", found[0], "Escape")
+        folder = program.communicate(timeout=60)[0].strip()
+    finally:
+        program.kill()
+        screen.kill()
+    assert folder == str(tmp_path / "v")
+    assert program.returncode == 0
