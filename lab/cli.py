@@ -223,7 +223,7 @@ def run(
 
 
 @main.command()
-@click.argument("preset")
+@click.argument("preset", required=False)
 @set_option
 @click.option(
     "--out",
@@ -238,20 +238,24 @@ def run(
     default="auto",
     help="GGUI needs Vulkan; gui is drawn by the processor.  [default: the first that opens]",
 )
-def view(preset: str, overrides: dict, out: Path | None, size: str, window: str) -> None:
+def view(preset: str | None, overrides: dict, out: Path | None, size: str, window: str) -> None:
     """Run PRESET live in a window: tilt and shake the tank, change friction, look back, keep what you saw.
 
     \b
+    cargolab view                                         choose one there
     cargolab view tilting/quick
     cargolab view shaking/sway-quick --set grains.diameter="4 mm" --size 1920x1080
     cargolab run --replay renders/view/tilting/quick      the same again, without a window
     """
     from lab.presets import load
 
-    load(preset, overrides)
+    pixels = _pixels(size)
+    if preset:
+        load(preset, overrides)
     from lab.view.windows import open_window
 
-    click.echo(open_window(preset, overrides, _pixels(size), out, window))
+    if folder := open_window(preset, overrides, pixels, out, window):
+        click.echo(folder)
 
 
 def _pixels(text: str) -> tuple[int, int]:
@@ -472,6 +476,29 @@ def reproduce(
     from lab.reproduce import reproduce as reproduced
 
     click.echo(reproduced(what, experiments, out, quick, quiet, cluster))
+
+
+@main.command()
+@click.argument("presets", nargs=-1)
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path, file_okay=False),
+    metavar="DIR",
+    default=Path("renders/gallery/presets"),
+    show_default=True,
+    help="Folder of the page.",
+)
+@quiet_option
+def gallery(presets: tuple[str, ...], out: Path, quiet: bool) -> None:
+    """Run every preset, or those whose names begin like PRESETS, and show them on one page: clips and numbers.
+
+    \b
+    cargolab gallery                  some hours on two cores; asked again, it goes on
+    cargolab gallery tilting funnel
+    """
+    from lab.gallery import make_gallery
+
+    click.echo(make_gallery(presets, out, quiet))
 
 
 @main.group()

@@ -5,6 +5,7 @@ import sys
 from pathlib import Path
 
 from lab.errors import LabError
+from lab.view.chooser import Chooser
 from lab.view.session import Session
 from lab.view.windows import ggui, plain
 
@@ -13,21 +14,41 @@ PICTURES = 30.0  # Hz
 
 
 def open_window(
-    name: str, overrides: dict, size: tuple[int, int], out: Path | None = None, front_end: str = "auto"
-) -> Path:
+    name: str | None, overrides: dict, size: tuple[int, int], out: Path | None = None, front_end: str = "auto"
+) -> Path | None:
     """Show a preset live until its window is closed; returns the folder of the last recording.
 
-    Raises LabError where there is no display, one sentence that names what does without.
+    Without a name, a person chooses one first, and another when that is closed. Raises LabError where there is no
+    display, one sentence that names what does without.
     """
+    instead = f"`cargolab run {name or 'PRESET'}` runs it and films it."
     if not has_display():
-        raise LabError(f"there is no display for a window here: `cargolab run {name}` runs it and films it.")
+        raise LabError(f"there is no display for a window here: {instead}")
     from solvers.runtime import initialise
 
     initialise()
     tried = FRONT_ENDS if front_end == "auto" else {front_end: FRONT_ENDS[front_end]}
     window = next(filter(None, (module.open_window(size) for module in tried.values())), None)
     if window is None:
-        raise LabError(f"no window can be opened on this display: `cargolab run {name}` runs it and films it.")
+        raise LabError(f"no window can be opened on this display: {instead}")
+    try:
+        if name:
+            return _show(window, name, overrides, size, out)
+        folder = None
+        while chosen := _choose(window, size):
+            folder = _show(window, chosen, overrides, size, out)
+        return folder
+    finally:
+        window.close()
+
+
+def _choose(window, size: tuple[int, int]) -> str:
+    chooser = Chooser(size)
+    window.run(chooser)
+    return chooser.chosen
+
+
+def _show(window, name: str, overrides: dict, size: tuple[int, int], out: Path | None) -> Path:
     session = Session(name, overrides, size, out, panel=window.needs_panel)
     try:
         window.run(session)

@@ -5,6 +5,7 @@ import time
 import numpy as np
 import taichi as ti
 
+from lab.view.chooser import Chooser
 from lab.view.controls import CONTROLS, RESTARTS, UNITS
 from lab.view.page import COLUMN, MARGIN
 from lab.view.session import KEYS, Session
@@ -16,6 +17,7 @@ NAMES = {
     ti.ui.UP: "up",
     ti.ui.DOWN: "down",
     ti.ui.ESCAPE: "escape",
+    ti.ui.RETURN: "return",
 }
 BUTTONS = {ti.ui.LMB: "left", ti.ui.RMB: "right"}
 TOP, BOTTOM = 0.30, 0.80  # of the window's height: where its panel stands
@@ -34,8 +36,8 @@ class VulkanWindow:
         self._shown = ti.Vector.field(3, ti.f32, size)
         self._held: str | None = None
 
-    def run(self, session: Session) -> None:
-        """Until the window or the session ends."""
+    def run(self, session: Session | Chooser) -> None:
+        """Until the window or what it shows ends."""
         from lab.view.windows import PICTURES
 
         while self._window.running and not session.ended:
@@ -47,9 +49,13 @@ class VulkanWindow:
             picture = session.picture()[::-1].swapaxes(0, 1).astype(np.float32) / 255.0
             self._shown.from_numpy(np.ascontiguousarray(picture))
             self._canvas.set_image(self._shown)
-            self._panel(session)
+            if session.values:
+                self._panel(session)
             self._window.show()
             time.sleep(max(0.0, 1.0 / PICTURES - (time.monotonic() - begun)))
+
+    def close(self) -> None:
+        """Done with it."""
         self._window.destroy()
 
     def _panel(self, session: Session) -> None:
@@ -69,7 +75,7 @@ class VulkanWindow:
                 if self._gui.button(f"{name}: {KEYS[name][0]}"):
                     session.key(name)
 
-    def _pass_on(self, session: Session) -> None:
+    def _pass_on(self, session: Session | Chooser) -> None:
         x, y = self._cursor()
         for event in self._window.get_events(ti.ui.PRESS):
             if event.key in BUTTONS:

@@ -5,6 +5,7 @@ import time
 import numpy as np
 import taichi as ti
 
+from lab.view.chooser import Chooser
 from lab.view.session import Session
 
 # Names that ti.GUI gives to keys, and ours.
@@ -15,6 +16,7 @@ NAMES = {
     ti.GUI.UP: "up",
     ti.GUI.DOWN: "down",
     ti.GUI.ESCAPE: "escape",
+    ti.GUI.RETURN: "return",
     "End": "end",
 }
 BUTTONS = {ti.GUI.LMB: "left", ti.GUI.RMB: "right"}
@@ -31,8 +33,8 @@ class PlainWindow:
         self._window = ti.GUI("Cargo Shift Lab", size, fast_gui=True)
         self._shown = ti.Vector.field(3, ti.u8, size)
 
-    def run(self, session: Session) -> None:
-        """Until the window or the session ends."""
+    def run(self, session: Session | Chooser) -> None:
+        """Until the window or what it shows ends."""
         from lab.view.windows import PICTURES
 
         while self._window.running and not session.ended:
@@ -45,9 +47,12 @@ class PlainWindow:
             self._window.set_image(self._shown)
             self._window.show()
             time.sleep(max(0.0, 1.0 / PICTURES - (time.monotonic() - begun)))
+
+    def close(self) -> None:
+        """Done with it."""
         self._window.close()
 
-    def _pass_on(self, session: Session) -> None:
+    def _pass_on(self, session: Session | Chooser) -> None:
         for event in self._window.get_events():
             x, y = event.pos[0] * self._size[0], (1.0 - event.pos[1]) * self._size[1]
             if event.type == ti.GUI.PRESS and event.key in BUTTONS:

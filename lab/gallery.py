@@ -1,0 +1,130 @@
+"""cargolab gallery: a poster, a clip and the numbers of every preset, and a page that shows them all.
+
+The page is plain HTML beside its pictures, so it works from the disk. A preset is run in its quick variant, where it
+has one, in the folder `runs`; what was run already is not run again.
+"""
+
+import json
+from collections.abc import Mapping, Sequence
+from html import escape
+from pathlib import Path
+
+from lab.errors import LabError
+from lab.measures.value import Value
+from lab.paint.video import poster, render_recording
+from lab.presets import QUICK, names
+from lab.progress import Progress
+from lab.recording import open_recording
+from lab.runner import reported, resume_run, run_preset
+from lab.summary import TELLING, number
+from solvers.errors import BadState
+
+WIDTH, HEIGHT = 640, 360  # pixels
+LONGEST = 8.0  # s of a clip
+MOMENT = 0.6  # of the film: what the poster shows
+MOST_NUMBERS = 4
+
+STYLE = """
+body { font: 15px/1.45 system-ui, sans-serif; color: #212934; margin: 2rem auto; max-width: 1320px; padding: 0 1rem; }
+h2 { margin: 2.2rem 0 .6rem; text-transform: capitalize; }
+.presets { display: grid; grid-template-columns: repeat(auto-fill, minmax(300px, 1fr)); gap: 1.2rem; }
+figure { margin: 0; border: 1px solid #e1e5ea; border-radius: 6px; overflow: hidden; }
+video, img { width: 100%; aspect-ratio: 16 / 9; display: block; background: #f6f7f9; }
+figcaption { padding: .6rem .8rem .8rem; }
+code { background: #f1f3f6; padding: .1em .35em; border-radius: 3px; }
+td { padding: .05rem .8rem .05rem 0; vertical-align: top; } .why { color: #68727e; }
+"""
+
+
+def make_gallery(wanted: Sequence[str], out: Path | str, quiet: bool = False) -> Path:
+    """Run the presets whose names begin like one of `wanted`, or all, and write the page; returns its file.
+
+    Raises LabError for a name that begins no preset, and where something cannot be written.
+    """
+    shown = {name: title for name, title in names().items() if not name.endswith(QUICK)}
+    for start in wanted:
+        if not any(name.startswith(start) for name in shown):
+            raise LabError(f"there is no preset {start}; `cargolab list` shows all.")
+    out = Path(out)
+    out.mkdir(parents=True, exist_ok=True)
+    chosen = [name for name in shown if not wanted or name.startswith(tuple(wanted))]
+    with Progress(quiet) as progress:
+        for name in chosen:
+            progress.say(f"{name} …")
+            _show(name, out)
+            _write_page(shown, out)
+    return _write_page(shown, out)
+
+
+def _show(name: str, out: Path) -> None:
+    """Run a preset as far as it has not been, and leave its poster, its clip and its numbers."""
+    clip = out / f"{_plain(name)}.mp4"
+    if clip.exists():
+        return
+    folder = out / "runs" / name
+    try:
+        if reported(folder, "complete"):
+            pass
+        elif (folder / "recording.h5").exists():
+            resume_run(folder, video=False, plots=False, quiet=True)
+        else:
+            run_preset(_cheapest(name), {"run.repeats": 1}, folder, video=False, plots=False, quiet=True)
+    except BadState:  # its page says so
+        pass
+    with open_recording(folder) as recording:
+        lasts, speed = float(recording.series["time"][-1]), recording.preset["video"]["speed"]
+    poster(folder, out / f"{_plain(name)}.png", fraction=MOMENT, width=WIDTH, height=HEIGHT)
+    summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    (out / f"{_plain(name)}.json").write_text(json.dumps(_telling(summary), indent=1) + "\n", encoding="utf-8")
+    render_recording(folder, clip, width=WIDTH, height=HEIGHT, speed=max(speed, lasts / LONGEST))
+
+
+def _cheapest(name: str) -> str:
+    return name + QUICK if name + QUICK in names() else name
+
+
+def _plain(name: str) -> str:
+    return name.replace("/", "-")
+
+
+def _telling(summary: Mapping) -> dict[str, object]:
+    """How the run ended, and of its measures those that tell most, as people read them."""
+    measures = summary["measures"]
+    order = [name for name in TELLING if name in measures] + [name for name in measures if name not in TELLING]
+    numbers = {}
+    for name in order[:MOST_NUMBERS]:
+        m = measures[name]
+        numbers[name] = number(Value(m["value"], m["unit"], m["std"], m["uncertainty"], tuple(m["worlds"]), m["note"]))
+    return {"status": summary["status"], "numbers": numbers}
+
+
+def _write_page(shown: Mapping[str, str], out: Path) -> Path:
+    groups: dict[str, list[str]] = {}
+    for name, title in shown.items():
+        groups.setdefault(name.split("/")[0], []).append(_card(name, title, out))
+    body = "".join(f'<h2>{escape(g)}</h2><div class="presets">{"".join(c)}</div>' for g, c in groups.items())
+    head = f'<meta charset="utf-8"><title>Cargo Shift Lab</title><style>{STYLE}</style>'
+    text = f"<!doctype html><html><head>{head}</head><body><h1>Every experiment of the lab</h1>{body}</body></html>\n"
+    path = out / "index.html"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def _card(name: str, title: str, out: Path) -> str:
+    """A preset: its clip, how to run it, its numbers."""
+    plain = _plain(name)
+    if not (out / f"{plain}.json").exists():
+        picture, told = "<img alt='not run yet'>", "<p class='why'>not run yet</p>"
+    else:
+        found = json.loads((out / f"{plain}.json").read_text(encoding="utf-8"))
+        rows = [
+            f"<tr><td>{escape(k.replace('_', ' '))}</td><td>{escape(v)}</td></tr>" for k, v in found["numbers"].items()
+        ]
+        ended = "" if found["status"] == "complete" else f"<p class='why'>{escape(found['status'])}</p>"
+        told = f"<table>{''.join(rows)}</table>{ended}"
+        picture = f'<video controls loop muted preload="none" poster="{plain}.png" src="{plain}.mp4"></video>'
+    command = f"cargolab run {_cheapest(name)}"
+    return (
+        f"<figure>{picture}<figcaption><b>{escape(title)}</b><p><code>{escape(command)}</code></p>{told}"
+        "</figcaption></figure>"
+    )

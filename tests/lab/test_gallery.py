@@ -1,0 +1,40 @@
+"""The gallery: every preset on one page that works from the disk."""
+
+import json
+import re
+
+import pytest
+
+from lab import gallery
+from lab.errors import LabError
+from lab.gallery import make_gallery
+from lab.presets import names
+
+
+def test_the_page_has_every_preset_and_the_numbers_of_those_that_ran(tmp_path, monkeypatch):
+    def show(name, out):
+        told = {"status": "stopped: a grain <fell>", "numbers": {"final_shift": "2.0 ± 0.1 diameters"}}
+        (out / f"{name.replace('/', '-')}.json").write_text(json.dumps(told))
+
+    monkeypatch.setattr(gallery, "_show", show)
+    text = make_gallery(["tilting/quick"], tmp_path, quiet=True).read_text()
+    presets = [name for name in names() if not name.endswith("-quick")]
+    assert text.count("<figure>") == len(presets)
+    assert text.count("not run yet</p>") == len(presets) - 1
+    assert "final shift</td><td>2.0 ± 0.1 diameters" in text
+    assert "a grain &lt;fell&gt;" in text
+    assert re.findall(r'(?:src|poster)="([^"]*)"', text) == ["tilting-quick.png", "tilting-quick.mp4"]
+
+
+def test_a_name_that_begins_no_preset_is_refused(tmp_path):
+    with pytest.raises(LabError, match="no preset nonsense"):
+        make_gallery(["nonsense"], tmp_path, quiet=True)
+
+
+@pytest.mark.slow
+def test_a_preset_is_run_filmed_and_not_run_again(tmp_path, monkeypatch):
+    make_gallery(["tilting/quick"], tmp_path, quiet=True)
+    made = {path.name for path in tmp_path.iterdir()}
+    assert made == {"index.html", "runs", "tilting-quick.mp4", "tilting-quick.png", "tilting-quick.json"}
+    monkeypatch.setattr(gallery, "run_preset", None)
+    make_gallery(["tilting/quick"], tmp_path, quiet=True)
