@@ -28,6 +28,7 @@ from solvers.shapes.grains import ShapedGrains
 from solvers.shapes.lists import ShapedNeighbours
 from solvers.ship.afloat import Afloat, steps_an_interval
 from solvers.ship.body import Body
+from solvers.ship.vessel import Vessel
 from solvers.units import Units
 from solvers.walls import Walls
 
@@ -235,6 +236,11 @@ class Simulation:
     def steer(self, pieces: Sequence[np.ndarray]) -> None:
         """From now on, have the scene's motions, all of them steered, follow these polynomials (6,)."""
         self.frame.steer(self.time, pieces)
+
+    def meet(self, vessels: Sequence[Vessel]) -> None:
+        """Have the ships meet other waves, those of these vessels, which are else as they were."""
+        self.scene = replace(self.scene, vessels=list(vessels))
+        self.frame.meet(vessels)
 
     def alter(self, **changes: object) -> None:
         """Go on with other materials or another gravity: fields of the scene. The grains stay as they are.

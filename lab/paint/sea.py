@@ -28,6 +28,11 @@ class Sea:
         """The hull's outline (m, 2) in the tank's frame, m."""
         return self.ship.corners - np.array(self.ship.hold)
 
+    @property
+    def soft_start(self) -> float:
+        """How long the waves take to come up (s)."""
+        return self._sea.soft_start if self._sea else 0.0
+
     @cached_property
     def _waves(self):
         return make_waves(self._sea or None, make_water(self._water, self._gravity))

@@ -70,7 +70,14 @@ def _humidity(preset: Resolved) -> float | None:
 
 
 def _waves(name: str) -> Callable[[Resolved], float | None]:
-    return lambda preset: getattr(preset.waves, name, None) if preset.ship and preset.waves else None
+    """Of regular waves; a random sea and calm water stay as they are."""
+
+    def own(preset: Resolved) -> float | None:
+        waves = preset.waves
+        regular = preset.ship and waves and waves.kind == "regular"
+        return getattr(waves, name) if regular else None
+
+    return own
 
 
 CONTROLS: dict[str, Control] = {
@@ -97,10 +104,8 @@ CONTROLS: dict[str, Control] = {
         lambda preset: None if preset.ship else preset.run.gravity,
         lambda _, value: {"gravity": value},
     ),
-    "wave_amplitude": Control("waves", "mm", 0.0, 0.05, RESTARTS, _waves("amplitude"), key="waves.amplitude"),
-    "wave_frequency": Control(
-        "their frequency", "rad/s", 2.0, 10.0, RESTARTS, _waves("frequency"), key="waves.frequency"
-    ),
+    "wave_amplitude": Control("waves", "mm", 0.0, 0.05, MOVES, _waves("amplitude")),
+    "wave_frequency": Control("their frequency", "rad/s", 2.5, 10.0, MOVES, _waves("frequency")),
     "diameter": Control(
         "grains", "mm", 1e-3, 1e-2, RESTARTS, lambda preset: preset.grains.diameter, key="grains.diameter"
     ),

@@ -13,6 +13,7 @@ from lab.paint.painter import Edges
 from lab.paint.sea import Sea
 from lab.recording import Outlines
 from lab.view.live import Live, Seen
+from solvers.ship.waves import soft_start
 
 MOST_BYTES = 2**30  # of grains kept in memory; the recording has all
 
@@ -44,6 +45,22 @@ class Scenery:
         return cls(preset, name, live.folder, scene.radius, kind, *bounds, lines, shapes, live.simulation.dt)
 
 
+class LiveSea(Sea):
+    """The sea as it is in the frame that is painted.
+
+    `waves`: amplitude (m), frequency (rad/s) and number (1/m) of regular waves, None for those of the preset.
+    """
+
+    waves: np.ndarray | None = None
+
+    def elevation(self, y: np.ndarray, time: float) -> np.ndarray:
+        """Height (k,) m of the surface over the calm one at places y (k,) m, earth's axes."""
+        if self.waves is None:
+            return super().elevation(y, time)
+        amplitude, frequency, number = self.waves
+        return amplitude * soft_start(time, self.soft_start) * np.cos(number * y - frequency * time)
+
+
 class LiveFootage:
     """The frames seen so far, of one world; the oldest go where they grow too many."""
 
@@ -55,7 +72,7 @@ class LiveFootage:
             setattr(self, name, getattr(scenery, name))
         self.kinds = ["the rest", *(scenery.preset.get("kinds") or {})]
         self.shape_names = list(scenery.preset.get("shapes") or {}) if self.shapes else ["disc"]
-        self.sea = Sea(scenery.preset) if scenery.preset.get("ship") else None
+        self.sea = LiveSea(scenery.preset) if scenery.preset.get("ship") else None
         self.settings, self.title = scenery.preset["video"], scenery.preset["title"]
         self._seen: list[Seen] = []
         self._most = max(50, MOST_BYTES // (48 * self.radius.size))
@@ -90,6 +107,12 @@ class LiveFootage:
     def row(self, frame: int, name: str) -> float:
         """A number of a frame."""
         return float(self._seen[frame].rows[name][0])
+
+    def sea_of(self, frame: int) -> LiveSea | None:
+        """The sea as it is in a frame."""
+        if self.sea:
+            self.sea.waves = self._seen[frame].rows.get("waves")
+        return self.sea
 
     def row_time(self, frame: int) -> float:
         """When a frame was (s)."""

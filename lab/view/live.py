@@ -21,9 +21,11 @@ from lab.scene import build
 from lab.schema import Motion, Resolved
 from lab.view.controls import ALTERS, CONTROLS, MOVES, offered
 from lab.view.helm import Helm
+from lab.view.swell import Swell
 from solvers.errors import Unavailable
 from solvers.simulation import Simulation
 
+SWELL = "wave_amplitude", "wave_frequency"
 PICTURES = 25.0  # Hz at least, of the frames of what is watched
 
 
@@ -55,6 +57,7 @@ class Live:
         preset = loaded.resolved
         self.preset, self.folder, self.pieces = preset, folder, 0
         self.helm = None if preset.ship else Helm(offered(preset))
+        self.swell = Swell(preset) if "wave_amplitude" in offered(preset) else None
         self.run = Run(loaded, folder, *build(preset, Helm.hands() if self.helm else None))
         self._end = ExitStack()
         with ExitStack() as otherwise:
@@ -79,8 +82,9 @@ class Live:
     def set(self, name: str, value: float) -> None:
         """Set a control, from the next piece on. Raises LabError for what cannot be changed while grains move."""
         control = CONTROLS[name]
-        if control.kind == MOVES and self.helm:
-            self.helm.wanted[name] = value
+        mover = self.swell if name in SWELL else self.helm
+        if control.kind == MOVES and mover:
+            mover.wanted[name] = value
         elif control.kind == ALTERS:
             try:
                 self.simulation.alter(**control.changes(self.simulation.scene, value))
@@ -92,8 +96,11 @@ class Live:
 
     def advance(self, pause: Callable[[], None] = lambda: None, most: int | None = None) -> Seen:
         """Take a piece, in calls of `most` steps with a pause after each. Raises BadState; what was recorded stays."""
+        length = self.steps_a_piece * self.simulation.dt
         if self.helm:
-            self.simulation.steer(self.helm.follow(self.steps_a_piece * self.simulation.dt))
+            self.simulation.steer(self.helm.follow(length))
+        if self.swell and (vessel := self.swell.follow(length)):
+            self.simulation.meet([vessel])
         target = self.simulation.steps + self.steps_a_piece
         while self.simulation.steps < target:
             self.simulation.advance(min(most or self.steps_a_piece, target - self.simulation.steps))
@@ -111,7 +118,8 @@ class Live:
             part = self.simulation.part_places()
             self.recorder.frame({"time": now, "pose": pose_of(rows), "part": part, **grains})
         self.recorder.grain_steps = self.simulation.grain_steps
-        return Seen(now, {**rows, "part": self.simulation.part_places()}, grains)
+        more = {"part": self.simulation.part_places(), **({"waves": self.swell.now} if self.swell else {})}
+        return Seen(now, {**rows, **more}, grains)
 
     def close(self, status: str = "complete") -> None:
         """End the recording."""

@@ -169,7 +169,7 @@ class Page:
         if session.look.frame == "earth":
             if footage.sea:
                 ground = self._ground(session)
-                footage.sea.paint(stage, camera, ground, footage.row_time(frame), LINE * self.unit)
+                footage.sea_of(frame).paint(stage, camera, ground, footage.row_time(frame), LINE * self.unit)
                 paint_tank(stage, moved, footage.sea.hull, self._wall(camera, footage.sea.hull), deco.WALL, deco.LINE)
             else:
                 faint = self._wall(camera, footage.outline)

@@ -102,6 +102,13 @@ class Afloat:
         self.capsized = arrays.holding(np.full(worlds, -1.0), arrays.exact, kept=True)
         (self.given,) = arrays.reals(1, (worlds, APART), arrays.exact)
 
+    def meet(self, vessels: Sequence[Vessel]) -> None:
+        """Have the waves of these vessels, which are as they were but for those, from now on."""
+        self.vessels = tuple(vessels)
+        self.hulls.meet([vessel.ship.load for vessel in vessels])
+        self.added.from_numpy(np.array([v.ship.radiation.added_mass + np.diag(v.ship.rig.mass) for v in vessels]))
+        self.damping.from_numpy(np.array([v.ship.radiation.damping for v in vessels]))
+
     @property
     def sizes(self) -> tuple[int, int, int]:
         """States of the memory, corners of the sections, components of the waves."""

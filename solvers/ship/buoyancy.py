@@ -8,6 +8,7 @@ import taichi as ti
 from solvers.frame import turned
 from solvers.motions.harmonic import soft_start
 from solvers.runtime import Arrays
+from solvers.ship.loads import Floating
 from solvers.ship.motion import Ship
 
 
@@ -29,12 +30,25 @@ class Hulls:
         self.about = table([load.about for load in loads])
         if self.waves:
             self.length = table([load.waves.soft_start for load in loads])
-            self.number = table([self._filled(load.waves.wave_number) for load in loads])
-            self.frequency = table([self._filled(load.waves.frequency) for load in loads])
-            # Of each component times its complex amplitude: elevation, slope and the force over these two's, Re and Im
-            factors = [load.waves.amplitude[:, None] * load.factors for load in loads]
-            self.real_part = table([self._filled(f.real) for f in factors])
-            self.imaginary_part = table([self._filled(f.imag) for f in factors])
+            self.number, self.frequency, self.real_part, self.imaginary_part = map(table, self._of_waves(loads))
+
+    def _of_waves(self, loads: Sequence[Floating]) -> list[list[np.ndarray]]:
+        """Numbers and frequencies of the components of each ship's waves, and factors, real and imaginary.
+
+        A factor is of the component times its complex amplitude: elevation, slope and the force over these two's.
+        """
+        factors = [load.waves.amplitude[:, None] * load.factors for load in loads]
+        of_ships = [
+            (load.waves.wave_number, load.waves.frequency, factor.real, factor.imag)
+            for load, factor in zip(loads, factors, strict=True)
+        ]
+        return [[self._filled(values) for values in column] for column in zip(*of_ships, strict=True)]
+
+    def meet(self, loads: Sequence[Floating]) -> None:
+        """Have other waves, of as many components, from now on."""
+        fields = self.number, self.frequency, self.real_part, self.imaginary_part
+        for field, values in zip(fields, self._of_waves(loads), strict=True):
+            field.from_numpy(np.array(values))
 
     def _closed(self, outline: np.ndarray) -> np.ndarray:
         """An outline with its last corner again and again: edges of no length."""
