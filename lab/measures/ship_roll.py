@@ -10,8 +10,8 @@ roll_period: mean time between upward crossings of the mean roll in the last hal
 wave_power: what the waves put into her; radiated_power, viscous_power: what goes into waves and into friction of the
 water; granular_power: what her loose cargo takes, lost in the grains once the motion is steady. Means over the last ten
 periods, per metre of length; in a steady motion the first is the sum of the others.
-frozen_amplitude: roll_amplitude of the same ship with her cargo frozen as it lay at the start, by herself
-(`solvers.ship.motion.sail`).
+frozen_amplitude, frozen_largest_roll, frozen_capsized_at: roll_amplitude, largest_roll and capsized_at of the same ship
+with her cargo frozen as it lay at the start, by herself (`solvers.ship.motion.sail`).
 """
 
 from collections import Counter
@@ -41,7 +41,7 @@ def applies(recording: Recording) -> bool:
 
 
 def measure(recording: Recording) -> dict[str, Value]:
-    """largest_roll, roll_amplitude, roll_bias (deg), roll_period, capsized_at (s)."""
+    """largest_roll, roll_amplitude, roll_bias (deg), roll_period, capsized_at (s), and those of the frozen cargo."""
     time, roll = recording.series["time"], recording.series["pose"][..., 2]
     capsized = recording.series["capsized"][-1]
     found = {
@@ -49,9 +49,10 @@ def measure(recording: Recording) -> dict[str, Value]:
         "capsized_at": over_worlds(np.where(capsized >= 0.0, capsized, np.nan), "s", missing="did not capsize"),
         "roll_period": over_worlds([_period(time, r) for r in roll.T], "s", missing="too few swings"),
     }
-    outcomes = [_outcome(recording, world) for world in range(recording.worlds)]
+    found |= _of_frozen(recording)
     if wave_frequency(recording) is None:
         return found
+    outcomes = [_outcome(recording, world) for world in range(recording.worlds)]
     steady = [(o.amplitude, o.mean) if o and o.kind != "capsized" else (np.nan, np.nan) for o in outcomes]
     kinds = Counter(describe(o) for o in outcomes if o)
     note = ", ".join(kind if count == recording.worlds else f"{count} {kind}" for kind, count in kinds.items())
@@ -65,16 +66,25 @@ def measure(recording: Recording) -> dict[str, Value]:
         ("roll_fundamental", np.degrees(1.0), "deg", parts[:, 2]),
     ):
         found[name] = over_worlds(scale * numbers, unit, missing="no steady motion")
-    found |= _powers(recording)
+    return found | _powers(recording)
+
+
+def _of_frozen(recording: Recording) -> dict[str, Value]:
+    """Of the ship with her cargo frozen; none where she cannot be made, no amplitude without regular waves."""
     alone = frozen(recording)
-    if alone is not None:
-        time, roll, when = alone
-        one = _classed(time, roll, wave_frequency(recording), when is not None)
-        size = [np.degrees(one.amplitude) if one and when is None else np.nan]
-        found["frozen_amplitude"] = over_worlds(
-            size, "deg", note=describe(one) if one else "", missing="no steady roll"
-        )
-    return found
+    if alone is None:
+        return {}
+    time, roll, when = alone
+    found = {
+        "frozen_largest_roll": over_worlds([np.degrees(np.abs(roll).max())], "deg"),
+        "frozen_capsized_at": over_worlds([np.nan if when is None else when], "s", missing="did not capsize"),
+    }
+    if wave_frequency(recording) is None:
+        return found
+    one = _classed(time, roll, wave_frequency(recording), when is not None)
+    size = [np.degrees(one.amplitude) if one and when is None else np.nan]
+    note = describe(one) if one else ""
+    return found | {"frozen_amplitude": over_worlds(size, "deg", note=note, missing="no steady roll")}
 
 
 def wave_frequency(recording: Recording) -> float | None:
@@ -101,10 +111,10 @@ def _frozen(path: Path, duration: float):
     ship = vessel.ship
     try:
         state = start(ship, vessel.heave(ship.body, vessel.heel), vessel.heel)
-        voyage = sail(ship, state, FROZEN_INTERVAL, duration - vessel.release, vessel.limits)
+        voyage = sail(ship, state, FROZEN_INTERVAL, duration - vessel.release, vessel.limits, vessel.release)
     except (Unavailable, BadState):
         return None
-    return voyage.time + vessel.release, voyage.roll, voyage.capsized
+    return voyage.time, voyage.roll, voyage.capsized
 
 
 @lru_cache(maxsize=4)

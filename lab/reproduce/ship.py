@@ -5,8 +5,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from lab.measures.value import Value
-from lab.reproduce.curves import against
 from lab.reproduce.experiment import Experiment, Told, counted, observed, stated
+from lab.reproduce.rolls import FROZEN, LOOSE, rolls_against
 from lab.reproduce.runs import Batch, Outcome
 from lab.ship import WaterGiven, make_water
 
@@ -67,8 +67,7 @@ def response_tell(found: Found) -> Told:
     rows.append(observed("largest with frozen cargo", "36 deg at 4.4 rad/s", _told(frozen), None))
     less = loose is not None and loose[0] < min(LARGE, frozen[0])
     rows.append(observed("largest with loose cargo", "less than 30 deg, and less than frozen", _told(loose), less))
-    figure = against(FREQUENCY, "frequency of the waves (rad/s)", found, "roll_amplitude", "roll (deg)")
-    return Told(rows, figure)
+    return Told(rows, rolls_against(FREQUENCY, "frequency of the waves (rad/s)", found, found))
 
 
 def _largest(runs: Sequence[Outcome], name: str) -> tuple[float, str] | None:
@@ -102,17 +101,19 @@ def capsize_tell(found: Found) -> Told:
             says = "capsizes" if name == "19 mm" and at in ("4.4 rad/s", "4.5 rad/s", "4.7 rad/s") else says
             agrees = one["capsized_at"].value is not None if says else None
             rows.append(observed(f"{name}, {at}", says, _end(one), agrees))
-    return Told(rows)
+    return Told(rows, rolls_against(FREQUENCY, "frequency of the waves (rad/s)", found, found))
 
 
 def _end(one: Outcome) -> str:
     """How a run ended, loose and frozen."""
-    when = one["capsized_at"]
-    loose = (
-        f"capsizes at {counted(when)}" if when and when.value is not None else f"rolls {counted(one['roll_amplitude'])}"
-    )
-    frozen = one["frozen_amplitude"]
-    return f"{loose}; frozen {counted(frozen) if frozen and frozen.value is not None else 'not steady'}"
+    return f"{_fate(one, LOOSE)}; frozen {_fate(one, FROZEN)}"
+
+
+def _fate(one: Outcome, names: tuple[str, str, str]) -> str:
+    steady, when = one[names[0]], one[names[2]]
+    if when and when.value is not None:
+        return f"capsizes at {counted(when)}"
+    return f"rolls {counted(steady)}" if steady and steady.value is not None else "not steady"
 
 
 def freedom_batches(quick: bool) -> dict[str, Batch]:
@@ -144,7 +145,8 @@ def freedom_tell(found: Found) -> Told:
                 dry = [run for run in found["dry"] if run.setting[AMPLITUDE] == size]
                 says, agrees = "as dry", bool(dry) and _near(loose, dry[0]["roll_amplitude"])
             rows.append(observed(f"{name}, {size}", says, _end(one), agrees))
-    return Told(rows, against(AMPLITUDE, "waves (mm)", found, "roll_amplitude", "roll (deg)"))
+    # Frozen, a wet ship is a dry one.
+    return Told(rows, rolls_against(AMPLITUDE, "amplitude of the waves (mm)", found, ("dry", "at once")))
 
 
 def _near(a: Value | None, b: Value | None) -> bool | None:

@@ -176,9 +176,14 @@ class Voyage:
 
 
 def sail(
-    ship: Ship, state: np.ndarray, interval: float, duration: float, limits: tuple[float, float] = (-inf, inf)
+    ship: Ship,
+    state: np.ndarray,
+    interval: float,
+    duration: float,
+    limits: tuple[float, float] = (-inf, inf),
+    begin: float = 0.0,
 ) -> Voyage:
-    """Motion from a state at t = 0, ended where roll leaves its limits (rad).
+    """Motion from a state at the time `begin` (s), ended where roll leaves its limits (rad).
 
     Raises `BadState` where it is no longer a number or faster than any ship: the interval is too long for the ship's
     fastest motion or memory.
@@ -186,11 +191,12 @@ def sail(
     count = round(duration / interval)
     states, capsized = [state], None
     for k in range(count):
-        state = advance(ship, state, k * interval, interval)
+        state = advance(ship, state, begin + k * interval, interval)
+        now = begin + (k + 1) * interval
         if not np.abs(state).max() < BEYOND:
-            raise BadState(0, f"the ship's motion ran away at {(k + 1) * interval:.4g} s; shorten the interval.")
+            raise BadState(0, f"the ship's motion ran away at {now:.4g} s; shorten the interval.")
         states.append(state)
         if not limits[0] < state[2] < limits[1]:
-            capsized = (k + 1) * interval
+            capsized = now
             break
-    return Voyage(interval * np.arange(len(states)), np.array(states), capsized)
+    return Voyage(begin + interval * np.arange(len(states)), np.array(states), capsized)

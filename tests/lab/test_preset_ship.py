@@ -196,6 +196,21 @@ def test_measures_of_roll(rolling):
     assert powers == pytest.approx([40.0, 10.0, 5.0, 25.0], rel=1e-6)
 
 
+def test_measures_of_frozen_cargo(rolling, monkeypatch):
+    """By herself: 7° about a bias of 1°; capsized, she has a time of it and no amplitude."""
+    time = np.arange(0.0, 40.0, 0.02)
+    roll = radians(1.0) + radians(7.0) * np.cos(OMEGA * time)
+    monkeypatch.setattr(ship_roll, "frozen", lambda _: (time, roll, None))
+    found = ship_roll.measure(rolling)
+    assert found["frozen_amplitude"].value == pytest.approx(7.0, rel=2e-3)
+    assert found["frozen_largest_roll"].value == pytest.approx(8.0, rel=1e-3)
+    assert found["frozen_capsized_at"].value is None
+    monkeypatch.setattr(ship_roll, "frozen", lambda _: (time[:500], 9.0 * roll[:500], 10.0))
+    lost = ship_roll.measure(rolling)
+    assert (lost["frozen_amplitude"].value, lost["frozen_capsized_at"].value) == (None, 10.0)
+    assert lost["frozen_largest_roll"].value == pytest.approx(72.0, rel=1e-3)
+
+
 def test_vessels_without_a_limit():
     said = load("ship/model-test").resolved
     assert said.ship.capsize is None

@@ -204,6 +204,21 @@ def test_run_with_too_long_an_interval_is_stopped(table, memory):
         sail(floating(table, memory), start(floating(table, memory), -DRAUGHT, 0.1), 0.8, 400.0)
 
 
+def test_a_voyage_may_begin_later(table, memory):
+    """A period of the waves later all is as before; half a period later the first push is the other way."""
+    omega = 4.5
+    load = floating_in_waves(BARGE, WATER, AXIS, regular(1e-3, omega, WATER), table, (-DRAUGHT, 0.0))
+    ship = replace(floating(table, memory), load=load)
+    begins = [2.0 * pi / omega * periods for periods in (0.0, 1.0, 0.5)]
+    first, same, opposite = (sail(ship, start(ship, -DRAUGHT), 0.02, 0.6, begin=begin) for begin in begins)
+    assert same.roll == pytest.approx(first.roll, abs=1e-12) and np.abs(first.roll).max() > 1e-5
+    assert opposite.roll == pytest.approx(-first.roll, abs=0.02 * np.abs(first.roll).max())
+    assert same.time == pytest.approx(first.time + begins[1])
+    limits = (-0.5 * np.abs(first.roll).max(), 0.5 * np.abs(first.roll).max())
+    ends = [sail(ship, start(ship, -DRAUGHT), 0.02, 0.6, limits, begin).capsized for begin in begins[:2]]
+    assert ends[1] == pytest.approx(ends[0] + begins[1])
+
+
 def test_memory_that_drives_the_hull_is_refused(table, memory):
     """As fitted it passes; one that gives energy back at the roll's frequency does not, nor without the roll's own."""
     ship = floating(table, memory, free=LOCKED)
