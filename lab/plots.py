@@ -33,6 +33,7 @@ from lab.measures.outlet import find_outlet, passed
 from lab.measures.steady import steady_part
 from lab.measures.value import Value
 from lab.recording import Recording
+from lab.ship import recorded_ship
 
 # Okabe and Ito's colours, told apart by colour-blind readers as well.
 BLUE, VERMILION, GREEN, GREY = "#0072B2", "#D55E00", "#009E73", "#777777"
@@ -398,13 +399,16 @@ def roll_spectrum_figure(recording: Recording, values: Mapping[str, Value]) -> F
 
 
 def lever_figure(recording: Recording, values: Mapping[str, Value]) -> Figure | None:
-    """Righting lever of a ship with her cargo frozen as it lay at the start, against her heel."""
+    """Righting lever of a ship against her heel, her cargo frozen as it lay at the start, or slid to its repose."""
     levers = ship_roll.levers(recording) if ship_roll.applies(recording) else None
     if levers is None:
         return None
     figure, ((axes,),) = _figure(recording)
-    heel, lever = levers
-    axes.plot(np.degrees(heel), 1e3 * lever, color=BLUE, label="cargo frozen")
+    heel, lever, relaxed = levers
+    axes.plot(np.degrees(heel), 1e3 * lever, color=GREY, label="cargo frozen")
+    if relaxed is not None:
+        steep = np.degrees(recorded_ship(recording.preset).repose)
+        axes.plot(np.degrees(heel), 1e3 * relaxed, color=BLUE, label=f"cargo slid to a repose of {steep:.3g} deg")
     axes.axhline(0, color=GREY, lw=0.8)
     largest = np.degrees(np.abs(recording.series["pose"][..., 2]).max())
     axes.axvline(largest, color=VERMILION, ls=":", lw=1.0, label="largest roll of the run")

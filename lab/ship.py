@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
-from math import inf, pi, sqrt
+from math import inf, pi, radians, sqrt
 from typing import Annotated, Literal
 
 import numpy as np
@@ -53,8 +53,10 @@ class ShipGiven:
     ship and cargo together, as it lies at the start. `hold`: where the tank's origin is. `axis`: the point whose sway
     and heave are held, or not, and about which she then rolls; the middle of the waterline unless given. The source's
     model has `radiation` at the waves' frequency, and as `excitation` of roll the waves' slope. `damping` is a
-    share of the critical, `quadratic_damping` per rad: φ̈ + 2 ζ ω₀ φ̇ + b φ̇|φ̇| + ω₀² φ. `scale`: how many times as long
-    the ship is that she is a model of; nothing but words depends on it.
+    share of the critical, `quadratic_damping` per rad: φ̈ + 2 ζ ω₀ φ̇ + b φ̇|φ̇| + ω₀² φ. `repose`: how steep the cargo can
+    lie, for the curve of righting levers with relaxed cargo alone; the grains of a run know nothing of it. Unless given
+    it is that of the source's acetate, the first of the critical angles that it found by tilting (Spandonidis 2016,
+    section 7.1). `scale`: how many times as long the ship is that she is a model of; nothing but words depends on it.
     """
 
     draught: Length
@@ -75,6 +77,7 @@ class ShipGiven:
     heel: Annotated[float, Unit("rad"), Interval(ge=-pi, le=pi)] = 0.0
     release: Annotated[float, Unit("s"), Interval(ge=0)] = 0.0
     capsize: Annotated[float, Unit("rad"), Interval(gt=0)] | None = 0.5 * pi
+    repose: Annotated[float, Unit("rad"), Interval(ge=0, le=0.5 * pi)] = radians(25.0)
     scale: Annotated[float, Interval(gt=0)] | None = None
     rig: RigGiven = field(default_factory=RigGiven)
 
@@ -312,6 +315,7 @@ def describe(given: ShipGiven, vessel: Vessel, waves: WavesGiven | None, every: 
         rows += [("excitation", given.excitation), ("waves", _sea(waves, water))]
     if given.capsize:
         rows.append(("capsized", f"beyond {show(given.capsize, 'rad')}"))
+    rows.append(("her cargo's repose", f"{show(given.repose, 'rad')}, in the curve of righting levers alone"))
     if given.scale:
         rows.append((f"full scale 1:{given.scale:g}", _full_scale(given, waves)))
     return rows

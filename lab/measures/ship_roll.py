@@ -22,12 +22,15 @@ import numpy as np
 
 from lab.errors import LabError
 from lab.measures.value import Value, over_worlds
+from lab.measures.wall_force import grain_mass
 from lab.recording import Recording
 from lab.ship import axis_motion, recorded_ship
 from solvers.errors import BadState, Unavailable
+from solvers.ship.cargo import level_area, relaxed_levers
 from solvers.ship.hydrostatics import righting_levers
 from solvers.ship.motion import sail, start
 from solvers.ship.outcome import CYCLES, Outcome, outcome
+from solvers.ship.section import Section
 from solvers.ship.vessel import Vessel
 
 LEAST_CROSSINGS = 3
@@ -131,14 +134,30 @@ def _vessel(path: Path) -> Vessel | None:
         return None
 
 
-def levers(recording: Recording) -> tuple[np.ndarray, np.ndarray] | None:
-    """Heels (n,) rad and righting levers (n,) m of the ship with her cargo frozen."""
+def levers(recording: Recording) -> tuple[np.ndarray, np.ndarray, np.ndarray | None] | None:
+    """Heels (n,) rad and righting levers (n,) m, with the cargo frozen and with it relaxed.
+
+    Relaxed: slid to its angle of repose at each heel (`solvers.ship.cargo`), as a level filling whose centre is as high
+    as that of the bed at the start; None where that is not known.
+    """
     vessel = _vessel(recording.path)
     if vessel is None:
         return None
-    load = vessel.ship.load
+    load, loading = vessel.ship.load, vessel.ship.body.loading
     heel = np.radians(np.linspace(0.0, 180.0, HEELS))
-    return heel, righting_levers(load.section, vessel.ship.body.loading, load.water, heel)
+    frozen = righting_levers(load.section, loading, load.water, heel)
+    mass = grain_mass(recording)
+    if mass is None:
+        return heel, frozen, None
+    cargo = float(mass.sum(axis=1).mean()) / vessel.thickness
+    repose = recorded_ship(recording.preset).repose
+    try:
+        hold = Section(recording.outline)
+        area = level_area(hold, float(recording.series["centre_of_mass"][0, :, 1].mean()))
+        relaxed = relaxed_levers(load.section, loading, load.water, heel, hold, area, cargo, repose)
+    except Unavailable:
+        return heel, frozen, None
+    return heel, frozen, relaxed
 
 
 def _powers(recording: Recording) -> dict[str, Value]:

@@ -1,11 +1,13 @@
 """Ships in presets: what is refused and in which words, the vessel that comes of them, her sea, her measures."""
 
+import json
 from math import inf, pi, radians
 
 import numpy as np
 import pytest
-from synthetic import frame, preset, recorder, sample
+from synthetic import box, frame, preset, recorder, sample
 
+from lab import plots
 from lab.errors import LabError
 from lab.measures import ship_roll
 from lab.paint.painter import Camera
@@ -135,6 +137,7 @@ def test_words_on_a_ship(barge):
     rows = dict(describe(given, vessel, said.waves, 1e-3))
     assert "GM 49.98 mm" in rows["with her cargo"] and rows["capsized"] == "beyond 90 deg"
     assert "333.3 times a metre" in rows["cargo's sheet"]
+    assert rows["her cargo's repose"].startswith("25 deg")
     full = rows["full scale 1:100"]
     assert "draught 11 m" in full and "times 10 as long" in full and "waves of 1 m" in full and "14.28 s" in full
 
@@ -182,6 +185,29 @@ def rolling(tmp_path):
         writer.frame(frame(0.0, 2))
     with open_recording(tmp_path) as recording:
         yield recording
+
+
+def test_the_curve_of_righting_levers(tmp_path):
+    """The barge with a level bed of 3000 grains: as frozen up to its repose, then less, by the shift of its wedge."""
+    said = json.loads(load(BARGE, {"ship.repose": "20 deg"}).resolved.model_dump_json())
+    with recorder(
+        tmp_path, 1, 3000, resolved=said, radius=np.full((1, 3000), 0.0015), outline=box(0.3, 0.26)
+    ) as writer:
+        for now in (0.0, 1.0, 2.0):
+            centre, afloat = np.array([[0.0, 0.055]]), {"ship_works": np.zeros((1, 4)), "capsized": [-1.0]}
+            writer.sample(sample(now, centre_of_mass=centre, **afloat))
+        writer.frame(frame(0.0, 1, 3000))
+    with open_recording(tmp_path) as recording:
+        axes = plots.lever_figure(recording, {}).axes[0]
+    frozen, relaxed = (line.get_xydata() for line in axes.lines[:2])
+    assert axes.lines[1].get_label() == "cargo slid to a repose of 20 deg"
+    assert relaxed[:11] == pytest.approx(frozen[:11])  # to 20 deg
+    cargo = 3000 * 4.0 / 3.0 * pi * 0.0015**3 * 1319.0 / 0.003
+    heel, slope = radians(40.0), np.tan(radians(20.0))
+    y, z = -(0.3**2) * slope / (12.0 * 0.11), 0.3**2 * slope**2 / (24.0 * 0.11)
+    moved = 1e3 * cargo / 37.4 * (y * np.cos(heel) - z * np.sin(heel))
+    assert frozen[20, 0] == pytest.approx(40.0)
+    assert relaxed[20, 1] - frozen[20, 1] == pytest.approx(moved, rel=1e-4)
 
 
 def test_measures_of_roll(rolling):
@@ -262,11 +288,13 @@ def test_a_recorded_ship_floats_and_rolls(lost):
     assert np.abs(roll).max() > radians(0.5)
     assert np.abs(loose - roll).max() < 0.2 * np.abs(roll).max()
     assert lost.series["ship_works"][-1, 0, 0] > 0.0
-    heel, lever = ship_roll.levers(lost)
+    heel, lever, relaxed = ship_roll.levers(lost)
     height = 0.055 + 0.34**2 / (12.0 * 0.11) - 0.0926
     small = slice(1, 12)  # until the bilge emerges: sin φ (GM + ½ BM tan² φ)
     wall = np.sin(heel) * (height + 0.5 * 0.34**2 / (12.0 * 0.11) * np.tan(heel) ** 2)
     assert lever[small] == pytest.approx(wall[small], abs=1e-6)
+    assert relaxed[small] == pytest.approx(lever[small])
+    assert np.all(relaxed[16:40] < lever[16:40])  # from 32 to 78 deg, the cargo's repose being 25
 
 
 @pytest.mark.slow

@@ -1,0 +1,66 @@
+"""Loose cargo at rest in a heeled hold: a homogeneous filling with a plane surface, as steep as its grains can hold.
+
+Heeled slowly, a bed stays as it is up to the angle of repose; beyond it grains slide until the slope against the
+horizon is that angle again. So the surface leans by heel − repose against the deck. A fluid has a repose of 0.
+"""
+
+import numpy as np
+
+from solvers.errors import Unavailable
+from solvers.ship.hydrostatics import Loading, balanced_heave, righting_lever, turned
+from solvers.ship.section import Section
+from solvers.ship.water import Water
+
+ONE = Water(density=1.0)  # what a filling is the buoyancy of: its area is the mass
+
+
+def lean(heel, repose: float) -> np.ndarray:
+    """Angle (rad) of the surface against the deck, with the sign of the heel, at heels (rad) come to slowly from 0."""
+    heel = np.asarray(heel, dtype=float)
+    return np.sign(heel) * np.maximum(np.abs(heel) - repose, 0.0)
+
+
+def filling_centre(hold: Section, area: float, leaning: float) -> np.ndarray:
+    """Centre (2,) m, in the hold's frame, of a filling of an area (m²) whose surface leans by an angle (rad).
+
+    It is the part of the hold that is under water where it floats with that area immersed. A positive angle is that of
+    a heel to port, where it is deepest. Raises `Unavailable` where there is no room for it.
+    """
+    heave = balanced_heave(hold, Loading(area, (0.0, 0.0)), ONE, leaning)
+    centre = hold.immersion(heave, leaning).centroid - np.array([0.0, heave])
+    return turned((centre[0], centre[1]), -leaning)
+
+
+def level_area(hold: Section, height: float) -> float:
+    """Area (m²) of a level filling whose centre is at a height (m). Raises `Unavailable` where none has."""
+    from scipy.optimize import brentq  # slow to import
+
+    low, high = hold.outline[:, 1].min(), hold.outline[:, 1].max()
+    surplus = lambda level: float(hold.immersion(-level, 0.0).centroid[1]) + level - height  # noqa: E731
+    least = low + 1e-6 * hold.size
+    if not surplus(least) < 0.0 < surplus(high):
+        raise Unavailable(f"no level filling of the hold has its centre at {height:.4g} m.")
+    return float(hold.immersion(-brentq(surplus, least, high), 0.0).area)
+
+
+def relaxed_levers(
+    section: Section,
+    loading: Loading,
+    water: Water,
+    heels: np.ndarray,
+    hold: Section,
+    area: float,
+    mass: float,
+    repose: float,
+) -> np.ndarray:
+    """GZ (m) at heels (rad) with a cargo of a `mass` (kg/m) and an area (m²) that has slid to its repose (rad).
+
+    `loading` is of hull and cargo together, the cargo level as upright; the hold's axes are the hull's.
+    """
+    upright = filling_centre(hold, area, 0.0)
+    levers = []
+    for heel, leaning in zip(heels, lean(heels, repose), strict=True):
+        moved = mass / loading.mass * (filling_centre(hold, area, leaning) - upright)
+        centre = loading.centre[0] + moved[0], loading.centre[1] + moved[1]
+        levers.append(righting_lever(section, Loading(loading.mass, centre), water, heel))
+    return np.array(levers)
