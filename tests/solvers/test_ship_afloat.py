@@ -407,3 +407,25 @@ def test_intervals():
     ship = replace(vessel.ship, radiation=Radiation(ADDED.added_mass, ADDED.damping, quick))
     assert replace(vessel, ship=ship).interval == pytest.approx(0.02 / 100.0)
     assert vessel.limits == (-inf, inf)
+
+
+def test_other_waves_are_met_from_then_on(run):
+    """Twice as high and shorter, after the first second: as by the method of Runge and Kutta, waves changed then."""
+    simulation, every = run.simulation, run.every
+    simulation.restore(run.settled)
+    simulation.frame.every.fill(every)
+    before = list(simulation.scene.vessels)
+    ship = before[ALONE].ship
+    interval = every * simulation.dt
+    steps = every * round(1.0 / interval)
+    simulation.advance(steps)
+    other = replace(ship, load=floating(0.04, 5.2))
+    simulation.meet([replace(v, ship=other) if w == ALONE else v for w, v in enumerate(before)])
+    simulation.advance(steps)
+    roll = simulation.frame.pose.to_numpy()[ALONE, 2]
+    simulation.meet(before)
+    second = steps * simulation.dt
+    first = sail(ship, start(ship, before[ALONE].heave(Body(0.0, (0.0, 0.0), 0.0), 0.0)), interval, second)
+    then = sail(other, first.state[-1], interval, second, begin=second)
+    assert abs(then.roll[-1] - first.roll[-1]) > 1e-3
+    assert roll == pytest.approx(then.roll[-1], abs=1e-9)
