@@ -54,9 +54,16 @@ class Sea:
         rows = np.arange(max(0, round(top)), min(height, round(bottom)))
         y = (columns + 0.5 - camera.offset[0]) / camera.scale
         surface = camera.offset[1] - camera.scale * self.elevation(y, time)
-        box = picture[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1].astype(float)
-        below = np.clip(rows[:, None] + 1.0 - surface, 0.0, 1.0)[..., None]
+        if not len(rows) or not len(columns):
+            return
+        # Above the highest and below the lowest of the surface all pixels of a row are alike.
+        first = int(np.clip(np.floor(surface.min() - thick - 2.0), rows[0], rows[-1] + 1))
+        last = int(np.clip(np.ceil(surface.max() + thick + 2.0), first, rows[-1] + 1))
+        picture[last : rows[-1] + 1, columns[0] : columns[-1] + 1] = WATER
+        box = picture[first:last, columns[0] : columns[-1] + 1].astype(float)
+        row = np.arange(first, last)[:, None]
+        below = np.clip(row + 1.0 - surface, 0.0, 1.0)[..., None]
         box += below * (np.array(WATER) - box)
-        line = np.clip(0.5 * thick + 0.5 - np.abs(rows[:, None] + 0.5 - surface), 0.0, 1.0)[..., None]
+        line = np.clip(0.5 * thick + 0.5 - np.abs(row + 0.5 - surface), 0.0, 1.0)[..., None]
         box += line * (np.array(SURFACE) - box)
-        picture[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1] = np.round(box).astype(np.uint8)
+        picture[first:last, columns[0] : columns[-1] + 1] = np.round(box).astype(np.uint8)

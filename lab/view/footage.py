@@ -12,9 +12,13 @@ from lab.paint.footage import Bed
 from lab.paint.painter import Edges
 from lab.paint.sea import Sea
 from lab.recording import Outlines
+from lab.scene import vessels
+from lab.schema import Resolved
 from lab.view.live import Live, Seen
+from solvers.ship.hydrostatics import righting_levers
 from solvers.ship.waves import soft_start
 
+HEELS = 91
 MOST_BYTES = 2**30  # of grains kept in memory; the recording has all
 
 
@@ -129,6 +133,23 @@ class LiveFootage:
     def grains(self, name: str, frame: int, world: int = 0) -> np.ndarray:
         """What each grain has in a frame."""
         return self._seen[frame].grains[name][world]
+
+    @cached_property
+    def sea_ground(self) -> tuple[np.ndarray, np.ndarray]:
+        """Lower and upper corner (m) of the sea that is shown around a ship, with room to roll and to drift."""
+        y, z, roll = pose_of(self._seen[0].rows)[0]
+        places = complex(y, z) + np.exp(1j * roll) * (self.sea.hull @ [1.0, 1j])
+        radius = 0.5 * float(np.hypot(*np.ptp(self.sea.hull, axis=0)))
+        middle = np.array([places.real.mean(), places.imag.mean()])
+        return self.sea.ground(np.array([middle - radius, middle + radius]))
+
+    @cached_property
+    def levers(self) -> tuple[np.ndarray, np.ndarray]:
+        """Heels (k,) rad and righting levers (k,) m of the ship, her cargo frozen as it lay at the start."""
+        (vessel,) = vessels(Resolved.model_validate(self.scenery.preset))
+        heel = np.radians(np.linspace(0.0, 180.0, HEELS))
+        ship = vessel.ship
+        return heel, righting_levers(ship.load.section, ship.body.loading, ship.load.water, heel)
 
     @cached_property
     def bed(self) -> Bed:

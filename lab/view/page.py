@@ -17,6 +17,7 @@ from lab.paint.colours import Colouring, colouring, mark_colours
 from lab.paint.painter import Camera, paint_grains, paint_plate, paint_tank, to_discs
 from lab.paint.sea import LINE
 from lab.view.controls import CONTROLS, RESTARTS
+from lab.view.curves import CURVES
 from lab.view.forces import pressed_pairs
 
 if TYPE_CHECKING:
@@ -27,15 +28,8 @@ TEXT, READING, TITLE, ROW = 1.0, 1.2, 1.4, 1.5  # heights in u
 ANEW = 2.0  # s after which scale and curve are looked at anew
 HANDLE = 0.42  # u, half the height of a slider's handle
 GRIP = 0.8  # u around the centre of roll
-MOST_POINTS = 400  # of the curve
 THICKEST = 0.7  # of the mean radius: a line of the largest force
 GRAB, FORCE, PICKED = (213, 94, 0), (200, 30, 30), (213, 94, 0)
-CURVES = {
-    "shift": ("shift Δy (diameters)", "centre_y"),
-    "tilt": ("tilt φ (°)", "pose_angle"),
-    "energy": ("kinetic energy (mJ)", "kinetic"),
-    "contacts": ("contacts", "contacts"),
-}
 
 
 class Page:
@@ -136,7 +130,7 @@ class Page:
         low = np.min([line.min(axis=0) for line in points], axis=0)
         high = np.max([line.max(axis=0) for line in points], axis=0)
         if footage.sea:
-            return footage.sea.ground(footage.sea.hull) if session.look.frame == "earth" else (low, high)
+            return footage.sea_ground if session.look.frame == "earth" else (low, high)
         if session.look.frame == "earth":  # room to turn and to sway
             low, high = low - 0.35 * (high - low), high + 0.35 * (high - low)
         return low, high
@@ -282,16 +276,10 @@ class Page:
         key, now = (session.look.inset, id(session.footage), session.playhead), time.monotonic()
         if self._plot and self._plot[0] == key and now - self._plot[1] < 0.1 * ANEW:
             return self._plot[2]
-        label, name = CURVES[session.look.inset]
-        if session.look.inset == "shift" and session.footage.sea:
-            label, name = CURVES["tilt"]
-        factor = {"pose_angle": np.degrees(1.0), "kinetic": 1e3, "contacts": 1.0}.get(name)
-        rows = np.unique(np.linspace(0, len(session.footage) - 1, MOST_POINTS).astype(int))
-        values = session.footage.curve(name, rows)
-        values = (values - values[0]) / session.footage.bed.diameter if factor is None else factor * values
-        moment = session.footage.time[rows]
-        plot = deco.LivePlot(size, [(moment, values)], [deco.SERIES[0]], ("time (s)", label), 0.9 * TEXT * self.unit)
-        image = plot.picture([int(np.searchsorted(rows, session.frame, "right"))])
+        drawing = CURVES[session.look.inset](session.footage, session.frame)
+        labels, colours = (drawing.across, drawing.upwards), deco.SERIES[: len(drawing.curves)]
+        plot = deco.LivePlot(size, drawing.curves, colours, labels, 0.9 * TEXT * self.unit)
+        image = plot.picture(drawing.counts)
         self._plot = key, now, image
         return image
 

@@ -16,6 +16,7 @@ from lab.errors import LabError
 from lab.paint.colours import MODES
 from lab.runner import RENDERS, free_folder
 from lab.view.controls import CONTROLS, RESTARTS, offered
+from lab.view.curves import offered_curves
 from lab.view.footage import LiveFootage, Scenery
 from lab.view.page import Page
 from lab.view.worker import begin
@@ -27,7 +28,6 @@ ZOOM = 1.25
 SAID_FOR = 6.0  # s
 PATIENCE = 5.0  # s for the experiment to end
 OVERLAYS = ("nothing", "forces", "velocities")
-INSETS = ("shift", "tilt", "energy", "contacts", "nothing")
 
 
 @dataclass
@@ -98,6 +98,8 @@ class Session:
     def _on_ready(self, what: tuple[Scenery, dict]) -> None:
         scenery, own = what
         self.footage = LiveFootage(scenery)
+        if self.footage.sea:
+            self.look.inset = "turn"
         self.values = offered(_resolved(scenery.preset)) | own
         self._own = own
         for name, value in own.items():
@@ -325,7 +327,7 @@ KEYS: dict[str, tuple[str, Callable[[Session], None]]] = {
     "c": ("another colouring", _look("colour", lambda session: tuple(MODES))),
     "f": ("frame of the tank or the earth", _look("frame", lambda _: ("tank", "earth"))),
     "o": ("overlay of forces or velocities", _look("overlay", lambda _: OVERLAYS)),
-    "i": ("another curve", _look("inset", lambda _: INSETS)),
+    "i": ("another curve", _look("inset", lambda session: offered_curves(session.footage))),
     "z": ("see the whole", _whole),
     "k": ("keep: video and data of what was seen", lambda session: session.keep()),
     "r": ("start anew", lambda session: session.restart()),

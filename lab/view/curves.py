@@ -1,0 +1,61 @@
+"""The small plot over the stage, a function each: what a live experiment does up to the frame that is shown."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from lab.view.footage import LiveFootage
+
+MOST_POINTS = 400
+FARTHEST = 90.0  # deg of heel
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """Curves (x, y) in axes of these names, each drawn up to so many of its points, where its dot is."""
+
+    across: str
+    upwards: str
+    curves: Sequence[tuple[np.ndarray, np.ndarray]]
+    counts: Sequence[int]
+
+
+def _in_time(label: str, name: str, scaled: Callable[[np.ndarray, LiveFootage], np.ndarray]):
+    """A number of the frames against time."""
+
+    def draw(footage: LiveFootage, frame: int) -> Drawing:
+        rows = np.unique(np.linspace(0, len(footage) - 1, MOST_POINTS).astype(int))
+        curve = footage.time[rows], scaled(footage.curve(name, rows), footage)
+        return Drawing("time (s)", label, [curve], [int(np.searchsorted(rows, frame, "right"))])
+
+    return draw
+
+
+def levers(footage: LiveFootage, frame: int) -> Drawing:
+    """GZ of a ship with her cargo frozen as it lay at the start, and where she is on it."""
+    heel, lever = footage.levers
+    shown = np.degrees(heel) <= FARTHEST
+    heel, lever = np.degrees(heel)[shown], 1e3 * lever[shown]
+    now = min(abs(np.degrees(footage.row(frame, "pose_angle"))), FARTHEST)
+    point = np.array([now]), np.interp([now], heel, lever)
+    return Drawing("heel (°)", "righting lever GZ (mm)", [(heel, lever), point], [len(heel), 1])
+
+
+def _shift(values: np.ndarray, footage: LiveFootage) -> np.ndarray:
+    return (values - values[0]) / footage.bed.diameter
+
+
+CURVES: dict[str, Callable[[LiveFootage, int], Drawing]] = {
+    "shift": _in_time("shift Δy (diameters)", "centre_y", _shift),
+    "turn": _in_time("tilt or roll φ (°)", "pose_angle", lambda values, _: np.degrees(values)),
+    "levers": levers,
+    "energy": _in_time("kinetic energy (mJ)", "kinetic", lambda values, _: 1e3 * values),
+    "contacts": _in_time("contacts", "contacts", lambda values, _: values),
+}
+
+
+def offered_curves(footage: LiveFootage | None) -> tuple[str, ...]:
+    """The curves that this experiment has, and none at all."""
+    afloat = footage is not None and footage.sea is not None
+    return (*(name for name in CURVES if afloat or name != "levers"), "nothing")
