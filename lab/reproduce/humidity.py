@@ -64,7 +64,7 @@ EXPERIMENTS = [
         "the law with asperities only, 2 beds for 4, two humidities for six, 20 deg/s for 5, draft accuracy",
         ("with asperities of 1 nm", 0.8),
         "As the law is printed, the pull of touching grains does not depend on the humidity, which sets its range "
-        "alone; so it cannot have a threshold, but its four beds at 50 % scatter too much to show that. Asperities, our "
+        "alone; so it cannot have a threshold, but four beds at 50 % scatter too much to show that. Asperities, our "
         "addition, give it one.",
     )
 ]
