@@ -47,8 +47,9 @@ def test_a_tilt_turns_at_its_rate_and_arrives():
 
 def test_a_sway_settles_into_its_amplitude_and_frequency():
     steered = helm(sway=0.02, sway_frequency=2.0)
-    y = np.array([ends(steered.follow(PIECE), PIECE)[1, 0] for _ in range(500)])[300:]
+    y, _, bend = np.array([ends(steered.follow(PIECE), PIECE)[1] for _ in range(500)])[300:].T
     assert np.abs(y).max() == pytest.approx(0.02, rel=1e-2)
+    assert bend == pytest.approx(-((2.0 * np.pi * 2.0) ** 2) * y, abs=1e-3)
     assert np.abs(np.fft.rfft(y))[1:].argmax() + 1 == round(2.0 * len(y) * PIECE)
 
 

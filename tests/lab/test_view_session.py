@@ -153,6 +153,23 @@ def test_the_centre_of_roll_is_dragged(opened):
     assert last == {"centre_y": pytest.approx(0.02), "centre_z": pytest.approx(0.03)}
 
 
+def test_the_centre_of_roll_is_an_earth_point_in_the_frame_of_a_tilted_tank_too(opened):
+    session, pipes, place = opened
+    tilted = seen(place, 0.5)
+    tilted.rows["pose_angle"] = np.array([0.4])
+    tilted.rows["pose_y"] = np.array([0.01])
+    pipes[-1].send(("seen", (tilted, 1.0)))
+    session.tick()
+    session.look.frame = "tank"
+    session.picture()
+    x, y = session.page._centre(session)
+    asked(pipes[-1])
+    session.press(x, y)
+    session.release(x, y)
+    last = dict(what for word, what in asked(pipes[-1]) if word == "set")
+    assert last == {"centre_y": pytest.approx(0.0, abs=1e-9), "centre_z": pytest.approx(0.0, abs=1e-9)}
+
+
 def test_a_click_picks_the_grain_below_it(opened):
     session, _, place = opened
     session.picture()
