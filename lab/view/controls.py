@@ -107,7 +107,13 @@ CONTROLS: dict[str, Control] = {
     "wave_amplitude": Control("waves", "mm", 0.0, 0.05, MOVES, _waves("amplitude")),
     "wave_frequency": Control("their frequency", "rad/s", 2.5, 10.0, MOVES, _waves("frequency")),
     "diameter": Control(
-        "grains", "mm", 1e-3, 1e-2, RESTARTS, lambda preset: preset.grains.diameter, key="grains.diameter"
+        "grains",
+        "mm",
+        1e-3,
+        1e-2,
+        RESTARTS,
+        lambda preset: None if preset.shapes or preset.grains.table else preset.grains.diameter,
+        key="grains.diameter",
     ),
 }
 

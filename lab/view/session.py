@@ -20,6 +20,7 @@ from lab.view.curves import offered_curves
 from lab.view.footage import LiveFootage, Scenery
 from lab.view.page import Page
 from lab.view.worker import begin
+from solvers.shapes.cargo import cargoes
 
 PACES = (0.02, 0.05, 0.1, 0.25, 0.5, 1.0, 2.0, 5.0, np.inf)
 NUDGE = np.radians(5.0)  # of the tilt, by a key
@@ -64,7 +65,7 @@ class Session:
         video = load(self.name, self.overrides).resolved.video
         self.look = Look(video.colour, video.frame)
         self.page = Page(self.size, self.panel)
-        self.pace, self._said, self._grip = 1.0, ("", 0.0), None
+        self.pace, self._said, self._grip, self._shape = 1.0, ("", 0.0), None, "disc"
         self._restart(self.overrides)
 
     def _restart(self, overrides: Mapping) -> None:
@@ -164,11 +165,28 @@ class Session:
             for name, control in CONTROLS.items()
             if control.kind == RESTARTS and name in self.values and self._changed(name)
         }
-        self._end_experiment()
+        self._begin_with({**self.overrides, **asked})
+
+    def reshape(self) -> None:
+        """Start anew with grains of the next cargo's outlines; after the last come discs."""
+        from lab.presets import load
+
+        order = ["disc", *cargoes()]
+        self._shape = order[(order.index(self._shape) + 1) % len(order)]
+        given = dict.fromkeys(load(self.name).resolved.shapes, False)
+        how = {"disc": True} if self._shape == "disc" else {"cargo": self._shape}
+        others = {key: value for key, value in self.overrides.items() if key != "shapes"}
+        changes = {**others, "shapes": {**given, self._shape: how}}
         try:
-            self._restart({**self.overrides, **asked})
+            load(self.name, changes)
         except LabError as error:
-            self.over = str(error)
+            self.say(str(error))
+        else:
+            self._begin_with(changes)
+
+    def _begin_with(self, overrides: Mapping) -> None:
+        self._end_experiment()
+        self._restart(overrides)
 
     def _changed(self, name: str) -> bool:
         given = offered(_resolved(self.footage.scenery.preset)).get(name) if self.footage else None
@@ -331,6 +349,7 @@ KEYS: dict[str, tuple[str, Callable[[Session], None]]] = {
     "z": ("see the whole", _whole),
     "k": ("keep: video and data of what was seen", lambda session: session.keep()),
     "r": ("start anew", lambda session: session.restart()),
+    "s": ("start anew with the grains of another cargo", lambda session: session.reshape()),
     "h": ("this help", lambda session: setattr(session.look, "help", not session.look.help)),
     "escape": ("close", lambda session: session.close()),
 }

@@ -191,6 +191,17 @@ def test_what_needs_a_restart_waits_for_it(opened):
     assert session.overrides["grains.diameter"] == "4 mm"
 
 
+def test_s_starts_anew_with_the_grains_of_another_cargo(opened):
+    session, pipes, _ = opened
+    session.key("s")
+    assert asked(pipes[0])[-1] == ("end", None)
+    shapes = load(PRESET, session.overrides).resolved.shapes
+    assert list(shapes) == ["wheat"]
+    for _ in range(9):
+        session.key("s")
+    assert list(load(PRESET, session.overrides).resolved.shapes) == ["disc"]
+
+
 def test_what_ends_the_experiment_is_said_and_can_be_looked_back_from(opened):
     session, pipes, _ = opened
     pipes[-1].send(("over", "world 0: a grain is too fast"))
