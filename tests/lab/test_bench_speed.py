@@ -209,6 +209,7 @@ def told_to_lammps(monkeypatch, bed, **how) -> str:
     return decks[0]
 
 
+@pytest.mark.slow
 def test_lammps_is_told_the_viscoelastic_law_that_loses_as_much(bed, monkeypatch):
     """γ_n m_eff √R_eff = (3/2) A k of the lab's law, for two mean grains and for one and a wall."""
     deck = told_to_lammps(monkeypatch, bed)

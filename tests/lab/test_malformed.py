@@ -286,7 +286,7 @@ def test_the_presets_to_be_mangled_are_in_order(folder, sound):
 def test_a_mangled_preset_is_refused_in_a_sentence_or_can_be_built(folder, sound, times):
     passed = []
 
-    @examples(500 * times)
+    @examples(300 * times)
     @given(mangled(sound))
     def check(table):
         passed.append(tried(write(folder, table)))

@@ -19,6 +19,7 @@ def told(folder) -> dict:
     return json.loads((folder / "verify.json").read_text(encoding="utf-8"))
 
 
+@pytest.mark.slow
 def test_a_few_cases_pass(tmp_path):
     assert verify.run_cases(("momentum",), tmp_path, fast=True)
     assert "FAIL" not in (tmp_path / "verify.md").read_text(encoding="utf-8")

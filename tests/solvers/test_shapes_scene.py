@@ -111,13 +111,9 @@ def momenta(simulation):
     return momentum.sum(axis=0), turning
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
-    ("contact", "other"),
-    [
-        ("area", rice),
-        pytest.param("continuous", rice, marks=pytest.mark.slow),
-        *(pytest.param(rule, corn, marks=pytest.mark.slow) for rule in CONTACTS),
-    ],
+    ("contact", "other"), [("area", rice), ("continuous", rice), *((rule, corn) for rule in CONTACTS)]
 )
 def test_momenta_are_kept_with_friction_and_losses(contact, other):
     simulation = collision(contact, [rice(), other()])
