@@ -320,5 +320,10 @@ EXPERIMENTS = [
         scaled,
         "1 bed for 4, 3 s of motion for 8, 4 frequencies for 8 or 16, both at draft accuracy",
         ("180 mm", 0.7),
+        "With the amplitude scaled to the width, accelerations are alike at frequencies as 1/√width (Froude): from the "
+        "largest tank's onset 1.10 and 1.73 times as high in the others, so tanks of 150 and 180 mm cannot begin at "
+        "quite the same one. The smaller come later still, as their angles of repose are larger (5.4.2). Flow begins "
+        "here where the response exceeds 2 % of the tank's amplitude; at 1.2 Hz A ω²/g of the largest is tan 13 deg, "
+        "less than any tilt at which these beds slide.",
     ),
 ]
