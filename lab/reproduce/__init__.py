@@ -12,14 +12,18 @@ from lab.cluster import fetch
 from lab.errors import LabError
 from lab.lock import only_one
 from lab.progress import Progress
-from lab.reproduce import heaps, humidity, laws, outlines, shaking, ship, tilting, validation
+from lab.reproduce import damping, heaps, humidity, laws, outlines, shaking, ship, tilting, validation
 from lab.reproduce.experiment import Experiment
 from lab.reproduce.findings import read_findings
 from lab.reproduce.report import kept_file, write_report
 from lab.reproduce.runs import Batch, errands
 from lab.reproduce.workers import carry_out_all
 
-REPORTS = {"granular": (validation, tilting, humidity, laws, shaking, heaps), "shapes": (outlines,), "ship": (ship,)}
+REPORTS = {
+    "granular": (validation, tilting, humidity, laws, shaking, heaps),
+    "shapes": (outlines,),
+    "ship": (ship, damping),
+}
 
 
 def experiments(report: str) -> dict[str, Experiment]:

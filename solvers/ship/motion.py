@@ -148,11 +148,12 @@ def rate(ship: Ship, state: np.ndarray, time: float, cargo: np.ndarray = NO_LOAD
 
 
 def advance(ship: Ship, state: np.ndarray, time: float, interval: float, cargo: np.ndarray = NO_LOAD) -> np.ndarray:
-    """The state an interval (s) later by the classical method of Runge and Kutta (Kutta 1901), `cargo` held."""
-    return _runge_kutta(lambda at, t: rate(ship, at, t, cargo), state, time, interval)
+    """The state an interval (s) later, `cargo` held."""
+    return runge_kutta(lambda at, t: rate(ship, at, t, cargo), state, time, interval)
 
 
-def _runge_kutta(slope: Callable, state: np.ndarray, time: float, interval: float) -> np.ndarray:
+def runge_kutta(slope: Callable, state: np.ndarray, time: float, interval: float) -> np.ndarray:
+    """One interval (s) of the classical method of Runge and Kutta (Kutta 1901)."""
     half = 0.5 * interval
     first = slope(state, time)
     second = slope(state + half * first, time + half)

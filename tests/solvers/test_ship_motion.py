@@ -17,6 +17,7 @@ from solvers.ship.memory import fit_memory
 from solvers.ship.motion import Radiation, Rig, RollDamping, Ship, frozen_at, remembered, sail, start
 from solvers.ship.outcome import roll_limits
 from solvers.ship.radiation import hydrodynamics
+from solvers.ship.rolling import roll_together
 from solvers.ship.section import box
 from solvers.ship.water import Water
 from solvers.ship.waves import Waves, regular
@@ -217,6 +218,22 @@ def test_a_voyage_may_begin_later(table, memory):
     limits = (-0.5 * np.abs(first.roll).max(), 0.5 * np.abs(first.roll).max())
     ends = [sail(ship, start(ship, -DRAUGHT), 0.02, 0.6, limits, begin).capsized for begin in begins[:2]]
     assert ends[1] == pytest.approx(ends[0] + begins[1])
+
+
+def test_ships_that_roll_together_roll_as_each_by_herself(table):
+    """Two waves, two dampings, about the axis; the third, undamped in high waves, is lost and the rest go on."""
+    ships = []
+    for omega, amplitude, damping in ((4.5, 0.01, (0.1, 0.2)), (4.7, 0.01, (0.3, 0.0)), (5.4, 0.06, (0.0, 0.0))):
+        load = floating_in_waves(BARGE, WATER, AXIS, regular(amplitude, omega, WATER, 2.0), table, (-DRAUGHT, 0.0))
+        load = replace(load, excess=load.excess + np.array([0.0, 0.0, 150.0j]))
+        ships.append(Ship(BODY, load, frozen_at(table, omega), AXIS, RollDamping(*damping), free=LOCKED))
+    time, rolls = roll_together(ships, -DRAUGHT, 0.03, 9.0, 1.0)
+    for ship, roll in zip(ships, rolls.T, strict=True):
+        alone = sail(ship, start(ship, -DRAUGHT), 0.03, 9.0, (-1.0, 1.0))
+        until = len(time) if alone.capsized is None else len(alone.time) - 1
+        assert roll[:until] == pytest.approx(alone.roll[:until], abs=1e-12)
+        assert np.isnan(roll[until:]).all()
+    assert np.abs(rolls[-1, :2]).min() > 0.01 and np.isnan(rolls[-1, 2])
 
 
 def test_memory_that_drives_the_hull_is_refused(table, memory):
