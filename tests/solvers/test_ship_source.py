@@ -88,6 +88,18 @@ def test_small_roll_of_the_first_model(fixed_body):
     assert found == pytest.approx(righting * amplitude * slope * omega**2 / 9.81 / below, rel=0.01)
 
 
+def test_waves_of_the_first_model(fixed_body):
+    """Eq. 7.1: W GM A k r cos ωt about the axis in any pose, its soft start over the first seconds; and the weight."""
+    omega, amplitude, share = 4.4, 0.01, 0.7
+    load = source_roll(fixed_body, amplitude, omega, RollDamping(), share, 2.0).load
+    push = fixed_body.mass * 9.81 * HEIGHT * amplitude * omega**2 / 9.81 * share
+    for roll in (0.0, 0.5):
+        pose = np.array([0.0, 0.0, roll])
+        for time, grown in ((3.0, 1.0), (7.1, 1.0), (1.0, np.exp(1.0 - 4.0 / 3.0))):
+            moved = load.force(pose, time) - load.still.force(pose, time)
+            assert moved == pytest.approx([0.0, 0.0, grown * push * cos(omega * time)], abs=1e-9)
+
+
 def test_quadratic_damping_is_of_the_rate_not_of_the_angle(fixed_body):
     """Slip of eq. 7.1: at no rate there is none, at twice the rate four times."""
     bare = source_roll(fixed_body, CALM, 4.5, RollDamping())

@@ -101,6 +101,13 @@ def test_jonswap_without_a_peak_is_pierson_and_moskowitz():
     assert ratio == pytest.approx(3.3 * 0.658, rel=0.01)  # 1 − 0.287 ln γ (DNV-RP-C205)
 
 
+def test_the_peak_of_jonswap_is_steeper_before_it_than_behind():
+    """Its enhancement γ^exp(−(ω/ω_p − 1)²/2σ²) has fallen to γ^exp(−½) at 7 % below ω_p and at 9 % above."""
+    sides = 5.0 * np.array([0.93, 1.0, 1.09])
+    enhanced = jonswap(0.08, 5.0, 3.3)(sides) / pierson_moskowitz(0.08, 5.0)(sides)
+    assert enhanced[[0, 2]] / enhanced[1] == pytest.approx(3.3 ** (np.exp(-0.5) - 1.0) * np.ones(2), rel=1e-9)
+
+
 def test_random_sea():
     """Half an hour: variance H_s²/16, zero-crossing period 2π √(m0/m2), kurtosis of a Gaussian; no recurrence."""
     spectrum = jonswap(0.08, 5.0)
