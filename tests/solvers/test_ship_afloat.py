@@ -13,13 +13,14 @@ from voyages import cargo_energy, earth, hull_energy
 from solvers.errors import Unavailable
 from solvers.scene import Scene
 from solvers.ship.body import Body, bolted
+from solvers.ship.hydrostatics import turned
 from solvers.ship.loads import Floating
 from solvers.ship.memory import Memory
 from solvers.ship.motion import Radiation, Rig, RollDamping, Ship, sail, start
 from solvers.ship.section import box
 from solvers.ship.vessel import Vessel
 from solvers.ship.water import Water
-from solvers.ship.waves import jonswap, random_sea, regular
+from solvers.ship.waves import jonswap, random_sea, regular, soft_start
 from solvers.simulation import Simulation
 from solvers.units import APART
 
@@ -148,7 +149,8 @@ class Run:
         run = self.simulation
         snapshot, rows = run.snapshot(), run.observe()
         frame = {
-            name: getattr(run.frame, name).to_numpy() for name in ("tank", "state", "given", "capsized", "pose", "body")
+            name: getattr(run.frame, name).to_numpy()
+            for name in ("tank", "state", "given", "capsized", "pose", "body", "felt")
         }
         frame |= {"pose": frame["pose"][:, :3], "tank": frame["tank"][:, :9], "given": frame["given"][:, 0]}
         motion = frame["tank"]
@@ -284,6 +286,27 @@ def test_capsize_ends_a_world_and_no_other(run, voyage):
         assert np.ptp(voyage["roll"][after, world]) == 0.0
         assert abs(voyage["roll"][-1, world]) == pytest.approx(limit, abs=0.01)
     assert voyage["capsized"][-1, LIVELY] == -1.0
+
+
+def test_a_ship_is_heeled_softly(run, voyage):
+    """Until she is let go her tank's speed and acceleration are those of its path (eq. F.1); the grains feel them."""
+    frame, held = run.simulation.frame, slice(1, 5)
+    upright, heeled = (field.to_numpy()[ROLLING] for field in (frame.upright, frame.heeled))
+    hold = np.subtract(HOLD, AXIS)
+
+    def path(time):
+        pose = upright + soft_start(time, RELEASE)[:, None] * (heeled - upright)
+        return pose + np.pad(turned(hold, pose[:, 2]), ((0, 0), (0, 1)))
+
+    t, h = voyage["time"][held] - run.simulation.dt, 1e-4
+    tank, felt = voyage["tank"][held, ROLLING], voyage["felt"][held, ROLLING]
+    speed, gain = (path(t + h) - path(t - h)) / (2.0 * h), (path(t + h) - 2.0 * path(t) + path(t - h)) / h**2
+    assert t[-1] < RELEASE and np.abs(gain).max() > 10.0
+    assert tank[:, :3] == pytest.approx(path(t), abs=1e-9)
+    assert tank[:, 3:6] == pytest.approx(speed, abs=1e-4)
+    assert tank[:, 6:9] == pytest.approx(gain, abs=1e-3)
+    pull = np.array([turned((-y, -G - z), -roll) for y, z, roll in zip(*gain[:, :2].T, path(t)[:, 2], strict=True)])
+    assert felt[:, :4] == pytest.approx(np.column_stack([pull, speed[:, 2], gain[:, 2]]), abs=1e-3)
 
 
 def test_grains_settle_before_she_is_let_go(run):
