@@ -15,7 +15,17 @@ from lab.paint.sea import SURFACE, WATER, Sea
 from lab.presets import load
 from lab.recording import open_recording
 from lab.runner import run_preset
-from lab.ship import ShipGiven, WaterGiven, WavesGiven, describe, make_vessel, make_water, make_waves, natural_roll
+from lab.ship import (
+    ShipGiven,
+    WaterGiven,
+    WavesGiven,
+    axis_motion,
+    describe,
+    make_vessel,
+    make_water,
+    make_waves,
+    natural_roll,
+)
 from lab.ship_tables import stored_table
 from lab.sweeps import point_folder, run_sweep
 from solvers.ship import radiation
@@ -129,6 +139,26 @@ def test_seas_are_what_they_are_called():
         assert 4.0 * np.sqrt((np.abs(sea.amplitude) ** 2).sum() / 2.0) == pytest.approx(0.03, rel=0.01)
     crest = make_waves(WavesGiven(4.5, "packet", amplitude=0.02, spread=0.5, time=7.0), water)
     assert crest.elevation(0.0, 7.0) == pytest.approx(0.02, rel=1e-6)
+
+
+def test_a_peaked_sea_has_more_of_its_energy_about_the_peak():
+    """Within a tenth of it a sea without a peak has e^(−(5/4) 1.1⁻⁴) − e^(−(5/4) 0.9⁻⁴), the spectrum's integral."""
+
+    def near(peakedness):
+        sea = make_waves(WavesGiven(4.5, "jonswap", height=0.03, peakedness=peakedness), make_water(WaterGiven(), 9.81))
+        energy = np.abs(sea.amplitude) ** 2
+        return energy[np.abs(sea.frequency / 4.5 - 1.0) < 0.1].sum() / energy.sum()
+
+    assert near(1.0) == pytest.approx(np.exp(-1.25 / 1.1**4) - np.exp(-1.25 / 0.9**4), abs=0.02)
+    assert near(7.0) > near(3.3) + 0.08 > near(1.0) + 0.16
+
+
+def test_the_motion_of_the_axis_is_found_from_the_tanks(barge):
+    """The tank's origin is 90 mm below the axis, in the ship's own axes; at rest the axis is in the calm surface."""
+    said, _ = barge
+    sway, heave, roll = 0.01, 0.02, 0.3
+    tank = np.array([[sway + 0.09 * np.sin(roll), heave - 0.09 * np.cos(roll), roll]])
+    assert axis_motion(said.ship, tank) == pytest.approx(np.array([[sway, heave, roll]]))
 
 
 def test_words_on_a_ship(barge):
