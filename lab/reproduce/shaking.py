@@ -91,7 +91,8 @@ def swayed(found: Found) -> Told:
 def phase_batches(quick: bool) -> dict[str, Batch]:
     """Iron ore below, at and above the frequency at which a fluid of its depth would slosh."""
     frequencies = ["1.1 Hz", "1.5 Hz"] if quick else ["1.1 Hz", "1.5 Hz", "2 Hz"]
-    return {"B": shaken("shaking/sway-materials-b", quick, frequencies, **{"run.repeats": 1})}
+    together = {"run.repeats": 1, "run.schedule": "per-world"}  # a core each
+    return {"B": shaken("shaking/sway-materials-b", quick, frequencies, **together)}
 
 
 def phases(found: Found) -> Told:
