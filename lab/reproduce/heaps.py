@@ -101,7 +101,8 @@ EXPERIMENTS = [
         "1 heap of 1500 grains for 2 to 8 of 2500, tips of 6 diameters only, none at rest above a wide base, no equal "
         "grains, draft accuracy",
         (PICTURED, 0.6),
-        "Our grains differ by ± 10 %. Equal ones, which the source has, lie in crystals, and a heap of them is as "
-        "steep as it happens to grow; the source's lies between the two.",
+        "Heap and box are both some 5 deg lower than the source's, so that their difference agrees: grains of ± 10 % "
+        "slide sooner than equal ones, which the source has (see equal grains and unequal ones in lined tanks). Equal "
+        "ones lie in crystals, and a heap of them is as steep as it happens to grow; the source's lies between the two.",
     )
 ]
