@@ -103,6 +103,6 @@ EXPERIMENTS = [
         (PICTURED, 0.6),
         "Heap and box are both some 5 deg lower than the source's, so that their difference agrees: grains of ± 10 % "
         "slide sooner than equal ones, which the source has (see equal grains and unequal ones in lined tanks). Equal "
-        "ones lie in crystals, and a heap of them is as steep as it happens to grow; the source's lies between the two.",
+        "ones lie in crystals, and a heap of them is as steep as it happens to grow; the source's lies in between.",
     )
 ]
