@@ -101,6 +101,31 @@ def low_walls(found: Found) -> Told:
     return Told(rows, shift_against_tilt({"low walls": low, "high walls": high}))
 
 
+def rim_batches(quick: bool) -> dict[str, Batch]:
+    """More beds of iron ore, tilted faster, with low walls and with high ones."""
+    run = {"beds": RIM_BEDS, "rate": "10 deg/s", "motion.tilt.angle": "32 deg"}
+    return {
+        "low walls": tilted("tilting/lowwall", quick, **run),
+        "high walls": tilted("tilting/materials-b", quick, **run),
+    }
+
+
+def rims(found: Found) -> Told:
+    """By how much the losses turn upwards before the slide, with the error of the difference of both means."""
+    upturn, slide = found["low walls"][0]["spill_upturn_angle"], found["high walls"][0]["critical_angle"]
+    rows = [
+        observed("losses turn upwards", "", counted(upturn), None),
+        observed("slide between high walls", "", counted(slide), None),
+    ]
+    if None not in (upturn.value, slide.value):
+        beds = [sum(world is not None for world in value.worlds) for value in (upturn, slide)]
+        error = ((upturn.std or 0.0) ** 2 / beds[0] + (slide.std or 0.0) ** 2 / beds[1]) ** 0.5
+        lead = slide.value - upturn.value
+        agrees = lead + 2.0 * error >= 1.7 and lead - 2.0 * error <= 6.8
+        rows.append(observed("upturn before the slide", "1.7 to 6.8 deg", f"{lead:.1f} ± {error:.1f} deg", agrees))
+    return Told(rows)
+
+
 def fills(found: Found) -> Told:
     """The angle falls with the depth of the fill."""
     runs = only(found)
@@ -113,6 +138,7 @@ def fills(found: Found) -> Told:
     return Told(rows, shift_against_tilt(runs))
 
 
+RIM_BEDS = 8
 SPREAD = "grains.spread"
 SPREADS = [0.0, 0.03, 0.1]
 
@@ -243,6 +269,16 @@ EXPERIMENTS = [
         ("low walls", 0.7),
         "Here grains reach the rim in numbers only once the bed slides. The source compares single beds at several "
         "rates, and slides scatter by 2.3 deg among ours: four beds do not settle whether there is a lead.",
+    ),
+    Experiment(
+        "tilt-rim",
+        "Walls as high as the bed, in more beds",
+        "5.3.2",
+        "the losses turn sharply upwards 1.7 to 6.8 deg before the bed slides between high walls.",
+        rim_batches,
+        rims,
+        "2 beds for 8, 20 deg/s for 10",
+        ("low walls", 0.7),
     ),
     Experiment(
         "tilt-fill",
