@@ -82,10 +82,10 @@ def _figure(angle: Mapping) -> Figure:
             value.value, row, xerr=value.std or value.uncertainty or 0.0, fmt="o", ms=4, capsize=2.5, color=BLUE
         )
     axes.axvline(21.0, color=GREY, ls=":")
-    axes.annotate("source, 25 mm/s", (21.0, -0.4), fontsize=7, color=GREY)
+    axes.annotate("source, 25 mm/s", (21.1, 0.6), fontsize=7, color=GREY)
     axes.set_yticks(range(len(known)), list(known))
     axes.invert_yaxis()
-    axes.set_xlabel("angle of the heap at rest, of the box at the slide (deg), mean ± standard deviation")
+    axes.set_xlabel("heap at rest, box at the slide (deg), mean ± std")
     return figure
 
 
