@@ -267,8 +267,8 @@ EXPERIMENTS = [
         low_walls,
         LOST,
         ("low walls", 0.7),
-        "Here grains reach the rim in numbers only once the bed slides. The source compares single beds at several "
-        "rates, and slides scatter by 2.3 deg among ours: four beds do not settle whether there is a lead.",
+        "Here grains reach the rim in numbers only once the bed slides; the source compares single beds at several "
+        "rates. The next experiment has more beds.",
     ),
     Experiment(
         "tilt-rim",
@@ -279,6 +279,8 @@ EXPERIMENTS = [
         rims,
         "2 beds for 8, 20 deg/s for 10",
         ("low walls", 0.7),
+        "The losses turn upwards after the first slide between high walls, not before: that slide moves grains within "
+        "the tank, and only a later one sheds them. Why the source has it the other way round we do not know.",
     ),
     Experiment(
         "tilt-fill",
