@@ -279,8 +279,9 @@ EXPERIMENTS = [
         rims,
         "2 beds for 8, 20 deg/s for 10",
         ("low walls", 0.7),
-        "The losses turn upwards after the first slide between high walls, not before: that slide moves grains within "
-        "the tank, and only a later one sheds them. Why the source has it the other way round we do not know.",
+        "The losses turn upwards after the first slide between high walls, not before. Perhaps that slide moves grains "
+        "within the tank alone, and only a later one sheds them; why the source has it the other way round we do not "
+        "know.",
     ),
     Experiment(
         "tilt-fill",
