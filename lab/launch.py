@@ -295,6 +295,7 @@ def _without(
 
 
 def pose_of(rows: Mapping[str, np.ndarray]) -> np.ndarray:
+    """Pose (W, 3) of the tanks in m, m, rad."""
     return np.stack([rows["pose_y"], rows["pose_z"], rows["pose_angle"]], axis=-1)
 
 

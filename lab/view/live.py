@@ -4,6 +4,7 @@ A piece is a sampling interval of the series. What a hand changes counts from th
 changes at the same pieces give the same bits again, whoever gives them and whenever (`lab.view.replay`).
 """
 
+import time
 from collections.abc import Callable, Mapping
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
@@ -101,11 +102,12 @@ class Live:
             self.simulation.steer(self.helm.follow(length))
         if self.swell and (vessel := self.swell.follow(length)):
             self.simulation.meet([vessel])
-        target = self.simulation.steps + self.steps_a_piece
+        begun, target = time.perf_counter(), self.simulation.steps + self.steps_a_piece
         while self.simulation.steps < target:
             self.simulation.advance(min(most or self.steps_a_piece, target - self.simulation.steps))
             pause()
         self.pieces += 1
+        self.recorder.wall_s += time.perf_counter() - begun
         self.seen = self._record()
         return self.seen
 

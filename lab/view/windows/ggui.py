@@ -79,7 +79,7 @@ class VulkanWindow:
         x, y = self._cursor()
         for event in self._window.get_events(ti.ui.PRESS):
             if event.key in BUTTONS:
-                if x < self._size[0] * (1.0 - COLUMN / 64.0):  # else it is imgui's
+                if not session.values or x < self._size[0] * (1.0 - COLUMN / 64.0):  # else it is imgui's
                     self._held = event.key
                     session.press(x, y, BUTTONS[event.key])
             else:
