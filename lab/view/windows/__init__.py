@@ -8,9 +8,9 @@ from lab.errors import LabError
 from lab.view.chooser import Chooser
 from lab.view.session import Session
 from lab.view.windows import ggui, plain
+from lab.view.windows.window import Window
 
 FRONT_ENDS = {"ggui": ggui, "gui": plain}  # in the order in which they are tried
-PICTURES = 30.0  # Hz
 
 
 def open_window(
@@ -42,13 +42,13 @@ def open_window(
         window.close()
 
 
-def _choose(window, size: tuple[int, int]) -> str:
+def _choose(window: Window, size: tuple[int, int]) -> str:
     chooser = Chooser(size)
     window.run(chooser)
     return chooser.chosen
 
 
-def _show(window, name: str, overrides: dict, size: tuple[int, int], out: Path | None) -> Path:
+def _show(window: Window, name: str, overrides: dict, size: tuple[int, int], out: Path | None) -> Path:
     session = Session(name, overrides, size, out, panel=window.needs_panel)
     try:
         window.run(session)

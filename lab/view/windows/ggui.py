@@ -1,6 +1,7 @@
 """A window of Taichi's GGUI with imgui's sliders: where there is Vulkan, of a graphics processor or in software."""
 
-import time
+import contextlib
+import tempfile
 
 import numpy as np
 import taichi as ti
@@ -9,6 +10,7 @@ from lab.view.chooser import Chooser
 from lab.view.controls import CONTROLS, RESTARTS, UNITS
 from lab.view.page import COLUMN, MARGIN
 from lab.view.session import KEYS, Session
+from lab.view.windows.window import Window
 
 NAMES = {
     ti.ui.SPACE: "space",
@@ -24,39 +26,36 @@ TOP, BOTTOM = 0.30, 0.80  # of the window's height: where its panel stands
 BUTTON_KEYS = ("space", "n", "m", "w", "k", "r", "c", "f", "o", "i")
 
 
-class VulkanWindow:
+class VulkanWindow(Window):
     """The window; imgui has the sliders."""
 
     needs_panel = False
 
     def __init__(self, size: tuple[int, int]) -> None:
-        self._size = size
+        super().__init__(size)
         self._window = ti.ui.Window("Cargo Shift Lab", size, vsync=False)
         self._canvas, self._gui = self._window.get_canvas(), self._window.get_gui()
         self._shown = ti.Vector.field(3, ti.f32, size)
         self._held: str | None = None
-
-    def run(self, session: Session | Chooser) -> None:
-        """Until the window or what it shows ends."""
-        from lab.view.windows import PICTURES
-
-        while self._window.running and not session.ended:
-            begun = time.monotonic()
-            session.tick()
-            self._pass_on(session)
-            if session.ended:
-                break
-            picture = session.picture()[::-1].swapaxes(0, 1).astype(np.float32) / 255.0
-            self._shown.from_numpy(np.ascontiguousarray(picture))
-            self._canvas.set_image(self._shown)
-            if session.values:
-                self._panel(session)
-            self._window.show()
-            time.sleep(max(0.0, 1.0 / PICTURES - (time.monotonic() - begun)))
+        # imgui leaves the layout of its panels in the folder it is in, which is the user's: it gets another.
+        self._scratch = tempfile.TemporaryDirectory()
 
     def close(self) -> None:
         """Done with it."""
-        self._window.destroy()
+        with contextlib.chdir(self._scratch.name):
+            self._window.destroy()
+        self._scratch.cleanup()
+
+    def _is_open(self) -> bool:
+        return self._window.running
+
+    def _show(self, session: Session | Chooser, picture: np.ndarray) -> None:
+        self._shown.from_numpy(np.ascontiguousarray(picture.astype(np.float32) / 255.0))
+        self._canvas.set_image(self._shown)
+        if session.values:
+            self._panel(session)
+        with contextlib.chdir(self._scratch.name):
+            self._window.show()
 
     def _panel(self, session: Session) -> None:
         """A slider a control, in its unit, and buttons for the keys."""

@@ -1,12 +1,11 @@
 """A window of `ti.GUI`, drawn by the processor: wherever there is a display."""
 
-import time
-
 import numpy as np
 import taichi as ti
 
 from lab.view.chooser import Chooser
 from lab.view.session import Session
+from lab.view.windows.window import Window
 
 # Names that ti.GUI gives to keys, and ours.
 NAMES = {
@@ -23,34 +22,27 @@ BUTTONS = {ti.GUI.LMB: "left", ti.GUI.RMB: "right"}
 A_TURN = 120.0  # what a turn of the wheel counts
 
 
-class PlainWindow:
+class PlainWindow(Window):
     """The window; it shows the whole picture, sliders and all."""
 
     needs_panel = True
 
     def __init__(self, size: tuple[int, int]) -> None:
-        self._size = size
+        super().__init__(size)
         self._window = ti.GUI("Cargo Shift Lab", size, fast_gui=True)
         self._shown = ti.Vector.field(3, ti.u8, size)
-
-    def run(self, session: Session | Chooser) -> None:
-        """Until the window or what it shows ends."""
-        from lab.view.windows import PICTURES
-
-        while self._window.running and not session.ended:
-            begun = time.monotonic()
-            session.tick()
-            self._pass_on(session)
-            if session.ended:
-                break
-            self._shown.from_numpy(np.ascontiguousarray(session.picture()[::-1].swapaxes(0, 1)))
-            self._window.set_image(self._shown)
-            self._window.show()
-            time.sleep(max(0.0, 1.0 / PICTURES - (time.monotonic() - begun)))
 
     def close(self) -> None:
         """Done with it."""
         self._window.close()
+
+    def _is_open(self) -> bool:
+        return self._window.running
+
+    def _show(self, session: Session | Chooser, picture: np.ndarray) -> None:
+        self._shown.from_numpy(np.ascontiguousarray(picture))
+        self._window.set_image(self._shown)
+        self._window.show()
 
     def _pass_on(self, session: Session | Chooser) -> None:
         for event in self._window.get_events():

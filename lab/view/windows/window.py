@@ -1,0 +1,46 @@
+"""What every window does: show a session's pictures at their pace and pass on what a hand does."""
+
+import time
+from abc import ABC, abstractmethod
+
+import numpy as np
+
+from lab.view.chooser import Chooser
+from lab.view.session import Session
+
+PICTURES = 30.0  # Hz
+
+
+class Window(ABC):
+    """A front end of one toolkit; `needs_panel` where pictures must bring their own sliders."""
+
+    needs_panel: bool
+
+    def __init__(self, size: tuple[int, int]) -> None:
+        self._size = size
+
+    def run(self, session: Session | Chooser) -> None:
+        """Until the window or what it shows ends."""
+        while self._is_open() and not session.ended:
+            begun = time.monotonic()
+            session.tick()
+            self._pass_on(session)
+            if session.ended:
+                break
+            self._show(session, session.picture()[::-1].swapaxes(0, 1))
+            time.sleep(max(0.0, 1.0 / PICTURES - (time.monotonic() - begun)))
+
+    @abstractmethod
+    def close(self) -> None:
+        """Done with it."""
+
+    @abstractmethod
+    def _is_open(self) -> bool: ...
+
+    @abstractmethod
+    def _pass_on(self, session: Session | Chooser) -> None:
+        """Turn the events since the last time into the session's calls."""
+
+    @abstractmethod
+    def _show(self, session: Session | Chooser, picture: np.ndarray) -> None:
+        """Show a picture (width, height, 3), bytes, its first row the lowest."""
