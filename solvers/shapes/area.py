@@ -46,9 +46,8 @@ class Area(Single):
 
         Where they share nothing the overlap is at most 0: no gap is smaller.
         """
-        turn_j, shape_i, shape_j = g.turn(w, j), g.shape[w, i], g.shape[w, j]
-        radius_i, radius_j, apart = g.radius[w, i], g.radius[w, j], g.apart(w, i, j)
-        between, centre = turned_back(turn_j, g.turn(w, i)), turned_back(turn_j, apart)
+        one, two, apart = g.outline(w, i), g.outline(w, j), g.apart(w, i, j)
+        between, centre = turned_back(two.turn, one.turn), turned_back(two.turn, apart)
         way = ti.abs(apart[0] - pairs.from_y[u, p][0]) + ti.abs(apart[1] - pairs.from_z[u, p][0])
         way += g.reach[w, i] * ti.abs(g.angle[w, i] - pairs.from_first[u, p][0])
         way += g.reach[w, j] * ti.abs(g.angle[w, j] - pairs.from_second[u, p][0])
@@ -56,18 +55,16 @@ class Area(Single):
         first, edges = ti.cast(pairs.edge_first[u, p][0], ti.i32), ti.cast(pairs.edges[u, p][0], ti.i32)
         anew = way >= window
         if anew:
-            window, way = WINDOW * lesser(radius_i, radius_j), 0.0 * way
-            reach = radius_j * self.polygons.bounding[shape_j] + window
-            first, edges = self.polygons.facing(shape_i, radius_i, between, centre, reach)
-        total, gap, first, edges = self.polygons.shared(
-            shape_i, radius_i, between, centre, shape_j, radius_j, first, edges, window
-        )
+            window, way = WINDOW * lesser(one.scale, two.scale), 0.0 * way
+            reach = two.scale * self.polygons.bounding[two.shape] + window
+            first, edges = self.polygons.facing(one, between, centre, reach)
+        total, gap, first, edges = self.polygons.shared(one, between, centre, two, first, edges, window)
         if ti.static(moves):  # noqa: SIM102 (compiled only there)
             if anew:
                 pairs.window[u, p][0], pairs.edge_first[u, p][0], pairs.edges[u, p][0] = window, first, edges
                 pairs.from_y[u, p][0], pairs.from_z[u, p][0] = apart[0], apart[1]
                 pairs.from_first[u, p][0], pairs.from_second[u, p][0] = g.angle[w, i], g.angle[w, j]
-        contact = contact_of(total, radius_i * radius_j / (radius_i + radius_j), turn_j)
+        contact = contact_of(total, one.scale * two.scale / (one.scale + two.scale), two.turn)
         if contact[0] == 0.0:
             contact[0] = -greater(lesser(gap, window - way), 0.0)
         return contact
@@ -81,22 +78,23 @@ class Area(Single):
         if feature < self.walls.walls.segments:
             face = self.walls.facing(feature, shift, g.y[w, i], g.z[w, i])
             normal = ti.Vector([ti.cast(face[0], g.real), ti.cast(face[1], g.real)])
-            own, far = turned_back(g.turn(w, i), normal), ti.cast(face[2], g.real)
+            one, far = g.outline(w, i), ti.cast(face[2], g.real)
+            own = turned_back(one.turn, normal)
             way = ti.abs(own[0] - contacts.from_y[u, p][0]) + ti.abs(own[1] - contacts.from_z[u, p][0])
             way = g.reach[w, i] * way + ti.abs(far - contacts.from_far[u, p][0])
-            shape, radius, window = g.shape[w, i], g.radius[w, i], contacts.window[u, p][0]
+            window = contacts.window[u, p][0]
             first, edges = ti.cast(contacts.edge_first[u, p][0], ti.i32), ti.cast(contacts.edges[u, p][0], ti.i32)
             anew = way >= window
             if anew:
-                window = WINDOW * radius
-                first, edges = self.polygons.below(shape, own, (window - far) / radius)
-            total, first, edges = self.polygons.behind(shape, radius, own, far, first, edges, window)
+                window = WINDOW * one.scale
+                first, edges = self.polygons.below(one.shape, own, (window - far) / one.scale)
+            total, first, edges = self.polygons.behind(one, own, far, first, edges, window)
             if ti.static(moves):  # noqa: SIM102 (compiled only there)
                 if anew:
                     contacts.window[u, p][0], contacts.edge_first[u, p][0] = window, first
                     contacts.edges[u, p][0], contacts.from_far[u, p][0] = edges, far
                     contacts.from_y[u, p][0], contacts.from_z[u, p][0] = own[0], own[1]
-            contact = contact_of(total, radius, g.turn(w, i))
+            contact = contact_of(total, one.scale, one.turn)
             if not self.walls.counts_on_segment(feature, shift, g.y[w, i] + contact[3], g.z[w, i] + contact[4]):
                 contact[0] = -FAR
         else:

@@ -29,6 +29,7 @@ from solvers.shapes.tracked import (
     SADDLE,
     SETTLED,
     TRIES,
+    Places,
     Tracked,
     advanced,
 )
@@ -64,49 +65,34 @@ class Continuous:
         self.kept = Kept(self.tracked, self.bent)
         self.pair_memory, self.wall_memory = self.kept.pair_memory, self.kept.wall_memory
         self.farthest, self.most = NEAR * self.tables.cells, ROOM
-        # Of the contacts that are being sought.
-        self.first, self.second = arrays.reals(2, (units.count, ROOM), kept=False)
-        self.first_saddle, self.second_saddle = arrays.reals(2, (units.count, ROOM), kept=False)
+        self.places = Places(arrays, units.count, ROOM)
 
     @ti.func
     def seek_pair(self, g: ti.template(), w, i, j, margin, u):
         """Find the contacts of two grains with gaps below a margin (m); returns how many there are."""
-        return self.tracked.scan(
-            g.shape[w, i],
-            g.radius[w, i],
-            g.turn(w, i),
-            g.shape[w, j],
-            g.radius[w, j],
-            g.turn(w, j),
-            g.apart(w, i, j),
-            margin,
-            self.first,
-            self.second,
-            self.first_saddle,
-            self.second_saddle,
-            u,
-        )
+        one, two = g.outline(w, i), g.outline(w, j)
+        return self.tracked.scan(one, two, g.apart(w, i, j), margin, self.places, u)
 
     @ti.func
     def away(self, contacts: ti.template(), u, q, k):
         """How far (cells) contact q of an old list is from the k-th that has been found of the same two."""
         place = contacts.old_place_first[u, q][0]
-        far = self.tracked.distance(place, self.first[u, k])
+        far = self.tracked.distance(place, self.places.i[u, k])
         if ti.static(hasattr(contacts, "place_second")):
-            far += self.tracked.distance(contacts.old_place_second[u, q][0], self.second[u, k])
+            far += self.tracked.distance(contacts.old_place_second[u, q][0], self.places.j[u, k])
         # One that has been lost has nothing to hand on.
         return ti.select(place < 0.0, self.farthest, far)
 
     @ti.func
     def note(self, contacts: ti.template(), u, p, k):
         """Contact p is where the k-th has been found; it is free where there are not so many."""
-        contacts.place_first[u, p][0] = self.first[u, k]
+        contacts.place_first[u, p][0] = self.places.i[u, k]
         if ti.static(hasattr(contacts, "place_second")):
-            contacts.place_second[u, p][0] = self.second[u, k]
+            contacts.place_second[u, p][0] = self.places.j[u, k]
         if ti.static(self.bent):
-            contacts.saddle_first[u, p][0] = self.first_saddle[u, k]
+            contacts.saddle_first[u, p][0] = self.places.saddle_i[u, k]
             if ti.static(hasattr(contacts, "saddle_second")):
-                contacts.saddle_second[u, p][0] = self.second_saddle[u, k]
+                contacts.saddle_second[u, p][0] = self.places.saddle_j[u, k]
 
     @ti.func
     def places_for_pair(self, g: ti.template(), w, i, j, most):
@@ -218,17 +204,10 @@ class Continuous:
             back = ti.select(before == p, 0.0, self.kept.way_back(pairs, u, p, before))
             missing = side < 0.0 and back > 0.0 and back < 0.5 * self.tables.cells and pairs.saddle_first[u, p][0] < 0.0
             away = ti.select(missing, -0.5 * back, away)
-            c = self.tracked.fall(
-                g.shape[w, i],
-                g.radius[w, i],
-                g.turn(w, i),
-                g.shape[w, j],
-                g.radius[w, j],
-                g.turn(w, j),
-                g.apart(w, i, j),
-                pairs.place_first[u, p][0] + away,
-                pairs.place_second[u, p][0] - away * g.radius[w, i] / g.radius[w, j],
-            )
+            a = pairs.place_first[u, p][0] + away
+            b = pairs.place_second[u, p][0] - away * g.radius[w, i] / g.radius[w, j]
+            one, two = g.outline(w, i), g.outline(w, j)
+            c = self.tracked.fall(one, two, g.apart(w, i, j), a, b)
             new = c[2] < 0.0 and (missing or (side * c[0] > 0.0 and not self.kept.beyond(pairs, u, p, away)))
         return new
 
@@ -240,19 +219,8 @@ class Continuous:
     @ti.func
     def between(self, g: ti.template(), way: ti.template(), moves: ti.template(), w, i, j, a, b):
         """What there is between two grains at these places; see `Tracked.contact`."""
-        return self.tracked.contact(
-            moves,
-            way,
-            g.shape[w, i],
-            g.radius[w, i],
-            g.turn(w, i),
-            g.shape[w, j],
-            g.radius[w, j],
-            g.turn(w, j),
-            g.apart(w, i, j),
-            a,
-            b,
-        )
+        one, two = g.outline(w, i), g.outline(w, j)
+        return self.tracked.contact(moves, way, one, two, g.apart(w, i, j), a, b)
 
     @ti.func
     def seek_wall(self, g: ti.template(), w, i, feature, shift: ti.template(), margin, u):
@@ -260,31 +228,34 @@ class Continuous:
         found, looks = 0, ti.static(self.tracked.looks)
         stride = ti.static(self.tables.cells // self.tracked.looks)
         target = self.target(g, w, i, feature, shift)
-        earlier = self.rough_gap(g, w, i, feature, target, -2 * stride)
-        last = self.rough_gap(g, w, i, feature, target, -stride)
+        outline = g.outline(w, i)
+        earlier, last = (
+            self.rough_gap(outline, feature, target, -2 * stride),
+            self.rough_gap(outline, feature, target, -stride),
+        )
         for k in range(looks):
-            gap = self.rough_gap(g, w, i, feature, target, k * stride)
+            gap = self.rough_gap(outline, feature, target, k * stride)
             if last <= earlier and last < gap:
-                found = self.settle(g, w, i, feature, target, 0.0 * margin + (k - 1) * stride, margin, u, found)
+                found = self.settle(outline, feature, target, 0.0 * margin + (k - 1) * stride, margin, u, found)
             earlier, last = last, gap
         if ti.static(self.bent):
-            self.tracked.put_in_order(self.first, self.second, u, found)
+            self.tracked.put_in_order(self.places, u, found)
             for k in range(found):
-                self.first_saddle[u, k] = NONE
+                self.places.saddle_i[u, k] = NONE
                 if found > 1 and feature < self.walls.walls.segments:
-                    along = self.tables.wrapped(self.first[u, k] - self.first[u, (k + found - 1) % found])
-                    c = self.followed(g, w, i, feature, target, SADDLE, self.first[u, k] - 0.5 * along)
-                    between = self.tables.wrapped(self.first[u, k] - c[PLACE_I]) < along
+                    along = self.tables.wrapped(self.places.i[u, k] - self.places.i[u, (k + found - 1) % found])
+                    c = self.followed(outline, feature, target, SADDLE, self.places.i[u, k] - 0.5 * along)
+                    between = self.tables.wrapped(self.places.i[u, k] - c[PLACE_I]) < along
                     if c[HOLDS] > 0.0 and between and -c[OVERLAP] < margin:
-                        self.first_saddle[u, k] = c[PLACE_I]
+                        self.places.saddle_i[u, k] = c[PLACE_I]
         return found
 
     @ti.func
-    def followed(self, g: ti.template(), w, i, feature, target, way: ti.template(), start):
+    def followed(self, outline: ti.template(), feature, target, way: ti.template(), start):
         """What Newton's method leads to from a place; it does not hold where it leads to nothing."""
         c, place, settled = ti.Vector([0.0 * start for _ in ti.static(range(HOLDS + 1))]), start, False
         for _ in range(TRIES):
-            c = self.against(g, w, i, feature, target, way, place, True)
+            c = self.against(outline, feature, target, way, place, True)
             settled = self.tracked.same(c[PLACE_I], place, SETTLED)
             place = c[PLACE_I]
             if settled:
@@ -294,15 +265,15 @@ class Continuous:
         return c
 
     @ti.func
-    def settle(self, g: ti.template(), w, i, feature, target, start, margin, u, before):
+    def settle(self, outline: ti.template(), feature, target, start, margin, u, before):
         """Follow a place to the contact near by, write it down if it is new; returns how many there are."""
-        found, c = before, self.followed(g, w, i, feature, target, MINIMUM, start)
+        found, c = before, self.followed(outline, feature, target, MINIMUM, start)
         place, fresh = c[PLACE_I], c[HOLDS] > 0.0 and -c[OVERLAP] < margin and before < ROOM
         for k in range(before):
-            if self.tracked.same(place, self.first[u, k], ALIKE):
+            if self.tracked.same(place, self.places.i[u, k], ALIKE):
                 fresh = False
         if fresh:
-            self.first[u, before] = place
+            self.places.i[u, before] = place
             found += 1
         return found
 
@@ -321,10 +292,10 @@ class Continuous:
         return seen
 
     @ti.func
-    def rough_gap(self, g: ti.template(), w, i, feature, target, cell):
+    def rough_gap(self, outline: ti.template(), feature, target, cell):
         """What has a local minimum where a contact is, at the start of a cell of the outline."""
-        at, scale = cell & (self.tables.cells - 1), g.radius[w, i]
-        x, y = scale * self.tables.curve[g.shape[w, i], at, 0], scale * self.tables.curve[g.shape[w, i], at, 4]
+        at, shape = cell & (self.tables.cells - 1), outline.shape
+        x, y = outline.scale * self.tables.curve[shape, at, 0], outline.scale * self.tables.curve[shape, at, 4]
         gap = target[2] + x * target[0] + y * target[1]
         if feature >= self.walls.walls.segments:
             gap = (x - target[0]) ** 2 + (y - target[1]) ** 2
@@ -385,7 +356,8 @@ class Continuous:
         self, g: ti.template(), way: ti.template(), moves: ti.template(), w, i, feature, shift: ti.template(), place
     ):
         """What there is between a grain and a wall near a place, in the tank's frame; see `against`."""
-        c = self.against(g, w, i, feature, self.target(g, w, i, feature, shift), way, place, moves)
+        outline = g.outline(w, i)
+        c = self.against(outline, feature, self.target(g, w, i, feature, shift), way, place, moves)
         normal = turned(g.turn(w, i), ti.Vector([c[NORMAL_Y], c[NORMAL_Z]]))
         point = turned(g.turn(w, i), ti.Vector([c[POINT_Y], c[POINT_Z]]))
         counts = self.walls.counts_on_corner(feature, normal[0], normal[1])
@@ -395,12 +367,12 @@ class Continuous:
         return ti.Vector([overlap, normal[0], normal[1], point[0], point[1], c[PLACE_I], c[PLACE_J], c[HOLDS]])
 
     @ti.func
-    def against(self, g: ti.template(), w, i, feature, target, way: ti.template(), place, moves: ti.template()):
+    def against(self, outline: ti.template(), feature, target, way: ti.template(), place, moves: ti.template()):
         """The contact of an outline with a wall near a place, all in the grain's frame; see `Tracked.contact`.
 
         The gap to a segment of normal m is least where p' · m = 0, that to a corner q where p' · (p − q) = 0.
         """
-        shape, scale, corner = g.shape[w, i], g.radius[w, i], feature >= self.walls.walls.segments
+        shape, scale, corner = outline.shape, outline.scale, feature >= self.walls.walls.segments
         a, own = place, scale * self.tables.trace(shape, place)
         s = self.slopes(own, target, corner)
         if ti.static(moves):

@@ -51,18 +51,8 @@ class Discrete(Single):
         if ti.static(moves):
             look = self.nodes.next_look(self.count_look(pairs, u, p))
             first, second = ti.cast(pairs.node_first[u, p][0], ti.i32), ti.cast(pairs.node_second[u, p][0], ti.i32)
-        c, first, second = self.nodes.contact(
-            g.shape[w, i],
-            g.radius[w, i],
-            g.turn(w, i),
-            g.shape[w, j],
-            g.radius[w, j],
-            g.turn(w, j),
-            g.apart(w, i, j),
-            first,
-            second,
-            look,
-        )
+        one, two = g.outline(w, i), g.outline(w, j)
+        c, first, second = self.nodes.contact(one, two, g.apart(w, i, j), first, second, look)
         if ti.static(moves):
             pairs.node_first[u, p][0], pairs.node_second[u, p][0] = first, second
         return ti.Vector([c[0], c[1], c[2], c[3], c[4], 1.0 + 0.0 * c[0]])

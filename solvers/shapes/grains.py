@@ -7,6 +7,7 @@ from solvers.grains import Grains
 from solvers.runtime import Arrays
 from solvers.shapes.contour import Contour
 from solvers.shapes.given import Shapes
+from solvers.shapes.pose import posed
 
 DISC = Contour(1.0)
 
@@ -56,6 +57,11 @@ class ShapedGrains(Grains):
     def turn(self, w, i):
         """Cosine and sine of a grain's angle."""
         return ti.Vector([self.turn_y[w, i], self.turn_z[w, i]])
+
+    @ti.func
+    def outline(self, w, i):
+        """A grain's outline, `posed`."""
+        return posed(self.shape[w, i], self.radius[w, i], self.turn(w, i))
 
     @ti.func
     def apart(self, w, i, j):

@@ -41,45 +41,45 @@ class Nodes:
         self.least = arrays.holding(np.array([_least(outline) for outline in outlines]))
 
     @ti.func
-    def contact(self, shape_i, scale_i, turn_i, shape_j, scale_j, turn_j, apart, node_i, node_j, look):
+    def contact(self, one: ti.template(), two: ti.template(), apart, node_i, node_j, look):
         """Overlap ξ (m; negative: no gap is smaller; 0: open), normal towards i, contact point from i's centre, nodes.
 
-        `turn` is (cos, sin) of a grain's angle, `apart` the centre of i less that of j (m). The contact point is the
-        deepest node, of which either grain's is given, too. `look` is ALL, or which of the neighbours of `node_i` and
-        `node_j` is asked: 1 or −1 for the next or the last on i, 2 or −2 on j.
+        `one` and `two` are the outlines of i and j, `apart` the centre of i less that of j (m). The contact point is
+        the deepest node, of which either grain's is given, too. `look` is ALL, or which of the neighbours of `node_i`
+        and `node_j` is asked: 1 or −1 for the next or the last on i, 2 or −2 on j.
         """
-        between, back = turned_back(turn_j, turn_i), turned_back(turn_i, turn_j)
-        centre, centre_back = turned_back(turn_j, apart), turned_back(turn_i, -apart)
+        between, back = turned_back(two.turn, one.turn), turned_back(one.turn, two.turn)
+        centre, centre_back = turned_back(two.turn, apart), turned_back(one.turn, -apart)
         a, b = node_i, node_j
-        first = self.seen(shape_i, scale_i, between, shape_j, scale_j, centre, a)
-        second = self.seen(shape_j, scale_j, back, shape_i, scale_i, centre_back, b)
+        first = self.seen(one, between, two, centre, a)
+        second = self.seen(two, back, one, centre_back, b)
         if look == ALL:
-            a = self.search(shape_i, scale_i, between, shape_j, scale_j, centre, a, first[DEPTH])
-            b = self.search(shape_j, scale_j, back, shape_i, scale_i, centre_back, b, second[DEPTH])
+            a = self.search(one, between, two, centre, a, first[DEPTH])
+            b = self.search(two, back, one, centre_back, b, second[DEPTH])
         elif ti.abs(look) == 1:
             c = self.beside(a, look)
-            if self.depth(shape_i, scale_i, between, shape_j, scale_j, centre, c) > first[DEPTH]:
+            if self.depth(one, between, two, centre, c) > first[DEPTH]:
                 a = c
         else:
             c = self.beside(b, look // 2)
-            if self.depth(shape_j, scale_j, back, shape_i, scale_i, centre_back, c) > second[DEPTH]:
+            if self.depth(two, back, one, centre_back, c) > second[DEPTH]:
                 b = c
         if a != node_i:
-            first = self.seen(shape_i, scale_i, between, shape_j, scale_j, centre, a)
+            first = self.seen(one, between, two, centre, a)
         if b != node_j:
-            second = self.seen(shape_j, scale_j, back, shape_i, scale_i, centre_back, b)
-        contact = ti.Vector([0.0 * scale_i, 0.0, 0.0, 0.0, 0.0])
+            second = self.seen(two, back, one, centre_back, b)
+        contact = ti.Vector([0.0 * one.scale, 0.0, 0.0, 0.0, 0.0])
         there, here = overlap_of(first), overlap_of(second)
         if there > 0.0 and there >= here:
-            normal, point = normal_of(first, turn_j), turned(turn_j, own_of(first))
+            normal, point = normal_of(first, two.turn), turned(two.turn, own_of(first))
             contact = ti.Vector([there, normal[0], normal[1], point[0] - apart[0], point[1] - apart[1]])
         elif here > 0.0:
-            normal, point = -normal_of(second, turn_i), turned(turn_i, own_of(second))
+            normal, point = -normal_of(second, one.turn), turned(one.turn, own_of(second))
             contact = ti.Vector([here, normal[0], normal[1], point[0], point[1]])
         elif look == ALL:
-            far_i, far_j = self.nearby(shape_i, scale_i), self.nearby(shape_j, scale_j)
-            gap_i = ti.min(-first[DEPTH], far_j) * self.least[shape_j]
-            contact[0] = -ti.min(gap_i, ti.min(-second[DEPTH], far_i) * self.least[shape_i])
+            far_i, far_j = self.nearby(one), self.nearby(two)
+            gap_i = ti.min(-first[DEPTH], far_j) * self.least[two.shape]
+            contact[0] = -ti.min(gap_i, ti.min(-second[DEPTH], far_i) * self.least[one.shape])
         return contact, a, b
 
     @ti.func
@@ -94,9 +94,9 @@ class Nodes:
         return ti.Vector([self.point[shape, n, 0], self.point[shape, n, 1]])
 
     @ti.func
-    def nearby(self, shape, scale):
+    def nearby(self, outline: ti.template()):
         """How far outside (m) of a grain nodes are told apart."""
-        return NEARBY * scale * self.tables.bounding[shape]
+        return NEARBY * outline.scale * self.tables.bounding[outline.shape]
 
     @ti.func
     def beside(self, node, side):
@@ -105,34 +105,34 @@ class Nodes:
         return ti.select(n < 0, self.count - 1, ti.select(n == self.count, 0, n))
 
     @ti.func
-    def depth(self, shape, scale, between, other, other_scale, centre, n):
+    def depth(self, one: ti.template(), between, other: ti.template(), centre, n):
         """Depth by polar radius (m) of a node in the other grain."""
-        own = centre + scale * turned(between, self.place(shape, n))
-        return other_scale * self.tables.radius(other, own[0], own[1]) - own.norm()
+        own = centre + one.scale * turned(between, self.place(one.shape, n))
+        return other.scale * self.tables.radius(other.shape, own[0], own[1]) - own.norm()
 
     @ti.func
-    def seen(self, shape, scale, between, other, other_scale, centre, n):
+    def seen(self, one: ti.template(), between, other: ti.template(), centre, n):
         """Depth by polar radius (m) of a node in the other grain, R and R' there (m), the node in the other's frame."""
-        own = centre + scale * turned(between, self.place(shape, n))
-        radius = other_scale * self.tables.radius_and_slope(other, own[0], own[1])
+        own = centre + one.scale * turned(between, self.place(one.shape, n))
+        radius = other.scale * self.tables.radius_and_slope(other.shape, own[0], own[1])
         return ti.Vector([radius[0] - own.norm(), radius[0], radius[1], own[0], own[1]])
 
     @ti.func
-    def search(self, shape, scale, between, other, other_scale, centre, known, depth_known):
+    def search(self, one: ti.template(), between, other: ti.template(), centre, known, depth_known):
         """The node that lies deepest by polar radius, even if that is outside, unless none is NEARBY.
 
         The deeper the node that is `known`, the fewer others are looked at.
         """
-        reach, steepest = other_scale * self.tables.bounding[other], other_scale * self.steepest[other]
-        best, which, k = ti.max(depth_known, -self.nearby(other, other_scale)), known, 0
+        reach, steepest = other.scale * self.tables.bounding[other.shape], other.scale * self.steepest[other.shape]
+        best, which, k = ti.max(depth_known, -self.nearby(other)), known, 0
         while k < self.length:
             after = self.after[k]
-            place = ti.Vector([self.circle[shape, k, 0], self.circle[shape, k, 1]]) * scale
-            width = self.circle[shape, k, 2] * scale
+            place = ti.Vector([self.circle[one.shape, k, 0], self.circle[one.shape, k, 1]]) * one.scale
+            width = self.circle[one.shape, k, 2] * one.scale
             own = centre + turned(between, place)
             distance = own.norm()
             if reach - distance + width > best:
-                depth = other_scale * self.tables.radius(other, own[0], own[1]) - distance
+                depth = other.scale * self.tables.radius(other.shape, own[0], own[1]) - distance
                 if width == 0.0:
                     if depth > best:
                         best, which = depth, self.start[k]

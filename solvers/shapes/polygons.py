@@ -33,19 +33,19 @@ class Polygons:
         self.least = arrays.holding(np.array([_least(one) for one in corners]))
 
     @ti.func
-    def shared(self, first, scale, between, centre, other, other_scale, start, edges, margin):
+    def shared(self, one: ti.template(), between, centre, other: ti.template(), start, edges, margin):
         """What so many edges of an outline share with the other, in whose frame it is turned and its centre is.
 
         And at least how far (m) they are from it if that is nothing; and which first corner and number of edges have
         all that may be within a margin (m).
         """
-        total, gap = nothing(scale), scale * self.bounding[first]
+        total, gap = nothing(one.scale), one.scale * self.bounding[one.shape]
         begin, end = edges, 0
-        p = self.seen(first, scale, between, centre, start)
-        sector, beyond = self.ray(p, other, other_scale)
+        p = self.seen(one, between, centre, start)
+        sector, beyond = self.ray(p, other)
         for k in range(edges):
-            q = self.seen(first, scale, between, centre, start + k + 1)
-            piece, away, sector, beyond = self.edge(p, q, centre, other, other_scale, sector, beyond)
+            q = self.seen(one, between, centre, start + k + 1)
+            piece, away, sector, beyond = self.edge(p, q, centre, other, sector, beyond)
             total += piece
             gap = lesser(away, gap)
             if away < margin:
@@ -54,9 +54,9 @@ class Polygons:
         return total, gap, start + ti.min(begin, end), ti.max(end - begin, 0)
 
     @ti.func
-    def facing(self, first, scale, between, centre, reach):
+    def facing(self, one: ti.template(), between, centre, reach):
         """The first corner and the number of edges that a circle of this radius about the origin may hold."""
-        distance, own = centre.norm(), scale * self.bounding[first]
+        distance, own = centre.norm(), one.scale * self.bounding[one.shape]
         start, edges = 0, 0
         if distance < own + reach:
             edges = self.count
@@ -81,28 +81,28 @@ class Polygons:
         return ti.Vector([self.corner[shape, n, 0], self.corner[shape, n, 1]])
 
     @ti.func
-    def seen(self, shape, scale, between, centre, k):
+    def seen(self, one: ti.template(), between, centre, k):
         """A corner of a scaled outline that is turned, its centre being there."""
-        return centre + scale * turned(between, self.own(shape, k))
+        return centre + one.scale * turned(between, self.own(one.shape, k))
 
     @ti.func
-    def ray(self, p, other, scale):
+    def ray(self, p, other: ti.template()):
         """The sector that a point is in, from one corner's ray to the next, and R/ρ − 1 there."""
         s = ti.cast(ti.floor(ti.atan2(p[1], p[0]) * ti.static(0.5 * self.count / pi)), ti.i32)
-        return s, beyond_side(p, scale * self.own(other, s), scale * self.own(other, s + 1))
+        return s, beyond_side(p, other.scale * self.own(other.shape, s), other.scale * self.own(other.shape, s + 1))
 
     @ti.func
-    def edge(self, p, q, centre, other, scale, sector, beyond):
+    def edge(self, p, q, centre, other: ti.template(), sector, beyond):
         """What an edge p q adds, at least how far (m) it is from the other outline, and the `ray` of q from that of p.
 
         Outside, where a ray goes on to ρ from R, the distance is at least (ρ − R) cos ψ, ψ being the largest angle
         between the other outline's normal and its radius; along a piece in a sector 1 − R/ρ is least at an end.
         """
-        total, s, t, left = nothing(scale), sector, 0.0 * scale, self.count
+        total, s, t, left = nothing(other.scale), sector, 0.0 * other.scale, self.count
         here, least = beyond, beyond
         onward = p.cross(q) > 0.0
         while left > 0:
-            a, b = scale * self.own(other, s), scale * self.own(other, s + 1)
+            a, b = other.scale * self.own(other.shape, s), other.scale * self.own(other.shape, s + 1)
             at_q, end = ti.select(onward, b.cross(q), q.cross(a)), 1.0 + 0.0 * t
             left = ti.select(at_q > 0.0, left - 1, 0)
             if at_q > 0.0:
@@ -114,7 +114,7 @@ class Polygons:
                 total += inside(p, q, t, end, here, there, a, b, centre)
             here, t, least = there, end, greater(there, least)
         farther = lesser(p.norm_sqr(), q.norm_sqr()) - 0.25 * (q - p).norm_sqr()
-        return total, -least * self.least[other] * ti.sqrt(greater(farther, 0.0)), s, here
+        return total, -least * self.least[other.shape] * ti.sqrt(greater(farther, 0.0)), s, here
 
     @ti.func
     def below(self, shape, normal, height):
@@ -125,15 +125,15 @@ class Polygons:
         return start, edges
 
     @ti.func
-    def behind(self, shape, scale, normal, distance, start, edges, margin):
+    def behind(self, one: ti.template(), normal, distance, start, edges, margin):
         """What so many edges share with a half-plane, its normal in the outline's frame, its edge at −distance.
 
         And which first corner and number of edges have all that are within a margin (m).
         """
-        total, begin, end = nothing(scale), edges, 0
-        p = scale * self.own(shape, start)
+        total, begin, end = nothing(one.scale), edges, 0
+        p = one.scale * self.own(one.shape, start)
         for k in range(edges):
-            q = scale * self.own(shape, start + k + 1)
+            q = one.scale * self.own(one.shape, start + k + 1)
             deep_p, deep_q = -p.dot(normal) - distance, -q.dot(normal) - distance
             if greater(deep_p, deep_q) > -margin:
                 begin, end = ti.min(begin, k), k + 1

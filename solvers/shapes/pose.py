@@ -1,6 +1,12 @@
-"""Turning vectors of a plane by an angle that is given by its cosine and sine."""
+"""Where an outline is turned to, by the cosine and sine of its angle."""
 
 import taichi as ti
+
+
+@ti.func
+def posed(shape, scale, turn):
+    """An outline: the number of its class, how many times as large as that it is, and (cos, sin) of its angle."""
+    return ti.Struct(shape=shape, scale=scale, turn=turn)
 
 
 @ti.func

@@ -5,6 +5,7 @@ from math import pi
 import taichi as ti
 
 from solvers.laws.extremes import greater, lesser, within
+from solvers.runtime import Arrays
 from solvers.shapes.pose import turned, turned_back
 from solvers.shapes.tables import Tables
 
@@ -22,6 +23,17 @@ HALVINGS, NEARER = 6, 2  # on the way to a saddle, and steps to a place on j tha
 
 # Elements of what `contact` gives.
 OVERLAP, NORMAL_Y, NORMAL_Z, POINT_Y, POINT_Z, PLACE_I, PLACE_J, HOLDS = range(8)
+
+
+@ti.data_oriented
+class Places:
+    """Where the contacts of two outlines are that are being sought: on i, on j, and the saddles before them.
+
+    Each of these is (rows, room): a row for each unit that seeks at the same time.
+    """
+
+    def __init__(self, arrays: Arrays, rows: int, room: int):
+        self.i, self.j, self.saddle_i, self.saddle_j = arrays.reals(4, (rows, room), kept=False)
 
 
 @ti.data_oriented
@@ -44,21 +56,19 @@ class Tracked:
         self.flattest = FLATTEST * 2.0 * pi / tables.cells
 
     @ti.func
-    def contact(
-        self, moves: ti.template(), way, shape_i, scale_i, turn_i, shape_j, scale_j, turn_j, apart, place_i, place_j
-    ):
+    def contact(self, moves: ti.template(), way, one: ti.template(), two: ti.template(), apart, place_i, place_j):
         """The contact, or saddle, that was at these places; if it `moves`, one step of Newton's method further.
 
         That step is short, so the outlines' points there follow from their derivatives here.
 
-        `turn` is (cos, sin) of a grain's angle, `apart` the centre of i less that of j (m). Gives overlap ξ (m,
+        `one` and `two` are the outlines of i and j, `apart` the centre of i less that of j (m). Gives overlap ξ (m,
         negative: a gap), normal towards i (y, z), contact point from i's centre (y, z) m, halfway between the two
         points, the new places, and 1 if this is what is sought: the normals face each other, the gap is stationary of
         that kind, and Newton's method has come CLOSE.
         """
-        between, centre = turned_back(turn_j, turn_i), turned_back(turn_j, apart)
-        a, b, least = place_i, place_j, 1.0 + 0.0 * scale_i
-        first, second = self.seen(shape_i, scale_i, between, a), scale_j * self.tables.trace(shape_j, b)
+        between, centre = turned_back(two.turn, one.turn), turned_back(two.turn, apart)
+        a, b, least = place_i, place_j, 1.0 + 0.0 * one.scale
+        first, second = self.seen(one, between, a), two.scale * self.tables.trace(two.shape, b)
         if ti.static(moves):
             step = self.step(way, first, second, centre)
             a, b, least = a + step[0], b + step[1], step[2]
@@ -69,19 +79,19 @@ class Tracked:
         normal = ti.Vector([tangent[1], -tangent[0]])
         gap = centre + p - q
         facing = along.dot(tangent)
-        smallest = lesser(scale_i * self.tables.smallest[shape_i], scale_j * self.tables.smallest[shape_j])
+        smallest = lesser(one.scale * self.tables.smallest[one.shape], two.scale * self.tables.smallest[two.shape])
         close = ti.abs(gap.dot(tangent)) < CLOSE * smallest and ti.abs(along.cross(tangent)) < -CLOSE * facing
         # The far sides of two grains have facing normals, too.
         near = -gap.dot(normal) < DEEP * smallest
         holds = ti.select(close and near and least > 0.0, 1.0, 0.0)
-        n, point = turned(turn_j, normal), turned(turn_j, p - 0.5 * gap)
+        n, point = turned(two.turn, normal), turned(two.turn, p - 0.5 * gap)
         a, b = self.tables.wrapped(a), self.tables.wrapped(b)
         return ti.Vector([-gap.dot(normal), n[0], n[1], point[0], point[1], a, b, holds])
 
     @ti.func
-    def seen(self, shape, scale, between, place):
+    def seen(self, one: ti.template(), between, place):
         """Point of the first outline, from its centre, and derivatives, in the second grain's frame."""
-        own = scale * self.tables.trace(shape, place)
+        own = one.scale * self.tables.trace(one.shape, place)
         p = turned(between, ti.Vector([own[0], own[1]]))
         d = turned(between, ti.Vector([own[2], own[3]]))
         e = turned(between, ti.Vector([own[4], own[5]]))
@@ -111,23 +121,23 @@ class Tracked:
         return ti.Vector([change_a, change_b, -way * bend])
 
     @ti.func
-    def fall(self, shape_i, scale_i, turn_i, shape_j, scale_j, turn_j, apart, place_i, place_j):
+    def fall(self, one: ti.template(), two: ti.template(), apart, place_i, place_j):
         """How the gap gets less along i at a place, the place on j nearest to it, and the gap there.
 
         Fall and gap have the factor |t_j| (m per cell): their signs are of use.
         """
-        between, centre = turned_back(turn_j, turn_i), turned_back(turn_j, apart)
-        first, b = self.seen(shape_i, scale_i, between, place_i), place_j
-        second = scale_j * self.tables.trace(shape_j, b)
+        between, centre = turned_back(two.turn, one.turn), turned_back(two.turn, apart)
+        first, b = self.seen(one, between, place_i), place_j
+        second = two.scale * self.tables.trace(two.shape, b)
         for _ in range(NEARER):
             b += self.nearer(first, second, centre)
-            second = scale_j * self.tables.trace(shape_j, b)
+            second = two.scale * self.tables.trace(two.shape, b)
         d, g = ti.Vector([first[2], first[3]]), ti.Vector([second[2], second[3]])
         gap = centre + ti.Vector([first[0] - second[0], first[1] - second[1]])
         return ti.Vector([-d.cross(g), b, gap.cross(g)])
 
     @ti.func
-    def saddle(self, shape_i, scale_i, turn_i, shape_j, scale_j, turn_j, apart, low_i, low_j, high_i, high_j):
+    def saddle(self, one: ti.template(), two: ti.template(), apart, low_i, low_j, high_i, high_j):
         """The saddle between two minima, of which the one at `high` comes after that at `low` along i.
 
         Halving what lies between them, uphill, leads near it (Bolzano), whatever the outlines do there.
@@ -138,23 +148,13 @@ class Tracked:
         if wide < 0.5 * self.tables.cells:
             for _ in range(HALVINGS):
                 middle = 0.5 * (bottom + top)
-                c = self.fall(
-                    shape_i,
-                    scale_i,
-                    turn_i,
-                    shape_j,
-                    scale_j,
-                    turn_j,
-                    apart,
-                    low_i + middle,
-                    low_j + back * middle / wide,
-                )
+                c = self.fall(one, two, apart, low_i + middle, low_j + back * middle / wide)
                 a, b = low_i + middle, c[1]
                 if c[0] > 0.0:
                     top = middle
                 else:
                     bottom = middle
-        c = self.followed(SADDLE, shape_i, scale_i, turn_i, shape_j, scale_j, turn_j, apart, a, b)
+        c = self.followed(SADDLE, one, two, apart, a, b)
         if wide >= 0.5 * self.tables.cells or self.tables.wrapped(c[PLACE_I] - low_i) > wide:
             c[HOLDS] = 0.0
         return c
@@ -168,122 +168,87 @@ class Tracked:
         return within(-gap.dot(g) * inverse, ti.static(LONGEST * self.tables.cells / (2.0 * pi)))
 
     @ti.func
-    def scan(
-        self,
-        shape_i,
-        scale_i,
-        turn_i,
-        shape_j,
-        scale_j,
-        turn_j,
-        apart,
-        skin,
-        places_i: ti.template(),
-        places_j: ti.template(),
-        saddles_i: ti.template(),
-        saddles_j: ti.template(),
-        row,
-    ):
-        """Find the contacts of a pair with a gap below `skin` (m); writes their places to `places_i[row, k]` and _j.
+    def scan(self, one: ti.template(), two: ti.template(), apart, skin, places: ti.template(), row):
+        """Find the contacts of a pair with a gap below `skin` (m); writes them to a row of `places`.
 
         Gives their number, at most as many as there is room for. They are sought from those of LOOKS points of either
         outline at which the distance from the other, by polar radius, has a local minimum. They come in their order
-        along i, each with the saddle between it and the one before, or NONE, in `saddles_i` and _j.
+        along i, each with the saddle between it and the one before, or NONE.
         """
         found, points, stride = 0, ti.static(self.looks), ti.static(self.tables.cells // self.looks)
-        convex = self.tables.convex[shape_i] * self.tables.convex[shape_j] > 0.0
+        convex = self.tables.convex[one.shape] * self.tables.convex[two.shape] > 0.0
         done = False
         # Convex ones have but one contact, which is found from the line of their centres; else all round either.
         for side in range(ti.select(convex, -1, 0), 2):
             swap = side == 1
-            shape, other = ti.select(swap, shape_j, shape_i), ti.select(swap, shape_i, shape_j)
-            scale, other_scale = ti.select(swap, scale_j, scale_i), ti.select(swap, scale_i, scale_j)
-            turn, other_turn = ti.select(swap, turn_j, turn_i), ti.select(swap, turn_i, turn_j)
-            between = turned_back(other_turn, turn)
-            centre = turned_back(other_turn, ti.select(swap, -apart, apart))
-            spacing = scale * self.tables.bounding[shape] * (2.0 * pi / points)
-            far = other_scale * self.tables.bounding[other] + skin + 2.0 * spacing
+            own, other = one, two
+            if swap:
+                own, other = two, one
+            between = turned_back(other.turn, own.turn)
+            centre = turned_back(other.turn, ti.select(swap, -apart, apart))
+            spacing = own.scale * self.tables.bounding[own.shape] * (2.0 * pi / points)
+            far = other.scale * self.tables.bounding[other.shape] + skin + 2.0 * spacing
             near = STEEPEST * skin + 2.0 * spacing
             earlier, last, last_x, last_y = far, far, far, far
-            toward = turned_back(turn_i, -apart)
+            toward = turned_back(one.turn, -apart)
             for k in range(-2, ti.select(done, -2, ti.select(side < 0, -1, points))):
                 at = (k & (points - 1)) * stride
-                point = ti.Vector([self.tables.curve[shape, at, 0], self.tables.curve[shape, at, 4]])
-                here = centre + turned(between, scale * point)
+                point = ti.Vector([self.tables.curve[own.shape, at, 0], self.tables.curve[own.shape, at, 4]])
+                here = centre + turned(between, own.scale * point)
                 away = here.norm()
                 if away < far:
-                    away -= other_scale * self.tables.radius(other, here[0], here[1])
+                    away -= other.scale * self.tables.radius(other.shape, here[0], here[1])
                 if side < 0 or (k >= 0 and last <= earlier and last < away and last < near):
-                    own, facing = 0.0 * scale + (k - 1) * stride, ti.atan2(last_y, last_x)
+                    place, facing = 0.0 * own.scale + (k - 1) * stride, ti.atan2(last_y, last_x)
                     if side < 0:
-                        own = ti.atan2(toward[1], toward[0]) * (self.tables.cells / (2.0 * pi))
+                        place = ti.atan2(toward[1], toward[0]) * (self.tables.cells / (2.0 * pi))
                         facing = ti.atan2(centre[1], centre[0])
                     facing *= self.tables.cells / (2.0 * pi)
-                    c = self.followed(
-                        MINIMUM,
-                        shape_i,
-                        scale_i,
-                        turn_i,
-                        shape_j,
-                        scale_j,
-                        turn_j,
-                        apart,
-                        ti.select(swap, facing, own),
-                        ti.select(swap, own, facing),
-                    )
+                    a, b = ti.select(swap, facing, place), ti.select(swap, place, facing)
+                    c = self.followed(MINIMUM, one, two, apart, a, b)
                     done = done or (side < 0 and c[HOLDS] > 0.0)
-                    if -c[OVERLAP] < skin and self.is_new(c, places_i, places_j, row, found):
-                        places_i[row, found], places_j[row, found] = c[PLACE_I], c[PLACE_J]
+                    if -c[OVERLAP] < skin and self.is_new(c, places, row, found):
+                        places.i[row, found], places.j[row, found] = c[PLACE_I], c[PLACE_J]
                         found += 1
                 earlier, last, last_x, last_y = last, away, here[0], here[1]
-        self.put_in_order(places_i, places_j, row, found)
+        self.put_in_order(places, row, found)
         for k in range(found):
-            saddles_i[row, k], saddles_j[row, k] = NONE, NONE
+            places.saddle_i[row, k], places.saddle_j[row, k] = NONE, NONE
             if found > 1:
-                before = (k + found - 1) % found
+                low = (k + found - 1) % found
                 c = self.saddle(
-                    shape_i,
-                    scale_i,
-                    turn_i,
-                    shape_j,
-                    scale_j,
-                    turn_j,
-                    apart,
-                    places_i[row, before],
-                    places_j[row, before],
-                    places_i[row, k],
-                    places_j[row, k],
+                    one, two, apart, places.i[row, low], places.j[row, low], places.i[row, k], places.j[row, k]
                 )
                 if c[HOLDS] > 0.0 and -c[OVERLAP] < skin:
-                    saddles_i[row, k], saddles_j[row, k] = c[PLACE_I], c[PLACE_J]
+                    places.saddle_i[row, k], places.saddle_j[row, k] = c[PLACE_I], c[PLACE_J]
         return found
 
     @ti.func
-    def put_in_order(self, places_i: ti.template(), places_j: ti.template(), row, count):
+    def put_in_order(self, places: ti.template(), row, count):
         """Sort contacts by their places on i."""
         for n in range(1, count):
-            a, b, k = places_i[row, n], places_j[row, n], n
-            while k > 0 and places_i[row, ti.max(k - 1, 0)] > a:
-                places_i[row, k], places_j[row, k] = places_i[row, k - 1], places_j[row, k - 1]
+            a, b, k = places.i[row, n], places.j[row, n], n
+            while k > 0 and places.i[row, ti.max(k - 1, 0)] > a:
+                places.i[row, k], places.j[row, k] = places.i[row, k - 1], places.j[row, k - 1]
                 k -= 1
-            places_i[row, k], places_j[row, k] = a, b
+            places.i[row, k], places.j[row, k] = a, b
 
     @ti.func
-    def is_new(self, c, places_i: ti.template(), places_j: ti.template(), row, found):
+    def is_new(self, c, places: ti.template(), row, found):
         """Whether this is a contact, is none of those that have been found, and there is room for it."""
-        new, a, b = c[HOLDS] > 0.0 and found < places_i.shape[1], c[PLACE_I], c[PLACE_J]
+        new, a, b = c[HOLDS] > 0.0 and found < places.i.shape[1], c[PLACE_I], c[PLACE_J]
         for k in range(found):
-            if self.same(a, places_i[row, k], ALIKE) and self.same(b, places_j[row, k], ALIKE):
+            if self.same(a, places.i[row, k], ALIKE) and self.same(b, places.j[row, k], ALIKE):
                 new = False
         return new
 
     @ti.func
-    def followed(self, way, shape_i, scale_i, turn_i, shape_j, scale_j, turn_j, apart, place_i, place_j):
+    def followed(self, way, one: ti.template(), two: ti.template(), apart, place_i, place_j):
         """What Newton's method leads to from these places; it does not hold where it leads to nothing."""
         a, b, settled = place_i, place_j, False
-        c = ti.Vector([0.0 * scale_i for _ in ti.static(range(HOLDS + 1))])
+        c = ti.Vector([0.0 * one.scale for _ in ti.static(range(HOLDS + 1))])
         for _ in range(TRIES):
-            c = self.contact(True, way, shape_i, scale_i, turn_i, shape_j, scale_j, turn_j, apart, a, b)
+            c = self.contact(True, way, one, two, apart, a, b)
             settled = self.same(c[PLACE_I], a, SETTLED) and self.same(c[PLACE_J], b, SETTLED)
             a, b = c[PLACE_I], c[PLACE_J]
             if settled:

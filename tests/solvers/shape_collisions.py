@@ -9,8 +9,9 @@ from solvers import runtime
 from solvers.runtime import Arrays
 from solvers.shapes.contour import Contour
 from solvers.shapes.nodes import Nodes
+from solvers.shapes.pose import posed
 from solvers.shapes.tables import Tables
-from solvers.shapes.tracked import MINIMUM, SADDLE, Tracked
+from solvers.shapes.tracked import MINIMUM, SADDLE, Places, Tracked
 
 ROOM = 8
 SKIN = 0.05
@@ -45,7 +46,7 @@ class Collisions:
         else:
             self.tracked = Tracked(self.tables)
         self.place, self.rate, self.push = arrays.reals(3, (count, 2, 3))
-        self.at_i, self.at_j, self.saddle_i, self.saddle_j = arrays.reals(4, (count, ROOM))
+        self.places = Places(arrays, count, ROOM)
         (self.number, self.steps) = arrays.integers(2, (count,))
         (self.deepest,) = arrays.reals(1, (count,))
         arrays.finish()
@@ -80,9 +81,9 @@ class Collisions:
                     self.rate[p, g, n] += 0.5 * dt * self.push[p, g, n] * ti.static(1.0 / self.mass[n])
 
     @ti.func
-    def turn(self, p, g: ti.template()):
-        """cos and sin of a grain's angle."""
-        return ti.Vector([ti.cos(self.place[p, g, 2]), ti.sin(self.place[p, g, 2])])
+    def outline(self, p, g: ti.template()):
+        """A grain's outline."""
+        return posed(0, 1.0, ti.Vector([ti.cos(self.place[p, g, 2]), ti.sin(self.place[p, g, 2])]))
 
     @ti.func
     def apart(self, p):
@@ -93,44 +94,29 @@ class Collisions:
     def seek(self, p):
         """List the contacts, where the rule wants a list."""
         if ti.static(self.rule == "tracked"):
-            self.number[p] = self.tracked.scan(
-                0,
-                1.0,
-                self.turn(p, 0),
-                0,
-                1.0,
-                self.turn(p, 1),
-                self.apart(p),
-                SKIN,
-                self.at_i,
-                self.at_j,
-                self.saddle_i,
-                self.saddle_j,
-                p,
-            )
+            one, two = self.outline(p, 0), self.outline(p, 1)
+            self.number[p] = self.tracked.scan(one, two, self.apart(p), SKIN, self.places, p)
 
     @ti.func
     def forces(self, p):
         """Forces and torques on both grains."""
         for g, n in ti.static(ti.ndrange(2, 3)):
             self.push[p, g, n] = 0.0
-        apart, first, second = self.apart(p), self.turn(p, 0), self.turn(p, 1)
+        apart, one, two = self.apart(p), self.outline(p, 0), self.outline(p, 1)
         if ti.static(self.rule == "tracked"):
             for k in range(self.number[p]):
-                c = self.tracked.contact(
-                    True, MINIMUM, 0, 1.0, first, 0, 1.0, second, apart, self.at_i[p, k], self.at_j[p, k]
-                )
-                self.at_i[p, k], self.at_j[p, k] = c[5], c[6]
+                c = self.tracked.contact(True, MINIMUM, one, two, apart, self.places.i[p, k], self.places.j[p, k])
+                self.places.i[p, k], self.places.j[p, k] = c[5], c[6]
                 if c[7] > 0.0:
                     self.press(p, c, apart, 1.0)
-                if self.saddle_i[p, k] >= 0.0:
-                    a, b = self.saddle_i[p, k], self.saddle_j[p, k]
-                    c = self.tracked.contact(True, SADDLE, 0, 1.0, first, 0, 1.0, second, apart, a, b)
-                    self.saddle_i[p, k], self.saddle_j[p, k] = c[5], c[6]
+                if self.places.saddle_i[p, k] >= 0.0:
+                    a, b = self.places.saddle_i[p, k], self.places.saddle_j[p, k]
+                    c = self.tracked.contact(True, SADDLE, one, two, apart, a, b)
+                    self.places.saddle_i[p, k], self.places.saddle_j[p, k] = c[5], c[6]
                     if c[7] > 0.0:
                         self.press(p, c, apart, -1.0)
         else:
-            self.press(p, self.nodes.contact(0, 1.0, first, 0, 1.0, second, apart, 0, 0, 0)[0], apart, 1.0)
+            self.press(p, self.nodes.contact(one, two, apart, 0, 0, 0)[0], apart, 1.0)
 
     @ti.func
     def press(self, p, c, apart, sign):

@@ -10,8 +10,9 @@ from solvers.runtime import Arrays
 from solvers.shapes.contour import Contour
 from solvers.shapes.crossing import Placed
 from solvers.shapes.nodes import ALL, Nodes
+from solvers.shapes.pose import posed
 from solvers.shapes.tables import Tables
-from solvers.shapes.tracked import MINIMUM, SADDLE, Tracked
+from solvers.shapes.tracked import MINIMUM, SADDLE, Places, Tracked
 
 ROOM = 8  # contacts of a pair
 
@@ -77,7 +78,7 @@ class Asked:
         (self.scale,) = arrays.reals(1, (count, 2))
         self.turn = arrays.reals(1, (count, 2, 2))[0]
         (self.apart,) = arrays.reals(1, (count, 2))
-        self.at_i, self.at_j, self.saddle_i, self.saddle_j = arrays.reals(4, (count, ROOM))
+        self.places = Places(arrays, count, ROOM)
         (self.number,) = arrays.integers(1, (count,))
         (self.found,) = arrays.reals(1, (count, ROOM, 8))
         (self.shallow,) = arrays.reals(1, (count, ROOM))
@@ -119,9 +120,9 @@ class Asked:
         return self.found.to_numpy()
 
     @ti.func
-    def pose(self, p, n: ti.template()):
-        """cos and sin of a grain's angle."""
-        return ti.Vector([self.turn[p, n, 0], self.turn[p, n, 1]])
+    def outline(self, p, n: ti.template()):
+        """A grain's outline."""
+        return posed(self.shape[p, n], self.scale[p, n], ti.Vector([self.turn[p, n, 0], self.turn[p, n, 1]]))
 
     @ti.func
     def between(self, p):
@@ -131,18 +132,8 @@ class Asked:
     @ti.kernel
     def _by_nodes(self, look: ti.i32):
         for p in self.number:
-            c, first, second = self.nodes.contact(
-                self.shape[p, 0],
-                self.scale[p, 0],
-                self.pose(p, 0),
-                self.shape[p, 1],
-                self.scale[p, 1],
-                self.pose(p, 1),
-                self.between(p),
-                self.node[p, 0],
-                self.node[p, 1],
-                look,
-            )
+            one, two = self.outline(p, 0), self.outline(p, 1)
+            c, first, second = self.nodes.contact(one, two, self.between(p), self.node[p, 0], self.node[p, 1], look)
             self.node[p, 0], self.node[p, 1] = first, second
             for n in ti.static(range(5)):
                 self.found[p, 0, n] = c[n]
@@ -150,21 +141,8 @@ class Asked:
     @ti.kernel
     def _scan(self, skin: ti.f64):
         for p in self.number:
-            self.number[p] = self.tracked.scan(
-                self.shape[p, 0],
-                self.scale[p, 0],
-                self.pose(p, 0),
-                self.shape[p, 1],
-                self.scale[p, 1],
-                self.pose(p, 1),
-                self.between(p),
-                skin,
-                self.at_i,
-                self.at_j,
-                self.saddle_i,
-                self.saddle_j,
-                p,
-            )
+            one, two = self.outline(p, 0), self.outline(p, 1)
+            self.number[p] = self.tracked.scan(one, two, self.between(p), skin, self.places, p)
             self.follow(p)
 
     @ti.kernel
@@ -175,28 +153,25 @@ class Asked:
     @ti.func
     def follow(self, p):
         """The contacts of a pair and the saddles between them, one step on."""
+        one, two = self.outline(p, 0), self.outline(p, 1)
         for n in range(2 * self.number[p]):
             k = n // 2
             saddle = n % 2 == 1
             self.shallow[p, k] = ti.select(saddle, self.shallow[p, k], 0.0)
-            if saddle and self.saddle_i[p, k] < 0.0:
+            if saddle and self.places.saddle_i[p, k] < 0.0:
                 continue
             c = self.tracked.contact(
                 True,
                 ti.select(saddle, SADDLE, MINIMUM),
-                self.shape[p, 0],
-                self.scale[p, 0],
-                self.pose(p, 0),
-                self.shape[p, 1],
-                self.scale[p, 1],
-                self.pose(p, 1),
+                one,
+                two,
                 self.between(p),
-                ti.select(saddle, self.saddle_i[p, k], self.at_i[p, k]),
-                ti.select(saddle, self.saddle_j[p, k], self.at_j[p, k]),
+                ti.select(saddle, self.places.saddle_i[p, k], self.places.i[p, k]),
+                ti.select(saddle, self.places.saddle_j[p, k], self.places.j[p, k]),
             )
             if saddle:
                 self.shallow[p, k] = ti.max(c[0], 0.0)
             else:
                 for m in ti.static(range(8)):
                     self.found[p, k, m] = c[m]
-                self.at_i[p, k], self.at_j[p, k] = c[5], c[6]
+                self.places.i[p, k], self.places.j[p, k] = c[5], c[6]

@@ -15,7 +15,7 @@ from solvers.shapes.cargo import cargo
 from solvers.shapes.contour import Contour
 from solvers.shapes.overlap_area import area_contacts
 from solvers.shapes.polygons import AREA, PUSH_X, PUSH_Y, XY, YX, Polygons
-from solvers.shapes.pose import turned_back
+from solvers.shapes.pose import posed, turned_back
 
 COUNT, SOME = 400, 40  # pairs; those that are looked at one by one
 MARGIN = 0.1
@@ -77,42 +77,42 @@ class Shared:
         self.apart.from_numpy(np.ascontiguousarray(pairs.place[:, 0] - pairs.place[:, 1]))
 
     @ti.func
-    def pose(self, p, n: ti.template()):
-        return ti.Vector([self.turn[p, n, 0], self.turn[p, n, 1]])
+    def outline(self, p, n: ti.template()):
+        return posed(self.shape[p, n], self.scale[p, n], ti.Vector([self.turn[p, n, 0], self.turn[p, n, 1]]))
 
     @ti.kernel
     def _share(self):
         for p in range(COUNT):
-            first, second = self.pose(p, 0), self.pose(p, 1)
-            a, b = self.scale[p, 0], self.scale[p, 1]
-            centre = turned_back(second, ti.Vector([self.apart[p, 0], self.apart[p, 1]]))
-            between, shape, other = turned_back(second, first), self.shape[p, 0], self.shape[p, 1]
-            start, edges = self.polygons.facing(shape, a, between, centre, b * self.polygons.bounding[other])
-            start, edges = self.polygons.shared(shape, a, between, centre, other, b, start, edges, 0.0)[2:]
-            total = self.polygons.shared(shape, a, between, centre, other, b, start, edges, 0.0)[0]
-            self.note(p, total, contact_of(total, a * b / (a + b), second))
+            one, two = self.outline(p, 0), self.outline(p, 1)
+            between, centre, reach = self.seen(p, one, two)
+            start, edges = self.polygons.facing(one, between, centre, reach)
+            start, edges = self.polygons.shared(one, between, centre, two, start, edges, 0.0)[2:]
+            total = self.polygons.shared(one, between, centre, two, start, edges, 0.0)[0]
+            self.note(p, total, contact_of(total, one.scale * two.scale / (one.scale + two.scale), two.turn))
 
     @ti.kernel
     def _gaps(self, margin: ti.f64):
         for p in range(COUNT):
-            first, second = self.pose(p, 0), self.pose(p, 1)
-            a, b, shape, other = self.scale[p, 0], self.scale[p, 1], self.shape[p, 0], self.shape[p, 1]
-            centre = turned_back(second, ti.Vector([self.apart[p, 0], self.apart[p, 1]]))
-            between = turned_back(second, first)
-            start, edges = self.polygons.facing(shape, a, between, centre, b * self.polygons.bounding[other] + margin)
-            start, edges = self.polygons.shared(shape, a, between, centre, other, b, start, edges, margin)[2:]
-            self.contact[p, 0] = self.polygons.shared(shape, a, between, centre, other, b, start, edges, margin)[1]
+            one, two = self.outline(p, 0), self.outline(p, 1)
+            between, centre, reach = self.seen(p, one, two)
+            start, edges = self.polygons.facing(one, between, centre, reach + margin)
+            start, edges = self.polygons.shared(one, between, centre, two, start, edges, margin)[2:]
+            self.contact[p, 0] = self.polygons.shared(one, between, centre, two, start, edges, margin)[1]
 
     @ti.kernel
     def _share_wall(self):
         for p in range(COUNT):
-            away = ti.Vector([self.apart[p, 0], self.apart[p, 1]])
-            own = turned_back(self.pose(p, 0), away / away.norm())
-            shape, scale, far = self.shape[p, 0], self.scale[p, 0], away.norm()
-            start, edges = self.polygons.below(shape, own, -far / scale)
-            start, edges = self.polygons.behind(shape, scale, own, far, start, edges, 0.0)[1:]
-            total = self.polygons.behind(shape, scale, own, far, start, edges, 0.0)[0]
-            self.note(p, total, contact_of(total, self.scale[p, 0], self.pose(p, 0)))
+            away, one = ti.Vector([self.apart[p, 0], self.apart[p, 1]]), self.outline(p, 0)
+            own, far = turned_back(one.turn, away / away.norm()), away.norm()
+            start, edges = self.polygons.below(one.shape, own, -far / one.scale)
+            start, edges = self.polygons.behind(one, own, far, start, edges, 0.0)[1:]
+            total = self.polygons.behind(one, own, far, start, edges, 0.0)[0]
+            self.note(p, total, contact_of(total, one.scale, one.turn))
+
+    @ti.func
+    def seen(self, p, one: ti.template(), two: ti.template()):
+        centre = turned_back(two.turn, ti.Vector([self.apart[p, 0], self.apart[p, 1]]))
+        return turned_back(two.turn, one.turn), centre, two.scale * self.polygons.bounding[two.shape]
 
     @ti.func
     def note(self, p, total, contact):
