@@ -38,6 +38,7 @@ class ShapedGrains(Grains):
         super().__init__(arrays, radius, density, fixed, ghosts, may_leave, kind, spread)
         bounding = np.array([outline.bounding_radius for outline in outlines])[shapes.which]
         self.start_angle = shapes.angle
+        self.crowding = float((bounding**2).mean())  # so many times the neighbours that discs have are near
         disc = len(outlines) - 1
         self.shape = arrays.holding(self._filled(shapes.which, disc, disc), ti.i32, kept=True)
         self.reach = arrays.holding(self._filled(radius * bounding, fixed[:, 2], 0.0), kept=True)

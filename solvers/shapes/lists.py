@@ -1,5 +1,7 @@
 """Who may touch whom where grains have outlines: one entry a contact, of which two grains may have several."""
 
+from math import ceil
+
 import numpy as np
 import taichi as ti
 
@@ -25,7 +27,7 @@ class ShapedNeighbours(Neighbours):
     def __init__(self, arrays, units, grains, walls, skin, bridges, reach, laws, modulus, room, rule):
         self.pair_fleeting = (*WANTED, *Rest(rule.bent).memory)
         self.places = min(rule.most, BENT_PLACES * room)
-        room *= BENT_PLACES if rule.bent else 1
+        room *= (BENT_PLACES if rule.bent else 1) * ceil(grains.crowding - 0.01)
         super().__init__(arrays, units, grains, walls, skin, bridges, reach, laws, modulus, room, rule)
         self.rule = rule
         (self.built_angle,) = arrays.reals(1, (grains.worlds, grains.count))
