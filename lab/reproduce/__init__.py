@@ -12,7 +12,7 @@ from lab.cluster import fetch
 from lab.errors import LabError
 from lab.lock import only_one
 from lab.progress import Progress
-from lab.reproduce import damping, heaps, humidity, laws, outlines, shaking, ship, tilting, validation
+from lab.reproduce import capsizes, damping, heaps, humidity, laws, outlines, shaking, ship, tilting, validation
 from lab.reproduce.experiment import Experiment
 from lab.reproduce.findings import read_findings
 from lab.reproduce.report import kept_file, write_report
@@ -22,7 +22,7 @@ from lab.reproduce.workers import carry_out_all
 REPORTS = {
     "granular": (validation, tilting, humidity, laws, shaking, heaps),
     "shapes": (outlines,),
-    "ship": (ship, damping),
+    "ship": (ship, damping, capsizes),
 }
 
 

@@ -1,0 +1,139 @@
+"""Roll about a fixed axis with a cargo that slides as one heap: eq. 7.1 of Spandonidis (2016) for many waves at once.
+
+    (I + δI) φ̈ + B₁ φ̇ + B₂ φ̇|φ̇| + W GZ(φ) = W GM A k D(t) cos ωt + M_cargo,  k = ω²/g
+
+per metre of length; D is the soft start of eq. F.1 and GZ(φ) any lever of the ship with her cargo frozen. The heap is
+the plane filling of `solvers.ship.cargo`: it lies still in the hold until its surface is steeper than its repose, and
+then slides at once, as far as it must (the play of Prandtl 1928). Unlike grains it needs no time to slide, and feels
+gravity alone.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import sqrt
+
+import numpy as np
+
+from solvers.ship.cargo import filling_centre
+from solvers.ship.motion import RollDamping, runge_kutta
+from solvers.ship.section import Section, box
+from solvers.ship.waves import soft_start
+
+LEANS = np.radians(np.linspace(-120.0, 120.0, 481))  # of a heap's table; rolls to ± 90 deg with any repose up to 30
+
+
+@dataclass(frozen=True, eq=False)
+class Heap:
+    """A loose cargo of a mass (kg/m), as steep as its `repose` (rad), or a repose for each of many ships.
+
+    `inertia` (kg m) is about the ship's axis while it lies level; `centres` (n, 2) m from that axis, in the hull's
+    frame, with the surface at each of `LEANS` against the deck.
+    """
+
+    mass: float
+    inertia: float
+    repose: float | np.ndarray
+    centres: np.ndarray
+
+    @property
+    def height(self) -> float:
+        """Of its centre above the axis (m) while it lies level."""
+        return float(np.interp(0.0, LEANS, self.centres[:, 1]))
+
+    def slid(self, lean: np.ndarray, roll: np.ndarray) -> np.ndarray:
+        """How the surface leans (rad) once the ship has come to a roll (rad)."""
+        return np.clip(lean, roll - self.repose, roll + self.repose)
+
+    def arm(self, lean: np.ndarray, roll: np.ndarray) -> np.ndarray:
+        """How far (m) to starboard of the axis its centre is."""
+        y, z = (np.interp(lean, LEANS, column) for column in self.centres.T)
+        return np.cos(roll) * y - np.sin(roll) * z
+
+
+def box_heap(width: float, height: float, depth: float, floor: float, mass: float, repose: float) -> Heap:
+    """In a rectangular hold (m), level to a depth; its floor is `floor` (m) above the axis, so mostly below 0."""
+    hold = Section(box(width, height).outline + np.array([0.0, floor]))
+    centres = np.array([filling_centre(hold, width * depth, lean) for lean in LEANS])
+    level = floor + 0.5 * depth
+    return Heap(mass, mass * ((width**2 + depth**2) / 12.0 + level**2), repose, centres)
+
+
+def softening_lever(height: float, vanishing: float) -> Callable[[np.ndarray], np.ndarray]:
+    """GZ = GM φ (1 − (φ/φ_v)²) (m), `height` GM (m): softer from the first degree, none at φ_v (rad)."""
+    return lambda roll: height * roll * (1.0 - (roll / vanishing) ** 2)
+
+
+@dataclass(frozen=True, eq=False)
+class HeapShip:
+    """A ship of a weight (N/m) and GM (m) in regular waves, her cargo a heap or, without one, frozen.
+
+    `lever` is GZ (m) at rolls (rad) with the cargo frozen, `inertia` (kg m) I + δI with it. `twice`: the cargo counts
+    twice, as eq. 7.2 and 7.5 read together: its weight at its own centre among the righting moments, and once more,
+    with its inertia, in the contact forces on the walls, since these carry it.
+    """
+
+    weight: float
+    height: float
+    lever: Callable[[np.ndarray], np.ndarray]
+    inertia: float
+    gravity: float
+    damping: RollDamping
+    heap: Heap | None = None
+    twice: bool = False
+
+    @property
+    def whole_inertia(self) -> float:
+        """What is turned (kg m), the cargo as often as it counts."""
+        return self.inertia + (self.heap.inertia if self.twice else 0.0)
+
+    @property
+    def natural_frequency(self) -> float:
+        """Of small rolls (rad/s), which do not move the heap."""
+        again = -self.heap.mass * self.gravity * self.heap.height if self.twice else 0.0
+        return sqrt((self.weight * self.height + again) / self.whole_inertia)
+
+    def cargo_moment(self, lean: np.ndarray, roll: np.ndarray) -> np.ndarray:
+        """Moment (N) of the cargo's weight over what the frozen cargo's lever has of it."""
+        lean = self.heap.slid(lean, roll)
+        moved = self.heap.arm(lean, roll) - self.heap.arm(np.zeros_like(roll), roll)
+        again = self.heap.arm(lean, roll) if self.twice else 0.0
+        return -self.heap.mass * self.gravity * (moved + again)
+
+    def acceleration(self, roll: np.ndarray, speed: np.ndarray, lean: np.ndarray, push: np.ndarray) -> np.ndarray:
+        """Of the roll (rad/s²) under a wave moment `push` (N)."""
+        resisted = (self.damping.linear + self.damping.quadratic * np.abs(speed)) * speed
+        moment = push - self.weight * self.lever(roll) - resisted
+        if self.heap is not None:
+            moment = moment + self.cargo_moment(lean, roll)
+        return moment / self.whole_inertia
+
+
+def roll_with_heap(
+    ship: HeapShip,
+    amplitude: np.ndarray,
+    frequency: np.ndarray,
+    interval: float,
+    duration: float,
+    limit: float,
+    lasts: float = 0.0,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Times (n,) s and rolls (n, k) rad from rest in waves of amplitudes (k,) m and frequencies (k,) rad/s.
+
+    Their soft start `lasts` so long (s). Once a roll has passed ± `limit` (rad) it is not a number.
+    """
+    size = ship.weight * ship.height * amplitude * frequency**2 / ship.gravity
+    lean = np.zeros(len(frequency))
+
+    def rate(state: np.ndarray, time: float) -> np.ndarray:
+        push = soft_start(time, lasts) * size * np.cos(frequency * time)
+        return np.array([state[1], ship.acceleration(*state, lean, push)])
+
+    state, time = np.zeros((2, len(frequency))), interval * np.arange(round(duration / interval) + 1)
+    rolls = [state[0]]
+    for now in time[:-1]:
+        state = runge_kutta(rate, state, now, interval)
+        state[:, np.abs(state[0]) > limit] = np.nan
+        if ship.heap is not None:
+            lean = ship.heap.slid(lean, state[0])
+        rolls.append(state[0])
+    return time, np.array(rolls)
