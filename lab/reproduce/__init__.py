@@ -12,7 +12,19 @@ from lab.cluster import fetch
 from lab.errors import LabError
 from lab.lock import only_one
 from lab.progress import Progress
-from lab.reproduce import capsizes, damping, heaps, humidity, laws, outlines, shaking, ship, tilting, validation
+from lab.reproduce import (
+    capsizes,
+    damping,
+    heaps,
+    humidity,
+    laws,
+    low_sides,
+    outlines,
+    shaking,
+    ship,
+    tilting,
+    validation,
+)
 from lab.reproduce.experiment import Experiment
 from lab.reproduce.findings import read_findings
 from lab.reproduce.report import kept_file, write_report
@@ -22,7 +34,7 @@ from lab.reproduce.workers import carry_out_all
 REPORTS = {
     "granular": (validation, tilting, humidity, laws, shaking, heaps),
     "shapes": (outlines,),
-    "ship": (ship, damping, capsizes),
+    "ship": (ship, damping, capsizes, low_sides),
 }
 
 
