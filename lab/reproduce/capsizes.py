@@ -6,7 +6,7 @@ ours does neither. Two readings that could make her, alone and together: another
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cache, cached_property
 from math import pi, radians
 
 import numpy as np
@@ -61,6 +61,27 @@ class Scan:
         return self.frequencies[self.capsized[self.amplitudes == size][0] >= 0.5]
 
 
+@cache
+def box_barge() -> HeapShip:
+    """The preset's, without damping, of any inertia."""
+    resolved = load(PRESET).resolved
+    given, ship = resolved.ship, vessels(resolved)[0].ship
+    section, loading, water = ship.load.section, ship.body.loading, ship.load.water
+    rolls = np.radians(np.linspace(-120.0, 120.0, 481))
+    levers = righting_levers(section, loading, water, rolls)
+    hold = np.ptp(resolved.tank.outline, axis=0)
+    heap = box_heap(*hold, resolved.grains.depth, given.hold[1] - given.about[1], CARGO, REPOSES[-1])
+    return HeapShip(
+        loading.mass * water.gravity,
+        metacentric_height(section, loading, water),
+        lambda roll: np.interp(roll, rolls, levers),
+        1.0,
+        water.gravity,
+        RollDamping(),
+        heap,
+    )
+
+
 @dataclass(frozen=True, eq=False)
 class Reading:
     """A lever, the barge's own or one that softens, and whether the cargo counts twice."""
@@ -77,21 +98,11 @@ class Reading:
     @cached_property
     def ship(self) -> HeapShip:
         """With the source's natural frequency while her cargo is loose and lies still."""
-        given = load(PRESET).resolved.ship
-        vessel = vessels(load(PRESET).resolved)[0]
-        body, floating = vessel.ship.body, vessel.ship.load
-        height = metacentric_height(floating.section, body.loading, floating.water)
-        rolls = np.radians(np.linspace(-120.0, 120.0, 481))
-        levers = righting_levers(floating.section, body.loading, floating.water, rolls)
-        lever = softening_lever(height, VANISHING) if self.softens else lambda roll: np.interp(roll, rolls, levers)
-        floor = given.hold[1] - given.about[1]
-        heap = box_heap(0.300, 0.260, 0.111, floor, CARGO, REPOSES[-1])
-        gravity = floating.water.gravity
-        ship = HeapShip(body.mass * gravity, height, lever, 1.0, gravity, RollDamping(), heap, self.twice)
-        inertia = (ship.natural_frequency / NATURAL) ** 2 * ship.whole_inertia
-        ship = replace(ship, inertia=inertia - (heap.inertia if self.twice else 0.0))
-        linear = 2.0 * given.damping * NATURAL * ship.inertia
-        return replace(ship, damping=RollDamping(linear, given.quadratic_damping * ship.inertia))
+        barge, given = box_barge(), load(PRESET).resolved.ship
+        lever = softening_lever(barge.height, VANISHING) if self.softens else barge.lever
+        one = replace(barge, lever=lever, twice=self.twice).tuned(NATURAL)
+        linear = 2.0 * given.damping * NATURAL * one.inertia
+        return replace(one, damping=RollDamping(linear, given.quadratic_damping * one.inertia))
 
     @property
     def frozen(self) -> HeapShip:

@@ -9,7 +9,7 @@ gravity alone.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import sqrt
 
 import numpy as np
@@ -91,6 +91,11 @@ class HeapShip:
         """Of small rolls (rad/s), which do not move the heap."""
         again = -self.heap.mass * self.gravity * self.heap.height if self.twice else 0.0
         return sqrt((self.weight * self.height + again) / self.whole_inertia)
+
+    def tuned(self, frequency: float) -> "HeapShip":
+        """The same with the inertia that small rolls of a frequency (rad/s) ask for."""
+        again = self.whole_inertia - self.inertia
+        return replace(self, inertia=(self.natural_frequency / frequency) ** 2 * self.whole_inertia - again)
 
     def cargo_moment(self, lean: np.ndarray, roll: np.ndarray) -> np.ndarray:
         """Moment (N) of the cargo's weight over what the frozen cargo's lever has of it."""
