@@ -117,6 +117,26 @@ class Contacts:
             g.push(w, i, fy, fz, roll[0] - lever * ft[0])
 
     @ti.func
+    def pair_press(self, g: ti.template(), pairs: ti.template(), w, i, j, u, p):
+        """Where contact p of grains i and j is (y, z) m, and its elastic force on i (N); nothing is remembered."""
+        apart = ti.Vector([g.y[w, i] - g.y[w, j], g.z[w, i] - g.z[w, j]])
+        overlap = ti.cast(g.radius[w, i] + g.radius[w, j] - apart.norm(), g.real)
+        return self.press_along(g, pairs, w, i, u, p, overlap, apart / apart.norm())
+
+    @ti.func
+    def wall_press(self, g: ti.template(), contacts: ti.template(), w, i, feature, shift: ti.template(), u, p):
+        """Where contact p of a grain with a wall is (y, z) m, and its elastic force on the grain (N)."""
+        gap = self.walls.gap(feature, shift, g.y[w, i], g.z[w, i])
+        overlap = ti.select(gap[0] > 0.0, ti.cast(g.radius[w, i] - gap[0], g.real), ti.cast(0.0, g.real))
+        return self.press_along(g, contacts, w, i, u, p, overlap, ti.Vector([gap[1], gap[2]]))
+
+    @ti.func
+    def press_along(self, g: ti.template(), contacts: ti.template(), w, i, u, p, overlap, n):
+        """Place and elastic force of contact p, whose normal towards grain i is n."""
+        force, back = self.laws.elastic(contacts, u, p, overlap), g.radius[w, i] - 0.5 * overlap
+        return ti.Vector([g.y[w, i] - back * n[0], g.z[w, i] - back * n[1], force * n[0], force * n[1]])
+
+    @ti.func
     def census(self, g: ti.template(), pairs: ti.template(), contacts: ti.template(), u, t):
         """Number of touching contacts, largest overlap in radii of the smaller grain, their energy (J), of a unit.
 

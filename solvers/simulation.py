@@ -16,6 +16,7 @@ from solvers.laws.chosen import ChosenLaws
 from solvers.mover import Mover
 from solvers.neighbours import Neighbours
 from solvers.observe import Observer
+from solvers.pressing import Presser, Pressing
 from solvers.runtime import Arrays
 from solvers.scene import Scene
 from solvers.schedules import SCHEDULES, choose_schedule, units_a_world
@@ -111,6 +112,7 @@ class Simulation:
         self.schedule = SCHEDULES[self.schedule_name](engine, self.threads)
         parts = units, self.grains, self.walls, self.neighbours, self.contacts, self.frame, self.mover
         self.observer = Observer(arrays, *parts)
+        self.presser = Presser(units, self.grains, self.walls, self.neighbours, self.contacts)
         arrays.finish()
 
     def place(self, position: np.ndarray, velocity: np.ndarray | None = None, spin: np.ndarray | None = None) -> None:
@@ -292,6 +294,10 @@ class Simulation:
             found[name] = np.empty_like(values)
             found[name][worlds, self.number] = values
         return found
+
+    def pressing(self, world: int = 0) -> Pressing:
+        """The elastic forces of the contacts in a world now."""
+        return self.presser.read(world, self.origin + self.time, self.number[world])
 
     def part_places(self) -> np.ndarray:
         """Displacements (W, P, 2) m of the scene's parts at the last `observe`; they are the same in every world."""

@@ -156,6 +156,34 @@ class ShapedContacts(Contacts):
         return self.pressed(WALL, contacts, u, p, c, ti.Vector([uy, uz]), dt)
 
     @ti.func
+    def pair_press(self, g: ti.template(), pairs: ti.template(), w, i, j, u, p):
+        """Where contact p of grains i and j is (y, z) m, and its elastic force on i (N); nothing is remembered."""
+        c = self.rule.pair(g, pairs, w, i, j, u, p, False)
+        force = self.elastic_along(pairs, u, p, c, self.rule.is_lost(pairs, u, p))
+        if ti.static(self.rule.bent):  # noqa: SIM102 (compiled only there)
+            if c[OVERLAP] > 0.0:
+                saddle = self.rule.pair_saddle(g, pairs, w, i, j, u, p, False)
+                force -= self.elastic_along(pairs, u, p, saddle, self.rule.is_lost(pairs, u, p))
+        return ti.Vector([g.y[w, i] + c[POINT_Y], g.z[w, i] + c[POINT_Z], force[0], force[1]])
+
+    @ti.func
+    def wall_press(self, g: ti.template(), contacts: ti.template(), w, i, feature, shift: ti.template(), u, p):
+        """Where contact p of a grain with a wall is (y, z) m, and its elastic force on the grain (N)."""
+        c = self.rule.wall(g, contacts, w, i, feature, shift, u, p, False)
+        force = self.elastic_along(contacts, u, p, c, self.rule.is_lost(contacts, u, p))
+        if ti.static(self.rule.bent):  # noqa: SIM102 (compiled only there)
+            if c[OVERLAP] > 0.0:
+                saddle = self.rule.wall_saddle(g, contacts, w, i, feature, shift, u, p, False)
+                force -= self.elastic_along(contacts, u, p, saddle, self.rule.is_lost(contacts, u, p))
+        return ti.Vector([g.y[w, i] + c[POINT_Y], g.z[w, i] + c[POINT_Z], force[0], force[1]])
+
+    @ti.func
+    def elastic_along(self, contacts: ti.template(), u, p, c, lost):
+        """Elastic force (N) along the normal of a contact or saddle c; none of one that has been lost sight of."""
+        force = self.laws.elastic(contacts, u, p, ti.select(lost, 0.0 * c[OVERLAP], c[OVERLAP]))
+        return force * ti.Vector([c[NORMAL_Y], c[NORMAL_Z]])
+
+    @ti.func
     def census(self, g: ti.template(), pairs: ti.template(), contacts: ti.template(), u, t):
         """Number of touching contacts, largest overlap in radii of the smaller grain, their energy (J), of a unit."""
         w, start, end = self.units.world(u), self.units.first(u), self.units.end(u)
