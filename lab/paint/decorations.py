@@ -61,6 +61,20 @@ def fitted(text: str, width: float, size: float, bold: bool = False) -> tuple[st
     return text, face
 
 
+def wrapped(text: str, width: float, size: float, most: int) -> list[str]:
+    """A text in lines that are `width` pixels wide at most; the last of `most` is cut where it is too long."""
+    face, lines = font(size), [""]
+    for word in text.split():
+        longer = f"{lines[-1]} {word}".strip()
+        if len(lines) == most or not lines[-1] or face.getlength(longer) <= width:
+            lines[-1] = longer
+        else:
+            lines.append(word)
+    while face.getlength(lines[-1]) > width:
+        lines[-1] = lines[-1].rstrip("…")[:-1].rstrip() + "…"
+    return lines
+
+
 def ticks(low: float, high: float, most: int) -> list[float]:
     """At most `most` + 1 round numbers between low and high."""
     places = MaxNLocator(nbins=most, steps=[1, 2, 5, 10]).tick_values(low, high)

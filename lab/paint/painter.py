@@ -144,6 +144,20 @@ def paint_plate(picture: np.ndarray, camera: Camera, line: np.ndarray, thickness
         _paint_line(picture, corners, box, 0.5 * thickness, Colour(colour))
 
 
+def paint_strokes(picture: np.ndarray, strokes: np.ndarray, colour: tuple) -> None:
+    """Paint straight lines (n, 6) in pixels in one colour, in place: x, y and half the thickness at either end.
+
+    Where lines meet or cross nothing is painted twice. Lines with an end at no finite place are left out.
+    """
+    strokes = np.ascontiguousarray(strokes[np.isfinite(strokes).all(axis=1)], dtype=float)
+    low, high = strokes[:, [1, 4]].min(axis=1), strokes[:, [1, 4]].max(axis=1)
+    reach = 0.5 * (high - low) + strokes[:, [2, 5]].max(axis=1) + 1.0
+    starts, members = _sort_into_bands(0.5 * (low + high), reach, picture.shape[0])
+    if len(members):
+        covered = np.zeros(picture.shape[:2], dtype=np.float32)
+        _paint_strokes(picture, covered, starts, members, strokes, Colour(colour))
+
+
 def _box(picture: np.ndarray, corners: np.ndarray, reach: float) -> ti.Vector:
     """The pixels (left, top, right, bottom) of a picture that lie within reach of the corners."""
     height, width, _ = picture.shape
@@ -373,3 +387,36 @@ def _paint_line(picture: Picture, corners: Table, box: ti.types.vector(4, ti.i32
         share = ti.math.clamp(reach - nearest + 0.5, 0.0, 1.0)
         if share > 0.0:
             _mix(picture, row, column, share * (colour - _colour_of(picture, row, column)))
+
+
+@ti.func
+def _stroke_coverage(x, y, strokes: ti.template(), i):
+    """Share of a pixel that a line covers; one thinner than a pixel is faint."""
+    ex, ey = strokes[i, 3] - strokes[i, 0], strokes[i, 4] - strokes[i, 1]
+    px, py = x - strokes[i, 0], y - strokes[i, 1]
+    on = ti.math.clamp((px * ex + py * ey) / ti.max(ex * ex + ey * ey, 1e-30), 0.0, 1.0)
+    half = strokes[i, 2] + on * (strokes[i, 5] - strokes[i, 2])
+    distance = ti.sqrt((px - on * ex) ** 2 + (py - on * ey) ** 2)
+    return ti.min(2.0 * half, 1.0) * ti.math.clamp(ti.max(half, 0.5) - distance + 0.5, 0.0, 1.0)
+
+
+@ti.kernel
+def _paint_strokes(picture: Picture, covered: Shares, starts: Index, members: Index, strokes: Table, colour: Colour):
+    for k in range((starts.shape[0] - 1) * PER_TASK):
+        if k % PER_TASK == 0:
+            band = k // PER_TASK
+            top, bottom = band * BAND, ti.min((band + 1) * BAND, picture.shape[0])
+            for entry in range(starts[band], starts[band + 1]):
+                i = members[entry]
+                reach = ti.max(strokes[i, 2], strokes[i, 5]) + 1.0
+                left = _whole(ti.min(strokes[i, 0], strokes[i, 3]) - reach, 0, picture.shape[1])
+                right = _whole(ti.max(strokes[i, 0], strokes[i, 3]) + reach + 1.0, 0, picture.shape[1])
+                upper = _whole(ti.min(strokes[i, 1], strokes[i, 4]) - reach, top, bottom)
+                lower = _whole(ti.max(strokes[i, 1], strokes[i, 4]) + reach + 1.0, top, bottom)
+                for row, column in ti.ndrange((upper, lower), (left, right)):
+                    share = ti.cast(_stroke_coverage(column + 0.5, row + 0.5, strokes, i), ti.f32)
+                    covered[row, column] = ti.max(covered[row, column], share)
+            for row, column in ti.ndrange((top, bottom), (0, picture.shape[1])):
+                share = covered[row, column]
+                if share > 0.0:
+                    _mix(picture, row, column, share * (colour - _colour_of(picture, row, column)))

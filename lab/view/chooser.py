@@ -18,7 +18,7 @@ class Chooser:
     """Cards of all presets; `chosen` is the name of the one that was taken, "" before."""
 
     def __init__(self, size: tuple[int, int]) -> None:
-        self.size, self.values, self.ended, self.chosen = size, {}, False, ""
+        self.size, self.ended, self.chosen = size, False, ""
         self._names = [name for name in names() if not name.endswith(QUICK)]
         self._titles, self._at = names(), 0
         self._posters: dict[str, Image.Image] = {}
@@ -67,7 +67,7 @@ class Chooser:
     def release(self, x: float, y: float) -> None:
         """A card was taken as the mouse went down."""
 
-    def wheel(self, turns: float) -> None:
+    def wheel(self, turns: float, x: float, y: float) -> None:
         """A page on or back."""
         self.key("up" if turns > 0 else "down")
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 from math import pi
 
 from lab.schema import Resolved
+from lab.view.swell import RANDOM
 from solvers.scene import Scene
 
 UNITS = {"deg": pi / 180, "deg/s": pi / 180, "mm": 1e-3, "%": 1e-2}  # in SI; all others are SI
@@ -70,7 +71,7 @@ def _humidity(preset: Resolved) -> float | None:
 
 
 def _waves(name: str) -> Callable[[Resolved], float | None]:
-    """Of regular waves; a random sea and calm water stay as they are."""
+    """Of regular waves; calm water and packets stay as they are."""
 
     def own(preset: Resolved) -> float | None:
         waves = preset.waves
@@ -80,17 +81,22 @@ def _waves(name: str) -> Callable[[Resolved], float | None]:
     return own
 
 
+def _significant_height(preset: Resolved) -> float | None:
+    waves = preset.waves
+    return waves.height if preset.ship and waves and waves.kind in RANDOM else None
+
+
 CONTROLS: dict[str, Control] = {
     "tilt": Control("tilt", "deg", -pi / 2, pi / 2, MOVES, _motion("tilt", "angle", 0.0)),
-    "tilt_rate": Control("rate of tilt", "deg/s", pi / 1800, pi / 3, MOVES, _motion("tilt", "rate", pi / 36)),
+    "tilt_rate": Control("tilt rate", "deg/s", pi / 1800, pi / 3, MOVES, _motion("tilt", "rate", pi / 36)),
     "sway": Control("sway", "mm", 0.0, 0.1, MOVES, _motion("sway", "amplitude", 0.0)),
-    "sway_frequency": Control("its frequency", "Hz", 0.1, 4.0, MOVES, _motion("sway", "frequency", 1.0)),
+    "sway_frequency": Control("frequency", "Hz", 0.1, 4.0, MOVES, _motion("sway", "frequency", 1.0)),
     "heave": Control("heave", "mm", 0.0, 0.1, MOVES, _motion("heave", "amplitude", 0.0)),
-    "heave_frequency": Control("its frequency", "Hz", 0.1, 4.0, MOVES, _motion("heave", "frequency", 1.0)),
+    "heave_frequency": Control("frequency", "Hz", 0.1, 4.0, MOVES, _motion("heave", "frequency", 1.0)),
     "roll": Control("roll", "deg", 0.0, pi / 4, MOVES, _motion("roll", "amplitude", 0.0)),
-    "roll_frequency": Control("its frequency", "Hz", 0.1, 3.0, MOVES, _motion("roll", "frequency", 0.5)),
-    "centre_y": Control("centre of roll, y", "mm", -0.5, 0.5, MOVES, _centre(0)),
-    "centre_z": Control("centre of roll, z", "mm", -0.5, 1.0, MOVES, _centre(1)),
+    "roll_frequency": Control("frequency", "Hz", 0.1, 3.0, MOVES, _motion("roll", "frequency", 0.5)),
+    "centre_y": Control("centre y", "mm", -0.5, 0.5, MOVES, _centre(0)),
+    "centre_z": Control("centre z", "mm", -0.5, 1.0, MOVES, _centre(1)),
     "friction": Control(
         "friction", "1", 0.0, 1.0, ALTERS, lambda preset: preset.material.friction, _materials("friction")
     ),
@@ -105,7 +111,8 @@ CONTROLS: dict[str, Control] = {
         lambda _, value: {"gravity": value},
     ),
     "wave_amplitude": Control("waves", "mm", 0.0, 0.05, MOVES, _waves("amplitude")),
-    "wave_frequency": Control("their frequency", "rad/s", 2.5, 10.0, MOVES, _waves("frequency")),
+    "wave_height": Control("sea's height", "mm", 0.0, 0.1, MOVES, _significant_height),
+    "wave_frequency": Control("frequency", "rad/s", 2.5, 10.0, MOVES, _waves("frequency")),
     "diameter": Control(
         "grains",
         "mm",

@@ -1,7 +1,7 @@
 """What has been seen of a live experiment, as the painter looks at it (`lab.paint.footage.Footage`), growing."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
@@ -14,12 +14,15 @@ from lab.paint.sea import Sea
 from lab.recording import Outlines
 from lab.scene import vessels
 from lab.schema import Resolved
+from lab.ship import make_water, make_waves
 from lab.view.live import Live, Seen
+from solvers.pressing import Pressing
 from solvers.ship.hydrostatics import righting_levers
-from solvers.ship.waves import soft_start
+from solvers.ship.waves import Waves, soft_start
 
 HEELS = 91
-MOST_BYTES = 2**30  # of grains kept in memory; the recording has all
+MOST_BYTES = 2**29  # of frames kept in memory; the recording has all
+DROPPED = 0.1  # of the frames, at once, where they grow too many
 
 
 @dataclass(frozen=True)
@@ -52,7 +55,7 @@ class Scenery:
 class LiveSea(Sea):
     """The sea as it is in the frame that is painted.
 
-    `waves`: amplitude (m), frequency (rad/s) and number (1/m) of regular waves, None for those of the preset.
+    `waves`: what a swell says of itself (`lab.view.swell`), None where no hand can change them.
     """
 
     waves: np.ndarray | None = None
@@ -61,8 +64,14 @@ class LiveSea(Sea):
         """Height (k,) m of the surface over the calm one at places y (k,) m, earth's axes."""
         if self.waves is None:
             return super().elevation(y, time)
+        if len(self.waves) == 1:
+            return self.waves[0] * self._of_height_one.elevation(y, time)
         amplitude, frequency, number = self.waves
         return amplitude * soft_start(time, self.soft_start) * np.cos(number * y - frequency * time)
+
+    @cached_property
+    def _of_height_one(self) -> Waves:
+        return make_waves(replace(self._sea, height=1.0), make_water(self._water, self._gravity))
 
 
 class LiveFootage:
@@ -79,16 +88,18 @@ class LiveFootage:
         self.sea = LiveSea(scenery.preset) if scenery.preset.get("ship") else None
         self.settings, self.title = scenery.preset["video"], scenery.preset["title"]
         self._seen: list[Seen] = []
-        self._most = max(50, MOST_BYTES // (48 * self.radius.size))
-        self.lost = 0  # of the first frames
+        self._bytes = 0
 
-    def add(self, seen: Seen) -> None:
-        """One more frame."""
+    def add(self, seen: Seen) -> int:
+        """One more frame; gives how many of the oldest had to go for it."""
         self._seen.append(seen)
-        if len(self._seen) > self._most:
-            dropped = self._most // 10
-            del self._seen[:dropped]
-            self.lost += dropped
+        self._bytes += seen.bytes
+        if self._bytes <= MOST_BYTES or len(self._seen) < 2:
+            return 0
+        dropped = max(1, round(DROPPED * len(self._seen)))
+        self._bytes -= sum(old.bytes for old in self._seen[:dropped])
+        del self._seen[:dropped]
+        return dropped
 
     def __len__(self) -> int:
         return len(self._seen)
@@ -107,6 +118,10 @@ class LiveFootage:
     def part(self) -> np.ndarray:
         """(F, 1, P, 2) m."""
         return np.stack([seen.rows["part"] for seen in self._seen])
+
+    def pressing(self, frame: int) -> Pressing:
+        """The contacts that press in a frame."""
+        return self._seen[frame].pressing
 
     def row(self, frame: int, name: str) -> float:
         """A number of a frame."""

@@ -1,21 +1,34 @@
-"""Forces between round grains as a picture shows them, from how deep they overlap."""
+"""Forces between grains as a picture shows them."""
 
 import numpy as np
 
+from solvers.pressing import NOBODY, Pressing
 
-def pressed_pairs(place: np.ndarray, radius: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Pairs (k, 2) of discs that overlap, and their elastic force in units of their own (k,).
+TYPICAL = 0.99  # quantile of the forces that is drawn as the largest
+MOST = 1.5  # of the largest's thickness: what a still larger force has at most
 
-    place (n, 2) m; radius (n,) m. Hertz (1882): ξ^(3/2) √R_eff, but for the moduli, which are the same for all; what
-    damping adds is left out.
+
+def chains(pressing: Pressing, place: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
+    """Lines (k, 2, 2) m from grains' centres to where they press, their thickness, and the force (N) of thickness 1.
+
+    place (n, 2) m of the grains. A force between grains is two lines, which are in line for discs alone.
     """
-    from scipy.spatial import cKDTree
+    force = np.hypot(*pressing.force.T)
+    if not len(force):
+        return np.zeros((0, 2, 2)), force, 0.0
+    largest = float(np.quantile(force, TYPICAL))
+    mutual = pressing.grains[:, 1] != NOBODY
+    grains = np.concatenate([pressing.grains[:, 0], pressing.grains[mutual, 1]])
+    ends = np.concatenate([pressing.place, pressing.place[mutual]])
+    forces = np.concatenate([force, force[mutual]])
+    return np.stack([place[grains], ends], axis=1), np.minimum(forces / largest, MOST), largest
 
-    kept = np.flatnonzero(np.isfinite(place).all(axis=1))
-    tree = cKDTree(place[kept])
-    pairs = kept[tree.query_pairs(2.0 * radius.max(), output_type="ndarray")]
-    i, j = pairs.T
-    overlap = radius[i] + radius[j] - np.hypot(*(place[i] - place[j]).T)
-    touching = overlap > 0.0
-    effective = radius[i] * radius[j] / (radius[i] + radius[j])
-    return pairs[touching], (overlap[touching] ** 1.5) * np.sqrt(effective[touching])
+
+def on_grain(pressing: Pressing, grain: int) -> np.ndarray:
+    """The forces (k,) N that press on a grain."""
+    return np.hypot(*pressing.force[(pressing.grains == grain).any(axis=1)].T)
+
+
+def newtons(force: float) -> str:
+    """A force with its unit."""
+    return f"{force:.2g} N" if force >= 0.1 else f"{1e3 * force:.2g} mN" if force >= 1e-4 else f"{1e6 * force:.2g} µN"

@@ -22,21 +22,32 @@ from lab.scene import build
 from lab.schema import Motion, Resolved
 from lab.view.controls import ALTERS, CONTROLS, MOVES, offered
 from lab.view.helm import Helm
-from lab.view.swell import Swell
+from lab.view.swell import swell_of
 from solvers.errors import Unavailable
+from solvers.pressing import Pressing
 from solvers.simulation import Simulation
 
-SWELL = "wave_amplitude", "wave_frequency"
 PICTURES = 25.0  # Hz at least, of the frames of what is watched
 
 
 @dataclass(frozen=True)
 class Seen:
-    """What stands at the end of a piece: its time (s), the observed rows (W,) and the grains (W, n) by name."""
+    """What stands at the end of a piece: its time (s), the observed rows (W,), the grains (W, n) by name, what presses.
+
+    The grains are in 32 bits, as in recordings, for many of these are kept to be looked back at.
+    """
 
     time: float
     rows: Mapping[str, np.ndarray]
     grains: Mapping[str, np.ndarray]
+    pressing: Pressing
+
+    @property
+    def bytes(self) -> int:
+        """Memory that it takes."""
+        pressing = self.pressing
+        arrays = *self.rows.values(), *self.grains.values(), pressing.grains, pressing.place, pressing.force
+        return sum(array.nbytes for array in arrays)
 
 
 def under_a_hand(loaded: LoadedPreset) -> LoadedPreset:
@@ -58,7 +69,7 @@ class Live:
         preset = loaded.resolved
         self.preset, self.folder, self.pieces = preset, folder, 0
         self.helm = None if preset.ship else Helm(offered(preset))
-        self.swell = Swell(preset) if "wave_amplitude" in offered(preset) else None
+        self.swell = swell_of(preset)
         self.run = Run(loaded, folder, *build(preset, Helm.hands() if self.helm else None))
         self._end = ExitStack()
         with ExitStack() as otherwise:
@@ -69,7 +80,7 @@ class Live:
             self._end.push(otherwise.pop_all())
         self.steps_a_piece = round(1.0 / (preset.record.series_rate * self.simulation.dt))
         self._a_frame = max(1, round(preset.record.series_rate / preset.record.picture_rate))
-        self.seen = self._record()
+        self.rows = self._record()
 
     def _start(self, scene, position) -> Simulation:
         settings = self.preset.run
@@ -83,8 +94,8 @@ class Live:
     def set(self, name: str, value: float) -> None:
         """Set a control, from the next piece on. Raises LabError for what cannot be changed while grains move."""
         control = CONTROLS[name]
-        mover = self.swell if name in SWELL else self.helm
-        if control.kind == MOVES and mover:
+        mover = self.swell if self.preset.ship else self.helm
+        if control.kind == MOVES and mover and name in mover.wanted:
             mover.wanted[name] = value
         elif control.kind == ALTERS:
             try:
@@ -95,7 +106,7 @@ class Live:
             raise LabError(f"{control.label}: start the experiment anew with it.")
         self.recorder.steer(self.time, name, value)
 
-    def advance(self, pause: Callable[[], None] = lambda: None, most: int | None = None) -> Seen:
+    def advance(self, pause: Callable[[], None] = lambda: None, most: int | None = None) -> None:
         """Take a piece, in calls of `most` steps with a pause after each. Raises BadState; what was recorded stays."""
         length = self.steps_a_piece * self.simulation.dt
         if self.helm:
@@ -108,20 +119,23 @@ class Live:
             pause()
         self.pieces += 1
         self.recorder.wall_s += time.perf_counter() - begun
-        self.seen = self._record()
-        return self.seen
+        self.rows = self._record()
 
-    def _record(self) -> Seen:
-        """Look, and add a row to the series and, where one is due, to the frames."""
+    def look(self) -> Seen:
+        """What stands now."""
+        more = {"part": self.simulation.part_places(), **({"waves": self.swell.now} if self.swell else {})}
+        grains = {name: values.astype(np.float32) for name, values in self.simulation.snapshot().items()}
+        return Seen(self.time, {**self.rows, **more}, grains, self.simulation.pressing())
+
+    def _record(self) -> dict[str, np.ndarray]:
+        """Observe, and add a row to the series and, where one is due, to the frames; gives what was observed."""
         rows, now = self.simulation.observe(), self.time
         self.recorder.sample({"time": now, **sampled(rows)})
-        grains = self.simulation.snapshot()
         if self.pieces % self._a_frame == 0:
             part = self.simulation.part_places()
-            self.recorder.frame({"time": now, "pose": pose_of(rows), "part": part, **grains})
+            self.recorder.frame({"time": now, "pose": pose_of(rows), "part": part, **self.simulation.snapshot()})
         self.recorder.grain_steps = self.simulation.grain_steps
-        more = {"part": self.simulation.part_places(), **({"waves": self.swell.now} if self.swell else {})}
-        return Seen(now, {**rows, **more}, grains)
+        return rows
 
     def close(self, status: str = "complete") -> None:
         """End the recording."""

@@ -10,38 +10,45 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
-from PIL import Image, ImageChops, ImageDraw
+from PIL import Image, ImageDraw, ImageOps
 
 from lab.paint import decorations as deco
 from lab.paint.colours import Colouring, colouring, mark_colours
-from lab.paint.painter import Camera, paint_grains, paint_plate, paint_tank, to_discs
+from lab.paint.painter import Camera, paint_grains, paint_plate, paint_strokes, paint_tank, to_discs
 from lab.paint.sea import LINE
 from lab.view.controls import CONTROLS, RESTARTS
 from lab.view.curves import CURVES
-from lab.view.forces import pressed_pairs
+from lab.view.forces import chains, newtons
+from lab.view.help import draw_help
+from lab.view.readings import clock, readings
 
 if TYPE_CHECKING:
     from lab.view.session import Session
 
 MARGIN, COLUMN, GAP, WALL, PLATE = 1.2, 17.0, 1.5, 0.36, 0.3  # in u
 TEXT, READING, TITLE, ROW = 1.0, 1.2, 1.4, 1.5  # heights in u
+LINES = 5  # of readings below the clock
+PLOT = 14.0, 8.5  # width and height in u
+SENTENCE = 0.8, 3  # height of its letters in u, lines at most
 ANEW = 2.0  # s after which scale and curve are looked at anew
 HANDLE = 0.42  # u, half the height of a slider's handle
 GRIP = 0.8  # u around the centre of roll
-THICKEST = 0.7  # of the mean radius: a line of the largest force
+THICKEST = 0.3  # of the mean radius: half the thickness of a line of the largest force
+LONGEST, FASTEST = 6.0, 0.99  # radii: a velocity's line, of which quantile
 GRAB, FORCE, PICKED = (213, 94, 0), (200, 30, 30), (213, 94, 0)
 
 
 class Page:
-    """Pictures of sessions in one size (pixels); with `panel` the sliders are part of them."""
+    """Pictures of sessions in one size (pixels)."""
 
-    def __init__(self, size: tuple[int, int], panel: bool) -> None:
-        self.width, self.height, self.panel = *size, panel
+    def __init__(self, size: tuple[int, int]) -> None:
+        self.width, self.height = size
         self.unit = min(self.width / 64, self.height / 36)
         self._colouring: tuple[tuple, float, Colouring] | None = None
         self._plot: tuple[tuple, float, Image.Image] | None = None
         self._sliders: dict[str, tuple[float, float, float, float]] = {}
         self._kept: dict[str, tuple[tuple, Image.Image]] = {}
+        self._largest = 0.0  # force (N) or speed (m/s), of the overlay that was painted last
 
     def picture(self, session: Session) -> np.ndarray:
         """The picture (height, width, 3), u8."""
@@ -56,7 +63,7 @@ class Page:
         self._draw_column(image, session, scale)
         self._draw_stage_marks(image, session)
         if session.look.help:
-            self._draw_help(image)
+            draw_help(image, session.keys, 0.9 * TEXT * self.unit)
         return np.asarray(image)
 
     # Places
@@ -74,13 +81,35 @@ class Page:
     def camera(self, session: Session) -> Camera:
         """Of the frame that is drawn: the tank's or the earth's."""
         low, high = self._ground(session)
+        scale = self._fit(self._room(session), high - low) * session.look.zoom
+        (x, y), pan, centre = self.middle(session), session.look.pan, 0.5 * (low + high)
+        return Camera(scale, (x + pan[0] - scale * centre[0], y + pan[1] + scale * centre[1]))
+
+    def middle(self, session: Session) -> tuple[float, float]:
+        """The pixel where the middle of what is shown is, as long as it is not moved."""
+        left, top, right, bottom = self._room(session)
+        return 0.5 * (left + right), 0.5 * (top + bottom)
+
+    def _room(self, session: Session) -> tuple[int, int, int, int]:
+        """The part of the stage for the tank: the one in which it is largest."""
+        low, high = self._ground(session)
+        return max(self._rooms(session), key=lambda room: self._fit(room, high - low))
+
+    def _rooms(self, session: Session) -> list[tuple[int, int, int, int]]:
+        """Parts of the stage for the tank: all of it, or what is right of the plot or below it."""
         left, top, right, bottom = self.stage
-        stage = np.array([right - left, bottom - top]) - 2.0 * self.u(WALL + 0.4)
-        scale = float((stage / (high - low)).min()) * session.look.zoom
-        middle = 0.5 * (low + high)
-        x = 0.5 * (left + right) + session.look.pan[0] - scale * middle[0]
-        y = 0.5 * (top + bottom) + session.look.pan[1] + scale * middle[1]
-        return Camera(scale, (x, y))
+        width, height = (self.u(side) for side in PLOT)
+        if session.look.inset == "nothing":
+            return [self.stage]
+        if session.look.frame == "earth":  # which has room beside the tank, or sky over a ship
+            return [self.stage if session.footage.sea else (left + width // 2, top, right, bottom)]
+        return [(left + width, top, right, bottom), (left, top + height, right, bottom)]
+
+    def _fit(self, room: tuple[int, int, int, int], extent: np.ndarray) -> float:
+        """Pixels a metre at which so much (m) fits in a room."""
+        left, top, right, bottom = room
+        spare = np.array([right - left, bottom - top]) - 2.0 * self.u(WALL + 0.4)
+        return float((spare / extent).min())
 
     def tank_camera(self, session: Session) -> Camera:
         """Of points of the tank."""
@@ -182,6 +211,10 @@ class Page:
         paint_grains(stage, discs, colour, mark_colours(colour), footage.edges)
         for line, shift in zip(footage.parts.values(), footage.moved_parts(frame), strict=True):
             paint_plate(stage, moved, line + shift, PLATE * self.unit, deco.PART)
+        if session.look.overlay == "forces":
+            paint_strokes(stage, self._force_strokes(session, moved), FORCE)
+        elif session.look.overlay == "velocities":
+            paint_strokes(stage, self._velocity_strokes(session, moved), deco.INK)
         picture[top:bottom, left:right] = stage
 
     @staticmethod
@@ -198,10 +231,6 @@ class Page:
         layer = image.crop((left, top, right, bottom))
         draw = ImageDraw.Draw(layer)
         camera = self._shifted(self.tank_camera(session), left, top)
-        if session.look.overlay == "forces":
-            self._draw_forces(draw, session, camera)
-        elif session.look.overlay == "velocities":
-            self._draw_velocities(draw, session, camera)
         centre = self._centre(session)
         if centre is not None:
             x, y, r = centre[0] - left, centre[1] - top, self.u(0.45)
@@ -211,18 +240,34 @@ class Page:
         if session.look.picked is not None:
             self._draw_picked(draw, session, camera)
         if session.look.inset != "nothing":
-            curve, place = self._curve(session), (self.u(0.4), self.u(0.4))
-            below = layer.crop((*place, place[0] + curve.width, place[1] + curve.height))
-            layer.paste(ImageChops.darker(below, curve), place)  # its paper is as of glass
+            layer.paste(self._curve(session), (0, 0))
         image.paste(layer, (left, top))
-        text, scale = TEXT * self.unit, self.camera(session).scale
+        scale = self.camera(session).scale
         foot = self._still("foot", (scale,), lambda: self._scale_bar(0.4 * (right - left), scale))
         image.paste(foot, (left, self.height - foot.height))
         title = self._still("title", (session.footage.title,), lambda: self._title(session.footage.title, right - left))
         image.paste(title, (left, self.u(MARGIN)))
-        said, face = deco.fitted(session.said or "H: help", 0.6 * (right - left), text)
-        place = right, self.height - self.u(MARGIN) - 0.3 * text
-        ImageDraw.Draw(image).text(place, said, GRAB if session.said else deco.QUIET, face, anchor="rm")
+        self._draw_sentence(ImageDraw.Draw(image), session)
+
+    def _draw_sentence(self, draw: ImageDraw.ImageDraw, session: Session) -> None:
+        """What has just been said, in a few lines below the stage, or else what the overlay means."""
+        right, middle = self.stage[2], 0.5 * (self.stage[3] + self.height)
+        if not session.said:
+            text, face = deco.fitted(self._hint(session), 0.6 * right, TEXT * self.unit)
+            draw.text((right, self.height - self.u(MARGIN) - 0.3 * TEXT * self.unit), text, deco.QUIET, face, "rm")
+            return
+        size, most = SENTENCE[0] * self.unit, SENTENCE[1]
+        lines = deco.wrapped(session.said, 0.62 * right, size, most)
+        for k, line in enumerate(lines):
+            y = middle + (k - 0.5 * (len(lines) - 1)) * 1.3 * size
+            draw.text((0.38 * right, y), line, GRAB, deco.font(size), "lm")
+
+    def _hint(self, session: Session) -> str:
+        if session.look.overlay == "forces" and self._largest:
+            return f"thickest lines: {newtons(self._largest)}    H: help"
+        if session.look.overlay == "velocities" and self._largest:
+            return f"longest lines: {1e3 * self._largest:.2g} mm/s    H: help"
+        return "H: help"
 
     def _scale_bar(self, width: float, scale: float) -> Image.Image:
         image = Image.new("RGB", (round(width), self.u(MARGIN + 1.6)), deco.PAPER)
@@ -236,33 +281,23 @@ class Page:
         ImageDraw.Draw(image).text((0, 0), said, deco.INK, face, anchor="la")
         return image
 
-    def _draw_forces(self, draw: ImageDraw.ImageDraw, session: Session, camera: Camera) -> None:
-        """Force chains: lines between the centres of grains that press, as thick as the force."""
+    def _force_strokes(self, session: Session, camera: Camera) -> np.ndarray:
+        """Chains of force: lines as thick as the force, from the grains to where they press."""
         footage, frame = session.footage, session.frame
-        if footage.shapes:
-            session.say("forces are drawn between round grains only")
-            session.look.overlay = "velocities"
-            return
-        place = footage.grains("position", frame)
-        pairs, force = pressed_pairs(place, footage.radius[0])
-        if not len(pairs):
-            return
-        largest = np.quantile(force, 0.99)
-        width = THICKEST * 2.0 * footage.radius[0].mean() * camera.scale * np.minimum(force / largest, 1.5)
-        ends = camera.pixels(place[pairs.ravel()]).reshape(-1, 4)
-        for line, thick in zip(ends[width >= 0.4].tolist(), width[width >= 0.4], strict=True):
-            draw.line(line, fill=FORCE, width=max(1, round(thick)))
+        lines, thickness, self._largest = chains(footage.pressing(frame), footage.grains("position", frame))
+        half = thickness * (THICKEST * footage.radius[0].mean() * camera.scale)
+        return _strokes(camera, lines, half, half)
 
-    def _draw_velocities(self, draw: ImageDraw.ImageDraw, session: Session, camera: Camera) -> None:
-        """Lines along the velocities in the tank; the 99th percentile is three diameters long."""
+    def _velocity_strokes(self, session: Session, camera: Camera) -> np.ndarray:
+        """Lines along the velocities in the tank, which end in a point."""
         footage, frame = session.footage, session.frame
         place, velocity = (footage.grains(name, frame) for name in ("position", "velocity"))
-        speed = np.hypot(*velocity.T)
-        longest = max(np.nanquantile(speed, 0.99), 1e-9)
-        tips = place + velocity * (6.0 * footage.radius[0].mean() / longest)
-        ends = camera.pixels(np.hstack([place, tips]).reshape(-1, 2)).reshape(-1, 4)
-        for line in ends[np.isfinite(ends).all(axis=1) & (speed > 0.03 * longest)].tolist():
-            draw.line(line, fill=deco.INK, width=1)
+        speed, radius = np.hypot(*velocity.T), footage.radius[0].mean()
+        self._largest = float(np.nanquantile(speed, FASTEST))
+        moving = speed > 0.03 * self._largest
+        tips = place + velocity * (LONGEST * radius / max(self._largest, 1e-9))
+        half = np.full(moving.sum(), max(0.15 * radius * camera.scale, 0.7))
+        return _strokes(camera, np.stack([place, tips], axis=1)[moving], half, 0.0 * half)
 
     def _draw_picked(self, draw: ImageDraw.ImageDraw, session: Session, camera: Camera) -> None:
         footage, frame, i = session.footage, session.frame, session.look.picked
@@ -272,41 +307,46 @@ class Page:
 
     def _curve(self, session: Session) -> Image.Image:
         """A small plot of what the experiment does, drawn anew a few times a second."""
-        size = self.u(13.0), self.u(7.5)
         key, now = (session.look.inset, id(session.footage), session.playhead), time.monotonic()
         if self._plot and self._plot[0] == key and now - self._plot[1] < 0.1 * ANEW:
             return self._plot[2]
         drawing = CURVES[session.look.inset](session.footage, session.frame)
         labels, colours = (drawing.across, drawing.upwards), deco.SERIES[: len(drawing.curves)]
+        edge, size = self.u(0.5), (self.u(PLOT[0] - 1.5), self.u(PLOT[1] - 1.5))
         plot = deco.LivePlot(size, drawing.curves, colours, labels, 0.9 * TEXT * self.unit)
-        image = plot.picture(drawing.counts)
+        image = ImageOps.expand(plot.picture(drawing.counts), edge, deco.PAPER)
         self._plot = key, now, image
         return image
 
     # The column
 
     def _draw_column(self, image: Image.Image, session: Session, scale: Colouring) -> None:
-        draw = ImageDraw.Draw(image)
-        left = self.width - self.u(MARGIN + COLUMN)
-        right, y = self.width - self.u(MARGIN), self.u(MARGIN)
-        for reading in self._readings(session):
-            text, face = deco.fitted(reading, right - left, READING * self.unit)
+        draw, left, width = ImageDraw.Draw(image), self.width - self.u(MARGIN + COLUMN), self.u(COLUMN)
+        text, face = deco.fitted(clock(session), width, READING * self.unit)
+        draw.text((left, self.u(MARGIN)), text, deco.INK, face, anchor="la")
+        for line, reading in enumerate(readings(session)):
+            text, face = deco.fitted(reading, width, TEXT * self.unit)
+            y = self.u(MARGIN + 1.6 * READING + 1.4 * TEXT * line)
             draw.text((left, y), text, deco.INK, face, anchor="la")
-            y += self.u(1.5 * READING)
-        rest = self._still(
-            "column", (id(scale), *session.values.items()), lambda: self._still_column(session, scale, y)
-        )
-        image.paste(rest, (left, y))
+        key = id(scale), session.look.typing, *session.values.items()
+        rest = self._still("column", key, lambda: self._still_column(session, scale))
+        image.paste(rest, (left, self.controls[0]))
 
-    def _still_column(self, session: Session, scale: Colouring, top: int) -> Image.Image:
+    @property
+    def controls(self) -> tuple[int, int]:
+        """Top and bottom of where the sliders are in the column."""
+        return self.u(MARGIN + 1.6 * READING + 1.4 * TEXT * LINES + 0.6), self.height - self.u(MARGIN + 5.2)
+
+    def _still_column(self, session: Session, scale: Colouring) -> Image.Image:
         """What stands below the readings until somebody changes it: sliders and colour bar."""
+        top, bottom = self.controls
         size = self.u(MARGIN + COLUMN), self.height - top
         image = Image.new("RGB", size, deco.PAPER)
         bar = 0, size[1] - self.u(MARGIN + 4.4), self.u(COLUMN), size[1] - self.u(MARGIN)
         deco.draw_colour_bar(image, bar, scale, TEXT * self.unit)
-        if self.panel:
-            left = self.width - size[0]
-            self._draw_sliders(ImageDraw.Draw(image), session, (left, top), self.u(0.6), bar[1] - self.u(0.8))
+        self._sliders = {}
+        if not session.look.typing:
+            self._draw_sliders(ImageDraw.Draw(image), session, (self.width - size[0], top), bottom - top)
         return image
 
     def _still(self, name: str, key: tuple, make: Callable[[], Image.Image]) -> Image.Image:
@@ -315,39 +355,18 @@ class Page:
             self._kept[name] = key, make()
         return self._kept[name][1]
 
-    def _readings(self, session: Session) -> list[str]:
-        footage, frame = session.footage, session.frame
-        number = deco.number
-        pace = "as fast as possible" if np.isinf(session.pace) else f"{session.pace:g} of real time"
-        state = "running" if session.going else "paused" if session.playhead is None else "looking back"
-        readings = [
-            f"t = {number(footage.time[frame], 2)} s, {state}",
-            f"pace: {pace}; reaches {session.factor:.2g}",
-        ]
-        sway, heave, tilt = self._pose(session)
-        readings.append(f"φ = {number(np.degrees(tilt), 1)}°, y {number(1e3 * sway, 0)}, z {number(1e3 * heave, 0)} mm")
-        count = footage.radius.size
-        readings.append(f"{count} grains, {footage.row(frame, 'contacts') * 2 / count:.2f} contacts each")
-        i = session.look.picked
-        if i is not None:
-            speed = float(np.hypot(*footage.grains("velocity", frame)[i]))
-            spin = float(footage.grains("spin", frame)[i])
-            readings.append(f"grain {i}: {1e3 * speed:.3g} mm/s, {spin:.3g} rad/s")
-        return readings
-
     def _draw_sliders(
-        self, draw: ImageDraw.ImageDraw, session: Session, corner: tuple, top: float, bottom: float
+        self, draw: ImageDraw.ImageDraw, session: Session, corner: tuple[int, int], height: float
     ) -> None:
-        """A row a control, name, slider and value, on a part of the picture whose corner is there."""
+        """A row a control, name, slider and value, on a part of the picture with this corner, so many pixels high."""
         left, right = 0, self.u(COLUMN)
         names = list(session.values)
-        pitch = min(self.u(ROW), (bottom - top) / max(1, len(names)))
+        pitch = min(self.u(ROW), height / max(1, len(names)))
         size = min(TEXT * self.unit, 0.72 * pitch)
-        begin, end = left + 0.44 * (right - left), left + 0.74 * (right - left)
-        self._sliders = {}
+        begin, end = left + 0.41 * (right - left), left + 0.67 * (right - left)
         for row, name in enumerate(names):
             control, value = CONTROLS[name], session.values[name]
-            y = top + (row + 0.5) * pitch
+            y = (row + 0.5) * pitch
             x, above = corner[0], corner[1] + y - 0.5 * pitch
             self._sliders[name] = (x + begin, above, x + end, above + pitch)
             colour = deco.QUIET if control.kind == RESTARTS else deco.INK
@@ -370,22 +389,8 @@ class Page:
         name, face = deco.fitted(session.name, 0.9 * self.width, TEXT * self.unit)
         draw.text((middle[0], middle[1] - self.u(3.0)), name, deco.QUIET, face, anchor="mm")
 
-    def _draw_help(self, image: Image.Image) -> None:
-        from lab.view.session import KEYS
 
-        draw, size = ImageDraw.Draw(image, "RGBA"), TEXT * self.unit
-        mouse = [
-            ("drag", "move the picture"),
-            ("right drag", "tilt the tank"),
-            ("drag the cross", "move the centre of roll"),
-            ("click a grain", "its speed and spin"),
-            ("wheel", "nearer or farther"),
-        ]
-        rows = [(name, says) for name, (says, _) in KEYS.items()] + mouse
-        width, height = self.u(30.0), (len(rows) + 1) * 1.35 * size
-        left, top = (self.width - self.u(COLUMN) - width) / 2, (self.height - height) / 2
-        draw.rectangle((left, top, left + width, top + height), fill=(255, 255, 255, 248), outline=deco.LINE)
-        for k, (name, says) in enumerate(rows):
-            y = top + (k + 1) * 1.35 * size
-            draw.text((left + self.u(1.0), y), name, deco.INK, deco.font(size, True), anchor="lm")
-            draw.text((left + self.u(10.0), y), says, deco.INK, deco.font(size), anchor="lm")
+def _strokes(camera: Camera, lines: np.ndarray, first: np.ndarray, second: np.ndarray) -> np.ndarray:
+    """Lines (k, 2, 2) m as strokes (k, 6) in pixels, half as thick (pixels) as this at their ends."""
+    ends = camera.pixels(lines.reshape(-1, 2)).reshape(-1, 2, 2)
+    return np.column_stack([ends[:, 0], first, ends[:, 1], second])

@@ -31,7 +31,8 @@ def replay(path: Path | str, out: Path | str | None = None, *, video: bool = Tru
                 while done and done[0][0] <= time + 0.5 * live.simulation.dt:
                     _, name, value = done.pop(0)
                     live.set(name, value)
-                progress.reach(live.advance().time)
+                live.advance()
+                progress.reach(live.time)
             progress.finish()
             live.close()
         return report(folder, progress, video=video)

@@ -43,11 +43,12 @@ class Look:
     inset: str = "shift"
     picked: int | None = None
     help: bool = False
+    typing: bool = False  # a panel of the window's own instead of the sliders
 
 
 @dataclass
 class Session:
-    """A preset under `overrides`, live in a window of `size` pixels; `panel`: whether the picture has the sliders.
+    """A preset under `overrides`, live in a window of `size` pixels; `types`: one with a panel to type values in.
 
     playhead: the frame shown, None for the newest. Raises LabError where the preset cannot be run.
     """
@@ -56,7 +57,7 @@ class Session:
     overrides: dict
     size: tuple[int, int] = (1280, 720)
     out: Path | None = None
-    panel: bool = True
+    types: bool = False
     ended: bool = field(default=False, init=False)
 
     def __post_init__(self) -> None:
@@ -64,7 +65,7 @@ class Session:
 
         video = load(self.name, self.overrides).resolved.video
         self.look = Look(video.colour, video.frame)
-        self.page = Page(self.size, self.panel)
+        self.page = Page(self.size)
         self.pace, self._said, self._grip, self._shape = 1.0, ("", 0.0), None, "disc"
         self._restart(self.overrides)
 
@@ -110,7 +111,9 @@ class Session:
 
     def _on_seen(self, what: tuple) -> None:
         seen, self.factor = what
-        self.footage.add(seen)
+        dropped = self.footage.add(seen)
+        if self.playhead is not None:
+            self.playhead = max(0, self.playhead - dropped)
 
     def _on_kept(self, folder: Path) -> None:
         self.say(f"kept in {folder}; its video and summary follow")
@@ -207,8 +210,22 @@ class Session:
         wanted = int(np.clip(now + frames, 0, last))
         self.playhead = None if wanted == last else wanted
 
+    def zoom(self, turns: float) -> None:
+        """Nearer, or with negative turns farther, about the middle of the stage."""
+        left, top, right, bottom = self.page.stage
+        self.wheel(turns, 0.5 * (left + right), 0.5 * (top + bottom))
+
+    def toggle_typing(self) -> None:
+        """Have the window's panel instead of the sliders, or these again."""
+        self.look.typing = self.types and not self.look.typing
+
+    @property
+    def keys(self) -> list[tuple[str, str]]:
+        """What the keys are called and do here."""
+        return [(name, says) for name, (says, _) in KEYS.items() if self.types or name != "p"]
+
     def key(self, name: str) -> None:
-        """A key was pressed, by its name: a letter, space, left, right, up, down, end, escape."""
+        """A key was pressed, by its name: a letter, space, left, right, up, down, escape."""
         action = KEYS.get(name)
         if action:
             action[1](self)
@@ -248,9 +265,14 @@ class Session:
         if clicked and self.footage and len(self.footage):
             self.look.picked = self.page.grain_at(self, x, y)
 
-    def wheel(self, turns: float) -> None:
-        """Zoom."""
-        self.look.zoom = float(np.clip(self.look.zoom * ZOOM**turns, 0.2, 50.0))
+    def wheel(self, turns: float, x: float, y: float) -> None:
+        """Zoom; what is at a pixel stays there."""
+        before = self.look.zoom
+        self.look.zoom = float(np.clip(before * ZOOM**turns, 0.2, 50.0))
+        grown = self.look.zoom / before
+        middle = self.page.middle(self) if self.footage else (x, y)
+        pan = zip(self.look.pan, (x, y), middle, strict=True)
+        self.look.pan = tuple(grown * moved + (1.0 - grown) * (at - half) for moved, at, half in pan)
 
     def picture(self) -> np.ndarray:
         """The picture (height, width, 3), u8."""
@@ -335,7 +357,7 @@ KEYS: dict[str, tuple[str, Callable[[Session], None]]] = {
     "n": ("one sampling interval further", _one_piece),
     "left": ("back in what was seen", lambda session: session.rewind(-1)),
     "right": ("forth", lambda session: session.rewind(1)),
-    "end": ("to the newest picture", lambda session: setattr(session, "playhead", None)),
+    "g": ("go to the newest picture", lambda session: setattr(session, "playhead", None)),
     "up": ("faster", _faster(1)),
     "down": ("slower", _faster(-1)),
     "a": ("tilt to port by 5°", _tilt(NUDGE)),
@@ -347,9 +369,12 @@ KEYS: dict[str, tuple[str, Callable[[Session], None]]] = {
     "o": ("overlay of forces or velocities", _look("overlay", lambda _: OVERLAYS)),
     "i": ("another curve", _look("inset", lambda session: offered_curves(session.footage))),
     "z": ("see the whole", _whole),
+    "e": ("nearer", lambda session: session.zoom(1.0)),
+    "q": ("farther", lambda session: session.zoom(-1.0)),
     "k": ("keep: video and data of what was seen", lambda session: session.keep()),
     "r": ("start anew", lambda session: session.restart()),
     "s": ("start anew with the grains of another cargo", lambda session: session.reshape()),
+    "p": ("a panel to type values in: Ctrl and a click on one", lambda session: session.toggle_typing()),
     "h": ("this help", lambda session: setattr(session.look, "help", not session.look.help)),
     "escape": ("close", lambda session: session.close()),
 }

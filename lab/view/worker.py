@@ -79,12 +79,12 @@ class Worker:
                 self._pipe.send(("told", str(error)))
         self._wishes.clear()
         begun = time.monotonic()
-        seen = self._live.advance(self._listen, self._most)
+        self._live.advance(self._listen, self._most)
         taken = time.monotonic() - begun
         length = self._live.steps_a_piece * self._live.simulation.dt
         self._factor += 0.2 * (length / max(taken, 1e-9) - self._factor)
         self._pieces = max(0, self._pieces - 1)
-        if seen.rows.get("capsized", [-1.0])[0] >= 0.0:
+        if self._live.rows.get("capsized", [-1.0])[0] >= 0.0:
             self._going = False
             self._pipe.send(("told", "she has capsized"))
         if time.monotonic() - self._sent >= A_LOOK or not self._going:
@@ -102,7 +102,7 @@ class Worker:
             self._listen()
 
     def _send(self) -> None:
-        self._pipe.send(("seen", (self._live.seen, min(self._factor, self._pace))))
+        self._pipe.send(("seen", (self._live.look(), min(self._factor, self._pace))))
         self._sent = time.monotonic()
 
     def _listen(self) -> None:

@@ -44,14 +44,18 @@ def test_the_recording_tells_what_was_done(steered):
     assert [entry for entry in done if entry in HAND.values()] == list(HAND.values())
 
 
-def test_a_replay_has_the_same_bits(steered, tmp_path):
-    again = replay(steered, tmp_path / "again", video=False, quiet=True)
-    with open_recording(steered) as first, open_recording(again.folder) as second:
+def check_same_bits(folder, other):
+    with open_recording(folder) as first, open_recording(other) as second:
         assert first.steering == second.steering
         for name in first.series:
             assert first.series[name].tobytes() == second.series[name].tobytes(), name
         for name in first.frames:
             assert first.frames[name][:].tobytes() == second.frames[name][:].tobytes(), name
+
+
+def test_a_replay_has_the_same_bits(steered, tmp_path):
+    again = replay(steered, tmp_path / "again", video=False, quiet=True)
+    check_same_bits(steered, again.folder)
     assert json.loads((again.folder / "summary.json").read_text())["status"] == "complete"
 
 
@@ -77,3 +81,17 @@ def test_a_run_that_no_hand_steered_is_not_replayed(steered, tmp_path):
         del file["steering"]
     with pytest.raises(LabError, match="not steered by hand"):
         replay(folder, quiet=True)
+
+
+@pytest.mark.slow
+def test_a_random_sea_that_a_hand_raised_replays_with_the_same_bits(tmp_path):
+    folder, loaded = tmp_path / "sea", load("ship/irregular-sea-quick", {"grains.diameter": "12 mm"})
+    with Live(under_a_hand(loaded), folder, Progress(quiet=True)) as live:
+        for k in range(60):
+            if k in (5, 40):
+                live.set("wave_height", 0.06 if k == 5 else 0.01)
+            live.advance(most=50 + 11 * k)
+        waves = live.look().rows["waves"]
+        live.close()
+    assert 0.01 < waves[0] < 0.06
+    check_same_bits(folder, replay(folder, tmp_path / "again", video=False, quiet=True).folder)

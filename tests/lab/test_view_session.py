@@ -18,12 +18,20 @@ from lab.view import session as sessions
 from lab.view.controls import CONTROLS
 from lab.view.footage import Scenery
 from lab.view.live import Seen, own_motion, under_a_hand
+from lab.view.readings import readings
 from lab.view.session import KEYS, Session
+from solvers.pressing import NOBODY, Pressing
 from solvers.runtime import initialise
 
 PRESET = "tilting/quick"
 SMALL = {"tank.width": "60 mm", "tank.height": "40 mm", "grains.depth": "15 mm"}
 SIZE = 1280, 720
+
+
+# Grain 7 presses on grain 8 and on a wall.
+PRESSING = Pressing(
+    np.array([[7, 8], [7, NOBODY]]), np.array([[0.0, 0.003], [0.003, 0.0]]), np.array([[0.2, 0], [0, 0.1]])
+)
 
 
 class NoProcess:
@@ -72,7 +80,7 @@ def seen(place: np.ndarray, time: float) -> Seen:
     }
     names = "pose_y", "pose_z", "pose_angle", "centre_y", "centre_z", "kinetic", "contacts"
     rows = {name: np.array([time if name.startswith("centre") else 0.0]) for name in names}
-    return Seen(time, {**rows, "part": np.zeros((1, 0, 2))}, grains)
+    return Seen(time, {**rows, "part": np.zeros((1, 0, 2))}, grains, PRESSING)
 
 
 def asked(pipe) -> list:
@@ -113,7 +121,7 @@ def test_keys_pause_go_back_and_come_forth(opened):
     assert asked(pipes[-1]) == [("go", False)]
     assert session.frame == 2
     assert np.any(session.picture() != newest)
-    session.key("end")
+    session.key("g")
     assert session.frame == 4
     session.key("space")
     assert asked(pipes[-1]) == [("go", True)]
@@ -177,7 +185,7 @@ def test_a_click_picks_the_grain_below_it(opened):
     session.press(x, y)
     session.release(x, y)
     assert session.look.picked == 7
-    assert any("grain 7: 1 mm/s" in reading for reading in session.page._readings(session))
+    assert readings(session)[-2:] == ["grain 7: 1.0 mm/s, 0.00 rad/s", "2 contacts, 0.2 N at most"]
 
 
 def test_what_needs_a_restart_waits_for_it(opened):

@@ -49,7 +49,7 @@ def _choose(window: Window, size: tuple[int, int]) -> str:
 
 
 def _show(window: Window, name: str, overrides: dict, size: tuple[int, int], out: Path | None) -> Path:
-    session = Session(name, overrides, size, out, panel=window.needs_panel)
+    session = Session(name, overrides, size, out, types=window.types)
     try:
         window.run(session)
     finally:

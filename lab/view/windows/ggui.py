@@ -1,4 +1,4 @@
-"""A window of Taichi's GGUI with imgui's sliders: where there is Vulkan, of a graphics processor or in software."""
+"""A window of Taichi's GGUI, with imgui's panel on demand: where there is Vulkan, of a graphics processor or not."""
 
 import contextlib
 import tempfile
@@ -8,8 +8,7 @@ import taichi as ti
 
 from lab.view.chooser import Chooser
 from lab.view.controls import CONTROLS, RESTARTS, UNITS
-from lab.view.page import COLUMN, MARGIN
-from lab.view.session import KEYS, Session
+from lab.view.session import Session
 from lab.view.windows.window import Window
 
 NAMES = {
@@ -22,14 +21,14 @@ NAMES = {
     ti.ui.RETURN: "return",
 }
 BUTTONS = {ti.ui.LMB: "left", ti.ui.RMB: "right"}
-TOP, BOTTOM = 0.30, 0.80  # of the window's height: where its panel stands
-BUTTON_KEYS = ("space", "n", "m", "w", "k", "r", "c", "f", "o", "i")
+# imgui's letters are 13 pixels high whatever the window's size: pixels of its panel, of a row, above and below.
+PANEL, ROW, FRAME = 440, 23, 36
 
 
 class VulkanWindow(Window):
-    """The window; imgui has the sliders."""
+    """The window; imgui's sliders, in which numbers can be typed, replace the picture's where they are asked for."""
 
-    needs_panel = False
+    types = True
 
     def __init__(self, size: tuple[int, int]) -> None:
         super().__init__(size)
@@ -52,33 +51,36 @@ class VulkanWindow(Window):
     def _show(self, session: Session | Chooser, picture: np.ndarray) -> None:
         self._shown.from_numpy(np.ascontiguousarray(picture.astype(np.float32) / 255.0))
         self._canvas.set_image(self._shown)
-        if session.values:
+        if self._is_typing(session):
             self._panel(session)
         with contextlib.chdir(self._scratch.name):
             self._window.show()
 
+    @staticmethod
+    def _is_typing(session: Session | Chooser) -> bool:
+        return isinstance(session, Session) and session.look.typing and not session.look.help
+
     def _panel(self, session: Session) -> None:
-        """A slider a control, in its unit, and buttons for the keys."""
-        width = (COLUMN + 0.5 * MARGIN) / 64.0
-        with self._gui.sub_window("steer", 1.0 - width, TOP, width, BOTTOM - TOP):
+        """A slider a control, in its unit."""
+        (width, height), (top, _) = self._size, session.page.controls
+        tall = (ROW * len(session.values) + FRAME) / height
+        with self._gui.sub_window("values", 1.0 - PANEL / width, top / height, PANEL / width, tall):
             for name in list(session.values):
                 control, value = CONTROLS[name], session.values[name]
                 scale = UNITS.get(control.unit, 1.0)
-                label = f"{control.label} ({control.unit})" + ("*" if control.kind == RESTARTS else "")
+                unit = "" if control.unit == "1" else f" ({control.unit})"
+                label = f"{control.label}{unit}" + ("*" if control.kind == RESTARTS else "")
                 shown = self._gui.slider_float(
                     f"{label}##{name}", value / scale, control.low / scale, control.high / scale
                 )
                 if abs(shown - value / scale) > 1e-5 * (control.high - control.low) / scale:
                     session.set(name, shown * scale)
-            for name in BUTTON_KEYS:
-                if self._gui.button(f"{name}: {KEYS[name][0]}"):
-                    session.key(name)
 
     def _pass_on(self, session: Session | Chooser) -> None:
         x, y = self._cursor()
         for event in self._window.get_events(ti.ui.PRESS):
             if event.key in BUTTONS:
-                if not session.values or x < self._size[0] * (1.0 - COLUMN / 64.0):  # else it is imgui's
+                if not self._is_typing(session) or x < self._size[0] - PANEL:  # else it is imgui's
                     self._held = event.key
                     session.press(x, y, BUTTONS[event.key])
             else:

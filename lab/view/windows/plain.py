@@ -16,16 +16,15 @@ NAMES = {
     ti.GUI.DOWN: "down",
     ti.GUI.ESCAPE: "escape",
     ti.GUI.RETURN: "return",
-    "End": "end",
 }
 BUTTONS = {ti.GUI.LMB: "left", ti.GUI.RMB: "right"}
 A_TURN = 120.0  # what a turn of the wheel counts
 
 
 class PlainWindow(Window):
-    """The window; it shows the whole picture, sliders and all."""
+    """The window; it shows the picture and nothing else."""
 
-    needs_panel = True
+    types = False
 
     def __init__(self, size: tuple[int, int]) -> None:
         super().__init__(size)
@@ -56,7 +55,7 @@ class PlainWindow(Window):
             elif event.type == ti.GUI.MOTION and event.key == ti.GUI.MOVE:
                 session.drag(x, y)
             elif event.type == ti.GUI.MOTION and event.key == ti.GUI.WHEEL:
-                session.wheel(event.delta[1] / A_TURN)
+                session.wheel(event.delta[1] / A_TURN, x, y)
 
 
 def open_window(size: tuple[int, int]) -> PlainWindow | None:

@@ -12,9 +12,9 @@ PICTURES = 30.0  # Hz
 
 
 class Window(ABC):
-    """A front end of one toolkit; `needs_panel` where pictures must bring their own sliders."""
+    """A front end of one toolkit; `types` where it has a panel to type values in."""
 
-    needs_panel: bool
+    types: bool
 
     def __init__(self, size: tuple[int, int]) -> None:
         self._size = size

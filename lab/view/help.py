@@ -1,0 +1,32 @@
+"""The keys and what the mouse does, on a card over the picture."""
+
+from collections.abc import Sequence
+
+from PIL import Image, ImageDraw
+
+from lab.paint import decorations as deco
+
+MOUSE = (
+    ("drag", "move the picture"),
+    ("right drag", "tilt the tank"),
+    ("drag the cross", "move the centre of roll"),
+    ("click a grain", "its speed, spin and forces"),
+    ("wheel", "nearer or farther"),
+)
+EDGE, ROW, NAME = 1.5, 1.6, 8.8  # heights of a letter: around the card, of a row, of the names' column
+
+
+def draw_help(image: Image.Image, keys: Sequence[tuple[str, str]], size: float) -> None:
+    """Draw the card into the middle of the picture, in letters so many pixels high; keys: names and what they do."""
+    rows = [*keys, *MOUSE]
+    half = -(-len(rows) // 2)
+    says = [max(deco.font(size).getlength(said) for _, said in part) for part in (rows[:half], rows[half:])]
+    width, height = sum(says) + (2 * NAME + 3 * EDGE) * size, (half * ROW + 2 * EDGE) * size
+    left, top = 0.5 * (image.width - width), 0.5 * (image.height - height)
+    draw = ImageDraw.Draw(image)
+    draw.rectangle((left, top, left + width, top + height), fill=deco.PAPER, outline=deco.LINE, width=2)
+    for k, (name, said) in enumerate(rows):
+        x = left + EDGE * size + k // half * (says[0] + (NAME + EDGE) * size)
+        y = top + (EDGE + (k % half + 0.5) * ROW) * size
+        draw.text((x, y), name, deco.INK, deco.font(size, True), anchor="lm")
+        draw.text((x + NAME * size, y), said, deco.INK, deco.font(size), anchor="lm")
