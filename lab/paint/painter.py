@@ -149,13 +149,20 @@ def paint_strokes(picture: np.ndarray, strokes: np.ndarray, colour: tuple) -> No
 
     Where lines meet or cross nothing is painted twice. Lines with an end at no finite place are left out.
     """
-    strokes = np.ascontiguousarray(strokes[np.isfinite(strokes).all(axis=1)], dtype=float)
+    strokes = strokes[np.isfinite(strokes).all(axis=1)].astype(float)
+    if not len(strokes):
+        return
+    box = _box(picture, strokes.reshape(-1, 3)[:, :2], float(strokes[:, [2, 5]].max()))
+    left, top, right, bottom = (int(edge) for edge in box)
+    part = np.ascontiguousarray(picture[top:bottom, left:right])
+    strokes -= [left, top, 0.0, left, top, 0.0]
     low, high = strokes[:, [1, 4]].min(axis=1), strokes[:, [1, 4]].max(axis=1)
     reach = 0.5 * (high - low) + strokes[:, [2, 5]].max(axis=1) + 1.0
-    starts, members = _sort_into_bands(0.5 * (low + high), reach, picture.shape[0])
-    if len(members):
-        covered = np.zeros(picture.shape[:2], dtype=np.float32)
-        _paint_strokes(picture, covered, starts, members, strokes, Colour(colour))
+    starts, members = _sort_into_bands(0.5 * (low + high), reach, len(part))
+    if len(members) and part.size:
+        covered = np.zeros(part.shape[:2], dtype=np.float32)
+        _paint_strokes(part, covered, starts, members, strokes, Colour(colour))
+        picture[top:bottom, left:right] = part
 
 
 def _box(picture: np.ndarray, corners: np.ndarray, reach: float) -> ti.Vector:
@@ -390,14 +397,19 @@ def _paint_line(picture: Picture, corners: Table, box: ti.types.vector(4, ti.i32
 
 
 @ti.func
-def _stroke_coverage(x, y, strokes: ti.template(), i):
-    """Share of a pixel that a line covers; one thinner than a pixel is faint."""
-    ex, ey = strokes[i, 3] - strokes[i, 0], strokes[i, 4] - strokes[i, 1]
-    px, py = x - strokes[i, 0], y - strokes[i, 1]
-    on = ti.math.clamp((px * ex + py * ey) / ti.max(ex * ex + ey * ey, 1e-30), 0.0, 1.0)
-    half = strokes[i, 2] + on * (strokes[i, 5] - strokes[i, 2])
-    distance = ti.sqrt((px - on * ex) ** 2 + (py - on * ey) ** 2)
-    return ti.min(2.0 * half, 1.0) * ti.math.clamp(ti.max(half, 0.5) - distance + 0.5, 0.0, 1.0)
+def _paint_stroke(covered: ti.template(), first, along, half, growth, top, bottom):
+    """Cover the pixels of some rows as far as a line does that starts at `first`; one thinner than a pixel is faint."""
+    inverse, reach = 1.0 / ti.max(along.dot(along), 1e-30), ti.max(half, half + growth, 0.5) + 0.5
+    left = _whole(first.x + ti.min(along.x, 0.0) - reach + 0.5, 0, covered.shape[1])
+    right = _whole(first.x + ti.max(along.x, 0.0) + reach + 0.5, 0, covered.shape[1])
+    upper = _whole(first.y + ti.min(along.y, 0.0) - reach + 0.5, top, bottom)
+    lower = _whole(first.y + ti.max(along.y, 0.0) + reach + 0.5, top, bottom)
+    for row, column in ti.ndrange((upper, lower), (left, right)):
+        away = ti.Vector([column + 0.5, row + 0.5]) - first
+        on = ti.math.clamp(away.dot(along) * inverse, 0.0, 1.0)
+        thick, distance = half + on * growth, (away - on * along).norm()
+        share = ti.min(2.0 * thick, 1.0) * ti.math.clamp(ti.max(thick, 0.5) - distance + 0.5, 0.0, 1.0)
+        covered[row, column] = ti.max(covered[row, column], ti.cast(share, ti.f32))
 
 
 @ti.kernel
@@ -408,14 +420,9 @@ def _paint_strokes(picture: Picture, covered: Shares, starts: Index, members: In
             top, bottom = band * BAND, ti.min((band + 1) * BAND, picture.shape[0])
             for entry in range(starts[band], starts[band + 1]):
                 i = members[entry]
-                reach = ti.max(strokes[i, 2], strokes[i, 5]) + 1.0
-                left = _whole(ti.min(strokes[i, 0], strokes[i, 3]) - reach, 0, picture.shape[1])
-                right = _whole(ti.max(strokes[i, 0], strokes[i, 3]) + reach + 1.0, 0, picture.shape[1])
-                upper = _whole(ti.min(strokes[i, 1], strokes[i, 4]) - reach, top, bottom)
-                lower = _whole(ti.max(strokes[i, 1], strokes[i, 4]) + reach + 1.0, top, bottom)
-                for row, column in ti.ndrange((upper, lower), (left, right)):
-                    share = ti.cast(_stroke_coverage(column + 0.5, row + 0.5, strokes, i), ti.f32)
-                    covered[row, column] = ti.max(covered[row, column], share)
+                first = ti.Vector([strokes[i, 0], strokes[i, 1]])
+                along = ti.Vector([strokes[i, 3], strokes[i, 4]]) - first
+                _paint_stroke(covered, first, along, strokes[i, 2], strokes[i, 5] - strokes[i, 2], top, bottom)
             for row, column in ti.ndrange((top, bottom), (0, picture.shape[1])):
                 share = covered[row, column]
                 if share > 0.0:

@@ -7,7 +7,7 @@ import numpy as np
 
 from lab.view.footage import LiveFootage
 
-MOST_POINTS = 400
+MOST_POINTS = 130  # two pixels apart
 FARTHEST = 90.0  # deg of heel
 
 

@@ -150,6 +150,12 @@ class LiveFootage:
         return self._seen[frame].grains[name][world]
 
     @cached_property
+    def extent(self) -> tuple[np.ndarray, np.ndarray]:
+        """Lower and upper corner (m) of the tank and its parts at rest."""
+        points = np.concatenate([self.outline, *self.parts.values()])
+        return points.min(axis=0), points.max(axis=0)
+
+    @cached_property
     def sea_ground(self) -> tuple[np.ndarray, np.ndarray]:
         """Lower and upper corner (m) of the sea that is shown around a ship, with room to roll and to drift."""
         y, z, roll = pose_of(self._seen[0].rows)[0]

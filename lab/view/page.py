@@ -30,7 +30,7 @@ TEXT, READING, TITLE, ROW = 1.0, 1.2, 1.4, 1.5  # heights in u
 LINES = 5  # of readings below the clock
 PLOT = 14.0, 8.5  # width and height in u
 SENTENCE = 0.8, 3  # height of its letters in u, lines at most
-ANEW = 2.0  # s after which scale and curve are looked at anew
+ANEW, CURVE_ANEW, WORDS_ANEW = 2.0, 0.25, 0.1  # s after which scale, curve and readings are looked at anew
 HANDLE = 0.42  # u, half the height of a slider's handle
 GRIP = 0.8  # u around the centre of roll
 THICKEST = 0.3  # of the mean radius: half the thickness of a line of the largest force
@@ -44,27 +44,27 @@ class Page:
     def __init__(self, size: tuple[int, int]) -> None:
         self.width, self.height = size
         self.unit = min(self.width / 64, self.height / 36)
+        self._paper = np.tile(np.array(deco.PAPER, dtype=np.uint8), (self.height, self.width, 1))
         self._colouring: tuple[tuple, float, Colouring] | None = None
-        self._plot: tuple[tuple, float, Image.Image] | None = None
         self._sliders: dict[str, tuple[float, float, float, float]] = {}
-        self._kept: dict[str, tuple[tuple, Image.Image]] = {}
+        self._kept: dict[str, tuple[tuple, float, np.ndarray]] = {}
         self._largest = 0.0  # force (N) or speed (m/s), of the overlay that was painted last
 
     def picture(self, session: Session) -> np.ndarray:
         """The picture (height, width, 3), u8."""
-        image = Image.new("RGB", (self.width, self.height), deco.PAPER)
         if session.footage is None or not len(session.footage):
-            self._draw_waiting(image, session)
-            return np.asarray(image)
-        picture = np.array(image)
+            return self._waiting(session)
+        picture = self._paper.copy()
         scale = self._scale(session)
-        self._paint_stage(picture, session, scale)
-        image = Image.fromarray(picture)
-        self._draw_column(image, session, scale)
-        self._draw_stage_marks(image, session)
+        left, top, right, bottom = self.stage
+        picture[top:bottom, left:right] = self._stage_picture(session, scale)
+        self._put_texts(picture, session)
+        self._put_column(picture, session, scale)
         if session.look.help:
+            image = Image.fromarray(picture)
             draw_help(image, session.keys, 0.9 * TEXT * self.unit)
-        return np.asarray(image)
+            return np.array(image)
+        return picture
 
     # Places
 
@@ -101,8 +101,8 @@ class Page:
         width, height = (self.u(side) for side in PLOT)
         if session.look.inset == "nothing":
             return [self.stage]
-        if session.look.frame == "earth":  # which has room beside the tank, or sky over a ship
-            return [self.stage if session.footage.sea else (left + width // 2, top, right, bottom)]
+        if session.look.frame == "earth":  # which has room beside the tank
+            return [(left + width // 2, top, right, bottom)]
         return [(left + width, top, right, bottom), (left, top + height, right, bottom)]
 
     def _fit(self, room: tuple[int, int, int, int], extent: np.ndarray) -> float:
@@ -155,9 +155,7 @@ class Page:
     def _ground(self, session: Session) -> tuple[np.ndarray, np.ndarray]:
         """Lower and upper corner (m) of what is shown where nothing is zoomed."""
         footage = session.footage
-        points = [footage.outline, *footage.parts.values()]
-        low = np.min([line.min(axis=0) for line in points], axis=0)
-        high = np.max([line.max(axis=0) for line in points], axis=0)
+        low, high = footage.extent
         if footage.sea:
             return footage.sea_ground if session.look.frame == "earth" else (low, high)
         if session.look.frame == "earth":  # room to turn and to sway
@@ -184,25 +182,15 @@ class Page:
             self._colouring = key, now, colouring(session.look.colour, [session.footage.bed])
         return self._colouring[2]
 
-    def _paint_stage(self, picture: np.ndarray, session: Session, scale: Colouring) -> None:
-        footage, frame = session.footage, session.frame
-        left, top, right, bottom = self.stage
-        stage = np.ascontiguousarray(picture[top:bottom, left:right])
+    def _stage_picture(self, session: Session, scale: Colouring) -> np.ndarray:
+        """The tank with all that is in it, the marks of a hand, and the plot."""
+        footage, frame, (left, top, _, _) = session.footage, session.frame, self.stage
         camera, moved = (self._shifted(c, left, top) for c in (self.camera(session), self.tank_camera(session)))
-        if session.look.frame == "earth":
-            if footage.sea:
-                ground = self._ground(session)
-                footage.sea_of(frame).paint(stage, camera, ground, footage.row_time(frame), LINE * self.unit)
-                paint_tank(stage, moved, footage.sea.hull, self._wall(camera, footage.sea.hull), deco.WALL, deco.LINE)
-            else:
-                faint = self._wall(camera, footage.outline)
-                paint_tank(stage, camera, footage.outline, faint, deco.GRID, deco.PAPER, footage.open_edges)
-        thick = self._wall(camera, footage.outline)
-        paint_tank(stage, moved, footage.outline, thick, deco.WALL, deco.HOLD, footage.open_edges)
-        fixed = footage.fixed
-        if len(fixed):
-            grey = np.tile(deco.FIXED, (len(fixed), 1))
-            paint_grains(stage, to_discs(moved, fixed[:, :2], fixed[:, 2], np.zeros(len(fixed))), grey, grey)
+        if session.look.frame == "tank":
+            key = id(footage), camera.scale, camera.offset
+            stage = self._still("tank", key, lambda: self._empty_stage(session, camera, moved)).copy()
+        else:
+            stage = self._empty_stage(session, camera, moved)
         bed = footage.bed
         colour = scale.colours(bed, frame)
         if session.look.overlay == "forces":
@@ -215,7 +203,31 @@ class Page:
             paint_strokes(stage, self._force_strokes(session, moved), FORCE)
         elif session.look.overlay == "velocities":
             paint_strokes(stage, self._velocity_strokes(session, moved), deco.INK)
-        picture[top:bottom, left:right] = stage
+        self._mark(stage, session, moved)
+        if session.look.inset != "nothing":
+            _put(stage, self._curve(session), 0, 0)
+        return stage
+
+    def _empty_stage(self, session: Session, camera: Camera, moved: Camera) -> np.ndarray:
+        """The sea, the hull and the tank with its fixed grains."""
+        footage, frame, (left, top, right, bottom) = session.footage, session.frame, self.stage
+        stage = self._paper[top:bottom, left:right].copy()
+        if session.look.frame == "earth":
+            if footage.sea:
+                whole = np.array([[0, stage.shape[0]], [stage.shape[1], 0]]) - camera.offset
+                ground = tuple(whole * [1.0, -1.0] / camera.scale)
+                footage.sea_of(frame).paint(stage, camera, ground, footage.row_time(frame), LINE * self.unit)
+                paint_tank(stage, moved, footage.sea.hull, self._wall(camera, footage.sea.hull), deco.WALL, deco.LINE)
+            else:
+                faint = self._wall(camera, footage.outline)
+                paint_tank(stage, camera, footage.outline, faint, deco.GRID, deco.PAPER, footage.open_edges)
+        thick = self._wall(camera, footage.outline)
+        paint_tank(stage, moved, footage.outline, thick, deco.WALL, deco.HOLD, footage.open_edges)
+        fixed = footage.fixed
+        if len(fixed):
+            grey = np.tile(deco.FIXED, (len(fixed), 1))
+            paint_grains(stage, to_discs(moved, fixed[:, :2], fixed[:, 2], np.zeros(len(fixed))), grey, grey)
+        return stage
 
     @staticmethod
     def _shifted(camera: Camera, left: int, top: int) -> Camera:
@@ -226,41 +238,41 @@ class Page:
 
     # Drawings over the stage
 
-    def _draw_stage_marks(self, image: Image.Image, session: Session) -> None:
-        left, top, right, bottom = self.stage
-        layer = image.crop((left, top, right, bottom))
-        draw = ImageDraw.Draw(layer)
-        camera = self._shifted(self.tank_camera(session), left, top)
-        centre = self._centre(session)
+    def _mark(self, stage: np.ndarray, session: Session, camera: Camera) -> None:
+        """The centre of roll, a cross in a ring, and a ring around the grain that was picked."""
+        centre, picked, footage = self._centre(session), session.look.picked, session.footage
         if centre is not None:
-            x, y, r = centre[0] - left, centre[1] - top, self.u(0.45)
-            draw.ellipse((x - r, y - r, x + r, y + r), outline=GRAB, width=max(1, self.u(0.12)))
-            draw.line([(x - 1.7 * r, y), (x + 1.7 * r, y)], fill=GRAB)
-            draw.line([(x, y - 1.7 * r), (x, y + 1.7 * r)], fill=GRAB)
-        if session.look.picked is not None:
-            self._draw_picked(draw, session, camera)
-        if session.look.inset != "nothing":
-            layer.paste(self._curve(session), (0, 0))
-        image.paste(layer, (left, top))
-        scale = self.camera(session).scale
-        foot = self._still("foot", (scale,), lambda: self._scale_bar(0.4 * (right - left), scale))
-        image.paste(foot, (left, self.height - foot.height))
-        title = self._still("title", (session.footage.title,), lambda: self._title(session.footage.title, right - left))
-        image.paste(title, (left, self.u(MARGIN)))
-        self._draw_sentence(ImageDraw.Draw(image), session)
+            (x, y), r = centre - self.stage[:2], self.u(0.45)
+            arms = np.array([[x - 1.7 * r, y, 0.7, x + 1.7 * r, y, 0.7], [x, y - 1.7 * r, 0.7, x, y + 1.7 * r, 0.7]])
+            paint_strokes(stage, np.concatenate([arms, _ring(x, y, r, 0.07 * self.unit)]), GRAB)
+        if picked is not None:
+            place = camera.pixels(footage.grains("position", session.frame)[picked][None])[0]
+            r = 1.3 * footage.radius[0][picked] * camera.scale + 2.0
+            paint_strokes(stage, _ring(*place, r, 0.08 * self.unit), PICKED)
 
-    def _draw_sentence(self, draw: ImageDraw.ImageDraw, session: Session) -> None:
-        """What has just been said, in a few lines below the stage, or else what the overlay means."""
-        right, middle = self.stage[2], 0.5 * (self.stage[3] + self.height)
-        if not session.said:
-            text, face = deco.fitted(self._hint(session), 0.6 * right, TEXT * self.unit)
-            draw.text((right, self.height - self.u(MARGIN) - 0.3 * TEXT * self.unit), text, deco.QUIET, face, "rm")
-            return
-        size, most = SENTENCE[0] * self.unit, SENTENCE[1]
-        lines = deco.wrapped(session.said, 0.62 * right, size, most)
+    def _put_texts(self, picture: np.ndarray, session: Session) -> None:
+        """The title above the stage; below it the scale, and what has just been said or else what the overlay means."""
+        left, _, right, bottom = self.stage
+        title, scale, said = session.footage.title, self.camera(session).scale, session.said
+        _put(picture, self._still("title", (title,), lambda: self._title(title, right - left)), left, self.u(MARGIN))
+        bar = self._still("bar", (scale,), lambda: self._scale_bar(round(0.38 * right) - left, scale))
+        _put(picture, bar, left, self.height - len(bar))
+        size = right - round(0.38 * right), self.height - bottom
+        hint = "" if said else self._hint(session)
+        words = self._still("words", (said, hint), lambda: self._words(said, hint, size))
+        _put(picture, words, right - size[0], bottom)
+
+    def _words(self, said: str, hint: str, size: tuple[int, int]) -> Image.Image:
+        """A sentence in a few lines, or a hint in one."""
+        image = Image.new("RGB", size, deco.PAPER)
+        draw, letters = ImageDraw.Draw(image), SENTENCE[0] * self.unit
+        text, face = deco.fitted(hint, size[0], TEXT * self.unit)
+        draw.text((size[0], size[1] - self.u(MARGIN) - 0.3 * TEXT * self.unit), text, deco.QUIET, face, "rm")
+        lines = deco.wrapped(said, size[0], letters, SENTENCE[1])
         for k, line in enumerate(lines):
-            y = middle + (k - 0.5 * (len(lines) - 1)) * 1.3 * size
-            draw.text((0.38 * right, y), line, GRAB, deco.font(size), "lm")
+            y = 0.5 * size[1] + (k - 0.5 * (len(lines) - 1)) * 1.3 * letters
+            draw.text((0, y), line, GRAB, deco.font(letters), "lm")
+        return image
 
     def _hint(self, session: Session) -> str:
         if session.look.overlay == "forces" and self._largest:
@@ -269,14 +281,14 @@ class Page:
             return f"longest lines: {1e3 * self._largest:.2g} mm/s    H: help"
         return "H: help"
 
-    def _scale_bar(self, width: float, scale: float) -> Image.Image:
-        image = Image.new("RGB", (round(width), self.u(MARGIN + 1.6)), deco.PAPER)
+    def _scale_bar(self, width: int, scale: float) -> Image.Image:
+        image = Image.new("RGB", (width, self.u(MARGIN + 1.6)), deco.PAPER)
         place = 0, image.height - self.u(MARGIN)
-        deco.draw_scale_bar(ImageDraw.Draw(image), place, 0.5 * width, scale, TEXT * self.unit)
+        deco.draw_scale_bar(ImageDraw.Draw(image), place, 0.6 * width, scale, TEXT * self.unit)
         return image
 
-    def _title(self, text: str, width: float) -> Image.Image:
-        image = Image.new("RGB", (round(width), self.u(1.3 * TITLE)), deco.PAPER)
+    def _title(self, text: str, width: int) -> Image.Image:
+        image = Image.new("RGB", (width, self.u(1.3 * TITLE)), deco.PAPER)
         said, face = deco.fitted(text, width, TITLE * self.unit, bold=True)
         ImageDraw.Draw(image).text((0, 0), said, deco.INK, face, anchor="la")
         return image
@@ -299,38 +311,39 @@ class Page:
         half = np.full(moving.sum(), max(0.15 * radius * camera.scale, 0.7))
         return _strokes(camera, np.stack([place, tips], axis=1)[moving], half, 0.0 * half)
 
-    def _draw_picked(self, draw: ImageDraw.ImageDraw, session: Session, camera: Camera) -> None:
-        footage, frame, i = session.footage, session.frame, session.look.picked
-        (x, y), r = camera.pixels(footage.grains("position", frame)[i][None])[0], 0.0
-        r = 1.3 * footage.radius[0][i] * camera.scale + 2.0
-        draw.ellipse((x - r, y - r, x + r, y + r), outline=PICKED, width=max(2, self.u(0.15)))
-
-    def _curve(self, session: Session) -> Image.Image:
+    def _curve(self, session: Session) -> np.ndarray:
         """A small plot of what the experiment does, drawn anew a few times a second."""
-        key, now = (session.look.inset, id(session.footage), session.playhead), time.monotonic()
-        if self._plot and self._plot[0] == key and now - self._plot[1] < 0.1 * ANEW:
-            return self._plot[2]
-        drawing = CURVES[session.look.inset](session.footage, session.frame)
-        labels, colours = (drawing.across, drawing.upwards), deco.SERIES[: len(drawing.curves)]
-        edge, size = self.u(0.5), (self.u(PLOT[0] - 1.5), self.u(PLOT[1] - 1.5))
-        plot = deco.LivePlot(size, drawing.curves, colours, labels, 0.9 * TEXT * self.unit)
-        image = ImageOps.expand(plot.picture(drawing.counts), edge, deco.PAPER)
-        self._plot = key, now, image
-        return image
+
+        def drawn() -> Image.Image:
+            drawing = CURVES[session.look.inset](session.footage, session.frame)
+            labels, colours = (drawing.across, drawing.upwards), deco.SERIES[: len(drawing.curves)]
+            edge, size = self.u(0.5), (self.u(PLOT[0] - 1.5), self.u(PLOT[1] - 1.5))
+            plot = deco.LivePlot(size, drawing.curves, colours, labels, 0.9 * TEXT * self.unit)
+            return ImageOps.expand(plot.picture(drawing.counts), edge, deco.PAPER)
+
+        return self._still("plot", (session.look.inset, id(session.footage), session.playhead), drawn, CURVE_ANEW)
 
     # The column
 
-    def _draw_column(self, image: Image.Image, session: Session, scale: Colouring) -> None:
-        draw, left, width = ImageDraw.Draw(image), self.width - self.u(MARGIN + COLUMN), self.u(COLUMN)
-        text, face = deco.fitted(clock(session), width, READING * self.unit)
-        draw.text((left, self.u(MARGIN)), text, deco.INK, face, anchor="la")
-        for line, reading in enumerate(readings(session)):
-            text, face = deco.fitted(reading, width, TEXT * self.unit)
-            y = self.u(MARGIN + 1.6 * READING + 1.4 * TEXT * line)
-            draw.text((left, y), text, deco.INK, face, anchor="la")
-        key = id(scale), session.look.typing, *session.values.items()
+    def _put_column(self, picture: np.ndarray, session: Session, scale: Colouring) -> None:
+        left, look = self.width - self.u(MARGIN + COLUMN), session.look
+        key = session.playhead, session.going, session.pace, look.picked, id(session.footage)
+        lines = self._still("readings", key, lambda: self._lines(session), WORDS_ANEW)
+        _put(picture, lines, left, self.u(MARGIN))
+        key = id(scale), look.typing, *session.values.items()
         rest = self._still("column", key, lambda: self._still_column(session, scale))
-        image.paste(rest, (left, self.controls[0]))
+        _put(picture, rest, left, self.controls[0])
+
+    def _lines(self, session: Session) -> Image.Image:
+        """The clock and the readings below it."""
+        image = Image.new("RGB", (self.u(COLUMN), self.controls[0] - self.u(MARGIN)), deco.PAPER)
+        draw = ImageDraw.Draw(image)
+        text, face = deco.fitted(clock(session), image.width, READING * self.unit)
+        draw.text((0, 0), text, deco.INK, face, anchor="la")
+        for line, reading in enumerate(readings(session)):
+            text, face = deco.fitted(reading, image.width, TEXT * self.unit)
+            draw.text((0, self.u(1.6 * READING + 1.4 * TEXT * line)), text, deco.INK, face, anchor="la")
+        return image
 
     @property
     def controls(self) -> tuple[int, int]:
@@ -349,11 +362,14 @@ class Page:
             self._draw_sliders(ImageDraw.Draw(image), session, (self.width - size[0], top), bottom - top)
         return image
 
-    def _still(self, name: str, key: tuple, make: Callable[[], Image.Image]) -> Image.Image:
-        """A part of the picture that stays as it is while its key does."""
-        if name not in self._kept or self._kept[name][0] != key:
-            self._kept[name] = key, make()
-        return self._kept[name][1]
+    def _still(
+        self, name: str, key: tuple, make: Callable[[], Image.Image | np.ndarray], lasts: float = np.inf
+    ) -> np.ndarray:
+        """A part of the picture that stays as it is while its key does, for some seconds at most."""
+        now = time.monotonic()
+        if name not in self._kept or self._kept[name][0] != key or now - self._kept[name][1] > lasts:
+            self._kept[name] = key, now, np.asarray(make())
+        return self._kept[name][2]
 
     def _draw_sliders(
         self, draw: ImageDraw.ImageDraw, session: Session, corner: tuple[int, int], height: float
@@ -381,13 +397,28 @@ class Page:
 
     # Whole pages
 
-    def _draw_waiting(self, image: Image.Image, session: Session) -> None:
-        draw = ImageDraw.Draw(image)
-        middle = self.width / 2, self.height / 2
-        text, face = deco.fitted(session.over or session.status, 0.9 * self.width, TITLE * self.unit)
-        draw.text(middle, text, GRAB if session.over else deco.INK, face, anchor="mm")
-        name, face = deco.fitted(session.name, 0.9 * self.width, TEXT * self.unit)
-        draw.text((middle[0], middle[1] - self.u(3.0)), name, deco.QUIET, face, anchor="mm")
+    def _waiting(self, session: Session) -> np.ndarray:
+        """The page until the first frame comes, and where none does."""
+        image = Image.new("RGB", (self.width, self.height), deco.PAPER)
+        draw, middle, size = ImageDraw.Draw(image), (self.width / 2, self.height / 2), TEXT * self.unit
+        name, face = deco.fitted(session.name, 0.9 * self.width, size)
+        draw.text((middle[0], middle[1] - 3.0 * size), name, deco.QUIET, face, anchor="mm")
+        for k, line in enumerate(deco.wrapped(session.over or session.status, 0.8 * self.width, 1.2 * size, 6)):
+            colour, y = GRAB if session.over else deco.INK, middle[1] + 1.7 * size * k
+            draw.text((middle[0], y), line, colour, deco.font(1.2 * size), anchor="mm")
+        return np.array(image)
+
+
+def _put(picture: np.ndarray, part: np.ndarray, left: int, top: int) -> None:
+    """Put a part into a picture, in place."""
+    picture[top : top + part.shape[0], left : left + part.shape[1]] = part
+
+
+def _ring(x: float, y: float, radius: float, half: float) -> np.ndarray:
+    """A circle as strokes (k, 6) in pixels, half as thick as this."""
+    turn = np.linspace(0.0, 2.0 * np.pi, 33)
+    points = np.column_stack([x + radius * np.cos(turn), y + radius * np.sin(turn), np.full(33, half)])
+    return np.hstack([points[:-1], points[1:]])
 
 
 def _strokes(camera: Camera, lines: np.ndarray, first: np.ndarray, second: np.ndarray) -> np.ndarray:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lab.paint.painter import Camera, Edges, paint_grains, paint_plate, paint_tank, to_discs
+from lab.paint.painter import Camera, Edges, paint_grains, paint_plate, paint_strokes, paint_tank, to_discs
 from solvers.runtime import initialise
 from solvers.shapes.cargo import cargo, cargoes
 from solvers.shapes.contour import Contour
@@ -171,6 +171,27 @@ def test_a_plate_covers_its_length_and_its_round_ends():
     bend = np.arctan2(10, 30)  # the pieces overlap on its inner side, a round joint fills the outer
     overlap = 9 * (np.tan(bend / 2) - bend / 2)
     assert area(picture) == pytest.approx(6 * length + 9 * np.pi - overlap, rel=5e-3)
+
+
+def stroked(*strokes):
+    picture = np.full((64, 96, 3), 255, dtype=np.uint8)
+    paint_strokes(picture, np.array(strokes, dtype=float), (0, 0, 0))
+    return area(picture)
+
+
+def test_a_line_covers_its_length_and_its_round_ends_and_may_end_in_a_point():
+    """Ends of one line on each of three bands of the raster."""
+    length = np.hypot(50.0, 41.0)
+    assert stroked([20.3, 12.1, 2.0, 70.3, 53.1, 2.0]) == pytest.approx(4.0 * length + 4.0 * np.pi, rel=5e-3)
+    assert stroked([20.3, 12.1, 3.0, 70.3, 53.1, 0.0]) == pytest.approx(3.0 * length + 4.5 * np.pi, rel=2e-2)
+    assert stroked([20.3, 12.1, 0.1, 70.3, 53.1, 0.1]) == pytest.approx(0.2 * length, rel=2e-2)
+
+
+def test_lines_are_painted_once_where_they_cross_and_not_off_the_page():
+    across, up = [10.0, 30.5, 1.5, 80.0, 30.5, 1.5], [45.5, 5.0, 1.5, 45.5, 60.0, 1.5]
+    assert stroked(across, up) == pytest.approx(stroked(across) + stroked(up) - 9.0, abs=1e-3)
+    assert stroked(across, across) == stroked(across)
+    assert stroked([np.nan, 3.0, 1.0, 9.0, 9.0, 1.0], [200.0, 300.0, 1.0, 400.0, 300.0, 1.0]) == 0.0
 
 
 def test_a_slanted_hold_has_its_area():

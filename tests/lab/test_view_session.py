@@ -7,6 +7,7 @@ import subprocess
 import sys
 import time
 from multiprocessing import Pipe
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,10 +15,12 @@ from click.testing import CliRunner
 
 from lab.presets import load
 from lab.scene import build
+from lab.view import footage as footages
 from lab.view import session as sessions
 from lab.view.controls import CONTROLS
 from lab.view.footage import Scenery
 from lab.view.live import Seen, own_motion, under_a_hand
+from lab.view.page import PLOT
 from lab.view.readings import readings
 from lab.view.session import KEYS, Session
 from solvers.pressing import NOBODY, Pressing
@@ -219,6 +222,53 @@ def test_what_ends_the_experiment_is_said_and_can_be_looked_back_from(opened):
     assert session.frame == 3
 
 
+def test_what_is_kept_in_memory_is_bounded_and_what_is_looked_at_stays(opened, monkeypatch):
+    session, pipes, place = opened
+    session.key("left")
+    session.key("left")
+    looked_at, limit = session.footage.row_time(session.frame), 8 * seen(place, 0.0).bytes
+    monkeypatch.setattr(footages, "MOST_BYTES", limit)
+    for k in range(5, 9):
+        pipes[-1].send(("seen", (seen(place, 0.1 * k), 0.5)))
+    session.tick()
+    assert session.footage.row_time(session.frame) == looked_at
+    for k in range(9, 200):
+        pipes[-1].send(("seen", (seen(place, 0.1 * k), 0.5)))
+        session.tick()
+    frames = session.footage._seen
+    assert 7 <= len(frames) <= 8
+    assert sum(frame.bytes for frame in frames) == session.footage._bytes <= limit
+    assert frames[-1].time == pytest.approx(19.9)
+
+
+def test_the_wheel_zooms_where_the_mouse_is(opened):
+    session, _, _ = opened
+    camera = session.page.camera(session)
+    place = (300.0 - camera.offset[0]) / camera.scale, (camera.offset[1] - 400.0) / camera.scale
+    session.wheel(3.0, 300.0, 400.0)
+    nearer = session.page.camera(session)
+    assert nearer.scale > 1.5 * camera.scale
+    assert nearer.pixels(np.array([place]))[0] == pytest.approx([300.0, 400.0])
+
+
+def test_the_plot_does_not_hide_the_tank(opened):
+    session, _, _ = opened
+    left, top, _, _ = session.page.stage
+    corners = session.page.tank_camera(session).pixels(session.footage.outline)
+    width, height = (session.page.u(side) for side in PLOT)
+    assert corners[:, 0].min() > left + width or corners[:, 1].min() > top + height
+
+
+def test_long_sentences_keep_to_their_place(opened):
+    session, _, _ = opened
+    quiet = session.picture()
+    session.say("world 0: a grain moved farther in a step than it may; " * 9)
+    changed = np.argwhere((session.picture() != quiet).any(axis=2))
+    left, _, right, bottom = session.page.stage
+    assert changed[:, 0].min() >= bottom
+    assert left < changed[:, 1].min() and changed[:, 1].max() < right
+
+
 @pytest.mark.parametrize("overlay", ["c", "f", "o", "i", "h"])
 def test_keys_change_the_picture(opened, overlay):
     session, _, _ = opened
@@ -254,7 +304,7 @@ def test_a_real_window_takes_a_key_and_a_slider(window, tmp_path):
 
     display = f":{90 + os.getpid() % 900}"
     screen = subprocess.Popen(["Xvfb", display, "-screen", "0", "1400x900x24"], stderr=subprocess.DEVNULL)
-    environment = {**os.environ, "DISPLAY": display}
+    environment = {**os.environ, "DISPLAY": display, "PYTHONPATH": str(Path(__file__).parents[2])}
 
     def tool(*words: str) -> str:
         return subprocess.run(["xdotool", *words], env=environment, capture_output=True, text=True).stdout
@@ -265,7 +315,8 @@ def test_a_real_window_takes_a_key_and_a_slider(window, tmp_path):
 
     settings = [word for key, value in SMALL.items() for word in ("--set", f"{key}={value}")]
     command = [sys.executable, "-m", "lab", "view", PRESET, *settings, "--window", window, "--out", str(tmp_path / "v")]
-    program = subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    begun = {"env": environment, "cwd": tmp_path, "stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, "text": True}
+    program = subprocess.Popen(command, **begun)
     try:
         recording, until = tmp_path / "v" / "recording.h5", time.monotonic() + 150
         while not recording.exists() and program.poll() is None and time.monotonic() < until:
@@ -279,10 +330,13 @@ def test_a_real_window_takes_a_key_and_a_slider(window, tmp_path):
         while reds() <= before and time.monotonic() < until:
             time.sleep(0.3)
         assert reds() > before + 100
+        tool("key", "--window", found[0], "p")  # imgui's panel, where there is one
+        time.sleep(2.0)
         tool("key", "--window", found[0], "Escape")
         folder = program.communicate(timeout=60)[0].strip()
     finally:
         program.kill()
         screen.kill()
     assert folder == str(tmp_path / "v")
+    assert [path.name for path in tmp_path.iterdir()] == ["v"]
     assert program.returncode == 0

@@ -3,7 +3,6 @@
 import contextlib
 import tempfile
 
-import numpy as np
 import taichi as ti
 
 from lab.view.chooser import Chooser
@@ -34,7 +33,6 @@ class VulkanWindow(Window):
         super().__init__(size)
         self._window = ti.ui.Window("Cargo Shift Lab", size, vsync=False)
         self._canvas, self._gui = self._window.get_canvas(), self._window.get_gui()
-        self._shown = ti.Vector.field(3, ti.f32, size)
         self._held: str | None = None
         # imgui leaves the layout of its panels in the folder it is in, which is the user's: it gets another.
         self._scratch = tempfile.TemporaryDirectory()
@@ -48,8 +46,7 @@ class VulkanWindow(Window):
     def _is_open(self) -> bool:
         return self._window.running
 
-    def _show(self, session: Session | Chooser, picture: np.ndarray) -> None:
-        self._shown.from_numpy(np.ascontiguousarray(picture.astype(np.float32) / 255.0))
+    def _show(self, session: Session | Chooser) -> None:
         self._canvas.set_image(self._shown)
         if self._is_typing(session):
             self._panel(session)

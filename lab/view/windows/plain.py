@@ -1,6 +1,5 @@
 """A window of `ti.GUI`, drawn by the processor: wherever there is a display."""
 
-import numpy as np
 import taichi as ti
 
 from lab.view.chooser import Chooser
@@ -29,7 +28,6 @@ class PlainWindow(Window):
     def __init__(self, size: tuple[int, int]) -> None:
         super().__init__(size)
         self._window = ti.GUI("Cargo Shift Lab", size, fast_gui=True)
-        self._shown = ti.Vector.field(3, ti.u8, size)
 
     def close(self) -> None:
         """Done with it."""
@@ -38,8 +36,7 @@ class PlainWindow(Window):
     def _is_open(self) -> bool:
         return self._window.running
 
-    def _show(self, session: Session | Chooser, picture: np.ndarray) -> None:
-        self._shown.from_numpy(np.ascontiguousarray(picture))
+    def _show(self, session: Session | Chooser) -> None:
         self._window.set_image(self._shown)
         self._window.show()
 
