@@ -217,5 +217,5 @@ def _limits(curves: list) -> tuple[np.ndarray, np.ndarray]:
     y = y[np.isfinite(y)] if np.isfinite(y).any() else np.zeros(1)
     low, high = y.min(), y.max()
     air = max(0.06 * (high - low), 0.05)
-    far = max(np.nanmax(x), np.nanmin(x) + 1e-9)
-    return np.array([np.nanmin(x), low - air]), np.array([far, high + air])
+    near, far = np.nanmin(x), np.nanmax(x)
+    return np.array([near, low - air]), np.array([far if far > near else near + 1.0, high + air])

@@ -89,7 +89,11 @@ class Session:
                 word, what = self._pipe.recv()
                 getattr(self, f"_on_{word}")(what)
         except (EOFError, ConnectionResetError):
-            self.over = self.over or "the experiment has ended unexpectedly."
+            self._miss()
+
+    def _miss(self) -> None:
+        """The experiment's process is gone."""
+        self.over, self.going = self.over or f"the experiment broke off; {self.folder} has what it recorded.", False
 
     def _on_told(self, sentence: str) -> None:
         if self.footage is None:
@@ -128,7 +132,7 @@ class Session:
             try:
                 self._pipe.send((word, what))
             except (BrokenPipeError, ConnectionResetError):
-                self.over = "the experiment has ended unexpectedly."
+                self._miss()
 
     # What a person does
 

@@ -222,6 +222,18 @@ def test_what_ends_the_experiment_is_said_and_can_be_looked_back_from(opened):
     assert session.frame == 3
 
 
+def test_an_experiment_that_broke_off_is_told_once_with_where_its_recording_is(opened):
+    session, pipes, _ = opened
+    pipes[-1].close()
+    session.tick()
+    assert session.said == f"the experiment broke off; {session.folder} has what it recorded."
+    assert not session.going
+    for name in KEYS:  # none brings the window down
+        if name not in ("escape", "r", "s"):
+            session.key(name)
+    assert session.picture().shape == (SIZE[1], SIZE[0], 3)
+
+
 def test_what_is_kept_in_memory_is_bounded_and_what_is_looked_at_stays(opened, monkeypatch):
     session, pipes, place = opened
     session.key("left")

@@ -52,6 +52,8 @@ def _show(window: Window, name: str, overrides: dict, size: tuple[int, int], out
     session = Session(name, overrides, size, out, types=window.types)
     try:
         window.run(session)
+    except KeyboardInterrupt:
+        raise KeyboardInterrupt(f"interrupted; {session.folder} has what was recorded.") from None
     finally:
         if not session.ended:
             session.close()
