@@ -21,6 +21,7 @@ from lab.progress import Progress
 from lab.recording import FILE_NAME, Recorder, mend_recording
 from lab.view.footage import Scenery
 from lab.view.live import Live, own_motion, under_a_hand
+from lab.view.outbox import Outbox
 from solvers import runtime
 from solvers.errors import BadState, Unavailable
 
@@ -32,27 +33,27 @@ A_CALL = 100_000  # grain-steps between looks at what is asked, some millisecond
 class Told(Progress):
     """Progress that goes to the person at the window."""
 
-    def __init__(self, pipe: Connection) -> None:
+    def __init__(self, outbox: Outbox) -> None:
         super().__init__(quiet=True)
-        self._pipe, self._stage = pipe, ""
+        self._outbox, self._stage = outbox, ""
 
     def start(self, stage: str, total: float | None, worth: float = 0.0) -> None:
         """Begin a stage."""
         super().start(stage, total, worth)
         self._stage = stage
-        self._pipe.send(("told", f"{stage} …"))
+        self._outbox.send("told", f"{stage} …")
 
     def reach(self, done: float) -> None:
         """Say how far it is."""
         super().reach(done)
-        self._pipe.send(("told", f"{self._stage}: {done:.2f} s"))
+        self._outbox.send("told", f"{self._stage}: {done:.2f} s", newest=True)
 
 
 class Worker:
     """The experiment's end of the pipe."""
 
-    def __init__(self, live: Live, pipe: Connection) -> None:
-        self._live, self._pipe = live, pipe
+    def __init__(self, live: Live, pipe: Connection, outbox: Outbox) -> None:
+        self._live, self._pipe, self._outbox = live, pipe, outbox
         self._going, self._pieces, self._pace, self._ended = False, 0, 1.0, False
         self._wishes: list[tuple[str, float]] = []
         self._most = max(1, A_CALL // live.run.scene.radius.size)
@@ -76,7 +77,7 @@ class Worker:
             try:
                 self._live.set(name, value)
             except LabError as error:
-                self._pipe.send(("told", str(error)))
+                self._outbox.send("told", str(error))
         self._wishes.clear()
         begun = time.monotonic()
         self._live.advance(self._listen, self._most)
@@ -86,7 +87,7 @@ class Worker:
         self._pieces = max(0, self._pieces - 1)
         if self._live.rows.get("capsized", [-1.0])[0] >= 0.0:
             self._going = False
-            self._pipe.send(("told", "she has capsized"))
+            self._outbox.send("told", "she has capsized")
         if time.monotonic() - self._sent >= A_LOOK or not self._going:
             self._send()
         self._wait()
@@ -102,7 +103,7 @@ class Worker:
             self._listen()
 
     def _send(self) -> None:
-        self._pipe.send(("seen", (self._live.look(), min(self._factor, self._pace))))
+        self._outbox.send("seen", (self._live.look(), min(self._factor, self._pace)), newest=True)
         self._sent = time.monotonic()
 
     def _listen(self) -> None:
@@ -131,31 +132,36 @@ class Worker:
             rows = self._live.recorder.rows
             Recorder(folder, samples=rows[0], frames=rows[1]).close()
         except (LabError, OSError) as error:
-            self._pipe.send(("told", f"nothing was kept: {error}"))
+            self._outbox.send("told", f"nothing was kept: {error}")
             return
-        self._pipe.send(("kept", folder))
+        self._outbox.send("kept", folder)
 
 
 def serve(pipe: Connection, name: str, overrides: Mapping, folder: Path, cores: int) -> None:
     """Begin the experiment and run it for the window at the other end."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # who closes the window closes this
     runtime.use_cores(cores)
+    outbox = Outbox(pipe)
     try:
-        loaded = load(name, overrides)
-        with Live(under_a_hand(loaded), folder, Told(pipe)) as live:
-            preset = json.loads(live.preset.model_dump_json())
-            pipe.send(("ready", (Scenery.of(live, preset, loaded.name), own_motion(loaded.resolved))))
-            try:
-                Worker(live, pipe).serve()
-            except BadState as error:
-                live.close(f"stopped: {error}")
-                pipe.send(("over", str(error)))
-            else:
-                live.close()
+        _run(name, overrides, folder, pipe, outbox)
     except (LabError, BadState, Unavailable) as error:
-        pipe.send(("over", str(error)))
+        outbox.send("over", str(error))
     except (EOFError, BrokenPipeError, ConnectionResetError):  # the window is gone
         pass
+    outbox.finish()
+
+
+def _run(name: str, overrides: Mapping, folder: Path, pipe: Connection, outbox: Outbox) -> None:
+    loaded = load(name, overrides)
+    with Live(under_a_hand(loaded), folder, Told(outbox)) as live:
+        preset = json.loads(live.preset.model_dump_json())
+        outbox.send("ready", (Scenery.of(live, preset, loaded.name), own_motion(loaded.resolved)))
+        try:
+            Worker(live, pipe, outbox).serve()
+        except BadState as error:
+            live.close(f"stopped: {error}")
+            raise
+        live.close()
 
 
 def begin(name: str, overrides: Mapping, folder: Path) -> tuple[object, Connection]:

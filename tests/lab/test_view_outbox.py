@@ -1,0 +1,35 @@
+"""The experiment does not wait for the window."""
+
+from multiprocessing import Pipe
+
+import pytest
+
+from lab.view.outbox import Outbox
+
+LARGE = bytes(10**6)  # more than a pipe holds
+
+
+def test_nobody_looks_and_it_goes_on_and_the_newest_is_what_is_seen_then():
+    here, there = Pipe()
+    outbox = Outbox(there)
+    outbox.send("told", LARGE)
+    for k in range(100):
+        outbox.send("seen", (k, LARGE), newest=True)
+    outbox.send("told", "at last")
+    found = [here.recv() for _ in range(3)]
+    outbox.finish()
+    assert [word for word, _ in found] == ["told", "seen", "told"]
+    assert found[1][1][0] == 99
+    assert found[2][1] == "at last"
+    assert not here.poll()
+
+
+def test_it_ends_with_the_window():
+    here, there = Pipe()
+    outbox = Outbox(there)
+    here.close()
+    outbox.send("told", LARGE)
+    outbox._thread.join()
+    with pytest.raises(BrokenPipeError):
+        outbox.send("told", LARGE)
+    outbox.finish()
