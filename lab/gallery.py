@@ -7,6 +7,7 @@ has one, in the folder `runs`; what was run already is not run again.
 import json
 from collections.abc import Mapping, Sequence
 from html import escape
+from math import ceil
 from pathlib import Path
 
 from lab.errors import LabError
@@ -21,7 +22,8 @@ from solvers.errors import BadState
 
 WIDTH, HEIGHT = 640, 360  # pixels
 LONGEST = 8.0  # s of a clip
-MOMENT = 0.6  # of the film: what the poster shows
+MOMENT = 0.85  # of the film: what the poster shows, when most has happened
+UNITS = {"deg": "°", "d": "diameters"}
 MOST_NUMBERS = 4
 
 STYLE = """
@@ -41,7 +43,8 @@ def make_gallery(wanted: Sequence[str], out: Path | str, quiet: bool = False) ->
 
     Raises LabError for a name that begins no preset, and where something cannot be written.
     """
-    shown = {name: title for name, title in names().items() if not name.endswith(QUICK)}
+    every = names()
+    shown = [name for name in every if not name.endswith(QUICK)]
     for start in wanted:
         if not any(name.startswith(start) for name in shown):
             raise LabError(f"there is no preset {start}; `cargolab list` shows all.")
@@ -52,8 +55,8 @@ def make_gallery(wanted: Sequence[str], out: Path | str, quiet: bool = False) ->
         for name in chosen:
             progress.say(f"{name} …")
             _show(name, out)
-            _write_page(shown, out)
-    return _write_page(shown, out)
+            _write_page(every, out)
+    return _write_page(every, out)
 
 
 def _show(name: str, out: Path) -> None:
@@ -68,7 +71,7 @@ def _show(name: str, out: Path) -> None:
         elif (folder / "recording.h5").exists():
             resume_run(folder, video=False, plots=False, quiet=True)
         else:
-            run_preset(_cheapest(name), {"run.repeats": 1}, folder, video=False, plots=False, quiet=True)
+            run_preset(_cheapest(name, names()), {"run.repeats": 1}, folder, video=False, plots=False, quiet=True)
     except BadState:  # its page says so
         pass
     with open_recording(folder) as recording:
@@ -76,11 +79,11 @@ def _show(name: str, out: Path) -> None:
     poster(folder, out / f"{_plain(name)}.png", fraction=MOMENT, width=WIDTH, height=HEIGHT)
     summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
     (out / f"{_plain(name)}.json").write_text(json.dumps(_telling(summary), indent=1) + "\n", encoding="utf-8")
-    render_recording(folder, clip, width=WIDTH, height=HEIGHT, speed=max(speed, lasts / LONGEST))
+    render_recording(folder, clip, width=WIDTH, height=HEIGHT, speed=max(speed, ceil(10.0 * lasts / LONGEST) / 10.0))
 
 
-def _cheapest(name: str) -> str:
-    return name + QUICK if name + QUICK in names() else name
+def _cheapest(name: str, every: Mapping[str, str]) -> str:
+    return name + QUICK if name + QUICK in every else name
 
 
 def _plain(name: str) -> str:
@@ -94,14 +97,17 @@ def _telling(summary: Mapping) -> dict[str, object]:
     numbers = {}
     for name in order[:MOST_NUMBERS]:
         m = measures[name]
-        numbers[name] = number(Value(m["value"], m["unit"], m["std"], m["uncertainty"], tuple(m["worlds"]), m["note"]))
+        unit = UNITS.get(m["unit"], m["unit"])
+        told = number(Value(m["value"], unit, m["std"], m["uncertainty"], tuple(m["worlds"]), m["note"]))
+        numbers[name] = told.replace("-", "\N{MINUS SIGN}").replace(" °", "°")
     return {"status": summary["status"], "numbers": numbers}
 
 
-def _write_page(shown: Mapping[str, str], out: Path) -> Path:
+def _write_page(every: Mapping[str, str], out: Path) -> Path:
     groups: dict[str, list[str]] = {}
-    for name, title in shown.items():
-        groups.setdefault(name.split("/")[0], []).append(_card(name, title, out))
+    for name, title in every.items():
+        if not name.endswith(QUICK):
+            groups.setdefault(name.split("/")[0], []).append(_card(name, title, _cheapest(name, every), out))
     body = "".join(f'<h2>{escape(g)}</h2><div class="presets">{"".join(c)}</div>' for g, c in groups.items())
     head = f'<meta charset="utf-8"><title>Cargo Shift Lab</title><style>{STYLE}</style>'
     text = f"<!doctype html><html><head>{head}</head><body><h1>Every experiment of the lab</h1>{body}</body></html>\n"
@@ -110,8 +116,8 @@ def _write_page(shown: Mapping[str, str], out: Path) -> Path:
     return path
 
 
-def _card(name: str, title: str, out: Path) -> str:
-    """A preset: its clip, how to run it, its numbers."""
+def _card(name: str, title: str, cheapest: str, out: Path) -> str:
+    """A preset: its clip, how to run it in its cheapest variant, its numbers."""
     plain = _plain(name)
     if not (out / f"{plain}.json").exists():
         picture, told = "<img alt='not run yet'>", "<p class='why'>not run yet</p>"
@@ -123,7 +129,7 @@ def _card(name: str, title: str, out: Path) -> str:
         ended = "" if found["status"] == "complete" else f"<p class='why'>{escape(found['status'])}</p>"
         told = f"<table>{''.join(rows)}</table>{ended}"
         picture = f'<video controls loop muted preload="none" poster="{plain}.png" src="{plain}.mp4"></video>'
-    command = f"cargolab run {_cheapest(name)}"
+    command = f"cargolab run {cheapest}"
     return (
         f"<figure>{picture}<figcaption><b>{escape(title)}</b><p><code>{escape(command)}</code></p>{told}"
         "</figcaption></figure>"

@@ -26,6 +26,13 @@ def test_the_page_has_every_preset_and_the_numbers_of_those_that_ran(tmp_path, m
     assert re.findall(r'(?:src|poster)="([^"]*)"', text) == ["tilting-quick.png", "tilting-quick.mp4"]
 
 
+def test_numbers_are_told_as_people_read_them():
+    found = {"std": None, "uncertainty": 0.03, "worlds": [0.0], "note": ""}
+    angle, shift = {"value": 28.5, "unit": "deg", **found}, {"value": -2.47, "unit": "d", **found}
+    told = gallery._telling({"status": "complete", "measures": {"critical_angle": angle, "final_shift": shift}})
+    assert told["numbers"] == {"critical_angle": "28.500 ± 0.030°", "final_shift": "−2.470 ± 0.030 diameters"}
+
+
 def test_a_name_that_begins_no_preset_is_refused(tmp_path):
     with pytest.raises(LabError, match="no preset nonsense"):
         make_gallery(["nonsense"], tmp_path, quiet=True)
