@@ -334,6 +334,7 @@ def test_a_real_window_takes_a_key_and_a_slider(window, tmp_path):
         while not recording.exists() and program.poll() is None and time.monotonic() < until:
             time.sleep(0.5)
         time.sleep(3.0)
+        until = time.monotonic() + 150
         found = tool("search", "--name", "Cargo Shift Lab").split()
         assert found, program.communicate(timeout=5)[0] if program.poll() is not None else "no window"
         tool("windowfocus", found[0])
