@@ -166,10 +166,12 @@ class LivePlot:
         width, height = (FINER * round(side) for side in size)
         self._image = Image.new("RGB", (width, height), PAPER)
         self._low, self._high = _limits(curves)
-        self._levels = ticks(self._low[1], self._high[1], 4)
+        top, bottom = 1.7 * self._text, height - 3.1 * self._text
+        room = int((bottom - top) / (1.6 * self._text))  # for as many levels without touching
+        self._levels = ticks(self._low[1], self._high[1], min(4, max(1, room)))
         widest = max(font(self._text).getlength(plain(level)) for level in self._levels)
         left, right = widest + 0.5 * self._text, width - 0.4 * self._text
-        self._box = (left, 1.7 * self._text, right, height - 3.1 * self._text)
+        self._box = (left, top, right, bottom)
         self._curves = [self._place(np.column_stack(curve)) for curve in curves]
         self._colours = colours
         self._draw_axes(labels)

@@ -278,7 +278,8 @@ class Page:
         if session.look.overlay == "forces" and self._largest:
             return f"thickest lines: {newtons(self._largest)}    H: help"
         if session.look.overlay == "velocities" and self._largest:
-            return f"longest lines: {1e3 * self._largest:.2g} mm/s    H: help"
+            speed = float(f"{1e3 * self._largest:.2g}")  # with two digits, and no power of ten
+            return f"longest lines: {speed:g} mm/s    H: help"
         return "H: help"
 
     def _scale_bar(self, width: int, scale: float) -> Image.Image:
