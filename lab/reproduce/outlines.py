@@ -73,6 +73,16 @@ def is_one(found: float, error: float) -> bool:
     return abs(found - 1.0) <= 2.0 * error
 
 
+def is_alike(found: float, error: float) -> bool:
+    """Whether a quotient is within 5 % of 1, or by two of its standard errors may be."""
+    return abs(found - 1.0) <= 0.05 + 2.0 * error
+
+
+def is_later(found: float, error: float) -> bool:
+    """Whether a quotient is from 1.4 to 1.8, or by two of its standard errors may be."""
+    return found + 2.0 * error >= 1.4 and found - 2.0 * error <= 1.8
+
+
 def round_batches(quick: bool) -> dict[str, Batch]:
     """Round grains in a tilting box."""
     return as_discs_and_nodes(BOX, cost(quick, 8, NEAR), [36, 120] if quick else [36, 80, 120, 200])
@@ -193,8 +203,8 @@ def phases(found: Found) -> Told:
     angle = {name: outcomes[0]["critical_angle"] for name, outcomes in found.items()}
     discs = angle["discs"]
     rows = [observed(name, "", counted(value), None) for name, value in angle.items()]
-    rows.append(over("slightly disturbed", "within 5 %", angle["slightly disturbed"], discs, lambda q, _: q < 1.05))
-    rows.append(over("irregular", "1.7, from 1.4 to 1.8", angle["irregular"], discs, lambda q, _: 1.4 <= q <= 1.8))
+    rows.append(over("slightly disturbed", "within 5 %", angle["slightly disturbed"], discs, is_alike))
+    rows.append(over("irregular", "1.7, from 1.4 to 1.8", angle["irregular"], discs, is_later))
     return Told(rows, shift_against_tilt({name: outcomes[0] for name, outcomes in found.items()}))
 
 
