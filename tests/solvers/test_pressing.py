@@ -44,14 +44,18 @@ def weights_borne(made: Simulation) -> np.ndarray:
     return borne / (made.grains.mass[0, :, None] * GRAVITY)
 
 
-@pytest.mark.parametrize("schedule, units", [("per-world", 1), ("per-band", 3), ("per-grain", None)])
+@pytest.mark.parametrize(
+    "schedule, units", [("per-world", 1), ("per-band", 3), pytest.param("per-grain", None, marks=pytest.mark.slow)]
+)
 def test_discs_bear_their_weights_whatever_the_lists_are_like(schedule, units):
     made = bed(None, schedule, units=units)
     assert weights_borne(made) == pytest.approx(np.tile([0.0, 1.0], (COLUMNS * ROWS, 1)), abs=0.02)
     made.close()
 
 
-@pytest.mark.parametrize("contact", ["continuous", "area"])  # nodes never let a bed rest
+@pytest.mark.parametrize(
+    "contact", [pytest.param("continuous", marks=pytest.mark.slow), "area"]
+)  # nodes never let a bed rest
 def test_irregular_grains_bear_their_weights(contact):
     made = bed(outlines(contact))
     assert weights_borne(made) == pytest.approx(np.tile([0.0, 1.0], (COLUMNS * ROWS, 1)), abs=0.1)

@@ -43,6 +43,7 @@ def run():
 STILL = np.zeros(6)
 
 
+@pytest.mark.slow
 def test_steered_along_a_sway_grains_move_as_in_that_sway(run):
     start = run.state()
     steps = round(PIECE / run.dt)
