@@ -19,6 +19,7 @@ import numpy as np
 import taichi as ti
 from taichi.lang.ast.ast_transformer_utils import ASTTransformerContext
 
+from solvers import memory
 from solvers.errors import Unavailable
 
 ARCHES = ("auto", "cpu", "cuda", "vulkan")
@@ -111,6 +112,8 @@ def initialise(threads: int = 0, arch: str = "cpu", precision: str = "f64", **op
     wanted = (threads or available_cores(), choose_arch(arch, precision), PRECISIONS[precision].real)
     if _running == wanted and not options and (_live or not _used):
         return
+    for arrays in _live:
+        memory.close(arrays.fields)
     _live.clear()
     _used = False
     with redirect_stdout(StringIO()):  # Taichi announces its backend, and has no switch for it
@@ -152,7 +155,8 @@ class Arrays:
         # Sums and times deserve 64 bits whatever the grains have, where the device can.
         self.exact = ti.f32 if running_arch() == "vulkan" else ti.f64
         self._builder = ti.FieldsBuilder()
-        self._fields: list[ti.Field] = []
+        self.fields: list[ti.Field] = []
+        self._across: list[bool] = []
         self._kept: dict[str, ti.Field] = {}
         self._bases: dict[int, np.ndarray] = {}
         self._contents: list[tuple[ti.Field, np.ndarray]] = []
@@ -194,8 +198,9 @@ class Arrays:
         else:
             self._builder.dense((ti.i, ti.ij, ti.ijk)[len(shape) - 1], shape).place(field)
         if kept:
-            self._kept[f"{len(self._fields):03}"] = field
-        self._fields.append(field)
+            self._kept[f"{len(self.fields):03}"] = field
+        self.fields.append(field)
+        self._across.append(across)
         return field
 
     def finish(self) -> None:
@@ -204,15 +209,18 @@ class Arrays:
         self._tree = self._builder.finalize()
         _used = True
         _live.add(self)
+        if running_arch() == "cpu":
+            memory.lay_open(self.fields, self._across)
         for field, values in self._contents:
-            field.from_numpy(values.astype({ti.f32: np.float32, ti.i32: np.int32}.get(field.dtype, np.float64)))
+            field.from_numpy(values.astype(memory.KINDS[field.dtype]))
         self._contents = []
 
     @property
     def bytes(self) -> int:
         """Memory of the declared fields."""
-        sizes = {ti.i32: 4, ti.f32: 4, ti.f64: 8}
-        return sum(int(np.prod(f.shape)) * getattr(f, "n", 1) * sizes[f.dtype] for f in self._fields)
+        return sum(
+            int(np.prod(f.shape)) * getattr(f, "n", 1) * np.dtype(memory.KINDS[f.dtype]).itemsize for f in self.fields
+        )
 
     def read(self) -> dict[str, np.ndarray]:
         """What is in the kept fields, by their numbers: all but scratch and what never changes."""
@@ -229,7 +237,7 @@ class Arrays:
 
     def take_over(self, smaller: "Arrays") -> None:
         """Copy what the same declarations hold in arrays of smaller or equal shapes."""
-        for field, old in zip(self._fields, smaller._fields, strict=True):
+        for field, old in zip(self.fields, smaller.fields, strict=True):
             contents, held = field.to_numpy(), old.to_numpy()
             contents[tuple(slice(size) for size in held.shape)] = held
             field.from_numpy(contents)
@@ -237,6 +245,7 @@ class Arrays:
     def release(self) -> None:
         """Give the memory back; the fields must not be used after it."""
         if self._tree is not None and self._born == _starts:
+            memory.close(self.fields)
             self._tree.destroy()
         self._tree = None
         _live.discard(self)
