@@ -16,6 +16,7 @@ from lab.measures.value import over_worlds
 from lab.presets import load
 from lab.reproduce import REPORTS, experiments, reproduce, runs, workers
 from lab.reproduce.experiment import Experiment, Told, counted, observed, ordered, stated
+from lab.reproduce.outlines import are_ordered
 from lab.reproduce.report import write_report
 from lab.reproduce.runs import Batch, Outcome
 from lab.reproduce.shaking import FREQUENCY, onset
@@ -159,3 +160,12 @@ def test_the_onset_is_each_beds_own_and_lies_between_two_frequencies():
     found = onset([at(1, 0.0, 0.0), at(2, 0.0, 4.0), at(3, 1.6, 8.0)], 40.0)
     assert found.worlds == pytest.approx((2.5, 1.2))  # 2 % of 40 mm is 0.8 mm
     assert onset([at(1, 0.1), at(2, 0.2)], 40.0).value is None
+
+
+def test_an_order_of_means_is_left_open_where_beds_scatter_more_than_means_differ():
+    beds = {"high": [30.0, 31.0, 32.0], "low": [20.0, 21.0, 22.0], "scattered": [20.0, 29.0, 38.0]}
+    high, low, scattered = (over_worlds(angles, "deg") for angles in beds.values())
+    assert are_ordered([high, low]) is True
+    assert are_ordered([low, high]) is False
+    assert are_ordered([high, scattered]) is None and are_ordered([scattered, high]) is None
+    assert are_ordered([high, low, None]) is False
