@@ -171,6 +171,7 @@ class Simulation:
 
     def _reach_step(self) -> None:
         """Take every running world to the step that `steps` says."""
+        runtime.merge_repeats(self.scene.shapes is None)
         fastest = watch.FASTEST_STEP * self.scene.sizes[0] / self.dt
         while True:
             self.schedule.advance(self.steps, self.origin, self.unkicked, self.dt, fastest)
@@ -202,6 +203,7 @@ class Simulation:
     def observe(self) -> dict[str, np.ndarray]:
         """Numbers of every world now, each (W,), named as in `Observer.NAMES`. Raises BadState from the watch."""
         self._moor()
+        runtime.merge_repeats(self.scene.shapes is None)
         self.observer.observe(self.origin + self.time, max(self.steps - self.observed, 1) * self.dt)
         rows = dict(zip(Observer.NAMES, self.observer.rows.to_numpy().T.astype(float), strict=True))
         # Where no time has passed there is nothing to average over.
@@ -297,6 +299,7 @@ class Simulation:
 
     def pressing(self, world: int = 0) -> Pressing:
         """The elastic forces of the contacts in a world now."""
+        runtime.merge_repeats(self.scene.shapes is None)
         return self.presser.read(world, self.origin + self.time, self.number[world])
 
     def part_places(self) -> np.ndarray:
