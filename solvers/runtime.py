@@ -155,8 +155,8 @@ class Arrays:
 
     One tree, since each tree a kernel touches costs it a pointer to reload in the inner loops (three times slower
     with a tree a field), and since Taichi holds at most 512 trees and frees none by itself. Fields are declared
-    first, then `finish` makes and fills them; the last index is contiguous, or with `across` the first. What is
-    `kept` makes up the state of a simulation; the rest is scratch, or follows from the scene.
+    first, then `finish` makes and fills them, before others are begun; the last index is contiguous, or with `across`
+    the first. What is `kept` makes up the state of a simulation; the rest is scratch, or follows from the scene.
     """
 
     def __init__(self, precision: str = "f64"):

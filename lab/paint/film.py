@@ -254,7 +254,7 @@ class Film:
 
     def _paint_ship(self, picture: np.ndarray, k: int, frame: int) -> None:
         """The sea around bed k, and the hull in it."""
-        sea, camera = self._beds[k].footage.sea, self._cameras[k]
+        sea, camera = self._beds[k].footage.sea_of(self._rows[k][frame]), self._cameras[k]
         sea.paint(picture, camera, self._grounds[k], self.time[frame], LINE * self._unit)
         hull = sea.hull
         thick = min(WALL * self._unit, max(1.0, THICKEST * camera.scale * np.ptp(hull, axis=0).min()))

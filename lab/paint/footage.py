@@ -40,13 +40,19 @@ class Footage:
         self.sea = Sea(recording.preset) if recording.preset.get("ship") else None
         self.settings = recording.preset.get("video") or {}
         self.title = recording.preset.get("title") or recording.name
-        self._frames = frames
+        self._frames, self._waves = frames, frames["waves"][:] if "waves" in frames else None
         self._read: dict[str, tuple[int, np.ndarray]] = {}  # the frame last read of each quantity
 
     @property
     def worlds(self) -> int:
         """W, the beds recorded side by side."""
         return len(self.radius)
+
+    def sea_of(self, frame: int) -> Sea | None:
+        """The sea as it is in a frame."""
+        if self._waves is not None:
+            self.sea.waves = self._waves[frame]
+        return self.sea
 
     def grains(self, name: str, frame: int, world: int) -> np.ndarray:
         """What each grain has in a frame: (n,) or (n, 2) of one of `recording.GRAIN_FRAMES`."""

@@ -1,6 +1,7 @@
 """The ship and the sea in a picture: her hull around the tank, the water up to the waves that pass."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
@@ -8,6 +9,7 @@ from pydantic import TypeAdapter
 
 from lab.paint.painter import Camera
 from lab.ship import WaterGiven, WavesGiven, make_water, make_waves, recorded_ship
+from solvers.ship.waves import Waves, soft_start
 
 WATER, SURFACE = (214, 230, 243), (70, 130, 180)
 LINE = 0.12  # thickness of the surface's line, in the units of a page
@@ -15,7 +17,12 @@ AROUND = np.array([0.45, 0.2])  # of the hull's size: how much of the sea is sho
 
 
 class Sea:
-    """What the recording of a ship (its preset in full) says of hull and waves."""
+    """What the recording of a ship (its preset in full) says of hull and waves.
+
+    `waves`: those that a hand has made of the preset's, as a frame has them (`recording.WAVES`), or None.
+    """
+
+    waves: np.ndarray | None = None
 
     def __init__(self, preset: Mapping) -> None:
         self.ship = recorded_ship(preset)
@@ -37,9 +44,18 @@ class Sea:
     def _waves(self):
         return make_waves(self._sea or None, make_water(self._water, self._gravity))
 
+    @cached_property
+    def _of_height_one(self) -> Waves:
+        return make_waves(replace(self._sea, height=1.0), make_water(self._water, self._gravity))
+
     def elevation(self, y: np.ndarray, time: float) -> np.ndarray:
         """Height (k,) m of the surface over the calm one at places y (k,) m, earth's axes."""
-        return np.zeros(len(y)) if self._waves is None else self._waves.elevation(y, time)
+        if self.waves is None or np.isnan(self.waves[0]):
+            return np.zeros(len(y)) if self._waves is None else self._waves.elevation(y, time)
+        height, frequency, number = self.waves
+        if np.isnan(frequency):
+            return height * self._of_height_one.elevation(y, time)
+        return height * soft_start(time, self.soft_start) * np.cos(number * y - frequency * time)
 
     def ground(self, hulls: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Lower and upper corner (m) of what is shown, from all places (k, 2) m of the hull's corners."""

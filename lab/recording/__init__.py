@@ -6,7 +6,7 @@ every flush leaves a whole file behind, so a run that is killed, or that still g
 flush. Other programs must ask for that mode too: `h5py.File(path, "r", swmr=True)`.
 """
 
-from lab.recording.layout import FILE_NAME, GRAIN_FRAMES, SERIES
+from lab.recording.layout import FILE_NAME, GRAIN_FRAMES, SERIES, WAVES
 from lab.recording.outlines import Outlines
 from lab.recording.reader import Recording, open_recording
 from lab.recording.writer import BUFFER_BYTES, FLUSH_EVERY, Recorder, mend_recording, new_recording, versions
@@ -17,6 +17,7 @@ __all__ = [
     "FLUSH_EVERY",
     "GRAIN_FRAMES",
     "SERIES",
+    "WAVES",
     "Outlines",
     "Recorder",
     "Recording",

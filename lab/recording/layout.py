@@ -27,6 +27,9 @@ SERIES = {
 SHIP_SERIES = {"ship_works": (4,), "capsized": ()}
 GRAIN_FRAMES = {"position": (2,), "velocity": (2,), "angle": (), "spin": ()}
 WORLD_FRAMES = {"pose": (3,)}  # and "part" (P, 2), the displacement of each moving part
+# Waves under a hand: amplitude or significant height (m); frequency (rad/s) and wave number (1/m) of regular ones. NaN
+# where a hand cannot change them.
+WAVES = (3,)
 # What a hand did in `cargolab view`: which control (see `lab.view.controls`) it set to which value (SI), and when.
 STEERING = {"time": ((), "f8"), "name": ((), "S32"), "value": ((), "f8")}
 
@@ -36,15 +39,16 @@ PATIENCE, A_MOMENT = 100, 0.02  # how often, and every how many s, a file is tri
 
 
 def table_shapes(
-    worlds: int, count: int, parts: int, afloat: bool = False
+    worlds: int, count: int, parts: int, afloat: bool = False, swell: bool = False
 ) -> dict[str, dict[str, tuple[tuple[int, ...], str]]]:
-    """Shape of a row and kind of number of every data set that grows."""
+    """Shape of a row and kind of number of every data set that grows; swell: whether a hand steers the waves."""
     time, series = {"time": ((), "f8")}, SERIES | (SHIP_SERIES if afloat else {})
     return {
         "series": time | {name: ((worlds, *shape), "f8") for name, shape in series.items()},
         "frames": time
         | {name: ((worlds, *shape), "f8") for name, shape in WORLD_FRAMES.items()}
         | {"part": ((worlds, parts, 2), "f8")}
+        | ({"waves": (WAVES, "f8")} if swell else {})
         | {name: ((worlds, count, *shape), "f4") for name, shape in GRAIN_FRAMES.items()},
     }
 

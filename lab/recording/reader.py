@@ -55,7 +55,8 @@ class Recording:
             self.parts = {name: line[:] for name, line in tank["parts"].items()}
             self.shapes = read_outlines(self._file[GROUP]) if GROUP in self._file else None
             self._check_contents()
-            shapes = table_shapes(*self.radius.shape, len(self.parts), bool(self.preset.get("ship")))
+            afloat, swell = bool(self.preset.get("ship")), "frames/waves" in self._file
+            shapes = table_shapes(*self.radius.shape, len(self.parts), afloat, swell)
             self.series = Series(self._file["series"], shapes["series"], self.path)
             self.frames = Frames(self._file["frames"], shapes["frames"], self.path)
             steering = Series(self._file["steering"], STEERING, self.path) if "steering" in self._file else None

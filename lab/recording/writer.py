@@ -101,7 +101,8 @@ def new_recording(
                 group[name] = np.asarray(line, dtype=float)
             for name, table in tables.items():
                 file[f"{GROUP}/{name}"] = table
-            for name, rows in table_shapes(*radius.shape, len(parts), bool(resolved.get("ship"))).items():
+            afloat = bool(resolved.get("ship"))
+            for name, rows in table_shapes(*radius.shape, len(parts), afloat, afloat and steered).items():
                 create_table(file.create_group(name), rows)
             if steered:
                 create_table(file.create_group("steering"), STEERING)
@@ -170,7 +171,10 @@ class Recorder:
         self._add("series", values)
 
     def frame(self, values: Mapping[str, object]) -> None:
-        """Add a picture frame: "time" (s), "pose" (W, 3), "part" (W, P, 2) m and GRAIN_FRAMES, (W, n, *shape) each."""
+        """Add a picture frame: "time" (s), "pose" (W, 3), "part" (W, P, 2) m and GRAIN_FRAMES, (W, n, *shape) each.
+
+        Of a ship under a hand also "waves" (3,).
+        """
         self._add("frames", values)
 
     def steer(self, time: float, name: str, value: float) -> None:

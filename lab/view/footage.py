@@ -1,7 +1,7 @@
 """What has been seen of a live experiment, as the painter looks at it (`lab.paint.footage.Footage`), growing."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
@@ -14,11 +14,9 @@ from lab.paint.sea import Sea
 from lab.recording import Outlines
 from lab.scene import vessels
 from lab.schema import Resolved
-from lab.ship import make_water, make_waves
 from lab.view.live import Live, Seen
 from solvers.pressing import Pressing
 from solvers.ship.hydrostatics import righting_levers
-from solvers.ship.waves import Waves, soft_start
 
 HEELS = 91
 MOST_BYTES = 2**29  # of frames kept in memory; the recording has all
@@ -52,28 +50,6 @@ class Scenery:
         return cls(preset, name, live.folder, scene.radius, kind, *bounds, lines, shapes, live.simulation.dt)
 
 
-class LiveSea(Sea):
-    """The sea as it is in the frame that is painted.
-
-    `waves`: what a swell says of itself (`lab.view.swell`), None where no hand can change them.
-    """
-
-    waves: np.ndarray | None = None
-
-    def elevation(self, y: np.ndarray, time: float) -> np.ndarray:
-        """Height (k,) m of the surface over the calm one at places y (k,) m, earth's axes."""
-        if self.waves is None:
-            return super().elevation(y, time)
-        if len(self.waves) == 1:
-            return self.waves[0] * self._of_height_one.elevation(y, time)
-        amplitude, frequency, number = self.waves
-        return amplitude * soft_start(time, self.soft_start) * np.cos(number * y - frequency * time)
-
-    @cached_property
-    def _of_height_one(self) -> Waves:
-        return make_waves(replace(self._sea, height=1.0), make_water(self._water, self._gravity))
-
-
 class LiveFootage:
     """The frames seen so far, of one world; the oldest go where they grow too many."""
 
@@ -85,7 +61,7 @@ class LiveFootage:
             setattr(self, name, getattr(scenery, name))
         self.kinds = ["the rest", *(scenery.preset.get("kinds") or {})]
         self.shape_names = list(scenery.preset.get("shapes") or {}) if self.shapes else ["disc"]
-        self.sea = LiveSea(scenery.preset) if scenery.preset.get("ship") else None
+        self.sea = Sea(scenery.preset) if scenery.preset.get("ship") else None
         self.settings, self.title = scenery.preset["video"], scenery.preset["title"]
         self._seen: list[Seen] = []
         self._bytes = 0
@@ -127,7 +103,7 @@ class LiveFootage:
         """A number of a frame."""
         return float(self._seen[frame].rows[name][0])
 
-    def sea_of(self, frame: int) -> LiveSea | None:
+    def sea_of(self, frame: int) -> Sea | None:
         """The sea as it is in a frame."""
         if self.sea:
             self.sea.waves = self._seen[frame].rows.get("waves")

@@ -17,7 +17,7 @@ from lab.errors import LabError
 from lab.launch import Run, pose_of, sampled
 from lab.presets import LoadedPreset
 from lab.progress import Progress
-from lab.recording import Recorder
+from lab.recording import WAVES, Recorder
 from lab.scene import build
 from lab.schema import Motion, Resolved
 from lab.view.controls import ALTERS, CONTROLS, MOVES, offered
@@ -123,7 +123,7 @@ class Live:
 
     def look(self) -> Seen:
         """What stands now."""
-        more = {"part": self.simulation.part_places(), **({"waves": self.swell.now} if self.swell else {})}
+        more = {"part": self.simulation.part_places(), **self._waves()}
         grains = {name: values.astype(np.float32) for name, values in self.simulation.snapshot().items()}
         return Seen(self.time, {**self.rows, **more}, grains, self.simulation.pressing())
 
@@ -133,9 +133,16 @@ class Live:
         self.recorder.sample({"time": now, **sampled(rows)})
         if self.pieces % self._a_frame == 0:
             part = self.simulation.part_places()
-            self.recorder.frame({"time": now, "pose": pose_of(rows), "part": part, **self.simulation.snapshot()})
+            more = {"part": part, **self._waves(), **self.simulation.snapshot()}
+            self.recorder.frame({"time": now, "pose": pose_of(rows), **more})
         self.recorder.grain_steps = self.simulation.grain_steps
         return rows
+
+    def _waves(self) -> dict[str, np.ndarray]:
+        """What a frame of a ship says of the waves that she meets."""
+        if not self.preset.ship:
+            return {}
+        return {"waves": self.swell.now if self.swell else np.full(WAVES, np.nan)}
 
     def close(self, status: str = "complete") -> None:
         """End the recording."""

@@ -57,8 +57,8 @@ class RandomSwell:
 
     @property
     def now(self) -> np.ndarray:
-        """Significant height (m)."""
-        return np.array([self._height.value])
+        """Significant height (m), and nothing that all its components share."""
+        return np.array([self._height.value, np.nan, np.nan])
 
     def follow(self, time: float) -> Vessel | None:
         """Go on for so long (s); gives the ship in the sea of then, None where it stays as it is."""

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from lab.errors import LabError
+from lab.paint.footage import open_footage
 from lab.presets import load
 from lab.progress import Progress
 from lab.recording import open_recording
@@ -94,4 +95,7 @@ def test_a_random_sea_that_a_hand_raised_replays_with_the_same_bits(tmp_path):
         waves = live.look().rows["waves"]
         live.close()
     assert 0.01 < waves[0] < 0.06
+    with open_footage(folder) as footage:  # what a video of it shows
+        assert footage.sea_of(0).waves[0] == loaded.resolved.waves.height
+        assert footage.sea_of(len(footage.time) - 1).waves[0] == pytest.approx(waves[0], abs=2e-3)
     check_same_bits(folder, replay(folder, tmp_path / "again", video=False, quiet=True).folder)

@@ -5,10 +5,10 @@ import json
 import numpy as np
 import pytest
 
+from lab.paint.sea import Sea
 from lab.presets import load
 from lab.ship import make_water, make_waves
 from lab.view.controls import offered
-from lab.view.footage import LiveSea
 from lab.view.swell import CALM, RandomSwell, RegularSwell, swell_of
 
 PIECE = 0.01  # s
@@ -87,10 +87,12 @@ def test_a_random_sea_grows_softly_all_components_alike(at_sea):
     assert np.array_equal(seas[-1].frequency, given.frequency)
 
 
-def test_the_sea_that_is_painted_is_the_one_that_the_ship_meets(at_sea):
-    swell = RandomSwell(at_sea)
-    swell.wanted["wave_height"] = 0.5 * at_sea.waves.height
+@pytest.mark.parametrize(("name", "wanted"), [("at_sea", "wave_height"), ("preset", "wave_amplitude")])
+def test_the_sea_that_is_painted_is_the_one_that_the_ship_meets(name, wanted, request):
+    given = request.getfixturevalue(name)
+    swell = swell_of(given)
+    swell.wanted[wanted] *= 0.5
     vessel = [swell.follow(PIECE) for _ in range(20)][-1]
-    painted, place = LiveSea(json.loads(at_sea.model_dump_json())), np.linspace(-1.0, 1.0, 7)
+    painted, place = Sea(json.loads(given.model_dump_json())), np.linspace(-1.0, 1.0, 7)
     painted.waves = swell.now
     assert painted.elevation(place, 9.0) == pytest.approx(vessel.ship.load.waves.elevation(place, np.full(7, 9.0)))

@@ -194,10 +194,11 @@ def test_declared_fields_start_at_zero_or_with_what_they_hold():
 
 def test_larger_arrays_take_over_what_smaller_ones_hold():
     runtime.initialise(1)
-    small, large = Arrays(), Arrays()
+    small = Arrays()
     (little,), (words,) = small.reals(1, (2, 3)), small.vectors(1, 2, (2, 2))
-    (roomy,), (more_words,) = large.reals(1, (2, 6)), large.vectors(1, 2, (2, 4))
     small.finish()
+    large = Arrays()
+    (roomy,), (more_words,) = large.reals(1, (2, 6)), large.vectors(1, 2, (2, 4))
     large.finish()
     values, vectors = np.arange(6.0).reshape(2, 3), np.arange(8.0).reshape(2, 2, 2)
     little.from_numpy(values)
