@@ -10,13 +10,14 @@ from math import sqrt
 import numpy as np
 from matplotlib.figure import Figure
 
-from lab.plots import BELOW
+from lab.plots import BELOW, BLUE
 from lab.presets import load
-from lab.reproduce.capsizes import PRESET, READINGS, swung
+from lab.reproduce.capsizes import PRESET, READINGS, scan, swung
 from lab.reproduce.curves import SIZE, leading_number
 from lab.reproduce.experiment import Experiment, Told, observed
 from lab.reproduce.runs import Batch, Outcome
 from lab.reproduce.ship import AMPLITUDE, LOST, afloat
+from lab.reproduce.ship import FREQUENCY as WAVES
 from lab.scene import vessels
 from solvers.ship.heap import HeapShip
 from solvers.ship.hydrostatics import buoyancy, turned
@@ -26,6 +27,9 @@ LOW = {"ship.height": "140 mm", "waves.frequency": f"{FREQUENCY} rad/s", "waves.
 SAYS = {"19 mm": "capsizes", "17 mm": "capsizes at 4.5 rad/s", "15 mm": "does not"}  # the source of its barge, loose
 CURVE = np.arange(10.0, 31.0, 1.0)  # mm
 SURE = 1.96  # standard deviations of a 95 % interval
+# Of the map: waves that beds of grains meet (mm, rad/s), in the quick report fewer, and those that a heap does.
+GRID = {False: ((10, 15, 20, 25, 30, 35), (3.6, 4.0, 4.4, 4.8, 5.2, 5.6)), True: ((15, 25, 35), (4.0, 4.4, 4.8))}
+FINE = np.linspace(8.0, 37.0, 30), np.linspace(3.4, 5.8, 25)
 
 
 def batches(quick: bool) -> dict[str, Batch]:
@@ -77,6 +81,54 @@ def chance(lost: int, beds: int) -> tuple[float, float]:
     return middle - half, middle + half
 
 
+def map_batches(quick: bool) -> dict[str, Batch]:
+    """One or two beds of coarse grains in each of many waves."""
+    sizes, frequencies = GRID[quick]
+    changes = {**afloat(True), **LOW, "run.repeats": 1 if quick else 2}
+    del changes[WAVES]
+    axes = {AMPLITUDE: [f"{size} mm" for size in sizes], WAVES: [f"{omega} rad/s" for omega in frequencies]}
+    return {"low sides": Batch(PRESET, changes, axes)}
+
+
+def tell_map(found: Mapping[str, Sequence[Outcome]]) -> Told:
+    """From which amplitude on loose cargo capsizes her, at each frequency; and whether frozen cargo ever does."""
+    runs, rows = found["low sides"], []
+    for omega in sorted({leading_number(one.setting[WAVES]) for one in runs}):
+        there = [one for one in runs if leading_number(one.setting[WAVES]) == omega]
+        lowest = [leading_number(one.setting[AMPLITUDE]) for one in there if _lost(one)[0] > 0]
+        says = f"from {min(lowest):g} mm on" if lowest else "in none of these waves"
+        rows.append(observed(f"{omega:g} rad/s: loose cargo capsizes her", "", says, None))
+    alone = sum(one["frozen_capsized_at"].value is not None for one in runs)
+    rows.append(observed("frozen cargo", "does not", f"in {alone} of {len(runs)} waves", alone == 0))
+    return Told(rows, _map_figure(runs))
+
+
+def _map_figure(runs: Sequence[Outcome]) -> Figure:
+    """Where a heap capsizes her, shaded by its reposes, and beds of grains."""
+    figure = Figure(figsize=(6.4, 4.2), layout="constrained")
+    axes = figure.add_subplot()
+    shares = scan(low_ship(), *FINE).capsized
+    shade = axes.pcolormesh(FINE[1], FINE[0], 100.0 * shares, cmap="Oranges", shading="nearest", vmin=0.0, vmax=200.0)
+    shade.set_rasterized(True)
+    kinds = {"no bed": "none", "some": "left", "every bed": "full"}
+    for name, filled in kinds.items():
+        axes.plot([], [], "o", color=BLUE, fillstyle=filled, label=f"{name} capsizes her")
+    for one in runs:
+        lost, beds = _lost(one)
+        filled = kinds["every bed" if lost == beds else "some" if lost else "no bed"]
+        place = leading_number(one.setting[WAVES]), leading_number(one.setting[AMPLITUDE])
+        axes.plot(*place, "o", ms=9, color=BLUE, fillstyle=filled)
+        if one["frozen_capsized_at"].value is not None:
+            axes.plot(*place, "x", ms=5, color="black")
+    axes.plot([], [], "s", color=shade.cmap(0.5), label="a heap does, of reposes from 17 to 25 deg")
+    axes.plot([], [], "x", color="black", label="frozen cargo does, too")
+    axes.set_xlabel("frequency of the waves (rad/s)")
+    axes.set_ylabel("amplitude of the waves (mm)")
+    axes.grid(False)
+    figure.legend(loc=BELOW, ncols=3)
+    return figure
+
+
 def _figure(sizes: np.ndarray, lost: Sequence[tuple[int, int]], heap: np.ndarray) -> Figure:
     figure = Figure(figsize=SIZE, layout="constrained")
     axes = figure.add_subplot()
@@ -106,5 +158,17 @@ EXPERIMENTS = [
         "cargo slides and takes her over, as the source saw it of its barge in waves of 17 and 19 mm: one large swing, "
         "the cargo stays where it has slid, and the next swings capsize her. Grains do so in lower waves than a heap, "
         "which needs no time to slide and never goes past its repose.",
-    )
+    ),
+    Experiment(
+        "barge-map",
+        "Which waves capsize the barge with low sides",
+        "ours, as figures 7.8 and 7.16 to 7.19",
+        "loose cargo capsizes its barge from 17 mm on, at 19 mm from 4.4 to 4.7 rad/s; frozen cargo does not.",
+        map_batches,
+        tell_map,
+        "1 bed for 2, 3 by 3 waves for 6 by 6",
+        ("low sides", 0.9),
+        "Grains of 10 mm, so that so many waves can be had. Shaded is where a heap, which is at its angle of repose at "
+        "once, takes her over.",
+    ),
 ]

@@ -8,9 +8,9 @@ import pytest
 
 from lab.measures.value import over_worlds
 from lab.reproduce.capsizes import swung
-from lab.reproduce.low_sides import chance, low_ship, tell
+from lab.reproduce.low_sides import chance, low_ship, tell, tell_map
 from lab.reproduce.runs import Outcome
-from lab.reproduce.ship import AMPLITUDE
+from lab.reproduce.ship import AMPLITUDE, FREQUENCY
 
 BREADTH, DRAUGHT, SIDE = 0.34, 0.11, 0.03  # m, the last above the water
 HEIGHT = 0.5 * DRAUGHT + BREADTH**2 / (12.0 * DRAUGHT) - 0.0926  # m, GM
@@ -58,3 +58,27 @@ def test_beds_are_counted():
     rows = tell({"low sides": [run("19 mm", [np.nan, np.nan]), run("30 mm", [12.0, np.nan])]}).rows
     assert rows[0].ours.startswith("0 of 2 beds; 0 %") and rows[1].ours.startswith("1 of 2 beds; ")
     assert rows[1].ours.endswith("frozen stands")
+
+
+def test_the_map_tells_the_lowest_waves_that_capsize_her_and_where_frozen_cargo_does():
+    def run(size, omega, when, alone):
+        measures = {"capsized_at": over_worlds(when, "s"), "frozen_capsized_at": over_worlds([alone], "s")}
+        return Outcome({AMPLITUDE: f"{size} mm", FREQUENCY: f"{omega} rad/s"}, None, "complete", measures, {})
+
+    runs = [
+        run(15, 4.4, [np.nan, 12.0], np.nan),
+        run(25, 4.4, [9.0, 8.0], 20.0),
+        run(15, 4.0, [np.nan, np.nan], np.nan),
+        run(25, 4.0, [np.nan, np.nan], np.nan),
+    ]
+    told = tell_map({"low sides": runs})
+    assert [row.ours for row in told.rows] == ["in none of these waves", "from 15 mm on", "in 1 of 4 waves"]
+    assert [row.agrees for row in told.rows] == [None, None, False]
+    points = [line for line in told.figure.axes[0].lines if len(line.get_xdata())]
+    assert [(line.get_marker(), line.get_fillstyle()) for line in points] == [
+        ("o", "left"),
+        ("o", "full"),
+        ("x", "full"),
+        ("o", "none"),
+        ("o", "none"),
+    ]
