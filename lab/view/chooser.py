@@ -12,6 +12,7 @@ COLUMNS, ROWS = 4, 3
 POSTERS = Path("renders/gallery/presets")  # where `cargolab gallery` leaves them
 GRAIN = (196, 176, 150)
 EDGE = 0.025  # of the window's height: between the cards
+FOOT, TITLE = 3.1, 0.68  # of the letters' height: what is written below a poster, and the letters of its second part
 
 
 class Chooser:
@@ -90,14 +91,16 @@ class Chooser:
         return edge + k % COLUMNS * (wide + edge), head + k // COLUMNS * (high + edge), wide, high
 
     def _draw_card(self, image: Image.Image, name: str, left: int, top: int, wide: int, high: int, size: float) -> None:
-        draw, foot = ImageDraw.Draw(image), round(2.6 * size)
+        draw, foot = ImageDraw.Draw(image), round(FOOT * size)
         if name not in self._posters:
             self._posters[name] = _poster(name, (wide, high - foot))
         draw.rectangle((left, top, left + wide, top + high), outline=deco.LINE)
         image.paste(self._posters[name], (left + 1, top + 1))
-        for line, (text, bold) in enumerate(((name, True), (self._titles[name], False))):
-            said, face = deco.fitted(text, wide - size, 0.85 * size, bold)
-            draw.text((left + 0.5 * size, top + high - foot + 1.2 * size * line), said, deco.INK, face, anchor="la")
+        room, x, y = wide - size, left + 0.5 * size, top + high - foot
+        said, face = deco.fitted(name, room, 0.85 * size, True)
+        draw.text((x, y + 0.2 * size), said, deco.INK, face, anchor="la")
+        for line, part in enumerate(deco.wrapped(self._titles[name], room, TITLE * size, 2)):
+            draw.text((x, y + (1.3 + 1.25 * TITLE * line) * size), part, deco.INK, deco.font(TITLE * size), anchor="la")
 
 
 def _poster(name: str, size: tuple[int, int]) -> Image.Image:

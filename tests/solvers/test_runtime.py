@@ -133,6 +133,7 @@ for k in range(600):
 """
 
 
+@pytest.mark.slow
 def test_released_arrays_leave_room_for_others(tmp_path):
     """Taichi crashes where there are more than 512 trees."""
     assert fresh(tmp_path, MANY_ARRAYS) == "42.0"
