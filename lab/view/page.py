@@ -3,11 +3,8 @@
 Lengths are in units u, 1/36 of the height of a 16:9 picture, as in `lab.paint.film`.
 """
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 import numpy as np
 from PIL import Image, ImageDraw, ImageOps
@@ -21,9 +18,7 @@ from lab.view.curves import CURVES
 from lab.view.forces import chains, newtons
 from lab.view.help import draw_help
 from lab.view.readings import clock, readings
-
-if TYPE_CHECKING:
-    from lab.view.session import Session
+from lab.view.shown import Shown
 
 MARGIN, COLUMN, GAP, WALL, PLATE = 1.2, 17.0, 1.5, 0.36, 0.3  # in u
 TEXT, READING, TITLE, ROW = 1.0, 1.2, 1.4, 1.5  # heights in u
@@ -39,7 +34,7 @@ GRAB, FORCE, PICKED = (213, 94, 0), (200, 30, 30), (213, 94, 0)
 
 
 class Page:
-    """Pictures of sessions in one size (pixels)."""
+    """Pictures of experiments in one size (pixels)."""
 
     def __init__(self, size: tuple[int, int]) -> None:
         self.width, self.height = size
@@ -50,19 +45,19 @@ class Page:
         self._kept: dict[str, tuple[tuple, float, np.ndarray]] = {}
         self._largest = 0.0  # force (N) or speed (m/s), of the overlay that was painted last
 
-    def picture(self, session: Session) -> np.ndarray:
+    def picture(self, shown: Shown) -> np.ndarray:
         """The picture (height, width, 3), u8."""
-        if session.footage is None or not len(session.footage):
-            return self._waiting(session)
+        if shown.footage is None or not len(shown.footage):
+            return self._waiting(shown)
         picture = self._paper.copy()
-        scale = self._scale(session)
+        scale = self._scale(shown)
         left, top, right, bottom = self.stage
-        picture[top:bottom, left:right] = self._stage_picture(session, scale)
-        self._put_texts(picture, session)
-        self._put_column(picture, session, scale)
-        if session.look.help:
+        picture[top:bottom, left:right] = self._stage_picture(shown, scale)
+        self._put_texts(picture, shown)
+        self._put_column(picture, shown, scale)
+        if shown.look.help:
             image = Image.fromarray(picture)
-            draw_help(image, session.keys, 0.9 * TEXT * self.unit)
+            draw_help(image, shown.keys, 0.9 * TEXT * self.unit)
             return np.array(image)
         return picture
 
@@ -78,30 +73,30 @@ class Page:
         right = self.width - self.u(MARGIN + COLUMN + GAP)
         return self.u(MARGIN), self.u(MARGIN + TITLE + 1.0), right, self.height - self.u(MARGIN + 2.4)
 
-    def camera(self, session: Session) -> Camera:
+    def camera(self, shown: Shown) -> Camera:
         """Of the frame that is drawn: the tank's or the earth's."""
-        low, high = self._ground(session)
-        scale = self._fit(self._room(session), high - low) * session.look.zoom
-        (x, y), pan, centre = self.middle(session), session.look.pan, 0.5 * (low + high)
+        low, high = self._ground(shown)
+        scale = self._fit(self._room(shown), high - low) * shown.look.zoom
+        (x, y), pan, centre = self.middle(shown), shown.look.pan, 0.5 * (low + high)
         return Camera(scale, (x + pan[0] - scale * centre[0], y + pan[1] + scale * centre[1]))
 
-    def middle(self, session: Session) -> tuple[float, float]:
+    def middle(self, shown: Shown) -> tuple[float, float]:
         """The pixel where the middle of what is shown is, as long as it is not moved."""
-        left, top, right, bottom = self._room(session)
+        left, top, right, bottom = self._room(shown)
         return 0.5 * (left + right), 0.5 * (top + bottom)
 
-    def _room(self, session: Session) -> tuple[int, int, int, int]:
+    def _room(self, shown: Shown) -> tuple[int, int, int, int]:
         """The part of the stage for the tank: the one in which it is largest."""
-        low, high = self._ground(session)
-        return max(self._rooms(session), key=lambda room: self._fit(room, high - low))
+        low, high = self._ground(shown)
+        return max(self._rooms(shown), key=lambda room: self._fit(room, high - low))
 
-    def _rooms(self, session: Session) -> list[tuple[int, int, int, int]]:
+    def _rooms(self, shown: Shown) -> list[tuple[int, int, int, int]]:
         """Parts of the stage for the tank: all of it, or what is right of the plot or below it."""
         left, top, right, bottom = self.stage
         width, height = (self.u(side) for side in PLOT)
-        if session.look.inset == "nothing":
+        if shown.look.inset == "nothing":
             return [self.stage]
-        if session.look.frame == "earth":  # which has room beside the tank
+        if shown.look.frame == "earth":  # which has room beside the tank
             return [(left + width // 2, top, right, bottom)]
         return [(left + width, top, right, bottom), (left, top + height, right, bottom)]
 
@@ -111,17 +106,17 @@ class Page:
         spare = np.array([right - left, bottom - top]) - 2.0 * self.u(WALL + 0.4)
         return float((spare / extent).min())
 
-    def tank_camera(self, session: Session) -> Camera:
+    def tank_camera(self, shown: Shown) -> Camera:
         """Of points of the tank."""
-        camera = self.camera(session)
-        return camera.carried(self._pose(session)) if session.look.frame == "earth" else camera
+        camera = self.camera(shown)
+        return camera.carried(self._pose(shown)) if shown.look.frame == "earth" else camera
 
-    def earth_place(self, session: Session, x: float, y: float) -> tuple[float, float]:
+    def earth_place(self, shown: Shown, x: float, y: float) -> tuple[float, float]:
         """The point of the earth's frame (m) below a pixel."""
-        camera = self.camera(session)
+        camera = self.camera(shown)
         place = complex(x - camera.offset[0], camera.offset[1] - y) / camera.scale
-        if session.look.frame == "tank":
-            pose = self._pose(session)
+        if shown.look.frame == "tank":
+            pose = self._pose(shown)
             place = complex(pose[0], pose[1]) + np.exp(1j * pose[2]) * place
         return place.real, place.imag
 
@@ -137,82 +132,82 @@ class Page:
         left, _, right, _ = self._sliders[name]
         return float(np.clip((x - left) / (right - left), 0.0, 1.0))
 
-    def centre_at(self, session: Session, x: float, y: float) -> bool:
+    def centre_at(self, shown: Shown, x: float, y: float) -> bool:
         """Whether the centre of roll is at a pixel."""
-        place = self._centre(session)
+        place = self._centre(shown)
         return place is not None and np.hypot(place[0] - x, place[1] - y) < self.u(GRIP)
 
-    def grain_at(self, session: Session, x: float, y: float) -> int | None:
+    def grain_at(self, shown: Shown, x: float, y: float) -> int | None:
         """The number of the grain at a pixel, None where there is none."""
-        places = self.tank_camera(session).pixels(session.footage.grains("position", session.frame))
-        away = np.hypot(places[:, 0] - x, places[:, 1] - y) / self.camera(session).scale
-        nearest = int(np.nanargmin(away - session.footage.radius[0]))
-        return nearest if away[nearest] <= session.footage.radius[0][nearest] else None
+        places = self.tank_camera(shown).pixels(shown.footage.grains("position", shown.frame))
+        away = np.hypot(places[:, 0] - x, places[:, 1] - y) / self.camera(shown).scale
+        nearest = int(np.nanargmin(away - shown.footage.radius[0]))
+        return nearest if away[nearest] <= shown.footage.radius[0][nearest] else None
 
-    def _pose(self, session: Session) -> np.ndarray:
-        return np.array([session.footage.row(session.frame, f"pose_{name}") for name in ("y", "z", "angle")])
+    def _pose(self, shown: Shown) -> np.ndarray:
+        return np.array([shown.footage.row(shown.frame, f"pose_{name}") for name in ("y", "z", "angle")])
 
-    def _ground(self, session: Session) -> tuple[np.ndarray, np.ndarray]:
+    def _ground(self, shown: Shown) -> tuple[np.ndarray, np.ndarray]:
         """Lower and upper corner (m) of what is shown where nothing is zoomed."""
-        footage = session.footage
+        footage = shown.footage
         low, high = footage.extent
         if footage.sea:
-            return footage.sea_ground if session.look.frame == "earth" else (low, high)
-        if session.look.frame == "earth":  # room to turn and to sway
+            return footage.sea_ground if shown.look.frame == "earth" else (low, high)
+        if shown.look.frame == "earth":  # room to turn and to sway
             low, high = low - 0.35 * (high - low), high + 0.35 * (high - low)
         return low, high
 
-    def _centre(self, session: Session) -> np.ndarray | None:
+    def _centre(self, shown: Shown) -> np.ndarray | None:
         """The pixel of the centre of roll, None where there is none to be dragged."""
-        if "centre_y" not in session.values or not session.footage:
+        if "centre_y" not in shown.values or not shown.footage:
             return None
-        centre = np.array([session.values["centre_y"], session.values["centre_z"]])
-        if session.look.frame == "tank":
-            pose = self._pose(session)
+        centre = np.array([shown.values["centre_y"], shown.values["centre_z"]])
+        if shown.look.frame == "tank":
+            pose = self._pose(shown)
             seen = np.exp(-1j * pose[2]) * complex(*(centre - pose[:2]))
             centre = np.array([seen.real, seen.imag])
-        return self.camera(session).pixels(centre[None])[0]
+        return self.camera(shown).pixels(centre[None])[0]
 
     # Paint
 
-    def _scale(self, session: Session) -> Colouring:
+    def _scale(self, shown: Shown) -> Colouring:
         """The colouring, its scale looked at anew now and then."""
-        key, now = (session.look.colour, id(session.footage)), time.monotonic()
+        key, now = (shown.look.colour, id(shown.footage)), time.monotonic()
         if self._colouring is None or self._colouring[0] != key or now - self._colouring[1] > ANEW:
-            self._colouring = key, now, colouring(session.look.colour, [session.footage.bed])
+            self._colouring = key, now, colouring(shown.look.colour, [shown.footage.bed])
         return self._colouring[2]
 
-    def _stage_picture(self, session: Session, scale: Colouring) -> np.ndarray:
+    def _stage_picture(self, shown: Shown, scale: Colouring) -> np.ndarray:
         """The tank with all that is in it, the marks of a hand, and the plot."""
-        footage, frame, (left, top, _, _) = session.footage, session.frame, self.stage
-        camera, moved = (self._shifted(c, left, top) for c in (self.camera(session), self.tank_camera(session)))
-        if session.look.frame == "tank":
+        footage, frame, (left, top, _, _) = shown.footage, shown.frame, self.stage
+        camera, moved = (self._shifted(c, left, top) for c in (self.camera(shown), self.tank_camera(shown)))
+        if shown.look.frame == "tank":
             key = id(footage), camera.scale, camera.offset
-            stage = self._still("tank", key, lambda: self._empty_stage(session, camera, moved)).copy()
+            stage = self._still("tank", key, lambda: self._empty_stage(shown, camera, moved)).copy()
         else:
-            stage = self._empty_stage(session, camera, moved)
+            stage = self._empty_stage(shown, camera, moved)
         bed = footage.bed
         colour = scale.colours(bed, frame)
-        if session.look.overlay == "forces":
+        if shown.look.overlay == "forces":
             colour = 0.25 * colour + 0.75 * np.array(deco.PAPER)
         discs = to_discs(moved, bed.position(frame), bed.radius, bed.angle(frame))
         paint_grains(stage, discs, colour, mark_colours(colour), footage.edges)
         for line, shift in zip(footage.parts.values(), footage.moved_parts(frame), strict=True):
             paint_plate(stage, moved, line + shift, PLATE * self.unit, deco.PART)
-        if session.look.overlay == "forces":
-            paint_strokes(stage, self._force_strokes(session, moved), FORCE)
-        elif session.look.overlay == "velocities":
-            paint_strokes(stage, self._velocity_strokes(session, moved), deco.INK)
-        self._mark(stage, session, moved)
-        if session.look.inset != "nothing":
-            _put(stage, self._curve(session), 0, 0)
+        if shown.look.overlay == "forces":
+            paint_strokes(stage, self._force_strokes(shown, moved), FORCE)
+        elif shown.look.overlay == "velocities":
+            paint_strokes(stage, self._velocity_strokes(shown, moved), deco.INK)
+        self._mark(stage, shown, moved)
+        if shown.look.inset != "nothing":
+            _put(stage, self._curve(shown), 0, 0)
         return stage
 
-    def _empty_stage(self, session: Session, camera: Camera, moved: Camera) -> np.ndarray:
+    def _empty_stage(self, shown: Shown, camera: Camera, moved: Camera) -> np.ndarray:
         """The sea, the hull and the tank with its fixed grains."""
-        footage, frame, (left, top, right, bottom) = session.footage, session.frame, self.stage
+        footage, frame, (left, top, right, bottom) = shown.footage, shown.frame, self.stage
         stage = self._paper[top:bottom, left:right].copy()
-        if session.look.frame == "earth":
+        if shown.look.frame == "earth":
             if footage.sea:
                 whole = np.array([[0, stage.shape[0]], [stage.shape[1], 0]]) - camera.offset
                 ground = tuple(whole * [1.0, -1.0] / camera.scale)
@@ -238,27 +233,27 @@ class Page:
 
     # Drawings over the stage
 
-    def _mark(self, stage: np.ndarray, session: Session, camera: Camera) -> None:
+    def _mark(self, stage: np.ndarray, shown: Shown, camera: Camera) -> None:
         """The centre of roll, a cross in a ring, and a ring around the grain that was picked."""
-        centre, picked, footage = self._centre(session), session.look.picked, session.footage
+        centre, picked, footage = self._centre(shown), shown.look.picked, shown.footage
         if centre is not None:
             (x, y), r = centre - self.stage[:2], self.u(0.45)
             arms = np.array([[x - 1.7 * r, y, 0.7, x + 1.7 * r, y, 0.7], [x, y - 1.7 * r, 0.7, x, y + 1.7 * r, 0.7]])
             paint_strokes(stage, np.concatenate([arms, _ring(x, y, r, 0.07 * self.unit)]), GRAB)
         if picked is not None:
-            place = camera.pixels(footage.grains("position", session.frame)[picked][None])[0]
+            place = camera.pixels(footage.grains("position", shown.frame)[picked][None])[0]
             r = 1.3 * footage.radius[0][picked] * camera.scale + 2.0
             paint_strokes(stage, _ring(*place, r, 0.08 * self.unit), PICKED)
 
-    def _put_texts(self, picture: np.ndarray, session: Session) -> None:
+    def _put_texts(self, picture: np.ndarray, shown: Shown) -> None:
         """The title above the stage; below it the scale, and what has just been said or else what the overlay means."""
         left, _, right, bottom = self.stage
-        title, scale, said = session.footage.title, self.camera(session).scale, session.said
+        title, scale, said = shown.footage.title, self.camera(shown).scale, shown.said
         _put(picture, self._still("title", (title,), lambda: self._title(title, right - left)), left, self.u(MARGIN))
         bar = self._still("bar", (scale,), lambda: self._scale_bar(round(0.38 * right) - left, scale))
         _put(picture, bar, left, self.height - len(bar))
         size = right - round(0.38 * right), self.height - bottom
-        hint = "" if said else self._hint(session)
+        hint = "" if said else self._hint(shown)
         words = self._still("words", (said, hint), lambda: self._words(said, hint, size))
         _put(picture, words, right - size[0], bottom)
 
@@ -274,10 +269,10 @@ class Page:
             draw.text((0, y), line, GRAB, deco.font(letters), "lm")
         return image
 
-    def _hint(self, session: Session) -> str:
-        if session.look.overlay == "forces" and self._largest:
+    def _hint(self, shown: Shown) -> str:
+        if shown.look.overlay == "forces" and self._largest:
             return f"thickest lines: {newtons(self._largest)}    H: help"
-        if session.look.overlay == "velocities" and self._largest:
+        if shown.look.overlay == "velocities" and self._largest:
             speed = float(f"{1e3 * self._largest:.2g}")  # with two digits, and no power of ten
             return f"longest lines: {speed:g} mm/s    H: help"
         return "H: help"
@@ -294,16 +289,16 @@ class Page:
         ImageDraw.Draw(image).text((0, 0), said, deco.INK, face, anchor="la")
         return image
 
-    def _force_strokes(self, session: Session, camera: Camera) -> np.ndarray:
+    def _force_strokes(self, shown: Shown, camera: Camera) -> np.ndarray:
         """Chains of force: lines as thick as the force, from the grains to where they press."""
-        footage, frame = session.footage, session.frame
+        footage, frame = shown.footage, shown.frame
         lines, thickness, self._largest = chains(footage.pressing(frame), footage.grains("position", frame))
         half = thickness * (THICKEST * footage.radius[0].mean() * camera.scale)
         return _strokes(camera, lines, half, half)
 
-    def _velocity_strokes(self, session: Session, camera: Camera) -> np.ndarray:
+    def _velocity_strokes(self, shown: Shown, camera: Camera) -> np.ndarray:
         """Lines along the velocities in the tank, which end in a point."""
-        footage, frame = session.footage, session.frame
+        footage, frame = shown.footage, shown.frame
         place, velocity = (footage.grains(name, frame) for name in ("position", "velocity"))
         speed, radius = np.hypot(*velocity.T), footage.radius[0].mean()
         self._largest = float(np.nanquantile(speed, FASTEST))
@@ -312,36 +307,36 @@ class Page:
         half = np.full(moving.sum(), max(0.15 * radius * camera.scale, 0.7))
         return _strokes(camera, np.stack([place, tips], axis=1)[moving], half, 0.0 * half)
 
-    def _curve(self, session: Session) -> np.ndarray:
+    def _curve(self, shown: Shown) -> np.ndarray:
         """A small plot of what the experiment does, drawn anew a few times a second."""
 
         def drawn() -> Image.Image:
-            drawing = CURVES[session.look.inset](session.footage, session.frame)
+            drawing = CURVES[shown.look.inset](shown.footage, shown.frame)
             labels, colours = (drawing.across, drawing.upwards), deco.SERIES[: len(drawing.curves)]
             edge, size = self.u(0.5), (self.u(PLOT[0] - 1.5), self.u(PLOT[1] - 1.5))
             plot = deco.LivePlot(size, drawing.curves, colours, labels, 0.9 * TEXT * self.unit)
             return ImageOps.expand(plot.picture(drawing.counts), edge, deco.PAPER)
 
-        return self._still("plot", (session.look.inset, id(session.footage), session.playhead), drawn, CURVE_ANEW)
+        return self._still("plot", (shown.look.inset, id(shown.footage), shown.playhead), drawn, CURVE_ANEW)
 
     # The column
 
-    def _put_column(self, picture: np.ndarray, session: Session, scale: Colouring) -> None:
-        left, look = self.width - self.u(MARGIN + COLUMN), session.look
-        key = session.playhead, session.going, session.pace, look.picked, id(session.footage)
-        lines = self._still("readings", key, lambda: self._lines(session), WORDS_ANEW)
+    def _put_column(self, picture: np.ndarray, shown: Shown, scale: Colouring) -> None:
+        left, look = self.width - self.u(MARGIN + COLUMN), shown.look
+        key = shown.playhead, shown.going, shown.pace, look.picked, id(shown.footage)
+        lines = self._still("readings", key, lambda: self._lines(shown), WORDS_ANEW)
         _put(picture, lines, left, self.u(MARGIN))
-        key = id(scale), look.typing, *session.values.items()
-        rest = self._still("column", key, lambda: self._still_column(session, scale))
+        key = id(scale), look.typing, *shown.values.items()
+        rest = self._still("column", key, lambda: self._still_column(shown, scale))
         _put(picture, rest, left, self.controls[0])
 
-    def _lines(self, session: Session) -> Image.Image:
+    def _lines(self, shown: Shown) -> Image.Image:
         """The clock and the readings below it."""
         image = Image.new("RGB", (self.u(COLUMN), self.controls[0] - self.u(MARGIN)), deco.PAPER)
         draw = ImageDraw.Draw(image)
-        text, face = deco.fitted(clock(session), image.width, READING * self.unit)
+        text, face = deco.fitted(clock(shown), image.width, READING * self.unit)
         draw.text((0, 0), text, deco.INK, face, anchor="la")
-        for line, reading in enumerate(readings(session)):
+        for line, reading in enumerate(readings(shown)):
             text, face = deco.fitted(reading, image.width, TEXT * self.unit)
             draw.text((0, self.u(1.6 * READING + 1.4 * TEXT * line)), text, deco.INK, face, anchor="la")
         return image
@@ -351,7 +346,7 @@ class Page:
         """Top and bottom of where the sliders are in the column."""
         return self.u(MARGIN + 1.6 * READING + 1.4 * TEXT * LINES + 0.6), self.height - self.u(MARGIN + 5.2)
 
-    def _still_column(self, session: Session, scale: Colouring) -> Image.Image:
+    def _still_column(self, shown: Shown, scale: Colouring) -> Image.Image:
         """What stands below the readings until somebody changes it: sliders and colour bar."""
         top, bottom = self.controls
         size = self.u(MARGIN + COLUMN), self.height - top
@@ -359,8 +354,8 @@ class Page:
         bar = 0, size[1] - self.u(MARGIN + 4.4), self.u(COLUMN), size[1] - self.u(MARGIN)
         deco.draw_colour_bar(image, bar, scale, TEXT * self.unit)
         self._sliders = {}
-        if not session.look.typing:
-            self._draw_sliders(ImageDraw.Draw(image), session, (self.width - size[0], top), bottom - top)
+        if not shown.look.typing:
+            self._draw_sliders(ImageDraw.Draw(image), shown, (self.width - size[0], top), bottom - top)
         return image
 
     def _still(
@@ -372,17 +367,15 @@ class Page:
             self._kept[name] = key, now, np.asarray(make())
         return self._kept[name][2]
 
-    def _draw_sliders(
-        self, draw: ImageDraw.ImageDraw, session: Session, corner: tuple[int, int], height: float
-    ) -> None:
+    def _draw_sliders(self, draw: ImageDraw.ImageDraw, shown: Shown, corner: tuple[int, int], height: float) -> None:
         """A row a control, name, slider and value, on a part of the picture with this corner, so many pixels high."""
         left, right = 0, self.u(COLUMN)
-        names = list(session.values)
+        names = list(shown.values)
         pitch = min(self.u(ROW), height / max(1, len(names)))
         size = min(TEXT * self.unit, 0.72 * pitch)
         begin, end = left + 0.41 * (right - left), left + 0.67 * (right - left)
         for row, name in enumerate(names):
-            control, value = CONTROLS[name], session.values[name]
+            control, value = CONTROLS[name], shown.values[name]
             y = (row + 0.5) * pitch
             x, above = corner[0], corner[1] + y - 0.5 * pitch
             self._sliders[name] = (x + begin, above, x + end, above + pitch)
@@ -398,14 +391,14 @@ class Page:
 
     # Whole pages
 
-    def _waiting(self, session: Session) -> np.ndarray:
+    def _waiting(self, shown: Shown) -> np.ndarray:
         """The page until the first frame comes, and where none does."""
         image = Image.new("RGB", (self.width, self.height), deco.PAPER)
         draw, middle, size = ImageDraw.Draw(image), (self.width / 2, self.height / 2), TEXT * self.unit
-        name, face = deco.fitted(session.name, 0.9 * self.width, size)
+        name, face = deco.fitted(shown.name, 0.9 * self.width, size)
         draw.text((middle[0], middle[1] - 3.0 * size), name, deco.QUIET, face, anchor="mm")
-        for k, line in enumerate(deco.wrapped(session.over or session.status, 0.8 * self.width, 1.2 * size, 6)):
-            colour, y = GRAB if session.over else deco.INK, middle[1] + 1.7 * size * k
+        for k, line in enumerate(deco.wrapped(shown.over or shown.status, 0.8 * self.width, 1.2 * size, 6)):
+            colour, y = GRAB if shown.over else deco.INK, middle[1] + 1.7 * size * k
             draw.text((middle[0], y), line, colour, deco.font(1.2 * size), anchor="mm")
         return np.array(image)
 

@@ -19,6 +19,7 @@ from lab.view.controls import CONTROLS, RESTARTS, offered
 from lab.view.curves import offered_curves
 from lab.view.footage import LiveFootage, Scenery
 from lab.view.page import Page
+from lab.view.shown import Look, Shown
 from lab.view.worker import begin
 from solvers.shapes.cargo import cargoes
 
@@ -26,31 +27,15 @@ PACES = (0.02, 0.05, 0.1, 0.25, 0.5, 1.0, 2.0, 5.0, np.inf)
 NUDGE = np.radians(5.0)  # of the tilt, by a key
 CLICK = 4.0  # pixels: a mouse that moves less was not dragged
 ZOOM = 1.25
-SAID_FOR = 6.0  # s
 PATIENCE = 5.0  # s for the experiment to end
 OVERLAYS = ("nothing", "forces", "velocities")
 
 
 @dataclass
-class Look:
-    """How the experiment is shown; `pan` in pixels."""
-
-    colour: str
-    frame: str
-    zoom: float = 1.0
-    pan: tuple[float, float] = (0.0, 0.0)
-    overlay: str = "nothing"
-    inset: str = "shift"
-    picked: int | None = None
-    help: bool = False
-    typing: bool = False  # a panel of the window's own instead of the sliders
-
-
-@dataclass
-class Session:
+class Session(Shown):
     """A preset under `overrides`, live in a window of `size` pixels; `types`: one with a panel to type values in.
 
-    playhead: the frame shown, None for the newest. Raises LabError where the preset cannot be run.
+    Raises LabError where the preset cannot be run.
     """
 
     name: str
@@ -66,14 +51,13 @@ class Session:
         video = load(self.name, self.overrides).resolved.video
         self.look = Look(video.colour, video.frame)
         self.page = Page(self.size)
-        self.pace, self._said, self._grip, self._shape = 1.0, ("", 0.0), None, "disc"
+        self._grip, self._shape = None, "disc"
         self._restart(self.overrides)
 
     def _restart(self, overrides: Mapping) -> None:
         """Begin anew, with what a restart was asked for."""
         self.overrides = dict(overrides)
-        self.footage: LiveFootage | None = None
-        self.values: dict[str, float] = {}
+        self.footage, self.values = None, {}
         self.going, self.playhead, self.factor, self.over = False, None, 0.0, ""
         self.status = "starting …"
         folder = self.out or RENDERS / "view" / self.name.removesuffix(".toml")
@@ -135,16 +119,6 @@ class Session:
                 self._miss()
 
     # What a person does
-
-    def say(self, sentence: str) -> None:
-        """Show a sentence for a while."""
-        self._said = sentence, time.monotonic()
-
-    @property
-    def said(self) -> str:
-        """The sentence to be shown now."""
-        sentence, when = self._said
-        return self.over or (sentence if time.monotonic() - when < SAID_FOR else "")
 
     def go(self, going: bool) -> None:
         """Run or pause; who goes on is back at the newest frame."""
@@ -281,11 +255,6 @@ class Session:
     def picture(self) -> np.ndarray:
         """The picture (height, width, 3), u8."""
         return self.page.picture(self)
-
-    @property
-    def frame(self) -> int:
-        """The number of the frame shown."""
-        return len(self.footage) - 1 if self.playhead is None else min(self.playhead, len(self.footage) - 1)
 
     def close(self) -> None:
         """End the experiment; its recording is complete."""

@@ -1,0 +1,60 @@
+"""What a picture of a live experiment is painted from: what was seen of it, and how it is looked at."""
+
+import time
+from dataclasses import dataclass
+
+from lab.view.footage import LiveFootage
+
+SAID_FOR = 6.0  # s
+
+
+@dataclass
+class Look:
+    """How the experiment is shown; `pan` in pixels."""
+
+    colour: str
+    frame: str
+    zoom: float = 1.0
+    pan: tuple[float, float] = (0.0, 0.0)
+    overlay: str = "nothing"
+    inset: str = "shift"
+    picked: int | None = None
+    help: bool = False
+    typing: bool = False  # a panel of the window's own instead of the sliders
+
+
+class Shown:
+    """An experiment as it is shown.
+
+    values: its controls, as a hand has set them (SI); playhead: the frame shown, None for the newest; pace: how much of
+    real time it is held to, and factor: how much it reaches; status: what it does before its first frame; over: how it
+    ended; keys: what keys are called and do.
+    """
+
+    name: str
+    look: Look
+    values: dict[str, float]
+    keys: list[tuple[str, str]]
+    footage: LiveFootage | None = None
+    going: bool = False
+    playhead: int | None = None
+    pace: float = 1.0
+    factor: float = 0.0
+    status: str = ""
+    over: str = ""
+    _said: tuple[str, float] = "", 0.0
+
+    def say(self, sentence: str) -> None:
+        """Show a sentence for a while."""
+        self._said = sentence, time.monotonic()
+
+    @property
+    def said(self) -> str:
+        """The sentence to be shown now."""
+        sentence, when = self._said
+        return self.over or (sentence if time.monotonic() - when < SAID_FOR else "")
+
+    @property
+    def frame(self) -> int:
+        """The number of the frame shown."""
+        return len(self.footage) - 1 if self.playhead is None else min(self.playhead, len(self.footage) - 1)
