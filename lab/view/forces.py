@@ -29,6 +29,11 @@ def on_grain(pressing: Pressing, grain: int) -> np.ndarray:
     return np.hypot(*pressing.force[(pressing.grains == grain).any(axis=1)].T)
 
 
+def contacts_each(pressing: Pressing, count: int) -> float:
+    """How many contacts a grain of so many has on average: one with a wall is one grain's, others are two grains'."""
+    return float((pressing.grains != NOBODY).sum()) / count
+
+
 def newtons(force: float) -> str:
     """A force with its unit."""
     return f"{force:.2g} N" if force >= 0.1 else f"{1e3 * force:.2g} mN" if force >= 1e-4 else f"{1e6 * force:.2g} µN"

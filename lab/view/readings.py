@@ -4,7 +4,7 @@ import numpy as np
 
 from lab.paint.decorations import number
 from lab.ship import axis_motion
-from lab.view.forces import newtons, on_grain
+from lab.view.forces import contacts_each, newtons, on_grain
 from lab.view.shown import Shown
 
 
@@ -22,7 +22,7 @@ def readings(shown: Shown) -> list[str]:
     found = [
         f"{shown.factor:.2f} of real time ({limit})",
         _pose(shown),
-        f"{count} grains, {footage.row(frame, 'contacts') * 2 / count:.2f} contacts each",
+        f"{count} grains, {contacts_each(footage.pressing(frame), count):.2f} contacts each",
     ]
     return found if shown.look.picked is None else [*found, *_picked(shown)]
 

@@ -144,6 +144,17 @@ def test_a_slider_that_is_dragged_sets_its_control(opened):
     assert session.values["friction"] == values[-1]
 
 
+def test_a_slider_goes_from_the_lowest_to_the_highest_value(opened):
+    session, _, _ = opened
+    session.picture()
+    left, top, right, bottom = session.page._sliders["tilt"]
+    for x, value in ((left, CONTROLS["tilt"].low), (right, CONTROLS["tilt"].high)):
+        session.press(x, 0.5 * (top + bottom))
+        session.release(x, top)
+        assert session.values["tilt"] == pytest.approx(value)
+    assert CONTROLS["tilt"].low < 0.0
+
+
 def test_no_hand_gets_a_control_out_of_its_range(opened):
     session, _, _ = opened
     session.set("friction", 17.0)
@@ -191,6 +202,40 @@ def test_a_click_picks_the_grain_below_it(opened):
     assert readings(session)[-2:] == ["grain 7: 1.0 mm/s, 0.00 rad/s", "2 contacts, 0.2 N at most"]
 
 
+def test_a_click_near_the_edge_picks_the_grain_that_is_there(opened):
+    """Not a neighbour whose edge is nearer."""
+    session, _, place = opened
+    session.picture()
+    camera, places, radius = session.page.tank_camera(session), place[0] + [4e-4, 0.0], session.footage.radius[0]
+    for i in range(0, len(places), 9):
+        for turn in np.arange(8) * np.pi / 4.0:
+            point = places[i] + 0.9 * radius[i] * np.array([np.cos(turn), np.sin(turn)])
+            inside = np.flatnonzero(np.hypot(*(places - point).T) < radius)
+            if len(inside) == 1:
+                assert session.page.grain_at(session, *camera.pixels(point[None])[0]) == i
+
+
+def test_forces_are_drawn_as_thick_as_they_are_large(opened):
+    session, _, _ = opened
+    session.look.overlay = "forces"
+    session.picture()
+    strokes = session.page._force_strokes(session, session.page.tank_camera(session))
+    weak, strong = np.unique(strokes[:, 2].round(9))
+    assert strong == pytest.approx(2.0 * weak)  # 0.2 and 0.1 N
+
+
+def test_a_row_of_grains_between_walls_has_two_contacts_each(opened):
+    session, pipes, place = opened
+    count = place.shape[1]
+    order = np.arange(count)
+    row = np.column_stack([order, np.append(order[1:], NOBODY)])
+    grains = np.vstack([row, [[0, NOBODY]]])
+    last = seen(place, 0.5)
+    pipes[-1].send(("seen", (Seen(0.5, last.rows, last.grains, Pressing(grains, grains * 0.0, grains * 0.1)), 1.0)))
+    session.tick()
+    assert f"{count} grains, 2.00 contacts each" in readings(session)
+
+
 def test_what_needs_a_restart_waits_for_it(opened):
     session, pipes, _ = opened
     asked(pipes[-1])
@@ -211,6 +256,19 @@ def test_s_starts_anew_with_the_grains_of_another_cargo(opened):
     for _ in range(9):
         session.key("s")
     assert list(load(PRESET, session.overrides).resolved.shapes) == ["disc"]
+
+
+def test_s_says_where_grains_cannot_have_outlines_and_goes_on(opened):
+    session, pipes, _ = opened
+    wet = {
+        "contact.cohesion": "bridge",
+        "material.bridge_volume": "0.002 mm^3",
+        "material.surface_tension": "0.072 N/m",
+    }
+    session.overrides = {**SMALL, **wet, "material.contact_angle": "0 deg"}
+    session.key("s")
+    assert "no liquid between irregular grains" in session.said
+    assert session.going and "end" not in [word for word, _ in asked(pipes[-1])]
 
 
 def test_what_ends_the_experiment_is_said_and_can_be_looked_back_from(opened):
