@@ -12,6 +12,7 @@ from pathlib import Path
 
 from lab.errors import LabError
 from lab.measures.value import Value
+from lab.paint.cargoes import COLOURS, paint_cargoes
 from lab.paint.video import poster, render_recording
 from lab.presets import QUICK, names
 from lab.progress import Progress
@@ -25,6 +26,7 @@ LONGEST = 8.0  # s of a clip
 MOMENT = 0.85  # of the film: what the poster shows, when most has happened
 UNITS = {"deg": "°", "d": "diameters"}
 MOST_NUMBERS = 4
+CARGOES = "cargoes.png"
 
 STYLE = """
 body { font: 15px/1.45 system-ui, sans-serif; color: #212934; margin: 2rem auto; max-width: 1320px; padding: 0 1rem; }
@@ -33,6 +35,7 @@ h2 { margin: 2.2rem 0 .6rem; text-transform: capitalize; }
 figure { margin: 0; border: 1px solid #e1e5ea; border-radius: 6px; overflow: hidden; }
 video, img { width: 100%; aspect-ratio: 16 / 9; display: block; background: #f6f7f9; }
 figcaption { padding: .6rem .8rem .8rem; }
+img.wide { aspect-ratio: auto; background: none; margin-bottom: 1.2rem; }
 code { background: #f1f3f6; padding: .1em .35em; border-radius: 3px; }
 td { padding: .05rem .8rem .05rem 0; vertical-align: top; } .why { color: #68727e; }
 """
@@ -56,6 +59,7 @@ def make_gallery(wanted: Sequence[str], out: Path | str, quiet: bool = False) ->
             progress.say(f"{name} …")
             _show(name, out)
             _write_page(every, out)
+        _show_cargoes(out)
     return _write_page(every, out)
 
 
@@ -80,6 +84,14 @@ def _show(name: str, out: Path) -> None:
     summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
     (out / f"{_plain(name)}.json").write_text(json.dumps(_telling(summary), indent=1) + "\n", encoding="utf-8")
     render_recording(folder, clip, width=WIDTH, height=HEIGHT, speed=max(speed, ceil(10.0 * lasts / LONGEST) / 10.0))
+
+
+def _show_cargoes(out: Path) -> None:
+    """One picture of the beds of all cargoes that have been run."""
+    beds = {name: out / "runs" / "shapes" / name for name in COLOURS}
+    run = {name: folder for name, folder in beds.items() if (folder / "recording.h5").exists()}
+    if run:
+        paint_cargoes(run, out / CARGOES)
 
 
 def _cheapest(name: str, every: Mapping[str, str]) -> str:
@@ -108,7 +120,11 @@ def _write_page(every: Mapping[str, str], out: Path) -> Path:
     for name, title in every.items():
         if not name.endswith(QUICK):
             groups.setdefault(name.split("/")[0], []).append(_card(name, title, _cheapest(name, every), out))
-    body = "".join(f'<h2>{escape(g)}</h2><div class="presets">{"".join(c)}</div>' for g, c in groups.items())
+    wide = {"shapes": f'<img class="wide" alt="" src="{CARGOES}">'} if (out / CARGOES).exists() else {}
+    body = "".join(
+        f'<h2>{escape(group)}</h2>{wide.get(group, "")}<div class="presets">{"".join(cards)}</div>'
+        for group, cards in groups.items()
+    )
     head = f'<meta charset="utf-8"><title>Cargo Shift Lab</title><style>{STYLE}</style>'
     text = f"<!doctype html><html><head>{head}</head><body><h1>Every experiment of the lab</h1>{body}</body></html>\n"
     path = out / "index.html"

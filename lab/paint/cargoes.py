@@ -1,0 +1,62 @@
+"""Beds of cargoes side by side as they lie, each as large as it fits and in the colour of its grains."""
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+from PIL import Image, ImageDraw
+
+from lab.paint import decorations as deco
+from lab.paint.colours import mark_colours
+from lab.paint.footage import Bed, open_footage
+from lab.paint.painter import Camera, paint_grains, paint_tank, to_discs
+from solvers.runtime import initialise
+
+COLOURS = {
+    "wheat": (222, 184, 105),
+    "rice": (236, 228, 203),
+    "corn": (241, 190, 62),
+    "sunflower": (88, 84, 92),
+    "beans": (156, 62, 48),
+    "soybeans": (226, 203, 148),
+    "sand": (201, 168, 120),
+    "chickpeas": (224, 188, 128),
+}
+PLAIN = (150, 160, 172)  # of any other
+SHADES = 0.12  # by which grains of one cargo differ
+COLUMNS, CELL, EDGE, TEXT = 2, (640, 292), 24, 22  # pixels
+ABOVE = 1.25  # of the bed's height: how much of the tank is shown
+WALL = 5.0  # pixels
+
+
+def paint_cargoes(folders: Mapping[str, Path], out: Path) -> Path:
+    """A picture (PNG) of the first frames of recordings, by the names of their cargoes; raises LabError."""
+    initialise()
+    rows = -(-len(folders) // COLUMNS)
+    image = Image.new("RGB", (COLUMNS * (CELL[0] + EDGE) + EDGE, rows * (CELL[1] + EDGE) + EDGE), deco.PAPER)
+    for k, (name, folder) in enumerate(folders.items()):
+        with open_footage(folder) as footage:
+            cell = _cell(name, Bed(footage, 0, name))
+        image.paste(cell, (EDGE + k % COLUMNS * (CELL[0] + EDGE), EDGE + k // COLUMNS * (CELL[1] + EDGE)))
+    image.quantize(256).save(out, optimize=True)  # a third of the bytes
+    return out
+
+
+def _cell(name: str, bed: Bed) -> Image.Image:
+    """The lower part of a tank, its cargo's name and a scale above it."""
+    wide, high, head = *CELL, round(1.7 * TEXT)
+    place, low, size = bed.position(0), bed.footage.outline.min(axis=0), np.ptp(bed.footage.outline, axis=0)
+    height = min(size[1], ABOVE * (np.nanmax(place[:, 1]) - low[1]))
+    scale = min((wide - 2.0 * WALL) / size[0], (high - head - WALL) / height)
+    camera = Camera(scale, (0.5 * wide - scale * (low[0] + 0.5 * size[0]), high - WALL + scale * low[1]))
+    picture = np.tile(np.array(deco.PAPER, dtype=np.uint8), (high, wide, 1))
+    paint_tank(picture, camera, bed.footage.outline, WALL, deco.WALL, deco.HOLD, bed.footage.open_edges)
+    shade = 1.0 + SHADES * np.random.default_rng(0).uniform(-1.0, 1.0, (len(place), 1))
+    colour = np.clip(shade * COLOURS.get(name, PLAIN), 0.0, 255.0)
+    paint_grains(picture, to_discs(camera, place, bed.radius, bed.angle(0)), colour, mark_colours(colour), bed.edges)
+    picture[:head] = deco.PAPER
+    image = Image.fromarray(picture)
+    draw = ImageDraw.Draw(image)
+    draw.text((0, 0), name, deco.INK, deco.font(TEXT, True), anchor="la")
+    deco.draw_scale_bar(draw, (0.62 * wide, 0.8 * TEXT), 0.2 * wide, scale, 0.8 * TEXT)
+    return image
