@@ -24,7 +24,7 @@ from platformdirs import user_cache_path
 
 from lab.errors import LabError
 from lab.progress import Progress
-from lab.scene import filling_outline
+from lab.scene import build, filling_outline
 from lab.schema import Resolved
 from lab.units import show
 from solvers.filling import clear_of_walls, levelled
@@ -53,7 +53,8 @@ FREE = 0.9  # of its radius: how near a wall a grain of a settled bed may be
 class Settling:
     """How beds are made: in the tank `outline`, with which surface, to which rest, within `limit` (s) at most.
 
-    `settle` false: not at all, the grains start where they are put. `reuse` false: the store is left alone.
+    `settle` false: not at all, the grains start where they are put. `reuse` false: the store is left alone. `disc_step`
+    (s): irregular grains, round ones, are to settle as discs before they settle as they are, in such steps.
     """
 
     outline: tuple[tuple[float, float], ...]
@@ -62,13 +63,21 @@ class Settling:
     limit: float
     settle: bool = True
     reuse: bool = True
+    disc_step: float | None = None
 
 
 def settling(preset: Resolved) -> Settling:
     """How a preset's beds are made. Worlds that are to settle in one batch must agree in it."""
     run, grains = preset.run, preset.grains
     outline = tuple(map(tuple, filling_outline(preset).tolist()))
-    return Settling(outline, grains.surface, run.rest, run.settle_limit, run.settle, grains.reuse_bed)
+    disc_step = build(_of_discs(preset))[0].step if grains.settled_as == "discs" else None
+    return Settling(outline, grains.surface, run.rest, run.settle_limit, run.settle, grains.reuse_bed, disc_step)
+
+
+def _of_discs(preset: Resolved) -> Resolved:
+    """The preset with discs for its round outlines."""
+    grains = replace(preset.grains, table=None, settled_as="outlines")
+    return preset.model_copy(update={"shapes": {}, "grains": grains})
 
 
 def settled(scene: Scene, position: np.ndarray, how: Settling, start: Start, progress: Progress) -> Simulation:
@@ -86,7 +95,10 @@ def settled(scene: Scene, position: np.ndarray, how: Settling, start: Start, pro
     if store and lay(simulation, [store.load(key) for key in keys]):
         progress.note(f"The settled bed was reused from {store.folder}; grains.reuse_bed = false settles it anew.")
         return simulation
-    if how.surface == "undisturbed" or how.outline != _corners(scene):
+    if how.disc_step:
+        simulation.close()
+        simulation = start(scene, _settled_as_discs(scene, position, how, start, progress))
+    elif how.surface == "undisturbed" or how.outline != _corners(scene):
         simulation.close()
         simulation = start(*_poured(scene, position, how, start, progress))
     try:
@@ -103,6 +115,18 @@ def settled(scene: Scene, position: np.ndarray, how: Settling, start: Start, pro
         simulation.close()
         raise
     return simulation
+
+
+def _settled_as_discs(
+    scene: Scene, position: np.ndarray, how: Settling, start: Start, progress: Progress
+) -> np.ndarray:
+    """Where discs (W, n, 2) m of the same sizes come to rest, those of the store if they have been there before."""
+    discs = replace(scene, shapes=None, step=how.disc_step)
+    simulation = settled(discs, position, replace(how, disc_step=None), start, progress)
+    try:
+        return simulation.snapshot()["position"]
+    finally:
+        simulation.close()
 
 
 def _settle(simulation: Simulation, how: Settling, stage: str, progress: Progress) -> bool:

@@ -89,7 +89,8 @@ class GrainsGiven:
     of these and at a tenth of the diameter, or by a table of [diameter, share], each class uniform within ± spread.
     `shares` of a table or of shapes are by number or by mass. `orientation`: by how much irregular grains are turned
     at the start (rad). `surface`, after Spandonidis (2016), section 5.3.1: `solvers/filling.py` says what is done for
-    it. `region`: corners (m) of the part of the tank, such as a funnel in it, in which the grains start.
+    it. `region`: corners (m) of the part of the tank, such as a funnel in it, in which the grains start. `settled_as`:
+    round outlines may settle as discs, into the very bed that these would have.
     """
 
     diameter: Length | None = None
@@ -104,6 +105,7 @@ class GrainsGiven:
     region: Annotated[tuple[tuple[float, float], ...], Unit("m")] | None = None
     bed: str | None = None
     reuse_bed: bool = True
+    settled_as: Literal["outlines", "discs"] = "outlines"
 
 
 @dataclass(frozen=True)
@@ -403,6 +405,7 @@ def _check_shapeless(given: Given) -> None:
     """Raise LabError for what goes with irregular grains alone, where there are none."""
     said = (
         ("grains.orientation", given.grains.orientation, GrainsGiven.orientation),
+        ("grains.settled_as", given.grains.settled_as, GrainsGiven.settled_as),
         ("contact.outlines", given.contact.outlines, ContactGiven.outlines),
         ("contact.nodes", given.contact.nodes, ContactGiven.nodes),
     )
@@ -421,6 +424,8 @@ def _check_shapely(given: Given) -> None:
         raise LabError("grains.bed: lists round grains; leave out the file, or the shapes.")
     if given.grains.table is not None:
         raise LabError("grains.table: shapes have diameters of their own; give these as shapes.NAME.diameter.")
+    if given.grains.settled_as == "discs" and not all(shape.round for shape in given.shapes.values()):
+        raise LabError("grains.settled_as: discs stand for round outlines only; leave it out, or the descriptors.")
     if given.grains.surface == "undisturbed":
         raise LabError(
             "grains.surface: an undisturbed surface is levelled with round grains; take slightly-disturbed or "

@@ -56,6 +56,11 @@ class ShapeGiven:
     diameter: Annotated[float, Unit("m"), Interval(gt=0)] | None = None
     draws: Annotated[int, Interval(ge=1, le=1000)] = 25
 
+    @property
+    def round(self) -> bool:
+        """Whether its outline is a circle."""
+        return self.disc or (self.descriptors is not None and not any(self.descriptors))
+
 
 @dataclass(frozen=True)
 class Shape:

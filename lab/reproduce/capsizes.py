@@ -18,7 +18,7 @@ from lab.reproduce.curves import leading_number
 from lab.reproduce.experiment import Experiment, Row, Told, observed
 from lab.reproduce.rolls import SIZE
 from lab.reproduce.runs import Outcome
-from lab.reproduce.ship import AMPLITUDE, FREQUENCY, LOST, capsize_batches
+from lab.reproduce.ship import FREQUENCY, LOST, capsize_batches
 from lab.scene import vessels
 from solvers.ship.heap import HeapShip, box_heap, roll_with_heap, softening_lever
 from solvers.ship.hydrostatics import metacentric_height, righting_levers
@@ -182,14 +182,19 @@ def _where(frequencies: np.ndarray) -> str:
 
 
 def _heap_beside_grains(found: Mapping[str, Sequence[Outcome]]) -> Row:
-    """The reading that the runs have, in their waves, with their soft start."""
-    steady = [one for runs in found.values() for one in runs if one["roll_amplitude"].value is not None]
+    """The reading that the runs have, in their waves, with their soft start; batches go by their amplitudes."""
+    steady = [
+        (leading_number(name), leading_number(one.setting[FREQUENCY]), one["roll_amplitude"].value)
+        for name, runs in found.items()
+        for one in runs
+        if one["roll_amplitude"].value is not None
+    ]
     quantity = f"{READINGS[0].words}: heap and grains differ by"
     if not steady:
         return observed(quantity, "", "no run", None)
-    size, omega = (np.array([leading_number(one.setting[key]) for one in steady]) for key in (AMPLITUDE, FREQUENCY))
+    size, omega, rolls = np.array(steady).T
     heap, _ = swung(READINGS[0].ship, size, omega, load(PRESET).resolved.waves.soft_start)
-    apart = np.abs(heap - [one["roll_amplitude"].value for one in steady])
+    apart = np.abs(heap - rolls)
     said = f"{apart.mean():.2g} deg on average, {apart.max():.2g} at most ({len(steady)} runs)"
     return observed(quantity, "", said, None)
 

@@ -34,8 +34,8 @@ def cost(quick: bool, beds: int, angle: str = FAR, rate: str = "20 deg/s") -> di
 
 
 def as_discs_and_nodes(preset: str, run: Mapping[str, object], nodes: Sequence[int]) -> dict[str, Batch]:
-    """Discs as discs, as smooth outlines, and by nodes."""
-    circle = {OUTLINE: []}
+    """Discs as discs, as smooth outlines, and by nodes, all from the same beds of discs."""
+    circle = {OUTLINE: [], "grains.settled_as": "discs"}
     return {
         "discs": Batch(preset, {**run, "shapes.grain": False}),
         "smooth": Batch(preset, {**run, **circle}),
@@ -67,6 +67,18 @@ def over(quantity: str, source: str, value: Value | None, reference: Value | Non
     found = quotient(value, reference)
     ours = "not found" if found is None else f"{found[0]:.3f} ± {found[1]:.3f}"
     return observed(f"{quantity}, over discs", source, ours, agrees(*found) if agrees and found else None)
+
+
+def beside(quantity: str, source: str, value: Value | None, reference: Value | None, agrees=None) -> Row:
+    """As `over`, of beds that begin alike: by the differences bed by bed, which scatter less than the beds do."""
+    pairs = zip(value.worlds, reference.worlds, strict=True) if value and reference else ()
+    both = np.array([pair for pair in pairs if None not in pair])
+    if len(both) < 2:
+        return over(quantity, source, value, reference, agrees)
+    apart, mean = both[:, 0] - both[:, 1], both[:, 1].mean()
+    found = 1.0 + apart.mean() / mean, apart.std(ddof=1) / len(both) ** 0.5 / mean
+    ours = f"{found[0]:.3f} ± {found[1]:.3f}"
+    return observed(f"{quantity}, over discs bed by bed", source, ours, agrees(*found) if agrees else None)
 
 
 def is_one(found: float, error: float) -> bool:
@@ -104,11 +116,11 @@ def round_ones(found: Found, measure: str = "critical_angle", quantity: str = "c
     """A measure of round outlines over that of discs, and what they cost."""
     discs, smooth = (found[name][0][measure] for name in ("discs", "smooth"))
     says = {36: "7 to 8 % off", 80: "2 % off"}
-    rows = [observed("discs", "", counted(discs), None), over("smooth outlines", "", smooth, discs, is_one)]
+    rows = [observed("discs", "", counted(discs), None), beside("smooth outlines", "", smooth, discs, is_one)]
     for one in found["nodes"]:
         nodes = one.setting[NODES]
         source, agrees = says.get(nodes, "less than 0.5 % off"), is_one if nodes >= 120 else None
-        rows.append(over(f"{nodes} nodes", source, one[measure], discs, agrees))
+        rows.append(beside(f"{nodes} nodes", source, one[measure], discs, agrees))
     return Told(rows, _cost_figure(found, measure, quantity))
 
 

@@ -8,7 +8,7 @@ import pytest
 from lab.measures.value import over_worlds
 from lab.reproduce.capsizes import NATURAL, READINGS, Scan, _heap_beside_grains, _rows, scan
 from lab.reproduce.runs import Outcome
-from lab.reproduce.ship import AMPLITUDE, FREQUENCY
+from lab.reproduce.ship import AMPLITUDE, FREQUENCY, capsize_batches
 
 BOX_ONCE, BOX_TWICE, SOFT_ONCE, SOFT_TWICE = READINGS
 HEIGHT = 0.055 + 0.34**2 / (12.0 * 0.11) - 0.0926  # m, GM
@@ -57,12 +57,15 @@ def test_what_is_read_off_scans():
 
 def test_the_heap_is_held_against_the_grains_of_the_same_waves():
     """At 4.5 rad/s, well below the resonance, both roll as the linear ship and the row says how far they are apart."""
-    setting = {AMPLITUDE: "17 mm", FREQUENCY: "4.5 rad/s"}
+    batches = capsize_batches(True)
+    assert {key for batch in batches.values() for key in batch.axes} == {FREQUENCY}  # what a run's setting tells
+    assert [batch.changes[AMPLITUDE] for batch in batches.values()] == list(batches)  # and what its batch's name does
+    setting = {FREQUENCY: "4.5 rad/s"}
 
     def run(roll):
         return Outcome(setting, None, "complete", {"roll_amplitude": over_worlds([roll], "deg")}, {})
 
-    said = _heap_beside_grains({"17 mm": [run(11.0), run(np.nan)], "19 mm": [run(31.0)]}).ours
+    said = _heap_beside_grains({"17 mm": [run(11.0), run(np.nan), run(31.0)], "19 mm": [run(np.nan)]}).ours
     mean, most = (float(part.split()[0]) for part in said.split(", "))
     assert mean == pytest.approx(10.0, abs=0.1) and 18.0 < most < 22.0 and "(2 runs)" in said
     assert _heap_beside_grains({"17 mm": [run(np.nan)]}).ours == "no run"
