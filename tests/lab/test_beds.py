@@ -376,3 +376,24 @@ def test_the_cache_is_the_users_own_unless_named(monkeypatch, tmp_path):
     assert "cargo-shift-lab" in str(BedStore().folder)
     monkeypatch.setenv("CARGOLAB_CACHE", str(tmp_path))
     assert BedStore().folder == tmp_path / "beds"
+
+
+@pytest.mark.slow
+def test_round_outlines_lie_in_the_bed_of_discs(store):
+    small = {"tank.width": "40 mm", "tank.height": "60 mm", "tank.roughness": False, "grains.depth": "20 mm"}
+    small |= {"run.accuracy": "draft", "run.repeats": 2}
+    discs, _ = make(load("shapes/box", {**small, "shapes.grain": False}).resolved)
+    bed = discs.snapshot()["position"]
+    discs.close()
+    circles = {"shapes.grain.descriptors": [], "grains.settled_as": "discs"}
+    outlined, _ = make(load("shapes/box", {**small, **circles}).resolved)
+    assert np.abs(outlined.snapshot()["position"] - bed).max() < 1e-3 * 6e-3
+    outlined.close()
+    assert len(list(store.folder.iterdir())) == 4  # the discs' own were used, and not settled anew
+
+
+def test_no_others_settle_as_discs():
+    with pytest.raises(LabError, match="round outlines only"):
+        load("shapes/box", {"grains.settled_as": "discs"})
+    with pytest.raises(LabError, match="goes with irregular grains"):
+        load("tilting/quick", {"grains.settled_as": "discs"})
