@@ -21,6 +21,10 @@ class Row:
     difference: str
     agrees: bool | None
 
+    def __post_init__(self) -> None:
+        if self.agrees is not None:  # numpy's own truth values cannot be kept in a file
+            object.__setattr__(self, "agrees", bool(self.agrees))
+
 
 @dataclass(frozen=True)
 class Told:

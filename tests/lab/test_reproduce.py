@@ -169,3 +169,8 @@ def test_an_order_of_means_is_left_open_where_beds_scatter_more_than_means_diffe
     assert are_ordered([low, high]) is False
     assert are_ordered([high, scattered]) is None and are_ordered([scattered, high]) is None
     assert are_ordered([high, low, None]) is False
+
+
+def test_what_numpy_judged_can_be_kept():
+    row = observed("angle", "", "20 deg", np.float64(1.0) < 2.0)
+    assert json.loads(json.dumps(row.agrees)) is True
