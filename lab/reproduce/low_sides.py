@@ -107,8 +107,8 @@ def _map_figure(runs: Sequence[Outcome]) -> Figure:
     """Where a heap capsizes her, shaded by its reposes, and beds of grains."""
     figure = Figure(figsize=(6.4, 4.2), layout="constrained")
     axes = figure.add_subplot()
-    shares = scan(low_ship(), *FINE).capsized
-    shade = axes.pcolormesh(FINE[1], FINE[0], 100.0 * shares, cmap="Oranges", shading="nearest", vmin=0.0, vmax=200.0)
+    shares = np.ma.masked_equal(scan(low_ship(), *FINE).capsized, 0.0)
+    shade = axes.pcolormesh(FINE[1], FINE[0], shares, cmap="Oranges", shading="nearest", vmin=-0.2, vmax=2.0)
     shade.set_rasterized(True)
     kinds = {"no bed": "none", "some": "left", "every bed": "full"}
     for name, filled in kinds.items():
