@@ -39,7 +39,7 @@ class Experiment:
     """`states` says in words what the source (its `section`) reports; `batches(quick)` what is run, by name.
 
     `tell` compares the outcomes of the batches, each a list by the points of its grid. `lost` says what the quick runs
-    leave out; `shown` is the batch whose last point is pictured, at this fraction of its time; `remark` what one has
+    leave out; `shown` is the batch of which a `point`, mostly the last, is pictured, at this fraction of its time; `remark` what one has
     to know to read the rows, and why they differ where they do.
     """
 
@@ -52,6 +52,7 @@ class Experiment:
     lost: str
     shown: tuple[str, float]
     remark: str = ""
+    point: int = -1
 
 
 def stated(quantity: str, source: float, ours: Value | None, within: float) -> Row:

@@ -158,6 +158,7 @@ EXPERIMENTS = [
         "cargo slides and takes her over, as the source saw it of its barge in waves of 17 and 19 mm: one large swing, "
         "the cargo stays where it has slid, and the next swings capsize her. Grains do so in lower waves than a heap, "
         "which needs no time to slide and never goes past its repose.",
+        point=0,
     ),
     Experiment(
         "barge-map",

@@ -131,7 +131,9 @@ def _picture(page: Page, experiment: Experiment, found: Mapping[str, list[Outcom
     batch, fraction = experiment.shown
     path = page.folder / f"{page.name}-{experiment.name}-picture.png"
     try:
-        poster(found[batch][-1].folder, path, fraction=fraction, width=PICTURE[0], height=PICTURE[1], world=0)
+        poster(
+            found[batch][experiment.point].folder, path, fraction=fraction, width=PICTURE[0], height=PICTURE[1], world=0
+        )
     except LabError:
         return ""
     return path.name
