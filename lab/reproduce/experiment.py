@@ -39,8 +39,8 @@ class Experiment:
     """`states` says in words what the source (its `section`) reports; `batches(quick)` what is run, by name.
 
     `tell` compares the outcomes of the batches, each a list by the points of its grid. `lost` says what the quick runs
-    leave out; `shown` is the batch of which a `point`, mostly the last, is pictured, at this fraction of its time; `remark` what one has
-    to know to read the rows, and why they differ where they do.
+    leave out; `shown` is the batch of which a `point`, mostly the last, is pictured, at this fraction of its time;
+    `remark` what one has to know to read the rows, and why they differ where they do.
     """
 
     name: str
