@@ -102,8 +102,14 @@ def describe(found: Outcome) -> str:
 
 
 def frozen(recording: Recording) -> tuple[np.ndarray, np.ndarray, float | None] | None:
-    """Times (s), roll (rad) and when she capsized, of the ship with her cargo frozen; None where she cannot be made."""
-    return _frozen(recording.path, float(recording.series["time"][-1]))
+    """Times (s), roll (rad) and when she capsized, of the ship with her cargo frozen; None where she cannot be made.
+
+    She sails for as long as the run was to last, though its own ship may have capsized long before.
+    """
+    lasted, series = float(recording.series["time"][-1]), recording.series
+    if np.any(series["capsized"][-1] >= 0.0):
+        lasted = max(lasted, recording.preset["run"]["duration"])
+    return _frozen(recording.path, lasted)
 
 
 @lru_cache(maxsize=4)

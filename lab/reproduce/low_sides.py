@@ -98,8 +98,9 @@ def tell_map(found: Mapping[str, Sequence[Outcome]]) -> Told:
         lowest = [leading_number(one.setting[AMPLITUDE]) for one in there if _lost(one)[0] > 0]
         says = f"from {min(lowest):g} mm on" if lowest else "in none of these waves"
         rows.append(observed(f"{omega:g} rad/s: loose cargo capsizes her", "", says, None))
-    alone = sum(one["frozen_capsized_at"].value is not None for one in runs)
-    rows.append(observed("frozen cargo", "does not", f"in {alone} of {len(runs)} waves", alone == 0))
+    alone = [leading_number(one.setting[AMPLITUDE]) for one in runs if one["frozen_capsized_at"].value is not None]
+    says = f"in {len(alone)} of {len(runs)} waves" + (f", from {min(alone):g} mm on" if alone else "")
+    rows.append(observed("frozen cargo", "not in 17 and 19 mm", says, not alone or min(alone) > 19.0))
     return Told(rows, _map_figure(runs))
 
 

@@ -26,8 +26,8 @@ LESS = {
         accuracy`).""",
     "shapes": f"""Beds are run at draft accuracy ({LEVELS["draft"].error}); those of the tilting box are 80 mm deep for
         110, 6 where the source has 12, and 12 of random phases for 25, tilted at 20 deg/s, round grains at 10.""",
-    "ship": f"""Grains are of 6 mm for the source's 3, one bed for each wave but at the edge of capsize; ships are run
-        at draft accuracy ({LEVELS["draft"].error}) for 30 s.""",
+    "ship": f"""Grains are of 6 mm for the source's 3 (of 10 in the map), one bed for each wave but at the edge of
+        capsize; ships are run at draft accuracy ({LEVELS["draft"].error}) for 30 s.""",
 }
 VERDICTS = {True: "yes", False: "**no**", None: ""}
 

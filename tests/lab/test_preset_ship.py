@@ -2,6 +2,7 @@
 
 import json
 from math import inf, pi, radians
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -265,6 +266,21 @@ def test_measures_of_frozen_cargo(rolling, monkeypatch):
     lost = ship_roll.measure(rolling)
     assert (lost["frozen_amplitude"].value, lost["frozen_capsized_at"].value) == (None, 10.0)
     assert lost["frozen_largest_roll"].value == pytest.approx(72.0, rel=1e-3)
+
+
+def test_frozen_cargo_sails_on_when_the_loose_has_capsized_the_ship(monkeypatch):
+    """To the end that the run was to have; beside a run that was broken off, no longer than that."""
+    said = load(BARGE).resolved
+    vessel = make_vessel(said.ship, said.water, said.waves, said.grains.diameter, said.run.gravity)
+    monkeypatch.setattr(ship_roll, "_vessel", lambda _: vessel)
+
+    def sailed(name: str, capsized: float) -> float:
+        series = {"time": np.array([0.0, 0.5]), "capsized": np.array([[-1.0], [capsized]])}
+        found = ship_roll.frozen(SimpleNamespace(path=name, series=series, preset={"run": {"duration": 2.0}}))
+        return found[0][-1]
+
+    assert sailed("lost", 0.5) == pytest.approx(2.0, abs=ship_roll.FROZEN_INTERVAL)
+    assert sailed("broken off", -1.0) == pytest.approx(0.5, abs=ship_roll.FROZEN_INTERVAL)
 
 
 def test_vessels_without_a_limit():

@@ -72,8 +72,12 @@ def test_the_map_tells_the_lowest_waves_that_capsize_her_and_where_frozen_cargo_
         run(25, 4.0, [np.nan, np.nan], np.nan),
     ]
     told = tell_map({"low sides": runs})
-    assert [row.ours for row in told.rows] == ["in none of these waves", "from 15 mm on", "in 1 of 4 waves"]
-    assert [row.agrees for row in told.rows] == [None, None, False]
+    assert [row.ours for row in told.rows] == [
+        "in none of these waves",
+        "from 15 mm on",
+        "in 1 of 4 waves, from 25 mm on",
+    ]
+    assert [row.agrees for row in told.rows] == [None, None, True]
     points = [line for line in told.figure.axes[0].lines if len(line.get_xdata())]
     assert [(line.get_marker(), line.get_fillstyle()) for line in points] == [
         ("o", "left"),
