@@ -5,16 +5,18 @@ import signal
 import subprocess
 import sys
 import time
+from types import SimpleNamespace
 
 import h5py
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
 from lab import reproduce as package
 from lab.errors import LabError
 from lab.measures.value import over_worlds
 from lab.presets import load
-from lab.reproduce import REPORTS, experiments, reproduce, runs, workers
+from lab.reproduce import REPORTS, experiments, outlines, reproduce, runs, workers
 from lab.reproduce.experiment import Experiment, Told, counted, observed, ordered, stated
 from lab.reproduce.outlines import are_ordered
 from lab.reproduce.report import write_report
@@ -169,6 +171,24 @@ def test_an_order_of_means_is_left_open_where_beds_scatter_more_than_means_diffe
     assert are_ordered([low, high]) is False
     assert are_ordered([high, scattered]) is None and are_ordered([scattered, high]) is None
     assert are_ordered([high, low, None]) is False
+
+
+def test_round_outlines_are_judged_bed_by_bed_before_they_slide(monkeypatch):
+    """Two beds of which one shifts half as far again: smooth outlines follow each to 1 %, 120 nodes lag by 2 %."""
+    tilt = np.linspace(0.0, 30.0, 61)
+    monkeypatch.setattr(outlines, "shift_curve", lambda recording, world: (tilt, 1e-4 * tilt * recording.slopes[world]))
+    monkeypatch.setattr(outlines, "_beside_cost", lambda found: (None, Figure().add_subplot()))
+
+    def ran(*stretch, **setting):
+        one = outcome(setting, critical_angle=over_worlds([25.0, 35.0], "deg"))
+        one.__dict__["recording"] = SimpleNamespace(worlds=2, slopes=np.multiply((1.0, 1.5), stretch))
+        return one
+
+    nodes = [ran(0.9, 0.9, **{outlines.NODES: 36}), ran(0.98, 0.98, **{outlines.NODES: 120})]
+    told = outlines.round_ones({"discs": [ran(1.0, 1.0)], "smooth": [ran(1.01, 0.99)], "nodes": nodes})
+    said = [(row.ours, row.agrees) for row in told.rows[:4]]
+    assert said[0] == ("1.25 ± 0.35 mm (2 beds)", None)
+    assert said[1:] == [("0.998 ± 0.010", True), ("0.900 ± 0.020", None), ("0.980 ± 0.004", False)]
 
 
 def test_what_numpy_judged_can_be_kept():
