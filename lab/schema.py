@@ -426,6 +426,8 @@ def _check_shapely(given: Given) -> None:
         raise LabError("grains.table: shapes have diameters of their own; give these as shapes.NAME.diameter.")
     if given.grains.settled_as == "discs" and not all(shape.round for shape in given.shapes.values()):
         raise LabError("grains.settled_as: discs stand for round outlines only; leave it out, or the descriptors.")
+    if given.grains.settled_as == "discs" and not given.run.settle:
+        raise LabError("grains.settled_as: without run.settle no bed is settled; leave out either.")
     if given.grains.surface == "undisturbed":
         raise LabError(
             "grains.surface: an undisturbed surface is levelled with round grains; take slightly-disturbed or "

@@ -397,3 +397,6 @@ def test_no_others_settle_as_discs():
         load("shapes/box", {"grains.settled_as": "discs"})
     with pytest.raises(LabError, match="goes with irregular grains"):
         load("tilting/quick", {"grains.settled_as": "discs"})
+    circles = {"shapes.grain.descriptors": [], "grains.settled_as": "discs"}
+    with pytest.raises(LabError, match="no bed is settled"):
+        load("shapes/box", {**circles, "run.settle": False})
