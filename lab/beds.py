@@ -130,8 +130,12 @@ def _settled_as_discs(
 
 
 def _settle(simulation: Simulation, how: Settling, stage: str, progress: Progress) -> bool:
+    def tell(time: float) -> None:
+        progress.reach(time)
+        progress.watch(simulation)
+
     progress.start(stage, how.limit)
-    rests = simulation.settle(how.rest, how.limit, progress.reach)
+    rests = simulation.settle(how.rest, how.limit, tell)
     progress.finish()
     return rests
 

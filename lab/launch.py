@@ -23,6 +23,7 @@ from lab.progress import Progress
 from lab.recording import BUFFER_BYTES, FLUSH_EVERY, Outlines, Recorder, new_recording
 from lab.recording.layout import SHIP_SERIES
 from lab.scene import build
+from lab.schema import Resolved
 from lab.units import show
 from solvers.errors import BadState
 from solvers.runtime import available_cores, choose_arch
@@ -33,6 +34,12 @@ from solvers.simulation import Simulation
 # Steps of a call of the solver, times the grains of a world: so long Ctrl-C waits, some tenths of a second for each
 # world on a core. It must not depend on the company or on the clock: between calls grains may get their numbers anew.
 A_CALL = 2_000_000
+
+
+def outlines_of(preset: Resolved, scene: Scene) -> Outlines | None:
+    """The outlines of a preset's irregular grains, None where all are discs."""
+    shapes = scene.shapes
+    return Outlines(shapes.outlines, classes(preset), shapes.which) if shapes else None
 
 
 @dataclass(frozen=True)
@@ -60,12 +67,6 @@ class Run:
         afloat = bool(self.scene.vessels)
         return choose_schedule(settings.schedule, arch, worlds, count, threads, afloat) != "per-band"
 
-    @property
-    def outlines(self) -> Outlines | None:
-        """The outlines of irregular grains, None where all are discs."""
-        shapes = self.scene.shapes
-        return Outlines(shapes.outlines, classes(self.loaded.resolved), shapes.which) if shapes else None
-
     def make_recording(self, steered: bool = False) -> None:
         """Make the recording, without rows yet, of a run that a hand may steer. Raises LabError (`new_recording`)."""
         preset, scene = self.loaded.resolved, self.scene
@@ -81,7 +82,7 @@ class Run:
             fixed=scene.fixed,
             open_edges=scene.open_edges,
             parts={name: part.points for name, part in preset.parts.items()},
-            shapes=self.outlines,
+            shapes=outlines_of(preset, scene),
             steered=steered,
         )
 

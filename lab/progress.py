@@ -2,10 +2,14 @@
 
 import sys
 import time
+from typing import TYPE_CHECKING
 
 from rich.console import Console
 from rich.progress import BarColumn, TaskProgressColumn, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 from rich.progress import Progress as Bar
+
+if TYPE_CHECKING:
+    from solvers.simulation import Simulation
 
 
 class Progress:
@@ -59,6 +63,9 @@ class Progress:
         self.bar.update(self.task, completed=done)
         if self.whole is not None and self.total:
             self.bar.update(self.whole, completed=self.done + self.worth * min(done / self.total, 1.0))
+
+    def watch(self, simulation: "Simulation") -> None:
+        """Look at the beds that come to rest; there is nobody here who does."""
 
     def count_one(self, sentence: str) -> None:
         """One more of the whole is done, of which each is worth 1."""

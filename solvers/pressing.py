@@ -31,6 +31,10 @@ class Pressing:
     force: np.ndarray
 
 
+UNTOUCHED = Pressing(np.zeros((0, 2), dtype=int), np.zeros((0, 2)), np.zeros((0, 2)))
+"""Of grains at which nobody looked, or that do not touch."""
+
+
 @ti.data_oriented
 class Presser:
     """Reads the lists of contacts; what they remember stays as it is."""

@@ -1,22 +1,25 @@
 """What has been seen of a live experiment, as the painter looks at it (`lab.paint.footage.Footage`), growing."""
 
+import json
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
 import numpy as np
 
-from lab.launch import pose_of
+from lab.launch import outlines_of, pose_of
 from lab.paint.footage import Bed
 from lab.paint.painter import Edges
 from lab.paint.sea import Sea
+from lab.presets import LoadedPreset
 from lab.recording import Outlines
 from lab.scene import vessels
 from lab.schema import Resolved
-from lab.view.live import Live, Seen
+from lab.view.live import Seen
 from solvers.pressing import Pressing
 from solvers.ship.hydrostatics import righting_levers
+from solvers.simulation import Simulation
 
 HEELS = 91
 MOST_BYTES = 2**29  # of frames kept in memory; the recording has all
@@ -40,14 +43,21 @@ class Scenery:
     step: float
 
     @classmethod
-    def of(cls, live: Live, preset: dict, name: str) -> "Scenery":
-        """That of an experiment that has just begun."""
-        scene, shapes = live.run.scene, live.run.outlines
+    def of(cls, loaded: LoadedPreset, folder: Path, simulation: Simulation) -> "Scenery":
+        """That of a simulation of a preset, as it is or while its bed is made."""
+        preset, scene = loaded.resolved, simulation.scene
         kind = np.zeros(scene.radius.shape, dtype=int) if scene.kind is None else scene.kind
-        parts = {name: part.points for name, part in live.preset.parts.items()}
-        lines = {name: np.array(points) for name, points in parts.items()}
+        lines = {name: np.array(part.points) for name, part in preset.parts.items()}
         bounds = scene.outline, tuple(scene.open_edges), scene.fixed
-        return cls(preset, name, live.folder, scene.radius, kind, *bounds, lines, shapes, live.simulation.dt)
+        said, shapes = json.loads(preset.model_dump_json()), outlines_of(preset, scene)
+        return cls(said, loaded.name, folder, scene.radius, kind, *bounds, lines, shapes, simulation.dt)
+
+    def for_filling(self, top: float) -> "Scenery":
+        """Without a ship around the tank, which is cut off at this height (m) if it goes on above the grains."""
+        above = self.outline[:, 1] > top
+        cut = np.column_stack([self.outline[:, 0], np.minimum(self.outline[:, 1], top)])
+        lid = tuple(int(k) for k in np.nonzero(above & np.roll(above, -1))[0])
+        return replace(self, preset={**self.preset, "ship": None}, outline=cut, open_edges=(*self.open_edges, *lid))
 
 
 class LiveFootage:

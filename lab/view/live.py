@@ -42,6 +42,12 @@ class Seen:
     grains: Mapping[str, np.ndarray]
     pressing: Pressing
 
+    @classmethod
+    def of(cls, simulation: Simulation, rows: Mapping[str, np.ndarray], pressing: Pressing) -> "Seen":
+        """What stands now in a simulation of which these rows were observed."""
+        grains = {name: values.astype(np.float32) for name, values in simulation.snapshot().items()}
+        return cls(simulation.time, {**rows, "part": simulation.part_places()}, grains, pressing)
+
     @property
     def bytes(self) -> int:
         """Memory that it takes."""
@@ -123,9 +129,7 @@ class Live:
 
     def look(self) -> Seen:
         """What stands now."""
-        more = {"part": self.simulation.part_places(), **self._waves()}
-        grains = {name: values.astype(np.float32) for name, values in self.simulation.snapshot().items()}
-        return Seen(self.time, {**self.rows, **more}, grains, self.simulation.pressing())
+        return Seen.of(self.simulation, {**self.rows, **self._waves()}, self.simulation.pressing())
 
     def _record(self) -> dict[str, np.ndarray]:
         """Observe, and add a row to the series and, where one is due, to the frames; gives what was observed."""

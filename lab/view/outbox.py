@@ -6,7 +6,7 @@ from multiprocessing.connection import Connection
 
 
 class Outbox:
-    """Pairs of a word and what belongs to it, in their order; one of which only the newest counts replaces the last.
+    """Pairs of a word and what belongs to it, in their order; of some only the newest counts, and older ones go.
 
     `finish` waits until all is sent. Raises BrokenPipeError once the window is gone.
     """
@@ -22,9 +22,9 @@ class Outbox:
         if not self._thread.is_alive():
             raise BrokenPipeError
         with self._changed:
-            if newest and self._pairs and self._pairs[-1][0] == word:
-                self._pairs.pop()
-            self._pairs.append((word, what))
+            if newest:
+                self._pairs = deque(pair for pair in self._pairs if pair[0] != word or not pair[2])
+            self._pairs.append((word, what, newest))
             self._changed.notify()
 
     def finish(self) -> None:
@@ -40,8 +40,8 @@ class Outbox:
                 self._changed.wait_for(lambda: self._pairs or self._finished)
                 if not self._pairs:
                     return
-                pair = self._pairs.popleft()
+                word, what, _ = self._pairs.popleft()
             try:
-                self._pipe.send(pair)
+                self._pipe.send((word, what))
             except (BrokenPipeError, ConnectionResetError):
                 return

@@ -94,7 +94,7 @@ class Page:
         """Parts of the stage for the tank: all of it, or what is right of the plot or below it."""
         left, top, right, bottom = self.stage
         width, height = (self.u(side) for side in PLOT)
-        if shown.look.inset == "nothing":
+        if shown.curve == "nothing":
             return [self.stage]
         if shown.look.frame == "earth":  # which has room beside the tank
             return [(left + width // 2, top, right, bottom)]
@@ -199,7 +199,7 @@ class Page:
         elif shown.look.overlay == "velocities":
             paint_strokes(stage, self._velocity_strokes(shown, moved), deco.INK)
         self._mark(stage, shown, moved)
-        if shown.look.inset != "nothing":
+        if shown.curve != "nothing":
             _put(stage, self._curve(shown), 0, 0)
         return stage
 
@@ -311,13 +311,13 @@ class Page:
         """A small plot of what the experiment does, drawn anew a few times a second."""
 
         def drawn() -> Image.Image:
-            drawing = CURVES[shown.look.inset](shown.footage, shown.frame)
+            drawing = CURVES[shown.curve](shown.footage, shown.frame)
             labels, colours = (drawing.across, drawing.upwards), deco.SERIES[: len(drawing.curves)]
             edge, size = self.u(0.5), (self.u(PLOT[0] - 1.5), self.u(PLOT[1] - 1.5))
             plot = deco.LivePlot(size, drawing.curves, colours, labels, 0.9 * TEXT * self.unit)
             return ImageOps.expand(plot.picture(drawing.counts), edge, deco.PAPER)
 
-        return self._still("plot", (shown.look.inset, id(shown.footage), shown.playhead), drawn, CURVE_ANEW)
+        return self._still("plot", (shown.curve, id(shown.footage), shown.playhead), drawn, CURVE_ANEW)
 
     # The column
 

@@ -9,8 +9,13 @@ from lab.view.shown import Shown
 
 
 def clock(shown: Shown) -> str:
-    """The time, and whether it goes on."""
-    state = "running" if shown.going else "paused" if shown.playhead is None else "looking back"
+    """The time, and whether it goes on; how far the bed is while it is made."""
+    if shown.making:
+        return shown.status
+    if shown.playhead is not None:
+        state = "looking back"
+    else:
+        state = "ended" if shown.over else "running" if shown.going else "paused"
     return f"t = {number(shown.footage.row_time(shown.frame), 2)} s, {state}"
 
 
@@ -19,6 +24,8 @@ def readings(shown: Shown) -> list[str]:
     limit = "no limit" if np.isinf(shown.pace) else f"limit {shown.pace:g}"
     footage, frame = shown.footage, shown.frame
     count = footage.radius.size
+    if shown.making:
+        return [f"{count} grains"]
     found = [
         f"{shown.factor:.2f} of real time ({limit})",
         _pose(shown),

@@ -57,7 +57,7 @@ class Session(Shown):
     def _restart(self, overrides: Mapping) -> None:
         """Begin anew, with what a restart was asked for."""
         self.overrides = dict(overrides)
-        self.footage, self.values = None, {}
+        self.footage, self.values, self._own, self.making = None, {}, {}, True
         self.going, self.playhead, self.factor, self.over = False, None, 0.0, ""
         self.status = "starting …"
         folder = self.out or RENDERS / "view" / self.name.removesuffix(".toml")
@@ -77,16 +77,25 @@ class Session(Shown):
 
     def _miss(self) -> None:
         """The experiment's process is gone."""
-        self.over, self.going = self.over or f"the experiment broke off; {self.folder} has what it recorded.", False
+        self.over, self.going = self.over or f"the experiment broke off; {self.left}.", False
+
+    @property
+    def left(self) -> str:
+        """What is left of an experiment that did not end by itself."""
+        return "nothing was recorded yet" if self.making else f"{self.folder} has what was recorded"
 
     def _on_told(self, sentence: str) -> None:
-        if self.footage is None:
+        if self.making:
             self.status = sentence
         else:
             self.say(sentence)
 
+    def _on_makes(self, scenery: Scenery) -> None:
+        self.footage, self.playhead = LiveFootage(scenery), None
+
     def _on_ready(self, what: tuple[Scenery, dict]) -> None:
         scenery, own = what
+        self.making = False
         self.footage = LiveFootage(scenery)
         if self.footage.sea:
             self.look.inset = "turn"
@@ -263,6 +272,8 @@ class Session(Shown):
 
     def _end_experiment(self) -> None:
         self._send("end")
+        if self.making:  # nothing is recorded yet, and it listens no sooner than its bed is ready
+            self._process.terminate()
         until = time.monotonic() + PATIENCE
         while self._process.is_alive() and time.monotonic() < until:
             try:  # what it still has to say must not hold it up
@@ -283,7 +294,7 @@ def _resolved(preset: Mapping):
 
 
 def _next(words: tuple, now: str) -> str:
-    return words[(words.index(now) + 1) % len(words)]
+    return words[(words.index(now) + 1) % len(words) if now in words else 0]
 
 
 def _faster(steps: int) -> Callable[[Session], None]:

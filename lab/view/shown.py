@@ -27,8 +27,8 @@ class Shown:
     """An experiment as it is shown.
 
     values: its controls, as a hand has set them (SI); playhead: the frame shown, None for the newest; pace: how much of
-    real time it is held to, and factor: how much it reaches; status: what it does before its first frame; over: how it
-    ended; keys: what keys are called and do.
+    real time it is held to, and factor: how much it reaches; making: whether its bed is still being made, status: how
+    far that is; over: how it ended; keys: what keys are called and do.
     """
 
     name: str
@@ -37,12 +37,18 @@ class Shown:
     keys: list[tuple[str, str]]
     footage: LiveFootage | None = None
     going: bool = False
+    making: bool = True
     playhead: int | None = None
     pace: float = 1.0
     factor: float = 0.0
     status: str = ""
     over: str = ""
     _said: tuple[str, float] = "", 0.0
+
+    @property
+    def curve(self) -> str:
+        """The curve that is drawn: of a bed that is made how it comes to rest."""
+        return "energy" if self.making else self.look.inset
 
     def say(self, sentence: str) -> None:
         """Show a sentence for a while."""

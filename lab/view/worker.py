@@ -1,11 +1,10 @@
 """The live experiment in a process of its own, so that pictures and grains do not wait for each other.
 
 Between the processes go pairs of a word and what belongs to it. To the experiment: `set` (name, value), `go`, `pace`,
-`piece`, `keep` (folder), `end`. From it: `told`, `ready` (Scenery), `seen` (Seen, pace), `kept` (folder),
-`over` (sentence).
+`piece`, `keep` (folder), `end`. From it: `told`, `makes` (Scenery of a bed that is not ready yet), `ready` (Scenery,
+own motion), `seen` (Seen, pace), `kept` (folder), `over` (sentence).
 """
 
-import json
 import math
 import shutil
 import signal
@@ -16,14 +15,16 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 
 from lab.errors import LabError
-from lab.presets import load
+from lab.presets import LoadedPreset, load
 from lab.progress import Progress
 from lab.recording import FILE_NAME, Recorder, mend_recording
 from lab.view.footage import Scenery
-from lab.view.live import Live, own_motion, under_a_hand
+from lab.view.live import Live, Seen, own_motion, under_a_hand
 from lab.view.outbox import Outbox
 from solvers import runtime
 from solvers.errors import BadState, Unavailable
+from solvers.pressing import UNTOUCHED
+from solvers.simulation import Simulation
 
 A_LOOK = 0.03  # s, the shortest time between two pictures sent
 IDLE = 0.01  # s between looks at what is asked, while nothing runs
@@ -31,11 +32,13 @@ A_CALL = 100_000  # grain-steps between looks at what is asked, some millisecond
 
 
 class Told(Progress):
-    """Progress that goes to the person at the window."""
+    """Progress that goes to the person at the window, with pictures of the bed of a preset as it is made."""
 
-    def __init__(self, outbox: Outbox) -> None:
+    def __init__(self, outbox: Outbox, loaded: LoadedPreset, folder: Path) -> None:
         super().__init__(quiet=True)
         self._outbox, self._stage = outbox, ""
+        self._loaded, self._folder = loaded, folder
+        self._watched, self._sent = None, -math.inf
 
     def start(self, stage: str, total: float | None, worth: float = 0.0) -> None:
         """Begin a stage."""
@@ -47,6 +50,18 @@ class Told(Progress):
         """Say how far it is."""
         super().reach(done)
         self._outbox.send("told", f"{self._stage}: {done:.2f} s", newest=True)
+
+    def watch(self, simulation: Simulation) -> None:
+        """Show the grains, without their contacts."""
+        if time.monotonic() - self._sent < A_LOOK:
+            return
+        seen = Seen.of(simulation, simulation.observe(), UNTOUCHED)
+        if simulation is not self._watched:
+            self._watched = simulation
+            top = float(seen.grains["position"][..., 1].max() + 2.0 * simulation.scene.radius.max())
+            self._outbox.send("makes", Scenery.of(self._loaded, self._folder, simulation).for_filling(top))
+        self._outbox.send("seen", (seen, 0.0), newest=True)
+        self._sent = time.monotonic()
 
 
 class Worker:
@@ -153,9 +168,9 @@ def serve(pipe: Connection, name: str, overrides: Mapping, folder: Path, cores: 
 
 def _run(name: str, overrides: Mapping, folder: Path, pipe: Connection, outbox: Outbox) -> None:
     loaded = load(name, overrides)
-    with Live(under_a_hand(loaded), folder, Told(outbox)) as live:
-        preset = json.loads(live.preset.model_dump_json())
-        outbox.send("ready", (Scenery.of(live, preset, loaded.name), own_motion(loaded.resolved)))
+    handed = under_a_hand(loaded)
+    with Live(handed, folder, Told(outbox, handed, folder)) as live:
+        outbox.send("ready", (Scenery.of(handed, folder, live.simulation), own_motion(loaded.resolved)))
         try:
             Worker(live, pipe, outbox).serve()
         except BadState as error:

@@ -1,6 +1,7 @@
 """An experiment under a hand: recorded, and the same again, bit for bit."""
 
 import json
+from types import SimpleNamespace
 
 import h5py
 import numpy as np
@@ -11,6 +12,7 @@ from lab.paint.footage import open_footage
 from lab.presets import load
 from lab.progress import Progress
 from lab.recording import open_recording
+from lab.view import worker
 from lab.view.live import Live, own_motion, under_a_hand
 from lab.view.replay import replay
 
@@ -33,6 +35,25 @@ def steered(tmp_path_factory):
             live.set("diameter", 4e-3)
         live.close()
     return folder
+
+
+def test_a_bed_can_be_watched_as_it_is_made(tmp_path, monkeypatch):
+    """Its grains fall, and stand still at the end, a centre of mass ever lower."""
+
+    said = []
+    box = SimpleNamespace(send=lambda word, what, newest=False: said.append((word, what)))
+    monkeypatch.setattr(worker, "A_LOOK", 0.0)
+    loaded = under_a_hand(load("tilting/quick", {**SMALL, "grains.reuse_bed": False}))
+    with Live(loaded, tmp_path / "run", worker.Told(box, loaded, tmp_path / "run")) as live:
+        lies = live.look().grains["position"]
+    words = [word for word, _ in said if word != "told"]
+    assert words[0] == "makes" and words.count("makes") in (1, 2) and words.count("seen") > 5
+    scenery = next(what for word, what in said if word == "makes")
+    assert scenery.preset["ship"] is None and scenery.radius.shape == lies.shape[:2]
+    places = [what[0].grains["position"] for word, what in said if word == "seen"]
+    heights = [place[..., 1].mean() for place in places]
+    assert heights[0] > heights[-1] + 1e-3
+    assert np.abs(places[-1] - lies).max() < 1e-5
 
 
 def test_the_recording_tells_what_was_done(steered):

@@ -24,6 +24,20 @@ def test_nobody_looks_and_it_goes_on_and_the_newest_is_what_is_seen_then():
     assert not here.poll()
 
 
+def test_the_newest_of_each_that_is_only_looked_at_and_all_of_the_rest():
+    here, there = Pipe()
+    outbox = Outbox(there)
+    outbox.send("told", LARGE)  # which the pipe is full of
+    outbox.send("told", "kept")
+    for k in range(50):
+        outbox.send("told", k, newest=True)
+        outbox.send("seen", k, newest=True)
+    found = [here.recv() for _ in range(4)]
+    outbox.finish()
+    assert found[1:] == [("told", "kept"), ("told", 49), ("seen", 49)]
+    assert not here.poll()
+
+
 def test_it_ends_with_the_window():
     here, there = Pipe()
     outbox = Outbox(there)

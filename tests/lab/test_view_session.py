@@ -6,6 +6,7 @@ import shutil
 import subprocess
 import sys
 import time
+from dataclasses import replace
 from multiprocessing import Pipe
 from pathlib import Path
 
@@ -21,7 +22,7 @@ from lab.view.controls import CONTROLS
 from lab.view.footage import Scenery
 from lab.view.live import Seen, own_motion, under_a_hand
 from lab.view.page import PLOT
-from lab.view.readings import readings
+from lab.view.readings import clock, readings
 from lab.view.session import KEYS, Session
 from solvers.pressing import NOBODY, Pressing
 from solvers.runtime import initialise
@@ -42,6 +43,9 @@ class NoProcess:
         return False
 
     def join(self, _: float) -> None:
+        pass
+
+    def terminate(self) -> None:
         pass
 
 
@@ -285,7 +289,8 @@ def test_an_experiment_that_broke_off_is_told_once_with_where_its_recording_is(o
     session, pipes, _ = opened
     pipes[-1].close()
     session.tick()
-    assert session.said == f"the experiment broke off; {session.folder} has what it recorded."
+    assert session.said == f"the experiment broke off; {session.folder} has what was recorded."
+    assert clock(session) == "t = 0.40 s, ended"
     assert not session.going
     for name in KEYS:  # none brings the window down
         if name not in ("escape", "r", "s"):
@@ -346,6 +351,40 @@ def test_keys_change_the_picture(opened, overlay):
     before = session.picture()
     session.key(overlay)
     assert np.any(session.picture() != before)
+
+
+def test_a_bed_is_seen_while_it_is_made_and_keys_do_no_harm(opened):
+    """The session starts anew; grains fall into a tank that is higher than its own, and the hand has no hold yet."""
+    session, pipes, place = opened
+    scenery = session.footage.scenery
+    session.look.inset = "levers"  # which a ship had
+    session.restart()
+    assert session.making and session.footage is None
+    made = replace(scenery, outline=scenery.outline * [1.0, 30.0]).for_filling(0.12)
+    assert made.outline[:, 1].max() == 0.12 and len(made.open_edges) == 1  # no lid so high up that grains are specks
+    for message in ("told", "pouring …"), ("makes", made), ("seen", (seen(place + np.array([0.0, 0.05]), 0.0), 0.0)):
+        pipes[-1].send(message)
+    session.tick()
+    high = session.picture()
+    pipes[-1].send(("seen", (seen(place, 0.2), 0.0)))
+    pipes[-1].send(("told", "pouring: 0.20 s"))
+    session.tick()
+    assert clock(session) == "pouring: 0.20 s" and readings(session) == [f"{place.shape[1]} grains"]
+    low = session.picture()
+    at = np.round(session.page.tank_camera(session).pixels(place[0] + [2e-4, 0.0])).astype(int)
+    changed = np.abs(high.astype(int) - low)[at[:, 1], at[:, 0]].max(axis=1) > 20
+    assert changed.mean() > 0.6
+    for name in KEYS.keys() - {"escape", "r", "s"}:
+        session.key(name)
+        session.picture()
+    session.press(*at[0])
+    session.release(*at[0])
+    session.wheel(1.0, 600, 400)
+    pipes[-1].send(("ready", (scenery, {"tilt": 0.3})))
+    pipes[-1].send(("seen", (seen(place, 0.0), 0.5)))
+    session.tick()
+    assert session.going and not session.making and len(session.footage) == 1
+    assert clock(session) == "t = 0.00 s, running"
 
 
 def test_help_tells_every_key():

@@ -16,7 +16,7 @@ FRONT_ENDS = {"ggui": ggui, "gui": plain}  # in the order in which they are trie
 def open_window(
     name: str | None, overrides: dict, size: tuple[int, int], out: Path | None = None, front_end: str = "auto"
 ) -> Path | None:
-    """Show a preset live until its window is closed; returns the folder of the last recording.
+    """Show a preset live until its window is closed; returns the folder of the last recording, None without one.
 
     Without a name, a person chooses one first, and another when that is closed. Raises LabError where there is no
     display, one sentence that names what does without.
@@ -36,7 +36,7 @@ def open_window(
             return _show(window, name, overrides, size, out)
         folder = None
         while chosen := _choose(window, size):
-            folder = _show(window, chosen, overrides, size, out)
+            folder = _show(window, chosen, overrides, size, out) or folder
         return folder
     finally:
         window.close()
@@ -48,16 +48,16 @@ def _choose(window: Window, size: tuple[int, int]) -> str:
     return chooser.chosen
 
 
-def _show(window: Window, name: str, overrides: dict, size: tuple[int, int], out: Path | None) -> Path:
+def _show(window: Window, name: str, overrides: dict, size: tuple[int, int], out: Path | None) -> Path | None:
     session = Session(name, overrides, size, out, types=window.types)
     try:
         window.run(session)
     except KeyboardInterrupt:
-        raise KeyboardInterrupt(f"interrupted; {session.folder} has what was recorded.") from None
+        raise KeyboardInterrupt(f"interrupted; {session.left}.") from None
     finally:
         if not session.ended:
             session.close()
-    return session.folder
+    return None if session.making else session.folder
 
 
 def has_display() -> bool:
