@@ -158,12 +158,18 @@ def main() -> None:
 @main.command("list")
 def list_presets() -> None:
     """List the presets."""
-    from lab.presets import names
+    from lab.presets import QUICK, names
 
     titles = names()
-    width = max(map(len, titles), default=0)
-    for name, title in titles.items():
+    shown = {
+        name + f"[{QUICK}]" * (name + QUICK in titles): title
+        for name, title in titles.items()
+        if name.removesuffix(QUICK) not in titles.keys() - {name}
+    }
+    width = max(map(len, shown), default=0)
+    for name, title in shown.items():
         click.echo(f"{name:<{width}}  {title}")
+    click.echo(f"\n[{QUICK}]: also by that longer name, cheaper and less exact", err=True)
 
 
 @main.command()

@@ -53,6 +53,8 @@ def test_help_version_and_list():
     listed = call("list")
     assert listed.exit_code == 0
     assert re.search(r"^tilting/quick +Quick tilt", listed.stdout, re.MULTILINE)
+    assert re.search(r"^funnel/fixed\[-quick\] +Heap", listed.stdout, re.MULTILINE)
+    assert "funnel/fixed-quick" not in listed.stdout and "[-quick]: also by that longer name" in listed.output
 
 
 def test_without_a_command_the_help_is_shown():
