@@ -164,7 +164,7 @@ def list_presets() -> None:
     shown = {
         name + f"[{QUICK}]" * (name + QUICK in titles): title
         for name, title in titles.items()
-        if name.removesuffix(QUICK) not in titles.keys() - {name}
+        if not name.endswith(QUICK)
     }
     width = max(map(len, shown), default=0)
     for name, title in shown.items():
