@@ -18,6 +18,11 @@ from solvers.quantity import Unit
 
 # What answers the question of an experiment, the most telling first; a recording has only what applies to it.
 TELLING = (
+    "capsized_at",
+    "roll_amplitude",
+    "frozen_amplitude",
+    "roll_period",
+    "largest_roll",
     "heap_angle",
     "flow_rate",
     "clogged",

@@ -152,6 +152,8 @@ def test_the_telling_numbers_come_first_and_the_terminal_is_spared_the_rest(tmp_
     rest = {f"number_{k}": Value(float(k), "mm") for k in range(20)}
     told = headlines({**rest, "response_amplitude": Value(1.0, "mm"), "spilled_fraction": Value(2.0, "%")}, 3)
     assert list(told) == ["spilled_fraction", "response_amplitude", "number_0"]
+    of_a_ship = dict.fromkeys(("final_shift", "contact_number", "largest_roll", "capsized_at"), Value(1.0, "1"))
+    assert list(headlines(of_a_ship, 2)) == ["capsized_at", "largest_roll"]
     _, data, text = summed_up(sway_run(tmp_path))
     assert text.count("\n  ") < 12 < len(data["measures"])
     assert f"and {len(data['measures']) - 6} more numbers in the summary" in text
