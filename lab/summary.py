@@ -21,6 +21,8 @@ TELLING = (
     "capsized_at",
     "roll_amplitude",
     "frozen_amplitude",
+    "significant_roll",
+    "frozen_significant_roll",
     "roll_period",
     "largest_roll",
     "heap_angle",

@@ -6,16 +6,21 @@ the way from one side to the other; roll_bias, the mean roll, positive to port; 
 says what became of her: upright, biased (by half a degree or more) or capsized, and where roll has several frequencies:
 a tenth or more of its rms at others than the waves' and their multiples.
 sway_amplitude, heave_amplitude, roll_fundamental: of the motion of the axis at the waves' frequency, by least squares.
+significant_roll, of a random sea after its soft start: the mean of the highest third of swings, each half the way from
+side to side between upward crossings of the mean (Sverdrup & Munk 1947); its error is half the difference of the halves
+of the run. Twice the rms of the roll where this is of a narrow band (Longuet-Higgins 1952).
 roll_period: mean time between upward crossings of the mean roll in the last half of the run.
 wave_power: what the waves put into her; radiated_power, viscous_power: what goes into waves and into friction of the
 water; granular_power: what her loose cargo takes, lost in the grains once the motion is steady. Means over the last ten
 periods, per metre of length; in a steady motion the first is the sum of the others.
-frozen_amplitude, frozen_largest_roll, frozen_capsized_at: roll_amplitude, largest_roll and capsized_at of the same ship
-with her cargo frozen as it lay at the start, by herself (`solvers.ship.motion.sail`).
+frozen_amplitude, frozen_significant_roll, frozen_largest_roll, frozen_capsized_at: roll_amplitude, significant_roll,
+largest_roll and capsized_at of the same ship with her cargo frozen as it lay at the start, by herself
+(`solvers.ship.motion.sail`).
 """
 
 from collections import Counter
 from functools import lru_cache
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -44,7 +49,7 @@ def applies(recording: Recording) -> bool:
 
 
 def measure(recording: Recording) -> dict[str, Value]:
-    """largest_roll, roll_amplitude, roll_bias (deg), roll_period, capsized_at (s), and those of the frozen cargo."""
+    """largest_roll, roll_amplitude, significant_roll (deg) …, and those of the frozen cargo."""
     time, roll = recording.series["time"], recording.series["pose"][..., 2]
     capsized = recording.series["capsized"][-1]
     found = {
@@ -53,6 +58,8 @@ def measure(recording: Recording) -> dict[str, Value]:
         "roll_period": over_worlds([_period(time, r) for r in roll.T], "s", missing="too few swings"),
     }
     found |= _of_frozen(recording)
+    if _of_random_sea(recording):
+        found["significant_roll"] = _significant(recording, time, roll, capsized >= 0.0)
     if wave_frequency(recording) is None:
         return found
     outcomes = [_outcome(recording, world) for world in range(recording.worlds)]
@@ -82,6 +89,8 @@ def _of_frozen(recording: Recording) -> dict[str, Value]:
         "frozen_largest_roll": over_worlds([np.degrees(np.abs(roll).max())], "deg"),
         "frozen_capsized_at": over_worlds([np.nan if when is None else when], "s", missing="did not capsize"),
     }
+    if _of_random_sea(recording):
+        found["frozen_significant_roll"] = _significant(recording, time, roll[:, None], np.array([when is not None]))
     if wave_frequency(recording) is None:
         return found
     one = _classed(time, roll, wave_frequency(recording), when is not None)
@@ -94,6 +103,31 @@ def wave_frequency(recording: Recording) -> float | None:
     """Angular frequency (rad/s) of regular waves, None without."""
     waves = recording.preset.get("waves") or {}
     return waves["frequency"] if waves.get("kind") == "regular" and waves.get("amplitude") else None
+
+
+def _of_random_sea(recording: Recording) -> bool:
+    return bool((recording.preset.get("waves") or {}).get("height"))
+
+
+def _significant(recording: Recording, time: np.ndarray, roll: np.ndarray, capsized: np.ndarray) -> Value:
+    """Of roll (T, W), rad, at time (T,), s; none where she capsized (W,)."""
+    begin = int(np.searchsorted(time, recording.preset["waves"]["soft_start"]))
+    middle = (begin + len(time)) // 2
+    parts = slice(begin, None), slice(begin, middle), slice(middle, None)
+    whole, *halves = ([np.degrees(_highest_third(r[part])) for r in roll.T] for part in parts)
+    size = np.where(capsized, np.nan, whole)
+    error = np.where(capsized, np.nan, np.abs(np.subtract(*halves)) / 2)
+    return over_worlds(size, "deg", uncertainties=error, missing="capsized or too few swings")
+
+
+def _highest_third(roll: np.ndarray) -> float:
+    """Mean of the highest third of swings, as the module says."""
+    x = roll - roll.mean()
+    up = np.flatnonzero((x[:-1] < 0.0) & (x[1:] >= 0.0)) + 1
+    if len(up) <= LEAST_CROSSINGS:
+        return np.nan
+    swings = 0.5 * np.array([np.ptp(x[a:b]) for a, b in pairwise(up)])
+    return float(np.sort(swings)[-max(1, len(swings) // 3) :].mean())
 
 
 def describe(found: Outcome) -> str:

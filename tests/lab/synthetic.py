@@ -23,7 +23,7 @@ def preset(**motion: dict) -> dict:
         "reports": "24 deg",
         "motion": {"soft_start": 0.0, **motion},
         "contact": {"stiffness_scale": 1.0},
-        "run": {"repeats": 1, "seed": 1},
+        "run": {"repeats": 1, "seed": 1, "duration": 1.0},
     }
 
 

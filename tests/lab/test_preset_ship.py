@@ -253,6 +253,27 @@ def test_measures_of_roll(rolling):
     assert powers == pytest.approx([40.0, 10.0, 5.0, 25.0], rel=1e-6)
 
 
+def test_the_significant_roll_is_that_of_the_highest_third_of_swings(tmp_path, monkeypatch):
+    """Swings of 1 to 9° after a start that does not count; a second ship capsizes, a frozen one swings half as far."""
+    period, swings = 2.0, np.array([20.0, 20.0, 20.0, 0.5, 3.0, 9.0, 1.0, 7.0, 2.0, 8.0, 4.0, 5.0, 6.0, 0.5])
+    time = np.arange(0.0, period * len(swings) - 1e-6, 0.02)
+    roll = np.radians(swings[(time / period + 1e-6).astype(int)]) * np.sin(2.0 * pi / period * time)
+    waves = {"kind": "jonswap", "height": 0.03, "frequency": 4.5, "soft_start": 3.0 * period}
+    with recorder(tmp_path, 2, resolved={**preset(), "ship": SHIP, "waves": waves}) as writer:
+        for now, turned in zip(time, roll, strict=True):
+            capsized = [-1.0, 5.0 if now >= 5.0 else -1.0]
+            pose, works = np.array([[0.0, 0.0, turned]] * 2), np.zeros((2, 4))
+            writer.sample(sample(now, 2, pose=pose, ship_works=works, capsized=capsized))
+        writer.frame(frame(0.0, 2))
+    monkeypatch.setattr(ship_roll, "frozen", lambda _: (time, 0.5 * roll, None))
+    with open_recording(tmp_path) as recording:
+        found = ship_roll.measure(recording)
+    assert found["significant_roll"].worlds == (pytest.approx(8.0, rel=2e-3), None)
+    assert 0.0 < found["significant_roll"].uncertainty < 2.0
+    assert found["frozen_significant_roll"].value == pytest.approx(4.0, rel=2e-3)
+    assert "roll_amplitude" not in found
+
+
 def test_measures_of_frozen_cargo(rolling, monkeypatch):
     """By herself: 7° about a bias of 1°; capsized, she has a time of it and no amplitude."""
     time = np.arange(0.0, 40.0, 0.02)
