@@ -135,6 +135,7 @@ def _settle(simulation: Simulation, how: Settling, stage: str, progress: Progres
         progress.watch(simulation)
 
     progress.start(stage, how.limit)
+    progress.watch(simulation)  # before kernels are compiled, which takes its time
     rests = simulation.settle(how.rest, how.limit, tell)
     progress.finish()
     return rests
