@@ -5,6 +5,7 @@ Exit codes: 0 done; 1 the simulation could not go on; 2 what was asked for canno
 """
 
 import errno
+import os
 import sys
 from pathlib import Path
 
@@ -28,6 +29,8 @@ class Commands(click.Group):
 
     def main(self, *args, **kwargs):
         """Run a command line and exit."""
+        # Matrices are small here, and threads of numpy's that wait by spinning would take the cores from the grains.
+        os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
         try:
             code = super().main(*args, **{**kwargs, "standalone_mode": False})
         except click.exceptions.NoArgsIsHelpError as error:
