@@ -172,7 +172,7 @@ class Page:
 
     def _scale(self, shown: Shown) -> Colouring:
         """The colouring, its scale looked at anew now and then."""
-        key, now = (shown.look.colour, id(shown.footage)), time.monotonic()
+        key, now = (shown.look.colour, shown.footage), time.monotonic()
         if self._colouring is None or self._colouring[0] != key or now - self._colouring[1] > ANEW:
             self._colouring = key, now, colouring(shown.look.colour, [shown.footage.bed])
         return self._colouring[2]
@@ -182,7 +182,7 @@ class Page:
         footage, frame, (left, top, _, _) = shown.footage, shown.frame, self.stage
         camera, moved = (self._shifted(c, left, top) for c in (self.camera(shown), self.tank_camera(shown)))
         if shown.look.frame == "tank":
-            key = id(footage), camera.scale, camera.offset
+            key = footage, camera.scale, camera.offset
             stage = self._still("tank", key, lambda: self._empty_stage(shown, camera, moved)).copy()
         else:
             stage = self._empty_stage(shown, camera, moved)
@@ -317,13 +317,13 @@ class Page:
             plot = deco.LivePlot(size, drawing.curves, colours, labels, 0.9 * TEXT * self.unit)
             return ImageOps.expand(plot.picture(drawing.counts), edge, deco.PAPER)
 
-        return self._still("plot", (shown.curve, id(shown.footage), shown.playhead), drawn, CURVE_ANEW)
+        return self._still("plot", (shown.curve, shown.footage, shown.playhead), drawn, CURVE_ANEW)
 
     # The column
 
     def _put_column(self, picture: np.ndarray, shown: Shown, scale: Colouring) -> None:
         left, look = self.width - self.u(MARGIN + COLUMN), shown.look
-        key = shown.playhead, shown.going, shown.pace, look.picked, id(shown.footage)
+        key = shown.playhead, shown.going, shown.pace, look.picked, shown.footage
         lines = self._still("readings", key, lambda: self._lines(shown), WORDS_ANEW)
         _put(picture, lines, left, self.u(MARGIN))
         key = id(scale), look.typing, *shown.values.items()
