@@ -74,7 +74,7 @@ def round_ones(found: Found) -> Told:
     rows = _beside_discs(found, f"shift at {EARLY:g} deg", early_shift, judged=True)
     rows += _beside_discs(found, "critical angle", lambda one: one["critical_angle"], judged=False)
     figure, axes = _beside_cost(found)
-    for name, one in _three(found).items():
+    for name, one in _drawn(found).items():
         tilt, shift = shift_curve(one.recording, 0)
         axes.plot(tilt, 1e3 * shift, label=name, lw=1.2)
     axes.axvline(EARLY, color=GREY, ls=":", lw=1.0)
@@ -102,8 +102,8 @@ def _beside_discs(found: Found, quantity: str, value: Callable[[Outcome], Value 
     return rows
 
 
-def _three(found: Found) -> dict[str, Outcome]:
-    """Discs, smooth outlines, and the fewest nodes and 120."""
+def _drawn(found: Found) -> dict[str, Outcome]:
+    """Whose courses are drawn: discs, smooth outlines, and few and many nodes."""
     by_nodes = {one.setting[NODES]: one for one in found["nodes"]}
     nodes = {f"{n} nodes": by_nodes[n] for n in (36, 120) if n in by_nodes}
     return {"discs": found["discs"][0], "smooth outlines": found["smooth"][0], **nodes}
@@ -139,7 +139,7 @@ def swayed(found: Found) -> Told:
     rows = _beside_discs(found, f"range in the first {EARLY_TIME:g} s", early_range, judged=True)
     rows += _beside_discs(found, "amplitude", lambda one: one["response_amplitude"], judged=False)
     figure, axes = _beside_cost(found)
-    for name, one in _three(found).items():
+    for name, one in _drawn(found).items():
         time, y = one.recording.series["time"], one.recording.series["centre_of_mass"][:, 0, 0]
         drawn = time <= SECONDS
         axes.plot(time[drawn], 1e3 * (y[drawn] - y[0]), label=name, lw=1.2)
