@@ -122,7 +122,7 @@ def _significant(recording: Recording, time: np.ndarray, roll: np.ndarray, capsi
 
 def _highest_third(roll: np.ndarray) -> float:
     """Mean of the highest third of swings, as the module says."""
-    x = roll - roll.mean()
+    x = roll - roll.mean() if len(roll) else roll
     up = np.flatnonzero((x[:-1] < 0.0) & (x[1:] >= 0.0)) + 1
     if len(up) <= LEAST_CROSSINGS:
         return np.nan

@@ -1,6 +1,7 @@
 """Ships in presets: what is refused and in which words, the vessel that comes of them, her sea, her measures."""
 
 import json
+import warnings
 from math import inf, pi, radians
 from types import SimpleNamespace
 
@@ -266,8 +267,11 @@ def test_the_significant_roll_is_that_of_the_highest_third_of_swings(tmp_path, m
             writer.sample(sample(now, 2, pose=pose, ship_works=works, capsized=capsized))
         writer.frame(frame(0.0, 2))
     monkeypatch.setattr(ship_roll, "frozen", lambda _: (time, 0.5 * roll, None))
-    with open_recording(tmp_path) as recording:
+    with open_recording(tmp_path) as recording, warnings.catch_warnings():
+        warnings.simplefilter("error")
         found = ship_roll.measure(recording)
+        recording.preset["waves"]["soft_start"] = 100.0  # longer than the run
+        assert ship_roll.measure(recording)["significant_roll"].value is None
     assert found["significant_roll"].worlds == (pytest.approx(8.0, rel=2e-3), None)
     assert 0.0 < found["significant_roll"].uncertainty < 2.0
     assert found["frozen_significant_roll"].value == pytest.approx(4.0, rel=2e-3)
