@@ -100,7 +100,7 @@ def _overview(
             continue
         finding = findings[one]
         judged = [row.agrees for row in finding.rows if row.agrees is not None]
-        agree = f"{sum(judged)} of {len(judged)}"
+        agree = f"{sum(judged)} of {len(judged)}" if judged else "left open"
         cost = f"{finding.grain_steps:.2g}", f"{finding.wall_s:.0f} s"
         rows.append([experiment.title, experiment.section, agree, *cost])
     page.table(["experiment", "section", "statements that agree", "grain-steps", "time"], rows)
