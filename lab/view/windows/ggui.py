@@ -3,6 +3,7 @@
 import contextlib
 import tempfile
 
+import numpy as np
 import taichi as ti
 
 from lab.view.chooser import Chooser
@@ -31,6 +32,7 @@ class VulkanWindow(Window):
 
     def __init__(self, size: tuple[int, int]) -> None:
         super().__init__(size)
+        self._shown = ti.Vector.field(3, ti.u8, size)  # the picture, its first row the lowest
         self._window = ti.ui.Window("Cargo Shift Lab", size, vsync=False)
         self._canvas, self._gui = self._window.get_canvas(), self._window.get_gui()
         self._held: str | None = None
@@ -46,7 +48,8 @@ class VulkanWindow(Window):
     def _is_open(self) -> bool:
         return self._window.running
 
-    def _show(self, session: Session | Chooser) -> None:
+    def _show(self, session: Session | Chooser, picture: np.ndarray) -> None:
+        _turn(picture, self._shown)
         self._canvas.set_image(self._shown)
         if self._is_typing(session):
             self._panel(session)
@@ -92,6 +95,14 @@ class VulkanWindow(Window):
     def _cursor(self) -> tuple[float, float]:
         across, up = self._window.get_cursor_pos()
         return across * self._size[0], (1.0 - up) * self._size[1]
+
+
+@ti.kernel
+def _turn(picture: ti.types.ndarray(dtype=ti.u8, ndim=3), shown: ti.template()):
+    """From rows of pixels, the highest first, to columns, the lowest pixel first."""
+    for row, column in ti.ndrange(picture.shape[0], picture.shape[1]):
+        for c in ti.static(range(3)):
+            shown[column, picture.shape[0] - 1 - row][c] = picture[row, column, c]
 
 
 def open_window(size: tuple[int, int]) -> VulkanWindow | None:

@@ -1,5 +1,8 @@
 """A window of `ti.GUI`, drawn by the processor: wherever there is a display."""
 
+import sys
+
+import numpy as np
 import taichi as ti
 
 from lab.view.chooser import Chooser
@@ -36,8 +39,8 @@ class PlainWindow(Window):
     def _is_open(self) -> bool:
         return self._window.running
 
-    def _show(self, session: Session | Chooser) -> None:
-        self._window.set_image(self._shown)
+    def _show(self, session: Session | Chooser, picture: np.ndarray) -> None:
+        _pack(picture, self._window.img)  # set_image would turn the picture first, and then back
         self._window.show()
 
     def _pass_on(self, session: Session | Chooser) -> None:
@@ -53,6 +56,18 @@ class PlainWindow(Window):
                 session.drag(x, y)
             elif event.type == ti.GUI.MOTION and event.key == ti.GUI.WHEEL:
                 session.wheel(event.delta[1] / A_TURN, x, y)
+
+
+@ti.kernel
+def _pack(picture: ti.types.ndarray(dtype=ti.u8, ndim=3), packed: ti.types.ndarray(dtype=ti.u32, ndim=1)):
+    """Into the numbers that ti.GUI shows, row by row from the highest."""
+    first, last = ti.static((0, 2) if sys.platform == "darwin" else (2, 0))
+    for row, column in ti.ndrange(picture.shape[0], picture.shape[1]):
+        colour = ti.u32(0xFF000000)
+        colour += ti.cast(picture[row, column, last], ti.u32) << 16
+        colour += ti.cast(picture[row, column, 1], ti.u32) << 8
+        colour += ti.cast(picture[row, column, first], ti.u32)
+        packed[row * picture.shape[1] + column] = colour
 
 
 def open_window(size: tuple[int, int]) -> PlainWindow | None:

@@ -3,7 +3,7 @@
 import time
 from abc import ABC, abstractmethod
 
-import taichi as ti
+import numpy as np
 
 from lab.view.chooser import Chooser
 from lab.view.session import Session
@@ -18,7 +18,6 @@ class Window(ABC):
 
     def __init__(self, size: tuple[int, int]) -> None:
         self._size = size
-        self._shown = ti.Vector.field(3, ti.u8, size)  # the picture, its first row the lowest
 
     def run(self, session: Session | Chooser) -> None:
         """Until the window or what it shows ends."""
@@ -28,8 +27,7 @@ class Window(ABC):
             self._pass_on(session)
             if session.ended:
                 break
-            _turn(session.picture(), self._shown)
-            self._show(session)
+            self._show(session, session.picture())
             time.sleep(max(0.0, 1.0 / PICTURES - (time.monotonic() - begun)))
 
     @abstractmethod
@@ -44,13 +42,5 @@ class Window(ABC):
         """Turn the events since the last time into the session's calls."""
 
     @abstractmethod
-    def _show(self, session: Session | Chooser) -> None:
-        """Show the picture, and what the window itself has for a session."""
-
-
-@ti.kernel
-def _turn(picture: ti.types.ndarray(dtype=ti.u8, ndim=3), shown: ti.template()):
-    """From rows of pixels, the highest first, to columns, the lowest pixel first."""
-    for row, column in ti.ndrange(picture.shape[0], picture.shape[1]):
-        for c in ti.static(range(3)):
-            shown[column, picture.shape[0] - 1 - row][c] = picture[row, column, c]
+    def _show(self, session: Session | Chooser, picture: np.ndarray) -> None:
+        """Show the picture (height, width, 3), u8, and what the window itself has for a session."""
