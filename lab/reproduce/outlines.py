@@ -3,7 +3,6 @@
 from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from lab.measures.critical_angle import shift_curve
@@ -73,15 +72,8 @@ def round_ones(found: Found) -> Told:
     """
     rows = _beside_discs(found, f"shift at {EARLY:g} deg", early_shift, judged=True)
     rows += _beside_discs(found, "critical angle", lambda one: one["critical_angle"], judged=False)
-    figure, axes = _beside_cost(found)
-    for name, one in _drawn(found).items():
-        tilt, shift = shift_curve(one.recording, 0)
-        axes.plot(tilt, 1e3 * shift, label=name, lw=1.2)
-    axes.axvline(EARLY, color=GREY, ls=":", lw=1.0)
-    axes.set_xlabel("tilt (deg)")
-    axes.set_ylabel("shift downhill of one bed (mm)")
-    axes.legend()
-    return Told(rows, figure)
+    labels = "tilt (deg)", "shift downhill of one bed (mm)"
+    return Told(rows, _courses_and_cost(found, lambda one: shift_curve(one.recording, 0), EARLY, labels))
 
 
 def early_shift(one: Outcome) -> Value:
@@ -109,18 +101,25 @@ def _drawn(found: Found) -> dict[str, Outcome]:
     return {"discs": found["discs"][0], "smooth outlines": found["smooth"][0], **nodes}
 
 
-def _beside_cost(found: Found) -> tuple[Figure, Axes]:
-    """A figure with the time that whole runs took for each grain and step on its right, and its empty left."""
+def _courses_and_cost(
+    found: Found, course: Callable[[Outcome], tuple[np.ndarray, np.ndarray]], early: float, labels: tuple[str, str]
+) -> Figure:
+    """Courses (x, y in m), compared until `early`; beside them the time that whole runs took a grain and step."""
     figure = Figure(figsize=(7.2, 3.4), layout="constrained")
     left, right = figure.subplots(1, 2)
+    for name, one in _drawn(found).items():
+        x, y = course(one)
+        left.plot(x, 1e3 * y, label=name, lw=1.2)
+    left.axvline(early, color=GREY, ls=":", lw=1.0)
+    left.set(xlabel=labels[0], ylabel=labels[1])
+    left.legend()
     right.plot([one.setting[NODES] for one in found["nodes"]], [_time(one) for one in found["nodes"]], "o-", ms=3.5)
     for name, style in (("discs", ":"), ("smooth", "--")):
         right.axhline(_time(found[name][0]), color=GREY, ls=style, lw=1.0, label=name)
-    right.set_xlabel("nodes")
-    right.set_ylabel("time per grain and step, compiling\nand output included (µs)")
+    right.set(xlabel="nodes", ylabel="time per grain and step, compiling\nand output included (µs)")
     right.set_ylim(bottom=0.0)
     right.legend()
-    return figure, left
+    return figure
 
 
 def _time(one: Outcome) -> float:
@@ -138,16 +137,15 @@ def swayed(found: Found) -> Told:
     """The first swing of the centre of mass and its amplitude later over those of discs, and its course."""
     rows = _beside_discs(found, f"range in the first {EARLY_TIME:g} s", early_range, judged=True)
     rows += _beside_discs(found, "amplitude", lambda one: one["response_amplitude"], judged=False)
-    figure, axes = _beside_cost(found)
-    for name, one in _drawn(found).items():
-        time, y = one.recording.series["time"], one.recording.series["centre_of_mass"][:, 0, 0]
-        drawn = time <= SECONDS
-        axes.plot(time[drawn], 1e3 * (y[drawn] - y[0]), label=name, lw=1.2)
-    axes.axvline(EARLY_TIME, color=GREY, ls=":", lw=1.0)
-    axes.set_xlabel("time (s)")
-    axes.set_ylabel("centre of mass of one bed (mm)")
-    axes.legend()
-    return Told(rows, figure)
+    labels = "time (s)", "centre of mass of one bed (mm)"
+    return Told(rows, _courses_and_cost(found, _sway, EARLY_TIME, labels))
+
+
+def _sway(one: Outcome) -> tuple[np.ndarray, np.ndarray]:
+    """Time (s) and how far the centre of mass of the first bed is across the tank (m), at the beginning."""
+    time, y = one.recording.series["time"], one.recording.series["centre_of_mass"][:, 0, 0]
+    begun = time <= SECONDS
+    return time[begun], y[begun] - y[0]
 
 
 def early_range(one: Outcome) -> Value:
@@ -268,7 +266,7 @@ EXPERIMENTS = [
         "A bed is compared with the same one of discs, until it slides: then grains whose forces differ in a last "
         "digit part, and critical angles of single beds differ by several degrees. Smooth outlines move as discs do. "
         "Contact by nodes keeps a bed back that creeps, the more the fewer there are; the source, which compares "
-        "whole curves, does not tell of it. No verdict is given where 95 % of confidence leaves it open.",
+        "whole curves, does not tell of it.",
     ),
     Experiment(
         "outline-sway",
@@ -292,7 +290,7 @@ EXPERIMENTS = [
         "3 beds for 6 of half the depth, two sizes of each descriptor",
         ("D_2", 0.6),
         "Every descriptor makes a bed stand more steeply. Six beds do not tell their order; but eight lobes, which the "
-        "source's grains hardly feel, are felt here as much as two or three, though less high: they mesh.",
+        "source's grains hardly feel, are felt here as much as two or three, though less high. Why is not known.",
     ),
     Experiment(
         "outline-phases",

@@ -26,7 +26,8 @@ LESS = {
         accuracy`).""",
     "shapes": f"""Beds are run at draft accuracy ({LEVELS["draft"].error}); those of the tilting box are 80 mm deep for
         110, 6 where the source has 12, and 12 of random phases for 25, tilted at 20 deg/s, round grains at 10; heaps
-        have 800 grains for 2500.""",
+        have 800 grains for 2500. Ratios come ± their standard error. A verdict on one is given where 95 % of
+        confidence allows it.""",
     "ship": f"""Grains are of 6 mm for the source's 3 (of 10 in the map), one bed for each wave but at the edge of
         capsize; ships are run at draft accuracy ({LEVELS["draft"].error}) for 30 s.""",
 }

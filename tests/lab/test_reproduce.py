@@ -10,7 +10,6 @@ from types import SimpleNamespace
 import h5py
 import numpy as np
 import pytest
-from matplotlib.figure import Figure
 
 from lab import reproduce as package
 from lab.errors import LabError
@@ -167,7 +166,6 @@ def test_round_outlines_are_judged_bed_by_bed_before_they_slide(monkeypatch):
     """Six beds of which some shift half as far again: 36 nodes lag by 5 %, 120 by 2 %, as the source does not say."""
     tilt = np.linspace(0.0, 30.0, 61)
     monkeypatch.setattr(outlines, "shift_curve", lambda recording, world: (tilt, 1e-4 * tilt * recording.slopes[world]))
-    monkeypatch.setattr(outlines, "_beside_cost", lambda found: (None, Figure().add_subplot()))
 
     def ran(stretch, **setting):
         one = outcome(setting, critical_angle=over_worlds(np.full(6, 25.0), "deg"))

@@ -387,6 +387,15 @@ def test_a_bed_is_seen_while_it_is_made_and_keys_do_no_harm(opened):
     assert clock(session) == "t = 0.00 s, running"
 
 
+def test_keys_do_no_harm_before_anything_is_known_of_the_experiment(opened, tmp_path):
+    session = Session(PRESET, SMALL, SIZE, tmp_path / "another")
+    for name in KEYS.keys() - {"escape", "r", "s"}:
+        session.key(name)
+        session.picture()
+    assert session.making and session.left == "nothing was recorded yet"
+    session.close()
+
+
 def test_help_tells_every_key():
     assert all(says and callable(action) for says, action in KEYS.values())
 
