@@ -5,6 +5,8 @@ order of their numbers, so no two tasks touch the same pixel and the picture doe
 number of threads. Edges are smooth because a pixel takes as much paint as its distance from the
 edge says it is covered. The edge of an irregular grain is looked up in a table of its polar radius.
 
+Pixels are gone through in two loops, row by row, as `ti.ndrange` would divide for each of them.
+
 Pixel coordinates: x to the right, y downwards; the pixel in row i and column j is the square
 [j, j+1] x [i, i+1].
 Taichi must be running (`solvers.runtime.initialise`).
@@ -200,6 +202,12 @@ def _coverage(distance, radius):
 
 
 @ti.func
+def _set(picture: ti.template(), row, column, colour):
+    for c in ti.static(range(3)):
+        picture[row, column, c] = ti.cast(ti.math.clamp(colour[c], 0.0, 255.0) + 0.5, ti.u8)
+
+
+@ti.func
 def _mix(picture: ti.template(), row, column, change):
     """Add a change of colour to a pixel."""
     for c in ti.static(range(3)):
@@ -258,9 +266,12 @@ def _grain_paint(offset, radius, inner, towards, colour, mark):
     """Colour of a grain at an offset (right, down) from its middle: shading, rim outside `inner`, and spin mark."""
     rim = RIM * ti.math.clamp((radius - 1.0) / 3.0, 0.0, 1.0)
     light = 1.0 - SHADE * offset.y / ti.max(radius, 1.0) - rim * (1.0 - inner)
-    spot = (offset - MARK_PLACE * radius * towards).norm()
-    marked = MARK_STRENGTH * _coverage(spot, MARK_SIZE * radius)
-    return (1.0 - marked) * light * colour + marked * mark
+    paint = light * colour
+    spot = offset - MARK_PLACE * radius * towards
+    if spot.norm_sqr() < (MARK_SIZE * radius + 1.0) ** 2:
+        marked = MARK_STRENGTH * _coverage(spot.norm(), MARK_SIZE * radius)
+        paint += marked * (mark - paint)
+    return paint
 
 
 @ti.func
@@ -300,17 +311,20 @@ def _paint_bands(
                 right = _whole(x + reach + 2.0, 0, picture.shape[1])
                 upper = _whole(y - reach - 1.0, top, bottom)
                 lower = _whole(y + reach + 2.0, top, bottom)
-                for row, column in ti.ndrange((upper, lower), (left, right)):
-                    offset = ti.Vector([column + 0.5 - x, row + 0.5 - y])
-                    free = 1.0 - covered[row, column]
-                    share = ti.min(_grain_coverage(offset, radius, 0.0, towards, radii, row_of, irregular), free)
-                    if share > 0.0:
-                        covered[row, column] += ti.cast(share, ti.f32)
-                        width = _rim_width(radius)
-                        inner = _grain_coverage(offset, radius, width, towards, radii, row_of, irregular)
-                        paint = _grain_paint(offset, radius, inner, towards, colour, mark)
-                        change = share * (paint - _colour_of(under, row, column))
-                        _mix(picture, row, column, change)
+                for row in range(upper, lower):
+                    for column in range(left, right):
+                        offset = ti.Vector([column + 0.5 - x, row + 0.5 - y])
+                        free = 1.0 - covered[row, column]
+                        share = ti.min(_grain_coverage(offset, radius, 0.0, towards, radii, row_of, irregular), free)
+                        if share > 0.0:
+                            covered[row, column] += ti.cast(share, ti.f32)
+                            width = _rim_width(radius)
+                            inner = _grain_coverage(offset, radius, width, towards, radii, row_of, irregular)
+                            paint = _grain_paint(offset, radius, inner, towards, colour, mark)
+                            if share == 1.0:
+                                _set(picture, row, column, paint)
+                            else:
+                                _mix(picture, row, column, share * (paint - _colour_of(under, row, column)))
 
 
 @ti.func
@@ -404,12 +418,13 @@ def _paint_stroke(covered: ti.template(), first, along, half, growth, top, botto
     right = _whole(first.x + ti.max(along.x, 0.0) + reach + 0.5, 0, covered.shape[1])
     upper = _whole(first.y + ti.min(along.y, 0.0) - reach + 0.5, top, bottom)
     lower = _whole(first.y + ti.max(along.y, 0.0) + reach + 0.5, top, bottom)
-    for row, column in ti.ndrange((upper, lower), (left, right)):
-        away = ti.Vector([column + 0.5, row + 0.5]) - first
-        on = ti.math.clamp(away.dot(along) * inverse, 0.0, 1.0)
-        thick, distance = half + on * growth, (away - on * along).norm()
-        share = ti.min(2.0 * thick, 1.0) * ti.math.clamp(ti.max(thick, 0.5) - distance + 0.5, 0.0, 1.0)
-        covered[row, column] = ti.max(covered[row, column], ti.cast(share, ti.f32))
+    for row in range(upper, lower):
+        for column in range(left, right):
+            away = ti.Vector([column + 0.5, row + 0.5]) - first
+            on = ti.math.clamp(away.dot(along) * inverse, 0.0, 1.0)
+            thick, distance = half + on * growth, (away - on * along).norm()
+            share = ti.min(2.0 * thick, 1.0) * ti.math.clamp(ti.max(thick, 0.5) - distance + 0.5, 0.0, 1.0)
+            covered[row, column] = ti.max(covered[row, column], ti.cast(share, ti.f32))
 
 
 @ti.kernel
@@ -423,7 +438,8 @@ def _paint_strokes(picture: Picture, covered: Shares, starts: Index, members: In
                 first = ti.Vector([strokes[i, 0], strokes[i, 1]])
                 along = ti.Vector([strokes[i, 3], strokes[i, 4]]) - first
                 _paint_stroke(covered, first, along, strokes[i, 2], strokes[i, 5] - strokes[i, 2], top, bottom)
-            for row, column in ti.ndrange((top, bottom), (0, picture.shape[1])):
-                share = covered[row, column]
-                if share > 0.0:
-                    _mix(picture, row, column, share * (colour - _colour_of(picture, row, column)))
+            for row in range(top, bottom):
+                for column in range(picture.shape[1]):
+                    share = covered[row, column]
+                    if share > 0.0:
+                        _mix(picture, row, column, share * (colour - _colour_of(picture, row, column)))

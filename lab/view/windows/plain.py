@@ -41,7 +41,7 @@ class PlainWindow(Window):
 
     def _show(self, session: Session | Chooser, picture: np.ndarray) -> None:
         _pack(picture, self._window.img)  # set_image would turn the picture first, and then back
-        self._window.show()
+        self._window.core.update()  # show would then clear what is painted over anyway
 
     def _pass_on(self, session: Session | Chooser) -> None:
         for event in self._window.get_events():
@@ -58,16 +58,12 @@ class PlainWindow(Window):
                 session.wheel(event.delta[1] / A_TURN, x, y)
 
 
-@ti.kernel
-def _pack(picture: ti.types.ndarray(dtype=ti.u8, ndim=3), packed: ti.types.ndarray(dtype=ti.u32, ndim=1)):
-    """Into the numbers that ti.GUI shows, row by row from the highest."""
-    first, last = ti.static((0, 2) if sys.platform == "darwin" else (2, 0))
-    for row, column in ti.ndrange(picture.shape[0], picture.shape[1]):
-        colour = ti.u32(0xFF000000)
-        colour += ti.cast(picture[row, column, last], ti.u32) << 16
-        colour += ti.cast(picture[row, column, 1], ti.u32) << 8
-        colour += ti.cast(picture[row, column, first], ti.u32)
-        packed[row * picture.shape[1] + column] = colour
+def _pack(picture: np.ndarray, packed: np.ndarray) -> None:
+    """Into the numbers that ti.GUI shows, 0xffRRGGBB, on macOS 0xffBBGGRR, row by row from the highest."""
+    channels = packed.view(np.uint8).reshape(*picture.shape[:2], 4)
+    for channel, colour in enumerate((0, 1, 2) if sys.platform == "darwin" else (2, 1, 0)):
+        channels[..., channel] = picture[..., colour]
+    channels[..., 3] = 255
 
 
 def open_window(size: tuple[int, int]) -> PlainWindow | None:

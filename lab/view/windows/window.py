@@ -9,6 +9,7 @@ from lab.view.chooser import Chooser
 from lab.view.session import Session
 
 PICTURES = 30.0  # Hz
+LATEST = 0.1  # s by which pictures may be late and still be caught up with
 
 
 class Window(ABC):
@@ -20,15 +21,16 @@ class Window(ABC):
         self._size = size
 
     def run(self, session: Session | Chooser) -> None:
-        """Until the window or what it shows ends."""
+        """Until the window or what it shows ends; a picture that took long is followed by one that waits less."""
+        due = time.monotonic()
         while self._is_open() and not session.ended:
-            begun = time.monotonic()
             session.tick()
             self._pass_on(session)
             if session.ended:
                 break
             self._show(session, session.picture())
-            time.sleep(max(0.0, 1.0 / PICTURES - (time.monotonic() - begun)))
+            due = max(due + 1.0 / PICTURES, time.monotonic() - LATEST)
+            time.sleep(max(0.0, due - time.monotonic()))
 
     @abstractmethod
     def close(self) -> None:
