@@ -104,7 +104,7 @@ def names() -> dict[str, str]:
     found = {}
     for name, file in _shipped().items():
         layers = _layers(Source(name, file))
-        quick = any("quick" in layer.table for layer in layers)
+        quick = _quick_tables(layers)
         found[name] = _written(layers)["title"]
         if quick:
             found[name + QUICK] = f"{found[name]}, cheaper and less exact"
@@ -134,9 +134,8 @@ def load(name_or_path: str | Path, overrides: Mapping | None = None) -> LoadedPr
 
 
 def _quick_variant(source: Source, layers: list[Layer]) -> dict:
-    """The keys that make a preset its quick variant, taken out of its layers; empty if it has none."""
-    # A text under `quick` says that the preset is one already.
-    tables = [layer.table.pop("quick") for layer in layers if not isinstance(layer.table.get("quick", ""), str)]
+    """The keys that make a preset its quick variant; empty if it has none."""
+    tables = _quick_tables(layers)
     if not all(isinstance(table, Mapping) for table in tables):
         raise LabError(f"{source.shown}: quick: a table of keys is needed.")
     variant = reduce(merged, tables, {})
@@ -151,6 +150,13 @@ def _quick_variant(source: Source, layers: list[Layer]) -> dict:
                 f"{source.shown}: quick.{quoted(dotted)[1:-1]}: may not differ; only {', '.join(QUICK_KEYS)} may."
             )
     return {"quick": differs, **variant}
+
+
+def _quick_tables(layers: list[Layer]) -> list:
+    """What layers say under `quick`, taken out of them; nothing where the last that does says false."""
+    # A text under `quick` says that the preset is one already.
+    tables = [layer.table.pop("quick") for layer in layers if not isinstance(layer.table.get("quick", ""), str)]
+    return [] if tables and tables[-1] is False else tables
 
 
 def _leaves(table: Mapping, path: str = "") -> Iterator[str]:

@@ -295,7 +295,7 @@ def test_neither_alternative_is_a_fault():
         ("tiltng/quick", "did you mean tilting/quick?"),
         ("quick", "did you mean tilting/quick?"),
         ("tilting", '"tilting" is a group of presets; `cargolab list` shows those in it.'),
-        ("tilting/acetate-quick", "tilting/acetate: has no quick variant; run tilting/acetate itself."),
+        ("tilting/quick-quick", "tilting/quick: has no quick variant; run tilting/quick itself."),
         ("tilting/none-quick", 'there is no preset "tilting/none-quick"'),
         ("zzz", "`cargolab list`"),
         ("", "`cargolab list`"),
