@@ -27,6 +27,8 @@ class Nodes:
     outline's at the node's polar angle, not a chord of two nodes. A look at all of them passes over a run if no point
     of its circle can lie deeper in the other grain than what has been found. Between such looks the deepest nodes of
     either grain are followed: at each step one of their two neighbours is asked if it lies deeper.
+
+    A disc of n nodes then rolls as a polygon of n corners does, at any stiffness: on slopes over π/n alone.
     """
 
     def __init__(self, arrays: Arrays, tables: Tables, outlines: list[Contour], count: int):

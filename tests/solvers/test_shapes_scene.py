@@ -309,6 +309,26 @@ def test_a_grain_comes_to_rest_on_two_of_its_lobes():
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("nodes", [36, 120])
+def test_a_disc_by_nodes_rolls_as_a_polygon_does_on_slopes_over_pi_by_nodes_alone(nodes):
+    """Two discs lie on an edge, on floors that fall from either side, a tenth steeper and flatter than that."""
+    steep, flat = 1.1 * np.pi / nodes, 0.9 * np.pi / nodes
+    floor = [[-0.2, 0.2 * np.tan(steep)], [0.0, 0.0], [0.2, 0.2 * np.tan(flat)]]
+    away = np.array([[np.sin(steep), np.cos(steep)], [-np.sin(flat), np.cos(flat)]])  # from the floors
+    place = np.mean([floor[::2], [[0.0, 0.0]] * 2], axis=0) + RADIUS * np.cos(np.pi / nodes) * away
+    turn = np.arctan2(-away[:, 1], -away[:, 0]) + np.pi / nodes
+    given = Shapes((ROUND,), np.zeros((1, 2), dtype=int), turn[None], "nodes", nodes)
+    corners = np.array([*floor, [0.2, 0.3], [-0.2, 0.3]])
+    simulation = Simulation(
+        Scene(np.full((1, 2), RADIUS), corners, SOFT, SOFT, tangential="mindlin", shapes=given), place[None], threads=1
+    )
+    simulation.advance(round(0.3 / simulation.dt))
+    gone = np.abs(simulation.snapshot()["position"][0] - place)[:, 0]
+    assert gone[0] > RADIUS
+    assert gone[1] < 0.01 * RADIUS
+
+
+@pytest.mark.slow
 def test_worlds_that_run_together_are_as_alone():
     radius, places = loose(3, 2, 4.2 * RADIUS, worlds=2)
     given = shapes([unit(rice()), unit(star(3, 0.1))], radius.shape[1], worlds=2)
