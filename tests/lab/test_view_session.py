@@ -456,7 +456,8 @@ def test_a_real_window_takes_a_key_and_a_slider(window, tmp_path):
         folder = program.communicate(timeout=60)[0].strip()
     finally:
         program.kill()
-        screen.kill()
+        screen.terminate()  # kill would leave its lock
+        screen.wait(timeout=30)
     assert folder == str(tmp_path / "v")
     assert [path.name for path in tmp_path.iterdir()] == ["v"]
     assert program.returncode == 0

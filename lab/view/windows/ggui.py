@@ -100,9 +100,10 @@ class VulkanWindow(Window):
 @ti.kernel
 def _turn(picture: ti.types.ndarray(dtype=ti.u8, ndim=3), shown: ti.template()):
     """From rows of pixels, the highest first, to columns, the lowest pixel first."""
-    for row, column in ti.ndrange(picture.shape[0], picture.shape[1]):
-        for c in ti.static(range(3)):
-            shown[column, picture.shape[0] - 1 - row][c] = picture[row, column, c]
+    for column in range(picture.shape[1]):
+        for row in range(picture.shape[0]):
+            for c in ti.static(range(3)):
+                shown[column, picture.shape[0] - 1 - row][c] = picture[row, column, c]
 
 
 def open_window(size: tuple[int, int]) -> VulkanWindow | None:
