@@ -9,7 +9,7 @@ from lab.measures.critical_angle import shift_curve
 from lab.measures.value import Value, over_worlds
 from lab.plots import GREY
 from lab.reproduce.curves import shift_against_tilt
-from lab.reproduce.estimates import Estimate, are_ordered, paired_ratio, ratio
+from lab.reproduce.estimates import Estimate, are_ordered, difference, paired_ratio, ratio
 from lab.reproduce.experiment import Experiment, Row, Told, counted, observed, stated
 from lab.reproduce.runs import Batch, Outcome
 
@@ -17,6 +17,7 @@ Found = Mapping[str, Sequence[Outcome]]
 BOX, SWAY = "shapes/box", "shapes/sway"
 NODES, OUTLINE, FRICTION = "contact.nodes", "shapes.grain.descriptors", "material.friction"
 WITHIN = 3.0  # deg
+MORE = 2.5  # deg by which the source's heap of slightly disturbed discs is steeper
 FAR, NEAR = "55 deg", "40 deg"  # what grains of bent outlines slide before, and discs
 EARLY, EARLY_TIME = 10.0, 0.5  # deg and s, before a bed slides
 SECONDS = 2.0  # of the course of a swayed bed that is drawn
@@ -226,9 +227,10 @@ def heaps(found: Found) -> Told:
     """The heap of slightly disturbed discs is a little steeper."""
     angle = {name: outcomes[0]["heap_angle"] for name, outcomes in found.items()}
     rows = [observed(name, "", counted(value), None) for name, value in angle.items()]
-    if all(value and value.value is not None for value in angle.values()):
-        more = angle["outlines"].value - angle["discs"].value
-        rows.append(observed("outlines less discs", "2.5 deg", f"{more:+.1f} deg", abs(more - 2.5) <= WITHIN))
+    if more := difference(angle["outlines"], angle["discs"]):
+        error = f" ± {more.error:.1f}" if more.freedom else ""
+        agrees = more.lies(MORE - WITHIN, MORE + WITHIN)
+        rows.append(observed("outlines less discs", f"{MORE} deg", f"{more.value:+.1f}{error} deg", agrees))
     return Told(rows)
 
 

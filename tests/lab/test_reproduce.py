@@ -183,6 +183,16 @@ def test_round_outlines_are_judged_bed_by_bed_before_they_slide(monkeypatch):
     ]
 
 
+@pytest.mark.parametrize(
+    ("heaps", "agrees"),
+    [((21.9, 22.1, 22.0, 22.2), True), ((29.0, 29.3, 28.8, 29.2), False), ((17.3, 21.5), None), ((22.0,), None)],
+)
+def test_heaps_are_judged_by_what_their_scatter_allows(heaps, agrees):
+    discs, outlined = (over_worlds(angles, "deg") for angles in ((19.1, 19.4, 18.2, 20.1), heaps))
+    found = {"discs": [outcome(heap_angle=discs)], "outlines": [outcome(heap_angle=outlined)]}
+    assert outlines.heaps(found).rows[-1].agrees is agrees
+
+
 def test_what_numpy_judged_can_be_kept():
     row = observed("angle", "", "20 deg", np.float64(1.0) < 2.0)
     assert json.loads(json.dumps(row.agrees)) is True
