@@ -2,7 +2,7 @@
 
 import taichi as ti
 
-from solvers.runtime import available_cores
+from solvers.runtime import available_cores, spread_threads
 from solvers.schedules.engine import ITERATIONS_A_THREAD, Engine
 from solvers.watch import CAPSIZED, NO_ROOM, RUNNING, TOO_FAST
 
@@ -24,6 +24,8 @@ class PerBand:
         self.grains, self.mover, self.frame, self.clock = engine.grains, engine.mover, engine.frame, engine.clock
         self.unseen, self.real, self.bands = engine.unseen, engine.grains.real, engine.units.a_world
         self.together = min(threads, available_cores()) >= engine.units.count
+        if self.together:
+            spread_threads()
 
     def advance(self, target: int, origin: float, unkicked: int, step: float, fastest: float) -> None:
         """Take every running world to step `target`; see PerWorld."""

@@ -13,6 +13,7 @@ import taichi as ti
 
 from solvers import runtime
 from solvers.runtime import Arrays
+from solvers.schedules.engine import ITERATIONS_A_THREAD
 
 REPOSITORY = Path(__file__).parents[2]
 GUARDED = "from solvers import runtime; runtime.initialise(1)"
@@ -121,6 +122,7 @@ def test_the_miscompile_is_still_there(unguarded, name):
 MANY_ARRAYS = """
 from solvers import runtime
 from solvers.runtime import Arrays
+from solvers.schedules.engine import ITERATIONS_A_THREAD
 runtime.initialise(1)
 for k in range(600):
     arrays = Arrays()
@@ -151,6 +153,7 @@ START_TWICE = """
 import numpy as np
 from solvers import runtime
 from solvers.runtime import Arrays
+from solvers.schedules.engine import ITERATIONS_A_THREAD
 runtime.initialise(1)
 arrays = Arrays()
 field = arrays.holding(np.array([1.0, 2.0, 4.0]))
@@ -238,3 +241,33 @@ def test_what_is_in_use_stays_and_what_comes_after_all_is_released_has_the_same_
     third, field = begun()
     assert field.snode.ptr.id == number
     third.release()
+
+
+@ti.kernel
+def _work(tasks: ti.i32, turns: ti.i32) -> ti.f64:
+    total = 0.0
+    for k in range(tasks * ITERATIONS_A_THREAD):
+        if k % ITERATIONS_A_THREAD == 0:
+            for turn in range(turns):
+                total += ti.sin(1.0 * turn)
+    return total
+
+
+@pytest.mark.skipif(sys.platform != "linux" or runtime.available_cores() < 2, reason="two cores on Linux are needed")
+def test_threads_that_are_spread_work_on_cores_of_their_own():
+    """Those that a kernel has kept busy, by their times."""
+
+    def busy(thread):
+        ticks = Path(f"/proc/self/task/{thread}/stat").read_text().rsplit(")", 1)[1].split()
+        return int(ticks[11]) + int(ticks[12])
+
+    cores = len(os.sched_getaffinity(0))
+    runtime.initialise(cores)
+    runtime.spread_threads()
+    before = {thread: busy(thread) for thread in os.listdir("/proc/self/task")}
+    _work(cores, 20_000_000)
+    worked = sorted(before, key=lambda thread: busy(thread) - before[thread])[-cores:]
+    held = [os.sched_getaffinity(int(thread)) for thread in worked]
+    assert all(len(places) == 1 for places in held)
+    assert len(set.union(*held)) == cores
+    assert len(os.sched_getaffinity(0)) == cores
