@@ -153,10 +153,11 @@ def _quick_variant(source: Source, layers: list[Layer]) -> dict:
 
 
 def _quick_tables(layers: list[Layer]) -> list:
-    """What layers say under `quick`, taken out of them; nothing where the last that does says false."""
+    """What layers say under `quick`, taken out of them, from behind the last that says false."""
     # A text under `quick` says that the preset is one already.
     tables = [layer.table.pop("quick") for layer in layers if not isinstance(layer.table.get("quick", ""), str)]
-    return [] if tables and tables[-1] is False else tables
+    refused = [place for place, table in enumerate(tables) if table is False]
+    return tables[refused[-1] + 1 :] if refused else tables
 
 
 def _leaves(table: Mapping, path: str = "") -> Iterator[str]:

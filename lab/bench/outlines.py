@@ -9,6 +9,7 @@ from pathlib import Path
 import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from lab.page import Page
 from lab.plots import BLUE, GREY, STYLE, VERMILION
@@ -37,6 +38,7 @@ RULES = (
 )
 FEW = RULES[::3]
 DISCS = None
+COSTS, TICKS = (3.0, 120.0), (5, 10, 20, 50, 100)  # of a step in motion, in the figure
 COLOURS = {"continuous": BLUE, "nodes": GREY, "area": VERMILION}
 
 
@@ -82,7 +84,7 @@ def run_page(out: Path, fast: bool) -> Path:
         {COLUMNS * ROWS} grains with losses and Mindlin's friction on one core, that of as many discs being 1, median
         of {TURNS} runs in turn: at rest, and while all are thrown at a wall at {THROW:g} m/s.""")
     kinds = outlines()
-    figure = Figure(figsize=(7.2, 2.8), layout="constrained")
+    figure = Figure(figsize=(7.2, 3.2), layout="constrained")
     panels = np.atleast_1d(figure.subplots(1, 1 if fast else len(kinds), sharey=True))
     with matplotlib.rc_context(STYLE):
         for axes, (name, given) in zip(panels, kinds.items(), strict=False):
@@ -101,6 +103,7 @@ def run_page(out: Path, fast: bool) -> Path:
                 ],
             )
             draw(axes, tried, name)
+        name_rules(figure)
         page.figure("cost", figure, "Change of energy in a collision against what a step costs, by rule")
     return page.write()
 
@@ -110,12 +113,17 @@ def draw(axes, tried: list[Tried], title: str) -> None:
     for one in tried:
         size = 6.0 if one.nodes is None else 2.0 + one.nodes / 80
         axes.loglog(one.thrown, one.changes.max(), "o", color=COLOURS[one.rule], ms=size)
-    axes.set(xlabel="cost of a step in motion (discs = 1)", title=title)
-    axes.set_ylabel("largest change of energy")
+    axes.set(title=title.replace(", ", "\n"), xlim=COSTS, ylabel="largest change of energy")
+    axes.set_xticks(TICKS, [str(cost) for cost in TICKS])
+    axes.minorticks_off()
     axes.label_outer()
-    for rule in dict.fromkeys(one.rule for one in tried):
-        axes.plot([], [], "o", color=COLOURS[rule], label=rule)
-    axes.legend()
+
+
+def name_rules(figure: Figure) -> None:
+    """Below all panels what the marks mean, and what goes across."""
+    marks = [Line2D([], [], ls="", marker="o", color=colour, label=rule) for rule, colour in COLOURS.items()]
+    figure.supxlabel("cost of a step in motion (discs = 1); the larger a mark, the more nodes", fontsize="medium")
+    figure.legend(handles=marks, loc="outside upper center", ncols=len(marks), frameon=False)
 
 
 def try_rule(given: list[Contour], rule: str, nodes: int | None) -> Tried:

@@ -674,8 +674,7 @@ def test_settings_that_cannot_be(folder, setting, words):
 @pytest.mark.parametrize(
     ("name", "words"),
     [
-        ("tilting/acetate-quick", "tilting/acetate: has no quick variant; run tilting/acetate itself."),
-        ("tilting/quick-quick", "tilting/quick: has no quick variant"),
+        ("tilting/quick-quick", "tilting/quick: has no quick variant; run tilting/quick itself."),
         ("-quick", "there is no preset"),
         ("tilting", '"tilting" is a group of presets'),
         ("tilting/\x1b[31m", "there is no preset"),
