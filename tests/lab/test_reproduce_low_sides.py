@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from lab.measures.value import over_worlds
+from lab.reproduce import low_sides
 from lab.reproduce.capsizes import swung
 from lab.reproduce.low_sides import chance, low_ship, tell, tell_map
 from lab.reproduce.runs import Outcome
@@ -60,7 +61,9 @@ def test_beds_are_counted():
     assert rows[1].ours.endswith("frozen stands")
 
 
-def test_the_map_tells_the_lowest_waves_that_capsize_her_and_where_frozen_cargo_does():
+def test_the_map_tells_the_lowest_waves_that_capsize_her_and_where_frozen_cargo_does(monkeypatch):
+    monkeypatch.setattr(low_sides, "FINE", (np.array([15.0, 25.0]), np.array([4.0, 4.4])))  # of heaps, behind the beds
+
     def run(size, omega, when, alone):
         measures = {"capsized_at": over_worlds(when, "s"), "frozen_capsized_at": over_worlds([alone], "s")}
         return Outcome({AMPLITUDE: f"{size} mm", FREQUENCY: f"{omega} rad/s"}, None, "complete", measures, {})

@@ -53,7 +53,9 @@ def test_discs_bear_their_weights_whatever_the_lists_are_like(schedule, units):
     made.close()
 
 
-@pytest.mark.parametrize("contact", ["continuous", "area"])  # nodes never let a bed rest
+@pytest.mark.parametrize(  # nodes never let a bed rest
+    "contact", ["continuous", pytest.param("area", marks=pytest.mark.slow)]
+)
 def test_irregular_grains_bear_their_weights_and_looking_at_that_changes_nothing(contact):
     made = bed(outlines(contact))
     before = made.state()
