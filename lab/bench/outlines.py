@@ -120,7 +120,7 @@ def draw(axes, tried: list[Tried], title: str) -> None:
 
 
 def name_rules(figure: Figure) -> None:
-    """Below all panels what the marks mean, and what goes across."""
+    """Above all panels what the colours mean, below them what goes across."""
     marks = [Line2D([], [], ls="", marker="o", color=colour, label=rule) for rule, colour in COLOURS.items()]
     figure.supxlabel("cost of a step in motion (discs = 1); the larger a mark, the more nodes", fontsize="medium")
     figure.legend(handles=marks, loc="outside upper center", ncols=len(marks), frameon=False)

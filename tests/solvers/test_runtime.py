@@ -122,7 +122,6 @@ def test_the_miscompile_is_still_there(unguarded, name):
 MANY_ARRAYS = """
 from solvers import runtime
 from solvers.runtime import Arrays
-from solvers.schedules.engine import ITERATIONS_A_THREAD
 runtime.initialise(1)
 for k in range(600):
     arrays = Arrays()
@@ -153,7 +152,6 @@ START_TWICE = """
 import numpy as np
 from solvers import runtime
 from solvers.runtime import Arrays
-from solvers.schedules.engine import ITERATIONS_A_THREAD
 runtime.initialise(1)
 arrays = Arrays()
 field = arrays.holding(np.array([1.0, 2.0, 4.0]))
