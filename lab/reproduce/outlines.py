@@ -327,10 +327,10 @@ EXPERIMENTS = [
         peas,
         "2 beds for 4 of half the depth",
         ("chickpeas", 0.6),
-        "In the full report ours flow 8 to 13 deg below the experiment, with a friction of 0.3 no later than spheres of "
-        "their sizes between smooth walls (29.8 ± 1.2 deg, `tilting/chickpeas`). Their spectra are our choice, after "
-        "lengths and widths of chickpeas; the source's are in a figure without numbers. As with random phases, outlines "
-        "that bend add less here than there; why is not known. With more friction our mean is higher, within the "
-        "scatter, the source's lower.",
+        "In the full report ours flow 8 to 13 deg below the experiment, with a friction of 0.3 no later than spheres "
+        "of their sizes between smooth walls (29.8 ± 1.2 deg, `tilting/chickpeas`). Their spectra are our choice, "
+        "after lengths and widths of chickpeas; the source's are in a figure without numbers. As with random phases, "
+        "outlines that bend add less here than there; why is not known. With more friction our mean is higher, "
+        "within the scatter, the source's lower.",
     ),
 ]
