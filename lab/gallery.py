@@ -37,7 +37,16 @@ video, img { width: 100%; aspect-ratio: 16 / 9; display: block; background: #f6f
 figcaption { padding: .6rem .8rem .8rem; }
 img.wide { aspect-ratio: auto; background: none; margin-bottom: 1.2rem; }
 code { background: #f1f3f6; padding: .1em .35em; border-radius: 3px; }
-td { padding: .05rem .8rem .05rem 0; vertical-align: top; } .why { color: #68727e; }
+table { font-size: 13.5px; } td { padding: .05rem .8rem .05rem 0; vertical-align: top; }
+td + td { padding-right: 0; white-space: nowrap; } .why { color: #68727e; }
+"""
+SCRIPT = """
+for (const clip of document.querySelectorAll("video")) {
+  clip.controls = false;  // they would hide a third of the poster
+  clip.tabIndex = 0;
+  clip.onmouseenter = clip.onfocus = () => { clip.controls = true; };
+  clip.onmouseleave = clip.onblur = () => { clip.controls = !clip.paused; };
+}
 """
 
 
@@ -126,7 +135,8 @@ def _write_page(every: Mapping[str, str], out: Path) -> Path:
         for group, cards in groups.items()
     )
     head = f'<meta charset="utf-8"><title>Cargo Shift Lab</title><style>{STYLE}</style>'
-    text = f"<!doctype html><html><head>{head}</head><body><h1>Every experiment of the lab</h1>{body}</body></html>\n"
+    body = f"<h1>Every experiment of the lab</h1>{body}<script>{SCRIPT}</script>"
+    text = f"<!doctype html><html><head>{head}</head><body>{body}</body></html>\n"
     path = out / "index.html"
     path.write_text(text, encoding="utf-8")
     return path

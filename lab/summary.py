@@ -45,7 +45,7 @@ TELLING = (
     "contact_number",
 )
 HEADLINES, TOLD = 3, 6  # measures that the page says first, and that the terminal is told
-MOST_DECIMALS = 4
+SMALL = 1e-3  # numbers below are told with a power of ten
 ROUNDING = 1e-9  # an error so small beside its value is that of the arithmetic
 LARGE_OVERLAP = 0.05  # of a radius
 SPREAD = "std of the beds"
@@ -117,8 +117,10 @@ def number(value: Value) -> str:
     if not error or error < ROUNDING * abs(value.value):
         return f"{value.value:.4g}{unit}"
     digits = max(0, 1 - floor(log10(error)))
-    if digits > MOST_DECIMALS:
-        return f"{value.value:.2g} ± {error:.2g}{unit}"
+    if max(abs(value.value), error) < SMALL:
+        power = floor(log10(max(abs(value.value), error)))
+        shown, spread, digits = value.value / 10.0**power, error / 10.0**power, digits + power
+        return f"({shown:.{digits}f} ± {spread:.{digits}f})e{power:+03d}{unit}"
     return f"{value.value:.{digits}f} ± {error:.{digits}f}{unit}"
 
 

@@ -39,10 +39,8 @@ from solvers.walls import Walls
 
 ROOM = 32  # contacts of a grain with another, or with one wall, at most
 NEAR = 1.0 / 16.0  # of the outlines, together: how far a contact may go between lists and be known again
-PLACES, WIDE = (
-    8,
-    1.0 / 8.0,
-)  # on either side of a contact, where others may come up, and how much of an outline they span
+PLACES = 8  # on either side of a contact, where others may come up
+WIDE = 1.0 / 8.0  # of an outline: what they span
 ATTEMPTS = 8  # of Newton's method to find a contact again before it has ended or been lost
 GROWN = 2.0  # a contact that holds and wants new lists
 SELDOM = 4  # steps from one look at such a place to the next
@@ -229,10 +227,8 @@ class Continuous:
         stride = ti.static(self.tables.cells // self.tracked.looks)
         target = self.target(g, w, i, feature, shift)
         outline = g.outline(w, i)
-        earlier, last = (
-            self.rough_gap(outline, feature, target, -2 * stride),
-            self.rough_gap(outline, feature, target, -stride),
-        )
+        earlier = self.rough_gap(outline, feature, target, -2 * stride)
+        last = self.rough_gap(outline, feature, target, -stride)
         for k in range(looks):
             gap = self.rough_gap(outline, feature, target, k * stride)
             if last <= earlier and last < gap:
