@@ -25,9 +25,9 @@ LESS = {
         has 0.15 to 3, often four where it has 12: within the scatter of beds neither shows (`cargolab bench
         accuracy`).""",
     "shapes": f"""Beds are run at draft accuracy ({LEVELS["draft"].error}); those of the tilting box are 80 mm deep for
-        110, 6 where the source has 12, and 12 of random phases for 25, tilted at 20 deg/s, round grains at 10, and
-        so four beds of chickpeas for 24 at 0.5; heaps have 800 grains for 2500. Ratios come ± their standard error.
-        A verdict on one is given where 95 % of confidence allows it.""",
+        110, 6 where the source has 12, and 12 of random phases for 25, tilted at 20 deg/s, at 10 if of round grains (at
+        0.3 three beds, 40 mm deep, to 12 deg) or of chickpeas (four for 24 at 0.5); heaps have 800 grains for 2500.
+        Ratios come ± their standard error. A verdict on one is given where 95 % of confidence allows it.""",
     "ship": f"""Grains are of 6 mm for the source's 3 (of 10 in the map), one bed for each wave but at the edge of
         capsize; ships are run at draft accuracy ({LEVELS["draft"].error}) for 30 s.""",
 }
