@@ -143,7 +143,7 @@ def _write_page(every: Mapping[str, str], out: Path) -> Path:
 
 
 def _card(name: str, title: str, cheapest: str, out: Path) -> str:
-    """A preset: its clip, how to run it in its cheapest variant, its numbers."""
+    """A preset: its clip, or its poster where that is left of it, how to run its cheapest variant, its numbers."""
     plain = _plain(name)
     if not (out / f"{plain}.json").exists():
         picture, told = "<img alt='not run yet'>", "<p class='why'>not run yet</p>"
@@ -154,7 +154,9 @@ def _card(name: str, title: str, cheapest: str, out: Path) -> str:
         ]
         ended = "" if found["status"] == "complete" else f"<p class='why'>{escape(found['status'])}</p>"
         told = f"<table>{''.join(rows)}</table>{ended}"
-        picture = f'<video controls loop muted preload="none" poster="{plain}.png" src="{plain}.mp4"></video>'
+        picture = f'<img alt="" src="{plain}.png">'
+        if (out / f"{plain}.mp4").exists():
+            picture = f'<video controls loop muted preload="none" poster="{plain}.png" src="{plain}.mp4"></video>'
     command = f"cargolab run {cheapest}"
     return (
         f"<figure>{picture}<figcaption><b>{escape(title)}</b><p><code>{escape(command)}</code></p>{told}"
