@@ -39,7 +39,7 @@ ALTERNATIVES = {
 
 QUICK = "-quick"  # behind the name of a preset: its quick variant
 # What the quick variant of a preset may change: what it costs, and with it how exact it is, but not what it is about.
-QUICK_KEYS = ("run", "record", "grains.diameter", "contact.stiffness_scale", "motion.tilt.rate")
+QUICK_KEYS = ("run", "record", "grains.diameter", "grains.count", "contact.stiffness_scale", "motion.tilt.rate")
 
 PATH_KEYS = ("grains.bed", "motion.history.file", "shapes.*.contour")  # whose values are paths; *: any name
 

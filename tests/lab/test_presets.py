@@ -89,7 +89,7 @@ def test_a_quick_variant_says_how_it_differs_and_differs_in_what_it_costs_alone(
     if motion.tilt:
         motion = replace(motion, tilt=replace(motion.tilt, rate=whole.motion.tilt.rate))
     alike = {"quick": "", "run": whole.run, "record": whole.record, "contact": contact, "motion": motion}
-    alike["grains"] = replace(quick.grains, diameter=whole.grains.diameter)
+    alike["grains"] = replace(quick.grains, diameter=whole.grains.diameter, count=whole.grains.count)
     if whole.shapes:  # their diameter is the grains' where they have none of their own
         sizes = {name: shape.diameter for name, shape in whole.shapes.items()}
         alike["grains"] = replace(alike["grains"], table=whole.grains.table)
