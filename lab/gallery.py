@@ -28,6 +28,8 @@ UNITS = {"deg": "°", "d": "diameters"}
 MOST_NUMBERS = 4
 CARGOES = "cargoes.png"
 
+ERRORS = "One bed each. ± is the error of what that bed shows; angles of like beds differ by several degrees."
+
 STYLE = """
 body { font: 15px/1.45 system-ui, sans-serif; color: #212934; margin: 2rem auto; max-width: 1320px; padding: 0 1rem; }
 h2 { margin: 2.2rem 0 .6rem; text-transform: capitalize; }
@@ -135,7 +137,7 @@ def _write_page(every: Mapping[str, str], out: Path) -> Path:
         for group, cards in groups.items()
     )
     head = f'<meta charset="utf-8"><title>Cargo Shift Lab</title><style>{STYLE}</style>'
-    body = f"<h1>Every experiment of the lab</h1>{body}<script>{SCRIPT}</script>"
+    body = f"<h1>Every experiment of the lab</h1><p class='why'>{ERRORS}</p>{body}<script>{SCRIPT}</script>"
     text = f"<!doctype html><html><head>{head}</head><body>{body}</body></html>\n"
     path = out / "index.html"
     path.write_text(text, encoding="utf-8")
