@@ -10,7 +10,7 @@ from solvers.runtime import Arrays
 from solvers.shapes.contour import Contour
 from solvers.shapes.crossing import Placed
 from solvers.shapes.nodes import ALL, Nodes
-from solvers.shapes.pose import posed
+from solvers.shapes.pose import posed, towards
 from solvers.shapes.tables import Tables
 from solvers.shapes.tracked import MINIMUM, SADDLE, Places, Tracked
 
@@ -175,3 +175,22 @@ class Asked:
                 for m in ti.static(range(8)):
                     self.found[p, k, m] = c[m]
                 self.places.i[p, k], self.places.j[p, k] = c[5], c[6]
+
+
+def orientations(angle: np.ndarray) -> np.ndarray:
+    """Cosines and sines (n, 2) of angles (n,) in rad, as kernels work them out."""
+    runtime.initialise(1)
+    arrays = Arrays()
+    given, (found,) = arrays.holding(angle), arrays.reals(1, (len(angle), 2))
+    arrays.finish()
+    _turn_towards(given, found)
+    values = found.to_numpy()
+    arrays.release()
+    return values
+
+
+@ti.kernel
+def _turn_towards(angle: ti.template(), found: ti.template()):
+    for k in angle:
+        turn = towards(angle[k])
+        found[k, 0], found[k, 1] = turn[0], turn[1]

@@ -7,7 +7,7 @@ import pytest
 from outlines import ellipse, irregular, star
 from scipy import ndimage, optimize
 from shape_collisions import Collisions
-from shape_kernels import Asked, Pairs, random_pairs
+from shape_kernels import Asked, Pairs, orientations, random_pairs
 
 from solvers.errors import BadOutline
 from solvers.shapes.cargo import cargo, cargoes
@@ -359,3 +359,10 @@ def test_energy_in_collisions(outline):
     assert tracked[-1] < 1e-4
     assert tracked[-1] < 0.05 * tracked[0]
     assert nodes[-1] > 10.0 * tracked[-1]
+
+
+def test_orientations_are_cosine_and_sine_of_angles():
+    angle = np.concatenate([np.random.default_rng(1).uniform(-30.0, 30.0, 20000), np.pi / 4 * np.arange(-32, 33)])
+    found = orientations(angle)
+    assert np.abs(found[:, 0] - np.cos(angle)).max() < np.spacing(30.0)
+    assert np.abs(found[:, 1] - np.sin(angle)).max() < np.spacing(30.0)
