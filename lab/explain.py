@@ -7,7 +7,7 @@ import numpy as np
 from lab.accuracy import LEVELS
 from lab.presets import LoadedPreset
 from lab.scene import build
-from lab.shapes import Shape
+from lab.shapes import Shape, caution
 from lab.ship import describe
 from lab.units import show
 from solvers.laws import COHESION
@@ -170,7 +170,8 @@ def _parts(simulation: Simulation) -> list[tuple[str, str]]:
 
 def _outlines(shapes: Shapes) -> str:
     rule = shapes.contact if shapes.contact == "continuous" else f"{shapes.contact}, {shapes.nodes} nodes on each"
-    return f"{len(shapes.outlines)} different ones, {rule}"
+    rough = caution(shapes.outlines, shapes.contact)
+    return f"{len(shapes.outlines)} different ones, {rule}" + (f". {rough}" if rough else "")
 
 
 def _cohesion(scene) -> str:

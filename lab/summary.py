@@ -12,6 +12,7 @@ import numpy as np
 from lab.errors import LabError
 from lab.measures.value import Value
 from lab.recording import Recording
+from lab.shapes import caution
 from lab.units import show
 from solvers.motions import MOTIONS
 from solvers.quantity import Unit
@@ -250,6 +251,9 @@ def _cautions(recording: Recording) -> Iterator[str]:
     scale = (recording.preset.get("contact") or {}).get("stiffness_scale", 1.0)
     if scale < 1:
         yield f"The grains are softer than their material: Young's moduli times {scale:g}."
+    rule = (recording.preset.get("contact") or {}).get("outlines", "continuous")
+    if recording.shapes and (rough := caution(recording.shapes.contours, rule)):
+        yield rough
     if (recording.preset.get("run") or {}).get("force_step"):
         yield "The step is forced past the derived one: restitution errs by some 2 % at five times that."
     overlap = recording.series["overlap"].max(initial=0.0)

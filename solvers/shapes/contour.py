@@ -131,10 +131,21 @@ class Contour:
 
     @cached_property
     def convex(self) -> bool:
-        """Whether the outline bends one way only, R² + 2 R'² − R R'' ≥ 0 at all angles that are looked at."""
+        """Whether the outline bends one way only, κ ≥ 0 at all angles that are looked at."""
+        return bool(self._curvature.min() >= 0.0)
+
+    @cached_property
+    def sharpest_dent(self) -> float:
+        """The least radius of curvature (m) where the outline bends inwards; infinite where it nowhere does."""
+        deepest = float(self._curvature.min())
+        return -1.0 / deepest if deepest < 0.0 else inf
+
+    @cached_property
+    def _curvature(self) -> np.ndarray:
+        """Curvature κ = (R² + 2 R'² − R R'')/(R² + R'²)^(3/2) (1/m) at even angles."""
         angle = _even(LOOKS * (1 + len(self.descriptors)))
         radius, slope, bend = (self.polar(angle, order) for order in range(3))
-        return bool((radius**2 + 2.0 * slope**2 - radius * bend).min() >= 0.0)
+        return (radius**2 + 2.0 * slope**2 - radius * bend) / np.hypot(radius, slope) ** 3
 
     @cached_property
     def least_mass(self) -> float:

@@ -318,3 +318,10 @@ def test_explain_tells_the_shapes():
 def test_a_disc_among_shapes_is_a_disc():
     (outline,) = resolved({"a": {"disc": True}}).shapes["a"].outlines()
     assert outline == Contour(1.0)
+
+
+def test_sharp_dents_are_warned_of_where_they_may_gain_energy():
+    lobed = {"lobed": {"descriptors": [0.0] * 49 + [0.0133]}}
+    assert 'contact.outlines = "area"' in explain(loaded(lobed))
+    assert "dents" not in explain(loaded(lobed, contact={"outlines": "area"}))
+    assert "dents" not in explain(loaded(TWO))

@@ -194,3 +194,13 @@ def test_a_star_is_convex_up_to_a_height_of_its_lobes(lobes):
     height = 1.0 / (lobes**2 + 1.0)
     assert star(lobes, 0.999 * height).convex
     assert not star(lobes, 1.001 * height).convex
+
+
+@pytest.mark.parametrize(("n", "depth"), [(5, 0.2), (50, 0.0133)])
+def test_the_sharpest_dent_of_a_wave_is_at_its_deepest(n, depth):
+    wave = Contour(3e-3, [0.0] * (n - 1) + [3e-3 * depth], [0.0] * n)
+    assert wave.sharpest_dent == pytest.approx(3e-3 * (1.0 - depth) ** 2 / ((n * n + 1) * depth - 1.0), rel=1e-6)
+
+
+def test_ellipses_have_no_dents():
+    assert ellipse(1.4, 0.7).sharpest_dent == np.inf
