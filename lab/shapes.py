@@ -201,6 +201,6 @@ def caution(contours: Sequence[Contour], rule: str) -> str | None:
     if rule != "continuous" or sharpest >= SHARP:
         return None
     return (
-        f"Outlines have dents with a radius of curvature of {100 * sharpest:.1f} % of their own: "
+        f"Outlines have dents with a radius of curvature of {100 * sharpest:.1f} % of R0: "
         'grains that mesh may gain energy; contact.outlines = "area" keeps it.'
     )
