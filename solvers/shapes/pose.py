@@ -4,7 +4,7 @@ from math import factorial, pi
 
 import taichi as ti
 
-# Taylor's, in powers of the square of an angle of up to π/4: the first that is left out is less than 1e-16 of the first.
+# Taylor's, in powers of the square of an angle of up to π/4: the first left out is less than 1e-16 of the first.
 COSINE = [(-1.0) ** k / factorial(2 * k) for k in range(9)]
 SINE = [(-1.0) ** k / factorial(2 * k + 1) for k in range(8)]
 
