@@ -40,7 +40,7 @@ class ContactList:
         (self.length,) = units.integers(arrays, 1)
         base = stride * (np.arange(units.count) // units.a_world)
         self.grain, self.mate = arrays.integer_vectors(2, lanes, shape, across, base)
-        self.has_targets = not (units.whole or units.single) and lanes > 1
+        self.has_targets = not (units.whole or units.single)
         self.target = arrays.integer_vectors(1, lanes, shape, False, base)[0] if self.has_targets else self.mate
         self.stiffness, self.reach, self.share = arrays.vectors(3, lanes, shape, across)
         if laws.kinds > 1:
@@ -48,7 +48,8 @@ class ContactList:
         self.kinds = laws.kinds
         self.constants = arrays.vectors(len(laws.constants), lanes, shape, across)
         memory = (*laws.memory, *more)
-        self.memory = arrays.vectors(len(memory), lanes, shape, across)
+        self.memory = arrays.vectors(len(laws.memory), lanes, shape, across)
+        self.memory += arrays.vectors(len(more), 1, (units.count, self.capacity), across)
         for name, field in zip((*laws.constants, *memory), (*self.constants, *self.memory), strict=True):
             setattr(self, name, field)
         self.memories = len(self.memory)
@@ -82,6 +83,18 @@ class ContactList:
         return self.mate[u, p // self.lanes][p % self.lanes] - self.units.world(u) * self.stride
 
     @ti.func
+    def remembered(self, which: ti.template(), u, p):
+        """One of the things that contact p remembers."""
+        field = ti.static(self.memory[which])
+        return field[u, p // field.n][p % field.n]
+
+    @ti.func
+    def remember(self, which: ti.template(), u, p, value):
+        """Have contact p remember another value of it."""
+        field = ti.static(self.memory[which])
+        field[u, p // field.n][p % field.n] = value
+
+    @ti.func
     def set_aside(self, u):
         """Keep the present list as the old one, for `add` to find memory in."""
         for k in range(self.units.size + 1):
@@ -102,7 +115,7 @@ class ContactList:
         block, lane = p // self.lanes, p % self.lanes
         self.old_mate[u, p] = self.mate[u, block][lane]
         for k in ti.static(range(self.memories)):
-            self.old_memory[k][u, p][0] = self.memory[k][u, block][lane]
+            self.old_memory[k][u, p][0] = self.remembered(k, u, p)
 
     @ti.func
     def put_back(self, u):
@@ -117,7 +130,7 @@ class ContactList:
                 self.grain[u, block][lane] = start + k
                 self.mate[u, block][lane] = self.old_mate[u, p]
                 for m in ti.static(range(self.memories)):
-                    self.memory[m][u, block][lane] = self.old_memory[m][u, p][0]
+                    self.remember(m, u, p, self.old_memory[m][u, p][0])
 
     @ti.func
     def write(self, u, p, i, mate, target):
@@ -133,7 +146,7 @@ class ContactList:
     def clear(self, u, p):
         """Contact p remembers nothing."""
         for k in ti.static(range(self.memories)):
-            self.memory[k][u, p // self.lanes][p % self.lanes] = 0.0
+            self.remember(k, u, p, 0.0)
 
     @ti.func
     def add(self, u, p, i, mate, target, row, stiffness, reach, share):
@@ -147,9 +160,8 @@ class ContactList:
     @ti.func
     def recall(self, u, p, q):
         """Contact p remembers what contact q of the old list did."""
-        block, lane = p // self.lanes, p % self.lanes
         for m in ti.static(range(self.memories)):
-            self.memory[m][u, block][lane] = self.old_memory[m][u, q][0]
+            self.remember(m, u, p, self.old_memory[m][u, q][0])
 
     @ti.func
     def add_new(self, u, p, i, mate, target, row, stiffness, reach, share):

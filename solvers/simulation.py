@@ -35,6 +35,7 @@ from solvers.walls import Walls
 
 LOOK_FOR_MIXING = 0.25  # s, between looks at whether the grains' numbers still follow their places
 SKIN = 0.05  # of the mean diameter; in settled and in shaken beds the fastest of 0.05 … 0.3
+SKIN_OF_CONVEX = 0.1  # outlines, whose lists cost more to make
 RULES = {"continuous": Continuous, "nodes": Discrete, "area": Area}  # of contact between outlines
 SHORTER = 0.9  # of the limit on the step: how much shorter one may come to be while the grains move
 AT_REST = -1e9  # a time long before any motion starts
@@ -66,7 +67,7 @@ class Simulation:
         self.longest_step = scene.step_limits()[0].step  # s, at which it was made
         self.schedule_name = choose_schedule(scene.schedule, self.arch, worlds, count, self.threads, self.afloat)
         self.units_a_world = units or units_a_world(self.schedule_name, worlds, count, self.threads)
-        self.skin = skin or SKIN * 2.0 * scene.mean_radius
+        self.skin = skin or (SKIN_OF_CONVEX if scene.shapes and scene.shapes.convex else SKIN) * 2.0 * scene.mean_radius
         self.steps, self.room = 0, 1
         self.origin = 0.0  # what the tank's motion takes for the time at step 0
         self.unkicked = 0  # the step that is the grains' first

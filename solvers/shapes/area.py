@@ -10,6 +10,7 @@ from solvers.shapes.given import Shapes
 from solvers.shapes.grains import with_disc
 from solvers.shapes.polygons import AREA, PUSH_X, PUSH_Y, XX, XY, YX, YY, Polygons
 from solvers.shapes.pose import turned, turned_back
+from solvers.shapes.rest import Rest
 from solvers.shapes.single import Single
 from solvers.shapes.tables import TINY, Tables
 from solvers.shapes.wall import FAR, SeenWalls
@@ -38,6 +39,7 @@ class Area(Single):
     def __init__(self, arrays: Arrays, units: Units, walls: Walls, shapes: Shapes):
         outlines = with_disc(shapes)
         self.tables, self.walls = Tables(arrays, outlines), SeenWalls(arrays, walls)
+        self.rest = Rest(arrays, units, bent=False)
         self.polygons = Polygons(arrays, outlines, shapes.nodes)
 
     @ti.func

@@ -2,10 +2,10 @@
 
 import taichi as ti
 
-from solvers.contacts import Contacts
+from solvers.contacts import GIVEN_APART, Contacts, gathered
 from solvers.laws.chosen import PAIR, WALL
-from solvers.laws.extremes import greater
-from solvers.shapes.rest import HOLDS, NORMAL_Y, NORMAL_Z, OVERLAP, POINT_Y, POINT_Z, Rest
+from solvers.laws.extremes import greater, lesser
+from solvers.shapes.rest import HOLDS, NORMAL_Y, NORMAL_Z, OVERLAP, POINT_Y, POINT_Z
 
 
 @ti.data_oriented
@@ -22,58 +22,108 @@ class ShapedContacts(Contacts):
 
     def __init__(self, arrays, units, grains, walls, lists, laws, rule):
         super().__init__(arrays, units, grains, walls, lists, laws)
-        self.rule, self.rest = rule, Rest(rule.bent)
+        self.rule, self.rest = rule, rule.rest
 
     @ti.func
     def pair_forces(self, g: ti.template(), pairs: ti.template(), u, dt):
-        """Forces between the grains g, a contact at a time; one across two units is worked out in both."""
-        w = self.units.world(u)
-        for p in range(pairs.length[u]):
-            listed, mate = pairs.first_of(u, p), pairs.second_of(u, p)
-            i, j = ti.min(listed, mate), ti.max(listed, mate)
-            if not self.rule.is_lost(pairs, u, p):
-                # From the middle of the overlap to where the outlines of discs would cross.
-                back = pairs.share[u, p][0] - 0.5
-                self.pair_force(g, pairs, w, i, j, u, p, ti.select(listed == i, -back, back), dt)
+        """Forces between the grains g, a block of contacts at a time; one across two units is worked out in both."""
+        for block in range(pairs.blocks(u)):
+            i, j = self.in_order(pairs, u, block)
+            if not self.idle(g, pairs, i, j, u, block):
+                if self.rest.carry(g, pairs, i, j, u, block) > 0.0:
+                    self.ask(g, pairs, u, block, dt)
+                self.block_forces(g, pairs, i, j, u, block, dt)
 
     @ti.func
-    def pair_force(self, g: ti.template(), pairs: ti.template(), w, i, j, u, p, back, dt):
-        """The force of contact p on grains i and j; none if it was open and they have hardly moved since."""
-        moved = self.rest.moved(g, pairs, w, i, j, u, p)
-        way = self.rest.way(g, w, i, j, moved)
-        hardly, touching = way < pairs.still[u, p][0], -pairs.was_overlap[u, p][0] < way
-        if not hardly or touching:
-            c, d = self.rest.contact(g, pairs, w, i, j, u, p, moved), self.rest.saddle(g, pairs, w, i, j, u, p, moved)
-            if not hardly:
-                c = self.rule.pair(g, pairs, w, i, j, u, p, True)
+    def in_order(self, pairs: ti.template(), u, block):
+        """The two grains of each contact, that with the lower number first."""
+        listed, mate = pairs.grain[u, block], pairs.mate[u, block]
+        i, j = listed, mate
+        if ti.static(not self.units.whole):
+            i, j = lesser(listed, mate), greater(listed, mate)
+        return i, j
+
+    @ti.func
+    def idle(self, g: ti.template(), pairs: ti.template(), i, j, u, p):
+        """Whether there is nothing to do for a block of one contact; larger ones are not passed over."""
+        nothing = False
+        if ti.static(pairs.lanes == 1):
+            nothing = self.rule.is_lost(pairs, u, p) or self.rest.is_open(g, pairs, i, j, u, p)
+        return nothing
+
+    @ti.func
+    def ask(self, g: ti.template(), pairs: ti.template(), u, block, dt):
+        """Have the rule say what those contacts of a block are now that have come too far."""
+        w = self.units.world(u)
+        for lane in range(pairs.lanes):
+            if self.rest.is_asked(u, lane):
+                p = block * pairs.lanes + lane
+                listed, mate = pairs.first_of(u, p), pairs.second_of(u, p)
+                i, j = ti.min(listed, mate), ti.max(listed, mate)
+                c, d = self.rule.pair(g, pairs, w, i, j, u, p, True), ti.Vector([0.0 for _ in range(HOLDS + 1)])
                 if self.unsettled(pairs, u, p, c):
                     c[OVERLAP] = -g.reach[w, i]
                 if ti.static(self.rule.bent):
                     d = self.rule.pair_saddle(g, pairs, w, i, j, u, p, True)
                 self.rest.note(g, pairs, w, i, j, u, p, c, d, dt)
-            self.push_pair(g, pairs, w, i, j, u, p, c, d, back, dt)
 
     @ti.func
-    def push_pair(self, g: ti.template(), pairs: ti.template(), w, i, j, u, p, c, d, back, dt):
-        """Push grains i and j apart at a contact c, by so much less as the saddle d before it says."""
-        start, end = self.units.first(u), self.units.end(u)
-        lever = lever_of(c, back)
-        slip, pressing = self.pair_pressed(g, pairs, w, i, j, u, p, c, lever, dt)
-        n = ti.Vector([c[NORMAL_Y], c[NORMAL_Z]])
-        force, torque = pressing * n, pressing * lever.cross(n)
-        if ti.static(self.rule.bent):  # noqa: SIM102 (compiled only there)
-            if d[OVERLAP] > 0.0 and c[OVERLAP] > 0.0:
-                arm, m = lever_of(d, back), ti.Vector([d[NORMAL_Y], d[NORMAL_Z]])
-                less = self.pair_pressed(g, pairs, w, i, j, u, p, d, arm, dt)[1]
-                force, torque, pressing = force - less * m, torque - less * arm.cross(m), pressing - less
-        turning = g.spin_now[w, i] - g.spin_now[w, j]
-        ft, roll = self.rubbed(PAIR, pairs, u, p, c, pressing, slip, turning, dt)
-        force += ft * ti.Vector([-n[1], n[0]])
-        torque += ft * lever.dot(n)
-        if start <= i < end:
-            g.push(w, i, force[0], force[1], torque + roll)
-        if start <= j < end:
-            g.push(w, j, -force[0], -force[1], -torque - g.apart(w, i, j).cross(force) - roll)
+    def block_forces(self, g: ti.template(), pairs: ti.template(), i, j, u, block, dt):
+        """Push grains i and j apart at a block of contacts, by so much less as the saddles before them say.
+
+        Straight-line arithmetic on short vectors, as `Contacts.pair_forces`.
+        """
+        overlap, ny, nz, py, pz = self.rest.present(self.rest.now, u)
+        at = self.rest.place(u)
+        apart_y, apart_z = self.rest.ways[0][at], self.rest.ways[1][at]
+        # From the middle of the overlap to where the outlines of discs would cross.
+        back = 0.5 - pairs.share[u, block]
+        if ti.static(not self.units.whole):
+            back = ti.select(pairs.grain[u, block] == i, back, -back)
+        overlap = greater(overlap, 0.0)
+        ly, lz = py + back * overlap * ny, pz + back * overlap * nz
+        uy, uz, turning = self.passing(g, pairs, i, j, ly, lz, apart_y, apart_z)
+        pressing = self.laws.press(PAIR, pairs, u, block, overlap, -(uy * ny + uz * nz), dt)
+        fy, fz, torque = pressing * ny, pressing * nz, pressing * (ly * nz - lz * ny)
+        if ti.static(self.rule.bent):
+            shallow, my, mz, qy, qz = self.rest.present(self.rest.saddle_now, u)
+            if shallow[0] > 0.0 and overlap[0] > 0.0:
+                ky, kz = qy + back * shallow * my, qz + back * shallow * mz
+                vy, vz, _ = self.passing(g, pairs, i, j, ky, kz, apart_y, apart_z)
+                less = self.laws.press(PAIR, pairs, u, block, shallow, -(vy * my + vz * mz), dt)
+                fy, fz, torque = fy - less * my, fz - less * mz, torque - less * (ky * mz - kz * my)
+                pressing -= less
+        slip = uz * ny - uy * nz
+        ft, roll = self.laws.rub(PAIR, pairs, u, block, overlap, greater(pressing, 0.0), slip, turning, dt)
+        fy, fz, torque = fy - ft * nz, fz + ft * ny, torque + ft * (ly * ny + lz * nz) + roll
+        self.push_block(g, pairs, i, u, block, fy, fz, torque, -torque - (apart_y * fz - apart_z * fy))
+
+    @ti.func
+    def passing(self, g: ti.template(), pairs: ti.template(), i, j, ly, lz, apart_y, apart_z):
+        """Velocities (y, z) m/s past j of grains i, at points (y, z) m from their centres, and spins past theirs."""
+        spin_i, spin_j = gathered(g.spin_now, i, pairs.lanes), gathered(g.spin_now, j, pairs.lanes)
+        uy = gathered(g.now_y, i, pairs.lanes) - gathered(g.now_y, j, pairs.lanes)
+        uz = gathered(g.now_z, i, pairs.lanes) - gathered(g.now_z, j, pairs.lanes)
+        uy += -spin_i * lz + spin_j * (lz + apart_z)
+        uz += spin_i * ly - spin_j * (ly + apart_y)
+        return uy, uz, spin_i - spin_j
+
+    @ti.func
+    def push_block(self, g: ti.template(), pairs: ti.template(), i, u, block, fy, fz, torque_i, torque_j):
+        """Push the grains of a block of contacts with forces (N) on i, and turn both with torques (N m)."""
+        listed, target = pairs.grain[u, block], pairs.target[u, block]
+        if ti.static(not self.units.whole):
+            swapped = listed != i
+            fy, fz = ti.select(swapped, -fy, fy), ti.select(swapped, -fz, fz)
+            torque_i, torque_j = ti.select(swapped, torque_j, torque_i), ti.select(swapped, torque_i, torque_j)
+        if ti.static(not self.units.single):
+            at = GIVEN_APART * u
+            self.given[0][at], self.given[1][at], self.given[2][at], self.given[3][at] = fy, fz, torque_i, torque_j
+        for k in ti.static(range(pairs.lanes)):
+            g.push(0, listed[k], fy[k], fz[k], torque_i[k])
+        if ti.static(not self.units.single):
+            for k in ti.static(range(pairs.lanes)):
+                g.push(0, target[k], -fy[k], -fz[k], torque_j[k])
 
     @ti.func
     def unsettled(self, contacts: ti.template(), u, p, c):
@@ -83,14 +133,6 @@ class ShapedContacts(Contacts):
         elif c[HOLDS] > 1.0:
             self.lists.want(contacts, u, p)
         return c[HOLDS] == 0.0
-
-    @ti.func
-    def pair_pressed(self, g: ti.template(), pairs: ti.template(), w, i, j, u, p, c, lever, dt):
-        """Slip (m/s) of two grains at a point `lever` (m) from the centre of i, and the normal force (N) there."""
-        far, spin_i, spin_j = lever + g.apart(w, i, j), g.spin_now[w, i], g.spin_now[w, j]
-        uy = g.now_y[w, i] - g.now_y[w, j] - spin_i * lever[1] + spin_j * far[1]
-        uz = g.now_z[w, i] - g.now_z[w, j] + spin_i * lever[0] - spin_j * far[0]
-        return self.pressed(PAIR, pairs, u, p, c, ti.Vector([uy, uz]), dt)
 
     @ti.func
     def pressed(self, kind: ti.template(), contacts: ti.template(), u, p, c, velocity, dt):

@@ -6,14 +6,19 @@ import taichi as ti
 
 from solvers.laws.extremes import within
 from solvers.runtime import Arrays
+from solvers.shapes import osculating, rest
 from solvers.shapes.given import Shapes
 from solvers.shapes.grains import with_disc
 from solvers.shapes.kept import Kept
+from solvers.shapes.osculating import Osculating
 from solvers.shapes.pose import turned, turned_back
+from solvers.shapes.rest import Rest
 from solvers.shapes.tables import TINY, Tables
 from solvers.shapes.tracked import (
     ALIKE,
     CLOSE,
+    CURVED_I,
+    CURVED_J,
     DEEP,
     HOLDS,
     LONGEST,
@@ -40,6 +45,9 @@ from solvers.walls import Walls
 ROOM = 32  # contacts of a grain with another, or with one wall, at most
 NEAR = 1.0 / 16.0  # of the outlines, together: how far a contact may go between lists and be known again
 PLACES = 8  # on either side of a contact, where others may come up
+# Elements of `Tracked.contact` that are passed on: of any contact, and of one between grains.
+SAID = OVERLAP, NORMAL_Y, NORMAL_Z, POINT_Y, POINT_Z, HOLDS
+SAID_OF_PAIR = *SAID, CURVED_I, CURVED_J
 WIDE = 1.0 / 8.0  # of an outline: what they span
 ATTEMPTS = 8  # of Newton's method to find a contact again before it has ended or been lost
 GROWN = 2.0  # a contact that holds and wants new lists
@@ -57,9 +65,11 @@ class Continuous:
 
     def __init__(self, arrays: Arrays, units: Units, walls: Walls, shapes: Shapes):
         self.units = units
-        self.tables = Tables(arrays, with_disc(shapes))
+        outlines = with_disc(shapes)
+        self.tables = Tables(arrays, outlines)
         self.tracked, self.walls = Tracked(self.tables), SeenWalls(arrays, walls)
         self.bent = not all(outline.convex for outline in shapes.outlines)
+        self.rest = Rest(arrays, units, True) if self.bent else Osculating(arrays, units, outlines)
         self.kept = Kept(self.tracked, self.bent)
         self.pair_memory, self.wall_memory = self.kept.pair_memory, self.kept.wall_memory
         self.farthest, self.most = NEAR * self.tables.cells, ROOM
@@ -80,6 +90,11 @@ class Continuous:
             far += self.tracked.distance(contacts.old_place_second[u, q][0], self.places.j[u, k])
         # One that has been lost has nothing to hand on.
         return ti.select(place < 0.0, self.farthest, far)
+
+    @ti.func
+    def was_known(self, contacts: ti.template(), u, q):
+        """Whether contact q of an old list had not been lost sight of."""
+        return contacts.old_place_first[u, q][0] >= 0.0
 
     @ti.func
     def note(self, contacts: ti.template(), u, p, k):
@@ -126,9 +141,9 @@ class Continuous:
         This is 0 if not, 1 if so, and GROWN if there are others beside it that are not listed. Unless it `moves`, it
         is looked at where it was found last.
         """
-        contact = self.nothing(g, w, i)
+        contact = self.nothing(g, w, i, osculating.CURVED_J + 1)
         if not self.is_lost(pairs, u, p):
-            c, a, b = self.no_place(g, w, i), pairs.place_first[u, p][0], pairs.place_second[u, p][0]
+            c, a, b = self.nothing(g, w, i, CURVED_J + 1), pairs.place_first[u, p][0], pairs.place_second[u, p][0]
             if ti.static(moves):
                 tries = 0
                 while c[HOLDS] == 0.0 and tries < ATTEMPTS:
@@ -142,7 +157,7 @@ class Continuous:
                             c[HOLDS] = ti.select(self.grown(g, pairs, w, i, j, u, p), GROWN, 1.0)
             else:
                 c = self.between(g, MINIMUM, False, w, i, j, a, b)
-            contact = ti.Vector([c[OVERLAP], c[NORMAL_Y], c[NORMAL_Z], c[POINT_Y], c[POINT_Z], c[HOLDS]])
+            contact = ti.Vector([c[n] for n in ti.static(SAID_OF_PAIR)])
         return contact
 
     @ti.func
@@ -163,18 +178,13 @@ class Continuous:
         return holds
 
     @ti.func
-    def no_place(self, g: ti.template(), w, i):
-        """What `Tracked.contact` gives where there is nothing."""
-        return ti.Vector([-g.reach[w, i], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0])
-
-    @ti.func
     def pair_saddle(self, g: ti.template(), pairs: ti.template(), w, i, j, u, p, moves: ti.template()):
         """The saddle before contact p of grains i and j, as `pair`."""
-        contact, a = self.nothing(g, w, i), pairs.saddle_first[u, p][0]
+        contact, a = self.nothing(g, w, i, rest.HOLDS + 1), pairs.saddle_first[u, p][0]
         if a >= 0.0:
             # It counts a last time where it ends, as the contact does that ends with it.
             c = self.between(g, SADDLE, moves, w, i, j, a, pairs.saddle_second[u, p][0])
-            contact = ti.Vector([c[OVERLAP], c[NORMAL_Y], c[NORMAL_Z], c[POINT_Y], c[POINT_Z], c[HOLDS]])
+            contact = ti.Vector([c[n] for n in ti.static(SAID)])
             if ti.static(moves):
                 if c[HOLDS] > 0.0:
                     pairs.saddle_first[u, p][0], pairs.saddle_second[u, p][0] = c[PLACE_I], c[PLACE_J]
@@ -210,9 +220,9 @@ class Continuous:
         return new
 
     @ti.func
-    def nothing(self, g: ti.template(), w, i):
-        """No contact."""
-        return ti.Vector([-g.reach[w, i], 0.0, 0.0, 0.0, 0.0, 0.0])
+    def nothing(self, g: ti.template(), w, i, elements: ti.template()):
+        """No contact, with so many elements."""
+        return ti.Vector([-g.reach[w, i] if n == 0 else 0.0 * g.reach[w, i] for n in ti.static(range(elements))])
 
     @ti.func
     def between(self, g: ti.template(), way: ti.template(), moves: ti.template(), w, i, j, a, b):
@@ -302,9 +312,9 @@ class Continuous:
         self, g: ti.template(), contacts: ti.template(), w, i, feature, shift: ti.template(), u, p, moves: ti.template()
     ):
         """Contact p of grain i with a wall, as `pair`; it does not count where it is another feature's."""
-        contact = self.nothing(g, w, i)
+        contact = self.nothing(g, w, i, rest.HOLDS + 1)
         if not self.is_lost(contacts, u, p):
-            c, place = self.no_place(g, w, i), contacts.place_first[u, p][0]
+            c, place = self.nothing(g, w, i, HOLDS + 1), contacts.place_first[u, p][0]
             if ti.static(moves):
                 tries = 0
                 while c[HOLDS] == 0.0 and tries < ATTEMPTS:
@@ -316,7 +326,7 @@ class Continuous:
                         c[HOLDS] = ti.select(self.grown_on_wall(g, contacts, w, i, feature, shift, u, p), GROWN, 1.0)
             else:
                 c = self.at_wall(g, MINIMUM, False, w, i, feature, shift, place)
-            contact = ti.Vector([c[OVERLAP], c[NORMAL_Y], c[NORMAL_Z], c[POINT_Y], c[POINT_Z], c[HOLDS]])
+            contact = ti.Vector([c[n] for n in ti.static(SAID)])
         return contact
 
     @ti.func
@@ -324,10 +334,10 @@ class Continuous:
         self, g: ti.template(), contacts: ti.template(), w, i, feature, shift: ti.template(), u, p, moves: ti.template()
     ):
         """The saddle before contact p of grain i with a wall, as `wall`."""
-        contact, place = self.nothing(g, w, i), contacts.saddle_first[u, p][0]
+        contact, place = self.nothing(g, w, i, rest.HOLDS + 1), contacts.saddle_first[u, p][0]
         if place >= 0.0:
             c = self.at_wall(g, SADDLE, moves, w, i, feature, shift, place)
-            contact = ti.Vector([c[OVERLAP], c[NORMAL_Y], c[NORMAL_Z], c[POINT_Y], c[POINT_Z], c[HOLDS]])
+            contact = ti.Vector([c[n] for n in ti.static(SAID)])
             if ti.static(moves):
                 if c[HOLDS] > 0.0:
                     contacts.saddle_first[u, p][0] = c[PLACE_I]

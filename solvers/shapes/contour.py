@@ -148,6 +148,16 @@ class Contour:
         return (radius**2 + 2.0 * slope**2 - radius * bend) / np.hypot(radius, slope) ** 3
 
     @cached_property
+    def sharpest_change(self) -> float:
+        """The largest change of curvature along the outline, |dκ/ds| (1/m²), at angles that are looked at."""
+        angle = _even(LOOKS * (1 + len(self.descriptors)))
+        radius, slope, bend, change = (self.polar(angle, order) for order in range(4))
+        size = radius**2 + slope**2
+        turns = radius**2 + 2.0 * slope**2 - radius * bend
+        along = size * (2.0 * radius * slope + 3.0 * slope * bend - radius * change)
+        return float(np.abs((along - 3.0 * turns * slope * (radius + bend)) / size**3).max())
+
+    @cached_property
     def least_mass(self) -> float:
         """The least mass, relative to its own, with which a grain resists a push along a normal of its outline.
 

@@ -1,26 +1,31 @@
 """The source's rule: of all nodes of two outlines the one that lies deepest in the other."""
 
+from math import pi
+
 import taichi as ti
 
 from solvers.runtime import Arrays
 from solvers.shapes.given import Shapes
 from solvers.shapes.grains import with_disc
-from solvers.shapes.nodes import ALL, Nodes
+from solvers.shapes.nodes import Nodes
+from solvers.shapes.osculating import Osculating
 from solvers.shapes.pose import turned, turned_back
+from solvers.shapes.rest import Rest
 from solvers.shapes.single import Single
 from solvers.shapes.tables import Tables
 from solvers.shapes.wall import FAR, SeenWalls
 from solvers.units import Units
 from solvers.walls import Walls
 
-SELDOM = 64  # steps from one look at all nodes to the next
+NEAR = 0.01  # of the way from one node to the next: how far a contact slides until its neighbours are looked at
+SELDOM = 64  # looks from one at all nodes to the next
 
 
 @ti.data_oriented
 class Discrete(Single):
     """One contact of two grains, or of a grain and a wall, at the deepest node (Spandonidis 2016, table 8.1).
 
-    All nodes are looked at where lists are made and every SELDOM times that the contact is asked for; in between the
+    All nodes are looked at until two touch, and every SELDOM times that the contact is asked for; in between the
     deepest of either grain is followed from node to node. `looked` counts those times.
     """
 
@@ -30,6 +35,9 @@ class Discrete(Single):
     def __init__(self, arrays: Arrays, units: Units, walls: Walls, shapes: Shapes):
         outlines = with_disc(shapes)
         self.tables = Tables(arrays, outlines)
+        # Where outlines bend another node may come to lie deeper elsewhere as two are pressed together.
+        near = NEAR * 2.0 * pi / shapes.nodes
+        self.rest = Osculating(arrays, units, outlines, near) if shapes.convex else Rest(arrays, units, bent=False)
         self.nodes, self.walls = Nodes(arrays, self.tables, outlines, shapes.nodes), SeenWalls(arrays, walls)
 
     @ti.func
@@ -39,7 +47,7 @@ class Discrete(Single):
 
     @ti.func
     def count_look(self, contacts: ti.template(), u, p):
-        """Steps since all nodes of contact p were looked at, which is done SELDOM."""
+        """Looks since all nodes of contact p were looked at, which is done SELDOM."""
         k = ti.cast(contacts.looked[u, p][0], ti.i32)
         contacts.looked[u, p][0] = (k + 1) % SELDOM
         return k
@@ -47,15 +55,17 @@ class Discrete(Single):
     @ti.func
     def pair(self, g: ti.template(), pairs: ti.template(), w, i, j, u, p, moves: ti.template()):
         """The contact of grains i and j: overlap (m), normal towards i, point from i's centre (m), 1.0: it holds."""
-        look, first, second = ALL, 0, 0
+        anew, first, second = True, 0, 0
         if ti.static(moves):
-            look = self.nodes.next_look(self.count_look(pairs, u, p))
+            anew = self.count_look(pairs, u, p) == 0
             first, second = ti.cast(pairs.node_first[u, p][0], ti.i32), ti.cast(pairs.node_second[u, p][0], ti.i32)
         one, two = g.outline(w, i), g.outline(w, j)
-        c, first, second = self.nodes.contact(one, two, g.apart(w, i, j), first, second, look)
+        c, first, second = self.nodes.contact(one, two, g.apart(w, i, j), first, second, anew)
         if ti.static(moves):
             pairs.node_first[u, p][0], pairs.node_second[u, p][0] = first, second
-        return ti.Vector([c[0], c[1], c[2], c[3], c[4], 1.0 + 0.0 * c[0]])
+            if c[0] <= 0.0:
+                pairs.looked[u, p][0] = 0.0
+        return ti.Vector([c[0], c[1], c[2], c[3], c[4], 1.0 + 0.0 * c[0], c[5], c[6]])
 
     @ti.func
     def wall(

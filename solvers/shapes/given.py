@@ -31,5 +31,10 @@ class Shapes:
         if self.least_mass is None:
             object.__setattr__(self, "least_mass", min(outline.least_mass for outline in self.outlines))
 
+    @property
+    def convex(self) -> bool:
+        """Whether no outline bends inwards anywhere."""
+        return all(outline.convex for outline in self.outlines)
+
 
 CONTACTS = ("continuous", "nodes", "area")

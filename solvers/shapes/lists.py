@@ -5,10 +5,10 @@ from math import ceil
 import numpy as np
 import taichi as ti
 
+from solvers.laws.extremes import greater
 from solvers.neighbours import NEVER, Neighbours
-from solvers.shapes.rest import STILL, Rest
+from solvers.shapes.rest import STILL
 
-WANTED = ("wanted",)  # whether, at the first contact of two, theirs are to be sought anew
 BENT_PLACES = 4  # for contacts of two of whose outlines one bends, for a start
 
 
@@ -21,15 +21,15 @@ class ShapedNeighbours(Neighbours):
     to the rule in the order of their numbers, so that units that share a pair work out the same numbers.
     """
 
-    lanes = 1  # an outline's tables are read contact by contact
-    wall_fleeting = WANTED
-
     def __init__(self, arrays, units, grains, walls, skin, bridges, reach, laws, modulus, room, rule):
-        self.pair_fleeting = (*WANTED, *Rest(rule.bent).memory)
+        self.lanes, self.pair_fleeting = rule.rest.lanes, rule.rest.memory
         self.places = min(rule.most, BENT_PLACES * room)
         room *= (BENT_PLACES if rule.bent else 1) * ceil(grains.crowding - 0.01)
         super().__init__(arrays, units, grains, walls, skin, bridges, reach, laws, modulus, room, rule)
         self.rule = rule
+        for contacts in (self.pairs, self.contacts):
+            # Whether, at the first contact of two, theirs are to be sought anew.
+            (contacts.wanted,) = arrays.vectors(1, 1, (units.count, contacts.capacity), units.single)
         (self.built_angle,) = arrays.reals(1, (grains.worlds, grains.count))
         self.asking = arrays.holding(np.zeros(units.count), ti.i32, kept=True)
 
@@ -39,6 +39,8 @@ class ShapedNeighbours(Neighbours):
         places = self.rule.places_for_pair(g, self.units.world(u), i, j, self.places)
         for p in range(found, ti.min(found + places, self.pairs.capacity)):
             self.write_pair(g, u, p, i, j, target, False, dt)
+            farther = greater(g.reach[self.units.world(u), i], g.reach[self.units.world(u), j])
+            self.pairs.reach[u, p // self.lanes][p % self.lanes] = farther
             self.rule.free(self.pairs, u, p)
             self.pairs.wanted[u, p][0] = ti.select(p == found, 1.0, 0.0)
         return found + places
@@ -63,11 +65,14 @@ class ShapedNeighbours(Neighbours):
         """Seek the contacts of all pairs that are wanted; returns False where two have more than there is room for."""
         g, w, fits = self.grains, self.units.world(u), True
         shift = self.walls.shift(w, t)
+        for p in range(self.pairs.length[u], self.pairs.blocks(u) * self.pairs.lanes):
+            self.rule.rest.forget(self.pairs, u, p, False)
         for p in range(self.pairs.length[u]):
             if self.pairs.wanted[u, p][0] > 0.0:
                 i, j = self.pairs.first_of(u, p), self.pairs.second_of(u, p)
-                count = self.rule.seek_pair(g, w, ti.min(i, j), ti.max(i, j), self.margin(), u)
-                fits = self.replace(self.pairs, u, p, i, j, count, whole) and fits
+                if not (whole and self.goes_on(u, p, i)):
+                    count = self.rule.seek_pair(g, w, ti.min(i, j), ti.max(i, j), self.margin(), u)
+                    fits = self.replace(self.pairs, u, p, i, j, count, whole) and fits
         for p in range(self.contacts.length[u]):
             if self.contacts.wanted[u, p][0] > 0.0:
                 i, feature = self.contacts.first_of(u, p), self.contacts.second_of(u, p)
@@ -79,6 +84,22 @@ class ShapedNeighbours(Neighbours):
             if whole:
                 self.put_back(u)
         return fits
+
+    @ti.func
+    def goes_on(self, u, p, i):
+        """Whether contact p is the only one of its two, and known from the old list, so that it need not be sought."""
+        known = False
+        if ti.static(not self.rule.bent):
+            row, mate = i - self.units.first(u), self.pairs.second_of(u, p)
+            place = self.units.world(u) * self.pairs.stride + mate
+            for q in range(self.pairs.old_first[u, row], self.pairs.old_first[u, row + 1]):
+                if self.pairs.old_mate[u, q] == place and self.rule.was_known(self.pairs, u, q):
+                    self.pairs.recall(u, p, q)
+                    known = True
+            if known:
+                self.pairs.wanted[u, p][0] = 0.0
+                self.rule.rest.forget(self.pairs, u, p, True)
+        return known
 
     @ti.func
     def replace(self, contacts: ti.template(), u, head, i, mate, count, whole):
@@ -94,12 +115,12 @@ class ShapedNeighbours(Neighbours):
         contacts.wanted[u, head][0] = 0.0
         for p in range(head, end):
             contacts.clear(u, p)
-            if ti.static(hasattr(contacts, STILL)):
-                contacts.still[u, p][0] = 0.0
             if p - head < count:
                 self.recall(contacts, u, p, i, mate, p - head, count)
             else:
                 self.rule.free(contacts, u, p)
+            if ti.static(hasattr(contacts, STILL)):
+                self.rule.rest.forget(contacts, u, p, p - head < count)
         return count <= end - head
 
     @ti.func

@@ -16,7 +16,6 @@ ARCS = 8  # at the top
 SLACK = 1.0 + 1e-6  # on bounds, for the tables' errors and rounding
 NEARBY = 0.1  # of the other grain's bounding radius: nodes farther outside than this are not told apart
 DEPTH = 0  # an element of what `Nodes.seen` gives
-ALL = 0  # nodes to look at
 
 
 @ti.data_oriented
@@ -26,7 +25,7 @@ class Nodes:
     The result is that of Spandonidis (2016), table 8.1, over all nodes, but for step 6: the tangent is the other
     outline's at the node's polar angle, not a chord of two nodes. A look at all of them passes over a run if no point
     of its circle can lie deeper in the other grain than what has been found. Between such looks the deepest nodes of
-    either grain are followed: at each step one of their two neighbours is asked if it lies deeper.
+    either grain are followed: each time those beside them are asked if they lie deeper.
 
     A disc of n nodes then rolls as a polygon of n corners does, at any stiffness: on slopes over π/n alone.
     """
@@ -43,52 +42,61 @@ class Nodes:
         self.least = arrays.holding(np.array([_least(outline) for outline in outlines]))
 
     @ti.func
-    def contact(self, one: ti.template(), two: ti.template(), apart, node_i, node_j, look):
+    def contact(self, one: ti.template(), two: ti.template(), apart, node_i, node_j, all_nodes):
         """Overlap ξ (m; negative: no gap is smaller; 0: open), normal towards i, contact point from i's centre, nodes.
 
+        Before these come the outlines' radii of curvature (m) there, 0 of the one of which it is a node.
+
         `one` and `two` are the outlines of i and j, `apart` the centre of i less that of j (m). The contact point is
-        the deepest node, of which either grain's is given, too. `look` is ALL, or which of the neighbours of `node_i`
-        and `node_j` is asked: 1 or −1 for the next or the last on i, 2 or −2 on j.
+        the deepest node, of which either grain's is given, too: of `all_nodes`, or of `node_i`, `node_j` and those
+        beside them.
         """
         between, back = turned_back(two.turn, one.turn), turned_back(one.turn, two.turn)
         centre, centre_back = turned_back(two.turn, apart), turned_back(one.turn, -apart)
         a, b = node_i, node_j
         first = self.seen(one, between, two, centre, a)
         second = self.seen(two, back, one, centre_back, b)
-        if look == ALL:
+        if all_nodes:
             a = self.search(one, between, two, centre, a, first[DEPTH])
             b = self.search(two, back, one, centre_back, b, second[DEPTH])
-        elif ti.abs(look) == 1:
-            c = self.beside(a, look)
-            if self.depth(one, between, two, centre, c) > first[DEPTH]:
-                a = c
         else:
-            c = self.beside(b, look // 2)
-            if self.depth(two, back, one, centre_back, c) > second[DEPTH]:
-                b = c
+            a = self.deeper(one, between, two, centre, a, first[DEPTH])
+            b = self.deeper(two, back, one, centre_back, b, second[DEPTH])
         if a != node_i:
             first = self.seen(one, between, two, centre, a)
         if b != node_j:
             second = self.seen(two, back, one, centre_back, b)
-        contact = ti.Vector([0.0 * one.scale, 0.0, 0.0, 0.0, 0.0])
+        contact = ti.Vector([0.0 * one.scale, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0])
         there, here = overlap_of(first), overlap_of(second)
         if there > 0.0 and there >= here:
-            normal, point = normal_of(first, two.turn), turned(two.turn, own_of(first))
-            contact = ti.Vector([there, normal[0], normal[1], point[0] - apart[0], point[1] - apart[1]])
+            own = own_of(first)
+            normal, point, curved = normal_of(first, two.turn), turned(two.turn, own), self.curved(two, own)
+            contact = ti.Vector([there, normal[0], normal[1], point[0] - apart[0], point[1] - apart[1], 0.0, curved])
         elif here > 0.0:
-            normal, point = -normal_of(second, one.turn), turned(one.turn, own_of(second))
-            contact = ti.Vector([here, normal[0], normal[1], point[0], point[1]])
-        elif look == ALL:
+            own = own_of(second)
+            normal, point, curved = -normal_of(second, one.turn), turned(one.turn, own), self.curved(one, own)
+            contact = ti.Vector([here, normal[0], normal[1], point[0], point[1], curved, 0.0])
+        elif all_nodes:
             far_i, far_j = self.nearby(one), self.nearby(two)
             gap_i = ti.min(-first[DEPTH], far_j) * self.least[two.shape]
             contact[0] = -ti.min(gap_i, ti.min(-second[DEPTH], far_i) * self.least[one.shape])
         return contact, a, b
 
     @ti.func
-    def next_look(self, k):
-        """What is looked at after so many steps since all nodes were."""
-        side = 1 - 2 * (k // 2 % 2)
-        return ti.select(k == 0, ALL, ti.select(k % 2 == 0, side, 2 * side))
+    def curved(self, outline: ti.template(), own):
+        """Radius of curvature (m) of an outline in the direction of a point."""
+        return outline.scale * self.tables.curved(outline.shape, own[0], own[1])
+
+    @ti.func
+    def deeper(self, one: ti.template(), between, other: ti.template(), centre, known, depth_known):
+        """The deepest of a node of which the depth is known, and its two neighbours."""
+        best, which = depth_known, known
+        for side in ti.static((-1, 1)):
+            node = self.beside(known, side)
+            depth = self.depth(one, between, other, centre, node)
+            if depth > best:
+                best, which = depth, node
+        return which
 
     @ti.func
     def place(self, shape, n):

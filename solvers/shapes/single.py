@@ -25,6 +25,11 @@ class Single:
         return 0.0 * contacts.stiffness[u, 0][0]
 
     @ti.func
+    def was_known(self, contacts: ti.template(), u, q):
+        """Whether contact q of an old list had not been lost sight of."""
+        return True
+
+    @ti.func
     def note(self, contacts: ti.template(), u, p, k):
         """Nothing more is known of contact p."""
 

@@ -4,6 +4,7 @@ import numpy as np
 import taichi as ti
 
 from solvers.errors import BadOutline
+from solvers.laws.extremes import greater, lesser
 from solvers.runtime import Arrays
 from solvers.shapes.contour import Contour
 
@@ -11,6 +12,7 @@ ERROR = 1e-6  # of R0, the most that a table may be off
 LEAST, MOST = 64, 4096  # cells
 BETWEEN = np.array([0.25, 0.5, 0.75])  # of a cell, where the error is looked at; it is largest near the middle
 TINY = 1e-30
+FLAT = 1e3  # of a grain's radius: a radius of curvature that need not be told from a larger one
 
 
 @ti.data_oriented
@@ -65,6 +67,21 @@ class Tables:
         return ti.Vector([value(r, f), slope(r, f) * (1.0 + tilt * tilt) * (self.cells / 8.0)])
 
     @ti.func
+    def curved(self, shape, x, y):
+        """Radius of curvature (m) of an outline in the direction of a point, at most FLAT of what it is for a disc.
+
+        (R² + R'²)^(3/2)/(R² + 2 R'² − R R'').
+        """
+        place, tilt = self.direction(x, y)
+        k, f = self.cell(place)
+        c, more = ti.Vector([self.radii[shape, k, n] for n in ti.static(range(4))]), 1.0 + tilt * tilt
+        # By the angle, of which the cells count the tangent.
+        r, by_tilt = value(c, f), slope(c, f) * (self.cells / 8.0)
+        dr, ddr = by_tilt * more, more * (bend(c, f) * (self.cells / 8.0) ** 2 * more + 2.0 * tilt * by_tilt)
+        size = r * r + dr * dr
+        return radius_of_curvature(ti.sqrt(size) ** 3, size + dr * dr - r * ddr, r)
+
+    @ti.func
     def direction(self, x, y):
         """Where the direction of (x, y) stands among the cells, 0 to `cells`, and its slope about the nearest axis."""
         steep = ti.abs(y) > ti.abs(x)
@@ -72,6 +89,13 @@ class Tables:
         quadrant = ti.select(steep, 1.0, 0.0) + ti.select(along < 0.0, 2.0, 0.0)
         tilt = across / ti.select(along == 0.0, TINY, along)
         return (quadrant + 0.5 * (tilt + 1.0)) * (self.cells / 4.0), tilt
+
+
+@ti.func
+def radius_of_curvature(cube, turns, size):
+    """The ratio of two numbers, with an absolute value of at most FLAT times a `size`."""
+    least = cube / (FLAT * size)
+    return cube / ti.select(turns < 0.0, lesser(turns, -least), greater(turns, least))
 
 
 @ti.func

@@ -7,7 +7,7 @@ import taichi as ti
 from solvers.laws.extremes import greater, lesser, within
 from solvers.runtime import Arrays
 from solvers.shapes.pose import turned, turned_back
-from solvers.shapes.tables import Tables
+from solvers.shapes.tables import Tables, radius_of_curvature
 
 LOOKS = 128  # points of an outline from which contacts are sought
 TRIES = 40  # steps to a contact from where it is sought
@@ -22,7 +22,7 @@ NONE = -1.0  # a place that is none
 HALVINGS, NEARER = 6, 2  # on the way to a saddle, and steps to a place on j that is nearest to one on i
 
 # Elements of what `contact` gives.
-OVERLAP, NORMAL_Y, NORMAL_Z, POINT_Y, POINT_Z, PLACE_I, PLACE_J, HOLDS = range(8)
+OVERLAP, NORMAL_Y, NORMAL_Z, POINT_Y, POINT_Z, PLACE_I, PLACE_J, HOLDS, CURVED_I, CURVED_J = range(10)
 
 
 @ti.data_oriented
@@ -86,7 +86,8 @@ class Tracked:
         holds = ti.select(close and near and least > 0.0, 1.0, 0.0)
         n, point = turned(two.turn, normal), turned(two.turn, p - 0.5 * gap)
         a, b = self.tables.wrapped(a), self.tables.wrapped(b)
-        return ti.Vector([-gap.dot(normal), n[0], n[1], point[0], point[1], a, b, holds])
+        one_curved, two_curved = curved(first, one.scale), curved(second, two.scale)
+        return ti.Vector([-gap.dot(normal), n[0], n[1], point[0], point[1], a, b, holds, one_curved, two_curved])
 
     @ti.func
     def seen(self, one: ti.template(), between, place):
@@ -246,7 +247,7 @@ class Tracked:
     def followed(self, way, one: ti.template(), two: ti.template(), apart, place_i, place_j):
         """What Newton's method leads to from these places; it does not hold where it leads to nothing."""
         a, b, settled = place_i, place_j, False
-        c = ti.Vector([0.0 * one.scale for _ in ti.static(range(HOLDS + 1))])
+        c = ti.Vector([0.0 * one.scale for _ in ti.static(range(CURVED_J + 1))])
         for _ in range(TRIES):
             c = self.contact(True, way, one, two, apart, a, b)
             settled = self.same(c[PLACE_I], a, SETTLED) and self.same(c[PLACE_J], b, SETTLED)
@@ -271,6 +272,13 @@ class Tracked:
     def same(self, a, b, error):
         """Whether two places on an outline differ by less than so many cells."""
         return self.distance(a, b) < error
+
+
+@ti.func
+def curved(own, scale):
+    """Radius of curvature (m) of an outline with this point and derivatives."""
+    along = ti.Vector([own[2], own[3]]).norm()
+    return radius_of_curvature(along * along * along, own[2] * own[5] - own[3] * own[4], scale)
 
 
 @ti.func

@@ -9,7 +9,7 @@ from solvers import runtime
 from solvers.runtime import Arrays
 from solvers.shapes.contour import Contour
 from solvers.shapes.crossing import Placed
-from solvers.shapes.nodes import ALL, Nodes
+from solvers.shapes.nodes import Nodes
 from solvers.shapes.pose import posed, towards
 from solvers.shapes.tables import Tables
 from solvers.shapes.tracked import MINIMUM, SADDLE, Places, Tracked
@@ -80,7 +80,7 @@ class Asked:
         (self.apart,) = arrays.reals(1, (count, 2))
         self.places = Places(arrays, count, ROOM)
         (self.number,) = arrays.integers(1, (count,))
-        (self.found,) = arrays.reals(1, (count, ROOM, 8))
+        (self.found,) = arrays.reals(1, (count, ROOM, 10))
         (self.shallow,) = arrays.reals(1, (count, ROOM))
         arrays.finish()
         self.arrays = arrays
@@ -95,16 +95,16 @@ class Asked:
     def by_nodes(self, pairs: Pairs) -> np.ndarray:
         """Overlap, normal and point (n, 5) by the discrete rule, of all nodes."""
         self.node.fill(0)
-        return self.by_nodes_beside(pairs, ALL)
+        return self.by_nodes_beside(pairs, True)
 
-    def by_nodes_beside(self, pairs: Pairs, look: int) -> np.ndarray:
-        """The same of those of the last time and one neighbour; see `Nodes.contact`."""
+    def by_nodes_beside(self, pairs: Pairs, all_nodes: bool = False) -> np.ndarray:
+        """The same of those of the last time and their neighbours."""
         self.load(pairs)
-        self._by_nodes(look)
+        self._by_nodes(int(all_nodes))
         return self.found.to_numpy()[:, 0, :5]
 
     def scanned(self, pairs: Pairs, skin: float) -> tuple[np.ndarray, np.ndarray]:
-        """How many contacts each pair has (n,), and what they are (n, ROOM, 8)."""
+        """How many contacts each pair has (n,), and what they are (n, ROOM, 10)."""
         self.load(pairs)
         self._scan(skin)
         return self.number.to_numpy(), self.found.to_numpy()
@@ -130,10 +130,11 @@ class Asked:
         return ti.Vector([self.apart[p, 0], self.apart[p, 1]])
 
     @ti.kernel
-    def _by_nodes(self, look: ti.i32):
+    def _by_nodes(self, all_nodes: ti.i32):
         for p in self.number:
             one, two = self.outline(p, 0), self.outline(p, 1)
-            c, first, second = self.nodes.contact(one, two, self.between(p), self.node[p, 0], self.node[p, 1], look)
+            a, b = self.node[p, 0], self.node[p, 1]
+            c, first, second = self.nodes.contact(one, two, self.between(p), a, b, all_nodes)
             self.node[p, 0], self.node[p, 1] = first, second
             for n in ti.static(range(5)):
                 self.found[p, 0, n] = c[n]
@@ -172,7 +173,7 @@ class Asked:
             if saddle:
                 self.shallow[p, k] = ti.max(c[0], 0.0)
             else:
-                for m in ti.static(range(8)):
+                for m in ti.static(range(10)):
                     self.found[p, k, m] = c[m]
                 self.places.i[p, k], self.places.j[p, k] = c[5], c[6]
 

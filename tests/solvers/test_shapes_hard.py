@@ -111,8 +111,7 @@ def test_energy_of_collisions_by_shared_areas(outline, speed, young, nodes):
 def test_a_rough_disc_of_500_nodes_keeps_its_energy():
     change, met = collisions(ROUGH, "nodes", 1.0, 3e7, 500)
     assert met > WORLDS // 2
-    assert np.isfinite(change).all()
-    assert np.abs(np.median(change)) < 0.1
+    assert np.abs(change).max() < 1e-2
 
 
 @pytest.mark.slow
