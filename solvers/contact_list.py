@@ -18,8 +18,8 @@ class ContactList:
     stride of 0 by their numbers in their world. What does not change while a
     contact is listed: `stiffness` k (N/m^1.5), `reach` (m), the distance at which the two touch, `share`, the
     first grain's part of it, and the laws' constants. The laws' memory does change, and is zero while the two do not
-    touch. What the laws keep, and `more` memories that others do, are fields by the names they give; `fleeting` ones
-    are not handed on to the next list.
+    touch. What the laws keep, and `more` memories that others do, contact by contact, are fields by the names they
+    give; `fleeting` ones are not handed on to the next list.
     """
 
     def __init__(

@@ -22,8 +22,8 @@ class Osculating(Rest):
     """Takes both outlines for their osculating circles, so that contacts become those of discs that stick to grains.
 
     That lasts until a contact has slid along the outlines: by s, and with κ their curvature, its overlap is off by
-    κ' s³/6, which `slides` (classes,) m, of grains of radius 1, keeps small. Where grains were apart they may move by
-    as much.
+    κ' s³/6 (local canonical form, do Carmo 1976, section 1-6), which `slides` (classes,) m, of grains of radius 1,
+    keeps small. Where grains were apart they may move by as much.
     """
 
     said = (*Rest.said, "curved_i", "curved_j")

@@ -106,12 +106,23 @@ def test_energy_of_collisions_by_shared_areas(outline, speed, young, nodes):
     assert np.abs(change).max() < 1e-2
 
 
+@pytest.fixture(scope="module")
+def rough_by_nodes():
+    return collisions(ROUGH, "nodes", 1.0, 3e7, 500)
+
+
+@pytest.mark.slow
+def test_half_of_rough_discs_of_500_nodes_gain_little(rough_by_nodes):
+    change, met = rough_by_nodes
+    assert met > WORLDS // 2
+    assert np.isfinite(change).all()
+    assert np.abs(np.median(change)) < 0.1
+
+
 @pytest.mark.slow
 @pytest.mark.xfail(reason="the deepest node jumps from lobe to lobe, and energy with it", strict=True)
-def test_a_rough_disc_of_500_nodes_keeps_its_energy():
-    change, met = collisions(ROUGH, "nodes", 1.0, 3e7, 500)
-    assert met > WORLDS // 2
-    assert np.abs(change).max() < 1e-2
+def test_a_rough_disc_of_500_nodes_keeps_its_energy(rough_by_nodes):
+    assert np.abs(rough_by_nodes[0]).max() < 1e-2
 
 
 @pytest.mark.slow

@@ -264,12 +264,13 @@ def test_schedules_agree():
     ("contact", "speed", "within"),
     [
         *(("continuous", speed, 1e-4) for speed in (0.0, 0.1)),
-        *(("nodes", speed, 5e-3) for speed in (0.0, 0.1)),
+        ("nodes", 0.0, 5e-3),
+        ("nodes", 0.1, 1e-3),
         ("area", 0.0, 1e-4),
     ],
 )
 def test_contacts_that_are_carried_along_are_as_if_looked_at_each_step(contact, speed, within, monkeypatch):
-    """In a bed at rest and one that is thrown against a wall; of nodes, the step from one to the next comes late."""
+    """In a bed at rest and one that is thrown; of nodes the next may come late, and a grain then tips elsewhere."""
     radius, places = loose(4, 3, 4.2 * RADIUS, worlds=2)
     given = shapes([unit(rice()), unit(ellipse(*AXES))], radius.shape[1], 2, contact)
     start = falling(given, places, radius)
@@ -282,7 +283,7 @@ def test_contacts_that_are_carried_along_are_as_if_looked_at_each_step(contact, 
         simulation = going_on(now, given, radius)
         simulation.advance(500)
         found.append(simulation.snapshot())
-    assert simulation.observe()["contacts"].sum() > 15
+    assert simulation.observe()["contacts"].sum() > (15 if speed else 20)  # fewer where they fly
     went = np.abs(found[0]["position"] - now["position"]).max()
     assert went > 1e-3 * RADIUS
     assert np.abs(found[1]["position"] - found[0]["position"]).max() < within * went
