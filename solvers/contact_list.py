@@ -18,8 +18,9 @@ class ContactList:
     stride of 0 by their numbers in their world. What does not change while a
     contact is listed: `stiffness` k (N/m^1.5), `reach` (m), the distance at which the two touch, `share`, the
     first grain's part of it, and the laws' constants. The laws' memory does change, and is zero while the two do not
-    touch. What the laws keep, and `more` memories that others do, contact by contact, are fields by the names they
-    give; `fleeting` ones are not handed on to the next list.
+    touch. `places` are how many there are for grains and for mates. What the laws keep, and `more` memories that
+    others do, contact by contact, are fields by the names they give; `fleeting` ones are not handed on to the next
+    list.
     """
 
     def __init__(
@@ -30,6 +31,7 @@ class ContactList:
         lanes: int,
         stride: int,
         laws: ChosenLaws,
+        places: tuple[int, int],
         more: tuple[str, ...] = (),
         fleeting: tuple[str, ...] = (),
     ):
@@ -37,14 +39,18 @@ class ContactList:
         blocks = -(-room // lanes)
         self.capacity = blocks * lanes
         shape, across = (units.count, blocks), units.single
-        (self.length,) = units.integers(arrays, 1)
+        (self.length,) = units.integers(arrays, 1, self.capacity + 1)
         base = stride * (np.arange(units.count) // units.a_world)
-        self.grain, self.mate = arrays.integer_vectors(2, lanes, shape, across, base)
+        (self.grain,) = arrays.integer_vectors(1, lanes, shape, across, base, places[0])
+        (self.mate,) = arrays.integer_vectors(1, lanes, shape, across, base, places[1])
         self.has_targets = not (units.whole or units.single)
-        self.target = arrays.integer_vectors(1, lanes, shape, False, base)[0] if self.has_targets else self.mate
+        self.target = self.mate
+        if self.has_targets:
+            (self.target,) = arrays.integer_vectors(1, lanes, shape, False, base, places[1])
         self.stiffness, self.reach, self.share = arrays.vectors(3, lanes, shape, across)
         if laws.kinds > 1:
-            (self.row,) = arrays.integer_vectors(1, lanes, shape, across)  # of the interface
+            rows = laws.kinds * (laws.kinds + 1)
+            (self.row,) = arrays.integer_vectors(1, lanes, shape, across, below=rows)  # of the interface
         self.kinds = laws.kinds
         self.constants = arrays.vectors(len(laws.constants), lanes, shape, across)
         memory = (*laws.memory, *more)
@@ -55,7 +61,7 @@ class ContactList:
         self.memories = len(self.memory)
         for name, field in zip(fleeting, arrays.vectors(len(fleeting), lanes, shape, across), strict=True):
             setattr(self, name, field)
-        (self.first,) = arrays.integers(1, (units.count, units.size + 1), across)
+        (self.first,) = arrays.integers(1, (units.count, units.size + 1), across, below=self.capacity + 1)
         (self.old_first,) = arrays.integers(1, (units.count, units.size + 1), across, kept=False)
         (self.old_mate,) = arrays.integers(1, (units.count, self.capacity), across, kept=False)
         self.old_memory = arrays.vectors(self.memories, 1, (units.count, self.capacity), across, kept=False)

@@ -110,11 +110,13 @@ class Grains:
             "spin": spin,
         }
 
+    def fields(self) -> list[ti.Field]:
+        """All arrays of the grains, each once: some have two names."""
+        return list({id(field): field for field in vars(self).values() if isinstance(field, ti.Field)}.values())
+
     def permute(self, order: dict[int, np.ndarray], more: Sequence[ti.Field]) -> None:
         """Put the moving grains of some worlds into another order, `order[w]` their old numbers, with `more` fields."""
-        # By identity, since some have two names.
-        fields = {id(field): field for field in vars(self).values() if isinstance(field, ti.Field)}
-        for field in (*fields.values(), *more):
+        for field in (*self.fields(), *more):
             values = field.to_numpy()
             for w, old in order.items():
                 values[w, : self.mobile] = values[w, old]

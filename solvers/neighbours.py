@@ -50,8 +50,9 @@ class Neighbours:
         pairs, contacts = pairs * units.size + across + more_pairs, contacts * units.size + more_contacts
         more_pairs, more_contacts = (rule.pair_memory, rule.wall_memory) if rule else ((), ())
         fleeting, more_fleeting = self.pair_fleeting, self.wall_fleeting
-        self.pairs = ContactList(arrays, units, room * pairs, lanes, grains.stride, laws, more_pairs, fleeting)
-        self.contacts = ContactList(arrays, units, room * contacts, 1, 0, laws, more_contacts, more_fleeting)
+        of_all, of_walls = 2 * (grains.worlds * grains.stride,), (grains.stride, walls.features)
+        self.pairs = ContactList(arrays, units, room * pairs, lanes, grains.stride, laws, of_all, more_pairs, fleeting)
+        self.contacts = ContactList(arrays, units, room * contacts, 1, 0, laws, of_walls, more_contacts, more_fleeting)
         self.modulus = arrays.holding(4.0 / 3.0 * modulus)  # k = (4/3) E* √R_eff of each interface
         self.skin = arrays.holding(np.array([skin]))
         if laws.cohesive:

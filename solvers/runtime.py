@@ -19,7 +19,7 @@ import numpy as np
 import taichi as ti
 from taichi.lang.ast.ast_transformer_utils import ASTTransformerContext
 
-from solvers import memory
+from solvers import address_space, kernel_cache, memory
 from solvers.errors import Unavailable
 
 ARCHES = ("auto", "cpu", "cuda", "vulkan")
@@ -107,9 +107,11 @@ def initialise(threads: int = 0, arch: str = "cpu", precision: str = "f64", **op
 
     Starting it anew invalidates every field and kernel made before. It is also done where no arrays are in use any
     more: Taichi numbers its fields from the start on, and finds a kernel that it has compiled before only where the
-    fields have the same numbers. Raises Unavailable (see `choose_arch`).
+    fields have the same numbers. Raises Unavailable (see `choose_arch`), also where Taichi lacks a folder or memory.
     """
     global _running, _starts, _used
+    if kernel_cache.missing():
+        raise Unavailable(kernel_cache.lacking())
     wanted = (threads or available_cores(), choose_arch(arch, precision), PRECISIONS[precision].real)
     if _running == wanted and not options and (_live or not _used):
         return
@@ -125,6 +127,7 @@ def initialise(threads: int = 0, arch: str = "cpu", precision: str = "f64", **op
 
 def _start(threads: int, arch: str, real, options: dict) -> None:
     before = _own_threads()
+    address_space.check()
     ti.init(
         arch=getattr(ti, arch),
         default_fp=real,
@@ -191,6 +194,7 @@ class Arrays:
         self._across: list[bool] = []
         self._kept: dict[str, ti.Field] = {}
         self._bases: dict[int, np.ndarray] = {}
+        self._below: dict[int, int] = {}
         self._contents: list[tuple[ti.Field, np.ndarray]] = []
         self._tree = None
         self._born = _starts
@@ -199,9 +203,12 @@ class Arrays:
         """`count` fields of floats: of the reals' kind, or of another, such as `self.place`."""
         return [self._placed(ti.field(kind or self.real), shape, kept=kept) for _ in range(count)]
 
-    def integers(self, count: int, shape: tuple[int, ...], across: bool = False, kept: bool = True) -> list[ti.Field]:
-        """`count` fields of 32-bit integers."""
-        return [self._placed(ti.field(ti.i32), shape, across, kept) for _ in range(count)]
+    def integers(
+        self, count: int, shape: tuple[int, ...], across: bool = False, kept: bool = True, below: int | None = None
+    ) -> list[ti.Field]:
+        """`count` fields of 32-bit integers; places in other arrays are `below` a number, which `write` checks."""
+        fields = [self._placed(ti.field(ti.i32), shape, across, kept) for _ in range(count)]
+        return self._bounded(fields, below)
 
     def vectors(
         self, count: int, size: int, shape: tuple[int, ...], across: bool = False, kept: bool = True
@@ -210,12 +217,23 @@ class Arrays:
         return [self._placed(ti.Vector.field(size, self.real), shape, across, kept) for _ in range(count)]
 
     def integer_vectors(
-        self, count: int, size: int, shape: tuple[int, ...], across: bool = False, base: np.ndarray | None = None
+        self,
+        count: int,
+        size: int,
+        shape: tuple[int, ...],
+        across: bool = False,
+        base: np.ndarray | None = None,
+        below: int | None = None,
     ) -> list[ti.Field]:
         """`count` fields of vectors of `size` 32-bit integers; `read` and `write` count from `base` (shape[0],)."""
         fields = [self._placed(ti.Vector.field(size, ti.i32), shape, across) for _ in range(count)]
         if base is not None:
             self._bases.update({id(field): base for field in fields})
+        return self._bounded(fields, below)
+
+    def _bounded(self, fields: list[ti.Field], below: int | None) -> list[ti.Field]:
+        if below is not None:
+            self._below.update({id(field): below for field in fields})
         return fields
 
     def holding(self, values: np.ndarray, kind=None, kept: bool = False) -> ti.Field:
@@ -259,9 +277,22 @@ class Arrays:
         return {name: field.to_numpy() - self._base(field) for name, field in self._kept.items()}
 
     def write(self, contents: dict[str, np.ndarray]) -> None:
-        """Put back what `read` gave from the same declarations."""
+        """Put back what `read` gave from the same declarations.
+
+        No number is left that is no place in the array that it points into, for a kernel would read and write elsewhere
+        in memory. Vectors of places may hold such where they are not in use, in a world that has come from another
+        number: these are made zero. Elsewhere they raise ValueError, before anything is put back.
+        """
+        whole = {name: np.ascontiguousarray(contents[name] + self._base(field)) for name, field in self._kept.items()}
         for name, field in self._kept.items():
-            field.from_numpy(np.ascontiguousarray(contents[name] + self._base(field)))
+            places, below = whole[name], self._below.get(id(field))
+            if below is None or not places.size or 0 <= places.min() <= places.max() < below:
+                continue
+            if not hasattr(field, "n"):
+                raise ValueError(f"array {name} has numbers that are no places")
+            whole[name] = np.where((places >= 0) & (places < below), places, 0).astype(places.dtype)
+        for name, field in self._kept.items():
+            field.from_numpy(whole[name])
 
     def _base(self, field: ti.Field) -> np.ndarray | int:
         base = self._bases.get(id(field))

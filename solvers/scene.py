@@ -12,7 +12,7 @@ from solvers.materials import Interface, Material, interface, touching
 from solvers.parts import Part
 from solvers.shapes.given import Shapes
 from solvers.ship.vessel import Vessel
-from solvers.timestep import Limit, limits
+from solvers.timestep import Limit, limits, watched
 
 
 @dataclass
@@ -21,10 +21,11 @@ class Scene:
 
     `radius` (W, n) m; `outline` (m, 2) m, counter-clockwise; `grain`, `wall` materials, one or one a world;
     `motions[w]` the tank's motions in world w, the same kinds in every world; `step` Δt in s, or None for the
-    derived one; `start_speed` (m/s) of the fastest grain at the start; `sizes` the smallest and largest radius (m) a
-    world may hold. What is derived for all worlds follows from `sizes`, so that a world does not depend on its company;
-    it defaults to the range of `radius`. `velocity` (W, n, 2) m/s and `spin` (W, n) rad/s at the start, or None: at
-    rest. `kind` (W, n) numbers the kinds of grains, 0 of `grain` and the rest of `others`, None where all are of one;
+    derived one; `start_speed` (m/s) at which the fastest two grains, or one and a wall, may meet at the start; `sizes`
+    the smallest and largest radius (m) a world may hold. What is derived for all worlds follows from `sizes`, so that a
+    world does not depend on its company; it defaults to the range of `radius`. `velocity` (W, n, 2) m/s and `spin`
+    (W, n) rad/s at the start, or None: at rest. `kind` (W, n) numbers the kinds of grains, 0 of `grain` and the rest of
+    `others`, None where all are of one;
     `unlike` says how two kinds touch. `fixed` (k, 3) y, z and radius in m of grains that never move; `open_edges` the
     edges of the outline without a wall, by their first corners; `parts` plates that move in the tank. `shapes` of
     irregular grains, whose `radius` and `sizes` are those of discs of equal area; None for discs. `vessels` the ships
@@ -166,7 +167,27 @@ class Scene:
         reach = INTEGRATORS[self.integrator].reach
         of = "" if reach == 1.0 else f"{reach:g} of "
         tightest = min(found.values(), key=lambda bounds: bounds[0].step)
-        return [Limit(reach * limit.step, of + limit.reason) for limit in tightest]
+        bounds = [Limit(reach * limit.step, of + limit.reason) for limit in tightest]
+        bounds.append(watched(self.sizes[0], speed, self.radius.shape[1], self.shapes is not None))
+        return sorted(bounds, key=lambda limit: limit.step)
+
+    def longest_step(self, longer: float) -> float:
+        """The step (s) that is `longer` times the derived one, as far as its bounds may be stretched."""
+        return min(limit.step if limit.firm else longer * limit.step for limit in self.step_limits())
+
+    def deepest_overlap(self, speed: float) -> float:
+        """How deep, in its radii, the smallest grain overlaps with the largest or a wall met at a speed (m/s).
+
+        Without losses. Between equal grains it is less, and grains of any size overlap by as many radii.
+        """
+        law, (radius, largest), found = self.laws[0], self.sizes, 0.0
+        of_mass, of_radius = 1.0 / (1.0 + (radius / largest) ** 3), 1.0 / (1.0 + radius / largest)
+        for grain, rows in zip(self.grain, self.interfaces_of, strict=True):
+            mass = 4.0 / 3.0 * np.pi * radius**3 * max(kind.density for kind in (grain, *self.others))
+            for k, between in enumerate(rows):
+                shares = (of_mass, of_radius) if k < self.kinds**2 else (1.0, 1.0)
+                found = max(found, law.deepest(between, shares[0] * mass, shares[1] * radius, speed) / radius)
+        return found
 
     def time_step(self) -> float:
         """The step Δt (s) in use."""

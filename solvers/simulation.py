@@ -40,6 +40,7 @@ RULES = {"continuous": Continuous, "nodes": Discrete, "area": Area}  # of contac
 SHORTER = 0.9  # of the limit on the step: how much shorter one may come to be while the grains move
 AT_REST = -1e9  # a time long before any motion starts
 LOAD = ("wall_y", "wall_z", "wall_moment")
+OF_CONTACTS = ("elastic", "contacts", "overlap")
 
 
 class Simulation:
@@ -86,7 +87,7 @@ class Simulation:
         grains = scene.radius, scene.density, scene.fixed, units.ghosts, may_leave, scene.kind
         self.walls = Walls(arrays, scene.outline, scene.open_edges, scene.parts)
         integrator = INTEGRATORS[scene.integrator]()
-        laws = ChosenLaws(arrays, units, *scene.laws, scene.interfaces_of, scene.kinds, integrator.damping)
+        laws = ChosenLaws(arrays, units, *scene.laws, scene.interfaces_of, scene.kinds, integrator)
         moduli = np.array([[between.young_modulus for between in world] for world in scene.interfaces_of])
         bridges = scene.longest_bridge
         reach = 2.0 * scene.farthest_reach + max(self.skin, bridges)
@@ -202,8 +203,33 @@ class Simulation:
             lists.expire()
 
     def observe(self) -> dict[str, np.ndarray]:
-        """Numbers of every world now, each (W,), named as in `Observer.NAMES`. Raises BadState from the watch."""
+        """Numbers of every world now, each (W,), named as in `Observer.NAMES`. Raises BadState from the watch.
+
+        The force on the tank is the mean since the last look; of grains that were just put where they are, that of now.
+        """
         self._moor()
+        return self._observe_unmoved() if self.steps == self.unkicked else self._observe()
+
+    def _observe_unmoved(self) -> dict[str, np.ndarray]:
+        """The numbers of grains that have taken no step yet, so that nothing is known of their contacts.
+
+        A step makes the contact lists and adds up the forces at its start; then it is taken back, bit for bit.
+        """
+        rows, before = self._observe(), self.state()
+        start = [(field, field.to_numpy()) for field in self.grains.fields()]
+        try:
+            self.advance(1)
+            load = self._observe()
+            for field, values in start:
+                field.from_numpy(values)
+            self.steps -= 1
+            touching = self._observe()
+        finally:
+            self.restore(before)
+        self.load = {name: load[name] for name in LOAD}
+        return rows | {name: touching[name] for name in OF_CONTACTS} | self.load
+
+    def _observe(self) -> dict[str, np.ndarray]:
         runtime.merge_repeats(self.scene.shapes is None)
         self.observer.observe(self.origin + self.time, max(self.steps - self.observed, 1) * self.dt)
         rows = dict(zip(Observer.NAMES, self.observer.rows.to_numpy().T.astype(float), strict=True))

@@ -1,20 +1,55 @@
-"""The step size, derived from the scene: waves, and what its contact laws bear at the highest credible speed."""
+"""The step size, derived from the scene: waves, and what its contact laws and the watch bear at the highest speed."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
 from math import pi, sqrt
 
+import numpy as np
+
 from solvers.materials import Interface, Material
+from solvers.watch import FASTEST_STEP
 
 RAYLEIGH_SHARE = 0.2
+FASTER = 1.5  # times the highest credible speed: what the watch lets pass all the same
 
 
 @dataclass(frozen=True)
 class Limit:
-    """A bound on the step and what sets it."""
+    """A bound on the step and what sets it; one that is `firm` no integrator and no level of accuracy stretches."""
 
     step: float  # s
     reason: str
+    firm: bool = False
+
+
+def watched(smallest: float, speed: float, count: int, shaped: bool) -> Limit:
+    """The step at which the watch lets `count` grains of at least the radius `smallest` (m) all be FASTER than `speed`.
+
+    What it sees of their speeds is the 16-norm, of outlines at most √2 times that of their farthest points
+    (`Mover.move`).
+    """
+    seen = FASTER * count ** (1.0 / 16.0) * (sqrt(2.0) if shaped else 1.0)
+    way = (
+        f"{FASTEST_STEP:g} of the smallest radius a step, what the watch lets pass, at {FASTER:g} times {speed:.3g} m/s"
+    )
+    return Limit(FASTEST_STEP * smallest / (seen * speed), way, firm=True)
+
+
+def closing_speed(velocity: np.ndarray) -> float:
+    """The highest speed (m/s) of any of n grains, or of any two at each other, of velocities (n, 2) m/s.
+
+    The farthest two of a set of points are corners of its convex hull.
+    """
+    from scipy.spatial import ConvexHull, QhullError  # slow to import, and only listed beds need it
+
+    corners = np.unique(velocity, axis=0)
+    try:
+        corners = corners[ConvexHull(corners).vertices]
+    except (QhullError, ValueError):  # on one line, or fewer than three: its ends are the farthest
+        along = (corners - corners[0]) @ (corners[np.linalg.norm(corners - corners[0], axis=1).argmax()] - corners[0])
+        corners = corners[[along.argmin(), along.argmax()]]
+    fastest = np.linalg.norm(velocity, axis=1).max()
+    return float(max([fastest, *(np.linalg.norm(corners - one, axis=1).max() for one in corners)]))
 
 
 def rayleigh_time(radius: float, density: float, shear: float, poisson: float) -> float:

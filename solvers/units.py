@@ -28,9 +28,9 @@ class Units:
         """Far-off points of a world, for pairs that stand for none, and to keep it off the next one's cache lines."""
         return 1 if self.single else APART * self.a_world
 
-    def integers(self, arrays: Arrays, count: int) -> list[ti.Field]:
+    def integers(self, arrays: Arrays, count: int, below: int | None = None) -> list[ti.Field]:
         """`count` fields of one integer a unit."""
-        return arrays.integers(count, (self.count,))
+        return arrays.integers(count, (self.count,), below=below)
 
     @ti.func
     def world(self, u):

@@ -3,6 +3,7 @@
 An integrator is a class with `extra`, the number of fields it keeps of each grain beyond position, velocity and spin,
 and a Taichi function `step` that takes one grain from the forces at its present place to its next place. Beside Verlet
 it bears steps `reach` times as long and dampers `damping` times as strong; `cargolab bench stability` measures both.
+What springs with history have to know of it is `ahead` and `stiffer`, see `solvers.laws.history`.
 """
 
 from solvers.integrators.gear import Gear

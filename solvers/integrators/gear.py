@@ -19,6 +19,7 @@ class Gear:
     """
 
     extra, reach, damping = 3 * DERIVATIVES, 0.25, 0.15
+    ahead, stiffer = 0.5, 0.5
 
     @ti.func
     def step(self, g: ti.template(), extra: ti.template(), w, i, ay, az, turn, first, dt):

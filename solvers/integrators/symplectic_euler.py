@@ -5,9 +5,14 @@ import taichi as ti
 
 @ti.data_oriented
 class SymplecticEuler:
-    """Kick by a whole step, drift with the new velocity (Hairer, Lubich and Wanner 2006, I.1.9). First order."""
+    """Kick by a whole step, drift with the new velocity (Hairer, Lubich and Wanner 2006, I.1.9). First order.
+
+    A contact's losses are of first order in the step, too: at the derived one the restitution is 1.4 % off for a given
+    one of 0.02, 0.5 % for 0.4, and within 0.1 % from 0.8 on.
+    """
 
     extra, reach, damping = 0, 1.0, 1.0
+    ahead, stiffer = 0.0, -1.0 / 12.0
 
     @ti.func
     def step(self, g: ti.template(), extra: ti.template(), w, i, ay, az, turn, first, dt):

@@ -12,6 +12,7 @@ class Verlet:
     """
 
     extra, reach, damping = 0, 1.0, 1.0
+    ahead, stiffer = 0.5, 1.0 / 6.0
 
     @ti.func
     def step(self, g: ti.template(), extra: ti.template(), w, i, ay, az, turn, first, dt):

@@ -2,6 +2,7 @@
 
 A law is a class with
 - `coefficients`, the numbers it needs of an interface between two materials, and `limits`, the longest steps it bears;
+  a normal law also `deepest`, how deep an impact without losses goes;
 - `constants` and `memory`, names of what it keeps for each listed contact, which no other kind of law may use too;
   `prepare` works out the constants of a new contact;
 - `force` (a rolling law: `torque`, one of cohesion: `pull`) and `energy`, Taichi functions. They take a block of

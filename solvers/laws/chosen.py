@@ -3,6 +3,7 @@
 import numpy as np
 import taichi as ti
 
+from solvers.integrators.verlet import Verlet
 from solvers.runtime import Arrays
 from solvers.units import Units
 
@@ -16,17 +17,28 @@ class ChosenLaws:
 
     `interfaces[w]` are those of world w: of kinds a and b of grains in row a·K + b, of kind a and a wall in row K² + a,
     with K `kinds`. Contacts come in blocks of lanes (`ContactList`); what a law returns for a block is a vector of
-    lanes. With one kind of grains a law's coefficients are numbers, with several vectors of lanes. `damping` is the
-    integrator's: laws are told of a step that much longer than it is, and keep their dampers within that.
+    lanes. With one kind of grains a law's coefficients are numbers, with several vectors of lanes. Laws know the
+    `integrator`: they are told of a step longer than it is by its `damping`, and keep their dampers within that.
     """
 
     def __init__(
-        self, arrays: Arrays, units: Units, normal, tangential, rolling, cohesion, interfaces, kinds=1, damping=1.0
+        self,
+        arrays: Arrays,
+        units: Units,
+        normal,
+        tangential,
+        rolling,
+        cohesion,
+        interfaces,
+        kinds=1,
+        integrator=Verlet,
     ):
-        self.units, self.kinds, self.damping = units, kinds, damping
+        self.units, self.kinds, self.damping = units, kinds, integrator.damping
         self.normal, self.tangential, self.rolling, self.cohesion = normal, tangential, rolling, cohesion
         self.cohesive = cohesion.pulls
         laws = (normal, tangential, rolling, *([cohesion] if self.cohesive else []))
+        for law in laws:
+            law.integrator = integrator
         self.laws = laws
         self.tables = [arrays.holding(self.tabulate(law, interfaces)) for law in laws]
         self.constants = tuple(name for law in laws for name in law.constants)
@@ -124,7 +136,7 @@ class ChosenLaws:
         on the first grain, and its opposite on the second.
         """
         pressing = self.press(kind, contacts, u, block, overlap, rate, dt)
-        shearing, torque = self.rub(kind, contacts, u, block, overlap, pressing, slip, turning, dt)
+        shearing, torque = self.rub(kind, contacts, u, block, overlap, rate, pressing, slip, turning, dt)
         return pressing, shearing, torque
 
     @ti.func
@@ -134,11 +146,11 @@ class ChosenLaws:
         return self.normal.force(coefficients, contacts, u, block, overlap, ti.sqrt(overlap), rate, dt)
 
     @ti.func
-    def rub(self, kind: ti.template(), contacts: ti.template(), u, block, overlap, pressing, slip, turning, dt):
+    def rub(self, kind: ti.template(), contacts: ti.template(), u, block, overlap, rate, pressing, slip, turning, dt):
         """Tangential forces (N) and rolling torques (N m) under normal forces `pressing` (N)."""
         tangential_c = self.coefficients(1, u, kind, contacts, block)
         rolling_c = self.coefficients(2, u, kind, contacts, block)
-        shearing = self.tangential.force(tangential_c, contacts, u, block, ti.sqrt(overlap), pressing, slip, dt)
+        shearing = self.tangential.force(tangential_c, contacts, u, block, ti.sqrt(overlap), rate, pressing, slip, dt)
         torque = self.rolling.torque(rolling_c, contacts, u, block, pressing, turning, dt)
         return shearing, torque
 

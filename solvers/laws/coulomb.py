@@ -35,7 +35,7 @@ class Coulomb:
         return ti.Vector([(2.0 / 7.0) * mass / dt])
 
     @ti.func
-    def force(self, c: ti.template(), contacts: ti.template(), w, block, root, normal, slip, dt):
+    def force(self, c: ti.template(), contacts: ti.template(), w, block, root, rate, normal, slip, dt):
         """F_t (N) of a block of contacts on their first grains along the tangent; slip u_s in m/s, F_n in N."""
         cap, limit = c[0] * normal, contacts.limit[w, block]
         share = lesser(FOLLOWING * SLIP * limit / greater(cap, SMALLEST_FORCE), 1.0)

@@ -3,6 +3,7 @@
 import taichi as ti
 
 from solvers.laws.extremes import within
+from solvers.laws.history import M_T, STIFFEST, stiffening
 from solvers.laws.linear_spring import spring_coefficient, spring_stiffness
 from solvers.laws.splitting import AT_ONCE, spring_limit
 from solvers.materials import Interface, hertz_stiffness
@@ -15,11 +16,12 @@ class CundallStrack:
     k_t = (4 G*/E*) k_l with the spring k_l of the linear normal law, whichever normal law is chosen. The ratio is
     Mindlin's (1949), 2(1 − ν)/(2 − ν) for equal materials. The history S is a force: k_t does not change with the
     overlap, so S²/(2 k_t) is what the spring holds and a changing overlap cannot make energy; at the cap S is cut to
-    the cap and the spring slides. γ_t = A k_t, with the dissipative time A of the material.
+    the cap and the spring slides. γ_t = A k_t, with the dissipative time A of the material. S is of second order in the
+    step (`solvers.laws.history`); the step in which grains touch counts from the first touch on.
     """
 
     constants = ("shear_spring", "shear_dashpot")
-    memory = ("stretched",)
+    memory = ("stretched", "ahead")
 
     def coefficients(self, between: Interface) -> list[float]:
         """[μ, k_t's coefficient, A in s]."""
@@ -30,25 +32,34 @@ class CundallStrack:
         """Longest steps (s) and what sets them."""
         stiffness = hertz_stiffness(between.young_modulus, radius)
         spring = spring_stiffness(self.coefficients(between)[1], stiffness, mass)
-        return [(spring_limit(spring, 2.0 / 7.0 * mass), "the tangential spring")]
+        return [(spring_limit(spring, M_T * mass), "the tangential spring")]
 
     @ti.func
     def prepare(self, c: ti.template(), stiffness, mass, radius, dt):
-        """k_t (N/m), γ_t (N s/m) as far as the step resolves it."""
+        """k_t (N/m), a little stiffer for the step, and γ_t (N s/m) as far as the step resolves it."""
         spring = spring_stiffness(c[1], stiffness, mass)
-        return ti.Vector([spring, ti.min(c[2] * spring, AT_ONCE * (2.0 / 7.0) * mass / dt)])
+        dashpot = ti.min(c[2] * spring, AT_ONCE * M_T * mass / dt)
+        stiffer = stiffening(self.integrator.stiffer, mass, dt * self.integrator.damping) * spring
+        return ti.Vector([spring + spring * within(stiffer, STIFFEST), dashpot])
 
     @ti.func
-    def force(self, c: ti.template(), contacts: ti.template(), w, block, root, normal, slip, dt):
+    def force(self, c: ti.template(), contacts: ti.template(), w, block, root, rate, normal, slip, dt):
         """F_t (N) of a block of contacts on their first grains along the tangent; slip u_s in m/s, F_n in N."""
-        cap = c[0] * normal
-        stretched = contacts.stretched[w, block] + contacts.shear_spring[w, block] * slip * dt
-        stretched = within(stretched, cap)
-        contacts.stretched[w, block] = stretched
-        return within(-stretched - contacts.shear_dashpot[w, block] * slip, cap)
+        cap, spring, touching = c[0] * normal, contacts.shear_spring[w, block], root > 0.0
+        way = slip * dt
+        ahead = ti.select(touching, self.integrator.ahead * way, 0.0 * way)
+        begins = root * root < rate * dt
+        behind = ti.select(begins, ahead, contacts.ahead[w, block])
+        behind = ti.select(touching, behind, 0.0 * way)
+        come = ti.select(begins, slip * root * root / rate, way - behind)
+        held = within(contacts.stretched[w, block] + spring * come, cap)
+        contacts.stretched[w, block] = held + spring * behind
+        contacts.ahead[w, block] = ahead
+        return within(-held - contacts.shear_dashpot[w, block] * slip, cap)
 
     @ti.func
     def energy(self, c: ti.template(), contacts: ti.template(), w, block, lane, root):
         """Elastic energy S²/(2 k_t) (J) of one contact."""
-        stretched = contacts.stretched[w, block][lane]
-        return 0.5 * stretched * stretched / contacts.shear_spring[w, block][lane]
+        spring = contacts.shear_spring[w, block][lane]
+        held = contacts.stretched[w, block][lane] - spring * contacts.ahead[w, block][lane]
+        return 0.5 * held * held / spring

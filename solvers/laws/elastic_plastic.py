@@ -18,7 +18,8 @@ class ElasticPlastic:
     law is chosen: k_r then does not change with the overlap, and a changing overlap cannot make energy. The history S
     is a torque; at the cap it is cut to the cap and the grain rolls. C_r = 2 η_r √(I_r k_r), η_r the material's
     `rolling_damping` and I_r = (7/5) m_eff R_eff², the inertia about the contact of a sphere on a wall; between equal
-    grains theirs is four times that.
+    grains theirs is four times that. S is summed by whole steps and leads by half a step, which acts as a damper
+    k_r Δt/2 (`solvers.laws.history`); the dashpot is weaker by so much.
     """
 
     constants = ("rolling_radius", "rolling_spring", "rolling_dashpot")
@@ -38,11 +39,12 @@ class ElasticPlastic:
 
     @ti.func
     def prepare(self, c: ti.template(), stiffness, mass, radius, dt):
-        """μ_r R_eff (m), k_r (N m), C_r (N m s) as far as the step resolves it."""
+        """μ_r R_eff (m), k_r (N m), C_r (N m s) as far as the step resolves it and S does not do it already."""
         inertia = mass * radius * radius
         spring = spring_stiffness(c[1], stiffness, mass) * radius * radius
         dashpot = ti.min(c[2] * ti.sqrt(spring * inertia), AT_ONCE * 0.4 * inertia / dt)
-        return ti.Vector([c[0] * radius, spring, dashpot])
+        led = self.integrator.ahead * spring * dt * self.integrator.damping
+        return ti.Vector([c[0] * radius, spring, ti.max(dashpot - led, 0.0)])
 
     @ti.func
     def torque(self, c: ti.template(), contacts: ti.template(), w, block, normal, turning, dt):

@@ -21,7 +21,7 @@ class Frictionless:
         return []
 
     @ti.func
-    def force(self, c: ti.template(), contacts: ti.template(), w, block, root, normal, slip, dt):
+    def force(self, c: ti.template(), contacts: ti.template(), w, block, root, rate, normal, slip, dt):
         """Zero for every lane."""
         return ti.Vector([0.0 for _ in ti.static(range(contacts.lanes))])
 

@@ -8,7 +8,9 @@ from solvers.laws.extremes import greater
 from solvers.laws.hertz import ELASTIC_STEPS, Hertz, hertz_duration
 from solvers.materials import Interface, hertz_stiffness
 
-DAMPED_STEPS = 105.0  # times √x: the error of the restitution falls as Δt² and grows with x
+# Times √x, and past x = 1 by so much more with x: the error of the restitution falls as Δt² and grows with x. Measured
+# with Verlet's scheme, contacts beginning anywhere in a step: restitution 0.02 … 1 to 0.1 %.
+DAMPED_STEPS, STRONGLY = 105.0, 0.03
 
 
 def damping(between: Interface, mass: float, radius: float, speed: float) -> float:
@@ -33,7 +35,8 @@ class HertzViscoelastic(Hertz):
     def limits(self, between: Interface, mass: float, radius: float, speed: float) -> list[tuple[float, str]]:
         """Longest steps (s) and what sets them."""
         collision = hertz_duration(mass, radius, between.young_modulus, speed)
-        steps = max(ELASTIC_STEPS, DAMPED_STEPS * sqrt(damping(between, mass, radius, speed)))
+        x = damping(between, mass, radius, speed)
+        steps = max(ELASTIC_STEPS, DAMPED_STEPS * sqrt(x) * (1.0 + STRONGLY * max(0.0, x - 1.0)))
         return [(collision / steps, f"1/{steps:.0f} of the Hertz collision")]
 
     @ti.func

@@ -35,6 +35,12 @@ class Hysteretic:
         unloading = spring_stiffness(self.coefficients(between)[0], stiffness, mass)
         return [(pi * sqrt(mass / unloading) / STEPS, f"1/{STEPS:.0f} of half the unloading spring's period")]
 
+    def deepest(self, between: Interface, mass: float, radius: float, speed: float) -> float:
+        """Largest overlap (m) of a head-on impact, v √(m/k₁)."""
+        coefficient = spring_coefficient(between.restitution_speed)
+        stiffness = spring_stiffness(coefficient, hertz_stiffness(between.young_modulus, radius), mass)
+        return speed * sqrt(mass / stiffness)
+
     @ti.func
     def prepare(self, c: ti.template(), stiffness, mass, radius, dt):
         """k₂ (N/m)."""

@@ -37,6 +37,12 @@ class Linear:
         steps = max(STEPS, DAMPED_STEPS * 0.5 * twice_ratio)
         return [(pi * sqrt(mass / stiffness) / steps, f"1/{steps:.0f} of the undamped collision")]
 
+    def deepest(self, between: Interface, mass: float, radius: float, speed: float) -> float:
+        """Largest overlap (m) of a head-on impact without losses, v √(m/k_l)."""
+        coefficient = spring_coefficient(between.restitution_speed)
+        stiffness = spring_stiffness(coefficient, hertz_stiffness(between.young_modulus, radius), mass)
+        return speed * sqrt(mass / stiffness)
+
     @ti.func
     def prepare(self, c: ti.template(), stiffness, mass, radius, dt):
         """k_l (N/m), γ_n (N s/m)."""

@@ -3,6 +3,7 @@
 import taichi as ti
 
 from solvers.laws.extremes import greater, lesser, within
+from solvers.laws.history import M_T, STIFFEST, stiffening
 from solvers.laws.splitting import AT_ONCE
 from solvers.materials import Interface
 
@@ -17,10 +18,13 @@ class Mindlin:
     shrinks with the stiffness, S ← S k_t(now)/k_t(before), as Thornton, Cummins and Cleary (2013) ask for, since
     otherwise a changing overlap makes energy (Elata and Berryman 1996). The dashpot has the dissipative time A of the
     normal law, as far as the step resolves it. At the cap S is cut to the cap: the spring slides.
+
+    S is of second order in the step (`solvers.laws.history`). So that it stays so where k_t ~ √ξ begins, a step counts
+    the mean of √ξ over itself, or from the first touch on.
     """
 
-    constants = ("shear_limit",)
-    memory = ("stretched", "root_before")
+    constants = ("shear_limit", "shear_stiffer")
+    memory = ("stretched", "ahead", "root_before")
 
     def coefficients(self, between: Interface) -> list[float]:
         """[μ, k_t / (k √ξ) = 6 G*/E*, A in s]."""
@@ -33,24 +37,38 @@ class Mindlin:
 
     @ti.func
     def prepare(self, c: ti.template(), stiffness, mass, radius, dt):
-        """The strongest damper (N s/m) that the step resolves, on m_t = (2/7) m_eff."""
-        return ti.Vector([AT_ONCE * (2.0 / 7.0) * mass / dt])
+        """The strongest damper (N s/m) that the step resolves, and the stiffening (m/N) of the step."""
+        stiffer = stiffening(self.integrator.stiffer, mass, dt * self.integrator.damping)
+        return ti.Vector([AT_ONCE * M_T * mass / dt, stiffer])
 
     @ti.func
-    def force(self, c: ti.template(), contacts: ti.template(), w, block, root, normal, slip, dt):
+    def force(self, c: ti.template(), contacts: ti.template(), w, block, root, rate, normal, slip, dt):
         """F_t (N) of a block of contacts on their first grains along the tangent; slip u_s in m/s, F_n in N."""
         cap = c[0] * normal
         spring = c[1] * contacts.stiffness[w, block] * root
-        before = greater(contacts.root_before[w, block], SMALLEST_ROOT)
-        stretched = contacts.stretched[w, block] * lesser(root / before, 1.0) + spring * slip * dt
-        stretched = within(stretched, cap)
-        dashpot = lesser(c[2] * spring, contacts.shear_limit[w, block])
-        contacts.stretched[w, block] = stretched
+        stiff = spring + spring * within(contacts.shear_stiffer[w, block] * spring, STIFFEST)
+        before, now = greater(contacts.root_before[w, block], SMALLEST_ROOT), greater(root, SMALLEST_ROOT)
+        begins = root * root < rate * dt
+        deeper = greater(root - before, 0.0)
+        more = ti.select(begins, root * root, deeper * deeper)
+        more /= ti.select(begins, 1.5 * rate * dt, 6.0 * now * (now + before))
+        if ti.static(self.integrator.ahead == 0.0):
+            more -= ti.select(begins, 0.0 * root, 0.5 * deeper / now)  # steps end here, and √ξ is that of their middle
+        way = slip * dt
+        ahead = self.integrator.ahead * way
+        behind = ti.select(begins, ahead, contacts.ahead[w, block])
+        come = more * way + ti.select(begins, 0.0 * way, way - behind)
+        held = within(contacts.stretched[w, block] * lesser(root / before, 1.0) + stiff * come, cap)
+        contacts.stretched[w, block] = held + stiff * behind
+        contacts.ahead[w, block] = ti.select(root > 0.0, ahead, 0.0 * ahead)
         contacts.root_before[w, block] = root
-        return within(-stretched - dashpot * slip, cap)
+        dashpot = lesser(c[2] * spring, contacts.shear_limit[w, block])
+        return within(-held - dashpot * slip, cap)
 
     @ti.func
     def energy(self, c: ti.template(), contacts: ti.template(), w, block, lane, root):
         """Elastic energy S²/(2 k_t) (J) of one contact."""
-        stretched = contacts.stretched[w, block][lane]
-        return 0.5 * stretched * stretched / (c[1] * contacts.stiffness[w, block][lane] * root)
+        spring = c[1] * contacts.stiffness[w, block][lane] * root
+        spring += spring * within(contacts.shear_stiffer[w, block][lane] * spring, STIFFEST)
+        held = contacts.stretched[w, block][lane] - spring * contacts.ahead[w, block][lane]
+        return 0.5 * held * held / spring

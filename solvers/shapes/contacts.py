@@ -83,7 +83,8 @@ class ShapedContacts(Contacts):
         overlap = greater(overlap, 0.0)
         ly, lz = py + back * overlap * ny, pz + back * overlap * nz
         uy, uz, turning = self.passing(g, pairs, i, j, ly, lz, apart_y, apart_z)
-        pressing = self.laws.press(PAIR, pairs, u, block, overlap, -(uy * ny + uz * nz), dt)
+        rate = -(uy * ny + uz * nz)
+        pressing = self.laws.press(PAIR, pairs, u, block, overlap, rate, dt)
         fy, fz, torque = pressing * ny, pressing * nz, pressing * (ly * nz - lz * ny)
         if ti.static(self.rule.bent):
             shallow, my, mz, qy, qz = self.rest.present(self.rest.saddle_now, u)
@@ -94,7 +95,7 @@ class ShapedContacts(Contacts):
                 fy, fz, torque = fy - less * my, fz - less * mz, torque - less * (ky * mz - kz * my)
                 pressing -= less
         slip = uz * ny - uy * nz
-        ft, roll = self.laws.rub(PAIR, pairs, u, block, overlap, greater(pressing, 0.0), slip, turning, dt)
+        ft, roll = self.laws.rub(PAIR, pairs, u, block, overlap, rate, greater(pressing, 0.0), slip, turning, dt)
         fy, fz, torque = fy - ft * nz, fz + ft * ny, torque + ft * (ly * ny + lz * nz) + roll
         self.push_block(g, pairs, i, u, block, fy, fz, torque, -torque - (apart_y * fz - apart_z * fy))
 
@@ -136,13 +137,13 @@ class ShapedContacts(Contacts):
 
     @ti.func
     def pressed(self, kind: ti.template(), contacts: ti.template(), u, p, c, velocity, dt):
-        """Slip (m/s) and normal force (N) of a contact whose bodies pass each other at a velocity (m/s)."""
+        """Approach and slip (m/s), normal force (N) of a contact whose bodies pass each other at a velocity (m/s)."""
         n = ti.Vector([c[NORMAL_Y], c[NORMAL_Z]])
-        overlap, rate = ti.Vector([greater(c[OVERLAP], 0.0)]), ti.Vector([-velocity.dot(n)])
-        return n.cross(velocity), self.laws.press(kind, contacts, u, p, overlap, rate, dt)[0]
+        overlap, rate = ti.Vector([greater(c[OVERLAP], 0.0)]), -velocity.dot(n)
+        return rate, n.cross(velocity), self.laws.press(kind, contacts, u, p, overlap, ti.Vector([rate]), dt)[0]
 
     @ti.func
-    def rubbed(self, kind: ti.template(), contacts: ti.template(), u, p, c, pressing, slip, turning, dt):
+    def rubbed(self, kind: ti.template(), contacts: ti.template(), u, p, c, rate, pressing, slip, turning, dt):
         """Tangential force (N) and rolling torque (N m) of a contact."""
         ft, roll = self.laws.rub(
             kind,
@@ -150,6 +151,7 @@ class ShapedContacts(Contacts):
             u,
             p,
             ti.Vector([greater(c[OVERLAP], 0.0)]),
+            ti.Vector([rate]),
             ti.Vector([greater(pressing, 0.0)]),
             ti.Vector([slip]),
             ti.Vector([turning]),
@@ -175,16 +177,16 @@ class ShapedContacts(Contacts):
             c[OVERLAP] = -g.reach[w, i]
         velocity = self.walls.velocity(feature, shift)
         lever = lever_of(c, 0.5)
-        slip, pressing = self.wall_pressed(g, contacts, w, i, u, p, c, lever, velocity, dt)
+        rate, slip, pressing = self.wall_pressed(g, contacts, w, i, u, p, c, lever, velocity, dt)
         n = ti.Vector([c[NORMAL_Y], c[NORMAL_Z]])
         force, torque = pressing * n, pressing * lever.cross(n)
         if ti.static(self.rule.bent):
             d = self.rule.wall_saddle(g, contacts, w, i, feature, shift, u, p, True)
             if d[OVERLAP] > 0.0 and c[OVERLAP] > 0.0:
                 arm, m = lever_of(d, 0.5), ti.Vector([d[NORMAL_Y], d[NORMAL_Z]])
-                less = self.wall_pressed(g, contacts, w, i, u, p, d, arm, velocity, dt)[1]
+                less = self.wall_pressed(g, contacts, w, i, u, p, d, arm, velocity, dt)[2]
                 force, torque, pressing = force - less * m, torque - less * arm.cross(m), pressing - less
-        ft, roll = self.rubbed(WALL, contacts, u, p, c, pressing, slip, g.spin_now[w, i], dt)
+        ft, roll = self.rubbed(WALL, contacts, u, p, c, rate, pressing, slip, g.spin_now[w, i], dt)
         force += ft * ti.Vector([-n[1], n[0]])
         g.push(w, i, force[0], force[1], torque + ft * lever.dot(n) + roll)
 
@@ -192,7 +194,7 @@ class ShapedContacts(Contacts):
     def wall_pressed(
         self, g: ti.template(), contacts: ti.template(), w, i, u, p, c, lever, velocity: ti.template(), dt
     ):
-        """Slip (m/s) of a grain on a wall that moves at a velocity (m/s), and the normal force (N)."""
+        """Approach and slip (m/s) of a grain on a wall that moves at a velocity (m/s), and the normal force (N)."""
         uy = g.now_y[w, i] - velocity[0] - g.spin_now[w, i] * lever[1]
         uz = g.now_z[w, i] - velocity[1] + g.spin_now[w, i] * lever[0]
         return self.pressed(WALL, contacts, u, p, c, ti.Vector([uy, uz]), dt)

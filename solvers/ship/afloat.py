@@ -59,7 +59,7 @@ class Afloat:
     def __init__(self, arrays: Arrays, vessels: Sequence[Vessel], gravity: float, every: int):
         self.exact, self.real, self.vessels = arrays.exact, arrays.real, tuple(vessels)
         worlds = len(self.vessels)
-        self.hulls = Hulls(arrays, [vessel.ship for vessel in self.vessels])
+        self.hulls = Hulls(arrays, [v.ship for v in self.vessels], [v.openings for v in self.vessels])
         memories = [vessel.ship.radiation.memory for vessel in self.vessels]
         self.states = max(0 if memory is None else len(memory.matrix) for memory in memories)
         self.size = MEMORY + self.states + WORKS
@@ -98,8 +98,9 @@ class Afloat:
             setattr(self, name, field)
         self.felt = arrays.holding(_apart([[0.0, -gravity, 0.0, 0.0]] * worlds), arrays.exact, kept=True)
         (self.done,) = arrays.integers(1, (worlds, APART))
-        # When (s) she capsized, or −1; the cargo's work on her (J/m)
+        # When (s) she capsized, and when she flooded, or −1; the cargo's work on her (J/m)
         self.capsized = arrays.holding(np.full(worlds, -1.0), arrays.exact, kept=True)
+        self.flooded = arrays.holding(np.full(worlds, -1.0), arrays.exact, kept=True)
         (self.given,) = arrays.reals(1, (worlds, APART), arrays.exact)
 
     def meet(self, vessels: Sequence[Vessel]) -> None:
@@ -135,14 +136,15 @@ class Afloat:
             body.append([hull.mass, *np.subtract(hull.centre, vessel.ship.about), hull.inertia])
             poses = []
             for roll in (0.0, vessel.heel):
-                arm = turned_point(vessel.ship.about, roll)
-                poses.append([arm[0], vessel.heave(aboard, roll) + arm[1], roll])
+                height = vessel.heave(aboard, roll) + float(turned_point(vessel.ship.about, roll)[1])
+                poses.append([vessel.ship.about[0], height, roll])
             upright.append(poses[0])
             heeled.append(poses[1])
         self.body.from_numpy(self._typed(body))
         self.upright.from_numpy(self._typed(upright))
         self.heeled.from_numpy(self._typed(heeled))
         self.capsized.fill(-1.0)
+        self.flooded.fill(-1.0)
         self.given.fill(0.0)
         self.done.fill(0)
         self.state.fill(0.0)
@@ -156,11 +158,12 @@ class Afloat:
     def account(self) -> dict[str, np.ndarray]:
         """Works (W, 4) J/m so far: of waves, against radiation, against viscosity, of the cargo on the ship.
 
-        And when (s) each capsized (W,), −1 where she has not.
+        And when (s) each capsized and when she flooded (W,), −1 where she has not.
         """
         works = self.state.to_numpy()[:, -WORKS:]
         given = self.given.to_numpy()[:, :1]
-        return {"ship_works": np.hstack([works, given]).astype(float), "capsized": self.capsized.to_numpy()}
+        ends = {"capsized": self.capsized.to_numpy(), "flooded": self.flooded.to_numpy()}
+        return {"ship_works": np.hstack([works, given]).astype(float), **ends}
 
     @ti.func
     def body_force(self, w, t):
@@ -174,8 +177,8 @@ class Afloat:
 
     @ti.func
     def goes_on(self, w):
-        """Whether a ship has not capsized."""
-        return self.capsized[w] < 0.0
+        """Whether a ship has neither capsized nor flooded."""
+        return self.capsized[w] < 0.0 and self.flooded[w] < 0.0
 
     @ti.func
     def follow(self, w, time, dt, kick, load):
@@ -246,6 +249,9 @@ class Afloat:
     def begin_interval(self, w, t, step, first, pose, velocity, force):
         """Look an interval ahead with the mean load of the last one."""
         length = step * self.every[0]
+        if ti.static(self.hulls.openings > 0):  # noqa: SIM102 (compiled only for ships that have some)
+            if self.hulls.floods(w, pose, t):
+                self.flooded[w] = t
         for k in ti.static(range(3)):
             self.steady_before[w, k], self.mean_before[w, k] = self.steady[w, k], self.mean[w, k]
             self.mean[w, k] = self.load[w, k] / self.every[0]

@@ -14,9 +14,12 @@ from solvers.ship.motion import Ship
 
 @ti.data_oriented
 class Hulls:
-    """Sections and waves of W ships whose loads are `Floating`; tables shorter than the longest have empty ends."""
+    """Sections, waves and openings of W ships whose loads are `Floating`; of each as many as the most have.
 
-    def __init__(self, arrays: Arrays, ships: Sequence[Ship]):
+    `openings`: points (m) of each hull through which it floods.
+    """
+
+    def __init__(self, arrays: Arrays, ships: Sequence[Ship], openings: Sequence[Sequence[tuple[float, float]]]):
         self.exact = arrays.exact
         loads = [ship.load for ship in ships]
         self.corners = max(len(load.section.outline) for load in loads)
@@ -28,6 +31,10 @@ class Hulls:
         self.outline = table([self._closed(load.section.outline) for load in loads])
         self.pressure = table([load.water.density * load.water.gravity for load in loads])
         self.about = table([load.about for load in loads])
+        self.openings = max(len(points) for points in openings)
+        if self.openings:
+            self.opening = table([[*points, *[(0.0, 0.0)] * (self.openings - len(points))] for points in openings])
+            self.opened = arrays.holding(np.array([len(points) for points in openings]), ti.i32, kept=True)
         if self.waves:
             self.length = table([load.waves.soft_start for load in loads])
             self.number, self.frequency, self.real_part, self.imaginary_part = map(table, self._of_waves(loads))
@@ -73,6 +80,18 @@ class Hulls:
         arm = turned(self.about[w, 0], self.about[w, 1], pose[2])
         zero = ti.cast(0.0, self.exact)
         return self.buoyancy(w, pose[1] - arm[1], pose[2], arm, zero, zero)
+
+    @ti.func
+    def floods(self, w, pose, t):
+        """Whether an opening is under the local surface; see `loads.Floating.depths`."""
+        arm = turned(self.about[w, 0], self.about[w, 1], pose[2])
+        found = False
+        for k in range(self.opened[w]):
+            place = turned(self.opening[w, k, 0], self.opening[w, k, 1], pose[2])
+            y, z = pose[0] - arm[0] + place[0], pose[1] - arm[1] + place[1]
+            if self.sea(w, y, t)[0] > z:
+                found = True
+        return found
 
     @ti.func
     def sea(self, w, y, t):

@@ -69,7 +69,8 @@ class HeapShip:
 
     `lever` is GZ (m) at rolls (rad) with the cargo frozen, `inertia` (kg m) I + δI with it. `twice`: the cargo counts
     twice, as eq. 7.2 and 7.5 read together: its weight at its own centre among the righting moments, and once more,
-    with its inertia, in the contact forces on the walls, since these carry it.
+    with its inertia, in the contact forces on the walls, since these carry it. `openings` (k, 2) m, hull's frame, from
+    the axis, which is in the calm surface: where one goes under the waves' surface she floods.
     """
 
     weight: float
@@ -80,6 +81,7 @@ class HeapShip:
     damping: RollDamping
     heap: Heap | None = None
     twice: bool = False
+    openings: np.ndarray | None = None
 
     @property
     def whole_inertia(self) -> float:
@@ -104,6 +106,14 @@ class HeapShip:
         again = self.heap.arm(lean, roll) if self.twice else 0.0
         return -self.heap.mass * self.gravity * (moved + again)
 
+    def floods(self, roll: np.ndarray, elevation: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
+        """Whether an opening is under the surface, whose elevation (m) is a function of the place y (m)."""
+        if self.openings is None:
+            return np.zeros(np.shape(roll), dtype=bool)
+        y, z = self.openings.T[..., None]
+        across, up = np.cos(roll) * y - np.sin(roll) * z, np.sin(roll) * y + np.cos(roll) * z
+        return (elevation(across) > up).any(axis=0)
+
     def acceleration(self, roll: np.ndarray, speed: np.ndarray, lean: np.ndarray, push: np.ndarray) -> np.ndarray:
         """Of the roll (rad/s²) under a wave moment `push` (N)."""
         resisted = (self.damping.linear + self.damping.quadratic * np.abs(speed)) * speed
@@ -124,10 +134,14 @@ def roll_with_heap(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Times (n,) s and rolls (n, k) rad from rest in waves of amplitudes (k,) m and frequencies (k,) rad/s.
 
-    Their soft start `lasts` so long (s). Once a roll has passed ± `limit` (rad) it is not a number.
+    Their soft start lasts `lasts` (s). Once a roll has passed ± `limit` (rad), or she has flooded, it is not a number.
     """
     size = ship.weight * ship.height * amplitude * frequency**2 / ship.gravity
     lean = np.zeros(len(frequency))
+
+    def elevation(y: np.ndarray, time: float) -> np.ndarray:
+        """The wave whose slope at the axis, D(t) A k cos ωt, is that of the moment."""
+        return soft_start(time, lasts) * amplitude * np.sin(frequency**2 / ship.gravity * y - frequency * time)
 
     def rate(state: np.ndarray, time: float) -> np.ndarray:
         push = soft_start(time, lasts) * size * np.cos(frequency * time)
@@ -137,7 +151,8 @@ def roll_with_heap(
     rolls = [state[0]]
     for now in time[:-1]:
         state = runge_kutta(rate, state, now, interval)
-        state[:, np.abs(state[0]) > limit] = np.nan
+        flooded = ship.floods(state[0], lambda y, after=now + interval: elevation(y, after))
+        state[:, (np.abs(state[0]) > limit) | flooded] = np.nan
         if ship.heap is not None:
             lean = ship.heap.slid(lean, state[0])
         rolls.append(state[0])

@@ -1,5 +1,6 @@
 """The water's force on a hull in waves, apart from what its motion radiates: buoyancy and excitation."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -36,6 +37,11 @@ class Floating:
             return buoyancy(self.section, self.water, heave, pose[2], about=self.about)
         elevation, slope, *excess = self.waves.sums(self.factors, y, time)
         return buoyancy(self.section, self.water, heave, pose[2], elevation, slope, self.about) + np.array(excess)
+
+    def depths(self, points: Sequence[tuple[float, float]], pose: np.ndarray, time: float) -> np.ndarray:
+        """How deep (k,) m points of the hull (m) are under the waves' surface, each where it is."""
+        place = pose[:2] + turned(tuple(np.transpose(points)), pose[2]) - turned(self.about, pose[2])
+        return self.waves.elevation(place[:, 0], np.full(len(place), time)) - place[:, 1]
 
     @cached_property
     def factors(self) -> np.ndarray:

@@ -1,6 +1,7 @@
 """A hull as a rigid body in sway, heave and roll, per metre of length, stepped in time.
 
-Its pose is that of one of its points P, `about`: y, z (m, earth's axes) and roll φ (rad). With c from P to the centre
+Its pose is that of one of its points, the axis P, `about`: y, z (m, earth's axes) and roll φ (rad). Sway and heave are
+the motions of P, wherever they are told of. With c from P to the centre
 of gravity in the earth's axes, Newton's and Euler's laws about P are
 
     [[m, 0, −m c_z], [0, m, m c_y], [−m c_z, m c_y, I_G + m c²]] (a_P, φ̈) = force, moment + m φ̇² (c_y, c_z, 0).
@@ -23,6 +24,7 @@ from solvers.ship.memory import Memory
 from solvers.ship.radiation import Hydrodynamics
 
 NO_LOAD = np.zeros(3)
+HEAVE = 1  # of a pose
 BEYOND = 1e6  # a velocity (m/s or rad/s) that is no ship's
 
 
@@ -123,11 +125,14 @@ class Ship:
 
 
 def start(ship: Ship, heave: float, roll: float = 0.0, velocity: np.ndarray = NO_LOAD) -> np.ndarray:
-    """The state of a hull whose origin is above y = 0 at a heave (m) and roll (rad), the water calm until then."""
+    """The state of a hull whose origin is at a heave (m) at a roll (rad) about P, the water calm until then.
+
+    Turned about P, which stays where it is in y: above y = 0 the origin is upright.
+    """
     arm = turned(ship.about, roll)
     memory = ship.radiation.memory
     states = 0 if memory is None else len(memory.matrix)
-    return np.concatenate([[arm[0], heave + arm[1], roll], np.where(ship.free, velocity, 0.0), np.zeros(states)])
+    return np.concatenate([[ship.about[0], heave + arm[1], roll], np.where(ship.free, velocity, 0.0), np.zeros(states)])
 
 
 def rate(ship: Ship, state: np.ndarray, time: float, cargo: np.ndarray = NO_LOAD) -> np.ndarray:
@@ -164,11 +169,15 @@ def runge_kutta(slope: Callable, state: np.ndarray, time: float, interval: float
 
 @dataclass(frozen=True, eq=False)
 class Voyage:
-    """States (n, 6 + s) at times (n,) s, the start first; `capsized` is when (s) roll passed its limits, or None."""
+    """States (n, 6 + s) at times (n,) s, the start first.
+
+    `capsized` is when (s) roll passed its limits, `flooded` when an opening went under water, or None.
+    """
 
     time: np.ndarray
     state: np.ndarray
     capsized: float | None
+    flooded: float | None = None
 
     @property
     def roll(self) -> np.ndarray:
@@ -183,14 +192,16 @@ def sail(
     duration: float,
     limits: tuple[float, float] = (-inf, inf),
     begin: float = 0.0,
+    openings: tuple[tuple[float, float], ...] = (),
 ) -> Voyage:
-    """Motion from a state at the time `begin` (s), ended where roll leaves its limits (rad).
+    """Motion from a state at the time `begin` (s), ended where roll leaves its limits (rad) or an opening (m) is wet.
 
+    Openings are points of the hull, whose load then is a `loads.Floating`.
     Raises `BadState` where it is no longer a number or faster than any ship: the interval is too long for the ship's
     fastest motion or memory.
     """
     count = round(duration / interval)
-    states, capsized = [state], None
+    states, capsized, flooded = [state], None, None
     for k in range(count):
         state = advance(ship, state, begin + k * interval, interval)
         now = begin + (k + 1) * interval
@@ -199,5 +210,8 @@ def sail(
         states.append(state)
         if not limits[0] < state[2] < limits[1]:
             capsized = now
+        elif openings and ship.load.depths(openings, state[:3], now).max() > 0.0:
+            flooded = now
+        if capsized is not None or flooded is not None:
             break
-    return Voyage(begin + interval * np.arange(len(states)), np.array(states), capsized)
+    return Voyage(begin + interval * np.arange(len(states)), np.array(states), capsized, flooded)

@@ -1,4 +1,4 @@
-"""What became of a ship in waves: its limits of roll, and whether it stayed upright, took a bias or capsized."""
+"""What became of a ship in waves: its limits of roll, whether it stayed upright, took a bias, capsized or flooded."""
 
 from dataclasses import dataclass
 from math import pi
@@ -39,7 +39,7 @@ def _vanishing(section: Section, loading: Loading, water: Water, side: int, larg
 
 @dataclass(frozen=True)
 class Outcome:
-    """How a roll ended: `kind` upright, biased or capsized, and whether it has `several` frequencies.
+    """How a roll ended: `kind` upright, biased, capsized or flooded, and whether it has `several` frequencies.
 
     Of the last cycles: `mean` (rad), `amplitude` (rad), the mean of half the way from a top to the next bottom, and
     `largest` |roll| (rad).
@@ -52,13 +52,13 @@ class Outcome:
     largest: float
 
 
-def outcome(time: np.ndarray, roll: np.ndarray, frequency: float, capsized: bool = False) -> Outcome:
+def outcome(time: np.ndarray, roll: np.ndarray, frequency: float, lost: str = "") -> Outcome:
     """Class of a roll (n,) rad at even times (n,) s in waves of a frequency (rad/s), by its last cycles.
 
-    Raises `Unavailable` where it is shorter than those and did not capsize.
+    `lost`: "capsized" or "flooded" where the roll ended so. Raises `Unavailable` where it is shorter and did not.
     """
     period = 2.0 * pi / frequency
-    if time[-1] - time[0] < CYCLES * period and not capsized:
+    if time[-1] - time[0] < CYCLES * period and not lost:
         raise Unavailable(f"the run must last {CYCLES} periods of the waves, {CYCLES * period:.4g} s, or more.")
     last = time > time[-1] - CYCLES * period
     t, phi = time[last], roll[last]
@@ -68,7 +68,7 @@ def outcome(time: np.ndarray, roll: np.ndarray, frequency: float, capsized: bool
     motion, stray = phi - fitted[0], phi - waves @ fitted
     several = bool(np.sqrt((stray**2).mean()) > STRAY * np.sqrt((motion**2).mean()))
     mean = float(fitted[0])
-    kind = "capsized" if capsized else "biased" if abs(mean) > BIAS else "upright"
+    kind = lost or ("biased" if abs(mean) > BIAS else "upright")
     return Outcome(kind, several, mean, _amplitude(t, phi, period), float(np.abs(phi).max()))
 
 

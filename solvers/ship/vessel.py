@@ -7,8 +7,8 @@ import numpy as np
 
 from solvers.errors import Unavailable
 from solvers.ship.body import Body, bolted
-from solvers.ship.hydrostatics import balanced_heave
-from solvers.ship.motion import Ship
+from solvers.ship.hydrostatics import balanced_heave, turned
+from solvers.ship.motion import HEAVE, Ship
 
 LONGEST_INTERVAL = 1e-3  # s
 SHORTEST_MEMORY = 0.02  # of the fastest memory's time: Runge and Kutta's error of an interval is then under 1e-10
@@ -20,8 +20,10 @@ class Vessel:
 
     `hold` is the tank's origin in the hull's frame (m). With `laden` the ship's body is that of hull and cargo together
     as they are when she is let go, and the hull is what is left of it without the cargo; else it is the hull alone. She
-    is let go at `release` (s), until then heeled softly to `heel` (rad), and has capsized where her roll leaves
-    `limits` (rad). `height` (m) is where the hull's origin is until then, None: where she floats in balance.
+    is let go at `release` (s), until then heeled softly to `heel` (rad) about the ship's axis, which stays where it is
+    but for its heave where she is free to heave. She has capsized where her roll leaves `limits` (rad), and floods
+    where one of her `openings` (m, hull's frame) goes under the water's local surface. `height` (m) is where the hull's
+    origin is upright, None: where she floats in balance.
     """
 
     ship: Ship
@@ -32,6 +34,7 @@ class Vessel:
     release: float = 0.0
     limits: tuple[float, float] = (-inf, inf)
     height: float | None = None
+    openings: tuple[tuple[float, float], ...] = ()
 
     @property
     def interval(self) -> float:
@@ -62,8 +65,11 @@ class Vessel:
         return self.ship.body if self.laden else bolted(self.ship.body, cargo)
 
     def heave(self, cargo: Body, roll: float) -> float:
-        """Of the hull's origin (m) at a roll (rad) before she is let go."""
+        """Of the hull's origin (m) at a roll (rad) before she is let go: in balance, or her axis as high as upright."""
+        about, load = self.ship.about, self.ship.load
         if self.height is not None:
-            return self.height
-        load = self.ship.load
-        return balanced_heave(load.section, self.whole(cargo).loading, load.water, roll)
+            return self.height + about[1] - float(turned(about, roll)[1])
+        if self.ship.free[HEAVE]:
+            return balanced_heave(load.section, self.whole(cargo).loading, load.water, roll)
+        upright = balanced_heave(load.section, self.whole(cargo).loading, load.water, 0.0)
+        return upright + about[1] - float(turned(about, roll)[1])

@@ -25,7 +25,7 @@ class CountedLaws(ChosenLaws):
     def forces(self, kind: ti.template(), contacts: ti.template(), u, block, overlap, rate, slip, turning, dt):
         before = self.sprung(kind, contacts, u, block)
         pressing = self.press(kind, contacts, u, block, overlap, rate, dt)
-        shearing, torque = self.rub(kind, contacts, u, block, overlap, pressing, slip, turning, dt)
+        shearing, torque = self.rub(kind, contacts, u, block, overlap, rate, pressing, slip, turning, dt)
         elastic = contacts.stiffness[u, block] * overlap * ti.sqrt(overlap)
         work = ((pressing - elastic) * rate - shearing * slip).sum() * dt
         self.lost[APART * u] = self.lost[APART * u] + work - self.sprung(kind, contacts, u, block) + before
@@ -35,5 +35,7 @@ class CountedLaws(ChosenLaws):
     def sprung(self, kind: ti.template(), contacts: ti.template(), u, block):
         """Energy (J) S²/(2 k_t) of a block's shear springs, as they were left last."""
         c, root = self.coefficients(1, u, kind, contacts, block), contacts.root_before[u, block]
-        stretched = contacts.stretched[u, block]
-        return (0.5 * stretched * stretched / greater(c[1] * contacts.stiffness[u, block] * root, SOFTEST)).sum()
+        spring = c[1] * contacts.stiffness[u, block] * root
+        held = contacts.stretched[u, block] - spring * contacts.ahead[u, block]
+        held = ti.select(c[0] > 0.0, held, 0.0 * held)  # smooth grains: what it is ahead is cut in the next step
+        return (0.5 * held * held / greater(spring, SOFTEST)).sum()

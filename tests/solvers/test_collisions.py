@@ -16,7 +16,7 @@ from solvers.scene import Scene
 RADIUS, DENSITY = 1.5e-3, 1319.0
 SIZES = (0.6, 1.0, 1.4)  # times the mean radius
 SPEEDS = (0.01, 1.0, 10.0)  # m/s
-RESTITUTIONS = (0.4, 0.6, 0.95)  # at 1 m/s
+RESTITUTIONS = (0.05, 0.4, 0.6, 0.95)  # at 1 m/s
 PHASES = (0.0, 0.31, 0.5, 0.77, 0.99)  # of a step, when contact begins
 CASES = np.array([(e, s, p, t) for e in RESTITUTIONS for s in SIZES for p in PHASES for t in (0, 1)])  # t: a wall
 # Every law of every kind at least once. The normal force does not depend on the others in a head-on collision.
@@ -90,7 +90,7 @@ def rebound(power: float, x: float) -> tuple[float, float, float]:
 @cache
 def damping(power: float, e: float) -> float:
     """The x of `rebound` that gives restitution e."""
-    return brentq(lambda x: rebound(power, x)[0] - e, 1e-3, 5.0)
+    return brentq(lambda x: rebound(power, x)[0] - e, 1e-3, 20.0)
 
 
 def linear(mass: float, k: float, e: float) -> tuple[float, float, float]:
@@ -103,8 +103,9 @@ def linear(mass: float, k: float, e: float) -> tuple[float, float, float]:
         turn = atan(2.0 * ratio * omega / (omega**2 - ratio**2)) if ratio < sqrt(0.5) else 0.0
         return -ratio / omega * (pi - turn if turn else atan(2.0 * ratio * omega / (ratio**2 - omega**2)))
 
-    ratio = brentq(lambda z: published(z) - log(e), 1e-9, 0.999)
-    duration = 2.0 * acos(ratio) / sqrt(1.0 - ratio**2) / sqrt(k / mass)
+    ratio = brentq(lambda z: published(z) - log(e), 1e-9, 4.0)
+    turn = acos(ratio) / sqrt(1.0 - ratio**2) if ratio < 1.0 else acosh(ratio) / sqrt(ratio**2 - 1.0)
+    duration = 2.0 * turn / sqrt(k / mass)
     return e, duration, 2.0 * ratio * sqrt(mass / k) * e
 
 
@@ -158,7 +159,8 @@ def test_restitution_and_duration_at_the_automatic_step(bench):
             distance = position[w, 0, 1] - (0.0 if wall else position[w, 1, 1])
             overlap = RADIUS * size * (1.0 if wall else 2.0) - distance
             ended = steps * bench.dt - (last - overlap) / away
-            assert ended - gap[w] / speed == pytest.approx(duration, rel=2e-3), case
+            sharp = 2e-3 if e > 0.1 else 2e-2  # a strongly damped force fades away
+            assert ended - gap[w] / speed == pytest.approx(duration, rel=sharp), case
 
 
 def total_energy(rows) -> np.ndarray:
@@ -191,7 +193,7 @@ def test_energy_never_increases_and_momentum_is_kept(bench):
         bench.advance(8)
         energy.append(total_energy(bench.observe()))
     assert np.all(np.array(energy) <= energy[0] * (1 + 2e-2))
-    bench.advance(4000)
+    bench.advance(12000)
     rows = bench.observe()
     assert np.all(rows["elastic"] == 0.0)
     last = total_energy(rows)

@@ -36,8 +36,8 @@ class Held:
     def parameters(self, soft_start: float) -> list[float]:
         return [self.angle]
 
-    def fastest(self) -> tuple[float, float]:
-        return 0.0, 0.0
+    def fastest(self, soft_start: float) -> float:
+        return 0.0
 
 
 def rotation(angle: float) -> np.ndarray:

@@ -157,7 +157,7 @@ def usual():
 def test_no_contact_is_missed(usual):
     """Grains must travel less than the skin allows between two rebuilds, at whatever speed."""
     _, counted, expected, _ = usual
-    assert np.all(expected.max(axis=0) > [35, 10])
+    assert np.all(expected.max(axis=0) > [30, 8])  # many enough to miss one
     np.testing.assert_array_equal(counted, expected)
 
 

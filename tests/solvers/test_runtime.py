@@ -275,3 +275,23 @@ def test_threads_that_are_spread_work_on_cores_of_their_own():
     assert all(len(places) == 1 for places in held)
     assert len(set.union(*held)) == cores
     assert len(os.sched_getaffinity(0)) == cores
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="limits on memory as Linux has them")
+@pytest.mark.parametrize("limit", [500_000_000, 1_000_000_000])
+def test_too_little_memory_to_start_is_told_in_a_sentence(limit):
+    code = f"""
+import resource
+resource.setrlimit(resource.RLIMIT_AS, ({limit}, {limit}))
+from solvers import runtime
+from solvers.errors import Unavailable
+try:
+    runtime.initialise(1)
+except Unavailable as error:
+    print(error)
+"""
+    lone = os.environ | {"OPENBLAS_NUM_THREADS": "1"}
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=REPOSITORY, env=lone, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0 and "raise it with ulimit -v" in done.stdout, done.stderr

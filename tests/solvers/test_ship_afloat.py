@@ -40,9 +40,11 @@ LOOSE = material(young=5e7, friction=0.2, restitution=0.5)
 CARGO = COUNT * 4.0 / 3.0 * pi * RADIUS**3 * GRAIN.density / SHEET  # kg/m
 ADDED = Radiation(np.diag([40.0, 52.0, 0.2]), np.diag([20.0, 100.0, 0.05]))
 NONE = Radiation(np.zeros((3, 3)), np.zeros((3, 3)))
-ALONE, TINY, LIVELY, VACUUM, OVER, RESONANT, ROLLING, LOSSY = range(8)
+ALONE, TINY, LIVELY, VACUUM, OVER, RESONANT, ROLLING, LOSSY, HATCH = range(9)
 LASTS = 6.0  # s
 HEEL, RELEASE = 0.006, 0.5  # rad, s
+ROUNDING = 1e-10  # of sums over many steps
+EDGES = ((0.15, 0.17), (-0.15, 0.17))  # m, of a hatch
 
 
 def memory() -> Memory:
@@ -100,6 +102,14 @@ def fleet() -> list[Vessel]:
         ),
         Vessel(rolling, HOLD, SHEET, heel=2.0, release=RELEASE),
         Vessel(lively, HOLD, SHEET),
+        Vessel(
+            Ship(Body(37.0, (0.0, 0.09), 0.6), floating(0.03, 5.4), NONE, AXIS, free=(False, False, True)),
+            HOLD,
+            NO_CARGO,
+            heel=0.1,
+            release=RELEASE,
+            openings=EDGES,
+        ),
     ]
 
 
@@ -130,10 +140,17 @@ class Run:
         self.every = int(self.simulation.frame.every[0])
         self.cargo = self.simulation.cargo()
 
-    def sail(self, every: int, lasts: float, looks: int = 60):
-        """Times, rows of observations, and what is asked of the frame and the grains, at even looks."""
+    def sail(self, every: int, lasts: float, looks: int = 60, nudged: bool = False):
+        """Times, rows of observations, and what is asked of the frame and the grains, at even looks.
+
+        Grains that are nudged begin one last digit beside their places, some to this side and some to that.
+        """
         run = self.simulation
         run.restore(self.settled)
+        if nudged:
+            place = run.grains.y.to_numpy()
+            side = np.random.default_rng(4).choice([-np.inf, np.inf], place.shape)
+            run.grains.y.from_numpy(np.nextafter(place, side))
         velocity = np.zeros((*run.scene.radius.shape, 2))
         velocity[VACUUM] = np.random.default_rng(2).normal(0.0, 0.5, velocity.shape[1:])
         run.launch(velocity)
@@ -150,7 +167,7 @@ class Run:
         snapshot, rows = run.snapshot(), run.observe()
         frame = {
             name: getattr(run.frame, name).to_numpy()
-            for name in ("tank", "state", "given", "capsized", "pose", "body", "felt")
+            for name in ("tank", "state", "given", "capsized", "flooded", "pose", "body", "felt")
         }
         frame |= {"pose": frame["pose"][:, :3], "tank": frame["tank"][:, :9], "given": frame["given"][:, 0]}
         motion = frame["tank"]
@@ -158,7 +175,14 @@ class Run:
         speed, _ = earth(snapshot, motion)
         momentum = (run.grains.mass[..., None] * speed).sum(axis=1)
         lost = run.contacts.laws.lost.to_numpy()[::APART]
-        return {"time": run.time, "roll": motion[:, 2], "cargo": energy, "momentum": momentum, "lost": lost, **frame}
+        return {
+            "time": run.time,
+            "place": snapshot["position"],
+            "roll": motion[:, 2],
+            "cargo": energy,
+            "momentum": momentum,
+            "lost": lost,
+        } | frame
 
     def hull(self, voyage, world: int) -> Ship:
         """A ship with her hull's body alone."""
@@ -182,6 +206,11 @@ def voyage(run):
 @pytest.fixture(scope="module")
 def finer(run):
     return run.sail(run.every // 2, 3.0, 30)
+
+
+@pytest.fixture(scope="module")
+def twin(run):
+    return run.sail(run.every, 3.0, 30, nudged=True)
 
 
 def test_a_ship_without_cargo_sails_as_by_herself(run, voyage):
@@ -209,15 +238,21 @@ def test_cargo_that_does_not_move_is_a_body_bolted_on(run, voyage):
     assert voyage["roll"][later, TINY] == pytest.approx(wanted, abs=0.002 * np.ptp(wanted))
 
 
-def test_half_the_interval_is_the_same_motion(voyage, finer):
-    """To a thousandth of the roll, while loose grains have not yet made the most of rounding."""
-    for world, until in ((ALONE, 3.0), (TINY, 3.0), (LIVELY, 1.0)):
-        rough = np.interp(finer["time"], voyage["time"], np.arange(len(voyage["time"])))
+@pytest.mark.parametrize(("world", "until"), [(ALONE, 3.0), (TINY, 3.0), (LOSSY, 1.55)])
+def test_half_the_interval_is_the_same_motion(voyage, finer, twin, world, until):
+    """To 1e-5 of the roll: without cargo, with cargo that lies and with cargo that has shifted.
+
+    Only while cargo that is nudged by a last digit takes the same way to far less than that, as on another processor.
+    """
+    largest = np.abs(voyage["roll"][:, world]).max()
+    for other, closeness in ((finer, 1e-5), (twin, 1e-8)):
+        early = other["time"] < until
+        rough = np.interp(other["time"][early], voyage["time"], np.arange(len(voyage["time"])))
         assert np.abs(rough - np.round(rough)).max() < 1e-6
         known = voyage["roll"][np.round(rough).astype(int), world]
-        largest = np.abs(voyage["roll"][:, world]).max()
-        early = finer["time"] < until
-        assert finer["roll"][early, world] == pytest.approx(known[early], abs=1e-3 * largest)
+        assert other["roll"][early, world] == pytest.approx(known, abs=closeness * largest)
+    moved = voyage["place"][voyage["time"] < until, world] - voyage["place"][0, world]
+    assert world != LOSSY or np.abs(moved).max() > RADIUS
 
 
 def test_momentum_of_ship_and_cargo_without_water(run, voyage):
@@ -248,8 +283,9 @@ def test_energy(run, voyage, world):
     lost = counted(voyage, world)
     assert np.ptp(voyage["roll"][:, world]) > 0.1
     assert radiated[-1] > 0.1 * np.abs(waves).max()
-    assert lost[-1] == 0.0 if world == LIVELY else lost[-1] > 0.03 * np.abs(waves).max()
-    assert gained - gained[0] == pytest.approx(waves - radiated - viscous - lost, abs=1e-4 * np.abs(waves).max())
+    near = 1e-4 * np.abs(waves).max()
+    assert np.abs(lost).max() < ROUNDING * near if world == LIVELY else lost[-1] > 100.0 * near
+    assert gained - gained[0] == pytest.approx(waves - radiated - viscous - lost, abs=near)
 
 
 def counted(voyage, world):
@@ -264,7 +300,7 @@ def test_what_grains_lose(voyage, world):
     missing = -voyage["cargo"][later, world] / SHEET - voyage["given"][later, world]
     lost = counted(voyage, world)[later]
     assert missing - missing[0] == pytest.approx(lost - lost[0], abs=1e-3 * np.ptp(voyage["given"][:, world]))
-    assert np.diff(lost).min() >= 0.0
+    assert np.diff(lost).min() >= -ROUNDING * np.ptp(voyage["given"][:, world])
     if world == ROLLING:
         assert np.ptp(lost) > 0.2 * np.ptp(voyage["given"][:, world])
 
@@ -273,7 +309,8 @@ def test_a_hull_lighter_than_her_cargo_rolls_over(run, voyage):
     """Top-heavy, let go at a heel of 115°: through 180° and back, all finite."""
     roll = voyage["roll"][:, ROLLING]
     assert np.isfinite(voyage["tank"][:, ROLLING]).all()
-    assert np.abs(roll).max() > 1.05 * pi
+    turned_over = np.abs(roll).argmax()
+    assert np.abs(roll[turned_over]) > pi > np.abs(roll[turned_over:]).min()
     assert voyage["capsized"][-1, ROLLING] < 0.0
 
 
@@ -286,6 +323,33 @@ def test_capsize_ends_a_world_and_no_other(run, voyage):
         assert np.ptp(voyage["roll"][after, world]) == 0.0
         assert abs(voyage["roll"][-1, world]) == pytest.approx(limit, abs=0.01)
     assert voyage["capsized"][-1, LIVELY] == -1.0
+
+
+def test_a_ship_held_by_her_axis_is_heeled_about_it(voyage):
+    """From upright to the heel and on as she rolls: the axis stays in the waterline, over y = 0."""
+    tank = voyage["tank"][:, HATCH]
+    arm = turned(tuple(np.subtract(HOLD, AXIS)), tank[:, 2])
+    assert np.ptp(tank[:, 2]) > 0.2
+    height = AXIS[1] - 37.0 / (1000.0 * 0.34)  # m, by her draught
+    assert tank[:, :2] - arm == pytest.approx(np.tile([0.0, height], (len(tank), 1)), abs=1e-9)
+
+
+def test_water_over_the_edge_of_a_hatch_ends_a_world_and_no_other(run, voyage):
+    """At the interval at which the edge is under the waves' surface, as of the ship by herself; the rest sail on."""
+    when, interval = voyage["flooded"][-1, HATCH], run.every * run.simulation.dt
+    vessel = run.simulation.scene.vessels[HATCH]
+    state = start(vessel.ship, vessel.heave(Body(0.0, (0.0, 0.0), 0.0), vessel.heel), vessel.heel)
+    alone = sail(vessel.ship, state, interval, LASTS - RELEASE, begin=RELEASE, openings=EDGES)
+    assert RELEASE < when < LASTS
+    assert when == pytest.approx(alone.flooded, abs=2.0 * interval)
+    still = voyage["time"] > when
+    assert np.ptp(voyage["roll"][still, HATCH]) == 0.0
+    roll = voyage["roll"][-1, HATCH]
+    edges = turned(tuple(np.transpose(EDGES)), roll) - turned(AXIS, roll)  # from the axis
+    k, height = 5.4**2 / G, AXIS[1] - 37.0 / (1000.0 * 0.34)
+    rises = [0.03 * np.cos(k * y - 5.4 * when) - z - height for y, z in edges]
+    assert max(rises) == pytest.approx(0.0, abs=1e-3)
+    assert (voyage["flooded"][-1, :HATCH] == -1.0).all() and voyage["capsized"][-1, HATCH] == -1.0
 
 
 def test_a_ship_is_heeled_softly(run, voyage):

@@ -83,6 +83,6 @@ def test_numbers_of_an_outcome():
     assert (found.mean, found.amplitude) == (pytest.approx(0.05, abs=1e-6), pytest.approx(0.3, rel=1e-3))
     growing = outcome(TIME, ROLL * TIME / TIME[-1], OMEGA)  # on average as it was five periods before the end
     assert growing.amplitude == pytest.approx(0.3 * (1.0 - 5.0 * 2.0 * pi / OMEGA / TIME[-1]), rel=0.01)
-    assert outcome(TIME[:500], ROLL[:500], OMEGA, capsized=True).kind == "capsized"
+    assert outcome(TIME[:500], ROLL[:500], OMEGA, "capsized").kind == "capsized"
     with pytest.raises(Unavailable, match="periods"):
         outcome(TIME[:500], ROLL[:500], OMEGA)

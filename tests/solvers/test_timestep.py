@@ -13,7 +13,7 @@ from solvers.laws.hertz_viscoelastic import damping
 from solvers.materials import Material, effective_young
 from solvers.motions import Heave, Roll, Sway, Tilt
 from solvers.scene import Scene
-from solvers.timestep import rayleigh_time
+from solvers.timestep import closing_speed, rayleigh_time
 
 TANK = box(0.2, 0.1)
 FALL = sqrt(2.0 * 9.81 * 0.1)  # m/s, from the lid to the floor
@@ -102,7 +102,7 @@ def test_damping_and_slow_waves_shorten_the_step():
     assert "Rayleigh" in still.step_limits()[0].reason
     order = [limit.step for limit in scene().step_limits()]
     assert order == sorted(order)
-    assert len(order) == 3
+    assert len(order) == 4
 
 
 def test_a_soft_wall_is_no_excuse_and_a_hard_one_counts():
@@ -169,7 +169,7 @@ def test_every_normal_law_bounds_the_step_and_scales_with_stiffness(law):
     assert scene(normal=law, diameter=6e-3).time_step() == pytest.approx(2.0 * step, rel=1e-9)
     steps = [scene(normal=law, restitution=e).time_step() for e in (1.0, 0.6, 0.1)]
     assert np.all(np.diff(steps) <= 0.0)
-    assert len(scene(normal=law).step_limits()) == 3
+    assert len(scene(normal=law).step_limits()) == 4
 
 
 @pytest.mark.parametrize("tangential", TANGENTIAL)
@@ -181,3 +181,38 @@ def test_springs_bound_the_step_only_where_they_are_stiff(tangential, rolling):
     rough = material(rolling_friction=30.0)
     stiff = Scene(np.full((1, 4), 1.5e-3), TANK, rough, rough, **laws)
     assert (stiff.time_step() < scene().time_step()) == (rolling == "elastic-plastic")
+
+
+@pytest.mark.parametrize("count", [1, 2, 3, 50])
+@pytest.mark.parametrize("flat", [False, True])
+def test_closing_speed_is_the_farthest_pair_of_velocities(count, flat):
+    """Against all pairs: in the plane, and where all move along one line or two alike."""
+    velocity = np.random.default_rng(count).normal(0.3, 1.0, (count, 2)) * ([1.0, 0.0] if flat else [1.0, 2.0])
+    velocity = np.concatenate([velocity, velocity[:1]])
+    pairs = np.linalg.norm(velocity[:, None] - velocity, axis=2).max()
+    assert closing_speed(velocity) == pytest.approx(max(pairs, np.linalg.norm(velocity, axis=1).max()), rel=1e-12)
+    assert closing_speed(np.zeros((count, 2))) == 0.0
+
+
+def test_what_the_watch_lets_pass_is_a_bound_that_nothing_stretches():
+    """So soft that a collision lasts long: a tenth of the radius a step, at 1.5 times the speed, of all 16 grains."""
+    made = Scene(np.full((1, 16), 1.5e-3), TANK, material(young=1e4), material(young=1e4), start_speed=20.0)
+    longest = 0.1 * 1.5e-3 / (1.5 * 16 ** (1 / 16) * 20.0)
+    assert made.longest_step(2.75) == pytest.approx(longest, rel=1e-12)
+    gear = Scene(made.radius, TANK, made.grain[0], made.wall[0], start_speed=20.0, integrator="gear")
+    firm = [limit for limit in gear.step_limits() if limit.firm]
+    assert [limit.step for limit in firm] == pytest.approx([longest], rel=1e-12)
+    assert "watch" in firm[0].reason
+    ordinary = scene()
+    assert ordinary.longest_step(2.75) == pytest.approx(2.75 * ordinary.time_step(), rel=1e-12)
+
+
+@pytest.mark.parametrize("law", NORMAL)
+def test_deepest_overlap_is_that_of_the_impact(law):
+    """At the restitution speed all laws are as deep as Hertz: (5 m v²/(4 k))^(2/5), at a wall, in radii of any size."""
+    mass = 4.0 / 3.0 * pi * 1.5e-3**3 * 1319.0
+    k = 4.0 / 3.0 * 3.2e9 / (2.0 * (1.0 - 0.28**2)) * sqrt(1.5e-3)
+    deepest = (1.25 * mass / k) ** 0.4 / 1.5e-3
+    assert scene(normal=law).deepest_overlap(1.0) == pytest.approx(deepest, rel=1e-9)
+    assert scene(normal=law, diameter=6e-3).deepest_overlap(1.0) == pytest.approx(deepest, rel=1e-9)
+    assert scene(normal=law, stiffness_scale=1e-2).deepest_overlap(1.0) == pytest.approx(deepest * 10**0.8, rel=1e-9)

@@ -1,0 +1,107 @@
+"""Viscous damping of a section's roll without forward speed, from its shape alone: eddies at the bilges and friction.
+
+After Ikeda's component method (Himeno 1981; ITTC 7.5-02-07-04.5, 2011). Both are empirical, for model ships: good to
+some tens of per cent, and the friction's formula is for a laminar boundary layer.
+"""
+
+from math import acos, cos, exp, pi, sin, sqrt, tanh
+
+import numpy as np
+
+from solvers.errors import Unavailable
+from solvers.ship.motion import RollDamping
+
+VISCOSITY = 1.1e-6  # m²/s, of fresh water at 16 °C
+COMMON = 0.02, 0.05  # of the critical: linear, and with what is quadratic at COMMON_ANGLE, of a hull without keels
+COMMON_ANGLE = np.radians(15.0)
+
+
+def common_damping(frequency: float, inertia: float) -> tuple[RollDamping, RollDamping]:
+    """The range that is usual for hulls without bilge keels, of a roll of a frequency (rad/s) and inertia (kg m).
+
+    From 2 % of the critical to 5 % at 15 deg, what is added being quadratic: an engineer's choice that holds the decay
+    tests of bare hulls. By the energy of a cycle −b φ̇|φ̇| at an amplitude a is a share (4/3π) b a of the critical.
+    """
+    low, high = COMMON
+    linear = 2.0 * low * frequency * inertia
+    return RollDamping(linear), RollDamping(linear, 0.75 * pi * (high - low) / COMMON_ANGLE * inertia)
+
+
+def estimated_damping(
+    breadth: float, draught: float, radius: float, centre: float, frequency: float, density: float = 1000.0
+) -> RollDamping:
+    """Eddies (Ikeda, Himeno and Tanaka 1978) and friction (Kato 1957) of a box with bilges of a `radius` (m).
+
+    `centre` (m): the height of the axis of roll above the keel. Per metre of length.
+    """
+    coefficient = eddy_coefficient(breadth, draught, radius, centre)
+    friction = friction_damping(breadth, draught, radius, centre, frequency, density)
+    return RollDamping(friction, 0.5 * density * draught**4 * coefficient)
+
+
+def friction_damping(
+    breadth: float, draught: float, radius: float, centre: float, frequency: float, density: float = 1000.0
+) -> float:
+    """B₁ (N s) of skin friction per metre: B = (4/3π) ρ s r³ ω a C_f, C_f = 1.328 (3.22 r² a²/T ν)^(−1/2) (Kato 1957).
+
+    ITTC 7.5-02-07-04.5, eqs. 2.9 to 2.13; C_f falls with the amplitude a as B grows with it, so that a drops out.
+    """
+    fullness, below = _fullness(breadth, draught, radius), draught - centre
+    girth = 1.7 * draught + fullness * breadth
+    arm = ((0.887 + 0.145 * fullness) * girth - 2.0 * below) / pi
+    layer = 1.328 * sqrt(2.0 * pi / frequency * VISCOSITY / 3.22) / arm  # a C_f
+    return 4.0 / (3.0 * pi) * density * girth * arm**3 * frequency * layer
+
+
+def eddy_coefficient(breadth: float, draught: float, radius: float, centre: float) -> float:
+    """C_R of the moment ½ ρ d⁴ C_R φ̇|φ̇| per metre, d the draught (Ikeda, Himeno and Tanaka 1978; Himeno 1981).
+
+    C_R = {(1 − f₁R/d)(1 − OG/d − f₁R/d) + f₂ (H₀ − f₁R/d)²} C_P (r/d)², r the furthest point's distance from the axis
+    and C_P the pressure behind it by the speed of the potential flow there, in a ratio γ to the mean one.
+    """
+    fullness = _fullness(breadth, draught, radius)
+    half, deep, bilge = 0.5 * breadth / draught, (draught - centre) / draught, radius / draught
+    furthest, ratio = _lewis_flow(breadth, draught, fullness, deep)
+    pressure = 0.5 * (0.87 * exp(-ratio) - 4.0 * exp(-0.187 * ratio) + 3.0)
+    f1 = 0.5 * (1.0 + tanh(20.0 * (fullness - 0.7)))
+    f2 = 0.5 * (1.0 - cos(pi * fullness)) - 1.5 * (1.0 - exp(-5.0 * (1.0 - fullness))) * sin(pi * fullness) ** 2
+    lever = (1.0 - f1 * bilge) * (1.0 - deep - f1 * bilge) + f2 * (half - f1 * bilge) ** 2
+    return lever * pressure * (furthest / draught) ** 2
+
+
+def _fullness(breadth: float, draught: float, radius: float) -> float:
+    if not 0.0 <= radius <= min(0.5 * breadth, draught):
+        raise Unavailable("the bilge's radius must lie between 0 and the smaller of half the breadth and the draught.")
+    return 1.0 - (2.0 - 0.5 * pi) * radius**2 / (breadth * draught)
+
+
+def _lewis_flow(breadth: float, draught: float, fullness: float, deep: float) -> tuple[float, float]:
+    """Distance (m) of the Lewis section's furthest point, and γ there (Ikeda et al. 1978, A-1 to A-10)
+
+    The Lewis form's coefficients a₁, a₃ are those of breadth, draught and fullness (von Kerczek and Tuck 1969).
+    """
+    half = 0.5 * breadth / draught
+    shape = 3.0 + 4.0 * fullness / pi + (1.0 - 4.0 * fullness / pi) * ((half - 1.0) / (half + 1.0)) ** 2
+    if shape > 4.5:
+        raise Unavailable("no Lewis form is as full as this section.")
+    a3 = (3.0 - shape + sqrt(9.0 - 2.0 * shape)) / shape
+    a1 = (1.0 + a3) * (half - 1.0) / (half + 1.0)
+    scale = 0.5 * breadth / (1.0 + a1 + a3)
+
+    def distance(psi: float) -> float:
+        y = (1.0 + a1) * sin(psi) - a3 * sin(3.0 * psi)
+        z = (1.0 - a1) * cos(psi) + a3 * cos(3.0 * psi)
+        return scale * sqrt(y * y + z * z)
+
+    corner = 0.5 * acos(max(-1.0, min(1.0, a1 * (1.0 + a3) / (4.0 * a3)))) if a3 else 0.0
+    psi = max(0.0, corner, key=distance)
+    along = -2.0 * a3 * cos(5.0 * psi) + a1 * (1.0 - a3) * cos(3.0 * psi)
+    along += ((6.0 - 3.0 * a1) * a3**2 + (a1**2 - 3.0 * a1) * a3 + a1**2) * cos(psi)
+    across = -2.0 * a3 * sin(5.0 * psi) + a1 * (1.0 - a3) * sin(3.0 * psi)
+    across += ((6.0 + 3.0 * a1) * a3**2 + (3.0 * a1 + a1**2) * a3 + a1**2) * sin(psi)
+    stretch = 1.0 + a1**2 + 9.0 * a3**2 + 2.0 * a1 * (1.0 - 3.0 * a3) * cos(2.0 * psi) - 6.0 * a3 * cos(4.0 * psi)
+    sharp = 1.0 + 4.0 * exp(-1.65e5 * (1.0 - fullness) ** 2)
+    furthest = distance(psi)
+    speed = furthest + 2.0 * scale / stretch * sqrt(along**2 + across**2)
+    mean = 2.0 * draught * (1.0 - deep) * sqrt(half / (1.0 - deep) * (fullness - deep) / (1.0 - deep))
+    return furthest, sharp * sqrt(pi) * speed / mean
