@@ -1,5 +1,5 @@
 # Two commands do everything on a fresh machine: `make demo` and `make test`.
-.PHONY: demo test clean
+.PHONY: demo test same clean
 
 VENV := .venv
 BIN := $(VENV)/bin
@@ -14,6 +14,11 @@ test: $(VENV)/installed-test
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/python -m pytest
+
+# Whether the numbers are still those of another revision, bit for bit: make same BASE=main
+BASE ?= HEAD
+same: $(VENV)/installed-test
+	$(BIN)/python -m tests.same $(BASE) $(SCENES)
 
 $(VENV)/bin/pip:
 	@test -n "$(PYTHON)" || { echo "Python 3.11, 3.12 or 3.13 is needed (Taichi has no wheels for others): install one, or name it: make demo PYTHON=/path/to/python3.12"; exit 1; }

@@ -1,0 +1,56 @@
+"""Short scenes that together run each schedule, precision, kind of grain and carrier: changes of `bed.toml` by name."""
+
+OFF = False  # in a preset: this table is left out
+
+SCENES = {
+    "haff-werner": {},
+    "mindlin": {"contact.tangential": "mindlin", "contact.rolling": "elastic-plastic"},
+    "swayed-linear": {
+        "motion.roll": OFF,
+        "motion.sway": {"amplitude": "8 mm", "frequency": "3 Hz"},
+        "contact.normal": "linear",
+        "contact.tangential": "cundall-strack",
+    },
+    "spill": {"tank.lid": False, "tank.height": "20 mm", "motion.roll.amplitude": "60 deg"},
+    "parts": {
+        "motion.roll": OFF,
+        "parts.gate": {
+            "points": [["0 mm", "0.5 mm"], ["0 mm", "49 mm"]],
+            "move": ["0 mm", "40 mm"],
+            "speed": "0.4 m/s",
+            "acceleration": "9 m/s^2",
+        },
+        "grains.region": [["-29 mm", "0 mm"], ["-1 mm", "0 mm"], ["-1 mm", "49 mm"], ["-29 mm", "49 mm"]],
+    },
+    "wet-lining": {
+        "tank.roughness": "3 mm",
+        "contact.cohesion": "humid",
+        "material.humidity": "70 %",
+        "material.surface_tension": "0.072 N/m",
+        "material.contact_angle": "0 deg",
+        "material.asperities": "1 nm",
+    },
+    "rice": {"grains.count": 40, "shapes.rice": {"cargo": "rice"}, "run.rest": 1e-3},
+    "ship": {
+        "motion.roll": OFF,
+        "grains.count": 120,
+        "ship": {
+            "breadth": "80 mm",
+            "height": "70 mm",
+            "draught": "28 mm",
+            "gravity_height": "20 mm",
+            "roll_period": "0.7 s",
+            "hold": ["0 mm", "5 mm"],
+            "freedom": "sway-heave-roll",
+            "heel": "10 deg",
+            "release": "0.1 s",
+            "radiation": "memory",
+        },
+        "waves": {"amplitude": "3 mm", "frequency": "9 rad/s", "soft_start": "0 s"},
+        "run.duration": "0.25 s",
+    },
+    "per-band": {"run.schedule": "per-band", "run.repeats": 1, "run.threads": 2, "grains.count": 120},
+    "per-grain-f32": {"run.schedule": "per-grain", "run.precision": "f32"},
+    "mixed": {"run.precision": "mixed", "contact.tangential": "mindlin"},
+    "gear": {"run.integrator": "gear", "run.duration": "0.05 s"},
+}
