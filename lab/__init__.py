@@ -6,9 +6,15 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from lab.caches import provide_for_matplotlib
+
 if TYPE_CHECKING:
     from lab.runner import Result
     from lab.sweeps import SweepResult
+
+__version__ = "0.2.0"
+
+provide_for_matplotlib()
 
 
 def run(

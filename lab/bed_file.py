@@ -27,7 +27,7 @@ def read_bed(path: str, outline: Sequence[Point], moving: bool) -> tuple[Grain, 
     outside the tank (`outline`, m), overlapping by more than 1 % of a radius or too many, or a motion where they are to
     settle first (`moving` false).
     """
-    columns = read_table(path, NEEDED, MOTION, "grains.bed")
+    columns = read_table(path, NEEDED, MOTION, "grains.bed", MOST)
     zero = np.zeros(len(columns["y"]))
     grains = np.column_stack([columns.get(name, zero) for name in (*NEEDED, *MOTION)])
     _check(grains, np.array(outline))
@@ -40,8 +40,6 @@ def read_bed(path: str, outline: Sequence[Point], moving: bool) -> tuple[Grain, 
 
 def _check(grains: np.ndarray, outline: np.ndarray) -> None:
     """Raise LabError for grains that no tank can hold; grains are counted from 1, as rows below the header."""
-    if not 1 <= len(grains) <= MOST:
-        raise LabError(f"grains.bed: from 1 to {MOST} grains are possible (got {len(grains)}).")
     position, radius = grains[:, :2], grains[:, 2]
     wrong = np.flatnonzero(radius < SMALLEST)
     if len(wrong):

@@ -20,8 +20,8 @@ from pathlib import Path
 from tempfile import NamedTemporaryFile
 
 import numpy as np
-from platformdirs import user_cache_path
 
+from lab.caches import cache_folder
 from lab.errors import LabError
 from lab.progress import Progress
 from lab.scene import build, filling_outline
@@ -262,9 +262,7 @@ class BedStore:
     """Beds by their keys, one file each, in a folder that several processes may use at a time."""
 
     def __init__(self, folder: Path | None = None):
-        own = os.environ.get("CARGOLAB_CACHE")
-        cache = Path(own) if own else user_cache_path("cargo-shift-lab", appauthor=False)
-        self.folder = folder or cache / "beds"
+        self.folder = folder or cache_folder() / "beds"
 
     def load(self, key: str) -> Bed | None:
         """The bed of that key; None where there is none that can be read."""

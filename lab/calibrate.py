@@ -1,73 +1,75 @@
 """Calibration: which value of one key of a preset gives a measure its target.
 
-A response surface (Box and Wilson 1951) in one dimension: the measure is simulated at a few values of the key, the same
-beds at each, and a parabola is fitted to the means by least squares. Its root is refined by a second round of values
-around it. The error of the root is that of the beds: the fit is repeated with beds drawn anew with replacement
-(bootstrap, Efron 1979), the same ones at all values.
+The measure is simulated at POINTS values of the key over the whole range, then at as many around where the means of the
+beds meet the target; the same beds at all values. `lab.inverse` says how value and interval follow from the second
+round's range. All that can be wrong with what is asked is said before anything is simulated.
 """
 
 import json
+import os
+import shlex
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from functools import partial
-from itertools import pairwise
 from pathlib import Path
 
-import matplotlib
 import numpy as np
-from matplotlib.figure import Figure
-from scipy.optimize import brentq
 
 from lab.axes import values
+from lab.calibration_report import Calibration, Tried, write_report
 from lab.errors import LabError
-from lab.plots import BLUE, GREY, STYLE, VERMILION
-from lab.reader import dotted_key
+from lab.inverse import LEAST_BEDS, Response, beds_for, crossings, fitted, misfit, solved
+from lab.presets import load, nested
+from lab.reader import dotted_key, taken_by
+from lab.rehearsal import rehearsed
 from lab.runner import RENDERS
 from lab.schema import Given
-from lab.sweep_report import Point
-from lab.sweeps import SweepResult, run_sweep
-from lab.units import in_unit
+from lab.sweep_report import Point, numeric
+from lab.sweeps import CALIBRATION, SweepResult, ask, run_sweep
+from lab.units import NUMBER, in_unit, quoted
 
 POINTS = 5  # values of the key in a round
 CLOSER = 0.25  # half the width of the second round, of the first one's range
-DRAWS = 1000  # of beds with replacement
-LEVEL = 0.95
-ALIASES = {"repose": "critical_angle"}
-FEWEST_BEDS = 2
+WITHIN = 0.05  # of the range: half the width of an interval that is called narrow
+ALIASES = {"repose": ("critical_angle", "heap_angle")}
+FORMAT = "cargo-shift-lab calibration 1"
 
 
 @dataclass(frozen=True)
-class Calibration:
-    """The value of `key` that gives `measure` its `target`, with its standard error and 95 % interval.
-
-    `x`, `mean`, `std` (N,) are what was simulated, and `beds` how many at each value; `parabola` its coefficients from
-    the square down; units as in the texts.
-    """
+class Asked:
+    """What was asked for, as texts; the overrides as nested tables."""
 
     preset: str
+    target: str
+    vary: str
+    overrides: dict = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What was asked for, understood: the values of the first round, the target (with its standard error), its unit."""
+
+    asked: Asked
     key: str
     unit: str
+    listed: list
+    overrides: dict
     measure: str
     measure_unit: str
     target: float
-    value: float
-    error: float
-    interval: tuple[float, float]
-    beds: int
-    x: tuple[float, ...] = field(repr=False)
-    mean: tuple[float, ...] = field(repr=False)
-    std: tuple[float, ...] = field(repr=False)
-    parabola: tuple[float, ...] = field(repr=False)
+    target_error: float
 
-    def text(self) -> str:
-        """One line for people."""
-        unit = f" {self.unit}" if self.unit else ""
-        low, high = self.interval
-        return (
-            f"{self.key} = {self.value:.4g} ± {self.error:.2g}{unit} (95 %: {low:.4g} to {high:.4g}) gives "
-            f"{self.measure.replace('_', ' ')} {self.target:g} {self.measure_unit}; "
-            f"{self.beds} beds at {len(self.x)} values"
-        )
+    @property
+    def whole(self) -> bool:
+        """Whether the key takes whole numbers."""
+        taken = taken_by(Given, self.key)
+        return bool(taken) and taken.kind is int
+
+    @property
+    def range(self) -> tuple[float, float]:
+        """The ends of the range in the key's unit."""
+        numbers = numeric(self.listed)[0]
+        return float(numbers.min()), float(numbers.max())
 
 
 def calibrate(
@@ -82,28 +84,75 @@ def calibrate(
 ) -> Calibration:
     """Find the value of the key in `vary`, "friction=0.2:0.7", at which a measure is as in `target`, "repose=41.3 deg".
 
-    Leaves calibration.json, calibration.png and both rounds' sweeps in a folder (default: renders/NAME-calibration);
-    asked again it goes on. cluster: as of `run_sweep`. Raises LabError: texts that cannot be read, a target out of
-    reach, and as `run_sweep`.
+    A target may have a standard error, "repose=41.3 ± 0.8 deg". Unless `overrides` say otherwise, at least LEAST_BEDS
+    beds are run. Leaves summary.md, calibration.json, calibration.png and both rounds' sweeps in a folder (default:
+    renders/NAME-calibration); asked again it goes on. cluster: as of `run_sweep`. Raises LabError, one sentence: what
+    cannot be read, run or measured; a target that no value in the range gives; and as `run_sweep`.
     """
-    measure, wanted = _pair("--target", target, 'repose="41.3 deg"')
-    given, span = _pair("--vary", vary, "friction=0.2:0.7")
-    measure, key = ALIASES.get(measure, measure), dotted_key(Given, given)
-    folder = Path(out) if out is not None else RENDERS / f"{Path(str(name)).stem}-calibration"
-    run = partial(run_sweep, video=False, quiet=quiet, cluster=cluster)
-    first = run(name, {key: values(key, _with_count(key, span))}, overrides, folder / "round-1")
-    x, unit, beds, measure_unit = _responses(first, key, measure)
-    goal = in_unit(wanted, measure_unit, "--target")
-    near = _root(x, beds, goal, key, measure, measure_unit)
-    half = CLOSER * float(np.ptp(x))
-    around = np.linspace(max(x.min(), near - half), min(x.max(), near + half), POINTS)
-    listed = [f"{value:.6g} {unit}".strip() if unit else float(f"{value:.6g}") for value in around]
-    second = run(name, {key: listed}, overrides, folder / "round-2")
-    more, _, further, _ = _responses(second, key, measure)
-    found = _solved(np.concatenate([x, more]), np.vstack([beds, further]), goal, key, measure, measure_unit)
-    made = Calibration(str(name), key, unit, measure, measure_unit, goal, **found)
-    _write(made, folder)
-    return made
+    preset = os.path.abspath(name) if os.path.isfile(name) else str(name)
+    asked = Asked(preset, target, vary, json.loads(json.dumps(nested(overrides or {}), default=str)))
+    folder = Path(out) if out is not None else RENDERS / f"{Path(preset).stem}-calibration"
+    _check_folder(asked, folder)
+    plan = understood(asked)
+    _write_asked(asked, folder)
+    try:
+        return _carried_out(plan, folder, quiet, cluster)
+    except KeyboardInterrupt:
+        raise KeyboardInterrupt(f"interrupted; go on with: cargolab resume {shlex.quote(str(folder))}") from None
+
+
+def resume_calibration(folder: Path | str, *, quiet: bool = False) -> Calibration:
+    """Go on with the calibration in a folder as it was asked for. Raises as `calibrate`."""
+    asked = read_asked(Path(folder))
+    return calibrate(asked.preset, asked.target, asked.vary, asked.overrides, folder, quiet=quiet)
+
+
+def understood(asked: Asked) -> Plan:
+    """The plan, with all checked that can be before a run. Raises LabError."""
+    said, wanted = _pair("--target", asked.target, 'repose="41.3 deg"')
+    given, span = _pair("--vary", asked.vary, "friction=0.2:0.7")
+    key = dotted_key(Given, given)
+    listed = _listed(key, span)
+    scale = numeric(listed)
+    overrides = _with_beds(asked)
+    points = ask(asked.preset, {key: listed}, overrides).points
+    measures = rehearsed(points[len(points) // 2])
+    measure = next((name for name in ALIASES.get(said, (said,)) if name in measures), None)
+    if measure is None:
+        raise LabError(f"--target: runs of this preset have no {said}; they have {', '.join(measures)}.")
+    measure_unit = measures[measure].unit
+    goal = _target(wanted, measure_unit)
+    return Plan(asked, key, scale[1], listed, overrides, measure, measure_unit, *goal)
+
+
+def _target(text: str, unit: str) -> tuple[float, float]:
+    """Value and standard error in a unit of "41.3 deg" or "41.3 ± 0.8 deg". Raises LabError."""
+    value, _, error = (part.strip() for part in text.replace("+-", "±").partition("±"))
+    if not error:
+        return in_unit(value, unit, "--target"), 0.0
+    number = NUMBER.match(error)
+    spread = in_unit(error, unit, "--target")
+    if spread < 0.0:
+        raise LabError(f"--target: a standard error is not negative (got {quoted(text)[1:-1]}).")
+    if NUMBER.fullmatch(value):  # one unit for both
+        value = f"{value} {error[number.end() :].strip()}".strip()
+    return in_unit(value, unit, "--target"), spread
+
+
+def read_asked(folder: Path) -> Asked:
+    """What was asked for of the calibration in a folder. Raises LabError."""
+    path = folder / CALIBRATION
+    try:
+        content = json.loads(path.read_text(encoding="utf-8"))
+        if content.pop("format") != FORMAT or not all(
+            isinstance(content[k], str) for k in ("preset", "target", "vary")
+        ):
+            raise ValueError("another form")
+        return Asked(**{**content, "overrides": dict(content["overrides"])})
+    except OSError as error:
+        raise LabError(f"{path} cannot be read ({error.strerror}): name the folder of a calibration.") from error
+    except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
+        raise LabError(f"{path} is damaged: calibrate anew in another folder.") from error
 
 
 def _pair(option: str, text: str, example: str) -> tuple[str, str]:
@@ -113,115 +162,159 @@ def _pair(option: str, text: str, example: str) -> tuple[str, str]:
     return left.strip(), right.strip()
 
 
-def _with_count(key: str, span: str) -> str:
-    """The text of a range of POINTS values from "0.2:0.7" or "1 mm:2 mm"."""
+def _listed(key: str, span: str) -> list:
+    """POINTS values of a range "0.2:0.7" or "1 mm:2 mm" in rising order, whole ones of a key that takes such."""
+    taken = taken_by(Given, key)
+    if taken and taken.kind not in (float, int):
+        raise LabError(f"{key}: takes no single number, so no range of it can be varied.")
     ends = [end.strip() for end in span.split(":")]
-    if len(ends) != 2 or not all(ends):
-        raise LabError(f'{key}: a range FROM:TO is needed, e.g. 0.2:0.7 (got "{span}").')
-    return f"{ends[0]}:{ends[1]}:{POINTS}"
+    listed = values(key, ":".join([*ends, str(POINTS)])) if len(ends) == 2 and all(ends) else []
+    if len(listed) < 2 or numeric(listed) is None:
+        raise LabError(f'{key}: a range FROM:TO is needed, e.g. 0.2:0.7 (got "{quoted(span)[1:-1]}").')
+    if taken and taken.kind is int:
+        return sorted({round(number) for number in numeric(listed)[0].tolist()})
+    return sorted(listed, key=lambda value: numeric([value])[0][0])
 
 
-def _responses(result: SweepResult, key: str, measure: str) -> tuple[np.ndarray, str, np.ndarray, str]:
-    """Values of the key (N,) with their unit, the measure in every bed (N, beds), NaN where not found, and its unit."""
-    points = [Point({}, where) for where in result.points]
-    known = [point.measures[measure] for point in points if measure in point.measures]
-    if not known:
-        names = sorted({name for point in points for name in point.measures})
-        raise LabError(f"--target: these runs have no {measure}; they have {', '.join(names)}.")
-    count = max(len(value.worlds) for value in known)
-    if count < FEWEST_BEDS:
-        raise LabError("--repeats: a calibration needs 2 beds at least to know its error; give --repeats 4 or more.")
-    beds = np.full((len(points), count), np.nan)
-    for row, point in zip(beds, points, strict=True):
-        if measure in point.measures:
-            row[:] = [np.nan if world is None else world for world in point.measures[measure].worlds]
-    column = next(name for name in result.rows[0] if name.partition(" (")[0] == key)
-    unit = column.partition(" (")[2].rstrip(")")
-    return np.array([float(row[column]) for row in result.rows]), unit, beds, known[0].unit
+def _with_beds(asked: Asked) -> dict:
+    """The overrides, with as many beds as an interval needs where nothing is said of them."""
+    run = asked.overrides.get("run")
+    if isinstance(run, Mapping) and "repeats" in run:
+        return asked.overrides
+    own = load(asked.preset, asked.overrides).resolved.run.repeats
+    return nested({**asked.overrides, "run": {**(run or {}), "repeats": max(own, LEAST_BEDS)}})
 
 
-def _solved(x: np.ndarray, beds: np.ndarray, goal: float, key: str, measure: str, unit: str) -> dict:
-    """The fields of a calibration that follow from the beds."""
-    value = _root(x, beds, goal, key, measure, unit)
-    random = np.random.default_rng(1)
-    drawn = (beds[:, random.integers(beds.shape[1], size=beds.shape[1])] for _ in range(DRAWS))
-    roots = np.array([_crossing(*_fit(x, sample), goal) for sample in drawn])
-    found = roots[np.isfinite(roots)]
-    tail = 50.0 * (1.0 - LEVEL)
-    # Beds whose parabola never meets the target lie beyond the ends of what was tried.
-    low, high = np.percentile(np.where(np.isfinite(roots), roots, _end_beyond(x, beds, goal)), [tail, 100.0 - tail])
-    return {
-        "value": value,
-        "error": float(found.std(ddof=1)),
-        "interval": (float(low), float(high)),
-        "beds": beds.shape[1],
-        "x": tuple(x.tolist()),
-        "mean": tuple(np.nanmean(beds, axis=1).tolist()),
-        "std": tuple(np.nanstd(beds, axis=1, ddof=1).tolist()),
-        "parabola": tuple(_fit(x, beds)[0].tolist()),
-    }
+def _check_folder(asked: Asked, folder: Path) -> None:
+    """Raise LabError where the folder holds another calibration."""
+    if (folder / CALIBRATION).exists() and read_asked(folder) != asked:
+        raise LabError(f"{folder} holds another calibration than is asked for: choose another folder with --out.")
 
 
-def _fit(x: np.ndarray, beds: np.ndarray) -> tuple[np.ndarray, tuple[float, float]]:
-    """A parabola through the means, each weighted by its number of beds, and the range in which it holds."""
-    found = np.isfinite(beds).sum(axis=1)
-    usable = found > 0
-    mean = np.nanmean(beds[usable], axis=1)
-    degree = min(2, np.unique(x[usable]).size - 1)
-    return np.polyfit(x[usable], mean, degree, w=np.sqrt(found[usable])), (x[usable].min(), x[usable].max())
-
-
-def _crossing(parabola: np.ndarray, span: tuple[float, float], goal: float) -> float:
-    """Where the parabola meets the goal within the span; NaN where it does not."""
-    grid = np.linspace(*span, 201)
-    above = np.polyval(parabola, grid) - goal
-    for (a, fa), (b, fb) in pairwise(zip(grid, above, strict=True)):
-        if fa == 0.0:
-            return float(a)
-        if fa * fb < 0.0:
-            return float(brentq(lambda at: np.polyval(parabola, at) - goal, a, b))
-    return float("nan")
-
-
-def _end_beyond(x: np.ndarray, beds: np.ndarray, goal: float) -> float:
-    """The end of the range nearer to the goal."""
-    parabola, span = _fit(x, beds)
-    return min(span, key=lambda at: abs(np.polyval(parabola, at) - goal))
-
-
-def _root(x: np.ndarray, beds: np.ndarray, goal: float, key: str, measure: str, unit: str) -> float:
-    parabola, span = _fit(x, beds)
-    root = _crossing(parabola, span, goal)
-    if np.isnan(root):
-        reached = np.polyval(parabola, np.linspace(*span, 201))
-        raise LabError(
-            f"--vary: between {span[0]:g} and {span[1]:g} of {key} the {measure.replace('_', ' ')} is "
-            f"{reached.min():.3g} to {reached.max():.3g} {unit}, never {goal:g}: vary it further, or another key."
-        )
-    return root
-
-
-def _write(made: Calibration, folder: Path) -> None:
+def _write_asked(asked: Asked, folder: Path) -> None:
     try:
-        (folder / "calibration.json").write_text(json.dumps(asdict(made), indent=1) + "\n", encoding="utf-8")
-        with matplotlib.rc_context(STYLE):
-            figure(made).savefig(folder / "calibration.png")
+        folder.mkdir(parents=True, exist_ok=True)
+        content = json.dumps({"format": FORMAT, **asdict(asked)}, indent=1)
+        (folder / CALIBRATION).write_text(content + "\n", encoding="utf-8")
     except OSError as error:
         raise LabError(f"{folder} cannot be written ({error.strerror or error}): make room there.") from error
 
 
-def figure(made: Calibration) -> Figure:
-    """The simulated means ± their standard errors, the parabola, target and root with its interval."""
-    drawn = Figure(figsize=(6.4, 3.8), layout="constrained")
-    axes = drawn.add_subplot()
-    errors, label = np.array(made.std) / np.sqrt(made.beds), f"mean of {made.beds} beds ± its standard error"
-    axes.errorbar(made.x, made.mean, errors, fmt="o", ms=4, capsize=2.5, color=BLUE, label=label)
-    grid = np.linspace(min(made.x), max(made.x), 200)
-    axes.plot(grid, np.polyval(made.parabola, grid), color=BLUE, lw=1.0, label="parabola")
-    axes.axhline(made.target, color=GREY, ls=":", label="target")
-    axes.axvspan(*made.interval, color=VERMILION, alpha=0.15, lw=0, label="95 % interval")
-    axes.axvline(made.value, color=VERMILION)
-    axes.set_xlabel(f"{made.key} ({made.unit})" if made.unit else made.key)
-    axes.set_ylabel(f"{made.measure.replace('_', ' ')} ({made.measure_unit})")
-    drawn.legend(loc="outside lower center", ncols=2)
-    return drawn
+def _carried_out(plan: Plan, folder: Path, quiet: bool, cluster: str | None) -> Calibration:
+    run = partial(run_sweep, plan.asked.preset, video=False, quiet=quiet, cluster=cluster)
+    tried = _tried(plan, run({plan.key: plan.listed}, plan.overrides, folder / "round-1"), 1)
+    made = _empty(plan, folder, tried)
+    near = _met(made, plan.range)
+    around = _around(plan, near)
+    if len(around) > 1:
+        second = _tried(plan, run({plan.key: around}, plan.overrides, folder / "round-2"), 2)
+        known = {point.x for point in tried}
+        tried = sorted([*tried, *(point for point in second if point.x not in known)], key=lambda point: point.x)
+    half = CLOSER * (plan.range[1] - plan.range[0])
+    made = replace(_empty(plan, folder, tried), window=(near - half, near + half))
+    return write_report(_solved(made))
+
+
+def _tried(plan: Plan, result: SweepResult, number: int) -> list[Tried]:
+    """What came of each value of a round."""
+    column = next(name for name in result.rows[0] if name.partition(" (")[0] == plan.key)
+    found = []
+    for row, where in zip(result.rows, result.points, strict=True):
+        point = Point({}, where)
+        value = point.measures.get(plan.measure)
+        stopped = "" if point.status == "complete" else point.status
+        beds = tuple(value.worlds) if value and not stopped else ()
+        note = stopped or (value.note if value else f"no {plan.measure}")
+        found.append(Tried(float(row[column]), f"round-{number}", beds, note))
+    return found
+
+
+def _empty(plan: Plan, folder: Path, tried: list[Tried]) -> Calibration:
+    """A calibration of which nothing but what was tried is known."""
+    return Calibration(
+        folder=folder,
+        preset=plan.asked.preset,
+        key=plan.key,
+        unit=plan.unit,
+        measure=plan.measure,
+        measure_unit=plan.measure_unit,
+        target=plan.target,
+        target_error=plan.target_error,
+        range=plan.range,
+        asked_beds=_beds(plan),
+        tried=tuple(tried),
+    )
+
+
+def _beds(plan: Plan) -> int:
+    return load(plan.asked.preset, plan.overrides).resolved.run.repeats
+
+
+def _met(made: Calibration, span: tuple[float, float]) -> float:
+    """Where the means of a round meet the target. Raises LabError, with a report, where they do not."""
+    x, means = made.means()
+    response = fitted(*made.measures())
+    if len(x) < 2 or response is None:
+        _give_up(made, "--target: too few of the runs have this measure to calibrate by")
+    off = means - made.target
+    if off.min() > 0.0 or off.max() < 0.0:
+        _give_up(made, made.nowhere())
+    roots = crossings(response, made.target)
+    if len(roots) > 1:
+        told = " and ".join(f"{root:.3g}" for root in roots)
+        _give_up(made, f"--vary: about {told} of {made.key} give the target alike; narrow the range to one of them")
+    if roots:
+        return roots[0]
+    k = int(np.flatnonzero(off[:-1] * off[1:] <= 0.0)[0])
+    return float(x[k] - off[k] * (x[k + 1] - x[k]) / (off[k + 1] - off[k]))
+
+
+def _around(plan: Plan, near: float) -> list:
+    """The values of the second round."""
+    low, high = plan.range
+    half = CLOSER * (high - low)
+    around = np.linspace(max(low, near - half), min(high, near + half), POINTS)
+    if plan.whole:
+        return sorted({round(value) for value in around.tolist()})
+    return [f"{value:.6g} {plan.unit}".strip() if plan.unit else float(f"{value:.6g}") for value in around]
+
+
+def _solved(made: Calibration) -> Calibration:
+    """The calibration with its value and interval. Raises LabError, with a report, where there is none."""
+    for near in (made, replace(made, window=None)):  # around the value; else as far as all values go
+        x, measures = near.measures()
+        response = fitted(x, measures)
+        roots = crossings(response, made.target) if response else []
+        if len(roots) == 1:
+            made = _with_solution(near, response, roots[0], misfit(response, x, measures))
+            if near.window is None or made.interval is None or np.isfinite(made.interval).all():
+                return made
+    if made.value is not None:
+        return made
+    _give_up(made, made.nowhere())
+    return made
+
+
+def _with_solution(made: Calibration, response: Response, root: float, beside: list) -> Calibration:
+    found = solved(response, made.target, root, made.target_error)
+    wanted = WITHIN * (made.range[1] - made.range[0])
+    enough = None if found.std is None else beds_for(wanted, found.std)
+    return replace(
+        made,
+        response=response,
+        value=root,
+        standard_error=found.standard_error,
+        std=found.std,
+        interval=found.interval,
+        beds=found.beds,
+        wanted=wanted,
+        enough=None if enough is None else max(enough, LEAST_BEDS),
+        beside=tuple(beside),
+        worthless=found.beds < LEAST_BEDS,
+    )
+
+
+def _give_up(made: Calibration, sentence: str) -> None:
+    """Leave the report of what was tried, and raise LabError."""
+    write_report(replace(made, refused=sentence))
+    raise LabError(f"{sentence}; see {made.folder / 'summary.md'}.")

@@ -4,17 +4,18 @@ It is written under another name and renamed when it is on the disk, so whatever
 goes when the run completes.
 """
 
+import hashlib
 import json
 import os
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
-from zipfile import BadZipFile
 
 import numpy as np
 
 from lab.errors import LabError, Useless
+from lab.trust import check_archive, check_progress
 
 FORMAT = "cargo-shift-lab checkpoint 1"
 FILE_NAME = "checkpoint.npz"
@@ -39,7 +40,7 @@ class Checkpoint:
         """Put it on the disk in place of an earlier one, which stays if that fails. Raises LabError."""
         path, unfinished = folder / FILE_NAME, folder / f"{FILE_NAME}.new"
         about = {"format": FORMAT, "runs": self.runs, "rows": self.rows}
-        about |= {"warnings": self.warnings, "notes": self.notes}
+        about |= {"warnings": self.warnings, "notes": self.notes, "digest": _digest(self.state)}
         try:
             with unfinished.open("wb") as file:
                 np.savez(file, about=np.array(json.dumps(about)), **{f"state/{k}": v for k, v in self.state.items()})
@@ -58,16 +59,32 @@ def read_checkpoint(folder: Path) -> Checkpoint | None:
     if not path.exists():
         return None
     try:
+        check_archive(path)
         with np.load(path, allow_pickle=False) as file:
             about = json.loads(str(file["about"]))
             state = {name.removeprefix("state/"): file[name] for name in file.files if name != "about"}
             if about["format"] != FORMAT:
                 raise Useless(f"{path} was written by another version: start the run anew.")
+            if about.get("digest") not in (None, _digest(state)):  # None: of an earlier version
+                raise ValueError("not what was written")
             series, frames = about["rows"]
+            check_progress(about["runs"], (series, frames), (about["warnings"], about["notes"]))
             said = tuple(about["warnings"]), tuple(about["notes"])
             return Checkpoint(state, tuple(about["runs"]), (series, frames), *said)
-    except (OSError, ValueError, KeyError, TypeError, EOFError, BadZipFile) as error:
+    except Useless:
+        raise
+    except Exception as error:  # zip files can be wrong in many ways
         raise Useless(f"{path} is damaged: start the run anew.") from error
+
+
+def _digest(state: Mapping[str, np.ndarray]) -> str:
+    """Of names, shapes and all bytes."""
+    digest = hashlib.blake2b(digest_size=16)
+    for name in sorted(state):
+        values = np.ascontiguousarray(state[name])
+        digest.update(f"{name} {values.dtype} {np.shape(state[name])}".encode())
+        digest.update(values.tobytes())
+    return digest.hexdigest()
 
 
 def remove_checkpoint(folder: Path) -> None:

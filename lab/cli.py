@@ -1,7 +1,7 @@
 """The command `cargolab`: every fault of a person's making ends in one sentence and an exit code.
 
-Exit codes: 0 done; 1 the simulation could not go on; 2 what was asked for cannot be done;
-130 interrupted.
+Exit codes: 0 done; 1 the simulation could not go on; 2 what was asked for cannot be done; 130 interrupted by Ctrl-C,
+143 by SIGTERM, 129 by SIGHUP.
 """
 
 import errno
@@ -11,7 +11,10 @@ from pathlib import Path
 
 import click
 
+from lab import __version__
 from lab.errors import LabError
+from lab.interrupt import exit_code, heeding
+from lab.text import one_line
 from lab.units import quoted
 from solvers.errors import BadState, Unavailable
 
@@ -32,12 +35,14 @@ class Commands(click.Group):
         # Matrices are small here, and threads of numpy's that wait by spinning would take the cores from the grains.
         os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
         try:
-            code = super().main(*args, **{**kwargs, "standalone_mode": False})
+            with heeding():
+                code = super().main(*args, **{**kwargs, "standalone_mode": False})
         except click.exceptions.NoArgsIsHelpError as error:
             error.show()
             code = 2
-        except click.Abort as error:  # Ctrl-C
-            code = _say(str(error.__cause__ or "") or "interrupted; what was written until then is kept.", 130)
+        except click.Abort as error:  # Ctrl-C and its like
+            said = str(error.__cause__ or "") or "interrupted; what was written until then is kept."
+            code = _say(said, exit_code())
         except click.ClickException as error:
             code = _say(error.format_message(), 2)
         except (LabError, Unavailable) as error:
@@ -46,11 +51,13 @@ class Commands(click.Group):
             code = _say(str(error), 1)
         except OSError as error:
             code = _say(_os_sentence(error), 2)
+        except MemoryError:
+            code = _say("there is not enough memory for this: ask for fewer grains or repeats, or free some.", 2)
         sys.exit(code if isinstance(code, int) else 0)
 
 
 def _say(sentence: str, code: int) -> int:
-    click.echo(f"cargolab: {' '.join(sentence.split())}", err=True)
+    click.echo(f"cargolab: {one_line(sentence)}", err=True)
     return code
 
 
@@ -59,19 +66,6 @@ def _os_sentence(error: OSError) -> str:
     what = error.strerror or str(error) or type(error).__name__
     remedy = REMEDIES.get(error.errno)
     return f"{where}{what[0].lower()}{what[1:]}{f'; {remedy}' if remedy else ''}."
-
-
-def _version(context: click.Context, _, asked: bool) -> None:
-    if not asked or context.resilient_parsing:
-        return
-    from importlib.metadata import PackageNotFoundError, version
-
-    try:
-        number = version("cargo-shift-lab")
-    except PackageNotFoundError:
-        number = "not installed, run from its folder"
-    click.echo(f"cargolab {number}")
-    context.exit()
 
 
 def _settings(texts: tuple[str, ...]) -> dict[str, str]:
@@ -137,14 +131,7 @@ def _show(result, quiet: bool) -> None:
 
 
 @click.group(cls=Commands, context_settings={"help_option_names": ["-h", "--help"]})
-@click.option(
-    "--version",
-    is_flag=True,
-    is_eager=True,
-    expose_value=False,
-    callback=_version,
-    help="Show the version.",
-)
+@click.version_option(__version__, prog_name="cargolab", message="%(prog)s %(version)s", help="Show the version.")
 def main() -> None:
     """Experiments on loose cargo: run one, watch it, get a number with its error.
 
@@ -322,7 +309,7 @@ def sweep(
 
 @main.command()
 @click.argument("preset")
-@click.option("--target", required=True, metavar="MEASURE=VALUE", help="What a measure shall be.")
+@click.option("--target", required=True, metavar="MEASURE=VALUE", help="What a measure is to be.")
 @click.option("--vary", required=True, metavar="KEY=FROM:TO", help="The key to find the value of, and its range.")
 @set_option
 @click.option(
@@ -346,10 +333,13 @@ def calibrate(
     cluster: str | None,
     quiet: bool,
 ) -> None:
-    """Find the value of a key of PRESET at which a measure meets its target, with its error.
+    """Find the value of a key of PRESET at which a measure meets its target, with its interval.
+
+    Runs eight beds at the least unless --repeats says otherwise. A target may have a standard error.
 
     \b
-    cargolab calibrate tilting/chickpeas-quick --target "repose=41.3 deg" --vary friction=0.2:0.7 --repeats 8
+    cargolab calibrate tilting/chickpeas-quick --target "repose=30 deg" --vary friction=0.2:0.7
+    cargolab calibrate tilting/chickpeas-quick --target "repose=30 ± 0.8 deg" --vary friction=0.2:0.7 --repeats 24
     cargolab calibrate shaking/sway --target "response_amplitude=2 mm" --vary "motion.sway.frequency=0.8 Hz:2 Hz"
     cargolab calibrate tilting/acetate --target "repose=25 deg" --vary friction=0.2:0.7 --cluster tcp://node1:8786
     """
@@ -364,7 +354,7 @@ def calibrate(
 @video_option
 @quiet_option
 def resume(folder: Path, no_video: bool, quiet: bool) -> None:
-    """Go on with the run or the sweep in FOLDER that was killed, interrupted or stopped.
+    """Go on with the run, sweep or calibration in FOLDER that was killed, interrupted or stopped.
 
     \b
     cargolab resume renders/tilting/quick
@@ -497,8 +487,9 @@ def reproduce(
     show_default=True,
     help="Folder of the page.",
 )
+@click.option("--repeats", "beds", type=click.IntRange(1), default=1, show_default=True, help="Beds of each preset.")
 @quiet_option
-def gallery(presets: tuple[str, ...], out: Path, quiet: bool) -> None:
+def gallery(presets: tuple[str, ...], out: Path, beds: int, quiet: bool) -> None:
     """Run every preset, or those whose names begin like PRESETS, and show them on one page: clips and numbers.
 
     \b
@@ -507,7 +498,7 @@ def gallery(presets: tuple[str, ...], out: Path, quiet: bool) -> None:
     """
     from lab.gallery import make_gallery
 
-    click.echo(make_gallery(presets, out, quiet))
+    click.echo(make_gallery(presets, out, quiet, beds))
 
 
 @main.group()
@@ -562,6 +553,24 @@ def speed(studies: tuple[str, ...], out: Path, fast: bool) -> None:
     from lab.bench.speed import run_page
 
     click.echo(run_page(studies, out, fast))
+
+
+@bench.command()
+@click.argument("cases", nargs=-1)
+@click.option("--kills", type=click.IntRange(min=1), metavar="N", help="Of each kind of command.  [default: 50]")
+@page_option
+@fast_option
+def survival(cases: tuple[str, ...], kills: int | None, out: Path, fast: bool) -> None:
+    """Kill the lab at random times, starve and mislead it; count how it ends.
+
+    \b
+    cargolab bench survival                   all of it; --fast: a few kills, odd folders, things that lack
+    cargolab bench survival kill --kills 200
+    """
+    from lab.bench.survival import run_cases
+
+    if not run_cases(cases, out, fast, kills):
+        sys.exit(1)
 
 
 @bench.command()

@@ -4,16 +4,24 @@ A launch is one task. A worker runs it in a folder of its own, with as many thre
 machine would have taken, so that its recordings have the bits that they would have here. What a launch has recorded
 goes as bytes, one run at a time: the worker holds all runs of its last launches until they are fetched, this machine
 one. Dask does a launch again whose worker is lost.
+
+Dask sends Python's pickles, which run code as they are read: whoever reaches a scheduler can run code on its workers
+and on the machines that ask it. So ask only schedulers of your own; those that listen beyond a machine need TLS
+(distributed.dask.org, "TLS/SSL").
 """
 
 import asyncio
+import hashlib
 import logging
 import pickle
+import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import CancelledError
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import cache, partial
+from importlib.resources import files
+from ipaddress import ip_address
 from operator import getitem
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -26,6 +34,7 @@ from lab.progress import Progress
 from lab.recording import versions
 from lab.runner import report
 from lab.schema import Resolved
+from lab.units import quoted
 from solvers.runtime import available_cores, choose_arch
 
 if TYPE_CHECKING:
@@ -33,6 +42,8 @@ if TYPE_CHECKING:
 
 PATIENCE = 10.0  # s until a scheduler that does not answer is not there
 LAST = "summary.json"  # of a run's files: with it the run counts as done
+PLAIN = re.compile(r"\w[\w.-]*")  # the name of a file of a run
+ALIKE = ("cargo-shift-lab", "taichi")  # a worker needs the very versions of this machine: the bits follow from them
 
 Files = dict[str, bytes]
 
@@ -51,6 +62,7 @@ class Terms:
     threads: int
     arch: str
     versions: Mapping[str, str]
+    sources: str
 
 
 def fetch(errands: Sequence[Errand], address: str, progress: Progress) -> None:
@@ -61,10 +73,33 @@ def fetch(errands: Sequence[Errand], address: str, progress: Progress) -> None:
     """
     if not errands:
         return
+    _warn_of(address, progress)
     with _connected(address) as client:
+        if (heard := client.scheduler_info()["address"]) != address:
+            _warn_of(heard, progress)
         if not client.nthreads():
             progress.say(f"The scheduler at {address} has no worker yet: waiting for one.")
         _fetch(client, errands, progress)
+
+
+def _warn_of(address: str, progress: Progress) -> None:
+    if is_open(address):
+        progress.say(
+            f"note: the scheduler at {address} listens beyond this machine without TLS, so whoever reaches it can run "
+            "programs here and on its workers: start it with --host 127.0.0.1, or with TLS."
+        )
+
+
+def is_open(address: str) -> bool:
+    """Whether others than this machine may reach a scheduler at such an address, and its messages are not secured."""
+    protocol, _, rest = address.rpartition("://")
+    host = rest.rpartition(":")[0].strip("[]")
+    if protocol in ("tls", "wss", "inproc") or host == "localhost":
+        return False
+    try:
+        return not ip_address(host).is_loopback
+    except ValueError:  # a name of the network
+        return True
 
 
 def _fetch(client: "Client", errands: Sequence[Errand], progress: Progress) -> None:
@@ -75,7 +110,7 @@ def _fetch(client: "Client", errands: Sequence[Errand], progress: Progress) -> N
         presets = list(errand.runs.values())
         texts = [(one.name, one.given_text, one.resolved.model_dump_json()) for one in presets]
         work = pickle.dumps(partial(run_launch, texts, _terms(presets[0])))
-        done = client.submit(_unpacked(), work, pure=False)
+        done = client.submit(_unpacked({name: versions().get(name, "") for name in ALIKE}), work, pure=False)
         # One task more a run, before any further launch: runs go over the wire and leave the worker one by one.
         folders |= {client.submit(getitem, done, k, pure=False, priority=1): at for k, at in enumerate(errand.runs)}
     del done
@@ -92,15 +127,40 @@ def _fetch(client: "Client", errands: Sequence[Errand], progress: Progress) -> N
 
 def _terms(preset: LoadedPreset) -> Terms:
     run = preset.resolved.run
-    return Terms(run.threads or available_cores(), choose_arch(run.arch, run.precision), versions())
+    return Terms(run.threads or available_cores(), choose_arch(run.arch, run.precision), versions(), sources())
 
 
-def _unpacked() -> Callable[[bytes], list[Files]]:
-    """A function that does pickled work; it travels by value, for what cannot be read kills workers without a word."""
+@cache
+def sources() -> str:
+    """A hash of the text of lab and solvers: copies of one version that someone has worked on differ in it."""
+    digest = hashlib.blake2b(digest_size=16)
+    for package in ("lab", "solvers"):
+        home = Path(str(files(package)))
+        for path in sorted(home.rglob("*.py")):
+            digest.update(path.relative_to(home).as_posix().encode() + b"\0" + path.read_bytes())
+    return digest.hexdigest()
+
+
+def _unpacked(wanted: Mapping[str, str]) -> Callable[[bytes], list[Files]]:
+    """A function that does pickled work; it travels by value, for what cannot be read kills workers without a word.
+
+    wanted: by package the version that a worker must have, which is looked at before the work is read.
+    """
 
     def task(work: bytes) -> list[Files]:
         import pickle
 
+        for package, version in wanted.items():
+            if package == "cargo-shift-lab":
+                import lab
+
+                found = getattr(lab, "__version__", "an earlier version")
+            else:
+                from importlib.metadata import version as version_of
+
+                found = version_of(package)
+            if found != version:
+                raise ImportError("another version", name=f"{package} {version} (it has {found})")
         return pickle.loads(work)()
 
     return task
@@ -122,16 +182,38 @@ def run_launch(texts: Sequence[tuple[str, str, str]], terms: Terms) -> list[File
         )
     presets = [LoadedPreset(name, given, Resolved.model_validate_json(resolved)) for name, given, resolved in texts]
     progress = _Dutiful()
+    if sources() != terms.sources:
+        raise LabError(
+            "--cluster: the lab of a worker has other source files than the one here, though the same version: install "
+            "the lab there as here."
+        )
     if versions() != terms.versions:
         progress.warn("The run was made with other versions of the lab or its libraries than it was asked for with.")
-    with TemporaryDirectory(prefix="cargolab-", dir=worker.local_directory) as home:
-        runs = [prepare(preset, Path(home) / f"{k:03}") for k, preset in enumerate(presets)]
-        for run in runs:
-            run.make_recording()
-        launch([_on_terms(run, terms) for run in runs], Path(home), progress)
+    with _in_a_folder(worker.local_directory) as home:
+        runs = [prepare(preset, home / f"{k:03}") for k, preset in enumerate(presets)]
+        settled, worlds = [_on_terms(run, terms) for run in runs], sum(len(run.scene.radius) for run in runs)
+        for run, on_terms in zip(runs, settled, strict=True):
+            run.make_recording(engaged=on_terms.engaged(worlds))
+        launch(settled, home, progress)
         for run in runs:
             report(run.folder, progress, video=False, plots=False)
         return [_taken(run.folder) for run in runs]
+
+
+@contextmanager
+def _in_a_folder(place: str | Path) -> Iterator[Path]:
+    """A folder of its own for a launch on a worker; what cannot be written there is said to be there."""
+    try:
+        with TemporaryDirectory(prefix="cargolab-", dir=place) as home:
+            yield Path(home)
+    except OSError as error:
+        raise LabError(
+            f"--cluster: on a worker, {place} cannot be written ({error.strerror}): make room there."
+        ) from error
+    except LabError as error:
+        if str(place) not in str(error):
+            raise
+        raise LabError(f"--cluster: on a worker, {error}") from error
 
 
 class _Dutiful(Progress):
@@ -164,11 +246,13 @@ def _taken(folder: Path) -> Files:
     return {path.name: path.read_bytes() for path in sorted(folder.iterdir(), key=lambda path: path.name == LAST)}
 
 
-def _put(files: Files, folder: Path) -> None:
+def _put(sent: Files, folder: Path) -> None:
     """Write files so that each is whole or not there, in their order."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        for name, content in files.items():
+        for name, content in sent.items():
+            if not PLAIN.fullmatch(name):
+                raise LabError(f"--cluster: a worker sent a file for another folder ({quoted(name)}): ask another one.")
             unfinished = folder / f"{name}.new"
             unfinished.write_bytes(content)
             unfinished.replace(folder / name)

@@ -1,23 +1,40 @@
 """What a preset is, what it switches on and what it will cost, before it runs."""
 
+from dataclasses import replace
 from math import pi
 
 import numpy as np
 
 from lab.accuracy import LEVELS
+from lab.measures.ship_roll import FROZEN_INTERVAL
 from lab.presets import LoadedPreset
-from lab.scene import build
+from lab.room import check_room
+from lab.scene import build, grain_count
+from lab.schema import Resolved
 from lab.shapes import Shape, caution
 from lab.ship import describe
 from lab.units import show
 from solvers.laws import COHESION
-from solvers.runtime import available_cores
+from solvers.runtime import available_cores, choose_arch
+from solvers.schedules import choose_schedule, units_a_world
 from solvers.shapes.given import Shapes
 from solvers.simulation import Simulation
 
-# Grain-steps a second of one core on settled beds (README, "Speed"); only the estimate of the run time rests on it.
+# Grain-steps a second of one core on settled beds: between a Xeon of 2.5 GHz (15e6) and newer ones (37e6 and more;
+# README, "Speed"); only the estimate of the run time rests on it.
 GRAIN_STEPS_PER_CORE = 20e6
 OUTLINES_PER_CORE = {"continuous": 3e6, "nodes": 3e6, "area": 3e6}  # of irregular grains
+# What else a run takes, in seconds of one core (AMD EPYC, Zen 5; CPU time, which other programs do not lengthen): to
+# start Python, its libraries and Taichi, to compile the kernels when they are new, and with them those of a ship
+STARTING = 2.0
+COMPILING = {"discs": 2.0, "continuous": 8.0, "nodes": 6.0, "area": 4.5}
+COMPILING_SHIP = 3.0
+STEP = 0.07e-6  # of a world, whatever its grains
+SAMPLE = 0.25e-3  # to stop and observe all worlds
+# Of a ship each look ahead of the water's forces: at best, and for each pair of states of its memory, and each wave
+LOOK, LOOK_PAIR, LOOK_WAVE = 0.4e-6, 1.6e-9, 0.07e-6
+FROZEN = 0.37e-3  # each interval of the ship with her cargo frozen
+REPORTING, PICTURE = 2.5, 0.026  # measures and figures; a picture and its place in the video
 
 PRECISIONS = {
     "f64": "64-bit floats",
@@ -34,20 +51,32 @@ SCHEDULES = {
 def explain(loaded: LoadedPreset) -> str:
     """A page of text on a preset: scene, step and what limits it, what is compiled in, memory, expected run time."""
     preset = loaded.resolved
-    scene, position = build(preset)
-    simulation = Simulation(scene, position, preset.run.threads, arch=preset.run.arch)
+    check_room(preset, grain_count(preset))
+    simulation = _one_bed(preset)
+    scene = simulation.scene
     blocks = [
         f"{preset.title}  ({loaded.name})",
         _section("Scene", _scene(preset, scene)),
         *_ship(preset, simulation),
         _section("Accuracy", _accuracy(preset)),
         _section("Step", _step(scene)),
-        _section("Compiled in", _parts(simulation)),
+        _section("Compiled in", _parts(preset, simulation)),
         _section("Cost", _cost(preset, scene, simulation)),
         "Preset in full\n" + "".join(f"    {line}\n" for line in loaded.given_text.strip().splitlines()),
     ]
     simulation.close()
     return "\n".join(blocks)
+
+
+def _one_bed(preset: Resolved) -> Simulation:
+    """A simulation of the first bed alone, cut into units as each of all is: the others have the same parts."""
+    run = preset.run
+    scene, position = build(preset.model_copy(update={"run": replace(run, repeats=1)}))
+    arch = "cpu" if scene.vessels and run.arch == "auto" else choose_arch(run.arch, run.precision)
+    sizes = run.repeats, scene.radius.shape[1], run.threads or available_cores()
+    schedule = choose_schedule(run.schedule, arch, *sizes, bool(scene.vessels))
+    units = units_a_world(schedule, *sizes)
+    return Simulation(replace(scene, schedule=schedule), position, run.threads, arch=arch, units=units)
 
 
 def _section(title: str, rows: list[tuple[str, str]]) -> str:
@@ -56,13 +85,14 @@ def _section(title: str, rows: list[tuple[str, str]]) -> str:
 
 
 def _scene(preset, scene) -> list[tuple[str, str]]:
-    worlds, count = scene.radius.shape
+    worlds, count = preset.run.repeats, scene.radius.shape[1]
     small, large = 2 * scene.radius.min(), 2 * scene.radius.max()
     pair, wall = scene.interfaces
-    rows = [("quick variant", preset.quick)] if preset.quick else []
+    rows = [("based on", preset.based_on)] if preset.based_on else []
+    rows += [("quick variant", preset.quick)] if preset.quick else []
     rows += [
         ("repeats", f"{worlds}, seeds {preset.run.seed} to {preset.run.seed + worlds - 1}"),
-        ("grains", f"{count} in each, {show(small, 'm')} to {show(large, 'm')}"),
+        ("grains", f"{count} in each, {show(small, 'm')} to {show(large, 'm')}{' in the first' * (worlds > 1)}"),
         *(("shape", _shape(name, shape)) for name, shape in preset.shapes.items()),
         ("bed", _bed(preset)),
         ("tank", _tank(preset, scene)),
@@ -141,7 +171,7 @@ def _step(scene) -> list[tuple[str, str]]:
     ]
 
 
-def _parts(simulation: Simulation) -> list[tuple[str, str]]:
+def _parts(preset: Resolved, simulation: Simulation) -> list[tuple[str, str]]:
     scene, frame, walls = simulation.scene, simulation.frame, simulation.walls
     remembered = len(simulation.neighbours.laws.memory)
     terms = "gravity"
@@ -151,7 +181,7 @@ def _parts(simulation: Simulation) -> list[tuple[str, str]]:
         terms += ", Euler, centrifugal and Coriolis terms"
     laws = [("normal law", scene.normal), ("tangential law", scene.tangential)]
     if scene.shapes:
-        laws.insert(0, ("outlines", _outlines(scene.shapes)))
+        laws.insert(0, ("outlines", _outlines(preset, scene.shapes)))
     if scene.rolling != "none":
         laws.append(("rolling law", scene.rolling))
     if scene.cohesion != "none":
@@ -168,10 +198,11 @@ def _parts(simulation: Simulation) -> list[tuple[str, str]]:
     ]
 
 
-def _outlines(shapes: Shapes) -> str:
+def _outlines(preset: Resolved, shapes: Shapes) -> str:
     rule = shapes.contact if shapes.contact == "continuous" else f"{shapes.contact}, {shapes.nodes} nodes on each"
     rough = caution(shapes.outlines, shapes.contact)
-    return f"{len(shapes.outlines)} different ones, {rule}" + (f". {rough}" if rough else "")
+    drawn = sum(shape.draws * preset.run.repeats if shape.random else 1 for shape in preset.shapes.values())
+    return f"{drawn} different ones, {rule}" + (f". {rough}" if rough else "")
 
 
 def _cohesion(scene) -> str:
@@ -186,19 +217,50 @@ def _cohesion(scene) -> str:
 
 
 def _cost(preset, scene, simulation: Simulation) -> list[tuple[str, str]]:
-    worlds, count = scene.radius.shape
+    worlds, count = preset.run.repeats, scene.radius.shape[1]
     steps = preset.run.duration / scene.step
-    cores = min(worlds, preset.run.threads or available_cores())
-    waves = -(-worlds // cores)
-    speed = OUTLINES_PER_CORE[scene.shapes.contact] if scene.shapes else GRAIN_STEPS_PER_CORE
-    seconds = waves * count * steps / speed
     frames = preset.run.duration * preset.record.picture_rate
+    seconds = cost_in_seconds(preset, scene, simulation)
+    parts = ", ".join(f"{_span(spent)} {what}" for what, spent in seconds.items() if spent >= 0.5)
+    cores = min(worlds, preset.run.threads or available_cores())
+    settling = f"and at most {_span(_stepping(preset.run.settle_limit, preset, scene))} to settle a new bed"
     return [
         ("grain-steps", f"{worlds * count * steps:.3g}, and those of settling"),
-        ("memory", f"{simulation.arrays.bytes / 2**20:.1f} MiB"),
+        ("memory", f"{worlds * simulation.arrays.bytes / 2**20:.1f} MiB"),
         ("recording", f"{frames * worlds * count * 24 / 2**20:.0f} MiB"),
-        ("run time", f"about {_span(seconds)} on {cores} core(s), then {frames:.0f} pictures"),
+        ("run time", f"about {_span(sum(seconds.values()))} on {cores} core(s): {parts}"),
+        *([("", settling)] if preset.run.settle else []),
     ]
+
+
+def cost_in_seconds(preset, scene, simulation: Simulation) -> dict[str, float]:
+    """What a run takes by its parts, settling apart: kernels that are new are compiled, all pictures painted."""
+    rule = scene.shapes.contact if scene.shapes else "discs"
+    duration, record = preset.run.duration, preset.record
+    found = {
+        "to start and compile": STARTING + COMPILING[rule] + (COMPILING_SHIP if simulation.afloat else 0.0),
+        "of steps": _stepping(duration, preset, scene) + duration * record.series_rate * SAMPLE,
+    }
+    if simulation.afloat:
+        found["of her hull and water"] = _floating(preset, simulation)
+    return found | {"of figures": REPORTING, "of pictures": duration * record.picture_rate * PICTURE}
+
+
+def _stepping(duration: float, preset, scene) -> float:
+    """Of the grains' steps for so long (s)."""
+    worlds, count = scene.radius.shape
+    rounds = -(-worlds // min(worlds, preset.run.threads or available_cores()))
+    speed = OUTLINES_PER_CORE[scene.shapes.contact] if scene.shapes else GRAIN_STEPS_PER_CORE
+    return rounds * duration / scene.step * (STEP + count / speed)
+
+
+def _floating(preset, simulation: Simulation) -> float:
+    """Of the water's forces, and of the ship with her cargo frozen."""
+    states, _, waves = simulation.frame.sizes
+    rounds = -(-len(simulation.scene.vessels) // simulation.threads)
+    look = LOOK + LOOK_PAIR * states**2 + LOOK_WAVE * waves
+    looks = preset.run.duration / (float(simulation.frame.every[0]) * simulation.dt)
+    return rounds * looks * look + preset.run.duration / FROZEN_INTERVAL * FROZEN
 
 
 def _span(seconds: float) -> str:

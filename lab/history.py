@@ -34,16 +34,23 @@ def read_history(given: HistoryGiven) -> History:
         "heave": _in_si(given.length_unit, "length_unit", "m"),
         "roll": _in_si(given.angle_unit, "angle_unit", "rad"),
     }
-    columns = read_table(given.file, ["time"], list(units), key=KEY)
+    columns = read_table(given.file, ["time"], list(units), KEY, MOST_SAMPLES)
     time = columns.pop("time")
     if not columns:
         raise LabError(f"{KEY}: nothing but times; a column sway, heave or roll is needed.")
-    _check_times(time)
     moved = {name: tuple((units[name] * values).tolist()) for name, values in columns.items()}
     history = History(tuple(time.tolist()), centre=given.centre, **moved)
-    for name, motion in history.motions.items():
-        _check_curve(name, motion)
+    check_history(history)
     return history
+
+
+def check_history(history: History) -> None:
+    """Raise LabError for too many samples, times that do not rise, or samples no smooth curve goes through."""
+    _check_times(np.array(history.time))
+    for name, motion in history.motions.items():
+        if len(motion.values) != len(motion.time):
+            raise LabError(f"{KEY}: {name} needs as many samples as there are times.")
+        _check_curve(name, motion)
 
 
 def check_start(history: History, soft_start: float) -> None:

@@ -24,11 +24,12 @@ from lab.recording import BUFFER_BYTES, FLUSH_EVERY, Outlines, Recorder, new_rec
 from lab.recording.layout import SHIP_SERIES
 from lab.scene import build
 from lab.schema import Resolved
+from lab.trust import check_state
 from lab.units import show
 from solvers.errors import BadState
 from solvers.runtime import available_cores, choose_arch
 from solvers.scene import Scene
-from solvers.schedules import choose_schedule
+from solvers.schedules import choose_schedule, units_a_world
 from solvers.simulation import Simulation
 
 # Steps of a call of the solver, times the grains of a world: so long Ctrl-C waits, some tenths of a second for each
@@ -67,8 +68,23 @@ class Run:
         afloat = bool(self.scene.vessels)
         return choose_schedule(settings.schedule, arch, worlds, count, threads, afloat) != "per-band"
 
-    def make_recording(self, steered: bool = False) -> None:
-        """Make the recording, without rows yet, of a run that a hand may steer. Raises LabError (`new_recording`)."""
+    def engaged(self, worlds: int = 0) -> dict[str, object]:
+        """What computes so many worlds (0: the run's own) in a launch: `arch`, `schedule`, on the CPU `threads`."""
+        settings, (own, count) = self.loaded.resolved.run, self.scene.radius.shape
+        afloat, worlds = bool(self.scene.vessels), worlds or own
+        arch = "cpu" if afloat and settings.arch == "auto" else choose_arch(settings.arch, settings.precision)
+        threads = settings.threads or available_cores()
+        schedule = choose_schedule(settings.schedule, arch, worlds, count, threads, afloat)
+        if arch != "cpu":
+            return {"arch": arch, "schedule": schedule}
+        units = worlds * units_a_world(schedule, worlds, count, threads)
+        return {"arch": arch, "schedule": schedule, "threads": min(threads, units)}
+
+    def make_recording(self, steered: bool = False, engaged: Mapping[str, object] | None = None) -> None:
+        """Make the recording, without rows yet, of a run that a hand may steer.
+
+        engaged: what computes it in company, as `engaged` tells. Raises LabError (`new_recording`).
+        """
         preset, scene = self.loaded.resolved, self.scene
         new_recording(
             self.folder,
@@ -83,6 +99,7 @@ class Run:
             open_edges=scene.open_edges,
             parts={name: part.points for name, part in preset.parts.items()},
             shapes=outlines_of(preset, scene),
+            machine=self.engaged() if engaged is None else engaged,
             steered=steered,
         )
 
@@ -141,6 +158,7 @@ class Launch:
             self.progress.notes.extend(kept.notes)
             self._simulation = self._simulate(self._scene(), self._position())
             try:
+                check_state(kept.state, *self._simulation.scene.radius.shape)
                 self._simulation.restore(kept.state)
             except (KeyError, ValueError, TypeError, IndexError) as error:
                 raise Useless(f"{self.home}: its checkpoint is of another scene: start the run anew.") from error
@@ -173,7 +191,7 @@ class Launch:
             self._write(rows, k % a_frame == 0)
             self._count_cost()
             self.progress.reach(self._simulation.time)
-            self._end_capsized(rows, k % a_frame == 0)
+            self._end_lost(rows, k % a_frame == 0)
         self.progress.finish()
 
     def save(self) -> None:
@@ -224,11 +242,12 @@ class Launch:
         """What is pictured of all worlds now."""
         return {"pose": pose_of(rows), "part": self._simulation.part_places(), **self._simulation.snapshot()}
 
-    def _end_capsized(self, rows: Mapping[str, np.ndarray], pictured: bool) -> None:
-        """End the runs all of whose ships have capsized, with a last picture; the others go on."""
+    def _end_lost(self, rows: Mapping[str, np.ndarray], pictured: bool) -> None:
+        """End the runs all of whose ships have capsized or flooded, with a last picture; the others go on."""
         if "capsized" not in rows:
             return
-        over = [bool((rows["capsized"][worlds] >= 0.0).all()) for worlds in self._worlds()]
+        lost = np.maximum(rows["capsized"], rows["flooded"]) >= 0.0
+        over = [bool(lost[worlds].all()) for worlds in self._worlds()]
         slices, now = list(self._worlds()), self._simulation.time
         frame = {} if pictured or not any(over) else self._frame(rows)
         for out in reversed(range(len(over))):

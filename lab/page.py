@@ -2,26 +2,34 @@
 
 import platform
 from collections.abc import Sequence
+from datetime import date
 from pathlib import Path
 
 import matplotlib
 from matplotlib.figure import Figure
 
+from lab import __version__
 from lab.plots import STYLE
 from lab.recording import versions
+from lab.text import one_line
 from solvers.runtime import available_cores
 
 
 class Page:
     """NAME.md in a folder, made if missing, and its figures NAME-FIGURE.png; `write` leaves it on the disk.
 
-    `command` is what makes it; by default the bench of that name.
+    `command` is what makes it; by default the bench of that name. `runs` says of which runs it is, where these may have
+    been made earlier and elsewhere; else the page names the machine.
     """
 
-    def __init__(self, folder: Path | str, name: str, title: str, command: str | None = None) -> None:
+    def __init__(self, folder: Path | str, name: str, title: str, command: str | None = None, runs: str = "") -> None:
         self.folder, self.name = Path(folder), name
         self.folder.mkdir(parents=True, exist_ok=True)
-        self._blocks = [f"# {title}", f"Made by `cargolab {command or f'bench {name}'}` on {machine()}."]
+        command = f"cargolab {command or f'bench {name}'}"
+        made = f"Made by `{command}` on {date.today()}, on {machine()}."
+        if runs:
+            made = f"Written by `{command}` on {date.today()}. {runs}"
+        self._blocks = [f"# {title}", made]
 
     def section(self, title: str) -> None:
         """Begin a section."""
@@ -63,7 +71,8 @@ class Page:
 def machine() -> str:
     """What computes, in words."""
     found = versions()
-    cores, system = available_cores(), f"Python {found['python']}, Taichi {found.get('taichi', '?')}"
+    cores = available_cores()
+    system = f"Cargo Shift Lab {__version__}, Python {found['python']}, Taichi {found.get('taichi', '?')}"
     return f"{cores} core{'s' if cores > 1 else ''} of {_processor()} ({system})"
 
 
@@ -79,4 +88,4 @@ def _processor() -> str:
 def _cell(value: object) -> str:
     if isinstance(value, float):
         return f"{value:.3g}"
-    return str(value).replace("|", "\\|")
+    return one_line(value).replace("|", "\\|").replace("<", "&lt;")

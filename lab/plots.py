@@ -32,13 +32,16 @@ from lab.measures.motion import HARMONIC, driving, is_tilt, outward_leg
 from lab.measures.outlet import find_outlet, passed
 from lab.measures.steady import steady_part
 from lab.measures.value import Value
+from lab.numbers import number
 from lab.recording import Recording
-from lab.ship import recorded_ship
+from lab.ship import axis_motion, axis_place, recorded_ship
+from lab.ship_end import End, ends
 
 # Okabe and Ito's colours, told apart by colour-blind readers as well.
 BLUE, VERMILION, GREEN, GREY = "#0072B2", "#D55E00", "#009E73", "#777777"
 STYLE = {
     "font.size": 9,
+    "text.parse_math": False,  # titles are texts of people
     "axes.titlesize": 9.5,
     "axes.titlelocation": "left",
     "axes.spines.top": False,
@@ -58,11 +61,16 @@ SIZE = (6.4, 4.2)  # inches
 BELOW = "outside lower center"  # of a legend, where no curve can run through it
 POINTS = 1500  # of a curve; more cannot be seen
 PERIODS = 4  # shown close up
+MARGIN = 0.02  # of the time shown: what is left behind the loss of a ship
 TITLE = 88  # letters in a line
 LEAST_PORTRAIT = 20  # samples
 HIGHEST_ROLL = 3.0  # Hz
 QUIETEST = 1e-4  # of the largest peak: where a spectrum's scale begins
 
+ANGLES = {  # of a ship's deck and openings, in her curve of righting levers
+    "deck_immersion_angle": {"color": GREEN, "ls": "--"},
+    "downflooding_angle": {"color": VERMILION, "ls": "-"},
+}
 DRIVE = {
     "sway": ("sway of the\ntank (mm)", 1e3),
     "heave": ("heave of the\ntank (mm)", 1e3),
@@ -135,7 +143,7 @@ def slope_figure(recording: Recording, values: Mapping[str, Value]) -> Figure | 
     _mark(axes, values.get("critical_angle"), "critical angle", VERMILION)
     axes.set_xlabel("tilt (deg)")
     axes.set_ylabel("inclination of the surface\nagainst the horizontal (deg)")
-    figure.legend(loc=BELOW, ncols=3)
+    figure.legend(loc=BELOW, ncols=2)
     return figure
 
 
@@ -156,7 +164,7 @@ def spilled_figure(recording: Recording, values: Mapping[str, Value]) -> Figure 
     axes.set_xlim(left=0)
     axes.set_ylim(bottom=0)
     axes.set_ylabel("spilled grains (% of all movable)")
-    figure.legend(loc=BELOW, ncols=3)
+    figure.legend(loc=BELOW, ncols=2)
     return figure
 
 
@@ -180,7 +188,7 @@ def hysteresis_figure(recording: Recording, values: Mapping[str, Value]) -> Figu
     axes.set_xlabel("tilt (deg)")
     axes.set_ylabel("shift of the centre of mass\ndownhill (mean diameters)")
     _millimetres(axes, 1e3 * recording.mean_diameter.mean())
-    figure.legend(loc=BELOW, ncols=3)
+    figure.legend(loc=BELOW, ncols=2)
     return figure
 
 
@@ -319,7 +327,7 @@ def contact_figure(recording: Recording, values: Mapping[str, Value]) -> Figure 
         return None
     figure, ((axes,),) = _figure(recording)
     time, number = recording.series["time"], contact_number.contact_number(recording)
-    _band(axes, time, number, BLUE, "mean ± std" if recording.worlds > 1 else "bed")
+    _band(axes, time, number, BLUE, _mean_label(recording.worlds))
     axes.set_xlabel("time (s)")
     axes.set_xlim(time[0], time[-1])
     axes.set_ylabel("contacts of a grain")
@@ -329,26 +337,42 @@ def contact_figure(recording: Recording, values: Mapping[str, Value]) -> Figure 
 
 
 def roll_figure(recording: Recording, values: Mapping[str, Value]) -> Figure | None:
-    """Roll of a ship in time, with loose and with frozen cargo, and below the shift of the cargo."""
+    """Roll of a ship in time, with loose and with frozen cargo; below her sway and heave and the shift of the cargo."""
     if not ship_roll.applies(recording):
         return None
-    figure, ((upper,), (lower,)) = _figure(recording, heights=(2, 1))
-    time, roll = recording.series["time"], np.degrees(recording.series["pose"][..., 2])
+    time, moved = recording.series["time"], axis_motion(recorded_ship(recording.preset), recording.series["pose"])
+    moves = recorded_ship(recording.preset).freedom != "roll"
+    figure, panels = _figure(recording, heights=(2, 1, 1) if moves else (2, 1))
+    upper, lower = panels[0, 0], panels[-1, 0]
     alone = ship_roll.frozen(recording)
     if alone is not None:
         upper.plot(*_thinned(alone[0], np.degrees(alone[1])), color=GREY, lw=0.9, label="cargo frozen")
-    for world, when in enumerate(recording.series["capsized"][-1]):
-        upper.plot(*_thinned(time, roll[:, world]), color=BLUE, lw=1.0, label=None if world else "cargo loose")
-        if when >= 0.0:
-            upper.plot(when, np.interp(when, time, roll[:, world]), "x", color=VERMILION)
-    upper.set_ylabel("roll (deg), positive to port")
+    for world, end in enumerate(ends(recording.series)):
+        turned = np.degrees(moved[:, world, 2])
+        upper.plot(*_thinned(time, turned), color=BLUE, lw=1.0, label=None if world else "cargo loose")
+        if end:
+            _mark_end(upper, end, recording.worlds)
+    upper.set_ylabel("roll about the axis\n(deg), positive to port")
+    if moves:
+        _band(panels[1, 0], time, 1e3 * moved[..., 0], BLUE, "sway of the axis")
+        _band(panels[1, 0], time, 1e3 * moved[..., 1], GREEN, "heave of the axis")
+        panels[1, 0].set_ylabel("sway, heave\n(mm)")
     centre = 1e3 * recording.series["centre_of_mass"][..., 0]
     _band(lower, time, centre - centre[0], VERMILION)
     lower.set_ylabel("shift of the\ncargo (mm)")
-    lower.set_xlabel("time (s)")
-    lower.set_xlim(time[0], time[-1])
-    figure.legend(loc=BELOW, ncols=2)
+    lower.set_xlabel(f"time (s); axis: {axis_place(recorded_ship(recording.preset))}")
+    lower.set_xlim(time[0], time[-1] + (MARGIN * np.ptp(time) if any(ends(recording.series)) else 0.0))
+    figure.legend(loc=BELOW, ncols=4)
     return figure
+
+
+def _mark_end(axes: Axes, end: End, worlds: int) -> None:
+    """The time at which a ship was lost; in words where there is but one."""
+    axes.axvline(end.time, color=VERMILION, lw=1.0)
+    axes.plot(end.time, np.degrees(end.roll), "x", color=VERMILION)
+    if worlds == 1:
+        words = {"xycoords": axes.get_xaxis_transform(), "textcoords": "offset points", "ha": "right", "va": "bottom"}
+        axes.annotate(end.words, (end.time, 1.0), (0, 2), color=VERMILION, fontsize=8, **words)
 
 
 def portrait_figure(recording: Recording, values: Mapping[str, Value]) -> Figure | None:
@@ -375,7 +399,7 @@ def portrait_figure(recording: Recording, values: Mapping[str, Value]) -> Figure
 
 def roll_spectrum_figure(recording: Recording, values: Mapping[str, Value]) -> Figure | None:
     """Amplitude spectrum of a ship's roll over the last half of the run."""
-    if not ship_roll.applies(recording) or (recording.series["capsized"][-1] >= 0.0).any():
+    if not ship_roll.applies(recording) or any(ends(recording.series)):
         return None
     time, roll = recording.series["time"], np.degrees(recording.series["pose"][..., 2])
     half = len(time) // 2
@@ -399,7 +423,10 @@ def roll_spectrum_figure(recording: Recording, values: Mapping[str, Value]) -> F
 
 
 def lever_figure(recording: Recording, values: Mapping[str, Value]) -> Figure | None:
-    """Righting lever of a ship against her heel, her cargo frozen as it lay at the start, or slid to its repose."""
+    """Righting lever of a ship against her heel, her cargo frozen as it lay at the start, or slid to its repose.
+
+    Upright lines: where the edge of her deck, and an opening, meet the still waterline at constant displacement.
+    """
     levers = ship_roll.levers(recording) if ship_roll.applies(recording) else None
     if levers is None:
         return None
@@ -412,6 +439,10 @@ def lever_figure(recording: Recording, values: Mapping[str, Value]) -> Figure | 
     axes.axhline(0, color=GREY, lw=0.8)
     largest = np.degrees(np.abs(recording.series["pose"][..., 2]).max())
     axes.axvline(largest, color=VERMILION, ls=":", lw=1.0, label="largest roll of the run")
+    for name, style in ANGLES.items():
+        value = values.get(name)
+        if value is not None:
+            axes.axvline(value.value, lw=1.0, label=f"{name.replace('_', ' ')} {value.value:.1f} deg", **style)
     axes.set_xlabel("heel (deg)")
     axes.set_ylabel("righting lever GZ (mm)")
     figure.legend(loc=BELOW, ncols=2)
@@ -448,7 +479,7 @@ def _shift_against_tilt(recording: Recording, values: Mapping[str, Value]) -> Fi
             axes.plot(*_thinned(*curve), color=BLUE, alpha=0.4, lw=0.7, label=label)
     common = np.linspace(0, min(tilt[-1] for tilt, _ in curves), POINTS)
     together = np.stack([np.interp(common, *curve) for curve in curves], axis=1)
-    _band(axes, common, together, BLUE, "mean ± std" if worlds > 1 else "bed")
+    _band(axes, common, together, BLUE, _mean_label(worlds))
     _mark(axes, values.get("first_slip_angle"), "first slip", GREEN, ":")
     _mark(axes, values.get("critical_angle"), "critical angle", VERMILION)
     found = values["critical_angle"].worlds if "critical_angle" in values else ()
@@ -459,7 +490,7 @@ def _shift_against_tilt(recording: Recording, values: Mapping[str, Value]) -> Fi
     axes.set_xlim(0, max(tilt[-1] for tilt, _ in curves))
     axes.set_ylabel("shift of the centre of mass\ndownhill (mean diameters)")
     _millimetres(axes, 1e3 * diameters.mean())
-    figure.legend(loc=BELOW, ncols=3)
+    figure.legend(loc=BELOW, ncols=2)
     return figure
 
 
@@ -501,7 +532,7 @@ def _shift_curves(axes: Axes, time: np.ndarray, moved: np.ndarray) -> None:
 def _surface(axes: Axes, tilt: np.ndarray, slope: np.ndarray, error: np.ndarray, end: int, named: bool) -> None:
     """Inclination (K,) with its error over the tilt of one world; dashed from row `end` on."""
     line = {"color": BLUE, "lw": 0.9, "alpha": 0.8}
-    axes.plot(tilt[:end], slope[:end], label="surface ± error of the fit" if named else None, **line)
+    axes.plot(tilt[:end], slope[:end], label="surface, band: uncertainty of the fit" if named else None, **line)
     axes.fill_between(tilt[:end], (slope - error)[:end], (slope + error)[:end], color=BLUE, alpha=0.12, lw=0)
     back = slice(end - 1, None)
     label = "way back" if named and np.ptp(tilt[back]) > 1 else None
@@ -522,7 +553,7 @@ def _figure(recording: Recording, heights: tuple = (1,), widths: tuple = (1,)) -
     )
     count = f"{recording.radius.shape[1]} grains"
     if recording.worlds > 1:
-        count = f"{recording.worlds} beds of {count}"
+        count = f"{recording.worlds} beds of {count} (bands: ± std over beds)"
     title = textwrap.fill(f"{recording.preset['title']}: {count}", TITLE)
     figure.suptitle(title, x=0.02, ha="left", fontsize=9.5)
     return figure, panels
@@ -548,21 +579,24 @@ def _range(axes: Axes, x: np.ndarray, curves: np.ndarray, colour: str, label: st
     """Median of positive curves (T, W) over x (T,), with all of them as a band."""
     x, curves = _thinned(x, np.where(curves > 0, curves, np.nan))
     middle = np.ma.median(np.ma.masked_invalid(curves), axis=1)
-    axes.plot(x, np.ma.filled(middle, np.nan), color=colour, label=label, lw=1.0)
+    said = f"{label}: median, band: all beds" if curves.shape[1] > 1 else label
+    axes.plot(x, np.ma.filled(middle, np.nan), color=colour, label=said, lw=1.0)
     if curves.shape[1] > 1:
         low, high = np.fmin.reduce(curves, axis=1), np.fmax.reduce(curves, axis=1)
         axes.fill_between(x, low, high, color=colour, alpha=0.2, lw=0)
 
 
 def _mark(axes: Axes, value: Value | None, name: str, colour: str, style: str = "-") -> None:
-    """An upright line at a measured angle, its number in the legend; solid with a band of error."""
+    """An upright line at a measured angle, its number in the legend; solid with a band, ± the std over beds."""
     if value is None or value.value is None:
         return
-    error = value.uncertainty if value.std is None else value.std
-    label = f"{name} {value.value:.1f}" + (f" ± {error:.1f} deg" if error is not None else " deg")
-    axes.axvline(value.value, color=colour, lw=1.0, ls=style, label=label)
-    if style == "-" and error is not None:
-        axes.axvspan(value.value - error, value.value + error, color=colour, alpha=0.12, lw=0)
+    axes.axvline(value.value, color=colour, lw=1.0, ls=style, label=f"{name} {number(value)}")
+    if style == "-" and value.std is not None:
+        axes.axvspan(value.value - value.std, value.value + value.std, color=colour, alpha=0.12, lw=0)
+
+
+def _mean_label(worlds: int) -> str:
+    return f"mean ± std of {worlds} beds" if worlds > 1 else "bed"
 
 
 def _millimetres(axes: Axes, scale: float) -> None:

@@ -2,31 +2,35 @@
 
 A preset is a TOML file: one of those shipped, called by name ("tilting/quick"), or a person's own,
 called by its path. It may be `based_on` another one; its keys go over the base's, and overrides go
-over both. A path in a preset starts from the folder of the file that says it, one among the
-overrides from the working directory. A preset may have a table `quick`, keys that make it cheaper; by the name with
+over both. Title, source and what the source reports are a preset's own: no base hands them down.
+A path in a preset starts from the folder of the file that says it, one among the overrides from the
+working directory. A preset may have a table `quick`, keys that make it cheaper; by the name with
 QUICK behind it, "tilting/fill-deep-quick", these go over it.
 """
 
 import os
 import tomllib
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 from difflib import get_close_matches
 from functools import reduce
 from importlib.resources import files
 from importlib.resources.abc import Traversable
 from pathlib import Path
-from stat import S_ISREG
 from typing import TYPE_CHECKING
 
 from lab import toml
 from lab.errors import LabError
+from lab.files import read_bytes
 from lab.units import quoted, shown_path
 
 if TYPE_CHECKING:
     from lab.schema import Resolved
 
 LARGEST_FILE = 1_000_000  # bytes
+# Of the squares of the numbers of dots in the lines: memory and time that the standard library takes for a key of many
+# parts, a.b.c…, grow so, and a key is within a line.
+MOST_DOTS = 10_000_000
 
 # Keys of a section that stand for one another: giving one side drops the other, inherited one.
 ALTERNATIVES = {
@@ -40,6 +44,9 @@ ALTERNATIVES = {
 QUICK = "-quick"  # behind the name of a preset: its quick variant
 # What the quick variant of a preset may change: what it costs, and with it how exact it is, but not what it is about.
 QUICK_KEYS = ("run", "record", "grains.diameter", "grains.count", "contact.stiffness_scale", "motion.tilt.rate")
+
+# What tells of the very experiment that a preset is of, and not of one that is based on it.
+OWN_KEYS = ("title", "source", "reports", "based_on")
 
 PATH_KEYS = ("grains.bed", "motion.history.file", "shapes.*.contour")  # whose values are paths; *: any name
 
@@ -67,7 +74,9 @@ class Source:
     @property
     def name(self) -> str:
         """A short name: a person's own file goes by its name without the ending."""
-        return self.file.stem if self.own else self.shown
+        if not self.own:
+            return self.shown
+        return self.file.stem if self.file.stem.strip(".") else "preset"  # results lie in a folder of that name
 
     @property
     def folder(self) -> Path:
@@ -81,6 +90,10 @@ class Layer:
 
     table: dict
     folder: Path
+
+    def without(self, keys: Collection[str]) -> "Layer":
+        """The layer less some of its uppermost keys."""
+        return Layer({key: value for key, value in self.table.items() if key not in keys}, self.folder)
 
     def located(self) -> dict:
         """The table with full paths under PATH_KEYS."""
@@ -128,7 +141,8 @@ def load(name_or_path: str | Path, overrides: Mapping | None = None) -> LoadedPr
         resolved = resolve(reduce(merged, (layer.located() for layer in layers)))
     except RecursionError:
         raise LabError(f"{source.shown}: nested too deeply.") from None
-    heading = f"# {quoted(source.shown)}, with what it is based on and all overrides merged in.\n"
+    based = f"{quoted(resolved.based_on)}, on which it is based, and " if resolved.based_on else ""
+    heading = f"# {quoted(source.shown)} with {based}all overrides merged in.\n"
     name = source.name + (QUICK if quick else "")
     return LoadedPreset(name, heading + toml.dumps(_written(layers)), resolved)
 
@@ -253,17 +267,22 @@ def _layers(source: Source, heirs: tuple[str, ...] = ()) -> list[Layer]:
         parent = _find(base, source.folder if source.own else None)
     except LabError as error:
         raise LabError(f"{source.shown}: based_on: {error}") from None
-    return [*_layers(parent, chain), own]
+    own.table.setdefault("title", f"{shown_path(source.name)}, based on {parent.shown}")
+    own.table["based_on"] = parent.shown
+    return [*(layer.without(OWN_KEYS) for layer in _layers(parent, chain)), own]
 
 
 def _written(layers: list[Layer]) -> dict:
-    """Each layer over those before it, the paths in them as written."""
-    return reduce(merged, (layer.table for layer in layers))
+    """Each layer over those before it, the paths in them as written, and nothing left to be followed."""
+    return reduce(merged, (layer.without(("based_on",)).table for layer in layers))
 
 
 def _parsed(source: Source) -> dict:
+    text = _text(source)
+    if sum(line.count(".") ** 2 for line in text.split("\n")) > MOST_DOTS:
+        raise LabError(f"{source.shown}: not valid TOML: keys of too many parts.")
     try:
-        return tomllib.loads(_text(source))
+        return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise LabError(f"{source.shown}: not valid TOML: {error}.") from None
     except (ValueError, RecursionError):  # thousands of digits; lists in lists in lists …
@@ -273,14 +292,13 @@ def _parsed(source: Source) -> dict:
 
 def _text(source: Source) -> str:
     try:
-        if source.own and not S_ISREG(os.stat(source.file).st_mode):  # a folder, a device, a pipe that never ends
-            raise LabError(f"{source.shown}: is not a file.")
-        with source.file.open("rb") as file:
-            content = file.read(LARGEST_FILE + 1)
+        content = read_bytes(source.file, LARGEST_FILE + 1) if source.own else source.file.read_bytes()
     except OSError as error:
         raise LabError(f"{source.shown}: cannot be read: {error.strerror or error}.") from None
     except ValueError:
         raise LabError(f"{source.shown}: is not a file name.") from None
+    if content is None:
+        raise LabError(f"{source.shown}: is not a file.")
     if len(content) > LARGEST_FILE:
         raise LabError(f"{source.shown}: too large for a preset.")
     try:

@@ -8,6 +8,9 @@ from rich.console import Console
 from rich.progress import BarColumn, TaskProgressColumn, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 from rich.progress import Progress as Bar
 
+from lab.caches import lacking
+from lab.text import one_line
+
 if TYPE_CHECKING:
     from solvers.simulation import Simulation
 
@@ -16,7 +19,7 @@ class Progress:
     """Stages of a run, one after the other; silent when `quiet`. Of a whole of many runs the stages come and go."""
 
     def __init__(self, quiet: bool):
-        self.console = Console(stderr=True, quiet=quiet, highlight=False)
+        self.console = Console(stderr=True, quiet=quiet, highlight=False, markup=False, emoji=False)
         self.live = sys.stderr.isatty() and not quiet
         columns = (
             TextColumn("{task.description:<9}"),
@@ -34,6 +37,8 @@ class Progress:
 
     def __enter__(self) -> "Progress":
         self.bar.start()
+        if slower := lacking():
+            self.say(f"note: {slower}")
         return self
 
     def __exit__(self, *_) -> None:
@@ -99,4 +104,4 @@ class Progress:
 
     def say(self, sentence: str) -> None:
         """A line for whoever watches."""
-        self.console.print(sentence, soft_wrap=True)
+        self.console.print(one_line(sentence), soft_wrap=True)

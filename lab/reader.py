@@ -53,6 +53,20 @@ def dotted_key(kind: type, given: str) -> str:
     return found[0] if len(found) == 1 else f"material.{given}"
 
 
+def taken_by(kind: type, dotted: str) -> Taken | None:
+    """What a dotted key below the dataclass `kind` takes, whatever the names that people choose; None: no such key."""
+    taken, parts = Taken(kind), dotted.split(".")
+    while parts:
+        if inner := _named_kind(taken.kind):
+            taken = Taken(inner)
+        elif is_dataclass(taken.kind) and parts[0] in {field.name for field in fields(taken.kind)}:
+            taken = _taken_by(taken.kind, parts[0])
+        else:
+            return None
+        parts = parts[1:]
+    return taken
+
+
 def read(kind: type[T], table: object, path: str = "") -> T:
     """The dataclass `kind` from a table whose keys `check_keys` has passed.
 
@@ -214,6 +228,12 @@ def _needed(taken: Taken) -> str:
 def _word_hint(taken: Taken, raw: object) -> str:
     near = get_close_matches(str(raw)[:100], taken.words, n=1) if isinstance(raw, str) else []
     return f"did you mean '{near[0]}'?" if near else f"choose one of {', '.join(taken.words)}."
+
+
+def check_interval(kind: type, name: str, value: Any, key: str) -> None:
+    """Raise LabError for a number outside the range that a field of a dataclass may take."""
+    taken = _taken_by(kind, name)
+    _check_interval(taken, value, value, key)
 
 
 def _check_interval(taken: Taken, value: Any, raw: object, key: str) -> None:

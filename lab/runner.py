@@ -12,14 +12,14 @@ from lab.checkpoint import FILE_NAME as CHECKPOINT
 from lab.checkpoint import Checkpoint, read_checkpoint, remove_checkpoint
 from lab.errors import LabError, Useless
 from lab.launch import Run, launch, prepare
+from lab.limits import check_belongs, resolved_from
 from lab.lock import only_one
 from lab.measures import measure_all
 from lab.measures.value import Value
 from lab.plots import write_plots
 from lab.presets import LoadedPreset, load
 from lab.progress import Progress
-from lab.recording import FILE_NAME, Recording, mend_recording, open_recording, versions
-from lab.schema import Resolved
+from lab.recording import FILE_NAME, Recording, open_recording, versions
 from lab.summary import terminal_summary, write_summary
 from lab.xdmf import write_xdmf
 
@@ -85,14 +85,14 @@ def resume_run(folder: Path | str, *, video: bool = True, plots: bool = True, qu
         if changed:
             progress.warn("The run was begun with other versions of the lab or its libraries than it goes on with.")
         run = prepare(loaded, folder)
-        mend_recording(folder)
+        check_belongs(run)
         return _complete(run, kept, progress, video, plots)
 
 
 def recorded_preset(recording: Recording) -> LoadedPreset:
     """The preset of a recording, ready to run again. Raises Useless where it is none."""
     try:
-        resolved = Resolved.model_validate_json(json.dumps(recording.preset))
+        resolved = resolved_from(recording.preset)
     except ValueError as error:
         raise Useless(f"{recording.path} holds no preset that this version can run: start the run anew.") from error
     return LoadedPreset(recording.name, recording.given, resolved)

@@ -9,8 +9,10 @@ import numpy as np
 from lab.accuracy import LEVELS, check_forced
 from lab.drawn import classes, draw_shapes
 from lab.errors import LabError
+from lab.room import check_room
 from lab.schema import Resolved
 from lab.ship import make_vessel
+from lab.units import show
 from solvers.filling import NONE_FIXED, DoesNotFit, count_for_depth, headroom, lattice, start_positions
 from solvers.motions.steered import Steered
 from solvers.relaxing import relaxed
@@ -19,6 +21,10 @@ from solvers.shapes.given import Shapes
 from solvers.ship.vessel import Vessel
 from solvers.sizes import Sizes
 from solvers.tank import lining, raised
+from solvers.timestep import closing_speed
+from solvers.watch import DEEPEST_OVERLAP
+
+THROUGH = 1.0  # radii: grains that overlap so far pass each other and the walls
 
 
 def grain_count(preset: Resolved) -> int:
@@ -68,8 +74,9 @@ def build(preset: Resolved, hands: Sequence[Steered] | None = None) -> tuple[Sce
 
     The positions lie within `filling_outline`; listed grains that overlap too deeply to settle are moved apart. The
     step, by the level of accuracy unless given, divides the sampling interval of the series, so samples fall on steps.
-    Raises LabError where the grains do not fit or a given step is past the limit.
+    Raises LabError where the grains do not fit, into the tank or the memory, or a given step is past the limit.
     """
+    check_room(preset, grain_count(preset))
     radius, position, more = _listed(preset) if preset.grains.listed else _filled(preset)
     low, high = preset.grains.range
     scene = Scene(
@@ -96,6 +103,7 @@ def build(preset: Resolved, hands: Sequence[Steered] | None = None) -> tuple[Sce
         schedule=preset.run.schedule,
         **more,
     )
+    _check_softness(scene)
     scene.step = _step(preset, scene)
     if preset.grains.listed and preset.run.settle:  # without settling it may be meant so
         position = np.tile(relaxed(scene, position[0]), (len(radius), 1, 1))
@@ -171,15 +179,35 @@ def _listed(preset: Resolved) -> tuple[np.ndarray, np.ndarray, dict]:
     velocity, spin = listed[..., 3:5], listed[..., 5]
     motion = {}
     if np.any(velocity) or np.any(spin):
-        fastest = float(np.linalg.norm(velocity, axis=-1).max())
-        motion = {"velocity": velocity, "spin": spin, "start_speed": fastest}
+        motion = {"velocity": velocity, "spin": spin, "start_speed": closing_speed(velocity[0])}
     return listed[..., 2], listed[..., :2], motion
+
+
+def _check_softness(scene: Scene) -> None:
+    """Raise LabError where the watch would stop the run: grains that start so fast overlap too deep as they meet.
+
+    How far they fall, and where the tank hits them, is not known beforehand; but none may go through another.
+    """
+    for what, speed, most in (
+        ("start", scene.start_speed, DEEPEST_OVERLAP),
+        ("may meet", scene.credible_speed(), THROUGH),
+    ):
+        deep = scene.deepest_overlap(speed)
+        if deep > most:
+            stiffer = scene.stiffness_scale * (deep / most) ** 2.5
+            remedy = f"set it to at least {stiffer:.2g}"
+            if stiffer > 1.0:
+                remedy = "raise material.young or slow them down"
+            raise LabError(
+                f"contact.stiffness_scale: grains {what} at {show(speed, 'm/s')} here and would overlap by "
+                f"{100 * deep:.3g} % of a radius, where {100 * most:g} % is the most; {remedy}."
+            )
 
 
 def _step(preset: Resolved, scene: Scene) -> float:
     limit, run = scene.step_limits()[0], preset.run
     if run.step == "auto":
-        wanted = LEVELS[run.accuracy].longer_steps * limit.step
+        wanted = scene.longest_step(LEVELS[run.accuracy].longer_steps)
     else:
         wanted = run.step
         check_forced(wanted, limit.step, limit.reason, run.force_step)

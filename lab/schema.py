@@ -271,7 +271,7 @@ class Video:
 
 @dataclass(frozen=True)
 class Given:
-    """A whole preset as read. `based_on` has been followed by then."""
+    """A whole preset as read. `based_on` has been followed by then, and names the base as people call it."""
 
     title: str
     tank: TankGiven
@@ -304,6 +304,7 @@ class Resolved(BaseModel):
     source: str
     reports: str
     quick: str
+    based_on: str = ""  # recordings of earlier versions do not say it
     tank: Tank
     grains: Grains
     material: Material
@@ -326,6 +327,8 @@ class Resolved(BaseModel):
         given = [self.material, self.wall, *(kind.material for kind in self.kinds.values())]
         if any(material.restitution is None and material.dissipative_time is None for material in given):
             raise ValueError("a material has neither restitution nor dissipative_time")
+        if any(not material.restitution_speed > 0.0 for material in given):
+            raise ValueError("a material's restitution is that of no speed")
         return self
 
 
@@ -346,13 +349,14 @@ def resolve(table: Mapping) -> Resolved:
     motion = _motion(given.motion)
     run = Run(**{**vars(given.run), "duration": _duration(given.run, motion)})
     check_parts(given.parts, tank.outline)
-    check_ship(given.ship, given.waves, bool(motion.parts))
-    _check_video(given.video)
+    check_ship(given.ship, given.waves, bool(motion.parts), tank.outline)
+    check_video(given.video)
     return Resolved(
         title=given.title,
         source=given.source,
         reports=given.reports,
         quick=given.quick,
+        based_on=given.based_on,
         tank=tank,
         grains=grains,
         material=given.material,
@@ -373,17 +377,24 @@ def resolve(table: Mapping) -> Resolved:
 
 def _tank(given: TankGiven) -> Tank:
     outline = np.array(_outline(given))
-    height = float(np.ptp(outline[:, 1]))
     open_edges = () if given.lid else top_edges(outline)
     if not given.lid and not open_edges:
         raise LabError("tank.lid: this outline has no edge along its top to leave open; leave lid out.")
-    if given.roughness is not None:
-        around = float(np.hypot(*(outline - np.roll(outline, 1, axis=0)).T).sum())
-        if given.roughness > 0.25 * min(height, float(np.ptp(outline[:, 0]))):
-            raise LabError(f"tank.roughness: grains of {show(given.roughness, 'm')} are too large to line the tank.")
-        if around > MOST_LINING * given.roughness:
-            raise LabError(f"tank.roughness: more than {MOST_LINING} grains of {show(given.roughness, 'm')} go around.")
-    return Tank(tuple(map(tuple, outline.tolist())), open_edges, given.roughness)
+    tank = Tank(tuple(map(tuple, outline.tolist())), open_edges, given.roughness)
+    check_lining(tank)
+    return tank
+
+
+def check_lining(tank: Tank) -> None:
+    """Raise LabError for grains that are too large or too many to line a tank."""
+    if tank.roughness is None:
+        return
+    outline, size = np.array(tank.outline), show(tank.roughness, "m")
+    around = float(np.hypot(*(outline - np.roll(outline, 1, axis=0)).T).sum())
+    if tank.roughness > 0.25 * min(tank.height, tank.width):
+        raise LabError(f"tank.roughness: grains of {size} are too large to line the tank.")
+    if around > MOST_LINING * tank.roughness:
+        raise LabError(f"tank.roughness: more than {MOST_LINING} grains of {size} go around.")
 
 
 def _outline(given: TankGiven) -> tuple[Point, ...]:
@@ -458,7 +469,7 @@ def _grains(given: GrainsGiven, shapes: Mapping[str, Shape], tank: Tank, settle:
         grains = replace(grains, table=classes, diameter=Sizes(classes).mean)
     if grains.region is not None:
         grains = replace(grains, region=_region(grains))
-    _check_grains(grains, tank, _size_key(grains, shapes))
+    check_grains(grains, tank, _size_key(grains, shapes))
     return grains
 
 
@@ -489,7 +500,8 @@ def _listed_grains(given: GrainsGiven, tank: Tank, settle: bool) -> Grains:
     return Grains(diameter=mean, count=len(listed), bed=Path(given.bed).name, reuse_bed=given.reuse_bed, listed=listed)
 
 
-def _check_grains(grains: Grains, tank: Tank, size_key: str) -> None:
+def check_grains(grains: Grains, tank: Tank, size_key: str) -> None:
+    """Raise LabError for grains that do not fit, or of which there would be too many; size_key says how large."""
     if (grains.count is None) == (grains.depth is None):
         got = "neither" if grains.count is None else "both"
         raise LabError(f"grains.depth: give exactly one of depth and count (got {got}).")
@@ -537,7 +549,8 @@ def _check_cohesion(law: str, material: Material) -> None:
             raise LabError(f'material.{name}: missing; contact.cohesion = "{law}" needs it, e.g. "{example}".')
 
 
-def _check_video(video: Video) -> None:
+def check_video(video: Video) -> None:
+    """Raise LabError for pictures that cannot be filmed."""
     for name in ("width", "height"):
         if getattr(video, name) % 2:
             raise LabError(f"video.{name}: must be even for H.264 (got {getattr(video, name)}).")

@@ -16,7 +16,7 @@ from solvers.shapes.contour import Contour
 from solvers.shapes.fitting import fit
 from solvers.shapes.spectrum import draw, spectrum
 
-MOST_DESCRIPTORS = 100
+MOST_DESCRIPTORS, MOST_DRAWS = 100, 1000
 TRIED, BELOW = 6, 0.75  # outlines that are drawn to see how easily such grains are turned; what lies below all
 SHARP = 0.05  # of R0: dents of which `continuous` may lose contacts; with those of 0.076 it does not
 MOST_POINTS = 1000  # of an outline in a file
@@ -55,7 +55,7 @@ class ShapeGiven:
     disc: bool = False
     share: Annotated[float, Interval(gt=0)] | None = None
     diameter: Annotated[float, Unit("m"), Interval(gt=0)] | None = None
-    draws: Annotated[int, Interval(ge=1, le=1000)] = 25
+    draws: Annotated[int, Interval(ge=1, le=MOST_DRAWS)] = 25
 
     @property
     def round(self) -> bool:
@@ -181,10 +181,8 @@ def _described(key: str, given: ShapeGiven) -> tuple[tuple[float, ...], tuple[fl
 
 def _fitted(key: str, path: str) -> tuple[tuple[float, ...], tuple[float, ...]]:
     """Descriptors and phases of an outline from a CSV file with the columns y and z, in any unit of length."""
-    columns = read_table(path, ("y", "z"), key=key)
+    columns = read_table(path, ("y", "z"), key=key, most=MOST_POINTS)
     points = np.column_stack([columns["y"], columns["z"]])
-    if len(points) > MOST_POINTS:
-        raise LabError(f"{key}: at most {MOST_POINTS} points are possible (got {len(points)}).")
     points = points / (np.abs(points).max() or 1.0)
     found = fit(points).contour
     if len(found.descriptors) > MOST_DESCRIPTORS:

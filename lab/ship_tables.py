@@ -5,14 +5,13 @@ counts as not there.
 """
 
 import hashlib
-import os
 from contextlib import suppress
 from pathlib import Path
 from tempfile import NamedTemporaryFile
 
 import numpy as np
-from platformdirs import user_cache_path
 
+from lab.caches import cache_folder
 from solvers.ship import radiation
 from solvers.ship.radiation import Hydrodynamics, hydrodynamics
 from solvers.ship.section import Section
@@ -35,18 +34,12 @@ def stored_table(
     section: Section, water: Water, heave: float, frequency: np.ndarray, about: tuple[float, float]
 ) -> Hydrodynamics:
     """`hydrodynamics` of an upright section, from the store if it is there. Raises Unavailable as that does."""
-    folder = _folder()
-    path = folder / f"{_key(section, water, heave, frequency, about)}.npz"
+    path = cache_folder() / "hydrodynamics" / f"{_key(section, water, heave, frequency, about)}.npz"
     found = _load(path)
     if found is None:
         found = hydrodynamics(section, water, heave, frequency, about=about, count=PANELS)
         _save(path, found)
     return found
-
-
-def _folder() -> Path:
-    own = os.environ.get("CARGOLAB_CACHE")
-    return (Path(own) if own else user_cache_path("cargo-shift-lab", appauthor=False)) / "hydrodynamics"
 
 
 def _key(section: Section, water: Water, heave: float, frequency: np.ndarray, about: tuple[float, float]) -> str:

@@ -3,16 +3,20 @@
 import json
 import os
 from collections.abc import Iterator, Mapping, Sequence
-from math import floor, log10
 from pathlib import Path
 from typing import get_type_hints
 
 import numpy as np
 
+from lab import ship_end
+from lab.accuracy import LEVELS
 from lab.errors import LabError
 from lab.measures.value import Value
+from lab.numbers import RULE, number, own
 from lab.recording import Recording
 from lab.shapes import caution
+from lab.ship import axis_place, recorded_ship
+from lab.text import code, fenced, inline, one_line, paragraphs, printable
 from lab.units import show
 from solvers.motions import MOTIONS
 from solvers.quantity import Unit
@@ -20,6 +24,7 @@ from solvers.quantity import Unit
 # What answers the question of an experiment, the most telling first; a recording has only what applies to it.
 TELLING = (
     "capsized_at",
+    "flooded_at",
     "roll_amplitude",
     "frozen_amplitude",
     "significant_roll",
@@ -46,11 +51,7 @@ TELLING = (
     "contact_number",
 )
 HEADLINES, TOLD = 3, 6  # measures that the page says first, and that the terminal is told
-SMALL = 1e-3  # numbers below are told with a power of ten
-ROUNDING = 1e-9  # an error so small beside its value is that of the arithmetic
 LARGE_OVERLAP = 0.05  # of a radius
-SPREAD = "std of the beds"
-ERROR = "error of one bed"
 
 
 def write_summary(
@@ -92,14 +93,16 @@ def terminal_summary(
     told = headlines(values, TOLD)
     rows = {name.replace("_", " "): f"{number(value)}{_remark(value)}" for name, value in told.items()}
     made = {name.replace("_", " "): os.path.relpath(path) for name, path in files.items()}
-    lines = [f"{recording.preset['title']} ({recording.name}): {_status(recording)}"]
+    lost = ship_end.told(ship_end.ends(recording.series))
+    title = f"{recording.preset['title']} ({recording.name}): {_status(recording)}{f'. {lost}' if lost else ''}"
+    lines = [one_line(title)]
     lines += _aligned(rows)
     if len(told) < len(values):
         lines.append(f"  and {_count(len(values) - len(told), 'more number')} in the summary")
     lines += ["", f"  {_cost(recording)}"]
     lines += _aligned(made)
-    lines += [f"  warning: {text}" for text in (*warnings, *_cautions(recording))]
-    return "\n".join(lines)
+    lines += [f"  warning: {one_line(text)}" for text in (*warnings, *_cautions(recording))]
+    return printable("\n".join(lines))
 
 
 def headlines(values: Mapping[str, Value], most: int) -> dict[str, Value]:
@@ -107,22 +110,6 @@ def headlines(values: Mapping[str, Value], most: int) -> dict[str, Value]:
     order = {name: place for place, name in enumerate(TELLING)}
     names = sorted(values, key=lambda name: order.get(name, len(order)))
     return {name: values[name] for name in names[:most]}
-
-
-def number(value: Value) -> str:
-    """A value with its error and unit: 25.0 ± 1.3 deg; the error is the std, else the uncertainty."""
-    if value.value is None:
-        return "none"
-    error = value.uncertainty if value.std is None else value.std
-    unit = "" if value.unit == "1" else f" {value.unit}"
-    if not error or error < ROUNDING * abs(value.value):
-        return f"{value.value:.4g}{unit}"
-    digits = max(0, 1 - floor(log10(error)))
-    if max(abs(value.value), error) < SMALL:
-        power = floor(log10(max(abs(value.value), error)))
-        shown, spread, digits = value.value / 10.0**power, error / 10.0**power, digits + power
-        return f"({shown:.{digits}f} ± {spread:.{digits}f})e{power:+03d}{unit}"
-    return f"{value.value:.{digits}f} ± {error:.{digits}f}{unit}"
 
 
 def _page(
@@ -134,33 +121,36 @@ def _page(
 ) -> Iterator[str]:
     """The lines of summary.md."""
     preset = recording.preset
-    yield f"# {preset['title']}\n"
+    yield f"# {inline(preset['title'])}\n"
+    if lost := ship_end.told(ship_end.ends(recording.series)):
+        yield f"**{lost}**\n"
     for name, value in headlines(values, HEADLINES).items():
         yield f"- {name.replace('_', ' ')}: **{number(value)}**{_remark(value)}"
-    yield f"\nThe run `{recording.name}` of {recording.created[:10]} is {_status(recording)}."
-    yield from (f"\n**Warning:** {text}" for text in warnings)
-    yield from (f"\n{text}" for text in notes)
+    yield f"\nThe run {code(recording.name)} of {inline(recording.created[:10])} is {inline(_status(recording))}."
+    yield from (f"\n**Warning:** {inline(text)}" for text in warnings)
+    yield from (f"\n{paragraphs(text)}" for text in notes)
     pictures = {name: link for name, link in links.items() if link.endswith(".png")}
     yield from (f"\n![{name}]({link})" for name, link in pictures.items())
     yield "\n## What was run\n"
     yield from (f"- {line}" for line in _scene(recording))
     if preset.get("source"):
-        yield f"\n## What the source reports\n\n{preset['source']}\n\n{preset.get('reports', '')}"
+        yield "\n## What the source reports\n"
+        yield f"{paragraphs(preset['source'])}\n\n{paragraphs(preset.get('reports', ''))}"
     yield "\n## What was measured\n"
-    yield f"| measure | value | {SPREAD} | {ERROR} | unit | note |\n|---|---|---|---|---|---|"
+    yield "| measure | mean | std over beds | beds | own uncertainty | unit | note |\n|---|---|---|---|---|---|---|"
     yield from (_row(name, value) for name, value in values.items())
-    yield "\nA value is the mean over the beds; d is the mean grain diameter. `lab/measures` defines each."
-    yield f"\n## What it cost\n\n{_cost(recording)}, on {_machine(recording)}."
+    yield f"\n{RULE} d is the mean grain diameter. `lab/measures` defines each measure."
+    yield f"\n## What it cost\n\n{_cost(recording)}, on {inline(_machine(recording))}."
     yield "\n## Files\n"
     yield from (f"- [{name.replace('_', ' ')}]({link})" for name, link in links.items())
-    yield f"\n## The preset\n\n```toml\n{recording.given.strip()}\n```\n"
+    yield f"\n## The preset\n\n{fenced(recording.given, 'toml')}\n"
 
 
 def _row(name: str, value: Value) -> str:
-    numbers = (value.value, value.std, value.uncertainty)
-    cells = " | ".join("" if x is None else f"{x:.4g}" for x in numbers)
+    cells = ["" if x is None else f"{x:.4g}" for x in (value.value, value.std)]
     unit = "" if value.unit == "1" else value.unit
-    return f"| {name.replace('_', ' ')} | {cells} | {unit} | {value.note} |"
+    line = [name.replace("_", " "), *cells, str(value.n), own(value), unit, inline(value.note)]
+    return f"| {' | '.join(line)} |"
 
 
 def _data(
@@ -173,18 +163,9 @@ def _data(
     wall = recording.wall_s
     return {
         "preset": recording.name,
+        "based_on": recording.preset.get("based_on", ""),
         "status": recording.status,
-        "measures": {
-            name: {
-                "value": value.value,
-                "unit": value.unit,
-                "std": value.std,
-                "uncertainty": value.uncertainty,
-                "worlds": list(value.worlds),
-                "note": value.note,
-            }
-            for name, value in values.items()
-        },
+        "measures": {name: value.as_json() for name, value in values.items()},
         "cost": {
             "wall_s": wall,
             "grain_steps": recording.grain_steps,
@@ -197,23 +178,27 @@ def _data(
 
 
 def _scene(recording: Recording) -> Iterator[str]:
+    if base := recording.preset.get("based_on"):
+        yield f"based on the preset {code(base)}, whose source and reports are its own"
     worlds, count = recording.radius.shape
     low, high = show(2 * recording.radius.min(), "m"), show(2 * recording.radius.max(), "m")
     size = low if low == high else f"{low} to {high}"
     yield f"{_count(worlds, 'bed')} of {_count(count, 'grain')}, {size} in diameter"
     shapes = recording.preset.get("shapes") or {}
     if shapes:
-        parts = [f"{100 * shape['share']:.3g} % {name}" for name, shape in shapes.items()]
+        parts = [f"{100 * shape['share']:.3g} % {inline(name)}" for name, shape in shapes.items()]
         yield f"irregular grains, diameters those of discs of equal area: {', '.join(parts)}"
     width, height = (show(extent, "m") for extent in np.ptp(recording.outline, axis=0))
     lidless = ", open at the top" if recording.open_edges else ""
     rough = ", its walls lined with fixed grains" if len(recording.fixed) else ""
     yield f"tank {width} wide and {height} high{lidless}{rough}"
     if recording.parts:
-        yield f"moving parts: {', '.join(recording.parts)}"
+        yield f"moving parts: {inline(', '.join(recording.parts))}"
     for name, settings in (recording.preset.get("motion") or {}).items():
         if name in MOTIONS and settings:
-            yield f"{name}: {_settings(name, settings)}"
+            yield inline(f"{name}: {_settings(name, settings)}")
+    if recording.preset.get("ship"):
+        yield f"sway, heave and roll of the ship are those of her axis, {axis_place(recorded_ship(recording.preset))}"
     time = recording.series["time"]
     if len(time):
         yield f"{show(time[-1], 's')} of motion recorded, after the grains had settled"
@@ -250,7 +235,7 @@ def _cautions(recording: Recording) -> Iterator[str]:
         yield f"The run is {_status(recording)}; the numbers cover what was recorded until then."
     scale = (recording.preset.get("contact") or {}).get("stiffness_scale", 1.0)
     if scale < 1:
-        yield f"The grains are softer than their material: Young's moduli times {scale:g}."
+        yield f"The grains are softer than their material: Young's moduli times {scale:g}, {_softened(recording)}."
     rule = (recording.preset.get("contact") or {}).get("outlines", "continuous")
     if recording.shapes and (rough := caution(recording.shapes.contours, rule)):
         yield rough
@@ -259,6 +244,14 @@ def _cautions(recording: Recording) -> Iterator[str]:
     overlap = recording.series["overlap"].max(initial=0.0)
     if overlap > LARGE_OVERLAP:
         yield f"Grains overlapped by up to {100 * overlap:.1f} % of a radius."
+
+
+def _softened(recording: Recording) -> str:
+    """Which key has made the grains softer."""
+    accuracy = (recording.preset.get("run") or {}).get("accuracy")
+    if accuracy in LEVELS and LEVELS[accuracy].stiffness_scale == recording.preset["contact"]["stiffness_scale"]:
+        return f'as run.accuracy = "{accuracy}" has it'
+    return "by contact.stiffness_scale"
 
 
 def _cost(recording: Recording) -> str:
@@ -275,8 +268,16 @@ def _duration(seconds: float) -> str:
 
 
 def _machine(recording: Recording) -> str:
+    """What computed, as far as the recording says it."""
     machine = recording.machine
-    return f"{machine.get('cores')} cores, {machine.get('processor')}, {machine.get('system')}"
+    cores, arch = _count(machine.get("cores") or 0, "core"), machine.get("arch", "cpu")
+    if arch != "cpu":
+        used = f"a graphics processor ({arch})"
+    elif "threads" in machine:
+        used = f"{machine['threads']} of {cores}"
+    else:  # recordings of earlier versions
+        used = f"a machine of {cores}"
+    return f"{used}, {machine.get('processor')}, {machine.get('system')}"
 
 
 def _remark(value: Value) -> str:

@@ -11,12 +11,14 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from lab.errors import LabError
-from lab.measures.value import Value
+from lab.measures.value import Value, read_values
+from lab.numbers import BARS, RULE, number
 from lab.paint.video import MOST_IN_GRID, render_grid
 from lab.plots import STYLE
 from lab.progress import Progress
 from lab.recording import open_recording
-from lab.summary import headlines, number
+from lab.summary import headlines
+from lab.text import cell, code, inline, one_line, printable
 
 FIGURES = 3  # of the measures that tell most
 FAMILIES = 6  # curves in one figure; more become a map
@@ -63,20 +65,29 @@ class Point:
     def __init__(self, setting: Mapping[str, object], folder: Path) -> None:
         self.setting, self.folder = setting, folder
         self.status, self.measures, self.warnings = "not run", {}, []
+        path = folder / "summary.json"
         try:
-            data = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
-        except (OSError, ValueError):
+            data = json.loads(path.read_text(encoding="utf-8"))
+        except (OSError, ValueError):  # none yet, or one that a killed run has half written
             return
-        self.status, self.warnings = data["status"], data["warnings"]
-        self.measures = {
-            key: Value(m["value"], m["unit"], m["std"], m["uncertainty"], tuple(m["worlds"]), m["note"])
-            for key, m in data["measures"].items()
-        }
+        except RecursionError as error:
+            raise _damaged(path) from error
+        try:
+            self.measures = read_values(data["measures"])
+            self.status, self.warnings = data["status"], list(data["warnings"])
+            if not all(isinstance(text, str) for text in (self.status, *self.warnings)):
+                raise ValueError("its status or a warning is no text")
+        except (ValueError, KeyError, TypeError, AttributeError) as error:
+            raise _damaged(path) from error
 
     @property
     def caption(self) -> str:
         """The setting in a few words; of a dotted key the last part."""
-        return ", ".join(f"{key.split('.')[-1]} {value}" for key, value in self.setting.items())
+        return one_line(", ".join(f"{key.split('.')[-1]} {value}" for key, value in self.setting.items()))
+
+
+def _damaged(path: Path) -> LabError:
+    return LabError(f"{path} is damaged: remove it and resume the sweep.")
 
 
 def numeric(values: Sequence) -> tuple[np.ndarray, str] | None:
@@ -86,15 +97,18 @@ def numeric(values: Sequence) -> tuple[np.ndarray, str] | None:
         found = QUANTITY.fullmatch(value) if isinstance(value, str) else None
         if isinstance(value, bool) or not (found or isinstance(value, int | float)):
             return None
-        numbers.append(float(found[1] if found else value))
+        try:
+            numbers.append(float(found[1] if found else value))
+        except ValueError:  # 1-2
+            return None
         units.add((found[2] or "") if found else "")
     return (np.array(numbers), units.pop()) if len(units) == 1 else None
 
 
 def _table(axes: Mapping[str, Sequence], points: Sequence[Point], folder: Path) -> list[Row]:
-    """A row a point: the swept keys in their units, status, and of each measure mean, std, uncertainty, number."""
+    """A row a point: the swept keys in their units, status, and of each measure mean, std, n, own uncertainty."""
     scales = {key: numeric(values) for key, values in axes.items()}
-    measures = {key: value.unit for point in points for key, value in point.measures.items()}
+    measures = {key: value for point in points for key, value in point.measures.items()}
     rows = []
     for k, point in enumerate(points):
         row: Row = {"point": k, "folder": point.folder.relative_to(folder).as_posix(), "status": point.status}
@@ -102,11 +116,12 @@ def _table(axes: Mapping[str, Sequence], points: Sequence[Point], folder: Path) 
             scale = scales[key]
             unit = f" ({scale[1]})" if scale and scale[1] else ""
             row[key + unit] = float(numeric([value])[0][0]) if scale and isinstance(value, str) else _plain(value)
-        for key, unit in measures.items():
-            value = point.measures.get(key) or Value(None, unit)
-            row[key if unit == "1" else f"{key} ({unit})"] = value.value
-            row[f"{key} std"], row[f"{key} uncertainty"] = value.std, value.uncertainty
-            row[f"{key} n"] = sum(x is not None for x in value.worlds)
+        for key, known in measures.items():
+            value = point.measures.get(key) or Value(None, known.unit)
+            row[key if known.unit == "1" else f"{key} ({known.unit})"] = value.value
+            row[f"{key} std"], row[f"{key} n"] = value.std, value.n
+            if known.kind:
+                row[f"{key} {known.kind} uncertainty"] = value.uncertainty
         rows.append(row)
     return rows
 
@@ -114,8 +129,8 @@ def _table(axes: Mapping[str, Sequence], points: Sequence[Point], folder: Path) 
 def _write_table(rows: Sequence[Row], path: Path) -> None:
     with path.open("w", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, rows[0])
-        writer.writeheader()
-        writer.writerows(rows)
+        writer.writerow({key: cell(key) for key in rows[0]})
+        writer.writerows({key: cell(value) for key, value in row.items()} for row in rows)
 
 
 def _plain(value: object) -> object:
@@ -135,14 +150,19 @@ def _figures(
             figure = Figure(figsize=(6.4, 4.2), layout="constrained")
             figure.suptitle(f"Sweep of {name}", x=0.02, ha="left", fontsize=9.5)
             unit = "" if value.unit == "1" else f" ({value.unit})"
-            _draw(figure, axes, means, stds, key.replace("_", " ") + unit)
+            _draw(figure, axes, means, stds, key.replace("_", " ") + unit, _bars(points, key))
             drawn[key] = folder / f"{key}.png"
             figure.savefig(drawn[key])
     return drawn
 
 
-def _draw(figure: Figure, axes: Mapping[str, Sequence], means: np.ndarray, stds: np.ndarray, label: str) -> None:
-    """A measure over the first key: a curve a setting of the others, or a map where these are one key with many."""
+def _draw(
+    figure: Figure, axes: Mapping[str, Sequence], means: np.ndarray, stds: np.ndarray, label: str, bars: str
+) -> None:
+    """A measure over the first key: a curve a setting of the others, or a map where these are one key with many.
+
+    `bars` says what the bars of a curve are, "" where it has none.
+    """
     (key, values), *others = axes.items()
     shape = tuple(map(len, axes.values()))
     means, stds = means.reshape(shape[0], -1), stds.reshape(shape[0], -1)
@@ -171,9 +191,18 @@ def _draw(figure: Figure, axes: Mapping[str, Sequence], means: np.ndarray, stds:
         panel.set_xticks(across, [str(value) for value in values])
     elif _even_in_logarithm(scale[0]):
         panel.set_xscale("log")
-    panel.set_ylabel(label)
+    panel.set_ylabel(f"{label}\n{bars}" if bars else label)
     if 1 < means.shape[1] <= 2 * FAMILIES:
         figure.legend(loc="outside lower center", ncols=3)
+
+
+def _bars(points: Sequence[Point], key: str) -> str:
+    """What the bars of a measure's figure are, with the numbers of beds; "" where no point has two."""
+    counts = {point.measures[key].n for point in points if key in point.measures and point.measures[key].n > 1}
+    if not counts:
+        return ""
+    said = f"{min(counts)}" if len(counts) == 1 else f"{min(counts)} to {max(counts)}"
+    return f"{BARS} (n = {said})"
 
 
 def _family_names(others: Sequence[tuple[str, Sequence]]) -> list[str]:
@@ -227,24 +256,24 @@ def _page(
     folder: Path,
 ):
     """The lines of summary.md."""
-    yield f"# Sweep of {name}\n"
-    yield from (f"- `{key}`: {', '.join(str(value) for value in values)}" for key, values in axes.items())
+    yield f"# Sweep of {inline(name)}\n"
+    yield from (f"- {code(key)}: {inline(', '.join(str(value) for value in values))}" for key, values in axes.items())
     yield f"\n{_progress(points)}"
     yield from (f"\n![{key}]({path.name})" for key, path in files.items() if path.suffix == ".png")
     yield "\n## Points\n"
     heads = ["point", *axes, *(key.replace("_", " ") for key in told), "status"]
-    yield f"| {' | '.join(heads)} |\n|{'---|' * len(heads)}"
+    yield f"| {' | '.join(map(inline, heads))} |\n|{'---|' * len(heads)}"
     for k, point in enumerate(points):
         where = point.folder.relative_to(folder).as_posix()
-        cells = [f"[{k}]({where}/summary.md)", *map(str, point.setting.values())]
-        cells += [number(point.measures[key]) if key in point.measures else "" for key in told]
-        yield f"| {' | '.join([*cells, point.status])} |"
-    yield "\nValues are mean ± standard deviation over the beds of a point, or ± the error of its one bed."
+        cells = [f"[{k}]({where}/summary.md)", *map(inline, point.setting.values())]
+        cells += [inline(number(point.measures[key])) if key in point.measures else "" for key in told]
+        yield f"| {' | '.join([*cells, inline(point.status)])} |"
+    yield f"\n{RULE}"
     said = {warning: [] for point in points for warning in point.warnings}
     for k, point in enumerate(points):
         for warning in point.warnings:
             said[warning].append(str(k))
-    yield from (f"\n**Warning** (points {', '.join(where)}): {warning}" for warning, where in said.items())
+    yield from (f"\n**Warning** (points {', '.join(where)}): {inline(warning)}" for warning, where in said.items())
     yield "\n## Files\n"
     yield from (f"- [{key.replace('_', ' ')}]({path.name})" for key, path in files.items())
     yield ""
@@ -258,10 +287,11 @@ def _progress(points: Sequence[Point]) -> str:
 
 
 def _text(name: str, points: Sequence[Point], files: Mapping[str, Path]) -> str:
-    lines = [f"Sweep of {name}: {_progress(points)}"]
+    lines = [f"Sweep of {one_line(name)}: {_progress(points)}"]
     width = max(len(point.caption) for point in points)
     for point in points:
         said = [f"{key.replace('_', ' ')} {number(value)}" for key, value in headlines(point.measures, 2).items()]
-        lines.append(f"  {point.caption:<{width}}  {', '.join(said) or point.status}")
+        lines.append(f"  {point.caption:<{width}}  {', '.join(said) or one_line(point.status)}")
     width = max(map(len, files))
-    return "\n".join([*lines, "", *(f"  {key.replace('_', ' '):<{width}}  {path}" for key, path in files.items())])
+    made = [f"  {key.replace('_', ' '):<{width}}  {path}" for key, path in files.items()]
+    return printable("\n".join([*lines, "", *made]))

@@ -17,21 +17,22 @@ import numpy as np
 from lab.axes import values
 from lab.checkpoint import Checkpoint, read_checkpoint, remove_checkpoint
 from lab.cluster import Errand, fetch
-from lab.errors import LabError
+from lab.errors import LabError, Useless
 from lab.launch import Run, launch, prepare
+from lab.limits import check_belongs, resolved_from
 from lab.lock import only_one
 from lab.presets import LoadedPreset, load
 from lab.progress import Progress
 from lab.recording import FILE_NAME as RECORDING
-from lab.recording import mend_recording, open_recording
-from lab.runner import RENDERS, Result, hint, report, reported, resume_run
+from lab.recording import open_recording
+from lab.runner import RENDERS, hint, report, reported, resume_run
 from lab.scene import grain_count
-from lab.schema import Resolved
 from lab.sweep_report import write_report
 from solvers.runtime import available_cores, choose_arch
 
 FORMAT = "cargo-shift-lab sweep 1"
 FILE_NAME = "sweep.json"
+CALIBRATION = "asked.json"  # what says that a folder holds a calibration
 
 # A launch holds so many worlds a core that none idles long while the last ones end, and grains and files in bounds.
 WORLDS_A_CORE, MOST_GRAINS, MOST_RUNS = 8, 1_000_000, 100
@@ -162,8 +163,15 @@ def resume_sweep(folder: Path | str, *, video: bool = True, quiet: bool = False)
     return _complete(read_sweep(Path(folder)), Path(folder), video, quiet)
 
 
-def resume_any(folder: Path | str, *, video: bool = True, quiet: bool = False) -> Result | SweepResult:
-    """Finish the run or the sweep that was cut short in a folder. Raises as `resume_run` and `resume_sweep`."""
+def resume_any(folder: Path | str, *, video: bool = True, quiet: bool = False):
+    """Finish the run, the sweep or the calibration that was cut short in a folder; returns what that returns.
+
+    Raises as `resume_run`, `resume_sweep` and `calibrate`.
+    """
+    if (Path(folder) / CALIBRATION).exists():
+        from lab.calibrate import resume_calibration  # it runs sweeps
+
+        return resume_calibration(folder, quiet=quiet)
     finish = resume_sweep if (Path(folder) / FILE_NAME).exists() else resume_run
     return finish(folder, video=video, quiet=quiet)
 
@@ -175,17 +183,18 @@ def read_sweep(folder: Path) -> Sweep:
         content = json.loads(path.read_text(encoding="utf-8"))
         if content["format"] != FORMAT:
             raise LabError(f"{path} was written by another version: sweep anew in another folder.")
-        points = [
-            LoadedPreset(content["preset"], point["given"], Resolved.model_validate_json(json.dumps(point["resolved"])))
-            for point in content["points"]
-        ]
-        sweep = Sweep(content["preset"], dict(content["axes"]), points)
-        if len(sweep.settings) != len(points):
+        name, axes = content["preset"], dict(content["axes"])
+        if not isinstance(name, str) or not axes or not all(isinstance(found, list) for found in axes.values()):
+            raise ValueError("no preset, or no values of its keys")
+        if not 1 < math.prod(map(len, axes.values())) == len(content["points"]) <= MOST_POINTS:
             raise ValueError("values and points do not belong together")
-        return sweep
+        points = [
+            LoadedPreset(name, str(point["given"]), resolved_from(point["resolved"])) for point in content["points"]
+        ]
+        return Sweep(name, axes, points)
     except OSError as error:
         raise LabError(f"{path} cannot be read ({error.strerror}): name the folder of a sweep.") from error
-    except (ValueError, KeyError, TypeError) as error:
+    except (ValueError, KeyError, TypeError, RecursionError) as error:
         raise LabError(f"{path} is damaged: sweep anew in another folder.") from error
 
 
@@ -240,11 +249,13 @@ class _Tour:
 
     def go(self, plan: Sequence[Sequence[int]]) -> None:
         """Run and report every point that is not done; a launch that was cut short comes first."""
-        kept = read_checkpoint(self.folder)
+        kept = self._kept()
         worth = [self.sweep.worth(number) for number in range(len(self.folders))]
         self._report(number for number, folder in enumerate(self.folders) if state_of(folder) == "recorded")
         done = {number for number, folder in enumerate(self.folders) if state_of(folder) == "done"}
         self.progress.begin_whole("sweep", sum(worth), sum(worth[number] for number in done))
+        if kept and not {self.folder / run for run in kept.runs} <= set(self.folders):
+            raise Useless(f"{self.folder}: its checkpoint is of another sweep: remove it, and its launch is run anew.")
         if kept and not all(state_of(self.folder / run) == "done" for run in kept.runs):
             numbers = [self.folders.index(self.folder / run) for run in kept.runs]
             self._launch(numbers, kept)
@@ -254,17 +265,25 @@ class _Tour:
                 self._launch(left, None)
         remove_checkpoint(self.folder)
 
+    def _kept(self) -> Checkpoint | None:
+        """The checkpoint of the launch that was cut short. Raises Useless where it is of other runs."""
+        kept = read_checkpoint(self.folder)
+        if kept and not {self.folder / run for run in kept.runs} <= set(self.folders):
+            raise Useless(f"{self.folder}: its checkpoint is of other runs: sweep anew in another folder.")
+        return kept
+
     def _launch(self, numbers: Sequence[int], kept: Checkpoint | None) -> None:
         left = self.progress.time_left()
         self.progress.say(f"points {_named(numbers)} of 0 to {len(self.folders) - 1}{left and f', {left}'} …")
         runs = []
         for number in numbers:
-            run = prepare(self.sweep.points[number], self.folders[number])
+            runs.append(prepare(self.sweep.points[number], self.folders[number]))
+        worlds = sum(len(run.scene.radius) for run in runs)
+        for run in runs:
             if (run.folder / RECORDING).exists():
-                mend_recording(run.folder)
+                check_belongs(run)
             else:
-                run.make_recording()
-            runs.append(run)
+                run.make_recording(engaged=run.engaged(worlds))
         launch(runs, self.folder, self.progress, kept)
         self._report(numbers)
 

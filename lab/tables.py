@@ -2,43 +2,48 @@
 
 import csv
 import math
-import os
 import re
 from collections.abc import Iterator, Sequence
 from difflib import get_close_matches
 from io import StringIO
-from stat import S_ISREG
+from itertools import islice
 
 import numpy as np
 
 from lab.errors import LabError
+from lab.files import read_bytes
 from lab.units import NUMBER, quoted, shown_path
 
 LARGEST_FILE = 32_000_000  # bytes
+MOST_COLUMNS = 100
 
 Line = tuple[int, list[str]]
 
 
-def read_table(path: str, needed: Sequence[str], optional: Sequence[str] = (), key: str = "") -> dict[str, np.ndarray]:
+def read_table(
+    path: str, needed: Sequence[str], optional: Sequence[str] = (), key: str = "", most: int = 1_000_000
+) -> dict[str, np.ndarray]:
     """Columns (rows,) of a CSV file by name, in the file's order: all `needed` ones and any of the `optional` ones.
 
     The first line names the columns; cells are parted by commas, or by semicolons if the first line is. Blank lines
     and lines that begin with # do not count. Raises LabError, one sentence that begins with the preset's `key`, the
-    file and the line, for whatever is not such a table of finite numbers.
+    file and the line, for whatever is not such a table of finite numbers, and for more than `most` rows.
     """
     try:
-        return _columns(_text(path), needed, optional)
+        return _columns(_text(path), needed, optional, most)
     except LabError as error:
         raise LabError(f"{f'{key}: ' if key else ''}{shown_path(path)}{error}") from None
 
 
-def _columns(text: str, needed: Sequence[str], optional: Sequence[str]) -> dict[str, np.ndarray]:
+def _columns(text: str, needed: Sequence[str], optional: Sequence[str], most: int) -> dict[str, np.ndarray]:
     lines = _lines(text)
     number, names = next(lines, (0, []))
     if not names:
         raise LabError(f": empty; a first line with the columns {', '.join(needed)} is needed.")
     _check_names(names, needed, optional, number)
-    rows = [_numbers(line, names) for line in lines]
+    rows = [_numbers(line, names) for line in islice(lines, most)]
+    if next(lines, None):
+        raise LabError(f": more than {most} rows.")
     if not rows:
         raise LabError(": has no numbers below its column names.")
     return dict(zip(names, np.array(rows).T.copy(), strict=True))
@@ -46,14 +51,13 @@ def _columns(text: str, needed: Sequence[str], optional: Sequence[str]) -> dict[
 
 def _text(path: str) -> str:
     try:
-        if not S_ISREG(os.stat(path).st_mode):  # a folder, a device, a pipe that never ends
-            raise LabError(": is not a file.")
-        with open(path, "rb") as file:
-            content = file.read(LARGEST_FILE + 1)
+        content = read_bytes(path, LARGEST_FILE + 1)
     except OSError as error:
         raise LabError(f": cannot be read: {error.strerror or error}.") from None
     except ValueError:  # characters that no file name has
         raise LabError(": is not a file name.") from None
+    if content is None:
+        raise LabError(": is not a file.")
     if len(content) > LARGEST_FILE:
         raise LabError(f": too large for a table (over {LARGEST_FILE // 1_000_000} MB).")
     try:
@@ -73,6 +77,8 @@ def _lines(text: str) -> Iterator[Line]:
         if not line or line.startswith("#"):
             continue
         delimiter = delimiter or (";" if ";" in line else ",")
+        if line.count(delimiter) >= MOST_COLUMNS:
+            raise LabError(f", line {number}: more than {MOST_COLUMNS} columns.")
         try:
             cells = next(csv.reader([line], delimiter=delimiter, skipinitialspace=True, strict=True))
         except csv.Error as error:

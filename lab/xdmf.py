@@ -3,6 +3,7 @@
 The file holds no numbers but the times; it points into the recording's data sets (XDMF 3, xdmf.org: Model and Format).
 """
 
+from collections.abc import Iterator
 from pathlib import Path
 from xml.etree import ElementTree as Xml
 
@@ -15,25 +16,32 @@ KINDS = {1: "Scalar", 2: "Vector"}  # by numbers a point
 def write_xdmf(recording: Recording) -> Path:
     """Write recording.xdmf beside a recording: each world a time series of points. Raises LabError."""
     path = recording.path.with_suffix(".xdmf")
-    root = Xml.Element("Xdmf", Version="3.0")
-    domain = Xml.SubElement(root, "Domain")
-    times = recording.frames["time"][:]
-    for world in range(recording.worlds):
-        course = _add(domain, "Grid", Name=f"bed {world}", GridType="Collection", CollectionType="Temporal")
-        for frame, time in enumerate(times):
-            _add_grains(course, recording, world, frame, float(time))
-    Xml.indent(root)
     try:
-        Xml.ElementTree(root).write(path, encoding="utf-8", xml_declaration=True)
+        with path.open("w", encoding="utf-8") as file:
+            file.writelines(_lines(recording))
     except OSError as error:
         raise LabError(f"{path} cannot be written ({error.strerror}): make room there.") from error
     return path
 
 
-def _add_grains(course: Xml.Element, recording: Recording, world: int, frame: int, time: float) -> None:
+def _lines(recording: Recording) -> Iterator[str]:
+    """The file's text, a grid at a time: a recording may have any number of frames."""
+    times = recording.frames["time"][:]
+    yield '<?xml version="1.0" encoding="utf-8"?>\n<Xdmf Version="3.0">\n<Domain>\n'
+    for world in range(recording.worlds):
+        yield f'<Grid Name="bed {world}" GridType="Collection" CollectionType="Temporal">\n'
+        for frame, time in enumerate(times):
+            grid = _grains(recording, world, frame, float(time))
+            Xml.indent(grid)
+            yield Xml.tostring(grid, encoding="unicode") + "\n"
+        yield "</Grid>\n"
+    yield "</Domain>\n</Xdmf>\n"
+
+
+def _grains(recording: Recording, world: int, frame: int, time: float) -> Xml.Element:
     """The grains of one world at one time."""
     count = recording.radius.shape[1]
-    grid = _add(course, "Grid", Name="grains", GridType="Uniform")
+    grid = Xml.Element("Grid", Name="grains", GridType="Uniform")
     _add(grid, "Time", Value=repr(time))
     _add(grid, "Topology", TopologyType="Polyvertex", NumberOfElements=count, NodesPerElement=1)
     _add_slab(_add(grid, "Geometry", GeometryType="XY"), recording, "frames/position", (frame, world))
@@ -41,6 +49,7 @@ def _add_grains(course: Xml.Element, recording: Recording, world: int, frame: in
     for name, shape in GRAIN_FRAMES.items():
         if name != "position":
             _add_slab(_add_values(grid, name, 2 if shape else 1), recording, f"frames/{name}", (frame, world))
+    return grid
 
 
 def _add_values(grid: Xml.Element, name: str, size: int) -> Xml.Element:

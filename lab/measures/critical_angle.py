@@ -174,7 +174,7 @@ def _firsts(steps: list[list[Step]], name: str) -> np.ndarray:
 def _onset(steps: list[list[Step]], missing: str) -> Value:
     """Onset of the first step of each world."""
     errors = _firsts(steps, "error")
-    return over_worlds(_firsts(steps, "onset"), "deg", uncertainties=errors, missing=missing)
+    return over_worlds(_firsts(steps, "onset"), "deg", uncertainties=errors, kind="detector", missing=missing)
 
 
 def _first_beyond(tilt: np.ndarray, shift: np.ndarray, limit: float) -> float:

@@ -66,7 +66,7 @@ def clogged(recording: Recording, outlet: Outlet, out: np.ndarray) -> np.ndarray
 def _rate(time: np.ndarray, out: np.ndarray, unit: str, note: str = "") -> Value:
     """Rate at which `out` (F, W) grows while SHARES of it pass."""
     slopes = np.array([_slope(time, amount) for amount in out.T])
-    return over_worlds(slopes[:, 0], unit, uncertainties=slopes[:, 1], note=note, missing=FEW)
+    return over_worlds(slopes[:, 0], unit, uncertainties=slopes[:, 1], kind="averaging", note=note, missing=FEW)
 
 
 def _slope(time: np.ndarray, amount: np.ndarray) -> tuple[float, float]:

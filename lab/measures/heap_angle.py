@@ -86,4 +86,4 @@ def base_below(outline: np.ndarray, y: float, z: float) -> float:
 
 
 def _angle(angles: np.ndarray, errors: np.ndarray) -> Value:
-    return over_worlds(angles, "deg", uncertainties=errors, missing=MISSING)
+    return over_worlds(angles, "deg", uncertainties=errors, kind="fit", missing=MISSING)

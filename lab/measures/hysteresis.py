@@ -30,8 +30,10 @@ def measure(recording: Recording) -> dict[str, Value]:
     with np.errstate(divide="ignore", invalid="ignore"):
         shares = [np.where(largest > 0, 100 * part / largest, np.nan) for part in (remains, error)]
     return {
-        "remaining_shift": over_worlds(remains / diameter, "d", uncertainties=error / diameter, missing=missing),
-        "kept_shift": over_worlds(shares[0], "%", uncertainties=shares[1], missing=missing),
+        "remaining_shift": over_worlds(
+            remains / diameter, "d", uncertainties=error / diameter, kind="creep", missing=missing
+        ),
+        "kept_shift": over_worlds(shares[0], "%", uncertainties=shares[1], kind="creep", missing=missing),
     }
 
 

@@ -1,10 +1,14 @@
 """How a ship with cargo rolls.
 
-largest_roll: the largest |roll| of the run; capsized_at: when her roll left its limits.
+Roll, sway and heave are those of the ship's axis (`lab.ship.axis_motion`).
+largest_roll: the largest |roll| of the run; capsized_at: when her roll left its limits; flooded_at: when the edge of
+her hatch, or another opening, went under the local surface of the water.
+deck_immersion_angle, downflooding_angle: at which heel the edge of her deck, and an opening, meet the still waterline
+at constant displacement (`solvers.ship.openings`), her cargo as it lay at the start.
 Of regular waves, over their last ten periods (`solvers.ship.outcome`): roll_amplitude, the mean over periods of half
-the way from one side to the other; roll_bias, the mean roll, positive to port; both none where she capsized. Their note
-says what became of her: upright, biased (by half a degree or more) or capsized, and where roll has several frequencies:
-a tenth or more of its rms at others than the waves' and their multiples.
+the way from one side to the other; roll_bias, the mean roll, positive to port; both none where she was lost. Their note
+says what became of her: upright, biased (by half a degree or more), capsized or flooded, and where roll has several
+frequencies: a tenth or more of its rms at others than the waves' and their multiples.
 sway_amplitude, heave_amplitude, roll_fundamental: of the motion of the axis at the waves' frequency, by least squares.
 significant_roll, of a random sea after its soft start: the mean of the highest third of swings, each half the way from
 side to side between upward crossings of the mean (Sverdrup & Munk 1947); its error is half the difference of the halves
@@ -13,12 +17,13 @@ roll_period: mean time between upward crossings of the mean roll in the last hal
 wave_power: what the waves put into her; radiated_power, viscous_power: what goes into waves and into friction of the
 water; granular_power: what her loose cargo takes, lost in the grains once the motion is steady. Means over the last ten
 periods, per metre of length; in a steady motion the first is the sum of the others.
-frozen_amplitude, frozen_significant_roll, frozen_largest_roll, frozen_capsized_at: roll_amplitude, significant_roll,
-largest_roll and capsized_at of the same ship with her cargo frozen as it lay at the start, by herself
-(`solvers.ship.motion.sail`).
+frozen_amplitude, frozen_significant_roll, frozen_largest_roll, frozen_capsized_at, frozen_flooded_at: roll_amplitude,
+significant_roll, largest_roll, capsized_at and flooded_at of the same ship with her cargo frozen as it lay at the
+start, by herself (`solvers.ship.motion.sail`).
 """
 
 from collections import Counter
+from collections.abc import Sequence
 from functools import lru_cache
 from itertools import pairwise
 from pathlib import Path
@@ -29,7 +34,8 @@ from lab.errors import LabError
 from lab.measures.value import Value, over_worlds
 from lab.measures.wall_force import grain_mass
 from lab.recording import Recording
-from lab.ship import axis_motion, recorded_ship
+from lab.ship import axis_motion, flooding_angles, recorded_ship
+from lab.ship_end import VERBS, End, end_of, ends
 from solvers.errors import BadState, Unavailable
 from solvers.ship.cargo import level_area, relaxed_levers
 from solvers.ship.hydrostatics import righting_levers
@@ -51,25 +57,26 @@ def applies(recording: Recording) -> bool:
 def measure(recording: Recording) -> dict[str, Value]:
     """largest_roll, roll_amplitude, significant_roll (deg) …, and those of the frozen cargo."""
     time, roll = recording.series["time"], recording.series["pose"][..., 2]
-    capsized = recording.series["capsized"][-1]
+    end = ends(recording.series)
+    lost = np.array([one is not None for one in end])
     found = {
         "largest_roll": over_worlds(np.degrees(np.abs(roll).max(axis=0)), "deg"),
-        "capsized_at": over_worlds(np.where(capsized >= 0.0, capsized, np.nan), "s", missing="did not capsize"),
+        **_losses("", recording, end),
         "roll_period": over_worlds([_period(time, r) for r in roll.T], "s", missing="too few swings"),
     }
-    found |= _of_frozen(recording)
+    found |= _of_frozen(recording) | _angles(recording)
     if _of_random_sea(recording):
-        found["significant_roll"] = _significant(recording, time, roll, capsized >= 0.0)
+        found["significant_roll"] = _significant(recording, time, roll, lost)
     if wave_frequency(recording) is None:
         return found
     outcomes = [_outcome(recording, world) for world in range(recording.worlds)]
-    steady = [(o.amplitude, o.mean) if o and o.kind != "capsized" else (np.nan, np.nan) for o in outcomes]
+    steady = [(o.amplitude, o.mean) if o and o.kind not in VERBS else (np.nan, np.nan) for o in outcomes]
     kinds = Counter(describe(o) for o in outcomes if o)
     note = ", ".join(kind if count == recording.worlds else f"{count} {kind}" for kind, count in kinds.items())
     amplitude, mean = np.degrees(np.array(steady).T)
     found["roll_amplitude"] = over_worlds(amplitude, "deg", note=note, missing="no steady roll")
     found["roll_bias"] = over_worlds(mean, "deg", missing="no steady roll")
-    parts = np.where(capsized[:, None] >= 0.0, np.nan, _fundamental(recording))
+    parts = np.where(lost[:, None], np.nan, _fundamental(recording))
     for name, scale, unit, numbers in (
         ("sway_amplitude", 1e3, "mm", parts[:, 0]),
         ("heave_amplitude", 1e3, "mm", parts[:, 1]),
@@ -79,22 +86,40 @@ def measure(recording: Recording) -> dict[str, Value]:
     return found | _powers(recording)
 
 
+def _losses(prefix: str, recording: Recording, found: Sequence[End | None]) -> dict[str, Value]:
+    """When ships capsized, and when those that have openings flooded."""
+    kinds = {"capsized": "did not capsize"}
+    if recorded_ship(recording.preset).flooding_points:
+        kinds["flooded"] = "did not flood"
+    times = {kind: [end.time if end and end.kind == kind else np.nan for end in found] for kind in kinds}
+    return {f"{prefix}{kind}_at": over_worlds(times[kind], "s", missing=never) for kind, never in kinds.items()}
+
+
+def _angles(recording: Recording) -> dict[str, Value]:
+    """Of deck immersion and downflooding, as far as she has them."""
+    vessel = _vessel(recording.path)
+    if vessel is None:
+        return {}
+    angles = flooding_angles(recorded_ship(recording.preset), vessel)
+    return {name: over_worlds([np.degrees(angle)], "deg") for name, angle in angles.items() if angle is not None}
+
+
 def _of_frozen(recording: Recording) -> dict[str, Value]:
     """Of the ship with her cargo frozen; none where she cannot be made, no amplitude without regular waves."""
     alone = frozen(recording)
     if alone is None:
         return {}
-    time, roll, when = alone
+    time, roll, end = alone
     found = {
         "frozen_largest_roll": over_worlds([np.degrees(np.abs(roll).max())], "deg"),
-        "frozen_capsized_at": over_worlds([np.nan if when is None else when], "s", missing="did not capsize"),
+        **_losses("frozen_", recording, [end]),
     }
     if _of_random_sea(recording):
-        found["frozen_significant_roll"] = _significant(recording, time, roll[:, None], np.array([when is not None]))
+        found["frozen_significant_roll"] = _significant(recording, time, roll[:, None], np.array([end is not None]))
     if wave_frequency(recording) is None:
         return found
-    one = _classed(time, roll, wave_frequency(recording), when is not None)
-    size = [np.degrees(one.amplitude) if one and when is None else np.nan]
+    one = _classed(time, roll, wave_frequency(recording), end)
+    size = [np.degrees(one.amplitude) if one and end is None else np.nan]
     note = describe(one) if one else ""
     return found | {"frozen_amplitude": over_worlds(size, "deg", note=note, missing="no steady roll")}
 
@@ -109,15 +134,15 @@ def _of_random_sea(recording: Recording) -> bool:
     return bool((recording.preset.get("waves") or {}).get("height"))
 
 
-def _significant(recording: Recording, time: np.ndarray, roll: np.ndarray, capsized: np.ndarray) -> Value:
-    """Of roll (T, W), rad, at time (T,), s; none where she capsized (W,)."""
+def _significant(recording: Recording, time: np.ndarray, roll: np.ndarray, lost: np.ndarray) -> Value:
+    """Of roll (T, W), rad, at time (T,), s; none where she was lost (W,)."""
     begin = int(np.searchsorted(time, recording.preset["waves"]["soft_start"]))
     middle = (begin + len(time)) // 2
     parts = slice(begin, None), slice(begin, middle), slice(middle, None)
     whole, *halves = ([np.degrees(_highest_third(r[part])) for r in roll.T] for part in parts)
-    size = np.where(capsized, np.nan, whole)
-    error = np.where(capsized, np.nan, np.abs(np.subtract(*halves)) / 2)
-    return over_worlds(size, "deg", uncertainties=error, missing="capsized or too few swings")
+    size = np.where(lost, np.nan, whole)
+    error = np.where(lost, np.nan, np.abs(np.subtract(*halves)) / 2)
+    return over_worlds(size, "deg", uncertainties=error, kind="halves", missing="lost or too few swings")
 
 
 def _highest_third(roll: np.ndarray) -> float:
@@ -132,16 +157,16 @@ def _highest_third(roll: np.ndarray) -> float:
 
 def describe(found: Outcome) -> str:
     """In words."""
-    return found.kind + (", several frequencies" if found.several and found.kind != "capsized" else "")
+    return found.kind + (", several frequencies" if found.several and found.kind not in VERBS else "")
 
 
-def frozen(recording: Recording) -> tuple[np.ndarray, np.ndarray, float | None] | None:
-    """Times (s), roll (rad) and when she capsized, of the ship with her cargo frozen; None where she cannot be made.
+def frozen(recording: Recording) -> tuple[np.ndarray, np.ndarray, End | None] | None:
+    """Times (s), roll (rad) and end of the ship with her cargo frozen; None where she cannot be made.
 
-    She sails for as long as the run was to last, though its own ship may have capsized long before.
+    She sails for as long as the run was to last, though its own ship may have been lost long before.
     """
     lasted, series = float(recording.series["time"][-1]), recording.series
-    if np.any(series["capsized"][-1] >= 0.0):
+    if any(ends(series)):
         lasted = max(lasted, recording.preset["run"]["duration"])
     return _frozen(recording.path, lasted)
 
@@ -154,10 +179,12 @@ def _frozen(path: Path, duration: float):
     ship = vessel.ship
     try:
         state = start(ship, vessel.heave(ship.body, vessel.heel), vessel.heel)
-        voyage = sail(ship, state, FROZEN_INTERVAL, duration - vessel.release, vessel.limits, vessel.release)
+        lasts, begin = duration - vessel.release, vessel.release
+        voyage = sail(ship, state, FROZEN_INTERVAL, lasts, vessel.limits, begin, vessel.openings)
     except (Unavailable, BadState):
         return None
-    return voyage.time, voyage.roll, voyage.capsized
+    lost = [-1.0 if when is None else when for when in (voyage.capsized, voyage.flooded)]
+    return voyage.time, voyage.roll, end_of(*lost, voyage.roll[-1])
 
 
 @lru_cache(maxsize=4)
@@ -205,7 +232,7 @@ def _powers(recording: Recording) -> dict[str, Value]:
     time, works = recording.series["time"], recording.series["ship_works"]
     begin = np.searchsorted(time, time[-1] - CYCLES * 2.0 * np.pi / wave_frequency(recording))
     power = 1e3 * (works[-1] - works[begin]) / max(time[-1] - time[begin], 1e-9) * (1.0, 1.0, 1.0, -1.0)
-    power[recording.series["capsized"][-1] >= 0.0] = np.nan
+    power[[end is not None for end in ends(recording.series)]] = np.nan
     names = "wave_power", "radiated_power", "viscous_power", "granular_power"
     return {name: over_worlds(power[:, k], "mW/m", missing="no steady motion") for k, name in enumerate(names)}
 
@@ -222,20 +249,19 @@ def _fundamental(recording: Recording) -> np.ndarray:
 
 
 def _outcome(recording: Recording, world: int) -> Outcome | None:
-    capsized = recording.series["capsized"][-1, world]
-    frequency = wave_frequency(recording)
+    end, frequency = ends(recording.series)[world], wave_frequency(recording)
     if frequency is None:
         return None
     time, roll = recording.series["time"], recording.series["pose"][:, world, 2]
-    if capsized >= 0.0:
-        kept = time <= capsized
+    if end:
+        kept = time <= end.time
         time, roll = time[kept], roll[kept]
-    return _classed(time, roll, frequency, capsized >= 0.0)
+    return _classed(time, roll, frequency, end)
 
 
-def _classed(time: np.ndarray, roll: np.ndarray, frequency: float, capsized: bool) -> Outcome | None:
+def _classed(time: np.ndarray, roll: np.ndarray, frequency: float, end: End | None) -> Outcome | None:
     try:
-        return outcome(time, roll, frequency, capsized)
+        return outcome(time, roll, frequency, end.kind if end else "")
     except Unavailable:
         return None
 

@@ -53,7 +53,7 @@ def measure(recording: Recording) -> dict[str, Value]:
         "subharmonic": amplitude_value(answers[:, 0], "mm", missing=SHORT),
         "second_harmonic": amplitude_value(answers[:, 2], "mm", missing=SHORT),
         "third_harmonic": amplitude_value(answers[:, 3], "mm", missing=SHORT),
-        "distortion": over_worlds(distortion[0], "1", uncertainties=error, missing=follows),
+        "distortion": over_worlds(distortion[0], "1", uncertainties=error, kind="halves", missing=follows),
     }
 
 

@@ -38,9 +38,15 @@ def measure(recording: Recording) -> dict[str, Value]:
         upturns = np.array([_upturn(recording, w) for w in worlds])
         few = f"less than {100 * START:g} % spilled"
         found |= {
-            "spill_start_angle": over_worlds(starts[:, 0], "deg", uncertainties=starts[:, 1], missing=few),
+            "spill_start_angle": over_worlds(
+                starts[:, 0], "deg", uncertainties=starts[:, 1], kind="resolution", missing=few
+            ),
             "spill_upturn_angle": over_worlds(
-                upturns[:, 0], "deg", uncertainties=upturns[:, 1], missing="no sharp upturn of the losses"
+                upturns[:, 0],
+                "deg",
+                uncertainties=upturns[:, 1],
+                kind="detector",
+                missing="no sharp upturn of the losses",
             ),
         }
     return found

@@ -77,13 +77,15 @@ def block_error(values: np.ndarray, blocks: int) -> np.ndarray:
 def averaged(values: np.ndarray, steady: Steady, unit: str, **notes: str) -> Value:
     """The mean of values (T, W) over the steady part with its block error."""
     part = values[steady.rows]
-    return over_worlds(part.mean(axis=0), unit, uncertainties=block_error(part, steady.blocks), **notes)
+    return over_worlds(
+        part.mean(axis=0), unit, uncertainties=block_error(part, steady.blocks), kind="averaging", **notes
+    )
 
 
 def amplitude_value(answers: np.ndarray, unit: str, **notes: str) -> Value:
     """Size of complex answers (3, W) of the whole part and its halves; error: half the halves' difference."""
     whole, first, second = np.abs(answers)
-    return over_worlds(whole, unit, uncertainties=np.abs(first - second) / 2, **notes)
+    return over_worlds(whole, unit, uncertainties=np.abs(first - second) / 2, kind="halves", **notes)
 
 
 def phase_value(answers: np.ndarray, still: np.ndarray, missing: str) -> Value:
@@ -93,7 +95,7 @@ def phase_value(answers: np.ndarray, still: np.ndarray, missing: str) -> Value:
     centre = np.angle(np.exp(1j * whole[moving]).sum()) % (2 * np.pi)
     phases = centre + _wrapped(whole - centre)
     errors = np.abs(_wrapped(first - second)) / 2
-    return over_worlds(np.degrees(phases), "deg", uncertainties=np.degrees(errors), missing=missing)
+    return over_worlds(np.degrees(phases), "deg", uncertainties=np.degrees(errors), kind="halves", missing=missing)
 
 
 def _wrapped(angle: np.ndarray) -> np.ndarray:

@@ -41,9 +41,13 @@ def measure(recording: Recording) -> dict[str, Value]:
     worlds = range(recording.worlds)
     steepest = np.argmax(np.nan_to_num(slope, nan=-np.inf), axis=0)
     return {
-        "surface_slope": over_worlds(slope[-1], "deg", uncertainties=error[-1], missing=missing),
+        "surface_slope": over_worlds(slope[-1], "deg", uncertainties=error[-1], kind="fit", missing=missing),
         "largest_surface_slope": over_worlds(
-            slope[steepest, worlds], "deg", uncertainties=error[steepest, worlds], missing=missing
+            slope[steepest, worlds],
+            "deg",
+            uncertainties=error[steepest, worlds],
+            kind="fit",
+            missing=missing,
         ),
     }
 

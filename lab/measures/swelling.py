@@ -46,10 +46,14 @@ def measure(recording: Recording) -> dict[str, Value]:
     missing = "the middle of the tank ran bare"
     return {
         "fill_height": averaged(height, whole, "mm", missing=missing),
-        "swelling_frequency": over_worlds(swelling[0], "Hz", uncertainties=resolution, missing=missing),
-        "swelling_amplitude": over_worlds(size[0], "mm", uncertainties=np.abs(size[1] - size[2]) / 2, missing=missing),
+        "swelling_frequency": over_worlds(
+            swelling[0], "Hz", uncertainties=resolution, kind="resolution", missing=missing
+        ),
+        "swelling_amplitude": over_worlds(
+            size[0], "mm", uncertainties=np.abs(size[1] - size[2]) / 2, kind="halves", missing=missing
+        ),
         "swelling_ratio": over_worlds(
-            swelling[0] / frequency, "1", uncertainties=resolution / frequency, missing=missing
+            swelling[0] / frequency, "1", uncertainties=resolution / frequency, kind="resolution", missing=missing
         ),
     }
 

@@ -1,19 +1,26 @@
-"""A measured number with its unit and its errors."""
+"""A measured number with its unit, its scatter over beds and the uncertainty of its own measurement."""
 
-from collections.abc import Sequence
+import re
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy import stats
+
+LEVEL = 0.95  # of intervals
+
+NAME = re.compile(r"[A-Za-z0-9_]{1,60}")
 
 
 @dataclass(frozen=True)
 class Value:
-    """A number a person can use, measured in every world.
+    """A number a person can use, measured in every world, a bed each.
 
     value: mean over the worlds in which it was found, None if in none; std: their sample standard
-    deviation, None if found in fewer than two; uncertainty: of one world's measurement, as far as
-    the measure knows it; worlds: one number a world, None where not found; note: what a reader must
-    know about this run's number.
+    deviation, None if found in fewer than two; uncertainty: of the measurement in one world, as far as
+    the measure knows it, and `kind` its name, one of KINDS (see docs/numbers.md); it says nothing of how
+    beds differ. worlds: one number a world, None where not found; note: what a reader must know about
+    this run's number.
     """
 
     value: float | None
@@ -22,6 +29,74 @@ class Value:
     uncertainty: float | None = None
     worlds: tuple[float | None, ...] = ()
     note: str = ""
+    kind: str = ""
+
+    @property
+    def n(self) -> int:
+        """Beds in which it was found."""
+        return sum(world is not None for world in self.worlds)
+
+    @property
+    def standard_error(self) -> float | None:
+        """Of the mean over beds; None with fewer than two."""
+        return None if self.std is None or self.n < 2 else self.std / self.n**0.5
+
+    @property
+    def interval(self) -> tuple[float, float] | None:
+        """That holds the mean over beds with a confidence of LEVEL (Student 1908); None with fewer than two."""
+        if self.standard_error is None or self.value is None:
+            return None
+        half = half_width(self.standard_error, self.n - 1)
+        return self.value - half, self.value + half
+
+    def as_json(self) -> dict[str, object]:
+        """For summary.json; docs/numbers.md says what each key is."""
+        return {
+            "value": self.value,
+            "unit": self.unit,
+            "std": self.std,
+            "n": self.n,
+            "standard_error": self.standard_error,
+            "interval_95": None if self.interval is None else list(self.interval),
+            "uncertainty": self.uncertainty,
+            "uncertainty_kind": self.kind,
+            "worlds": list(self.worlds),
+            "note": self.note,
+        }
+
+    @classmethod
+    def from_json(cls, data: Mapping) -> "Value":
+        """Of what `as_json` gave. Raises ValueError, KeyError or TypeError for what is no such thing."""
+        worlds, kind, note = tuple(data["worlds"]), data.get("uncertainty_kind") or "", data.get("note", "")
+        numbers = data["value"], data["std"], data["uncertainty"], *worlds
+        if not all(isinstance(x, int | float | None) for x in numbers):
+            raise ValueError("a measure has a value that is no number")
+        if not all(isinstance(text, str) for text in (data["unit"], note, kind)):
+            raise ValueError("a measure has a unit or a note that is no text")
+        return cls(data["value"], data["unit"], data["std"], data["uncertainty"], worlds, note, kind)
+
+
+# What a measure's own uncertainty may be of.
+KINDS = {
+    "detector": "how far from the onset of a step its detector may have found it",
+    "fit": "half the 68 % confidence interval of a line fitted to one bed",
+    "averaging": "standard error of a mean over time, from the means of blocks of it",
+    "halves": "half the difference between the two halves of the time looked at",
+    "resolution": "half the distance to the next value that the samples can tell apart",
+    "creep": "how far the bed still moves where the number is read",
+}
+
+
+def half_width(error: float, freedom: float) -> float:
+    """Half the interval of a standard error of so many degrees of freedom that has a confidence of LEVEL (Student)."""
+    return float(stats.t.ppf(0.5 + 0.5 * LEVEL, freedom)) * error
+
+
+def read_values(table: Mapping) -> dict[str, Value]:
+    """The measures by name that a summary.json holds. Raises ValueError, KeyError or TypeError for what is none."""
+    if not all(NAME.fullmatch(name) for name in table):  # files are called by them
+        raise ValueError("a measure has a name that none has")
+    return {name: Value.from_json(data) for name, data in table.items()}
 
 
 def over_worlds(
@@ -29,13 +104,16 @@ def over_worlds(
     unit: str,
     *,
     uncertainties: Sequence[float] = (),
+    kind: str = "",
     note: str = "",
     missing: str = "not found",
 ) -> Value:
     """The Value of one number a world (W,), NaN where there is none, which `missing` explains.
 
-    uncertainties (W,): of each world's number; their root mean square is reported.
+    uncertainties (W,): of each world's number, of a `kind`; their root mean square is reported.
     """
+    if len(uncertainties) and kind not in KINDS:
+        raise ValueError(f"the uncertainty of a measure needs its kind, one of {', '.join(KINDS)} (got {kind!r})")
     numbers = np.asarray(numbers, dtype=float)
     found = np.isfinite(numbers)
     worlds = tuple(float(x) if ok else None for x, ok in zip(numbers, found, strict=True))
@@ -50,6 +128,7 @@ def over_worlds(
         uncertainty=_root_mean_square(np.asarray(uncertainties, dtype=float)),
         worlds=worlds,
         note="; ".join(notes),
+        kind=kind,
     )
 
 

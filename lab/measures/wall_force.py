@@ -147,4 +147,4 @@ def _along_motion(recording: Recording) -> np.ndarray:
 def _with_halves(numbers: np.ndarray, unit: str, missing: str, note: str = "") -> Value:
     """Numbers (3, W) of the whole part and its halves."""
     errors = np.abs(numbers[1] - numbers[2]) / 2
-    return over_worlds(numbers[0], unit, uncertainties=errors, note=note, missing=missing)
+    return over_worlds(numbers[0], unit, uncertainties=errors, kind="halves", note=note, missing=missing)

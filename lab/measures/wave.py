@@ -55,6 +55,7 @@ def measure(recording: Recording) -> dict[str, Value]:
         np.where(swings, highest, np.nan),
         "Hz",
         uncertainties=np.where(swings, resolution, np.nan),
+        kind="resolution",
         missing="the surface does not swing",
     )
     return found
@@ -121,4 +122,6 @@ def _amplitude(course: np.ndarray, steady: Steady) -> Value:
     """sqrt(2) standard deviations of a course (F', W), mm, that begins with the steady part."""
     middle = len(course) // 2
     whole, first, second = (np.sqrt(2) * part.std(axis=0) for part in (course, course[:middle], course[middle:]))
-    return over_worlds(whole, "mm", uncertainties=np.abs(first - second) / 2, missing="a wall stood bare")
+    return over_worlds(
+        whole, "mm", uncertainties=np.abs(first - second) / 2, kind="halves", missing="a wall stood bare"
+    )

@@ -18,6 +18,7 @@ LINE = (176, 184, 193)
 GRID = (232, 235, 239)
 WALL = (86, 97, 110)
 HOLD = (246, 247, 249)
+LOST = (190, 60, 20)
 FIXED = (158, 166, 175)
 PART = (128, 70, 27)
 SERIES = (  # curves and names of the beds: Okabe and Ito's colour-blind-safe palette, darkened
@@ -111,6 +112,14 @@ def draw_scale_bar(draw: ImageDraw.ImageDraw, corner: tuple, longest: float, sca
         draw.line([(end, bottom - 2 * tick), (end, bottom)], fill=INK, width=thick)
     text = f"{plain(length)} m" if length >= 1 else f"{plain(1000 * length)} mm"
     draw.text((right + 0.6 * size, bottom - tick), text, INK, font(size), anchor="lm")
+
+
+def draw_band(draw: ImageDraw.ImageDraw, box: tuple, text: str, size: float) -> None:
+    """A sentence that must be seen: white on a bar of colour, in the middle of a box (left, top, right, bottom)."""
+    left, top, right, bottom = (round(edge) for edge in box)
+    draw.rectangle((left, top, right, bottom), fill=LOST)
+    words, face = fitted(text, right - left - size, size, bold=True)
+    draw.text((0.5 * (left + right), 0.5 * (top + bottom)), words, PAPER, face, anchor="mm")
 
 
 def draw_colour_bar(image: Image.Image, box: tuple, colouring: Colouring, size: float) -> None:

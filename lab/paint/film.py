@@ -4,6 +4,7 @@ Lengths on the page are counted in units u, 1/36 of the height of a 16:9 picture
 looks alike: the tanks on the left, a column of readings, plot and colour bar on the right.
 """
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from typing import get_args, get_type_hints
@@ -13,21 +14,23 @@ from PIL import Image, ImageDraw
 
 from lab.errors import LabError
 from lab.paint import decorations as deco
-from lab.paint.colours import bed_colours, colouring, mark_colours, spread
+from lab.paint.colours import MODES, bed_colours, colouring, mark_colours, spread
 from lab.paint.footage import Bed, Footage
 from lab.paint.painter import Camera, Edges, paint_grains, paint_plate, paint_tank, to_discs
 from lab.paint.sea import LINE
 from lab.schema import Video
 from lab.ship import axis_motion
+from lab.units import quoted
 
 FALLBACK = asdict(Video())
 FRAMES = get_args(get_type_hints(Video)["frame"])
-SMALLEST = (320, 180)  # pixels
+SMALLEST, LARGEST = (320, 180), (7680, 4320)  # pixels
 MOST_BEDS = 6  # of one recording shown side by side
 MOST_SAMPLES = 800  # of a curve of the plot
 
 MARGIN, COLUMN, GAP, WALL, PLATE = 2.0, 17.0, 2.5, 0.36, 0.3  # in u
 TEXT, READING, TITLE = 1.1, 1.35, 1.45  # heights of letters in u
+BAND = 2.6  # height in u of what is said of a ship that is lost
 THICKEST = 0.04  # of the tank's smaller side: its wall at most
 ROOM = 0.3  # of the tank's larger side: shown beside and below an open tank at most; less of many
 ALIKE = 1e-9  # poses that differ by less (m, rad) are the same
@@ -49,15 +52,18 @@ def choose_look(footage: Footage, **wishes: object) -> Look:
     wanted = {key: value for key, value in wishes.items() if value is not None}
     settings = {**FALLBACK, **footage.settings, **wanted}
     look = Look(**{key: settings[key] for key in FALLBACK})
-    if look.width % 2 or look.height % 2 or look.width < SMALLEST[0] or look.height < SMALLEST[1]:
+    pairs = zip((look.width, look.height), SMALLEST, LARGEST, strict=True)
+    if not all(isinstance(size, int) and size % 2 == 0 and low <= size <= high for size, low, high in pairs):
         raise LabError(
-            f"Pictures of {look.width} x {look.height} pixels cannot be filmed: "
-            f"width and height must be even, {SMALLEST[0]} x {SMALLEST[1]} at least."
+            f"Pictures of {quoted(look.width)} x {quoted(look.height)} pixels cannot be filmed: width and height must "
+            f"be even, {SMALLEST[0]} x {SMALLEST[1]} at least and {LARGEST[0]} x {LARGEST[1]} at most."
         )
+    if look.colour not in tuple(MODES):
+        raise LabError(f"Unknown colour '{quoted(str(look.colour))[1:-1]}': choose one of {', '.join(MODES)}.")
     if look.frame not in FRAMES:
-        raise LabError(f"Unknown frame '{look.frame}': choose one of {', '.join(FRAMES)}.")
-    if not look.speed > 0:
-        raise LabError(f"The playback speed {look.speed} cannot be used: choose one above 0.")
+        raise LabError(f"Unknown frame '{quoted(str(look.frame))[1:-1]}': choose one of {', '.join(FRAMES)}.")
+    if not isinstance(look.speed, int | float) or not 0 < look.speed < math.inf:
+        raise LabError(f"The playback speed {quoted(look.speed)} cannot be used: choose one above 0.")
     return look
 
 
@@ -102,10 +108,27 @@ class Film:
         self._paint_beds(picture, frame)
         image = Image.fromarray(picture)
         self._draw_readings(image, frame)
+        self._draw_ends(image, frame)
         now = self.time[frame] + 1e-9
         counts = [max(1, int(np.searchsorted(samples, now, "right"))) for samples in self._samples]
         image.paste(self._plot.picture(counts), self._plot_box()[:2])
         return np.asarray(image)
+
+    @property
+    def lost(self) -> bool:
+        """Whether a ship that is shown is lost in the end."""
+        return any(bed.footage.ends[bed.world] for bed in self._beds)
+
+    def _draw_ends(self, image: Image.Image, frame: int) -> None:
+        """What became of the ships that are lost by now, each across the foot of her picture."""
+        draw = ImageDraw.Draw(image)
+        for bed, camera, ground in zip(self._beds, self._cameras, self._grounds, strict=True):
+            end = bed.footage.ends[bed.world]
+            if end and end.time <= self.time[frame] + ALIKE:
+                (left, bottom), (right, _) = camera.pixels(np.array(ground))
+                height = min(BAND * self._unit, 0.25 * (right - left))
+                box = left, bottom - height, right, bottom
+                deco.draw_band(draw, box, f"She {end.words}", min(TITLE * self._unit, 0.6 * height))
 
     def _u(self, units: float) -> int:
         return round(units * self._unit)
@@ -256,9 +279,8 @@ class Film:
         """The sea around bed k, and the hull in it."""
         sea, camera = self._beds[k].footage.sea_of(self._rows[k][frame]), self._cameras[k]
         sea.paint(picture, camera, self._grounds[k], self.time[frame], LINE * self._unit)
-        hull = sea.hull
-        thick = min(WALL * self._unit, max(1.0, THICKEST * camera.scale * np.ptp(hull, axis=0).min()))
-        paint_tank(picture, camera.carried(self._pose[frame, k]), hull, thick, deco.WALL, deco.LINE)
+        thick = min(WALL * self._unit, max(1.0, THICKEST * camera.scale * np.ptp(sea.hull, axis=0).min()))
+        sea.paint_hull(picture, camera.carried(self._pose[frame, k]), thick)
 
     def _on_ground(self, k: int, position: np.ndarray, pose: np.ndarray) -> np.ndarray:
         """Grain places (n, 2), NaN for those that have fallen off the ground shown of bed k."""

@@ -8,10 +8,12 @@ from pathlib import Path
 
 import numpy as np
 
-from lab.errors import LabError
+from lab.errors import LabError, Useless
 from lab.paint.painter import Edges
 from lab.paint.sea import Sea
 from lab.recording import Recording, open_recording
+from lab.ship_end import ends
+from lab.trust import BEYOND
 
 
 class Footage:
@@ -21,7 +23,7 @@ class Footage:
     spilled (T, W) grains; radius (W, n) m; kind (W, n); kinds: their names; shapes: the outlines of irregular grains,
     None where all are discs; shape_names: of their classes; outline (m, 2) m; open_edges: those without a wall;
     fixed (k, 3) y, z, radius m; parts: polylines at rest (m, 2) m by name; part (F, W, P, 2): their displacements, m;
-    sea: the ship whose hold the tank is, and her waves, or None;
+    sea: the ship whose hold the tank is, and her waves, or None; ends: how each ship was lost, None where she was not;
     settings: the preset's [video]; title. Raises LabError when there is no frame or no sample.
     """
 
@@ -31,6 +33,9 @@ class Footage:
             raise LabError(f"{recording.path} holds no picture frames yet: let the run get further.")
         self.time, self.pose, self.part = frames["time"][:], frames["pose"][:], frames["part"][:]
         self.series_time, self.series_pose = series["time"], series["pose"]
+        for values in (self.time, self.pose, self.part, self.series_time, self.series_pose):
+            if not (np.abs(values) < BEYOND).all():
+                raise Useless(f"{recording.path} is damaged (times or poses are no numbers): record the run again.")
         self.centre_of_mass, self.spilled = series["centre_of_mass"], series["spilled"]
         self.radius, self.outline, self.kind = recording.radius, recording.outline, recording.kind
         self.kinds = ["the rest", *(recording.preset.get("kinds") or {})]
@@ -38,6 +43,7 @@ class Footage:
         self.shape_names = list(recording.preset.get("shapes") or {}) if self.shapes else ["disc"]
         self.open_edges, self.fixed, self.parts = recording.open_edges, recording.fixed, recording.parts
         self.sea = Sea(recording.preset) if recording.preset.get("ship") else None
+        self.ends = ends(series)
         self.settings = recording.preset.get("video") or {}
         self.title = recording.preset.get("title") or recording.name
         self._frames, self._waves = frames, frames["waves"][:] if "waves" in frames else None

@@ -7,12 +7,14 @@ from functools import cached_property
 import numpy as np
 from pydantic import TypeAdapter
 
-from lab.paint.painter import Camera
+from lab.paint import decorations as deco
+from lab.paint.painter import Camera, paint_tank
 from lab.ship import WaterGiven, WavesGiven, make_water, make_waves, recorded_ship
 from solvers.ship.waves import Waves, soft_start
 
 WATER, SURFACE = (214, 230, 243), (70, 130, 180)
 LINE = 0.12  # thickness of the surface's line, in the units of a page
+HATCH = 4  # the edge of a box's outline that its hatch leaves open: see `ShipGiven.corners`
 AROUND = np.array([0.45, 0.2])  # of the hull's size: how much of the sea is shown beside her and above and below
 
 
@@ -34,6 +36,13 @@ class Sea:
     def hull(self) -> np.ndarray:
         """The hull's outline (m, 2) in the tank's frame, m."""
         return self.ship.corners - np.array(self.ship.hold)
+
+    def paint_hull(self, picture: np.ndarray, camera: Camera, thick: float) -> None:
+        """Paint the hull, her walls so many pixels thick, her hatch open; the camera is that of the tank's points."""
+        paint_tank(picture, camera, self.hull, thick, deco.WALL, deco.LINE, (HATCH,) if self.ship.hatch else ())
+        if self.ship.hatch:
+            inside = self.hull[[HATCH + 2, HATCH - 1, HATCH, HATCH + 1]]
+            paint_tank(picture, camera, inside, thick, deco.WALL, deco.HOLD, (0, 2))
 
     @property
     def soft_start(self) -> float:

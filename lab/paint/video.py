@@ -16,7 +16,9 @@ from lab.paint.footage import open_footage
 from solvers.runtime import initialise
 
 MOST_IN_GRID = 24
-FASTEST = 60.0  # pictures a second of a video
+SLOWEST, FASTEST = 0.01, 60.0  # pictures a second of a video
+USUAL = 0.04  # s between two pictures whose times do not tell
+HELD = 3.0  # s that the last picture stays where a ship is lost
 BT709 = "scale=out_color_matrix=bt709:out_range=tv"
 ENCODING = (
     *("-crf", "20", "-preset", "veryfast", "-movflags", "+faststart", "-vf", BT709),
@@ -127,8 +129,10 @@ def poster(
 
 def playback(time: np.ndarray, speed: float) -> tuple[float, int]:
     """Pictures a second of the video, and of how many frames one is shown; time (F,) in s."""
-    interval = float(np.median(np.diff(time))) if len(time) > 1 else 0.04
-    wanted = speed / interval
+    interval = float(np.median(np.diff(time))) if len(time) > 1 else 0.0
+    with np.errstate(over="ignore"):  # of times and speeds that are none
+        wanted = float(np.float64(speed) / interval) if 0.0 < interval < math.inf else speed / USUAL
+    wanted = min(max(wanted, SLOWEST), FASTEST * len(time))
     stride = max(1, math.ceil(wanted / FASTEST - 1e-9))
     return round(wanted / stride, 3), stride
 
@@ -136,7 +140,17 @@ def playback(time: np.ndarray, speed: float) -> tuple[float, int]:
 def _write(out: Path, film: Film, speed: float, png: bool, progress: Progress | None) -> Path:
     rate, stride = playback(film.time, speed)
     pictures = _counted(film, range(0, len(film.time), stride), progress)
-    return _write_folder(out, pictures) if png else _write_video(out, pictures, rate)
+    if png:
+        return _write_folder(out, pictures)
+    return _write_video(out, _held(pictures, round(HELD * rate) if film.lost else 0), rate)
+
+
+def _held(pictures: Iterator[np.ndarray], times: int) -> Iterator[np.ndarray]:
+    """Pictures, the last of them so many times more."""
+    for picture in pictures:
+        yield picture
+    for _ in range(times):
+        yield picture
 
 
 def _counted(film: Film, shown: range, progress: Progress | None) -> Iterator[np.ndarray]:

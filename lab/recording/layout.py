@@ -5,6 +5,9 @@ from collections.abc import Mapping
 import h5py
 import numpy as np
 
+# Beside what a Recording reads, attributes for who opens the file alone: `pose_is_of`, the point of pose and pose_rate;
+# of a ship `ship_axis` and `ship_axis_in_tank`, y, z (m) of her axis in the hull's and in the tank's axes, and
+# `sway_and_heave_are_of` in words.
 FORMAT = "cargo-shift-lab 2"
 FILE_NAME = "recording.h5"
 
@@ -23,8 +26,10 @@ SERIES = {
     "spilled": (),
     "wall_force": (3,),
 }
-# Of a ship further: works (J/m) of waves, against radiation and viscosity, of the cargo; when (s) she capsized, or -1.
-SHIP_SERIES = {"ship_works": (4,), "capsized": ()}
+# Of a ship further: works (J/m) of waves, against radiation and viscosity, of the cargo; when (s) she capsized and
+# flooded, or -1.
+SHIP_SERIES = {"ship_works": (4,), "capsized": (), "flooded": ()}
+ADDED = {"flooded": -1.0}  # series that recordings of earlier versions may lack, and what stands for them
 GRAIN_FRAMES = {"position": (2,), "velocity": (2,), "angle": (), "spin": ()}
 WORLD_FRAMES = {"pose": (3,)}  # and "part" (P, 2), the displacement of each moving part
 # Waves under a hand: amplitude or significant height (m); frequency (rad/s) and wave number (1/m) of regular ones. NaN

@@ -1,17 +1,20 @@
 """Reading recordings: the file checked as it is opened, arrays read when they are asked for."""
 
 import json
-import time
 from collections.abc import Iterator, Mapping
-from contextlib import ExitStack, contextmanager, suppress
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
 import h5py
 import numpy as np
 
-from lab.errors import LabError, Useless
-from lab.recording.layout import A_MOMENT, FILE_NAME, FORMAT, PATIENCE, STEERING, create_table, sentence, table_shapes
+from lab.errors import LabError, NotRecorded, Useless
+from lab.recording.layout import ADDED, FILE_NAME, FORMAT, STEERING, sentence, table_shapes
+from lab.recording.opening import open_to_read
 from lab.recording.outlines import GROUP, read_outlines
+from lab.recording.words import axes, indexed, recorded_by
+from lab.trust import BEYOND, attributes, check_recording, check_room, format_of, is_preset, text
+from lab.units import quoted
 
 
 class Recording:
@@ -38,16 +41,17 @@ class Recording:
         self._file = _open(self.path)
         with ExitStack() as otherwise, _reading(self.path):
             otherwise.callback(self._file.close)
-            attributes = dict(self._file.attrs)
-            self.name, status = str(attributes["preset"]), attributes["status"]
+            check_recording(self._file)
+            said = attributes(self._file)
+            self.name, status = str(said["preset"]), said["status"]
             self.status = status.decode(errors="ignore") if isinstance(status, bytes) else str(status)
-            self.created = str(attributes["created"])
-            self.versions = json.loads(attributes["versions"])
-            self.machine = json.loads(attributes["machine"])
-            self.step, self.wall_s = float(attributes["step"]), float(attributes["wall_s"])
-            self.grain_steps = int(attributes["grain_steps"])
-            self.given = self._file["preset/given"].asstr()[()]
-            self.preset = json.loads(self._file["preset/resolved"].asstr()[()])
+            self.created = str(said["created"])
+            self.versions = json.loads(said["versions"])
+            self.machine = json.loads(said["machine"])
+            self.step, self.wall_s = float(said["step"]), float(said["wall_s"])
+            self.grain_steps = int(said["grain_steps"])
+            self.given = text(self._file["preset/given"])
+            self.preset = json.loads(text(self._file["preset/resolved"]))
             self.radius, self.kind = self._file["grains/radius"][:], self._file["grains/kind"][:]
             tank = self._file["tank"]
             self.outline, self.fixed = tank["outline"][:], tank["fixed"][:]
@@ -70,11 +74,11 @@ class Recording:
             "a number of its attributes": all(np.isfinite([self.step, self.wall_s])) and self.step > 0.0,
             "attribute versions": isinstance(self.versions, dict),
             "attribute machine": isinstance(self.machine, dict),
-            "preset/resolved": isinstance(self.preset, dict),
+            "preset/resolved": is_preset(self.preset),
             "grains/radius": _finite(self.radius, 2) and self.radius.size > 0 and self.radius.min() > 0.0,
             "grains/kind": self.kind.shape == worlds_and_grains and self.kind.dtype == np.uint8,
             "shapes/which": self.shapes is None or self.shapes.which.shape == worlds_and_grains,
-            "tank/outline": _finite(self.outline, 2, columns=2) and len(self.outline) > 2,
+            "tank/outline": _finite(self.outline, 2, columns=2) and len(self.outline) > 2 and _wide(self.outline),
             "tank/fixed": _finite(self.fixed, 2, columns=3),
             "tank/open_edges": all(0 <= edge < len(self.outline) for edge in self.open_edges),
             "tank/parts": all(_finite(line, 2, columns=2) and len(line) > 1 for line in self.parts.values()),
@@ -111,18 +115,6 @@ class Recording:
         with _reading(self.path):
             return self._file[name].shape, self._file[name].dtype
 
-    def copy_into(self, file: h5py.File) -> None:
-        """Copy everything into an empty file, each table as far as all its arrays go."""
-        with _reading(self.path):
-            file.attrs.update(self._file.attrs)
-            for name in ("preset", "grains", "tank", GROUP):
-                if name in self._file:
-                    self._file.copy(name, file)
-            tables = {"series": self.series, "frames": self.frames, "steering": self._steering}
-            for name, table in tables.items():
-                if table is not None:
-                    table.copy_into(file.create_group(name))
-
     def close(self) -> None:
         """Close the file; what was not read before cannot be read any more."""
         self._file.close()
@@ -138,48 +130,44 @@ class Frames(Mapping):
     """The data sets of a group by name, each cut to the length that all of them have."""
 
     def __init__(self, group: h5py.Group, names: Mapping, path: Path) -> None:
-        self._path = path
-        self._columns = {name: group[name] for name in names}
-        for name, (shape, kind) in names.items():
+        self._path, self._table = path, group.name.strip("/")
+        self._lacking = {name: row for name, row in names.items() if name in ADDED and name not in group}
+        self._columns = {name: group[name] for name in names if name not in self._lacking}
+        for name, (shape, kind) in ((name, names[name]) for name in self._columns):
             if self._columns[name].shape[1:] != shape or self._columns[name].dtype != kind:
                 raise ValueError(f"{group.name}/{name} is not what the lab writes there")
         self._length = min(len(dataset) for dataset in self._columns.values())
 
     def __getitem__(self, name: str) -> "Column":
+        if name not in self._columns:
+            there = ", ".join(self._columns)
+            raise NotRecorded(f"{self._path}: no {quoted(name)} in its {self._table}, but {there}{recorded_by(name)}")
         return Column(self._columns[name], self._length, self._path)
 
     def __iter__(self) -> Iterator[str]:
-        return iter(self._columns)
+        return iter((*self._columns, *self._lacking))
 
     def __len__(self) -> int:
-        return len(self._columns)
-
-    def copy_into(self, group: h5py.Group) -> None:
-        """Copy the data sets into an empty group, in blocks."""
-        create_table(group, {name: (data.shape[1:], data.dtype.str) for name, data in self._columns.items()})
-        for name, data in self._columns.items():
-            copy = group[name]
-            copy.resize(self._length, axis=0)
-            for begin in range(0, self._length, copy.chunks[0]):
-                end = min(begin + copy.chunks[0], self._length)
-                copy[begin:end] = data[begin:end]
+        return len(self._columns) + len(self._lacking)
 
 
 class Series(Frames):
-    """As Frames, but whole arrays, read once and kept."""
+    """As Frames, but whole arrays, read once and kept; what an earlier version did not write is as it would be."""
 
     def __init__(self, group: h5py.Group, names: Mapping, path: Path) -> None:
         super().__init__(group, names, path)
         self._read: dict[str, np.ndarray] = {}
 
     def __getitem__(self, name: str) -> np.ndarray:
+        if name in self._lacking:
+            return np.full((self._length, *self._lacking[name][0]), ADDED[name])
         if name not in self._read:
             self._read[name] = super().__getitem__(name)[:]
         return self._read[name]
 
 
 class Column:
-    """One data set, read by indexing its first axis with a number or a slice."""
+    """One data set, read by indexing as an array: its first axis with a number or a slice, others as numpy has it."""
 
     def __init__(self, dataset: h5py.Dataset, length: int, path: Path) -> None:
         self._dataset, self._path = dataset, path
@@ -188,17 +176,29 @@ class Column:
     def __len__(self) -> int:
         return self.shape[0]
 
-    def __getitem__(self, index: int | slice) -> np.ndarray:
-        whole = range(len(self))
-        rows = slice(*index.indices(len(self))) if isinstance(index, slice) else whole[index]
-        with _reading(self._path):
-            return self._dataset[rows]
+    def __getitem__(self, index: int | slice | tuple) -> np.ndarray:
+        first, *others = index if isinstance(index, tuple) else (index,)
+        try:
+            rows = slice(*first.indices(len(self))) if isinstance(first, slice) else range(len(self))[first]
+            with _reading(self._path):
+                check_room(self._dataset, len(range(len(self))[rows]) if isinstance(rows, slice) else 1)
+                found = self._dataset[rows]
+            return found[(slice(None),) * isinstance(first, slice) + tuple(others)] if others else found
+        except (IndexError, TypeError) as error:
+            name = self._dataset.name.strip("/")
+            raise NotRecorded(
+                f"{self._path}: {name} has no {indexed(index)}; it is {axes(name, self.shape)}."
+            ) from error
 
 
 def _finite(array: np.ndarray, axes: int, columns: int | None = None) -> bool:
     """Whether an array holds finite numbers, along so many axes, the last of that length."""
     right = array.ndim == axes and columns in (None, array.shape[-1]) and array.dtype.kind in "fiu"
-    return bool(right and np.isfinite(array).all())
+    return bool(right and (np.abs(array) < BEYOND).all())
+
+
+def _wide(outline: np.ndarray) -> bool:
+    return bool((np.ptp(outline, axis=0) > 0.0).all())
 
 
 def open_recording(path: Path | str) -> Recording:
@@ -210,14 +210,14 @@ def _open(path: Path) -> h5py.File:
     if not path.is_file():
         raise LabError(f"{path} does not exist: name a recording or the folder of a run.")
     try:
-        file = _open_closed_or_live(path)
+        file = open_to_read(path)
     except PermissionError as error:
         raise LabError(f"{path} may not be read: ask for the right to read it.") from error
     except OSError as error:
         raise LabError(f"{path} cannot be read as a recording: it is cut short or another kind of file.") from error
     try:
         with _reading(path):
-            form = str(file.attrs.get("format"))
+            form = format_of(file)
     except LabError:
         file.close()
         raise
@@ -227,27 +227,6 @@ def _open(path: Path) -> h5py.File:
     if form.startswith(FORMAT.split()[0]):
         raise LabError(f"{path} was written by another version ('{form}'): record the run again.")
     raise LabError(f"{path} is not a recording of this lab: name another file.")
-
-
-def _open_closed_or_live(path: Path) -> h5py.File:
-    """Open in SWMR mode only what was never closed: HDF5 rereads a damaged file for ever in it.
-
-    A writer that opens or closes the file just now is waited for.
-    """
-    error: OSError | None = None
-    for _ in range(PATIENCE):
-        try:
-            return h5py.File(path, "r")
-        except BlockingIOError as locked:
-            error = locked
-        except OSError as open_elsewhere:
-            if "already open for write" not in str(open_elsewhere):
-                raise
-            with suppress(OSError):  # closed by now, or not yet in that mode
-                return h5py.File(path, "r", swmr=True)
-            error = open_elsewhere
-        time.sleep(A_MOMENT)
-    raise error
 
 
 @contextmanager

@@ -1,4 +1,4 @@
-"""Writing recordings: a new one, rows added to it, and one mended that a dead run has left."""
+"""Writing recordings: a new one, and rows added to it or to one that a dead run has left."""
 
 import errno
 import json
@@ -7,7 +7,7 @@ import platform
 import shutil
 import time
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from datetime import datetime
 from importlib import metadata
 from pathlib import Path
@@ -15,27 +15,28 @@ from pathlib import Path
 import h5py
 import numpy as np
 
+from lab import __version__
 from lab.errors import LabError
 from lab.recording.layout import (
-    A_MOMENT,
+    ADDED,
     FILE_NAME,
     FORMAT,
-    PATIENCE,
     STEERING,
     create_table,
     row_bytes,
     sentence,
     table_shapes,
 )
+from lab.recording.opening import create, end_of, open_to_add
 from lab.recording.outlines import GROUP, Outlines, outline_tables
-from lab.recording.reader import open_recording
+from lab.ship import axis_place, recorded_ship
 
 BUFFER_BYTES = 2**25  # kept in memory at most before it is written
 FLUSH_EVERY = 2.0  # s of wall-clock time between writings: what a run that is killed may lose
 SPARE_BYTES = 2**22  # room kept beside that for a chunk of each data set, to close the file and to sum up the run
 LONGEST_STATUS = 500  # bytes
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
-PACKAGES = ("cargo-shift-lab", "taichi", "numpy", "scipy", "h5py")
+PACKAGES = ("taichi", "numpy", "scipy", "h5py")
 
 
 def new_recording(
@@ -80,12 +81,13 @@ def new_recording(
         "step": float(step),
         "wall_s": 0.0,
         "grain_steps": 0,
+        **_reference(resolved),
     }
     with _writing(path.parent):
         path.parent.mkdir(parents=True, exist_ok=True)
         if path.exists():
             raise FileExistsError(path)
-        with h5py.File(_unfinished(path), "w", libver="latest") as file:
+        with create(_unfinished(path)) as file:
             tables_bytes = sum(table.nbytes for table in tables.values())
             _reserve(file, radius.nbytes + tables_bytes + len(given) + SPARE_BYTES)
             file.attrs.update(attributes)
@@ -110,35 +112,14 @@ def new_recording(
     return path
 
 
-def mend_recording(folder: Path | str) -> Path:
-    """Copy a recording that was killed or stopped into a sound one that a Recorder can go on with; returns its file.
-
-    All whole rows are kept. The old file stays until the copy is on the disk. Raises LabError when it cannot be read
-    or the folder not be written.
-    """
-    path = Path(folder) / FILE_NAME
-    size = path.stat().st_size if path.is_file() else 0
-    with (
-        open_recording(path) as old,
-        _writing(path.parent),
-        h5py.File(_unfinished(path), "w", libver="latest") as new,
-    ):
-        _reserve(new, size + SPARE_BYTES)
-        old.copy_into(new)
-        new.attrs["status"] = _status("running")
-    with _writing(path.parent):
-        _publish(path)
-    return path
-
-
 class Recorder:
     """Adds rows to a recording; a context manager that closes it with the right status.
 
-    folder: of the recording, which `new_recording` or `mend_recording` has made; samples, frames: rows of the series
-    and of the frames that stand, those behind them are written over as they come again; flush_every: wall-clock
-    seconds between writings, so what a killed run loses; buffer: bytes kept in memory at most. The runner keeps
-    `wall_s` and `grain_steps` up to date; every flush writes them. Raises LabError when the folder cannot be written,
-    or when fewer rows are there than should stand.
+    folder: of the recording, new or left by a run that was killed or stopped; samples, frames: rows of the series and
+    of the frames that stand, those behind them stay until they are written over as they come again; flush_every:
+    wall-clock seconds between writings, so what a killed run loses; buffer: bytes kept in memory at most. The runner
+    keeps `wall_s` and `grain_steps` up to date; every flush writes them. Raises LabError when the folder cannot be
+    written, or when fewer rows are there than should stand.
     """
 
     def __init__(
@@ -153,18 +134,22 @@ class Recorder:
         self.folder = Path(folder)
         self.path = self.folder / FILE_NAME
         self._flush_every, self._flushed, self._buffer = flush_every, time.monotonic(), buffer
-        with self._writing():
-            self._file = _open_for_adding(self.path)
+        with self._writing(), ExitStack() as otherwise:
+            self._file = open_to_add(self.path)
+            otherwise.callback(self._file.close)
             self.wall_s, self.grain_steps = float(self._file.attrs["wall_s"]), int(self._file.attrs["grain_steps"])
+            if "capsized" in self._file["series"] and not ADDED.keys() <= self._file["series"].keys():
+                raise LabError(f"{self.path} was begun by an earlier version, which recorded less: start the run anew.")
             standing = {"series": samples, "frames": frames}
             standing |= {"steering": 0} if "steering" in self._file else {}
             self._tables = {name: _Table(self._file[name], rows) for name, rows in standing.items()}
             self._spare = SPARE_BYTES + sum(table.chunk_bytes for table in self._tables.values())
+            if any(table.short for table in self._tables.values()):
+                raise LabError(f"{self.path} holds less than its checkpoint says: start the run anew.")
             self._reserved = 0
             self._make_room()
-        if any(table.short for table in self._tables.values()):
-            self._file.close()
-            raise LabError(f"{self.path} holds less than its checkpoint says: start the run anew.")
+            self._file.attrs.modify("status", _status("running"))
+            otherwise.pop_all()  # all is well: it stays open
 
     def sample(self, values: Mapping[str, object]) -> None:
         """Add a row to the series: "time" (s) and every name of SERIES, (W, *shape) each."""
@@ -294,22 +279,6 @@ class _Table:
             rows.clear()
 
 
-def _open_for_adding(path: Path) -> h5py.File:
-    """Open a closed file as the writer in SWMR mode, in one stroke.
-
-    Opened first and switched to that mode then, as h5py does it, a file would be unreadable had the writer been killed
-    in between. A reader's lock is waited for: who reads opens and closes, or has the file that was mended.
-    """
-    access = h5py.h5p.create(h5py.h5p.FILE_ACCESS)
-    access.set_libver_bounds(h5py.h5f.LIBVER_LATEST, h5py.h5f.LIBVER_LATEST)
-    for _ in range(PATIENCE):
-        try:
-            return h5py.File(h5py.h5f.open(os.fsencode(path), h5py.h5f.ACC_RDWR | h5py.h5f.ACC_SWMR_WRITE, access))
-        except BlockingIOError:
-            time.sleep(A_MOMENT)
-    raise LabError(f"{path} is open in another program: close it there.")
-
-
 def _status(text: str) -> np.ndarray:
     """As it is stored: in a place of its own, so that it can be changed under a reader's eyes."""
     return np.array(text.encode()[:LONGEST_STATUS], h5py.string_dtype(length=LONGEST_STATUS))
@@ -337,9 +306,7 @@ def _reserve(file: h5py.File, size: int) -> None:
 
 def _give_back(path: Path) -> None:
     """Return what was reserved and not used: in SWMR mode HDF5 leaves it to the file."""
-    with path.open("r+b") as file:
-        head = file.read(36)  # of the superblock, whose last eight bytes here say where the file ends
-        file.truncate(int.from_bytes(head[28:], "little"))
+    os.truncate(path, end_of(path))
 
 
 @contextmanager
@@ -357,13 +324,24 @@ def _writing(folder: Path) -> Iterator[None]:
 
 
 def versions() -> dict[str, str]:
-    """Of Python and of the packages whose results a recording holds."""
-    found = {"python": platform.python_version()}
+    """Of the lab, of Python and of the packages whose results a recording holds."""
+    found = {"cargo-shift-lab": __version__, "python": platform.python_version()}
     for package in PACKAGES:
         try:
             found[package] = metadata.version(package)
         except metadata.PackageNotFoundError:
             continue
+    return found
+
+
+def _reference(resolved: Mapping) -> dict[str, object]:
+    """What point the poses are of, and of a ship her axis, of which sway and heave are told: see `lab.ship`."""
+    found = {"pose_is_of": "the origin of the tank's axes"}
+    if resolved.get("ship"):
+        ship = recorded_ship(resolved)
+        found["ship_axis"] = np.array(ship.about)
+        found["ship_axis_in_tank"] = np.subtract(ship.about, ship.hold)
+        found["sway_and_heave_are_of"] = f"the ship's axis, {axis_place(ship)}"
     return found
 
 

@@ -20,6 +20,7 @@ from lab.reproduce import (
     laws,
     low_sides,
     outlines,
+    section,
     shaking,
     ship,
     tilting,
@@ -34,7 +35,7 @@ from lab.reproduce.workers import carry_out_all
 REPORTS = {
     "granular": (validation, tilting, humidity, laws, shaking, heaps),
     "shapes": (outlines,),
-    "ship": (ship, damping, capsizes, low_sides),
+    "ship": (ship, section, damping, capsizes, low_sides),
 }
 
 

@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 
 from lab.measures import critical_angle
 from lab.measures.motion import is_tilt
+from lab.numbers import BARS
 from lab.plots import BELOW
 from lab.reproduce.runs import Outcome
 
@@ -30,7 +31,7 @@ def shift_against_tilt(labelled: Mapping[str, Outcome]) -> Figure | None:
         )
         _band(axes, common, shifts, colour, label)
     axes.set_xlabel("tilt (deg)")
-    axes.set_ylabel("shift of the centre of mass\ndownhill (mean diameters)")
+    axes.set_ylabel(f"shift of the centre of mass\ndownhill (mean diameters),\n{BARS}")
     figure.legend(loc=BELOW, ncols=3)
     return figure
 
@@ -45,12 +46,19 @@ def against(
             (leading_number(o.setting[key]), o[measure]) for o in found if o[measure] and o[measure].value is not None
         ]
         x, values = zip(*points, strict=True) if points else ((), ())
-        means = [scale * value.value for value in values]
+        means, beds = [scale * value.value for value in values], max((value.n for value in values), default=0)
         axes.errorbar(
-            x, means, [scale * (v.std or 0.0) for v in values], fmt="o-", ms=3.5, capsize=2, color=colour, label=name
+            x,
+            means,
+            [scale * (v.std or 0.0) for v in values],
+            fmt="o-",
+            ms=3.5,
+            capsize=2,
+            color=colour,
+            label=_named(name, beds),
         )
     axes.set_xlabel(label)
-    axes.set_ylabel(quantity)
+    axes.set_ylabel(f"{quantity}\n{BARS}")
     figure.legend(loc=BELOW, ncols=3)
     return figure
 
@@ -65,9 +73,13 @@ def _begin(count: int) -> tuple[Figure, object, np.ndarray]:
     return figure, figure.add_subplot(), colormaps["viridis"](np.linspace(0.0, 0.85, count))
 
 
+def _named(label: str, beds: int) -> str:
+    return f"{label} ({beds} beds)" if beds > 1 else label
+
+
 def _band(axes, x: np.ndarray, rows: np.ndarray, colour, label: str) -> None:
     mean = rows.mean(axis=0)
-    axes.plot(x, mean, color=colour, label=f"{label} ({len(rows)} beds)" if len(rows) > 1 else label)
+    axes.plot(x, mean, color=colour, label=_named(label, len(rows)))
     if len(rows) > 1:
         std = rows.std(axis=0, ddof=1)
         axes.fill_between(x, mean - std, mean + std, color=colour, alpha=0.15, lw=0)

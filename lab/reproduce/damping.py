@@ -11,9 +11,10 @@ from matplotlib.figure import Figure
 from lab.plots import BELOW
 from lab.presets import load
 from lab.reproduce.curves import SIZE
-from lab.reproduce.experiment import Experiment, Told, observed
+from lab.reproduce.estimates import surely
+from lab.reproduce.experiment import EXACT, Experiment, Told, observed
 from lab.reproduce.runs import Outcome
-from lab.reproduce.ship import LOST, response_batches
+from lab.reproduce.ship import DIGITS, LOST, response_batches
 from lab.scene import vessels
 from solvers.ship.motion import RollDamping, Ship
 from solvers.ship.outcome import outcome
@@ -129,11 +130,13 @@ def tell(found: Mapping[str, Sequence[Outcome]]) -> Told:
         rows.append(observed(f"{name} damping for {PEAK:g} deg", "not named", f"{one.words}, {_most(low)}", None))
         ends = "; ".join(f"{size} mm: {_end(one)}" for size, one in zip((17, 19), higher, strict=True))
         more = f"; none from {stands.words} on" if stands else ""
-        kept = not any(len(one.capsized) for one in higher)
-        rows.append(observed(f"with {one.words}, frozen", "no capsize in 17 and 19 mm", ends + more, kept))
+        kept = surely(not any(len(one.capsized) for one in higher))
+        rows.append(observed(f"with {one.words}, frozen", "no capsize in 17 and 19 mm", ends + more, kept, EXACT))
     ours = Damping(barge.given.damping, barge.given.quadratic_damping)
     curves[ours] = barge.responses([ours], 0.010)[0]
-    rows.append(observed(f"largest with {ours.words}, as run", f"{PEAK:g} deg", _most(curves[ours]), None))
+    near = surely(abs(curves[ours].peak[0] - PEAK) <= DIGITS.within)
+    said = f"largest with {ours.words}, as run"
+    rows.append(observed(said, f"{PEAK:g} deg", _most(curves[ours]), near, DIGITS.words("deg")))
     return Told(rows, _figure(curves))
 
 

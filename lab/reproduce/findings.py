@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -19,7 +20,8 @@ class Finding:
     """An experiment as the page tells it.
 
     `asked` says which runs it was of (see `asked`); `stopped` names those that did not end, and why; `figure` and
-    `picture` are files beside the page, "" for none.
+    `picture` are files beside the page, "" for none; `table` is a further one, its header first; `made` says by which
+    version its runs were made, and when.
     """
 
     asked: str
@@ -29,8 +31,11 @@ class Finding:
     wall_s: float
     figure: str
     picture: str
+    table: Sequence[Sequence[str]] = ()
+    made: str = "version 0.1.0"
 
 
+WORDS = ("title", "source", "reports", "based_on", "quick", "video")  # keys of a preset that no run depends on
 FINDINGS = TypeAdapter(dict[str, Finding])
 
 
@@ -58,9 +63,19 @@ def write_findings(path: Path, findings: Mapping[str, Finding]) -> None:
 
 
 def asked(batches: Mapping[str, Batch]) -> str:
-    """A hash of what the batches run: their presets as given, and what is varied."""
+    """A hash of what the batches run: what their presets say of the experiment, and what is varied."""
     told = [
-        (key, load(batch.preset, batch.changes).given_text, {axis: list(values) for axis, values in batch.axes.items()})
+        (
+            key,
+            _of_the_experiment(load(batch.preset, batch.changes).given_text),
+            {axis: list(values) for axis, values in batch.axes.items()},
+        )
         for key, batch in batches.items()
     ]
     return hashlib.sha256(repr(told).encode()).hexdigest()[:16]
+
+
+def _of_the_experiment(given: str) -> str:
+    """A preset's keys less its words and its film, which change no number."""
+    table = tomllib.loads(given)
+    return json.dumps({key: table[key] for key in sorted(table) if key not in WORDS}, sort_keys=True)

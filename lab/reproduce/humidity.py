@@ -4,14 +4,14 @@ from collections.abc import Mapping, Sequence
 
 from lab.measures.value import Value
 from lab.reproduce.curves import against
-from lab.reproduce.experiment import Experiment, Told, counted, observed
+from lab.reproduce.estimates import Verdict, difference
+from lab.reproduce.experiment import ONE_BED, Experiment, Row, Told, counted, less, observed
 from lab.reproduce.runs import Batch, Outcome
 from lab.reproduce.tilting import ANGLE_RATE, tilted
 
 KEY = "material.humidity"
 LAWS = {"as printed": "wet", "with asperities of 1 nm": "wet-rough"}
 DRY = "dry"
-UNCLEAR = 3.0  # deg: an error beyond which beds say nothing of an effect
 
 
 def batches(quick: bool) -> dict[str, Batch]:
@@ -30,10 +30,7 @@ def tell(found: Mapping[str, Sequence[Outcome]]) -> Told:
     rows = [observed("dry", "", counted(dry), None)]
     for says in (name for name in LAWS if name in found):
         for one in found[says]:
-            angle = one["critical_angle"]
-            below = float(str(one.setting[KEY]).split()[0]) < 60.0
-            agrees = _alike(dry, angle) if below else None
-            rows.append(observed(f"{says}, {one.setting[KEY]}", "as dry" if below else "", counted(angle), agrees))
+            rows.append(_row(f"{says}, {one.setting[KEY]}", one, dry))
     families = {says: outcomes for says, outcomes in found.items() if says != DRY}
     figure = against(KEY, "humidity (%)", families, "critical_angle", "critical angle (deg)")
     if dry and dry.value is not None:
@@ -41,16 +38,15 @@ def tell(found: Mapping[str, Sequence[Outcome]]) -> Told:
     return Told(rows, figure)
 
 
-def _alike(a: Value | None, b: Value | None) -> bool | None:
-    """Whether two means differ by less than twice the error of their difference; None where that is too large to tell.
-
-    The error is Welch's (1947), of means over beds of unequal scatter.
-    """
-    if not a or not b or None in (a.value, b.value):
-        return None
-    beds = [sum(world is not None for world in value.worlds) for value in (a, b)]
-    error = sum((value.std or 0.0) ** 2 / count for value, count in zip((a, b), beds, strict=True)) ** 0.5
-    return None if error > UNCLEAR else abs(a.value - b.value) <= 2.0 * error
+def _row(quantity: str, one: Outcome, dry: Value | None) -> Row:
+    """Below a humidity of 60 % beside the dry bed."""
+    angle = one["critical_angle"]
+    if float(str(one.setting[KEY]).split()[0]) >= 60.0:
+        return observed(quantity, "", counted(angle), None)
+    apart = difference(angle, dry)
+    verdict = Verdict.CANNOT_TELL if apart is None else apart.lies(-ONE_BED.within, ONE_BED.within)
+    text = "" if apart is None else less(apart, "deg")
+    return Row(quantity, "as dry", counted(angle), text, ONE_BED.words("deg"), verdict)
 
 
 EXPERIMENTS = [

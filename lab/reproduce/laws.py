@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 from matplotlib.figure import Figure
 
 from lab.measures.value import Value
+from lab.numbers import BARS, with_error
 from lab.plots import BLUE, VERMILION
 from lab.reproduce.experiment import Experiment, Told, counted, observed
 from lab.reproduce.runs import Batch, Outcome
@@ -34,7 +35,7 @@ def batches(quick: bool) -> dict[str, Batch]:
 def named(outcome: Outcome) -> str:
     """A combination in words."""
     law, walls, spread = (outcome.setting.get(key, AXES[key][0]) for key in AXES)
-    return f"{law}, {WALLS[walls]} walls, {'equal grains' if not spread else '± 10 %'}"
+    return f"{law}, {WALLS[walls]} walls, {'equal grains' if not spread else '± 10 % in diameter'}"
 
 
 def tell(found: Mapping[str, Sequence[Outcome]]) -> Told:
@@ -56,8 +57,10 @@ def effect(outcomes: Sequence[Outcome], key: str, first: object) -> str:
     if not pairs:
         return "not found"
     mean = sum(a.value - b.value for a, b in pairs) / len(pairs)
-    variance = sum((v.std or 0.0) ** 2 / max(1, len(v.worlds)) for pair in pairs for v in pair) / len(pairs) ** 2
-    return f"{mean:+.1f} ± {variance**0.5:.1f} deg"
+    errors = [value.standard_error for pair in pairs for value in pair]
+    if None in errors:
+        return f"{mean:+.1f} deg"
+    return with_error(mean, sum(error**2 for error in errors) ** 0.5 / len(pairs), "deg", sign="+")
 
 
 def figure(outcomes: Sequence[Outcome]) -> Figure:
@@ -69,9 +72,10 @@ def figure(outcomes: Sequence[Outcome]) -> Figure:
         if angle and angle.value is not None:
             colour = BLUE if one.setting["contact.tangential"] == "haff-werner" else VERMILION
             axes.errorbar(angle.value, row, xerr=angle.std or 0.0, fmt="o", ms=4, capsize=2.5, color=colour)
-    axes.set_yticks(range(len(outcomes)), [named(one) for one in outcomes])
+    counts = [one["critical_angle"].n if one["critical_angle"] else 0 for one in outcomes]
+    axes.set_yticks(range(len(outcomes)), [f"{named(one)} (n = {n})" for one, n in zip(outcomes, counts, strict=True)])
     axes.invert_yaxis()
-    axes.set_xlabel("critical angle (deg), mean ± standard deviation of the beds")
+    axes.set_xlabel(f"critical angle (deg), {BARS}")
     return drawn
 
 

@@ -8,18 +8,19 @@ from matplotlib.figure import Figure
 
 from lab.measures.critical_angle import shift_curve
 from lab.measures.value import Value, over_worlds
+from lab.numbers import BARS
 from lab.plots import GREY
 from lab.reproduce.curves import shift_against_tilt
-from lab.reproduce.estimates import Estimate, are_ordered, difference, paired_ratio, ratio
-from lab.reproduce.experiment import Experiment, Row, Told, counted, observed, stated
+from lab.reproduce.estimates import Estimate, difference, falling, paired_ratio, ratio
+from lab.reproduce.experiment import ONE_BED, Experiment, Row, Told, Tolerance, counted, held, observed, stated
 from lab.reproduce.runs import Batch, Outcome
 
 Found = Mapping[str, Sequence[Outcome]]
 Course = Callable[[Outcome], tuple[np.ndarray, np.ndarray]]
 BOX, SWAY = "shapes/box", "shapes/sway"
 NODES, OUTLINE, FRICTION = "contact.nodes", "shapes.grain.descriptors", "material.friction"
-WITHIN = 3.0  # deg
 MORE = 2.5  # deg by which the source's heap of slightly disturbed discs is steeper
+HEAPS = Tolerance(0.7, "the source's std of heaps of discs, 0.5 deg, times √2")
 FAR, NEAR = "55 deg", "40 deg"  # what grains of bent outlines slide before, and discs
 EARLY, EARLY_TIME = 10.0, 0.5  # deg and s, before a bed slides
 SHIFT_LABELS = "tilt (deg)", "shift downhill of one bed (mm)"
@@ -60,8 +61,11 @@ def one_descriptor(n: int, value: float) -> list[float]:
 
 def over(quantity: str, source: str, found: Estimate | None, between: tuple[float, float] | None = None) -> Row:
     """A row of a mean over that of discs, which the source has `between` these."""
-    ours = "not found" if found is None else str(found)
-    return observed(f"{quantity}, over discs", source, ours, found.lies(*between) if found and between else None)
+    quantity = f"{quantity}, over discs"
+    if between:
+        return held(quantity, source, found, between, f"{between[0]:g} to {between[1]:g}: the source's own")
+    ours, known = ("not found", "") if found is None else (found.told(), found.interval())
+    return Row(quantity, source, ours, known, "", None)
 
 
 def round_batches(quick: bool) -> dict[str, Batch]:
@@ -199,8 +203,8 @@ def descriptors(found: Found) -> Told:
             angle = ratio(one["critical_angle"], discs)
             rows.append(over(f"{name} = {one.setting[OUTLINE][-1]:g} R0", "", angle))
         largest.append(found[name][-1]["critical_angle"])
-    agrees = are_ordered(largest)
-    rows.append(observed("the largest of each", "D_2 > D_3 > D_4 > D_8", ", ".join(map(counted, largest)), agrees))
+    said, verdict = ", ".join(map(counted, largest)), falling(largest)
+    rows.append(observed("the largest of each", "D_2 > D_3 > D_4 > D_8", said, verdict, "each step above zero"))
     return Told(rows, _descriptor_figure(found, discs))
 
 
@@ -214,7 +218,7 @@ def _descriptor_figure(found: Found, discs: Value) -> Figure:
             axes.errorbar(*zip(*known, strict=True), fmt="o-", ms=3.5, capsize=2, label=name)
     axes.axhline(1.0, color=GREY, ls=":", lw=1.0)
     axes.set_xlabel("descriptor relative to R0")
-    axes.set_ylabel("critical angle over that of discs")
+    axes.set_ylabel(f"critical angle over that of discs\n{BARS}")
     axes.legend()
     return figure
 
@@ -252,10 +256,9 @@ def heaps(found: Found) -> Told:
     """The heap of slightly disturbed discs is a little steeper."""
     angle = {name: outcomes[0]["heap_angle"] for name, outcomes in found.items()}
     rows = [observed(name, "", counted(value), None) for name, value in angle.items()]
-    if more := difference(angle["outlines"], angle["discs"]):
-        error = f" ± {more.error:.1f}" if more.freedom else ""
-        agrees = more.lies(MORE - WITHIN, MORE + WITHIN)
-        rows.append(observed("outlines less discs", f"{MORE} deg", f"{more.value:+.1f}{error} deg", agrees))
+    between = MORE - HEAPS.within, MORE + HEAPS.within
+    more = difference(angle["outlines"], angle["discs"])
+    rows.append(held("outlines less discs", f"{MORE} deg", more, between, HEAPS.words("deg"), "deg"))
     return Told(rows)
 
 
@@ -271,10 +274,9 @@ def peas(found: Found) -> Told:
     rows, curves, says = [], {}, {0.3: 45.0, 0.5: 44.3}  # deg, 9 and 7.2 % over 41.3
     for one in found["chickpeas"]:
         name, angle = f"friction {one.setting[FRICTION]:g}", one["critical_angle"]
-        rows.append(stated(f"{name}: angle of repose, the source's", says[one.setting[FRICTION]], angle, WITHIN))
-        rows.append(stated(f"{name}: angle of repose, the experiment's", 41.3, angle, WITHIN))
-        slip = counted(one["first_slip_angle"])
-        rows.append(observed(f"{name}: first slip", "heap at 37 deg (experiment)", slip, None))
+        rows.append(stated(f"{name}: angle of repose, the source's", says[one.setting[FRICTION]], angle, ONE_BED))
+        rows.append(stated(f"{name}: angle of repose, the experiment's", 41.3, angle, ONE_BED))
+        rows.append(stated(f"{name}: first slip, beside the experiment's heap", 37.0, one["first_slip_angle"], ONE_BED))
         curves[name] = one
     return Told(rows, shift_against_tilt(curves))
 
@@ -365,9 +367,9 @@ EXPERIMENTS = [
         "2 beds for 4 of half the depth",
         ("chickpeas", 0.6),
         "In the full report ours flow 8 to 13 deg below the experiment, with a friction of 0.3 no later than spheres "
-        "of their sizes between smooth walls (29.8 ± 1.2 deg, `tilting/chickpeas`). Their spectra are our choice, "
-        "after lengths and widths of chickpeas; the source's are in a figure without numbers. As with random phases, "
-        "outlines that bend add less here than there; why is not known. With more friction our mean is higher, "
+        "of their sizes between smooth walls (29.8 ± 1.2 deg, six beds, `tilting/chickpeas`). Their spectra are our "
+        "choice, after lengths and widths of chickpeas; the source's are in a figure without numbers. As with random "
+        "phases, outlines that bend add less here than there; why is not known. With more friction our mean is higher, "
         "within the scatter, the source's lower.",
     ),
 ]

@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from lab.measures.value import Value, over_worlds
+from lab.numbers import BARS
 from lab.plots import BELOW
 from lab.reproduce.curves import leading_number
 from lab.reproduce.runs import Outcome
@@ -19,7 +20,7 @@ LOOSE = ("roll_amplitude", "largest_roll", "capsized_at")
 FROZEN = ("frozen_amplitude", "frozen_largest_roll", "frozen_capsized_at")
 STYLES = {LOOSE: {"fmt": "o-"}, FROZEN: {"fmt": "s--", "mfc": "white"}}
 CROSSES = {LOOSE: {"marker": "X"}, FROZEN: {"marker": "X", "mfc": "white"}}
-PANELS = "mean amplitude\nof the roll (deg)", "largest roll\nof the run (deg)"
+PANELS = "amplitude of the roll\n(deg), " + BARS, "largest roll of the run\n(deg), " + BARS
 TOP, APART = 0.96, 0.06  # of a panel's height: where the first crosses are, and the next family's below
 
 

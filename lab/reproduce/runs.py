@@ -90,8 +90,5 @@ def _outcome(setting: Mapping[str, object], folder: Path) -> Outcome | None:
         data = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
     except (OSError, ValueError):
         return None
-    measures = {
-        key: Value(m["value"], m["unit"], m["std"], m["uncertainty"], tuple(m["worlds"]), m["note"])
-        for key, m in data["measures"].items()
-    }
+    measures = {key: Value.from_json(found) for key, found in data["measures"].items()}
     return Outcome(setting, folder, data["status"], measures, data["cost"])

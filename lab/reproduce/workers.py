@@ -10,14 +10,18 @@ import threading
 import time
 from collections.abc import Iterator, Mapping
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
 from multiprocessing import active_children, get_context, parent_process
 from multiprocessing.connection import wait as wait_for
 from pathlib import Path
 
+from lab.errors import LabError
+from lab.interrupt import heed
 from lab.progress import Progress
 from lab.reproduce.runs import Batch, carry_out, outcomes
 from solvers import runtime
 
+BROKEN = "a process that ran a batch was ended from outside, maybe for want of memory"
 GRACE = 60.0  # s in which a worker can save what it has when nobody waits for it any more
 
 
@@ -57,9 +61,11 @@ def _by_workers(batches: Mapping[Path, Batch], cores: int, progress: Progress) -
                     if folder not in known:
                         progress.count_one(f"{named(folder)} is done")
                     yield folder
-        except BaseException:
+        except BaseException as error:
             for worker in active_children():
                 os.kill(worker.pid, signal.SIGINT)
+            if isinstance(error, BrokenProcessPool):
+                raise LabError(f"{BROKEN}: ask again, and what was begun is gone on with.") from None
             raise
 
 
@@ -81,6 +87,7 @@ def _begin() -> None:
     """In a worker: take one core, leave Ctrl-C to the process that gives out work, and end with that."""
     runtime.use_cores(1)
     signal.signal(signal.SIGINT, signal.default_int_handler)  # what runs in the background may be deaf to it
+    heed(patient=True)  # who ends all processes asks this one twice
     if hasattr(os, "setpgrp"):
         os.setpgrp()
     threading.Thread(target=_end_with_parent, daemon=True).start()

@@ -10,6 +10,7 @@ from rich.console import Console
 
 from lab.errors import LabError
 from lab.verify import (
+    chung_ooi,
     cohesion,
     collisions,
     columns,
@@ -26,6 +27,7 @@ from lab.verify.case import Case, Outcome
 from lab.verify.report import show, write_report
 
 MODULES = (
+    chung_ooi,
     collisions,
     restitution,
     oblique,

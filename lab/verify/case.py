@@ -49,6 +49,14 @@ class Picture:
     caption: str
 
 
+@dataclass(frozen=True)
+class Table:
+    """A table of the page: names of its columns, and rows of texts."""
+
+    header: Sequence[str]
+    rows: Sequence[Sequence[str]]
+
+
 @dataclass
 class Found:
     """What a case gives: its lines, and what the page shows and says besides."""
@@ -56,6 +64,7 @@ class Found:
     lines: Sequence[Line]
     pictures: Sequence[Picture] = ()
     notes: Sequence[str] = ()
+    tables: Sequence[Table] = ()
 
 
 @dataclass(frozen=True)

@@ -92,10 +92,12 @@ def dissipative_time(x: float, mass: float, stiffness: float, speed: float) -> f
     return x / (1.5 * (stiffness / mass) ** 0.4 * speed**0.2)
 
 
-def mindlin_stiffness(young: float, poisson: float, radius: float) -> float:
-    """8 G* √R_eff (N/m^1.5) of the tangential stiffness 8 G* √(R_eff ξ), 1/G* = (2 − ν)/G, of a sphere on a rigid
-    wall (Mindlin 1949)."""
-    return 8.0 * young / (2.0 * (1.0 + poisson)) / (2.0 - poisson) * sqrt(radius)
+def mindlin_stiffness(young: float, poisson: float, radius: float, other: float | None = None) -> float:
+    """8 G* √R_eff (N/m^1.5) of the tangential stiffness 8 G* √(R_eff ξ), 1/G* = (2 − ν)/G₁ + (2 − ν)/G₂ (Mindlin 1949).
+
+    Of two solids with one Poisson ratio; `other` is the second one's Young's modulus (Pa), None: the same.
+    """
+    return 8.0 / (2.0 * (1.0 + poisson)) / (2.0 - poisson) / (1.0 / young + 1.0 / (other or young)) * sqrt(radius)
 
 
 def resting_overlap(force: float, stiffness: float) -> float:

@@ -17,7 +17,7 @@ from lab.recording import versions
 from lab.verify.case import Line, Outcome
 
 NAME = "verify"
-HEADER = ("quantity", "here", "reference", "from", "error", "allowed", "because of", "")
+HEADER = ("quantity", "here", "reference", "from", "error", "tolerance", "because of", "")
 SMALLEST = 1e-6  # share of the tolerance; smaller errors are drawn there
 
 
@@ -60,6 +60,8 @@ def _write_case(page: Page, outcome: Outcome) -> None:
         page.say(note)
     if outcome.fault:
         page.say(f"**Stopped:** {outcome.fault}")
+    for table in outcome.found.tables:
+        page.table(table.header, table.rows)
     if outcome.found.lines:
         page.table(HEADER, [cells(line) for line in outcome.found.lines])
     for picture in outcome.found.pictures:
@@ -70,10 +72,10 @@ def cells(line: Line) -> tuple[str, ...]:
     """A line as the texts of HEADER's columns."""
     unit = f" {line.unit}" if line.unit else ""
     error = _share(line.error) if line.relative else f"{line.error:.2g}{unit}"
-    allowed = _share(line.tolerance) if line.relative else f"{line.tolerance:.2g}{unit}"
+    tolerance = _share(line.tolerance) if line.relative else f"{line.tolerance:.2g}{unit}"
     verdict = "pass" if line.passed else "FAIL"
     numbers = (f"{line.value:.6g}{unit}", f"{line.reference:.6g}{unit}")
-    return line.quantity, *numbers, line.source, error, f"± {allowed}", line.reason, verdict
+    return line.quantity, *numbers, line.source, error, tolerance, line.reason, verdict
 
 
 def _share(value: float) -> str:
@@ -88,8 +90,8 @@ def _verdict(outcomes: Sequence[Outcome], lines: Sequence[Line]) -> str:
     if bad:
         text += f" **Failed: {', '.join(bad)}.**"
     return text + (
-        " The references do not use the solver. A tolerance is what the physics and the scheme at its step allow, not"
-        " what came out."
+        " The references do not use the solver. A tolerance, to either side, is what the physics and the scheme at its"
+        " step allow, not what came out."
     )
 
 

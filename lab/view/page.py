@@ -13,6 +13,7 @@ from lab.paint import decorations as deco
 from lab.paint.colours import Colouring, colouring, mark_colours
 from lab.paint.painter import Camera, paint_grains, paint_plate, paint_strokes, paint_tank, to_discs
 from lab.paint.sea import LINE
+from lab.ship_end import End
 from lab.view.controls import CONTROLS, RESTARTS
 from lab.view.curves import CURVES
 from lab.view.forces import chains, newtons
@@ -21,7 +22,7 @@ from lab.view.readings import clock, readings
 from lab.view.shown import Shown
 
 MARGIN, COLUMN, GAP, WALL, PLATE = 1.2, 17.0, 1.5, 0.36, 0.3  # in u
-TEXT, READING, TITLE, ROW = 1.0, 1.2, 1.4, 1.5  # heights in u
+TEXT, READING, TITLE, ROW, BAND = 1.0, 1.2, 1.4, 1.5, 2.4  # heights in u
 LINES = 5  # of readings below the clock
 PLOT = 14.0, 8.5  # width and height in u
 SENTENCE = 0.8, 3  # height of its letters in u, lines at most
@@ -201,7 +202,16 @@ class Page:
         self._mark(stage, shown, moved)
         if shown.curve != "nothing":
             _put(stage, self._curve(shown), 0, 0)
+        if shown.lost:
+            _put(stage, self._still("lost", (shown.lost,), lambda: self._lost(shown.lost)), 0, -self.u(BAND))
         return stage
+
+    def _lost(self, end: End) -> Image.Image:
+        """What became of a ship, across the foot of the stage."""
+        left, _, right, _ = self.stage
+        image = Image.new("RGB", (right - left, self.u(BAND)))
+        deco.draw_band(ImageDraw.Draw(image), (0, 0, *image.size), f"She {end.words}", 1.4 * TEXT * self.unit)
+        return image
 
     def _empty_stage(self, shown: Shown, camera: Camera, moved: Camera) -> np.ndarray:
         """The sea, the hull and the tank with its fixed grains."""
@@ -212,7 +222,7 @@ class Page:
                 whole = np.array([[0, stage.shape[0]], [stage.shape[1], 0]]) - camera.offset
                 ground = tuple(whole * [1.0, -1.0] / camera.scale)
                 footage.sea_of(frame).paint(stage, camera, ground, footage.row_time(frame), LINE * self.unit)
-                paint_tank(stage, moved, footage.sea.hull, self._wall(camera, footage.sea.hull), deco.WALL, deco.LINE)
+                footage.sea.paint_hull(stage, moved, self._wall(camera, footage.sea.hull))
             else:
                 faint = self._wall(camera, footage.outline)
                 paint_tank(stage, camera, footage.outline, faint, deco.GRID, deco.PAPER, footage.open_edges)
@@ -404,7 +414,8 @@ class Page:
 
 
 def _put(picture: np.ndarray, part: np.ndarray, left: int, top: int) -> None:
-    """Put a part into a picture, in place."""
+    """Put a part into a picture, in place; a negative `top` counts from below."""
+    top %= len(picture)
     picture[top : top + part.shape[0], left : left + part.shape[1]] = part
 
 

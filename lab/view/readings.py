@@ -16,6 +16,7 @@ def clock(shown: Shown) -> str:
         state = "looking back"
     else:
         state = "ended" if shown.over else "running" if shown.going else "paused"
+        state = shown.lost.kind if shown.lost else state
     return f"t = {number(shown.footage.row_time(shown.frame), 2)} s, {state}"
 
 

@@ -1,13 +1,20 @@
 """An experiment that was steered by hand, run again from its recording: the same bits on the same machine."""
 
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from lab.errors import LabError
+import numpy as np
+
+from lab.errors import LabError, Useless
 from lab.lock import only_one
 from lab.progress import Progress
 from lab.recording import open_recording
 from lab.runner import Result, free_folder, recorded_preset, report
+from lab.trust import BEYOND
+from lab.view.controls import ALTERS, CONTROLS, MOVES, offered
 from lab.view.live import Live
+
+LARGEST = 1e3  # SI: nothing that a hand can set is as large
 
 
 def replay(path: Path | str, out: Path | str | None = None, *, video: bool = True, quiet: bool = False) -> Result:
@@ -18,9 +25,11 @@ def replay(path: Path | str, out: Path | str | None = None, *, video: bool = Tru
     with open_recording(path) as recording:
         done, loaded = recording.steering, recorded_preset(recording)
         series = recording.series["time"]
-        pieces = len(series) - 1
+        pieces = max(0, len(series) - 1)
     if done is None:
         raise LabError(f"{path} was not steered by hand: run its preset, {loaded.name}, again.")
+    if not _possible(done, series, offered(loaded.resolved)):
+        raise Useless(f"{path}: its steering is none that a hand can have done: replay another recording.")
     home = Path(path) if Path(path).is_dir() else Path(path).parent
     folder = Path(out) if out is not None else free_folder(home.with_name(f"{home.name}-replay"))
     begun = [float(series[k]) for k in range(pieces)]
@@ -36,3 +45,20 @@ def replay(path: Path | str, out: Path | str | None = None, *, video: bool = Tru
             progress.finish()
             live.close()
         return report(folder, progress, video=video)
+
+
+def _possible(done: Sequence[tuple[float, str, float]], series: np.ndarray, own: Mapping[str, float]) -> bool:
+    """Whether a hand may have done this in an experiment that offers such controls, with the preset's own values."""
+    times = np.array([time for time, *_ in done])
+    if not np.isfinite(series).all() or np.any(np.diff(series) <= 0.0) or np.abs(series).max(initial=0.0) > BEYOND:
+        return False
+    if not np.isfinite(times).all() or np.any(np.diff(times) < 0.0):
+        return False
+    return all(name in own and _settable(name, value, own[name]) for _, name, value in done)
+
+
+def _settable(name: str, value: float, own: float) -> bool:
+    control = CONTROLS[name]
+    if control.kind == ALTERS:
+        return min(control.low, own) <= value <= max(control.high, own)
+    return control.kind == MOVES and abs(value) <= LARGEST

@@ -115,7 +115,8 @@ class Session(Shown):
     def _on_kept(self, folder: Path) -> None:
         self.say(f"kept in {folder}; its video and summary follow")
         log = (folder / "report.log").open("wb")
-        subprocess.Popen([sys.executable, "-m", "lab.view.keep", str(folder)], stdout=log, stderr=log)
+        line = [sys.executable, "-m", "lab.view.keep", str(folder)]
+        subprocess.Popen(line, stdout=log, stderr=log, start_new_session=True)  # it outlives the terminal
 
     def _on_over(self, sentence: str) -> None:
         self.over, self.going = sentence, False

@@ -3,6 +3,7 @@
 import time
 from dataclasses import dataclass
 
+from lab.ship_end import VERBS, End, end_of
 from lab.view.footage import LiveFootage
 
 SAID_FOR = 6.0  # s
@@ -59,6 +60,13 @@ class Shown:
         """The sentence to be shown now."""
         sentence, when = self._said
         return self.over or (sentence if time.monotonic() - when < SAID_FOR else "")
+
+    @property
+    def lost(self) -> End | None:
+        """What has become of a ship that is lost in the frame shown."""
+        if self.making or not self.footage or not self.footage.sea:
+            return None
+        return end_of(*(self.footage.row(self.frame, name) for name in (*VERBS, "pose_angle")))
 
     @property
     def frame(self) -> int:

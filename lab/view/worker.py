@@ -15,9 +15,11 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 
 from lab.errors import LabError
+from lab.interrupt import SIGNALS, heed
 from lab.presets import LoadedPreset, load
 from lab.progress import Progress
-from lab.recording import FILE_NAME, Recorder, mend_recording
+from lab.recording import FILE_NAME, Recorder
+from lab.ship_end import VERBS
 from lab.view.footage import Scenery
 from lab.view.live import Live, Seen, own_motion, under_a_hand
 from lab.view.outbox import Outbox
@@ -100,9 +102,8 @@ class Worker:
         length = self._live.steps_a_piece * self._live.simulation.dt
         self._factor += 0.2 * (length / max(taken, 1e-9) - self._factor)
         self._pieces = max(0, self._pieces - 1)
-        if self._live.rows.get("capsized", [-1.0])[0] >= 0.0:
-            self._going = False
-            self._outbox.send("told", "she has capsized")
+        if max(self._live.rows.get(kind, [-1.0])[0] for kind in VERBS) >= 0.0:
+            self._going = False  # the picture says what became of her
         if time.monotonic() - self._sent >= A_LOOK or not self._going:
             self._send()
         self._wait()
@@ -143,7 +144,6 @@ class Worker:
             self._live.recorder.sync()
             folder.mkdir(parents=True)
             shutil.copy2(self._live.folder / FILE_NAME, folder / FILE_NAME)
-            mend_recording(folder)
             rows = self._live.recorder.rows
             Recorder(folder, samples=rows[0], frames=rows[1]).close()
         except (LabError, OSError) as error:
@@ -154,14 +154,15 @@ class Worker:
 
 def serve(pipe: Connection, name: str, overrides: Mapping, folder: Path, cores: int) -> None:
     """Begin the experiment and run it for the window at the other end."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # who closes the window closes this
+    for number in set(SIGNALS) - {signal.SIGTERM}:
+        signal.signal(number, signal.SIG_IGN)  # who closes the window closes this
     runtime.use_cores(cores)
     outbox = Outbox(pipe)
     try:
         _run(name, overrides, folder, pipe, outbox)
     except (LabError, BadState, Unavailable) as error:
         outbox.send("over", str(error))
-    except (EOFError, BrokenPipeError, ConnectionResetError):  # the window is gone
+    except (EOFError, BrokenPipeError, ConnectionResetError, KeyboardInterrupt):  # the window is gone, or this is to go
         pass
     outbox.finish()
 
@@ -170,6 +171,7 @@ def _run(name: str, overrides: Mapping, folder: Path, pipe: Connection, outbox: 
     loaded = load(name, overrides)
     handed = under_a_hand(loaded)
     with Live(handed, folder, Told(outbox, handed, folder)) as live:
+        heed(patient=True)  # not before: while nothing is recorded, SIGTERM may end it at once
         outbox.send("ready", (Scenery.of(handed, folder, live.simulation), own_motion(loaded.resolved)))
         try:
             Worker(live, pipe, outbox).serve()

@@ -48,6 +48,11 @@ def sample(time: float, worlds: int = 1, **values: object) -> dict:
     return {"time": time, **zeros, **values}
 
 
+def of_a_ship(worlds: int = 1, **values: object) -> dict:
+    """What a row of a ship's series has further; what is not given is zero, or did not happen."""
+    return {"ship_works": np.zeros((worlds, 4)), "capsized": [-1.0] * worlds, "flooded": [-1.0] * worlds, **values}
+
+
 def frame(time: float, worlds: int = 1, count: int = 4, **values: object) -> dict:
     """A picture frame; what is not given is zero, and there are no parts."""
     zeros = {name: np.zeros((worlds, count, *shape)) for name, shape in GRAIN_FRAMES.items()}

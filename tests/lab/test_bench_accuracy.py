@@ -4,16 +4,18 @@ import numpy as np
 import pytest
 
 from lab.bench.accuracy import run_page
-from lab.bench.accuracy.beds import half_interval, settings
+from lab.bench.accuracy.beds import Point, mean_and_interval, settings
 from lab.bench.accuracy.collisions import worst_error
 from lab.bench.accuracy.repeats import beds_for
 from lab.errors import LabError
 
 
 def test_half_intervals_are_those_of_students_t():
-    """t of 2 degrees of freedom is 4.3027 at 97.5 %."""
-    assert half_interval([1.0, 2.0, 3.0]) == pytest.approx(4.3027 / np.sqrt(3.0), rel=1e-4)
-    assert np.isnan(half_interval([1.0]))
+    """t of 2 degrees of freedom is 4.3027 at 97.5 %; an interval is told as one, and a single bed has none."""
+    three, one = (Point({}, {"angle": np.array(beds)}, 1.0, None) for beds in ([1.0, 2.0, 3.0], [1.0]))
+    assert three.half_interval("angle") == pytest.approx(4.3027 / np.sqrt(3.0), rel=1e-4)
+    assert np.isnan(one.half_interval("angle"))
+    assert mean_and_interval(three, "angle") == "2.00 [-0.48, 4.48]" and mean_and_interval(one, "angle") == "1.00"
 
 
 def test_so_many_beds_and_no_fewer_give_the_confidence_that_is_wanted():

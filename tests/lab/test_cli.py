@@ -182,6 +182,7 @@ def test_bad_sweeps_and_folders_are_one_sentence_too(arguments):
         (PermissionError(errno.EACCES, "Permission denied", "/etc/x"), 2,
          "/etc/x: permission denied; choose another folder with --out."),
         (OSError("unable to\nlock file"), 2, "unable to lock file."),
+        (MemoryError(), 2, "there is not enough memory for this: ask for fewer grains or repeats, or free some."),
     ],
 )  # fmt: skip
 def test_what_goes_wrong_underway(error, code, sentence, monkeypatch):

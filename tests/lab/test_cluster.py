@@ -1,11 +1,15 @@
 """Sweeps on a cluster: what comes back is what would have been made here, whatever becomes of the workers."""
 
+import json
 import os
+import resource
 import shutil
+import signal
 import subprocess
 import sys
 import time
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from types import SimpleNamespace
@@ -20,6 +24,7 @@ from lab.checkpoint import Checkpoint
 from lab.errors import LabError
 from lab.launch import prepare
 from lab.presets import load
+from lab.recording import versions
 from lab.reproduce import runs, workers
 from lab.reproduce.experiment import Experiment
 from lab.reproduce.runs import Batch
@@ -163,7 +168,7 @@ def test_what_a_worker_cannot_do_is_one_sentence(scheduler, tmp_path, monkeypatc
     def fail(work):
         raise error
 
-    monkeypatch.setattr(cluster, "_unpacked", lambda: fail)
+    monkeypatch.setattr(cluster, "_unpacked", lambda _: fail)
     with pytest.raises(LabError, match=said):
         run_sweep("tilting/quick", AXES, SMALL, tmp_path / "there", video=False, quiet=True, cluster=scheduler)
 
@@ -196,7 +201,192 @@ def test_an_address_where_nobody_answers_is_named(address, monkeypatch, tmp_path
 def test_a_worker_with_several_threads_is_refused(monkeypatch):
     monkeypatch.setattr(distributed, "get_worker", lambda: SimpleNamespace(state=SimpleNamespace(nthreads=4)))
     with pytest.raises(LabError, match=r"a worker has 4 threads.* start workers with --nthreads 1"):
-        cluster.run_launch([], cluster.Terms(1, "cpu", {}))
+        cluster.run_launch([], cluster.Terms(1, "cpu", {}, ""))
+
+
+@pytest.mark.parametrize(
+    ("address", "opened"),
+    [
+        ("tcp://127.0.0.1:8786", False),
+        ("127.0.0.1:8786", False),
+        ("tcp://127.3.2.1:8786", False),
+        ("tcp://[::1]:8786", False),
+        ("tcp://localhost:8786", False),
+        ("tls://node1:8786", False),
+        ("inproc://10.0.0.1/1/1", False),
+        ("tcp://0.0.0.0:8786", True),
+        ("tcp://192.168.1.5:8786", True),
+        ("tcp://[::]:8786", True),
+        ("node1:8786", True),
+        ("ws://node1:8786", True),
+        ("tcp://localhost.elsewhere.net:8786", True),
+        ("tcp://127.0.0.1.elsewhere.net:8786", True),
+    ],
+)
+def test_schedulers_that_others_reach_are_told(address, opened):
+    assert cluster.is_open(address) == opened
+
+
+@pytest.mark.parametrize("version", ["0.0.1", "99.0"])
+@pytest.mark.parametrize("package", ["cargo-shift-lab", "taichi"])
+def test_a_worker_of_another_version_is_refused_before_it_reads_its_work(
+    scheduler, tmp_path, monkeypatch, package, version
+):
+    monkeypatch.setattr(cluster, "versions", lambda: versions() | {package: version})
+    monkeypatch.setattr(cluster, "run_launch", None)  # reading the work would fail
+    monkeypatch.setattr(cluster, "partial", lambda *_: Unreadable())
+    with pytest.raises(
+        LabError, match=rf"a worker lacks {package} {version} \(it has .*\): install the lab there as here"
+    ):
+        run_sweep("tilting/quick", AXES, SMALL, tmp_path / "there", video=False, quiet=True, cluster=scheduler)
+
+
+class Unreadable:
+    """Work that cannot be read."""
+
+    def __reduce__(self):
+        return (eval, ("1 / 0",))
+
+
+def test_a_worker_with_other_sources_of_the_same_version_is_refused(scheduler, tmp_path, monkeypatch):
+    terms = cluster._terms
+    monkeypatch.setattr(cluster, "_terms", lambda preset: replace(terms(preset), sources="others"))
+    with pytest.raises(LabError, match="the lab of a worker has other source files than the one here"):
+        run_sweep("tilting/quick", AXES, SMALL, tmp_path / "there", video=False, quiet=True, cluster=scheduler)
+
+
+@pytest.mark.parametrize("name", ["../outside", "/tmp/outside", "a/b", ".."])
+def test_a_worker_writes_into_no_other_folder(tmp_path, name):
+    with pytest.raises(LabError, match="a worker sent a file for another folder"):
+        cluster._put({name: b"x"}, tmp_path / "run")
+    assert not list((tmp_path / "run").iterdir())
+
+
+def test_a_full_folder_is_named(tmp_path):
+    """What is written to /dev/full ends as on a disk without room."""
+    (tmp_path / "recording.h5.new").symlink_to("/dev/full")
+    with pytest.raises(LabError, match=r"cannot be written \(No space left on device\): make room there"):
+        cluster._put({"recording.h5": b"x" * 10}, tmp_path)
+
+
+def test_a_full_worker_is_named(tmp_path):
+    with pytest.raises(LabError, match=r"--cluster: on a worker, .*gone cannot be written .*: make room there"):
+        cluster._in_a_folder(tmp_path / "gone").__enter__()
+    with pytest.raises(LabError, match=f"--cluster: on a worker, {tmp_path}"), cluster._in_a_folder(tmp_path) as home:
+        raise LabError(f"{home} cannot be written (No space left on device): make room there.")
+
+
+# ---- with processes of their own
+
+
+@pytest.fixture
+def dask(tmp_path):
+    """Starts `dask WORDS …` in a process of its own; all are ended with the test."""
+    started = []
+
+    def start(*words, lab=ROOT):
+        environment = {**os.environ, "PYTHONPATH": str(lab)}
+        line = [sys.executable, "-m", "dask", *map(str, words), "--no-dashboard"]
+        with (tmp_path / f"{len(started)}.log").open("w") as log:
+            started.append(subprocess.Popen(line, cwd=tmp_path, env=environment, stdout=log, stderr=log))
+        return started[-1]
+
+    yield start
+    for process in started:
+        process.kill()
+        process.wait()
+
+
+def address_in(path, patience=60.0):
+    """The address in a scheduler's file, once it is there."""
+    end = time.monotonic() + patience
+    while time.monotonic() < end:
+        if path.exists() and path.stat().st_size:
+            return json.loads(path.read_text())["address"]
+        time.sleep(0.05)
+    raise TimeoutError(path)
+
+
+def worker_of(dask, tmp_path, lab=ROOT):
+    """A worker of the scheduler of `scheduler.json`, with the lab in that folder."""
+    place = ("--scheduler-file", tmp_path / "scheduler.json", "--local-directory", tmp_path / "worker")
+    return dask("worker", *place, "--no-nanny", "--nthreads", 1, lab=lab)
+
+
+def asking(folder, address, *words):
+    """The command that sweeps on a cluster, in a process of its own."""
+    table = "tank.width=24 mm", "tank.height=24 mm", "motion.tilt=false", "motion.sway.amplitude=4 mm", "run.threads=1"
+    table = *table, "grains.count=16", "run.settle=false", "run.duration=0.1 s", "motion.sway.frequency=1, 3 Hz"
+    said = [word for setting in (*table, *words) for word in ("--set", setting)]
+    line = [sys.executable, "-m", "lab", "sweep", "tilting/quick", *said, "--repeats", 1, "--no-video"]
+    line += ["--out", folder, "--cluster", address]
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
+    return subprocess.Popen(list(map(str, line)), env=environment, cwd=folder.parent, **pipes)
+
+
+@pytest.mark.slow
+def test_a_scheduler_that_is_killed_is_one_sentence(dask, tmp_path):
+    scheduler = dask("scheduler", "--host", "127.0.0.1", "--port", 0, "--scheduler-file", tmp_path / "scheduler.json")
+    command = asking(tmp_path / "there", address_in(tmp_path / "scheduler.json"))
+    assert "no worker yet: waiting for one" in command.stderr.readline()
+    scheduler.kill()
+    _, said = command.communicate(timeout=120)
+    assert command.returncode == 2 and "is gone: start it again and ask again" in said and "Traceback" not in said
+
+
+@pytest.mark.slow
+def test_a_client_that_is_interrupted_leaves_the_worker_free(dask, tmp_path):
+    dask("scheduler", "--host", "127.0.0.1", "--port", 0, "--scheduler-file", tmp_path / "scheduler.json")
+    address = address_in(tmp_path / "scheduler.json")
+    worker_of(dask, tmp_path)
+    command = asking(tmp_path / "there", address, "run.duration=9000 s")
+    with distributed.Client(address, timeout=60, set_as_default=False) as client:
+        while not list((tmp_path / "worker").rglob("recording.h5")):
+            time.sleep(0.1)
+        command.send_signal(signal.SIGINT)
+        _, said = command.communicate(timeout=120)
+        assert command.returncode == 130 and "go on with: cargolab resume" in said and "Traceback" not in said
+        assert client.submit(int, "5", pure=False).result(timeout=60) == 5  # the one thread is free again
+    assert not list((tmp_path / "worker").rglob("recording.h5"))
+
+
+@pytest.mark.slow
+def test_a_worker_without_room_is_one_sentence(dask, tmp_path):
+    dask("scheduler", "--host", "127.0.0.1", "--port", 0, "--scheduler-file", tmp_path / "scheduler.json")
+    address = address_in(tmp_path / "scheduler.json")
+    worker = worker_of(dask, tmp_path)
+    with distributed.Client(address, timeout=60, set_as_default=False) as client:
+        client.wait_for_workers(1, timeout=60)
+    resource.prlimit(worker.pid, resource.RLIMIT_FSIZE, (1_000_000, 1_000_000))
+    command = asking(tmp_path / "there", address)
+    _, said = command.communicate(timeout=240)
+    assert command.returncode == 2 and "--cluster: on a worker, " in said and "make room there" in said
+    assert "Traceback" not in said
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("said", ['__version__ = "0.0.1"\n', ""])
+def test_a_worker_with_another_lab_is_one_sentence(dask, tmp_path, said):
+    (tmp_path / "other" / "lab").mkdir(parents=True)
+    (tmp_path / "other" / "lab" / "__init__.py").write_text(said)
+    dask("scheduler", "--host", "127.0.0.1", "--port", 0, "--scheduler-file", tmp_path / "scheduler.json")
+    address = address_in(tmp_path / "scheduler.json")
+    worker_of(dask, tmp_path, lab=tmp_path / "other")
+    command = asking(tmp_path / "there", address)
+    _, answer = command.communicate(timeout=120)
+    assert command.returncode == 2 and "a worker lacks cargo-shift-lab" in answer and "Traceback" not in answer
+    assert ("it has 0.0.1" if said else "it has an earlier version") in answer
+
+
+@pytest.mark.slow
+def test_a_scheduler_that_listens_beyond_this_machine_is_told(dask, tmp_path):
+    dask("scheduler", "--host", "0.0.0.0", "--port", 0, "--scheduler-file", tmp_path / "scheduler.json")
+    address = address_in(tmp_path / "scheduler.json")
+    command = asking(tmp_path / "there", f"tcp://127.0.0.1:{address.rpartition(':')[2]}")
+    assert "listens beyond this machine without TLS" in command.stderr.readline()
+    command.send_signal(signal.SIGINT)
+    command.communicate(timeout=120)
 
 
 @pytest.mark.slow

@@ -189,7 +189,7 @@ def test_soft_start_takes_a_record_that_starts_in_motion(preset, tmp_path):
 
 def test_most_samples(preset, tmp_path, monkeypatch):
     monkeypatch.setattr(history, "MOST_SAMPLES", 60)
-    assert "from 4 to 60 samples are possible (got 61)" in fault(preset)
+    assert "more than 60 rows" in fault(preset)
 
 
 NUMBERS = st.floats() | st.floats(-1, 1) | st.just(0.0)

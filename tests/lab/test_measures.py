@@ -44,7 +44,7 @@ def tilted(folder, gives, tilt=None, sign=1.0, **options):
 
 
 def test_a_value_is_mean_and_sample_deviation_over_the_worlds_that_have_one():
-    value = over_worlds([20.0, np.nan, 24.0], "deg", uncertainties=[0.3, np.nan, 0.4])
+    value = over_worlds([20.0, np.nan, 24.0], "deg", uncertainties=[0.3, np.nan, 0.4], kind="fit")
     assert value.value == 22.0
     assert value.std == pytest.approx(np.sqrt(8.0))
     assert value.uncertainty == pytest.approx(np.sqrt(0.125))

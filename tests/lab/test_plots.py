@@ -98,6 +98,22 @@ def test_a_run_stopped_after_a_few_samples_is_drawn(tmp_path, resolved, samples)
     assert "shift" in drawn(run(tmp_path, resolved, samples=samples, worlds=1))
 
 
+def words(figure):
+    """All that a figure says in its title and its legends."""
+    legends = [text.get_text() for legend in figure.legends for text in legend.get_texts()]
+    return " ".join([figure.get_suptitle(), *legends])
+
+
+@pytest.mark.parametrize(("worlds", "bars"), [(1, False), (2, True)])
+def test_plus_minus_is_of_several_beds_and_says_so(tmp_path, worlds, bars):
+    with open_recording(run(tmp_path, TILT, worlds=worlds)) as recording:
+        values = measure_all(recording)
+        said = [words(FIGURES[name](recording, values)) for name in ("shift", "slope", "contacts")]
+    assert all(("±" in text) is bars for text in said)
+    assert ("mean ± std of 2 beds" in said[0]) is bars
+    assert "band: uncertainty of the fit" in said[1]
+
+
 def test_a_long_title_takes_more_lines_and_stays_on_the_page(tmp_path, monkeypatch):
     monkeypatch.delitem(FIGURES, "energy")
     long = "A tank of many grains that are shaken for a long time, " * 4

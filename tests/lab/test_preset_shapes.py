@@ -16,7 +16,7 @@ from lab.explain import explain
 from lab.launch import prepare
 from lab.paint.video import poster, render_grid
 from lab.presets import load
-from lab.recording import Recorder, mend_recording, open_recording
+from lab.recording import Recorder, open_recording
 from lab.runner import run_preset
 from lab.scene import build, filling_outline, grain_count
 from lab.schema import Resolved
@@ -236,17 +236,15 @@ def test_beds_of_other_outlines_or_angles_are_other_beds():
     assert len({*same, *others}) == 4
 
 
-def test_a_run_records_its_outlines_and_keeps_them_when_mended(tmp_path):
+def test_a_run_records_its_outlines(tmp_path):
     preset = loaded(TWO)
     run = prepare(preset, tmp_path)
     run.make_recording()
-    for _ in range(2):
-        with open_recording(tmp_path) as recording:
-            shapes = recording.shapes
-            assert shapes.contours == run.scene.shapes.outlines
-            np.testing.assert_array_equal(shapes.which, run.scene.shapes.which)
-            np.testing.assert_array_equal(shapes.kind, classes(preset.resolved))
-        mend_recording(tmp_path)
+    with open_recording(tmp_path) as recording:
+        shapes = recording.shapes
+        assert shapes.contours == run.scene.shapes.outlines
+        np.testing.assert_array_equal(shapes.which, run.scene.shapes.which)
+        np.testing.assert_array_equal(shapes.kind, classes(preset.resolved))
 
 
 def test_a_recording_of_discs_holds_no_outlines_and_damaged_ones_are_refused(tmp_path):

@@ -2,12 +2,13 @@
 
 import json
 import warnings
+from dataclasses import replace
 from math import inf, pi, radians
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from synthetic import box, frame, preset, recorder, sample
+from synthetic import box, frame, of_a_ship, preset, recorder, sample
 
 from lab import plots
 from lab.errors import LabError
@@ -28,12 +29,13 @@ from lab.ship import (
     make_waves,
     natural_roll,
 )
+from lab.ship_end import End
 from lab.ship_tables import stored_table
 from lab.sweeps import point_folder, run_sweep
 from solvers.ship import radiation
 from solvers.ship.hydrostatics import metacentric_height
 from solvers.ship.linear import oscillations
-from solvers.ship.motion import start
+from solvers.ship.motion import sail, start
 
 BARGE = "ship/barge-roll"
 OMEGA = 4.4
@@ -45,6 +47,13 @@ def fault(changes: dict, name: str = BARGE) -> str:
     sentence = str(caught.value)
     assert sentence[-1] in ".?" and "\n" not in sentence and len(sentence) < 400
     return sentence
+
+
+OUTLINED = {
+    "ship.breadth": False,
+    "ship.height": False,
+    "ship.outline": [[f"{y} mm", f"{z} mm"] for y, z in ((-170, 0), (170, 0), (170, 300), (-170, 300))],
+}
 
 
 @pytest.mark.parametrize(
@@ -64,6 +73,17 @@ def fault(changes: dict, name: str = BARGE) -> str:
         ({"waves.kind": "packet"}, 'waves.spread: missing; waves.kind = "packet" needs it.'),
         ({"waves.frequency": "0.7 Hz"}, 'waves.frequency: "0.7 Hz" is a frequency, but deg/s'),
         ({"ship.freedom": "pitch"}, "ship.freedom: "),
+        ({"ship.hatch.breadth": "34 cm", "ship.hatch.coaming": "1 cm"}, "ship.hatch.breadth: must be less than"),
+        ({"ship.hatch.breadth": "10 cm"}, "ship.hatch.coaming: missing"),
+        (
+            {**OUTLINED, "ship.hatch.breadth": "10 cm", "ship.hatch.coaming": "1 cm"},
+            "ship.hatch: goes with breadth and",
+        ),
+        ({"ship.openings": [["0 mm", "110 mm"]]}, "ship.openings: [0 m, 110 mm] is under water at rest"),
+        ({"ship.deck": "20 cm"}, "ship.deck: the deck of a box is at its height"),
+        ({**OUTLINED, "ship.deck": "10 cm"}, "ship.deck: must be between the waterline and the hull's top"),
+        ({"ship.height": "140 mm"}, "ship.hold: the tank stands out of the hull at [150 mm, 280 mm]"),
+        ({"ship.hold": ["30 mm", "20 mm"]}, "ship.hold: the tank stands out of the hull at [180 mm, 20 mm]"),
         ({"ship.draft": "1 m"}, "ship.draft: unknown key; did you mean 'draught'?"),
     ],
 )
@@ -163,6 +183,25 @@ def test_the_motion_of_the_axis_is_found_from_the_tanks(barge):
     assert axis_motion(said.ship, tank) == pytest.approx(np.array([[sway, heave, roll]]))
 
 
+@pytest.mark.parametrize("about", [None, (0.02, 0.15)])
+def test_a_ship_held_by_her_axis_is_heeled_about_it(about):
+    """Let go from 8 deg she rolls, and her axis neither sways nor heaves, wherever it is in her."""
+    said = load("ship/free-decay").resolved
+    given = replace(said.ship, axis=about, radiation="none")
+    vessel = make_vessel(given, said.water, None, 0.003, 9.81)
+    ship = vessel.ship
+    state = start(ship, vessel.heave(ship.body, vessel.heel), vessel.heel)
+    voyage = sail(ship, state, 0.01, 2.0)
+    arm = np.subtract(given.hold, given.about)
+    cos, sin = np.cos(voyage.roll), np.sin(voyage.roll)
+    tank = voyage.state[:, :3] + np.stack(
+        [cos * arm[0] - sin * arm[1], sin * arm[0] + cos * arm[1], 0.0 * cos], axis=-1
+    )
+    moved = axis_motion(given, tank)
+    assert np.ptp(voyage.roll) > radians(12.0)
+    assert moved[:, :2] == pytest.approx(0.0, abs=1e-12)
+
+
 def test_words_on_a_ship(barge):
     said, vessel = barge
     given = ShipGiven(**{**vars(said.ship), "scale": 100.0})
@@ -213,7 +252,7 @@ def rolling(tmp_path):
             lost = radians(80.0) * min(1.0, now / 30.0)
             pose = np.array([[0.0, 0.0, roll], [0.0, 0.0, lost]])
             capsized = [-1.0, 30.0 if now >= 30.0 else -1.0]
-            writer.sample(sample(now, 2, pose=pose, ship_works=works * now, capsized=capsized))
+            writer.sample(sample(now, 2, pose=pose, **of_a_ship(2, ship_works=works * now, capsized=capsized)))
         writer.frame(frame(0.0, 2))
     with open_recording(tmp_path) as recording:
         yield recording
@@ -226,8 +265,7 @@ def test_the_curve_of_righting_levers(tmp_path):
         tmp_path, 1, 3000, resolved=said, radius=np.full((1, 3000), 0.0015), outline=box(0.3, 0.26)
     ) as writer:
         for now in (0.0, 1.0, 2.0):
-            centre, afloat = np.array([[0.0, 0.055]]), {"ship_works": np.zeros((1, 4)), "capsized": [-1.0]}
-            writer.sample(sample(now, centre_of_mass=centre, **afloat))
+            writer.sample(sample(now, centre_of_mass=np.array([[0.0, 0.055]]), **of_a_ship()))
         writer.frame(frame(0.0, 1, 3000))
     with open_recording(tmp_path) as recording:
         axes = plots.lever_figure(recording, {}).axes[0]
@@ -263,8 +301,8 @@ def test_the_significant_roll_is_that_of_the_highest_third_of_swings(tmp_path, m
     with recorder(tmp_path, 2, resolved={**preset(), "ship": SHIP, "waves": waves}) as writer:
         for now, turned in zip(time, roll, strict=True):
             capsized = [-1.0, 5.0 if now >= 5.0 else -1.0]
-            pose, works = np.array([[0.0, 0.0, turned]] * 2), np.zeros((2, 4))
-            writer.sample(sample(now, 2, pose=pose, ship_works=works, capsized=capsized))
+            pose = np.array([[0.0, 0.0, turned]] * 2)
+            writer.sample(sample(now, 2, pose=pose, **of_a_ship(2, capsized=capsized)))
         writer.frame(frame(0.0, 2))
     monkeypatch.setattr(ship_roll, "frozen", lambda _: (time, 0.5 * roll, None))
     with open_recording(tmp_path) as recording, warnings.catch_warnings():
@@ -287,7 +325,7 @@ def test_measures_of_frozen_cargo(rolling, monkeypatch):
     assert found["frozen_amplitude"].value == pytest.approx(7.0, rel=2e-3)
     assert found["frozen_largest_roll"].value == pytest.approx(8.0, rel=1e-3)
     assert found["frozen_capsized_at"].value is None
-    monkeypatch.setattr(ship_roll, "frozen", lambda _: (time[:500], 9.0 * roll[:500], 10.0))
+    monkeypatch.setattr(ship_roll, "frozen", lambda _: (time[:500], 9.0 * roll[:500], End("capsized", 10.0, 1.3)))
     lost = ship_roll.measure(rolling)
     assert (lost["frozen_amplitude"].value, lost["frozen_capsized_at"].value) == (None, 10.0)
     assert lost["frozen_largest_roll"].value == pytest.approx(72.0, rel=1e-3)
@@ -300,7 +338,8 @@ def test_frozen_cargo_sails_on_when_the_loose_has_capsized_the_ship(monkeypatch)
     monkeypatch.setattr(ship_roll, "_vessel", lambda _: vessel)
 
     def sailed(name: str, capsized: float) -> float:
-        series = {"time": np.array([0.0, 0.5]), "capsized": np.array([[-1.0], [capsized]])}
+        series = {"time": np.array([0.0, 0.5]), "pose": np.zeros((2, 1, 3)), "flooded": np.full((2, 1), -1.0)}
+        series["capsized"] = np.array([[-1.0], [capsized]])
         found = ship_roll.frozen(SimpleNamespace(path=name, series=series, preset={"run": {"duration": 2.0}}))
         return found[0][-1]
 

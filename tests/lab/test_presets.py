@@ -70,6 +70,11 @@ def test_every_shipped_preset_resolves_and_says_what_it_is_about(name):
     assert (any(moving) or said.ship) and said.run.duration > 0
 
 
+def on_its_own(preset: Resolved) -> Resolved:
+    """The preset as its given text has it, which holds all that it was based on."""
+    return preset.model_copy(update={"based_on": ""})
+
+
 @pytest.mark.parametrize("name", names())
 def test_given_text_is_the_same_preset(name, tmp_path):
     preset = load(name, {"grains.spread": "5 %", "material.dissipative_time": "1e-6 s"})
@@ -77,7 +82,7 @@ def test_given_text_is_the_same_preset(name, tmp_path):
         copy(table, tmp_path)
     again = load(write(tmp_path, "again.toml", preset.given_text))
     assert again.name == "again"
-    assert again.resolved == preset.resolved
+    assert again.resolved == on_its_own(preset.resolved)
 
 
 @pytest.mark.parametrize("name", [name for name in names() if name.endswith(QUICK)])
@@ -140,7 +145,7 @@ def test_overrides_may_be_numbers_and_arrays_of_numpy(tmp_path):
     given = {"run.repeats": np.int64(3), "grains.spread": np.float64(0.1), "run.settle": np.bool_(True)}
     preset = load("tilting/quick", given)
     assert preset.resolved.run.repeats == 3 and preset.resolved.grains.spread == 0.1
-    assert load(write(tmp_path, "again.toml", preset.given_text)).resolved == preset.resolved
+    assert load(write(tmp_path, "again.toml", preset.given_text)).resolved == on_its_own(preset.resolved)
 
 
 def test_alternatives_replace_what_is_inherited():
@@ -163,6 +168,21 @@ def test_own_file_is_based_on_another_own_file(tmp_path):
     path = write(tmp_path, "deep/heir.toml", 'based_on = "../base.toml"\ntitle = "heir"')
     heir = load(path).resolved
     assert heir.title == "heir" and heir.grains.depth == pytest.approx(0.03)
+
+
+def test_what_a_source_reports_is_not_handed_down(tmp_path):
+    """Title, source and reports are of one experiment; a file that is based on it names it, and has its own or none."""
+    heir = load(write(tmp_path, "mine.toml", 'based_on = "tilting/acetate"\n[tank]\nwidth = "90 mm"'))
+    said, base = heir.resolved, load("tilting/acetate").resolved
+    assert (said.title, said.source, said.reports) == ("mine, based on tilting/acetate", "", "")
+    assert said.based_on == "tilting/acetate" and not base.based_on
+    assert said.material == base.material and base.source and base.reports
+    assert ' with "tilting/acetate", on which it is based, and all overrides merged in.' in heir.given_text
+    assert "based_on" not in tomllib.loads(heir.given_text)
+    grandchild = load(write(tmp_path, "own.toml", 'based_on = "mine.toml"\nsource = "a report"')).resolved
+    assert (grandchild.based_on, grandchild.source, grandchild.reports) == ("mine.toml", "a report", "")
+    quick, whole = load("tilting/acetate-quick").resolved, load("tilting/acetate").resolved
+    assert (quick.source, quick.reports, quick.title) == (whole.source, whole.reports, whole.title)
 
 
 def test_own_file_may_carry_a_byte_order_mark(tmp_path):

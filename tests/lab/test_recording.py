@@ -2,6 +2,7 @@ import errno
 import json
 import os
 import random
+import signal
 import subprocess
 import sys
 import time
@@ -13,22 +14,28 @@ import pytest
 from synthetic import frame, recorder, sample
 
 from lab.errors import LabError
-from lab.recording import BUFFER_BYTES, mend_recording, open_recording
+from lab.recording import BUFFER_BYTES, Recorder, open_recording, superblock
 
+FRAMES = "3 times (record.picture_rate, run.duration) × 2 beds (run.repeats)"
 KILLED_RUN = """
 import sys
 import time
 from pathlib import Path
+from lab.recording import Recorder
 from synthetic import frame, recorder, sample
 
-run = recorder(Path(sys.argv[1]), count=500, flush_every=0.01)
-k = 0
+folder, k = Path(sys.argv[1]), int(sys.argv[2])
+if (folder / "recording.h5").exists():  # of one that was killed
+    run = Recorder(folder, samples=k, frames=(k + 3) // 4, flush_every=0.01)
+else:
+    run = recorder(folder, count=500, flush_every=0.01)
+begun = k
 while True:
     run.grain_steps = 1000 * k
     run.sample(sample(float(k), kinetic=[float(k)], pose=[[float(k)] * 3]))
     if k % 4 == 0:
         run.frame(frame(float(k), count=500, angle=[[float(k)] * 500]))
-    if k == 2000:
+    if k == begun + 2000:
         print("under way", flush=True)
     k += 1
 """
@@ -65,13 +72,13 @@ def test_what_is_written_is_read(tmp_path):
             recording.frames["spin"][1]
 
 
-def start_writer(folder):
-    """A process that records as fast as it can until it is killed."""
+def start_writer(folder, standing=0):
+    """A process that records as fast as it can until it is killed, behind so many rows of what is there."""
     return subprocess.Popen(
-        [sys.executable, "-c", KILLED_RUN, folder],
+        [sys.executable, "-c", KILLED_RUN, folder, str(standing)],
         stdout=subprocess.PIPE,
         cwd=Path(__file__).parents[2],
-        env={"PYTHONPATH": f"{Path(__file__).parent}:{Path(__file__).parents[2]}"},
+        env=os.environ | {"PYTHONPATH": f"{Path(__file__).parent}:{Path(__file__).parents[2]}"},
     )
 
 
@@ -88,6 +95,49 @@ def assert_whole(folder) -> int:
         return count
 
 
+@pytest.mark.parametrize(
+    ("ask", "said"),
+    [
+        (
+            lambda r: r.frames["position"][:, 2],
+            f"has no [:, 2]; it is {FRAMES} × 4 grains (grains.count) × 2.",
+        ),
+        (lambda r: r.frames["position"][3], f"frames/position has no [3]; it is {FRAMES}"),
+        (lambda r: r.frames["part"][:, 0, 0], f"{FRAMES} × 0 parts (parts.NAME) × 2."),
+        (lambda r: r.frames["pose"]["y"], f"frames/pose has no [y]; it is {FRAMES} × 3."),
+        (
+            lambda r: r.frames["force"],
+            'no "force" in its frames, but time, pose, part, position, velocity, angle, spin; ',
+        ),
+        (lambda r: r.frames["waves"][:, 0], "`cargolab view` records it, of a ship in waves."),
+        (lambda r: r.frames["kinetic"][:, 0], "it is in the series (record.series_rate)."),
+        (lambda r: r.series["position"], "it is in the frames (record.picture_rate)."),
+        (lambda r: r.series["ship_works"][:, 0], "a preset with a table [ship] records it."),
+    ],
+)
+def test_what_was_not_recorded_is_said_in_a_sentence(tmp_path, ask, said):
+    with recorder(tmp_path, 2) as run:
+        for k in range(3):
+            run.sample(sample(float(k), 2))
+            run.frame(frame(float(k), 2))
+    with open_recording(tmp_path) as recording, pytest.raises(LabError) as refused:
+        ask(recording)
+    assert said in str(refused.value) and "recording.h5" in str(refused.value)
+
+
+def test_frames_are_indexed_as_arrays(tmp_path):
+    with recorder(tmp_path, 2) as run:
+        for k in range(3):
+            run.frame(frame(float(k), 2, position=np.arange(16.0).reshape(2, 4, 2) + k))
+    with open_recording(tmp_path) as recording:
+        column = recording.frames["position"]
+        whole = column[:]
+        for index in (0, -1, slice(None), slice(1, None), (slice(None), 0), (slice(None), -1, 2), (1, 1, slice(2), 0)):
+            assert np.array_equal(column[index], whole[index]), index
+        assert len(list(column)) == 3
+        assert "force" not in recording.frames and recording.frames.get("force") is None
+
+
 def test_a_killed_run_is_read_up_to_its_last_flush(tmp_path):
     writer = start_writer(tmp_path)
     assert writer.stdout.readline() == b"under way\n"
@@ -102,19 +152,89 @@ def test_a_killed_run_is_read_up_to_its_last_flush(tmp_path):
         assert 1500 * 1000 < recording.grain_steps < 1000 * count
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("seed", range(60))
-def test_a_run_killed_at_any_time_is_read_and_mended(tmp_path, seed):
-    folder, chance = tmp_path / "run", random.Random(seed)
-    writer = start_writer(folder)
-    while not (folder / "recording.h5").exists():
-        time.sleep(0.0005)
-    time.sleep(chance.choice([0.001, 0.02, 0.3, 2.0]) * chance.random())
+def test_whoever_reads_what_was_killed_clears_the_mark_of_its_writer(tmp_path):
+    writer, path = start_writer(tmp_path), tmp_path / "recording.h5"
+    assert writer.stdout.readline() == b"under way\n"
+    open_recording(tmp_path).close()
+    with pytest.raises(OSError, match="already open for write"):  # it lives
+        h5py.File(path)
     writer.kill()
     writer.communicate()
-    count = assert_whole(folder)
-    mend_recording(folder)
-    assert assert_whole(folder) == count
+    with pytest.raises(OSError, match="already open for write"):
+        h5py.File(path)
+    count = assert_whole(tmp_path)
+    with h5py.File(path) as file:
+        np.testing.assert_array_equal(file["series/time"][:count], np.arange(count))
+        used = sum(item.id.get_storage_size() for table in ("series", "frames") for item in file[table].values())
+    assert path.stat().st_size < used + 2**21  # what was reserved is given back
+
+
+def test_what_cannot_be_written_is_read_even_if_its_writer_was_killed(tmp_path):
+    writer, path = start_writer(tmp_path), tmp_path / "recording.h5"
+    assert writer.stdout.readline() == b"under way\n"
+    writer.kill()
+    writer.communicate()
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Path, "open", lambda *_, **__: fail_to_write())
+        assert assert_whole(tmp_path) > 1500
+    with pytest.raises(OSError, match="already open for write"):
+        h5py.File(path)
+
+
+def fail_to_write():
+    raise OSError(errno.EROFS, "Read-only file system")
+
+
+def test_what_lies_behind_the_end_that_a_killed_file_says_is_not_written_over(tmp_path):
+    writer, path = start_writer(tmp_path), tmp_path / "recording.h5"
+    assert writer.stdout.readline() == b"under way\n"
+    writer.kill()
+    writer.communicate()
+    with path.open("r+b") as file:  # as if the end had been about to be written
+        head = file.read(superblock.SIZE)
+        file.seek(0)
+        file.write(superblock.amended(head, superblock.WRITING, superblock.end(head) // 2))
+    begin = assert_whole(tmp_path) - 50
+    with Recorder(tmp_path, samples=begin, frames=(begin + 3) // 4) as run:
+        for k in range(begin, begin + 3000):
+            run.sample(sample(float(k), kinetic=[float(k)], pose=[[float(k)] * 3]))
+            if k % 4 == 0:
+                run.frame(frame(float(k), count=500, angle=[[float(k)] * 500]))
+    assert assert_whole(tmp_path) == begin + 3000
+
+
+def kill_and_go_on(folder, kills: int, chance: random.Random) -> int:
+    """Kill a writer, and those that go on with its file, at random times; the rows that are there in the end."""
+    count, path = 0, folder / "recording.h5"
+    for _ in range(kills):
+        before = changed(path)
+        writer = start_writer(folder, max(0, count - 50))
+        while writer.poll() is None and changed(path) == before:
+            time.sleep(0.0002)
+        time.sleep(chance.choice([0.0, 0.001, 0.02, 0.3, 1.0]) * chance.random())
+        writer.kill()
+        writer.communicate()
+        assert writer.returncode == -signal.SIGKILL
+        if chance.random() < 0.7:  # else the next one finds it as it was left
+            kept = assert_whole(folder)
+            assert kept >= count
+            count = kept
+    return count
+
+
+def changed(path) -> int:
+    """When a file was changed last, in ns; 0 where there is none."""
+    return path.stat().st_mtime_ns if path.exists() else 0
+
+
+def test_a_recording_survives_kills_of_who_goes_on_with_it(tmp_path):
+    kill_and_go_on(tmp_path / "run", 6, random.Random(1))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(20))
+def test_a_recording_survives_any_kills(tmp_path, seed):
+    assert kill_and_go_on(tmp_path / "run", 20, random.Random(seed)) > 200
 
 
 def test_rows_are_kept_in_memory_between_flushes(tmp_path):
@@ -218,7 +338,7 @@ def test_a_closed_recording_takes_no_more_room_than_it_needs(tmp_path):
         run.sample(sample(0.0))
     size = (tmp_path / "recording.h5").stat().st_size
     assert size < 2**20
-    mend_recording(tmp_path)
+    Recorder(tmp_path, samples=1).close()
     assert (tmp_path / "recording.h5").stat().st_size < 1.2 * size
 
 

@@ -1,22 +1,30 @@
 """The report on the source's experiments: every batch can be run, results are read as they are, nothing runs twice."""
 
 import json
+import re
 import signal
 import subprocess
 import sys
 import time
+from dataclasses import asdict
+from pathlib import Path
 from types import SimpleNamespace
 
 import h5py
 import numpy as np
 import pytest
+from pydantic import TypeAdapter
 
+import lab
 from lab import reproduce as package
 from lab.errors import LabError
 from lab.measures.value import over_worlds
+from lab.page import Page
 from lab.presets import load
-from lab.reproduce import REPORTS, experiments, outlines, reproduce, runs, workers
-from lab.reproduce.experiment import Experiment, Told, counted, observed, ordered, stated
+from lab.reproduce import REPORTS, experiments, outlines, report, reproduce, runs, workers
+from lab.reproduce.estimates import Verdict, surely
+from lab.reproduce.experiment import EXACT, ONE_BED, Experiment, Row, Told, Tolerance, counted, observed, stated
+from lab.reproduce.findings import Finding, asked, read_findings
 from lab.reproduce.report import write_report
 from lab.reproduce.runs import Batch, Outcome
 from lab.reproduce.shaking import FREQUENCY, onset
@@ -24,6 +32,7 @@ from lab.scene import build
 from lab.sweeps import ask
 from solvers import runtime
 
+ROOT = Path(lab.__file__).parents[1]
 SMALL = {
     "tank.width": "30 mm",
     "tank.height": "30 mm",
@@ -40,7 +49,7 @@ def outcome(setting=None, **measures) -> Outcome:
     return Outcome(setting or {}, None, "complete", measures, {"wall_s": 1.0, "grain_steps": 1e6})
 
 
-EXPERIMENTS = {name: one for report in REPORTS for name, one in experiments(report).items()}
+EXPERIMENTS = {name: one for part in REPORTS for name, one in experiments(part).items()}
 
 
 @pytest.mark.parametrize("name", EXPERIMENTS)
@@ -143,14 +152,63 @@ def test_what_is_not_run_yet_is_said(tmp_path, monkeypatch):
         reproduce("granular", ["tilt-x"], tmp_path, quick=False)
 
 
-def test_numbers_agree_within_what_is_allowed_and_trends_by_their_order():
-    value = over_worlds([20.0, 22.0], "deg")
-    row = stated("angle", 18.0, value, 3.0)
-    assert row.agrees and row.difference == "+3.0 ± 1.0 deg" and row.ours == "21.0 ± 1.4 deg (2 beds)"
-    assert not stated("angle", 18.0, value, 2.9).agrees
-    assert not stated("angle", 18.0, over_worlds([np.nan], "deg"), 99.0).agrees
-    low = over_worlds([19.0], "deg")
-    assert ordered(value, low) and not ordered(low, value) and not ordered(value, None)
+BY_EYE = Tolerance(3.0, "read off a picture")
+
+
+def test_a_number_agrees_where_its_interval_lies_within_the_tolerance():
+    """Mean 21 of four beds, standard error 0.41: ± 1.3 deg at 95 %."""
+    value = over_worlds([20.0, 22.0, 21.0, 21.0], "deg")
+    row = stated("angle", 20.0, value, BY_EYE)
+    assert row.verdict is Verdict.AGREES and row.ours == "21.00 ± 0.82 deg (4 beds)"
+    assert row.apart == "+1, [-0.3, 2.3] deg (95 %)" and row.tolerance == "3 deg: read off a picture"
+    assert stated("angle", 10.0, value, BY_EYE).verdict is Verdict.DIFFERS
+    assert stated("angle", 18.5, value, BY_EYE).verdict is Verdict.CANNOT_TELL
+
+
+def test_a_mean_that_fits_is_left_open_where_beds_scatter_widely_or_there_is_one():
+    """Right by chance: 21 beside 21, from beds of 10 to 32 deg, or from one bed with however small an own error."""
+    wide = over_worlds([10.0, 32.0, 15.0, 27.0], "deg")
+    one = over_worlds([21.0], "deg", uncertainties=[0.01], kind="detector")
+    for value in (wide, one, over_worlds([np.nan], "deg"), None):
+        assert stated("angle", 21.0, value, BY_EYE).verdict is Verdict.CANNOT_TELL
+    assert "±" not in stated("angle", 21.0, one, BY_EYE).ours
+
+
+def test_what_does_not_vary_from_bed_to_bed_is_judged_as_it_is():
+    """36 beside 5.9 deg is a difference, whatever else agrees."""
+    row = stated("frozen", 36.0, over_worlds([5.9], "deg"), BY_EYE, exact=True)
+    assert row.verdict is Verdict.DIFFERS and row.ours == "5.9 deg" and row.apart == "-30.1 deg"
+    assert stated("frozen", 6.0, over_worlds([5.9], "deg"), BY_EYE, exact=True).verdict is Verdict.AGREES
+
+
+def test_the_head_of_a_report_counts_its_verdicts_and_each_stands_beside_its_tolerance(tmp_path):
+    beds = {"near": [20.0, 22.0, 21.0, 21.0], "far": [30.0, 31.0, 30.0, 31.0], "wide": [10.0, 32.0, 15.0, 27.0]}
+    rows = [stated(name, 20.0, over_worlds(angles, "deg"), BY_EYE) for name, angles in beds.items()]
+    finding = Finding("asked", [*rows, observed("seen", "", "this", None)], (), 1.0, 1.0, "", "")
+    tried = Experiment(
+        "tried", "A trial", "0.0", "20 deg.", lambda quick: {}, lambda found: Told([]), "much", ("", 1.0)
+    )
+    page = Page(tmp_path, "granular", "Title")
+    report._overview(page, "granular", {"tried": tried}, {"tried": finding}, quick=False)
+    report._section(page, tried, finding, quick=False)
+    text = page.write().read_text()
+    assert "Of 3 statements held against the source 1 agree, 1 differ, and of 1 these beds cannot tell." in text
+    assert "| A trial | 0.0 | 1 | 1 | 1 |" in text
+    for name, verdict in (("near", "agrees"), ("far", "**differs**"), ("wide", "cannot tell")):
+        line = next(line for line in text.splitlines() if line.startswith(f"| {name} |"))
+        assert line.endswith(f"| 3 deg: read off a picture | {verdict} |") and "(95 %)" in line
+
+
+@pytest.mark.parametrize("report_name", REPORTS)
+def test_every_verdict_of_the_reports_that_come_with_the_lab_says_its_tolerance(report_name):
+    """And no number of one bed has a ±."""
+    kept = ROOT / "renders" / "gallery" / report_name / f"{report_name}.json"
+    rows = [Row(**row) for finding in json.loads(kept.read_text()).values() for row in finding["rows"]]
+    assert rows
+    for row in rows:
+        assert row.tolerance or row.verdict is None, row
+        assert not re.search(r"±[^(;,]*\(1 bed", row.ours), row
+        assert "±" not in row.ours or re.search(r"beds|\(s\.e\.\)", row.ours), row
 
 
 def test_the_onset_is_each_beds_own_and_lies_between_two_frequencies():
@@ -174,25 +232,55 @@ def test_round_outlines_are_judged_bed_by_bed_before_they_slide(monkeypatch):
 
     nodes = [ran(0.95, **{outlines.NODES: 36}), ran(0.98, **{outlines.NODES: 120})]
     told = outlines.round_ones({"discs": [ran(1.0)], "smooth": [ran(1.0)], "nodes": nodes})
-    said = [(row.ours, row.agrees) for row in told.rows[:4]]
-    assert said == [
-        ("1.25 ± 0.27 mm (6 beds)", None),
-        ("1.000 ± 0.000", None),
-        ("0.950 ± 0.004", True),
-        ("0.980 ± 0.002", False),
-    ]
+    discs, *ratios = told.rows[:4]
+    assert (discs.ours, discs.verdict) == ("1.25 ± 0.27 mm (6 beds)", None)
+    assert [row.ours.partition(" ±")[0] for row in ratios] == ["1", "0.9500", "0.9800"]
+    assert all(row.ours.endswith(" (s.e.)") for row in ratios)
+    assert [row.verdict for row in ratios] == [None, Verdict.AGREES, Verdict.DIFFERS]
 
 
 @pytest.mark.parametrize(
-    ("heaps", "agrees"),
-    [((21.9, 22.1, 22.0, 22.2), True), ((29.0, 29.3, 28.8, 29.2), False), ((17.3, 21.5), None), ((22.0,), None)],
+    ("heaps", "verdict"),
+    [
+        ((21.6, 21.8, 21.7, 21.9), Verdict.CANNOT_TELL),
+        ((29.0, 29.3, 28.8, 29.2), Verdict.DIFFERS),
+        ((17.3, 21.5), Verdict.CANNOT_TELL),
+        ((22.0,), Verdict.CANNOT_TELL),
+    ],
 )
-def test_heaps_are_judged_by_what_their_scatter_allows(heaps, agrees):
+def test_heaps_are_judged_by_what_their_scatter_allows(heaps, verdict):
     discs, outlined = (over_worlds(angles, "deg") for angles in ((19.1, 19.4, 18.2, 20.1), heaps))
     found = {"discs": [outcome(heap_angle=discs)], "outlines": [outcome(heap_angle=outlined)]}
-    assert outlines.heaps(found).rows[-1].agrees is agrees
+    assert outlines.heaps(found).rows[-1].verdict is verdict
 
 
-def test_what_numpy_judged_can_be_kept():
-    row = observed("angle", "", "20 deg", np.float64(1.0) < 2.0)
-    assert json.loads(json.dumps(row.agrees)) is True
+def test_a_verdict_can_be_kept():
+    row = observed("angle", "", "20 deg", surely(np.float64(1.0) < 2.0), EXACT)
+    kept = json.loads(json.dumps(asdict(row)))
+    assert kept["verdict"] == "agrees" and TypeAdapter(Row).validate_python(kept) == row
+
+
+def test_what_was_kept_under_another_rule_is_not_taken_for_a_verdict(tmp_path):
+    """A file of rows that say true or false: it is to be made anew."""
+    old = {"quantity": "angle", "source": "20", "ours": "21", "difference": "+1", "agrees": True}
+    finding = {"asked": "", "rows": [old], "stopped": [], "grain_steps": 1, "wall_s": 1, "figure": "", "picture": ""}
+    (tmp_path / "granular.json").write_text(json.dumps({"tilt-fill": finding}))
+    with pytest.raises(LabError, match="remove it"):
+        read_findings(tmp_path / "granular.json", experiments("granular"), False)
+
+
+def test_the_tolerance_of_one_bed_is_what_beds_scatter_by():
+    """The root of the mean squared standard deviations over all beds that were tilted for the report."""
+    kept = json.loads((ROOT / "renders" / "gallery" / "granular" / "granular.json").read_text())
+    tilted = [row for name, finding in kept.items() if name.startswith("tilt-") for row in finding["rows"]]
+    said = [row["ours"] for row in tilted if "after" not in row["quantity"]]
+    found = [pair for text in said for pair in re.findall(r"± ([\d.]+) deg \((\d+) (?:of \d+ )?beds", text)]
+    std, count = np.array(found, float).T
+    assert ONE_BED.within == pytest.approx(np.sqrt(np.average(std**2, weights=count - 1)), abs=0.1)
+
+
+def test_words_of_a_preset_make_no_run_anew_and_its_physics_does():
+    plain = Batch("tilting/quick", {})
+    reworded = Batch("tilting/quick", {"title": "Another title", "video.colour": "speed"})
+    rougher = Batch("tilting/quick", {"material.friction": 0.3})
+    assert asked({"one": plain}) == asked({"one": reworded}) != asked({"one": rougher})

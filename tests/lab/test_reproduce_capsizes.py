@@ -7,6 +7,7 @@ import pytest
 
 from lab.measures.value import over_worlds
 from lab.reproduce.capsizes import NATURAL, READINGS, Scan, _heap_beside_grains, _rows, scan
+from lab.reproduce.estimates import Verdict
 from lab.reproduce.runs import Outcome
 from lab.reproduce.ship import AMPLITUDE, FREQUENCY, capsize_batches
 
@@ -47,12 +48,21 @@ def test_what_is_read_off_scans():
     rolls = np.array([[9.0, 31.0, 20.0]] * 4)
     loose = Scan(sizes, frequencies, rolls, shares)
     frozen = Scan(sizes, frequencies, rolls, np.zeros((4, 3)))
-    peak, capsized, kept = _rows("so", loose, frozen)
-    assert peak.ours == "4.6 rad/s, with 31 deg" and peak.agrees is False
-    assert capsized.ours == "from 17 mm on; in 19 mm at 4.6 to 4.7 rad/s" and capsized.agrees
-    assert kept.ours == "none up to 30 mm" and kept.agrees
+    peak, roll, capsized, at, kept = _rows("so", loose, frozen)
+    assert peak.ours == "4.6 rad/s" and peak.verdict is Verdict.DIFFERS
+    assert roll.source == "36 deg" and roll.ours == "31 deg" and roll.verdict is Verdict.DIFFERS
+    assert capsized.ours == "from 17 mm on" and capsized.verdict is Verdict.AGREES
+    assert at.ours == "at 4.6 to 4.7 rad/s" and at.verdict is Verdict.DIFFERS  # the source: from 4.4
+    assert kept.ours == "none up to 30 mm" and kept.verdict is Verdict.AGREES
     early = replace(loose, capsized=np.maximum(shares, [[0.5, 0.0, 0.0], [0, 0, 0], [0, 0, 0], [0, 0, 0]]))
-    assert not _rows("so", early, early)[1].agrees and not _rows("so", early, early)[2].agrees
+    assert [_rows("so", early, early)[k].verdict for k in (2, 4)] == [Verdict.DIFFERS] * 2
+
+
+def test_a_peak_where_the_sources_is_does_not_hide_another_roll():
+    """26 deg at 4.4 rad/s, where the source has 36."""
+    one = Scan(np.array([10.0, 19.0]), np.array([4.4, 4.6]), np.array([[26.0, 9.0]] * 2), np.zeros((2, 2)))
+    peak, roll, *_ = _rows("so", one, one)
+    assert peak.verdict is Verdict.AGREES and roll.verdict is Verdict.DIFFERS
 
 
 def test_the_heap_is_held_against_the_grains_of_the_same_waves():

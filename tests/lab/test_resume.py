@@ -24,7 +24,7 @@ from lab.launch import prepare
 from lab.lock import only_one
 from lab.presets import load
 from lab.progress import Progress
-from lab.recording import Recorder, mend_recording, open_recording
+from lab.recording import Recorder, open_recording
 from lab.runner import hint, resume_run, run_preset
 
 ROOT = Path(__file__).parents[2]
@@ -157,14 +157,16 @@ def test_nothing_recorded_is_lost_where_resuming_fails(tmp_path, monkeypatch):
     with recorder(tmp_path) as run:
         for k in range(5):
             run.sample(sample(float(k)))
-    before = (tmp_path / "recording.h5").read_bytes()
     with monkeypatch.context() as patch, pytest.raises(LabError, match="cannot be written"):
-        patch.setattr(os, "fsync", fails(errno.EIO))
-        mend_recording(tmp_path)
-    assert (tmp_path / "recording.h5").read_bytes() == before
+        patch.setattr(os, "posix_fallocate", fails(errno.ENOSPC), raising=False)
+        patch.setattr(shutil, "disk_usage", fails(errno.ENOSPC))
+        Recorder(tmp_path, samples=5)
+    with open_recording(tmp_path) as recording:
+        assert recording.complete
+        np.testing.assert_array_equal(recording.series["time"], range(5))
 
 
-def test_a_mended_recording_has_all_whole_rows_and_is_written_over_as_they_come_again(tmp_path):
+def test_a_recording_gone_on_with_has_all_whole_rows_and_is_written_over_as_they_come_again(tmp_path):
     with recorder(tmp_path, parts={"b": [(0, 0), (1, 1)], "a": [(0, 0), (2, 2)]}, fixed=[(0, 0, 1)]) as run:
         for k in range(6):
             run.sample(sample(float(k), kinetic=[7.0]))
@@ -172,7 +174,6 @@ def test_a_mended_recording_has_all_whole_rows_and_is_written_over_as_they_come_
         run.wall_s = 3.0
     with h5py.File(tmp_path / "recording.h5", "r+") as file:
         file["series/overlap"].resize(5, axis=0)  # a row torn by a kill
-    mend_recording(tmp_path)
     with Recorder(tmp_path, samples=3, frames=6) as run:
         assert run.rows == (3, 6) and run.wall_s == 3.0
         run.sample(sample(3.0, kinetic=[8.0]))
@@ -192,6 +193,20 @@ def test_a_recording_behind_its_checkpoint_is_not_gone_on_with(tmp_path):
         Recorder(tmp_path, samples=1)
 
 
+def test_resuming_needs_no_room_for_a_copy_of_the_recording(tmp_path, monkeypatch):
+    prepare(load("tilting/quick", SMALL), tmp_path).make_recording()
+    before = (tmp_path / "recording.h5").stat().st_ino
+    found = []
+
+    def go_on(run, *_):
+        Recorder(run.folder).close("stopped: enough")
+        found.extend((path.name, path.stat().st_ino) for path in tmp_path.iterdir())
+
+    monkeypatch.setattr("lab.runner._complete", go_on)
+    resume_run(tmp_path, quiet=True)
+    assert found == [("recording.h5", before)]
+
+
 def test_a_checkpoint_is_whole_or_the_one_before(tmp_path, monkeypatch):
     first = Checkpoint({"a": np.arange(3.0), "n": np.array(4)}, ("points/001",), (3, 1), ("Beware.",), ("So be it.",))
     first.write(tmp_path)
@@ -204,6 +219,38 @@ def test_a_checkpoint_is_whole_or_the_one_before(tmp_path, monkeypatch):
     np.testing.assert_array_equal(kept.state["a"], first.state["a"])
     assert kept.state["n"] == 4
     assert [path.name for path in tmp_path.iterdir()] == ["checkpoint.npz"]
+
+
+def damages(content: bytes, chance: random.Random):
+    """The content with bits turned, bytes replaced, or a part missing, again and again."""
+    for k in range(2000):
+        changed, place = bytearray(content), chance.randrange(len(content))
+        if k % 3 == 0:
+            changed[place] ^= 1 << chance.randrange(8)
+        elif k % 3 == 1:
+            changed[place : place + 16] = chance.choice([chance.randbytes(16), bytes(16)])
+        else:
+            del changed[place : place + chance.choice([1, 100, len(content)])]
+        yield bytes(changed)
+
+
+def test_a_damaged_checkpoint_is_refused_in_a_sentence_and_never_taken_for_another(tmp_path):
+    whole = Checkpoint({"a": np.arange(30.0), "b": np.ones((3, 2), "i4")}, ("points/001",), (3, 1))
+    whole.write(tmp_path)
+    path = tmp_path / "checkpoint.npz"
+    refused = 0
+    for content in damages(path.read_bytes(), random.Random(4)):
+        path.write_bytes(content)
+        try:
+            kept = read_checkpoint(tmp_path)
+        except LabError as error:
+            assert "checkpoint.npz" in str(error) and "start the run anew" in str(error)
+            refused += 1
+            continue
+        assert (kept.runs, kept.rows, kept.state.keys()) == (whole.runs, whole.rows, whole.state.keys())
+        for name, values in whole.state.items():
+            np.testing.assert_array_equal(kept.state[name], values)
+    assert refused > 1500
 
 
 def test_what_cannot_be_resumed_is_said(tmp_path):

@@ -8,11 +8,13 @@ import pytest
 import lab
 from lab.errors import LabError
 from lab.explain import explain
+from lab.launch import prepare
 from lab.presets import load
 from lab.recording import open_recording
 from lab.runner import run_preset
 from lab.scene import build
 from solvers.errors import BadState
+from solvers.runtime import available_cores
 
 SMALL = {
     "tank": {"width": "30 mm", "height": "30 mm"},
@@ -74,6 +76,27 @@ def test_a_world_settles_alone_as_it_does_in_company():
     assert not np.array_equal(among.radius[0], among.radius[1])
 
 
+@pytest.mark.parametrize(
+    ("run", "company", "threads"),
+    [
+        ({"repeats": 4, "threads": 1}, 0, 1),
+        ({"repeats": 1, "threads": 3}, 0, 1),  # a small bed is one thread's
+        ({"repeats": 2, "threads": 3}, 0, 2),
+        ({"repeats": 2, "threads": 3}, 9, 3),
+        ({"repeats": 1, "threads": 2, "schedule": "per-band"}, 0, 2),
+    ],
+)
+def test_a_run_knows_how_many_threads_compute_it(run, company, threads, tmp_path):
+    ready = prepare(load("tilting/quick", SMALL | {"run": run | {"arch": "cpu"}}), tmp_path)
+    assert ready.engaged(company)["threads"] == threads
+
+
+def test_the_recording_says_what_computes_it(result):
+    used = result.recording.machine["threads"]
+    assert used == min(2, available_cores())
+    assert f", on {used} of " in (result.folder / "summary.md").read_text()
+
+
 def test_a_step_past_the_limit_is_refused_unless_forced_and_far_past_it_in_any_case():
     with pytest.raises(LabError, match=r"run\.step: .*past the limit.*force_step"):
         build(load("tilting/quick", SMALL | {"run": {"step": "20 us"}}).resolved)
@@ -91,10 +114,11 @@ def test_a_forced_step_is_said_in_the_summary(tmp_path):
 
 
 def test_a_run_the_watch_stops_keeps_its_recording_and_says_why(tmp_path):
-    soft = SMALL | {"run": {"repeats": 1}, "contact": {"stiffness_scale": 1e-9}}
-    with pytest.raises(BadState, match=r"world 0: a grain moves at .* too fast for the step"):
-        run_preset("tilting/quick", soft, tmp_path / "soft", video=False, quiet=True)
-    with open_recording(tmp_path / "soft") as recording:
+    thrown = {"tilt": False, "sway": {"amplitude": "4 mm", "frequency": "600 Hz"}}
+    changes = SMALL | {"run": {"repeats": 1, "duration": "0.3 s"}, "motion": thrown}
+    with pytest.raises(BadState, match=r"world 0: (a grain moves at .* too fast|grains overlap by .* too soft)"):
+        run_preset("tilting/quick", changes, tmp_path / "thrown", video=False, quiet=True)
+    with open_recording(tmp_path / "thrown") as recording:
         assert recording.status.startswith("stopped: world 0")
 
 
@@ -115,3 +139,30 @@ def test_a_bed_that_has_not_settled_is_said_in_the_summary(tmp_path):
     restless = SMALL | {"run": {"repeats": 1, "settle_limit": "0.01 s", "duration": "0.05 s"}}
     result = run_preset("tilting/quick", restless, tmp_path / "restless", video=False, quiet=True)
     assert "still moved after 0.01 s" in (result.folder / "summary.md").read_text()
+
+
+SHIP = {"draught": "60 mm", "gravity_height": "35 mm", "breadth": "120 mm", "height": "100 mm", "gyradius": "40 mm"}
+
+
+@pytest.mark.parametrize("ship", [{}, SHIP], ids=["fixed", "afloat"])
+def test_the_first_sample_is_the_state_of_grains_that_do_not_settle(tmp_path, ship):
+    """Two grains of a file that move: one 2 µm deep in the floor, along which it slides, the other in flight."""
+    (tmp_path / "bed.csv").write_text("y,z,radius,vy,vz,omega\n0,0.002998,0.003,0.05,0,5\n0.01,0.02,0.003,0,-0.1,0\n")
+    given = {"grains": {"bed": str(tmp_path / "bed.csv"), "diameter": False, "depth": False, "count": False}}
+    given |= {"run": {"settle": False, "repeats": 1, "duration": "0.02 s"}, "motion": {"tilt": False}}
+    given |= {"tank": {"width": "40 mm", "height": "40 mm"}, "contact": {"tangential": "none"}} | (
+        {"ship": ship} if ship else {}
+    )
+    preset = load("tilting/quick", given).resolved
+    result = run_preset("tilting/quick", given, tmp_path / "run", video=False, plots=False, quiet=True)
+    series = {name: values[0] for name, values in result.recording.series.items()}
+    mass = 4 / 3 * np.pi * 0.003**3 * preset.material.density
+    floor = build(preset)[0].interfaces[1]
+    force = 4 / 3 * floor.young_modulus * np.sqrt(0.003) * 2e-6**1.5  # Hertz (1882); the grain does not approach
+    assert series["contacts"] == [1.0]
+    assert series["overlap"] == pytest.approx([2e-6 / 0.003], rel=1e-6)
+    assert series["elastic"] == pytest.approx([0.4 * force * 2e-6], rel=1e-6)
+    assert series["wall_force"][0] == pytest.approx([0.0, -force, 0.0], rel=1e-6, abs=1e-9)
+    assert series["centre_of_mass"][0] == pytest.approx([0.005, 0.011499])
+    assert series["kinetic"] == pytest.approx([0.5 * mass * (0.05**2 + 0.1**2)])
+    assert series["rotational"] == pytest.approx([0.2 * mass * 0.003**2 * 5.0**2])

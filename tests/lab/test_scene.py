@@ -1,6 +1,7 @@
 """From a preset to the scene: sizes, surfaces, tanks and grains from a file, and the sentences where it cannot be."""
 
 import json
+from itertools import product
 
 import numpy as np
 import pytest
@@ -11,6 +12,8 @@ from lab.errors import LabError
 from lab.presets import load
 from lab.scene import build, filling_outline, fixed_grains, grain_count
 from lab.schema import Resolved
+from lab.verify.scenes import ACETATE, WEIGHTLESS, Setup, again, grain, simulated
+from solvers.watch import DEEPEST_OVERLAP
 
 SMALL = {"tank": {"width": "30 mm", "height": "30 mm"}, "grains": {"depth": "12 mm"}, "run": {"repeats": 2}}
 PEAS = {"distribution": "table", "table": [["3 mm", 35.2], ["4 mm", 64.8]]}
@@ -141,7 +144,7 @@ def test_listed_grains_start_where_and_as_the_file_says(tmp_path):
     np.testing.assert_array_equal(scene.radius, [[0.0015, 0.001]] * 3)
     np.testing.assert_array_equal(scene.velocity, [[[0.3, 0.0], [0.0, -0.4]]] * 3)
     np.testing.assert_array_equal(scene.spin, [[2.0, 0.0]] * 3)
-    assert scene.start_speed == pytest.approx(0.4) and scene.sizes == (0.001, 0.0015)
+    assert scene.start_speed == pytest.approx(0.5) and scene.sizes == (0.001, 0.0015)
     assert (preset.grains.count, preset.grains.depth, preset.grains.bed) == (2, None, "bed.csv")
 
 
@@ -204,7 +207,7 @@ def test_files_of_grains_that_cannot_be_used(tmp_path, monkeypatch):
     assert fault(grains={"bed": str(tmp_path / "absent.csv")}).startswith("grains.bed: ")
     monkeypatch.setattr(bed_file, "MOST", 10)
     many = (f"{x},0.01,1e-9" for x in np.linspace(-0.01, 0.01, 11))
-    assert "from 1 to 10 grains are possible (got 11)" in fault(grains=csv(tmp_path, *many, header="y,z,radius"))
+    assert "more than 10 rows" in fault(grains=csv(tmp_path, *many, header="y,z,radius"))
     listed = csv(tmp_path, "0,0.01,0.001", header="y,z,radius")
     assert fault(grains={**listed, "surface": "disturbed"}).startswith("grains.surface: says how a bed is poured")
 
@@ -237,3 +240,36 @@ def test_faults_name_the_key(sections, sentence):
         assert str(caught.value).startswith(sentence)
     else:
         assert fault(**sections).startswith(sentence)
+
+
+SPEEDS, YOUNGS = (0.1, 1.0, 10.0, 30.0, 100.0), (100.0, 1e3, 1e5, 1e7, 1e9, 1e11)  # m/s, Pa
+
+
+@pytest.mark.parametrize("level", LEVELS)
+def test_what_is_built_the_watch_lets_run(level):
+    """Two grains that meet, of any speed and stiffness: refused in one sentence, or run through their impact."""
+    built, refused = [], {}
+    for case in product(SPEEDS, YOUNGS):
+        speed, young = case
+        rows = [grain(side * 2e-3, 0.05, 1.5e-3, -0.5 * side * speed) for side in (-1.0, 1.0)]
+        material = ACETATE | {"young": young}
+        run = {"gravity": WEIGHTLESS, "accuracy": level}
+        try:
+            built.append((case, Setup(np.array(rows), material, {"width": 0.1, "height": 0.1}, run=run)))
+            built[-1] += (built[-1][1].build()[0].step,)
+        except LabError as error:
+            refused[case] = str(error)
+            built.pop()
+    assert (0.1, 1e11) not in refused and (100.0, 100.0) in refused
+    assert all(said.startswith("contact.stiffness_scale: ") and said.count(". ") == 0 for said in refused.values())
+    with simulated(*(setup for _, setup, _ in built)) as run:
+        start = run.snapshot()
+        for k, (case, _, step) in enumerate(built):
+            velocity = np.zeros_like(start["velocity"])
+            velocity[k] = start["velocity"][k]
+            again(run, start["position"], step, velocity)
+            deepest = 0.0
+            for _ in range(40):  # 1 mm, and an impact that is at most as deep as a third of a radius
+                run.advance(max(1, int(1e-4 / case[0] / step)))
+                deepest = max(deepest, run.observe()["overlap"][k])
+            assert run.snapshot()["velocity"][k, 0, 0] < 0.0 and deepest < DEEPEST_OVERLAP, case

@@ -7,8 +7,9 @@ from synthetic import DEPTH, preset, record, recorder, sample
 from lab.errors import LabError
 from lab.measures import measure_all
 from lab.measures.value import Value
+from lab.presets import load, names
 from lab.recording import open_recording
-from lab.summary import headlines, number, terminal_summary, write_summary
+from lab.summary import headlines, terminal_summary, write_summary
 
 
 def tilt_run(folder, worlds=2, **options):
@@ -52,25 +53,6 @@ def summed_up(folder, **options):
     return page, json.loads(written["summary_json"].read_text()), text
 
 
-@pytest.mark.parametrize(
-    ("value", "text"),
-    [
-        (Value(24.96, "deg", std=1.34), "25.0 ± 1.3 deg"),
-        (Value(24.96, "deg", std=None, uncertainty=0.247), "24.96 ± 0.25 deg"),
-        (Value(1234.5, "mm", std=56.7), "1234 ± 57 mm"),
-        (Value(8.44e-6, "µJ", std=4.7e-6), "(8.4 ± 4.7)e-06 µJ"),
-        (Value(4.7e-6, "µJ", std=8.44e-4), "(0.0 ± 8.4)e-04 µJ"),
-        (Value(0.16, "mm", std=7.6e-4), "0.16000 ± 0.00076 mm"),
-        (Value(2.25, "1", std=0.5), "2.25 ± 0.50"),
-        (Value(1.81144, "d"), "1.811 d"),
-        (Value(3.0, "1", std=0.0), "3"),
-        (Value(None, "deg"), "none"),
-    ],
-)
-def test_a_number_has_the_digits_its_error_allows(value, text):
-    assert number(value) == text
-
-
 def test_the_data_have_the_promised_form(tmp_path):
     _, data, _ = summed_up(tilt_run(tmp_path))
     assert data["preset"] == "tilting/acetate"
@@ -83,8 +65,11 @@ def test_the_data_have_the_promised_form(tmp_path):
     }
     angle = data["measures"]["critical_angle"]
     assert angle["value"] == pytest.approx(21.0, abs=0.1)
-    assert (angle["unit"], angle["std"]) == ("deg", 0.0)
+    assert (angle["unit"], angle["std"], angle["n"], angle["standard_error"]) == ("deg", 0.0, 2, 0.0)
+    assert angle["interval_95"] == [angle["value"]] * 2
+    assert angle["uncertainty"] > 0.0 and angle["uncertainty_kind"] == "detector"
     assert len(angle["worlds"]) == 2
+    assert Value.from_json(angle).as_json() == angle
     assert data["files"] == {"recording": "recording.h5", "shift": "pictures/shift.png"}
 
 
@@ -93,7 +78,7 @@ def test_the_page_says_the_number_first_then_the_rest(tmp_path):
     lines = page.splitlines()
     assert lines[0] == "# Acetate grains in a tank"
     assert lines[2].startswith("- critical angle: **21.0")
-    assert lines[2].endswith(" deg**")
+    assert lines[2].endswith(" deg)**") and "(1 bed; detector 0." in lines[2]
     for part in (
         "is complete.",
         "![shift](pictures/shift.png)",
@@ -109,6 +94,16 @@ def test_the_page_says_the_number_first_then_the_rest(tmp_path):
     assert "Warning" not in page
 
 
+def test_one_bed_has_no_plus_minus_anywhere(tmp_path):
+    """What a measure knows of its own uncertainty does not stand in for the scatter of beds."""
+    page, data, text = summed_up(tilt_run(tmp_path, worlds=1))
+    told = page.partition("± is the standard deviation over beds")[0]  # the rule itself
+    assert "±" not in told and "±" not in text
+    assert "| critical angle |" in told and " | 1 | detector 0." in told
+    angle = data["measures"]["critical_angle"]
+    assert angle["n"] == 1 and (angle["std"], angle["standard_error"], angle["interval_95"]) == (None, None, None)
+
+
 def test_warnings_are_said_everywhere(tmp_path):
     resolved = preset(tilt={"rate": 0.07, "angle": 0.7})
     resolved["contact"]["stiffness_scale"] = 1e-3
@@ -116,8 +111,42 @@ def test_warnings_are_said_everywhere(tmp_path):
     said = ["The grains still moved."]
     for text in summed_up(folder, warnings=said)[::2]:
         assert "The grains still moved." in text
-        assert "Young's moduli times 0.001" in text
+        assert "Young's moduli times 0.001, by contact.stiffness_scale." in text
         assert "stopped: Grain 7 left the hold; the numbers cover what was recorded" in text
+
+
+def test_the_softness_of_a_quick_variant_is_said_once_and_as_it_is(tmp_path):
+    """The variants' own words on what differs leave it to the warning, which says what the run was made with."""
+    loaded = load("tilting/acetate-quick")
+    page, _, _ = summed_up(tilt_run(tmp_path, resolved=json.loads(loaded.resolved.model_dump_json())))
+    said = [line for line in page.splitlines() if "stiff" in line or "softer" in line]
+    assert said == [
+        "**Warning:** The grains are softer than their material: Young's moduli times 0.001, "
+        'as run.accuracy = "draft" has it.'
+    ]
+    assert not [name for name in names() if "stiffness" in load(name).resolved.quick]
+
+
+@pytest.mark.parametrize(
+    ("machine", "said"),
+    [
+        ({"arch": "cpu", "threads": 1, "cores": 2}, ", on 1 of 2 cores, "),
+        ({"arch": "cpu", "threads": 1, "cores": 1}, ", on 1 of 1 core, "),
+        ({"arch": "cuda", "cores": 2}, ", on a graphics processor (cuda), "),
+        ({"cores": 2}, ", on a machine of 2 cores, "),
+    ],
+)
+def test_the_page_says_what_computed(tmp_path, machine, said):
+    page, _, _ = summed_up(tilt_run(tmp_path, machine=machine))
+    assert said in page
+
+
+def test_the_page_says_what_a_preset_is_based_on(tmp_path):
+    page, data, _ = summed_up(
+        tilt_run(tmp_path, resolved=preset(tilt={"rate": 0.07}) | {"based_on": "tilting/acetate"})
+    )
+    assert "- based on the preset `tilting/acetate`, whose source and reports are its own" in page
+    assert data["based_on"] == "tilting/acetate"
 
 
 def test_a_missing_number_is_said_in_words(tmp_path):

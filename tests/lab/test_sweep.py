@@ -38,7 +38,7 @@ SMALL = {
     "motion": {"tilt": False, "sway": {"amplitude": "4 mm"}},
     "run": {"repeats": 1, "threads": 1, "duration": "0.3 s"},
 }
-AXES = {"motion.sway.frequency": "1, 3, 4000 Hz"}  # the last throws the grains about, and the watch stops it
+AXES = {"motion.sway.frequency": "1, 3, 600 Hz"}  # the last throws the grains about, and the watch stops it
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -194,7 +194,7 @@ def test_a_point_that_the_watch_stops_is_recorded_as_such_and_ends_nothing(swept
 def test_the_table_has_the_keys_in_their_units_and_each_measure_with_its_errors(swept):
     with (swept.folder / "results.csv").open(encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
-    assert [row["motion.sway.frequency (Hz)"] for row in rows] == ["1.0", "3.0", "4000.0"]
+    assert [row["motion.sway.frequency (Hz)"] for row in rows] == ["1.0", "3.0", "600.0"]
     summary = json.loads((swept.points[1] / "summary.json").read_text())
     name, measure = next((name, m) for name, m in summary["measures"].items() if m["value"] and m["unit"] != "1")
     assert float(rows[1][f"{name} ({measure['unit']})"]) == measure["value"]
@@ -202,7 +202,7 @@ def test_the_table_has_the_keys_in_their_units_and_each_measure_with_its_errors(
 
 
 def test_a_sweep_leaves_figures_a_film_and_ordinary_runs(swept, films):
-    names = ["frequency 1 Hz", "frequency 3 Hz", "frequency 4000 Hz"]
+    names = ["frequency 1 Hz", "frequency 3 Hz", "frequency 600 Hz"]
     assert films == [dict(zip(names, swept.points, strict=True))]
     made = {path.name for path in swept.folder.iterdir()}
     assert {"results.csv", "summary.md", "sweep.json", "sweep.mp4"} < made and not made & {"checkpoint.npz"}
@@ -218,7 +218,7 @@ def test_what_is_done_is_not_done_again_and_another_request_is_refused(swept, tm
     assert again.rows == swept.rows
     assert resume_any(tmp_path / "s", video=False, quiet=True).rows == swept.rows
     with pytest.raises(LabError, match="holds another sweep than is asked for"):
-        run_sweep("tilting/quick", {"motion.sway.frequency": "1, 4, 4000 Hz"}, SMALL, tmp_path / "s", quiet=True)
+        run_sweep("tilting/quick", {"motion.sway.frequency": "1, 4, 600 Hz"}, SMALL, tmp_path / "s", quiet=True)
     with pytest.raises(LabError, match="holds a recording"):
         run_sweep("tilting/quick", AXES, SMALL, swept.points[0], quiet=True)
 
@@ -255,11 +255,13 @@ def test_every_grid_has_its_figure(tmp_path, others):
     for k, folder in enumerate(folders[:-1]):
         folder.mkdir(parents=True)
         measure = {"value": float(k), "unit": "deg", "std": 0.5, "uncertainty": 0.1, "worlds": [k, k], "note": ""}
+        measure["uncertainty_kind"] = "detector"
         data = {"status": "complete", "measures": {"critical_angle": measure}, "warnings": ["Beware."]}
         (folder / "summary.json").write_text(json.dumps(data))
     rows, text = write_report("x", axes, settings, tmp_path, folders, Progress(quiet=True), video=False)
     assert len(rows) == len(settings) and rows[-1]["status"] == "not run"
     assert rows[0]["critical_angle (deg)"] == 0.0 and rows[0]["critical_angle n"] == 2
+    assert rows[0]["critical_angle detector uncertainty"] == 0.1
     assert (tmp_path / "critical_angle.png").stat().st_size > 5000
     assert f"{len(settings) - 1} of {len(settings)} points are complete" in text
     assert (tmp_path / "summary.md").read_text().count("Beware.") == 1

@@ -6,11 +6,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from scipy import stats
 
+from lab.measures.value import over_worlds
+from lab.numbers import mean_within
 from lab.sweeps import run_sweep
 
-CONFIDENCE = 0.95
 TANK = {"tank.width": "60 mm", "tank.height": "50 mm", "grains.depth": "30 mm"}  # some 200 grains of 3 mm
 STIFF = {"contact.stiffness_scale": 1e-3, "run.accuracy": "standard"}
 TILT = {**TANK, **STIFF, "motion.tilt.rate": "10 deg/s", "motion.tilt.angle": "40 deg", "run.repeats": 12}
@@ -39,17 +39,10 @@ class Point:
         """Mean of a measure over the beds that have it; NaN where none has."""
         return float(np.mean(self.worlds[name])) if len(self.worlds[name]) else float("nan")
 
-    def interval(self, name: str) -> float:
-        """Half the 95 % confidence interval of the mean (Student 1908)."""
-        return half_interval(self.worlds[name])
-
-
-def half_interval(values: Sequence[float]) -> float:
-    """Half the 95 % confidence interval of the mean of normal values (Student 1908); NaN for fewer than two."""
-    count = len(values)
-    if count < 2:
-        return float("nan")
-    return float(stats.t.ppf(0.5 + CONFIDENCE / 2, count - 1) * np.std(values, ddof=1) / np.sqrt(count))
+    def half_interval(self, name: str) -> float:
+        """Half the 95 % interval of the mean (Student 1908); NaN for fewer than two beds."""
+        found = over_worlds(self.worlds[name], "1")
+        return float("nan") if found.interval is None else found.interval[1] - found.value
 
 
 def sweep(
@@ -81,6 +74,6 @@ def settings(axes: Mapping[str, Sequence]) -> list[dict[str, object]]:
     return rows
 
 
-def plus_minus(point: Point, name: str, digits: int = 2) -> str:
-    """A measure's mean and half its confidence interval, as text."""
-    return f"{point.mean(name):.{digits}f} ± {point.interval(name):.{digits}f}"
+def mean_and_interval(point: Point, name: str, digits: int = 2) -> str:
+    """A measure's mean and its 95 % interval, as text."""
+    return mean_within(point.mean(name), over_worlds(point.worlds[name], "1").interval, digits)

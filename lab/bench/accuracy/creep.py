@@ -5,8 +5,10 @@ from pathlib import Path
 import numpy as np
 from matplotlib.figure import Figure
 
-from lab.bench.accuracy.beds import TILT, TILTED, Point, half_interval, sweep
+from lab.bench.accuracy.beds import TILT, TILTED, Point, sweep
 from lab.bench.accuracy.laws import KEY, LAWS
+from lab.measures.value import over_worlds
+from lab.numbers import interval
 from lab.page import Page
 from lab.recording import open_recording
 
@@ -39,9 +41,9 @@ def study(page: Page, work: Path, fast: bool) -> None:
         time, shift = _held(point)
         late = time > REST
         drift = 60.0 * np.array([np.polyfit(time[late], world[late], 1)[0] for world in -shift.T])
-        rows.append([law, f"{drift.mean():.2g} ± {half_interval(drift):.1g}"])
+        rows.append([law, f"{drift.mean():.2g}", interval(*over_worlds(drift, "1").interval)])
         axes.plot(time, -shift.mean(axis=1), label=law)
-    page.table(["law", "drift (diameters a minute)"], rows)
+    page.table(["law", "drift (diameters a minute)", "interval of the mean"], rows)
     axes.set(xlabel="time held (s)", ylabel="shift downhill (d)", yscale="symlog")
     axes.set_yscale("symlog", linthresh=1e-3)
     axes.legend()

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from lab.bench.accuracy.beds import TILT, TILTED, plus_minus, sweep
+from lab.bench.accuracy.beds import TILT, TILTED, mean_and_interval, sweep
 from lab.page import Page
 
 LAWS = ("haff-werner", "mindlin", "cundall-strack", "coulomb", "viscous", "none")
@@ -16,8 +16,9 @@ def study(page: Page, work: Path, fast: bool) -> None:
     points = sweep(TILTED, {KEY: list(laws)}, TILT, work / "laws", fast)
     page.section("Tangential law")
     page.say("""The same friction coefficient, 0.25, in each law; the tilt of the study of stiffness at a scale of a
-        thousandth. The viscous law has no limit to its force, "none" no friction at all.""")
+        thousandth. The viscous law has no limit to its force, "none" no friction at all. Means of the
+        beds with their [95 % intervals].""")
     page.table(
         ["law", *(f"{name.replace('_', ' ')} (deg)" for name in NAMES)],
-        [[law, *(plus_minus(p, name) for name in NAMES)] for law, p in zip(laws, points, strict=True)],
+        [[law, *(mean_and_interval(p, name) for name in NAMES)] for law, p in zip(laws, points, strict=True)],
     )

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from lab.accuracy import LEVELS
-from lab.bench.accuracy.beds import SWAY, SWAYED, TILT, TILTED, Point, plus_minus, sweep
+from lab.bench.accuracy.beds import SWAY, SWAYED, TILT, TILTED, Point, mean_and_interval, sweep
 from lab.bench.accuracy.stiffness import KEY as SCALE
 from lab.bench.accuracy.stiffness import SCALES
 from lab.page import Page
@@ -37,10 +37,10 @@ def study(page: Page, work: Path, fast: bool) -> None:
         tilted.append(sweep(TILTED, {SCALE: list(SCALES)}, TILT, work / "stiffness-tilt", fast)[-1])
     page.section("Levels of accuracy")
     page.say("""What `accuracy` says in a preset. Cost is the number of grain-steps of the tilt, relative to the first;
-        the sway is not run at the full stiffness. Mean ± half the 95 % confidence interval of the mean.""")
+        the sway is not run at the full stiffness. Means of the beds with their [95 % intervals].""")
     rows = []
     for name, point, sway in zip(LEVELS, tilted, [*swayed, None], strict=False):
-        response = plus_minus(sway, "response_amplitude", 3) if sway else "–"
+        response = mean_and_interval(sway, "response_amplitude", 3) if sway else "–"
         level = LEVELS[name]
         rows.append(
             [
@@ -48,7 +48,7 @@ def study(page: Page, work: Path, fast: bool) -> None:
                 f"{level.stiffness_scale:g}",
                 f"{level.longer_steps:g}",
                 level.error,
-                plus_minus(point, "critical_angle"),
+                mean_and_interval(point, "critical_angle"),
                 response,
                 f"{point.steps / tilted[0].steps:.1f}",
             ]

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 from matplotlib.figure import Figure
 
-from lab.bench.accuracy.beds import TILT, TILTED, plus_minus, sweep
+from lab.bench.accuracy.beds import TILT, TILTED, mean_and_interval, sweep
 from lab.bench.accuracy.settled import settled_scene
 from lab.page import Page
 from lab.plots import BLUE, GREY, VERMILION
@@ -27,7 +27,7 @@ def study(page: Page, work: Path, fast: bool) -> None:
     page.say(f"""Beds settled once and tilted at {RATE:g} deg/s in 64 bits, 32 bits and mixed (places in 64, the rest in
         32): root mean square distance of their centres of mass from that of the 64-bit run, in diameters, as in
         figures 6.1 and 6.2 of Spandonidis (2016). The grey line is chaos: a 64-bit run whose grains start
-        {NUDGE:g} m off.""")
+        {NUDGE:g} m off. In the table, means of the beds with their [95 % intervals].""")
     figure = Figure(figsize=(6.4, 2.9), layout="constrained")
     for axes, scale in zip(np.atleast_1d(figure.subplots(1, len(scales), sharey=True)), scales, strict=True):
         for name, (angle, apart) in drifts(work, scale, beds).items():
@@ -42,7 +42,7 @@ def study(page: Page, work: Path, fast: bool) -> None:
     names = ("critical_angle", "first_slip_angle", "largest_surface_slope")
     page.table(
         ["scale", "precision", *(f"{name.replace('_', ' ')} (deg)" for name in names)],
-        [[*map(str, p.setting.values()), *(plus_minus(p, name) for name in names)] for p in points],
+        [[*map(str, p.setting.values()), *(mean_and_interval(p, name) for name in names)] for p in points],
     )
 
 

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
-from lab.bench.accuracy.beds import TILT, TILTED, plus_minus, sweep
+from lab.bench.accuracy.beds import TILT, TILTED, mean_and_interval, sweep
 from lab.page import Page
 from lab.plots import BLUE, GREEN
 
@@ -20,19 +20,19 @@ def study(page: Page, work: Path, fast: bool) -> None:
     page.section("Tilt rate")
     page.say("""The same beds, tilted at other rates, at the accuracy "draft" (the thesis tilts at 0.15 to 5 deg/s). A
         fast tilt overtakes the avalanche: the angle at which it begins is read too late by about the rate times
-        the time the surface takes to set off.""")
+        the time the surface takes to set off. Means of the beds with their [95 % intervals], which are the bars.""")
     names = ("critical_angle", "first_slip_angle", "one_diameter_angle")
     page.table(
         ["rate (deg/s)", *(f"{name.replace('_', ' ')} (deg)" for name in names), "cost"],
         [
-            [f"{rate:g}", *(plus_minus(p, name) for name in names), p.steps / points[-1].steps]
+            [f"{rate:g}", *(mean_and_interval(p, name) for name in names), p.steps / points[-1].steps]
             for rate, p in zip(rates, points, strict=True)
         ],
     )
     figure = Figure(figsize=(4.2, 2.8), layout="constrained")
     axes = figure.subplots()
     for name, colour in (("critical_angle", BLUE), ("first_slip_angle", GREEN)):
-        values, errors = [p.mean(name) for p in points], [p.interval(name) for p in points]
+        values, errors = [p.mean(name) for p in points], [p.half_interval(name) for p in points]
         axes.errorbar(
             rates, values, errors, color=colour, marker="o", markersize=4, capsize=3, label=name.replace("_", " ")
         )

@@ -28,13 +28,13 @@ def study(page: Page, work: Path, fast: bool) -> None:
         points = sweep(preset, {"run.seed": [1, 1 + BEDS // 2]}, asked, work / f"repeats-{name}", fast)
         values = np.concatenate([p.worlds[name] for p in points])
         spread, unit = float(np.std(values, ddof=1)), UNITS[name]
-        needed = [f"± {half:g} {unit}: {beds_for(spread, half)}" for half in WANTED[name]]
+        needed = [f"{half:g} {unit}: {beds_for(spread, half)}" for half in WANTED[name]]
         rows.append([name.replace("_", " "), f"{values.mean():.3g} {unit}", f"{spread:.2g} {unit}", "; ".join(needed)])
-    page.table(["measure", "mean", "standard deviation of one bed", "beds needed for"], rows)
+    page.table(["measure", "mean", "standard deviation of one bed", "beds for half an interval of"], rows)
 
 
 def beds_for(spread: float, half: float) -> int:
-    """The fewest beds whose mean has a 95 % confidence interval of ± `half`, beds scattering by `spread`."""
+    """The fewest beds, scattering by `spread`, whose mean has a 95 % interval that reaches `half` to either side."""
     count = 2
     while stats.t.ppf(0.975, count - 1) * spread / np.sqrt(count) > half:
         count += 1

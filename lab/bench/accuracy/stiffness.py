@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 from matplotlib.figure import Figure
 
-from lab.bench.accuracy.beds import SWAY, SWAYED, TILT, TILTED, Point, plus_minus, sweep
+from lab.bench.accuracy.beds import SWAY, SWAYED, TILT, TILTED, Point, mean_and_interval, sweep
 from lab.page import Page
 from lab.plots import BLUE, GREEN, VERMILION
 
@@ -22,20 +22,26 @@ def study(page: Page, work: Path, fast: bool) -> None:
     page.section("Stiffness scale")
     page.say("""Young's modulus times the scale; the step follows from it. Critical angle, first slip and largest slope
         of the surface of beds of 3 mm acetate in a tank of 60 mm, tilted at 10 deg/s; response of the same beds
-        to a sway of 15 mm at 3 Hz. Mean of the beds ± half the 95 % confidence interval of the mean; cost is
-        the number of grain-steps, relative to a thousandth. The full stiffness is not run for the sway.""")
+        to a sway of 15 mm at 3 Hz. Means of the beds with their [95 % intervals], which are the bars; cost is the
+        number of grain-steps, relative to a thousandth. The full stiffness is not run for the sway.""")
     usual = _nearest(tilted, 1e-3).steps
     page.table(
         ["scale", "cost", *(f"{name.replace('_', ' ')} (deg)" for name in TILT_MEASURES)],
-        [[f"{p.setting[KEY]:g}", p.steps / usual, *(plus_minus(p, name) for name in TILT_MEASURES)] for p in tilted],
+        [
+            [f"{p.setting[KEY]:g}", p.steps / usual, *(mean_and_interval(p, name) for name in TILT_MEASURES)]
+            for p in tilted
+        ],
     )
     page.table(
         ["scale", "response (mm)", "phase (deg)", "response in z (mm)"],
         [
             [
                 f"{p.setting[KEY]:g}",
-                *(plus_minus(p, f"response_{name}", digits) for name, digits in (("amplitude", 3), ("phase", 1))),
-                plus_minus(p, "response_amplitude_z", 3),
+                *(
+                    mean_and_interval(p, f"response_{name}", digits)
+                    for name, digits in (("amplitude", 3), ("phase", 1))
+                ),
+                mean_and_interval(p, "response_amplitude_z", 3),
             ]
             for p in swayed
         ],
@@ -62,5 +68,5 @@ def _figure(tilted: list[Point], swayed: list[Point]) -> Figure:
 
 def _bars(axes, points: list[Point], name: str, colour: str, label: str) -> None:
     scale = [p.setting[KEY] for p in points]
-    values, errors = [p.mean(name) for p in points], [p.interval(name) for p in points]
+    values, errors = [p.mean(name) for p in points], [p.half_interval(name) for p in points]
     axes.errorbar(scale, values, errors, color=colour, marker="o", markersize=4, capsize=3, label=label)

@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 
 from lab.bench.peers import lammps, liggghts
 from lab.bench.speed.beds import ACETATE, DIAMETER, HEIGHT, SCALE, Bed, settled_bed
+from lab.numbers import plus_minus
 from lab.page import Page
 from lab.plots import BELOW, BLUE, GREEN, VERMILION
 from solvers.materials import Material
@@ -145,7 +146,10 @@ def _rows(found: Mapping[str, list[Curve]]) -> list[list[str]]:
     parting = np.array([[c.parts_from(own) for c, own in zip(cs, found[LAB], strict=True)] for cs in others])
     table = np.concatenate([first, parting.reshape(len(others), -1)])
     rows = [[str(k), *(f"{value:.2f}" for value in column)] for k, column in enumerate(table.T, start=1)]
-    return [*rows, ["mean ± std", *(f"{line.mean():.2f} ± {line.std(ddof=1):.2f}" for line in table)]]
+    return [
+        *rows,
+        [f"mean ± std of {table.shape[1]} beds", *(plus_minus(line.mean(), line.std(ddof=1)) for line in table)],
+    ]
 
 
 def plotted(found: Mapping[str, list[Curve]]) -> Figure:

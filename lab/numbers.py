@@ -1,0 +1,103 @@
+"""How numbers are written: ± is the standard deviation over beds and nothing else (docs/numbers.md).
+
+What summaries, reports, figures and the terminal say of a number with its scatter, its error or its interval is
+written here.
+"""
+
+from collections.abc import Sequence
+from math import floor, isfinite, isinf, log10
+
+from lab.measures.value import LEVEL, Value
+
+SMALL = 1e-3  # numbers below are told with a power of ten
+MOST_DIGITS = 6  # after the point
+ROUNDING = 1e-9  # a scatter so small beside its value is that of the arithmetic
+RULE = (
+    "± is the standard deviation over beds, the number of which is in brackets; of a single bed there is none. What a "
+    "measure knows of its own uncertainty has a name: see `docs/numbers.md`."
+)
+# For the axis of a figure whose bars are standard deviations
+BARS = "mean ± std over beds"
+
+
+def number(value: Value) -> str:
+    """A value as the rule has it: "25.0 ± 1.3 deg (4 beds)", "24.96 deg (1 bed; detector 0.25 deg)"."""
+    if value.value is None:
+        return "none"
+    unit = _unit(value.unit)
+    if value.std is not None:
+        return f"{plus_minus(value.value, value.std)}{unit}{_beds(value)}"
+    return f"{_alone(value)}{unit}{_beds(value, own(value))}"
+
+
+def own(value: Value) -> str:
+    """The measure's own uncertainty under its name, "detector 0.25 deg"; "" where it has none."""
+    if value.uncertainty is None:
+        return ""
+    return f"{value.kind or 'own uncertainty'} {value.uncertainty:.2g}{_unit(value.unit)}"
+
+
+def plus_minus(value: float, std: float) -> str:
+    """A mean and its standard deviation over beds, with as many digits as that allows: "25.0 ± 1.3"."""
+    if not std or std < ROUNDING * abs(value):
+        return f"{value:.4g} ± 0"
+    digits, power = _digits(std), 0
+    if max(abs(value), std) < SMALL:
+        power = floor(log10(max(abs(value), std)))
+        value, std, digits = value / 10.0**power, std / 10.0**power, digits + power
+    text = f"{value:.{digits}f} ± {std:.{digits}f}"
+    return f"({text})e{power:+03d}" if power else text
+
+
+def with_error(value: float, error: float, unit: str = "", sign: str = "") -> str:
+    """A mean and its standard error: "3.0 ± 1.0 deg (s.e.)"; `sign` is "+" for differences."""
+    if not error or error < ROUNDING * abs(value):
+        return f"{value:{sign}.4g} ± 0{_unit(unit)} (s.e.)"
+    digits = _digits(error)
+    return f"{value:{sign}.{digits}f} ± {error:.{digits}f}{_unit(unit)} (s.e.)"
+
+
+def interval(low: float, high: float, unit: str = "", level: float = LEVEL) -> str:
+    """An interval with its level: "[18.2, 23.1] deg (95 %)"."""
+    width = high - low
+    digits = _digits(0.5 * width) if width > 0.0 and isfinite(width) else 3
+    ends = ", ".join(_end(end, digits) for end in (low, high))
+    return f"[{ends}]{_unit(unit)} ({100.0 * level:g} %)"
+
+
+def mean_within(mean: float, ends: Sequence[float] | None, digits: int) -> str:
+    """A mean and the interval it lies in, for tables that name the level: "31.10 [27.37, 34.83]"."""
+    if ends is None:
+        return f"{mean:.{digits}f}"
+    return f"{mean:.{digits}f} [{', '.join(f'{end:.{digits}f}' for end in ends)}]"
+
+
+def _digits(error: float) -> int:
+    """Decimals that show two digits of an error."""
+    return max(0, 1 - floor(log10(error)))
+
+
+def _end(number: float, digits: int) -> str:
+    if isinf(number):
+        return "−∞" if number < 0.0 else "∞"
+    return f"{number:.{digits}f}" if digits <= MOST_DIGITS else f"{number:.2g}"
+
+
+def _alone(value: Value) -> str:
+    """A number of a single bed, with as many digits as its own uncertainty allows."""
+    error = value.uncertainty
+    if not error or error < ROUNDING * abs(value.value) or max(abs(value.value), error) < SMALL:
+        return f"{value.value:.4g}"
+    return f"{value.value:.{_digits(error)}f}"
+
+
+def _unit(unit: str) -> str:
+    return "" if unit in ("", "1") else f" {unit}"
+
+
+def _beds(value: Value, more: str = "") -> str:
+    """In brackets: in how many beds it was found, and what else there is to say."""
+    count, all_beds = value.n, len(value.worlds)
+    said = f"{count} of {all_beds} beds" if count < all_beds else f"{count} bed{'s' if count != 1 else ''}"
+    parts = [said] * bool(all_beds) + [more] * bool(more)
+    return f" ({'; '.join(parts)})" if parts else ""
