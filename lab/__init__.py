@@ -6,11 +6,11 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from lab.caches import provide_for_matplotlib
+from lab.base.caches import provide_for_matplotlib
 
 if TYPE_CHECKING:
-    from lab.runner import Result
-    from lab.sweeps import SweepResult
+    from lab.runs.runner import Result
+    from lab.sweeps.sweep import SweepResult
 
 __version__ = "0.2.0"
 
@@ -24,7 +24,7 @@ def run(
 
     `overrides` are tables of the preset, or single keys with `__` for the dot: `run__repeats=12`.
     """
-    from lab.runner import run_preset
+    from lab.runs.runner import run_preset
 
     return run_preset(preset, _dotted(overrides), out, video=video, quiet=quiet)
 
@@ -44,14 +44,14 @@ def sweep(
     axes: by key a range or list as a text, as `cargolab sweep` takes it, or a sequence of values; cluster: the address
     of a Dask scheduler whose workers are to run the points; `overrides` as in `run`.
     """
-    from lab.sweeps import run_sweep
+    from lab.sweeps.sweep import run_sweep
 
     return run_sweep(preset, axes, _dotted(overrides), out, video=video, quiet=quiet, cluster=cluster)
 
 
 def resume(folder: Path | str, *, video: bool = True, quiet: bool = False) -> Result | SweepResult:
     """Go on with the run or the sweep in a folder that was killed, interrupted or stopped, bit for bit."""
-    from lab.sweeps import resume_any
+    from lab.sweeps.sweep import resume_any
 
     return resume_any(folder, video=video, quiet=quiet)
 

@@ -12,11 +12,11 @@ from pathlib import Path
 import click
 
 from lab import __version__
-from lab.errors import LabError
-from lab.interrupt import exit_code, heeding
-from lab.text import one_line
-from lab.units import quoted
-from solvers.errors import BadState, Unavailable
+from lab.base.errors import LabError
+from lab.base.interrupt import exit_code, heeding
+from lab.base.text import one_line
+from lab.preset.units import quoted
+from solvers.machine.errors import BadState, Unavailable
 
 REMEDIES = {
     errno.ENOSPC: "free some space or choose another folder with --out",
@@ -83,7 +83,7 @@ def _overrides(_context, _option, texts: tuple[str, ...]) -> dict[str, object]:
     """Overrides from KEY=VALUE texts; a value that is not TOML, such as 4 mm, is taken as text."""
     if not texts:
         return {}
-    from lab.axes import plain
+    from lab.sweeps.axes import plain
 
     return {key: plain(text) for key, text in _settings(texts).items()}
 
@@ -148,7 +148,7 @@ def main() -> None:
 @main.command("list")
 def list_presets() -> None:
     """List the presets."""
-    from lab.presets import QUICK, names
+    from lab.preset.find import QUICK, names
 
     titles = names()
     shown = {
@@ -210,10 +210,10 @@ def run(
         return
     if preset is None:
         raise LabError("run: which preset? `cargolab list` shows all.")
-    from lab.presets import load
+    from lab.preset.find import load
 
     load(preset, overrides)  # before the slow imports, so that a slip is answered at once
-    from lab.runner import run_preset
+    from lab.runs.runner import run_preset
 
     _show(run_preset(preset, overrides, out, video=not no_video, quiet=quiet), quiet)
 
@@ -243,7 +243,7 @@ def view(preset: str | None, overrides: dict, out: Path | None, size: str, windo
     cargolab view shaking/sway-quick --set grains.diameter="4 mm" --size 1920x1080
     cargolab run --replay renders/view/tilting/quick      the same again, without a window
     """
-    from lab.presets import load
+    from lab.preset.find import load
 
     pixels = _pixels(size)
     if preset:
@@ -300,7 +300,7 @@ def sweep(
     cargolab sweep shaking/sway --set run.seed=1:200:200 --cluster tcp://node1:8786
     Asked again, it goes on where it was cut short.
     """
-    from lab.sweeps import run_sweep
+    from lab.sweeps.sweep import run_sweep
 
     axes = _settings(settings)
     shortcuts = _shortcuts(repeats, arch)
@@ -343,7 +343,7 @@ def calibrate(
     cargolab calibrate shaking/sway --target "response_amplitude=2 mm" --vary "motion.sway.frequency=0.8 Hz:2 Hz"
     cargolab calibrate tilting/acetate --target "repose=25 deg" --vary friction=0.2:0.7 --cluster tcp://node1:8786
     """
-    from lab.calibrate import calibrate as calibrated
+    from lab.sweeps.calibrate import calibrate as calibrated
 
     overrides |= _shortcuts(repeats, arch)
     click.echo(calibrated(preset, target, vary, overrides, out, quiet=quiet, cluster=cluster).text())
@@ -359,7 +359,7 @@ def resume(folder: Path, no_video: bool, quiet: bool) -> None:
     \b
     cargolab resume renders/tilting/quick
     """
-    from lab.sweeps import resume_any
+    from lab.sweeps.sweep import resume_any
 
     _show(resume_any(folder, video=not no_video, quiet=quiet), quiet)
 
@@ -386,8 +386,8 @@ def render(recording: Path, out: Path | None, png: bool, **look: object) -> None
     cargolab render renders/tilting/quick --frame earth --world 2
     cargolab render renders/tilting/quick --png --out pictures
     """
+    from lab.base.progress import Progress
     from lab.paint.video import render_recording
-    from lab.progress import Progress
 
     with Progress(quiet=False) as progress:
 
@@ -410,8 +410,8 @@ def explain(preset: str, overrides: dict) -> None:
     cargolab explain shaking/sway
     cargolab explain shaking/sway --set motion.sway.frequency="0.8 Hz"
     """
-    from lab.explain import explain as explained
-    from lab.presets import load
+    from lab.preset.find import load
+    from lab.report.explain import explain as explained
 
     click.echo(explained(load(preset, overrides)))
 
@@ -439,7 +439,7 @@ def verify(cases: tuple[str, ...], out: Path, fast: bool) -> None:
     cargolab verify --fast
     cargolab verify oblique incline     those whose names begin like this
     """
-    from lab.verify import run_cases
+    from lab.studies.verify import run_cases
 
     if not run_cases(cases, out, fast):
         sys.exit(1)
@@ -472,7 +472,7 @@ def reproduce(
     cargolab reproduce ship --quick             those with ships in waves
     cargolab reproduce granular --cluster tcp://node1:8786
     """
-    from lab.reproduce import reproduce as reproduced
+    from lab.studies.reproduce import reproduce as reproduced
 
     click.echo(reproduced(what, experiments, out, quick, quiet, cluster))
 
@@ -496,7 +496,7 @@ def gallery(presets: tuple[str, ...], out: Path, beds: int, quiet: bool) -> None
     cargolab gallery                  some hours on two cores; asked again, it goes on
     cargolab gallery tilting funnel
     """
-    from lab.gallery import make_gallery
+    from lab.studies.gallery import make_gallery
 
     click.echo(make_gallery(presets, out, quiet, beds))
 
@@ -517,7 +517,7 @@ def accuracy(studies: tuple[str, ...], out: Path, fast: bool) -> None:
     cargolab bench accuracy                an hour or two on two cores; asked again, it goes on
     cargolab bench accuracy stiffness rate
     """
-    from lab.bench.accuracy import run_page
+    from lab.studies.bench.accuracy import run_page
 
     click.echo(run_page(studies, out, fast))
 
@@ -533,7 +533,7 @@ def stability(cases: tuple[str, ...], out: Path, fast: bool) -> None:
     cargolab bench stability
     cargolab bench stability impact column
     """
-    from lab.bench.stability import run_cases
+    from lab.studies.bench.stability import run_cases
 
     if not run_cases(cases, out, fast):
         sys.exit(1)
@@ -550,7 +550,7 @@ def speed(studies: tuple[str, ...], out: Path, fast: bool) -> None:
     cargolab bench speed
     cargolab bench speed peers          beside LIGGGHTS and LAMMPS, where they are installed
     """
-    from lab.bench.speed import run_page
+    from lab.studies.bench.speed import run_page
 
     click.echo(run_page(studies, out, fast))
 
@@ -567,7 +567,7 @@ def survival(cases: tuple[str, ...], kills: int | None, out: Path, fast: bool) -
     cargolab bench survival                   all of it; --fast: a few kills, odd folders, things that lack
     cargolab bench survival kill --kills 200
     """
-    from lab.bench.survival import run_cases
+    from lab.studies.bench.survival import run_cases
 
     if not run_cases(cases, out, fast, kills):
         sys.exit(1)
@@ -578,7 +578,7 @@ def survival(cases: tuple[str, ...], kills: int | None, out: Path, fast: bool) -
 @fast_option
 def outlines(out: Path, fast: bool) -> None:
     """How irregular grains touch: what energy each rule loses, by nodes, and what a step costs."""
-    from lab.bench.outlines import run_page
+    from lab.studies.bench.outlines import run_page
 
     click.echo(run_page(out, fast))
 
@@ -588,6 +588,6 @@ def outlines(out: Path, fast: bool) -> None:
 @fast_option
 def gpu(out: Path, fast: bool) -> None:
     """Correctness against the CPU and speed on CUDA and Vulkan, where there is such a device."""
-    from lab.bench.gpu import run_page
+    from lab.studies.bench.gpu import run_page
 
     click.echo(run_page(out, fast))

@@ -6,13 +6,13 @@ from itertools import product
 
 import numpy as np
 
-from solvers.integrators import INTEGRATORS
-from solvers.laws import COHESION, NORMAL, ROLLING, TANGENTIAL
-from solvers.materials import Interface, Material, interface, touching
-from solvers.parts import Part
-from solvers.shapes.given import Shapes
+from solvers.grains.integrators import INTEGRATORS
+from solvers.grains.laws import COHESION, NORMAL, ROLLING, TANGENTIAL
+from solvers.grains.materials import Interface, Material, interface, touching
+from solvers.grains.shapes.given import Shapes
 from solvers.ship.vessel import Vessel
-from solvers.timestep import Limit, limits, watched
+from solvers.tank.parts import Part
+from solvers.time.timestep import Limit, limits, watched
 
 
 @dataclass

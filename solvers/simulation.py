@@ -5,33 +5,35 @@ from dataclasses import replace
 
 import numpy as np
 
-from solvers import renumber, runtime, watch
-from solvers.clock import Clock
-from solvers.contacts import Contacts
-from solvers.errors import Unavailable
-from solvers.frame import Frame
-from solvers.grains import Grains
-from solvers.integrators import INTEGRATORS
-from solvers.laws.chosen import ChosenLaws
-from solvers.mover import Mover
-from solvers.neighbours import Neighbours
-from solvers.observe import Observer
-from solvers.pressing import Presser, Pressing
-from solvers.runtime import Arrays
+from solvers.grains.contacts import Contacts
+from solvers.grains.integrators import INTEGRATORS
+from solvers.grains.laws.chosen import ChosenLaws
+from solvers.grains.mover import Mover
+from solvers.grains.neighbours import Neighbours
+from solvers.grains.observe import Observer
+from solvers.grains.pressing import Presser, Pressing
+from solvers.grains.shapes.grains import ShapedGrains
+from solvers.grains.shapes.rules.area import Area
+from solvers.grains.shapes.rules.contacts import ShapedContacts
+from solvers.grains.shapes.rules.continuous import Continuous
+from solvers.grains.shapes.rules.discrete import Discrete
+from solvers.grains.shapes.rules.lists import ShapedNeighbours
+from solvers.grains.state import Grains
+from solvers.machine import runtime
+from solvers.machine.errors import Unavailable
+from solvers.machine.runtime import Arrays
+from solvers.machine.units import Units
+from solvers.motion.afloat import Afloat, steps_an_interval
+from solvers.motion.frame import Frame
 from solvers.scene import Scene
-from solvers.schedules import SCHEDULES, choose_schedule, units_a_world
-from solvers.schedules.engine import Engine
-from solvers.shapes.area import Area
-from solvers.shapes.contacts import ShapedContacts
-from solvers.shapes.continuous import Continuous
-from solvers.shapes.discrete import Discrete
-from solvers.shapes.grains import ShapedGrains
-from solvers.shapes.lists import ShapedNeighbours
-from solvers.ship.afloat import Afloat, steps_an_interval
 from solvers.ship.body import Body
 from solvers.ship.vessel import Vessel
-from solvers.units import Units
-from solvers.walls import Walls
+from solvers.space import order as renumber
+from solvers.tank.walls import Walls
+from solvers.time import watch
+from solvers.time.clock import Clock
+from solvers.time.schedules import SCHEDULES, choose_schedule, units_a_world
+from solvers.time.schedules.engine import Engine
 
 LOOK_FOR_MIXING = 0.25  # s, between looks at whether the grains' numbers still follow their places
 SKIN = 0.05  # of the mean diameter; in settled and in shaken beds the fastest of 0.05 … 0.3

@@ -5,7 +5,7 @@ import os
 import numpy as np
 import pytest
 
-from solvers import runtime
+from solvers.machine import runtime
 from solvers.simulation import Simulation
 
 # Workers share the cores; threads of numpy's that wait for each other by spinning would take all of a busy machine.

@@ -1,6 +1,6 @@
 """How a ship with cargo rolls.
 
-Roll, sway and heave are those of the ship's axis (`lab.ship.axis_motion`).
+Roll, sway and heave are those of the ship's axis (`lab.preset.ship.axis_motion`).
 largest_roll: the largest |roll| of the run; capsized_at: when her roll left its limits; flooded_at: when the edge of
 her hatch, or another opening, went under the local surface of the water.
 deck_immersion_angle, downflooding_angle: at which heel the edge of her deck, and an opening, meet the still waterline
@@ -30,13 +30,13 @@ from pathlib import Path
 
 import numpy as np
 
-from lab.errors import LabError
+from lab.base.errors import LabError
 from lab.measures.value import Value, over_worlds
 from lab.measures.wall_force import grain_mass
+from lab.preset.ship import axis_motion, flooding_angles, recorded_ship
 from lab.recording import Recording
-from lab.ship import axis_motion, flooding_angles, recorded_ship
-from lab.ship_end import VERBS, End, end_of, ends
-from solvers.errors import BadState, Unavailable
+from lab.recording.ship_end import VERBS, End, end_of, ends
+from solvers.machine.errors import BadState, Unavailable
 from solvers.ship.cargo import level_area, relaxed_levers
 from solvers.ship.hydrostatics import righting_levers
 from solvers.ship.motion import sail, start
@@ -190,9 +190,9 @@ def _frozen(path: Path, duration: float):
 @lru_cache(maxsize=4)
 def _vessel(path: Path) -> Vessel | None:
     """The ship of a recording with her cargo as it lay at the start."""
+    from lab.build.scene import vessels
+    from lab.preset.schema import Resolved
     from lab.recording import open_recording
-    from lab.scene import vessels
-    from lab.schema import Resolved
 
     try:
         with open_recording(path) as recording:

@@ -27,16 +27,7 @@ Error of these: half the difference between the two halves of the steady part.
 import numpy as np
 
 from lab.measures.motion import HARMONIC, driving
-from lab.measures.steady import (
-    BLOCKS,
-    SHORT,
-    Steady,
-    amplitude_value,
-    averaged,
-    harmonics,
-    phase_value,
-    steady_part,
-)
+from lab.measures.steady import BLOCKS, SHORT, Steady, amplitude_value, averaged, harmonics, phase_value, steady_part
 from lab.measures.value import Value, over_worlds
 from lab.recording import Recording
 

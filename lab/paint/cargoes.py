@@ -10,7 +10,7 @@ from lab.paint import decorations as deco
 from lab.paint.colours import mark_colours
 from lab.paint.footage import Bed, open_footage
 from lab.paint.painter import Camera, paint_grains, paint_tank, to_discs
-from solvers.runtime import initialise
+from solvers.machine.runtime import initialise
 
 COLOURS = {
     "wheat": (222, 184, 105),

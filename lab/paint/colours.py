@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lab.errors import LabError
+from lab.base.errors import LabError
 
 if TYPE_CHECKING:
     from lab.paint.footage import Bed

@@ -12,15 +12,15 @@ from typing import get_args, get_type_hints
 import numpy as np
 from PIL import Image, ImageDraw
 
-from lab.errors import LabError
+from lab.base.errors import LabError
 from lab.paint import decorations as deco
 from lab.paint.colours import MODES, bed_colours, colouring, mark_colours, spread
 from lab.paint.footage import Bed, Footage
 from lab.paint.painter import Camera, Edges, paint_grains, paint_plate, paint_tank, to_discs
 from lab.paint.sea import LINE
-from lab.schema import Video
-from lab.ship import axis_motion
-from lab.units import quoted
+from lab.preset.schema import Video
+from lab.preset.ship import axis_motion
+from lab.preset.units import quoted
 
 FALLBACK = asdict(Video())
 FRAMES = get_args(get_type_hints(Video)["frame"])
@@ -77,7 +77,7 @@ def choose_beds(footage: Footage, world: int | None = None) -> list[Bed]:
 
 
 class Film:
-    """The pictures of some beds in one look; Taichi must be running (`solvers.runtime`).
+    """The pictures of some beds in one look; Taichi must be running (`solvers.machine.runtime`).
 
     beds: of one or several recordings, all drawn to one scale and on one clock, that of the recording that
     lasts longest: the others stand still at their end. most: how many are shown; the plot has all.

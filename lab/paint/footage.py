@@ -8,12 +8,12 @@ from pathlib import Path
 
 import numpy as np
 
-from lab.errors import LabError, Useless
+from lab.base.errors import LabError, Useless
+from lab.base.trust import BEYOND
 from lab.paint.painter import Edges
 from lab.paint.sea import Sea
 from lab.recording import Recording, open_recording
-from lab.ship_end import ends
-from lab.trust import BEYOND
+from lab.recording.ship_end import ends
 
 
 class Footage:

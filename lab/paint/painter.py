@@ -9,7 +9,7 @@ Pixels are gone through in two loops, row by row, as `ti.ndrange` would divide f
 
 Pixel coordinates: x to the right, y downwards; the pixel in row i and column j is the square
 [j, j+1] x [i, i+1].
-Taichi must be running (`solvers.runtime.initialise`).
+Taichi must be running (`solvers.machine.runtime.initialise`).
 """
 
 from collections.abc import Sequence
@@ -18,7 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 import taichi as ti
 
-from solvers.shapes.contour import Contour
+from solvers.grains.shapes.contour import Contour
 
 BAND = 16  # rows of a band
 PER_TASK = 512  # Taichi gives each thread at least so many turns of a parallel loop

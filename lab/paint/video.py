@@ -10,10 +10,10 @@ import imageio.v2 as imageio
 import numpy as np
 from PIL import Image
 
-from lab.errors import LabError
+from lab.base.errors import LabError
 from lab.paint.film import Film, choose_beds, choose_look
 from lab.paint.footage import open_footage
-from solvers.runtime import initialise
+from solvers.machine.runtime import initialise
 
 MOST_IN_GRID = 24
 SLOWEST, FASTEST = 0.01, 60.0  # pictures a second of a video

@@ -35,7 +35,8 @@ WORLD_FRAMES = {"pose": (3,)}  # and "part" (P, 2), the displacement of each mov
 # Waves under a hand: amplitude or significant height (m); frequency (rad/s) and wave number (1/m) of regular ones. NaN
 # where a hand cannot change them.
 WAVES = (3,)
-# What a hand did in `cargolab view`: which control (see `lab.view.controls`) it set to which value (SI), and when.
+# What a hand did in `cargolab view`: which control (see `lab.view.panel.controls`) it set to which value (SI), and
+# when.
 STEERING = {"time": ((), "f8"), "name": ((), "S32"), "value": ((), "f8")}
 
 CHUNK_BYTES = 2**19  # about what one reads of a data set at a time

@@ -15,7 +15,7 @@ from typing import BinaryIO, TypeVar
 
 import h5py
 
-from lab.errors import LabError
+from lab.base.errors import LabError
 from lab.recording import superblock
 from lab.recording.layout import A_MOMENT, PATIENCE
 

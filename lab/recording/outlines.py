@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import h5py
 import numpy as np
 
-from solvers.shapes.contour import Contour
+from solvers.grains.shapes.contour import Contour
 
 GROUP = "shapes"
 

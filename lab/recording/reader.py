@@ -8,13 +8,13 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from lab.errors import LabError, NotRecorded, Useless
+from lab.base.errors import LabError, NotRecorded, Useless
+from lab.base.trust import BEYOND, attributes, check_recording, check_room, format_of, is_preset, text
+from lab.preset.units import quoted
 from lab.recording.layout import ADDED, FILE_NAME, FORMAT, STEERING, sentence, table_shapes
 from lab.recording.opening import open_to_read
 from lab.recording.outlines import GROUP, read_outlines
 from lab.recording.words import axes, indexed, recorded_by
-from lab.trust import BEYOND, attributes, check_recording, check_room, format_of, is_preset, text
-from lab.units import quoted
 
 
 class Recording:

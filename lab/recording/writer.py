@@ -16,20 +16,11 @@ import h5py
 import numpy as np
 
 from lab import __version__
-from lab.errors import LabError
-from lab.recording.layout import (
-    ADDED,
-    FILE_NAME,
-    FORMAT,
-    STEERING,
-    create_table,
-    row_bytes,
-    sentence,
-    table_shapes,
-)
+from lab.base.errors import LabError
+from lab.preset.ship import axis_place, recorded_ship
+from lab.recording.layout import ADDED, FILE_NAME, FORMAT, STEERING, create_table, row_bytes, sentence, table_shapes
 from lab.recording.opening import create, end_of, open_to_add
 from lab.recording.outlines import GROUP, Outlines, outline_tables
-from lab.ship import axis_place, recorded_ship
 
 BUFFER_BYTES = 2**25  # kept in memory at most before it is written
 FLUSH_EVERY = 2.0  # s of wall-clock time between writings: what a run that is killed may lose
@@ -335,7 +326,7 @@ def versions() -> dict[str, str]:
 
 
 def _reference(resolved: Mapping) -> dict[str, object]:
-    """What point the poses are of, and of a ship her axis, of which sway and heave are told: see `lab.ship`."""
+    """What point the poses are of, and of a ship her axis, of which sway and heave are told: see `lab.preset.ship`."""
     found = {"pose_is_of": "the origin of the tank's axes"}
     if resolved.get("ship"):
         ship = recorded_ship(resolved)

@@ -8,16 +8,16 @@ from pathlib import Path
 
 import numpy as np
 
-from lab.launch import outlines_of, pose_of
+from lab.build.scene import vessels
 from lab.paint.footage import Bed
 from lab.paint.painter import Edges
 from lab.paint.sea import Sea
-from lab.presets import LoadedPreset
+from lab.preset.find import LoadedPreset
+from lab.preset.schema import Resolved
 from lab.recording import Outlines
-from lab.scene import vessels
-from lab.schema import Resolved
+from lab.runs.launch import outlines_of, pose_of
 from lab.view.live import Seen
-from solvers.pressing import Pressing
+from solvers.grains.pressing import Pressing
 from solvers.ship.hydrostatics import righting_levers
 from solvers.simulation import Simulation
 

@@ -3,8 +3,8 @@
 import sys
 from pathlib import Path
 
-from lab.progress import Progress
-from lab.runner import report
+from lab.base.progress import Progress
+from lab.runs.runner import report
 
 if __name__ == "__main__":
     with Progress(quiet=True) as progress:

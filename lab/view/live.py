@@ -12,19 +12,19 @@ from pathlib import Path
 
 import numpy as np
 
-from lab.beds import settled, settling
-from lab.errors import LabError
-from lab.launch import Run, pose_of, sampled
-from lab.presets import LoadedPreset
-from lab.progress import Progress
+from lab.base.errors import LabError
+from lab.base.progress import Progress
+from lab.build.scene import build
+from lab.preset.find import LoadedPreset
+from lab.preset.schema import Motion, Resolved
 from lab.recording import WAVES, Recorder
-from lab.scene import build
-from lab.schema import Motion, Resolved
-from lab.view.controls import ALTERS, CONTROLS, MOVES, offered
-from lab.view.helm import Helm
-from lab.view.swell import swell_of
-from solvers.errors import Unavailable
-from solvers.pressing import Pressing
+from lab.runs.beds import settled, settling
+from lab.runs.launch import Run, pose_of, sampled
+from lab.view.panel.controls import ALTERS, CONTROLS, MOVES, offered
+from lab.view.panel.helm import Helm
+from lab.view.panel.swell import swell_of
+from solvers.grains.pressing import Pressing
+from solvers.machine.errors import Unavailable
 from solvers.simulation import Simulation
 
 PICTURES = 25.0  # Hz at least, of the frames of what is watched

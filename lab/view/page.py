@@ -13,12 +13,12 @@ from lab.paint import decorations as deco
 from lab.paint.colours import Colouring, colouring, mark_colours
 from lab.paint.painter import Camera, paint_grains, paint_plate, paint_strokes, paint_tank, to_discs
 from lab.paint.sea import LINE
-from lab.ship_end import End
-from lab.view.controls import CONTROLS, RESTARTS
-from lab.view.curves import CURVES
-from lab.view.forces import chains, newtons
-from lab.view.help import draw_help
-from lab.view.readings import clock, readings
+from lab.recording.ship_end import End
+from lab.view.panel.controls import CONTROLS, RESTARTS
+from lab.view.panel.curves import CURVES
+from lab.view.panel.forces import chains, newtons
+from lab.view.panel.help import draw_help
+from lab.view.panel.readings import clock, readings
 from lab.view.shown import Shown
 
 MARGIN, COLUMN, GAP, WALL, PLATE = 1.2, 17.0, 1.5, 0.36, 0.3  # in u

@@ -5,14 +5,14 @@ from pathlib import Path
 
 import numpy as np
 
-from lab.errors import LabError, Useless
-from lab.lock import only_one
-from lab.progress import Progress
+from lab.base.errors import LabError, Useless
+from lab.base.lock import only_one
+from lab.base.progress import Progress
+from lab.base.trust import BEYOND
 from lab.recording import open_recording
-from lab.runner import Result, free_folder, recorded_preset, report
-from lab.trust import BEYOND
-from lab.view.controls import ALTERS, CONTROLS, MOVES, offered
+from lab.runs.runner import Result, free_folder, recorded_preset, report
 from lab.view.live import Live
+from lab.view.panel.controls import ALTERS, CONTROLS, MOVES, offered
 
 LARGEST = 1e3  # SI: nothing that a hand can set is as large
 

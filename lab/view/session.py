@@ -12,16 +12,16 @@ from pathlib import Path
 
 import numpy as np
 
-from lab.errors import LabError
+from lab.base.errors import LabError
 from lab.paint.colours import MODES
-from lab.runner import RENDERS, free_folder
-from lab.view.controls import CONTROLS, RESTARTS, offered
-from lab.view.curves import offered_curves
+from lab.runs.runner import RENDERS, free_folder
 from lab.view.footage import LiveFootage, Scenery
 from lab.view.page import Page
+from lab.view.panel.controls import CONTROLS, RESTARTS, offered
+from lab.view.panel.curves import offered_curves
 from lab.view.shown import Look, Shown
 from lab.view.worker import begin
-from solvers.shapes.cargo import cargoes
+from solvers.grains.shapes.cargo import cargoes
 
 PACES = (0.02, 0.05, 0.1, 0.25, 0.5, 1.0, 2.0, 5.0, np.inf)
 NUDGE = np.radians(5.0)  # of the tilt, by a key
@@ -46,7 +46,7 @@ class Session(Shown):
     ended: bool = field(default=False, init=False)
 
     def __post_init__(self) -> None:
-        from lab.presets import load
+        from lab.preset.find import load
 
         video = load(self.name, self.overrides).resolved.video
         self.look = Look(video.colour, video.frame)
@@ -160,7 +160,7 @@ class Session(Shown):
 
     def reshape(self) -> None:
         """Start anew with grains of the next cargo's outlines; after the last come discs."""
-        from lab.presets import load
+        from lab.preset.find import load
 
         order = ["disc", *cargoes()]
         self._shape = order[(order.index(self._shape) + 1) % len(order)]
@@ -289,7 +289,7 @@ class Session(Shown):
 
 
 def _resolved(preset: Mapping):
-    from lab.schema import Resolved
+    from lab.preset.schema import Resolved
 
     return Resolved.model_validate(preset)
 

@@ -3,7 +3,7 @@
 import time
 from dataclasses import dataclass
 
-from lab.ship_end import VERBS, End, end_of
+from lab.recording.ship_end import VERBS, End, end_of
 from lab.view.footage import LiveFootage
 
 SAID_FOR = 6.0  # s

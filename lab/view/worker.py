@@ -14,18 +14,18 @@ from multiprocessing import get_context
 from multiprocessing.connection import Connection
 from pathlib import Path
 
-from lab.errors import LabError
-from lab.interrupt import SIGNALS, heed
-from lab.presets import LoadedPreset, load
-from lab.progress import Progress
+from lab.base.errors import LabError
+from lab.base.interrupt import SIGNALS, heed
+from lab.base.progress import Progress
+from lab.preset.find import LoadedPreset, load
 from lab.recording import FILE_NAME, Recorder
-from lab.ship_end import VERBS
+from lab.recording.ship_end import VERBS
 from lab.view.footage import Scenery
 from lab.view.live import Live, Seen, own_motion, under_a_hand
 from lab.view.outbox import Outbox
-from solvers import runtime
-from solvers.errors import BadState, Unavailable
-from solvers.pressing import UNTOUCHED
+from solvers.grains.pressing import UNTOUCHED
+from solvers.machine import runtime
+from solvers.machine.errors import BadState, Unavailable
 from solvers.simulation import Simulation
 
 A_LOOK = 0.03  # s, the shortest time between two pictures sent

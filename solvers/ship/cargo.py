@@ -6,7 +6,7 @@ horizon is that angle again. So the surface leans by heel − repose against the
 
 import numpy as np
 
-from solvers.errors import Unavailable
+from solvers.machine.errors import Unavailable
 from solvers.ship.hydrostatics import Loading, balanced_heave, righting_lever, turned
 from solvers.ship.section import Section
 from solvers.ship.water import Water

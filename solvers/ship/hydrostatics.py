@@ -10,7 +10,7 @@ from math import pi
 
 import numpy as np
 
-from solvers.errors import Unavailable
+from solvers.machine.errors import Unavailable
 from solvers.ship.section import Section
 from solvers.ship.water import Water
 

@@ -4,11 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from solvers.errors import Unavailable
+from solvers.machine.errors import Unavailable
 from solvers.ship.body import Body
 from solvers.ship.hydrostatics import stiffness
 from solvers.ship.motion import Ship, rate
-from solvers.ship.radiation import Hydrodynamics
+from solvers.ship.potential.radiation import Hydrodynamics
 from solvers.ship.section import Section
 from solvers.ship.water import Water
 

@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from solvers.ship.hydrostatics import buoyancy, surface_force, turned
-from solvers.ship.radiation import Hydrodynamics
+from solvers.ship.potential.radiation import Hydrodynamics
 from solvers.ship.section import Section
 from solvers.ship.water import Water
 from solvers.ship.waves import Waves

@@ -17,11 +17,11 @@ from typing import Protocol
 
 import numpy as np
 
-from solvers.errors import BadState
+from solvers.machine.errors import BadState
 from solvers.ship.body import Body
 from solvers.ship.hydrostatics import turned
-from solvers.ship.memory import Memory
-from solvers.ship.radiation import Hydrodynamics
+from solvers.ship.potential.memory import Memory
+from solvers.ship.potential.radiation import Hydrodynamics
 
 NO_LOAD = np.zeros(3)
 HEAVE = 1  # of a pose

@@ -5,7 +5,7 @@ from math import pi
 
 import numpy as np
 
-from solvers.errors import Unavailable
+from solvers.machine.errors import Unavailable
 from solvers.ship.hydrostatics import SEARCH, Loading, equilibrium, righting_lever
 from solvers.ship.section import Section
 from solvers.ship.water import Water

@@ -10,7 +10,7 @@ from functools import cached_property
 
 import numpy as np
 
-from solvers.errors import Unavailable
+from solvers.machine.errors import Unavailable
 
 ROUNDING = 1e-12  # of the section's size: shorter than this is nothing
 

@@ -5,7 +5,7 @@ from math import inf
 
 import numpy as np
 
-from solvers.errors import Unavailable
+from solvers.machine.errors import Unavailable
 from solvers.ship.body import Body, bolted
 from solvers.ship.hydrostatics import balanced_heave, turned
 from solvers.ship.motion import HEAVE, Ship

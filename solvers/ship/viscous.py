@@ -8,7 +8,7 @@ from math import acos, cos, exp, pi, sin, sqrt, tanh
 
 import numpy as np
 
-from solvers.errors import Unavailable
+from solvers.machine.errors import Unavailable
 from solvers.ship.motion import RollDamping
 
 VISCOSITY = 1.1e-6  # m²/s, of fresh water at 16 °C

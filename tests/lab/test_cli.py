@@ -12,9 +12,9 @@ from click.testing import CliRunner
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from lab.base.errors import LabError
 from lab.cli import main
-from lab.errors import LabError
-from solvers.errors import BadState, Unavailable
+from solvers.machine.errors import BadState, Unavailable
 
 
 def call(*arguments: str):
@@ -40,7 +40,7 @@ def stand_in(monkeypatch, module: str, name: str, act):
 @pytest.fixture
 def runner(monkeypatch):
     result = SimpleNamespace(summary_text="12.3 deg", folder=Path("renders/tilting/quick"))
-    return stand_in(monkeypatch, "lab.runner", "run_preset", result)
+    return stand_in(monkeypatch, "lab.runs.runner", "run_preset", result)
 
 
 def test_help_version_and_list():
@@ -86,7 +86,7 @@ def test_repeats_and_arch_are_short_for_keys_and_go_over_them(runner):
 
 def test_sweep_passes_the_texts_of_the_values_on(monkeypatch):
     result = SimpleNamespace(summary_text="4 points", folder=Path("there"))
-    calls = stand_in(monkeypatch, "lab.sweeps", "run_sweep", result)
+    calls = stand_in(monkeypatch, "lab.sweeps.sweep", "run_sweep", result)
     done = call("sweep", "shaking/sway", "--set", "motion.sway.frequency=0.2:1.5:14 Hz", "--set", "run.seed=1,2",
                 "--repeats", "4", "--out", "there", "--cluster", "tcp://node1:8786")  # fmt: skip
     assert done.exit_code == 0 and done.stdout == "4 points\nthere\n"
@@ -97,7 +97,7 @@ def test_sweep_passes_the_texts_of_the_values_on(monkeypatch):
 
 def test_resume_passes_the_folder_on(monkeypatch):
     result = SimpleNamespace(summary_text="12.3 deg", folder=Path("there"))
-    calls = stand_in(monkeypatch, "lab.sweeps", "resume_any", result)
+    calls = stand_in(monkeypatch, "lab.sweeps.sweep", "resume_any", result)
     assert call("resume", "there", "--no-video", "--quiet").stdout == "there\n"
     assert calls == [((Path("there"),), {"video": False, "quiet": True})]
 
@@ -143,8 +143,8 @@ def test_values_are_toml_or_text(value, read):
     ],
 )
 def test_bad_input_is_one_sentence_and_exit_code_2(arguments, monkeypatch):
-    runs = stand_in(monkeypatch, "lab.runner", "run_preset", None)
-    stand_in(monkeypatch, "lab.explain", "explain", "")
+    runs = stand_in(monkeypatch, "lab.runs.runner", "run_preset", None)
+    stand_in(monkeypatch, "lab.report.explain", "explain", "")
     result = call(*arguments)
     assert result.exit_code == 2 and isinstance(result.exception, SystemExit)
     assert result.stderr.startswith("cargolab: ") and result.stderr.count("\n") == 1
@@ -186,14 +186,14 @@ def test_bad_sweeps_and_folders_are_one_sentence_too(arguments):
     ],
 )  # fmt: skip
 def test_what_goes_wrong_underway(error, code, sentence, monkeypatch):
-    stand_in(monkeypatch, "lab.runner", "run_preset", error)
+    stand_in(monkeypatch, "lab.runs.runner", "run_preset", error)
     result = call("run", "tilting/quick")
     assert result.exit_code == code
     assert result.stderr.strip().splitlines() == [f"cargolab: {sentence}"]
 
 
 def test_a_bug_is_not_hidden(monkeypatch):
-    stand_in(monkeypatch, "lab.runner", "run_preset", ZeroDivisionError())
+    stand_in(monkeypatch, "lab.runs.runner", "run_preset", ZeroDivisionError())
     assert isinstance(call("run", "tilting/quick").exception, ZeroDivisionError)
 
 
@@ -212,7 +212,7 @@ def test_render_passes_what_is_asked(monkeypatch):
 
 
 def test_explain_gets_the_loaded_preset(monkeypatch):
-    calls = stand_in(monkeypatch, "lab.explain", "explain", "all about it")
+    calls = stand_in(monkeypatch, "lab.report.explain", "explain", "all about it")
     assert call("explain", "tilting/quick", "--set", "run.seed=5").stdout == "all about it\n"
     assert calls[0][0][0].resolved.run.seed == 5
 
@@ -238,8 +238,8 @@ def test_the_module_is_the_command():
 @settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.lists(st.text() | st.sampled_from(["run", "explain", "--set", "tilting/quick"]), max_size=5))
 def test_any_command_line_ends_cleanly(monkeypatch, arguments):
-    stand_in(monkeypatch, "lab.runner", "run_preset", SimpleNamespace(summary_text="", folder=""))
-    stand_in(monkeypatch, "lab.explain", "explain", "")
+    stand_in(monkeypatch, "lab.runs.runner", "run_preset", SimpleNamespace(summary_text="", folder=""))
+    stand_in(monkeypatch, "lab.report.explain", "explain", "")
     stand_in(monkeypatch, "lab.paint.video", "render_recording", "")
     result = call(*arguments)
     assert result.exit_code in (0, 2) and isinstance(result.exception, SystemExit | None)

@@ -4,8 +4,8 @@ import os
 import sys
 from pathlib import Path
 
-from lab.errors import LabError
-from lab.view.chooser import Chooser
+from lab.base.errors import LabError
+from lab.view.panel.chooser import Chooser
 from lab.view.session import Session
 from lab.view.windows import ggui, plain
 from lab.view.windows.window import Window
@@ -24,7 +24,7 @@ def open_window(
     instead = f"`cargolab run {name or 'PRESET'}` runs it and films it."
     if not has_display():
         raise LabError(f"there is no display for a window here: {instead}")
-    from solvers.runtime import initialise
+    from solvers.machine.runtime import initialise
 
     initialise()
     tried = FRONT_ENDS if front_end == "auto" else {front_end: FRONT_ENDS[front_end]}

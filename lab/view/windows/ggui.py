@@ -6,8 +6,8 @@ import tempfile
 import numpy as np
 import taichi as ti
 
-from lab.view.chooser import Chooser
-from lab.view.controls import CONTROLS, RESTARTS, UNITS
+from lab.view.panel.chooser import Chooser
+from lab.view.panel.controls import CONTROLS, RESTARTS, UNITS
 from lab.view.session import Session
 from lab.view.windows.window import Window
 

@@ -5,7 +5,7 @@ import sys
 import numpy as np
 import taichi as ti
 
-from lab.view.chooser import Chooser
+from lab.view.panel.chooser import Chooser
 from lab.view.session import Session
 from lab.view.windows.window import Window
 

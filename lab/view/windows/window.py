@@ -5,7 +5,7 @@ from abc import ABC, abstractmethod
 
 import numpy as np
 
-from lab.view.chooser import Chooser
+from lab.view.panel.chooser import Chooser
 from lab.view.session import Session
 
 PICTURES = 30.0  # Hz

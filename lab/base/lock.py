@@ -1,0 +1,43 @@
+"""One run at a time in a folder."""
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+from lab.base.errors import LabError
+
+try:
+    import fcntl
+except ImportError:  # Windows cannot lock folders
+    fcntl = None
+
+
+@contextmanager
+def only_one(folder: Path) -> Iterator[None]:
+    """Hold a folder, made if missing; the system lets go of it when the process ends in whatever way.
+
+    Raises LabError when another process holds it or it cannot be made. Where folders cannot be locked nobody is kept
+    out.
+    """
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise LabError(f"{folder} cannot be written ({error.strerror}): choose another folder.") from error
+    if fcntl is None:
+        yield
+        return
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        with suppress(OSError):  # some network folders
+            _take(handle, folder)
+        yield
+    finally:
+        os.close(handle)
+
+
+def _take(handle: int, folder: Path) -> None:
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        raise LabError(f"{folder} is in use by a run that still goes on: wait for its end.") from None

@@ -1,0 +1,183 @@
+"""What a file from a stranger may be: what it says of itself is checked before memory is taken or another file read.
+
+HDF5 can link to other files, keep or compose data sets of parts of them, and declare data sets of any size in a few
+bytes; so can the archives that numpy writes. The lab writes none of that, so all of it is refused. Faults of HDF5's own
+code are not covered: its version should be a recent one.
+"""
+
+import os
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path, PurePosixPath
+from zipfile import ZIP_STORED, ZipFile, ZipInfo
+
+import h5py
+import numpy as np
+
+from lab.base.errors import Useless
+
+GROUPS = ("preset", "grains", "tank", "shapes", "series", "frames", "steering")
+DEEPER = ("tank/parts",)
+ATTRIBUTES = ("format", "preset", "status", "created", "versions", "machine", "step", "wall_s", "grain_steps")
+TABLES = ("video", "kinds", "shapes", "ship", "water", "waves", "run", "contact", "motion", "record", "parts")
+TEXTS = ("title", "source", "reports", "quick")
+BEYOND = 1e15  # no SI number of a recording is as large
+MOST_MEMBERS = 1000  # of a group
+UNWRITTEN = 2**26  # bytes that data sets may have beyond what the file holds: rows that a killed run did not write
+UNKICKED = 2  # of a state's numbers: the grains' first step, which lies before zero where the clock began anew
+MOST_ROOM = 1024  # times as many contacts as grains of a bed at rest have
+LARGEST_CHUNK = 2**26  # bytes
+LONGEST_ATTRIBUTE = 2**20  # bytes
+LONGEST_TEXT = 2**25  # characters: a preset with 100 000 listed grains has some 12 million
+SAME_SIZE = (h5py.h5z.FILTER_SHUFFLE, h5py.h5z.FILTER_FLETCHER32)  # filters that make no small file of a large one
+
+
+def check_recording(file: h5py.File) -> None:
+    """Raise Useless where an HDF5 file leads to others, or has data sets that so large a file cannot hold."""
+    for name in ATTRIBUTES:
+        if name in file.attrs:
+            _check_attribute(file, name)
+    total = sum(_checked_bytes(file, data) for data in _data_sets(file))
+    if total > os.stat(file.filename).st_size + UNWRITTEN:
+        raise Useless(f"{file.filename} declares {_size(total)}, far more than it holds: do not use this file.")
+
+
+def format_of(file: h5py.File) -> str:
+    """What a file says that it is. Raises Useless as `check_recording`."""
+    if "format" in file.attrs:
+        _check_attribute(file, "format")
+    return str(file.attrs.get("format"))
+
+
+def attributes(file: h5py.File) -> dict[str, object]:
+    """The attributes that a recording has, by name, whatever else the file has."""
+    return {name: file.attrs[name] for name in ATTRIBUTES if name in file.attrs}
+
+
+def text(data: h5py.Dataset) -> str:
+    """A data set that is one text. Raises Useless where it is longer than any preset."""
+    found = data.asstr()[()]
+    if len(found) > LONGEST_TEXT:
+        raise Useless(f"{data.file.filename}: {data.name[1:]} is longer than any preset: do not use this file.")
+    return found
+
+
+def is_preset(table: object) -> bool:
+    """Whether a preset in full has tables and texts where those who show it expect them."""
+    if not isinstance(table, dict):
+        return False
+    kinds = dict.fromkeys(TABLES, dict) | dict.fromkeys(TEXTS, str)
+    return all(isinstance(table.get(name), kind | None) for name, kind in kinds.items())
+
+
+def check_room(data: h5py.Dataset, rows: int) -> None:
+    """Raise Useless where so many rows of a data set do not fit into the memory of this machine."""
+    from lab.build.room import SHARE, machine_memory  # which knows presets, and these what reads recordings
+
+    needed = rows * _bytes(data.shape[1:], data.dtype)
+    if needed > SHARE * machine_memory():
+        where = f"{data.file.filename}: {data.name[1:]}"
+        raise Useless(f"{where} has {_size(needed)}, too much for the memory here: read it on a larger machine.")
+
+
+def check_archive(path: Path) -> None:
+    """Raise Useless where an archive of arrays, as `numpy.savez` writes it, is not as large as its arrays are."""
+    with ZipFile(path) as archive:
+        members = archive.infolist()
+        sound = len(members) <= MOST_MEMBERS and all(member.compress_type == ZIP_STORED for member in members)
+        held = sum(member.file_size for member in members)
+        if not sound or held > path.stat().st_size or not all(_is_whole(archive, member) for member in members):
+            raise Useless(f"{path} declares more than it holds: start the run anew.")
+
+
+def check_progress(runs: object, rows: Sequence, said: Sequence) -> None:
+    """Raise ValueError where a checkpoint names folders outside its own, or no numbers of rows, or says no texts."""
+    named = isinstance(runs, list) and runs and all(isinstance(run, str) for run in runs)
+    if not named or any(PurePosixPath(run).is_absolute() or ".." in PurePosixPath(run).parts for run in runs):
+        raise ValueError("its runs are not in its folder")
+    if not all(isinstance(count, int) and count >= 0 for count in rows):
+        raise ValueError("its rows are no numbers")
+    if not all(isinstance(texts, list) and all(isinstance(text, str) for text in texts) for texts in said):
+        raise ValueError("what it says is no text")
+
+
+def check_state(state: Mapping[str, np.ndarray], worlds: int, count: int) -> None:
+    """Raise ValueError where the state of worlds of `count` grains asks for memory or grains that are not there.
+
+    The simulation itself refuses places in its lists of contacts that are none (`Arrays.write`).
+    """
+    numbers, order = state["numbers"], state["number"]
+    room, counts = int(numbers[1]), np.delete(numbers, UNKICKED)
+    if numbers.dtype.kind != "i" or counts.min() < 0 or not 1 <= room <= MOST_ROOM or room & (room - 1):
+        raise ValueError("its numbers are none")
+    if order.shape != (worlds, count) or not np.array_equal(np.sort(order), np.tile(np.arange(count), (worlds, 1))):
+        raise ValueError("its grains are not those of the scene")
+
+
+def _is_whole(archive: ZipFile, member: ZipInfo) -> bool:
+    """Whether an array of an archive has as many bytes as its head says."""
+    with archive.open(member) as file:
+        np.lib.format.read_magic(file)
+        shape, _, kind = np.lib.format.read_array_header_1_0(file)
+        return not kind.hasobject and min(shape, default=0) >= 0 and _bytes(shape, kind) <= member.file_size
+
+
+def _data_sets(file: h5py.File) -> Iterator[h5py.Dataset]:
+    """All data sets that a recording may have, each once a name. Raises Useless for links and for odd groups."""
+    for name in sorted(set(GROUPS) & set(file)):
+        for path, item in _members(file, name):
+            if path in DEEPER and isinstance(item, h5py.Group):
+                yield from (data for _, data in _members(file, path))
+            elif isinstance(item, h5py.Dataset):
+                yield item
+            else:
+                raise Useless(f"{file.filename}: {path} is no data set: do not use this file.")
+
+
+def _members(file: h5py.File, name: str) -> Iterator[tuple[str, h5py.Group | h5py.Dataset]]:
+    group = _linked(file, name)
+    if not isinstance(group, h5py.Group) or len(group) > MOST_MEMBERS:
+        raise Useless(f"{file.filename}: {name} is no group of a recording: do not use this file.")
+    for key in group:
+        yield f"{name}/{key}", _linked(file, f"{name}/{key}")
+
+
+def _linked(file: h5py.File, name: str) -> h5py.Group | h5py.Dataset:
+    """What lies in this very file under that name."""
+    if not isinstance(file.get(name, getlink=True), h5py.HardLink):
+        raise Useless(f"{file.filename}: {name} is a link, maybe to another file: do not use this file.")
+    return file[name]
+
+
+def _checked_bytes(file: h5py.File, data: h5py.Dataset) -> int:
+    """Memory of a data set. Raises Useless where it is not one of plain numbers or one text, or lies elsewhere."""
+    where, settings = f"{file.filename}: {data.name[1:]}", data.id.get_create_plist()
+    if data.is_virtual or data.external:
+        raise Useless(f"{where} lies in another file: do not use this file.")
+    filters = {settings.get_filter(k)[0] for k in range(settings.get_nfilters())}
+    if not filters <= set(SAME_SIZE):
+        raise Useless(f"{where} is compressed, which the lab never does: undo it with h5repack -f NONE.")
+    is_text = data.shape == () and h5py.check_string_dtype(data.dtype) is not None
+    if not is_text and data.dtype.kind not in "fiuS":
+        raise Useless(f"{where} has values of another kind than the lab writes: do not use this file.")
+    chunk = _bytes(data.chunks, data.dtype) if data.chunks else 0
+    if chunk > max(LARGEST_CHUNK, _bytes(data.shape[1:], data.dtype)):
+        raise Useless(f"{where} lies in pieces of {_size(chunk)}, larger than the lab writes: do not use this file.")
+    return _bytes(data.shape or (), data.dtype)
+
+
+def _check_attribute(file: h5py.File, name: str) -> None:
+    found = file.attrs.get_id(name)
+    if found.shape != () or found.get_storage_size() > LONGEST_ATTRIBUTE:
+        raise Useless(f"{file.filename}: its attribute {name} is not one value: do not use this file.")
+
+
+def _bytes(shape: tuple[int, ...], kind: np.dtype) -> int:
+    """Of an array; in Python's numbers, which do not overflow."""
+    size = kind.itemsize
+    for length in shape:
+        size *= int(length)
+    return size
+
+
+def _size(count: int) -> str:
+    return f"{count / 1e9:.3g} GB"

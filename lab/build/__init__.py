@@ -1,0 +1,1 @@
+"""From a preset to the solver's scene."""

@@ -1,0 +1,215 @@
+"""From a resolved preset to the solver's scene and the grains' starting places."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from math import ceil
+
+import numpy as np
+
+from lab.base.errors import LabError
+from lab.build.drawn import classes, draw_shapes
+from lab.build.room import check_room
+from lab.preset.accuracy import LEVELS, check_forced
+from lab.preset.schema import Resolved
+from lab.preset.ship import make_vessel
+from lab.preset.units import show
+from solvers.grains.filling import NONE_FIXED, DoesNotFit, count_for_depth, headroom, lattice, start_positions
+from solvers.grains.relaxing import relaxed
+from solvers.grains.shapes.given import Shapes
+from solvers.grains.sizes import Sizes
+from solvers.motion.steered import Steered
+from solvers.scene import Scene
+from solvers.ship.vessel import Vessel
+from solvers.tank.outline import lining, raised
+from solvers.time.timestep import closing_speed
+from solvers.time.watch import DEEPEST_OVERLAP
+
+THROUGH = 1.0  # radii: grains that overlap so far pass each other and the walls
+
+
+def grain_count(preset: Resolved) -> int:
+    """Number of grains in one tank, fixed ones not counted."""
+    grains = preset.grains
+    if grains.count is not None:
+        return grains.count
+    return count_for_depth(grains.depth, np.array(preset.tank.outline), grains.sizes, fixed_grains(preset))
+
+
+def fixed_grains(preset: Resolved) -> np.ndarray:
+    """The grains (k, 3) y, z, radius in m that line a rough tank, the same in all repeats: their seed is run.seed."""
+    tank = preset.tank
+    if tank.roughness is None:
+        return NONE_FIXED
+    return lining(np.array(tank.outline), tank.roughness, np.random.default_rng(preset.run.seed))
+
+
+def filling_outline(preset: Resolved) -> np.ndarray:
+    """The outline (m, 2) m of the tank that the grains settle in first.
+
+    Grains start higher than they will lie. Where they are thrown, or fill an open tank to its rim, or have no room to
+    start in a closed one, the walls go on upwards while the bed is made.
+    """
+    outline, grains = np.array(preset.tank.outline), preset.grains
+    if grains.listed or grains.region or not preset.run.settle:
+        return outline
+    count, largest = grain_count(preset), _farthest(preset)
+    low = not (grains.surface == "disturbed" or preset.tank.open_edges)
+    if low and len(lattice(largest, outline, fixed_grains(preset), _plates(preset))) >= count:
+        return outline
+    return raised(outline, headroom(count, largest, preset.tank.width))
+
+
+def _farthest(preset: Resolved) -> float:
+    """No grain has an edge farther from its middle than this (m)."""
+    if not preset.shapes:
+        return 0.5 * preset.grains.range[1]
+    alone = [(replace(preset.grains, table=((shape.diameter, 1.0),)), shape) for shape in preset.shapes.values()]
+    return max(0.5 * grains.range[1] * shape.reach for grains, shape in alone)
+
+
+def build(preset: Resolved, hands: Sequence[Steered] | None = None) -> tuple[Scene, np.ndarray]:
+    """The scene of all repeats and positions (W, n, 2) m to settle from; repeat w has the seed run.seed + w.
+
+    hands: what moves the tanks in place of the preset's motions.
+
+    The positions lie within `filling_outline`; listed grains that overlap too deeply to settle are moved apart. The
+    step, by the level of accuracy unless given, divides the sampling interval of the series, so samples fall on steps.
+    Raises LabError where the grains do not fit, into the tank or the memory, or a given step is past the limit.
+    """
+    check_room(preset, grain_count(preset))
+    radius, position, more = _listed(preset) if preset.grains.listed else _filled(preset)
+    low, high = preset.grains.range
+    scene = Scene(
+        radius=radius,
+        outline=np.array(preset.tank.outline),
+        grain=preset.material,
+        wall=preset.wall,
+        **_kinds(preset, radius.shape),
+        normal=preset.contact.normal,
+        tangential=preset.contact.tangential,
+        rolling=preset.contact.rolling,
+        cohesion=preset.contact.cohesion,
+        stiffness_scale=preset.contact.stiffness_scale,
+        gravity=preset.run.gravity,
+        motions=[tuple(preset.motion.parts.values() if hands is None else hands)] * len(radius),
+        soft_start=preset.motion.soft_start,
+        sizes=(0.5 * low, 0.5 * high),
+        fixed=fixed_grains(preset),
+        open_edges=preset.tank.open_edges,
+        parts=tuple(preset.parts.values()),
+        vessels=vessels(preset) * len(radius),
+        integrator=preset.run.integrator,
+        precision=preset.run.precision,
+        schedule=preset.run.schedule,
+        **more,
+    )
+    _check_softness(scene)
+    scene.step = _step(preset, scene)
+    if preset.grains.listed and preset.run.settle:  # without settling it may be meant so
+        position = np.tile(relaxed(scene, position[0]), (len(radius), 1, 1))
+    return scene, position
+
+
+def vessels(preset: Resolved) -> list[Vessel]:
+    """The ship whose hold the tank is, if there is one. Raises LabError where she does not float."""
+    if preset.ship is None:
+        return []
+    sheet = preset.ship.sheet or preset.grains.diameter
+    return [make_vessel(preset.ship, preset.water, preset.waves, sheet, preset.run.gravity)]
+
+
+def _filled(preset: Resolved) -> tuple[np.ndarray, np.ndarray, dict]:
+    """Radii (W, n) and positions (W, n, 2) of a tank to be filled, each repeat by its own seed, and their shapes.
+
+    Nothing moves, and grains of any shape are so far apart that they may turn.
+    """
+    grains, count = preset.grains, grain_count(preset)
+    shapes = draw_shapes(preset, count)
+    random = [np.random.default_rng(preset.run.seed + w) for w in range(preset.run.repeats)]
+    if shapes is None:
+        radius = reach = np.stack([grains.sizes.draw(count, r) for r in random])
+    else:
+        radius = _sized(preset, shapes, random)
+        reach = radius * np.array([outline.bounding_radius for outline in shapes.outlines])[shapes.which]
+    outline, fixed = filling_outline(preset), fixed_grains(preset)
+    plates, thrown = _plates(preset), grains.surface == "disturbed"
+    region = np.array(grains.region) if grains.region else None
+    try:
+        position = [
+            start_positions(size, outline, r, fixed, plates, thrown, region)
+            for size, r in zip(reach, random, strict=True)
+        ]
+    except DoesNotFit as error:
+        raise LabError(f"grains.{'count' if grains.count else 'depth'}: {error}") from None
+    return radius, np.stack(position), {"shapes": shapes} if shapes else {}
+
+
+def _sized(preset: Resolved, shapes: Shapes, random: list[np.random.Generator]) -> np.ndarray:
+    """Radii (W, n) of discs of equal area, spread about that of each grain's class."""
+    grains = preset.grains
+    diameter = np.array([shape.diameter for shape in preset.shapes.values()])[classes(preset)][shapes.which]
+    relative = Sizes(((2.0, 1.0),), grains.spread, grains.distribution == "normal")
+    return 0.5 * diameter * np.stack([relative.draw(shapes.which.shape[1], r) for r in random])
+
+
+def _plates(preset: Resolved) -> list[np.ndarray]:
+    """The tank's parts, polylines (m, 2) m at rest."""
+    return [np.array(part.points) for part in preset.parts.values()]
+
+
+def _kinds(preset: Resolved, shape: tuple[int, int]) -> dict:
+    """The kinds of grains, mixed at random, each repeat by its own seed; nothing where there is but one."""
+    if not preset.kinds:
+        return {}
+    worlds, count = shape
+    bounds = np.round(np.cumsum([kind.share for kind in preset.kinds.values()]) * count)
+    ordered = (np.searchsorted(bounds, np.arange(count), side="right") + 1) % (len(preset.kinds) + 1)
+    random = [np.random.default_rng([preset.run.seed + w, 1]) for w in range(worlds)]
+    against = [((0, k), kind.against) for k, kind in enumerate(preset.kinds.values(), start=1) if kind.against]
+    return {
+        "kind": np.stack([r.permutation(ordered) for r in random]),
+        "others": tuple(kind.material for kind in preset.kinds.values()),
+        "unlike": tuple(against),
+    }
+
+
+def _listed(preset: Resolved) -> tuple[np.ndarray, np.ndarray, dict]:
+    """Radii and positions of the grains listed one by one, in all repeats, and how they move if they do."""
+    listed = np.array([preset.grains.listed] * preset.run.repeats)
+    velocity, spin = listed[..., 3:5], listed[..., 5]
+    motion = {}
+    if np.any(velocity) or np.any(spin):
+        motion = {"velocity": velocity, "spin": spin, "start_speed": closing_speed(velocity[0])}
+    return listed[..., 2], listed[..., :2], motion
+
+
+def _check_softness(scene: Scene) -> None:
+    """Raise LabError where the watch would stop the run: grains that start so fast overlap too deep as they meet.
+
+    How far they fall, and where the tank hits them, is not known beforehand; but none may go through another.
+    """
+    for what, speed, most in (
+        ("start", scene.start_speed, DEEPEST_OVERLAP),
+        ("may meet", scene.credible_speed(), THROUGH),
+    ):
+        deep = scene.deepest_overlap(speed)
+        if deep > most:
+            stiffer = scene.stiffness_scale * (deep / most) ** 2.5
+            remedy = f"set it to at least {stiffer:.2g}"
+            if stiffer > 1.0:
+                remedy = "raise material.young or slow them down"
+            raise LabError(
+                f"contact.stiffness_scale: grains {what} at {show(speed, 'm/s')} here and would overlap by "
+                f"{100 * deep:.3g} % of a radius, where {100 * most:g} % is the most; {remedy}."
+            )
+
+
+def _step(preset: Resolved, scene: Scene) -> float:
+    limit, run = scene.step_limits()[0], preset.run
+    if run.step == "auto":
+        wanted = scene.longest_step(LEVELS[run.accuracy].longer_steps)
+    else:
+        wanted = run.step
+        check_forced(wanted, limit.step, limit.reason, run.force_step)
+    interval = 1.0 / preset.record.series_rate
+    return interval / ceil(interval / wanted - 1e-9)

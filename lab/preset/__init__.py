@@ -1,0 +1,1 @@
+"""What a preset may say, section by section, and how presets are found and read."""

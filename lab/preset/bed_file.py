@@ -1,0 +1,70 @@
+"""A bed whose grains are listed one by one in a file, for scenes that verify the physics."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from lab.base.errors import LabError
+from lab.preset.outline import Point
+from lab.preset.tables import read_table
+from lab.preset.units import show
+from solvers.grains.filling import clear_of_walls
+
+NEEDED = ("y", "z", "radius")
+MOTION = ("vy", "vz", "omega")
+MOST = 100_000
+SMALLEST = 1e-7  # m, of a radius
+FASTEST = 1e6  # m/s or rad/s: numbers beyond are not what their units say
+DEEPEST = 0.01  # overlap of two grains, or of a grain and a wall, in radii of the smaller
+
+Grain = tuple[float, float, float, float, float, float]
+
+
+def read_bed(path: str, outline: Sequence[Point], moving: bool) -> tuple[Grain, ...]:
+    """The grains of a CSV file: columns y, z, radius and, where they start moving, any of vy, vz, omega; SI.
+
+    Returns y, z, radius (m), v_y, v_z (m/s), ω (rad/s) of each. Raises LabError: a file that cannot be used, grains
+    outside the tank (`outline`, m), overlapping by more than 1 % of a radius or too many, or a motion where they are to
+    settle first (`moving` false).
+    """
+    columns = read_table(path, NEEDED, MOTION, "grains.bed", MOST)
+    zero = np.zeros(len(columns["y"]))
+    grains = np.column_stack([columns.get(name, zero) for name in (*NEEDED, *MOTION)])
+    _check(grains, np.array(outline))
+    if not moving and np.any(grains[:, 3:]):
+        raise LabError(
+            "grains.bed: its grains move, but settle first; say run.settle = false or leave vy, vz and omega out."
+        )
+    return tuple(map(tuple, grains.tolist()))
+
+
+def _check(grains: np.ndarray, outline: np.ndarray) -> None:
+    """Raise LabError for grains that no tank can hold; grains are counted from 1, as rows below the header."""
+    position, radius = grains[:, :2], grains[:, 2]
+    wrong = np.flatnonzero(radius < SMALLEST)
+    if len(wrong):
+        least = "greater than 0" if radius[wrong[0]] <= 0.0 else f"at least {SMALLEST:g} m"
+        raise LabError(f"grains.bed: the radius in row {wrong[0] + 1} must be {least} (got {radius[wrong[0]]:g}).")
+    wrong = np.flatnonzero(np.abs(grains[:, 3:]).max(axis=1) > FASTEST)
+    if len(wrong):
+        raise LabError(f"grains.bed: the grain in row {wrong[0] + 1} is too fast; look at its numbers and their units.")
+    with np.errstate(over="ignore", invalid="ignore"):  # of places beyond all measure
+        wrong = np.flatnonzero(~clear_of_walls(position, outline, (1.0 - DEEPEST) * radius))
+    if len(wrong):
+        place = ", ".join(show(x, "m") for x in position[wrong[0]])
+        raise LabError(f"grains.bed: the grain in row {wrong[0] + 1}, at {place}, is not inside the tank.")
+    _check_overlaps(position, radius)
+
+
+def _check_overlaps(position: np.ndarray, radius: np.ndarray) -> None:
+    from scipy.spatial import cKDTree  # slow to import, and only such files need it
+
+    order = np.argsort(radius)
+    tree = cKDTree(position[order])
+    for rank, i in enumerate(order):  # each with the smaller ones, so that its own size bounds the search
+        near = order[[k for k in tree.query_ball_point(position[i], 2.0 * radius[i]) if k < rank]]
+        overlap = radius[i] + radius[near] - np.linalg.norm(position[near] - position[i], axis=1)
+        deep = near[overlap > DEEPEST * radius[near]]
+        if len(deep):
+            first, second = sorted((int(i), int(deep.min())))
+            raise LabError(f"grains.bed: the grains in rows {first + 1} and {second + 1} overlap.")

@@ -1,0 +1,308 @@
+"""Presets: find, load, inherit, override.
+
+A preset is a TOML file: one of those shipped, called by name ("tilting/quick"), or a person's own,
+called by its path. It may be `based_on` another one; its keys go over the base's, and overrides go
+over both. Title, source and what the source reports are a preset's own: no base hands them down.
+A path in a preset starts from the folder of the file that says it, one among the overrides from the
+working directory. A preset may have a table `quick`, keys that make it cheaper; by the name with
+QUICK behind it, "tilting/fill-deep-quick", these go over it.
+"""
+
+import os
+import tomllib
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import dataclass
+from difflib import get_close_matches
+from functools import reduce
+from importlib.resources import files
+from importlib.resources.abc import Traversable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from lab.base.errors import LabError
+from lab.base.files import read_bytes
+from lab.preset import toml
+from lab.preset.units import quoted, shown_path
+
+if TYPE_CHECKING:
+    from lab.preset.schema import Resolved
+
+LARGEST_FILE = 1_000_000  # bytes
+# Of the squares of the numbers of dots in the lines: memory and time that the standard library takes for a key of many
+# parts, a.b.c…, grow so, and a key is within a line.
+MOST_DOTS = 10_000_000
+
+# Keys of a section that stand for one another: giving one side drops the other, inherited one.
+ALTERNATIVES = {
+    "tank": ({"width", "height"}, {"outline"}),
+    "grains": ({"count"}, {"depth"}),
+    "material": ({"restitution"}, {"dissipative_time"}),
+    "wall": ({"restitution"}, {"dissipative_time"}),
+    "ship": ({"gyradius"}, {"roll_period"}),
+}
+
+QUICK = "-quick"  # behind the name of a preset: its quick variant
+# What the quick variant of a preset may change: what it costs, and with it how exact it is, but not what it is about.
+QUICK_KEYS = ("run", "record", "grains.diameter", "grains.count", "contact.stiffness_scale", "motion.tilt.rate")
+
+# What tells of the very experiment that a preset is of, and not of one that is based on it.
+OWN_KEYS = ("title", "source", "reports", "based_on")
+
+PATH_KEYS = ("grains.bed", "motion.history.file", "shapes.*.contour")  # whose values are paths; *: any name
+
+
+@dataclass(frozen=True)
+class LoadedPreset:
+    """A preset ready to run: its name, its TOML text with all merged in, what it resolves to.
+
+    In the text, paths are as written.
+    """
+
+    name: str
+    given_text: str
+    resolved: "Resolved"
+
+
+@dataclass(frozen=True)
+class Source:
+    """Where a preset is written; `shown` is how people call it, `own` marks a person's file."""
+
+    shown: str
+    file: Traversable | Path
+    own: bool = False
+
+    @property
+    def name(self) -> str:
+        """A short name: a person's own file goes by its name without the ending."""
+        if not self.own:
+            return self.shown
+        return self.file.stem if self.file.stem.strip(".") else "preset"  # results lie in a folder of that name
+
+    @property
+    def folder(self) -> Path:
+        """Where the paths in the preset start."""
+        return Path(str(self.file)).parent
+
+
+@dataclass(frozen=True)
+class Layer:
+    """A table of keys to be merged with others, and the folder where the paths in it start."""
+
+    table: dict
+    folder: Path
+
+    def without(self, keys: Collection[str]) -> "Layer":
+        """The layer less some of its uppermost keys."""
+        return Layer({key: value for key, value in self.table.items() if key not in keys}, self.folder)
+
+    def located(self) -> dict:
+        """The table with full paths under PATH_KEYS."""
+        return reduce(self._with_full_path, PATH_KEYS, dict(self.table))
+
+    def _with_full_path(self, table: dict, dotted: str) -> dict:
+        key, _, rest = dotted.partition(".")
+        if key == "*":
+            names = [name for name in table if toml.BARE_KEY.fullmatch(str(name))]
+            return reduce(self._with_full_path, (f"{name}.{rest}" for name in names), table)
+        value = table.get(key)
+        if rest and isinstance(value, Mapping):
+            return table | {key: self._with_full_path(dict(value), rest)}
+        if not rest and isinstance(value, str):
+            return table | {key: os.path.abspath(self.folder / value)}
+        return table
+
+
+def names() -> dict[str, str]:
+    """The shipped presets and their quick variants, sorted: name and title."""
+    found = {}
+    for name, file in _shipped().items():
+        layers = _layers(Source(name, file))
+        quick = _quick_tables(layers)
+        found[name] = _written(layers)["title"]
+        if quick:
+            found[name + QUICK] = f"{found[name]}, cheaper and less exact"
+    return dict(sorted(found.items()))
+
+
+def load(name_or_path: str | Path, overrides: Mapping | None = None) -> LoadedPreset:
+    """A preset by name or path, under `overrides`: {"grains.diameter": "4 mm"} or nested tables.
+
+    Raises LabError: no such preset, a file that cannot be read, or a key that is unknown or wrong.
+    """
+    from lab.preset.schema import resolve  # brings the solvers; the list of presets does without
+
+    source, quick = _find_variant(str(name_or_path))
+    try:
+        layers = _layers(source)
+        variant = _quick_variant(source, layers)
+        if quick and not variant:
+            raise LabError(f"{source.shown}: has no quick variant; run {source.shown} itself.")
+        layers = [*layers, Layer(variant if quick else {}, Path()), Layer(nested(overrides or {}), Path())]
+        resolved = resolve(reduce(merged, (layer.located() for layer in layers)))
+    except RecursionError:
+        raise LabError(f"{source.shown}: nested too deeply.") from None
+    based = f"{quoted(resolved.based_on)}, on which it is based, and " if resolved.based_on else ""
+    heading = f"# {quoted(source.shown)} with {based}all overrides merged in.\n"
+    name = source.name + (QUICK if quick else "")
+    return LoadedPreset(name, heading + toml.dumps(_written(layers)), resolved)
+
+
+def _quick_variant(source: Source, layers: list[Layer]) -> dict:
+    """The keys that make a preset its quick variant; empty if it has none."""
+    tables = _quick_tables(layers)
+    if not all(isinstance(table, Mapping) for table in tables):
+        raise LabError(f"{source.shown}: quick: a table of keys is needed.")
+    variant = reduce(merged, tables, {})
+    if not variant:
+        return {}
+    differs = variant.pop("differs", None)
+    if not isinstance(differs, str) or not differs.strip():
+        raise LabError(f"{source.shown}: quick.differs: missing; say in a text how the quick variant differs.")
+    for dotted in _leaves(variant):
+        if not any(dotted == key or dotted.startswith(f"{key}.") for key in QUICK_KEYS):
+            raise LabError(
+                f"{source.shown}: quick.{quoted(dotted)[1:-1]}: may not differ; only {', '.join(QUICK_KEYS)} may."
+            )
+    return {"quick": differs, **variant}
+
+
+def _quick_tables(layers: list[Layer]) -> list:
+    """What layers say under `quick`, taken out of them, from behind the last that says false."""
+    # A text under `quick` says that the preset is one already.
+    tables = [layer.table.pop("quick") for layer in layers if not isinstance(layer.table.get("quick", ""), str)]
+    refused = [place for place, table in enumerate(tables) if table is False]
+    return tables[refused[-1] + 1 :] if refused else tables
+
+
+def _leaves(table: Mapping, path: str = "") -> Iterator[str]:
+    """The dotted keys of a table's values."""
+    for key, value in table.items():
+        if isinstance(value, Mapping):
+            yield from _leaves(value, f"{path}{key}.")
+        else:
+            yield f"{path}{key}"
+
+
+def nested(overrides: Mapping) -> dict:
+    """Overrides with dotted keys as nested tables; later ones go over earlier ones."""
+    result: dict = {}
+    for key, value in overrides.items():
+        parts = str(key).split(".")
+        if not all(parts):
+            raise LabError(f"{quoted(key)} is not a key; write it like grains.diameter.")
+        if parts[0] in ("based_on", "quick"):
+            raise LabError(f"{parts[0]}: cannot be overridden; write a preset file that says it.")
+        value = value.tolist() if hasattr(value, "tolist") else value  # numpy's numbers, as sweeps in Python have them
+        for part in reversed(parts):
+            value = {part: value}
+        result = merged(result, value, alternatives={})
+    return result
+
+
+def merged(base: Mapping, over: Mapping, path: str = "", alternatives: Mapping = ALTERNATIVES) -> dict:
+    """`over` laid over `base`, table by table; of keys that stand for one another `over`'s stay."""
+    result = dict(base)
+    for side, other in _both_ways(alternatives.get(path)):
+        if side & over.keys() and not other & over.keys():
+            result = {key: value for key, value in result.items() if key not in other}
+    for key, value in over.items():
+        below = result.get(key)
+        if isinstance(value, Mapping) and isinstance(below, Mapping):
+            value = merged(below, value, f"{path}.{key}" if path else key, alternatives)
+        result[key] = value
+    return result
+
+
+def _both_ways(pair: tuple[set, set] | None) -> tuple:
+    return () if pair is None else (pair, pair[::-1])
+
+
+def _shipped() -> dict[str, Traversable]:
+    def below(folder: Traversable, path: str):
+        for entry in folder.iterdir():
+            if entry.is_dir():
+                yield from below(entry, f"{path}{entry.name}/")
+            elif entry.name.endswith(".toml"):
+                yield path + entry.name.removesuffix(".toml"), entry
+
+    return dict(sorted(below(files("presets"), "")))
+
+
+def _find_variant(name: str) -> tuple[Source, bool]:
+    """The preset called by that name, and whether its quick variant is meant."""
+    plain = name.removesuffix(QUICK)
+    shipped = _shipped()
+    quick = plain != name and name not in shipped and plain in shipped
+    return _find(plain if quick else name), quick
+
+
+def _find(name: str, beside: Path | None = None) -> Source:
+    """The shipped preset `name`, else the file at that path (relative to the folder `beside`)."""
+    shipped = _shipped()
+    if name in shipped:
+        return Source(name, shipped[name])
+    path = (beside or Path()) / name
+    if name.endswith(".toml") or os.path.isfile(path):  # Path.is_file raises on names that are too long
+        return Source(shown_path(name), path, own=True)
+    if any(known.startswith(f"{name}/") for known in shipped):
+        raise LabError(f"{quoted(name)} is a group of presets; `cargolab list` shows those in it.")
+    near = get_close_matches(name[:100], shipped, n=1, cutoff=0.4)
+    hint = f"did you mean {near[0]}?" if near else "`cargolab list` shows all."
+    raise LabError(f"there is no preset {quoted(name)}; {hint}")
+
+
+def _layers(source: Source, heirs: tuple[str, ...] = ()) -> list[Layer]:
+    """What a preset is based on, bottom first, and itself on top; `heirs` are the files that led here."""
+    table = _parsed(source)
+    chain = (*heirs, os.path.realpath(str(source.file)))
+    if chain[-1] in heirs:
+        raise LabError(f"{source.shown}: based_on: the preset ends up based on itself.")
+    base = table.pop("based_on", None)
+    own = Layer(table, source.folder)
+    if base is None:
+        return [own]
+    if not isinstance(base, str):
+        raise LabError(f"{source.shown}: based_on: the name or path of a preset is needed.")
+    try:
+        parent = _find(base, source.folder if source.own else None)
+    except LabError as error:
+        raise LabError(f"{source.shown}: based_on: {error}") from None
+    own.table.setdefault("title", f"{shown_path(source.name)}, based on {parent.shown}")
+    own.table["based_on"] = parent.shown
+    return [*(layer.without(OWN_KEYS) for layer in _layers(parent, chain)), own]
+
+
+def _written(layers: list[Layer]) -> dict:
+    """Each layer over those before it, the paths in them as written, and nothing left to be followed."""
+    return reduce(merged, (layer.without(("based_on",)).table for layer in layers))
+
+
+def _parsed(source: Source) -> dict:
+    text = _text(source)
+    if sum(line.count(".") ** 2 for line in text.split("\n")) > MOST_DOTS:
+        raise LabError(f"{source.shown}: not valid TOML: keys of too many parts.")
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise LabError(f"{source.shown}: not valid TOML: {error}.") from None
+    except (ValueError, RecursionError):  # thousands of digits; lists in lists in lists …
+        why = "too long a number or too deep a list"
+        raise LabError(f"{source.shown}: not valid TOML: {why}.") from None
+
+
+def _text(source: Source) -> str:
+    try:
+        content = read_bytes(source.file, LARGEST_FILE + 1) if source.own else source.file.read_bytes()
+    except OSError as error:
+        raise LabError(f"{source.shown}: cannot be read: {error.strerror or error}.") from None
+    except ValueError:
+        raise LabError(f"{source.shown}: is not a file name.") from None
+    if content is None:
+        raise LabError(f"{source.shown}: is not a file.")
+    if len(content) > LARGEST_FILE:
+        raise LabError(f"{source.shown}: too large for a preset.")
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = content.count(b"\n", 0, error.start) + 1
+        raise LabError(f"{source.shown}: not UTF-8 text (line {line}).") from None

@@ -1,0 +1,99 @@
+"""A preset in full, as files of the lab hold it, held to the limits of presets as people write them.
+
+Such a file may come from a stranger. What reads presets checks every number that a person gives; here the same is asked
+of numbers that are in SI already, before memory is taken by them.
+"""
+
+import json
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import fields, is_dataclass
+
+import numpy as np
+
+from lab.base.errors import LabError, Useless
+from lab.preset.bed_file import MOST as MOST_LISTED
+from lab.preset.history import check_history
+from lab.preset.outline import simple_polygon
+from lab.preset.parts import check_parts
+from lab.preset.reader import BOUND, check_interval
+from lab.preset.schema import Resolved, check_grains, check_lining, check_video
+from lab.preset.shapes import MOST_DESCRIPTORS, MOST_DRAWS
+from lab.preset.ship import check_ship
+from lab.preset.toml import BARE_KEY
+from lab.recording import open_recording
+from lab.runs.launch import Run
+
+ALIKE = 1e-9  # relative: sizes of grains that processors round otherwise
+LONGEST_LIST = 1000  # of classes of sizes, of kinds and of shapes
+
+
+def resolved_from(table: object) -> Resolved:
+    """The preset in full that a file holds. Raises ValueError where it is none that a preset could have come to."""
+    try:
+        preset = Resolved.model_validate_json(json.dumps(table))
+        _check(preset)
+    except (LabError, RecursionError, ArithmeticError) as error:
+        raise ValueError(str(error)) from error
+    return preset
+
+
+def check_belongs(run: Run) -> None:
+    """Raise Useless where the recording in a run's folder is not of the run's scene, to which rows would be added."""
+    with open_recording(run.folder) as recording:
+        pairs = (recording.radius, run.scene.radius), (recording.outline, run.scene.outline)
+        alike = all(a.shape == b.shape and np.allclose(a, b, rtol=ALIKE, atol=0.0) for a, b in pairs)
+        if not alike or len(recording.parts) != len(run.scene.parts):
+            raise Useless(
+                f"{recording.path} is not of the preset that it holds: start the run anew, in another folder."
+            )
+
+
+def _check(preset: Resolved) -> None:
+    _check_lengths(preset)
+    for name in type(preset).model_fields:
+        for key, holder, field, value in _numbers(getattr(preset, name), name):
+            if not math.isfinite(value) or abs(value) > BOUND:
+                raise LabError(f"{key}: is beyond all measure.")
+            if is_dataclass(holder):
+                check_interval(type(holder), field, value, key)
+    if preset.motion.history:
+        check_history(preset.motion.history)
+    check_lining(preset.tank)
+    if not preset.grains.listed:
+        check_grains(preset.grains, preset.tank, "grains.diameter")
+    check_parts(preset.parts, preset.tank.outline)
+    check_ship(preset.ship, preset.waves, bool(preset.motion.parts), preset.tank.outline)
+    check_video(preset.video)
+
+
+def _check_lengths(preset: Resolved) -> None:
+    """Raise LabError for longer lists than a preset may have, and for names that are none."""
+    grains = preset.grains
+    for outline in filter(None, (preset.tank.outline, grains.region)):
+        simple_polygon(outline)
+    named = [*preset.kinds, *preset.shapes, *preset.parts]
+    lists = [grains.table or (), named]
+    if max(map(len, lists)) > LONGEST_LIST or len(grains.listed) > MOST_LISTED:
+        raise LabError("grains: more classes than a preset may have.")
+    if not all(BARE_KEY.fullmatch(name) for name in named):
+        raise LabError("parts, shapes, kinds: names are letters, digits, - and _.")
+    if any(len(s.descriptors) > MOST_DESCRIPTORS or not 1 <= s.draws <= MOST_DRAWS for s in preset.shapes.values()):
+        raise LabError("shapes: more descriptors or draws than a preset may have.")
+    if not all(0 <= edge < len(preset.tank.outline) for edge in preset.tank.open_edges):
+        raise LabError("tank.open_edges: there is no such edge.")
+
+
+def _numbers(value: object, key: str, holder: object = None, field: str = "") -> Iterator[tuple]:
+    """Every number of a preset: its key, and the dataclass and the field that hold it."""
+    if isinstance(value, int | float) and not isinstance(value, bool):
+        yield key, holder, field, value
+    elif is_dataclass(value):
+        for inner in fields(value):
+            yield from _numbers(getattr(value, inner.name), f"{key}.{inner.name}", value, inner.name)
+    elif isinstance(value, Mapping):
+        for name, inner in value.items():
+            yield from _numbers(inner, f"{key}.{name}")
+    elif isinstance(value, tuple):
+        for place, inner in enumerate(value):
+            yield from _numbers(inner, f"{key}[{place}]")

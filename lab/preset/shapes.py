@@ -1,0 +1,204 @@
+"""Irregular grains as a preset gives them: classes of outlines, and the outlines that grains of a class may have."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields, replace
+from typing import Annotated, Literal
+
+import numpy as np
+
+from lab.base.errors import LabError
+from lab.preset.tables import read_table
+from lab.preset.units import needed
+from solvers.grains.shapes.cargo import cargo, cargoes
+from solvers.grains.shapes.contour import Contour
+from solvers.grains.shapes.fitting import fit
+from solvers.grains.shapes.spectrum import draw, spectrum
+from solvers.machine.errors import BadOutline
+from solvers.machine.marks import Interval, Unit
+
+MOST_DESCRIPTORS, MOST_DRAWS = 100, 1000
+TRIED, BELOW = 6, 0.75  # outlines that are drawn to see how easily such grains are turned; what lies below all
+SHARP = 0.05  # of R0: dents of which `continuous` may lose contacts; with those of 0.076 it does not
+MOST_POINTS = 1000  # of an outline in a file
+DESCRIBED = ("cargo", "descriptors", "contour", "spectrum", "disc")  # the keys of which a class has exactly one
+
+# No outline has a descriptor of twice R0: the mean of R (1 − cos(nθ + δ_n)), which is positive, is R0 − D_n/2.
+Descriptor = Annotated[float, Interval(gt=-2, lt=2)]
+Slope = Annotated[float, Interval(ge=-10, le=10)]
+
+
+@dataclass(frozen=True)
+class SpectrumGiven:
+    """Descriptors D_1 … D_count relative to R0, by the law of `solvers.grains.shapes.spectrum`."""
+
+    count: Annotated[int, Interval(ge=2, le=MOST_DESCRIPTORS)]
+    D2: Descriptor = 0.0
+    D3: Descriptor = 0.0
+    D8: Descriptor = 0.0
+    alpha: Slope = -2.0
+    beta: Slope = -2.0
+
+
+@dataclass(frozen=True)
+class ShapeGiven:
+    """A class of outlines as a preset gives it: exactly one of DESCRIBED, its share, its size.
+
+    `descriptors` are relative to R0, their `phases` random where they are left out, as those of a spectrum: then
+    `draws` outlines are drawn for each repeat. `diameter` is that of the disc of equal area.
+    """
+
+    cargo: Literal[*cargoes()] | None = None
+    descriptors: tuple[Descriptor, ...] | None = None
+    phases: Annotated[tuple[float, ...], Unit("rad")] | None = None
+    contour: str | None = None
+    spectrum: SpectrumGiven | None = None
+    disc: bool = False
+    share: Annotated[float, Interval(gt=0)] | None = None
+    diameter: Annotated[float, Unit("m"), Interval(gt=0)] | None = None
+    draws: Annotated[int, Interval(ge=1, le=MOST_DRAWS)] = 25
+
+    @property
+    def round(self) -> bool:
+        """Whether its outline is a circle."""
+        return self.disc or (self.descriptors is not None and not any(self.descriptors))
+
+
+@dataclass(frozen=True)
+class Shape:
+    """A class of outlines in full: its share of the grains by number, the diameter (m) of the disc of equal area.
+
+    `descriptors` D_1, D_2, … relative to R0 and `phases` (rad); None: drawn at random, `draws` times for each repeat.
+    """
+
+    share: float
+    diameter: float
+    descriptors: tuple[float, ...] = ()
+    phases: tuple[float, ...] | None = ()
+    draws: int = 1
+
+    @property
+    def random(self) -> bool:
+        """Whether the phases are drawn at random."""
+        return self.phases is None
+
+    @property
+    def reach(self) -> float:
+        """No outline goes farther from its centroid than this, in radii of the disc of equal area.
+
+        Exact for given phases. For random ones a bound: R is at most (1 + S) R0 with S = Σ|D_n|/R0, and the centroid,
+        ∫ R³ (cos θ, sin θ) dθ/(3 A) with A ≥ π R0², at most |D_1| + (1 + S/3) Σ D_n²/R0 off the origin.
+        """
+        if not self.random:
+            return self.outlines()[0].bounding_radius
+        sizes = np.abs(self.descriptors)
+        total, squares = float(sizes.sum()), float(sizes @ sizes)
+        return 1.0 + total + float(sizes[:1].sum()) + (1.0 + total / 3.0) * squares
+
+    @property
+    def least_mass(self) -> float:
+        """With what part of its mass a grain resists a push on its outline at least, see `Contour.least_mass`.
+
+        Exact for given phases. For random ones, a little less than the least of some that are drawn with a seed of
+        their own, so that it does not depend on which repeats there are.
+        """
+        if not self.random:
+            return self.outlines()[0].least_mass
+        tried = replace(self, draws=TRIED).outlines(np.random.default_rng(0))
+        return BELOW * min(outline.least_mass for outline in tried)
+
+    def outlines(self, random: np.random.Generator | None = None) -> list[Contour]:
+        """The outlines of one repeat, centred, with the area of a disc of radius 1. Raises BadOutline."""
+        radius = 0.5 * self.diameter  # so that what is said of an outline has the size that people know
+        sizes = radius * np.array(self.descriptors)
+        if self.random:
+            drawn = [draw(radius, sizes, random) for _ in range(self.draws)]
+        else:
+            drawn = [Contour(radius, sizes, self.phases)]
+        return [contour.centred().with_diameter(2.0) for contour in drawn]
+
+
+def read_shapes(given: Mapping[str, ShapeGiven], diameter: float | None, shares: str) -> dict[str, Shape]:
+    """The classes in full, those without a diameter of `diameter` (m); shares are by number or by mass.
+
+    Raises LabError, one sentence with the key.
+    """
+    shapes = {name: _shape(f"shapes.{name}", one, diameter) for name, one in given.items()}
+    lacking = [name for name, one in given.items() if one.share is None]
+    if lacking and len(lacking) < len(given):
+        raise LabError(f"shapes.{lacking[0]}.share: missing; give all shapes a share, or none and they are equal.")
+    classes = by_number([(shape.diameter, shape.share) for shape in shapes.values()], shares)
+    return {
+        name: replace(shape, share=share) for (name, shape), (_, share) in zip(shapes.items(), classes, strict=True)
+    }
+
+
+def by_number(classes, shares: str) -> tuple[tuple[float, float], ...]:
+    """Classes (diameter m, share) with their shares by number, which add up to 1; `shares`: number, or mass of spheres.
+
+    A spread of the diameters relative to those of their classes changes all mean masses alike.
+    """
+    power = 3 if shares == "mass" else 0
+    numbers = [share / diameter**power for diameter, share in classes]
+    total = sum(numbers)
+    return tuple((diameter, number / total) for (diameter, _), number in zip(classes, numbers, strict=True))
+
+
+def _shape(key: str, given: ShapeGiven, diameter: float | None) -> Shape:
+    used = [name for name in DESCRIBED if getattr(given, name) not in (None, False)]
+    if len(used) != 1:
+        got = f"got {' and '.join(used)}" if used else "got none"
+        raise LabError(f"{key}: give exactly one of {', '.join(DESCRIBED)} ({got}).")
+    if given.phases is not None and used != ["descriptors"]:
+        raise LabError(f"{key}.phases: go with descriptors.")
+    own = cargo(given.cargo).diameter if given.cargo else None
+    size = given.diameter or diameter or own
+    if size is None:
+        raise LabError(f"{key}.diameter: missing; {needed('m')}, here or as grains.diameter.")
+    try:
+        descriptors, phases = _described(f"{key}.{used[0]}", given)
+        shape = Shape(given.share or 1.0, size, descriptors, phases, given.draws if phases is None else 1)
+        if not shape.random:
+            shape.outlines()
+    except BadOutline as error:
+        raise LabError(f"{key}.{used[0]}: {error}") from None
+    return shape
+
+
+def _described(key: str, given: ShapeGiven) -> tuple[tuple[float, ...], tuple[float, ...] | None]:
+    """Descriptors relative to R0 and phases (rad), None where they are random. Raises BadOutline, LabError."""
+    if given.cargo is not None:
+        return cargo(given.cargo).descriptors, cargo(given.cargo).phases
+    if given.contour is not None:
+        return _fitted(key, given.contour)
+    if given.spectrum is not None:
+        law = {field.name.lower(): getattr(given.spectrum, field.name) for field in fields(given.spectrum)}
+        return tuple(spectrum(**law).tolist()), None
+    descriptors = given.descriptors or ()
+    if len(descriptors) > MOST_DESCRIPTORS:
+        raise LabError(f"{key}: at most {MOST_DESCRIPTORS} are possible (got {len(descriptors)}).")
+    return descriptors, () if given.disc else given.phases
+
+
+def _fitted(key: str, path: str) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """Descriptors and phases of an outline from a CSV file with the columns y and z, in any unit of length."""
+    columns = read_table(path, ("y", "z"), key=key, most=MOST_POINTS)
+    points = np.column_stack([columns["y"], columns["z"]])
+    points = points / (np.abs(points).max() or 1.0)
+    found = fit(points).contour
+    if len(found.descriptors) > MOST_DESCRIPTORS:
+        found = fit(points, MOST_DESCRIPTORS).contour
+    return tuple((np.array(found.descriptors) / found.radius).tolist()), found.phases
+
+
+def caution(contours: Sequence[Contour], rule: str) -> str | None:
+    """What to know of grains of these outlines that touch by a rule, in a sentence; None if nothing.
+
+    Of 24 pairs of discs with 50 lobes, dents of 0.03 R0, four gain energy by `continuous`; those of 0.076 R0 do not.
+    """
+    sharpest = min(contour.sharpest_dent / contour.radius for contour in contours)
+    if rule != "continuous" or sharpest >= SHARP:
+        return None
+    return (
+        f"Outlines have dents with a radius of curvature of {100 * sharpest:.1f} % of R0: "
+        'grains that mesh may gain energy; contact.outlines = "area" keeps it.'
+    )

@@ -1,0 +1,243 @@
+"""Quantities as people write them ("3.2e9 Pa", "0.3 deg/s", "30 %") to SI numbers and back.
+
+The registry is a short list of our own. Pint's default one takes angles for pure numbers, so
+"3 deg/s" would pass for a frequency and 60 rpm would be 6.28 Hz; here an angle is a dimension.
+"""
+
+import math
+import re
+from functools import cache
+from typing import NamedTuple
+
+from lab.base.errors import LabError
+
+DEFINITIONS = """
+nano- = 1e-9 = n-
+micro- = 1e-6 = µ- = \u03bc- = u-
+milli- = 1e-3 = m-
+centi- = 1e-2 = c-
+kilo- = 1e3 = k-
+mega- = 1e6 = M-
+giga- = 1e9 = G-
+meter = [length] = m = metre
+gram = [mass] = g
+second = [time] = s
+radian = [angle] = rad
+degree = 0.017453292519943295 * radian = deg
+revolution = 6.283185307179586 * radian = rev
+minute = 60 * second = min
+hour = 3600 * second = h
+rpm = revolution / minute
+hertz = 1 / second = Hz
+newton = 1000 * gram * meter / second ** 2 = N
+pascal = newton / meter ** 2 = Pa
+bar = 1e5 * pascal
+joule = newton * meter = J
+tonne = 1e6 * gram = t
+knot = 1852 * meter / hour = kn
+percent = 0.01 = %
+"""
+
+
+class Kind(NamedTuple):
+    """How people speak of an SI unit: what it measures, the unit they would use, an example."""
+
+    name: str
+    unit: str
+    example: str
+
+
+KINDS = {
+    "1": Kind("a pure number", "1", "0.25"),
+    "m": Kind("a length", "mm", "3 mm"),
+    "kg": Kind("a mass", "g", "0.15 g"),
+    "s": Kind("a time", "s", "0.5 s"),
+    "rad": Kind("an angle", "deg", "20 deg"),
+    "rad/s": Kind("an angular rate", "deg/s", "3 deg/s"),
+    "Hz": Kind("a frequency", "Hz", "1.5 Hz"),
+    "m/s": Kind("a speed", "m/s", "1 m/s"),
+    "m/s^2": Kind("an acceleration", "m/s^2", "9.81 m/s^2"),
+    "kg/m^3": Kind("a density", "kg/m^3", "1319 kg/m^3"),
+    "N": Kind("a force", "N", "1 N"),
+    "Pa": Kind("a pressure", "Pa", "3.2e9 Pa"),
+    "J": Kind("an energy", "J", "1 J"),
+    "N/m": Kind("a surface tension", "N/m", "0.072 N/m"),
+    "m^3": Kind("a volume", "mm^3", "0.002 mm^3"),
+    "N s/m": Kind("a damping coefficient", "N s/m", "20 N s/m"),
+}
+MEASURED = {"deg": "rad", "mm": "m", "mN": "N", "µJ": "J", "Hz": "Hz", "s": "s", "%": "1"}  # units of measures
+PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
+# Units shown with a prefix, and the smallest power of ten they are shown with.
+PREFIXED = {"m": -9, "s": -9, "Pa": 0, "N": -9, "J": -9, "Hz": 0}
+
+NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
+FACTOR = re.compile(r"\s*([*/·]?)\s*([^\W\d]+|[%°]|1(?=\s*/))(?:\s*(?:\^|\*\*)\s*(-?[1-9]))?")
+TYPOGRAPHY = str.maketrans({"\N{MINUS SIGN}": "-", "²": "^2", "³": "^3"})
+LONGEST = 100  # characters of a quantity
+QUOTED = 40  # characters of a person's text that an error quotes
+LONGEST_PATH = 100  # and of a path
+
+
+@cache
+def _registry():
+    from pint import UnitRegistry  # a third of a second that `--help` need not wait for
+
+    registry = UnitRegistry(None)
+    for line in DEFINITIONS.strip().splitlines():
+        registry.define(line)
+    return registry
+
+
+def kind(symbol: str) -> Kind:
+    """What the SI unit `symbol` measures, in words."""
+    return KINDS.get(symbol, Kind(f"a quantity in {symbol}", symbol, f"1 {symbol}"))
+
+
+def needed(symbol: str) -> str:
+    """The half-sentence that asks for a quantity: 'a length is needed, e.g. "3 mm"'."""
+    name, _, example = kind(symbol)
+    return f"{name} is needed, e.g. {example}" if symbol == "1" else f'{name} is needed, e.g. "{example}"'
+
+
+def quoted(value: object) -> str:
+    """A person's value on one line, no longer than an error can bear."""
+    try:
+        text = str(value).lower() if isinstance(value, bool) else str(value)
+    except ValueError:  # an integer of more than 4300 digits
+        return "the number"
+    text = text if len(text) <= QUOTED else f"{text[:QUOTED]}…"
+    text = "".join(c if c.isprintable() else "?" for c in text)
+    return f'"{text}"' if isinstance(value, str) else text
+
+
+def shown_path(path: object) -> str:
+    """A path on one line, the end of one that is too long."""
+    text = "".join(c if c.isprintable() else "?" for c in str(path))
+    return text if len(text) <= LONGEST_PATH else f"…{text[-LONGEST_PATH:]}"
+
+
+def parse(value: object, symbol: str) -> float:
+    """The SI number, in the unit `symbol`, of a text such as "3 mm".
+
+    Plain numbers are taken where `symbol` is "1". Raises LabError: a wrong dimension, no unit, an
+    unknown unit, nonsense, or a number that is not finite.
+    """
+    if isinstance(value, str):
+        number, unit = _split(value, symbol)
+        number *= _factor(unit, value, symbol)
+    elif isinstance(value, int | float) and not isinstance(value, bool):
+        if symbol != "1":
+            raise LabError(f"{quoted(value)} has no unit; {needed(symbol)}.")
+        number = _as_float(value)
+    else:
+        raise LabError(f"{quoted(value)} is not a quantity; {needed(symbol)}.")
+    if not math.isfinite(number):
+        raise LabError(f"{quoted(value)} is not a finite number; {needed(symbol)}.")
+    return number
+
+
+def in_unit(text: str, unit: str, key: str) -> float:
+    """The number, in a unit that a measure comes in, of a text such as "0.72 rad". Raises LabError."""
+    symbol = MEASURED.get(unit)
+    try:
+        if symbol:
+            return parse(text, symbol) / parse(f"1 {unit}", symbol)
+        return parse(text.removesuffix(unit), "1")
+    except LabError as error:
+        raise LabError(f"{key}: {error}") from None
+
+
+def show(value: float, symbol: str) -> str:
+    """A number in the SI unit `symbol` as people like to read it: show(0.003, "m") is "3 mm"."""
+    unit = kind(symbol).unit
+    if symbol in PREFIXED and math.isfinite(value):
+        return _with_prefix(value, symbol)
+    if symbol == "1":
+        return _digits(value)
+    return f"{_digits(value / _factor(unit, unit, symbol))} {unit}"
+
+
+def _split(text: str, symbol: str) -> tuple[float, str]:
+    text = text.strip().translate(TYPOGRAPHY)
+    match = NUMBER.match(text)
+    if match and len(text) <= LONGEST:
+        return float(match[0]), text[match.end() :].strip()
+    if re.match(r"[+-]?(nan|inf)", text, re.IGNORECASE):
+        raise LabError(f"{quoted(text)} is not a finite number; {needed(symbol)}.")
+    raise LabError(f"{quoted(text)} cannot be read; {needed(symbol)}.")
+
+
+def _factor(unit: str, value: str, symbol: str) -> float:
+    """What turns a number in `unit` into one in `symbol`; `value` is the text that errors quote."""
+    if not unit and symbol != "1":
+        raise LabError(f"{quoted(value)} has no unit; {needed(symbol)}.")
+    given = _unit(unit, value, symbol)
+    if given.dimensionality != _si(symbol).dimensionality:
+        raise LabError(f"{_mismatch(value, given, symbol)}.")
+    try:
+        return (1 * given).to(_si(symbol)).magnitude
+    except OverflowError:
+        return math.inf
+
+
+def _unit(text: str, value: str, symbol: str):
+    """A pint unit from "N s/m": names with powers, joined by a space (product), "*" or "/"."""
+    unit, place = _registry().Unit(""), 0
+    while place < len(text):
+        match = FACTOR.match(text, place)
+        if match is None or (place == 0 and match[1]):
+            raise LabError(f"{quoted(value)} cannot be read; {needed(symbol)}.")
+        operator, name, power = match.groups()
+        place = match.end()
+        if name == "1":
+            continue
+        factor = _named(name)
+        if factor is None:
+            raise LabError(f"{quoted(value)} has an unknown unit; {needed(symbol)}.")
+        exponent = int(power or 1)
+        unit *= factor ** (-exponent if operator == "/" else exponent)
+    return unit
+
+
+def _named(name: str):
+    """The pint unit of one name, or None. Only words have a plural: "Pas" may well mean "Pa s"."""
+    registry = _registry()
+    name = {"%": "percent", "°": "degree"}.get(name, name)
+    found = registry.parse_unit_name(name)
+    if not found:
+        return None
+    plural = name.endswith("s") and registry.parse_unit_name(name[:-1]) == found
+    return None if plural and len(name) <= 4 else registry.Unit(name)
+
+
+def _mismatch(value: str, given, symbol: str) -> str:
+    name, unit, example = kind(symbol)
+    what = next((k.name for s, k in KINDS.items() if _si(s).dimensionality == given.dimensionality), None)
+    is_what = f"is {what}" if what else "is of another kind"
+    if symbol == "1":
+        return f"{quoted(value)} {is_what}, but {needed(symbol)}"
+    return f'{quoted(value)} {is_what}, but {unit} ({name}) is needed, e.g. "{example}"'
+
+
+@cache
+def _si(symbol: str):
+    return _unit("" if symbol == "1" else symbol, symbol, symbol)
+
+
+def _as_float(value: float) -> float:
+    try:
+        return float(value)
+    except OverflowError:
+        return math.inf
+
+
+def _digits(value: float) -> str:
+    """Four significant digits, with an exponent only from ten million on."""
+    text = f"{value:.4g}"
+    return f"{float(text):.0f}" if "e+" in text and abs(value) < 1e7 else text
+
+
+def _with_prefix(value: float, symbol: str) -> str:
+    power = 3 * (int(f"{value:.3e}".split("e")[1]) // 3)
+    power = min(max(power, PREFIXED[symbol]), 0 if symbol == "s" else 9)
+    return f"{_digits(value / 10.0**power)} {PREFIXES[power]}{symbol}"

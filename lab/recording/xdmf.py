@@ -1,0 +1,76 @@
+"""A description of a recording in XDMF, a format that ParaView reads: grains as points with what they have.
+
+The file holds no numbers but the times; it points into the recording's data sets (XDMF 3, xdmf.org: Model and Format).
+"""
+
+from collections.abc import Iterator
+from pathlib import Path
+from xml.etree import ElementTree as Xml
+
+from lab.base.errors import LabError
+from lab.recording import GRAIN_FRAMES, Recording
+
+KINDS = {1: "Scalar", 2: "Vector"}  # by numbers a point
+
+
+def write_xdmf(recording: Recording) -> Path:
+    """Write recording.xdmf beside a recording: each world a time series of points. Raises LabError."""
+    path = recording.path.with_suffix(".xdmf")
+    try:
+        with path.open("w", encoding="utf-8") as file:
+            file.writelines(_lines(recording))
+    except OSError as error:
+        raise LabError(f"{path} cannot be written ({error.strerror}): make room there.") from error
+    return path
+
+
+def _lines(recording: Recording) -> Iterator[str]:
+    """The file's text, a grid at a time: a recording may have any number of frames."""
+    times = recording.frames["time"][:]
+    yield '<?xml version="1.0" encoding="utf-8"?>\n<Xdmf Version="3.0">\n<Domain>\n'
+    for world in range(recording.worlds):
+        yield f'<Grid Name="bed {world}" GridType="Collection" CollectionType="Temporal">\n'
+        for frame, time in enumerate(times):
+            grid = _grains(recording, world, frame, float(time))
+            Xml.indent(grid)
+            yield Xml.tostring(grid, encoding="unicode") + "\n"
+        yield "</Grid>\n"
+    yield "</Domain>\n</Xdmf>\n"
+
+
+def _grains(recording: Recording, world: int, frame: int, time: float) -> Xml.Element:
+    """The grains of one world at one time."""
+    count = recording.radius.shape[1]
+    grid = Xml.Element("Grid", Name="grains", GridType="Uniform")
+    _add(grid, "Time", Value=repr(time))
+    _add(grid, "Topology", TopologyType="Polyvertex", NumberOfElements=count, NodesPerElement=1)
+    _add_slab(_add(grid, "Geometry", GeometryType="XY"), recording, "frames/position", (frame, world))
+    _add_slab(_add_values(grid, "radius", 1), recording, "grains/radius", (world,))
+    for name, shape in GRAIN_FRAMES.items():
+        if name != "position":
+            _add_slab(_add_values(grid, name, 2 if shape else 1), recording, f"frames/{name}", (frame, world))
+    return grid
+
+
+def _add_values(grid: Xml.Element, name: str, size: int) -> Xml.Element:
+    return _add(grid, "Attribute", Name=name, AttributeType=KINDS[size], Center="Node")
+
+
+def _add_slab(parent: Xml.Element, recording: Recording, name: str, place: tuple[int, ...]) -> None:
+    """The part of a data set at `place` on its leading axes, all of the others."""
+    shape, kind = recording.layout(name)
+    inner = shape[len(place) :]
+    slab = _add(parent, "DataItem", ItemType="HyperSlab", Dimensions=_words(inner))
+    corner = (*place, *(0 for _ in inner)), (1 for _ in shape), (*(1 for _ in place), *inner)
+    item = _add(slab, "DataItem", Dimensions=f"3 {len(shape)}", Format="XML")
+    item.text = " ".join(_words(row) for row in corner)
+    source = _add(slab, "DataItem", Dimensions=_words(shape), NumberType="Float", Precision=kind.itemsize, Format="HDF")
+    source.text = f"{recording.path.name}:/{name}"
+
+
+def _add(parent: Xml.Element, tag: str, **attributes: object) -> Xml.Element:
+    return Xml.SubElement(parent, tag, {name: str(value) for name, value in attributes.items()})
+
+
+def _words(numbers) -> str:
+    return " ".join(map(str, numbers))

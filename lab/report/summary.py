@@ -1,0 +1,292 @@
+"""What a run found, on one page: summary.md for people, summary.json for programs, a short text."""
+
+import json
+import os
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import get_type_hints
+
+import numpy as np
+
+from lab.base.errors import LabError
+from lab.base.text import code, fenced, inline, one_line, paragraphs, printable
+from lab.measures.value import Value
+from lab.preset.accuracy import LEVELS
+from lab.preset.shapes import caution
+from lab.preset.ship import axis_place, recorded_ship
+from lab.preset.units import show
+from lab.recording import Recording, ship_end
+from lab.report.numbers import RULE, number, own
+from solvers.machine.marks import Unit
+from solvers.motion import MOTIONS
+
+# What answers the question of an experiment, the most telling first; a recording has only what applies to it.
+TELLING = (
+    "capsized_at",
+    "flooded_at",
+    "roll_amplitude",
+    "frozen_amplitude",
+    "significant_roll",
+    "frozen_significant_roll",
+    "roll_period",
+    "largest_roll",
+    "heap_angle",
+    "flow_rate",
+    "clogged",
+    "spill_upturn_angle",
+    "spilled_fraction",
+    "critical_angle",
+    "kept_shift",
+    "top_fall",
+    "response_amplitude",
+    "response_phase",
+    "effective_mass",
+    "surface_slope",
+    "wave_mode",
+    "top_altitude_end",
+    "final_shift",
+    "first_slip_angle",
+    "moment_amplitude",
+    "contact_number",
+)
+HEADLINES, TOLD = 3, 6  # measures that the page says first, and that the terminal is told
+LARGE_OVERLAP = 0.05  # of a radius
+
+
+def write_summary(
+    recording: Recording,
+    values: Mapping[str, Value],
+    files: Mapping[str, Path],
+    folder: Path | str,
+    warnings: Sequence[str] = (),
+    notes: Sequence[str] = (),
+) -> dict[str, Path]:
+    """Write summary.md and summary.json into `folder`; returns both by name.
+
+    files: what else the run made, by name; pictures among them are shown. warnings: sentences that a
+    reader must know, beside those that follow from the recording; notes: ones that may interest.
+    Raises LabError when the folder cannot be written.
+    """
+    folder = Path(folder)
+    warnings = [*warnings, *_cautions(recording)]
+    links = {name: Path(os.path.relpath(path, folder)).as_posix() for name, path in files.items()}
+    page = "\n".join(_page(recording, values, links, warnings, notes))
+    data = _data(recording, values, links, warnings) | {"notes": list(notes)}
+    data = json.dumps(data, indent=2, allow_nan=False)
+    written = {"summary": folder / "summary.md", "summary_json": folder / "summary.json"}
+    try:
+        written["summary"].write_text(page, encoding="utf-8")
+        written["summary_json"].write_text(data + "\n", encoding="utf-8")
+    except OSError as error:
+        raise LabError(f"{folder} cannot be written ({error.strerror}): make room there.") from error
+    return written
+
+
+def terminal_summary(
+    recording: Recording,
+    values: Mapping[str, Value],
+    files: Mapping[str, Path],
+    warnings: Sequence[str] = (),
+) -> str:
+    """The summary as plain text of a few lines: the telling numbers, cost, files, warnings."""
+    told = headlines(values, TOLD)
+    rows = {name.replace("_", " "): f"{number(value)}{_remark(value)}" for name, value in told.items()}
+    made = {name.replace("_", " "): os.path.relpath(path) for name, path in files.items()}
+    lost = ship_end.told(ship_end.ends(recording.series))
+    title = f"{recording.preset['title']} ({recording.name}): {_status(recording)}{f'. {lost}' if lost else ''}"
+    lines = [one_line(title)]
+    lines += _aligned(rows)
+    if len(told) < len(values):
+        lines.append(f"  and {_count(len(values) - len(told), 'more number')} in the summary")
+    lines += ["", f"  {_cost(recording)}"]
+    lines += _aligned(made)
+    lines += [f"  warning: {one_line(text)}" for text in (*warnings, *_cautions(recording))]
+    return printable("\n".join(lines))
+
+
+def headlines(values: Mapping[str, Value], most: int) -> dict[str, Value]:
+    """The most telling of the measured values, then others in their order, `most` in all."""
+    order = {name: place for place, name in enumerate(TELLING)}
+    names = sorted(values, key=lambda name: order.get(name, len(order)))
+    return {name: values[name] for name in names[:most]}
+
+
+def _page(
+    recording: Recording,
+    values: Mapping[str, Value],
+    links: Mapping[str, str],
+    warnings: Sequence[str],
+    notes: Sequence[str],
+) -> Iterator[str]:
+    """The lines of summary.md."""
+    preset = recording.preset
+    yield f"# {inline(preset['title'])}\n"
+    if lost := ship_end.told(ship_end.ends(recording.series)):
+        yield f"**{lost}**\n"
+    for name, value in headlines(values, HEADLINES).items():
+        yield f"- {name.replace('_', ' ')}: **{number(value)}**{_remark(value)}"
+    yield f"\nThe run {code(recording.name)} of {inline(recording.created[:10])} is {inline(_status(recording))}."
+    yield from (f"\n**Warning:** {inline(text)}" for text in warnings)
+    yield from (f"\n{paragraphs(text)}" for text in notes)
+    pictures = {name: link for name, link in links.items() if link.endswith(".png")}
+    yield from (f"\n![{name}]({link})" for name, link in pictures.items())
+    yield "\n## What was run\n"
+    yield from (f"- {line}" for line in _scene(recording))
+    if preset.get("source"):
+        yield "\n## What the source reports\n"
+        yield f"{paragraphs(preset['source'])}\n\n{paragraphs(preset.get('reports', ''))}"
+    yield "\n## What was measured\n"
+    yield "| measure | mean | std over beds | beds | own uncertainty | unit | note |\n|---|---|---|---|---|---|---|"
+    yield from (_row(name, value) for name, value in values.items())
+    yield f"\n{RULE} d is the mean grain diameter. `lab/measures` defines each measure."
+    yield f"\n## What it cost\n\n{_cost(recording)}, on {inline(_machine(recording))}."
+    yield "\n## Files\n"
+    yield from (f"- [{name.replace('_', ' ')}]({link})" for name, link in links.items())
+    yield f"\n## The preset\n\n{fenced(recording.given, 'toml')}\n"
+
+
+def _row(name: str, value: Value) -> str:
+    cells = ["" if x is None else f"{x:.4g}" for x in (value.value, value.std)]
+    unit = "" if value.unit == "1" else value.unit
+    line = [name.replace("_", " "), *cells, str(value.n), own(value), unit, inline(value.note)]
+    return f"| {' | '.join(line)} |"
+
+
+def _data(
+    recording: Recording,
+    values: Mapping[str, Value],
+    links: Mapping[str, str],
+    warnings: Sequence[str],
+) -> dict:
+    """The content of summary.json."""
+    wall = recording.wall_s
+    return {
+        "preset": recording.name,
+        "based_on": recording.preset.get("based_on", ""),
+        "status": recording.status,
+        "measures": {name: value.as_json() for name, value in values.items()},
+        "cost": {
+            "wall_s": wall,
+            "grain_steps": recording.grain_steps,
+            "grain_steps_per_s": recording.grain_steps / wall if wall else None,
+            "dt_s": recording.step,
+        },
+        "files": dict(links),
+        "warnings": list(warnings),
+    }
+
+
+def _scene(recording: Recording) -> Iterator[str]:
+    if base := recording.preset.get("based_on"):
+        yield f"based on the preset {code(base)}, whose source and reports are its own"
+    worlds, count = recording.radius.shape
+    low, high = show(2 * recording.radius.min(), "m"), show(2 * recording.radius.max(), "m")
+    size = low if low == high else f"{low} to {high}"
+    yield f"{_count(worlds, 'bed')} of {_count(count, 'grain')}, {size} in diameter"
+    shapes = recording.preset.get("shapes") or {}
+    if shapes:
+        parts = [f"{100 * shape['share']:.3g} % {inline(name)}" for name, shape in shapes.items()]
+        yield f"irregular grains, diameters those of discs of equal area: {', '.join(parts)}"
+    width, height = (show(extent, "m") for extent in np.ptp(recording.outline, axis=0))
+    lidless = ", open at the top" if recording.open_edges else ""
+    rough = ", its walls lined with fixed grains" if len(recording.fixed) else ""
+    yield f"tank {width} wide and {height} high{lidless}{rough}"
+    if recording.parts:
+        yield f"moving parts: {inline(', '.join(recording.parts))}"
+    for name, settings in (recording.preset.get("motion") or {}).items():
+        if name in MOTIONS and settings:
+            yield inline(f"{name}: {_settings(name, settings)}")
+    if recording.preset.get("ship"):
+        yield f"sway, heave and roll of the ship are those of her axis, {axis_place(recorded_ship(recording.preset))}"
+    time = recording.series["time"]
+    if len(time):
+        yield f"{show(time[-1], 's')} of motion recorded, after the grains had settled"
+
+
+def _settings(name: str, settings: Mapping) -> str:
+    """Settings of a motion in the units people use, those that are zero left out."""
+    hints = get_type_hints(MOTIONS[name], include_extras=True)
+    units = {key: _unit(hint) for key, hint in hints.items()}
+    shown = [
+        f"{key} {show(value, units[key]) if units.get(key) else ''}".strip()
+        for key, value in settings.items()
+        if value and not isinstance(value, list | tuple)
+    ]
+    return ", ".join(shown)
+
+
+def _unit(hint: object) -> str | None:
+    marks = getattr(hint, "__metadata__", ())
+    return next((mark.symbol for mark in marks if isinstance(mark, Unit)), None)
+
+
+def _status(recording: Recording) -> str:
+    if recording.status == "running":
+        return "unfinished: it still goes on or was killed"
+    return recording.status.rstrip(".")
+
+
+def _cautions(recording: Recording) -> Iterator[str]:
+    """What a reader must know of the run that the numbers do not say."""
+    if recording.preset.get("quick"):
+        yield f"A quick variant: {recording.preset['quick']}."
+    if not recording.complete:
+        yield f"The run is {_status(recording)}; the numbers cover what was recorded until then."
+    scale = (recording.preset.get("contact") or {}).get("stiffness_scale", 1.0)
+    if scale < 1:
+        yield f"The grains are softer than their material: Young's moduli times {scale:g}, {_softened(recording)}."
+    rule = (recording.preset.get("contact") or {}).get("outlines", "continuous")
+    if recording.shapes and (rough := caution(recording.shapes.contours, rule)):
+        yield rough
+    if (recording.preset.get("run") or {}).get("force_step"):
+        yield "The step is forced past the derived one: restitution errs by some 2 % at five times that."
+    overlap = recording.series["overlap"].max(initial=0.0)
+    if overlap > LARGE_OVERLAP:
+        yield f"Grains overlapped by up to {100 * overlap:.1f} % of a radius."
+
+
+def _softened(recording: Recording) -> str:
+    """Which key has made the grains softer."""
+    accuracy = (recording.preset.get("run") or {}).get("accuracy")
+    if accuracy in LEVELS and LEVELS[accuracy].stiffness_scale == recording.preset["contact"]["stiffness_scale"]:
+        return f'as run.accuracy = "{accuracy}" has it'
+    return "by contact.stiffness_scale"
+
+
+def _cost(recording: Recording) -> str:
+    rate = recording.grain_steps / recording.wall_s if recording.wall_s else 0.0
+    return (
+        f"{_duration(recording.wall_s)}: {recording.grain_steps:.3g} grain-steps at "
+        f"{rate / 1e6:.1f} million a second, time step {show(recording.step, 's')}"
+    )
+
+
+def _duration(seconds: float) -> str:
+    minutes, rest = divmod(round(seconds), 60)
+    return f"{minutes} min {rest} s" if minutes else f"{seconds:.1f} s"
+
+
+def _machine(recording: Recording) -> str:
+    """What computed, as far as the recording says it."""
+    machine = recording.machine
+    cores, arch = _count(machine.get("cores") or 0, "core"), machine.get("arch", "cpu")
+    if arch != "cpu":
+        used = f"a graphics processor ({arch})"
+    elif "threads" in machine:
+        used = f"{machine['threads']} of {cores}"
+    else:  # recordings of earlier versions
+        used = f"a machine of {cores}"
+    return f"{used}, {machine.get('processor')}, {machine.get('system')}"
+
+
+def _remark(value: Value) -> str:
+    return f" ({value.note})" if value.note else ""
+
+
+def _count(count: int, noun: str) -> str:
+    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
+
+
+def _aligned(rows: Mapping[str, str]) -> list[str]:
+    width = max(map(len, rows), default=0)
+    return [f"  {name:<{width}}  {text}" for name, text in rows.items()]

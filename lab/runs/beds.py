@@ -1,0 +1,310 @@
+"""Settled beds: how they are made, and a store of them, so that a bed that was settled once is not settled again.
+
+A stored bed is what settling made of the solver's state of one world, under a hash of all that it follows from: a run
+goes on from it bit for bit as from a bed settled anew. The store is the folder `beds` of the user's cache, or of the
+folder that the environment variable CARGOLAB_CACHE names. It holds at most 256 MiB; beds that have not been used for
+longest go first. What cannot be read there counts as not there.
+"""
+
+import hashlib
+import os
+import platform
+import time
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from dataclasses import dataclass, fields, replace
+from functools import cache
+from importlib.metadata import version
+from importlib.resources import files
+from pathlib import Path
+from tempfile import NamedTemporaryFile
+
+import numpy as np
+
+from lab.base.caches import cache_folder
+from lab.base.errors import LabError
+from lab.base.progress import Progress
+from lab.build.scene import build, filling_outline
+from lab.preset.schema import Resolved
+from lab.preset.units import show
+from solvers.grains.filling import clear_of_walls, levelled
+from solvers.grains.materials import Material
+from solvers.grains.shapes.given import Shapes
+from solvers.scene import Scene
+from solvers.simulation import Simulation
+
+FORMAT = "cargo-shift-lab bed 1"
+LARGEST_STORE = 2**28  # bytes
+ABANDONED = 3600.0  # s after which a half-written file belongs to nobody
+
+Start = Callable[[Scene, np.ndarray], Simulation]
+Bed = dict[str, np.ndarray]
+
+# Fields of a scene that beds do not follow from: no tank moves while its bed settles. A motion comes in by the step
+# that it asks for, and by its kind, which chooses the compiled kernel.
+UNRELATED = ("motions", "soft_start", "start_speed", "step", "vessels", "interval")
+PER_WORLD = ("radius", "grain", "wall", "velocity", "spin")
+
+CLOCK = ("numbers", "origin")  # entries of a simulation's state that all its worlds share
+FREE = 0.9  # of its radius: how near a wall a grain of a settled bed may be
+
+
+@dataclass(frozen=True)
+class Settling:
+    """How beds are made: in the tank `outline`, with which surface, to which rest, within `limit` (s) at most.
+
+    `settle` false: not at all, the grains start where they are put. `reuse` false: the store is left alone. `disc_step`
+    (s): irregular grains, round ones, are to settle as discs before they settle as they are, in such steps.
+    """
+
+    outline: tuple[tuple[float, float], ...]
+    surface: str
+    rest: float
+    limit: float
+    settle: bool = True
+    reuse: bool = True
+    disc_step: float | None = None
+
+
+def settling(preset: Resolved) -> Settling:
+    """How a preset's beds are made. Worlds that are to settle in one batch must agree in it."""
+    run, grains = preset.run, preset.grains
+    outline = tuple(map(tuple, filling_outline(preset).tolist()))
+    disc_step = build(_of_discs(preset))[0].step if grains.settled_as == "discs" else None
+    return Settling(outline, grains.surface, run.rest, run.settle_limit, run.settle, grains.reuse_bed, disc_step)
+
+
+def _of_discs(preset: Resolved) -> Resolved:
+    """The preset with discs for its round outlines."""
+    grains = replace(preset.grains, table=None, settled_as="outlines")
+    return preset.model_copy(update={"shapes": {}, "grains": grains})
+
+
+def settled(scene: Scene, position: np.ndarray, how: Settling, start: Start, progress: Progress) -> Simulation:
+    """A simulation of `scene` with its beds settled, from `position` (W, n, 2) m; the clock stands at zero.
+
+    The beds come from the store if it has all of them. `start` makes a simulation of a scene and positions. Raises
+    BadState from the watch, LabError where a bed does not fit under its tank's lid.
+    """
+    simulation = start(scene, position)
+    if not how.settle:
+        progress.note("The grains start as they were put, without settling (run.settle = false).")
+        return simulation
+    store = BedStore() if how.reuse else None
+    keys = [bed_key(simulation, w, position[w], how) for w in range(len(position))] if store else []
+    if store and lay(simulation, [store.load(key) for key in keys]):
+        progress.note(f"The settled bed was reused from {store.folder}; grains.reuse_bed = false settles it anew.")
+        return simulation
+    if how.disc_step:
+        simulation.close()
+        simulation = start(scene, _settled_as_discs(scene, position, how, start, progress))
+    elif how.surface == "undisturbed" or how.outline != _corners(scene):
+        simulation.close()
+        simulation = start(*_poured(scene, position, how, start, progress))
+    try:
+        before = simulation.state() if store else {}
+        rests = _settle(simulation, how, "settling", progress)
+        if not rests:
+            progress.warn(
+                f"The grains still moved after {how.limit:g} s of settling; raise run.settle_limit or run.rest."
+            )
+        elif store:
+            for key, bed in zip(keys, made(before, simulation.state(), len(position)), strict=True):
+                store.save(key, bed)
+    except BaseException:
+        simulation.close()
+        raise
+    return simulation
+
+
+def _settled_as_discs(
+    scene: Scene, position: np.ndarray, how: Settling, start: Start, progress: Progress
+) -> np.ndarray:
+    """Where discs (W, n, 2) m of the same sizes come to rest, those of the store if they have been there before."""
+    discs = replace(scene, shapes=None, step=how.disc_step)
+    simulation = settled(discs, position, replace(how, disc_step=None), start, progress)
+    try:
+        return simulation.snapshot()["position"]
+    finally:
+        simulation.close()
+
+
+def _settle(simulation: Simulation, how: Settling, stage: str, progress: Progress) -> bool:
+    def tell(time: float) -> None:
+        progress.reach(time)
+        progress.watch(simulation)
+
+    progress.start(stage, how.limit)
+    progress.watch(simulation)  # before kernels are compiled, which takes its time
+    rests = simulation.settle(how.rest, how.limit, tell)
+    progress.finish()
+    return rests
+
+
+def _poured(
+    scene: Scene, position: np.ndarray, how: Settling, start: Start, progress: Progress
+) -> tuple[Scene, np.ndarray]:
+    """The scene, and where its grains lie (W, n, 2) m once they are poured into a closed tank that stands still.
+
+    Its walls go up as far as the grains do. An undisturbed bed is poured without friction, which packs it as densely as
+    shaking would, and is levelled then. In the scene that is returned, irregular grains are turned as they lie.
+    """
+    pouring = replace(scene, outline=np.array(how.outline), open_edges=(), motions=())
+    if how.surface == "undisturbed":
+        pouring = replace(pouring, grain=_frictionless(scene.grain), wall=_frictionless(scene.wall))
+    simulation = start(pouring, position)
+    try:
+        _settle(simulation, how, "pouring", progress)
+        snapshot = simulation.snapshot()
+    finally:
+        simulation.close()
+    poured, inner = snapshot["position"], scene.radius
+    if scene.shapes:
+        inner = inner * np.array([outline.smallest_radius for outline in scene.shapes.outlines])[scene.shapes.which]
+        scene = replace(scene, shapes=replace(scene.shapes, angle=snapshot["angle"]))
+    if how.surface == "undisturbed":
+        beds = zip(poured, scene.radius, strict=True)
+        poured = np.stack([levelled(bed, radius, pouring.outline, scene.fixed) for bed, radius in beds])
+    if not scene.open_edges:
+        for bed, radius in zip(poured, inner, strict=True):
+            if not np.all(clear_of_walls(bed, scene.outline, FREE * radius)):
+                top = show(float((bed[:, 1] + radius).max() - scene.outline[:, 1].min()), "m")
+                raise LabError(f"grains: the bed is up to {top} high, too high for the tank; ask for fewer grains.")
+    return scene, poured
+
+
+def _frictionless(materials) -> tuple[Material, ...]:
+    return tuple(replace(material, friction=0.0) for material in materials)
+
+
+def _corners(scene: Scene) -> tuple[tuple[float, float], ...]:
+    return tuple(map(tuple, scene.outline.tolist()))
+
+
+def bed_key(simulation: Simulation, world: int, position: np.ndarray, how: Settling) -> str:
+    """Hash of all that the bed of one world follows from: scene, start (n, 2) m, settling, and the engine's code."""
+    scene = simulation.scene
+    parts = [FORMAT, _engine(), repr(how), position, simulation.dt]
+    parts += [simulation.arch, simulation.schedule_name, simulation.units_a_world, simulation.skin]
+    parts += [(type(motion).__name__, motion.coordinate) for motion in scene.motions[world]]
+    if scene.vessels:
+        parts.append(simulation.frame.sizes)  # by which its arrays, and with them the bed's, are numbered
+    for field in fields(scene):
+        if field.init and field.name not in UNRELATED:  # the rest is derived from these
+            value = getattr(scene, field.name)
+            if isinstance(value, Shapes):
+                value = _shapes_of(value, world)
+            parts.append((field.name, value[world] if field.name in PER_WORLD and value is not None else value))
+    digest = hashlib.blake2b(digest_size=16)
+    for part in parts:
+        _feed(digest, part)
+    return digest.hexdigest()
+
+
+def _shapes_of(shapes: Shapes, world: int) -> tuple:
+    """All that is said of the shapes in one world, whatever the others hold."""
+    used, which = np.unique(shapes.which[world], return_inverse=True)
+    outlines = tuple(shapes.outlines[k] for k in used)
+    return outlines, which, shapes.angle[world], shapes.contact, shapes.nodes
+
+
+def _feed(digest, value: object) -> None:
+    """Add a value to a hash, arrays with all their digits."""
+    if isinstance(value, np.ndarray):
+        digest.update(f"{value.dtype}{value.shape}".encode())
+        digest.update(np.ascontiguousarray(value).tobytes())
+    elif isinstance(value, tuple):
+        for item in value:
+            _feed(digest, item)
+    else:
+        digest.update(repr(value).encode())
+    digest.update(b"\0")
+
+
+@cache
+def _engine() -> str:
+    """What computes: the solver's own text, its compiler, and the processor it compiles for."""
+    digest = hashlib.blake2b(digest_size=16)
+    for path in sorted(Path(str(files("solvers"))).rglob("*.py")):
+        digest.update(path.read_bytes())
+    return f"{digest.hexdigest()} taichi {version('taichi')} numpy {version('numpy')} {platform.machine()}"
+
+
+def made(before: Mapping[str, np.ndarray], after: Mapping[str, np.ndarray], worlds: int) -> list[Bed]:
+    """What settling made of each world: the entries of the state that it changed, cut along their first axis.
+
+    All that it left as it was, such as the motions' numbers, belongs to the scene and not to the bed.
+    """
+    changed = [k for k in after if k in CLOCK or not _same(before[k], after[k])]
+    return [{k: after[k] if k in CLOCK else np.split(after[k], worlds)[w] for k in changed} for w in range(worlds)]
+
+
+def lay(simulation: Simulation, beds: list[Bed | None]) -> bool:
+    """Put beds into the worlds of a simulation just started; False where they are not all there or do not fit."""
+    if any(bed is None for bed in beds):
+        return False
+    state = {name: np.array(values) for name, values in simulation.state().items()}
+    for w, bed in enumerate(beds):
+        for name, values in bed.items():
+            place = state[name] if name in CLOCK else np.split(state.get(name, np.empty(0)), len(beds))[w]
+            if place.shape != values.shape:
+                return False
+            place[...] = values
+    simulation.restore(state)
+    return True
+
+
+def _same(a: np.ndarray, b: np.ndarray) -> bool:
+    return a.shape == b.shape and a.tobytes() == b.tobytes()
+
+
+class BedStore:
+    """Beds by their keys, one file each, in a folder that several processes may use at a time."""
+
+    def __init__(self, folder: Path | None = None):
+        self.folder = folder or cache_folder() / "beds"
+
+    def load(self, key: str) -> Bed | None:
+        """The bed of that key; None where there is none that can be read."""
+        path = self._path(key)
+        try:
+            with np.load(path, allow_pickle=False) as file:
+                bed = {name: file[name] for name in file.files}
+            os.utime(path)  # used now
+        except Exception:  # whatever may be wrong with a file, there is no bed in it then
+            return None
+        return bed if str(bed.pop("key", "")) == key else None
+
+    def save(self, key: str, bed: Bed) -> None:
+        """Keep a bed, as far as the disk allows; a reader sees the whole file or none."""
+        with suppress(OSError):
+            self.folder.mkdir(parents=True, exist_ok=True)
+            with NamedTemporaryFile(dir=self.folder, suffix=".part", delete=False) as file:
+                half = Path(file.name)
+                try:
+                    np.savez_compressed(file, key=np.array(key), **bed)
+                except BaseException:
+                    half.unlink(missing_ok=True)
+                    raise
+            half.replace(self._path(key))
+            self._tidy()
+
+    def _path(self, key: str) -> Path:
+        return self.folder / f"{key}.npz"
+
+    def _tidy(self) -> None:
+        """Drop what was used longest ago until the rest is small enough, and what others left half-written."""
+        now, kept = time.time(), 0
+        found = []
+        for path in self.folder.iterdir():
+            with suppress(OSError):  # another process was faster
+                found.append((path.stat().st_mtime, path.stat().st_size, path))
+        for used, size, path in sorted(found, reverse=True):
+            if path.suffix == ".part":
+                stale = now - used > ABANDONED
+            else:
+                kept += size
+                stale = kept > LARGEST_STORE
+            if stale:
+                with suppress(OSError):
+                    path.unlink()

@@ -1,0 +1,93 @@
+"""The checkpoint of a run that goes on: the solver's whole state, from which the run continues bit for bit.
+
+It is written under another name and renamed when it is on the disk, so whatever kills the run leaves a whole one. It
+goes when the run completes.
+"""
+
+import hashlib
+import json
+import os
+from collections.abc import Mapping
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from lab.base.errors import LabError, Useless
+from lab.base.trust import check_archive, check_progress
+
+FORMAT = "cargo-shift-lab checkpoint 1"
+FILE_NAME = "checkpoint.npz"
+
+
+@dataclass(frozen=True)
+class Checkpoint:
+    """Where a launch stands.
+
+    state: of the simulation (`Simulation.state`); runs: folders of the recordings whose worlds it advances, in their
+    order, relative to the checkpoint's; rows: of the series and of the frames that each of them has; warnings, notes:
+    what was said of the run until then.
+    """
+
+    state: Mapping[str, np.ndarray]
+    runs: tuple[str, ...]
+    rows: tuple[int, int]
+    warnings: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
+
+    def write(self, folder: Path) -> None:
+        """Put it on the disk in place of an earlier one, which stays if that fails. Raises LabError."""
+        path, unfinished = folder / FILE_NAME, folder / f"{FILE_NAME}.new"
+        about = {"format": FORMAT, "runs": self.runs, "rows": self.rows}
+        about |= {"warnings": self.warnings, "notes": self.notes, "digest": _digest(self.state)}
+        try:
+            with unfinished.open("wb") as file:
+                np.savez(file, about=np.array(json.dumps(about)), **{f"state/{k}": v for k, v in self.state.items()})
+                file.flush()
+                os.fsync(file.fileno())
+            unfinished.replace(path)
+        except OSError as error:
+            with suppress(OSError):
+                unfinished.unlink(missing_ok=True)
+            raise LabError(f"{path} cannot be written ({os.strerror(error.errno)}): make room there.") from error
+
+
+def read_checkpoint(folder: Path) -> Checkpoint | None:
+    """The checkpoint in a folder, or None where there is none. Raises LabError when it cannot be read."""
+    path = folder / FILE_NAME
+    if not path.exists():
+        return None
+    try:
+        check_archive(path)
+        with np.load(path, allow_pickle=False) as file:
+            about = json.loads(str(file["about"]))
+            state = {name.removeprefix("state/"): file[name] for name in file.files if name != "about"}
+            if about["format"] != FORMAT:
+                raise Useless(f"{path} was written by another version: start the run anew.")
+            if about.get("digest") not in (None, _digest(state)):  # None: of an earlier version
+                raise ValueError("not what was written")
+            series, frames = about["rows"]
+            check_progress(about["runs"], (series, frames), (about["warnings"], about["notes"]))
+            said = tuple(about["warnings"]), tuple(about["notes"])
+            return Checkpoint(state, tuple(about["runs"]), (series, frames), *said)
+    except Useless:
+        raise
+    except Exception as error:  # zip files can be wrong in many ways
+        raise Useless(f"{path} is damaged: start the run anew.") from error
+
+
+def _digest(state: Mapping[str, np.ndarray]) -> str:
+    """Of names, shapes and all bytes."""
+    digest = hashlib.blake2b(digest_size=16)
+    for name in sorted(state):
+        values = np.ascontiguousarray(state[name])
+        digest.update(f"{name} {values.dtype} {np.shape(state[name])}".encode())
+        digest.update(values.tobytes())
+    return digest.hexdigest()
+
+
+def remove_checkpoint(folder: Path) -> None:
+    """Remove the checkpoint, if there is one, and what a killed run has left of another."""
+    (folder / FILE_NAME).unlink(missing_ok=True)
+    (folder / f"{FILE_NAME}.new").unlink(missing_ok=True)

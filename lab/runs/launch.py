@@ -1,0 +1,331 @@
+"""A launch: runs whose worlds advance together in one simulation, each written to a recording of its own.
+
+What a run's recording holds does not depend on the company: it has the same bits as that of the run alone.
+"""
+
+import json
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+
+from lab.base.errors import Useless
+from lab.base.interrupt import Interrupt
+from lab.base.progress import Progress
+from lab.base.trust import check_state
+from lab.build.drawn import classes
+from lab.build.scene import build
+from lab.preset.find import LoadedPreset
+from lab.preset.schema import Resolved
+from lab.preset.units import show
+from lab.recording import BUFFER_BYTES, FLUSH_EVERY, Outlines, Recorder, new_recording
+from lab.recording.layout import SHIP_SERIES
+from lab.runs.beds import settled, settling
+from lab.runs.checkpoint import Checkpoint, remove_checkpoint
+from solvers.machine.errors import BadState
+from solvers.machine.runtime import available_cores, choose_arch
+from solvers.scene import Scene
+from solvers.simulation import Simulation
+from solvers.time.schedules import choose_schedule, units_a_world
+
+# Steps of a call of the solver, times the grains of a world: so long Ctrl-C waits, some tenths of a second for each
+# world on a core. It must not depend on the company or on the clock: between calls grains may get their numbers anew.
+A_CALL = 2_000_000
+
+
+def outlines_of(preset: Resolved, scene: Scene) -> Outlines | None:
+    """The outlines of a preset's irregular grains, None where all are discs."""
+    shapes = scene.shapes
+    return Outlines(shapes.outlines, classes(preset), shapes.which) if shapes else None
+
+
+@dataclass(frozen=True)
+class Run:
+    """A run ready to start: its preset, the folder of its recording, its scene, the grains' places (W, n, 2) m."""
+
+    loaded: LoadedPreset
+    folder: Path
+    scene: Scene
+    position: np.ndarray
+
+    @property
+    def shared(self) -> tuple:
+        """All that must be equal for two runs to share a launch."""
+        preset = self.loaded.resolved
+        run, record = preset.run, preset.record
+        times = run.duration, record.series_rate, record.picture_rate, record.checkpoint_every
+        return self.scene.shared(), settling(preset), times, run.threads, run.arch
+
+    @property
+    def sociable(self) -> bool:
+        """Whether it may share a launch at all: a world is cut into bands for as many threads as it has to itself."""
+        settings, (worlds, count) = self.loaded.resolved.run, self.scene.radius.shape
+        arch, threads = choose_arch(settings.arch, settings.precision), settings.threads or available_cores()
+        afloat = bool(self.scene.vessels)
+        return choose_schedule(settings.schedule, arch, worlds, count, threads, afloat) != "per-band"
+
+    def engaged(self, worlds: int = 0) -> dict[str, object]:
+        """What computes so many worlds (0: the run's own) in a launch: `arch`, `schedule`, on the CPU `threads`."""
+        settings, (own, count) = self.loaded.resolved.run, self.scene.radius.shape
+        afloat, worlds = bool(self.scene.vessels), worlds or own
+        arch = "cpu" if afloat and settings.arch == "auto" else choose_arch(settings.arch, settings.precision)
+        threads = settings.threads or available_cores()
+        schedule = choose_schedule(settings.schedule, arch, worlds, count, threads, afloat)
+        if arch != "cpu":
+            return {"arch": arch, "schedule": schedule}
+        units = worlds * units_a_world(schedule, worlds, count, threads)
+        return {"arch": arch, "schedule": schedule, "threads": min(threads, units)}
+
+    def make_recording(self, steered: bool = False, engaged: Mapping[str, object] | None = None) -> None:
+        """Make the recording, without rows yet, of a run that a hand may steer.
+
+        engaged: what computes it in company, as `engaged` tells. Raises LabError (`new_recording`).
+        """
+        preset, scene = self.loaded.resolved, self.scene
+        new_recording(
+            self.folder,
+            preset=self.loaded.name,
+            given=self.loaded.given_text,
+            resolved=json.loads(preset.model_dump_json()),
+            radius=scene.radius,
+            outline=scene.outline,
+            step=scene.step,
+            kind=scene.kind,
+            fixed=scene.fixed,
+            open_edges=scene.open_edges,
+            parts={name: part.points for name, part in preset.parts.items()},
+            shapes=outlines_of(preset, scene),
+            machine=self.engaged() if engaged is None else engaged,
+            steered=steered,
+        )
+
+
+def prepare(loaded: LoadedPreset, folder: Path) -> Run:
+    """A run of this preset with its recording in `folder`.
+
+    Raises LabError where grains or step do not fit, Unavailable where this machine lacks what is to compute.
+    """
+    choose_arch(loaded.resolved.run.arch, loaded.resolved.run.precision)
+    return Run(loaded, folder, *build(loaded.resolved))
+
+
+def launch(runs: Sequence[Run], home: Path, progress: Progress, kept: Checkpoint | None = None) -> dict[Path, BadState]:
+    """Settle the beds of all runs, move them, and add to their recordings, which must be there.
+
+    home: the folder of the checkpoint, kept up to date until all is done; kept: one to go on from. Returns by folder
+    why the watch stopped a run; the others go on without it. Raises LabError where something cannot be written and
+    KeyboardInterrupt, both with a checkpoint left from when the beds had settled on.
+    """
+    with ExitStack() as stack:
+        together = Launch(runs, home, progress, stack)
+        together.start(kept)
+        with Interrupt() as interrupt:
+            together.run(interrupt)
+    remove_checkpoint(home)
+    return together.stopped
+
+
+class Launch:
+    """The runs that still go on, their recorders, and the simulation that holds their worlds one after the other."""
+
+    def __init__(self, runs: Sequence[Run], home: Path, progress: Progress, stack: ExitStack) -> None:
+        self.runs, self.home, self.progress, self._stack = list(runs), home, progress, stack
+        self.stopped: dict[Path, BadState] = {}
+        preset = runs[0].loaded.resolved  # the runs agree in all that is asked of it here
+        self._duration, self._record = preset.run.duration, preset.record
+        self._simulate = partial(Simulation, threads=preset.run.threads, arch=preset.run.arch)
+        self._settling = settling(preset)
+        self._a_call = max(1, A_CALL // runs[0].scene.radius.shape[1])
+        self._saved = time.monotonic()
+
+    def start(self, kept: Checkpoint | None) -> None:
+        """Settle the beds, or take up what a checkpoint has kept, and open the recordings."""
+        rows = kept.rows if kept else (0, 0)
+        count = len(self.runs)  # recordings that are written side by side are written in larger pieces, as often in all
+        opened = {"flush_every": count * FLUSH_EVERY, "buffer": BUFFER_BYTES // count}
+        self._recorders = [
+            self._stack.enter_context(Recorder(run.folder, samples=rows[0], frames=rows[1], **opened))
+            for run in self.runs
+        ]
+        self._stack.callback(lambda: self._simulation and self._simulation.close())
+        self._simulation = None
+        if kept:
+            self.progress.warnings.extend(kept.warnings)
+            self.progress.notes.extend(kept.notes)
+            self._simulation = self._simulate(self._scene(), self._position())
+            try:
+                check_state(kept.state, *self._simulation.scene.radius.shape)
+                self._simulation.restore(kept.state)
+            except (KeyError, ValueError, TypeError, IndexError) as error:
+                raise Useless(f"{self.home}: its checkpoint is of another scene: start the run anew.") from error
+            return
+        while self.runs and self._simulation is None:
+            try:
+                self._simulation = settled(
+                    self._scene(), self._position(), self._settling, self._simulate, self.progress
+                )
+            except BadState as error:
+                self._leave_out(error)
+        if self.runs:
+            self.save()
+
+    def run(self, interrupt: Interrupt) -> None:
+        """Take sample after sample until the end. Raises KeyboardInterrupt when that is asked for, all saved."""
+        if not self.runs:
+            return
+        rate = self._record.series_rate
+        steps = round(1.0 / (rate * self._simulation.dt))
+        samples = max(1, round(self._duration * rate))
+        a_frame = max(1, round(rate / self._record.picture_rate))
+        worth = self._duration * sum(run.scene.radius.size for run in self.runs)
+        self.progress.start("running", self._duration, worth)
+        self._counted = time.perf_counter()
+        for k in range(self._recorders[0].rows[0], samples + 1):
+            rows = self._reach(k * steps, partial(self._pause, interrupt))
+            if not self.runs:
+                break
+            self._write(rows, k % a_frame == 0)
+            self._count_cost()
+            self.progress.reach(self._simulation.time)
+            self._end_lost(rows, k % a_frame == 0)
+        self.progress.finish()
+
+    def save(self) -> None:
+        """Leave a checkpoint, and all that was recorded until it, on the disk."""
+        for recorder in self._recorders:
+            recorder.sync()
+        Checkpoint(
+            state=self._simulation.state(),
+            runs=tuple(run.folder.relative_to(self.home).as_posix() for run in self.runs),
+            rows=self._recorders[0].rows,
+            warnings=tuple(self.progress.warnings),
+            notes=tuple(self.progress.notes),
+        ).write(self.home)
+        self._saved = time.monotonic()
+
+    def _pause(self, interrupt: Interrupt) -> None:
+        if interrupt.asked:
+            self.save()
+            raise KeyboardInterrupt(f"interrupted at {show(self._simulation.time, 's')} of {show(self._duration, 's')}")
+        if time.monotonic() - self._saved >= self._record.checkpoint_every:
+            self.save()
+
+    def _reach(self, step: int, pause: Callable[[], None]) -> Mapping[str, np.ndarray]:
+        """Advance to a step and observe; runs that the watch stops are left out, in the end maybe all."""
+        while self.runs:
+            try:
+                self._simulation.advance(0)  # says what else the watch has stopped where a run was left out
+                while self._simulation.steps < step:
+                    self._simulation.advance(min(self._a_call, step - self._simulation.steps))
+                    pause()
+                return self._simulation.observe()
+            except BadState as error:
+                self._leave_out(error)
+        return {}
+
+    def _write(self, rows: Mapping[str, np.ndarray], picture: bool) -> None:
+        """Add a row to every recording, and a frame where one is due."""
+        now = self._simulation.time
+        sample, frame = sampled(rows), {}
+        if picture:
+            frame = self._frame(rows)
+        for recorder, worlds in zip(self._recorders, self._worlds(), strict=True):
+            recorder.sample({"time": now, **{name: values[worlds] for name, values in sample.items()}})
+            if picture:
+                recorder.frame({"time": now, **{name: values[worlds] for name, values in frame.items()}})
+
+    def _frame(self, rows: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+        """What is pictured of all worlds now."""
+        return {"pose": pose_of(rows), "part": self._simulation.part_places(), **self._simulation.snapshot()}
+
+    def _end_lost(self, rows: Mapping[str, np.ndarray], pictured: bool) -> None:
+        """End the runs all of whose ships have capsized or flooded, with a last picture; the others go on."""
+        if "capsized" not in rows:
+            return
+        lost = np.maximum(rows["capsized"], rows["flooded"]) >= 0.0
+        over = [bool(lost[worlds].all()) for worlds in self._worlds()]
+        slices, now = list(self._worlds()), self._simulation.time
+        frame = {} if pictured or not any(over) else self._frame(rows)
+        for out in reversed(range(len(over))):
+            if over[out]:
+                if frame:
+                    row = {name: values[slices[out]] for name, values in frame.items()}
+                    self._recorders[out].frame({"time": now, **row})
+                self._close(out, "complete")
+
+    def _count_cost(self) -> None:
+        """Share the wall-clock time since the last count among the runs by their numbers of grains."""
+        now = time.perf_counter()
+        grains = [run.scene.radius.size for run in self.runs]
+        for recorder, count in zip(self._recorders, grains, strict=True):
+            recorder.wall_s += (now - self._counted) * count / sum(grains)
+            recorder.grain_steps = self._simulation.steps * count
+        self._counted = now
+
+    def _worlds(self) -> Iterator[slice]:
+        """Which worlds of the simulation are each run's."""
+        begin = 0
+        for run in self.runs:
+            yield slice(begin, begin + len(run.scene.radius))
+            begin += len(run.scene.radius)
+
+    def _scene(self) -> Scene:
+        return Scene.joined([run.scene for run in self.runs])
+
+    def _position(self) -> np.ndarray:
+        return np.concatenate([run.position for run in self.runs])
+
+    def _leave_out(self, error: BadState) -> None:
+        """Close the recording of the run that the watch has stopped, and go on with the others' worlds."""
+        slices = list(self._worlds())
+        out = next(k for k, worlds in enumerate(slices) if worlds.start <= error.world < worlds.stop)
+        own = BadState(error.world - slices[out].start, error.what)
+        self.stopped[self.runs[out].folder] = own
+        self._close(out, f"stopped: {own}")
+
+    def _close(self, out: int, status: str) -> None:
+        """Close the recording of a run, and go on with the others' worlds."""
+        slices = list(self._worlds())
+        self.runs.pop(out)
+        self._recorders.pop(out).close(status)
+        if self.runs and self._simulation:
+            before = self._simulation.state()
+            self._simulation.close()
+            self._simulation = self._simulate(self._scene(), self._position())
+            self._simulation.restore(_without(before, self._simulation.state(), slices[-1].stop, slices[out]))
+
+
+def _without(
+    state: Mapping[str, np.ndarray], fewer: Mapping[str, np.ndarray], worlds: int, out: slice
+) -> dict[str, np.ndarray]:
+    """A simulation's state less some of its worlds; `fewer` is one of a simulation of the others.
+
+    What has the same shape in both belongs to all worlds; the rest has the worlds one after the other.
+    """
+
+    def others(values: np.ndarray) -> np.ndarray:
+        blocks = np.split(values, worlds)
+        return np.concatenate(blocks[: out.start] + blocks[out.stop :])
+
+    return {name: values if values.shape == fewer[name].shape else others(values) for name, values in state.items()}
+
+
+def pose_of(rows: Mapping[str, np.ndarray]) -> np.ndarray:
+    """Pose (W, 3) of the tanks in m, m, rad."""
+    return np.stack([rows["pose_y"], rows["pose_z"], rows["pose_angle"]], axis=-1)
+
+
+def sampled(rows: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """What an observation adds to the series."""
+    kept = ("kinetic", "rotational", "potential", "elastic", "contacts", "overlap", "spilled")
+    return {
+        "pose": pose_of(rows),
+        "pose_rate": np.stack([rows["rate_y"], rows["rate_z"], rows["rate_angle"]], axis=-1),
+        "centre_of_mass": np.stack([rows["centre_y"], rows["centre_z"]], axis=-1),
+        "wall_force": np.stack([rows["wall_y"], rows["wall_z"], rows["wall_moment"]], axis=-1),
+        **{name: rows[name] for name in (*kept, *SHIP_SERIES) if name in rows},
+    }

@@ -1,0 +1,168 @@
+"""Runs an experiment to its end: settle, move, record, measure, plot, paint, sum up; and goes on with one cut short."""
+
+import json
+import shlex
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+
+from lab.base.errors import LabError, Useless
+from lab.base.lock import only_one
+from lab.base.progress import Progress
+from lab.measures import measure_all
+from lab.measures.value import Value
+from lab.preset.find import LoadedPreset, load
+from lab.preset.limits import check_belongs, resolved_from
+from lab.recording import FILE_NAME, Recording, open_recording, versions
+from lab.recording.xdmf import write_xdmf
+from lab.report.plots import write_plots
+from lab.report.summary import terminal_summary, write_summary
+from lab.runs.checkpoint import FILE_NAME as CHECKPOINT
+from lab.runs.checkpoint import Checkpoint, read_checkpoint, remove_checkpoint
+from lab.runs.launch import Run, launch, prepare
+
+RENDERS = Path("renders")
+
+
+@dataclass
+class Result:
+    """What a run gives: its folder, its measures by name, and its recording's arrays."""
+
+    folder: Path
+    measures: dict[str, Value]
+    summary_text: str = field(repr=False)
+
+    @cached_property
+    def recording(self) -> Recording:
+        """The recording: `series`, `frames`, `radius`, `outline` … as arrays."""
+        return open_recording(self.folder)
+
+
+def run_preset(
+    name: str | Path,
+    overrides: Mapping | None = None,
+    out: Path | str | None = None,
+    *,
+    video: bool = True,
+    plots: bool = True,
+    quiet: bool = False,
+) -> Result:
+    """Run a preset and leave recording, plots, video and summary in a folder (default: renders/NAME).
+
+    Raises LabError for what a person can mend, BadState where the watch stopped the run, KeyboardInterrupt; what was
+    recorded until then stays, with its summary and what `resume_run` needs.
+    """
+    loaded = load(name, overrides)
+    folder = Path(out) if out is not None else free_folder(RENDERS / loaded.name)
+    with Progress(quiet) as progress, hint(folder):
+        run = prepare(loaded, folder)
+        with only_one(folder):
+            run.make_recording()
+            return _complete(run, None, progress, video, plots)
+
+
+def resume_run(folder: Path | str, *, video: bool = True, plots: bool = True, quiet: bool = False) -> Result:
+    """Go on with a run that was killed, interrupted or stopped, from its checkpoint, bit for bit.
+
+    The preset is the recording's own. A run that only lacks its results gets these. Raises as `run_preset` does, and
+    LabError where there is nothing to go on with.
+    """
+    folder = Path(folder)
+    with open_recording(folder) as recording:
+        loaded, complete = recorded_preset(recording), recording.complete
+        rows, changed = len(recording.series["time"]), recording.versions != versions()
+    if complete and reported(folder, "complete"):
+        raise LabError(f"{folder} is complete: there is nothing to resume.")
+    with Progress(quiet) as progress, hint(folder), only_one(folder):
+        if complete:
+            remove_checkpoint(folder)
+            return report(folder, progress, video=video, plots=plots)
+        kept = read_checkpoint(folder)
+        if kept is None and rows:
+            raise LabError(f"{folder} has no checkpoint to resume from: start the run anew, in another folder.")
+        if changed:
+            progress.warn("The run was begun with other versions of the lab or its libraries than it goes on with.")
+        run = prepare(loaded, folder)
+        check_belongs(run)
+        return _complete(run, kept, progress, video, plots)
+
+
+def recorded_preset(recording: Recording) -> LoadedPreset:
+    """The preset of a recording, ready to run again. Raises Useless where it is none."""
+    try:
+        resolved = resolved_from(recording.preset)
+    except ValueError as error:
+        raise Useless(f"{recording.path} holds no preset that this version can run: start the run anew.") from error
+    return LoadedPreset(recording.name, recording.given, resolved)
+
+
+def report(folder: Path, progress: Progress, *, video: bool, plots: bool = True) -> Result:
+    """Measure the recording, plot and paint it, and write the summary."""
+    with open_recording(folder) as recording:
+        measures = measure_all(recording)
+        files = {"recording": recording.path}
+        if plots:
+            files |= write_plots(recording, measures, folder)
+        if video:
+            files["video"] = _film(folder, progress)
+        if recording.preset["record"]["xdmf"]:
+            files["xdmf"] = write_xdmf(recording)
+        write_summary(recording, measures, files, folder, progress.warnings, progress.notes)
+        return Result(folder, measures, terminal_summary(recording, measures, files, progress.warnings))
+
+
+def reported(folder: Path, status: str) -> bool:
+    """Whether the folder's summary is that of its recording, which has this status."""
+    try:
+        return json.loads((folder / "summary.json").read_text(encoding="utf-8"))["status"] == status
+    except (OSError, ValueError, KeyError, TypeError):
+        return False
+
+
+@contextmanager
+def hint(folder: Path, begun: str = FILE_NAME) -> Iterator[None]:
+    """Tell a person whose run is cut short how to go on with it; `begun` is the file that says that it has begun."""
+    resume = f"cargolab resume {shlex.quote(str(folder))}"
+    try:
+        yield
+    except KeyboardInterrupt as error:
+        if not (folder / begun).exists():
+            raise KeyboardInterrupt("interrupted before the run began") from None
+        raise KeyboardInterrupt(f"{str(error) or 'interrupted'}; go on with: {resume}") from None
+    except LabError as error:
+        if isinstance(error, Useless) or not (folder / CHECKPOINT).exists():
+            raise
+        raise LabError(f"{str(error).removesuffix('.')}; go on with: {resume}") from error
+
+
+def _complete(run: Run, kept: Checkpoint | None, progress: Progress, video: bool, plots: bool) -> Result:
+    """Run to the end, or on to it, and report."""
+    try:
+        stopped = launch([run], run.folder, progress, kept)
+    except KeyboardInterrupt:
+        report(run.folder, progress, video=False, plots=plots)
+        raise
+    result = report(run.folder, progress, video=video and not stopped, plots=plots)
+    for error in stopped.values():
+        raise error
+    return result
+
+
+def _film(folder: Path, progress: Progress) -> Path:
+    from lab.paint.video import render_recording
+
+    progress.start("painting", None)
+    path = render_recording(folder, progress=progress.count)
+    progress.finish()
+    return path
+
+
+def free_folder(wanted: Path) -> Path:
+    """`wanted`, or the first of wanted-2, wanted-3 … that holds no recording yet."""
+    for number in range(1, 10_000):
+        folder = wanted if number == 1 else wanted.with_name(f"{wanted.name}-{number}")
+        if not (folder / FILE_NAME).exists():
+            return folder
+    raise LabError(f"{wanted.parent} is full of runs of {wanted.name}; remove some or give --out.")

@@ -1,0 +1,1 @@
+"""What is known about the lab: verification, the sources' experiments, benches, the gallery."""

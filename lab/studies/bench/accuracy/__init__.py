@@ -1,0 +1,53 @@
+"""cargolab bench accuracy: what an error costs, by integrator, step, stiffness, precision, tilt rate, law and repeats.
+
+Each study is one module with a title and a function `study(page, work, fast)` that adds a section to the page. What is
+run by sweeps lies in the folder `work` and is not run again: the page can be cut short and gone on with.
+"""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import matplotlib
+
+from lab.base.errors import LabError
+from lab.report.page import Page
+from lab.report.plots import STYLE
+from lab.studies.bench.accuracy import (
+    collisions,
+    creep,
+    laws,
+    levels,
+    precision,
+    rate,
+    repeats,
+    shaken,
+    skin,
+    stiffness,
+)
+
+# In the order of the page, which is also that of time.
+STUDIES = {
+    "collisions": collisions.study,
+    "shaken": shaken.study,
+    "stiffness": stiffness.study,
+    "precision": precision.study,
+    "rate": rate.study,
+    "laws": laws.study,
+    "creep": creep.study,
+    "repeats": repeats.study,
+    "skin": skin.study,
+    "levels": levels.study,
+}
+
+
+def run_page(names: Sequence[str], out: Path, fast: bool) -> Path:
+    """Do the studies whose names begin like one of `names`, or all, and write the page; returns its file."""
+    chosen = [name for name in STUDIES if not names or name.startswith(tuple(names))]
+    if not chosen:
+        raise LabError(f"there is no study {', '.join(names)}: take {', '.join(STUDIES)}.")
+    page = Page(out, "accuracy", "Speed against error")
+    with matplotlib.rc_context(STYLE):
+        for name in chosen:
+            STUDIES[name](page, out / "accuracy", fast)
+            path = page.write()
+    return path

@@ -1,0 +1,79 @@
+"""The beds that the studies tilt and sway, small so that many can be, and what comes of a sweep over them."""
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from lab.measures.value import over_worlds
+from lab.report.numbers import mean_within
+from lab.sweeps.sweep import run_sweep
+
+TANK = {"tank.width": "60 mm", "tank.height": "50 mm", "grains.depth": "30 mm"}  # some 200 grains of 3 mm
+STIFF = {"contact.stiffness_scale": 1e-3, "run.accuracy": "standard"}
+TILT = {**TANK, **STIFF, "motion.tilt.rate": "10 deg/s", "motion.tilt.angle": "40 deg", "run.repeats": 12}
+SWAY = {
+    **TANK,
+    **STIFF,
+    "motion.soft_start": "0.5 s",
+    "motion.sway.amplitude": "15 mm",
+    "motion.sway.frequency": "3 Hz",
+    "run.duration": "4 s",
+    "run.repeats": 6,
+}
+TILTED, SWAYED = "tilting/quick", "shaking/sway"
+
+
+@dataclass(frozen=True)
+class Point:
+    """One point of a sweep: its settings, its measures over the beds, its cost (grain-steps and steps of a bed)."""
+
+    setting: Mapping[str, object]
+    worlds: Mapping[str, np.ndarray]
+    steps: float
+    folder: Path
+
+    def mean(self, name: str) -> float:
+        """Mean of a measure over the beds that have it; NaN where none has."""
+        return float(np.mean(self.worlds[name])) if len(self.worlds[name]) else float("nan")
+
+    def half_interval(self, name: str) -> float:
+        """Half the 95 % interval of the mean (Student 1908); NaN for fewer than two beds."""
+        found = over_worlds(self.worlds[name], "1")
+        return float("nan") if found.interval is None else found.interval[1] - found.value
+
+
+def sweep(
+    name: str, axes: Mapping[str, Sequence], overrides: Mapping[str, object], folder: Path, fast: bool
+) -> list[Point]:
+    """Run a preset over `axes`, or go on with it or read it where it is done; `fast` takes a hasty version of it."""
+    if fast:
+        hasty = {"run.repeats": 2, "grains.depth": "9 mm", "run.accuracy": "draft"}
+        overrides = {**overrides, **hasty}
+    print(f"{folder.name}: {name} over {', '.join(axes)}", flush=True)
+    swept = run_sweep(name, axes, overrides, folder, video=False, quiet=True)
+    points = []
+    for point, row in zip(swept.points, settings(axes), strict=True):
+        data = json.loads((point / "summary.json").read_text(encoding="utf-8"))
+        worlds = {
+            key: np.array([value for value in measure["worlds"] if value is not None], dtype=float)
+            for key, measure in data["measures"].items()
+        }
+        beds = len(next(iter(data["measures"].values()))["worlds"])
+        points.append(Point(row, worlds, data["cost"]["grain_steps"] / beds, point))
+    return points
+
+
+def settings(axes: Mapping[str, Sequence]) -> list[dict[str, object]]:
+    """The values of the swept keys at each point; the last key changes fastest."""
+    rows: list[dict[str, object]] = [{}]
+    for key, values in axes.items():
+        rows = [{**row, key: value} for row in rows for value in values]
+    return rows
+
+
+def mean_and_interval(point: Point, name: str, digits: int = 2) -> str:
+    """A measure's mean and its 95 % interval, as text."""
+    return mean_within(point.mean(name), over_worlds(point.worlds[name], "1").interval, digits)

@@ -1,0 +1,24 @@
+"""Tangential law against the critical angle."""
+
+from pathlib import Path
+
+from lab.report.page import Page
+from lab.studies.bench.accuracy.beds import TILT, TILTED, mean_and_interval, sweep
+
+LAWS = ("haff-werner", "mindlin", "cundall-strack", "coulomb", "viscous", "none")
+KEY = "contact.tangential"
+NAMES = ("critical_angle", "first_slip_angle", "largest_surface_slope")
+
+
+def study(page: Page, work: Path, fast: bool) -> None:
+    """Add the section to the page."""
+    laws = LAWS[:2] if fast else LAWS
+    points = sweep(TILTED, {KEY: list(laws)}, TILT, work / "laws", fast)
+    page.section("Tangential law")
+    page.say("""The same friction coefficient, 0.25, in each law; the tilt of the study of stiffness at a scale of a
+        thousandth. The viscous law has no limit to its force, "none" no friction at all. Means of the
+        beds with their [95 % intervals].""")
+    page.table(
+        ["law", *(f"{name.replace('_', ' ')} (deg)" for name in NAMES)],
+        [[law, *(mean_and_interval(p, name) for name in NAMES)] for law, p in zip(laws, points, strict=True)],
+    )

@@ -1,0 +1,46 @@
+"""The skin of the neighbour lists: it changes the speed alone."""
+
+import statistics
+import time
+from pathlib import Path
+
+import numpy as np
+
+from lab.report.page import Page
+from lab.studies.bench.accuracy.settled import settled_scene
+from solvers.simulation import SKIN, Simulation
+
+SKINS = (0.02, 0.05, 0.1, 0.2, 0.4)  # of the mean diameter
+TURNS, STEPS = 9, 6000
+
+
+def study(page: Page, work: Path, fast: bool) -> None:
+    """Add the section to the page."""
+    still, swayed = _speeds(0.0), _speeds(0.5)
+    page.section("Skin of the neighbour lists")
+    page.say(f"""Grain-steps a second relative to the default, {SKIN:g} of the mean diameter: medians of the ratios
+        of {TURNS} runs in turn, one core, on a bed at rest and on one thrown against the wall at 0.5 m/s. The forces
+        are the same.""")
+    rows = [[f"{skin:g}", f"{still[skin]:.2f}", f"{swayed[skin]:.2f}"] for skin in SKINS]
+    page.table(["skin (d)", "at rest", "thrown"], rows)
+
+
+def _speeds(push: float) -> dict[float, float]:
+    scene, place = settled_scene()
+    velocity = np.zeros(place.shape)
+    velocity[..., 0] = push
+    runs = {skin: Simulation(scene, place, 1, skin * 2.0 * scene.mean_radius, arch="cpu") for skin in SKINS}
+    times: dict[float, list[float]] = {skin: [] for skin in SKINS}
+    for turn in range(TURNS + 1):
+        for skin, run in runs.items():
+            run.place(place, velocity)
+            begun = time.perf_counter()
+            run.advance(STEPS)
+            if turn:  # the first compiles
+                times[skin].append(time.perf_counter() - begun)
+    for run in runs.values():
+        run.close()
+    return {
+        skin: statistics.median(usual / taken for usual, taken in zip(times[SKIN], found, strict=True))
+        for skin, found in times.items()
+    }

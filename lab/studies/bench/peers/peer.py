@@ -1,0 +1,121 @@
+"""What peer codes have in common: a folder, a file with the bed, how they are run, and what is read."""
+
+import os
+import re
+import shutil
+import subprocess
+import tempfile
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from lab.base.errors import LabError
+
+DECK, BED = "deck.in", "bed.data"  # what a peer reads
+TRACE, FINAL = "trace.txt", "final.txt"  # what it writes: step, y, z of the centre of mass; id, y, z of the grains
+HEADER = 9  # lines of a dump before its rows
+
+
+@dataclass(frozen=True)
+class PeerRun:
+    """What a peer code made of a bed: how long it took and where the grains went.
+
+    loop_s: wall time of the stepping as the code itself reports it, without set-up (s).
+    grain_steps_per_s: grains times steps over that time (1/s).
+    time: (T,) instants of the trace (s).
+    centre_of_mass: (T, 2) centre of mass of all grains, (y, z) in the tank's frame (m).
+    position: (n, 2) grains at the end, (y, z) in the tank's frame, in the order given (m).
+    """
+
+    loop_s: float
+    grain_steps_per_s: float
+    time: np.ndarray
+    centre_of_mass: np.ndarray
+    position: np.ndarray
+
+
+@contextmanager
+def working_folder(kept: Path | None) -> Iterator[Path]:
+    """The folder to work in: the given one, made if need be, or a passing one."""
+    if kept is None:
+        with tempfile.TemporaryDirectory() as passing:
+            yield Path(passing)
+    else:
+        kept.mkdir(parents=True, exist_ok=True)
+        yield kept
+
+
+def bed_file(position: np.ndarray, radius: np.ndarray, density: float, width: float, height: float) -> str:
+    """The data file: number, kind, diameter (m), density (kg/m³) and x, y, z (m) a grain; our (y, z) are (x, z)."""
+    depth = 4 * float(np.max(radius))
+    grains = (
+        f"{number} 1 {2 * r:.17g} {density:.17g} {y:.17g} 0 {z:.17g}"
+        for number, ((y, z), r) in enumerate(zip(position, radius, strict=True), start=1)
+    )
+    return "\n".join(
+        (
+            "a bed of spheres in the plane y = 0",
+            "",
+            f"{len(radius)} atoms",
+            "1 atom types",
+            f"{-width / 2:.17g} {width / 2:.17g} xlo xhi",
+            f"{-depth / 2:.17g} {depth / 2:.17g} ylo yhi",
+            f"0 {height:.17g} zlo zhi",
+            "",
+            "Atoms",
+            "",
+            *grains,
+            "",
+        )
+    )
+
+
+def execute(name: str, executable: str, arguments: Sequence[str], folder: Path, processes: int = 1) -> float:
+    """Run a peer in `folder`, each process on one thread; returns the loop time it prints (s).
+
+    Raises LabError where it, or mpirun for several processes, is not installed, or where it stops.
+    """
+    for needed in (executable, *(["mpirun"] if processes > 1 else [])):
+        if shutil.which(needed) is None:
+            raise LabError(f"`{needed}` is not on the PATH: install {name}.")
+    done = subprocess.run(
+        [*_launcher(processes), executable, *arguments],
+        cwd=folder,
+        env=os.environ | {"OMP_NUM_THREADS": "1"},
+        capture_output=True,
+        text=True,
+        errors="replace",  # it may print stray memory after an error
+    )
+    loop = re.search(rf"^Loop time of (\S+) on {processes} procs", done.stdout, re.MULTILINE)
+    if done.returncode != 0 or loop is None:
+        error = re.search(r"^ERROR.*", done.stdout + done.stderr, re.MULTILINE)
+        raise LabError(f"{name} stopped: {error.group() if error else done.stderr.strip()}")
+    return float(loop.group(1))
+
+
+def _launcher(processes: int) -> list[str]:
+    """What starts so many processes, each bound to a core of its own."""
+    if processes == 1:
+        return []
+    as_root = ["--allow-run-as-root"] if hasattr(os, "geteuid") and os.geteuid() == 0 else []
+    return ["mpirun", *as_root, "--bind-to", "core", "-np", str(processes)]
+
+
+def read_outcome(
+    folder: Path, position: np.ndarray, radius: np.ndarray, dt: float, steps: int, loop_s: float
+) -> PeerRun:
+    """What a run left in its folder, from `position` (n, 2) m with radii (n,) m at a step `dt` (s)."""
+    trace = np.loadtxt(folder / TRACE, ndmin=2)
+    trace = trace[trace[:, 0] > 0]
+    final = np.loadtxt(folder / FINAL, skiprows=HEADER, ndmin=2)
+    start = np.average(position, axis=0, weights=np.asarray(radius) ** 3)
+    return PeerRun(
+        loop_s=loop_s,
+        grain_steps_per_s=len(radius) * steps / loop_s,
+        time=np.append(0.0, trace[:, 0] * dt),
+        centre_of_mass=np.vstack((start, trace[:, 1:])),
+        position=final[np.argsort(final[:, 0]), 1:],
+    )

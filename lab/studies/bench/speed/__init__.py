@@ -1,0 +1,41 @@
+"""cargolab bench speed: what a grain-step costs by grains, worlds, precision, schedule, threads and law, and why.
+
+Each study is one module with a title and a function `study(page, work, fast)` that adds a section to the page. The
+settled beds and the curves of the slow study lie in the folder `work` and are not run again; times are taken anew.
+"""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import matplotlib
+
+from lab.base.errors import LabError
+from lab.report.page import Page
+from lab.report.plots import STYLE
+from lab.studies.bench.speed import choices, curves, grains, parts, peers, worlds
+
+# In the order of the page, which is also that of time.
+STUDIES = {
+    "grains": grains.study,
+    "worlds": worlds.study,
+    "choices": choices.study,
+    "parts": parts.study,
+    "peers": peers.study,
+    "curves": curves.study,
+}
+
+
+def run_page(names: Sequence[str], out: Path, fast: bool) -> Path:
+    """Do the studies whose names begin like one of `names`, or all, and write the page; returns its file."""
+    chosen = [name for name in STUDIES if not names or name.startswith(tuple(names))]
+    if not chosen:
+        raise LabError(f"there is no study {', '.join(names)}: take {', '.join(STUDIES)}.")
+    page = Page(out, "speed", "Speed")
+    page.say("""All times are of runs taken in turn, so that a machine whose speed drifts slows all alike: medians, and
+        of the ratios of runs of the same turn the median, with the smallest and the largest in brackets. M stands for
+        a million grain-steps a second.""")
+    with matplotlib.rc_context(STYLE):
+        for name in chosen:
+            STUDIES[name](page, out / "speed", fast)
+            path = page.write()
+    return path

@@ -1,0 +1,91 @@
+"""The settled beds whose steps are timed: acetate grains at rest in a tank, and copies of them side by side."""
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from solvers.grains.filling import radii, start_positions
+from solvers.grains.materials import Material
+from solvers.scene import Scene
+from solvers.simulation import Simulation
+
+DIAMETER, SPREAD = 3e-3, 0.1  # m; share of it
+HEIGHT = 0.2  # m
+SCALE = 1e-3  # on Young's modulus
+WIDTHS = {500: 48e-3, 2000: 192e-3}  # m, of the tanks of the usual beds by their grains: some 30 diameters deep
+REST, LIMIT = 1e-8, 5.0  # of m g d; s of settling
+# Spandonidis (2016), table 5.2; the restitution is our choice.
+ACETATE = Material(density=1319.0, young=3.2e9, poisson=0.28, friction=0.25, restitution=0.6)
+
+
+@dataclass(frozen=True)
+class Bed:
+    """Grains at rest: `radius` (n,) and `position` (n, 2), m, in a closed tank `width` (m) wide and HEIGHT high."""
+
+    radius: np.ndarray
+    position: np.ndarray
+    width: float
+
+    @property
+    def count(self) -> int:
+        """Number of grains."""
+        return len(self.radius)
+
+    def scene(self, worlds: int = 1, material: Material = ACETATE, **changes: object) -> Scene:
+        """The scene of the bed in as many equal worlds, softened by SCALE; friction with history unless changed."""
+        radius = np.tile(self.radius, (worlds, 1))
+        changes = {"tangential": "mindlin", **changes}
+        return Scene(radius, tank(self.width), material, material, stiffness_scale=SCALE, **changes)
+
+    def places(self, worlds: int = 1) -> np.ndarray:
+        """Positions (W, n, 2) m in as many worlds."""
+        return np.tile(self.position, (worlds, 1, 1))
+
+    def times(self, number: int) -> "Bed":
+        """So many copies of the bed side by side in one tank.
+
+        All worlds made of one bed have the same contacts a grain; where two copies meet the force is nearly that of
+        the walls that stood there.
+        """
+        shifts = self.width * (np.arange(number) - 0.5 * (number - 1))
+        position = np.concatenate([self.position + np.array([shift, 0.0]) for shift in shifts])
+        return Bed(np.tile(self.radius, number), position, self.width * number)
+
+
+def tank(width: float) -> np.ndarray:
+    """Outline (4, 2) m of a closed tank, its floor centred on the origin."""
+    half = 0.5 * width
+    return np.array([[-half, 0.0], [half, 0.0], [half, HEIGHT], [-half, HEIGHT]])
+
+
+def usual_bed(work: Path, count: int) -> Bed:
+    """The settled bed of so many grains, one of WIDTHS."""
+    return settled_bed(work, count, WIDTHS[count])
+
+
+def settled_bed(work: Path, count: int, width: float, seed: int = 1) -> Bed:
+    """A bed of `count` grains at rest in a tank `width` (m) wide, from the folder `work`, where it is kept."""
+    kept = work / f"bed-{count}-{1e3 * width:g}-{seed}.npz"
+    if not kept.is_file():
+        print(f"settling {count} grains", flush=True)
+        work.mkdir(parents=True, exist_ok=True)
+        part = kept.with_suffix(".part.npz")
+        bed = _settled(count, width, seed)
+        np.savez(part, radius=bed.radius, position=bed.position)
+        part.replace(kept)
+    with np.load(kept) as found:
+        return Bed(found["radius"], found["position"], width)
+
+
+def _settled(count: int, width: float, seed: int) -> Bed:
+    random = np.random.default_rng(seed)
+    radius = radii(count, DIAMETER, SPREAD, random)
+    bed = Bed(radius, start_positions(radius, tank(width), random), width)
+    run = Simulation(bed.scene(), bed.places(), threads=1, arch="cpu")
+    run.settle(REST, LIMIT)
+    position = run.snapshot()["position"][0]
+    run.close()
+    # Column by column, as the solver orders large worlds itself.
+    order = np.lexsort((position[:, 1], np.floor(position[:, 0] / DIAMETER)))
+    return replace(bed, radius=radius[order], position=position[order])

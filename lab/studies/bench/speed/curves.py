@@ -1,0 +1,169 @@
+"""Side by side with LIGGGHTS and LAMMPS: how the centre of mass of the same beds shifts as they are tilted."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from lab.report.numbers import plus_minus
+from lab.report.page import Page
+from lab.report.plots import BELOW, BLUE, GREEN, VERMILION
+from lab.studies.bench.peers import lammps, liggghts
+from lab.studies.bench.speed.beds import ACETATE, DIAMETER, HEIGHT, SCALE, Bed, settled_bed
+from solvers.grains.materials import Material
+from solvers.motion import Tilt
+from solvers.simulation import Simulation
+
+IMPACT = 0.1  # m/s, of grains in a slide: where all codes have the same restitution
+GRAINS = replace(ACETATE, restitution_speed=IMPACT)
+LAB = "the lab"
+COLOURS = {LAB: BLUE, liggghts.NAME: VERMILION, lammps.NAME: GREEN}
+EVERY = 0.05  # deg, of tilt between two samples
+APART = 0.1  # d: where two curves have parted
+
+
+@dataclass(frozen=True)
+class Tilting:
+    """Beds of so many grains in a tank of this width (m), tilted at a rate (deg/s) to an angle (deg)."""
+
+    beds: int = 4
+    count: int = 300
+    width: float = 0.12
+    rate: float = 10.0
+    angle: float = 40.0
+
+
+@dataclass(frozen=True)
+class Curve:
+    """Tilts (T,) in deg and the shift downhill (T,) of the centre of mass along the floor, in mean diameters."""
+
+    tilt: np.ndarray
+    shift: np.ndarray
+
+    def first_diameter(self) -> float:
+        """The tilt (deg) at which the shift first reaches one diameter; NaN if it never does."""
+        beyond = np.flatnonzero(self.shift >= 1.0)
+        return float(self.tilt[beyond[0]]) if len(beyond) else float("nan")
+
+    def parts_from(self, other: "Curve") -> float:
+        """The tilt (deg) from which the two shifts are more than APART apart; the last one if they never are."""
+        apart = np.abs(self.shift - np.interp(self.tilt, other.tilt, other.shift))
+        beyond = np.flatnonzero(apart > APART)
+        return float(self.tilt[beyond[0] if len(beyond) else -1])
+
+
+def study(page: Page, work: Path, fast: bool) -> None:
+    """Add the section to the page."""
+    how = Tilting(beds=2, count=100, width=0.06, rate=100.0) if fast else Tilting()
+    page.section("Curves of a tilt beside other codes")
+    codes = followers()
+    for name in COLOURS:
+        if name not in codes:
+            page.say(f"{name} is not installed here: its curves are left out.")
+    beds = [settled_bed(work, how.count, how.width, seed) for seed in range(1, how.beds + 1)]
+    found = {name: [kept(work, name, how, bed, k) for k, bed in enumerate(beds, start=1)] for name in codes}
+    page.say(f"""{how.beds} beds of {how.count} grains, 3 mm ± 10 %, in a tank {1e3 * how.width:g} mm wide, tilted at
+        {how.rate:g} deg/s, with the history law and {SCALE:g} of the stiffness, from the same settled places without
+        contact history, at the same step. The lab turns the tank, and eases its rate in over {Tilt.ease:g} s; in the
+        other codes gravity turns. Restitution is {GRAINS.restitution:g} at {IMPACT:g} m/s in all three: the lab's and
+        LAMMPS's viscoelastic law loses more at faster impacts, LIGGGHTS' the same at all. LIGGGHTS' grains may attract
+        while they part; the others' do not. The lab keeps the tangential history as a force, the others as a
+        displacement.""")
+    page.table(["bed", *(f"{name}: first d at (deg)" for name in codes), *_parting_heads(codes)], _rows(found))
+    page.say(f"""First d: the tilt at which the centre of mass has first shifted by one diameter. Apart: the tilt at
+        which a curve is first more than {APART:g} d off the lab's. Up to the first slip the codes agree; after it a bed
+        is chaotic, and only means over beds can be compared.""")
+    page.figure("curves", plotted(found), "Shift of the centre of mass against the tilt, by code and bed")
+
+
+def followers() -> dict[str, Callable[..., Curve]]:
+    """How each code that is installed follows a bed."""
+    found: dict[str, Callable[..., Curve]] = {LAB: followed_here}
+    for peer, run in ((liggghts, liggghts.run_liggghts), (lammps, lammps.run_lammps)):
+        if peer.available() is not None:
+            found[peer.NAME] = partial(followed_there, run)
+    return found
+
+
+def kept(work: Path, name: str, how: Tilting, bed: Bed, number: int) -> Curve:
+    """The curve of a code and a bed from the folder `work`, where it is put once it is done."""
+    path = work / f"curve-{name.replace(' ', '-')}-{how.count}-{how.rate:g}-{how.angle:g}-{number}.npz"
+    if not path.is_file():
+        print(f"curves: {name}, bed {number}", flush=True)
+        curve = followers()[name](how, bed)
+        part = path.with_suffix(".part.npz")
+        np.savez(part, tilt=curve.tilt, shift=curve.shift)
+        part.replace(path)
+    with np.load(path) as values:
+        return Curve(values["tilt"], values["shift"])
+
+
+def followed_here(how: Tilting, bed: Bed) -> Curve:
+    """The lab's curve."""
+    # On beyond the angle, so that the rate is not eased out before it.
+    tilt = Tilt(np.radians(how.rate), np.radians(how.angle + how.rate * Tilt.ease))
+    scene = bed.scene(material=GRAINS, schedule="per-world", motions=[(tilt,)])
+    run = Simulation(scene, bed.places(), threads=1, arch="cpu")
+    angle, centre = [], []
+    duration = how.angle / how.rate + 0.5 * Tilt.ease
+    for _ in range(1 + round(duration * how.rate / EVERY)):
+        rows = run.observe()
+        angle.append(np.degrees(rows["pose_angle"][0]))
+        centre.append(rows["centre_y"][0])
+        run.advance(every(how, run.dt))
+    run.close()
+    return Curve(np.array(angle), -(np.array(centre) - centre[0]) / DIAMETER)
+
+
+def followed_there(run: Callable, how: Tilting, bed: Bed) -> Curve:
+    """A peer's curve."""
+    dt = bed.scene(material=GRAINS).time_step()
+    soft: Material = replace(GRAINS, young=GRAINS.young * SCALE)
+    steps, rate = round(how.angle / how.rate / dt), np.radians(how.rate)
+    found = run(
+        bed.position, bed.radius, bed.width, HEIGHT, soft, dt, steps, tilt_rate=rate, sample_every=every(how, dt)
+    )
+    centre = found.centre_of_mass[:, 0]
+    return Curve(how.rate * found.time, -(centre - centre[0]) / DIAMETER)
+
+
+def every(how: Tilting, dt: float) -> int:
+    """Steps from one sample to the next."""
+    return max(1, round(EVERY / how.rate / dt))
+
+
+def _parting_heads(codes: Mapping[str, object]) -> list[str]:
+    return [f"{name}: apart at (deg)" for name in codes if name != LAB]
+
+
+def _rows(found: Mapping[str, list[Curve]]) -> list[list[str]]:
+    """A row a bed, and one of means and standard deviations."""
+    first = np.array([[curve.first_diameter() for curve in curves] for curves in found.values()])
+    others = [curves for name, curves in found.items() if name != LAB]
+    parting = np.array([[c.parts_from(own) for c, own in zip(cs, found[LAB], strict=True)] for cs in others])
+    table = np.concatenate([first, parting.reshape(len(others), -1)])
+    rows = [[str(k), *(f"{value:.2f}" for value in column)] for k, column in enumerate(table.T, start=1)]
+    return [
+        *rows,
+        [f"mean ± std of {table.shape[1]} beds", *(plus_minus(line.mean(), line.std(ddof=1)) for line in table)],
+    ]
+
+
+def plotted(found: Mapping[str, list[Curve]]) -> Figure:
+    """Shift against tilt, a panel a bed, a colour a code."""
+    beds = len(found[LAB])
+    figure = Figure(figsize=(6.4, 2.4 * -(-beds // 2) + 0.4), layout="constrained")
+    panels = figure.subplots(-(-beds // 2), 2, sharex=True, sharey=True, squeeze=False)
+    for k, axes in enumerate(panels.flat[:beds]):
+        for name, curves in found.items():
+            axes.plot(curves[k].tilt, curves[k].shift, color=COLOURS[name], label=name, linewidth=1.2)
+        axes.set_title(f"bed {k + 1}")
+    for axes in panels[-1]:
+        axes.set_xlabel("tilt (deg)")
+    figure.supylabel("shift of the centre of mass (d)", fontsize=9)
+    handles, labels = panels[0, 0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc=BELOW, ncols=len(found))
+    return figure

@@ -1,0 +1,169 @@
+"""Parts of a step, and parts of its force loop, run many times over on one state, so that they can be timed alone.
+
+They call the engine's own functions. With a step of zero these leave places and velocities as they are, and from the
+second time on the history, too.
+"""
+
+import numpy as np
+import taichi as ti
+
+from solvers.grains.contacts import gathered
+from solvers.grains.laws.chosen import PAIR
+from solvers.grains.neighbours import LANES
+from solvers.machine.runtime import Arrays
+from solvers.simulation import Simulation
+
+OVERLAP = 1e-6  # m, of the contacts that the laws are tried on alone
+MULTIPLY_ADDS = 16
+
+
+@ti.data_oriented
+class Parts:
+    """The parts of a step of a simulation of one world, schedule per-world; each method does its part `times` times."""
+
+    def __init__(self, simulation: Simulation):
+        self.real = simulation.grains.real
+        self.grains, self.neighbours, self.contacts = simulation.grains, simulation.neighbours, simulation.contacts
+        self.frame, self.mover = simulation.frame, simulation.mover
+        self.sink = ti.field(self.real, shape=LANES)
+
+    @ti.kernel
+    def pair_forces(self, times: ti.i32, step: ti.f64):
+        """The forces between grains."""
+        ti.loop_config(serialize=True)
+        for _ in range(times):
+            self.contacts.pair_forces(self.grains, self.neighbours.pairs, 0, ti.cast(step, self.real))
+
+    @ti.kernel
+    def wall_forces(self, times: ti.i32, step: ti.f64):
+        """The forces of the walls."""
+        ti.loop_config(serialize=True)
+        for _ in range(times):
+            self.contacts.wall_forces(self.grains, self.neighbours.contacts, 0, 0.0, ti.cast(step, self.real))
+
+    @ti.kernel
+    def move(self, times: ti.i32, step: ti.f64):
+        """The frame's force and the motion of the grains; their forces are cleared."""
+        ti.loop_config(serialize=True)
+        for _ in range(times):
+            body = self.frame.body_force(0, 0.0)
+            self.sink[0] = self.mover.move(self.grains, 0, body, False, ti.cast(step, self.real))
+
+    @ti.kernel
+    def build(self, times: ti.i32, step: ti.f64):
+        """Sorting the grains into cells and listing all contacts, with the laws' constants for `step`."""
+        ti.loop_config(serialize=True)
+        for _ in range(times):
+            self.neighbours.cells.sort_world(0)
+            self.neighbours.rebuild(0, 0.0, ti.cast(step, self.real), True)
+
+    @ti.kernel
+    def gather(self, times: ti.i32, step: ti.f64):
+        """Of the pair forces: reading the grains and the geometry."""
+        ti.loop_config(serialize=True)
+        for _ in range(times):
+            self.gather_once(self.grains, self.neighbours.pairs)
+
+    @ti.func
+    def gather_once(self, g: ti.template(), pairs: ti.template()):
+        total = self.nothing()
+        for block in range(pairs.blocks(0)):
+            i, j = pairs.grain[0, block], pairs.mate[0, block]
+            ny, nz, distance, approach = self.contacts.geometry(g, i, j, pairs.reach[0, block], pairs.lanes)
+            uy = gathered(g.now_y, i, pairs.lanes) - gathered(g.now_y, j, pairs.lanes)
+            uz = gathered(g.now_z, i, pairs.lanes) - gathered(g.now_z, j, pairs.lanes)
+            spin = gathered(g.spin_now, i, pairs.lanes) + gathered(g.spin_now, j, pairs.lanes)
+            total += distance + ti.max(approach, 0.0) + uy * ny + uz * nz + spin
+        self.keep(total)
+
+    @ti.kernel
+    def laws(self, times: ti.i32, step: ti.f64):
+        """Of the pair forces: the laws, on made-up overlaps and velocities; spoils the history."""
+        ti.loop_config(serialize=True)
+        for _ in range(times):
+            self.laws_once(self.neighbours.pairs, ti.cast(step, self.real))
+
+    @ti.func
+    def laws_once(self, pairs: ti.template(), dt):
+        total = self.nothing()
+        for block in range(pairs.blocks(0)):
+            # Slower than they press, as grains that have nearly come to rest.
+            overlap = OVERLAP * pairs.share[0, block]
+            fn, ft, roll = self.contacts.laws.forces(PAIR, pairs, 0, block, overlap, overlap, overlap, overlap, dt)
+            total += fn + ft + roll
+        self.keep(total)
+
+    @ti.kernel
+    def scatter(self, times: ti.i32, step: ti.f64):
+        """Of the pair forces: adding a force and a torque, here of nothing, to both grains of every pair."""
+        ti.loop_config(serialize=True)
+        for _ in range(times):
+            self.scatter_once(self.grains, self.neighbours.pairs, ti.cast(step, self.real))
+
+    @ti.func
+    def scatter_once(self, g: ti.template(), pairs: ti.template(), dt):
+        for block in range(pairs.blocks(0)):
+            i, target = pairs.grain[0, block], pairs.target[0, block]
+            f = dt * pairs.share[0, block]
+            for k in ti.static(range(pairs.lanes)):
+                g.push(0, i[k], f[k], f[k], f[k])
+            for k in ti.static(range(pairs.lanes)):
+                g.push(0, target[k], -f[k], -f[k], -f[k])
+
+    @ti.func
+    def nothing(self):
+        return ti.Vector([ti.cast(0.0, self.real) for _ in ti.static(range(LANES))])
+
+    @ti.func
+    def keep(self, total):
+        """Write a result, without which the compiler would leave out what led to it."""
+        for k in ti.static(range(LANES)):
+            self.sink[k] = total[k]
+
+
+@ti.data_oriented
+class Limits:
+    """What one core can do at most: kernels on arrays of `size` reals, each done `times` times.
+
+    The factor s comes from a field, since Taichi leaves the reading of the fields' address in the innermost loop where
+    nothing outside reads a field, and the loop is no SIMD code then.
+    """
+
+    def __init__(self, precision: str, size: int):
+        arrays = Arrays(precision)
+        self.size = size
+        self.a, self.b, self.c = (arrays.holding(np.full(size, value)) for value in (0.0, 1.0, 0.5))
+        self.s = arrays.holding(np.array([0.5]))
+        arrays.finish()
+        self.close = arrays.release
+
+    @ti.kernel
+    def triad(self, times: ti.i32):
+        """a = b + s c: two reals read and one written an element (McCalpin 1995)."""
+        ti.loop_config(serialize=True)
+        for n in range(times):
+            s = self.s[0] * n
+            for k in range(self.size):
+                self.a[k] = self.b[k] + s * self.c[k]
+
+    @ti.kernel
+    def multiply_add(self, times: ti.i32):
+        """MULTIPLY_ADDS multiplications, each with an addition, an element; two chains, so that one need not wait."""
+        ti.loop_config(serialize=True)
+        for _ in range(times):
+            s = self.s[0]
+            for k in range(self.size):
+                x, y = self.b[k], self.c[k]
+                for _link in ti.static(range(MULTIPLY_ADDS // 2)):
+                    x = x * s + 0.25
+                    y = y * s + 0.25
+                self.a[k] = x + y
+
+    @ti.kernel
+    def root_and_divide(self, times: ti.i32):
+        """One square root and one division an element."""
+        ti.loop_config(serialize=True)
+        for n in range(times):
+            s = self.s[0] * n
+            for k in range(self.size):
+                self.a[k] = ti.sqrt(self.b[k] + s) + self.c[k] / (self.b[k] + s)

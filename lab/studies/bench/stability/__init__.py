@@ -1,0 +1,114 @@
+"""cargolab bench stability: hard cases at the automatic step and far beyond it, and where steps do become unstable.
+
+CASES and MAPS name what is tried: the cases, and each integrator's part of the map. What was found is kept in
+stability.json; what is there from the same versions, fast or in full as now, is not run again.
+"""
+
+from collections.abc import Sequence
+from dataclasses import asdict
+from pathlib import Path
+
+from lab.base.errors import LabError
+from lab.report.page import Page
+from lab.studies.bench.stability import hard_beds, hard_few, hard_moving, hard_starts, limit_map
+from lab.studies.bench.stability.case import ENERGY, OVERLAP, Case, Check, judge
+from lab.studies.bench.stability.pushed import push
+from lab.studies.bench.stability.records import Records
+from lab.studies.bench.stability.report import word, write_page
+from lab.studies.bench.stability.trial import follow
+from solvers.grains.integrators import INTEGRATORS
+from solvers.simulation import Simulation
+
+CASES = {case.name: case for cases in (hard_few, hard_beds, hard_moving, hard_starts) for case in cases.CASES}
+MAPS = {f"map-{integrator}": integrator for integrator in INTEGRATORS}
+FAST_MAP = "map-verlet"
+
+
+def run_cases(names: Sequence[str], out: Path, fast: bool) -> bool:
+    """Run the cases whose names begin like one of `names`, or all, print every line, write the page; whether all pass.
+
+    A case that breaks off fails, and the others go on. Raises LabError for a name that is none.
+    """
+    chosen = _chosen(names, fast)
+    records = Records(Path(out) / "stability.json", fast)
+    sound = True
+    for name in chosen:
+        if name in records:
+            print(f"{name}: {word(records[name]['passed'])}, kept from an earlier run", flush=True)
+        else:
+            record = _attempt(name, fast)
+            if record:
+                records.keep(name, record)
+        sound &= name in records and records[name]["passed"]
+    cases = {name: records[name] for name in CASES if name in records}
+    maps = [row for name in MAPS if name in records for row in records[name]["rows"]]
+    write_page(Page(out, "stability", "Stability"), cases, maps)
+    return sound
+
+
+def _chosen(names: Sequence[str], fast: bool) -> list[str]:
+    """All names in the order of the page, or those that begin like one that is asked for."""
+    known = [*CASES, *MAPS]
+    for name in names:
+        if not any(other.startswith(name) for other in known):
+            raise LabError(f"there is no case {name}; there are {', '.join(known)}.")
+    if names:
+        return [name for name in known if name.startswith(tuple(names))]
+    quick = [name for name, case in CASES.items() if case.fast] + [FAST_MAP]
+    return quick if fast else known
+
+
+def _attempt(name: str, fast: bool) -> dict[str, object] | None:
+    """The record of a case or a part of the map; None, and a line, where it breaks off."""
+    try:
+        return _run_map(MAPS[name], fast) if name in MAPS else _run_case(CASES[name], fast)
+    except Exception as error:  # whatever it is, the other cases are worth running
+        print(f"{name}: FAIL, broke off: {type(error).__name__}: {error}", flush=True)
+        return None
+
+
+def _run_case(case: Case, fast: bool) -> dict[str, object]:
+    """The record of a case at the automatic step and, if it has a measure and ran to its end, at longer ones."""
+    trial = case.make(fast)
+    run = Simulation(trial.scene, trial.position[None], 1, arch="cpu")
+    try:
+        course = follow(run, trial, trial.scene.time_step())
+        checks = judge(case, trial, course)
+        for check in checks:
+            print(_line(case.name, check), flush=True)
+        pushed = []
+        if case.measure and not course.stopped:
+            for row in push(run, case, trial, case.measure.of(trial, course), fast):
+                said = f"{row.outcome}: {row.said}"
+                print(f"{case.name}, {row.factor:g} times the limit: {word(row.passed)}, {said}", flush=True)
+                pushed.append({**asdict(row), "passed": row.passed})
+    finally:
+        run.close()
+    by_name = {check.what: check.error for check in checks}
+    return {
+        "says": case.says,
+        "grains": trial.count,
+        "time": float(course.time[-1]) if len(course.time) else 0.0,
+        "step": course.step,
+        "overlap": by_name.get(OVERLAP),
+        "energy": by_name.get(ENERGY),
+        "checks": [{**asdict(check), "passed": check.passed} for check in checks],
+        "pushed": pushed,
+        "passed": all(check.passed for check in checks) and all(row["passed"] for row in pushed),
+    }
+
+
+def _line(name: str, check: Check) -> str:
+    error = f"error {check.error:.3g}, tolerance {check.tolerance:.3g}"
+    return f"{name}: {word(check.passed)}, {check.what} against {check.reference}: {error} ({check.why})"
+
+
+def _run_map(integrator: str, fast: bool) -> dict[str, object]:
+    """The record of one integrator's part of the map."""
+    rows = []
+    for found in limit_map.found(integrator, fast):
+        laws = found.normal if found.tangential == "none" else f"{found.normal} and {found.tangential}"
+        what = f"{laws}, {found.damping}: longest stable step {found.ratio:.3g} derived steps"
+        print(f"map-{integrator}: {word(found.passed)}, {what}", flush=True)
+        rows.append(found.record())
+    return {"rows": rows, "passed": all(row["passed"] and row["exact_passed"] for row in rows)}

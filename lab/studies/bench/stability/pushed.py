@@ -1,0 +1,57 @@
+"""A case again with longer steps than the lab would take: still right, stopped by the watch, or quietly wrong.
+
+The app refuses steps beyond `lab.preset.accuracy.FURTHEST` times the limit, whatever is forced. These are run all the
+same, to show what they would give.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from lab.preset.accuracy import FURTHEST
+from lab.studies.bench.stability.case import Case, energy_bound, made_energy
+from lab.studies.bench.stability.trial import Course, Trial, follow
+from solvers.simulation import Simulation
+
+FACTORS = (2, 5, 10, 20, 50)  # times the derived limit
+FAST_FACTORS = (5, 50)
+RIPPLE = 0.01  # of the scale: with few steps a contact the scheme's own energy ripples while grains touch
+STOPPED, RIGHT, WRONG = "stopped by the watch", "still right", "quietly wrong"
+REFUSED = "refused by the app; it would be "
+
+
+@dataclass(frozen=True)
+class Pushed:
+    """What came of a case with a step of `factor` times the limit: its measure beside that at the automatic step."""
+
+    factor: float
+    step: float
+    outcome: str
+    value: float
+    reference: float
+    tolerance: float
+    energy: float
+    said: str
+
+    @property
+    def passed(self) -> bool:
+        """Whether nobody is misled: no number comes out, or it is right."""
+        return self.outcome != WRONG
+
+
+def push(run: Simulation, case: Case, trial: Trial, reference: float, fast: bool) -> Iterator[Pushed]:
+    """The case at every factor; `reference` is its measure at the automatic step."""
+    limit = trial.scene.step_limits()[0].step
+    for factor in FAST_FACTORS if fast else FACTORS:
+        yield verdict(case, trial, follow(run, trial, factor * limit), factor, reference)
+
+
+def verdict(case: Case, trial: Trial, course: Course, factor: float, reference: float) -> Pushed:
+    """Refused, stopped, right within the measure's tolerance and with no energy made beyond a ripple, or neither."""
+    if course.stopped:
+        return Pushed(factor, course.step, STOPPED, float("nan"), reference, 0.0, float("nan"), course.stopped)
+    value, energy = case.measure.of(trial, course), made_energy(trial, course)
+    near = abs(value - reference) <= case.measure.tolerance * abs(reference)
+    keeps = energy <= max(RIPPLE, energy_bound(case, trial)[0])
+    said = f"{100.0 * (value / reference - 1.0):+.2g} % of {case.measure.what}"
+    outcome = (REFUSED if factor > FURTHEST else "") + (RIGHT if near and keeps else WRONG)
+    return Pushed(factor, course.step, outcome, value, reference, case.measure.tolerance, energy, said)

@@ -1,0 +1,44 @@
+"""cargolab bench survival: the lab killed at random times, starved and misled; how often it was tried, how it ended.
+
+What is tried is in `kills` and in `straits`. Everything runs in processes of its own.
+"""
+
+import shutil
+from collections.abc import Sequence
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from lab.base.errors import LabError
+from lab.report.page import Page
+from lab.studies.bench.survival import kills, straits
+
+CASES = {f"kill-{one.__name__}": one for one in (kills.run, kills.sweep, kills.reproduce, kills.gallery)}
+CASES |= straits.CASES
+FAST = ("kill-run", "lacks", "places")
+KILLS, FEW = 50, 3
+
+
+def run_cases(names: Sequence[str], out: Path, fast: bool = False, blows: int | None = None) -> bool:
+    """Try the cases whose names begin like one of `names`, or all, print the counts, write the page; whether all held.
+
+    blows: how often each kind of command is killed. Raises LabError for a name that is none.
+    """
+    for name in names:
+        if not any(one.startswith(name) for one in CASES):
+            raise LabError(f"there is no case {name}; there are {', '.join(CASES)}.")
+    chosen = [name for name in CASES if (name.startswith(tuple(names)) if names else name in FAST or not fast)]
+    blows = blows or (FEW if fast else KILLS)
+    page, rows = Page(out, "survival", "Survival"), []
+    with TemporaryDirectory(prefix="survival-", dir=out) as work:
+        for name in chosen:
+            folder = Path(work) / name
+            folder.mkdir()
+            tally = CASES[name](folder, blows)
+            shutil.rmtree(folder, ignore_errors=True)
+            for line in tally.lines():
+                print(f"{name}: {line}", flush=True)
+            ended = ", ".join(f"{count} {outcome}" for outcome, count in tally.outcomes.items())
+            rows.append((name, tally.says, str(tally.tried), ended, not tally.failed))
+    page.table(["case", "what", "tried", "how it ended"], [row[:4] for row in rows])
+    page.write()
+    return all(row[4] for row in rows)

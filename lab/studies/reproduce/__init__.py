@@ -1,0 +1,97 @@
+"""cargolab reproduce: every experiment of the source, run, and held against what the source states.
+
+An experiment is an entry of the EXPERIMENTS list of a module of this package, which has its place in REPORTS. Its runs
+lie in a folder of their own and are not run again; one that was cut short is gone on with.
+"""
+
+from collections.abc import Mapping, Sequence
+from contextlib import ExitStack
+from pathlib import Path
+
+from lab.base.errors import LabError
+from lab.base.lock import only_one
+from lab.base.progress import Progress
+from lab.studies.reproduce import (
+    capsizes,
+    damping,
+    heaps,
+    humidity,
+    laws,
+    low_sides,
+    outlines,
+    section,
+    shaking,
+    ship,
+    tilting,
+    validation,
+)
+from lab.studies.reproduce.experiment import Experiment
+from lab.studies.reproduce.findings import read_findings
+from lab.studies.reproduce.report import kept_file, write_report
+from lab.studies.reproduce.runs import Batch, errands
+from lab.studies.reproduce.workers import carry_out_all
+from lab.sweeps.cluster import fetch
+
+REPORTS = {
+    "granular": (validation, tilting, humidity, laws, shaking, heaps),
+    "shapes": (outlines,),
+    "ship": (ship, section, damping, capsizes, low_sides),
+}
+
+
+def experiments(report: str) -> dict[str, Experiment]:
+    """The experiments of a report by name."""
+    return {one.name: one for module in REPORTS[report] for one in module.EXPERIMENTS}
+
+
+def reproduce(
+    report: str, names: Sequence[str], out: Path | str, quick: bool, quiet: bool = False, cluster: str | None = None
+) -> Path:
+    """Run a report's experiments whose names begin like one of `names`, or all, and write it of all that is there.
+
+    Without names, an experiment that the report tells of already is not run again where its runs have been removed.
+    cluster: the address of a scheduler whose workers run all that was not begun yet, before anything runs here. The
+    report is written anew after each experiment. Returns its file. Raises LabError, one sentence, and
+    KeyboardInterrupt; what was run stays.
+    """
+    known = experiments(report)
+    for name in names:
+        if not any(one.startswith(name) for one in known):
+            raise LabError(f"there is no experiment {name}; there are {', '.join(known)}.")
+    out, work = Path(out), Path(out) / ("quick" if quick else "full")
+    folders = places(known, work, quick)
+    told = read_findings(kept_file(report, out, quick), known, quick)
+    removed = [name for name in told if not any(folder.exists() for folder in folders[name].values())]
+    chosen = [name for name in known if (name.startswith(tuple(names)) if names else name not in removed)]
+    batches = {folders[name][key]: batch for name in chosen for key, batch in known[name].batches(quick).items()}
+    if cluster:
+        _run_there(batches, cluster, quiet)
+    page = write_report(report, known, {}, out, quick)
+    left = {name: set(folders[name].values()) for name in chosen}
+    for folder in carry_out_all(batches, Progress(quiet)):
+        ended = [name for name, missing in left.items() if missing == {folder}]
+        left = {name: missing - {folder} for name, missing in left.items()}
+        if ended:
+            page = write_report(report, known, {name: folders[name] for name in ended}, out, quick)
+    return page
+
+
+def places(known: Mapping[str, Experiment], work: Path, quick: bool) -> dict[str, dict[str, Path]]:
+    """Of each experiment the folders of its batches, by their names; what two experiments share is run once."""
+    taken: list[tuple[Batch, Path]] = []
+    folders = {}
+    for name, experiment in known.items():
+        folders[name] = {}
+        for key, batch in experiment.batches(quick).items():
+            place = next((there for other, there in taken if other == batch), work / name / key)
+            taken.append((batch, place))
+            folders[name][key] = place
+    return folders
+
+
+def _run_there(batches: Mapping[Path, Batch], cluster: str, quiet: bool) -> None:
+    """Run all batches on the cluster at once, so that its workers need not wait for one another."""
+    with Progress(quiet) as progress, ExitStack() as held:
+        for folder in batches:
+            held.enter_context(only_one(folder))
+        fetch([errand for folder, batch in batches.items() for errand in errands(batch, folder)], cluster, progress)

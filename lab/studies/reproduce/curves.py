@@ -1,0 +1,85 @@
+"""Figures laid out as the source's: the shift of the centre of mass against the tilt, a response against frequency."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from matplotlib import colormaps
+from matplotlib.figure import Figure
+
+from lab.measures import critical_angle
+from lab.measures.motion import is_tilt
+from lab.report.numbers import BARS
+from lab.report.plots import BELOW
+from lab.studies.reproduce.runs import Outcome
+
+SIZE = (6.4, 3.4)
+POINTS = 800
+
+
+def shift_against_tilt(labelled: Mapping[str, Outcome]) -> Figure | None:
+    """Mean shift downhill (mean diameters) of all beds, ± their standard deviation, by label."""
+    drawn = {label: outcome for label, outcome in labelled.items() if is_tilt(outcome.recording)}
+    if not drawn:
+        return None
+    figure, axes, colours = _begin(len(drawn))
+    for (label, outcome), colour in zip(drawn.items(), colours, strict=True):
+        recording = outcome.recording
+        curves = [critical_angle.shift_curve(recording, world) for world in range(recording.worlds)]
+        common = np.linspace(0.0, min(tilt[-1] for tilt, _ in curves), POINTS)
+        shifts = np.stack(
+            [np.interp(common, tilt, s) / d for (tilt, s), d in zip(curves, recording.mean_diameter, strict=True)]
+        )
+        _band(axes, common, shifts, colour, label)
+    axes.set_xlabel("tilt (deg)")
+    axes.set_ylabel(f"shift of the centre of mass\ndownhill (mean diameters),\n{BARS}")
+    figure.legend(loc=BELOW, ncols=3)
+    return figure
+
+
+def against(
+    key: str, label: str, families: Mapping[str, Sequence[Outcome]], measure: str, quantity: str, scale: float = 1.0
+) -> Figure:
+    """A measure against the number in a key of the grid, a curve a family of outcomes, ± standard deviation."""
+    figure, axes, colours = _begin(len(families))
+    for (name, found), colour in zip(families.items(), colours, strict=True):
+        points = [
+            (leading_number(o.setting[key]), o[measure]) for o in found if o[measure] and o[measure].value is not None
+        ]
+        x, values = zip(*points, strict=True) if points else ((), ())
+        means, beds = [scale * value.value for value in values], max((value.n for value in values), default=0)
+        axes.errorbar(
+            x,
+            means,
+            [scale * (v.std or 0.0) for v in values],
+            fmt="o-",
+            ms=3.5,
+            capsize=2,
+            color=colour,
+            label=_named(name, beds),
+        )
+    axes.set_xlabel(label)
+    axes.set_ylabel(f"{quantity}\n{BARS}")
+    figure.legend(loc=BELOW, ncols=3)
+    return figure
+
+
+def leading_number(said: object) -> float:
+    """The number at the beginning of a value with a unit."""
+    return float(str(said).split()[0])
+
+
+def _begin(count: int) -> tuple[Figure, object, np.ndarray]:
+    figure = Figure(figsize=SIZE, layout="constrained")
+    return figure, figure.add_subplot(), colormaps["viridis"](np.linspace(0.0, 0.85, count))
+
+
+def _named(label: str, beds: int) -> str:
+    return f"{label} ({beds} beds)" if beds > 1 else label
+
+
+def _band(axes, x: np.ndarray, rows: np.ndarray, colour, label: str) -> None:
+    mean = rows.mean(axis=0)
+    axes.plot(x, mean, color=colour, label=_named(label, len(rows)))
+    if len(rows) > 1:
+        std = rows.std(axis=0, ddof=1)
+        axes.fill_between(x, mean - std, mean + std, color=colour, alpha=0.15, lw=0)

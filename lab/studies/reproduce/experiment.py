@@ -1,0 +1,120 @@
+"""An experiment of the source: the runs it takes, and what is told of them beside what the source states."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+from matplotlib.figure import Figure
+
+from lab.measures.value import Value
+from lab.report.numbers import number
+from lab.studies.reproduce.estimates import Estimate, Verdict, mean
+from lab.studies.reproduce.runs import Batch, Outcome
+
+
+@dataclass(frozen=True)
+class Row:
+    """One line of the comparison.
+
+    `apart` is our number less the source's, with its interval; `tolerance` what is allowed, and where that comes from;
+    `verdict` None where the source states nothing that could be held against ours.
+    """
+
+    quantity: str
+    source: str
+    ours: str
+    apart: str
+    tolerance: str
+    verdict: Verdict | None
+
+
+@dataclass(frozen=True)
+class Told:
+    """What came of an experiment: rows, the figure, and a further table, its header first."""
+
+    rows: Sequence[Row]
+    figure: Figure | None = None
+    table: Sequence[Sequence[str]] = ()
+
+
+@dataclass(frozen=True)
+class Experiment:
+    """`states` says in words what the source (its `section`) reports; `batches(quick)` what is run, by name.
+
+    `tell` compares the outcomes of the batches, each a list by the points of its grid. `lost` says what the quick runs
+    leave out; `shown` is the batch of which a `point`, mostly the last, is pictured, at this fraction of its time;
+    `remark` what one has to know to read the rows, and why they differ where they do.
+    """
+
+    name: str
+    title: str
+    section: str
+    states: str
+    batches: Callable[[bool], Mapping[str, Batch]]
+    tell: Callable[[Mapping[str, Sequence[Outcome]]], Told]
+    lost: str
+    shown: tuple[str, float]
+    remark: str = ""
+    point: int = -1
+
+
+@dataclass(frozen=True)
+class Tolerance:
+    """What a number may be off by, and where that comes from."""
+
+    within: float
+    origin: str
+
+    def words(self, unit: str = "") -> str:
+        """For a reader."""
+        return f"{self.within:.3g}{f' {unit}' if unit not in ('', '1') else ''}: {self.origin}"
+
+
+# The root of the mean squared standard deviations of 68 sets of tilted beds of the granular report, 279 degrees of
+# freedom. The source mostly shows one bed, or gives no scatter.
+ONE_BED = Tolerance(3.5, "std of one bed here, as the source gives no scatter")
+
+
+ANY = "none: any difference counts"
+EXACT = "exact: nothing in it varies from bed to bed"
+
+
+def stated(quantity: str, source: float, ours: Value | None, tolerance: Tolerance, exact: bool = False) -> Row:
+    """A number of the source beside ours, in the same unit; `exact` where ours does not vary from bed to bed."""
+    unit = "" if ours is None or ours.unit == "1" else ours.unit
+    said, allowed = f"{source:g} {unit}".rstrip(), tolerance.words(unit)
+    found = mean(ours, exact)
+    if found is None:
+        return Row(quantity, said, "not found", "", allowed, Verdict.CANNOT_TELL)
+    apart = found.less(source)
+    verdict = apart.lies(-tolerance.within, tolerance.within)
+    return Row(quantity, said, alone(ours) if exact else number(ours), less(apart, unit), allowed, verdict)
+
+
+def less(apart: Estimate, unit: str) -> str:
+    """A difference with its interval, where that is known: "+3.3, [0.9, 5.6] deg (95 %)"."""
+    known = apart.interval(unit)
+    return f"{apart.value:+.3g}, {known}" if known else f"{apart.value:+.3g} {unit}".rstrip()
+
+
+def observed(quantity: str, source: str, ours: str, verdict: Verdict | None, tolerance: str = "") -> Row:
+    """What the source says in words, beside what we see; `tolerance` says how its words are read."""
+    return Row(quantity, source, ours, "", tolerance, verdict)
+
+
+def held(
+    quantity: str, source: str, found: Estimate | None, between: tuple[float, float], tolerance: str, unit: str = ""
+) -> Row:
+    """A difference or ratio with its standard error and interval, which the source has `between` these."""
+    if found is None:
+        return Row(quantity, source, "not found", "", tolerance, Verdict.CANNOT_TELL)
+    return Row(quantity, source, found.told(unit), found.interval(unit), tolerance, found.lies(*between))
+
+
+def counted(value: Value | None) -> str:
+    """A value with its scatter and the number of beds in which it was found."""
+    return "not found" if value is None or value.value is None else number(value)
+
+
+def alone(value: Value | None) -> str:
+    """A value that does not vary from bed to bed."""
+    return "not found" if value is None or value.value is None else f"{value.value:.4g} {value.unit}".removesuffix(" 1")

@@ -1,0 +1,81 @@
+"""What a report keeps of an experiment when its runs are gone: what was told of them, in a file beside the page."""
+
+import hashlib
+import json
+import tomllib
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+from pydantic import TypeAdapter, ValidationError
+
+from lab.base.errors import LabError
+from lab.preset.find import load
+from lab.studies.reproduce.experiment import Experiment, Row
+from lab.studies.reproduce.runs import Batch
+
+
+@dataclass(frozen=True)
+class Finding:
+    """An experiment as the page tells it.
+
+    `asked` says which runs it was of (see `asked`); `stopped` names those that did not end, and why; `figure` and
+    `picture` are files beside the page, "" for none; `table` is a further one, its header first; `made` says by which
+    version its runs were made, and when.
+    """
+
+    asked: str
+    rows: Sequence[Row]
+    stopped: Sequence[tuple[str, str]]
+    grain_steps: float
+    wall_s: float
+    figure: str
+    picture: str
+    table: Sequence[Sequence[str]] = ()
+    made: str = "version 0.1.0"
+
+
+WORDS = ("title", "source", "reports", "based_on", "quick", "video")  # keys of a preset that no run depends on
+FINDINGS = TypeAdapter(dict[str, Finding])
+
+
+def read_findings(path: Path, experiments: Mapping[str, Experiment], quick: bool) -> dict[str, Finding]:
+    """What is kept of these experiments, but for those that ask for other runs now. Raises LabError."""
+    try:
+        found = FINDINGS.validate_json(path.read_bytes())
+    except FileNotFoundError:
+        return {}
+    except (OSError, ValidationError) as error:
+        raise LabError(f"{path} cannot be read: remove it, and what it told of is run again.") from error
+    return {
+        name: finding
+        for name, finding in found.items()
+        if name in experiments and finding.asked == asked(experiments[name].batches(quick))
+    }
+
+
+def write_findings(path: Path, findings: Mapping[str, Finding]) -> None:
+    """Keep what was found; the old file stays until the new one is whole."""
+    text = json.dumps({name: asdict(finding) for name, finding in findings.items()}, indent=1, ensure_ascii=False)
+    part = path.with_suffix(".part")
+    part.write_text(text + "\n", encoding="utf-8")
+    part.replace(path)
+
+
+def asked(batches: Mapping[str, Batch]) -> str:
+    """A hash of what the batches run: what their presets say of the experiment, and what is varied."""
+    told = [
+        (
+            key,
+            _of_the_experiment(load(batch.preset, batch.changes).given_text),
+            {axis: list(values) for axis, values in batch.axes.items()},
+        )
+        for key, batch in batches.items()
+    ]
+    return hashlib.sha256(repr(told).encode()).hexdigest()[:16]
+
+
+def _of_the_experiment(given: str) -> str:
+    """A preset's keys less its words and its film, which change no number."""
+    table = tomllib.loads(given)
+    return json.dumps({key: table[key] for key in sorted(table) if key not in WORDS}, sort_keys=True)

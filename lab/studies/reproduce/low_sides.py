@@ -1,0 +1,203 @@
+"""A barge that loose cargo does take: her deck is little above the water, and she floods through her hatch.
+
+Sound hydrostatics, cargo that counts once: grains beside the heap of `lab.studies.reproduce.sliding_heap` at the edge
+of loss.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from lab.build.scene import vessels
+from lab.preset.find import load
+from lab.report.plots import BELOW, BLUE
+from lab.studies.reproduce.capsizes import CARGO, NATURAL, REPOSES, scan, swung
+from lab.studies.reproduce.capsizes import PRESET as BARGE
+from lab.studies.reproduce.curves import SIZE, leading_number
+from lab.studies.reproduce.estimates import chance, surely
+from lab.studies.reproduce.experiment import EXACT, Experiment, Told, counted, observed
+from lab.studies.reproduce.runs import Batch, Outcome
+from lab.studies.reproduce.ship import AMPLITUDE, LOST, afloat
+from lab.studies.reproduce.ship import FREQUENCY as WAVES
+from lab.studies.reproduce.sliding_heap import HeapShip, box_heap
+from solvers.ship.hydrostatics import buoyancy, metacentric_height, turned
+from solvers.ship.motion import RollDamping
+
+PRESET = "ship/capsize-map"
+FREQUENCY = 4.4  # rad/s, the source's and the preset's
+SAYS = {"19 mm": "capsizes", "17 mm": "capsizes at 4.5 rad/s", "15 mm": "does not"}  # the source of its barge, loose
+CURVE = np.arange(10.0, 31.0, 1.0)  # mm
+# Of the map: waves that beds of grains meet (mm, rad/s), in the quick report fewer, and those that a heap does.
+GRID = {False: ((15, 20, 25, 30), (4.0, 4.4, 4.8, 5.2)), True: ((15, 25, 35), (4.0, 4.4, 4.8))}
+FINE = np.linspace(10.0, 35.0, 26), np.linspace(3.8, 5.4, 17)
+
+
+def batches(quick: bool) -> dict[str, Batch]:
+    """Several beds in waves on either side of the edge."""
+    sizes = [f"{size} mm" for size in ((19, 15) if quick else (19, 17, 15))]
+    changes = afloat(quick, **{"run.repeats": 2 if quick else 4})
+    return {"low sides": Batch(PRESET, changes, {AMPLITUDE: sizes})}
+
+
+def tell(found: Mapping[str, Sequence[Outcome]]) -> Told:
+    """With how many beds she was lost, and with how many of the heap's reposes; and what became of her frozen cargo."""
+    runs, ship, rows = found["low sides"], low_ship(), []
+    sizes = np.array([leading_number(one.setting[AMPLITUDE]) for one in runs])
+    _, shares = swung(ship, sizes, np.full(len(runs), FREQUENCY))
+    for one, share in zip(runs, shares, strict=True):
+        size, heap = str(one.setting[AMPLITUDE]), f"lost with {100.0 * share:.0f} % of a heap's reposes"
+        said = f"{_fates(one)}; {heap}; frozen {_frozen(one)}"
+        rows.append(observed(f"{size}, {FREQUENCY:g} rad/s", SAYS.get(size, ""), said, None))
+    return Told(
+        rows, _figure(sizes, [_lost(one) for one in runs], swung(ship, CURVE, np.full(len(CURVE), FREQUENCY))[1])
+    )
+
+
+def low_ship() -> HeapShip:
+    """The barge with a hatch, her cargo a heap; her lever is that of the clipped section held by the axis."""
+    resolved = load(PRESET).resolved
+    given, ship = resolved.ship, vessels(resolved)[0].ship
+    section, water, weight = ship.load.section, ship.load.water, ship.body.mass * ship.gravity
+    rolls = np.radians(np.linspace(-120.0, 120.0, 481))
+    heaves = given.heave + ship.about[1] - turned(ship.about, rolls)[:, 1]
+    moments = buoyancy(section, water, heaves, rolls, about=ship.about)[:, 2]
+    levers = turned(tuple(np.subtract(ship.body.centre, ship.about)), rolls)[:, 0] - moments / weight
+    depth, hold = resolved.grains.depth, np.ptp(resolved.tank.outline, axis=0)
+    mass = CARGO * depth / load(BARGE).resolved.grains.depth
+    heap = box_heap(*hold, depth, given.hold[1] - given.about[1], mass, REPOSES[-1])
+    height = metacentric_height(section, ship.body.loading, water)
+    lever = lambda roll: np.interp(roll, rolls, levers)  # noqa: E731
+    openings = np.subtract(given.flooding_points, given.about)
+    free = HeapShip(weight, height, lever, 1.0, ship.gravity, RollDamping(), heap, openings=openings).tuned(NATURAL)
+    linear, quadratic = 2.0 * given.damping * NATURAL * free.inertia, given.quadratic_damping * free.inertia
+    return replace(free, damping=RollDamping(linear, quadratic))
+
+
+def _lost(one: Outcome) -> tuple[int, int]:
+    """Beds with which she was lost, and all."""
+    ends = zip(one["capsized_at"].worlds, one["flooded_at"].worlds, strict=True)
+    lost = [end != (None, None) for end in ends]
+    return sum(lost), len(lost)
+
+
+def _fates(one: Outcome) -> str:
+    """How many beds she floods and capsizes with, and when."""
+    verbs = {"flooded_at": "floods", "capsized_at": "capsizes"}
+    told = [f"{verb} at {counted(one[name])}" for name, verb in verbs.items() if one[name].value is not None]
+    return ", ".join(told) or f"stands with {len(one['flooded_at'].worlds)} beds"
+
+
+def _frozen(one: Outcome) -> str:
+    """What becomes of her with her cargo frozen."""
+    found = {one["frozen_flooded_at"].value: "floods", one["frozen_capsized_at"].value: "capsizes"}
+    return next((f"{verb} at {when:.3g} s" for when, verb in found.items() if when is not None), "stands")
+
+
+def map_batches(quick: bool) -> dict[str, Batch]:
+    """A bed of coarse grains in each of many waves."""
+    sizes, frequencies = GRID[quick]
+    changes = afloat(True)
+    axes = {AMPLITUDE: [f"{size} mm" for size in sizes], WAVES: [f"{omega} rad/s" for omega in frequencies]}
+    return {"low sides": Batch(PRESET, changes, axes)}
+
+
+def tell_map(found: Mapping[str, Sequence[Outcome]]) -> Told:
+    """From which amplitude on she is lost with loose cargo, at each frequency; and with frozen cargo."""
+    runs, rows = found["low sides"], []
+    for omega in sorted({leading_number(one.setting[WAVES]) for one in runs}):
+        there = [one for one in runs if leading_number(one.setting[WAVES]) == omega]
+        lost = [leading_number(one.setting[AMPLITUDE]) for one in there if _lost(one)[0] > 0]
+        stands = [size for one in there if (size := leading_number(one.setting[AMPLITUDE])) not in lost]
+        rows.append(observed(f"{omega:g} rad/s: lost with loose cargo", "", _from(lost, stands), None))
+    alone = [leading_number(one.setting[AMPLITUDE]) for one in runs if _frozen(one) != "stands"]
+    says = f"in {len(alone)} of {len(runs)} waves" + (f", from {min(alone):g} mm on" if alone else "")
+    alike = surely(not alone or min(alone) > 19.0)
+    rows.append(observed("lost with frozen cargo", "not in 17 and 19 mm", says, alike, EXACT))
+    return Told(rows, _map_figure(runs))
+
+
+def _from(lost: Sequence[float], stands: Sequence[float]) -> str:
+    """In which waves (mm) she is lost; some higher ones she may stand."""
+    if not lost:
+        return "in none of these waves"
+    higher = [f"{size:g}" for size in stands if size > min(lost)]
+    return f"from {min(lost):g} mm on" + (f", but for {', '.join(higher)} mm" if higher else "")
+
+
+def _map_figure(runs: Sequence[Outcome]) -> Figure:
+    """Where she is lost with a heap, shaded by its reposes, and with beds of grains."""
+    figure = Figure(figsize=(6.4, 4.2), layout="constrained")
+    axes = figure.add_subplot()
+    shares = np.ma.masked_equal(scan(low_ship(), *FINE).capsized, 0.0)
+    shade = axes.pcolormesh(FINE[1], FINE[0], shares, cmap="Oranges", shading="nearest", vmin=-0.2, vmax=2.0)
+    shade.set_rasterized(True)
+    kinds = {"no bed": "none", "some": "left", "every bed": "full"}
+    for name, filled in kinds.items():
+        axes.plot([], [], "o", color=BLUE, fillstyle=filled, label=f"lost with {name}")
+    for one in runs:
+        lost, beds = _lost(one)
+        filled = kinds["every bed" if lost == beds else "some" if lost else "no bed"]
+        place = leading_number(one.setting[WAVES]), leading_number(one.setting[AMPLITUDE])
+        axes.plot(*place, "o", ms=9, color=BLUE, fillstyle=filled)
+        if _frozen(one) != "stands":
+            axes.plot(*place, "x", ms=5, color="black")
+    axes.plot([], [], "s", color=shade.cmap(0.5), label="with a heap, of reposes from 17 to 25 deg")
+    axes.plot([], [], "x", color="black", label="with frozen cargo, too")
+    axes.set_xlabel("frequency of the waves (rad/s)")
+    axes.set_ylabel("amplitude of the waves (mm)")
+    axes.grid(False)
+    figure.legend(loc=BELOW, ncols=3)
+    return figure
+
+
+def _figure(sizes: np.ndarray, lost: Sequence[tuple[int, int]], heap: np.ndarray) -> Figure:
+    figure = Figure(figsize=SIZE, layout="constrained")
+    axes = figure.add_subplot()
+    axes.step(CURVE, heap, where="mid", color="0.5", label="a heap, reposes of 17 to 25 deg")
+    share = np.array([k / n for k, n in lost])
+    ends = np.array([chance(k, n) for k, n in lost]).T
+    axes.errorbar(
+        sizes, share, np.abs(ends - share), fmt="o", capsize=3, label="beds of grains, bars: Wilson's interval (95 %)"
+    )
+    axes.set_xlabel("amplitude of the waves (mm)")
+    axes.set_ylabel("share with which\nshe is lost")
+    axes.set_ylim(-0.05, 1.05)
+    figure.legend(loc=BELOW, ncols=2)
+    return figure
+
+
+EXPERIMENTS = [
+    Experiment(
+        "barge-low-sides",
+        "A barge with a low deck, a hatch and loose cargo",
+        "ours",
+        "its barge, with sides of 300 mm, capsizes with loose cargo in waves of 17 and 19 mm, not of 15 mm.",
+        batches,
+        tell,
+        LOST,
+        ("low sides", 1.0),
+        "The barge of ship/capsize-map, waves at once. Her deck is 30 mm above the water; a hatch of 120 mm in it "
+        "has a coaming of 50 mm, and she is lost when its edge goes under the waves; afloat in calm water it does "
+        "at a heel of 39 deg. Half the cargo of the barge above lies in a hold under the deck, where its surface "
+        "has room to lean; GM, roll period and draught are hers. Held by the axis her lever is largest near 40 deg "
+        "and vanishes near 85; every part of it is known. Frozen cargo stays and she stands, loose cargo slides and "
+        "she floods, in the waves in which the source saw its barge capsize: after one large swing the cargo stays "
+        "where it has slid, and one of the next swings puts the hatch under. Grains do so in lower waves than a "
+        "heap, which needs no time to slide and never goes past its repose.",
+        point=0,
+    ),
+    Experiment(
+        "barge-map",
+        "Which waves flood the barge with a low deck",
+        "ours, as figures 7.8 and 7.16 to 7.19",
+        "loose cargo capsizes its barge from 17 mm on, at 19 mm from 4.4 to 4.7 rad/s; frozen cargo does not.",
+        map_batches,
+        tell_map,
+        "3 by 3 waves for 4 by 4",
+        ("low sides", 1.0),
+        "One bed of grains of 10 mm in each wave, so that many waves can be had; an edge of the map is as uncertain as "
+        "one bed. Shaded is where she is lost with a heap, which is at its angle of repose at once.",
+    ),
+]

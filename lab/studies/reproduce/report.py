@@ -1,0 +1,166 @@
+"""The report: an overview, and of each experiment what the source states, what we get, a figure and a picture."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import matplotlib
+
+from lab.base.errors import LabError
+from lab.measures.value import LEVEL
+from lab.preset.accuracy import LEVELS
+from lab.recording import open_recording
+from lab.report.page import Page
+from lab.report.plots import STYLE
+from lab.studies.reproduce.estimates import Verdict
+from lab.studies.reproduce.experiment import Experiment, Row
+from lab.studies.reproduce.findings import Finding, asked, read_findings, write_findings
+from lab.studies.reproduce.runs import Outcome, outcomes
+
+PICTURE = (640, 360)  # pixels
+TITLES = {
+    "granular": "The granular experiments of the source, reproduced",
+    "shapes": "The source's experiments with irregular grains, reproduced",
+    "ship": "The source's ships with loose cargo, reproduced",
+}
+# What the full report loses against the source's own runs.
+LESS = {
+    "granular": f"""Beds are run at draft accuracy ({LEVELS["draft"].error}) and tilted at 3 or 5 deg/s where the source
+        has 0.15 to 3, often four where it has 12: within the scatter of beds neither shows (`cargolab bench
+        accuracy`).""",
+    "shapes": f"""Beds are run at draft accuracy ({LEVELS["draft"].error}); those of the tilting box are 80 mm deep for
+        110, 6 where the source has 12, and 12 of random phases for 25, tilted at 20 deg/s, at 10 if of round grains (at
+        0.3 three beds, 40 mm deep, to 12 deg) or of chickpeas (four for 24 at 0.5); heaps have 800 grains for 2500.
+        Ratios come with their standard error (s.e.) and interval.""",
+    "ship": f"""Grains are of 6 mm for the source's 3 (of 10 in the map), one bed for each wave but at the edge of
+        loss; ships are run at draft accuracy ({LEVELS["draft"].error}) for 30 s.""",
+}
+LOUD = {Verdict.AGREES: "agrees", Verdict.DIFFERS: "**differs**", Verdict.CANNOT_TELL: "cannot tell", None: ""}
+RUNS = "Each section says by which version of the lab its runs were made; times are of the machines that ran them."
+RULE = f"""A verdict is of the {100.0 * LEVEL:g} % interval of the difference: *agrees* where all of it lies within the
+    tolerance, *differs* where all of it lies outside, else *cannot tell*: more beds could (two one-sided tests,
+    Schuirmann 1987; see `docs/numbers.md`)."""
+
+
+def write_report(
+    name: str, experiments: Mapping[str, Experiment], ended: Mapping[str, Mapping[str, Path]], out: Path, quick: bool
+) -> Path:
+    """Write NAME.md (quick: NAME-quick.md) of the experiments whose runs have ended, and of what was kept of others.
+
+    ended: of each the folders of its batches. Beside the page are its pictures, and NAME.json, what is kept.
+    """
+    command = f"reproduce {name}{' --quick' if quick else ''}"
+    page = Page(out, page_name(name, quick), TITLES[name], command, RUNS)
+    kept = read_findings(kept_file(name, out, quick), experiments, quick)
+    for one, folders in ended.items():
+        found = {key: outcomes(folder) for key, folder in folders.items()}
+        if all(found.values()):
+            kept[one] = _finding(page, experiments[one], found, quick)
+    findings = {one: kept[one] for one in experiments if one in kept}
+    _overview(page, name, experiments, findings, quick)
+    for one, finding in findings.items():
+        _section(page, experiments[one], finding, quick)
+    write_findings(kept_file(name, out, quick), findings)
+    return page.write()
+
+
+def page_name(report: str, quick: bool) -> str:
+    """Of the page of a report, and of the files beside it."""
+    return f"{report}-quick" if quick else report
+
+
+def kept_file(report: str, out: Path, quick: bool) -> Path:
+    """Where what was found is kept."""
+    return out / f"{page_name(report, quick)}.json"
+
+
+def _finding(page: Page, experiment: Experiment, found: Mapping[str, list[Outcome]], quick: bool) -> Finding:
+    with matplotlib.rc_context(STYLE):
+        told = experiment.tell(found)
+    runs = [one for batch in found.values() for one in batch]
+    figure = "" if told.figure is None else page.save(experiment.name, told.figure).name
+    return Finding(
+        asked(experiment.batches(quick)),
+        tuple(told.rows),
+        tuple((one.folder.name, one.status) for one in runs if one.status != "complete"),
+        sum(one.cost["grain_steps"] for one in runs),
+        sum(one.cost["wall_s"] for one in runs),
+        figure,
+        _picture(page, experiment, found),
+        told.table,
+        _made(runs),
+    )
+
+
+def _made(runs: Sequence[Outcome]) -> str:
+    """By which version the last of the runs was made, and when."""
+    with open_recording(runs[-1].folder) as recording:
+        return f"version {recording.versions.get('cargo-shift-lab', '?')}, {recording.created[:10]}"
+
+
+def _overview(
+    page: Page, name: str, experiments: Mapping[str, Experiment], findings: Mapping[str, Finding], quick: bool
+) -> None:
+    page.say(_counted([row for finding in findings.values() for row in finding.rows]))
+    page.say(RULE)
+    page.say("""The source is Spandonidis (2016), doctoral thesis, NTUA. Our numbers are means ± the standard
+        deviation over beds, which differ in nothing but their seed; of one bed there is no ±. What the source gives in
+        words or curves is compared as a trend.""")
+    if quick:
+        page.say(
+            "The quick report: fewer and smaller beds, faster tilts, draft accuracy; each section says what is lost."
+        )
+    else:
+        page.say(LESS[name])
+    rows = []
+    for one, experiment in experiments.items():
+        if one not in findings:
+            rows.append([experiment.title, experiment.section, "not run", *[""] * (len(Verdict) + 1)])
+            continue
+        finding = findings[one]
+        counts = [sum(row.verdict is verdict for row in finding.rows) for verdict in Verdict]
+        cost = f"{finding.grain_steps:.2g}", f"{finding.wall_s:.0f} s"
+        rows.append([experiment.title, experiment.section, *(counts if any(counts) else ["–"] * len(counts)), *cost])
+    page.table(["experiment", "section", *Verdict, "grain-steps", "time"], rows)
+
+
+def _counted(rows: Sequence[Row]) -> str:
+    """How many verdicts of each kind there are."""
+    counts = {verdict: sum(row.verdict is verdict for row in rows) for verdict in Verdict}
+    agree, differ, open_ones = (counts[verdict] for verdict in Verdict)
+    return f"""**Of {sum(counts.values())} statements held against the source {agree} agree, {differ} differ, and of
+        {open_ones} these beds cannot tell.**"""
+
+
+def _section(page: Page, experiment: Experiment, finding: Finding, quick: bool) -> None:
+    page.section(experiment.title)
+    page.say(f"Source ({experiment.section}): {experiment.states}")
+    page.say(f"Runs: {finding.made}.{f' Quick: {experiment.lost}' if quick else ''}")
+    page.table(
+        ["quantity", "source", "here", "difference, interval", "tolerance, and where from", "verdict"],
+        [[r.quantity, r.source, r.ours, r.apart, r.tolerance, LOUD[r.verdict]] for r in finding.rows],
+    )
+    if experiment.remark:
+        page.say(experiment.remark)
+    if finding.table:
+        page.table(finding.table[0], finding.table[1:])
+    for name, status in finding.stopped:
+        page.say(f"**Not complete** ({name}): {status}")
+    if finding.figure:
+        page.show(page.folder / finding.figure, experiment.title)
+    if finding.picture:
+        page.show(page.folder / finding.picture, f"{experiment.title}: a picture")
+
+
+def _picture(page: Page, experiment: Experiment, found: Mapping[str, list[Outcome]]) -> str:
+    """The file of the picture; "" where a run was stopped before its first."""
+    from lab.paint.video import poster  # slow to load
+
+    batch, fraction = experiment.shown
+    path = page.folder / f"{page.name}-{experiment.name}-picture.png"
+    try:
+        poster(
+            found[batch][experiment.point].folder, path, fraction=fraction, width=PICTURE[0], height=PICTURE[1], world=0
+        )
+    except LabError:
+        return ""
+    return path.name

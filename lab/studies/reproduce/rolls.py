@@ -1,0 +1,75 @@
+"""How far ships roll, loose cargo beside frozen, laid out as figures 7.6 to 7.19 of Spandonidis (2016)."""
+
+from collections.abc import Collection, Mapping, Sequence
+
+import numpy as np
+from matplotlib import colormaps
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from lab.measures.value import Value, over_worlds
+from lab.report.numbers import BARS
+from lab.report.plots import BELOW
+from lab.studies.reproduce.curves import leading_number
+from lab.studies.reproduce.runs import Outcome
+
+SIZE = (6.4, 5.2)
+# Of loose and of frozen cargo: mean amplitude, absolute maximum, when she capsized; and how they are drawn
+LOOSE = ("roll_amplitude", "largest_roll", "capsized_at")
+FROZEN = ("frozen_amplitude", "frozen_largest_roll", "frozen_capsized_at")
+STYLES = {LOOSE: {"fmt": "o-"}, FROZEN: {"fmt": "s--", "mfc": "white"}}
+CROSSES = {LOOSE: {"marker": "X"}, FROZEN: {"marker": "X", "mfc": "white"}}
+PANELS = "amplitude of the roll\n(deg), " + BARS, "largest roll of the run\n(deg), " + BARS
+TOP, APART = 0.96, 0.06  # of a panel's height: where the first crosses are, and the next family's below
+
+
+def rolls_against(key: str, label: str, families: Mapping[str, Sequence[Outcome]], frozen: Collection[str]) -> Figure:
+    """Mean amplitude and absolute maximum of the roll against the number in a key of the grid, ± standard deviation.
+
+    Curves of every family with loose cargo, and of those named in `frozen` with frozen cargo. Ships that capsized are
+    crosses at the top and in no curve.
+    """
+    figure = Figure(figsize=SIZE, layout="constrained")
+    panels = figure.subplots(2, sharex=True)
+    colours = colormaps["viridis"](np.linspace(0.0, 0.75, len(families)))
+    kinds = {LOOSE: ("loose", families), FROZEN: ("frozen", frozen)}
+    drawn = [(names, f"{name}, {word}", name) for names, (word, chosen) in kinds.items() for name in chosen]
+    hue = dict(zip(families, colours, strict=True))
+    for level, (names, legend, family) in enumerate(drawn):
+        found = families[family]
+        at = [leading_number(one.setting[key]) for one in found]
+        for axes, measure in zip(panels, names[:2], strict=True):
+            _curve(axes, at, [_upright(one, measure, names[2]) for one in found], hue[family], legend, STYLES[names])
+            lost = [x for x, one in zip(at, found, strict=True) if _capsized(one, names[2])]
+            height = np.full(len(lost), TOP - APART * level)
+            axes.plot(lost, height, ls="", color=hue[family], transform=axes.get_xaxis_transform(), **CROSSES[names])
+    for axes, quantity in zip(panels, PANELS, strict=True):
+        axes.set_ylabel(quantity)
+        axes.set_ylim(0.0, axes.get_ylim()[1] / (TOP - APART * len(drawn)))  # room for the crosses
+    panels[1].set_xlabel(label)
+    handles, _ = panels[0].get_legend_handles_labels()
+    handles += [Line2D([], [], ls="", color="black", label=f"capsized, {kinds[k][0]}", **CROSSES[k]) for k in kinds]
+    figure.legend(handles=handles, loc=BELOW, ncols=3)
+    return figure
+
+
+def _curve(axes: Axes, at: Sequence[float], values: Sequence[Value | None], colour, label: str, style: dict) -> None:
+    """A gap where there is no value."""
+    mean = [np.nan if value is None or value.value is None else value.value for value in values]
+    spread = [0.0 if value is None or value.std is None else value.std for value in values]
+    axes.errorbar(at, mean, spread, ms=4, capsize=2, lw=1.2, color=colour, label=label, **style)
+
+
+def _upright(one: Outcome, measure: str, capsized: str) -> Value | None:
+    """A measure over the worlds that did not capsize."""
+    value, when = one[measure], one[capsized]
+    if value is None or when is None:
+        return value
+    kept = [np.nan if x is None or t is not None else x for x, t in zip(value.worlds, when.worlds, strict=True)]
+    return over_worlds(kept, value.unit)
+
+
+def _capsized(one: Outcome, capsized: str) -> bool:
+    """Whether any of the run's worlds did."""
+    return one[capsized] is not None and one[capsized].value is not None

@@ -1,0 +1,95 @@
+"""The runs of an experiment: done once, gone on with where they were cut short, and read again."""
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+
+from lab.base.errors import LabError
+from lab.measures.value import Value
+from lab.preset.find import load
+from lab.recording import FILE_NAME, Recording, open_recording
+from lab.runs.runner import recorded_preset, resume_run, run_preset
+from lab.sweeps.cluster import Errand
+from lab.sweeps.sweep import FILE_NAME as SWEEP
+from lab.sweeps.sweep import errands as sweep_errands
+from lab.sweeps.sweep import point_folder, read_sweep, run_sweep, state_of
+from solvers.machine.errors import BadState
+
+
+@dataclass(frozen=True)
+class Batch:
+    """Runs of a preset with `changes` by dotted keys, one for each point of the grid of `axes` (see
+    `lab.sweeps.sweep`)."""
+
+    preset: str
+    changes: Mapping[str, object] = field(default_factory=dict)
+    axes: Mapping[str, Sequence] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """A run that is done: the values of its grid's keys, its folder and measures, and what it cost."""
+
+    setting: Mapping[str, object]
+    folder: Path
+    status: str
+    measures: Mapping[str, Value]
+    cost: Mapping[str, float] = field(repr=False)
+
+    def __getitem__(self, name: str) -> Value | None:
+        return self.measures.get(name)
+
+    @cached_property
+    def recording(self) -> Recording:
+        """The recording: `series`, `frames`, `radius` …"""
+        return open_recording(self.folder)
+
+
+def errands(batch: Batch, folder: Path) -> list[Errand]:
+    """What of a batch was not begun yet and can be run on a cluster. Raises LabError."""
+    if batch.axes:
+        return sweep_errands(batch.preset, batch.axes, batch.changes, folder)
+    if (folder / FILE_NAME).exists():
+        return []
+    return [Errand({folder: load(batch.preset, batch.changes)})]
+
+
+def carry_out(batch: Batch, folder: Path, quiet: bool) -> None:
+    """Run what has not been run yet. A bed that the watch stops ends its run and no other. Raises LabError."""
+    if batch.axes:
+        run_sweep(batch.preset, batch.axes, batch.changes, folder, video=False, quiet=quiet)
+        return
+    try:
+        if not (folder / FILE_NAME).exists():
+            run_preset(batch.preset, batch.changes, folder, video=False, plots=False, quiet=quiet)
+            return
+        with open_recording(folder) as recording:
+            recorded = recorded_preset(recording).resolved
+        if recorded != load(batch.preset, batch.changes).resolved:
+            raise LabError(f"{folder} holds another run than this experiment asks for: remove it.")
+        if state_of(folder) != "done":
+            resume_run(folder, video=False, plots=False, quiet=quiet)
+    except BadState:  # the recording says so, and the report
+        pass
+
+
+def outcomes(folder: Path) -> list[Outcome]:
+    """The runs of a batch in the order of its grid; none unless all are done."""
+    if (folder / SWEEP).exists():
+        settings = read_sweep(folder).settings
+        runs = [(setting, point_folder(folder, k)) for k, setting in enumerate(settings)]
+    else:
+        runs = [({}, folder)]
+    found = [_outcome(setting, where) for setting, where in runs]
+    return found if all(found) else []
+
+
+def _outcome(setting: Mapping[str, object], folder: Path) -> Outcome | None:
+    try:
+        data = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return None
+    measures = {key: Value.from_json(found) for key, found in data["measures"].items()}
+    return Outcome(setting, folder, data["status"], measures, data["cost"])

@@ -1,0 +1,100 @@
+"""Batches side by side: a process a core, which carries out one batch after the other on that core.
+
+Beds that settle, kernels that are compiled and files that are written keep one core busy; with a batch a core none
+waits for them.
+"""
+
+import os
+import signal
+import threading
+import time
+from collections.abc import Iterator, Mapping
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
+from multiprocessing import active_children, get_context, parent_process
+from multiprocessing.connection import wait as wait_for
+from pathlib import Path
+
+from lab.base.errors import LabError
+from lab.base.interrupt import heed
+from lab.base.progress import Progress
+from lab.studies.reproduce.runs import Batch, carry_out, outcomes
+from solvers.machine import runtime
+
+BROKEN = "a process that ran a batch was ended from outside, maybe for want of memory"
+GRACE = 60.0  # s in which a worker can save what it has when nobody waits for it any more
+
+
+def carry_out_all(batches: Mapping[Path, Batch], progress: Progress) -> Iterator[Path]:
+    """Run what has not been run yet of all batches, by their folders; gives each folder when its batch is done.
+
+    On a graphics processor, on one core, and a batch alone, here; else in as many processes as there are cores. Raises
+    LabError, one sentence, and KeyboardInterrupt: what is under way is then stopped where it can be gone on with.
+    """
+    cores = min(runtime.available_cores(), len(batches))
+    if cores <= 1 or runtime.choose_arch("auto", "f64") != "cpu":
+        for folder, batch in batches.items():
+            progress.say(f"{named(folder)} …")
+            carry_out(batch, folder, progress.console.quiet)
+            yield folder
+    else:
+        yield from _by_workers(batches, cores, progress)
+
+
+def named(folder: Path) -> str:
+    """An experiment and one of its batches."""
+    return f"{folder.parent.name}: {folder.name}"
+
+
+def _by_workers(batches: Mapping[Path, Batch], cores: int, progress: Progress) -> Iterator[Path]:
+    with progress, ProcessPoolExecutor(cores, get_context("spawn"), _begin) as workers:
+        known = {folder for folder in batches if outcomes(folder)}  # these are only looked at
+        progress.begin_whole("batches", len(batches), len(known))
+        left, running = iter(batches.items()), {}
+        try:
+            _hand_out(workers, left, running, cores, progress)
+            while running:
+                for future in wait(running, return_when=FIRST_COMPLETED).done:
+                    folder = running.pop(future)
+                    future.result()
+                    _hand_out(workers, left, running, cores, progress)
+                    if folder not in known:
+                        progress.count_one(f"{named(folder)} is done")
+                    yield folder
+        except BaseException as error:
+            for worker in active_children():
+                os.kill(worker.pid, signal.SIGINT)
+            if isinstance(error, BrokenProcessPool):
+                raise LabError(f"{BROKEN}: ask again, and what was begun is gone on with.") from None
+            raise
+
+
+def _hand_out(
+    workers: ProcessPoolExecutor,
+    left: Iterator[tuple[Path, Batch]],
+    running: dict[Future, Path],
+    cores: int,
+    progress: Progress,
+) -> None:
+    """Give idle workers something to do; no more, for what waits in line cannot be called back."""
+    while len(running) < cores and (following := next(left, None)):
+        folder, batch = following
+        progress.say(f"{named(folder)} …")
+        running[workers.submit(carry_out, batch, folder, True)] = folder
+
+
+def _begin() -> None:
+    """In a worker: take one core, leave Ctrl-C to the process that gives out work, and end with that."""
+    runtime.use_cores(1)
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # what runs in the background may be deaf to it
+    heed(patient=True)  # who ends all processes asks this one twice
+    if hasattr(os, "setpgrp"):
+        os.setpgrp()
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+
+
+def _end_with_parent() -> None:
+    wait_for([parent_process().sentinel])
+    os.kill(os.getpid(), signal.SIGINT)
+    time.sleep(GRACE)
+    os._exit(1)

@@ -1,0 +1,81 @@
+"""Verification: small scenes run as any experiment is, beside references that do not need the solver.
+
+A case is a function in a module of this package that returns what it found, and a line in that module's CASES.
+"""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from rich.console import Console
+
+from lab.base.errors import LabError
+from lab.studies.verify import (
+    chung_ooi,
+    cohesion,
+    collisions,
+    columns,
+    conservation,
+    convergence,
+    frames,
+    friction,
+    oblique,
+    restitution,
+    rolling,
+    sameness,
+)
+from lab.studies.verify.case import Case, Outcome
+from lab.studies.verify.report import show, write_report
+
+MODULES = (
+    chung_ooi,
+    collisions,
+    restitution,
+    oblique,
+    friction,
+    rolling,
+    cohesion,
+    columns,
+    conservation,
+    convergence,
+    frames,
+    sameness,
+)
+CASES: tuple[Case, ...] = tuple(case for module in MODULES for case in module.CASES)
+
+
+def run_cases(names: Sequence[str], out: Path | str, fast: bool) -> bool:
+    """Run the cases whose names begin with any of `names` (none: all), print them, and write the page in `out`.
+
+    With `fast` only what takes seconds. A case that fails or breaks does not stop the others. Returns whether all
+    passed. Raises LabError for a name that no case begins with.
+    """
+    chosen, console, outcomes = select(names, fast), Console(highlight=False), []
+    for case in chosen:
+        outcomes.append(outcome := carried_out(case, fast))
+        show(outcome, console)
+    page = write_report(outcomes, out)
+    bad = [outcome.case.name for outcome in outcomes if not outcome.passed]
+    console.print(f"failed: {', '.join(bad)}" if bad else f"all {len(outcomes)} cases passed", soft_wrap=True)
+    console.print(str(page), soft_wrap=True)
+    return not bad
+
+
+def select(names: Sequence[str], fast: bool) -> list[Case]:
+    """The cases whose names begin with any of `names`, all where there are none; with `fast` the quick ones.
+
+    Raises LabError for a name that no such case begins with.
+    """
+    possible = [case for case in CASES if case.quick or not fast]
+    for name in names:
+        if not any(case.name.startswith(name) for case in possible):
+            known = ", ".join(case.name for case in possible)
+            raise LabError(f"there is no case {name!r}{' that is fast' if fast else ''}; there are: {known}.")
+    return [case for case in possible if not names or case.name.startswith(tuple(names))]
+
+
+def carried_out(case: Case, fast: bool) -> Outcome:
+    """What came of a case, a fault of its own included."""
+    try:
+        return Outcome(case, case.check(fast))
+    except Exception as error:
+        return Outcome(case, fault=f"{type(error).__name__}: {error}")

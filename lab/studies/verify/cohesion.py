@@ -1,0 +1,83 @@
+"""Liquid bridges: what it costs to tear one, and what it carries."""
+
+from math import atan, cos, log, pi, sqrt
+
+import numpy as np
+
+from lab.studies.verify.case import Case, Found, Line
+from lab.studies.verify.references import sphere_mass
+from lab.studies.verify.scenes import ACETATE, WEIGHTLESS, Setup, again, grain, simulated
+
+SECTION = "Cohesion"
+RADIUS, BOX = 1.5e-3, {"width": 1.0, "height": 1.0}
+TENSION, ANGLE, HUMIDITY, VOLUME = 0.072, 0.4, 0.7, 2e-12  # N/m, rad, 1, m³
+LIQUID = {"surface_tension": TENSION, "contact_angle": ANGLE, "humidity": HUMIDITY, "bridge_volume": VOLUME}
+MASS = sphere_mass(RADIUS, ACETATE["density"])
+KELVIN = TENSION * 18.07e-6 / (8.314 * 298.15 * -log(HUMIDITY))  # m
+RANGE = {"humid": KELVIN, "bridge": (1.0 + ANGLE / 2.0) * VOLUME ** (1.0 / 3.0)}  # m
+SPEEDS = {"humid": 2e-3, "bridge": 0.12}  # m/s, some times what just tears a bridge
+SHARES = (0.3, 1.0, 2.0)  # of the derived step
+PLACES = 12  # where in a step the touch comes
+LAWS = {"humid": "in humid air (Spandonidis 2016, eq. 4.9–4.11)", "bridge": "wet (Willett et al. 2000)"}
+SHARP = 1e-2, "of a tenth and less of the energy, from 12 places of the touch within a step"
+COARSE = 5e-2, "as before, at a step twice the derived one"
+
+
+def pull_off(law: str, effective: float) -> float:
+    """f₀ (N) for an effective radius (m): 2π γ cos θ R_eff as the source prints it, or of two smooth spheres."""
+    return (2.0 if law == "humid" else 4.0) * pi * TENSION * cos(ANGLE) * effective
+
+
+def tearing(law: str, effective: float) -> float:
+    """The work (J) of a bridge from touch to break: f₀ r_K/2, or the integral of f₀/(1 + 1.05 x + 2.5 x²)."""
+    if law == "humid":
+        return 0.5 * pull_off(law, effective) * KELVIN
+    scale, root = sqrt(2.0 * effective / VOLUME), sqrt(4.0 * 2.5 - 1.05**2)
+    turned = atan((5.0 * scale * RANGE[law] + 1.05) / root) - atan(1.05 / root)
+    return pull_off(law, effective) * 2.0 / root * turned / scale
+
+
+def make_and_break(law: str) -> Found:
+    """Elastic grains meet and part, two of them and one at the floor: they lose what tearing the bridge costs."""
+    speed, lines = SPEEDS[law], []
+    rows = [grain(-0.1, 0.5, RADIUS, speed / 2.0), grain(0.1, 0.5, RADIUS, -speed / 2.0), grain(0.3, 0.5, RADIUS)]
+    contact = {"normal": "hertz", "tangential": "none", "cohesion": law}
+    material = ACETATE | LIQUID | {"restitution": 1.0}
+    setup = Setup(np.array(rows), material, BOX, contact=contact, run={"gravity": WEIGHTLESS})
+    with simulated(*[setup] * PLACES) as run:
+        derived = run.dt
+        for share in SHARES:
+            pair, wall = _losses(run, law, share * derived)
+            tolerance, reason = SHARP if share <= 1.0 else COARSE
+            for name, lost, effective in (("two grains", pair, RADIUS / 2.0), ("floor", wall, RADIUS)):
+                value = lost[np.abs(lost - tearing(law, effective)).argmax()]
+                quantity = f"energy lost, {name}, {share:g} of the derived step"
+                lines.append(
+                    Line(quantity, 1e12 * value, 1e12 * tearing(law, effective), "closed form", tolerance, reason, "pJ")
+                )
+    note = f"""At {speed:g} m/s, {RANGE[law]:.3g} m of range; a step of the derived size goes {speed * derived:.2g} m.
+    Each line is the farthest off of {PLACES} places of the first touch within a step."""
+    return Found(lines, notes=[note])
+
+
+def _losses(run, law: str, step: float) -> tuple[np.ndarray, np.ndarray]:
+    """Energy (J) lost by two grains and by one at the floor, (PLACES,) each, whose gaps end all over a step."""
+    speed, place, velocity = SPEEDS[law], run.snapshot()["position"], np.zeros((PLACES, 3, 2))
+    gap = 2e-6 + np.arange(PLACES) / PLACES * speed * step
+    place[:, 0], place[:, 1] = [0.0, 0.5], [0.0, 0.5]
+    place[:, 0, 0], place[:, 1, 0] = -RADIUS - gap / 2.0, RADIUS + gap / 2.0
+    place[:, 2] = np.stack([np.full(PLACES, 0.3), RADIUS + gap], axis=1)
+    velocity[:, 0, 0], velocity[:, 1, 0], velocity[:, 2, 1] = speed / 2.0, -speed / 2.0, -speed
+    again(run, place, step, velocity)
+    run.advance(int((4.0 * RANGE[law] / speed + 1e-5 / speed + 2e-4) / step))
+    if np.any(run.observe()["elastic"] != 0.0):
+        raise RuntimeError("the grains have not come apart")
+    after = run.snapshot()["velocity"]
+    pair, wall = after[:, 1, 0] - after[:, 0, 0], after[:, 2, 1]
+    return 0.25 * MASS * (speed**2 - pair**2), 0.5 * MASS * (speed**2 - wall**2)
+
+
+CASES = tuple(
+    Case(f"make-and-break-{law}", SECTION, f"A touch and a break, {title}", lambda _, law=law: make_and_break(law))
+    for law, title in LAWS.items()
+)

@@ -1,0 +1,156 @@
+"""Small scenes by the way that every experiment takes: a preset's tables and a file of grains, loaded and built."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+
+from lab.build.scene import build
+from lab.preset import toml
+from lab.preset.find import load
+from solvers.scene import Scene
+from solvers.simulation import Simulation
+
+G = 9.81  # m/s²
+# Cellulose acetate of Spandonidis (2016), table 5.2, with a restitution of our own.
+ACETATE = {"density": 1319.0, "young": 3.2e9, "poisson": 0.28, "friction": 0.25, "restitution": 0.6}
+WEIGHTLESS = 1e-15  # m/s²: a preset wants some gravity, and takes no less
+UNITS = {
+    "width": "m",
+    "height": "m",
+    "outline": "m",
+    "centre": "m",
+    "amplitude": "m",
+    "density": "kg/m^3",
+    "surface_tension": "N/m",
+    "contact_angle": "rad",
+    "bridge_volume": "m^3",
+    "young": "Pa",
+    "restitution_speed": "m/s",
+    "dissipative_time": "s",
+    "shear_damping": "N s/m",
+    "gravity": "m/s^2",
+    "step": "s",
+    "duration": "s",
+    "frequency": "Hz",
+    "phase": "rad",
+    "angle": "rad",
+    "rate": "rad/s",
+    "soft_start": "s",
+}
+
+
+@dataclass(frozen=True)
+class Setup:
+    """A preset's tables in SI numbers, and its grains one by one: rows y, z, radius (m), v_y, v_z (m/s), ω (rad/s).
+
+    Unless they say otherwise nothing settles, and the accuracy is the reference's: the material's own stiffness at
+    the derived step.
+    """
+
+    grains: np.ndarray
+    material: Mapping
+    tank: Mapping
+    wall: Mapping = field(default_factory=dict)
+    contact: Mapping = field(default_factory=dict)
+    motion: Mapping = field(default_factory=dict)
+    run: Mapping = field(default_factory=dict)
+
+    def build(self) -> tuple[Scene, np.ndarray]:
+        """The scene and the grains' places (1, n, 2) m, as `cargolab run` makes them of a preset and its files."""
+        tables = {name: getattr(self, name) for name in ("material", "tank", "wall", "contact", "motion")}
+        run = {"accuracy": "reference", "settle": False, "duration": 1.0, **self.run}
+        written = {"title": "verification", **tables, "run": run, "grains": {"bed": "bed.csv"}}
+        with TemporaryDirectory() as folder:
+            preset = Path(folder) / "case.toml"
+            preset.write_text(toml.dumps(_with_units(written)), encoding="utf-8")
+            header = "y,z,radius,vy,vz,omega"
+            np.savetxt(Path(folder) / "bed.csv", self.grains, "%.17g", ",", header=header, comments="")
+            return build(load(preset).resolved)
+
+
+def _with_units(table: Mapping) -> dict:
+    """A table of numbers as a preset writes them."""
+    return {
+        key: _with_units(value) if isinstance(value, Mapping) else _quantity(value, UNITS.get(key))
+        for key, value in table.items()
+    }
+
+
+def _quantity(value: object, unit: str | None) -> object:
+    if unit is None or isinstance(value, str):
+        return value
+    if isinstance(value, Sequence | np.ndarray):
+        return [_quantity(item, unit) for item in value]
+    return f"{float(value)!r} {unit}"
+
+
+def grain(y: float, z: float, radius: float, vy: float = 0.0, vz: float = 0.0, spin: float = 0.0) -> list[float]:
+    """A row of a setup's grains: place and radius (m), velocity (m/s), spin (rad/s)."""
+    return [y, z, radius, vy, vz, spin]
+
+
+@contextmanager
+def simulated(*setups: Setup, **options) -> Iterator[Simulation]:
+    """A simulation with a world for each setup, at the smallest of their steps, on one core unless `options` differ."""
+    with _together([setup.build() for setup in setups], options) as run:
+        yield run
+
+
+def each_at_its_step(*setups: Setup) -> Iterator[tuple[int, Simulation]]:
+    """The number of each setup in turn, and a simulation whose world of that number runs at its own derived step."""
+    built = [setup.build() for setup in setups]
+    steps = [scene.step for scene, _ in built]
+    with _together(built, {}) as run:
+        scene, position = run.scene, run.snapshot()["position"]
+        for k, step in enumerate(steps):
+            again(run, position, step, scene.velocity, scene.spin)
+            yield k, run
+
+
+@contextmanager
+def _together(built: Sequence[tuple[Scene, np.ndarray]], options: Mapping) -> Iterator[Simulation]:
+    scenes, positions = zip(*built, strict=True)
+    step = min(scene.step for scene in scenes)
+    for scene in scenes:
+        scene.step = step
+    run = Simulation(Scene.joined(scenes), np.concatenate(positions), **{"threads": 1, "arch": "cpu"} | dict(options))
+    try:
+        yield run
+    finally:
+        run.close()
+
+
+def again(run: Simulation, position: np.ndarray, step: float, velocity=None, spin=None) -> None:
+    """Start anew at time zero with another step (s), from places (W, n, 2) m, velocities and spins (None: at rest)."""
+    run.dt = step
+    run.start_clock()
+    run.place(position, velocity, spin)
+
+
+@dataclass(frozen=True)
+class Track:
+    """States at times (T,) s: positions and velocities (T, W, n, 2), spins (T, W, n)."""
+
+    time: np.ndarray
+    position: np.ndarray
+    velocity: np.ndarray
+    spin: np.ndarray
+
+    def acceleration(self) -> np.ndarray:
+        """(T − 2, W, n, 2) m/s² of a track of every step: second differences, which are Verlet's forces to rounding."""
+        return np.diff(self.position, 2, axis=0) / (self.time[1] - self.time[0]) ** 2
+
+
+def track(run: Simulation, looks: int, steps: int = 1) -> Track:
+    """The state now and after each of so many looks, `steps` steps apart."""
+    states, times = [run.snapshot()], [run.time]
+    for _ in range(looks):
+        run.advance(steps)
+        states.append(run.snapshot())
+        times.append(run.time)
+    columns = (np.array([state[name] for state in states]) for name in ("position", "velocity", "spin"))
+    return Track(np.array(times), *columns)

@@ -1,0 +1,1 @@
+"""Grids of runs, calibration, and runs on other machines."""

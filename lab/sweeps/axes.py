@@ -1,0 +1,81 @@
+"""Values to sweep over as people write them: ranges "0.2:1.5:14 Hz", lists "2 mm, 3 mm", single values."""
+
+import re
+import tomllib
+
+import numpy as np
+
+from lab.base.errors import LabError
+
+NUMBER = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
+UNIT = r"[^\W\d_%°][^:,]*|%|°"  # a unit may follow each number, the count, or the word
+RANGE = re.compile(rf"({NUMBER})\s*({UNIT})?\s*:\s*({NUMBER})\s*({UNIT})?\s*:\s*([0-9]+)\s*(:\s*log\b)?\s*({UNIT})?")
+QUANTITY = re.compile(rf"({NUMBER})\s*(.*)")
+MOST = 10_000  # values of a range
+
+
+def values(key: str, text: str) -> list[object]:
+    """What `text` stands for: the values of a range (`:log` spaces them evenly in the logarithm) or a list, else one.
+
+    A unit after a range or a list holds for all numbers in it that have none. Each value is as a preset has it: a
+    number, a text, a TOML value. Raises LabError on a range that cannot be.
+    """
+    text = text.strip()
+    found = RANGE.fullmatch(text)
+    if found:
+        return _range(key, *found.groups())
+    return _with_last_unit(_listed(text))
+
+
+def plain(text: str) -> object:
+    """One value: TOML, or a text such as 4 mm that needs no quotes."""
+    listed = _toml(text)
+    return listed[0] if len(listed) == 1 else text
+
+
+def _range(key: str, first: str, unit: str, last: str, other: str, count: str, log: str, common: str) -> list[object]:
+    units = {name.strip() for name in (unit, other, common) if name}
+    if len(units) > 1:
+        raise LabError(f"{key}: a range needs one unit for both its ends (got {' and '.join(sorted(units))}).")
+    start, stop, number = float(first), float(last), int(count)
+    if not 2 <= number <= MOST:
+        raise LabError(f"{key}: a range has 2 to {MOST} values (got {number}).")
+    if not (np.isfinite([start, stop]).all() and start != stop):
+        raise LabError(f"{key}: the ends of a range must be two different numbers (got {first} and {last}).")
+    if log and not start * stop > 0:
+        raise LabError(f"{key}: a logarithmic range cannot reach or cross zero (got {first} to {last}).")
+    numbers = (np.geomspace if log else np.linspace)(start, stop, number)
+    rounded = [float(f"{x:.12g}") for x in numbers]  # 0.3, not 0.30000000000000004
+    if units:
+        return [f"{x:.12g} {units.copy().pop()}" for x in rounded]
+    whole = all(x.is_integer() for x in rounded) and not set(first + last) & set(".eE")
+    return [int(x) for x in rounded] if whole else rounded
+
+
+def _listed(text: str) -> list[object]:
+    listed = _toml(text)
+    if listed:
+        return listed
+    items = [item.strip() for item in text.split(",")]
+    if len(items) < 2 or not all(items):
+        return [text]
+    return [plain(item) for item in items]
+
+
+def _with_last_unit(items: list[object]) -> list[object]:
+    """Numbers of a list take the unit of its last quantity, as in 2, 3, 4 mm."""
+    last = QUANTITY.fullmatch(items[-1]) if isinstance(items[-1], str) else None
+    if len(items) < 2 or last is None or not last[2]:
+        return items
+    return [f"{x!r} {last[2]}" if isinstance(x, int | float) and not isinstance(x, bool) else x for x in items]
+
+
+def _toml(text: str) -> list[object]:
+    """The TOML values that `text` lists, none where it is not TOML."""
+    try:
+        table = tomllib.loads(f"value = [{text}]")
+    except (ValueError, RecursionError):
+        return []
+    kinds = bool | int | float | str | list | dict
+    items = table["value"]
+    return items if len(table) == 1 and all(isinstance(item, kinds) for item in items) else []

@@ -1,0 +1,340 @@
+"""A sweep: one preset run over a grid of values of its keys, every point an ordinary run in a folder of its own.
+
+Points whose scenes can share a launch run side by side; what is recorded of a point does not depend on that. A sweep
+that was cut short goes on where it stood when it is asked for again.
+"""
+
+import json
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from itertools import product
+from pathlib import Path
+
+import numpy as np
+
+from lab.base.errors import LabError, Useless
+from lab.base.lock import only_one
+from lab.base.progress import Progress
+from lab.build.scene import grain_count
+from lab.preset.find import LoadedPreset, load
+from lab.preset.limits import check_belongs, resolved_from
+from lab.recording import FILE_NAME as RECORDING
+from lab.recording import open_recording
+from lab.runs.checkpoint import Checkpoint, read_checkpoint, remove_checkpoint
+from lab.runs.launch import Run, launch, prepare
+from lab.runs.runner import RENDERS, hint, report, reported, resume_run
+from lab.sweeps.axes import values
+from lab.sweeps.cluster import Errand, fetch
+from lab.sweeps.report import write_report
+from solvers.machine.runtime import available_cores, choose_arch
+
+FORMAT = "cargo-shift-lab sweep 1"
+FILE_NAME = "sweep.json"
+CALIBRATION = "asked.json"  # what says that a folder holds a calibration
+
+# A launch holds so many worlds a core that none idles long while the last ones end, and grains and files in bounds.
+WORLDS_A_CORE, MOST_GRAINS, MOST_RUNS = 8, 1_000_000, 100
+MOST_POINTS = 100_000
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """What was asked: the preset's name, the values of each swept key, the preset of each point of their grid.
+
+    The last key changes fastest.
+    """
+
+    name: str
+    axes: dict[str, list]
+    points: list[LoadedPreset] = field(repr=False)
+
+    @property
+    def settings(self) -> list[dict[str, object]]:
+        """The values of the swept keys at each point."""
+        return [dict(zip(self.axes, chosen, strict=True)) for chosen in product(*self.axes.values())]
+
+    def worth(self, number: int) -> float:
+        """What a point costs, up to a factor: seconds of model time times grains."""
+        preset = self.points[number].resolved
+        return preset.run.duration * preset.run.repeats * grain_count(preset)
+
+    def same_as(self, other: "Sweep") -> bool:
+        """Whether the other asks for the same points."""
+        asked = [(sweep.name, sweep.axes, [point.resolved for point in sweep.points]) for sweep in (self, other)]
+        return asked[0] == asked[1]
+
+    def write(self, folder: Path) -> None:
+        """Keep what was asked in the sweep's folder. Raises LabError."""
+        points = [
+            {"given": point.given_text, "resolved": json.loads(point.resolved.model_dump_json())}
+            for point in self.points
+        ]
+        content = {"format": FORMAT, "preset": self.name, "axes": self.axes, "points": points}
+        path = folder / FILE_NAME
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            unfinished = path.with_name(f"{FILE_NAME}.new")
+            unfinished.write_text(json.dumps(content, indent=1), encoding="utf-8")
+            unfinished.replace(path)
+        except OSError as error:
+            raise LabError(f"{folder} cannot be written ({error.strerror}): choose another folder.") from error
+
+
+@dataclass
+class SweepResult:
+    """What a sweep gives: its folder, a row of numbers for each point, and the folders of the points' runs."""
+
+    folder: Path
+    rows: list[dict[str, object]] = field(repr=False)
+    summary_text: str = field(repr=False)
+
+    @cached_property
+    def points(self) -> list[Path]:
+        """The folder of each point's run, in the order of the rows."""
+        return [point_folder(self.folder, number) for number in range(len(self.rows))]
+
+
+def ask(name: str | Path, axes: Mapping[str, str | Sequence], overrides: Mapping | None = None) -> Sweep:
+    """The sweep of a preset over `axes`: for each key a text (see `lab.sweeps.axes`) or a sequence of values.
+
+    Raises LabError where a point is no valid preset.
+    """
+    listed = {key: values(key, said) if isinstance(said, str) else _plain(said) for key, said in axes.items()}
+    fixed = {key: found[0] for key, found in listed.items() if len(found) == 1}
+    swept = {key: found for key, found in listed.items() if len(found) != 1}
+    if not swept or not all(swept.values()):
+        raise LabError("a sweep needs a key with several values, e.g. --set motion.sway.frequency=0.5:2:7Hz.")
+    count = math.prod(map(len, swept.values()))
+    if count > MOST_POINTS:
+        raise LabError(f"the sweep has {count} points, more than {MOST_POINTS}: take fewer values.")
+    points = []
+    for chosen in product(*swept.values()):
+        setting = dict(zip(swept, chosen, strict=True))
+        try:
+            points.append(load(name, {**(overrides or {}), **fixed, **setting}))
+        except LabError as error:
+            said = ", ".join(f"{key} = {value}" for key, value in setting.items())
+            raise LabError(f"point {said}: {error}") from None
+    return Sweep(points[0].name, swept, points)
+
+
+def _plain(numbers: Sequence) -> list:
+    """The values without numpy's types, which no file takes."""
+    return [value.item() if isinstance(value, np.generic) else value for value in numbers]
+
+
+def run_sweep(
+    name: str | Path,
+    axes: Mapping[str, str | Sequence],
+    overrides: Mapping | None = None,
+    out: Path | str | None = None,
+    *,
+    video: bool = True,
+    quiet: bool = False,
+    cluster: str | None = None,
+) -> SweepResult:
+    """Run a preset at every point of a grid (see `ask`) and sum up in a folder (default: renders/NAME-sweep).
+
+    video: film the points side by side at the end; cluster: the address of a scheduler whose workers are to run the
+    points (see `lab.sweeps.cluster`). A folder that holds the same sweep is gone on with. Raises LabError, one
+    sentence, and KeyboardInterrupt; points that are done stay.
+    """
+    sweep = ask(name, axes, overrides)
+    folder = Path(out) if out is not None else RENDERS / f"{sweep.name}-sweep"
+    _check_folder(sweep, folder)
+    return _complete(sweep, folder, video, quiet, cluster)
+
+
+def errands(
+    name: str | Path, axes: Mapping[str, str | Sequence], overrides: Mapping | None, folder: Path
+) -> list[Errand]:
+    """What of a sweep, asked for as of `run_sweep`, is left for a cluster to run. Begins the sweep. Raises LabError."""
+    sweep = ask(name, axes, overrides)
+    _check_folder(sweep, folder)
+    plan = list(_plan(sweep))
+    sweep.write(folder)
+    return _errands(sweep, folder, plan)
+
+
+def resume_sweep(folder: Path | str, *, video: bool = True, quiet: bool = False) -> SweepResult:
+    """Go on with the sweep in a folder as it was asked for. Raises as `run_sweep`."""
+    return _complete(read_sweep(Path(folder)), Path(folder), video, quiet)
+
+
+def resume_any(folder: Path | str, *, video: bool = True, quiet: bool = False):
+    """Finish the run, the sweep or the calibration that was cut short in a folder; returns what that returns.
+
+    Raises as `resume_run`, `resume_sweep` and `calibrate`.
+    """
+    if (Path(folder) / CALIBRATION).exists():
+        from lab.sweeps.calibrate import resume_calibration  # it runs sweeps
+
+        return resume_calibration(folder, quiet=quiet)
+    finish = resume_sweep if (Path(folder) / FILE_NAME).exists() else resume_run
+    return finish(folder, video=video, quiet=quiet)
+
+
+def read_sweep(folder: Path) -> Sweep:
+    """The sweep that a folder holds. Raises LabError."""
+    path = folder / FILE_NAME
+    try:
+        content = json.loads(path.read_text(encoding="utf-8"))
+        if content["format"] != FORMAT:
+            raise LabError(f"{path} was written by another version: sweep anew in another folder.")
+        name, axes = content["preset"], dict(content["axes"])
+        if not isinstance(name, str) or not axes or not all(isinstance(found, list) for found in axes.values()):
+            raise ValueError("no preset, or no values of its keys")
+        if not 1 < math.prod(map(len, axes.values())) == len(content["points"]) <= MOST_POINTS:
+            raise ValueError("values and points do not belong together")
+        points = [
+            LoadedPreset(name, str(point["given"]), resolved_from(point["resolved"])) for point in content["points"]
+        ]
+        return Sweep(name, axes, points)
+    except OSError as error:
+        raise LabError(f"{path} cannot be read ({error.strerror}): name the folder of a sweep.") from error
+    except (ValueError, KeyError, TypeError, RecursionError) as error:
+        raise LabError(f"{path} is damaged: sweep anew in another folder.") from error
+
+
+def point_folder(folder: Path, number: int) -> Path:
+    """Where the run of a point is."""
+    return folder / "points" / f"{number:03}"
+
+
+def _check_folder(sweep: Sweep, folder: Path) -> None:
+    """Raise LabError where the folder holds something else."""
+    if (folder / FILE_NAME).exists():
+        if not read_sweep(folder).same_as(sweep):
+            raise LabError(f"{folder} holds another sweep than is asked for: choose another folder.")
+    elif (folder / RECORDING).exists():
+        raise LabError(f"{folder} holds a recording: choose another folder.")
+
+
+def _errands(sweep: Sweep, folder: Path, plan: Sequence[Sequence[int]]) -> list[Errand]:
+    """The launches of points that were not run yet; one that was cut short here is left to be finished here."""
+    kept = read_checkpoint(folder)
+    begun = {folder / run for run in kept.runs} if kept else set()
+    found = []
+    for numbers in plan:
+        places = {point_folder(folder, number): sweep.points[number] for number in numbers}
+        if left := {at: point for at, point in places.items() if at not in begun and state_of(at) == "open"}:
+            found.append(Errand(left))
+    return found
+
+
+def _complete(sweep: Sweep, folder: Path, video: bool, quiet: bool, cluster: str | None = None) -> SweepResult:
+    """Run what has not been run yet, as far as it can be on the cluster, and sum up all."""
+    plan = list(_plan(sweep))  # says early which point cannot be
+    sweep.write(folder)
+    folders = [point_folder(folder, number) for number in range(len(sweep.points))]
+    with Progress(quiet) as progress, hint(folder, FILE_NAME), only_one(folder):
+        try:
+            if cluster:
+                fetch(_errands(sweep, folder, plan), cluster, progress)
+            _Tour(sweep, folder, folders, progress).go(plan)
+        except KeyboardInterrupt:
+            write_report(sweep.name, sweep.axes, sweep.settings, folder, folders, progress, video=False)
+            raise
+        rows, text = write_report(sweep.name, sweep.axes, sweep.settings, folder, folders, progress, video=video)
+    return SweepResult(folder, rows, text)
+
+
+class _Tour:
+    """The way through the points of a sweep, launch by launch."""
+
+    def __init__(self, sweep: Sweep, folder: Path, folders: Sequence[Path], progress: Progress) -> None:
+        self.sweep, self.folder, self.folders, self.progress = sweep, folder, folders, progress
+
+    def go(self, plan: Sequence[Sequence[int]]) -> None:
+        """Run and report every point that is not done; a launch that was cut short comes first."""
+        kept = self._kept()
+        worth = [self.sweep.worth(number) for number in range(len(self.folders))]
+        self._report(number for number, folder in enumerate(self.folders) if state_of(folder) == "recorded")
+        done = {number for number, folder in enumerate(self.folders) if state_of(folder) == "done"}
+        self.progress.begin_whole("sweep", sum(worth), sum(worth[number] for number in done))
+        if kept and not {self.folder / run for run in kept.runs} <= set(self.folders):
+            raise Useless(f"{self.folder}: its checkpoint is of another sweep: remove it, and its launch is run anew.")
+        if kept and not all(state_of(self.folder / run) == "done" for run in kept.runs):
+            numbers = [self.folders.index(self.folder / run) for run in kept.runs]
+            self._launch(numbers, kept)
+            done.update(numbers)
+        for numbers in plan:
+            if left := [number for number in numbers if number not in done]:
+                self._launch(left, None)
+        remove_checkpoint(self.folder)
+
+    def _kept(self) -> Checkpoint | None:
+        """The checkpoint of the launch that was cut short. Raises Useless where it is of other runs."""
+        kept = read_checkpoint(self.folder)
+        if kept and not {self.folder / run for run in kept.runs} <= set(self.folders):
+            raise Useless(f"{self.folder}: its checkpoint is of other runs: sweep anew in another folder.")
+        return kept
+
+    def _launch(self, numbers: Sequence[int], kept: Checkpoint | None) -> None:
+        left = self.progress.time_left()
+        self.progress.say(f"points {_named(numbers)} of 0 to {len(self.folders) - 1}{left and f', {left}'} …")
+        runs = []
+        for number in numbers:
+            runs.append(prepare(self.sweep.points[number], self.folders[number]))
+        worlds = sum(len(run.scene.radius) for run in runs)
+        for run in runs:
+            if (run.folder / RECORDING).exists():
+                check_belongs(run)
+            else:
+                run.make_recording(engaged=run.engaged(worlds))
+        launch(runs, self.folder, self.progress, kept)
+        self._report(numbers)
+
+    def _report(self, numbers: Iterable[int]) -> None:
+        for number in numbers:
+            report(self.folders[number], self.progress, video=False, plots=False)
+        self.progress.warnings.clear()
+        self.progress.notes.clear()
+
+
+def _named(numbers: Sequence[int]) -> str:
+    """0 to 5, 8, 10 to 12."""
+    groups: list[list[int]] = []
+    for number in numbers:
+        if groups and number == groups[-1][-1] + 1:
+            groups[-1].append(number)
+        else:
+            groups.append([number])
+    return ", ".join(str(group[0]) if len(group) == 1 else f"{group[0]} to {group[-1]}" for group in groups)
+
+
+def state_of(folder: Path) -> str:
+    """What has become of the run in a folder: "done", "recorded" but without its summary, or "open"."""
+    if not (folder / RECORDING).exists():
+        return "open"
+    with open_recording(folder) as recording:
+        ended = recording.complete or recording.status.startswith("stopped: world")
+        return "open" if not ended else "done" if reported(folder, recording.status) else "recorded"
+
+
+def _plan(sweep: Sweep) -> Iterator[list[int]]:
+    """Numbers of the points launch by launch, those that can share one together. Raises LabError as `prepare`."""
+    begun: dict[tuple, dict[int, int]] = {}  # worlds by number of the launches that are not full yet
+    for number, point in enumerate(sweep.points):
+        run = prepare(point, Path())
+        if not run.sociable:
+            yield [number]
+            continue
+        worlds, count = run.scene.radius.shape
+        group = begun.setdefault(run.shared, {})
+        if group and (sum(group.values()) + worlds > _most_worlds(run, count) or len(group) == MOST_RUNS):
+            yield list(group)
+            group.clear()
+        group[number] = worlds
+    yield from map(list, begun.values())
+
+
+def _most_worlds(run: Run, count: int) -> int:
+    """How many worlds of `count` grains a launch may have."""
+    settings = run.loaded.resolved.run
+    bound = MOST_GRAINS // count
+    if choose_arch(settings.arch, settings.precision) != "cpu":
+        return bound
+    return min(bound, WORLDS_A_CORE * (settings.threads or available_cores()))

@@ -1,0 +1,136 @@
+"""The first page of the window: every preset with its poster, to choose one from."""
+
+from pathlib import Path
+
+import numpy as np
+from PIL import Image, ImageDraw, ImageOps
+
+from lab.paint import decorations as deco
+from lab.preset.find import QUICK, load, names
+
+COLUMNS, ROWS = 4, 3
+POSTERS = Path("renders/gallery/presets")  # where `cargolab gallery` leaves them
+GRAIN = (196, 176, 150)
+EDGE = 0.025  # of the window's height: between the cards
+FOOT, TITLE = 3.1, 0.68  # of the letters' height: what is written below a poster, and the letters of its second part
+
+
+class Chooser:
+    """Cards of all presets; `chosen` is the name of the one that was taken, "" before."""
+
+    def __init__(self, size: tuple[int, int]) -> None:
+        self.size, self.ended, self.chosen = size, False, ""
+        self._names = [name for name in names() if not name.endswith(QUICK)]
+        self._titles, self._at = names(), 0
+        self._posters: dict[str, Image.Image] = {}
+
+    def tick(self) -> None:
+        """Nothing happens by itself."""
+
+    def picture(self) -> np.ndarray:
+        """The cards of this page, the one at hand framed."""
+        height = self.size[1]
+        image = Image.new("RGB", self.size, deco.PAPER)
+        draw = ImageDraw.Draw(image)
+        edge, size = round(EDGE * height), 0.026 * height
+        page, pages = self._at // (COLUMNS * ROWS) + 1, -(-len(self._names) // (COLUMNS * ROWS))
+        head = f"Choose an experiment   ({page} of {pages}; arrows, Enter or the mouse; Q: its quick variant)"
+        draw.text((edge, edge), head, deco.INK, deco.font(1.1 * size, True), anchor="la")
+        for k, name in enumerate(self._shown()):
+            left, top, wide, high = self._card(k)
+            self._draw_card(image, name, left, top, wide, high, size)
+            if name == self._names[self._at]:
+                box = (left - 3, top - 3, left + wide + 3, top + high + 3)
+                draw.rectangle(box, outline=deco.SERIES[1], width=3)
+        return np.asarray(image)
+
+    def key(self, name: str) -> None:
+        """Arrows go from card to card, Enter takes one."""
+        step = {"left": -1, "right": 1, "up": -COLUMNS, "down": COLUMNS}.get(name, 0)
+        self._at = int(np.clip(self._at + step, 0, len(self._names) - 1))
+        if name in ("return", "space"):
+            self._take(self._names[self._at])
+        elif name == "q" and self._names[self._at] + QUICK in self._titles:
+            self._take(self._names[self._at] + QUICK)
+        elif name == "escape":
+            self.ended = True
+
+    def press(self, x: float, y: float, button: str = "left") -> None:
+        """A card is taken."""
+        for k, name in enumerate(self._shown()):
+            left, top, wide, high = self._card(k)
+            if left <= x <= left + wide and top <= y <= top + high:
+                self._take(name)
+
+    def drag(self, x: float, y: float) -> None:
+        """Cards stay where they are."""
+
+    def release(self, x: float, y: float) -> None:
+        """A card was taken as the mouse went down."""
+
+    def wheel(self, turns: float, x: float, y: float) -> None:
+        """A page on or back."""
+        self.key("up" if turns > 0 else "down")
+
+    def close(self) -> None:
+        """Nothing runs."""
+        self.ended = True
+
+    def _take(self, name: str) -> None:
+        self.chosen, self.ended = name, True
+
+    def _shown(self) -> list[str]:
+        first = self._at // (COLUMNS * ROWS) * COLUMNS * ROWS
+        return self._names[first : first + COLUMNS * ROWS]
+
+    def _card(self, k: int) -> tuple[int, int, int, int]:
+        """Left, top, width, height of a card in pixels."""
+        width, height = self.size
+        edge, head = round(EDGE * height), round(0.09 * height)
+        wide, high = (width - (COLUMNS + 1) * edge) // COLUMNS, (height - head - ROWS * edge) // ROWS
+        return edge + k % COLUMNS * (wide + edge), head + k // COLUMNS * (high + edge), wide, high
+
+    def _draw_card(self, image: Image.Image, name: str, left: int, top: int, wide: int, high: int, size: float) -> None:
+        draw, foot = ImageDraw.Draw(image), round(FOOT * size)
+        if name not in self._posters:
+            self._posters[name] = _poster(name, (wide, high - foot))
+        draw.rectangle((left, top, left + wide, top + high), outline=deco.LINE)
+        image.paste(self._posters[name], (left + 1, top + 1))
+        room, x, y = wide - size, left + 0.5 * size, top + high - foot
+        said, face = deco.fitted(name, room, 0.85 * size, True)
+        draw.text((x, y + 0.2 * size), said, deco.INK, face, anchor="la")
+        for line, part in enumerate(deco.wrapped(self._titles[name], room, TITLE * size, 2)):
+            draw.text((x, y + (1.3 + 1.25 * TITLE * line) * size), part, deco.INK, deco.font(TITLE * size), anchor="la")
+
+
+def _poster(name: str, size: tuple[int, int]) -> Image.Image:
+    """Its poster of the gallery, or a sketch of its tank."""
+    path = POSTERS / f"{name.replace('/', '-')}.png"
+    if path.exists():
+        return ImageOps.fit(Image.open(path).convert("RGB"), (size[0] - 1, size[1] - 1))
+    return _sketch(name, (size[0] - 1, size[1] - 1))
+
+
+def _sketch(name: str, size: tuple[int, int]) -> Image.Image:
+    """The tank, its moving parts and how deep it is filled."""
+    preset = load(name).resolved
+    outline = np.array(preset.tank.outline)
+    image = Image.new("RGB", size, deco.HOLD)
+    draw, middle = ImageDraw.Draw(image), 0.5 * (outline.min(axis=0) + outline.max(axis=0))
+    scale = 0.8 * float((np.array(size) / np.ptp(outline, axis=0)).min())
+
+    def placed(points: np.ndarray) -> list[tuple[float, float]]:
+        away = (np.asarray(points) - middle) * scale
+        return [(0.5 * size[0] + x, 0.5 * size[1] - y) for x, y in away]
+
+    depth = preset.grains.depth or 0.4 * preset.tank.height
+    low, high = outline.min(axis=0), outline.max(axis=0)
+    draw.polygon(placed(outline), fill=deco.PAPER)
+    if preset.grains.region:
+        draw.polygon(placed(preset.grains.region), fill=GRAIN)
+    else:
+        draw.polygon(placed([low, (high[0], low[1]), (high[0], low[1] + depth), (low[0], low[1] + depth)]), fill=GRAIN)
+    draw.line([*placed(outline), placed(outline)[0]], fill=deco.WALL, width=3)
+    for part in preset.parts.values():
+        draw.line(placed(part.points), fill=deco.PART, width=3)
+    return image

@@ -1,0 +1,56 @@
+"""What is told of a live experiment in words: lines at the top of the column, and what its overlay means."""
+
+import numpy as np
+
+from lab.paint.decorations import number
+from lab.preset.ship import axis_motion
+from lab.view.panel.forces import contacts_each, newtons, on_grain
+from lab.view.shown import Shown
+
+
+def clock(shown: Shown) -> str:
+    """The time, and whether it goes on; how far the bed is while it is made."""
+    if shown.making:
+        return shown.status
+    if shown.playhead is not None:
+        state = "looking back"
+    else:
+        state = "ended" if shown.over else "running" if shown.going else "paused"
+        state = shown.lost.kind if shown.lost else state
+    return f"t = {number(shown.footage.row_time(shown.frame), 2)} s, {state}"
+
+
+def readings(shown: Shown) -> list[str]:
+    """How fast it goes, where the tank is, what the grains do, and of the picked one more."""
+    limit = "no limit" if np.isinf(shown.pace) else f"limit {shown.pace:g}"
+    footage, frame = shown.footage, shown.frame
+    count = footage.radius.size
+    if shown.making:
+        return [f"{count} grains"]
+    found = [
+        f"{shown.factor:.2f} of real time ({limit})",
+        _pose(shown),
+        f"{count} grains, {contacts_each(footage.pressing(frame), count):.2f} contacts each",
+    ]
+    return found if shown.look.picked is None else [*found, *_picked(shown)]
+
+
+def _pose(shown: Shown) -> str:
+    """Tilt and place of the tank, or of the ship's axis from where it was at rest."""
+    pose = np.array([shown.footage.row(shown.frame, f"pose_{name}") for name in ("y", "z", "angle")])
+    if shown.footage.sea:
+        pose = axis_motion(shown.footage.sea.ship, pose)
+    y, z, turn = pose
+    return f"φ {number(np.degrees(turn), 1)}°, y {number(1e3 * y, 0)} mm, z {number(1e3 * z, 0)} mm"
+
+
+def _picked(shown: Shown) -> list[str]:
+    footage, frame, i = shown.footage, shown.frame, shown.look.picked
+    speed, spin = np.hypot(*footage.grains("velocity", frame)[i]), footage.grains("spin", frame)[i]
+    forces = on_grain(footage.pressing(frame), i)
+    largest = f", {newtons(forces.max())} at most" if len(forces) else ""
+    contacts = "contact" if len(forces) == 1 else "contacts"
+    return [
+        f"grain {i}: {number(1e3 * speed, 1)} mm/s, {number(spin, 2)} rad/s",
+        f"{len(forces)} {contacts}{largest}",
+    ]

@@ -1,0 +1,91 @@
+"""Waves under a hand: they grow and die away softly."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from lab.preset.schema import Resolved
+from lab.preset.ship import make_vessel
+from lab.view.panel.helm import Follower
+from solvers.ship.vessel import Vessel
+
+EASE = 0.5  # s
+CALM = 1e-4  # m: waves so low may change their frequency
+STEADY = 1e-7  # m and m/s: what is nearer its goal is there
+RANDOM = "jonswap", "pierson-moskowitz"
+
+
+class RegularSwell:
+    """Regular waves; they come with another frequency only once they have died away.
+
+    `wanted` is a hand's amplitude (m) and frequency (rad/s).
+    """
+
+    def __init__(self, preset: Resolved) -> None:
+        self._preset = preset
+        self.wanted = {"wave_amplitude": preset.waves.amplitude, "wave_frequency": preset.waves.frequency}
+        self._frequency = preset.waves.frequency
+        self._vessel = _afloat(preset, amplitude=1.0)
+        self._height = Follower(preset.waves.amplitude, EASE)
+
+    @property
+    def now(self) -> np.ndarray:
+        """Amplitude (m), frequency (rad/s) and wave number (1/m)."""
+        waves = self._vessel.ship.load.waves
+        return np.array([self._height.value, self._frequency, waves.wave_number[0]])
+
+    def follow(self, time: float) -> Vessel | None:
+        """Go on for so long (s); gives the ship in the waves of then, None where they stay as they are."""
+        other = self.wanted["wave_frequency"] != self._frequency
+        goal = 0.0 if other else self.wanted["wave_amplitude"]
+        if other and self._height.value < CALM:
+            self._frequency = self.wanted["wave_frequency"]
+            self._vessel = _afloat(self._preset, amplitude=1.0, frequency=self._frequency)
+        elif _is_there(self._height, goal):
+            return None
+        self._height.follow(goal, time)
+        return _raised(self._vessel, self._height)
+
+
+class RandomSwell:
+    """A random sea; `wanted` is a hand's significant height (m), to which all its components are in proportion."""
+
+    def __init__(self, preset: Resolved) -> None:
+        self.wanted = {"wave_height": preset.waves.height}
+        self._vessel = _afloat(preset, height=1.0)
+        self._height = Follower(preset.waves.height, EASE)
+
+    @property
+    def now(self) -> np.ndarray:
+        """Significant height (m), and nothing that all its components share."""
+        return np.array([self._height.value, np.nan, np.nan])
+
+    def follow(self, time: float) -> Vessel | None:
+        """Go on for so long (s); gives the ship in the sea of then, None where it stays as it is."""
+        if _is_there(self._height, self.wanted["wave_height"]):
+            return None
+        self._height.follow(self.wanted["wave_height"], time)
+        return _raised(self._vessel, self._height)
+
+
+def swell_of(preset: Resolved) -> RegularSwell | RandomSwell | None:
+    """The waves of a preset under a hand, None where there are none that it can change."""
+    kind = preset.waves.kind if preset.ship and preset.waves else ""
+    return RegularSwell(preset) if kind == "regular" else RandomSwell(preset) if kind in RANDOM else None
+
+
+def _afloat(preset: Resolved, **changes: float) -> Vessel:
+    """The ship in other waves."""
+    sheet = preset.ship.sheet or preset.grains.diameter
+    return make_vessel(preset.ship, preset.water, replace(preset.waves, **changes), sheet, preset.run.gravity)
+
+
+def _raised(vessel: Vessel, height: Follower) -> Vessel:
+    """A ship in waves of height 1 m, in waves of this height."""
+    load = vessel.ship.load
+    waves = replace(load.waves, amplitude=max(height.value, 0.0) * load.waves.amplitude)
+    return replace(vessel, ship=replace(vessel.ship, load=replace(load, waves=waves)))
+
+
+def _is_there(height: Follower, goal: float) -> bool:
+    return abs(height.value - goal) < STEADY and abs(height.rate) < STEADY

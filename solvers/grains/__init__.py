@@ -1,0 +1,1 @@
+"""Grains: state, lists of contacts, laws, integrators, and how they are filled in and moved."""

@@ -1,0 +1,179 @@
+"""Contact forces: overlaps and slips of listed contacts, and the laws of the scene on them."""
+
+import taichi as ti
+
+from solvers.grains.laws.chosen import PAIR, WALL, ChosenLaws
+from solvers.grains.laws.extremes import greater
+from solvers.grains.neighbours import Neighbours
+from solvers.grains.state import FAR, Grains
+from solvers.machine.runtime import Arrays
+from solvers.machine.units import Units
+from solvers.tank.walls import Walls
+
+# Vectors of different units stand this far apart, so that no two threads write to one cache line.
+GIVEN_APART = 2
+
+
+@ti.data_oriented
+class Contacts:
+    """What the listed contacts do to the grains, by the chosen laws.
+
+    The tangent is the normal turned counter-clockwise by 90°. The levers of two grains reach to where their undeformed
+    outlines cross, R_i − ξ R_j/(R_i + R_j) to first order, and add up to the distance of the centres: angular momentum
+    is exact. (Spandonidis 2016, eq. 4.7, takes whole radii.) A wall's takes half the overlap.
+    """
+
+    def __init__(self, arrays: Arrays, units: Units, grains: Grains, walls: Walls, lists: Neighbours, laws: ChosenLaws):
+        self.units, self.grains, self.walls, self.lists, self.laws = units, grains, walls, lists, laws
+        # What a block of pairs does to its grains: forces (N) along y and z, torques (N m) on the first and the second.
+        # Nobody reads it. Neighbouring numbers that are written together are what makes the compiler look for SIMD.
+        self.given = arrays.vectors(4, lists.pairs.lanes, (GIVEN_APART * units.count,), kept=False)
+
+    @ti.func
+    def forces(self, u, t, dt):
+        """Add up the forces on the grains of a unit at time t (s)."""
+        self.pair_forces(self.grains, self.lists.pairs, u, dt)
+        self.wall_forces(self.grains, self.lists.contacts, u, t, dt)
+
+    @ti.func
+    def pair_forces(self, g: ti.template(), pairs: ti.template(), u, dt):
+        """Forces between the grains g, a block of pairs at a time.
+
+        Straight-line arithmetic on short vectors: the compiler turns it into SIMD instructions, and pairs that do not
+        touch come out with zero overlap, force and memory. Gathering and scattering grains stays scalar.
+        """
+        for block in range(pairs.blocks(u)):
+            i, j = pairs.grain[u, block], pairs.mate[u, block]
+            reach, share = pairs.reach[u, block], pairs.share[u, block]
+            ny, nz, distance, approach = self.geometry(g, i, j, reach, pairs.lanes)
+            overlap = greater(approach, 0.0)
+            uy = gathered(g.now_y, i, pairs.lanes) - gathered(g.now_y, j, pairs.lanes)
+            uz = gathered(g.now_z, i, pairs.lanes) - gathered(g.now_z, j, pairs.lanes)
+            spin_i, spin_j = gathered(g.spin_now, i, pairs.lanes), gathered(g.spin_now, j, pairs.lanes)
+            lever_i = share * (reach + overlap) - overlap
+            lever_j = distance - lever_i
+            rate = -(uy * ny + uz * nz)
+            slip = uz * ny - uy * nz - (lever_i * spin_i + lever_j * spin_j)
+            fn, ft, roll = self.laws.forces(PAIR, pairs, u, block, overlap, rate, slip, spin_i - spin_j, dt)
+            if ti.static(self.laws.cohesive):
+                fn = fn - self.laws.pull(pairs, u, block, approach, rate, dt)
+            fy, fz = fn * ny - ft * nz, fn * nz + ft * ny
+            turn_i, turn_j = roll - lever_i * ft, -roll - lever_j * ft
+            if ti.static(not self.units.single):
+                at = GIVEN_APART * u
+                self.given[0][at], self.given[1][at], self.given[2][at], self.given[3][at] = fy, fz, turn_i, turn_j
+            for k in ti.static(range(pairs.lanes)):
+                g.push(0, i[k], fy[k], fz[k], turn_i[k])
+            if ti.static(not self.units.single):
+                target = pairs.target[u, block]
+                for k in ti.static(range(pairs.lanes)):
+                    g.push(0, target[k], -fy[k], -fz[k], turn_j[k])
+
+    @ti.func
+    def geometry(self, g: ti.template(), i, j, reach, count: ti.template()):
+        """Normals (towards the first grains), distances (m) and overlaps (m; negative: gaps) of `count` pairs."""
+        dy = gathered(g.y, i, count) - gathered(g.y, j, count)
+        dz = gathered(g.z, i, count) - gathered(g.z, j, count)
+        if ti.static(g.mixed):
+            # The difference of squares in 64 bits: an overlap of 1e-7 m keeps all digits of the force's 32.
+            whole = ti.cast(reach, ti.f64)
+            square = dy * dy + dz * dz
+            distance = ti.sqrt(ti.cast(square, g.real))
+            inverse = 1.0 / distance
+            approach = ti.cast(whole * whole - square, g.real) / (reach + distance)
+            return ti.cast(dy, g.real) * inverse, ti.cast(dz, g.real) * inverse, distance, approach
+        else:
+            distance = ti.sqrt(dy * dy + dz * dz)
+            inverse = 1.0 / distance
+            return dy * inverse, dz * inverse, distance, reach - distance
+
+    @ti.func
+    def wall_forces(self, g: ti.template(), contacts: ti.template(), u, t, dt):
+        """Forces of the walls on the grains g."""
+        w = self.units.world(u)
+        shift = self.walls.shift(w, t)
+        for p in range(contacts.length[u]):
+            i, feature = contacts.grain[u, p][0], contacts.mate[u, p][0]
+            gap = self.walls.gap(feature, shift, g.y[w, i], g.z[w, i])
+            ny, nz, radius = ti.cast(gap[1], g.real), ti.cast(gap[2], g.real), g.radius[w, i]
+            overlap = ti.cast(0.0, g.real)
+            if 0.0 < gap[0] < radius:
+                overlap = ti.cast(radius - gap[0], g.real)
+            velocity = self.walls.velocity(feature, shift)
+            uy, uz = g.now_y[w, i] - velocity[0], g.now_z[w, i] - velocity[1]
+            spin = g.spin_now[w, i]
+            lever = radius - 0.5 * overlap
+            rate = -(uy * ny + uz * nz)
+            slip = uz * ny - uy * nz - lever * spin
+            fn, ft, roll = self.laws.forces(
+                WALL, contacts, u, p, ti.Vector([overlap]), ti.Vector([rate]), ti.Vector([slip]), ti.Vector([spin]), dt
+            )
+            if ti.static(self.laws.cohesive):
+                approach = ti.cast(-FAR, g.real)
+                if gap[0] > 0.0:
+                    approach = ti.cast(radius - gap[0], g.real)
+                fn = fn - self.laws.pull(contacts, u, p, ti.Vector([approach]), ti.Vector([rate]), dt)
+            fy, fz = fn[0] * ny - ft[0] * nz, fn[0] * nz + ft[0] * ny
+            g.push(w, i, fy, fz, roll[0] - lever * ft[0])
+
+    @ti.func
+    def pair_press(self, g: ti.template(), pairs: ti.template(), w, i, j, u, p):
+        """Where contact p of grains i and j is (y, z) m, and its elastic force on i (N); nothing is remembered."""
+        apart = ti.Vector([g.y[w, i] - g.y[w, j], g.z[w, i] - g.z[w, j]])
+        overlap = ti.cast(g.radius[w, i] + g.radius[w, j] - apart.norm(), g.real)
+        return self.press_along(g, pairs, w, i, u, p, overlap, apart / apart.norm())
+
+    @ti.func
+    def wall_press(self, g: ti.template(), contacts: ti.template(), w, i, feature, shift: ti.template(), u, p):
+        """Where contact p of a grain with a wall is (y, z) m, and its elastic force on the grain (N)."""
+        gap = self.walls.gap(feature, shift, g.y[w, i], g.z[w, i])
+        overlap = ti.select(gap[0] > 0.0, ti.cast(g.radius[w, i] - gap[0], g.real), ti.cast(0.0, g.real))
+        return self.press_along(g, contacts, w, i, u, p, overlap, ti.Vector([gap[1], gap[2]]))
+
+    @ti.func
+    def press_along(self, g: ti.template(), contacts: ti.template(), w, i, u, p, overlap, n):
+        """Place and elastic force of contact p, whose normal towards grain i is n."""
+        force, back = self.laws.elastic(contacts, u, p, overlap), g.radius[w, i] - 0.5 * overlap
+        return ti.Vector([g.y[w, i] - back * n[0], g.z[w, i] - back * n[1], force * n[0], force * n[1]])
+
+    @ti.func
+    def census(self, g: ti.template(), pairs: ti.template(), contacts: ti.template(), u, t):
+        """Number of touching contacts, largest overlap in radii of the smaller grain, their energy (J), of a unit.
+
+        The energy is elastic, and that of liquid bridges. What two units share counts half in each.
+        """
+        w, start, end = self.units.world(u), self.units.first(u), self.units.end(u)
+        zero = ti.cast(0.0, g.exact)
+        touching, deepest, energy = zero, zero, zero
+        for p in range(pairs.length[u]):
+            i, j = pairs.first_of(u, p), pairs.second_of(u, p)
+            dy, dz = g.y[w, i] - g.y[w, j], g.z[w, i] - g.z[w, j]
+            overlap = ti.cast(g.radius[w, i] + g.radius[w, j] - ti.sqrt(dy * dy + dz * dz), g.real)
+            if overlap > 0.0:
+                part = ti.select(start <= j < end or j >= g.mobile, 1.0, 0.5)
+                touching += part
+                deepest = ti.max(deepest, overlap / ti.min(g.radius[w, i], g.radius[w, j]))
+                energy += part * self.laws.energy(PAIR, pairs, u, p, overlap)
+            if ti.static(self.laws.cohesive):
+                share = ti.select(start <= j < end or j >= g.mobile, 1.0, 0.5)
+                energy += share * self.laws.bridge_energy(pairs, u, p, overlap)
+        shift = self.walls.shift(w, t)
+        for p in range(contacts.length[u]):
+            i = contacts.first_of(u, p)
+            gap = self.walls.gap(contacts.second_of(u, p), shift, g.y[w, i], g.z[w, i])
+            if 0.0 < gap[0] < g.radius[w, i]:
+                overlap = ti.cast(g.radius[w, i] - gap[0], g.real)
+                touching += 1.0
+                deepest = ti.max(deepest, overlap / g.radius[w, i])
+                energy += self.laws.energy(WALL, contacts, u, p, overlap)
+            if ti.static(self.laws.cohesive):  # noqa: SIM102 (compiled only for wet grains)
+                if gap[0] > 0.0:
+                    approach = ti.cast(g.radius[w, i] - gap[0], g.real)
+                    energy += self.laws.bridge_energy(contacts, u, p, approach)
+        return ti.Vector([touching, deepest, energy])
+
+
+@ti.func
+def gathered(field: ti.template(), places, count: ti.template()):
+    """The values of a grain field (W, stride) for `count` grains, by their places in all of it."""
+    return ti.Vector([field[0, places[k]] for k in ti.static(range(count))])

@@ -1,0 +1,66 @@
+"""What the cohesion laws share: a bridge of liquid that forms on contact, pulls, and breaks at its range."""
+
+from math import pi
+
+import taichi as ti
+
+from solvers.grains.laws.extremes import greater, lesser
+from solvers.grains.materials import Interface, hertz_stiffness
+
+STEPS = 36.0  # of a period of two grains that swing about where the pull and their elasticity balance
+SHORTEST = 1e-3  # of the range: the way that a step is taken to go at least
+NO_RANGE = 1e-15  # m; keeps divisions finite where there is no bridge
+
+
+@ti.data_oriented
+class Capillary:
+    """F = f₀ while the grains touch, f₀ p(s) at a gap s up to the range, then nothing until they touch again.
+
+    The pull stands beside the normal law, whose force F_n stays what grains press with: friction's cap is μ F_n without
+    the pull, as Spandonidis (2016), eq. 4.6, names the force of eq. 4.4. A wet contact that carries no load presses
+    with f₀, so it resists with μ f₀.
+
+    A step may go much farther than the range. So the force is its mean over the way Δ = |u_n| Δt of the step that has
+    the present gap in its middle, [f₀ (what of Δ overlaps) + f₀ p(middle of the rest) (what of Δ is within the
+    range)]/Δ. The ways of successive steps join, and the work of a cycle of touch and break is that of the law,
+    whatever the step. The energy of a bridge is counted from first touch: negative while grains overlap, and what it
+    cost to stretch it, f₀ ∫ p ds, otherwise; this is lost as it breaks.
+    """
+
+    memory = ("bridged",)
+    pulls = True
+
+    def limits(self, between: Interface, mass: float, radius: float, speed: float) -> list[tuple[float, str]]:
+        """Longest steps (s) and what sets them: f₀ against Hertz's elasticity, (3/2) f₀/ξ (N/m) at k ξ^(3/2) = f₀."""
+        pull = self.coefficients(between)[0] * radius
+        if pull == 0.0:
+            return []
+        depth = (pull / hertz_stiffness(between.young_modulus, radius)) ** (2.0 / 3.0)
+        period = 2.0 * pi * (mass * depth / (1.5 * pull)) ** 0.5
+        return [(period / STEPS, f"1/{STEPS:.0f} of the swing under the pull of a liquid bridge")]
+
+    @ti.func
+    def pull(self, contacts: ti.template(), w, block, approach, rate, dt):
+        """The pull (N) of a block of contacts that approach by `approach` (m; negative: a gap) at a rate (m/s)."""
+        held, reach = contacts.bridged[w, block], greater(contacts.bridge_range[w, block], NO_RANGE)
+        way = greater(ti.abs(rate) * dt, SHORTEST * reach)
+        near, far = -approach - 0.5 * way, -approach + 0.5 * way
+        bridged = ti.select(near < 0.0, 1.0 + 0.0 * held, held)
+        pulling = ti.select(rate < 0.0, bridged, held)  # a bridge forms where the overlap begins, not before
+        begin, end = greater(lesser(near, reach), 0.0), greater(lesser(far, reach), 0.0)
+        overlapping = greater(lesser(-near, way), 0.0)
+        tail = pulling * (end - begin) * self.profile(contacts, w, block, 0.5 * (begin + end), reach)
+        leaving = ti.select(rate < 0.0, far, near)
+        contacts.bridged[w, block] = ti.select(leaving < reach, bridged, 0.0 * held)
+        return contacts.bridge_pull[w, block] * (overlapping + tail) / way
+
+    @ti.func
+    def energy(self, contacts: ti.template(), w, block, lane, approach):
+        """Energy (J) of one contact's bridge, if there is one."""
+        pull, reach = contacts.bridge_pull[w, block][lane], contacts.bridge_range[w, block][lane]
+        stored = -pull * approach
+        if approach < 0.0:
+            stored = 0.0 * pull
+            if -approach < reach:
+                stored = contacts.bridged[w, block][lane] * pull * self.stretch(contacts, w, block, lane, -approach)
+        return stored

@@ -1,0 +1,195 @@
+"""The laws a scene has chosen, with their coefficients in every world."""
+
+import numpy as np
+import taichi as ti
+
+from solvers.grains.integrators.verlet import Verlet
+from solvers.machine.runtime import Arrays
+from solvers.machine.units import Units
+
+PAIR, WALL = 0, 1  # rows of the interfaces where all grains are of one kind
+NEAR = 0.01  # of an overlap: over which its energy is differentiated
+
+
+@ti.data_oriented
+class ChosenLaws:
+    """A normal, a tangential, a rolling law and one of cohesion for grain–grain (PAIR) and grain–wall (WALL) contacts.
+
+    `interfaces[w]` are those of world w: of kinds a and b of grains in row a·K + b, of kind a and a wall in row K² + a,
+    with K `kinds`. Contacts come in blocks of lanes (`ContactList`); what a law returns for a block is a vector of
+    lanes. With one kind of grains a law's coefficients are numbers, with several vectors of lanes. Laws know the
+    `integrator`: they are told of a step longer than it is by its `damping`, and keep their dampers within that.
+    """
+
+    def __init__(
+        self,
+        arrays: Arrays,
+        units: Units,
+        normal,
+        tangential,
+        rolling,
+        cohesion,
+        interfaces,
+        kinds=1,
+        integrator=Verlet,
+    ):
+        self.units, self.kinds, self.damping = units, kinds, integrator.damping
+        self.normal, self.tangential, self.rolling, self.cohesion = normal, tangential, rolling, cohesion
+        self.cohesive = cohesion.pulls
+        laws = (normal, tangential, rolling, *([cohesion] if self.cohesive else []))
+        for law in laws:
+            law.integrator = integrator
+        self.laws = laws
+        self.tables = [arrays.holding(self.tabulate(law, interfaces)) for law in laws]
+        self.constants = tuple(name for law in laws for name in law.constants)
+        self.memory = tuple(name for law in laws for name in law.memory)
+        self.counts = tuple(len(law.constants) for law in laws)
+        # A torque turns its sign where the first and the second grain change places; forces along n and t do not.
+        self.odd = [law is rolling for law in laws for _ in law.memory]
+
+    def learn(self, interfaces) -> None:
+        """Have the coefficients of other interfaces from the next lists of contacts on."""
+        for law, table in zip(self.laws, self.tables, strict=True):
+            table.from_numpy(self.tabulate(law, interfaces))
+
+    @staticmethod
+    def tabulate(law, interfaces) -> np.ndarray:
+        """Coefficients (W, rows, number) of a law; one zero for a law that has none."""
+        return np.array([[law.coefficients(between) or [0.0] for between in world] for world in interfaces])
+
+    @ti.func
+    def pair_row(self, g: ti.template(), w, i, j):
+        """The row of the interface between grains i and j."""
+        row = PAIR
+        if ti.static(self.kinds > 1):
+            row = g.kind[w, i] * self.kinds + g.kind[w, j]
+        return row
+
+    @ti.func
+    def wall_row(self, g: ti.template(), w, i):
+        """The row of the interface between grain i and a wall."""
+        row = WALL
+        if ti.static(self.kinds > 1):
+            row = self.kinds * self.kinds + g.kind[w, i]
+        return row
+
+    @ti.func
+    def coefficients(self, which: ti.template(), u, kind: ti.template(), contacts: ti.template(), block):
+        """The coefficients of one law for a block of contacts in the world of unit u."""
+        table = ti.static(self.tables[which])
+        w = self.units.world(u)
+        if ti.static(self.kinds == 1):
+            return [table[w, kind, k] for k in ti.static(range(table.shape[2]))]
+        else:
+            rows = contacts.row[u, block]
+            lanes = ti.static(range(contacts.lanes))
+            return [ti.Vector([table[w, rows[n], k] for n in lanes]) for k in ti.static(range(table.shape[2]))]
+
+    @ti.func
+    def coefficients_of_one(self, which: ti.template(), u, kind: ti.template(), contacts: ti.template(), block, lane):
+        """The coefficients of one law for one contact."""
+        table = ti.static(self.tables[which])
+        row = kind
+        if ti.static(self.kinds > 1):
+            row = contacts.row[u, block][lane]
+        return [table[self.units.world(u), row, k] for k in ti.static(range(table.shape[2]))]
+
+    @ti.func
+    def prepare(self, kind: ti.template(), contacts: ti.template(), u, block, lane, mass, radius, dt):
+        """Work out the laws' constants of a newly listed contact, m_eff in kg, R_eff in m, Δt in s."""
+        self.prepare_law(self.normal, 0, 0, kind, contacts, u, block, lane, mass, radius, dt)
+        first = ti.static(self.counts[0])
+        self.prepare_law(self.tangential, 1, first, kind, contacts, u, block, lane, mass, radius, dt)
+        first_rolling = ti.static(self.counts[0] + self.counts[1])
+        self.prepare_law(self.rolling, 2, first_rolling, kind, contacts, u, block, lane, mass, radius, dt)
+        if ti.static(self.cohesive):
+            first_cohesion = ti.static(sum(self.counts[:3]))
+            self.prepare_law(self.cohesion, 3, first_cohesion, kind, contacts, u, block, lane, mass, radius, dt)
+
+    @ti.func
+    def prepare_law(
+        self,
+        law: ti.template(),
+        which: ti.template(),
+        first: ti.template(),
+        kind: ti.template(),
+        contacts: ti.template(),
+        u,
+        block,
+        lane,
+        mass,
+        radius,
+        dt,
+    ):
+        """Work out one law's constants, which stand from `first` on."""
+        if ti.static(self.counts[which] > 0):
+            c = self.coefficients_of_one(which, u, kind, contacts, block, lane)
+            values = law.prepare(c, contacts.stiffness[u, block][lane], mass, radius, dt / self.damping)
+            for k in ti.static(range(self.counts[which])):
+                contacts.constants[first + k][u, block][lane] = values[k]
+
+    @ti.func
+    def forces(self, kind: ti.template(), contacts: ti.template(), u, block, overlap, rate, slip, turning, dt):
+        """Normal and tangential forces (N) and rolling torques (N m) of a block of contacts; memory is updated.
+
+        `overlap` in m, its `rate` and the `slip` in m/s, `turning` ω_i − ω_j (ω_i at a wall) in rad/s. The torque acts
+        on the first grain, and its opposite on the second.
+        """
+        pressing = self.press(kind, contacts, u, block, overlap, rate, dt)
+        shearing, torque = self.rub(kind, contacts, u, block, overlap, rate, pressing, slip, turning, dt)
+        return pressing, shearing, torque
+
+    @ti.func
+    def press(self, kind: ti.template(), contacts: ti.template(), u, block, overlap, rate, dt):
+        """Normal forces (N) alone."""
+        coefficients = self.coefficients(0, u, kind, contacts, block)
+        return self.normal.force(coefficients, contacts, u, block, overlap, ti.sqrt(overlap), rate, dt)
+
+    @ti.func
+    def rub(self, kind: ti.template(), contacts: ti.template(), u, block, overlap, rate, pressing, slip, turning, dt):
+        """Tangential forces (N) and rolling torques (N m) under normal forces `pressing` (N)."""
+        tangential_c = self.coefficients(1, u, kind, contacts, block)
+        rolling_c = self.coefficients(2, u, kind, contacts, block)
+        shearing = self.tangential.force(tangential_c, contacts, u, block, ti.sqrt(overlap), rate, pressing, slip, dt)
+        torque = self.rolling.torque(rolling_c, contacts, u, block, pressing, turning, dt)
+        return shearing, torque
+
+    @ti.func
+    def pull(self, contacts: ti.template(), u, block, approach, rate, dt):
+        """Cohesion (N) of a block of contacts that approach by so much (m; negative: a gap), at a rate (m/s).
+
+        Memory is updated. Only where the scene is `cohesive`.
+        """
+        return self.cohesion.pull(contacts, u, block, approach, rate, dt)
+
+    @ti.func
+    def energy(self, kind: ti.template(), contacts: ti.template(), u, p, overlap):
+        """Elastic energy (J) of contact p, which overlaps."""
+        block, lane, root = p // contacts.lanes, p % contacts.lanes, ti.sqrt(overlap)
+        pressed = self.pressed_energy(contacts, u, p, overlap)
+        tangential_c = self.coefficients_of_one(1, u, kind, contacts, block, lane)
+        sheared = self.tangential.energy(tangential_c, contacts, u, block, lane, root)
+        return pressed + sheared + self.rolling.energy(contacts, u, block, lane)
+
+    @ti.func
+    def pressed_energy(self, contacts: ti.template(), u, p, overlap):
+        """Elastic energy (J) of the normal force alone."""
+        return self.normal.energy(contacts, u, p // contacts.lanes, p % contacts.lanes, overlap, ti.sqrt(overlap))
+
+    @ti.func
+    def elastic(self, contacts: ti.template(), u, p, overlap):
+        """Elastic normal force ∂U/∂ξ (N) of contact p, none where it does not overlap; nothing is remembered.
+
+        A central difference over NEAR of the overlap to both sides: for Hertz's U ~ ξ^(5/2) it errs by 1.3e-5.
+        """
+        force = 0.0 * overlap
+        if overlap > 0.0:
+            step = NEAR * overlap
+            rise = self.pressed_energy(contacts, u, p, overlap + step)
+            force = (rise - self.pressed_energy(contacts, u, p, overlap - step)) / (2.0 * step)
+        return force
+
+    @ti.func
+    def bridge_energy(self, contacts: ti.template(), u, p, approach):
+        """Energy (J) of the liquid between the two of contact p, only where the scene is `cohesive`."""
+        return self.cohesion.energy(contacts, u, p // contacts.lanes, p % contacts.lanes, approach)

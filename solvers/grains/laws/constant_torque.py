@@ -1,0 +1,52 @@
+"""Rolling friction: a torque of constant size against the rolling, with a short ramp where it would jump."""
+
+import taichi as ti
+
+from solvers.grains.laws.extremes import greater, lesser, within
+from solvers.grains.laws.splitting import AT_ONCE, FOLLOWING, lagging
+from solvers.grains.materials import Interface
+
+TURNING = 1e-3  # rad/s, where the ramp ends: a 3 mm grain creeps 5 mm an hour under the full torque
+SMALLEST_TORQUE = 1e-30  # N m; keeps the division finite where grains do not press
+
+
+@ti.data_oriented
+class ConstantTorque:
+    """M = −μ_r R_eff F_n sign(ω_i − ω_j) (Ai, Chen, Rotter and Ooi 2011, type A), with a ramp below 1e-3 rad/s.
+
+    R_eff is a wall contact's whole radius, so a sphere rolls down slopes steeper than μ_r. The ramp is a damper
+    c = μ_r R_eff F_n/(1e-3 rad/s), too stiff for any step, and split as `splitting.lagging` says. A torque M that the
+    law can hold turns the grain at M/c: it creeps.
+    """
+
+    constants = ("rolling_radius", "rolling_limit")
+    memory = ("rolling_followed",)
+
+    def coefficients(self, between: Interface) -> list[float]:
+        """[μ_r]."""
+        return [between.rolling_friction]
+
+    def limits(self, between: Interface, mass: float, radius: float, speed: float) -> list[tuple[float, str]]:
+        """None: the ramp is split to suit the step."""
+        return []
+
+    @ti.func
+    def prepare(self, c: ti.template(), stiffness, mass, radius, dt):
+        """μ_r R_eff (m) and I/Δt (N m s), I = (2/5) m_eff R_eff²: a sphere's on a wall, less than two spheres' own."""
+        return ti.Vector([c[0] * radius, 0.4 * mass * radius * radius / dt])
+
+    @ti.func
+    def torque(self, c: ti.template(), contacts: ti.template(), w, block, normal, turning, dt):
+        """M (N m) of a block of contacts on their first grains; turning ω_i − ω_j in rad/s, F_n in N."""
+        cap, limit = contacts.rolling_radius[w, block] * normal, contacts.rolling_limit[w, block]
+        share = lesser(FOLLOWING * TURNING * limit / greater(cap, SMALLEST_TORQUE), 1.0)
+        damping = cap * (1.0 / TURNING)
+        at_once = lesser(damping, AT_ONCE * limit)
+        lag = lagging(damping - at_once, share, turning, contacts.rolling_followed[w, block], cap)
+        contacts.rolling_followed[w, block] = lag
+        return within(-lag - at_once * turning, cap)
+
+    @ti.func
+    def energy(self, contacts: ti.template(), w, block, lane):
+        """The law stores no energy."""
+        return 0.0

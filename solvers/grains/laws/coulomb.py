@@ -1,0 +1,51 @@
+"""Coulomb friction, with a short ramp where it would jump."""
+
+import taichi as ti
+
+from solvers.grains.laws.extremes import greater, lesser, within
+from solvers.grains.laws.splitting import AT_ONCE, FOLLOWING, lagging
+from solvers.grains.materials import Interface
+
+SLIP = 1e-6  # m/s, where the ramp ends: 4 mm an hour of creep under the full load that friction can hold
+SMALLEST_FORCE = 1e-30  # N; keeps the division finite where grains do not press
+
+
+@ti.data_oriented
+class Coulomb:
+    """F_t = −μ F_n sign(u_s) (Spandonidis 2016, table 4.2, first row), with a linear ramp for |u_s| < 1e-6 m/s.
+
+    The ramp is a damper γ = μ F_n/(1e-6 m/s), too stiff for any step, and split as `splitting.lagging` says. A load F
+    that friction can hold creeps at F/γ.
+    """
+
+    constants = ("limit",)
+    memory = ("followed",)
+
+    def coefficients(self, between: Interface) -> list[float]:
+        """[μ]."""
+        return [between.friction]
+
+    def limits(self, between: Interface, mass: float, radius: float, speed: float) -> list[tuple[float, str]]:
+        """None: the ramp is split to suit the step."""
+        return []
+
+    @ti.func
+    def prepare(self, c: ti.template(), stiffness, mass, radius, dt):
+        """m_t/Δt (N s/m), with m_t = (2/7) m_eff for spheres."""
+        return ti.Vector([(2.0 / 7.0) * mass / dt])
+
+    @ti.func
+    def force(self, c: ti.template(), contacts: ti.template(), w, block, root, rate, normal, slip, dt):
+        """F_t (N) of a block of contacts on their first grains along the tangent; slip u_s in m/s, F_n in N."""
+        cap, limit = c[0] * normal, contacts.limit[w, block]
+        share = lesser(FOLLOWING * SLIP * limit / greater(cap, SMALLEST_FORCE), 1.0)
+        damping = cap * (1.0 / SLIP)
+        at_once = lesser(damping, AT_ONCE * limit)
+        lag = lagging(damping - at_once, share, slip, contacts.followed[w, block], cap)
+        contacts.followed[w, block] = lag
+        return within(-lag - at_once * slip, cap)
+
+    @ti.func
+    def energy(self, c: ti.template(), contacts: ti.template(), w, block, lane, root):
+        """The law stores no energy."""
+        return 0.0

@@ -1,0 +1,65 @@
+"""Linear tangential spring with history under a Coulomb cap (Cundall and Strack 1979)."""
+
+import taichi as ti
+
+from solvers.grains.laws.extremes import within
+from solvers.grains.laws.history import M_T, STIFFEST, stiffening
+from solvers.grains.laws.linear_spring import spring_coefficient, spring_stiffness
+from solvers.grains.laws.splitting import AT_ONCE, spring_limit
+from solvers.grains.materials import Interface, hertz_stiffness
+
+
+@ti.data_oriented
+class CundallStrack:
+    """F_t = −(S + γ_t u_s), |F_t| ≤ μ F_n, Ṡ = k_t u_s (Spandonidis 2016, table 4.2, fourth row).
+
+    k_t = (4 G*/E*) k_l with the spring k_l of the linear normal law, whichever normal law is chosen. The ratio is
+    Mindlin's (1949), 2(1 − ν)/(2 − ν) for equal materials. The history S is a force: k_t does not change with the
+    overlap, so S²/(2 k_t) is what the spring holds and a changing overlap cannot make energy; at the cap S is cut to
+    the cap and the spring slides. γ_t = A k_t, with the dissipative time A of the material. S is of second order in the
+    step (`solvers.grains.laws.history`); the step in which grains touch counts from the first touch on.
+    """
+
+    constants = ("shear_spring", "shear_dashpot")
+    memory = ("stretched", "ahead")
+
+    def coefficients(self, between: Interface) -> list[float]:
+        """[μ, k_t's coefficient, A in s]."""
+        ratio = 4.0 * between.shear_modulus / between.young_modulus
+        return [between.friction, ratio * spring_coefficient(between.restitution_speed), between.dissipative_time]
+
+    def limits(self, between: Interface, mass: float, radius: float, speed: float) -> list[tuple[float, str]]:
+        """Longest steps (s) and what sets them."""
+        stiffness = hertz_stiffness(between.young_modulus, radius)
+        spring = spring_stiffness(self.coefficients(between)[1], stiffness, mass)
+        return [(spring_limit(spring, M_T * mass), "the tangential spring")]
+
+    @ti.func
+    def prepare(self, c: ti.template(), stiffness, mass, radius, dt):
+        """k_t (N/m), a little stiffer for the step, and γ_t (N s/m) as far as the step resolves it."""
+        spring = spring_stiffness(c[1], stiffness, mass)
+        dashpot = ti.min(c[2] * spring, AT_ONCE * M_T * mass / dt)
+        stiffer = stiffening(self.integrator.stiffer, mass, dt * self.integrator.damping) * spring
+        return ti.Vector([spring + spring * within(stiffer, STIFFEST), dashpot])
+
+    @ti.func
+    def force(self, c: ti.template(), contacts: ti.template(), w, block, root, rate, normal, slip, dt):
+        """F_t (N) of a block of contacts on their first grains along the tangent; slip u_s in m/s, F_n in N."""
+        cap, spring, touching = c[0] * normal, contacts.shear_spring[w, block], root > 0.0
+        way = slip * dt
+        ahead = ti.select(touching, self.integrator.ahead * way, 0.0 * way)
+        begins = root * root < rate * dt
+        behind = ti.select(begins, ahead, contacts.ahead[w, block])
+        behind = ti.select(touching, behind, 0.0 * way)
+        come = ti.select(begins, slip * root * root / rate, way - behind)
+        held = within(contacts.stretched[w, block] + spring * come, cap)
+        contacts.stretched[w, block] = held + spring * behind
+        contacts.ahead[w, block] = ahead
+        return within(-held - contacts.shear_dashpot[w, block] * slip, cap)
+
+    @ti.func
+    def energy(self, c: ti.template(), contacts: ti.template(), w, block, lane, root):
+        """Elastic energy S²/(2 k_t) (J) of one contact."""
+        spring = contacts.shear_spring[w, block][lane]
+        held = contacts.stretched[w, block][lane] - spring * contacts.ahead[w, block][lane]
+        return 0.5 * held * held / spring

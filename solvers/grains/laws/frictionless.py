@@ -1,0 +1,31 @@
+"""No tangential force."""
+
+import taichi as ti
+
+from solvers.grains.materials import Interface
+
+
+@ti.data_oriented
+class Frictionless:
+    """F_t = 0: perfectly smooth grains, whose spins never change."""
+
+    constants = ()
+    memory = ()
+
+    def coefficients(self, between: Interface) -> list[float]:
+        """None."""
+        return []
+
+    def limits(self, between: Interface, mass: float, radius: float, speed: float) -> list[tuple[float, str]]:
+        """None."""
+        return []
+
+    @ti.func
+    def force(self, c: ti.template(), contacts: ti.template(), w, block, root, rate, normal, slip, dt):
+        """Zero for every lane."""
+        return ti.Vector([0.0 for _ in ti.static(range(contacts.lanes))])
+
+    @ti.func
+    def energy(self, c: ti.template(), contacts: ti.template(), w, block, lane, root):
+        """The law stores no energy."""
+        return 0.0

@@ -1,0 +1,49 @@
+"""Haff–Werner friction: a viscous shear force under a Coulomb cap, without memory (Haff and Werner 1986)."""
+
+import taichi as ti
+
+from solvers.grains.laws.extremes import lesser, within
+from solvers.grains.laws.splitting import AT_ONCE, FOLLOWING, lagging
+from solvers.grains.materials import Interface
+
+
+@ti.data_oriented
+class HaffWerner:
+    """F_t = −min(γ_s |u_s|, μ F_n) sign(u_s) (Spandonidis 2016, eq. 4.6).
+
+    γ_s = 20 N s/m stops the slip of a 3 mm grain within 1e-7 s, far below any step worth taking. So the damper is
+    split as `splitting.lagging` says, on m_t = (2/7) m_eff. Under a lasting load the slip is F_t/γ_s, the creep of the
+    law itself, whatever the step.
+    """
+
+    constants = ("limit",)
+    memory = ("followed",)
+
+    def coefficients(self, between: Interface) -> list[float]:
+        """[μ, γ_s in N s/m, 0.02/γ_s in m/(N s)]."""
+        damping = between.shear_damping
+        return [between.friction, damping, FOLLOWING / damping if damping else 0.0]
+
+    def limits(self, between: Interface, mass: float, radius: float, speed: float) -> list[tuple[float, str]]:
+        """None: the damper is split to suit the step."""
+        return []
+
+    @ti.func
+    def prepare(self, c: ti.template(), stiffness, mass, radius, dt):
+        """m_t/Δt (N s/m), with m_t = (2/7) m_eff for spheres."""
+        return ti.Vector([(2.0 / 7.0) * mass / dt])
+
+    @ti.func
+    def force(self, c: ti.template(), contacts: ti.template(), w, block, root, rate, normal, slip, dt):
+        """F_t (N) of a block of contacts on their first grains along the tangent; slip u_s in m/s, F_n in N."""
+        cap, limit = c[0] * normal, contacts.limit[w, block]
+        share = lesser(c[2] * limit, 1.0)
+        at_once = lesser(AT_ONCE * limit, c[1])
+        lag = lagging(c[1] - at_once, share, slip, contacts.followed[w, block], cap)
+        contacts.followed[w, block] = lag
+        return within(-lag - at_once * slip, cap)
+
+    @ti.func
+    def energy(self, c: ti.template(), contacts: ti.template(), w, block, lane, root):
+        """The law stores no energy."""
+        return 0.0

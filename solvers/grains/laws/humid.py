@@ -1,0 +1,62 @@
+"""Capillary cohesion of grains in humid air: rings of water that condense where grains touch."""
+
+from math import cos, log, pi
+
+import taichi as ti
+
+from solvers.grains.laws.capillary import NO_RANGE, Capillary
+from solvers.grains.materials import Interface
+
+MOLAR_VOLUME = 18.07e-6  # m³/mol of water at 25 °C
+THERMAL = 8.314 * 298.15  # R T, J/mol at 25 °C
+
+
+def kelvin_radius(humidity: float, surface_tension: float) -> float:
+    """r_K (m) = γ_s V_m/(R T |ln H|) of water at 25 °C (Thomson 1871), 1.47 nm at 70 % and 0.072 N/m."""
+    return surface_tension * MOLAR_VOLUME / (THERMAL * -log(humidity))
+
+
+@ti.data_oriented
+class Humid(Capillary):
+    """f₀ = 2π γ_s cos θ R_eff while the grains touch, f₀ (1 − s/r_K) at a gap s < r_K (Spandonidis 2016, eq. 4.9–4.11).
+
+    The source takes the law from Oger et al. (2013) and the line from Charlaix and Crassous (2005). Our reading of it:
+    - R_eff as printed, 1/R_eff = 1/R_i + 1/R_j. It makes f₀ half of what two smooth spheres pull with, 4π γ_s cos θ
+      R_eff (Fisher 1926; `bridge` has it).
+    - The source prints F_m = f₀ (a₀ + a₁ √r_K + a₂ r_K) where the line begins and gives no numbers; they are said to be
+      in Crassous et al. (2011). With a₀ = 1, a₁ = a₂ = 0 the force is continuous at s = 0. A ring between equal smooth
+      spheres pulls with f₀ (1 − √(r_K/2R) + …) by the toroidal form, a thousandth less for grains of mm.
+    - r_K by Kelvin's equation for water at 25 °C: the source's 1.47 nm at 70 % come out of it.
+
+    So the humidity changes the range alone, and that is never more than nanometres. Where `asperities` of height h (m)
+    keep the surfaces apart, not in the source, touching grains are at s = h on the line: f₀ (1 − h/r_K) over a range of
+    r_K − h, and nothing in air so dry that r_K < h.
+    """
+
+    constants = ("bridge_pull", "bridge_range")
+    needs = ("humidity",)
+
+    def range(self, between: Interface) -> float:
+        """r_K − h (m), or zero."""
+        return max(0.0, kelvin_radius(between.humidity, between.surface_tension) - between.asperities)
+
+    def coefficients(self, between: Interface) -> list[float]:
+        """[f₀/R_eff in N/m, range in m]."""
+        radius, reach = kelvin_radius(between.humidity, between.surface_tension), self.range(between)
+        tension = 2.0 * pi * between.surface_tension * cos(between.contact_angle)
+        return [tension * reach / radius, reach]
+
+    @ti.func
+    def prepare(self, c: ti.template(), stiffness, mass, radius, dt):
+        """f₀ (N), range (m)."""
+        return ti.Vector([c[0] * radius, c[1]])
+
+    @ti.func
+    def profile(self, contacts: ti.template(), w, block, gap, reach):
+        """p(s) = 1 − s/range of a block of contacts."""
+        return 1.0 - gap / reach
+
+    @ti.func
+    def stretch(self, contacts: ti.template(), w, block, lane, gap):
+        """∫ p ds (m) up to a gap (m) of one contact."""
+        return gap - 0.5 * gap * gap / ti.max(contacts.bridge_range[w, block][lane], NO_RANGE)

@@ -1,0 +1,61 @@
+"""Hysteretic contact: stiffer on the way back, for grains that yield."""
+
+from math import pi, sqrt
+
+import taichi as ti
+
+from solvers.grains.laws.extremes import greater
+from solvers.grains.laws.linear_spring import spring_coefficient, spring_stiffness
+from solvers.grains.materials import Interface, hertz_stiffness
+
+STEPS = 36.0  # of half a period of the stiffer, unloading spring; restitution 0.02 … 1 to 0.1 %
+
+
+@ti.data_oriented
+class Hysteretic:
+    """F_n = k₁ ξ while it first loads, k₂ (ξ − ξ₀) while it unloads and loads again, never less than zero.
+
+    Walton and Braun (1986); Spandonidis (2016), table 4.1, fifth row. k₁/k₂ = e², so the restitution is e at every
+    speed and size; k₁ is such that at the restitution speed the overlap is as deep as the elastic Hertz contact's.
+    The memory is the plastic overlap ξ₀ = (1 − e²) ξ_max, whence F_n = k₂ (ξ − ξ₀) on either way; grains that part
+    forget it. A small vibration about a load stays on the k₂ line and loses nothing.
+    """
+
+    constants = ("unloading",)
+    memory = ("plastic",)
+
+    def coefficients(self, between: Interface) -> list[float]:
+        """[k₂'s coefficient, 1 − e²]."""
+        kept = between.restitution**2
+        return [spring_coefficient(between.restitution_speed) / kept, 1.0 - kept]
+
+    def limits(self, between: Interface, mass: float, radius: float, speed: float) -> list[tuple[float, str]]:
+        """Longest steps (s) and what sets them."""
+        stiffness = hertz_stiffness(between.young_modulus, radius)
+        unloading = spring_stiffness(self.coefficients(between)[0], stiffness, mass)
+        return [(pi * sqrt(mass / unloading) / STEPS, f"1/{STEPS:.0f} of half the unloading spring's period")]
+
+    def deepest(self, between: Interface, mass: float, radius: float, speed: float) -> float:
+        """Largest overlap (m) of a head-on impact, v √(m/k₁)."""
+        coefficient = spring_coefficient(between.restitution_speed)
+        stiffness = spring_stiffness(coefficient, hertz_stiffness(between.young_modulus, radius), mass)
+        return speed * sqrt(mass / stiffness)
+
+    @ti.func
+    def prepare(self, c: ti.template(), stiffness, mass, radius, dt):
+        """k₂ (N/m)."""
+        return ti.Vector([spring_stiffness(c[0], stiffness, mass)])
+
+    @ti.func
+    def force(self, c: ti.template(), contacts: ti.template(), w, block, overlap, root, rate, dt):
+        """F_n (N) of a block of contacts from the overlap ξ (m)."""
+        plastic = greater(contacts.plastic[w, block], c[1] * overlap)
+        plastic = ti.select(overlap > 0.0, plastic, 0.0 * plastic)
+        contacts.plastic[w, block] = plastic
+        return contacts.unloading[w, block] * greater(overlap - plastic, 0.0)
+
+    @ti.func
+    def energy(self, contacts: ti.template(), w, block, lane, overlap, root):
+        """The energy k₂ (ξ − ξ₀)²/2 (J) that one contact can give back."""
+        elastic = ti.max(0.0, overlap - contacts.plastic[w, block][lane])
+        return 0.5 * contacts.unloading[w, block][lane] * elastic * elastic

@@ -1,0 +1,61 @@
+"""Linear spring and dashpot."""
+
+from math import pi, sqrt
+
+import taichi as ti
+
+from solvers.grains.laws.extremes import greater
+from solvers.grains.laws.linear_spring import spring_coefficient, spring_stiffness
+from solvers.grains.laws.splitting import felt_rate
+from solvers.grains.materials import Interface, hertz_stiffness
+from solvers.grains.restitution import damping_ratio_for
+
+# Steps of half an undamped period, at least and times ζ: measured as in `felt_rate`, restitution 0.02 … 1 to 0.1 %.
+STEPS, DAMPED_STEPS = 52.0, 240.0
+
+
+@ti.data_oriented
+class Linear:
+    """F_n = k_l ξ + γ_n ξ̇, cut at zero (Cundall and Strack 1979; Spandonidis 2016, table 4.1, first row).
+
+    k_l is such that at the restitution speed the overlap is as deep as the elastic Hertz contact's. γ_n =
+    2 ζ √(k_l m_eff), with ζ from the restitution of a contact that ends where its force does (Schwager and
+    Pöschel 2007). Restitution and duration are the same at every speed and size.
+    """
+
+    constants = ("spring", "dashpot")
+    memory = ()
+
+    def coefficients(self, between: Interface) -> list[float]:
+        """[k_l's coefficient, 2 ζ]."""
+        return [spring_coefficient(between.restitution_speed), 2.0 * damping_ratio_for(between.restitution)]
+
+    def limits(self, between: Interface, mass: float, radius: float, speed: float) -> list[tuple[float, str]]:
+        """Longest steps (s) and what sets them."""
+        coefficient, twice_ratio = self.coefficients(between)
+        stiffness = spring_stiffness(coefficient, hertz_stiffness(between.young_modulus, radius), mass)
+        steps = max(STEPS, DAMPED_STEPS * 0.5 * twice_ratio)
+        return [(pi * sqrt(mass / stiffness) / steps, f"1/{steps:.0f} of the undamped collision")]
+
+    def deepest(self, between: Interface, mass: float, radius: float, speed: float) -> float:
+        """Largest overlap (m) of a head-on impact without losses, v √(m/k_l)."""
+        coefficient = spring_coefficient(between.restitution_speed)
+        stiffness = spring_stiffness(coefficient, hertz_stiffness(between.young_modulus, radius), mass)
+        return speed * sqrt(mass / stiffness)
+
+    @ti.func
+    def prepare(self, c: ti.template(), stiffness, mass, radius, dt):
+        """k_l (N/m), γ_n (N s/m)."""
+        spring = spring_stiffness(c[0], stiffness, mass)
+        return ti.Vector([spring, c[1] * ti.sqrt(spring * mass)])
+
+    @ti.func
+    def force(self, c: ti.template(), contacts: ti.template(), w, block, overlap, root, rate, dt):
+        """F_n (N) of a block of contacts from the overlap ξ (m) and its rate ξ̇ (m/s)."""
+        dashpot = contacts.dashpot[w, block] * felt_rate(overlap, rate, dt)
+        return greater(contacts.spring[w, block] * overlap + dashpot, 0.0)
+
+    @ti.func
+    def energy(self, contacts: ti.template(), w, block, lane, overlap, root):
+        """Elastic energy k_l ξ²/2 (J) of one contact."""
+        return 0.5 * contacts.spring[w, block][lane] * overlap * overlap

@@ -1,0 +1,74 @@
+"""Tangential spring with history: Mindlin's no-slip stiffness on Hertz contact under a Coulomb cap."""
+
+import taichi as ti
+
+from solvers.grains.laws.extremes import greater, lesser, within
+from solvers.grains.laws.history import M_T, STIFFEST, stiffening
+from solvers.grains.laws.splitting import AT_ONCE
+from solvers.grains.materials import Interface
+
+SMALLEST_ROOT = 1e-12  # √m; an overlap of 1e-24 m is none
+
+
+@ti.data_oriented
+class Mindlin:
+    """F_t = −(S + A k_t u_s), |F_t| ≤ μ F_n, Ṡ = k_t u_s with k_t = 8 G* √(R_eff ξ) (Mindlin 1949).
+
+    The history S is kept as a force. While the contact loads, it grows with the present stiffness; while it unloads it
+    shrinks with the stiffness, S ← S k_t(now)/k_t(before), as Thornton, Cummins and Cleary (2013) ask for, since
+    otherwise a changing overlap makes energy (Elata and Berryman 1996). The dashpot has the dissipative time A of the
+    normal law, as far as the step resolves it. At the cap S is cut to the cap: the spring slides.
+
+    S is of second order in the step (`solvers.grains.laws.history`). So that it stays so where k_t ~ √ξ begins, a step
+    counts the mean of √ξ over itself, or from the first touch on.
+    """
+
+    constants = ("shear_limit", "shear_stiffer")
+    memory = ("stretched", "ahead", "root_before")
+
+    def coefficients(self, between: Interface) -> list[float]:
+        """[μ, k_t / (k √ξ) = 6 G*/E*, A in s]."""
+        ratio = 6.0 * between.shear_modulus / between.young_modulus
+        return [between.friction, ratio, between.dissipative_time]
+
+    def limits(self, between: Interface, mass: float, radius: float, speed: float) -> list[tuple[float, str]]:
+        """None: where the overlap is deepest, a step that resolves the Hertz collision resolves this spring."""
+        return []
+
+    @ti.func
+    def prepare(self, c: ti.template(), stiffness, mass, radius, dt):
+        """The strongest damper (N s/m) that the step resolves, and the stiffening (m/N) of the step."""
+        stiffer = stiffening(self.integrator.stiffer, mass, dt * self.integrator.damping)
+        return ti.Vector([AT_ONCE * M_T * mass / dt, stiffer])
+
+    @ti.func
+    def force(self, c: ti.template(), contacts: ti.template(), w, block, root, rate, normal, slip, dt):
+        """F_t (N) of a block of contacts on their first grains along the tangent; slip u_s in m/s, F_n in N."""
+        cap = c[0] * normal
+        spring = c[1] * contacts.stiffness[w, block] * root
+        stiff = spring + spring * within(contacts.shear_stiffer[w, block] * spring, STIFFEST)
+        before, now = greater(contacts.root_before[w, block], SMALLEST_ROOT), greater(root, SMALLEST_ROOT)
+        begins = root * root < rate * dt
+        deeper = greater(root - before, 0.0)
+        more = ti.select(begins, root * root, deeper * deeper)
+        more /= ti.select(begins, 1.5 * rate * dt, 6.0 * now * (now + before))
+        if ti.static(self.integrator.ahead == 0.0):
+            more -= ti.select(begins, 0.0 * root, 0.5 * deeper / now)  # steps end here, and √ξ is that of their middle
+        way = slip * dt
+        ahead = self.integrator.ahead * way
+        behind = ti.select(begins, ahead, contacts.ahead[w, block])
+        come = more * way + ti.select(begins, 0.0 * way, way - behind)
+        held = within(contacts.stretched[w, block] * lesser(root / before, 1.0) + stiff * come, cap)
+        contacts.stretched[w, block] = held + stiff * behind
+        contacts.ahead[w, block] = ti.select(root > 0.0, ahead, 0.0 * ahead)
+        contacts.root_before[w, block] = root
+        dashpot = lesser(c[2] * spring, contacts.shear_limit[w, block])
+        return within(-held - dashpot * slip, cap)
+
+    @ti.func
+    def energy(self, c: ti.template(), contacts: ti.template(), w, block, lane, root):
+        """Elastic energy S²/(2 k_t) (J) of one contact."""
+        spring = c[1] * contacts.stiffness[w, block][lane] * root
+        spring += spring * within(contacts.shear_stiffer[w, block][lane] * spring, STIFFEST)
+        held = contacts.stretched[w, block][lane] - spring * contacts.ahead[w, block][lane]
+        return 0.5 * held * held / spring

@@ -1,0 +1,257 @@
+"""Who may touch whom: Verlet lists with a skin, made from a grid of cells, that carry the contacts' history.
+
+A unit lists its pairs in the order of their first grains, so its forces are summed in one order on any number of
+threads. A pair within a unit stands once, i < j; one across units stands in both.
+"""
+
+import numpy as np
+import taichi as ti
+
+from solvers.grains.contact_list import ContactList
+from solvers.grains.laws.chosen import PAIR, WALL, ChosenLaws
+from solvers.grains.state import Grains
+from solvers.machine.runtime import Arrays
+from solvers.machine.units import Units
+from solvers.space.cells import Cells
+from solvers.tank.walls import Walls
+
+# Pairs that one pass of the force loop takes: two AVX2 registers of 64-bit numbers, a fifth faster than one.
+LANES = 8
+# Room a unit's lists have at first: (contacts a grain, and more). A single grain lists its mates on every side.
+ROOM = {False: ((4, 16), (2, 16)), True: ((0, 12), (0, 4))}
+NEVER = 1e30  # a travel so large that the lists are stale
+
+
+@ti.data_oriented
+class Neighbours:
+    """The two contact lists of every unit and when to build them anew."""
+
+    lanes = LANES
+    pair_fleeting, wall_fleeting = (), ()  # what is remembered of contacts for as long as a list lasts
+
+    def __init__(
+        self,
+        arrays: Arrays,
+        units: Units,
+        grains: Grains,
+        walls: Walls,
+        skin: float,
+        bridges: float,
+        reach: float,
+        laws: ChosenLaws,
+        modulus: np.ndarray,
+        room: int,
+        rule=None,
+    ):
+        self.units, self.grains, self.walls, self.laws = units, grains, walls, laws
+        (pairs, more_pairs), (contacts, more_contacts) = ROOM[units.single]
+        across = 0 if units.whole or units.single else 8 * int(np.sqrt(units.mobile))  # pairs with other units
+        lanes = 1 if units.single else self.lanes
+        pairs, contacts = pairs * units.size + across + more_pairs, contacts * units.size + more_contacts
+        more_pairs, more_contacts = (rule.pair_memory, rule.wall_memory) if rule else ((), ())
+        fleeting, more_fleeting = self.pair_fleeting, self.wall_fleeting
+        of_all, of_walls = 2 * (grains.worlds * grains.stride,), (grains.stride, walls.features)
+        self.pairs = ContactList(arrays, units, room * pairs, lanes, grains.stride, laws, of_all, more_pairs, fleeting)
+        self.contacts = ContactList(arrays, units, room * contacts, 1, 0, laws, of_walls, more_contacts, more_fleeting)
+        self.modulus = arrays.holding(4.0 / 3.0 * modulus)  # k = (4/3) E* √R_eff of each interface
+        self.skin = arrays.holding(np.array([skin]))
+        if laws.cohesive:
+            self.bridges = arrays.holding(np.array([bridges]))  # the longest there may be, m
+        self.cells = Cells(arrays, grains, *walls.bounds, reach)
+        self.built_y, self.built_z = arrays.reals(2, (grains.worlds, grains.count), arrays.place)
+        # No grain has moved farther than `travel` (m) since the lists were built, at the time `built_at` (s).
+        self.travel = arrays.holding(np.full(units.count, NEVER), kept=True)
+        self.built_at = arrays.holding(np.zeros(units.count), arrays.exact, kept=True)
+
+    def forget(self) -> None:
+        """Drop all history, for grains that were put somewhere else."""
+        self.pairs.forget()
+        self.contacts.forget()
+        self.expire()
+
+    def expire(self) -> None:
+        """Have the lists built anew before the next step."""
+        self.travel.fill(NEVER)
+
+    @ti.func
+    def margin(self):
+        """The gap (m) up to which two are listed: they may touch before the next lists, or hold a bridge now."""
+        wide = self.skin[0]
+        if ti.static(self.laws.cohesive):
+            wide = ti.max(wide, self.bridges[0])
+        return wide
+
+    @ti.func
+    def worn(self, u):
+        """Whether a grain may have moved farther than half the skin, so that two may be in reach unlisted."""
+        return self.travel[u] > 0.5 * self.skin[0]
+
+    @ti.func
+    def stale(self, u, t):
+        """Whether one has."""
+        old, skin = False, self.skin[0]
+        if self.worn(u):
+            old = True
+            if self.travel[u] < 0.5 * NEVER:
+                # The running sum of speeds overestimates what shaking grains travel; look at where they are.
+                moved = self.moved(u, t)
+                if moved < 0.3 * skin:
+                    old = False
+                    self.travel[u] = moved
+        return old
+
+    @ti.func
+    def moved(self, u, t):
+        """How far (m) any grain of a unit has gone since its lists were built, and any part of the walls on top."""
+        w, farthest = self.units.world(u), ti.cast(0.0, self.grains.real)
+        for i in range(self.units.first(u), self.units.end(u)):
+            farthest = ti.max(farthest, self.way(w, i))
+        if ti.static(self.walls.moving):
+            farthest += 2.0 * self.walls.gone(w, self.built_at[u], t)
+        return farthest
+
+    @ti.func
+    def note_built(self, w, i):
+        """Remember where a grain is as the lists are built."""
+        self.built_y[w, i], self.built_z[w, i] = self.grains.y[w, i], self.grains.z[w, i]
+
+    @ti.func
+    def way(self, w, i):
+        """How far (m) a grain has gone since then."""
+        dy = ti.cast(self.grains.y[w, i] - self.built_y[w, i], self.grains.real)
+        dz = ti.cast(self.grains.z[w, i] - self.built_z[w, i], self.grains.real)
+        return ti.sqrt(dy * dy + dz * dz)
+
+    @ti.func
+    def list_pairs(self, g: ti.template(), c: ti.template(), u, dt) -> ti.i32:
+        """List the pairs of a unit; returns their number, also where it exceeds the room there is."""
+        w, ghost, found = self.units.world(u), self.units.ghost(u), 0
+        start, end = self.units.first(u), self.units.end(u)
+        for i in range(start, end):
+            self.pairs.first[u, i - start] = found
+            y, z, reach = g.y[w, i], g.z[w, i], g.reach[w, i] + self.margin()
+            row, column = c.cell_of[w, i] // c.columns, c.cell_of[w, i] % c.columns
+            for r in range(ti.max(0, row - 1), ti.min(c.rows, row + 2)):
+                # Three neighbouring cells of a row are one run of the sorted grains.
+                left = r * c.columns + ti.max(0, column - 1)
+                right = r * c.columns + ti.min(c.columns - 1, column + 1)
+                for k in range(c.first[w, left], c.first[w, right + 1]):
+                    j = c.sorted[w, k]
+                    own = start <= j < end
+                    if j > i or (j < i and not own):
+                        dy, dz, far = y - g.y[w, j], z - g.z[w, j], reach + g.reach[w, j]
+                        if dy * dy + dz * dz < far * far:
+                            found = self.list_pair(g, u, found, i, j, j if own else ghost, dt)
+        for k in range(end - start, self.units.size + 1):
+            self.pairs.first[u, k] = found
+        return found
+
+    @ti.func
+    def list_pair(self, g: ti.template(), u, found, i, j, target, dt):
+        """List the contact of two grains that are near each other; returns how many there are then."""
+        if found < self.pairs.capacity:
+            self.write_pair(g, u, found, i, j, target, True, dt)
+        return found + 1
+
+    @ti.func
+    def write_pair(self, g: ti.template(), u, p, i, j, target, recalled: ti.template(), dt):
+        """Write contact p of grains i and j, with the memory that the two had or without."""
+        w = self.units.world(u)
+        radius, touch = g.radius[w, i], g.radius[w, i] + g.radius[w, j]
+        effective = radius * g.radius[w, j] / touch
+        mass = 1.0 / (g.inverse_mass[w, i] + g.inverse_mass[w, j])
+        row = self.laws.pair_row(g, w, i, j)
+        stiffness = self.modulus[w, row] * ti.sqrt(effective)
+        if ti.static(recalled):
+            self.pairs.add(u, p, i, j, target, row, stiffness, touch, radius / touch)
+        else:
+            self.pairs.add_new(u, p, i, j, target, row, stiffness, touch, radius / touch)
+        self.laws.prepare(PAIR, self.pairs, u, p // self.pairs.lanes, p % self.pairs.lanes, mass, effective, dt)
+
+    @ti.func
+    def list_contacts(self, u, t, dt) -> ti.i32:
+        """List the grains near walls; returns their number, also where it exceeds the room there is."""
+        w, start, end, found = self.units.world(u), self.units.first(u), self.units.end(u), 0
+        shift = self.walls.shift(w, t)
+        for i in range(start, end):
+            self.contacts.first[u, i - start] = found
+            reach = self.grains.reach[w, i] + self.margin()
+            for feature in range(self.walls.features):
+                # A wall contact may begin as the grain slides past a segment's end, so ask with a margin.
+                if self.walls.near(feature, shift, self.grains.y[w, i], self.grains.z[w, i], reach):
+                    found = self.list_contact(self.grains, u, found, i, feature, shift, dt)
+        for k in range(end - start, self.units.size + 1):
+            self.contacts.first[u, k] = found
+        return found
+
+    @ti.func
+    def list_contact(self, g: ti.template(), u, found, i, feature, shift: ti.template(), dt):
+        """List the contact of a grain with a wall that is near; returns how many there are then."""
+        if found < self.contacts.capacity:
+            self.write_contact(g, u, found, i, feature, True, dt)
+        return found + 1
+
+    @ti.func
+    def write_contact(self, g: ti.template(), u, p, i, feature, recalled: ti.template(), dt):
+        """Write contact p of grain i with a wall, with the memory that the two had or without."""
+        w = self.units.world(u)
+        radius, mass = g.radius[w, i], 1.0 / g.inverse_mass[w, i]
+        row = self.laws.wall_row(g, w, i)
+        stiffness = self.modulus[w, row] * ti.sqrt(radius)
+        if ti.static(recalled):
+            self.contacts.add(u, p, i, feature, feature, row, stiffness, radius, 1.0)
+        else:
+            self.contacts.add_new(u, p, i, feature, feature, row, stiffness, radius, 1.0)
+        self.laws.prepare(WALL, self.contacts, u, p, 0, mass, radius, dt)
+
+    @ti.func
+    def asked(self, u):
+        """Whether some contacts of a unit are to be sought anew, though its lists are good."""
+        return False
+
+    @ti.func
+    def rebuild(self, u, t, dt, whole):
+        """List all contacts of a unit anew, the grains being sorted into cells, or those asked for; t in s.
+
+        Returns False, with the old lists in place, where they do not fit.
+        """
+        fits = True
+        if whole:
+            fits = self.list_all(u, t, dt)
+        if fits:
+            fits = self.seek(u, t, whole)
+        return fits
+
+    @ti.func
+    def seek(self, u, t, whole):
+        """Discs that are near each other have a contact: there is nothing to seek."""
+        return True
+
+    @ti.func
+    def list_all(self, u, t, dt):
+        """List who is near whom; returns False, with the old lists in place, where they do not fit."""
+        w = self.units.world(u)
+        self.pairs.set_aside(u)
+        self.contacts.set_aside(u)
+        pairs, contacts = self.list_pairs(self.grains, self.cells, u, dt), self.list_contacts(u, t, dt)
+        fits = pairs <= self.pairs.capacity and contacts <= self.contacts.capacity
+        if fits:
+            self.pairs.length[u], self.contacts.length[u] = pairs, contacts
+            self.pairs.pad(u)
+            for i in range(self.units.first(u), self.units.end(u)):
+                self.note_built(w, i)
+            self.travel[u] = 0.0
+            self.built_at[u] = t
+        else:
+            self.put_back(u)
+        return fits
+
+    @ti.func
+    def put_back(self, u):
+        """Undo `list_all`, which ran out of room: the lists are to be built anew with more.
+
+        The laws' constants are lost, but no force is worked out before.
+        """
+        self.pairs.put_back(u)
+        self.contacts.put_back(u)
+        self.travel[u] = NEVER

@@ -1,0 +1,98 @@
+"""What presses on what: the elastic forces of all contacts of a world, for whoever looks at it."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import taichi as ti
+
+from solvers.grains.contacts import Contacts
+from solvers.grains.neighbours import Neighbours
+from solvers.grains.state import Grains
+from solvers.machine.units import Units
+from solvers.tank.walls import Walls
+
+NOBODY = -1
+
+Offsets = ti.types.ndarray(dtype=ti.i32, ndim=1)
+Names = ti.types.ndarray(dtype=ti.i32, ndim=2)
+Rows = ti.types.ndarray(dtype=ti.f32, ndim=2)
+
+
+@dataclass(frozen=True)
+class Pressing:
+    """The k contacts of a world that press, in the tank's frame.
+
+    grains (k, 2): their numbers, the second NOBODY where it is a wall, a part or a fixed grain; place (k, 2) m;
+    force (k, 2) N, elastic and along the normal, on the first.
+    """
+
+    grains: np.ndarray
+    place: np.ndarray
+    force: np.ndarray
+
+
+UNTOUCHED = Pressing(np.zeros((0, 2), dtype=int), np.zeros((0, 2)), np.zeros((0, 2)))
+"""Of grains at which nobody looked, or that do not touch."""
+
+
+@ti.data_oriented
+class Presser:
+    """Reads the lists of contacts; what they remember stays as it is."""
+
+    def __init__(self, units: Units, grains: Grains, walls: Walls, neighbours: Neighbours, contacts: Contacts):
+        self.units, self.grains, self.walls = units, grains, walls
+        self.neighbours, self.contacts = neighbours, contacts
+
+    def read(self, world: int, time: float, number: np.ndarray) -> Pressing:
+        """What presses in a world at its time (s); number (n,): the grains' own, in solver order."""
+        units = slice(world * self.units.a_world, (world + 1) * self.units.a_world)
+        listed = [kind.length.to_numpy()[units] for kind in (self.neighbours.pairs, self.neighbours.contacts)]
+        first = np.concatenate([[0], np.cumsum(sum(listed))]).astype(np.int32)
+        names = np.full((max(1, first[-1]), 2), NOBODY, dtype=np.int32)
+        rows = np.zeros((len(names), 4), dtype=np.float32)
+        self.read_world(world, time, first, names, rows)
+        pressing = names[:, 0] != NOBODY
+        names, rows = names[pressing], rows[pressing]
+        return Pressing(np.where(names == NOBODY, NOBODY, number[names]), rows[:, :2], rows[:, 2:])
+
+    @ti.kernel
+    def read_world(self, w: ti.i32, t: ti.f64, first: Offsets, names: Names, rows: Rows):
+        """Fill the rows of each unit, from `first` on, with the contacts that press."""
+        for k in range(self.units.a_world):
+            u = w * self.units.a_world + k
+            self.read_pairs(self.grains, self.neighbours.pairs, w, u, first[k], names, rows)
+            after = first[k] + self.neighbours.pairs.length[u]
+            self.read_walls(self.grains, self.neighbours.contacts, w, u, t, after, names, rows)
+
+    @ti.func
+    def read_pairs(
+        self, g: ti.template(), pairs: ti.template(), w, u, first, names: ti.template(), rows: ti.template()
+    ):
+        """One row a pair; of one that two units list, in the unit of its lower number."""
+        start, end = self.units.first(u), self.units.end(u)
+        for p in range(pairs.length[u]):
+            listed, mate = pairs.first_of(u, p), pairs.second_of(u, p)
+            if start <= mate < end or listed < mate:
+                i, j = ti.min(listed, mate), ti.max(listed, mate)
+                self.write(first + p, i, j, self.contacts.pair_press(g, pairs, w, i, j, u, p), names, rows)
+
+    @ti.func
+    def read_walls(
+        self, g: ti.template(), contacts: ti.template(), w, u, t, first, names: ti.template(), rows: ti.template()
+    ):
+        """One row a contact with a wall or a part."""
+        shift = self.walls.shift(w, t)
+        for p in range(contacts.length[u]):
+            i, feature = contacts.first_of(u, p), contacts.second_of(u, p)
+            press = self.contacts.wall_press(g, contacts, w, i, feature, shift, u, p)
+            self.write(first + p, i, self.grains.mobile, press, names, rows)
+
+    @ti.func
+    def write(self, row, i, j, press, names: ti.template(), rows: ti.template()):
+        """A row, left empty where nothing presses."""
+        if press[2] != 0.0 or press[3] != 0.0:
+            names[row, 0] = i
+            if j < self.grains.mobile:
+                names[row, 1] = j
+            for k in ti.static(range(4)):
+                rows[row, k] = ti.cast(press[k], ti.f32)

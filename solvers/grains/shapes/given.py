@@ -1,0 +1,40 @@
+"""What a scene says of its irregular grains."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from solvers.grains.shapes.contour import Contour
+
+
+@dataclass(frozen=True)
+class Shapes:
+    """Outlines of the grains of W worlds: of grain i in world w `outlines[which[w, i]]`, `radius[w, i]` times as large.
+
+    `outlines` are about their centroids and have the area of a disc of radius 1; a scene's radii are those of discs of
+    equal area. `angle` (W, n) rad is by how much each is turned at the start, counter-clockwise. `contact` is one of
+    CONTACTS; `nodes` are those of an outline for the rules that have nodes. `reach` and `least_mass` are bounds on the
+    outlines' bounding radius and least mass, their own by default: given where a world must not depend on its company.
+    """
+
+    outlines: tuple[Contour, ...]
+    which: np.ndarray
+    angle: np.ndarray
+    contact: str = "continuous"
+    nodes: int = 120
+    reach: float | None = None
+    least_mass: float | None = None
+
+    def __post_init__(self):
+        if self.reach is None:
+            object.__setattr__(self, "reach", max(outline.bounding_radius for outline in self.outlines))
+        if self.least_mass is None:
+            object.__setattr__(self, "least_mass", min(outline.least_mass for outline in self.outlines))
+
+    @property
+    def convex(self) -> bool:
+        """Whether no outline bends inwards anywhere."""
+        return all(outline.convex for outline in self.outlines)
+
+
+CONTACTS = ("continuous", "nodes", "area")

@@ -1,0 +1,76 @@
+"""Grains that have an outline of their own, and so an orientation."""
+
+import numpy as np
+import taichi as ti
+
+from solvers.grains.shapes.contour import Contour
+from solvers.grains.shapes.given import Shapes
+from solvers.grains.shapes.pose import posed
+from solvers.grains.state import Grains
+from solvers.machine.runtime import Arrays
+
+DISC = Contour(1.0)
+
+
+@ti.data_oriented
+class ShapedGrains(Grains):
+    """Grains with `shape` (W, n + k + ghosts), numbers of their outlines; the fixed ones are discs, the last of them.
+
+    Mass is that of the sphere of equal area, inertia that of `Contour.inertia`. `turn_y` and `turn_z` are cos and sin
+    of the angle, so that the contacts of a step share them.
+    """
+
+    shaped = True
+
+    def __init__(
+        self,
+        arrays: Arrays,
+        shapes: Shapes,
+        radius: np.ndarray,
+        density: np.ndarray,
+        fixed: np.ndarray,
+        ghosts: int,
+        may_leave: bool,
+        kind: np.ndarray | None = None,
+    ):
+        outlines = with_disc(shapes)
+        spread = np.array([outline.spread for outline in outlines])[shapes.which]
+        super().__init__(arrays, radius, density, fixed, ghosts, may_leave, kind, spread)
+        bounding = np.array([outline.bounding_radius for outline in outlines])[shapes.which]
+        self.start_angle = shapes.angle
+        self.crowding = float((bounding**2).mean())  # so many times the neighbours that discs have are near
+        disc = len(outlines) - 1
+        self.shape = arrays.holding(self._filled(shapes.which, disc, disc), ti.i32, kept=True)
+        self.reach = arrays.holding(self._filled(radius * bounding, fixed[:, 2], 0.0), kept=True)
+        self.turn_y, self.turn_z = arrays.reals(2, (self.worlds, self.stride))
+
+    def place(self, position: np.ndarray) -> None:
+        """Put the grains at `position` (W, n, 2) m, turned as they are to start, at rest and without history."""
+        super().place(position)
+        angle = self._filled(self.start_angle, 0.0, 0.0)
+        for field, values in ((self.angle, angle), (self.turn_y, np.cos(angle)), (self.turn_z, np.sin(angle))):
+            field.from_numpy(values.astype(np.float32) if field.dtype == ti.f32 else values)
+
+    def count_turns_anew(self) -> None:
+        """Nothing: angles are those of the outlines."""
+
+    @ti.func
+    def turn(self, w, i):
+        """Cosine and sine of a grain's angle."""
+        return ti.Vector([self.turn_y[w, i], self.turn_z[w, i]])
+
+    @ti.func
+    def outline(self, w, i):
+        """A grain's outline, `posed`."""
+        return posed(self.shape[w, i], self.radius[w, i], self.turn(w, i))
+
+    @ti.func
+    def apart(self, w, i, j):
+        """The centre of grain i less that of j (m)."""
+        dy, dz = self.y[w, i] - self.y[w, j], self.z[w, i] - self.z[w, j]
+        return ti.Vector([ti.cast(dy, self.real), ti.cast(dz, self.real)])
+
+
+def with_disc(shapes: Shapes) -> list[Contour]:
+    """A scene's outlines, and after them the disc that fixed grains are."""
+    return [*shapes.outlines, DISC]

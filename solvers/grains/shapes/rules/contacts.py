@@ -1,0 +1,269 @@
+"""Contact forces of grains with outlines: the laws of the scene on what a rule of contact says."""
+
+import taichi as ti
+
+from solvers.grains.contacts import GIVEN_APART, Contacts, gathered
+from solvers.grains.laws.chosen import PAIR, WALL
+from solvers.grains.laws.extremes import greater, lesser
+from solvers.grains.shapes.rules.rest import HOLDS, NORMAL_Y, NORMAL_Z, OVERLAP, POINT_Y, POINT_Z
+
+
+@ti.data_oriented
+class ShapedContacts(Contacts):
+    """What the listed contacts do to grains with outlines.
+
+    The force acts at one point on both grains, so angular momentum is exact: between their outlines, where it is for
+    discs, too (see `Contacts`). Slip and rate are of that point. The laws' effective radius is that of the discs of
+    equal area, so that the elastic energy depends on the overlap alone. Where a rule knows saddles, a contact's normal
+    force is less by what the law says of the saddle's overlap (`Tracked`); what is left is what friction has.
+    A law that remembers, the hysteretic one, takes what it knows of the contact for its saddle, too: where two contacts
+    become one its force may jump.
+    """
+
+    def __init__(self, arrays, units, grains, walls, lists, laws, rule):
+        super().__init__(arrays, units, grains, walls, lists, laws)
+        self.rule, self.rest = rule, rule.rest
+
+    @ti.func
+    def pair_forces(self, g: ti.template(), pairs: ti.template(), u, dt):
+        """Forces between the grains g, a block of contacts at a time; one across two units is worked out in both."""
+        for block in range(pairs.blocks(u)):
+            i, j = self.in_order(pairs, u, block)
+            if not self.idle(g, pairs, i, j, u, block):
+                if self.rest.carry(g, pairs, i, j, u, block) > 0.0:
+                    self.ask(g, pairs, u, block, dt)
+                self.block_forces(g, pairs, i, j, u, block, dt)
+
+    @ti.func
+    def in_order(self, pairs: ti.template(), u, block):
+        """The two grains of each contact, that with the lower number first."""
+        listed, mate = pairs.grain[u, block], pairs.mate[u, block]
+        i, j = listed, mate
+        if ti.static(not self.units.whole):
+            i, j = lesser(listed, mate), greater(listed, mate)
+        return i, j
+
+    @ti.func
+    def idle(self, g: ti.template(), pairs: ti.template(), i, j, u, p):
+        """Whether there is nothing to do for a block of one contact; larger ones are not passed over."""
+        nothing = False
+        if ti.static(pairs.lanes == 1):
+            nothing = self.rule.is_lost(pairs, u, p) or self.rest.is_open(g, pairs, i, j, u, p)
+        return nothing
+
+    @ti.func
+    def ask(self, g: ti.template(), pairs: ti.template(), u, block, dt):
+        """Have the rule say what those contacts of a block are now that have come too far."""
+        w = self.units.world(u)
+        for lane in range(pairs.lanes):
+            if self.rest.is_asked(u, lane):
+                p = block * pairs.lanes + lane
+                listed, mate = pairs.first_of(u, p), pairs.second_of(u, p)
+                i, j = ti.min(listed, mate), ti.max(listed, mate)
+                c, d = self.rule.pair(g, pairs, w, i, j, u, p, True), ti.Vector([0.0 for _ in range(HOLDS + 1)])
+                if self.unsettled(pairs, u, p, c):
+                    c[OVERLAP] = -g.reach[w, i]
+                if ti.static(self.rule.bent):
+                    d = self.rule.pair_saddle(g, pairs, w, i, j, u, p, True)
+                self.rest.note(g, pairs, w, i, j, u, p, c, d, dt)
+
+    @ti.func
+    def block_forces(self, g: ti.template(), pairs: ti.template(), i, j, u, block, dt):
+        """Push grains i and j apart at a block of contacts, by so much less as the saddles before them say.
+
+        Straight-line arithmetic on short vectors, as `Contacts.pair_forces`.
+        """
+        overlap, ny, nz, py, pz = self.rest.present(self.rest.now, u)
+        at = self.rest.place(u)
+        apart_y, apart_z = self.rest.ways[0][at], self.rest.ways[1][at]
+        # From the middle of the overlap to where the outlines of discs would cross.
+        back = 0.5 - pairs.share[u, block]
+        if ti.static(not self.units.whole):
+            back = ti.select(pairs.grain[u, block] == i, back, -back)
+        overlap = greater(overlap, 0.0)
+        ly, lz = py + back * overlap * ny, pz + back * overlap * nz
+        uy, uz, turning = self.passing(g, pairs, i, j, ly, lz, apart_y, apart_z)
+        rate = -(uy * ny + uz * nz)
+        pressing = self.laws.press(PAIR, pairs, u, block, overlap, rate, dt)
+        fy, fz, torque = pressing * ny, pressing * nz, pressing * (ly * nz - lz * ny)
+        if ti.static(self.rule.bent):
+            shallow, my, mz, qy, qz = self.rest.present(self.rest.saddle_now, u)
+            if shallow[0] > 0.0 and overlap[0] > 0.0:
+                ky, kz = qy + back * shallow * my, qz + back * shallow * mz
+                vy, vz, _ = self.passing(g, pairs, i, j, ky, kz, apart_y, apart_z)
+                less = self.laws.press(PAIR, pairs, u, block, shallow, -(vy * my + vz * mz), dt)
+                fy, fz, torque = fy - less * my, fz - less * mz, torque - less * (ky * mz - kz * my)
+                pressing -= less
+        slip = uz * ny - uy * nz
+        ft, roll = self.laws.rub(PAIR, pairs, u, block, overlap, rate, greater(pressing, 0.0), slip, turning, dt)
+        fy, fz, torque = fy - ft * nz, fz + ft * ny, torque + ft * (ly * ny + lz * nz) + roll
+        self.push_block(g, pairs, i, u, block, fy, fz, torque, -torque - (apart_y * fz - apart_z * fy))
+
+    @ti.func
+    def passing(self, g: ti.template(), pairs: ti.template(), i, j, ly, lz, apart_y, apart_z):
+        """Velocities (y, z) m/s past j of grains i, at points (y, z) m from their centres, and spins past theirs."""
+        spin_i, spin_j = gathered(g.spin_now, i, pairs.lanes), gathered(g.spin_now, j, pairs.lanes)
+        uy = gathered(g.now_y, i, pairs.lanes) - gathered(g.now_y, j, pairs.lanes)
+        uz = gathered(g.now_z, i, pairs.lanes) - gathered(g.now_z, j, pairs.lanes)
+        uy += -spin_i * lz + spin_j * (lz + apart_z)
+        uz += spin_i * ly - spin_j * (ly + apart_y)
+        return uy, uz, spin_i - spin_j
+
+    @ti.func
+    def push_block(self, g: ti.template(), pairs: ti.template(), i, u, block, fy, fz, torque_i, torque_j):
+        """Push the grains of a block of contacts with forces (N) on i, and turn both with torques (N m)."""
+        listed, target = pairs.grain[u, block], pairs.target[u, block]
+        if ti.static(not self.units.whole):
+            swapped = listed != i
+            fy, fz = ti.select(swapped, -fy, fy), ti.select(swapped, -fz, fz)
+            torque_i, torque_j = ti.select(swapped, torque_j, torque_i), ti.select(swapped, torque_i, torque_j)
+        if ti.static(not self.units.single):
+            at = GIVEN_APART * u
+            self.given[0][at], self.given[1][at], self.given[2][at], self.given[3][at] = fy, fz, torque_i, torque_j
+        for k in ti.static(range(pairs.lanes)):
+            g.push(0, listed[k], fy[k], fz[k], torque_i[k])
+        if ti.static(not self.units.single):
+            for k in ti.static(range(pairs.lanes)):
+                g.push(0, target[k], -fy[k], -fz[k], torque_j[k])
+
+    @ti.func
+    def unsettled(self, contacts: ti.template(), u, p, c):
+        """Whether contact p does not hold any more; asks for a new look if it has been lost, or others have come up."""
+        if c[HOLDS] == 0.0:
+            self.lists.lose(contacts, u, p)
+        elif c[HOLDS] > 1.0:
+            self.lists.want(contacts, u, p)
+        return c[HOLDS] == 0.0
+
+    @ti.func
+    def pressed(self, kind: ti.template(), contacts: ti.template(), u, p, c, velocity, dt):
+        """Approach and slip (m/s), normal force (N) of a contact whose bodies pass each other at a velocity (m/s)."""
+        n = ti.Vector([c[NORMAL_Y], c[NORMAL_Z]])
+        overlap, rate = ti.Vector([greater(c[OVERLAP], 0.0)]), -velocity.dot(n)
+        return rate, n.cross(velocity), self.laws.press(kind, contacts, u, p, overlap, ti.Vector([rate]), dt)[0]
+
+    @ti.func
+    def rubbed(self, kind: ti.template(), contacts: ti.template(), u, p, c, rate, pressing, slip, turning, dt):
+        """Tangential force (N) and rolling torque (N m) of a contact."""
+        ft, roll = self.laws.rub(
+            kind,
+            contacts,
+            u,
+            p,
+            ti.Vector([greater(c[OVERLAP], 0.0)]),
+            ti.Vector([rate]),
+            ti.Vector([greater(pressing, 0.0)]),
+            ti.Vector([slip]),
+            ti.Vector([turning]),
+            dt,
+        )
+        return ft[0], roll[0]
+
+    @ti.func
+    def wall_forces(self, g: ti.template(), contacts: ti.template(), u, t, dt):
+        """Forces of the walls on the grains g."""
+        w = self.units.world(u)
+        shift = self.walls.shift(w, t)
+        for p in range(contacts.length[u]):
+            if not self.rule.is_lost(contacts, u, p):
+                self.wall_force(g, contacts, w, u, p, shift, dt)
+
+    @ti.func
+    def wall_force(self, g: ti.template(), contacts: ti.template(), w, u, p, shift: ti.template(), dt):
+        """The force of contact p on a grain."""
+        i, feature = contacts.first_of(u, p), contacts.second_of(u, p)
+        c = self.rule.wall(g, contacts, w, i, feature, shift, u, p, True)
+        if self.unsettled(contacts, u, p, c):
+            c[OVERLAP] = -g.reach[w, i]
+        velocity = self.walls.velocity(feature, shift)
+        lever = lever_of(c, 0.5)
+        rate, slip, pressing = self.wall_pressed(g, contacts, w, i, u, p, c, lever, velocity, dt)
+        n = ti.Vector([c[NORMAL_Y], c[NORMAL_Z]])
+        force, torque = pressing * n, pressing * lever.cross(n)
+        if ti.static(self.rule.bent):
+            d = self.rule.wall_saddle(g, contacts, w, i, feature, shift, u, p, True)
+            if d[OVERLAP] > 0.0 and c[OVERLAP] > 0.0:
+                arm, m = lever_of(d, 0.5), ti.Vector([d[NORMAL_Y], d[NORMAL_Z]])
+                less = self.wall_pressed(g, contacts, w, i, u, p, d, arm, velocity, dt)[2]
+                force, torque, pressing = force - less * m, torque - less * arm.cross(m), pressing - less
+        ft, roll = self.rubbed(WALL, contacts, u, p, c, rate, pressing, slip, g.spin_now[w, i], dt)
+        force += ft * ti.Vector([-n[1], n[0]])
+        g.push(w, i, force[0], force[1], torque + ft * lever.dot(n) + roll)
+
+    @ti.func
+    def wall_pressed(
+        self, g: ti.template(), contacts: ti.template(), w, i, u, p, c, lever, velocity: ti.template(), dt
+    ):
+        """Approach and slip (m/s) of a grain on a wall that moves at a velocity (m/s), and the normal force (N)."""
+        uy = g.now_y[w, i] - velocity[0] - g.spin_now[w, i] * lever[1]
+        uz = g.now_z[w, i] - velocity[1] + g.spin_now[w, i] * lever[0]
+        return self.pressed(WALL, contacts, u, p, c, ti.Vector([uy, uz]), dt)
+
+    @ti.func
+    def pair_press(self, g: ti.template(), pairs: ti.template(), w, i, j, u, p):
+        """Where contact p of grains i and j is (y, z) m, and its elastic force on i (N); nothing is remembered."""
+        c = self.rule.pair(g, pairs, w, i, j, u, p, False)
+        force = self.elastic_along(pairs, u, p, c, self.rule.is_lost(pairs, u, p))
+        if ti.static(self.rule.bent):  # noqa: SIM102 (compiled only there)
+            if c[OVERLAP] > 0.0:
+                saddle = self.rule.pair_saddle(g, pairs, w, i, j, u, p, False)
+                force -= self.elastic_along(pairs, u, p, saddle, self.rule.is_lost(pairs, u, p))
+        return ti.Vector([g.y[w, i] + c[POINT_Y], g.z[w, i] + c[POINT_Z], force[0], force[1]])
+
+    @ti.func
+    def wall_press(self, g: ti.template(), contacts: ti.template(), w, i, feature, shift: ti.template(), u, p):
+        """Where contact p of a grain with a wall is (y, z) m, and its elastic force on the grain (N)."""
+        c = self.rule.wall(g, contacts, w, i, feature, shift, u, p, False)
+        force = self.elastic_along(contacts, u, p, c, self.rule.is_lost(contacts, u, p))
+        if ti.static(self.rule.bent):  # noqa: SIM102 (compiled only there)
+            if c[OVERLAP] > 0.0:
+                saddle = self.rule.wall_saddle(g, contacts, w, i, feature, shift, u, p, False)
+                force -= self.elastic_along(contacts, u, p, saddle, self.rule.is_lost(contacts, u, p))
+        return ti.Vector([g.y[w, i] + c[POINT_Y], g.z[w, i] + c[POINT_Z], force[0], force[1]])
+
+    @ti.func
+    def elastic_along(self, contacts: ti.template(), u, p, c, lost):
+        """Elastic force (N) along the normal of a contact or saddle c; none of one that has been lost sight of."""
+        force = self.laws.elastic(contacts, u, p, ti.select(lost, 0.0 * c[OVERLAP], c[OVERLAP]))
+        return force * ti.Vector([c[NORMAL_Y], c[NORMAL_Z]])
+
+    @ti.func
+    def census(self, g: ti.template(), pairs: ti.template(), contacts: ti.template(), u, t):
+        """Number of touching contacts, largest overlap in radii of the smaller grain, their energy (J), of a unit."""
+        w, start, end = self.units.world(u), self.units.first(u), self.units.end(u)
+        zero = ti.cast(0.0, g.exact)
+        touching, deepest, energy = zero, zero, zero
+        for p in range(pairs.length[u]):
+            i, j = pairs.first_of(u, p), pairs.second_of(u, p)
+            overlap = self.rule.pair(g, pairs, w, ti.min(i, j), ti.max(i, j), u, p, False)[OVERLAP]
+            if overlap > 0.0:
+                part = ti.select(start <= j < end or j >= g.mobile, 1.0, 0.5)
+                touching += part
+                deepest = ti.max(deepest, overlap / ti.min(g.radius[w, i], g.radius[w, j]))
+                energy += part * self.laws.energy(PAIR, pairs, u, p, overlap)
+                if ti.static(self.rule.bent):
+                    saddle = self.rule.pair_saddle(g, pairs, w, ti.min(i, j), ti.max(i, j), u, p, False)[OVERLAP]
+                    energy -= part * self.laws.pressed_energy(pairs, u, p, greater(saddle, 0.0))
+        shift = self.walls.shift(w, t)
+        for p in range(contacts.length[u]):
+            i, feature = contacts.first_of(u, p), contacts.second_of(u, p)
+            overlap = self.rule.wall(g, contacts, w, i, feature, shift, u, p, False)[OVERLAP]
+            if overlap > 0.0:
+                touching += 1.0
+                deepest = ti.max(deepest, overlap / g.radius[w, i])
+                energy += self.laws.energy(WALL, contacts, u, p, overlap)
+                if ti.static(self.rule.bent):
+                    saddle = self.rule.wall_saddle(g, contacts, w, i, feature, shift, u, p, False)[OVERLAP]
+                    energy -= self.laws.pressed_energy(contacts, u, p, greater(saddle, 0.0))
+        return ti.Vector([touching, deepest, energy])
+
+
+@ti.func
+def lever_of(c, back):
+    """From a grain's centre (y, z) m to where the force of a contact acts, that part of the overlap from its middle."""
+    return ti.Vector(
+        [
+            c[POINT_Y] + back * greater(c[OVERLAP], 0.0) * c[NORMAL_Y],
+            c[POINT_Z] + back * greater(c[OVERLAP], 0.0) * c[NORMAL_Z],
+        ]
+    )

@@ -1,0 +1,113 @@
+"""The source's rule: of all nodes of two outlines the one that lies deepest in the other."""
+
+from math import pi
+
+import taichi as ti
+
+from solvers.grains.shapes.given import Shapes
+from solvers.grains.shapes.grains import with_disc
+from solvers.grains.shapes.pose import turned, turned_back
+from solvers.grains.shapes.rules.nodes import Nodes
+from solvers.grains.shapes.rules.osculating import Osculating
+from solvers.grains.shapes.rules.rest import Rest
+from solvers.grains.shapes.rules.single import Single
+from solvers.grains.shapes.rules.wall import FAR, SeenWalls
+from solvers.grains.shapes.tables import Tables
+from solvers.machine.runtime import Arrays
+from solvers.machine.units import Units
+from solvers.tank.walls import Walls
+
+NEAR = 0.01  # of the way from one node to the next: how far a contact slides until its neighbours are looked at
+SELDOM = 64  # looks from one at all nodes to the next
+
+
+@ti.data_oriented
+class Discrete(Single):
+    """One contact of two grains, or of a grain and a wall, at the deepest node (Spandonidis 2016, table 8.1).
+
+    All nodes are looked at until two touch, and every SELDOM times that the contact is asked for; in between the
+    deepest of either grain is followed from node to node. `looked` counts those times.
+    """
+
+    wall_memory = ("looked", "node_first")
+    pair_memory = (*wall_memory, "node_second")
+
+    def __init__(self, arrays: Arrays, units: Units, walls: Walls, shapes: Shapes):
+        outlines = with_disc(shapes)
+        self.tables = Tables(arrays, outlines)
+        # Where outlines bend another node may come to lie deeper elsewhere as two are pressed together.
+        near = NEAR * 2.0 * pi / shapes.nodes
+        self.rest = Osculating(arrays, units, outlines, near) if shapes.convex else Rest(arrays, units, bent=False)
+        self.nodes, self.walls = Nodes(arrays, self.tables, outlines, shapes.nodes), SeenWalls(arrays, walls)
+
+    @ti.func
+    def note(self, contacts: ti.template(), u, p, k):
+        """All nodes of contact p are to be looked at."""
+        contacts.looked[u, p][0] = 0.0
+
+    @ti.func
+    def count_look(self, contacts: ti.template(), u, p):
+        """Looks since all nodes of contact p were looked at, which is done SELDOM."""
+        k = ti.cast(contacts.looked[u, p][0], ti.i32)
+        contacts.looked[u, p][0] = (k + 1) % SELDOM
+        return k
+
+    @ti.func
+    def pair(self, g: ti.template(), pairs: ti.template(), w, i, j, u, p, moves: ti.template()):
+        """The contact of grains i and j: overlap (m), normal towards i, point from i's centre (m), 1.0: it holds."""
+        anew, first, second = True, 0, 0
+        if ti.static(moves):
+            anew = self.count_look(pairs, u, p) == 0
+            first, second = ti.cast(pairs.node_first[u, p][0], ti.i32), ti.cast(pairs.node_second[u, p][0], ti.i32)
+        one, two = g.outline(w, i), g.outline(w, j)
+        c, first, second = self.nodes.contact(one, two, g.apart(w, i, j), first, second, anew)
+        if ti.static(moves):
+            pairs.node_first[u, p][0], pairs.node_second[u, p][0] = first, second
+            if c[0] <= 0.0:
+                pairs.looked[u, p][0] = 0.0
+        return ti.Vector([c[0], c[1], c[2], c[3], c[4], 1.0 + 0.0 * c[0], c[5], c[6]])
+
+    @ti.func
+    def wall(
+        self, g: ti.template(), contacts: ti.template(), w, i, feature, shift: ti.template(), u, p, moves: ti.template()
+    ):
+        """The contact of a grain with a wall, as `pair`; it does not count where it is another feature's."""
+        contact = ti.Vector([0.0 * g.radius[w, i], 0.0, 0.0, 0.0, 0.0, 1.0])
+        if feature < self.walls.walls.segments:
+            face = self.walls.facing(feature, shift, g.y[w, i], g.z[w, i])
+            normal = ti.Vector([ti.cast(face[0], g.real), ti.cast(face[1], g.real)])
+            own, k, lowest = turned_back(g.turn(w, i), normal), 0, 0
+            if ti.static(moves):
+                k, lowest = self.count_look(contacts, u, p), ti.cast(contacts.node_first[u, p][0], ti.i32)
+            if k == 0:
+                lowest = self.lowest(g.shape[w, i], own)
+            else:
+                beside = self.nodes.beside(lowest, 2 * (k % 2) - 1)
+                if self.nodes.place(g.shape[w, i], beside).dot(own) < self.nodes.place(g.shape[w, i], lowest).dot(own):
+                    lowest = beside
+            if ti.static(moves):
+                contacts.node_first[u, p][0] = lowest
+            node = g.radius[w, i] * turned(g.turn(w, i), self.nodes.place(g.shape[w, i], lowest))
+            overlap = -ti.cast(face[2], g.real) - node.dot(normal)
+            if not self.walls.counts_on_segment(feature, shift, g.y[w, i] + node[0], g.z[w, i] + node[1]):
+                overlap = -FAR
+            contact = ti.Vector([overlap, normal[0], normal[1], node[0], node[1], 1.0])
+        else:
+            contact = self.walls.corner_contact(g, self.tables, w, i, feature, shift)
+        return contact
+
+    @ti.func
+    def lowest(self, shape, normal):
+        """The node of an outline that lies farthest against a unit vector."""
+        best, found, k = FAR, 0, 0
+        while k < self.nodes.length:
+            after = self.nodes.after[k]
+            height = ti.Vector([self.nodes.circle[shape, k, 0], self.nodes.circle[shape, k, 1]]).dot(normal)
+            width = self.nodes.circle[shape, k, 2]
+            if height - width < best:
+                if width == 0.0:
+                    best, found = height, self.nodes.start[k]
+                else:
+                    after = k + 1
+            k = after
+        return found

@@ -1,0 +1,182 @@
+"""Who may touch whom where grains have outlines: one entry a contact, of which two grains may have several."""
+
+from math import ceil
+
+import numpy as np
+import taichi as ti
+
+from solvers.grains.laws.extremes import greater
+from solvers.grains.neighbours import NEVER, Neighbours
+from solvers.grains.shapes.rules.rest import STILL
+
+BENT_PLACES = 4  # for contacts of two of whose outlines one bends, for a start
+
+
+@ti.data_oriented
+class ShapedNeighbours(Neighbours):
+    """Neighbour lists of grains whose bounding circles are near each other; a rule says how many contacts they have.
+
+    Two that are near are given as much room as they may need, side by side, and their contacts are sought: with all
+    others where lists are built, or alone where one of them is lost or more come up. The two grains of a pair are put
+    to the rule in the order of their numbers, so that units that share a pair work out the same numbers.
+    """
+
+    def __init__(self, arrays, units, grains, walls, skin, bridges, reach, laws, modulus, room, rule):
+        self.lanes, self.pair_fleeting = rule.rest.lanes, rule.rest.memory
+        self.places = min(rule.most, BENT_PLACES * room)
+        room *= (BENT_PLACES if rule.bent else 1) * ceil(grains.crowding - 0.01)
+        super().__init__(arrays, units, grains, walls, skin, bridges, reach, laws, modulus, room, rule)
+        self.rule = rule
+        for contacts in (self.pairs, self.contacts):
+            # Whether, at the first contact of two, theirs are to be sought anew.
+            (contacts.wanted,) = arrays.vectors(1, 1, (units.count, contacts.capacity), units.single)
+        (self.built_angle,) = arrays.reals(1, (grains.worlds, grains.count))
+        self.asking = arrays.holding(np.zeros(units.count), ti.i32, kept=True)
+
+    @ti.func
+    def list_pair(self, g: ti.template(), u, found, i, j, target, dt):
+        """Make room for the contacts of two grains that are near each other; returns how many there are then."""
+        places = self.rule.places_for_pair(g, self.units.world(u), i, j, self.places)
+        for p in range(found, ti.min(found + places, self.pairs.capacity)):
+            self.write_pair(g, u, p, i, j, target, False, dt)
+            farther = greater(g.reach[self.units.world(u), i], g.reach[self.units.world(u), j])
+            self.pairs.reach[u, p // self.lanes][p % self.lanes] = farther
+            self.rule.free(self.pairs, u, p)
+            self.pairs.wanted[u, p][0] = ti.select(p == found, 1.0, 0.0)
+        return found + places
+
+    @ti.func
+    def list_contact(self, g: ti.template(), u, found, i, feature, shift: ti.template(), dt):
+        """Make room for the contacts of a grain with a wall that is near; returns how many there are then."""
+        places = self.rule.places_for_wall(g, self.units.world(u), i, self.places)
+        for p in range(found, ti.min(found + places, self.contacts.capacity)):
+            self.write_contact(g, u, p, i, feature, False, dt)
+            self.rule.free(self.contacts, u, p)
+            self.contacts.wanted[u, p][0] = ti.select(p == found, 1.0, 0.0)
+        return found + places
+
+    @ti.func
+    def asked(self, u):
+        """Whether some contacts of a unit are to be sought anew, though its lists are good."""
+        return self.asking[u] != 0
+
+    @ti.func
+    def seek(self, u, t, whole):
+        """Seek the contacts of all pairs that are wanted; returns False where two have more than there is room for."""
+        g, w, fits = self.grains, self.units.world(u), True
+        shift = self.walls.shift(w, t)
+        for p in range(self.pairs.length[u], self.pairs.blocks(u) * self.pairs.lanes):
+            self.rule.rest.forget(self.pairs, u, p, False)
+        for p in range(self.pairs.length[u]):
+            if self.pairs.wanted[u, p][0] > 0.0:
+                i, j = self.pairs.first_of(u, p), self.pairs.second_of(u, p)
+                if not (whole and self.goes_on(u, p, i)):
+                    count = self.rule.seek_pair(g, w, ti.min(i, j), ti.max(i, j), self.margin(), u)
+                    fits = self.replace(self.pairs, u, p, i, j, count, whole) and fits
+        for p in range(self.contacts.length[u]):
+            if self.contacts.wanted[u, p][0] > 0.0:
+                i, feature = self.contacts.first_of(u, p), self.contacts.second_of(u, p)
+                count = self.rule.seek_wall(g, w, i, feature, shift, self.margin(), u)
+                fits = self.replace(self.contacts, u, p, i, feature, count, whole) and fits
+        self.asking[u] = 0
+        if not fits:
+            self.travel[u] = NEVER
+            if whole:
+                self.put_back(u)
+        return fits
+
+    @ti.func
+    def goes_on(self, u, p, i):
+        """Whether contact p is the only one of its two, and known from the old list, so that it need not be sought."""
+        known = False
+        if ti.static(not self.rule.bent):
+            row, mate = i - self.units.first(u), self.pairs.second_of(u, p)
+            place = self.units.world(u) * self.pairs.stride + mate
+            for q in range(self.pairs.old_first[u, row], self.pairs.old_first[u, row + 1]):
+                if self.pairs.old_mate[u, q] == place and self.rule.was_known(self.pairs, u, q):
+                    self.pairs.recall(u, p, q)
+                    known = True
+            if known:
+                self.pairs.wanted[u, p][0] = 0.0
+                self.rule.rest.forget(self.pairs, u, p, True)
+        return known
+
+    @ti.func
+    def replace(self, contacts: ti.template(), u, head, i, mate, count, whole):
+        """The contacts of these two, from `head` on, are now the `count` that the rule has found, if they fit.
+
+        What these remember is in the old lists; there, or if not the `whole` list is new, in the present ones.
+        """
+        row, end = i - self.units.first(u), head
+        while end < contacts.first[u, row + 1] and contacts.second_of(u, end) == mate:
+            end += 1
+        if not whole:
+            contacts.set_aside_some(u, row, head, end)
+        contacts.wanted[u, head][0] = 0.0
+        for p in range(head, end):
+            contacts.clear(u, p)
+            if p - head < count:
+                self.recall(contacts, u, p, i, mate, p - head, count)
+            else:
+                self.rule.free(contacts, u, p)
+            if ti.static(hasattr(contacts, STILL)):
+                self.rule.rest.forget(contacts, u, p, p - head < count)
+        return count <= end - head
+
+    @ti.func
+    def recall(self, contacts: ti.template(), u, p, i, mate, k, count):
+        """Contact p, the k-th of `count` that the rule has found of these two, remembers what it did in the old list.
+
+        That is what the nearest of the old contacts did, if none of the others found is nearer to that one.
+        """
+        row, place = i - self.units.first(u), self.units.world(u) * contacts.stride + mate
+        best, nearest = -1, ti.cast(self.rule.farthest, self.grains.real)
+        for q in range(contacts.old_first[u, row], contacts.old_first[u, row + 1]):
+            if contacts.old_mate[u, q] == place:
+                away, taken = self.rule.away(contacts, u, q, k), False
+                for other in range(count):
+                    if other != k and self.rule.away(contacts, u, q, other) < away:
+                        taken = True
+                if away < nearest and not taken:
+                    best, nearest = q, away
+        if best >= 0:
+            contacts.recall(u, p, best)
+        self.rule.note(contacts, u, p, k)
+
+    @ti.func
+    def note_built(self, w, i):
+        """Remember where a grain is as the lists are built."""
+        self.built_y[w, i], self.built_z[w, i] = self.grains.y[w, i], self.grains.z[w, i]
+        self.built_angle[w, i] = self.grains.angle[w, i]
+
+    @ti.func
+    def way(self, w, i):
+        """How far (m) any point of a grain can have gone since then."""
+        dy = ti.cast(self.grains.y[w, i] - self.built_y[w, i], self.grains.real)
+        dz = ti.cast(self.grains.z[w, i] - self.built_z[w, i], self.grains.real)
+        turned = ti.abs(self.grains.angle[w, i] - self.built_angle[w, i])
+        return ti.sqrt(dy * dy + dz * dz) + turned * self.grains.reach[w, i]
+
+    @ti.func
+    def lose(self, contacts: ti.template(), u, p):
+        """Contact p has been lost sight of: look for it before the next step."""
+        if not self.rule.is_lost(contacts, u, p):
+            self.rule.lose(contacts, u, p)
+            self.want(contacts, u, p)
+
+    @ti.func
+    def want(self, contacts: ti.template(), u, p):
+        """Have the contacts of the two that touch at p sought anew before the next step."""
+        contacts.wanted[u, self.head(contacts, u, p)][0] = 1.0
+        if ti.static(self.units.single):
+            self.travel[u] = NEVER
+        else:
+            self.asking[u] = 1
+
+    @ti.func
+    def head(self, contacts: ti.template(), u, p):
+        """The first contact of the two that touch at p."""
+        first, start = p, contacts.first[u, contacts.first_of(u, p) - self.units.first(u)]
+        while first > start and contacts.second_of(u, ti.max(first - 1, 0)) == contacts.second_of(u, p):
+            first -= 1
+        return first

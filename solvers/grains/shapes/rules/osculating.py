@@ -1,0 +1,93 @@
+"""Contacts carried along on the circles that fit the outlines where they touch."""
+
+from math import inf
+
+import numpy as np
+import taichi as ti
+
+from solvers.grains.laws.extremes import greater, lesser
+from solvers.grains.shapes.contour import Contour
+from solvers.grains.shapes.rules.rest import HOLDS, OVERLAP, Rest
+from solvers.machine.runtime import Arrays
+from solvers.machine.units import Units
+
+CURVED_I, CURVED_J = HOLDS + 1, HOLDS + 2  # elements of what a rule says: radii of curvature (m)
+OFF, LONGEST = 1e-7, 0.02  # of R0: an overlap's error after a slide, and the longest slide
+TINY = 1e-30
+TOGETHER = 0.05  # rad: how far the two grains may turn
+
+
+@ti.data_oriented
+class Osculating(Rest):
+    """Takes both outlines for their osculating circles, so that contacts become those of discs that stick to grains.
+
+    That lasts until a contact has slid along the outlines: by s, and with κ their curvature, its overlap is off by
+    κ' s³/6 (local canonical form, do Carmo 1976, section 1-6), which `slides` (classes,) m, of grains of radius 1,
+    keeps small. Where grains were apart they may move by as much.
+    """
+
+    said = (*Rest.said, "curved_i", "curved_j")
+    elements = (*Rest.elements, CURVED_I, CURVED_J)
+
+    def __init__(self, arrays: Arrays, units: Units, outlines: list[Contour], most: float = inf):
+        super().__init__(arrays, units, False)
+        self.slides = arrays.holding(np.array([min(most, slide_of(outline)) for outline in outlines]))
+
+    @ti.func
+    def carried(self, to: ti.template(), names: ti.template(), pairs: ti.template(), u, block, moves: ti.template()):
+        """Write down contacts as they are after these moves; returns how far (m) they have slid on both outlines.
+
+        In components along the normal and across it, as it was, counted from the grains' centres.
+        """
+        was, ny, nz, py, pz = self.heard(names, pairs, u, block)
+        overlap = greater(was, 0.0)
+        curved_i, curved_j = pairs.was_curved_i[u, block], pairs.was_curved_j[u, block]
+        far_y, far_z = py + pairs.apart_y[u, block], pz + pairs.apart_z[u, block]
+        at, half = self.place(u), 0.5 * overlap
+        # The centres of curvature, and how they go as the grains turn.
+        n_i, t_i = py * ny + pz * nz + (curved_i - half), pz * ny - py * nz
+        n_j, t_j = far_y * ny + far_z * nz - (curved_j - half), far_z * ny - far_y * nz
+        sine_i, lost_i = turn_by(moves[2])
+        sine_j, lost_j = turn_by(moves[3])
+        to_n, to_t = -sine_i * t_i - lost_i * n_i, sine_i * n_i - lost_i * t_i
+        un = moves[0] * ny + moves[1] * nz + to_n + sine_j * t_j + lost_j * n_j
+        ut = moves[1] * ny - moves[0] * nz + to_t - sine_j * n_j + lost_j * t_j
+        # x is the tangent of the angle by which the line of the centres has turned.
+        apart = curved_i + curved_j - overlap + un
+        x = ut / ti.select(was > 0.0, apart, 1.0 + 0.0 * apart)
+        square = x * x
+        now = overlap - un - 0.5 * ut * x * (1.0 - 0.25 * square)
+        cosine = 1.0 - square * (0.5 - 0.375 * square)
+        sine, back = cosine * x, curved_i - 0.5 * now
+        own_n, own_t = n_i + to_n - back * cosine, t_i + to_t - back * sine
+        to[0][at] = ti.select(was > 0.0, now, was)
+        to[1][at], to[2][at] = cosine * ny - sine * nz, cosine * nz + sine * ny
+        to[3][at], to[4][at] = own_n * ny - own_t * nz, own_n * nz + own_t * ny
+        return ti.abs(curved_i * (x - moves[2])) + ti.abs(curved_j * (x - moves[3]))
+
+    @ti.func
+    def far(self, pairs: ti.template(), u, block, way, slid, angle_i, angle_j):
+        """How far (m) a contact has slid, or grains that were apart have moved."""
+        slid = ti.select(ti.abs(angle_i) + ti.abs(angle_j) < TOGETHER, slid, 1.0 + 0.0 * slid)
+        return ti.select(pairs.was_overlap[u, block] > 0.0, slid, way)
+
+    @ti.func
+    def still(self, g: ti.template(), pairs: ti.template(), w, i, j, u, p, c, d):
+        """How far (m) a contact that the rule has just seen may slide, or its grains may move before they touch."""
+        first, second = self.slides[g.shape[w, i]], self.slides[g.shape[w, j]]
+        still = lesser(first * g.radius[w, i], second * g.radius[w, j])
+        still = ti.select(c[OVERLAP] > 0.0, still, -c[OVERLAP])
+        return ti.select(c[HOLDS] == 1.0, still, 0.0 * still)
+
+
+@ti.func
+def turn_by(angle):
+    """Sine, and one less cosine, of a small angle (rad)."""
+    square = angle * angle
+    return angle * (1.0 - square * (1.0 / 6.0)), square * (0.5 - square * (1.0 / 24.0))
+
+
+def slide_of(outline: Contour) -> float:
+    """How far (m) a contact may slide on an outline until its osculating circle's error κ' s³/6 is OFF times R0."""
+    changes = max(outline.sharpest_change, TINY / outline.radius**2)
+    return min(LONGEST * outline.radius, (6.0 * OFF * outline.radius / changes) ** (1.0 / 3.0))

@@ -1,0 +1,178 @@
+"""Contacts looked at once, and carried along with their grains until these have moved past each other."""
+
+import taichi as ti
+
+from solvers.grains.contacts import gathered
+from solvers.grains.laws.extremes import greater, lesser
+from solvers.grains.neighbours import LANES, NEVER
+from solvers.machine.runtime import Arrays
+from solvers.machine.units import Units
+
+# Elements of what a rule says of a contact: m, 1, m from the first grain's centre, and whether it is one.
+OVERLAP, NORMAL_Y, NORMAL_Z, POINT_Y, POINT_Z, HOLDS = range(6)
+# Of the smaller grain's radius. By then an overlap is off by the square of it, a normal by it, each times a radius over
+# the outlines' radii of curvature.
+HARDLY = 1e-5
+STILL = "still"
+SEEN = (STILL, "apart_y", "apart_z", "angle_first", "angle_second")
+SAID = ("overlap", "normal_y", "normal_z", "point_y", "point_z")
+CACHE_LINES = 16  # numbers: two of them, so that no two threads write to one
+
+
+@ti.data_oriented
+class Rest:
+    """What a contact's rule said last, how the two grains lay then, and how far (m) they may move before it is asked.
+
+    That is HARDLY, or as far as they were apart. The overlap changes as the points that touch move along the normal,
+    which is exact to first order; normal and point stay.
+
+    Contacts are carried a block at a time. What those of a unit's block are `now`, and the `saddle` before each where
+    outlines are `bent`, is written down in the order of SAID, with the `ways` (y, z) m from j to i, and in `asked` 1
+    where the rule is to be asked, else 0.
+    """
+
+    said, elements = SAID, (OVERLAP, NORMAL_Y, NORMAL_Z, POINT_Y, POINT_Z)  # what is remembered, by name and number
+
+    def __init__(self, arrays: Arrays, units: Units, bent: bool):
+        # Where outlines bend most of the room for contacts is empty, and is passed over.
+        self.bent, self.lanes = bent, 1 if bent or units.single else LANES
+        self.contact = tuple(f"was_{name}" for name in self.said)
+        self.saddle = tuple(f"saddle_{name}" for name in self.said) if bent else ()
+        self.memory = SEEN + self.contact + self.saddle
+        self.spacing = 1 if units.single else max(2, CACHE_LINES // self.lanes)
+        rows = (self.spacing * units.count,)
+        self.ways = arrays.vectors(2, self.lanes, rows, kept=False)
+        self.now = arrays.vectors(len(SAID), self.lanes, rows, kept=False)
+        self.saddle_now = arrays.vectors(len(SAID) if bent else 0, self.lanes, rows, kept=False)
+        (self.asked,) = arrays.vectors(1, self.lanes, rows, kept=False)
+
+    @ti.func
+    def is_open(self, g: ti.template(), pairs: ti.template(), i, j, u, p):
+        """Whether two grains that were apart still are, where a block is one contact."""
+        y, z, angle_i, angle_j = self.moves(g, pairs, i, j, u, p)
+        way = self.way(pairs, u, p, y, z, angle_i, angle_j)[0]
+        return pairs.was_overlap[u, p][0] <= -way and way < pairs.still[u, p][0]
+
+    @ti.func
+    def carry(self, g: ti.template(), pairs: ti.template(), i, j, u, block):
+        """Carry a block of contacts along with their grains i and j; returns for how many the rule is to be asked."""
+        y, z, angle_i, angle_j = self.moves(g, pairs, i, j, u, block)
+        moves = [y, z, angle_i, angle_j]
+        slid = self.carried(self.now, self.contact, pairs, u, block, moves)
+        if ti.static(self.bent):
+            self.carried(self.saddle_now, self.saddle, pairs, u, block, moves)
+        way, at, still = self.way(pairs, u, block, y, z, angle_i, angle_j), self.place(u), pairs.still[u, block]
+        far = self.far(pairs, u, block, way, slid, angle_i, angle_j)
+        self.ways[0][at], self.ways[1][at] = y + pairs.apart_y[u, block], z + pairs.apart_z[u, block]
+        asked = ti.select(far < still, 0.0 * still, 1.0 + 0.0 * still)  # 1, too, where `far` is not a number
+        self.asked[at] = asked
+        return asked.sum()
+
+    @ti.func
+    def place(self, u):
+        """Where what is now of a unit's block is written down."""
+        return self.spacing * u
+
+    @ti.func
+    def is_asked(self, u, lane):
+        """Whether the rule is to be asked of this contact of a unit's block."""
+        return self.asked[self.place(u)][lane] > 0.0
+
+    @ti.func
+    def present(self, of: ti.template(), u):
+        """Overlaps (m), normals (y, z) and points (y, z) m of a unit's block, of its contacts `now` or saddles."""
+        at = self.place(u)
+        return of[OVERLAP][at], of[NORMAL_Y][at], of[NORMAL_Z][at], of[POINT_Y][at], of[POINT_Z][at]
+
+    @ti.func
+    def moves(self, g: ti.template(), pairs: ti.template(), i, j, u, block):
+        """How the ways from j to i (y, z) m and the angles of i and j (rad) have changed since the rule was asked."""
+        y = gathered(g.y, i, self.lanes) - gathered(g.y, j, self.lanes)
+        z = gathered(g.z, i, self.lanes) - gathered(g.z, j, self.lanes)
+        angle_i = gathered(g.angle, i, self.lanes) - pairs.angle_first[u, block]
+        angle_j = gathered(g.angle, j, self.lanes) - pairs.angle_second[u, block]
+        return (
+            ti.cast(y, g.real) - pairs.apart_y[u, block],
+            ti.cast(z, g.real) - pairs.apart_z[u, block],
+            angle_i,
+            angle_j,
+        )
+
+    @ti.func
+    def way(self, pairs: ti.template(), u, block, y, z, angle_i, angle_j):
+        """At most so far (m) any point of one grain has moved as the other sees it."""
+        return ti.abs(y) + ti.abs(z) + pairs.reach[u, block] * (ti.abs(angle_i) + ti.abs(angle_j))
+
+    @ti.func
+    def far(self, pairs: ti.template(), u, block, way, slid, angle_i, angle_j):
+        """What is not to exceed what a contact's grains may move, m."""
+        return way
+
+    @ti.func
+    def carried(self, to: ti.template(), names: ti.template(), pairs: ti.template(), u, block, moves: ti.template()):
+        """Write down contacts as they are after these moves; returns how far (m) they have slid, which is not known."""
+        overlap, ny, nz, py, pz = self.heard(names, pairs, u, block)
+        at, far_y, far_z = self.place(u), py + pairs.apart_y[u, block], pz + pairs.apart_z[u, block]
+        uy = moves[0] - moves[2] * pz + moves[3] * far_z
+        uz = moves[1] + moves[2] * py - moves[3] * far_y
+        to[0][at], to[1][at], to[2][at], to[3][at], to[4][at] = overlap - uy * ny - uz * nz, ny, nz, py, pz
+        return 0.0 * overlap
+
+    @ti.func
+    def heard(self, names: ti.template(), pairs: ti.template(), u, block):
+        """What the rule said of a block of contacts, or of the saddles before them."""
+        return (
+            ti.static(getattr(pairs, names[OVERLAP]))[u, block],
+            ti.static(getattr(pairs, names[NORMAL_Y]))[u, block],
+            ti.static(getattr(pairs, names[NORMAL_Z]))[u, block],
+            ti.static(getattr(pairs, names[POINT_Y]))[u, block],
+            ti.static(getattr(pairs, names[POINT_Z]))[u, block],
+        )
+
+    @ti.func
+    def note(self, g: ti.template(), pairs: ti.template(), w, i, j, u, p, c, d, dt):
+        """Take down contact p of grains i and j, and the saddle before it, as the rule sees them now."""
+        still = self.still(g, pairs, w, i, j, u, p, c, d)
+        turns = g.reach[w, i] * ti.abs(g.spin_now[w, i]) + g.reach[w, j] * ti.abs(g.spin_now[w, j])
+        speed = ti.abs(g.now_y[w, i] - g.now_y[w, j]) + ti.abs(g.now_z[w, i] - g.now_z[w, j]) + turns
+        still = ti.select(speed * dt < still, still, 0.0 * still)
+        block, lane, at = p // self.lanes, p % self.lanes, self.place(u)
+        for k in ti.static(range(len(SAID))):
+            self.now[k][at][lane] = c[k]
+            if ti.static(self.bent):
+                self.saddle_now[k][at][lane] = d[k]
+        pairs.still[u, block][lane] = still
+        if still > 0.0:
+            apart = g.apart(w, i, j)
+            pairs.apart_y[u, block][lane], pairs.apart_z[u, block][lane] = apart[0], apart[1]
+            pairs.angle_first[u, block][lane], pairs.angle_second[u, block][lane] = g.angle[w, i], g.angle[w, j]
+            self.remember(self.contact, pairs, u, block, lane, c)
+            if ti.static(self.bent):
+                self.remember(self.saddle, pairs, u, block, lane, d)
+
+    @ti.func
+    def remember(self, names: ti.template(), pairs: ti.template(), u, block, lane, c):
+        """Take down what the rule says of a contact or a saddle."""
+        for name, element in ti.static(zip(names, self.elements, strict=True)):
+            field = ti.static(getattr(pairs, name))
+            field[u, block][lane] = c[element]
+
+    @ti.func
+    def forget(self, pairs: ti.template(), u, p, is_one):
+        """Contact p is another from now on, of which the rule is to be asked if it `is_one`."""
+        block, lane = p // self.lanes, p % self.lanes
+        pairs.was_overlap[u, block][lane] = -NEVER
+        pairs.still[u, block][lane] = ti.select(is_one, 0.0, NEVER)
+
+    @ti.func
+    def still(self, g: ti.template(), pairs: ti.template(), w, i, j, u, p, c, d):
+        """How far (m) the grains of a contact that the rule has just seen may move before it is asked again."""
+        hardly = HARDLY * lesser(g.radius[w, i], g.radius[w, j])
+        # A rule may know that there is a gap, and not where.
+        still = ti.select(c[NORMAL_Y] == 0.0 and c[NORMAL_Z] == 0.0, 0.0 * hardly, hardly)
+        watched = False
+        if ti.static(self.bent):
+            watched = pairs.saddle_first[u, p][0] >= 0.0
+        still = ti.select(watched, still, greater(still, -c[OVERLAP]))
+        ended = d[OVERLAP] > 0.0 and d[HOLDS] == 0.0  # a saddle that counts a last time
+        return ti.select(c[HOLDS] == 1.0 and not ended, still, 0.0 * still)

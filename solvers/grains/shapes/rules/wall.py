@@ -1,0 +1,85 @@
+"""Walls as an outline meets them: a segment by a direction and a distance, a corner by a point."""
+
+import numpy as np
+import taichi as ti
+
+from solvers.grains.shapes.pose import turned, turned_back
+from solvers.machine.runtime import Arrays
+from solvers.tank.walls import AFTER_Y, AFTER_Z, ALONG_Y, ALONG_Z, LENGTH, PART, TWO_SIDED, Walls, Y, Z
+
+ENDLESS = 1e3  # m
+FAR = 1e3  # of an outline's size
+
+
+@ti.data_oriented
+class SeenWalls:
+    """A tank's walls for grains with outlines.
+
+    An outline touches a segment where its point of contact projects onto it, and a corner where the contact's normal
+    lies between those of the corner's segments: together they count each contact once, without a jump from one to the
+    other. A segment has no end where the next one turns towards the grains, since that one stops them.
+    """
+
+    def __init__(self, arrays: Arrays, walls: Walls):
+        self.walls = walls
+        self.ends = arrays.holding(_ends(walls), arrays.place)
+
+    @ti.func
+    def facing(self, feature, shift: ti.template(), y, z):
+        """Of a segment, the unit normal (y, z) to the side that a point is on, and the point's distance (m) from it."""
+        point = self.walls.from_start(feature, shift, y, z)
+        ty, tz = self.walls.table[feature, ALONG_Y], self.walls.table[feature, ALONG_Z]
+        distance, side = point[1] * ty - point[0] * tz, 1.0
+        if ti.static(self.walls.open or self.walls.parts > 0):  # noqa: SIM102 (compiled only where there are plates)
+            if self.walls.table[feature, TWO_SIDED] > 0.0 and distance < 0.0:
+                side = -1.0
+        return ti.Vector([-tz * side, ty * side, distance * side])
+
+    @ti.func
+    def counts_on_segment(self, feature, shift: ti.template(), y, z):
+        """Whether a point projects onto a segment."""
+        point = self.walls.from_start(feature, shift, y, z)
+        along = point[0] * self.walls.table[feature, ALONG_Y] + point[1] * self.walls.table[feature, ALONG_Z]
+        return self.ends[feature, 0] <= along <= self.ends[feature, 1]
+
+    @ti.func
+    def counts_on_corner(self, feature, ny, nz):
+        """Whether a normal (y, z) lies between those of a corner's two segments."""
+        before = ny * self.walls.table[feature, ALONG_Y] + nz * self.walls.table[feature, ALONG_Z]
+        after = ny * self.walls.table[feature, AFTER_Y] + nz * self.walls.table[feature, AFTER_Z]
+        return before > 0.0 and after < 0.0
+
+    @ti.func
+    def corner_contact(self, g: ti.template(), tables: ti.template(), w, i, feature, shift: ti.template()):
+        """A corner in grain i by polar radius: overlap (m), normal, point from its centre (m), 1.0: it holds."""
+        away = self.walls.from_start(feature, shift, g.y[w, i], g.z[w, i])
+        corner = -ti.Vector([ti.cast(away[0], g.real), ti.cast(away[1], g.real)])
+        own = turned_back(g.turn(w, i), corner)
+        distance = own.norm()
+        radius = g.radius[w, i] * tables.radius_and_slope(g.shape[w, i], own[0], own[1])
+        tilt = radius[0] / ti.sqrt(radius[0] ** 2 + radius[1] ** 2)
+        outward = ti.Vector([radius[0] * own[0] + radius[1] * own[1], radius[0] * own[1] - radius[1] * own[0]])
+        normal = -turned(g.turn(w, i), outward * tilt / (radius[0] * distance))
+        overlap = (radius[0] - distance) * tilt
+        if not self.counts_on_corner(feature, normal[0], normal[1]):
+            overlap = -FAR
+        point = corner - overlap * normal
+        return ti.Vector([overlap, normal[0], normal[1], point[0], point[1], 1.0])
+
+
+def _ends(walls: Walls) -> np.ndarray:
+    """From where to where along itself (features, 2) m each segment counts."""
+    segments = walls.rows[: walls.segments]
+    ends = np.zeros((walls.features, 2))
+    for k, row in enumerate(segments):
+        ends[k] = 0.0, row[LENGTH]
+        if row[TWO_SIDED] > 0.0:
+            continue
+        start, along = row[[Y, Z]], row[[ALONG_Y, ALONG_Z]]
+        for other in segments[segments[:, PART] == row[PART]]:
+            begin, way = other[[Y, Z]], other[[ALONG_Y, ALONG_Z]]
+            if np.allclose(begin, start + row[LENGTH] * along) and along[0] * way[1] - along[1] * way[0] > 0.0:
+                ends[k, 1] = ENDLESS
+            if np.allclose(begin + other[LENGTH] * way, start) and way[0] * along[1] - way[1] * along[0] > 0.0:
+                ends[k, 0] = -ENDLESS
+    return ends

@@ -1,0 +1,167 @@
+"""Outlines as tables for kernels: points by place along the outline, polar radii by direction, no trigonometry."""
+
+import numpy as np
+import taichi as ti
+
+from solvers.grains.laws.extremes import greater, lesser
+from solvers.grains.shapes.contour import Contour
+from solvers.machine.errors import BadOutline
+from solvers.machine.runtime import Arrays
+
+ERROR = 1e-6  # of R0, the most that a table may be off
+LEAST, MOST = 64, 4096  # cells
+BETWEEN = np.array([0.25, 0.5, 0.75])  # of a cell, where the error is looked at; it is largest near the middle
+TINY = 1e-30
+FLAT = 1e3  # of a grain's radius: a radius of curvature that need not be told from a larger one
+
+
+@ti.data_oriented
+class Tables:
+    """Cubic Hermite interpolants of the outlines of C classes, each cut into `cells`, a power of two.
+
+    Points lie evenly by polar angle: a place a on an outline is θ = 2π a/cells, whatever whole turns it has more. Polar
+    radii lie evenly by slope in each quadrant about an axis, as they are asked for by a point's coordinates. Both have
+    continuous first derivatives, and second ones within a cell. Lengths are those of the contours; a grain is similar
+    to its class, `scale` times as large. Raises BadOutline where an outline needs more than MOST cells.
+    """
+
+    def __init__(self, arrays: Arrays, outlines: list[Contour]):
+        self.cells = cells_for(outlines)
+        self.curve = arrays.holding(np.array([curve_cells(outline, self.cells) for outline in outlines]))
+        self.radii = arrays.holding(np.array([polar_cells(outline, self.cells) for outline in outlines]))
+        self.bounding = arrays.holding(np.array([outline.bounding_radius for outline in outlines]))
+        self.convex = arrays.holding(np.array([float(outline.convex) for outline in outlines]))
+        self.smallest = arrays.holding(np.array([outline.smallest_radius for outline in outlines]))
+
+    @ti.func
+    def wrapped(self, place):
+        """A place without its whole turns."""
+        return place - self.cells * ti.floor(place / self.cells)
+
+    @ti.func
+    def cell(self, place):
+        """The cell that a place is in, and how far in it."""
+        whole = ti.floor(place)
+        return ti.cast(whole, ti.i32) & (self.cells - 1), place - whole
+
+    @ti.func
+    def trace(self, shape, place):
+        """Point of an outline, and its first two derivatives by place: x, y, x', y', x'', y'' (m, each per cell)."""
+        k, f = self.cell(place)
+        x = ti.Vector([self.curve[shape, k, n] for n in ti.static(range(4))])
+        y = ti.Vector([self.curve[shape, k, 4 + n] for n in ti.static(range(4))])
+        return ti.Vector([value(x, f), value(y, f), slope(x, f), slope(y, f), bend(x, f), bend(y, f)])
+
+    @ti.func
+    def radius(self, shape, x, y):
+        """Polar radius R (m) of an outline in the direction of a point (x, y)."""
+        k, f = self.cell(self.direction(x, y)[0])
+        return value(ti.Vector([self.radii[shape, k, n] for n in ti.static(range(4))]), f)
+
+    @ti.func
+    def radius_and_slope(self, shape, x, y):
+        """R (m) and dR/dθ (m) in the direction of a point (x, y)."""
+        place, tilt = self.direction(x, y)
+        k, f = self.cell(place)
+        r = ti.Vector([self.radii[shape, k, n] for n in ti.static(range(4))])
+        return ti.Vector([value(r, f), slope(r, f) * (1.0 + tilt * tilt) * (self.cells / 8.0)])
+
+    @ti.func
+    def curved(self, shape, x, y):
+        """Radius of curvature (m) of an outline in the direction of a point, at most FLAT of what it is for a disc.
+
+        (R² + R'²)^(3/2)/(R² + 2 R'² − R R'').
+        """
+        place, tilt = self.direction(x, y)
+        k, f = self.cell(place)
+        c, more = ti.Vector([self.radii[shape, k, n] for n in ti.static(range(4))]), 1.0 + tilt * tilt
+        # By the angle, of which the cells count the tangent.
+        r, by_tilt = value(c, f), slope(c, f) * (self.cells / 8.0)
+        dr, ddr = by_tilt * more, more * (bend(c, f) * (self.cells / 8.0) ** 2 * more + 2.0 * tilt * by_tilt)
+        size = r * r + dr * dr
+        return radius_of_curvature(ti.sqrt(size) ** 3, size + dr * dr - r * ddr, r)
+
+    @ti.func
+    def direction(self, x, y):
+        """Where the direction of (x, y) stands among the cells, 0 to `cells`, and its slope about the nearest axis."""
+        steep = ti.abs(y) > ti.abs(x)
+        along, across = ti.select(steep, y, x), ti.select(steep, -x, y)
+        quadrant = ti.select(steep, 1.0, 0.0) + ti.select(along < 0.0, 2.0, 0.0)
+        tilt = across / ti.select(along == 0.0, TINY, along)
+        return (quadrant + 0.5 * (tilt + 1.0)) * (self.cells / 4.0), tilt
+
+
+@ti.func
+def radius_of_curvature(cube, turns, size):
+    """The ratio of two numbers, with an absolute value of at most FLAT times a `size`."""
+    least = cube / (FLAT * size)
+    return cube / ti.select(turns < 0.0, lesser(turns, -least), greater(turns, least))
+
+
+@ti.func
+def value(c, f):
+    """The cubic with coefficients c, from the constant up."""
+    return c[0] + f * (c[1] + f * (c[2] + f * c[3]))
+
+
+@ti.func
+def slope(c, f):
+    """Its first derivative."""
+    return c[1] + f * (2.0 * c[2] + f * (3.0 * c[3]))
+
+
+@ti.func
+def bend(c, f):
+    """Its second derivative."""
+    return 2.0 * c[2] + f * (6.0 * c[3])
+
+
+def cells_for(outlines: list[Contour]) -> int:
+    """Cells, a power of two, with which all tables of these outlines are right to within ERROR."""
+    count = LEAST
+    while max(table_error(outline, count) for outline in outlines) > ERROR:
+        count *= 2
+        if count > MOST:
+            raise BadOutline(f"the outline bends too sharply for a table of {MOST} points.")
+    return count
+
+
+def table_error(outline: Contour, count: int) -> float:
+    """Largest error of tables with so many cells, of a point or a polar radius, relative to R0."""
+    place = np.arange(count)[:, None] + BETWEEN
+    powers = BETWEEN ** np.arange(4)[:, None]
+    cells = curve_cells(outline, count)
+    points = np.stack([cells[:, :4] @ powers, cells[:, 4:] @ powers], axis=-1) - outline.points(
+        2 * np.pi * place / count
+    )
+    radii = polar_cells(outline, count) @ powers - outline.polar(angle_of(place, count))
+    return max(np.linalg.norm(points, axis=-1).max(), np.abs(radii).max()) / outline.radius
+
+
+def curve_cells(outline: Contour, count: int) -> np.ndarray:
+    """Coefficients (count, 8) of x and y in each cell, evenly by polar angle."""
+    angle = 2.0 * np.pi / count * np.arange(count + 1)
+    turn = np.exp(1j * angle)
+    points = outline.polar(angle) * turn
+    along = (outline.polar(angle, 1) * turn + 1j * points) * (2.0 * np.pi / count)
+    return np.concatenate([_hermite(points.real, along.real), _hermite(points.imag, along.imag)], axis=-1)
+
+
+def polar_cells(outline: Contour, count: int) -> np.ndarray:
+    """Coefficients (count, 4) of R in each cell of directions."""
+    place = np.arange(count + 1.0)
+    angle = angle_of(place, count)
+    tilt = np.mod(place, count / 4) * (8 / count) - 1.0
+    return _hermite(outline.polar(angle), outline.polar(angle, 1) * (8 / count) / (1.0 + tilt**2))
+
+
+def angle_of(place: np.ndarray, count: int) -> np.ndarray:
+    """Polar angle (rad) of a place among `count` cells of directions."""
+    quadrant = np.floor(4.0 * place / count)
+    return 0.5 * np.pi * quadrant + np.arctan(2.0 * (4.0 * place / count - quadrant) - 1.0)
+
+
+def _hermite(values: np.ndarray, slopes: np.ndarray) -> np.ndarray:
+    """Coefficients (n, 4) of the cubics with these values and slopes (n + 1,) at their ends, a cell's width being 1."""
+    a, b, p, q = values[:-1], values[1:], slopes[:-1], slopes[1:]
+    return np.stack([a, p, 3.0 * (b - a) - 2.0 * p - q, 2.0 * (a - b) + p + q], axis=-1)

@@ -1,0 +1,138 @@
+"""The grains: what is known of each of n discs in each of W worlds."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import taichi as ti
+
+from solvers.machine.runtime import Arrays
+
+FAR = 1e3  # m
+
+
+@ti.data_oriented
+class Grains:
+    """Arrays (W, n + k + ghosts), SI, in the tank's frame: n that move, k fixed ones of rough walls, far-off points.
+
+    A disc has the mass and inertia of the sphere it stands for. `velocity` and `spin` are what the integrator keeps;
+    `now_*` are their values at the positions' own time, for forces that depend on velocity. Grains that may leave the
+    tank have `spilled` set once they are out of it, and `present` cleared once they are far away. `reach` (m) is how
+    far from its centre a grain can touch; `spread` its moment of inertia relative to that of the sphere.
+    """
+
+    shaped = False  # whether grains have an orientation, `turn_y` and `turn_z` its cosine and sine
+
+    def __init__(
+        self,
+        arrays: Arrays,
+        radius: np.ndarray,
+        density: np.ndarray,
+        fixed: np.ndarray,
+        ghosts: int,
+        may_leave: bool,
+        kind: np.ndarray | None = None,
+        spread: np.ndarray | float = 1.0,
+    ):
+        self.worlds, self.mobile = radius.shape
+        self.fixed = fixed
+        self.count = self.mobile + len(fixed)
+        self.ghosts, self.may_leave = ghosts, may_leave
+        self.real, self.exact = arrays.real, arrays.exact
+        self.mixed = arrays.real is not arrays.place
+        self.stride = self.count + ghosts  # numbers from a grain of one world to its like of the next
+        shape = (self.worlds, self.stride)
+        self.y, self.z = arrays.reals(2, shape, arrays.place)
+        (self.angle,) = arrays.reals(1, shape)
+        self.velocity_y, self.velocity_z, self.spin = arrays.reals(3, shape)
+        self.now_y, self.now_z, self.spin_now = arrays.reals(3, shape)
+        self.force_y, self.force_z, self.torque = arrays.reals(3, shape)
+        self.mass = 4.0 / 3.0 * np.pi * radius**3 * density
+        self.radius = arrays.holding(self._filled(radius, fixed[:, 2], 0.0), kept=True)
+        self.reach = self.radius
+        self.inverse_mass = arrays.holding(self._filled(1.0 / self.mass, 0.0, 0.0), kept=True)
+        inverse_inertia = 2.5 / (self.mass * radius**2 * spread)
+        self.inverse_inertia = arrays.holding(self._filled(inverse_inertia, 0.0, 0.0), kept=True)
+        if kind is not None:
+            self.kind = arrays.holding(self._filled(kind, 0.0, 0.0), ti.i32, kept=True)
+        if may_leave:
+            self.present = arrays.holding(np.ones(shape), kept=True)
+            self.spilled = arrays.holding(np.zeros(shape), kept=True)
+
+    def _filled(self, values: np.ndarray, fixed: np.ndarray | float, ghost: float) -> np.ndarray:
+        """Values (W, n) of the grains that move, with those of the fixed ones and the ghosts after them."""
+        whole = np.full((self.worlds, self.count + self.ghosts), ghost)
+        whole[:, : self.mobile] = values
+        whole[:, self.mobile : self.count] = fixed
+        return whole
+
+    def place(self, position: np.ndarray) -> None:
+        """Put the grains at `position` (W, n, 2) m, all present, at rest and without history."""
+        for field, axis in ((self.y, 0), (self.z, 1)):
+            values = self._filled(position[..., axis], self.fixed[:, axis], FAR)
+            field.from_numpy(values.astype(np.float32) if field.dtype == ti.f32 else values)
+        self.angle.fill(0.0)
+        if self.may_leave:
+            self.present.fill(1.0)
+            self.spilled.fill(0.0)
+        self.launch(np.zeros_like(position), np.zeros(position.shape[:2]))
+
+    def count_turns_anew(self) -> None:
+        """Count the angles from here on: of discs, one is like another."""
+        self.angle.fill(0.0)
+
+    def launch(self, velocity: np.ndarray, spin: np.ndarray) -> None:
+        """Set the velocities (W, n, 2) m/s and spins (W, n) rad/s."""
+        for fields, values in (
+            ((self.velocity_y, self.now_y), velocity[..., 0]),
+            ((self.velocity_z, self.now_z), velocity[..., 1]),
+            ((self.spin, self.spin_now), spin),
+        ):
+            whole = self._filled(values, 0.0, 0.0)
+            for field in fields:
+                field.from_numpy(whole.astype(np.float32) if field.dtype == ti.f32 else whole)
+        for field in (self.force_y, self.force_z, self.torque):
+            field.fill(0.0)
+
+    def read(self) -> dict[str, np.ndarray]:
+        """Positions (W, n, 2), velocities (W, n, 2), angles (W, n) and spins (W, n) at the present time.
+
+        A grain that has left the scene has no position: NaN.
+        """
+        fields = self.y, self.z, self.now_y, self.now_z, self.angle, self.spin_now
+        y, z, velocity_y, velocity_z, angle, spin = (field.to_numpy()[:, : self.mobile] for field in fields)
+        position = np.stack([y, z], axis=-1)
+        if self.may_leave:
+            position[self.present.to_numpy()[:, : self.mobile] == 0.0] = np.nan
+        return {
+            "position": position,
+            "velocity": np.stack([velocity_y, velocity_z], axis=-1),
+            "angle": angle,
+            "spin": spin,
+        }
+
+    def fields(self) -> list[ti.Field]:
+        """All arrays of the grains, each once: some have two names."""
+        return list({id(field): field for field in vars(self).values() if isinstance(field, ti.Field)}.values())
+
+    def permute(self, order: dict[int, np.ndarray], more: Sequence[ti.Field]) -> None:
+        """Put the moving grains of some worlds into another order, `order[w]` their old numbers, with `more` fields."""
+        for field in (*self.fields(), *more):
+            values = field.to_numpy()
+            for w, old in order.items():
+                values[w, : self.mobile] = values[w, old]
+            field.from_numpy(values)
+
+    @ti.func
+    def push(self, w, i, force_y, force_z, torque):
+        """Add a force (N) and a torque (N m) on grain i. Written out, since Taichi takes `+=` on a field as atomic."""
+        self.force_y[w, i] = self.force_y[w, i] + force_y
+        self.force_z[w, i] = self.force_z[w, i] + force_z
+        self.torque[w, i] = self.torque[w, i] + torque
+
+    @ti.func
+    def remove(self, w, i):
+        """Take a grain out of the scene, to rest far away from all others: no two may be in one place."""
+        self.present[w, i] = 0.0
+        self.y[w, i], self.z[w, i] = 2.0 * FAR + 10.0 * i, FAR
+        self.velocity_y[w, i], self.velocity_z[w, i], self.spin[w, i] = 0.0, 0.0, 0.0
+        self.now_y[w, i], self.now_z[w, i], self.spin_now[w, i] = 0.0, 0.0, 0.0

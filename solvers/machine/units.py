@@ -1,0 +1,64 @@
+"""Units of work: the runs of grains that one thread moves, a whole world, a band of one, or a single grain."""
+
+import taichi as ti
+
+from solvers.machine.runtime import Arrays
+
+# Ghosts of different bands stand this far apart, so that no two threads write to one cache line.
+APART = 16
+
+
+@ti.data_oriented
+class Units:
+    """W worlds of `mobile` grains, each cut into `a_world` units of neighbouring numbers.
+
+    Unit u belongs to world u // a_world. With one unit a world every pair is listed once; with several a pair whose
+    grains are in two units is listed and worked out in both, so that no unit writes to another's grains.
+    """
+
+    def __init__(self, worlds: int, mobile: int, a_world: int, ghost: int):
+        self.worlds, self.mobile, self.a_world, self.first_ghost = worlds, mobile, a_world, ghost
+        self.size = -(-mobile // a_world)
+        self.count = worlds * a_world
+        self.whole = a_world == 1
+        self.single = self.size == 1 and a_world > 1
+
+    @property
+    def ghosts(self) -> int:
+        """Far-off points of a world, for pairs that stand for none, and to keep it off the next one's cache lines."""
+        return 1 if self.single else APART * self.a_world
+
+    def integers(self, arrays: Arrays, count: int, below: int | None = None) -> list[ti.Field]:
+        """`count` fields of one integer a unit."""
+        return arrays.integers(count, (self.count,), below=below)
+
+    @ti.func
+    def world(self, u):
+        """The world of unit u."""
+        w = u
+        if ti.static(self.worlds == 1):
+            w = 0  # a constant, which the compiler builds into every address
+        elif ti.static(not self.whole):
+            w = u // self.a_world
+        return w
+
+    @ti.func
+    def first(self, u):
+        """The first grain of unit u."""
+        i = 0
+        if ti.static(not self.whole):
+            i = (u % self.a_world) * self.size
+        return i
+
+    @ti.func
+    def end(self, u):
+        """One past the last grain of unit u, which may have none."""
+        return ti.max(self.first(u), ti.min(self.mobile, self.first(u) + self.size))
+
+    @ti.func
+    def ghost(self, u):
+        """The far-off point that is this unit's own."""
+        g = self.first_ghost
+        if ti.static(not (self.whole or self.single)):
+            g += APART * (u % self.a_world)
+        return g

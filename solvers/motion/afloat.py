@@ -1,0 +1,403 @@
+"""A tank in a ship: a frame whose motion follows from the water's forces and from what the cargo does to the tank.
+
+The hull is one more body of the grains' time loop. At each step it takes the contact forces of that very instant,
+before the grains are moved, so that nothing lags behind: schemes that hand the cargo's force of the last interval to
+the hull and the hull's acceleration back are unstable with a rigid cargo heavier than the hull, and drive an elastic
+one a little where its own damping is less than their delay (added-mass instability; Causin, Gerbeau and Nobile 2005).
+Here the cargo's mass is no limit; what must be light beside the hull is the layer of grains at the walls alone.
+
+The water is slow and its forces cost more: every interval H, of many steps, the ship is advanced over the next one by
+the method of Runge and Kutta (`motion.advance`) with the cargo's mean load of the last. Within it she has that motion's
+mean acceleration, and on top, at each step, what the load's difference from that mean gives her,
+
+    a = (v(t + H) − v(t))/H + M(φ)⁻¹ (F − F̄),
+
+M with the added mass. A smaller H alters nothing but the water's share, by its fourth order, and
+what the deviation within one H does to the water's force, by its second.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+import taichi as ti
+
+from solvers.machine.runtime import Arrays
+from solvers.motion.buoyancy import Hulls
+from solvers.motion.frame import turned
+from solvers.motion.harmonic import soft_start
+from solvers.ship.body import Body
+from solvers.ship.hydrostatics import turned as turned_point
+from solvers.ship.vessel import Vessel
+
+POSE, VELOCITY, MEMORY = 0, 3, 6  # where in a state
+WORKS = 3  # its last entries: work (J/m) of the waves, against what is radiated, against viscosity
+APART = 16  # numbers from what is written of one ship at each step to what is of the next
+STAGES = 4  # of the method of Runge and Kutta
+
+
+def steps_an_interval(vessels: Sequence[Vessel], interval: float | None, dt: float) -> int:
+    """Steps of dt (s) in an interval H: of the given one (s), else of the shortest that a ship needs."""
+    return max(1, round((interval or min(vessel.interval for vessel in vessels)) / dt))
+
+
+def _apart(rows: Sequence[Sequence[float]]) -> np.ndarray:
+    """Rows (W, k) in rows of APART: no two worlds write to one cache line."""
+    values = np.array(rows, dtype=float)
+    return np.pad(values, ((0, 0), (0, APART - values.shape[1])))
+
+
+@ti.data_oriented
+class Afloat:
+    """The frame of the tank in each of W ships; see `frame.Frame`, whose place it takes.
+
+    The earth's axes have z = 0 on the calm surface and y = 0 where the ship's hull lay at the start. All of the ship is
+    per metre of length; the cargo's load is divided by the thickness of its sheet.
+    """
+
+    rotating = moving = afloat = True
+
+    def __init__(self, arrays: Arrays, vessels: Sequence[Vessel], gravity: float, every: int):
+        self.exact, self.real, self.vessels = arrays.exact, arrays.real, tuple(vessels)
+        worlds = len(self.vessels)
+        self.hulls = Hulls(arrays, [v.ship for v in self.vessels], [v.openings for v in self.vessels])
+        memories = [vessel.ship.radiation.memory for vessel in self.vessels]
+        self.states = max(0 if memory is None else len(memory.matrix) for memory in memories)
+        self.size = MEMORY + self.states + WORKS
+        self.gravity = arrays.holding(np.array([gravity]), arrays.exact)
+        self.every = arrays.holding(np.array([every]), ti.i32)
+
+        def table(values) -> ti.Field:
+            return arrays.holding(np.array(values, dtype=float), arrays.exact, kept=True)
+
+        ships = [vessel.ship for vessel in self.vessels]
+        self.free = table([ship.free for ship in ships])
+        self.added = table([ship.radiation.added_mass + np.diag(ship.rig.mass) for ship in ships])
+        self.damping = table([ship.radiation.damping for ship in ships])
+        self.viscous = table([[ship.damping.linear, ship.damping.quadratic] for ship in ships])
+        self.dashpot = table([ship.rig.damping for ship in ships])
+        self.spring = table([ship.rig.spring for ship in ships])
+        self.rest = table([ship.rig.rest for ship in ships])
+        self.hold = table([np.subtract(vessel.hold, vessel.ship.about) for vessel in self.vessels])
+        self.thickness = table([vessel.thickness for vessel in self.vessels])
+        self.heel = table([vessel.heel for vessel in self.vessels])
+        self.release = table([vessel.release for vessel in self.vessels])
+        self.limits = table([np.clip(vessel.limits, -1e9, 1e9) for vessel in self.vessels])
+        if self.states:
+            self.matrix = table([self._padded(m, "matrix", (self.states, self.states)) for m in memories])
+            self.entry = table([self._padded(m, "entry", (self.states, 3)) for m in memories])
+            self.exit = table([self._padded(m, "exit", (3, self.states)) for m in memories])
+        # Mass, centre from P (y, z) and inertia of the hull alone; her pose upright, and when she is let go
+        (self.body,) = arrays.reals(1, (worlds, 4), arrays.exact)
+        (self.upright, self.heeled) = arrays.reals(2, (worlds, 3), arrays.exact)
+        (self.state, self.trial, self.slope, self.total) = arrays.reals(4, (worlds, self.size), arrays.exact)
+        # Pose at the time of the step to come and velocity half a step before; the interval's accelerations now and
+        # before, its drift, its mean load and the one before; the load so far; motion of the tank, accelerations last.
+        names = "pose", "velocity", "steady", "steady_before", "drift", "mean", "mean_before", "load"
+        for name in (*names, "last", "tank"):
+            (field,) = arrays.reals(1, (worlds, APART), arrays.exact)
+            setattr(self, name, field)
+        self.felt = arrays.holding(_apart([[0.0, -gravity, 0.0, 0.0]] * worlds), arrays.exact, kept=True)
+        (self.done,) = arrays.integers(1, (worlds, APART))
+        # When (s) she capsized, and when she flooded, or −1; the cargo's work on her (J/m)
+        self.capsized = arrays.holding(np.full(worlds, -1.0), arrays.exact, kept=True)
+        self.flooded = arrays.holding(np.full(worlds, -1.0), arrays.exact, kept=True)
+        (self.given,) = arrays.reals(1, (worlds, APART), arrays.exact)
+
+    def meet(self, vessels: Sequence[Vessel]) -> None:
+        """Have the waves of these vessels, which are as they were but for those, from now on."""
+        self.vessels = tuple(vessels)
+        self.hulls.meet([vessel.ship.load for vessel in vessels])
+        self.added.from_numpy(np.array([v.ship.radiation.added_mass + np.diag(v.ship.rig.mass) for v in vessels]))
+        self.damping.from_numpy(np.array([v.ship.radiation.damping for v in vessels]))
+
+    @property
+    def sizes(self) -> tuple[int, int, int]:
+        """States of the memory, corners of the sections, components of the waves."""
+        return self.states, self.hulls.corners, self.hulls.waves
+
+    @staticmethod
+    def _padded(memory, name: str, shape: tuple[int, int]) -> np.ndarray:
+        whole = np.zeros(shape)
+        if memory is not None:
+            part = getattr(memory, name)
+            whole[: part.shape[0], : part.shape[1]] = part
+        return whole
+
+    def begin(self, cargo: Sequence[Body]) -> None:
+        """Hold the ships still, upright and in balance; `cargo` (W,) per metre of length, in the tank's frame.
+
+        Raises Unavailable where a ship sinks, or where a hull laden so cannot be.
+        """
+        body, upright, heeled = [], [], []
+        for vessel, load in zip(self.vessels, cargo, strict=True):
+            centre = np.add(load.centre, vessel.hold)
+            aboard = Body(load.mass, (float(centre[0]), float(centre[1])), load.inertia)
+            hull = vessel.hull(aboard)
+            body.append([hull.mass, *np.subtract(hull.centre, vessel.ship.about), hull.inertia])
+            poses = []
+            for roll in (0.0, vessel.heel):
+                height = vessel.heave(aboard, roll) + float(turned_point(vessel.ship.about, roll)[1])
+                poses.append([vessel.ship.about[0], height, roll])
+            upright.append(poses[0])
+            heeled.append(poses[1])
+        self.body.from_numpy(self._typed(body))
+        self.upright.from_numpy(self._typed(upright))
+        self.heeled.from_numpy(self._typed(heeled))
+        self.capsized.fill(-1.0)
+        self.flooded.fill(-1.0)
+        self.given.fill(0.0)
+        self.done.fill(0)
+        self.state.fill(0.0)
+        holds = [np.subtract(vessel.hold, vessel.ship.about) for vessel in self.vessels]
+        still = [[*np.add(pose[:2], hold), *[0.0] * 7] for pose, hold in zip(upright, holds, strict=True)]
+        self.tank.from_numpy(self._typed(_apart(still)))
+
+    def _typed(self, values) -> np.ndarray:
+        return np.array(values, dtype=np.float64 if self.exact is ti.f64 else np.float32)
+
+    def account(self) -> dict[str, np.ndarray]:
+        """Works (W, 4) J/m so far: of waves, against radiation, against viscosity, of the cargo on the ship.
+
+        And when (s) each capsized and when she flooded (W,), −1 where she has not.
+        """
+        works = self.state.to_numpy()[:, -WORKS:]
+        given = self.given.to_numpy()[:, :1]
+        ends = {"capsized": self.capsized.to_numpy(), "flooded": self.flooded.to_numpy()}
+        return {"ship_works": np.hstack([works, given]).astype(float), **ends}
+
+    @ti.func
+    def body_force(self, w, t):
+        """What every grain feels per unit mass in the tank's frame: (b_y, b_z, φ̇, φ̈) with b = R(−φ)(g − P̈)."""
+        return ti.cast(ti.Vector([self.felt[w, k] for k in ti.static(range(4))]), self.real)
+
+    @ti.func
+    def kinematics(self, w, time):
+        """Pose (Y, Z, φ) of the tank's origin now, its velocity and its acceleration in the earth frame."""
+        return ti.Vector([self.tank[w, k] for k in ti.static(range(9))])
+
+    @ti.func
+    def goes_on(self, w):
+        """Whether a ship has neither capsized nor flooded."""
+        return self.capsized[w] < 0.0 and self.flooded[w] < 0.0
+
+    @ti.func
+    def follow(self, w, time, dt, kick, load):
+        """Take the ship through the step of dt (s) that begins now, with the force and moment of the cargo now.
+
+        `load` is on the whole sheet, about the tank's origin in its own axes; `kick` (s) is for how long the grains
+        are going to feel what she does now.
+        """
+        t, step = ti.cast(time, self.exact), ti.cast(dt, self.exact)
+        if t < self.release[w]:
+            self.hold_still(w, t, step)
+        else:
+            self.move(w, t, step, ti.cast(kick, self.exact), ti.cast(load, self.exact))
+
+    @ti.func
+    def hold_still(self, w, t, step):
+        """Upright before the start, then turned to her heel; all of it known beforehand."""
+        d = soft_start(t, self.release[w])
+        pose, velocity, acceleration = self.vector(self.upright, w), self.nothing(), self.nothing()
+        for k in ti.static(range(3)):
+            way = self.heeled[w, k] - self.upright[w, k]
+            pose[k] = pose[k] + d[0] * way
+            velocity[k] = d[1] * way
+            acceleration[k] = d[2] * way
+        self.feel(w, pose, velocity, acceleration, 1.0)
+        self.note(w, pose, velocity, acceleration)
+
+    @ti.func
+    def move(self, w, t, step, kick, load):
+        """One step of the leapfrog: velocities half a step behind the poses, as those of the grains."""
+        first = self.done[w, 0] == 0
+        if first:
+            self.put(self.pose, w, self.vector(self.heeled, w))
+            for k in ti.static(range(3)):
+                self.velocity[w, k] = 0.0
+        pose, before = self.vector(self.pose, w), self.vector(self.velocity, w)
+        force = self.aboard(w, pose[2], load)
+        share = ti.cast(1.0, self.exact)
+        steady, mean = self.vector(self.steady, w), self.vector(self.mean, w)
+        if self.done[w, 0] % self.every[0] == 0:
+            now = before + 0.5 * step * self.vector(self.last, w)
+            if first:
+                now, share = before, 0.5 * share
+            self.begin_interval(w, t, step, first, pose, now, force)
+            # The kick from half a step before to half a step after has half of both intervals.
+            steady, mean = self.vector(self.steady, w), self.vector(self.mean, w)
+            if not first:
+                steady = 0.5 * (steady + self.vector(self.steady_before, w))
+                mean = 0.5 * (mean + self.vector(self.mean_before, w))
+        acceleration = share * (steady + self.accelerated(w, pose[2], force - mean))
+        velocity = before + 0.5 * step * acceleration
+        if first:
+            velocity = before
+        self.feel(w, pose, velocity, acceleration, step / kick)
+        after = before + step * acceleration
+        self.given[w, 0] = self.given[w, 0] + step * share * force.dot(0.5 * (before + after))
+        self.put(self.velocity, w, after)
+        self.put(self.last, w, acceleration / share)
+        self.put(self.load, w, self.vector(self.load, w) + force)
+        pose = pose + step * (after + self.vector(self.drift, w))
+        self.put(self.pose, w, pose)
+        self.done[w, 0] = self.done[w, 0] + 1
+        self.note(w, pose, after + 0.5 * step * acceleration / share, acceleration / share)
+        if not (self.limits[w, 0] < pose[2] < self.limits[w, 1]):
+            self.capsized[w] = t + step
+
+    @ti.func
+    def begin_interval(self, w, t, step, first, pose, velocity, force):
+        """Look an interval ahead with the mean load of the last one."""
+        length = step * self.every[0]
+        if ti.static(self.hulls.openings > 0):  # noqa: SIM102 (compiled only for ships that have some)
+            if self.hulls.floods(w, pose, t):
+                self.flooded[w] = t
+        for k in ti.static(range(3)):
+            self.steady_before[w, k], self.mean_before[w, k] = self.steady[w, k], self.mean[w, k]
+            self.mean[w, k] = self.load[w, k] / self.every[0]
+            if first:
+                self.mean[w, k] = force[k]
+            self.load[w, k] = 0.0
+            self.state[w, POSE + k], self.state[w, VELOCITY + k] = pose[k], velocity[k]
+        self.look_ahead(w, t, length)
+        for k in ti.static(range(3)):
+            steady = (self.state[w, VELOCITY + k] - velocity[k]) / length
+            way = length * (velocity[k] + 0.5 * length * steady)
+            self.steady[w, k] = steady
+            self.drift[w, k] = (self.state[w, POSE + k] - pose[k] - way) / length
+
+    @ti.func
+    def look_ahead(self, w, t, length):
+        """The state an interval (s) later by the classical method of Runge and Kutta (Kutta 1901)."""
+        for k in range(self.size):
+            self.trial[w, k], self.total[w, k] = self.state[w, k], 0.0
+        for stage in range(STAGES):
+            middle = stage == 1 or stage == 2
+            self.rate(w, t + length * ((stage + 1) // 2) / 2)
+            weight, ahead = ti.select(middle, 2, 1), ti.select(stage == 2, 1.0, 0.5) * length
+            for k in range(self.size):
+                self.total[w, k] = self.total[w, k] + weight * self.slope[w, k]
+                self.trial[w, k] = self.state[w, k] + ahead * self.slope[w, k]
+        for k in range(self.size):
+            self.state[w, k] = self.state[w, k] + length / 6.0 * self.total[w, k]
+
+    @ti.func
+    def rate(self, w, t):
+        """Time derivative of the trial state; see `motion.rate`."""
+        pose = ti.Vector([self.trial[w, POSE + k] for k in ti.static(range(3))])
+        velocity = ti.Vector([self.trial[w, VELOCITY + k] for k in ti.static(range(3))])
+        water = self.hulls.water(w, pose, t)
+        calm = self.hulls.calm(w, pose)
+        radiated, viscous = self.radiated(w, velocity), self.rubbed(w, velocity)
+        mass, weight = self.body[w, 0], self.body[w, 0] * self.gravity[0]
+        arm = turned(self.body[w, 1], self.body[w, 2], pose[2])
+        square = velocity[2] * velocity[2]
+        force = water - radiated - viscous + self.vector(self.mean, w)
+        force += ti.Vector([mass * square * arm[0], mass * square * arm[1] - weight, -weight * arm[0]])
+        for k in ti.static(range(3)):
+            force[k] = force[k] - self.spring[w, k] * (pose[k] - self.rest[w, k])
+        acceleration = self.accelerated(w, pose[2], force)
+        for k in ti.static(range(3)):
+            self.slope[w, POSE + k], self.slope[w, VELOCITY + k] = velocity[k], acceleration[k]
+        if ti.static(self.states > 0):
+            for i in range(self.states):
+                change = self.entry[w, i, 0] * velocity[0] + self.entry[w, i, 1] * velocity[1]
+                change += self.entry[w, i, 2] * velocity[2]
+                for j in range(self.states):
+                    change += self.matrix[w, i, j] * self.trial[w, MEMORY + j]
+                self.slope[w, MEMORY + i] = change
+        works = ti.static(MEMORY + self.states)
+        self.slope[w, works] = (water - calm).dot(velocity)
+        self.slope[w, works + 1] = radiated.dot(velocity)
+        self.slope[w, works + 2] = viscous.dot(velocity)
+
+    @ti.func
+    def radiated(self, w, velocity):
+        """Force and moment that make waves, without the added mass."""
+        force = self.nothing()
+        for k in ti.static(range(3)):
+            for j in ti.static(range(3)):
+                force[k] = force[k] + self.damping[w, k, j] * velocity[j]
+            if ti.static(self.states > 0):
+                for j in range(self.states):
+                    force[k] = force[k] + self.exit[w, k, j] * self.trial[w, MEMORY + j]
+        return force
+
+    @ti.func
+    def rubbed(self, w, velocity):
+        """Force and moment of viscous roll damping and of the rig's dashpots."""
+        force = self.nothing()
+        for k in ti.static(range(3)):
+            force[k] = self.dashpot[w, k] * velocity[k]
+        spin = velocity[2]
+        force[2] = force[2] + (self.viscous[w, 0] + self.viscous[w, 1] * ti.abs(spin)) * spin
+        return force
+
+    @ti.func
+    def accelerated(self, w, roll, force):
+        """What a force and moment about P accelerate P and roll by, M(φ)⁻¹ F; nothing where she is not free."""
+        mass, arm = self.body[w, 0], turned(self.body[w, 1], self.body[w, 2], roll)
+        turning = self.body[w, 3] + mass * (arm[0] * arm[0] + arm[1] * arm[1])
+        zero = ti.cast(0.0, self.exact)
+        inertia = ti.Matrix(
+            [[mass, zero, -mass * arm[1]], [zero, mass, mass * arm[0]], [-mass * arm[1], mass * arm[0], turning]]
+        )
+        right = force
+        for i in ti.static(range(3)):
+            right[i] = self.free[w, i] * right[i]
+            for j in ti.static(range(3)):
+                both = self.free[w, i] * self.free[w, j]
+                inertia[i, j] = both * (inertia[i, j] + self.added[w, i, j])
+            inertia[i, i] = inertia[i, i] + 1.0 - self.free[w, i]
+        return inertia.inverse() @ right
+
+    @ti.func
+    def aboard(self, w, roll, load):
+        """The cargo's force and moment about P in the earth's axes, per metre of length."""
+        force = turned(load[0], load[1], roll) / self.thickness[w]
+        arm = turned(self.hold[w, 0], self.hold[w, 1], roll)
+        moment = load[2] / self.thickness[w] + arm[0] * force[1] - arm[1] * force[0]
+        return ti.Vector([force[0], force[1], moment])
+
+    @ti.func
+    def feel(self, w, pose, velocity, acceleration, share):
+        """Tell the grains of the tank's acceleration; `share` of the ship's is what they are to feel."""
+        a = self.carried(w, pose[2], velocity[2], acceleration)
+        b = turned(-share * a[0], -self.gravity[0] - share * a[1], -pose[2])
+        self.felt[w, 0], self.felt[w, 1] = b[0], b[1]
+        self.felt[w, 2], self.felt[w, 3] = velocity[2], share * acceleration[2]
+
+    @ti.func
+    def carried(self, w, roll, rate, acceleration):
+        """Acceleration of the tank's origin, P's and that of turning about P."""
+        arm = turned(self.hold[w, 0], self.hold[w, 1], roll)
+        return ti.Vector(
+            [
+                acceleration[0] - acceleration[2] * arm[1] - rate * rate * arm[0],
+                acceleration[1] + acceleration[2] * arm[0] - rate * rate * arm[1],
+            ]
+        )
+
+    @ti.func
+    def note(self, w, pose, velocity, acceleration):
+        """Remember the motion of the tank's origin."""
+        arm = turned(self.hold[w, 0], self.hold[w, 1], pose[2])
+        a = self.carried(w, pose[2], velocity[2], acceleration)
+        self.tank[w, 0], self.tank[w, 1], self.tank[w, 2] = pose[0] + arm[0], pose[1] + arm[1], pose[2]
+        self.tank[w, 3] = velocity[0] - velocity[2] * arm[1]
+        self.tank[w, 4] = velocity[1] + velocity[2] * arm[0]
+        self.tank[w, 5] = velocity[2]
+        self.tank[w, 6], self.tank[w, 7], self.tank[w, 8] = a[0], a[1], acceleration[2]
+
+    @ti.func
+    def vector(self, field: ti.template(), w):
+        return ti.Vector([field[w, k] for k in ti.static(range(3))])
+
+    @ti.func
+    def put(self, field: ti.template(), w, values):
+        for k in ti.static(range(3)):
+            field[w, k] = values[k]
+
+    @ti.func
+    def nothing(self):
+        return ti.Vector([ti.cast(0.0, self.exact) for _ in ti.static(range(3))])

@@ -1,0 +1,139 @@
+"""The water's force on hulls in waves as Taichi functions: `loads.Floating` for the time loop, W ships at once."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import taichi as ti
+
+from solvers.machine.runtime import Arrays
+from solvers.motion.frame import turned
+from solvers.motion.harmonic import soft_start
+from solvers.ship.loads import Floating
+from solvers.ship.motion import Ship
+
+
+@ti.data_oriented
+class Hulls:
+    """Sections, waves and openings of W ships whose loads are `Floating`; of each as many as the most have.
+
+    `openings`: points (m) of each hull through which it floods.
+    """
+
+    def __init__(self, arrays: Arrays, ships: Sequence[Ship], openings: Sequence[Sequence[tuple[float, float]]]):
+        self.exact = arrays.exact
+        loads = [ship.load for ship in ships]
+        self.corners = max(len(load.section.outline) for load in loads)
+        self.waves = max(len(load.waves.amplitude) for load in loads)
+
+        def table(values) -> ti.Field:
+            return arrays.holding(np.array(values, dtype=float), arrays.exact, kept=True)
+
+        self.outline = table([self._closed(load.section.outline) for load in loads])
+        self.pressure = table([load.water.density * load.water.gravity for load in loads])
+        self.about = table([load.about for load in loads])
+        self.openings = max(len(points) for points in openings)
+        if self.openings:
+            self.opening = table([[*points, *[(0.0, 0.0)] * (self.openings - len(points))] for points in openings])
+            self.opened = arrays.holding(np.array([len(points) for points in openings]), ti.i32, kept=True)
+        if self.waves:
+            self.length = table([load.waves.soft_start for load in loads])
+            self.number, self.frequency, self.real_part, self.imaginary_part = map(table, self._of_waves(loads))
+
+    def _of_waves(self, loads: Sequence[Floating]) -> list[list[np.ndarray]]:
+        """Numbers and frequencies of the components of each ship's waves, and factors, real and imaginary.
+
+        A factor is of the component times its complex amplitude: elevation, slope and the force over these two's.
+        """
+        factors = [load.waves.amplitude[:, None] * load.factors for load in loads]
+        of_ships = [
+            (load.waves.wave_number, load.waves.frequency, factor.real, factor.imag)
+            for load, factor in zip(loads, factors, strict=True)
+        ]
+        return [[self._filled(values) for values in column] for column in zip(*of_ships, strict=True)]
+
+    def meet(self, loads: Sequence[Floating]) -> None:
+        """Have other waves, of as many components, from now on."""
+        fields = self.number, self.frequency, self.real_part, self.imaginary_part
+        for field, values in zip(fields, self._of_waves(loads), strict=True):
+            field.from_numpy(np.array(values))
+
+    def _closed(self, outline: np.ndarray) -> np.ndarray:
+        """An outline with its last corner again and again: edges of no length."""
+        return np.pad(outline, ((0, self.corners - len(outline)), (0, 0)), "edge")
+
+    def _filled(self, values: np.ndarray) -> np.ndarray:
+        whole = np.zeros((self.waves, *values.shape[1:]))
+        whole[: len(values)] = values
+        return whole
+
+    @ti.func
+    def water(self, w, pose, t):
+        """Force y, z (N/m) and moment (N) about P at a pose of it (m, m, rad) and a time (s)."""
+        arm = turned(self.about[w, 0], self.about[w, 1], pose[2])
+        sea = self.sea(w, pose[0] - arm[0], t)
+        force = self.buoyancy(w, pose[1] - arm[1], pose[2], arm, sea[0], sea[1])
+        return force + ti.Vector([sea[2], sea[3], sea[4]])
+
+    @ti.func
+    def calm(self, w, pose):
+        """The same in calm water."""
+        arm = turned(self.about[w, 0], self.about[w, 1], pose[2])
+        zero = ti.cast(0.0, self.exact)
+        return self.buoyancy(w, pose[1] - arm[1], pose[2], arm, zero, zero)
+
+    @ti.func
+    def floods(self, w, pose, t):
+        """Whether an opening is under the local surface; see `loads.Floating.depths`."""
+        arm = turned(self.about[w, 0], self.about[w, 1], pose[2])
+        found = False
+        for k in range(self.opened[w]):
+            place = turned(self.opening[w, k, 0], self.opening[w, k, 1], pose[2])
+            y, z = pose[0] - arm[0] + place[0], pose[1] - arm[1] + place[1]
+            if self.sea(w, y, t)[0] > z:
+                found = True
+        return found
+
+    @ti.func
+    def sea(self, w, y, t):
+        """Elevation (m) and slope of the surface at the hull's origin, and the force over what these give."""
+        sums = ti.Vector([ti.cast(0.0, self.exact) for _ in ti.static(range(5))])
+        if ti.static(self.waves > 0):
+            for n in range(self.waves):
+                phase = self.number[w, n] * y - self.frequency[w, n] * t
+                cos, sin = ti.cos(phase), ti.sin(phase)
+                for k in ti.static(range(5)):
+                    sums[k] = sums[k] + self.real_part[w, n, k] * cos - self.imaginary_part[w, n, k] * sin
+            start = soft_start(t, self.length[w])[0]
+            for k in ti.static(range(5)):
+                sums[k] = start * sums[k]
+        return sums
+
+    @ti.func
+    def buoyancy(self, w, heave, roll, arm, elevation, slope):
+        """Force and moment about P, `arm` (m) from the hull's origin; see `hydrostatics.buoyancy` and `section`."""
+        area, moment = ti.cast(0.0, self.exact), ti.cast(0.0, self.exact)
+        depth_moment = ti.cast(0.0, self.exact)
+        before = self.corner(w, self.corners - 1, heave, roll, elevation, slope)
+        for k in range(self.corners):
+            after = self.corner(w, k, heave, roll, elevation, slope)
+            y0, d0, y1, d1 = before[0], ti.max(before[1], 0.0), after[0], ti.max(after[1], 0.0)
+            if (before[1] > 0.0) != (after[1] > 0.0):
+                crossing = y0 + before[1] / (before[1] - after[1]) * (y1 - y0)
+                if before[1] > 0.0:
+                    y1 = crossing
+                else:
+                    y0 = crossing
+            along = y1 - y0
+            area += 0.5 * along * (d0 + d1)
+            moment += along / 6.0 * (y0 * (2.0 * d0 + d1) + y1 * (d0 + 2.0 * d1))
+            depth_moment += along / 6.0 * (d0 * d0 + d0 * d1 + d1 * d1)
+            before = after
+        height = elevation * area + slope * moment - depth_moment
+        lever_y, lever_z = moment - arm[0] * area, height - (heave + arm[1]) * area
+        return self.pressure[w] * ti.Vector([-slope * area, area, lever_y + slope * lever_z])
+
+    @ti.func
+    def corner(self, w, k, heave, roll, elevation, slope):
+        """A corner's y from the hull's origin and its depth (m)."""
+        place = turned(self.outline[w, k, 0], self.outline[w, k, 1], roll)
+        return ti.Vector([place[0], elevation + slope * place[0] - heave - place[1]])

@@ -1,0 +1,99 @@
+"""Harmonic sway, heave and roll, q(t) = D(t/T) A sin(2πft + phase), with the soft start D of the thesis."""
+
+from dataclasses import dataclass
+from math import pi
+from typing import Annotated
+
+import taichi as ti
+
+from solvers.machine.marks import Interval, Unit
+
+STEEPEST = 2.171  # largest slope of the transition function D(τ)
+
+
+@ti.func
+def soft_start(t, length):
+    """Transition function D(τ) = exp(1 − 1/(1 − (τ − 1)²)), τ = t/T in (0, 1) (Spandonidis 2016, eq. F.1).
+
+    Returns D and its first two time derivatives; D = 1 after the start, and at once if the length T is zero.
+    """
+    value, first, second = 1.0, 0.0, 0.0
+    if t < length:
+        tau = t / length
+        q = tau * (2.0 - tau)  # 1 − (τ − 1)²
+        value = 0.0
+        if q > 2e-3:  # below, exp(−1/q) and its derivatives are under the smallest number
+            value = ti.exp(1.0 - 1.0 / q)
+            slope = 2.0 * (1.0 - tau) / (q * q)
+            first = value * slope / length
+            bend = slope * slope - 2.0 / (q * q) - 8.0 * (1.0 - tau) ** 2 / (q * q * q)
+            second = value * bend / (length * length)
+    return ti.Vector([value, first, second])
+
+
+@ti.func
+def harmonic(table: ti.template(), w, first, t):
+    """Displacement, velocity and acceleration at time t of D(t) A sin(ωt + phase); at rest before t = 0."""
+    amplitude, omega = table[w, first], table[w, first + 1]
+    phase, length = table[w, first + 2], table[w, first + 3]
+    displacement, velocity, acceleration = 0.0, 0.0, 0.0
+    if t >= 0.0:
+        d = soft_start(t, length)
+        s = ti.sin(omega * t + phase)
+        c = omega * ti.cos(omega * t + phase)
+        displacement = amplitude * d[0] * s
+        velocity = amplitude * (d[1] * s + d[0] * c)
+        acceleration = amplitude * (d[2] * s + 2.0 * d[1] * c - d[0] * omega * omega * s)
+    return ti.Vector([displacement, velocity, acceleration])
+
+
+class Harmonic:
+    """What sway, heave and roll share."""
+
+    state = staticmethod(harmonic)
+
+    def duration(self) -> float:
+        """A harmonic motion has no end of its own."""
+        return 0.0
+
+    def parameters(self, soft_start: float) -> list[float]:
+        """The kernel's table: amplitude, angular frequency, phase, length of the soft start (s)."""
+        return [self.amplitude, 2 * pi * self.frequency, self.phase, soft_start]
+
+    def fastest(self, soft_start: float) -> float:
+        """Bound on the speed (m/s or rad/s): Aω, and what the soft start adds."""
+        return self.amplitude * (2 * pi * self.frequency + (STEEPEST / soft_start if soft_start else 0.0))
+
+
+@dataclass(frozen=True)
+class Sway(Harmonic):
+    """Harmonic sideways motion of the tank."""
+
+    amplitude: Annotated[float, Unit("m"), Interval(gt=0)]
+    frequency: Annotated[float, Unit("Hz"), Interval(gt=0)]
+    phase: Annotated[float, Unit("rad")] = 0.0
+
+    coordinate = "y"
+
+
+@dataclass(frozen=True)
+class Heave(Harmonic):
+    """Harmonic vertical motion of the tank."""
+
+    amplitude: Annotated[float, Unit("m"), Interval(gt=0)]
+    frequency: Annotated[float, Unit("Hz"), Interval(gt=0)]
+    phase: Annotated[float, Unit("rad")] = 0.0
+
+    coordinate = "z"
+
+
+@dataclass(frozen=True)
+class Roll(Harmonic):
+    """Harmonic turning of the tank about a fixed point."""
+
+    amplitude: Annotated[float, Unit("rad"), Interval(gt=0)]
+    frequency: Annotated[float, Unit("Hz"), Interval(gt=0)]
+    phase: Annotated[float, Unit("rad")] = 0.0
+    centre: Annotated[tuple[float, float], Unit("m")] = (0.0, 0.0)
+
+    coordinate = "turn"

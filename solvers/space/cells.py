@@ -1,0 +1,103 @@
+"""A grid of cells over the tank, and the grains sorted into it."""
+
+import numpy as np
+import taichi as ti
+
+from solvers.grains.state import Grains
+from solvers.machine.runtime import Arrays
+
+ORIGIN_Y, ORIGIN_Z, CELL = range(3)
+CHUNK = 256  # cells that one thread sums up
+
+
+@ti.data_oriented
+class Cells:
+    """Cells no smaller than the reach of a contact, and no more of them than a few a grain.
+
+    The grains of cell c are `sorted[w, first[w, c]]` to `sorted[w, first[w, c + 1] - 1]`, by their numbers; those that
+    have left the scene are in a cell of their own beyond the last, which is nobody's neighbour.
+    """
+
+    def __init__(self, arrays: Arrays, grains: Grains, lower: np.ndarray, upper: np.ndarray, reach: float):
+        self.grains = grains
+        extent = upper - lower
+        size = max(reach, float(np.sqrt(extent[0] * extent[1] / (4.0 * grains.count + 64.0))))
+        # In an array and not in the code, so that scenes that differ in lengths alone share a compiled kernel.
+        self.lengths = arrays.holding(np.array([lower[0], lower[1], size]), arrays.place)
+        self.columns = int(extent[0] / size) + 1
+        self.rows = int(extent[1] / size) + 1
+        self.cells = self.columns * self.rows
+        self.chunks = -(-(self.cells + 2) // CHUNK)
+        (self.first,) = arrays.integers(1, (grains.worlds, self.chunks * CHUNK), kept=False)
+        (self.chunk_first,) = arrays.integers(1, (grains.worlds, self.chunks), kept=False)
+        self.cell_of, self.sorted = arrays.integers(2, (grains.worlds, grains.count), kept=False)
+
+    @ti.func
+    def find(self, w, i):
+        """The cell a grain is in; beyond the grid, the nearest."""
+        column = ti.cast((self.grains.y[w, i] - self.lengths[ORIGIN_Y]) / self.lengths[CELL], ti.i32)
+        row = ti.cast((self.grains.z[w, i] - self.lengths[ORIGIN_Z]) / self.lengths[CELL], ti.i32)
+        column = ti.max(0, ti.min(self.columns - 1, column))
+        row = ti.max(0, ti.min(self.rows - 1, row))
+        cell = row * self.columns + column
+        if ti.static(self.grains.may_leave):  # noqa: SIM102 (compiled only for open tanks)
+            if self.grains.present[w, i] == 0.0:
+                cell = self.cells
+        return cell
+
+    @ti.func
+    def sort_world(self, w):
+        """Sort the grains of one world by counting, on one thread."""
+        for c in range(self.cells + 2):
+            self.first[w, c] = 0
+        for i in range(self.grains.count):
+            self.cell_of[w, i] = self.find(w, i)
+            self.count_up(w, self.cell_of[w, i], 1)
+        total = 0
+        for c in range(self.cells + 2):
+            total += self.first[w, c]
+            self.first[w, c] = total
+        for k in range(self.grains.count):
+            i = self.grains.count - 1 - k
+            self.count_up(w, self.cell_of[w, i], -1)
+            self.sorted[w, self.first[w, self.cell_of[w, i]]] = i
+
+    @ti.func
+    def count_up(self, w, cell, by):
+        """Add to a cell's count, with no atomic: a world is one thread's."""
+        self.first[w, cell] = self.first[w, cell] + by
+
+    @ti.kernel
+    def sort_all(self):
+        """Sort the grains of all worlds on all threads; the result is that of `sort_world`."""
+        for w, c in self.first:
+            self.first[w, c] = 0
+        for w, i in self.cell_of:
+            self.cell_of[w, i] = self.find(w, i)
+            ti.atomic_add(self.first[w, self.cell_of[w, i]], 1)
+        for w, k in self.chunk_first:
+            total = 0
+            for c in range(k * CHUNK, (k + 1) * CHUNK):
+                total += self.first[w, c]
+                self.first[w, c] = total
+            self.chunk_first[w, k] = total
+        for w in range(self.grains.worlds):
+            total = 0
+            for k in range(self.chunks):
+                here = self.chunk_first[w, k]
+                self.chunk_first[w, k] = total
+                total += here
+        for w, c in self.first:
+            self.first[w, c] = self.first[w, c] + self.chunk_first[w, c // CHUNK]
+        for w, i in self.cell_of:
+            place = ti.atomic_add(self.first[w, self.cell_of[w, i]], -1) - 1
+            self.sorted[w, place] = i
+        for w, c in self.first:
+            # Threads came in any order; by number, the lists and so all sums have one order.
+            if c < self.cells:
+                for k in range(self.first[w, c] + 1, self.first[w, c + 1]):
+                    i, hole = self.sorted[w, k], k
+                    while hole > self.first[w, c] and self.sorted[w, hole - 1] > i:
+                        self.sorted[w, hole] = self.sorted[w, hole - 1]
+                        hole -= 1
+                    self.sorted[w, hole] = i

@@ -1,0 +1,1 @@
+"""What holds the cargo: outline, walls and parts that move."""

@@ -1,0 +1,66 @@
+"""Parts that move in the tank's frame: gates, funnels, floors that drop; and still ones, such as baffles."""
+
+from dataclasses import dataclass
+from math import hypot, sqrt
+from typing import Annotated
+
+import taichi as ti
+
+from solvers.machine.marks import Interval, Unit
+
+SHORTEST = 1e-12  # s, far below any step: a part that speeds up in less takes this long
+
+
+@ti.func
+def travel(table: ti.template(), row, first, t):
+    """Share of its way that a part has done at time t, from 0 to exactly 1, and the rate of that (1/s).
+
+    The speed v rises evenly in the time T to its top and falls as it rose, so that at τ after the start or before the
+    end v τ²/2T of the way are done or left, from T on v (τ − T/2). Read are `Part.parameters`, from column `first` on.
+    """
+    ramp, total, rate = table[row, first + 1], table[row, first + 2], table[row, first + 3]
+    passed = ti.min(ti.max(t - table[row, first], 0.0), total)
+    near = ti.min(passed, total - passed)
+    way, pace = rate * (near - 0.5 * ramp), rate
+    if near < ramp:
+        way, pace = 0.5 * rate * near * near / ramp, rate * near / ramp
+    if 2.0 * passed > total:
+        way = 1.0 - way
+    return ti.Vector([way, pace])
+
+
+@dataclass(frozen=True)
+class Part:
+    """Thin plates along a polyline (m), felt from both sides, that move together.
+
+    From `start` (s after the tank's motion begins) they move by `move` (y, z; m) in the tank's frame: with
+    `acceleration` up to `speed`, and braked as much at the end. A way too short for `speed` has a lower top speed. A
+    part whose `move` is zero stands still.
+    """
+
+    points: Annotated[tuple[tuple[float, float], ...], Unit("m")]
+    move: Annotated[tuple[float, float], Unit("m")] = (0.0, 0.0)
+    start: Annotated[float, Unit("s"), Interval(ge=0)] = 0.0
+    speed: Annotated[float, Unit("m/s"), Interval(ge=0)] = 0.0
+    acceleration: Annotated[float, Unit("m/s^2"), Interval(ge=0)] = 0.0
+
+    @property
+    def way(self) -> float:
+        """Length of the move (m)."""
+        return hypot(*self.move)
+
+    def fastest(self) -> float:
+        """Largest speed (m/s) that the part reaches."""
+        return min(self.speed, sqrt(self.way) * sqrt(self.acceleration))
+
+    def duration(self) -> float:
+        """Time from the start of the tank's motion until the part stands still for good (s); 0 if it never moves."""
+        start, _, total, *_ = self.parameters()
+        return start + total
+
+    def parameters(self) -> list[float]:
+        """The kernel's table: start, time to speed up, time under way (s), top rate (1/s), move (y, z; m)."""
+        if not self.way:
+            return [0.0] * 6
+        ramp, cruise = max(self.fastest() / self.acceleration, SHORTEST), self.way / self.fastest()
+        return [self.start, ramp, ramp + cruise, 1.0 / cruise, *self.move]

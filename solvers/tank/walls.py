@@ -1,0 +1,219 @@
+"""Walls: the tank's outline, a polygon of straight segments, some maybe missing, and plates that move in it."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import taichi as ti
+
+from solvers.machine.runtime import Arrays
+from solvers.tank.parts import Part, travel
+
+Y, Z, ALONG_Y, ALONG_Z, LENGTH, TWO_SIDED, PART = range(7)
+AFTER_Y, AFTER_Z = LENGTH, TWO_SIDED  # of a corner
+MOVE = 4  # where a part's parameters have its move (y, z; m)
+SHIFT = 4  # numbers a moving part: its displacement (m) and its velocity (m/s)
+BEYOND = 0.5  # how far beyond an open tank grains that have left it are followed, in its own width and height
+CHIMNEY = 5.0  # how far above its mouth a grain still counts as in the tank, in the tank's size
+
+
+@ti.data_oriented
+class Walls:
+    """A simple polygon (m, 2), counter-clockwise, with the grains inside, and thin plates.
+
+    Features are segments and corners. A grain touches a segment only where its centre projects onto it, and a corner
+    only beyond the ends of both of the corner's segments, so no contact counts twice. The walls of a closed tank are
+    felt from inside alone, and only the corners that jut into it count. Those of an open tank and the parts are
+    plates without thickness, felt from both sides and round their edges.
+    """
+
+    def __init__(self, arrays: Arrays, outline: np.ndarray, open_edges: Sequence[int] = (), parts: Sequence[Part] = ()):
+        self.outline = np.asarray(outline, dtype=np.float64)
+        self.open = bool(open_edges)
+        self.parts = len(parts)
+        tank = _Features(self.open, -1.0)
+        count = len(self.outline)
+        closed = [k for k in range(count) if k not in open_edges]
+        for k in closed:
+            tank.add_segment(self.outline[k], self.outline[(k + 1) % count])
+        for k in range(count):
+            tank.add_corner(self.outline, (k - 1) % count if (k - 1) % count in closed else None, k, k in closed)
+        plates = [tank] + [_plate(part, number) for number, part in enumerate(parts)]
+        segments = [row for plate in plates for row in plate.segments]
+        corners = [row for plate in plates for row in plate.corners]
+        self.segments, self.corners = len(segments), len(corners)
+        self.features = self.segments + self.corners
+        self.rows = np.array(segments + corners, dtype=np.float64)
+        self.table = arrays.holding(self.rows, arrays.place)
+        self.fastest = max((part.fastest() for part in parts), default=0.0)  # m/s
+        self.moving = self.fastest > 0.0
+        rows = np.array([part.parameters() for part in parts]) if parts else np.zeros((1, MOVE + 2))
+        self.programmes = arrays.holding(rows, arrays.exact)
+        (self.places,) = arrays.reals(1, (max(1, len(parts)), 2), kept=False)  # displacements (m) when last noted
+        mouth = _with_chimneys(self.outline, open_edges)
+        self.mouth_edges = len(mouth)
+        self.mouth = arrays.holding(np.column_stack([mouth, np.roll(mouth, -1, axis=0)]), arrays.place)
+        self.real = arrays.real
+        self.edge = arrays.holding(np.concatenate(self.bounds), arrays.place)
+
+    @property
+    def bounds(self) -> tuple[np.ndarray, np.ndarray]:
+        """Lower and upper corner (m) of where grains that have left the tank are followed."""
+        lower, upper = self.outline.min(axis=0), self.outline.max(axis=0)
+        margin = BEYOND * (upper - lower) if self.open else 0.0
+        return lower - margin, upper + margin
+
+    @ti.func
+    def shift(self, w, t):
+        """Displacements and velocities of the parts at time t."""
+        state = ti.Vector([ti.cast(0.0, self.real) for _ in ti.static(range(max(1, SHIFT * self.parts)))])
+        for p in ti.static(range(self.parts)):
+            s = travel(self.programmes, p, 0, t)
+            for k in ti.static(range(2)):
+                state[SHIFT * p + k] = ti.cast(s[0] * self.programmes[p, MOVE + k], self.real)
+                state[SHIFT * p + 2 + k] = ti.cast(s[1] * self.programmes[p, MOVE + k], self.real)
+        return state
+
+    @ti.func
+    def note_places(self, t):
+        """Keep where the parts are at time t, for `places`."""
+        shift = self.shift(0, t)
+        for p in ti.static(range(self.parts)):
+            self.places[p, 0], self.places[p, 1] = shift[SHIFT * p], shift[SHIFT * p + 1]
+
+    @ti.func
+    def gone(self, w, since, t):
+        """The farthest (m) that a part has moved between two times."""
+        before, now = self.shift(w, since), self.shift(w, t)
+        farthest = ti.cast(0.0, self.real)
+        for p in ti.static(range(self.parts)):
+            dy, dz = now[SHIFT * p] - before[SHIFT * p], now[SHIFT * p + 1] - before[SHIFT * p + 1]
+            farthest = ti.max(farthest, ti.sqrt(dy * dy + dz * dz))
+        return farthest
+
+    @ti.func
+    def from_start(self, feature, shift: ti.template(), y, z):
+        """The point (y, z) as seen from where a feature starts, m."""
+        py, pz = y - self.table[feature, Y], z - self.table[feature, Z]
+        if ti.static(self.parts > 0):
+            part = ti.cast(self.table[feature, PART], ti.i32)
+            for p in ti.static(range(self.parts)):
+                if part == p:
+                    py -= shift[SHIFT * p]
+                    pz -= shift[SHIFT * p + 1]
+        return ti.Vector([py, pz])
+
+    @ti.func
+    def velocity(self, feature, shift: ti.template()):
+        """Velocity (m/s) of a feature in the tank's frame."""
+        v = ti.Vector([ti.cast(0.0, self.real), ti.cast(0.0, self.real)])
+        if ti.static(self.parts > 0):
+            part = ti.cast(self.table[feature, PART], ti.i32)
+            for p in ti.static(range(self.parts)):
+                if part == p:
+                    v = ti.Vector([shift[SHIFT * p + 2], shift[SHIFT * p + 3]])
+        return v
+
+    @ti.func
+    def gap(self, feature, shift: ti.template(), y, z):
+        """Signed distance (m) of a point from a wall feature and the unit normal towards the point.
+
+        The distance is huge where the point does not face the feature, negative behind a one-sided segment: no contact
+        either.
+        """
+        point = self.from_start(feature, shift, y, z)
+        py, pz = point[0], point[1]
+        ty, tz = self.table[feature, ALONG_Y], self.table[feature, ALONG_Z]
+        along = py * ty + pz * tz
+        distance, normal_y, normal_z = py * -tz + pz * ty, -tz, ty
+        if ti.static(self.corners == 0) or feature < self.segments:
+            if ti.static(self.open or self.parts > 0):  # noqa: SIM102 (compiled only where there are plates)
+                if self.table[feature, TWO_SIDED] > 0.0 and distance < 0.0:
+                    distance, normal_y, normal_z = -distance, -normal_y, -normal_z
+            if along < 0.0 or along > self.table[feature, LENGTH]:
+                distance = 1e30
+        else:
+            beyond = py * self.table[feature, AFTER_Y] + pz * self.table[feature, AFTER_Z]
+            distance = ti.sqrt(py * py + pz * pz)
+            normal_y, normal_z = py / distance, pz / distance
+            if along <= 0.0 or beyond >= 0.0:
+                distance = 1e30
+        return ti.Vector([distance, normal_y, normal_z])
+
+    @ti.func
+    def near(self, feature, shift: ti.template(), y, z, reach):
+        """Whether a point is within `reach` (m) of a wall feature, to whichever side."""
+        point = self.from_start(feature, shift, y, z)
+        py, pz = point[0], point[1]
+        if feature < self.segments:
+            ty, tz = self.table[feature, ALONG_Y], self.table[feature, ALONG_Z]
+            along = ti.max(0.0, ti.min(self.table[feature, LENGTH], py * ty + pz * tz))
+            py -= along * ty
+            pz -= along * tz
+        return py * py + pz * pz < reach * reach
+
+    @ti.func
+    def holds(self, y, z):
+        """Whether a point lies in the tank or above its mouth (even–odd rule)."""
+        inside = False
+        for k in range(self.mouth_edges):
+            ay, az, by, bz = self.mouth[k, 0], self.mouth[k, 1], self.mouth[k, 2], self.mouth[k, 3]
+            if (az > z) != (bz > z) and y < ay + (z - az) / (bz - az) * (by - ay):
+                inside = not inside
+        return inside
+
+    @ti.func
+    def follows(self, y, z):
+        """Whether a point is so near the tank that a grain which has left is still followed."""
+        return self.edge[0] <= y <= self.edge[2] and self.edge[1] <= z <= self.edge[3]
+
+
+class _Features:
+    """Rows of the table: segments and corners of one polyline, `two_sided` or not, of the part with that number."""
+
+    def __init__(self, two_sided: bool, part: float):
+        self.two_sided, self.part = two_sided, part
+        self.segments: list[list[float]] = []
+        self.corners: list[list[float]] = []
+
+    def add_segment(self, start: np.ndarray, end: np.ndarray) -> None:
+        length = float(np.hypot(*(end - start)))
+        self.segments.append([*start, *(end - start) / length, length, float(self.two_sided), self.part])
+
+    def add_corner(self, points: np.ndarray, before: int | None, at: int, follows: bool) -> None:
+        """A corner after segment `before` (if any) and, where one `follows`, before the one that starts at `at`."""
+        if before is None and not follows:
+            return
+        ahead = _direction(points, at) if follows else -_direction(points, before)
+        behind = _direction(points, before) if before is not None else -ahead
+        if self.two_sided or behind[0] * ahead[1] - behind[1] * ahead[0] < -1e-12:
+            self.corners.append([*points[at], *behind, *ahead, self.part])
+
+
+def _direction(points: np.ndarray, k: int) -> np.ndarray:
+    """Unit vector from corner k to the next."""
+    edge = points[(k + 1) % len(points)] - points[k]
+    return edge / np.hypot(*edge)
+
+
+def _plate(part: Part, number: int) -> _Features:
+    """The features of a part, an open polyline."""
+    points = np.asarray(part.points, dtype=np.float64)
+    plate = _Features(True, float(number))
+    for k in range(len(points) - 1):
+        plate.add_segment(points[k], points[k + 1])
+    for k in range(len(points)):
+        plate.add_corner(points, k - 1 if k else None, k, k < len(points) - 1)
+    return plate
+
+
+def _with_chimneys(outline: np.ndarray, open_edges: Sequence[int]) -> np.ndarray:
+    """The outline with a shaft raised on each open edge that faces up: what is above the mouth has not been spilled."""
+    size = CHIMNEY * float(np.ptp(outline, axis=0).max())
+    points = []
+    for k, corner in enumerate(outline):
+        points.append(corner)
+        along = _direction(outline, k)
+        if k in open_edges and along[0] < 0.0:
+            out = size * np.array([along[1], -along[0]])
+            points += [corner + out, outline[(k + 1) % len(outline)] + out]
+    return np.array(points)

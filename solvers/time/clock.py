@@ -1,0 +1,28 @@
+"""Where each world stands: steps done, and the status of the watch."""
+
+import numpy as np
+import taichi as ti
+
+from solvers.machine.runtime import Arrays
+from solvers.machine.units import Units
+from solvers.time.watch import RUNNING
+
+
+@ti.data_oriented
+class Clock:
+    """`step`, the steps of Δt done, and `status`, a word of `solvers.time.watch`, each (W,).
+
+    `says` (units,) and `arrived` (W,) are what bands tell each other, `fastest` and `farthest` (W,) what the
+    per-grain schedule looks up now and then: the highest speed (m/s), the longest way since the lists were built (m);
+    `pushed` (W,) is the largest acceleration (m/s²) by the frame to come.
+    """
+
+    def __init__(self, arrays: Arrays, units: Units):
+        self.step, self.status, self.arrived = arrays.integers(3, (units.worlds,))
+        (self.says,) = arrays.integers(1, (units.count,), kept=False)
+        self.fastest, self.farthest, self.pushed = arrays.reals(3, (units.worlds,), kept=False)
+        self.body = arrays.reals(4, (units.worlds,), kept=False)
+
+    def running(self) -> np.ndarray:
+        """Which worlds run (W,)."""
+        return self.status.to_numpy() == RUNNING

@@ -1,0 +1,89 @@
+"""The step size, derived from the scene: waves, and what its contact laws and the watch bear at the highest speed."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from math import pi, sqrt
+
+import numpy as np
+
+from solvers.grains.materials import Interface, Material
+from solvers.time.watch import FASTEST_STEP
+
+RAYLEIGH_SHARE = 0.2
+FASTER = 1.5  # times the highest credible speed: what the watch lets pass all the same
+
+
+@dataclass(frozen=True)
+class Limit:
+    """A bound on the step and what sets it; one that is `firm` no integrator and no level of accuracy stretches."""
+
+    step: float  # s
+    reason: str
+    firm: bool = False
+
+
+def watched(smallest: float, speed: float, count: int, shaped: bool) -> Limit:
+    """The step at which the watch lets `count` grains of at least the radius `smallest` (m) all be FASTER than `speed`.
+
+    What it sees of their speeds is the 16-norm, of outlines at most √2 times that of their farthest points
+    (`Mover.move`).
+    """
+    seen = FASTER * count ** (1.0 / 16.0) * (sqrt(2.0) if shaped else 1.0)
+    way = (
+        f"{FASTEST_STEP:g} of the smallest radius a step, what the watch lets pass, at {FASTER:g} times {speed:.3g} m/s"
+    )
+    return Limit(FASTEST_STEP * smallest / (seen * speed), way, firm=True)
+
+
+def closing_speed(velocity: np.ndarray) -> float:
+    """The highest speed (m/s) of any of n grains, or of any two at each other, of velocities (n, 2) m/s.
+
+    The farthest two of a set of points are corners of its convex hull.
+    """
+    from scipy.spatial import ConvexHull, QhullError  # slow to import, and only listed beds need it
+
+    corners = np.unique(velocity, axis=0)
+    try:
+        corners = corners[ConvexHull(corners).vertices]
+    except (QhullError, ValueError):  # on one line, or fewer than three: its ends are the farthest
+        along = (corners - corners[0]) @ (corners[np.linalg.norm(corners - corners[0], axis=1).argmax()] - corners[0])
+        corners = corners[[along.argmin(), along.argmax()]]
+    fastest = np.linalg.norm(velocity, axis=1).max()
+    return float(max([fastest, *(np.linalg.norm(corners - one, axis=1).max() for one in corners)]))
+
+
+def rayleigh_time(radius: float, density: float, shear: float, poisson: float) -> float:
+    """Time (s) of a Rayleigh wave over half a grain, π R √(ρ/G)/(0.1631 ν + 0.8766) (Thornton and Randall 1988)."""
+    return pi * radius * sqrt(density / shear) / (0.1631 * poisson + 0.8766)
+
+
+def limits(
+    smallest: float,
+    grain: Material,
+    interfaces: tuple[Interface, Interface],
+    scale: float,
+    speed: float,
+    laws: Iterable,
+    share: float = 1.0,
+) -> list[Limit]:
+    """All bounds on the step for grains of at least the radius `smallest` (m) that meet at up to `speed` (m/s).
+
+    `laws` are the contact laws of the scene; each says which steps it bears (`limits`). `share` is the smallest part of
+    its mass with which a grain resists a push on its outline: less than 1 where the push also turns it.
+    """
+    mass = share * 4.0 / 3.0 * pi * smallest**3 * grain.density
+    shear = grain.young * scale / (2.0 * (1.0 + grain.poisson))
+    found = [
+        Limit(
+            RAYLEIGH_SHARE * rayleigh_time(smallest, grain.density, shear, grain.poisson),
+            f"{RAYLEIGH_SHARE:g} of the Rayleigh time of the smallest grain",
+        )
+    ]
+    for between, m_eff, r_eff, name in (
+        (interfaces[0], mass / 2.0, smallest / 2.0, "two of the smallest grains"),
+        (interfaces[1], mass, smallest, "the smallest grain and a wall"),
+    ):
+        for law in laws:
+            for step, reason in law.limits(between, m_eff, r_eff, speed):
+                found.append(Limit(step, f"{reason} of {name} at {speed:.3g} m/s"))
+    return sorted(found, key=lambda limit: limit.step)

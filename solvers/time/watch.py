@@ -1,0 +1,42 @@
+"""The watch: states that are no longer physics, what they are called and what helps."""
+
+import numpy as np
+
+from solvers.machine.errors import BadState
+
+RUNNING, WAITING, NO_ROOM, TOO_FAST, CAPSIZED = range(5)
+
+# A grain that crosses a tenth of the smallest radius in a step is not colliding, it is being thrown.
+FASTEST_STEP = 0.1
+DEEPEST_OVERLAP = 0.3
+
+
+def report_speed(status: np.ndarray, velocity: np.ndarray, time: np.ndarray, dt: float) -> None:
+    """Raise what stopped the time loop of a world: a speed too large for the step, or not a number."""
+    for w in np.flatnonzero(status == TOO_FAST):
+        speed = np.linalg.norm(velocity[w], axis=1).max()
+        what = f"a grain moves at {speed:.3g} m/s" if np.isfinite(speed) else "a grain's speed is not a number"
+        raise BadState(
+            w,
+            f"{what} at t = {time[w]:.4g} s, too fast for the step of {dt:.3g} s; "
+            "use a smaller run.step or check the motion's amplitude.",
+        )
+
+
+def check_state(deepest: np.ndarray, escaped: np.ndarray, time: float) -> None:
+    """Stop when a grain has left the tank or two grains overlap far beyond elastic contact.
+
+    `deepest` (W,) overlap in radii, `escaped` (W,) index of a grain outside the walls or −1.
+    """
+    for w in np.flatnonzero(escaped >= 0):
+        raise BadState(
+            w,
+            f"grain {escaped[w]} left the tank by t = {time:.4g} s; "
+            "use a smaller run.step or a larger contact.stiffness_scale.",
+        )
+    for w in np.flatnonzero(~(deepest <= DEEPEST_OVERLAP)):
+        raise BadState(
+            w,
+            f"grains overlap by {100 * deepest[w]:.3g} % of a radius at t = {time:.4g} s, "
+            "too soft for these impacts; use a larger contact.stiffness_scale.",
+        )

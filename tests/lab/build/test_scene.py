@@ -1,0 +1,275 @@
+"""From a preset to the scene: sizes, surfaces, tanks and grains from a file, and the sentences where it cannot be."""
+
+import json
+from itertools import product
+
+import numpy as np
+import pytest
+
+from lab.base.errors import LabError
+from lab.build.scene import build, filling_outline, fixed_grains, grain_count
+from lab.preset import bed_file
+from lab.preset.accuracy import LEVELS
+from lab.preset.find import load
+from lab.preset.schema import Resolved
+from lab.studies.verify.scenes import ACETATE, WEIGHTLESS, Setup, again, grain, simulated
+from solvers.time.watch import DEEPEST_OVERLAP
+
+SMALL = {"tank": {"width": "30 mm", "height": "30 mm"}, "grains": {"depth": "12 mm"}, "run": {"repeats": 2}}
+PEAS = {"distribution": "table", "table": [["3 mm", 35.2], ["4 mm", 64.8]]}
+REGION = {"grains.region": [["0 mm", "2 mm"], ["10 mm", "2 mm"], ["10 mm", "12 mm"]]}
+TRIANGLE = [["0 mm", "0 mm"], ["40 mm", "0 mm"], ["20 mm", "40 mm"]]
+
+
+def resolved(**sections) -> Resolved:
+    """The small preset with keys of its sections over it."""
+    table = {name: dict(keys) for name, keys in SMALL.items()}
+    for name, keys in sections.items():
+        table.setdefault(name, {}).update(keys)
+    return load("tilting/quick", table).resolved
+
+
+def fault(**sections) -> str:
+    with pytest.raises(LabError) as caught:
+        build(resolved(**sections))
+    assert "\n" not in str(caught.value) and str(caught.value)[-1] in ".?"
+    return str(caught.value)
+
+
+def csv(folder, *rows: str, header: str = "y,z,radius,vy,vz,omega") -> dict:
+    """A bed of single grains in a file, as keys of `grains`."""
+    path = folder / "bed.csv"
+    path.write_text("\n".join([header, *rows]))
+    return {"bed": str(path)}
+
+
+@pytest.mark.parametrize(
+    ("keys", "diameter", "low", "high"),
+    [
+        ({"diameter": "3 mm", "spread": 0.2}, 3e-3, 2.4e-3, 3.6e-3),
+        ({"diameter": "3 mm", "spread": 0.1, "distribution": "normal"}, 3e-3, 2.1e-3, 3.9e-3),
+        ({"diameter": "2 mm", "spread": 0.4, "distribution": "normal"}, 2e-3, 0.2e-3, 4.4e-3),
+        ({"spread": 0.0, **PEAS}, 3.648e-3, 3e-3, 4e-3),
+        ({"spread": 0.1, **PEAS}, 3.648e-3, 2.7e-3, 4.4e-3),
+    ],
+    ids=["uniform", "normal", "wide normal", "table", "spread table"],
+)
+def test_the_scene_knows_the_range_of_its_sizes(keys, diameter, low, high):
+    preset = resolved(grains=keys)
+    scene, position = build(preset)
+    assert preset.grains.diameter == pytest.approx(diameter)
+    assert scene.sizes == (pytest.approx(0.5 * low), pytest.approx(0.5 * high))
+    assert scene.sizes[0] <= scene.radius.min() and scene.radius.max() <= scene.sizes[1]
+    assert position.shape == (*scene.radius.shape, 2)
+    assert not np.array_equal(scene.radius[0], scene.radius[1])
+
+
+def test_a_level_of_accuracy_sets_stiffness_and_step_where_the_preset_does_not():
+    found = {
+        (level, scale): build(resolved(run={"accuracy": level}, contact={"stiffness_scale": scale} if scale else {}))[0]
+        for level in LEVELS
+        for scale in (None, 3e-3)
+    }
+    for level, sets in LEVELS.items():
+        assert found[level, None].stiffness_scale == sets.stiffness_scale
+        assert found[level, 3e-3].stiffness_scale == 3e-3
+        longest = found[level, 3e-3].step_limits()[0].step * sets.longer_steps
+        assert 0.99 * longest < found[level, 3e-3].step <= longest
+    steps = [found[level, None].step for level in ("draft", "standard", "reference")]
+    assert steps == sorted(steps, reverse=True)
+    given = build(resolved(run={"accuracy": "draft", "step": "1 us"}))[0]
+    assert given.step == pytest.approx(1e-6)
+
+
+def test_the_shares_of_a_table_add_up_to_one_and_may_be_any_numbers():
+    grains = resolved(grains=PEAS).grains
+    assert grains.table == ((3e-3, pytest.approx(0.352)), (4e-3, pytest.approx(0.648)))
+    again = Resolved.model_validate_json(resolved(grains=PEAS).model_dump_json()).grains
+    assert again == grains and again.sizes == grains.sizes
+
+
+@pytest.mark.parametrize("surface", ["undisturbed", "slightly-disturbed", "disturbed"])
+def test_a_surface_leaves_count_and_sizes_as_they_are(surface):
+    plain, _ = build(resolved())
+    scene, position = build(resolved(grains={"surface": surface}))
+    np.testing.assert_array_equal(scene.radius, plain.radius)
+    again = build(resolved(grains={"surface": surface}))[1]
+    np.testing.assert_array_equal(position, again)
+    assert not np.array_equal(position[0], position[1])
+
+
+def test_a_tank_without_lid_is_open_at_its_top_and_may_be_full():
+    preset = resolved(tank={"lid": False}, grains={"depth": "30 mm"})
+    assert preset.tank.open_edges == (2,)
+    scene, position = build(preset)
+    assert scene.open_edges == (2,) and not resolved().tank.open_edges
+    assert position[..., 1].max() > 0.03  # the lattice is looser than the bed
+    top = filling_outline(preset)[:, 1].max()
+    assert np.all(position[..., 1] + scene.radius < top)
+    assert np.ptp(scene.outline[:, 1]) == pytest.approx(0.03)
+    assert np.abs(position[..., 0]).max() < 0.015
+
+
+def test_a_closed_tank_is_filled_as_it_is_if_there_is_room():
+    preset = resolved()
+    np.testing.assert_array_equal(filling_outline(preset), np.array(preset.tank.outline))
+    nearly_full = resolved(grains={"depth": "27 mm"})
+    raised = filling_outline(nearly_full)
+    assert raised[:, 1].max() > 0.03
+    position = build(nearly_full)[1]
+    assert 0.03 < position[..., 1].max() < raised[:, 1].max()
+    with pytest.raises(LabError, match=r"^grains\.depth: .* do not fit the tank"):
+        build(resolved(grains={"depth": "27 mm"}, run={"settle": False}))
+
+
+def test_a_rough_tank_is_lined_with_the_same_grains_in_all_repeats():
+    preset = resolved(tank={"roughness": "2 mm"})
+    scene, position = build(preset)
+    np.testing.assert_array_equal(scene.fixed, fixed_grains(preset))
+    assert 2.0 * scene.fixed[:, 2].sum() == pytest.approx(0.09, rel=0.1)
+    apart = np.linalg.norm(position[:, :, None] - scene.fixed[:, :2], axis=-1)
+    assert np.all(apart > scene.radius[:, :, None] + scene.fixed[:, 2])
+    assert grain_count(preset) < grain_count(resolved())
+    other = fixed_grains(resolved(tank={"roughness": "2 mm"}, run={"seed": 7}))
+    assert not np.array_equal(other[: len(scene.fixed)], scene.fixed[: len(other)])
+
+
+def test_listed_grains_start_where_and_as_the_file_says(tmp_path):
+    rows = ["-0.005,0.01,0.0015,0.3,0,2", "0.005,0.01,0.001,0,-0.4,0"]
+    preset = resolved(grains=csv(tmp_path, *rows), run={"settle": False, "repeats": 3})
+    (tmp_path / "bed.csv").unlink()
+    preset = Resolved.model_validate(json.loads(preset.model_dump_json()))  # complete without the file
+    scene, position = build(preset)
+    np.testing.assert_array_equal(position, [[[-0.005, 0.01], [0.005, 0.01]]] * 3)
+    np.testing.assert_array_equal(scene.radius, [[0.0015, 0.001]] * 3)
+    np.testing.assert_array_equal(scene.velocity, [[[0.3, 0.0], [0.0, -0.4]]] * 3)
+    np.testing.assert_array_equal(scene.spin, [[2.0, 0.0]] * 3)
+    assert scene.start_speed == pytest.approx(0.5) and scene.sizes == (0.001, 0.0015)
+    assert (preset.grains.count, preset.grains.depth, preset.grains.bed) == (2, None, "bed.csv")
+
+
+def test_listed_grains_may_settle_and_lie_against_each_other_and_the_walls(tmp_path):
+    rows = ["-0.0135,0.0015,0.0015", "-0.0105,0.0015,0.0015", "-0.012,0.00409,0.0015"]  # the third sunk in by 1e-6 m
+    scene, _ = build(resolved(grains=csv(tmp_path, *rows, header="y,z,radius")))
+    assert scene.velocity is None and scene.spin is None and scene.start_speed == 0.0
+
+
+@pytest.mark.parametrize(
+    ("rows", "sentence"),
+    [
+        (["0,0.01,0.001,1,0,0"], "grains.bed: its grains move, but settle first; "),
+        (["0,0.01,0"], "grains.bed: the radius in row 1 must be greater than 0 (got 0)."),
+        (["0,0.01,0.001", "0,0.02,-1"], "grains.bed: the radius in row 2 must be greater than 0 (got -1)."),
+        (
+            ["0,0.02,0.001", "0.1,0.01,0.001"],
+            "grains.bed: the grain in row 2, at 100 mm, 10 mm, is not inside the tank.",
+        ),
+        (["0.0142,0.01,0.001"], "grains.bed: the grain in row 1, at 14.2 mm, 10 mm, is not inside the tank."),
+        (
+            ["0,0.01,0.001", "0.01,0.01,0.001", "0.004,0.0111,0.0035"],
+            "grains.bed: the grains in rows 1 and 3 overlap.",
+        ),
+        (["0,0.01,0.001", "0,0.011,0.0001"], "grains.bed: the grains in rows 1 and 2 overlap."),
+    ],
+)
+def test_what_a_file_of_grains_must_not_say(rows, sentence, tmp_path):
+    header = "y,z,radius,vy,vz,omega" if rows[0].count(",") > 2 else "y,z,radius"
+    assert fault(grains=csv(tmp_path, *rows, header=header)).startswith(sentence)
+
+
+def test_a_region_is_filled_and_the_walls_stay_as_they_are():
+    preset = load(
+        "tilting/quick", {**REGION, "grains.count": 3, "grains.diameter": "1.5 mm", "tank.lid": False}
+    ).resolved
+    _, position = build(preset)
+    y, z = position[..., 0], position[..., 1]
+    assert np.all((y > 0) & (y < 0.01) & (z > 0.002) & (z < 0.002 + y))
+    np.testing.assert_array_equal(filling_outline(preset), preset.tank.outline)
+
+
+@pytest.mark.parametrize(
+    ("keys", "sentence"),
+    [
+        ({"depth": "9 mm"}, "grains.region: goes with a count of grains; a depth would fill the whole tank."),
+        ({"count": 9, "surface": "disturbed"}, "grains.region: grains in a region settle as they lie;"),
+        ({"count": 9, "region": []}, "grains.region: from 3 to 200 corners are needed (got 0)."),
+        ({"count": 90}, "grains.count: 90 grains do not fit into the region."),
+        ({"count": 5}, "grains.count: 5 grains of up to 3.2"),
+    ],
+)
+def test_faults_of_a_region(keys, sentence):
+    with pytest.raises(LabError) as caught:
+        build(load("tilting/quick", {**REGION, "grains": keys}).resolved)
+    assert str(caught.value).startswith(sentence) and "\n" not in str(caught.value)
+
+
+def test_files_of_grains_that_cannot_be_used(tmp_path, monkeypatch):
+    assert fault(grains={"bed": str(tmp_path / "absent.csv")}).startswith("grains.bed: ")
+    monkeypatch.setattr(bed_file, "MOST", 10)
+    many = (f"{x},0.01,1e-9" for x in np.linspace(-0.01, 0.01, 11))
+    assert "more than 10 rows" in fault(grains=csv(tmp_path, *many, header="y,z,radius"))
+    listed = csv(tmp_path, "0,0.01,0.001", header="y,z,radius")
+    assert fault(grains={**listed, "surface": "disturbed"}).startswith("grains.surface: says how a bed is poured")
+
+
+@pytest.mark.parametrize(
+    ("sections", "sentence"),
+    [
+        ({"grains": {"table": [["3 mm", 1]]}}, 'grains.table: goes with distribution = "table" (got distribution = "'),
+        ({"grains": {"distribution": "table"}}, 'grains.table: goes with distribution = "table" (got no table).'),
+        ({"grains": {"distribution": "table", "table": []}}, "grains.table: at least one class is needed"),
+        ({"grains": {"distribution": "table", "table": [["3 mm"]]}}, "grains.table[0]: a list of 2 is needed"),
+        ({"grains": {"distribution": "table", "table": [[1, "3 mm"]]}}, "grains.table[0][0]: 1 has no unit; a length"),
+        ({"grains": {"distribution": "table", "table": [["3 mm", 0]]}}, "grains.table[0][1]: must be greater than 0"),
+        ({"grains": {"distribution": "table", "table": [["40 mm", 1]]}}, "grains.table: grains of up to 44 mm do not"),
+        ({"grains": {"distribution": "normel"}}, "grains.distribution: \"normel\" is unknown; did you mean 'normal'?"),
+        ({"grains": {"distribution": "normal", "diameter": "20 mm", "spread": 0.3}}, "grains.diameter: grains of up t"),
+        ({"grains": {"surface": "flat"}}, 'grains.surface: "flat" is unknown; choose one of undisturbed, slightly-d'),
+        ({"grains": {"surface": "disturbed"}, "run": {"settle": False}}, "grains.surface: a bed is disturbed by how i"),
+        ({"grains": {"depth": "30 mm"}}, "grains.depth: 30 mm must be less than the tank's height, 30 mm."),
+        ({"grains": {"depth": "31 mm"}, "tank": {"lid": False}}, "grains.depth: 31 mm is more than the tank's height"),
+        ({"tank": {"lid": False, "outline": TRIANGLE}}, "tank.lid: this outline has no edge along its top"),
+        ({"tank": {"roughness": "8 mm"}}, "tank.roughness: grains of 8 mm are too large to line the tank."),
+        ({"tank": {"roughness": "1 um"}}, "tank.roughness: more than 20000 grains of 1 µm go around."),
+    ],
+)  # fmt: skip
+def test_faults_name_the_key(sections, sentence):
+    if "outline" in sections.get("tank", {}):
+        with pytest.raises(LabError) as caught:
+            load("tilting/quick", {**sections, "grains": {"depth": "12 mm"}})
+        assert str(caught.value).startswith(sentence)
+    else:
+        assert fault(**sections).startswith(sentence)
+
+
+SPEEDS, YOUNGS = (0.1, 1.0, 10.0, 30.0, 100.0), (100.0, 1e3, 1e5, 1e7, 1e9, 1e11)  # m/s, Pa
+
+
+@pytest.mark.parametrize("level", LEVELS)
+def test_what_is_built_the_watch_lets_run(level):
+    """Two grains that meet, of any speed and stiffness: refused in one sentence, or run through their impact."""
+    built, refused = [], {}
+    for case in product(SPEEDS, YOUNGS):
+        speed, young = case
+        rows = [grain(side * 2e-3, 0.05, 1.5e-3, -0.5 * side * speed) for side in (-1.0, 1.0)]
+        material = ACETATE | {"young": young}
+        run = {"gravity": WEIGHTLESS, "accuracy": level}
+        try:
+            built.append((case, Setup(np.array(rows), material, {"width": 0.1, "height": 0.1}, run=run)))
+            built[-1] += (built[-1][1].build()[0].step,)
+        except LabError as error:
+            refused[case] = str(error)
+            built.pop()
+    assert (0.1, 1e11) not in refused and (100.0, 100.0) in refused
+    assert all(said.startswith("contact.stiffness_scale: ") and said.count(". ") == 0 for said in refused.values())
+    with simulated(*(setup for _, setup, _ in built)) as run:
+        start = run.snapshot()
+        for k, (case, _, step) in enumerate(built):
+            velocity = np.zeros_like(start["velocity"])
+            velocity[k] = start["velocity"][k]
+            again(run, start["position"], step, velocity)
+            deepest = 0.0
+            for _ in range(40):  # 1 mm, and an impact that is at most as deep as a third of a radius
+                run.advance(max(1, int(1e-4 / case[0] / step)))
+                deepest = max(deepest, run.observe()["overlap"][k])
+            assert run.snapshot()["velocity"][k, 0, 0] < 0.0 and deepest < DEEPEST_OVERLAP, case

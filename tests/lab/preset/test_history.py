@@ -1,0 +1,209 @@
+"""Motion from a file: what the record says is what the tank does; what it could not follow is refused."""
+
+import json
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from scipy.interpolate import CubicSpline
+
+from lab.base.errors import LabError
+from lab.preset import history
+from lab.preset.find import load
+from lab.preset.schema import Resolved
+from lab.runs.runner import run_preset
+
+TANK = """
+title = "a record"
+[tank]
+width = "40 mm"
+height = "40 mm"
+[grains]
+diameter = "4 mm"
+count = 20
+[material]
+density = "1319 kg/m^3"
+young = "3.2e9 Pa"
+poisson = 0.28
+friction = 0.25
+restitution = 0.6
+[contact]
+stiffness_scale = 1e-3
+"""
+PRESET = (
+    TANK
+    + """
+[motion.history]
+file = "record.csv"
+length_unit = "mm"
+angle_unit = "deg"
+"""
+)
+TIME = np.linspace(0.0, 0.6, 61)
+WINDOW = np.sin(np.pi * TIME / 0.6) ** 2
+SWAY, ROLL = 10.0 * WINDOW * np.sin(20.0 * TIME), 6.0 * WINDOW * np.sin(12.0 * TIME)  # mm, deg: at rest at both ends
+
+
+def csv(folder, name="record.csv", **columns):
+    names = ",".join(columns)
+    np.savetxt(folder / name, np.column_stack(list(columns.values())), "%.17g", ",", header=names, comments="")
+    return folder / name
+
+
+@pytest.fixture
+def preset(tmp_path):
+    """A preset beside its record of sway and roll."""
+    csv(tmp_path, time=TIME + 7.0, sway=SWAY, roll=ROLL)
+    (tmp_path / "mine.toml").write_text(PRESET)
+    return tmp_path / "mine.toml"
+
+
+def fault(preset, **overrides) -> str:
+    with pytest.raises(LabError) as caught:
+        load(preset, {key.replace("__", "."): value for key, value in overrides.items()})
+    sentence = str(caught.value)
+    assert sentence[-1] in ".?" and "\n" not in sentence
+    return sentence
+
+
+def test_record_is_kept_in_si_with_the_preset(preset):
+    loaded = load(preset)
+    kept = loaded.resolved.motion.history
+    assert kept.time == pytest.approx(TIME + 7.0, abs=1e-15)
+    assert kept.sway == pytest.approx(1e-3 * SWAY, abs=1e-18)
+    assert kept.roll == pytest.approx(np.radians(ROLL), abs=1e-16)
+    assert kept.heave is None
+    assert list(loaded.resolved.motion.parts) == ["history.roll", "history.sway"]
+    assert 'file = "record.csv"' in loaded.given_text and str(preset.parent) not in loaded.given_text.split("\n", 1)[1]
+
+
+def test_resolved_goes_to_json_and_back_to_the_last_bit(preset):
+    resolved = load(preset).resolved
+    (preset.parent / "record.csv").unlink()
+    again = Resolved.model_validate_json(resolved.model_dump_json())
+    assert again == resolved
+    assert again.motion.parts["history.sway"].parameters(0.0) == resolved.motion.parts["history.sway"].parameters(0.0)
+
+
+def test_run_lasts_as_long_as_the_record_unless_given(preset):
+    assert load(preset).resolved.run.duration == pytest.approx(0.6, abs=1e-12)
+    assert load(preset, {"run.duration": "2 s"}).resolved.run.duration == 2.0
+
+
+def test_history_can_be_dropped_and_joined_by_other_motions(preset):
+    sway = {"amplitude": "1 mm", "frequency": "2 Hz"}
+    assert load(preset, {"motion.history": False, "run.duration": "1 s"}).resolved.motion.parts == {}
+    both = load(preset, {"motion.sway": sway}).resolved.motion.parts
+    assert list(both) == ["sway", "history.roll", "history.sway"]
+
+
+@pytest.mark.slow
+def test_a_run_moves_as_recorded_and_its_recording_needs_no_csv(preset, tmp_path, monkeypatch):
+    monkeypatch.setenv("CARGOLAB_CACHE", str(tmp_path / "cache"))
+    centre = (0.0, 0.1)
+    overrides = {"motion.history.centre": ["0 mm", "100 mm"], "run.threads": 1}
+    result = run_preset(preset, overrides, tmp_path / "out", video=False, quiet=True)
+    (tmp_path / "record.csv").unlink()
+    recording = result.recording
+    time, pose = recording.series["time"], recording.series["pose"][:, 0]
+    sway, roll = (CubicSpline(TIME, c, bc_type="clamped") for c in (1e-3 * SWAY, np.radians(ROLL)))
+    assert time[-1] == pytest.approx(0.6)
+    assert pose[:, 2] == pytest.approx(roll(time), abs=1e-14)
+    assert pose[:, 0] == pytest.approx(sway(time) + centre[1] * np.sin(roll(time)), abs=1e-14)
+    assert pose[:, 1] == pytest.approx(centre[1] * (1 - np.cos(roll(time))), abs=1e-14)
+    rate = recording.series["pose_rate"][:, 0, 2]
+    assert rate == pytest.approx(roll(time, 1), abs=1e-11)
+    kept = Resolved.model_validate_json(json.dumps(recording.preset)).motion.history
+    assert kept.sway == pytest.approx(1e-3 * SWAY)
+    assert result.measures and (result.folder / "shift.png").exists() and (result.folder / "summary.md").exists()
+
+
+def test_paths_start_where_they_are_written(preset, tmp_path, monkeypatch):
+    (tmp_path / "heirs").mkdir()
+    heir = tmp_path / "heirs" / "heir.toml"
+    heir.write_text('based_on = "../mine.toml"\n[run]\nseed = 2\n')
+    assert load(heir).resolved.motion.history == load(preset).resolved.motion.history
+    csv(tmp_path / "heirs", "own.csv", time=TIME, heave=SWAY)
+    heir.write_text('based_on = "../mine.toml"\n[motion.history]\nfile = "own.csv"\n')
+    assert list(load(heir).resolved.motion.parts) == ["history.heave"]
+    # What a person types starts from where they stand.
+    monkeypatch.chdir(tmp_path / "heirs")
+    assert list(load("../mine.toml", {"motion.history.file": "own.csv"}).resolved.motion.parts) == ["history.heave"]
+    assert "no.csv: cannot be read: No such file" in fault("../mine.toml", motion__history__file="no.csv")
+    absolute = str(tmp_path / "heirs" / "own.csv")
+    assert list(load(preset, {"motion": {"history": {"file": absolute}}}).resolved.motion.parts) == ["history.heave"]
+
+
+@pytest.mark.parametrize(
+    ("columns", "words"),
+    [
+        ({"time": TIME}, "nothing but times; a column sway, heave or roll is needed."),
+        ({"time": TIME[:3], "sway": SWAY[:3]}, "from 4 to 100000 samples are possible (got 3)."),
+        ({"time": TIME[::-1], "sway": SWAY}, "times must rise from row to row, but 0.59 s follows 0.6 s."),
+        ({"time": [0, 1, 1, 2], "sway": [0, 1, 1, 0]}, "times must rise from row to row, but 1 s follows 1 s."),
+        ({"time": TIME, "sway": SWAY + 3}, "sway starts at 3 mm, not at zero; let it come up by motion.soft_start"),
+        ({"time": TIME, "roll": SWAY - 3}, "roll starts at -3 deg, not at zero; let it come up by motion.soft_start"),
+        ({"time": TIME, "heave": np.sin(9 * TIME)}, "heave starts at 0.009 m/s, not at rest; let it come up by"),
+        ({"time": TIME, "sway": 1e306 * SWAY}, "sway moves too fast to be followed; look at its numbers and units."),
+        ({"time": TIME * 1e-300, "sway": SWAY}, "sway moves too fast to be followed"),
+        ({"time": TIME / 6000, "sway": SWAY}, "sway moves too fast to be followed"),
+        ({"time": [0, 1, 2, 3], "sway": [0, np.nan, 0, 0]}, "record.csv, line 3: sway must be a finite number"),
+        ({"sway": SWAY}, "record.csv, line 1: the column time is missing."),
+        ({"time": TIME, "pitch": SWAY}, 'record.csv, line 1: unknown column "pitch"; known here: time, sway, heave,'),
+    ],
+)
+def test_records_that_no_tank_follows(preset, tmp_path, columns, words):
+    csv(tmp_path, **columns)
+    sentence = fault(preset)
+    assert sentence.startswith("motion.history.file: ") and words in sentence
+
+
+@pytest.mark.parametrize(
+    ("overrides", "sentence"),
+    [
+        ({"length_unit": "deg"}, 'motion.history.length_unit: "1 deg" is an angle, but mm (a length) is needed'),
+        ({"angle_unit": "furlong"}, 'motion.history.angle_unit: "1 furlong" has an unknown unit'),
+        ({"length_unit": ""}, 'motion.history.length_unit: "1 " has no unit'),
+        ({"length_unit": "2 mm"}, 'motion.history.length_unit: "1 2 mm" cannot be read'),
+        ({"file": 3}, "motion.history.file: a text in quotes is needed (got 3)."),
+        ({"file": ""}, "motion.history.file: "),
+        ({"fil": "x.csv"}, "motion.history.fil: unknown key; did you mean 'file'?"),
+    ],
+)
+def test_faults_of_the_section_name_the_key(preset, overrides, sentence):
+    assert fault(preset, **{f"motion__history__{key}": value for key, value in overrides.items()}).startswith(sentence)
+
+
+def test_soft_start_takes_a_record_that_starts_in_motion(preset, tmp_path):
+    csv(tmp_path, time=TIME, sway=5 + np.sin(9 * TIME))
+    motion = load(preset, {"motion.soft_start": "0.2 s"}).resolved.motion.parts["history.sway"]
+    assert motion.rests == (False, False)
+    # It may then run as long as the record, but no longer.
+    sentence = fault(preset, motion__soft_start="0.2 s", run__duration="0.7 s")
+    assert sentence.startswith(
+        "run.duration: 700 ms is longer than the motion's record, 600 ms, which ends with sway at"
+    )
+    assert load(preset, {"motion.soft_start": "0.2 s", "run.duration": "0.6 s"}).resolved.run.duration == 0.6
+
+
+def test_most_samples(preset, tmp_path, monkeypatch):
+    monkeypatch.setattr(history, "MOST_SAMPLES", 60)
+    assert "more than 60 rows" in fault(preset)
+
+
+NUMBERS = st.floats() | st.floats(-1, 1) | st.just(0.0)
+
+
+@settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
+@given(st.lists(st.tuples(NUMBERS, NUMBERS), min_size=1, max_size=8), st.booleans(), st.sampled_from(["0 s", "1 s"]))
+def test_any_record_gives_a_preset_or_a_sentence(preset, rows, rising, soft):
+    columns = np.array(sorted(rows) if rising else rows).T
+    csv(preset.parent, time=columns[0], sway=columns[1])
+    try:
+        resolved = load(preset, {"motion.soft_start": soft}).resolved
+    except LabError as error:
+        assert "\n" not in str(error) and str(error)[-1] in ".?"
+    else:
+        motion = resolved.motion.parts["history.sway"]
+        assert np.isfinite(motion.parameters(1.0)).all() and np.isfinite(motion.fastest(1.0))

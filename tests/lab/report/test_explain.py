@@ -1,0 +1,50 @@
+"""What a preset is said to cost: every part of a run counts."""
+
+import re
+
+import pytest
+
+from lab.build.scene import build
+from lab.preset.find import load
+from lab.report.explain import cost_in_seconds, explain
+from solvers.simulation import Simulation
+
+FEW = {"run.threads": 1, "run.duration": "10 s"}
+
+
+def told(name: str, **changes) -> float:
+    """The run time (s) that is told."""
+    words = re.search(r"run time +about (\d+) s on", explain(load(name, {**FEW, **changes})))
+    return float(words[1])
+
+
+def parts(name: str, changes: dict) -> dict[str, float]:
+    resolved = load(name, {**FEW, **changes}).resolved
+    scene, position = build(resolved)
+    simulation = Simulation(scene, position, 1)
+    try:
+        return cost_in_seconds(resolved, scene, simulation)
+    finally:
+        simulation.close()
+
+
+def test_a_small_ship_costs_more_than_the_steps_of_her_few_grains():
+    """Sixteen grains: kernels, figures and 250 pictures outweigh all steps; more pictures cost more."""
+    few = told("ship/model-test-quick", **{"record.picture_rate": "25 Hz"})
+    assert few >= 10.0
+    assert told("ship/model-test-quick", **{"record.picture_rate": "100 Hz"}) > 1.5 * few
+
+
+def test_the_parts_grow_with_what_they_are_of():
+    calm, rough, tank = (
+        parts("ship/barge-roll", {"grains.diameter": "20 mm"}),
+        parts("ship/irregular-sea", {"grains.diameter": "20 mm"}),
+        parts("shaking/sway", {"grains.diameter": "10 mm"}),
+    )
+    assert rough["of her hull and water"] > 1.1 * calm["of her hull and water"]  # a memory and 200 waves
+    assert rough["of pictures"] == calm["of pictures"]
+    assert "of her hull and water" not in tank and tank["to start and compile"] < calm["to start and compile"]
+    longer = parts("ship/barge-roll", {"grains.diameter": "20 mm", "run.duration": "20 s"})
+    for part in ("of steps", "of her hull and water", "of pictures"):
+        assert longer[part] == pytest.approx(2.0 * calm[part])
+    assert longer["of figures"] == calm["of figures"]

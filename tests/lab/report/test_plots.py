@@ -1,0 +1,142 @@
+"""Figures: which are drawn of what, and that hard cases are drawn too."""
+
+import warnings
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from lab.base.errors import LabError
+from lab.measures import measure_all
+from lab.recording import open_recording
+from lab.report.plots import FIGURES, STYLE, write_plots
+from tests.oracles.synthetic import DEPTH, DIAMETER, WIDTH, box, frame, preset, recorder, sample
+
+TILT = preset(tilt={"rate": 0.07, "angle": 0.7})
+SWAY = preset(sway={"amplitude": 0.04, "frequency": 1.0})
+
+
+@pytest.fixture(autouse=True)
+def _coarse(monkeypatch):
+    monkeypatch.setitem(STYLE, "savefig.dpi", 60)
+
+
+def bed(count=600):
+    """Places (count, 2) of a filled tank."""
+    y = np.linspace(-WIDTH / 2 + DIAMETER / 2, WIDTH / 2 - DIAMETER / 2, 60)
+    return np.stack(np.meshgrid(y, DIAMETER * (0.5 + np.arange(count // 60))), -1).reshape(-1, 2)
+
+
+def run(folder, resolved, samples=241, worlds=2, parts=None, lost=None, **scene):
+    """A recording of a tilt to 40 deg and back, or of a sway at 1 Hz, of a bed that answers.
+
+    lost: a world whose last grain leaves half-way.
+    """
+    time, places, parts = np.linspace(0, 16, samples), bed(), parts or {}
+    count = len(places)
+    scene = {"radius": np.full((worlds, count), DIAMETER / 2), "outline": box(), **scene}
+    with recorder(folder, resolved=resolved, parts=parts, **scene) as writer:
+        for k, now in enumerate(time):
+            wave = np.sin(2 * np.pi * now)
+            tilt = np.radians(40 - 5 * abs(now - 8)) if "tilt" in resolved["motion"] else 0.0
+            pose = np.tile([0.04 * wave * ("sway" in resolved["motion"]), 0.0, tilt], (worlds, 1))
+            shift = -0.01 * min(1.0, now / 6) if tilt else 0.003 * wave
+            centre = np.tile([shift, DEPTH / 2], (worlds, 1))
+            spilled, position = np.zeros(worlds), np.tile(places, (worlds, 1, 1))
+            if scene.get("open_edges"):
+                spilled += np.floor(count * min(0.5, 0.1 * max(0.0, now - 4)))
+            if lost is not None and now > 8:
+                centre[lost], spilled[lost], position[lost] = np.nan, count, np.nan
+            force = np.array([[-0.1 * wave, -1.0, 0.01 * wave]] * worlds)
+            said = {"spilled": spilled, "wall_force": force, "contacts": 2.0 * (count - spilled)}
+            said |= {"kinetic": np.full(worlds, 1e-6), "pose": pose, "centre_of_mass": centre}
+            writer.sample(sample(now, worlds, **said))
+            if k % 8 == 0:
+                position[..., 1] += 0.002 * wave * position[..., 0] / WIDTH
+                moved = np.zeros((worlds, len(parts), 2))
+                writer.frame(frame(now, worlds, count, pose=pose, position=position, part=moved))
+    return folder
+
+
+def drawn(folder):
+    """Names of the figures of a recording, that have been drawn without a warning and show something."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        with open_recording(folder) as recording:
+            files = write_plots(recording, measure_all(recording), folder)
+    for path in files.values():
+        with Image.open(path) as picture:
+            assert picture.width > 350
+            assert len(picture.convert("RGB").getcolors(2**24)) > 50
+    return list(files)
+
+
+@pytest.mark.parametrize(
+    ("resolved", "scene", "figures"),
+    [
+        (TILT, {}, ["shift", "slope", "hysteresis", "force", "contacts", "energy"]),
+        (TILT, {"open_edges": (2,)}, ["spilled", "shift", "slope", "hysteresis", "force", "contacts", "energy"]),
+        (SWAY, {}, ["shift", "wave", "spectrum", "force", "contacts", "energy"]),
+        (preset(), {"parts": {"gate": np.zeros((2, 2))}}, ["shift", "altitude", "force", "contacts", "energy"]),
+    ],
+)
+def test_each_experiment_has_the_figures_that_say_something(tmp_path, resolved, scene, figures):
+    assert drawn(run(tmp_path, resolved, **scene)) == figures
+
+
+@pytest.mark.parametrize("resolved", [TILT, SWAY])
+def test_a_world_that_loses_every_grain_is_left_out_and_the_rest_drawn(tmp_path, resolved):
+    assert "shift" in drawn(run(tmp_path, resolved, open_edges=(2,), lost=1))
+
+
+def test_a_bed_alone_that_loses_every_grain_is_drawn(tmp_path):
+    assert "spilled" in drawn(run(tmp_path, SWAY, worlds=1, open_edges=(2,), lost=0))
+
+
+@pytest.mark.parametrize(("resolved", "samples"), [(TILT, 2), (TILT, 9), (SWAY, 2), (SWAY, 9)])
+def test_a_run_stopped_after_a_few_samples_is_drawn(tmp_path, resolved, samples):
+    assert "shift" in drawn(run(tmp_path, resolved, samples=samples, worlds=1))
+
+
+def words(figure):
+    """All that a figure says in its title and its legends."""
+    legends = [text.get_text() for legend in figure.legends for text in legend.get_texts()]
+    return " ".join([figure.get_suptitle(), *legends])
+
+
+@pytest.mark.parametrize(("worlds", "bars"), [(1, False), (2, True)])
+def test_plus_minus_is_of_several_beds_and_says_so(tmp_path, worlds, bars):
+    with open_recording(run(tmp_path, TILT, worlds=worlds)) as recording:
+        values = measure_all(recording)
+        said = [words(FIGURES[name](recording, values)) for name in ("shift", "slope", "contacts")]
+    assert all(("±" in text) is bars for text in said)
+    assert ("mean ± std of 2 beds" in said[0]) is bars
+    assert "band: uncertainty of the fit" in said[1]
+
+
+def test_a_long_title_takes_more_lines_and_stays_on_the_page(tmp_path, monkeypatch):
+    monkeypatch.delitem(FIGURES, "energy")
+    long = "A tank of many grains that are shaken for a long time, " * 4
+    writer = recorder(tmp_path, resolved={**SWAY, "title": long})
+    for now in (0.0, 1.0, 2.0):
+        writer.sample(sample(now))
+    writer.close()
+    assert drawn(tmp_path) == ["shift"]
+    with Image.open(tmp_path / "shift.png") as picture:
+        dark = np.asarray(picture.convert("L")) < 200
+    title = dark[: picture.height // 7]
+    assert np.diff(title.any(axis=1).astype(int)).tolist().count(1) >= 3  # lines
+    assert not title[:, -4:].any()
+
+
+def test_a_run_without_samples_or_with_one_has_no_figures(tmp_path):
+    recorder(tmp_path / "none").close()
+    writer = recorder(tmp_path / "one")
+    writer.sample(sample(0.0))
+    writer.close()
+    assert drawn(tmp_path / "none") == drawn(tmp_path / "one") == []
+
+
+def test_a_lost_folder_is_named(tmp_path):
+    with open_recording(run(tmp_path, SWAY, samples=20)) as recording, pytest.raises(LabError, match="nowhere"):
+        write_plots(recording, {}, tmp_path / "nowhere")

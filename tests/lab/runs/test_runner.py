@@ -1,0 +1,168 @@
+"""A whole run, small: what a person gets from one call."""
+
+import json
+
+import numpy as np
+import pytest
+
+import lab
+from lab.base.errors import LabError
+from lab.build.scene import build
+from lab.preset.find import load
+from lab.recording import open_recording
+from lab.report.explain import explain
+from lab.runs.launch import prepare
+from lab.runs.runner import run_preset
+from solvers.machine.errors import BadState
+from solvers.machine.runtime import available_cores
+
+SMALL = {
+    "tank": {"width": "30 mm", "height": "30 mm"},
+    "grains": {"count": 25},
+    "motion": {"tilt": {"rate": "60 deg/s", "angle": "15 deg", "hold": "0.05 s"}},
+    "run": {"repeats": 2},
+    "record": {"xdmf": True},
+}
+
+
+@pytest.fixture(scope="module")
+def result(tmp_path_factory):
+    return lab.run("tilting/quick", tmp_path_factory.mktemp("run") / "small", quiet=True, **SMALL)
+
+
+def test_a_run_leaves_recording_plots_video_and_summary(result):
+    data = json.loads((result.folder / "summary.json").read_text())
+    assert data["preset"] == "tilting/quick"
+    assert {"wall_s", "grain_steps", "grain_steps_per_s", "dt_s"} <= data["cost"].keys()
+    assert all((result.folder / name).exists() for name in data["files"].values())
+    assert (result.folder / "video.mp4").stat().st_size > 1000
+    assert data["files"]["xdmf"] == "recording.xdmf"
+    assert "critical angle" in (result.folder / "summary.md").read_text()
+    assert data["measures"]["final_shift_y"]["value"] == pytest.approx(result.measures["final_shift_y"].value)
+
+
+def test_samples_and_frames_stand_at_their_times(result):
+    series, frames = result.recording.series, result.recording.frames
+    assert np.allclose(np.diff(series["time"]), 0.01, rtol=1e-9)
+    assert np.allclose(np.diff(frames["time"][:]), 0.04, rtol=1e-9)
+    assert np.degrees(series["pose"][-1, :, 2]) == pytest.approx(15.0, rel=1e-6)
+    weight = result.recording.radius**3
+    centre = (frames["position"][-1] * weight[:, :, None]).sum(axis=1) / weight.sum(axis=1)[:, None]
+    assert np.allclose(centre, series["centre_of_mass"][4 * (len(frames["time"]) - 1)], atol=1e-6)
+
+
+def test_the_walls_carry_the_grains(result):
+    recording = result.recording
+    volume = (4 / 3 * np.pi * recording.radius**3).sum(axis=1)
+    weight = 9.81 * recording.preset["material"]["density"] * volume
+    assert np.allclose(-recording.series["wall_force"][1, :, 1], weight, rtol=0.02)
+    assert not recording.series["spilled"].any()
+    assert recording.frames["part"].shape == (len(recording.frames["time"]), 2, 0, 2)
+
+
+def test_steps_counted_are_steps_taken(result):
+    recording = result.recording
+    taken = recording.series["time"][-1] / recording.step
+    assert recording.grain_steps == pytest.approx(taken * recording.radius.size, rel=1e-9)
+
+
+def test_a_world_settles_alone_as_it_does_in_company():
+    """Repeat 0 starts from the same grains and the same step whatever the number of repeats."""
+    (alone, start), (among, starts) = (
+        build(load("tilting/quick", SMALL | {"run": {"repeats": n, "step": "auto"}}).resolved) for n in (1, 3)
+    )
+    assert np.array_equal(start[0], starts[0]) and np.array_equal(alone.radius[0], among.radius[0])
+    assert alone.step == among.step and alone.interfaces == among.interfaces
+    assert not np.array_equal(among.radius[0], among.radius[1])
+
+
+@pytest.mark.parametrize(
+    ("run", "company", "threads"),
+    [
+        ({"repeats": 4, "threads": 1}, 0, 1),
+        ({"repeats": 1, "threads": 3}, 0, 1),  # a small bed is one thread's
+        ({"repeats": 2, "threads": 3}, 0, 2),
+        ({"repeats": 2, "threads": 3}, 9, 3),
+        ({"repeats": 1, "threads": 2, "schedule": "per-band"}, 0, 2),
+    ],
+)
+def test_a_run_knows_how_many_threads_compute_it(run, company, threads, tmp_path):
+    ready = prepare(load("tilting/quick", SMALL | {"run": run | {"arch": "cpu"}}), tmp_path)
+    assert ready.engaged(company)["threads"] == threads
+
+
+def test_the_recording_says_what_computes_it(result):
+    used = result.recording.machine["threads"]
+    assert used == min(2, available_cores())
+    assert f", on {used} of " in (result.folder / "summary.md").read_text()
+
+
+def test_a_step_past_the_limit_is_refused_unless_forced_and_far_past_it_in_any_case():
+    with pytest.raises(LabError, match=r"run\.step: .*past the limit.*force_step"):
+        build(load("tilting/quick", SMALL | {"run": {"step": "20 us"}}).resolved)
+    forced = SMALL | {"run": {"step": "20 us", "force_step": True}}
+    assert build(load("tilting/quick", forced).resolved)[0].step == pytest.approx(2e-5)
+    with pytest.raises(LabError, match=r"run\.step: 1 ms is 212 times the limit.* at most 5 times"):
+        build(load("tilting/quick", SMALL | {"run": {"step": "1 ms", "force_step": True}}).resolved)
+
+
+@pytest.mark.slow
+def test_a_forced_step_is_said_in_the_summary(tmp_path):
+    forced = SMALL | {"run": {"repeats": 1, "step": "20 us", "force_step": True, "duration": "0.02 s"}}
+    folder = run_preset("tilting/quick", forced, tmp_path / "forced", video=False, quiet=True).folder
+    assert "The step is forced past the derived one" in (folder / "summary.md").read_text()
+
+
+def test_a_run_the_watch_stops_keeps_its_recording_and_says_why(tmp_path):
+    thrown = {"tilt": False, "sway": {"amplitude": "4 mm", "frequency": "600 Hz"}}
+    changes = SMALL | {"run": {"repeats": 1, "duration": "0.3 s"}, "motion": thrown}
+    with pytest.raises(BadState, match=r"world 0: (a grain moves at .* too fast|grains overlap by .* too soft)"):
+        run_preset("tilting/quick", changes, tmp_path / "thrown", video=False, quiet=True)
+    with open_recording(tmp_path / "thrown") as recording:
+        assert recording.status.startswith("stopped: world 0")
+
+
+def test_explain_names_step_limit_parts_and_cost():
+    text = explain(load("tilting/quick", SMALL))
+    for words in ("1/", "of the Hertz collision", "haff-werner", "Coriolis", "memory", "about"):
+        assert words in text
+
+
+def test_explain_says_how_wet_grains_pull():
+    """2π γ R_eff over (4/3) π R³ ρ g of grains of 3 mm, and the Kelvin radius at 70 %."""
+    text = explain(load("tilting/wet", SMALL))
+    assert "humid: 339.3 µN, 1.9 times a mean grain's weight, across gaps of up to 1.472 nm" in text
+
+
+@pytest.mark.slow
+def test_a_bed_that_has_not_settled_is_said_in_the_summary(tmp_path):
+    restless = SMALL | {"run": {"repeats": 1, "settle_limit": "0.01 s", "duration": "0.05 s"}}
+    result = run_preset("tilting/quick", restless, tmp_path / "restless", video=False, quiet=True)
+    assert "still moved after 0.01 s" in (result.folder / "summary.md").read_text()
+
+
+SHIP = {"draught": "60 mm", "gravity_height": "35 mm", "breadth": "120 mm", "height": "100 mm", "gyradius": "40 mm"}
+
+
+@pytest.mark.parametrize("ship", [{}, SHIP], ids=["fixed", "afloat"])
+def test_the_first_sample_is_the_state_of_grains_that_do_not_settle(tmp_path, ship):
+    """Two grains of a file that move: one 2 µm deep in the floor, along which it slides, the other in flight."""
+    (tmp_path / "bed.csv").write_text("y,z,radius,vy,vz,omega\n0,0.002998,0.003,0.05,0,5\n0.01,0.02,0.003,0,-0.1,0\n")
+    given = {"grains": {"bed": str(tmp_path / "bed.csv"), "diameter": False, "depth": False, "count": False}}
+    given |= {"run": {"settle": False, "repeats": 1, "duration": "0.02 s"}, "motion": {"tilt": False}}
+    given |= {"tank": {"width": "40 mm", "height": "40 mm"}, "contact": {"tangential": "none"}} | (
+        {"ship": ship} if ship else {}
+    )
+    preset = load("tilting/quick", given).resolved
+    result = run_preset("tilting/quick", given, tmp_path / "run", video=False, plots=False, quiet=True)
+    series = {name: values[0] for name, values in result.recording.series.items()}
+    mass = 4 / 3 * np.pi * 0.003**3 * preset.material.density
+    floor = build(preset)[0].interfaces[1]
+    force = 4 / 3 * floor.young_modulus * np.sqrt(0.003) * 2e-6**1.5  # Hertz (1882); the grain does not approach
+    assert series["contacts"] == [1.0]
+    assert series["overlap"] == pytest.approx([2e-6 / 0.003], rel=1e-6)
+    assert series["elastic"] == pytest.approx([0.4 * force * 2e-6], rel=1e-6)
+    assert series["wall_force"][0] == pytest.approx([0.0, -force, 0.0], rel=1e-6, abs=1e-9)
+    assert series["centre_of_mass"][0] == pytest.approx([0.005, 0.011499])
+    assert series["kinetic"] == pytest.approx([0.5 * mass * (0.05**2 + 0.1**2)])
+    assert series["rotational"] == pytest.approx([0.2 * mass * 0.003**2 * 5.0**2])

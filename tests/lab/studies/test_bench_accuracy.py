@@ -1,0 +1,48 @@
+"""The studies of error against cost: their statistics, and a page from a hasty one."""
+
+import numpy as np
+import pytest
+
+from lab.base.errors import LabError
+from lab.studies.bench.accuracy import run_page
+from lab.studies.bench.accuracy.beds import Point, mean_and_interval, settings
+from lab.studies.bench.accuracy.collisions import worst_error
+from lab.studies.bench.accuracy.repeats import beds_for
+
+
+def test_half_intervals_are_those_of_students_t():
+    """t of 2 degrees of freedom is 4.3027 at 97.5 %; an interval is told as one, and a single bed has none."""
+    three, one = (Point({}, {"angle": np.array(beds)}, 1.0, None) for beds in ([1.0, 2.0, 3.0], [1.0]))
+    assert three.half_interval("angle") == pytest.approx(4.3027 / np.sqrt(3.0), rel=1e-4)
+    assert np.isnan(one.half_interval("angle"))
+    assert mean_and_interval(three, "angle") == "2.00 [-0.48, 4.48]" and mean_and_interval(one, "angle") == "1.00"
+
+
+def test_so_many_beds_and_no_fewer_give_the_confidence_that_is_wanted():
+    """With a spread of 1: 2.571/√6 = 1.05 and 2.447/√7 = 0.925."""
+    assert beds_for(1.0, 1.0) == 7
+    assert beds_for(2.0, 2.0) == 7
+    assert beds_for(1.0, 0.1) == pytest.approx((1.96 / 0.1) ** 2, rel=0.02)
+
+
+def test_points_come_in_the_order_of_a_sweep():
+    rows = settings({"a": [1, 2], "b": ["x", "y"]})
+    assert [tuple(row.values()) for row in rows] == [(1, "x"), (1, "y"), (2, "x"), (2, "y")]
+
+
+@pytest.mark.slow
+def test_the_restitution_of_verlet_is_of_second_order():
+    assert worst_error("verlet", 40) / worst_error("verlet", 80) == pytest.approx(4.0, rel=0.3)
+
+
+@pytest.mark.slow
+def test_a_hasty_study_leaves_a_page(tmp_path):
+    path = run_page(["rate"], tmp_path, fast=True)
+    text = path.read_text()
+    assert "| 10 |" in text and "| 30 |" in text and "accuracy-rate.png" in text
+    assert (tmp_path / "accuracy-rate.png").stat().st_size > 5000
+
+
+def test_an_unknown_study_is_said():
+    with pytest.raises(LabError, match=r"there is no study colour: take .*stiffness.*\.$"):
+        run_page(["colour"], ".", fast=True)

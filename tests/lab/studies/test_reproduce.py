@@ -1,0 +1,286 @@
+"""The report on the source's experiments: every batch can be run, results are read as they are, nothing runs twice."""
+
+import json
+import re
+import signal
+import subprocess
+import sys
+import time
+from dataclasses import asdict
+from pathlib import Path
+from types import SimpleNamespace
+
+import h5py
+import numpy as np
+import pytest
+from pydantic import TypeAdapter
+
+import lab
+from lab.base.errors import LabError
+from lab.build.scene import build
+from lab.measures.value import over_worlds
+from lab.preset.find import load
+from lab.report.page import Page
+from lab.studies import reproduce as package
+from lab.studies.reproduce import REPORTS, experiments, outlines, report, reproduce, runs, workers
+from lab.studies.reproduce.estimates import Verdict, surely
+from lab.studies.reproduce.experiment import EXACT, ONE_BED, Experiment, Row, Told, Tolerance, counted, observed, stated
+from lab.studies.reproduce.findings import Finding, asked, read_findings
+from lab.studies.reproduce.report import write_report
+from lab.studies.reproduce.runs import Batch, Outcome
+from lab.studies.reproduce.shaking import FREQUENCY, onset
+from lab.sweeps.sweep import ask
+from solvers.machine import runtime
+
+ROOT = Path(lab.__file__).parents[1]
+SMALL = {
+    "tank.width": "30 mm",
+    "tank.height": "30 mm",
+    "grains.count": 25,
+    "motion.tilt.angle": "15 deg",
+    "motion.tilt.rate": "60 deg/s",
+    "run.repeats": 2,
+    "run.accuracy": "draft",
+}
+
+
+def outcome(setting=None, **measures) -> Outcome:
+    """A run that gave these values."""
+    return Outcome(setting or {}, None, "complete", measures, {"wall_s": 1.0, "grain_steps": 1e6})
+
+
+EXPERIMENTS = {name: one for part in REPORTS for name, one in experiments(part).items()}
+
+
+@pytest.mark.parametrize("name", EXPERIMENTS)
+def test_every_batch_of_every_experiment_can_be_built(name):
+    for quick in (True, False):
+        for batch in EXPERIMENTS[name].batches(quick).values():
+            points = (
+                ask(batch.preset, batch.axes, batch.changes).points
+                if batch.axes
+                else [load(batch.preset, {**batch.changes, "run.repeats": 1})]
+            )
+            assert points[0].resolved.run.accuracy in ("draft", "standard")
+    assert EXPERIMENTS[name].shown[0] in EXPERIMENTS[name].batches(True)
+    one = load(batch.preset, {**batch.changes, "run.repeats": 1}).resolved
+    assert build(one)[0].step > 0.0
+
+
+@pytest.mark.slow
+def test_a_report_has_the_results_and_nothing_is_run_twice(tmp_path, monkeypatch):
+    monkeypatch.setattr(runtime, "available_cores", lambda: 1)  # all in this process
+
+    def tell(found):
+        numbers = [one["contact_number_start"] for one in found["rates"]]
+        return Told([observed("contacts", "none", ", ".join(map(counted, numbers)), None)])
+
+    batches = {
+        "one": Batch("tilting/quick", SMALL),
+        "rates": Batch("tilting/quick", SMALL, {"motion.tilt.rate": ["60 deg/s", "90 deg/s"]}),
+    }
+    tried = Experiment(
+        "tried", "A trial", "0.0", "nothing.", lambda quick: batches, tell, "much", ("one", 1.0), "As it is."
+    )
+    monkeypatch.setattr(package, "experiments", lambda _: {"tried": tried})
+    text = reproduce("granular", ["tri"], tmp_path, quick=True, quiet=True).read_text()
+    assert "## A trial" in text and "Quick: much" in text and "As it is." in text
+    assert "(2 beds)" in text and "granular-quick-tried-picture.png" in text
+    assert (tmp_path / "granular-quick-tried-picture.png").stat().st_size > 5000
+    for name in ("run_preset", "resume_run"):
+        monkeypatch.setattr(runs, name, None)
+    assert reproduce("granular", [], tmp_path, quick=True, quiet=True).read_text() == text
+    point = tmp_path / "quick" / "tried" / "rates" / "points" / "001" / "summary.json"
+    point.rename(point.with_suffix(".kept"))
+    (tmp_path / "granular-quick.json").unlink()
+    folders = package.places({"tried": tried}, tmp_path / "quick", True)
+    half = write_report("granular", {"tried": tried}, folders, tmp_path, True).read_text()
+    assert "| A trial | 0.0 | not run |" in half
+    point.with_suffix(".kept").rename(point)
+    said, resumed = "stopped: interrupted by the user", []
+    summary = tmp_path / "quick" / "tried" / "one" / "summary.json"
+    with h5py.File(summary.with_name("recording.h5"), "r+") as file:
+        file.attrs["status"] = said
+    summary.write_text(json.dumps(json.loads(summary.read_text()) | {"status": said}))
+    monkeypatch.setattr(runs, "resume_run", lambda folder, **_: resumed.append(folder))
+    told = reproduce("granular", [], tmp_path, quick=True, quiet=True).read_text()
+    assert "**Not complete** (one): stopped" in told
+    assert resumed == [summary.parent]
+    (tmp_path / "quick").rename(tmp_path / "removed")  # what was told of them stays
+    assert reproduce("granular", [], tmp_path, quick=True, quiet=True).read_text() == told
+    (tmp_path / "removed").rename(tmp_path / "quick")
+    monkeypatch.setitem(batches, "one", Batch("tilting/quick", {**SMALL, "run.seed": 2}))
+    with pytest.raises(LabError, match="holds another run than this experiment asks for: remove it"):
+        reproduce("granular", [], tmp_path, quick=True, quiet=True)
+    assert "| A trial | 0.0 | not run |" in (tmp_path / "granular-quick.md").read_text()
+
+
+@pytest.mark.slow
+def test_batches_run_side_by_side_stop_and_go_on(tmp_path):
+    """By Ctrl-C to the process that gives out the work, as by a person; workers save what they have, and none stays."""
+    ask_for = [sys.executable, "-m", "lab", "reproduce", "granular", "stack", "swelling", "--quick", "--out", tmp_path]
+    process = subprocess.Popen(ask_for, stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
+    begun = [tmp_path / "quick" / name / "checkpoint.npz" for name in ("stack-fall/stack", "swelling/shaken")]
+    deadline = time.monotonic() + 300.0
+    while not all(path.exists() for path in begun) and time.monotonic() < deadline:
+        time.sleep(0.2)
+    process.send_signal(signal.SIGINT)
+    assert process.wait(60.0) != 0
+    before = [h5py.File(path.with_name("recording.h5"))["series/time"].shape[0] for path in begun]
+    assert min(before) > 0
+    subprocess.run(ask_for, check=True, capture_output=True, timeout=300.0)
+    text = (tmp_path / "granular-quick.md").read_text()
+    assert "## Guided fall" in text and "## Swelling" in text and "Not complete" not in text
+
+
+def test_what_two_experiments_share_is_run_once(tmp_path, monkeypatch):
+    ran = []
+    monkeypatch.setattr(workers, "carry_out", lambda batch, folder, quiet: ran.append(folder.relative_to(tmp_path)))
+    monkeypatch.setattr(runtime, "available_cores", lambda: 1)
+    reproduce("granular", ["tilt-surface", "tilt-low-walls"], tmp_path, quick=False, quiet=True)
+    assert len(ran) == len(set(ran)) == 4
+    shared = tmp_path / "full" / "tilt-surface" / "slightly disturbed"
+    assert package.places(experiments("granular"), tmp_path / "full", False)["tilt-low-walls"]["high walls"] == shared
+
+
+def test_what_is_not_run_yet_is_said(tmp_path, monkeypatch):
+    monkeypatch.setattr(workers, "carry_out", lambda *_: None)
+    monkeypatch.setattr(runtime, "available_cores", lambda: 1)
+    text = reproduce("granular", ["stack"], tmp_path, quick=False, quiet=True).read_text()
+    assert text.count("| not run |") == len(experiments("granular"))
+    with pytest.raises(LabError, match="there is no experiment tilt-x; there are stack-fall, "):
+        reproduce("granular", ["tilt-x"], tmp_path, quick=False)
+
+
+BY_EYE = Tolerance(3.0, "read off a picture")
+
+
+def test_a_number_agrees_where_its_interval_lies_within_the_tolerance():
+    """Mean 21 of four beds, standard error 0.41: ± 1.3 deg at 95 %."""
+    value = over_worlds([20.0, 22.0, 21.0, 21.0], "deg")
+    row = stated("angle", 20.0, value, BY_EYE)
+    assert row.verdict is Verdict.AGREES and row.ours == "21.00 ± 0.82 deg (4 beds)"
+    assert row.apart == "+1, [-0.3, 2.3] deg (95 %)" and row.tolerance == "3 deg: read off a picture"
+    assert stated("angle", 10.0, value, BY_EYE).verdict is Verdict.DIFFERS
+    assert stated("angle", 18.5, value, BY_EYE).verdict is Verdict.CANNOT_TELL
+
+
+def test_a_mean_that_fits_is_left_open_where_beds_scatter_widely_or_there_is_one():
+    """Right by chance: 21 beside 21, from beds of 10 to 32 deg, or from one bed with however small an own error."""
+    wide = over_worlds([10.0, 32.0, 15.0, 27.0], "deg")
+    one = over_worlds([21.0], "deg", uncertainties=[0.01], kind="detector")
+    for value in (wide, one, over_worlds([np.nan], "deg"), None):
+        assert stated("angle", 21.0, value, BY_EYE).verdict is Verdict.CANNOT_TELL
+    assert "±" not in stated("angle", 21.0, one, BY_EYE).ours
+
+
+def test_what_does_not_vary_from_bed_to_bed_is_judged_as_it_is():
+    """36 beside 5.9 deg is a difference, whatever else agrees."""
+    row = stated("frozen", 36.0, over_worlds([5.9], "deg"), BY_EYE, exact=True)
+    assert row.verdict is Verdict.DIFFERS and row.ours == "5.9 deg" and row.apart == "-30.1 deg"
+    assert stated("frozen", 6.0, over_worlds([5.9], "deg"), BY_EYE, exact=True).verdict is Verdict.AGREES
+
+
+def test_the_head_of_a_report_counts_its_verdicts_and_each_stands_beside_its_tolerance(tmp_path):
+    beds = {"near": [20.0, 22.0, 21.0, 21.0], "far": [30.0, 31.0, 30.0, 31.0], "wide": [10.0, 32.0, 15.0, 27.0]}
+    rows = [stated(name, 20.0, over_worlds(angles, "deg"), BY_EYE) for name, angles in beds.items()]
+    finding = Finding("asked", [*rows, observed("seen", "", "this", None)], (), 1.0, 1.0, "", "")
+    tried = Experiment(
+        "tried", "A trial", "0.0", "20 deg.", lambda quick: {}, lambda found: Told([]), "much", ("", 1.0)
+    )
+    page = Page(tmp_path, "granular", "Title")
+    report._overview(page, "granular", {"tried": tried}, {"tried": finding}, quick=False)
+    report._section(page, tried, finding, quick=False)
+    text = page.write().read_text()
+    assert "Of 3 statements held against the source 1 agree, 1 differ, and of 1 these beds cannot tell." in text
+    assert "| A trial | 0.0 | 1 | 1 | 1 |" in text
+    for name, verdict in (("near", "agrees"), ("far", "**differs**"), ("wide", "cannot tell")):
+        line = next(line for line in text.splitlines() if line.startswith(f"| {name} |"))
+        assert line.endswith(f"| 3 deg: read off a picture | {verdict} |") and "(95 %)" in line
+
+
+@pytest.mark.parametrize("report_name", REPORTS)
+def test_every_verdict_of_the_reports_that_come_with_the_lab_says_its_tolerance(report_name):
+    """And no number of one bed has a ±."""
+    kept = ROOT / "renders" / "gallery" / report_name / f"{report_name}.json"
+    rows = [Row(**row) for finding in json.loads(kept.read_text()).values() for row in finding["rows"]]
+    assert rows
+    for row in rows:
+        assert row.tolerance or row.verdict is None, row
+        assert not re.search(r"±[^(;,]*\(1 bed", row.ours), row
+        assert "±" not in row.ours or re.search(r"beds|\(s\.e\.\)", row.ours), row
+
+
+def test_the_onset_is_each_beds_own_and_lies_between_two_frequencies():
+    def at(frequency, *responses):
+        return outcome({FREQUENCY: f"{frequency} Hz"}, response_amplitude=over_worlds(responses, "mm"))
+
+    found = onset([at(1, 0.0, 0.0), at(2, 0.0, 4.0), at(3, 1.6, 8.0)], 40.0)
+    assert found.worlds == pytest.approx((2.5, 1.2))  # 2 % of 40 mm is 0.8 mm
+    assert onset([at(1, 0.1), at(2, 0.2)], 40.0).value is None
+
+
+def test_round_outlines_are_judged_bed_by_bed_before_they_slide(monkeypatch):
+    """Six beds of which some shift half as far again: 36 nodes lag by 5 %, 120 by 2 %, as the source does not say."""
+    tilt = np.linspace(0.0, 30.0, 61)
+    monkeypatch.setattr(outlines, "shift_curve", lambda recording, world: (tilt, 1e-4 * tilt * recording.slopes[world]))
+
+    def ran(stretch, **setting):
+        one = outcome(setting, critical_angle=over_worlds(np.full(6, 25.0), "deg"))
+        one.__dict__["recording"] = SimpleNamespace(worlds=6, slopes=stretch * np.tile((1.0, 1.5), 3))
+        return one
+
+    nodes = [ran(0.95, **{outlines.NODES: 36}), ran(0.98, **{outlines.NODES: 120})]
+    told = outlines.round_ones({"discs": [ran(1.0)], "smooth": [ran(1.0)], "nodes": nodes})
+    discs, *ratios = told.rows[:4]
+    assert (discs.ours, discs.verdict) == ("1.25 ± 0.27 mm (6 beds)", None)
+    assert [row.ours.partition(" ±")[0] for row in ratios] == ["1", "0.9500", "0.9800"]
+    assert all(row.ours.endswith(" (s.e.)") for row in ratios)
+    assert [row.verdict for row in ratios] == [None, Verdict.AGREES, Verdict.DIFFERS]
+
+
+@pytest.mark.parametrize(
+    ("heaps", "verdict"),
+    [
+        ((21.6, 21.8, 21.7, 21.9), Verdict.CANNOT_TELL),
+        ((29.0, 29.3, 28.8, 29.2), Verdict.DIFFERS),
+        ((17.3, 21.5), Verdict.CANNOT_TELL),
+        ((22.0,), Verdict.CANNOT_TELL),
+    ],
+)
+def test_heaps_are_judged_by_what_their_scatter_allows(heaps, verdict):
+    discs, outlined = (over_worlds(angles, "deg") for angles in ((19.1, 19.4, 18.2, 20.1), heaps))
+    found = {"discs": [outcome(heap_angle=discs)], "outlines": [outcome(heap_angle=outlined)]}
+    assert outlines.heaps(found).rows[-1].verdict is verdict
+
+
+def test_a_verdict_can_be_kept():
+    row = observed("angle", "", "20 deg", surely(np.float64(1.0) < 2.0), EXACT)
+    kept = json.loads(json.dumps(asdict(row)))
+    assert kept["verdict"] == "agrees" and TypeAdapter(Row).validate_python(kept) == row
+
+
+def test_what_was_kept_under_another_rule_is_not_taken_for_a_verdict(tmp_path):
+    """A file of rows that say true or false: it is to be made anew."""
+    old = {"quantity": "angle", "source": "20", "ours": "21", "difference": "+1", "agrees": True}
+    finding = {"asked": "", "rows": [old], "stopped": [], "grain_steps": 1, "wall_s": 1, "figure": "", "picture": ""}
+    (tmp_path / "granular.json").write_text(json.dumps({"tilt-fill": finding}))
+    with pytest.raises(LabError, match="remove it"):
+        read_findings(tmp_path / "granular.json", experiments("granular"), False)
+
+
+def test_the_tolerance_of_one_bed_is_what_beds_scatter_by():
+    """The root of the mean squared standard deviations over all beds that were tilted for the report."""
+    kept = json.loads((ROOT / "renders" / "gallery" / "granular" / "granular.json").read_text())
+    tilted = [row for name, finding in kept.items() if name.startswith("tilt-") for row in finding["rows"]]
+    said = [row["ours"] for row in tilted if "after" not in row["quantity"]]
+    found = [pair for text in said for pair in re.findall(r"± ([\d.]+) deg \((\d+) (?:of \d+ )?beds", text)]
+    std, count = np.array(found, float).T
+    assert ONE_BED.within == pytest.approx(np.sqrt(np.average(std**2, weights=count - 1)), abs=0.1)
+
+
+def test_words_of_a_preset_make_no_run_anew_and_its_physics_does():
+    plain = Batch("tilting/quick", {})
+    reworded = Batch("tilting/quick", {"title": "Another title", "video.colour": "speed"})
+    rougher = Batch("tilting/quick", {"material.friction": 0.3})
+    assert asked({"one": plain}) == asked({"one": reworded}) != asked({"one": rougher})

@@ -1,0 +1,193 @@
+"""The bench of stability: its fast part passes, goes on where it was cut off, and its verdicts can say no."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from lab.base.errors import LabError
+from lab.preset.accuracy import LEVELS
+from lab.studies.bench import stability
+from lab.studies.bench.stability.beds import ACETATE, RADIUS, bed, tank
+from lab.studies.bench.stability.case import Case, Check, Measure, judge, made_energy
+from lab.studies.bench.stability.hard_beds import height
+from lab.studies.bench.stability.limit_map import contacts, exact_limit, grows, limits, longest, packing, scene
+from lab.studies.bench.stability.pushed import REFUSED, RIGHT, STOPPED, WRONG, verdict
+from lab.studies.bench.stability.records import Records
+from lab.studies.bench.stability.trial import Trial, follow, overlap_of
+from solvers.motion import Sway
+from solvers.scene import Scene
+from solvers.simulation import Simulation
+
+SWAYED = Case("sway", "", lambda fast: None, measure=Measure("height", height, 0.1, ""))
+
+
+@pytest.fixture(scope="module")
+def page(tmp_path_factory):
+    """The folder that the fast part leaves."""
+    folder = tmp_path_factory.mktemp("bench")
+    return folder, stability.run_cases((), folder, True)
+
+
+@pytest.fixture(scope="module")
+def swayed():
+    """A small bed that a tank at rest in its outermost place throws sideways, for a tenth of a second."""
+    trial = bed(20, 0.1, across=5, motions=[(Sway(0.1, 2.0, -0.5 * np.pi),)])
+    run = Simulation(trial.scene, trial.position[None], 1, arch="cpu")
+    yield trial, follow(run, trial, 4.0 * trial.scene.time_step())
+    run.close()
+
+
+@pytest.mark.slow
+def test_the_fast_part_passes_and_leaves_a_page(page):
+    folder, passed = page
+    text, data = (folder / "stability.md").read_text(), json.loads((folder / "stability.json").read_text())
+    assert passed, text
+    assert "FAIL" not in text
+    assert (folder / "stability-limits.png").stat().st_size > 10_000
+    assert set(data) == {name for name, case in stability.CASES.items() if case.fast} | {"map-verlet"}
+    for name, case in stability.CASES.items():
+        if case.fast:
+            assert f"**{name}**" in text
+            assert len(data[name]["pushed"]) == (2 if case.measure else 0)
+    assert STOPPED in text and RIGHT in text
+    assert all(row["ratio"] > 1.0 for row in data["map-verlet"]["rows"])
+
+
+@pytest.mark.slow
+def test_what_is_there_is_not_run_again(page, capsys, monkeypatch):
+    folder, _ = page
+    monkeypatch.setattr(stability, "Simulation", None)
+    monkeypatch.setattr(stability.limit_map, "Simulation", None)
+    before = (folder / "stability.md").read_text()
+    assert stability.run_cases((), folder, True)
+    said = capsys.readouterr().out.splitlines()
+    assert len(said) == 6 and all(line.endswith("kept from an earlier run") for line in said)
+    assert (folder / "stability.md").read_text() == before
+    assert "wedged" not in Records(folder / "stability.json", fast=False), "a full run is another one"
+    data = json.loads((folder / "stability.json").read_text())
+    data["wedged"]["made_by"]["versions"]["taichi"] = "0"
+    (folder / "older.json").write_text(json.dumps(data))
+    assert "wedged" not in Records(folder / "older.json", fast=True)
+
+
+@pytest.mark.slow
+def test_a_case_passes_and_leaves_a_page(tmp_path):
+    assert stability.run_cases(("wedged",), tmp_path, True)
+    text, data = (tmp_path / "stability.md").read_text(), json.loads((tmp_path / "stability.json").read_text())
+    assert "**wedged**" in text and "FAIL" not in text
+    assert [row["outcome"] for row in data["wedged"]["pushed"]] == [RIGHT, REFUSED + RIGHT]
+
+
+def test_a_name_that_is_none_is_one_sentence(tmp_path):
+    with pytest.raises(LabError, match=r"^there is no case wedge-shaped; there are one-grain, corner, .*map-gear\.$"):
+        stability.run_cases(("wedge-shaped",), tmp_path, True)
+    assert not list(tmp_path.iterdir())
+    (tmp_path / "stability.json").write_text("[1, 2")
+    with pytest.raises(LabError, match="holds no results"):
+        stability.run_cases((), tmp_path, True)
+
+
+def test_a_case_that_breaks_off_fails_alone_and_is_not_kept(tmp_path, capsys, monkeypatch):
+    def broken(fast):
+        raise ZeroDivisionError("of its own")
+
+    monkeypatch.setitem(stability.CASES, "corner", Case("corner", "", broken))
+    monkeypatch.setattr(stability, "_run_map", lambda integrator, fast: {"rows": [], "passed": True})
+    assert not stability.run_cases(("corner", "map-verlet"), tmp_path, True)
+    assert "corner: FAIL, broke off: ZeroDivisionError: of its own" in capsys.readouterr().out
+    assert set(json.loads((tmp_path / "stability.json").read_text())) == {"map-verlet"}
+
+
+def failed(checks: list[Check]) -> list[str]:
+    """What the checks that fail compare."""
+    return [check.what for check in checks if not check.passed]
+
+
+@pytest.mark.slow
+def test_energy_is_what_the_tank_has_done(swayed):
+    """The bed is thrown against the walls, and its energy follows the tank's work but for what collisions take."""
+    trial, course = swayed
+    assert failed(judge(SWAYED, trial, course)) == []
+    assert np.ptp(course.work) > 0.1 * trial.weight * trial.height
+    assert made_energy(trial, course) < 1e-3
+
+
+@pytest.mark.slow
+def test_energy_from_nowhere_is_caught(swayed):
+    """Without the tank's work, or with a little more than there is, the energy has no source."""
+    trial, course = swayed
+    no_work = replace(course, work=np.zeros_like(course.work))
+    assert made_energy(trial, no_work) > 0.1
+    assert failed(judge(SWAYED, trial, no_work)) == ["energy made (share)"]
+    warmer = course.energy + 0.03 * trial.weight * trial.height * np.linspace(0.0, 1.0, len(course.time)) ** 20
+    assert failed(judge(SWAYED, trial, replace(course, energy=warmer))) == ["energy made (share)"]
+
+
+@pytest.mark.slow
+def test_other_faults_are_caught(swayed):
+    trial, course = swayed
+    assert failed(judge(SWAYED, trial, replace(course, stopped="it exploded."))) == ["the run"]
+    assert failed(judge(replace(SWAYED, may_stop=True), trial, replace(course, stopped="it exploded."))) == []
+    deep = course.rows | {"overlap": course.rows["overlap"] + 0.04}
+    assert failed(judge(SWAYED, trial, replace(course, rows=deep))) == ["largest overlap (radii)"]
+    lost = replace(course, energy=np.where(np.arange(len(course.time)) == 50, np.nan, course.energy))
+    assert failed(judge(SWAYED, trial, lost)) == ["energy made (share)"]
+
+
+@pytest.mark.slow
+def test_longer_steps_are_right_or_stopped_or_quietly_wrong(swayed):
+    trial, course = swayed
+    found = height(trial, course)
+    assert verdict(SWAYED, trial, course, 4, 0.92 * found).outcome == RIGHT
+    assert verdict(SWAYED, trial, course, 4, 0.9 * found).outcome == WRONG
+    assert not verdict(SWAYED, trial, course, 4, 1.2 * found).passed
+    hot = replace(course, energy=course.energy + np.linspace(0.0, 0.05, len(course.time)) * course.energy.max())
+    assert verdict(SWAYED, trial, hot, 4, found).outcome == WRONG
+    assert verdict(SWAYED, trial, course, 10, 0.9 * found).passed, "no number comes out of the app"
+    stopped = verdict(SWAYED, trial, replace(course, stopped="too fast."), 4, found)
+    assert stopped.outcome == STOPPED and stopped.said == "too fast." and stopped.passed
+
+
+def test_hertz_estimate_of_an_impact_and_a_load():
+    """By hand: E* = 3.2e9/(2 · 0.9216) = 1.7361 GPa; at a wall k = (4/3) E* √R, m = (4/3) π R³ ρ."""
+    made = Scene([RADIUS], tank(0.1, 0.1), ACETATE, ACETATE)
+    mass, k = 4.0 / 3.0 * np.pi * RADIUS**3 * 1319.0, 4.0 / 3.0 * 3.2e9 / (2.0 * 0.9216) * RADIUS**0.5
+    assert overlap_of(made, 2.0, 0.0) == pytest.approx((1.25 * mass * 4.0 / k) ** 0.4 / RADIUS, rel=1e-12)
+    assert overlap_of(made, 0.0, 5.0) == pytest.approx((5.0 / (k * 0.5**0.5)) ** (2 / 3) / RADIUS, rel=1e-12)
+
+
+def test_bisection_finds_a_limit_above_and_below_and_none():
+    for limit in (7.3, 1.0, 0.11):
+        assert longest(lambda step, at=limit: step > at, 1.0) == pytest.approx(limit, rel=0.01)
+    assert longest(lambda step: True, 1.0) == 0.0
+    assert longest(lambda step: False, 1.0) > 50.0
+
+
+@pytest.mark.slow
+def test_packing_is_in_equilibrium_and_explodes_beyond_its_limit():
+    """At a stable step no grain moves by as much as a thousandth of an overlap; a little beyond 2/ω they fly apart."""
+    made = scene([1.0], "verlet", "linear", "none")
+    places = packing("linear")[1][None]
+    run = Simulation(made, places, 1, arch="cpu")
+    assert not grows(run, places, 0, 0.97 * exact_limit("linear"))
+    assert np.abs(run.snapshot()["position"] - places).max() < 1e-3 * contacts("linear")[0].overlap
+    assert grows(run, places, 0, 1.03 * exact_limit("linear"))
+    run.close()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("integrator", "friction"), [("gear", "haff-werner"), ("verlet", "mindlin")])
+def test_the_step_of_draft_accuracy_is_stable_where_dampers_are_strong(integrator, friction):
+    """Gear bears weaker dampers than Verlet; Mindlin's dashpot grows with the stiffness."""
+    for found in limits(integrator, "hertz-viscoelastic", friction):
+        assert found.ratio > LEVELS["draft"].longer_steps, found.damping
+
+
+def test_a_trial_weighs_its_grains():
+    made = Scene([RADIUS, 2.0 * RADIUS], tank(0.1, 0.1) + np.array([0.0, 0.3]), ACETATE, ACETATE)
+    trial = Trial(made, np.array([[0.0, 0.31], [0.02, 0.32]]), 1.0)
+    mass = 4.0 / 3.0 * np.pi * RADIUS**3 * 1319.0
+    assert trial.weight == pytest.approx(9.0 * mass * 9.81, rel=1e-12)
+    assert trial.height == pytest.approx((0.01 + 8.0 * 0.02) / 9.0, rel=1e-9)

@@ -1,0 +1,32 @@
+"""A rehearsal tells which measures a run will have, and in which units."""
+
+import pytest
+
+from lab.preset.find import load, names
+from lab.runs.runner import run_preset
+from lab.sweeps.rehearsal import rehearsed
+
+SMALL = {"tank": {"width": "30 mm", "height": "30 mm"}, "grains": {"count": 25, "depth": False}}
+RUNS = {
+    "there and back": {"motion": {"tilt": {"rate": "60 deg/s", "angle": "15 deg", "hold": "0 s", "reverse": True}}},
+    "swayed": {
+        "motion": {"tilt": False, "soft_start": "0.1 s", "sway": {"amplitude": "2 mm", "frequency": "4 Hz"}},
+        "run": {"duration": "3 s"},
+        "record": {"picture_rate": "100 Hz"},
+    },
+    "open": {"tank": SMALL["tank"] | {"lid": False}, "motion": {"tilt": {"rate": "60 deg/s", "angle": "15 deg"}}},
+}
+
+
+@pytest.mark.parametrize("case", RUNS)
+def test_a_run_has_the_measures_of_its_rehearsal(case, tmp_path):
+    overrides = {**SMALL, **RUNS[case]}
+    expected = rehearsed(load("tilting/quick", overrides))
+    found = run_preset("tilting/quick", overrides, tmp_path / "run", video=False, plots=False, quiet=True).measures
+    assert {name: value.unit for name, value in expected.items()} == {name: v.unit for name, v in found.items()}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", [name for name in names() if name.endswith("-quick")])
+def test_every_preset_can_be_rehearsed(name):
+    assert {"final_shift", "largest_kinetic_energy", "mean_force_z"} <= rehearsed(load(name)).keys()

@@ -1,0 +1,122 @@
+"""An experiment under a hand: recorded, and the same again, bit for bit."""
+
+import json
+from types import SimpleNamespace
+
+import h5py
+import numpy as np
+import pytest
+
+from lab.base.errors import LabError
+from lab.base.progress import Progress
+from lab.paint.footage import open_footage
+from lab.preset.find import load
+from lab.recording import open_recording
+from lab.view import worker
+from lab.view.live import Live, own_motion, under_a_hand
+from lab.view.replay import replay
+
+SMALL = {"tank.width": "40 mm", "tank.height": "40 mm", "grains.depth": "12 mm", "run.accuracy": "draft"}
+HAND = {3: ("sway", 0.02), 8: ("friction", 0.6), 12: ("gravity", 5.0), 15: ("tilt", -0.3), 20: ("roll", 0.2)}
+PIECES = 30
+
+
+@pytest.fixture(scope="module")
+def steered(tmp_path_factory):
+    folder, loaded = tmp_path_factory.mktemp("view") / "hand", load("tilting/quick", SMALL)
+    with Live(under_a_hand(loaded), folder, Progress(quiet=True)) as live:
+        for name, value in own_motion(loaded.resolved).items():
+            live.set(name, value)
+        for k in range(PIECES):
+            if k in HAND:
+                live.set(*HAND[k])
+            live.advance(most=100 + 37 * k)  # how often it is looked at must not matter
+        with pytest.raises(LabError, match="start the experiment anew"):
+            live.set("diameter", 4e-3)
+        live.close()
+    return folder
+
+
+def test_a_bed_can_be_watched_as_it_is_made(tmp_path, monkeypatch):
+    """Its grains fall, and stand still at the end, a centre of mass ever lower."""
+
+    said = []
+    box = SimpleNamespace(send=lambda word, what, newest=False: said.append((word, what)))
+    monkeypatch.setattr(worker, "A_LOOK", 0.0)
+    loaded = under_a_hand(load("tilting/quick", {**SMALL, "grains.reuse_bed": False}))
+    with Live(loaded, tmp_path / "run", worker.Told(box, loaded, tmp_path / "run")) as live:
+        lies = live.look().grains["position"]
+    words = [word for word, _ in said if word != "told"]
+    assert words[0] == "makes" and words.count("makes") in (1, 2) and words.count("seen") > 5
+    scenery = next(what for word, what in said if word == "makes")
+    assert scenery.preset["ship"] is None and scenery.radius.shape == lies.shape[:2]
+    places = [what[0].grains["position"] for word, what in said if word == "seen"]
+    heights = [place[..., 1].mean() for place in places]
+    assert heights[0] > heights[-1] + 1e-3
+    assert np.abs(places[-1] - lies).max() < 1e-5
+
+
+def test_the_recording_tells_what_was_done(steered):
+    with open_recording(steered) as recording:
+        done = [(name, value) for _, name, value in recording.steering]
+        times = [time for time, name, _ in recording.steering if name == "friction"]
+        assert len(recording.series["time"]) == PIECES + 1
+        assert np.ptp(recording.series["pose"][:, 0, 0]) > 5e-3
+        assert times == [pytest.approx(8 / recording.preset["record"]["series_rate"])]
+    assert [entry for entry in done if entry in HAND.values()] == list(HAND.values())
+
+
+def check_same_bits(folder, other):
+    with open_recording(folder) as first, open_recording(other) as second:
+        assert first.steering == second.steering
+        for name in first.series:
+            assert first.series[name].tobytes() == second.series[name].tobytes(), name
+        for name in first.frames:
+            assert first.frames[name][:].tobytes() == second.frames[name][:].tobytes(), name
+
+
+def test_a_replay_has_the_same_bits(steered, tmp_path):
+    again = replay(steered, tmp_path / "again", video=False, quiet=True)
+    check_same_bits(steered, again.folder)
+    assert json.loads((again.folder / "summary.json").read_text())["status"] == "complete"
+
+
+def test_what_was_killed_replays_as_far_as_it_was_recorded(steered, tmp_path):
+    """The last rows cut off, as a killed process leaves them."""
+    folder = tmp_path / "killed"
+    folder.mkdir()
+    (folder / "recording.h5").write_bytes((steered / "recording.h5").read_bytes())
+    with h5py.File(folder / "recording.h5", "r+") as file:
+        for data in file["series"].values():
+            data.resize(11, axis=0)
+    again = replay(folder, tmp_path / "again", video=False, quiet=True)
+    with open_recording(steered) as first, open_recording(again.folder) as second:
+        assert len(second.series["time"]) == 11
+        assert second.series["kinetic"].tobytes() == first.series["kinetic"][:11].tobytes()
+
+
+def test_a_run_that_no_hand_steered_is_not_replayed(steered, tmp_path):
+    folder = tmp_path / "plain"
+    folder.mkdir()
+    (folder / "recording.h5").write_bytes((steered / "recording.h5").read_bytes())
+    with h5py.File(folder / "recording.h5", "r+") as file:
+        del file["steering"]
+    with pytest.raises(LabError, match="not steered by hand"):
+        replay(folder, quiet=True)
+
+
+@pytest.mark.slow
+def test_a_random_sea_that_a_hand_raised_replays_with_the_same_bits(tmp_path):
+    folder, loaded = tmp_path / "sea", load("ship/irregular-sea-quick", {"grains.diameter": "12 mm"})
+    with Live(under_a_hand(loaded), folder, Progress(quiet=True)) as live:
+        for k in range(60):
+            if k in (5, 40):
+                live.set("wave_height", 0.06 if k == 5 else 0.01)
+            live.advance(most=50 + 11 * k)
+        waves = live.look().rows["waves"]
+        live.close()
+    assert 0.01 < waves[0] < 0.06
+    with open_footage(folder) as footage:  # what a video of it shows
+        assert footage.sea_of(0).waves[0] == loaded.resolved.waves.height
+        assert footage.sea_of(len(footage.time) - 1).waves[0] == pytest.approx(waves[0], abs=2e-3)
+    check_same_bits(folder, replay(folder, tmp_path / "again", video=False, quiet=True).folder)

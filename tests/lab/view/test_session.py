@@ -1,0 +1,463 @@
+"""What a person sees and does in a window, driven by events without one."""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+import time
+from dataclasses import replace
+from multiprocessing import Pipe
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from lab.build.scene import build
+from lab.preset.find import load
+from lab.view import footage as footages
+from lab.view import session as sessions
+from lab.view.footage import Scenery
+from lab.view.live import Seen, own_motion, under_a_hand
+from lab.view.page import PLOT
+from lab.view.panel.controls import CONTROLS
+from lab.view.panel.readings import clock, readings
+from lab.view.session import KEYS, Session
+from solvers.grains.pressing import NOBODY, Pressing
+from solvers.machine.runtime import initialise
+
+PRESET = "tilting/quick"
+SMALL = {"tank.width": "60 mm", "tank.height": "40 mm", "grains.depth": "15 mm"}
+SIZE = 1280, 720
+
+
+# Grain 7 presses on grain 8 and on a wall.
+PRESSING = Pressing(
+    np.array([[7, 8], [7, NOBODY]]), np.array([[0.0, 0.003], [0.003, 0.0]]), np.array([[0.2, 0], [0, 0.1]])
+)
+
+
+class NoProcess:
+    def is_alive(self) -> bool:
+        return False
+
+    def join(self, _: float) -> None:
+        pass
+
+    def terminate(self) -> None:
+        pass
+
+
+@pytest.fixture
+def opened(monkeypatch, tmp_path):
+    """A session whose experiment is played by the test: the session, the other end of its pipe, the scene's places."""
+    initialise()
+    pipes = []
+
+    def begin(name, overrides, folder):
+        here, there = Pipe()
+        pipes.append(there)
+        return NoProcess(), here
+
+    monkeypatch.setattr(sessions, "begin", begin)
+    session = Session(PRESET, SMALL, SIZE, tmp_path / "out")
+    loaded = load(PRESET, SMALL)
+    live = under_a_hand(loaded)
+    scene, place = build(live.resolved)
+    preset = json.loads(live.resolved.model_dump_json())
+    plain = np.zeros(scene.radius.shape, dtype=int), scene.outline, (), scene.fixed, {}, None, 1e-5
+    scenery = Scenery(preset, PRESET, tmp_path, scene.radius, *plain)
+    pipes[-1].send(("ready", (scenery, own_motion(loaded.resolved))))
+    for k in range(5):
+        pipes[-1].send(("seen", (seen(place, 0.1 * k), 0.5)))
+    session.tick()
+    yield session, pipes, place
+    session.close()
+
+
+def seen(place: np.ndarray, time: float) -> Seen:
+    """Grains that move to starboard, spinning, in a tank that stands still."""
+    still = np.zeros(place.shape[:2])
+    grains = {
+        "position": place + np.array([1e-3 * time, 0.0]),
+        "velocity": np.full_like(place, 1e-3) * [1.0, 0.0],
+        "angle": still,
+        "spin": still,
+    }
+    names = "pose_y", "pose_z", "pose_angle", "centre_y", "centre_z", "kinetic", "contacts"
+    rows = {name: np.array([time if name.startswith("centre") else 0.0]) for name in names}
+    return Seen(time, {**rows, "part": np.zeros((1, 0, 2))}, grains, PRESSING)
+
+
+def asked(pipe) -> list:
+    """What has come to the experiment's end of the pipe."""
+    found = []
+    try:
+        while pipe.poll():
+            found.append(pipe.recv())
+    except EOFError:  # the other end is closed
+        pass
+    return found
+
+
+def test_it_starts_as_the_preset_moves_and_runs(opened):
+    session, pipes, _ = opened
+    said = asked(pipes[-1])
+    assert ("set", ("tilt", pytest.approx(np.radians(40.0)))) in said
+    assert said[-1] == ("go", True)
+    assert session.going
+
+
+def test_the_picture_has_the_grains_and_says_how_it_runs(opened):
+    session, _, place = opened
+    picture = session.picture()
+    assert picture.shape == (SIZE[1], SIZE[0], 3)
+    camera = session.page.tank_camera(session)
+    at = np.round(camera.pixels(place[0] + [4e-4, 0.0])).astype(int)
+    painted = picture[at[:, 1], at[:, 0]].astype(int)
+    assert np.mean(np.abs(painted - [246, 247, 249]).max(axis=1) > 20) > 0.95
+
+
+def test_keys_pause_go_back_and_come_forth(opened):
+    session, pipes, _ = opened
+    newest = session.picture()
+    asked(pipes[-1])
+    session.key("left")
+    session.key("left")
+    assert asked(pipes[-1]) == [("go", False)]
+    assert session.frame == 2
+    assert np.any(session.picture() != newest)
+    session.key("g")
+    assert session.frame == 4
+    session.key("space")
+    assert asked(pipes[-1]) == [("go", True)]
+
+
+def test_a_slider_that_is_dragged_sets_its_control(opened):
+    session, pipes, _ = opened
+    session.picture()
+    asked(pipes[-1])
+    left, top, right, bottom = session.page._sliders["friction"]
+    session.press(left + 0.25 * (right - left), 0.5 * (top + bottom))
+    session.drag(left + 0.75 * (right - left), 0.0)
+    session.release(right, top)
+    session.drag(left, top)  # let go: nothing more
+    values = [value for word, (name, value) in asked(pipes[-1]) if (word, name) == ("set", "friction")]
+    assert values == [pytest.approx(0.25, abs=0.02), pytest.approx(0.75, abs=0.02)]
+    assert session.values["friction"] == values[-1]
+
+
+def test_a_slider_goes_from_the_lowest_to_the_highest_value(opened):
+    session, _, _ = opened
+    session.picture()
+    left, top, right, bottom = session.page._sliders["tilt"]
+    for x, value in ((left, CONTROLS["tilt"].low), (right, CONTROLS["tilt"].high)):
+        session.press(x, 0.5 * (top + bottom))
+        session.release(x, top)
+        assert session.values["tilt"] == pytest.approx(value)
+    assert CONTROLS["tilt"].low < 0.0
+
+
+def test_no_hand_gets_a_control_out_of_its_range(opened):
+    session, _, _ = opened
+    session.set("friction", 17.0)
+    assert session.values["friction"] == CONTROLS["friction"].high
+
+
+def test_the_centre_of_roll_is_dragged(opened):
+    session, pipes, _ = opened
+    session.look.frame = "earth"
+    session.picture()
+    x, y = session.page._centre(session)
+    scale = session.page.camera(session).scale
+    asked(pipes[-1])
+    session.press(x, y)
+    session.drag(x + 0.02 * scale, y - 0.03 * scale)
+    session.release(x, y)
+    last = dict(what for word, what in asked(pipes[-1]) if word == "set")
+    assert last == {"centre_y": pytest.approx(0.02), "centre_z": pytest.approx(0.03)}
+
+
+def test_the_centre_of_roll_is_an_earth_point_in_the_frame_of_a_tilted_tank_too(opened):
+    session, pipes, place = opened
+    tilted = seen(place, 0.5)
+    tilted.rows["pose_angle"] = np.array([0.4])
+    tilted.rows["pose_y"] = np.array([0.01])
+    pipes[-1].send(("seen", (tilted, 1.0)))
+    session.tick()
+    session.look.frame = "tank"
+    session.picture()
+    x, y = session.page._centre(session)
+    asked(pipes[-1])
+    session.press(x, y)
+    session.release(x, y)
+    last = dict(what for word, what in asked(pipes[-1]) if word == "set")
+    assert last == {"centre_y": pytest.approx(0.0, abs=1e-9), "centre_z": pytest.approx(0.0, abs=1e-9)}
+
+
+def test_a_click_picks_the_grain_below_it(opened):
+    session, _, place = opened
+    session.picture()
+    x, y = session.page.tank_camera(session).pixels(place[0][7][None] + [4e-4, 0.0])[0]
+    session.press(x, y)
+    session.release(x, y)
+    assert session.look.picked == 7
+    assert readings(session)[-2:] == ["grain 7: 1.0 mm/s, 0.00 rad/s", "2 contacts, 0.2 N at most"]
+
+
+def test_a_click_near_the_edge_picks_the_grain_that_is_there(opened):
+    """Not a neighbour whose edge is nearer."""
+    session, _, place = opened
+    session.picture()
+    camera, places, radius = session.page.tank_camera(session), place[0] + [4e-4, 0.0], session.footage.radius[0]
+    radius[::2] *= 0.5
+    for i in range(0, len(places), 9):
+        for turn in np.arange(8) * np.pi / 4.0:
+            point = places[i] + 0.9 * radius[i] * np.array([np.cos(turn), np.sin(turn)])
+            inside = np.flatnonzero(np.hypot(*(places - point).T) < radius)
+            if len(inside) == 1:
+                assert session.page.grain_at(session, *camera.pixels(point[None])[0]) == i
+
+
+def test_forces_are_drawn_as_thick_as_they_are_large(opened):
+    session, _, _ = opened
+    session.look.overlay = "forces"
+    session.picture()
+    strokes = session.page._force_strokes(session, session.page.tank_camera(session))
+    weak, strong = np.unique(strokes[:, 2].round(9))
+    assert strong == pytest.approx(2.0 * weak)  # 0.2 and 0.1 N
+
+
+def test_a_row_of_grains_between_walls_has_two_contacts_each(opened):
+    session, pipes, place = opened
+    count = place.shape[1]
+    order = np.arange(count)
+    row = np.column_stack([order, np.append(order[1:], NOBODY)])
+    grains = np.vstack([row, [[0, NOBODY]]])
+    last = seen(place, 0.5)
+    pipes[-1].send(("seen", (Seen(0.5, last.rows, last.grains, Pressing(grains, grains * 0.0, grains * 0.1)), 1.0)))
+    session.tick()
+    assert f"{count} grains, 2.00 contacts each" in readings(session)
+
+
+def test_what_needs_a_restart_waits_for_it(opened):
+    session, pipes, _ = opened
+    asked(pipes[-1])
+    session.set("diameter", 4e-3)
+    assert asked(pipes[-1]) == []
+    assert "start anew" in session.said
+    session.key("r")
+    assert asked(pipes[0])[-1] == ("end", None)
+    assert session.overrides["grains.diameter"] == "4 mm"
+
+
+def test_s_starts_anew_with_the_grains_of_another_cargo(opened):
+    session, pipes, _ = opened
+    session.key("s")
+    assert asked(pipes[0])[-1] == ("end", None)
+    shapes = load(PRESET, session.overrides).resolved.shapes
+    assert list(shapes) == ["wheat"]
+    for _ in range(9):
+        session.key("s")
+    assert list(load(PRESET, session.overrides).resolved.shapes) == ["disc"]
+
+
+def test_s_says_where_grains_cannot_have_outlines_and_goes_on(opened):
+    session, pipes, _ = opened
+    wet = {
+        "contact.cohesion": "bridge",
+        "material.bridge_volume": "0.002 mm^3",
+        "material.surface_tension": "0.072 N/m",
+    }
+    session.overrides = {**SMALL, **wet, "material.contact_angle": "0 deg"}
+    session.key("s")
+    assert "no liquid between irregular grains" in session.said
+    assert session.going and "end" not in [word for word, _ in asked(pipes[-1])]
+
+
+def test_what_ends_the_experiment_is_said_and_can_be_looked_back_from(opened):
+    session, pipes, _ = opened
+    pipes[-1].send(("over", "world 0: a grain is too fast"))
+    session.tick()
+    assert session.said == "world 0: a grain is too fast"
+    session.key("left")
+    assert session.frame == 3
+
+
+def test_an_experiment_that_broke_off_is_told_once_with_where_its_recording_is(opened):
+    session, pipes, _ = opened
+    pipes[-1].close()
+    session.tick()
+    assert session.said == f"the experiment broke off; {session.folder} has what was recorded."
+    assert clock(session) == "t = 0.40 s, ended"
+    assert not session.going
+    for name in KEYS:  # none brings the window down
+        if name not in ("escape", "r", "s"):
+            session.key(name)
+    assert session.picture().shape == (SIZE[1], SIZE[0], 3)
+
+
+def test_what_is_kept_in_memory_is_bounded_and_what_is_looked_at_stays(opened, monkeypatch):
+    session, pipes, place = opened
+    session.key("left")
+    session.key("left")
+    looked_at, limit = session.footage.row_time(session.frame), 8 * seen(place, 0.0).bytes
+    monkeypatch.setattr(footages, "MOST_BYTES", limit)
+    for k in range(5, 9):
+        pipes[-1].send(("seen", (seen(place, 0.1 * k), 0.5)))
+    session.tick()
+    assert session.footage.row_time(session.frame) == looked_at
+    for k in range(9, 200):
+        pipes[-1].send(("seen", (seen(place, 0.1 * k), 0.5)))
+        session.tick()
+    frames = session.footage._seen
+    assert 7 <= len(frames) <= 8
+    assert sum(frame.bytes for frame in frames) == session.footage._bytes <= limit
+    assert frames[-1].time == pytest.approx(19.9)
+
+
+def test_the_wheel_zooms_where_the_mouse_is(opened):
+    session, _, _ = opened
+    camera = session.page.camera(session)
+    place = (300.0 - camera.offset[0]) / camera.scale, (camera.offset[1] - 400.0) / camera.scale
+    session.wheel(3.0, 300.0, 400.0)
+    nearer = session.page.camera(session)
+    assert nearer.scale > 1.5 * camera.scale
+    assert nearer.pixels(np.array([place]))[0] == pytest.approx([300.0, 400.0])
+
+
+def test_the_plot_does_not_hide_the_tank(opened):
+    session, _, _ = opened
+    left, top, _, _ = session.page.stage
+    corners = session.page.tank_camera(session).pixels(session.footage.outline)
+    width, height = (session.page.u(side) for side in PLOT)
+    assert corners[:, 0].min() > left + width or corners[:, 1].min() > top + height
+
+
+def test_long_sentences_keep_to_their_place(opened):
+    session, _, _ = opened
+    quiet = session.picture()
+    session.say("world 0: a grain moved farther in a step than it may; " * 9)
+    changed = np.argwhere((session.picture() != quiet).any(axis=2))
+    left, _, right, bottom = session.page.stage
+    assert changed[:, 0].min() >= bottom
+    assert left < changed[:, 1].min() and changed[:, 1].max() < right
+
+
+@pytest.mark.parametrize("overlay", ["c", "f", "o", "i", "h"])
+def test_keys_change_the_picture(opened, overlay):
+    session, _, _ = opened
+    before = session.picture()
+    session.key(overlay)
+    assert np.any(session.picture() != before)
+
+
+def test_a_bed_is_seen_while_it_is_made_and_keys_do_no_harm(opened):
+    """The session starts anew; grains fall into a tank that is higher than its own, and the hand has no hold yet."""
+    session, pipes, place = opened
+    scenery = session.footage.scenery
+    session.look.inset = "levers"  # which a ship had
+    session.restart()
+    assert session.making and session.footage is None
+    made = replace(scenery, outline=scenery.outline * [1.0, 30.0]).for_filling(0.12)
+    assert made.outline[:, 1].max() == 0.12 and len(made.open_edges) == 1  # no lid so high up that grains are specks
+    for message in ("told", "pouring …"), ("makes", made), ("seen", (seen(place + np.array([0.0, 0.05]), 0.0), 0.0)):
+        pipes[-1].send(message)
+    session.tick()
+    high = session.picture()
+    pipes[-1].send(("seen", (seen(place, 0.2), 0.0)))
+    pipes[-1].send(("told", "pouring: 0.20 s"))
+    session.tick()
+    assert clock(session) == "pouring: 0.20 s" and readings(session) == [f"{place.shape[1]} grains"]
+    low = session.picture()
+    at = np.round(session.page.tank_camera(session).pixels(place[0] + [2e-4, 0.0])).astype(int)
+    changed = np.abs(high.astype(int) - low)[at[:, 1], at[:, 0]].max(axis=1) > 20
+    assert changed.mean() > 0.6
+    for name in KEYS.keys() - {"escape", "r", "s"}:
+        session.key(name)
+        session.picture()
+    session.press(*at[0])
+    session.release(*at[0])
+    session.wheel(1.0, 600, 400)
+    pipes[-1].send(("ready", (scenery, {"tilt": 0.3})))
+    pipes[-1].send(("seen", (seen(place, 0.0), 0.5)))
+    session.tick()
+    assert session.going and not session.making and len(session.footage) == 1
+    assert clock(session) == "t = 0.00 s, running"
+
+
+def test_keys_do_no_harm_before_anything_is_known_of_the_experiment(opened, tmp_path):
+    session = Session(PRESET, SMALL, SIZE, tmp_path / "another")
+    for name in KEYS.keys() - {"escape", "r", "s"}:
+        session.key(name)
+        session.picture()
+    assert session.making and session.left == "nothing was recorded yet"
+    session.close()
+
+
+def test_help_tells_every_key():
+    assert all(says and callable(action) for says, action in KEYS.values())
+
+
+def test_without_a_display_one_sentence_names_what_does_without(monkeypatch):
+    from lab.cli import main
+
+    for name in ("DISPLAY", "WAYLAND_DISPLAY"):
+        monkeypatch.delenv(name, raising=False)
+    result = CliRunner().invoke(main, ["view", PRESET])
+    assert result.exit_code == 2
+    assert result.output.strip().splitlines() == [
+        f"cargolab: there is no display for a window here: `cargolab run {PRESET}` runs it and films it."
+    ]
+
+
+TOOLS = [name for name in ("Xvfb", "xdotool") if not shutil.which(name)]
+
+
+@pytest.mark.skipif(bool(TOOLS), reason=f"{' and '.join(TOOLS)} not installed")
+@pytest.mark.parametrize("window", ["gui", pytest.param("ggui", marks=pytest.mark.slow)])
+def test_a_real_window_takes_a_key_and_a_slider(window, tmp_path):
+    """On a virtual screen: forces appear with O, friction follows the mouse, Escape closes."""
+    from PIL import ImageGrab
+
+    display = f":{90 + os.getpid() % 900}"
+    screen = subprocess.Popen(["Xvfb", display, "-screen", "0", "1400x900x24"], stderr=subprocess.DEVNULL)
+    environment = {**os.environ, "DISPLAY": display, "PYTHONPATH": str(Path(__file__).parents[3])}
+
+    def tool(*words: str) -> str:
+        return subprocess.run(["xdotool", *words], env=environment, capture_output=True, text=True).stdout
+
+    def reds() -> int:
+        seen = np.asarray(ImageGrab.grab(xdisplay=display)).astype(int)
+        return int(((seen[..., 0] > 180) & (seen[..., 1] < 60)).sum())
+
+    settings = [word for key, value in SMALL.items() for word in ("--set", f"{key}={value}")]
+    command = [sys.executable, "-m", "lab", "view", PRESET, *settings, "--window", window, "--out", str(tmp_path / "v")]
+    begun = {"env": environment, "cwd": tmp_path, "stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, "text": True}
+    program = subprocess.Popen(command, **begun)
+    try:
+        recording, until = tmp_path / "v" / "recording.h5", time.monotonic() + 150
+        while not recording.exists() and program.poll() is None and time.monotonic() < until:
+            time.sleep(0.5)
+        time.sleep(3.0)
+        until = time.monotonic() + 150
+        found = tool("search", "--name", "Cargo Shift Lab").split()
+        assert found, program.communicate(timeout=5)[0] if program.poll() is not None else "no window"
+        tool("windowfocus", found[0])
+        before = reds()
+        tool("key", "--window", found[0], "o")
+        while reds() <= before and time.monotonic() < until:
+            time.sleep(0.3)
+        assert reds() > before + 100
+        tool("key", "--window", found[0], "p")  # imgui's panel, where there is one
+        time.sleep(2.0)
+        tool("key", "--window", found[0], "Escape")
+        folder = program.communicate(timeout=60)[0].strip()
+    finally:
+        program.kill()
+        screen.terminate()  # kill would leave its lock
+        screen.wait(timeout=30)
+    assert folder == str(tmp_path / "v")
+    assert [path.name for path in tmp_path.iterdir()] == ["v"]
+    assert program.returncode == 0

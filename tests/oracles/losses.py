@@ -1,0 +1,41 @@
+"""What contacts lose, counted contact by contact from forces and speeds alone: laws that keep books on themselves."""
+
+import taichi as ti
+
+from solvers.grains.laws.chosen import ChosenLaws
+from solvers.grains.laws.extremes import greater
+from solvers.machine.units import APART
+
+SOFTEST = 1e-6  # N/m: a contact that only just touches
+
+
+@ti.data_oriented
+class CountedLaws(ChosenLaws):
+    """The chosen laws, and what Hertz contacts and Mindlin's springs have turned into heat, `lost` (J) a unit.
+
+    Of the normal force what is over k ξ^(3/2), times the rate of approach; of the shear force its work on the slip less
+    what the spring has gained. No motion, no weight and no ship comes into it.
+    """
+
+    def __init__(self, arrays, units, *laws):
+        super().__init__(arrays, units, *laws)
+        (self.lost,) = arrays.reals(1, (APART * units.count,), arrays.exact)
+
+    @ti.func
+    def forces(self, kind: ti.template(), contacts: ti.template(), u, block, overlap, rate, slip, turning, dt):
+        before = self.sprung(kind, contacts, u, block)
+        pressing = self.press(kind, contacts, u, block, overlap, rate, dt)
+        shearing, torque = self.rub(kind, contacts, u, block, overlap, rate, pressing, slip, turning, dt)
+        elastic = contacts.stiffness[u, block] * overlap * ti.sqrt(overlap)
+        work = ((pressing - elastic) * rate - shearing * slip).sum() * dt
+        self.lost[APART * u] = self.lost[APART * u] + work - self.sprung(kind, contacts, u, block) + before
+        return pressing, shearing, torque
+
+    @ti.func
+    def sprung(self, kind: ti.template(), contacts: ti.template(), u, block):
+        """Energy (J) S²/(2 k_t) of a block's shear springs, as they were left last."""
+        c, root = self.coefficients(1, u, kind, contacts, block), contacts.root_before[u, block]
+        spring = c[1] * contacts.stiffness[u, block] * root
+        held = contacts.stretched[u, block] - spring * contacts.ahead[u, block]
+        held = ti.select(c[0] > 0.0, held, 0.0 * held)  # smooth grains: what it is ahead is cut in the next step
+        return (0.5 * held * held / greater(spring, SOFTEST)).sum()

@@ -1,0 +1,56 @@
+"""What is told of grains before their first step: the state they are in, and nothing of it changed by the look."""
+
+import numpy as np
+import pytest
+
+from tests.oracles.scenes import box, material, simulation
+
+RADIUS, OVERLAP, SPEED = 3e-3, 2e-6, 0.05  # m, m, m/s
+APART = 2.0 * RADIUS - OVERLAP
+SCHEDULES = ("per-world", "per-grain")
+
+
+@pytest.fixture(scope="module", params=SCHEDULES)
+def pressed(request):
+    """Two grains pressed onto the floor and against one another, at rest; a third flies. And how it goes on unseen."""
+    place = [[[0.0, RADIUS - OVERLAP], [APART, RADIUS - OVERLAP], [0.0, 5.0 * RADIUS]]]
+    velocity = [[[0.0, 0.0], [0.0, 0.0], [SPEED, 0.0]]]
+
+    def made():
+        return simulation(
+            place, RADIUS, box(0.05, 0.05), material(young=1e7), velocity=velocity, schedule=request.param
+        )
+
+    run = made()
+    seen, again = run.observe(), run.observe()
+    assert seen == again
+    run.advance(100)
+    later = run.snapshot() | run.observe()
+    scene, mass = run.scene, run.grains.mass
+    run.close()
+    unseen = made()
+    unseen.advance(100)
+    rest = unseen.snapshot() | unseen.observe()
+    unseen.close()
+    return scene, mass, seen, later, rest
+
+
+def test_contacts_are_those_of_the_state_by_hertz(pressed):
+    """Hertz (1882; Johnson 1985, eq. 4.22): F = (4/3) E* √R δ^(3/2), of energy (2/5) F δ."""
+    scene, mass, seen, _, _ = pressed
+    pair, wall = scene.interfaces
+    of_pair = 4.0 / 3.0 * pair.young_modulus * np.sqrt(RADIUS / 2.0) * OVERLAP**1.5
+    of_floor = 4.0 / 3.0 * wall.young_modulus * np.sqrt(RADIUS) * OVERLAP**1.5
+    assert seen["contacts"] == [3.0]
+    assert seen["overlap"] == pytest.approx([OVERLAP / RADIUS], rel=1e-6)
+    assert seen["elastic"] == pytest.approx([0.4 * OVERLAP * (of_pair + 2.0 * of_floor)], rel=1e-6)
+    assert seen["wall_z"] == pytest.approx([-2.0 * of_floor], rel=1e-6)
+    assert seen["wall_moment"] == pytest.approx([-of_floor * APART], rel=1e-6)
+    assert seen["kinetic"] == pytest.approx([0.5 * mass[0, 2] * SPEED**2])
+    assert seen["centre_z"] == pytest.approx([(7.0 * RADIUS - 2.0 * OVERLAP) / 3.0])
+
+
+def test_a_look_changes_nothing(pressed):
+    *_, later, rest = pressed
+    for name in rest.keys() - {"wall_y", "wall_z", "wall_moment"}:  # means since the last look
+        assert later[name].tobytes() == rest[name].tobytes(), name

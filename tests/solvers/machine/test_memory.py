@@ -1,0 +1,75 @@
+"""Fields that are read and written where they lie."""
+
+import numpy as np
+import pytest
+
+from solvers.machine import runtime
+from solvers.machine.runtime import Arrays
+
+
+@pytest.fixture
+def arrays():
+    """Fields of all kinds and layouts, of sizes that are no powers of two."""
+    runtime.initialise()
+    arrays = Arrays("mixed")
+    arrays.reals(1, (3, 37), arrays.place)
+    arrays.integers(1, (6, 11), across=True)
+    arrays.vectors(1, 3, (5, 7))
+    arrays.vectors(1, 8, (5, 7), across=True)
+    arrays.integer_vectors(1, 2, (5, 13), across=True)
+    arrays.reals(1, (9,))
+    arrays.reals(1, (2, 3, 4))
+    arrays.finish()
+    yield arrays
+    arrays.release()
+
+
+def made():
+    """Arrays of a single field."""
+    arrays = Arrays()
+    arrays.reals(1, (4,))
+    arrays.finish()
+    return arrays
+
+
+def numbers(field):
+    """A different number for each element."""
+    shape = (*field.shape, field.n) if hasattr(field, "n") else field.shape
+    return np.arange(np.prod(shape)).reshape(shape).astype(field.to_numpy().dtype)
+
+
+def test_what_is_written_is_what_taichi_reads(arrays):
+    for field in arrays.fields:
+        values = numbers(field)
+        field.from_numpy(values)
+        assert np.array_equal(type(field).to_numpy(field), values)
+    assert all(np.array_equal(field.to_numpy(), numbers(field)) for field in arrays.fields)  # nor have others been hit
+
+
+def test_what_taichi_writes_is_what_is_read(arrays):
+    for field in arrays.fields:
+        type(field).from_numpy(field, numbers(field))
+    for field in arrays.fields:
+        assert np.array_equal(field.to_numpy(), numbers(field))
+        assert field.to_numpy().dtype == type(field).to_numpy(field).dtype
+
+
+def test_a_field_is_filled_and_what_was_read_stays(arrays):
+    field = arrays.fields[2]
+    before = field.to_numpy()
+    field.fill(3)
+    assert np.all(type(field).to_numpy(field) == 3) and np.all(before == 0)
+
+
+def test_a_wrong_shape_is_refused(arrays):
+    with pytest.raises(ValueError, match="does not fit"):
+        arrays.fields[0].from_numpy(np.zeros((1, 37)))
+
+
+def test_fields_that_are_gone_are_left_to_taichi():
+    runtime.initialise()
+    both = made(), made()
+    both[0].release()
+    runtime.initialise(threads=1 if runtime.available_cores() > 1 else 2)
+    for arrays in both:
+        assert not {"to_numpy", "from_numpy", "fill"} & set(vars(arrays.fields[0]))

@@ -1,0 +1,26 @@
+"""Neighbours that leave an open tank together are let go of without a trace."""
+
+import numpy as np
+import pytest
+
+from solvers.scene import Scene
+from solvers.simulation import Simulation
+from tests.oracles.scenes import box, material
+
+
+@pytest.mark.slow
+def test_neighbours_that_leave_together_are_let_go_of():
+    """Grain 0, which stands in for missing pairs too, and two that touch it fall beside the tank until out of sight."""
+    radius = np.full((1, 4), 2e-3)
+    place = np.array([[[0.03, 0.0], [0.0339, 0.0], [0.03, 0.0039], [0.0, 2e-3]]])
+    made = Scene(radius, box(0.04, 0.03), material(), material(), stiffness_scale=1e-3, open_edges=(2,))
+    run = Simulation(made, place, threads=1)
+    for _ in range(12):
+        run.advance(round(0.01 / run.dt))
+        rows = run.observe()
+    state = run.snapshot()
+    run.close()
+    assert rows["spilled"][0] == 3
+    assert np.isnan(state["position"][0, :3]).all()
+    assert np.isfinite(state["position"][0, 3]).all()
+    assert np.isfinite(state["velocity"]).all()

@@ -1,0 +1,118 @@
+"""The watch: what stops a simulation, what it says, and that the other worlds and the state stay as they are."""
+
+import re
+
+import numpy as np
+import pytest
+
+from solvers.machine.errors import BadState
+from tests.oracles.scenes import box, simulation
+
+RADIUS = 3e-3
+PLACE = np.array([[-0.02, 0.01], [0.0, 0.02], [0.02, 0.03]])
+VELOCITY = np.random.default_rng(2).normal(0.0, 0.1, (3, 3, 2))
+STEPS = 40
+
+
+@pytest.fixture(scope="module")
+def built():
+    """Three worlds of three grains, built once."""
+    run = simulation(np.tile(PLACE, (3, 1, 1)), RADIUS, box(0.06, 0.06), start_speed=1.0)
+    run.step_of_scene = run.dt
+    yield run
+    run.close()
+
+
+@pytest.fixture
+def run(built):
+    """The three worlds at their start."""
+    built.dt, built.origin = built.step_of_scene, 0.0
+    start(built)
+    return built
+
+
+def start(run, **places) -> None:
+    """Put the grains back, except grain 1 of world 2, if a place is given for it."""
+    position = np.tile(PLACE, (3, 1, 1))
+    if places:
+        position[2, 1] = places["grain"]
+    run.steps = 0
+    for field in (run.clock.step, run.clock.status):
+        field.fill(0)
+    run.place(position, VELOCITY)
+
+
+def caught(action, *arguments) -> str:
+    """What BadState says: one sentence that begins with its world and tells the time."""
+    with pytest.raises(BadState) as error:
+        action(*arguments)
+    said = str(error.value)
+    assert re.fullmatch(r"world \d: (?!.*\. ).*\.", said), said
+    return said
+
+
+def told_time(said: str) -> float:
+    """The time (s) in a message."""
+    return float(re.search(r"t = (\S+) s", said)[1])
+
+
+@pytest.mark.parametrize("grain", [0, 1, 2])
+@pytest.mark.parametrize("trouble", ["not a number", "too fast"])
+def test_a_bad_speed_stops_its_world_alone(run, trouble, grain):
+    run.advance(STEPS)
+    expected = run.snapshot()
+    start(run)
+    run.advance(10)
+    speed = np.nan if trouble == "not a number" else 0.2 * RADIUS / run.dt
+    run.grains.velocity_y[1, grain] = speed
+    said = caught(run.advance, STEPS - 10)
+    assert said.startswith("world 1: ")
+    assert trouble in said
+    assert told_time(said) == pytest.approx(11 * run.dt, rel=1e-3)
+    np.testing.assert_array_equal(run.clock.step.to_numpy(), [STEPS, 11, STEPS])
+    state = run.snapshot()
+    for name, values in state.items():
+        np.testing.assert_array_equal(values[[0, 2]], expected[name][[0, 2]], err_msg=name)
+    others = [k for k in range(3) if k != grain]
+    assert np.all(np.isfinite(state["position"][1, others]))
+    assert caught(run.advance, 1) == said
+
+
+def test_the_limit_of_speed_is_a_tenth_of_a_radius_a_step(run):
+    run.grains.velocity_z[1, 0] = 0.098 * RADIUS / run.dt
+    run.advance(1)
+    run.grains.velocity_z[2, 2] = 0.102 * RADIUS / run.dt
+    assert caught(run.advance, 1).startswith("world 2: ")
+
+
+@pytest.mark.parametrize("place", [[0.0, -0.02], [0.0, 0.08], [-0.05, 0.02], [0.05, 0.07]])
+def test_an_escape_is_seen(run, place):
+    run.advance(1)
+    run.observe()
+    start(run, grain=place)
+    run.advance(5)
+    said = caught(run.observe)
+    assert said.startswith("world 2: grain 1 left the tank")
+    assert told_time(said) == pytest.approx(5 * run.dt, rel=1e-3)
+    np.testing.assert_allclose(run.snapshot()["position"][2, 1], place, atol=1e-4)
+
+
+@pytest.mark.parametrize("against", ["grain", "wall"])
+def test_deep_overlap_is_seen(run, against):
+    """The limit is 0.3 radii, with a step so short that nobody moves."""
+    run.dt = 1e-12
+    for overlap in (0.29, 0.31):
+        gap = np.array([0.0, 2.0 - overlap]) if against == "grain" else np.array([0.0, 1.0 - overlap])
+        start(run, grain=RADIUS * gap + (PLACE[0] if against == "grain" else 0.0))
+        run.advance(1)
+        if overlap < 0.3:
+            assert run.observe()["overlap"] == pytest.approx([0.0, 0.0, overlap], rel=1e-6)
+        else:
+            said = caught(run.observe)
+            assert said.startswith("world 2: grains overlap by 31 %")
+            assert told_time(said) == pytest.approx(1e-12)
+
+
+def test_settling_tells_the_time_since_it_began(run):
+    run.grains.velocity_y[0, 2] = np.nan
+    assert told_time(caught(run.settle, 1e-6, 1.0)) == pytest.approx(run.dt, rel=1e-3)
