@@ -71,7 +71,7 @@ def is_preset(table: object) -> bool:
 
 def check_room(data: h5py.Dataset, rows: int) -> None:
     """Raise Useless where so many rows of a data set do not fit into the memory of this machine."""
-    from lab.build.room import SHARE, machine_memory  # which knows presets, and these what reads recordings
+    from lab.assembly.room import SHARE, machine_memory  # which knows presets, and these what reads recordings
 
     needed = rows * _bytes(data.shape[1:], data.dtype)
     if needed > SHARE * machine_memory():

@@ -190,7 +190,7 @@ def _frozen(path: Path, duration: float):
 @lru_cache(maxsize=4)
 def _vessel(path: Path) -> Vessel | None:
     """The ship of a recording with her cargo as it lay at the start."""
-    from lab.build.scene import vessels
+    from lab.assembly.scene import vessels
     from lab.preset.schema import Resolved
     from lab.recording import open_recording
 

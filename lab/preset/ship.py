@@ -9,8 +9,8 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import TypeAdapter
 
+from lab.assembly.ship_tables import stored_table
 from lab.base.errors import LabError
-from lab.build.ship_tables import stored_table
 from lab.preset.units import show
 from solvers.machine.errors import Unavailable
 from solvers.machine.marks import Interval, Unit

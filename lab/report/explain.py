@@ -5,8 +5,8 @@ from math import pi
 
 import numpy as np
 
-from lab.build.room import check_room
-from lab.build.scene import build, grain_count
+from lab.assembly.room import check_room
+from lab.assembly.scene import build, grain_count
 from lab.measures.ship_roll import FROZEN_INTERVAL
 from lab.preset.accuracy import LEVELS
 from lab.preset.find import LoadedPreset

@@ -21,10 +21,10 @@ from tempfile import NamedTemporaryFile
 
 import numpy as np
 
+from lab.assembly.scene import build, filling_outline
 from lab.base.caches import cache_folder
 from lab.base.errors import LabError
 from lab.base.progress import Progress
-from lab.build.scene import build, filling_outline
 from lab.preset.schema import Resolved
 from lab.preset.units import show
 from solvers.grains.filling import clear_of_walls, levelled

@@ -13,12 +13,12 @@ from pathlib import Path
 
 import numpy as np
 
+from lab.assembly.drawn import classes
+from lab.assembly.scene import build
 from lab.base.errors import Useless
 from lab.base.interrupt import Interrupt
 from lab.base.progress import Progress
 from lab.base.trust import check_state
-from lab.build.drawn import classes
-from lab.build.scene import build
 from lab.preset.find import LoadedPreset
 from lab.preset.schema import Resolved
 from lab.preset.units import show

@@ -13,7 +13,7 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
-from lab.build.scene import build
+from lab.assembly.scene import build
 from lab.measures import measure_all
 from lab.measures.value import Value
 from lab.preset.find import LoadedPreset

@@ -14,10 +14,10 @@ from pathlib import Path
 
 import numpy as np
 
+from lab.assembly.scene import grain_count
 from lab.base.errors import LabError, Useless
 from lab.base.lock import only_one
 from lab.base.progress import Progress
-from lab.build.scene import grain_count
 from lab.preset.find import LoadedPreset, load
 from lab.preset.limits import check_belongs, resolved_from
 from lab.recording import FILE_NAME as RECORDING

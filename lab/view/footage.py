@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from lab.build.scene import vessels
+from lab.assembly.scene import vessels
 from lab.paint.footage import Bed
 from lab.paint.painter import Edges
 from lab.paint.sea import Sea

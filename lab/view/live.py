@@ -12,9 +12,9 @@ from pathlib import Path
 
 import numpy as np
 
+from lab.assembly.scene import build
 from lab.base.errors import LabError
 from lab.base.progress import Progress
-from lab.build.scene import build
 from lab.preset.find import LoadedPreset
 from lab.preset.schema import Motion, Resolved
 from lab.recording import WAVES, Recorder

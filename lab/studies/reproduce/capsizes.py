@@ -12,7 +12,7 @@ from math import pi, radians
 import numpy as np
 from matplotlib.figure import Figure
 
-from lab.build.scene import vessels
+from lab.assembly.scene import vessels
 from lab.preset.find import load
 from lab.report.plots import BELOW
 from lab.studies.reproduce.curves import leading_number

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib import colormaps
 from matplotlib.figure import Figure
 
-from lab.build.scene import vessels
+from lab.assembly.scene import vessels
 from lab.preset.find import load
 from lab.report.plots import BELOW
 from lab.studies.reproduce.curves import SIZE

@@ -10,7 +10,7 @@ from dataclasses import replace
 import numpy as np
 from matplotlib.figure import Figure
 
-from lab.build.scene import vessels
+from lab.assembly.scene import vessels
 from lab.preset.find import load
 from lab.report.plots import BELOW, BLUE
 from lab.studies.reproduce.capsizes import CARGO, NATURAL, REPOSES, scan, swung

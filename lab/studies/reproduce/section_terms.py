@@ -10,8 +10,8 @@ from math import inf, pi, sqrt
 
 import numpy as np
 
-from lab.build.scene import vessels
-from lab.build.ship_tables import stored_table
+from lab.assembly.scene import vessels
+from lab.assembly.ship_tables import stored_table
 from lab.preset.find import load
 from lab.preset.ship import FASTEST, FREQUENCIES, SLOWEST, natural_roll
 from solvers.ship.flume import Flap, fundamental

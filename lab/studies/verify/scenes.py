@@ -8,7 +8,7 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
-from lab.build.scene import build
+from lab.assembly.scene import build
 from lab.preset import toml
 from lab.preset.find import load
 from solvers.scene import Scene

@@ -15,8 +15,8 @@ from click.testing import CliRunner
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from lab.assembly.scene import build, grain_count
 from lab.base.errors import LabError
-from lab.build.scene import build, grain_count
 from lab.cli import main
 from lab.preset import toml
 from lab.preset.find import load, names

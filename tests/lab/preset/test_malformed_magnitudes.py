@@ -8,9 +8,9 @@ from typing import Annotated, Any, get_args, get_origin
 import numpy as np
 import pytest
 
+from lab.assembly import room, ship_tables
+from lab.assembly.scene import build
 from lab.base.errors import LabError
-from lab.build import room, ship_tables
-from lab.build.scene import build
 from lab.preset import ship
 from lab.preset.find import load
 from lab.preset.reader import _named_kind, _taken, _taken_by

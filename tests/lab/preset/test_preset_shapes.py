@@ -8,9 +8,9 @@ import pytest
 from PIL import Image
 from scipy.spatial import cKDTree
 
+from lab.assembly.drawn import classes
+from lab.assembly.scene import build, filling_outline, grain_count
 from lab.base.errors import LabError
-from lab.build.drawn import classes
-from lab.build.scene import build, filling_outline, grain_count
 from lab.paint.video import poster, render_grid
 from lab.preset.find import load
 from lab.preset.schema import Resolved

@@ -9,8 +9,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from lab.assembly.ship_tables import stored_table
 from lab.base.errors import LabError
-from lab.build.ship_tables import stored_table
 from lab.measures import ship_roll
 from lab.paint.painter import Camera
 from lab.paint.sea import SURFACE, WATER, Sea
@@ -145,7 +145,7 @@ def test_tables_are_stored(barge, monkeypatch):
     _, vessel = barge
     section, water, about = vessel.ship.load.section, vessel.ship.load.water, vessel.ship.about
     first = stored_table(section, water, -0.11, np.array([3.0, 4.0]), about)
-    monkeypatch.setattr("lab.build.ship_tables.hydrodynamics", lambda *a, **b: pytest.fail("solved again"))
+    monkeypatch.setattr("lab.assembly.ship_tables.hydrodynamics", lambda *a, **b: pytest.fail("solved again"))
     again = stored_table(section, water, -0.11, np.array([3.0, 4.0]), about)
     assert np.array_equal(first.excitation, again.excitation) and np.array_equal(first.damping, again.damping)
     with pytest.raises(pytest.fail.Exception):

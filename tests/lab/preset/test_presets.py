@@ -11,8 +11,8 @@ import pytest
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
+from lab.assembly.scene import build
 from lab.base.errors import LabError
-from lab.build.scene import build
 from lab.preset import find as presets
 from lab.preset import reader, toml
 from lab.preset.find import QUICK, load, merged, names

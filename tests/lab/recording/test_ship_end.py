@@ -8,8 +8,8 @@ import imageio.v2 as imageio
 import numpy as np
 import pytest
 
+from lab.assembly.scene import vessels
 from lab.base.errors import LabError
-from lab.build.scene import vessels
 from lab.measures import measure_all, ship_roll
 from lab.paint import decorations as deco
 from lab.paint.film import Film, choose_beds, choose_look

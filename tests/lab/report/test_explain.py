@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from lab.build.scene import build
+from lab.assembly.scene import build
 from lab.preset.find import load
 from lab.report.explain import cost_in_seconds, explain
 from solvers.simulation import Simulation

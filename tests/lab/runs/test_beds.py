@@ -7,9 +7,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from lab.assembly.scene import build
 from lab.base.errors import LabError
 from lab.base.progress import Progress
-from lab.build.scene import build
 from lab.preset.find import load, merged
 from lab.runs import beds
 from lab.runs.beds import BedStore, bed_key, lay, made, settled, settling

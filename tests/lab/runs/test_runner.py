@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import lab
+from lab.assembly.scene import build
 from lab.base.errors import LabError
-from lab.build.scene import build
 from lab.preset.find import load
 from lab.recording import open_recording
 from lab.report.explain import explain

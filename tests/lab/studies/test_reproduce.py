@@ -16,8 +16,8 @@ import pytest
 from pydantic import TypeAdapter
 
 import lab
+from lab.assembly.scene import build
 from lab.base.errors import LabError
-from lab.build.scene import build
 from lab.measures.value import over_worlds
 from lab.preset.find import load
 from lab.report.page import Page

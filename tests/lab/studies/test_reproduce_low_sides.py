@@ -6,7 +6,7 @@ from math import atan, cos, radians, sin, tan
 import numpy as np
 import pytest
 
-from lab.build.scene import build
+from lab.assembly.scene import build
 from lab.measures.value import over_worlds
 from lab.preset.find import load
 from lab.studies.reproduce import low_sides

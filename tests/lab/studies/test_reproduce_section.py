@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lab.build.scene import vessels
+from lab.assembly.scene import vessels
 from lab.preset.find import load
 from lab.studies.reproduce.estimates import Verdict
 from lab.studies.reproduce.section import compared, counted_within, explained, window

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from lab.build.scene import build
+from lab.assembly.scene import build
 from lab.preset.find import load
 from lab.view import footage as footages
 from lab.view import session as sessions

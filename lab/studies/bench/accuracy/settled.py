@@ -6,7 +6,7 @@ from functools import cache
 
 import numpy as np
 
-from lab.build.scene import build
+from lab.assembly.scene import build
 from lab.preset.find import load
 from lab.studies.bench.accuracy.beds import SWAY, SWAYED, TILT, TILTED
 from solvers.scene import Scene

@@ -6,8 +6,8 @@ from itertools import product
 import numpy as np
 import pytest
 
+from lab.assembly.scene import build, filling_outline, fixed_grains, grain_count
 from lab.base.errors import LabError
-from lab.build.scene import build, filling_outline, fixed_grains, grain_count
 from lab.preset import bed_file
 from lab.preset.accuracy import LEVELS
 from lab.preset.find import load

@@ -6,9 +6,9 @@ from math import ceil
 
 import numpy as np
 
+from lab.assembly.drawn import classes, draw_shapes
+from lab.assembly.room import check_room
 from lab.base.errors import LabError
-from lab.build.drawn import classes, draw_shapes
-from lab.build.room import check_room
 from lab.preset.accuracy import LEVELS, check_forced
 from lab.preset.schema import Resolved
 from lab.preset.ship import make_vessel
