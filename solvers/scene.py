@@ -9,6 +9,7 @@ import numpy as np
 from solvers.grains.integrators import INTEGRATORS
 from solvers.grains.laws import COHESION, NORMAL, ROLLING, TANGENTIAL
 from solvers.grains.materials import Interface, Material, interface, touching
+from solvers.grains.relaxing import AT_REST, BURSTING, lifting_overlap, relaxed
 from solvers.grains.shapes.given import Shapes
 from solvers.ship.vessel import Vessel
 from solvers.tank.parts import Part
@@ -188,6 +189,14 @@ class Scene:
                 shares = (of_mass, of_radius) if k < self.kinds**2 else (1.0, 1.0)
                 found = max(found, law.deepest(between, shares[0] * mass, shares[1] * radius, speed) / radius)
         return found
+
+    def relaxed(self, position: np.ndarray) -> np.ndarray:
+        """Places (n, 2) m of the grains of the first world, moved apart where they would burst; see `relaxing`."""
+        edges = np.stack([self.outline, np.roll(self.outline, -1, axis=0)], axis=1)
+        edges = np.delete(edges, list(self.open_edges), axis=0)
+        lightest = self.sizes[0], float(self.density.min()), self.interfaces[0].young_modulus, self.gravity
+        overlaps = (lifting_overlap(share, *lightest) for share in (BURSTING, AT_REST))
+        return relaxed(position, self.radius[0], edges, *overlaps)
 
     def time_step(self) -> float:
         """The step Δt (s) in use."""

@@ -12,6 +12,7 @@ from solvers.grains.mover import Mover
 from solvers.grains.neighbours import Neighbours
 from solvers.grains.observe import Observer
 from solvers.grains.pressing import Presser, Pressing
+from solvers.grains.renumbering import renumber_list
 from solvers.grains.shapes.grains import ShapedGrains
 from solvers.grains.shapes.rules.area import Area
 from solvers.grains.shapes.rules.contacts import ShapedContacts
@@ -200,8 +201,8 @@ class Simulation:
         if order:
             self.grains.permute(order, self.mover.extra)
             lists, laws = self.neighbours, self.neighbours.laws
-            renumber.renumber_list(lists.pairs, lists.units, order, laws.odd, mates=True)
-            renumber.renumber_list(lists.contacts, lists.units, order, laws.odd, mates=False)
+            renumber_list(lists.pairs, lists.units, order, laws.odd, mates=True)
+            renumber_list(lists.contacts, lists.units, order, laws.odd, mates=False)
             lists.expire()
 
     def observe(self) -> dict[str, np.ndarray]:

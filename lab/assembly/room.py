@@ -1,29 +1,13 @@
 """How many grains there is room for in this machine's memory, before anything is made of them."""
 
-import os
-from contextlib import suppress
-from pathlib import Path
-
 from lab.base.errors import LabError
+from lab.base.memory import SHARE, machine_memory
 from lab.preset.schema import Resolved
 
 # Bytes that a grain takes at the peak of a run, with its contacts, its share of the checkpoint and of the settled bed
 # that is stored: 1.7 kB of discs and 7 kB of grains of rice not settled, measured as what 60 beds take more than one.
 A_DISC, AN_OUTLINE = 2_000, 20_000
 A_BED = 10  # grains: what a bed takes by itself, as these would
-SHARE = 0.5  # of the machine's memory that a run may take
-UNKNOWN = 8 * 2**30  # bytes that a machine is taken to have which does not tell
-GROUP = Path("/sys/fs/cgroup/memory.max")  # what the system allows this process, on Linux
-
-
-def machine_memory() -> int:
-    """Bytes of memory that this process may count on."""
-    found = UNKNOWN
-    with suppress(AttributeError, ValueError, OSError):  # no such question on Windows
-        found = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
-    with suppress(OSError, ValueError):  # no such file, or the word "max"
-        found = min(found, int(GROUP.read_text(encoding="ascii")))
-    return found
 
 
 def check_room(preset: Resolved, count: int) -> None:

@@ -14,7 +14,6 @@ from lab.preset.schema import Resolved
 from lab.preset.ship import make_vessel
 from lab.preset.units import show
 from solvers.grains.filling import NONE_FIXED, DoesNotFit, count_for_depth, headroom, lattice, start_positions
-from solvers.grains.relaxing import relaxed
 from solvers.grains.shapes.given import Shapes
 from solvers.grains.sizes import Sizes
 from solvers.motion.steered import Steered
@@ -106,7 +105,7 @@ def build(preset: Resolved, hands: Sequence[Steered] | None = None) -> tuple[Sce
     _check_softness(scene)
     scene.step = _step(preset, scene)
     if preset.grains.listed and preset.run.settle:  # without settling it may be meant so
-        position = np.tile(relaxed(scene, position[0]), (len(radius), 1, 1))
+        position = np.tile(scene.relaxed(position[0]), (len(radius), 1, 1))
     return scene, position
 
 

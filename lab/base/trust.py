@@ -14,6 +14,7 @@ import h5py
 import numpy as np
 
 from lab.base.errors import Useless
+from lab.base.memory import SHARE, machine_memory
 
 GROUPS = ("preset", "grains", "tank", "shapes", "series", "frames", "steering")
 DEEPER = ("tank/parts",)
@@ -71,8 +72,6 @@ def is_preset(table: object) -> bool:
 
 def check_room(data: h5py.Dataset, rows: int) -> None:
     """Raise Useless where so many rows of a data set do not fit into the memory of this machine."""
-    from lab.assembly.room import SHARE, machine_memory  # which knows presets, and these what reads recordings
-
     needed = rows * _bytes(data.shape[1:], data.dtype)
     if needed > SHARE * machine_memory():
         where = f"{data.file.filename}: {data.name[1:]}"

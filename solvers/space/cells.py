@@ -1,13 +1,25 @@
 """A grid of cells over the tank, and the grains sorted into it."""
 
+from typing import Protocol
+
 import numpy as np
 import taichi as ti
 
-from solvers.grains.state import Grains
 from solvers.machine.runtime import Arrays
 
 ORIGIN_Y, ORIGIN_Z, CELL = range(3)
 CHUNK = 256  # cells that one thread sums up
+
+
+class Places(Protocol):
+    """What is sorted: `count` places y, z (m) in each of `worlds`; some may have left (`present` 0) if `may_leave`."""
+
+    worlds: int
+    count: int
+    may_leave: bool
+    y: ti.Field
+    z: ti.Field
+    present: ti.Field
 
 
 @ti.data_oriented
@@ -18,7 +30,7 @@ class Cells:
     have left the scene are in a cell of their own beyond the last, which is nobody's neighbour.
     """
 
-    def __init__(self, arrays: Arrays, grains: Grains, lower: np.ndarray, upper: np.ndarray, reach: float):
+    def __init__(self, arrays: Arrays, grains: Places, lower: np.ndarray, upper: np.ndarray, reach: float):
         self.grains = grains
         extent = upper - lower
         size = max(reach, float(np.sqrt(extent[0] * extent[1] / (4.0 * grains.count + 64.0))))

@@ -10,6 +10,7 @@ import pytest
 
 from lab.assembly import room, ship_tables
 from lab.assembly.scene import build
+from lab.base import memory
 from lab.base.errors import LabError
 from lab.preset import ship
 from lab.preset.find import load
@@ -175,9 +176,9 @@ def test_as_many_beds_as_are_said_to_fit_are_explained_without_being_made(small_
 
 
 def test_memory_is_that_of_the_machine_or_what_it_is_allowed(tmp_path, monkeypatch):
-    whole = room.machine_memory()
+    whole = memory.machine_memory()
     assert 2**28 < whole < 2**50
-    monkeypatch.setattr(room, "GROUP", tmp_path / "memory.max")
+    monkeypatch.setattr(memory, "GROUP", tmp_path / "memory.max")
     for text, allowed in (("1000000\n", 1_000_000), ("max\n", float("inf"))):
-        room.GROUP.write_text(text)
-        assert min(whole, allowed) <= room.machine_memory() <= allowed
+        memory.GROUP.write_text(text)
+        assert min(whole, allowed) <= memory.machine_memory() <= allowed

@@ -226,7 +226,7 @@ def test_nothing_of_another_file_is_copied(sound, tmp_path):
 
 
 def test_an_array_larger_than_half_the_memory_is_not_read(sound, monkeypatch):
-    monkeypatch.setattr("lab.assembly.room.machine_memory", lambda: 100)
+    monkeypatch.setattr("lab.base.trust.machine_memory", lambda: 100)
     with open_recording(sound) as recording:
         assert recording.frames["angle"][0].shape == (1, 3)
         with pytest.raises(LabError, match=r"frames/position has .*GB, too much for the memory here"):

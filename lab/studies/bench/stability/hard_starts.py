@@ -11,7 +11,6 @@ from lab.studies.bench.stability.beds import ACETATE, RADIUS, square, tank
 from lab.studies.bench.stability.case import Case, Check, Measure
 from lab.studies.bench.stability.trial import Course, Trial
 from solvers.grains.materials import hertz_stiffness
-from solvers.grains.relaxing import relaxed
 from solvers.scene import Scene
 
 CROWD, CROWDED = 100, 1.5  # grains thrown together, and how many times their area covers the room
@@ -34,7 +33,7 @@ def squeezed(fast: bool) -> Trial:
     """A square lattice of grains that overlap by as much as a bed's file may say, relaxed as the app does it."""
     pitch = (2.0 - DEEPEST) * RADIUS
     scene = Scene(np.full(100, RADIUS), tank(11.0 * pitch, 30.0 * pitch), ACETATE, ACETATE)
-    return Trial(scene, relaxed(scene, square(10, 10, pitch)), 0.1)
+    return Trial(scene, scene.relaxed(square(10, 10, pitch)), 0.1)
 
 
 def settles(trial: Trial, course: Course) -> list[Check]:
