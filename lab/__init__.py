@@ -51,7 +51,7 @@ def sweep(
 
 def resume(folder: Path | str, *, video: bool = True, quiet: bool = False) -> Result | SweepResult:
     """Go on with the run or the sweep in a folder that was killed, interrupted or stopped, bit for bit."""
-    from lab.sweeps.sweep import resume_any
+    from lab.sweeps.resume import resume_any
 
     return resume_any(folder, video=video, quiet=quiet)
 

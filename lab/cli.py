@@ -359,7 +359,7 @@ def resume(folder: Path, no_video: bool, quiet: bool) -> None:
     \b
     cargolab resume renders/tilting/quick
     """
-    from lab.sweeps.sweep import resume_any
+    from lab.sweeps.resume import resume_any
 
     _show(resume_any(folder, video=not no_video, quiet=quiet), quiet)
 

@@ -8,10 +8,10 @@ import numpy as np
 
 from lab.assembly.drawn import classes, draw_shapes
 from lab.assembly.room import check_room
+from lab.assembly.ship import make_vessel
 from lab.base.errors import LabError
 from lab.preset.accuracy import LEVELS, check_forced
 from lab.preset.schema import Resolved
-from lab.preset.ship import make_vessel
 from lab.preset.units import show
 from solvers.grains.filling import NONE_FIXED, DoesNotFit, count_for_depth, headroom, lattice, start_positions
 from solvers.grains.shapes.given import Shapes

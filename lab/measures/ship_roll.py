@@ -30,10 +30,11 @@ from pathlib import Path
 
 import numpy as np
 
+from lab.assembly.ship import flooding_angles
 from lab.base.errors import LabError
 from lab.measures.value import Value, over_worlds
 from lab.measures.wall_force import grain_mass
-from lab.preset.ship import axis_motion, flooding_angles, recorded_ship
+from lab.preset.ship import axis_motion, recorded_ship
 from lab.recording import Recording
 from lab.recording.ship_end import VERBS, End, end_of, ends
 from solvers.machine.errors import BadState, Unavailable

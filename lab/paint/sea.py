@@ -7,9 +7,10 @@ from functools import cached_property
 import numpy as np
 from pydantic import TypeAdapter
 
+from lab.assembly.ship import make_water, make_waves
 from lab.paint import decorations as deco
 from lab.paint.painter import Camera, paint_tank
-from lab.preset.ship import WaterGiven, WavesGiven, make_water, make_waves, recorded_ship
+from lab.preset.ship import WaterGiven, WavesGiven, recorded_ship
 from solvers.ship.waves import Waves, soft_start
 
 WATER, SURFACE = (214, 230, 243), (70, 130, 180)

@@ -9,9 +9,7 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import fields, is_dataclass
 
-import numpy as np
-
-from lab.base.errors import LabError, Useless
+from lab.base.errors import LabError
 from lab.preset.bed_file import MOST as MOST_LISTED
 from lab.preset.history import check_history
 from lab.preset.outline import simple_polygon
@@ -19,12 +17,9 @@ from lab.preset.parts import check_parts
 from lab.preset.reader import BOUND, check_interval
 from lab.preset.schema import Resolved, check_grains, check_lining, check_video
 from lab.preset.shapes import MOST_DESCRIPTORS, MOST_DRAWS
-from lab.preset.ship import check_ship
+from lab.preset.ship_checks import check_ship
 from lab.preset.toml import BARE_KEY
-from lab.recording import open_recording
-from lab.runs.launch import Run
 
-ALIKE = 1e-9  # relative: sizes of grains that processors round otherwise
 LONGEST_LIST = 1000  # of classes of sizes, of kinds and of shapes
 
 
@@ -36,17 +31,6 @@ def resolved_from(table: object) -> Resolved:
     except (LabError, RecursionError, ArithmeticError) as error:
         raise ValueError(str(error)) from error
     return preset
-
-
-def check_belongs(run: Run) -> None:
-    """Raise Useless where the recording in a run's folder is not of the run's scene, to which rows would be added."""
-    with open_recording(run.folder) as recording:
-        pairs = (recording.radius, run.scene.radius), (recording.outline, run.scene.outline)
-        alike = all(a.shape == b.shape and np.allclose(a, b, rtol=ALIKE, atol=0.0) for a, b in pairs)
-        if not alike or len(recording.parts) != len(run.scene.parts):
-            raise Useless(
-                f"{recording.path} is not of the preset that it holds: start the run anew, in another folder."
-            )
 
 
 def _check(preset: Resolved) -> None:

@@ -23,7 +23,8 @@ from lab.preset.outline import Point, area, rectangle, simple_polygon
 from lab.preset.parts import check_parts
 from lab.preset.reader import check_keys, read
 from lab.preset.shapes import Shape, ShapeGiven, by_number, read_shapes
-from lab.preset.ship import ShipGiven, WaterGiven, WavesGiven, check_ship
+from lab.preset.ship import ShipGiven, WaterGiven, WavesGiven
+from lab.preset.ship_checks import check_ship
 from lab.preset.units import needed, show
 from solvers.grains.laws import COHESION, NORMAL, ROLLING, TANGENTIAL
 from solvers.grains.materials import Material

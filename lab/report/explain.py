@@ -12,8 +12,8 @@ from lab.preset.accuracy import LEVELS
 from lab.preset.find import LoadedPreset
 from lab.preset.schema import Resolved
 from lab.preset.shapes import Shape, caution
-from lab.preset.ship import describe
 from lab.preset.units import show
+from lab.report.ship import describe
 from solvers.grains.laws import COHESION
 from solvers.grains.shapes.given import Shapes
 from solvers.machine.runtime import available_cores, choose_arch

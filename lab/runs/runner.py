@@ -14,11 +14,12 @@ from lab.base.progress import Progress
 from lab.measures import measure_all
 from lab.measures.value import Value
 from lab.preset.find import LoadedPreset, load
-from lab.preset.limits import check_belongs, resolved_from
+from lab.preset.limits import resolved_from
 from lab.recording import FILE_NAME, Recording, open_recording, versions
 from lab.recording.xdmf import write_xdmf
 from lab.report.plots import write_plots
 from lab.report.summary import terminal_summary, write_summary
+from lab.runs.belongs import check_belongs
 from lab.runs.checkpoint import FILE_NAME as CHECKPOINT
 from lab.runs.checkpoint import Checkpoint, read_checkpoint, remove_checkpoint
 from lab.runs.launch import Run, launch, prepare

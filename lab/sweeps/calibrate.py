@@ -26,13 +26,14 @@ from lab.sweeps.calibration_report import Calibration, Tried, write_report
 from lab.sweeps.inverse import LEAST_BEDS, Response, beds_for, crossings, fitted, misfit, solved
 from lab.sweeps.rehearsal import rehearsed
 from lab.sweeps.report import Point, numeric
-from lab.sweeps.sweep import CALIBRATION, SweepResult, ask, run_sweep
+from lab.sweeps.sweep import SweepResult, ask, run_sweep
 
 POINTS = 5  # values of the key in a round
 CLOSER = 0.25  # half the width of the second round, of the first one's range
 WITHIN = 0.05  # of the range: half the width of an interval that is called narrow
 ALIASES = {"repose": ("critical_angle", "heap_angle")}
 FORMAT = "cargo-shift-lab calibration 1"
+FILE_NAME = "asked.json"  # what says that a folder holds a calibration
 
 
 @dataclass(frozen=True)
@@ -141,7 +142,7 @@ def _target(text: str, unit: str) -> tuple[float, float]:
 
 def read_asked(folder: Path) -> Asked:
     """What was asked for of the calibration in a folder. Raises LabError."""
-    path = folder / CALIBRATION
+    path = folder / FILE_NAME
     try:
         content = json.loads(path.read_text(encoding="utf-8"))
         if content.pop("format") != FORMAT or not all(
@@ -187,7 +188,7 @@ def _with_beds(asked: Asked) -> dict:
 
 def _check_folder(asked: Asked, folder: Path) -> None:
     """Raise LabError where the folder holds another calibration."""
-    if (folder / CALIBRATION).exists() and read_asked(folder) != asked:
+    if (folder / FILE_NAME).exists() and read_asked(folder) != asked:
         raise LabError(f"{folder} holds another calibration than is asked for: choose another folder with --out.")
 
 
@@ -195,7 +196,7 @@ def _write_asked(asked: Asked, folder: Path) -> None:
     try:
         folder.mkdir(parents=True, exist_ok=True)
         content = json.dumps({"format": FORMAT, **asdict(asked)}, indent=1)
-        (folder / CALIBRATION).write_text(content + "\n", encoding="utf-8")
+        (folder / FILE_NAME).write_text(content + "\n", encoding="utf-8")
     except OSError as error:
         raise LabError(f"{folder} cannot be written ({error.strerror or error}): make room there.") from error
 

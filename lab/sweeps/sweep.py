@@ -19,12 +19,13 @@ from lab.base.errors import LabError, Useless
 from lab.base.lock import only_one
 from lab.base.progress import Progress
 from lab.preset.find import LoadedPreset, load
-from lab.preset.limits import check_belongs, resolved_from
+from lab.preset.limits import resolved_from
 from lab.recording import FILE_NAME as RECORDING
 from lab.recording import open_recording
+from lab.runs.belongs import check_belongs
 from lab.runs.checkpoint import Checkpoint, read_checkpoint, remove_checkpoint
 from lab.runs.launch import Run, launch, prepare
-from lab.runs.runner import RENDERS, hint, report, reported, resume_run
+from lab.runs.runner import RENDERS, hint, report, reported
 from lab.sweeps.axes import values
 from lab.sweeps.cluster import Errand, fetch
 from lab.sweeps.report import write_report
@@ -32,7 +33,6 @@ from solvers.machine.runtime import available_cores, choose_arch
 
 FORMAT = "cargo-shift-lab sweep 1"
 FILE_NAME = "sweep.json"
-CALIBRATION = "asked.json"  # what says that a folder holds a calibration
 
 # A launch holds so many worlds a core that none idles long while the last ones end, and grains and files in bounds.
 WORLDS_A_CORE, MOST_GRAINS, MOST_RUNS = 8, 1_000_000, 100
@@ -161,19 +161,6 @@ def errands(
 def resume_sweep(folder: Path | str, *, video: bool = True, quiet: bool = False) -> SweepResult:
     """Go on with the sweep in a folder as it was asked for. Raises as `run_sweep`."""
     return _complete(read_sweep(Path(folder)), Path(folder), video, quiet)
-
-
-def resume_any(folder: Path | str, *, video: bool = True, quiet: bool = False):
-    """Finish the run, the sweep or the calibration that was cut short in a folder; returns what that returns.
-
-    Raises as `resume_run`, `resume_sweep` and `calibrate`.
-    """
-    if (Path(folder) / CALIBRATION).exists():
-        from lab.sweeps.calibrate import resume_calibration  # it runs sweeps
-
-        return resume_calibration(folder, quiet=quiet)
-    finish = resume_sweep if (Path(folder) / FILE_NAME).exists() else resume_run
-    return finish(folder, video=video, quiet=quiet)
 
 
 def read_sweep(folder: Path) -> Sweep:

@@ -97,7 +97,7 @@ def test_sweep_passes_the_texts_of_the_values_on(monkeypatch):
 
 def test_resume_passes_the_folder_on(monkeypatch):
     result = SimpleNamespace(summary_text="12.3 deg", folder=Path("there"))
-    calls = stand_in(monkeypatch, "lab.sweeps.sweep", "resume_any", result)
+    calls = stand_in(monkeypatch, "lab.sweeps.resume", "resume_any", result)
     assert call("resume", "there", "--no-video", "--quiet").stdout == "there\n"
     assert calls == [((Path("there"),), {"video": False, "quiet": True})]
 

@@ -11,9 +11,9 @@ from math import inf, pi, sqrt
 import numpy as np
 
 from lab.assembly.scene import vessels
+from lab.assembly.ship import FASTEST, FREQUENCIES, SLOWEST, natural_roll
 from lab.assembly.ship_tables import stored_table
 from lab.preset.find import load
-from lab.preset.ship import FASTEST, FREQUENCIES, SLOWEST, natural_roll
 from solvers.ship.flume import Flap, fundamental
 from solvers.ship.hydrostatics import equilibrium, metacentric_height
 from solvers.ship.linear import inertia_for_roll, response

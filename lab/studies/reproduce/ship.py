@@ -4,8 +4,9 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from lab.assembly.ship import make_water
 from lab.measures.value import Value
-from lab.preset.ship import WaterGiven, make_water
+from lab.preset.ship import WaterGiven
 from lab.studies.reproduce.curves import leading_number
 from lab.studies.reproduce.estimates import Verdict, difference, mean, mostly, together
 from lab.studies.reproduce.experiment import (

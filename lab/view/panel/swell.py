@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from lab.assembly.ship import make_vessel
 from lab.preset.schema import Resolved
-from lab.preset.ship import make_vessel
 from lab.view.panel.helm import Follower
 from solvers.ship.vessel import Vessel
 

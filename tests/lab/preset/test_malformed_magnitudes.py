@@ -8,11 +8,10 @@ from typing import Annotated, Any, get_args, get_origin
 import numpy as np
 import pytest
 
-from lab.assembly import room, ship_tables
+from lab.assembly import room, ship, ship_tables
 from lab.assembly.scene import build
 from lab.base import memory
 from lab.base.errors import LabError
-from lab.preset import ship
 from lab.preset.find import load
 from lab.preset.reader import _named_kind, _taken, _taken_by
 from lab.preset.schema import Given

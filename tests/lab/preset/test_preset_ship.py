@@ -9,26 +9,18 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from lab.assembly.ship import make_vessel, make_water, make_waves, natural_roll
 from lab.assembly.ship_tables import stored_table
 from lab.base.errors import LabError
 from lab.measures import ship_roll
 from lab.paint.painter import Camera
 from lab.paint.sea import SURFACE, WATER, Sea
 from lab.preset.find import load
-from lab.preset.ship import (
-    ShipGiven,
-    WaterGiven,
-    WavesGiven,
-    axis_motion,
-    describe,
-    make_vessel,
-    make_water,
-    make_waves,
-    natural_roll,
-)
+from lab.preset.ship import ShipGiven, WaterGiven, WavesGiven, axis_motion
 from lab.recording import open_recording
 from lab.recording.ship_end import End
 from lab.report import plots
+from lab.report.ship import describe
 from lab.runs.runner import run_preset
 from lab.sweeps.sweep import point_folder, run_sweep
 from solvers.ship.hydrostatics import metacentric_height

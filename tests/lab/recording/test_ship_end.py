@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from lab.assembly.scene import vessels
+from lab.assembly.ship import flooding_angles
 from lab.base.errors import LabError
 from lab.measures import measure_all, ship_roll
 from lab.paint import decorations as deco
@@ -16,7 +17,6 @@ from lab.paint.film import Film, choose_beds, choose_look
 from lab.paint.footage import open_footage
 from lab.paint.video import HELD, render_recording
 from lab.preset.find import load
-from lab.preset.ship import flooding_angles
 from lab.recording import Recorder, open_recording
 from lab.recording.ship_end import End, end_of, ends, told
 from lab.report import plots

@@ -12,7 +12,7 @@ from lab.preset.units import in_unit
 from lab.sweeps import calibrate as module
 from lab.sweeps.axes import values
 from lab.sweeps.calibrate import calibrate, understood
-from lab.sweeps.sweep import resume_any
+from lab.sweeps.resume import resume_any
 
 BEDS, SCATTER = 8, 3.0  # deg
 EXACT = 1.5 - np.sqrt(1.25)  # 30 x − 10 x² = 10

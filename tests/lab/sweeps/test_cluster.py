@@ -28,7 +28,8 @@ from lab.studies.reproduce import runs, workers
 from lab.studies.reproduce.experiment import Experiment
 from lab.studies.reproduce.runs import Batch
 from lab.sweeps import cluster
-from lab.sweeps.sweep import errands, resume_any, run_sweep
+from lab.sweeps.resume import resume_any
+from lab.sweeps.sweep import errands, run_sweep
 from solvers.machine import runtime
 
 distributed = pytest.importorskip("distributed", reason="the extra `cluster` is not installed")

@@ -5,9 +5,9 @@ import json
 import numpy as np
 import pytest
 
+from lab.assembly.ship import make_water, make_waves
 from lab.paint.sea import Sea
 from lab.preset.find import load
-from lab.preset.ship import make_water, make_waves
 from lab.view.panel.controls import offered
 from lab.view.panel.swell import CALM, RandomSwell, RegularSwell, swell_of
 

@@ -1,0 +1,154 @@
+"""The vessel that the solver is given, from what a preset says of a ship, her water and waves."""
+
+from dataclasses import replace
+from functools import lru_cache
+from math import inf, pi, sqrt
+
+import numpy as np
+
+from lab.assembly.ship_tables import stored_table
+from lab.base.errors import LabError
+from lab.preset.ship import FREEDOM, RigGiven, ShipGiven, WaterGiven, WavesGiven
+from solvers.machine.errors import Unavailable
+from solvers.ship.body import Body
+from solvers.ship.hydrostatics import metacentric_height
+from solvers.ship.linear import impedance, inertia_for_roll, require_damped
+from solvers.ship.loads import Floating, floating_in_waves
+from solvers.ship.motion import Radiation, Rig, RollDamping, Ship, frozen_at, remembered, start
+from solvers.ship.openings import immersion_angle
+from solvers.ship.potential.memory import fit_memory
+from solvers.ship.section import Section
+from solvers.ship.vessel import Vessel
+from solvers.ship.water import Water
+from solvers.ship.waves import Waves, jonswap, packet, pierson_moskowitz, random_sea, regular
+
+SLOWEST, FASTEST, FREQUENCIES = 0.08, 3.5, 48  # of the table, times √(g/draught), and how many
+MEMORY_ORDER = 8  # states a mode
+
+
+def make_waves(given: WavesGiven | None, water: Water) -> Waves | None:
+    """The waves' components."""
+    if given is None:
+        return None
+    frequency, start = given.frequency, given.soft_start
+    if given.kind == "regular":
+        return regular(given.amplitude, frequency, water, start)
+    if given.kind == "packet":
+        return packet(given.amplitude, frequency, given.spread, water, given.time)
+    if given.kind == "jonswap":
+        density = jonswap(given.height, frequency, given.peakedness)
+    else:
+        density = pierson_moskowitz(given.height, frequency)
+    return random_sea(density, frequency, water, given.seed, start)
+
+
+def make_water(given: WaterGiven, gravity: float) -> Water:
+    """The water of a preset."""
+    return Water(given.density, given.depth or inf, gravity)
+
+
+@lru_cache(maxsize=8)
+def make_vessel(given: ShipGiven, water: WaterGiven, waves: WavesGiven | None, sheet: float, gravity: float) -> Vessel:
+    """The ship, laden as she floats at the start. Raises LabError where she cannot float so."""
+    try:
+        return _vessel(given, make_water(water, gravity), waves, sheet)
+    except Unavailable as error:
+        raise LabError(f"ship: {error}") from None
+
+
+def _vessel(given: ShipGiven, water: Water, sea: WavesGiven | None, sheet: float) -> Vessel:
+    section, about = Section(given.corners), given.about
+    mass = water.density * float(section.immersion(given.heave, 0.0).area)
+    body = Body(mass, (0.0, given.gravity_height), mass * (given.gyradius or 0.3 * section.size) ** 2)
+    if metacentric_height(section, body.loading, water) <= 0.0:
+        raise LabError("ship.gravity_height: so high she does not float upright; lower it.")
+    waves = make_waves(sea, water)
+    table = stored_table(section, water, given.heave, _frequencies(given, water, waves), about)
+    load = Floating(section, water, about)
+    if waves is not None:
+        rest, scattered = (given.heave, 0.0), given.excitation == "diffraction"
+        load = floating_in_waves(section, water, about, waves, table, rest, scattered)
+        if given.excitation == "wave-slope":
+            load = _by_slope(load, table, body)
+    ship = Ship(
+        body,
+        load,
+        _radiation(given, table, sea, water.depth == inf),
+        about,
+        free=FREEDOM[given.freedom],
+        gravity=water.gravity,
+    )
+    ship = _with_rig(ship, given.rig)
+    if given.roll_period:
+        one = table.at([2.0 * pi / given.roll_period])
+        ship = replace(ship, body=inertia_for_roll(ship, section, water, given.heave, one))
+    ship = replace(ship, damping=_damping(given, ship, water, table))
+    if given.radiation == "memory":
+        require_damped(ship, start(ship, given.heave))
+    limits = (-given.capsize, given.capsize) if given.capsize else (-inf, inf)
+    openings = given.flooding_points
+    return Vessel(ship, given.hold, sheet, True, given.heel, given.release, limits, openings=openings)
+
+
+def _by_slope(load: Floating, table, body: Body) -> Floating:
+    """The roll moment W GM ∂ζ/∂y in place of the Froude–Krylov one: eq. 7.1 of Spandonidis (2016) with r = 1."""
+    righting = body.mass * load.water.gravity * metacentric_height(load.section, body.loading, load.water)
+    change = np.zeros_like(load.excess)
+    change[:, 2] = 1j * load.waves.wave_number * righting - table.at(load.waves.frequency).froude_krylov[:, 2]
+    return replace(load, excess=load.excess + change)
+
+
+def _with_rig(ship: Ship, given: RigGiven) -> Ship:
+    rig = Rig(
+        np.array([given.sway_mass, given.heave_mass, 0.0]),
+        np.array([given.sway_damping, given.heave_damping, 0.0]),
+        np.array([given.sway_spring, 0.0, 0.0]),
+        np.array([ship.about[0], 0.0, 0.0]),
+    )
+    return replace(ship, rig=rig)
+
+
+def _frequencies(given: ShipGiven, water: Water, waves: Waves | None) -> np.ndarray:
+    """Of the table (rad/s): as far as the memory reaches, and the waves."""
+    unit = sqrt(water.gravity / given.draught)
+    low, high = SLOWEST * unit, FASTEST * unit
+    if waves is not None:
+        low, high = min(low, 0.98 * waves.frequency.min()), max(high, 1.02 * waves.frequency.max())
+    return np.linspace(low, high, FREQUENCIES)
+
+
+def _radiation(given: ShipGiven, table, sea: WavesGiven | None, deep: bool) -> Radiation:
+    if given.radiation == "none":
+        return Radiation(table.infinite_added_mass, np.zeros((3, 3)))
+    if given.radiation == "at-frequency":
+        return frozen_at(table, sea.frequency)
+    return remembered(table, fit_memory(table, MEMORY_ORDER, deep))
+
+
+def natural_roll(ship: Ship, heave: float, table) -> tuple[float, float]:
+    """Angular frequency (rad/s) of roll alone about P, and the moment of inertia (kg m) with added mass there."""
+    load = ship.load
+    frequency = 2.0
+    for _ in range(50):
+        whole = impedance(ship, load.section, load.water, heave, table.at([frequency]))[0, 2, 2].real
+        own = ship.inertia(0.0)[2, 2] - ship.radiation.added_mass[2, 2] + table.at([frequency]).added_mass[0, 2, 2]
+        if own <= 0.0:
+            raise Unavailable("her inertia in roll, added mass included, is not positive: look at her lengths' units.")
+        spring = whole + frequency**2 * own
+        frequency = sqrt(max(spring, 1e-9) / own)
+    return frequency, float(own)
+
+
+def _damping(given: ShipGiven, ship: Ship, water: Water, table) -> RollDamping:
+    frequency, inertia = natural_roll(ship, given.heave, table)
+    return RollDamping(2.0 * given.damping * frequency * inertia, given.quadratic_damping * inertia)
+
+
+def flooding_angles(given: ShipGiven, vessel: Vessel) -> dict[str, float | None]:
+    """Heels (rad) of deck immersion and of downflooding in calm water at constant displacement, None where none is."""
+    load, loading = vessel.ship.load, vessel.ship.body.loading
+    points = {"deck_immersion_angle": given.deck_edges, "downflooding_angle": given.flooding_points}
+    return {
+        name: immersion_angle(load.section, loading, load.water, edges) if edges else None
+        for name, edges in points.items()
+    }

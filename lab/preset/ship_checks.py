@@ -1,0 +1,126 @@
+"""What of a ship in a preset does not go together, each in one sentence that names the key."""
+
+import numpy as np
+
+from lab.base.errors import LabError
+from lab.preset.ship import ShipGiven, WavesGiven
+from lab.preset.units import show
+from solvers.machine.errors import Unavailable
+from solvers.ship.section import Section
+
+TOUCHING = 1e-9  # of the hull's size: a hold that is no farther out is in
+MOST_FLAT = 200.0  # a section's breadth and draught, one over the other: panels do not resolve what is flatter
+FARTHEST = 10.0  # times a hull's size: what is farther from her origin is not hers
+
+NEEDS = {
+    "regular": ("amplitude",),
+    "packet": ("amplitude", "spread", "time"),
+    "jonswap": ("height",),
+    "pierson-moskowitz": ("height",),
+}
+
+
+def check_ship(ship: ShipGiven | None, waves: WavesGiven | None, moves: bool, hold: np.ndarray) -> None:
+    """Raise LabError for what does not go together; `hold` is the tank's outline (m, 2), m."""
+    if ship is None:
+        if waves is not None:
+            raise LabError("waves: there is no ship in them; add a table [ship], or leave the waves out.")
+        return
+    if moves:
+        raise LabError("motion: a ship moves her hold herself; leave the motions out, or the ship.")
+    box = ship.breadth is not None and ship.height is not None
+    if box == (ship.outline is not None) or (ship.breadth is None) != (ship.height is None):
+        raise LabError("ship.breadth: give breadth and height, or an outline.")
+    if (ship.gyradius is None) == (ship.roll_period is None):
+        raise LabError("ship.gyradius: give exactly one of gyradius and roll_period.")
+    _check_hatch(ship, box)
+    try:
+        Section(ship.corners)
+    except Unavailable as error:
+        raise LabError(f"ship.outline: {error}") from None
+    depth = ship.height if box else float(np.ptp(ship.corners[:, 1]))
+    if ship.draught >= depth:
+        raise LabError(f"ship.draught: must be less than the hull's height, {show(depth, 'm')}.")
+    _check_lengths(ship, box)
+    _check_openings(ship, box)
+    _check_hold(ship, hold)
+    if ship.release < 0.1 and ship.heel:
+        raise LabError('ship.release: she is heeled until then, and not at a blow; give at least "0.1 s".')
+    if waves is None:
+        if ship.radiation == "at-frequency":
+            raise LabError('ship.radiation: "at-frequency" takes the frequency of waves; add a table [waves].')
+        return
+    for name in NEEDS[waves.kind]:
+        if getattr(waves, name) is None:
+            raise LabError(f'waves.{name}: missing; waves.kind = "{waves.kind}" needs it.')
+
+
+def _check_lengths(ship: ShipGiven, box: bool) -> None:
+    """Raise LabError for lengths so far apart that nothing can be worked out from them."""
+    breadth, draught = float(np.ptp(ship.corners[:, 0])), ship.draught
+    if not 1.0 / MOST_FLAT <= breadth / draught <= MOST_FLAT:
+        key = "ship.breadth" if box else "ship.outline"
+        raise LabError(
+            f"{key}: {show(breadth, 'm')} of breadth and {show(draught, 'm')} of draught are too far apart for the "
+            f"hull's coefficients; keep one within {MOST_FLAT:g} times the other."
+        )
+    farthest = FARTHEST * float(np.ptp(ship.corners, axis=0).max())
+    lengths = {"gravity_height": ship.gravity_height, "gyradius": ship.gyradius or 0.0}
+    lengths |= {"axis": max(map(abs, ship.about)), "hold": max(map(abs, ship.hold))}
+    for key, length in lengths.items():
+        if abs(length) > farthest:
+            raise LabError(f"ship.{key}: {show(length, 'm')} is more than {FARTHEST:g} times the hull's size.")
+
+
+def _check_hatch(ship: ShipGiven, box: bool) -> None:
+    """Raise LabError where a hatch has no place."""
+    if ship.hatch is None:
+        return
+    if not box:
+        raise LabError(
+            "ship.hatch: goes with breadth and height; draw a coaming in the outline, its edges as openings."
+        )
+    if ship.hatch.breadth >= ship.breadth:
+        raise LabError(f"ship.hatch.breadth: must be less than the hull's breadth, {show(ship.breadth, 'm')}.")
+
+
+def _check_openings(ship: ShipGiven, box: bool) -> None:
+    """Raise LabError where she floods at rest, or her deck is no deck."""
+    keel, top = (float(end(ship.corners[:, 1])) for end in (np.min, np.max))
+    waterline = keel + ship.draught
+    for y, z in ship.openings:
+        if z <= waterline:
+            place = f"[{show(y, 'm')}, {show(z, 'm')}]"
+            raise LabError(f"ship.openings: {place} is under water at rest; it must be above {show(waterline, 'm')}.")
+    if ship.deck is None:
+        return
+    if box:
+        raise LabError("ship.deck: the deck of a box is at its height; leave it out.")
+    if not waterline < ship.deck <= top:
+        between = f"{show(waterline, 'm')} and {show(top, 'm')}"
+        raise LabError(f"ship.deck: must be between the waterline and the hull's top, {between}.")
+
+
+def _check_hold(ship: ShipGiven, hold: np.ndarray) -> None:
+    """Raise LabError where the hold stands out of the hull: a corner of it outside, or one of the hull inside."""
+    hull, placed = ship.corners, hold + np.array(ship.hold)
+    slack = TOUCHING * float(np.ptp(hull, axis=0).max())
+    out = [corner for corner in placed if _inside(corner, hull) < -slack]
+    out += [corner for corner in hull if _inside(corner, placed) > slack]
+    if out:
+        place = f"[{show(float(out[0][0]), 'm')}, {show(float(out[0][1]), 'm')}]"
+        raise LabError(
+            f"ship.hold: the tank stands out of the hull at {place}; move it, or change the hull or the tank."
+        )
+
+
+def _inside(point: np.ndarray, outline: np.ndarray) -> float:
+    """How far (m) a point is from the edge of a polygon (m, 2); negative outside."""
+    begin, along = outline, np.roll(outline, -1, axis=0) - outline
+    share = np.clip(((point - begin) * along).sum(1) / (along**2).sum(1), 0.0, 1.0)
+    away = float(np.hypot(*(point - begin - share[:, None] * along).T).min())
+    (y, z), end = point, begin + along
+    crosses = (begin[:, 1] > z) != (end[:, 1] > z)
+    rise = np.where(crosses, along[:, 1], 1.0)
+    right = crosses & (begin[:, 0] + (z - begin[:, 1]) / rise * along[:, 0] > y)
+    return away if right.sum() % 2 else -away

@@ -1,0 +1,70 @@
+"""What `cargolab explain` says of a ship: rows of words on her balance, her roll, and what the water does."""
+
+from math import pi
+
+from lab.assembly.ship import flooding_angles
+from lab.preset.ship import ShipGiven, WavesGiven, axis_place
+from lab.preset.units import show
+from solvers.ship.hydrostatics import metacentric_height
+from solvers.ship.vessel import Vessel
+from solvers.ship.water import Water
+from solvers.ship.waves import froude_factors
+
+
+def describe(given: ShipGiven, vessel: Vessel, waves: WavesGiven | None, every: float) -> list[tuple[str, str]]:
+    """Rows of words on a ship: balance, roll, what the water does; `every` (s) its forces are stepped."""
+    ship, body = vessel.ship, vessel.ship.body
+    water, memory = ship.load.water, ship.radiation.memory
+    height = metacentric_height(ship.load.section, body.loading, water)
+    rows = [
+        ("with her cargo", f"{body.mass:.4g} kg/m, GM {show(height, 'm')}, gyradius {show(body.gyradius, 'm')}"),
+        (
+            "cargo's sheet",
+            f"{show(vessel.thickness, 'm')} thick: its load counts {1.0 / vessel.thickness:.4g} times a metre",
+        ),
+        ("free in", given.freedom.replace("-", ", ") + f", about her axis, {axis_place(given)}"),
+        (
+            "viscous roll damping",
+            f"{ship.damping.linear:.3g} N s φ̇ and {ship.damping.quadratic:.3g} N s^2 φ̇|φ̇|, a metre",
+        ),
+        ("radiation", _radiated(given, memory)),
+        ("water's forces", f"every {show(every, 's')}; the cargo's at each step"),
+    ]
+    if waves is not None:
+        rows += [("excitation", given.excitation), ("waves", _sea(waves, water))]
+    if given.capsize:
+        rows.append(("capsized", f"beyond {show(given.capsize, 'rad')}"))
+    rows += [
+        (name.replace("_", " "), f"{show(angle, 'rad')}, in calm water at constant displacement")
+        for name, angle in flooding_angles(given, vessel).items()
+        if angle is not None
+    ]
+    rows.append(("her cargo's repose", f"{show(given.repose, 'rad')}, in the curve of righting levers alone"))
+    if given.scale:
+        rows.append((f"full scale 1:{given.scale:g}", _full_scale(given, waves)))
+    return rows
+
+
+def _radiated(given: ShipGiven, memory) -> str:
+    if memory is None:
+        return {"none": "none, added mass alone", "at-frequency": "that of the waves' frequency"}[given.radiation]
+    worst = 100.0 * float(memory.error.max())
+    return f"memory of {len(memory.matrix)} states, off the tables by {worst:.2g} % at most (rms)"
+
+
+def _sea(waves: WavesGiven, water: Water) -> str:
+    period, number = 2.0 * pi / waves.frequency, float(water.wave_number(waves.frequency))
+    size = waves.height if waves.amplitude is None else waves.amplitude
+    steep = f", {show(2.0 * pi / number, 'm')} long" if number else ""
+    return f"{waves.kind}, {show(size, 'm')}, {show(period, 's')}{steep}"
+
+
+def _full_scale(given: ShipGiven, waves: WavesGiven | None) -> str:
+    """What the run means for a ship so many times as long (Froude's law)."""
+    factor = froude_factors(given.scale)
+    words = [f"draught {show(given.draught * factor['length'], 'm')}", f"times {factor['time']:.3g} as long"]
+    if waves is not None:
+        size = waves.height if waves.amplitude is None else waves.amplitude
+        words.append(f"waves of {show(size * factor['length'], 'm')}")
+        words.append(f"every {show(2.0 * pi / waves.frequency * factor['time'], 's')}")
+    return ", ".join(words)

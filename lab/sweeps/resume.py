@@ -1,0 +1,21 @@
+"""Going on with whatever was cut short in a folder: a run, a sweep or a calibration."""
+
+from pathlib import Path
+
+from lab.runs.runner import Result, resume_run
+from lab.sweeps.calibrate import FILE_NAME as CALIBRATION
+from lab.sweeps.calibrate import resume_calibration
+from lab.sweeps.calibration_report import Calibration
+from lab.sweeps.sweep import FILE_NAME as SWEEP
+from lab.sweeps.sweep import SweepResult, resume_sweep
+
+
+def resume_any(folder: Path | str, *, video: bool = True, quiet: bool = False) -> Result | SweepResult | Calibration:
+    """Finish the run, the sweep or the calibration that was cut short in a folder; returns what that returns.
+
+    Raises as `resume_run`, `resume_sweep` and `calibrate`.
+    """
+    if (Path(folder) / CALIBRATION).exists():
+        return resume_calibration(folder, quiet=quiet)
+    finish = resume_sweep if (Path(folder) / SWEEP).exists() else resume_run
+    return finish(folder, video=video, quiet=quiet)
