@@ -114,13 +114,13 @@ video_option = click.option("--no-video", is_flag=True, help="Do not paint a vid
 
 
 class ColourOption(click.Option):
-    """An option whose help names the colourings; they are slow to import, and only help needs them."""
+    """An option whose help names the colourings; only help needs them."""
 
     def get_help_record(self, context: click.Context) -> tuple[str, str] | None:
         """Flags and help."""
-        from lab.paint.colours import MODES
+        from lab.preset.sections.video import COLOURS
 
-        self.help = f"What the colour says: {', '.join(MODES)}."
+        self.help = f"What the colour says: {', '.join(COLOURS)}."
         return super().get_help_record(context)
 
 

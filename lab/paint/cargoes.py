@@ -7,6 +7,7 @@ import numpy as np
 from PIL import Image, ImageDraw
 
 from lab.paint import decorations as deco
+from lab.paint import palette
 from lab.paint.colours import mark_colours
 from lab.paint.footage import Bed, open_footage
 from lab.paint.painter import Camera, paint_grains, paint_tank, to_discs
@@ -33,7 +34,7 @@ def paint_cargoes(folders: Mapping[str, Path], out: Path) -> Path:
     """A picture (PNG) of the first frames of recordings, by the names of their cargoes; raises LabError."""
     initialise()
     rows = -(-len(folders) // COLUMNS)
-    image = Image.new("RGB", (COLUMNS * (CELL[0] + EDGE) + EDGE, rows * (CELL[1] + EDGE) + EDGE), deco.PAPER)
+    image = Image.new("RGB", (COLUMNS * (CELL[0] + EDGE) + EDGE, rows * (CELL[1] + EDGE) + EDGE), palette.PAPER)
     for k, (name, folder) in enumerate(folders.items()):
         with open_footage(folder) as footage:
             cell = _cell(name, Bed(footage, 0, name))
@@ -49,14 +50,14 @@ def _cell(name: str, bed: Bed) -> Image.Image:
     height = min(size[1], ABOVE * (np.nanmax(place[:, 1]) - low[1]))
     scale = min((wide - 2.0 * WALL) / size[0], (high - head - WALL) / height)
     camera = Camera(scale, (0.5 * wide - scale * (low[0] + 0.5 * size[0]), high - WALL + scale * low[1]))
-    picture = np.tile(np.array(deco.PAPER, dtype=np.uint8), (high, wide, 1))
-    paint_tank(picture, camera, bed.footage.outline, WALL, deco.WALL, deco.HOLD, bed.footage.open_edges)
+    picture = np.tile(np.array(palette.PAPER, dtype=np.uint8), (high, wide, 1))
+    paint_tank(picture, camera, bed.footage.outline, WALL, palette.WALL, palette.HOLD, bed.footage.open_edges)
     shade = 1.0 + SHADES * np.random.default_rng(0).uniform(-1.0, 1.0, (len(place), 1))
     colour = np.clip(shade * COLOURS.get(name, PLAIN), 0.0, 255.0)
     paint_grains(picture, to_discs(camera, place, bed.radius, bed.angle(0)), colour, mark_colours(colour), bed.edges)
-    picture[:head] = deco.PAPER
+    picture[:head] = palette.PAPER
     image = Image.fromarray(picture)
     draw = ImageDraw.Draw(image)
-    draw.text((0, 0), name, deco.INK, deco.font(TEXT, True), anchor="la")
+    draw.text((0, 0), name, palette.INK, deco.font(TEXT, True), anchor="la")
     deco.draw_scale_bar(draw, (0.62 * wide, 0.8 * TEXT), 0.2 * wide, scale, 0.8 * TEXT)
     return image

@@ -1,7 +1,7 @@
 """What the colour of a grain says.
 
-A new way to colour takes one function from beds to `Colouring` and one line in MODES, whose words a
-preset may say. Only what every preset needs is loaded here: Matplotlib comes with the first picture.
+A new way to colour takes one function from beds to `Colouring` and one line in MODES; its word joins the COLOURS that
+a preset may say. Only what every preset needs is loaded here: Matplotlib comes with the first picture.
 """
 
 from __future__ import annotations

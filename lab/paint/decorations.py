@@ -10,25 +10,8 @@ from matplotlib.ticker import MaxNLocator
 from PIL import Image, ImageDraw, ImageFont
 
 from lab.paint.colours import Colouring
+from lab.paint.palette import GRID, HOLD, INK, LINE, LOST, PAPER, QUIET
 
-PAPER = (255, 255, 255)
-INK = (33, 41, 52)
-QUIET = (104, 114, 126)
-LINE = (176, 184, 193)
-GRID = (232, 235, 239)
-WALL = (86, 97, 110)
-HOLD = (246, 247, 249)
-LOST = (190, 60, 20)
-FIXED = (158, 166, 175)
-PART = (128, 70, 27)
-SERIES = (  # curves and names of the beds: Okabe and Ito's colour-blind-safe palette, darkened
-    (0, 114, 178),
-    (213, 94, 0),
-    (0, 138, 100),
-    (180, 90, 145),
-    (176, 126, 0),
-    (60, 140, 190),
-)
 SMALLER = 0.65  # of its size: how small a text may become before it is cut
 FINER = 3  # the plot and the dial are drawn this many times larger, then shrunk to smooth their lines
 

@@ -14,11 +14,12 @@ from PIL import Image, ImageDraw
 
 from lab.base.errors import LabError
 from lab.paint import decorations as deco
+from lab.paint import palette
 from lab.paint.colours import MODES, bed_colours, colouring, mark_colours, spread
 from lab.paint.footage import Bed, Footage
 from lab.paint.painter import Camera, Edges, paint_grains, paint_plate, paint_tank, to_discs
 from lab.paint.sea import LINE
-from lab.preset.schema import Video
+from lab.preset.sections.video import Video
 from lab.preset.ship import axis_motion
 from lab.preset.units import quoted
 
@@ -94,7 +95,7 @@ class Film:
         self._moved = np.stack([_motion(bed, self._pose[:, k]) for k, bed in enumerate(self._beds)], axis=1)
         self._together = bool(np.ptp(self._pose, axis=1).max() < ALIKE)
         self._named = any(bed.name for bed in self._beds)
-        self._hues = deco.SERIES if len(self._beds) <= len(deco.SERIES) else bed_colours(len(self._beds))
+        self._hues = palette.SERIES if len(self._beds) <= len(palette.SERIES) else bed_colours(len(self._beds))
         self._colouring = colouring(look.colour, self._beds)
         self._sorts = _sort_by_shape(self._beds)
         self._grounds = self._find_grounds()
@@ -216,7 +217,7 @@ class Film:
             time = footage.series_time[kept]
             across = np.degrees(footage.series_pose[kept, world, 2]) if steady else time
             curves.append((across, measured(self._all[k])[kept]))
-            colours.append(self._hues[k] if k < len(self._beds) else deco.LINE)
+            colours.append(self._hues[k] if k < len(self._beds) else palette.LINE)
             samples.append(time)
         left, top, right, bottom = self._plot_box()
         labels = ("tilt φ (°)" if steady else "time (s)", label)
@@ -226,20 +227,20 @@ class Film:
     def _draw_page(self) -> np.ndarray:
         """What stays the same in all frames."""
         look, text = self._look, TEXT * self._unit
-        image = Image.new("RGB", (look.width, look.height), deco.PAPER)
+        image = Image.new("RGB", (look.width, look.height), palette.PAPER)
         draw = ImageDraw.Draw(image)
         left, _, right, _ = self._stage()
         column_left, column_right = self._column()
         bottom = look.height - self._u(MARGIN)
         title, face = deco.fitted(self._title, right - left, TITLE * self._unit, bold=True)
-        draw.text((left, self._u(MARGIN)), title, deco.INK, face, anchor="la")
+        draw.text((left, self._u(MARGIN)), title, palette.INK, face, anchor="la")
         longest = 0.25 * (right - left)
         deco.draw_scale_bar(draw, (left, bottom), longest, self._cameras[0].scale, text)
-        draw.text((right, bottom - 0.3 * text), self._note(), deco.QUIET, deco.font(text), anchor="rm")
+        draw.text((right, bottom - 0.3 * text), self._note(), palette.QUIET, deco.font(text), anchor="rm")
         bar = column_left, bottom - self._u(4.6), column_right, bottom
         deco.draw_colour_bar(image, bar, self._colouring, text)
         page = np.array(image)
-        colours = (deco.WALL, deco.HOLD) if look.frame == "tank" else (deco.GRID, deco.PAPER)
+        colours = (palette.WALL, palette.HOLD) if look.frame == "tank" else (palette.GRID, palette.PAPER)
         for bed, camera in zip(self._beds, self._cameras, strict=True):
             if not (bed.footage.sea and look.frame == "earth"):
                 self._paint_tank(page, bed, camera, *colours)  # in the earth frame a faint one stays where it rested
@@ -264,13 +265,13 @@ class Film:
                 if bed.footage.sea:
                     self._paint_ship(picture, k, frame)
                 camera = camera.carried(self._pose[frame, k])
-                self._paint_tank(picture, bed, camera, deco.WALL, deco.HOLD)
+                self._paint_tank(picture, bed, camera, palette.WALL, palette.HOLD)
                 _paint_fixed(picture, bed, camera)
             place = self._on_ground(k, bed.position(row), self._pose[frame, k])
             discs.append(to_discs(camera, place, bed.radius, bed.angle(row)))
             colours.append(self._colouring.colours(bed, row))
             for line in bed.plates(row):
-                paint_plate(picture, camera, line, PLATE * self._unit, deco.PART)
+                paint_plate(picture, camera, line, PLATE * self._unit, palette.PART)
         for painted, edges in self._sorts:
             colour = np.concatenate([colours[k] for k in painted])
             paint_grains(picture, np.concatenate([discs[k] for k in painted]), colour, mark_colours(colour), edges)
@@ -310,7 +311,7 @@ class Film:
         for line, reading in enumerate(readings):
             place = left, top + line * self._u(1.75 * READING)
             text, face = deco.fitted(reading, width, READING * self._unit)
-            draw.text(place, text, deco.INK, face, anchor="la")
+            draw.text(place, text, palette.INK, face, anchor="la")
         if self._named:
             self._draw_names(draw, frame)
 
@@ -370,7 +371,7 @@ def _sort_by_shape(beds: Sequence[Bed]) -> list[tuple[list[int], Edges | None]]:
 def _paint_fixed(picture: np.ndarray, bed: Bed, camera: Camera) -> None:
     """The fixed grains of a rough wall, grey and without marks."""
     fixed = bed.footage.fixed
-    colour = np.tile(deco.FIXED, (len(fixed), 1))
+    colour = np.tile(palette.FIXED, (len(fixed), 1))
     paint_grains(picture, to_discs(camera, fixed[:, :2], fixed[:, 2], np.zeros(len(fixed))), colour, colour)
 
 

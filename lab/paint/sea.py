@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import TypeAdapter
 
 from lab.assembly.ship import make_water, make_waves
-from lab.paint import decorations as deco
+from lab.paint import palette
 from lab.paint.painter import Camera, paint_tank
 from lab.preset.ship import WaterGiven, WavesGiven, recorded_ship
 from solvers.ship.waves import Waves, soft_start
@@ -40,10 +40,10 @@ class Sea:
 
     def paint_hull(self, picture: np.ndarray, camera: Camera, thick: float) -> None:
         """Paint the hull, her walls so many pixels thick, her hatch open; the camera is that of the tank's points."""
-        paint_tank(picture, camera, self.hull, thick, deco.WALL, deco.LINE, (HATCH,) if self.ship.hatch else ())
+        paint_tank(picture, camera, self.hull, thick, palette.WALL, palette.LINE, (HATCH,) if self.ship.hatch else ())
         if self.ship.hatch:
             inside = self.hull[[HATCH + 2, HATCH - 1, HATCH, HATCH + 1]]
-            paint_tank(picture, camera, inside, thick, deco.WALL, deco.HOLD, (0, 2))
+            paint_tank(picture, camera, inside, thick, palette.WALL, palette.HOLD, (0, 2))
 
     @property
     def soft_start(self) -> float:

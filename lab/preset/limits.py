@@ -15,7 +15,8 @@ from lab.preset.history import check_history
 from lab.preset.outline import simple_polygon
 from lab.preset.parts import check_parts
 from lab.preset.reader import BOUND, check_interval
-from lab.preset.schema import Resolved, check_grains, check_lining, check_video
+from lab.preset.schema import Resolved, check_grains, check_lining
+from lab.preset.sections.video import check_video
 from lab.preset.shapes import MOST_DESCRIPTORS, MOST_DRAWS
 from lab.preset.ship_checks import check_ship
 from lab.preset.toml import BARE_KEY

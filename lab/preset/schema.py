@@ -15,13 +15,13 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, model_validator
 
 from lab.base.errors import LabError
-from lab.paint.colours import MODES
 from lab.preset.accuracy import DEFAULT, LEVELS
 from lab.preset.bed_file import read_bed
 from lab.preset.history import HistoryGiven, check_end, check_start, read_history
 from lab.preset.outline import Point, area, rectangle, simple_polygon
 from lab.preset.parts import check_parts
 from lab.preset.reader import check_keys, read
+from lab.preset.sections.video import Record, Video, check_video
 from lab.preset.shapes import Shape, ShapeGiven, by_number, read_shapes
 from lab.preset.ship import ShipGiven, WaterGiven, WavesGiven
 from lab.preset.ship_checks import check_ship
@@ -43,7 +43,6 @@ MOST_PLACES = 4e6  # of the largest grains, in a tank that is filled: its lattic
 
 Length = Annotated[float, Unit("m"), Interval(gt=0)]
 Time = Annotated[float, Unit("s"), Interval(gt=0)]
-Rate = Annotated[float, Unit("Hz"), Interval(gt=0, le=1e6)]
 
 
 @dataclass(frozen=True)
@@ -247,27 +246,6 @@ class Run(RunGiven):
     """The run with its duration."""
 
     duration: Time = field(kw_only=True)
-
-
-@dataclass(frozen=True)
-class Record:
-    """How often the series and the frames are sampled, how often (wall clock) all is saved, what else is written."""
-
-    series_rate: Rate = 100.0
-    picture_rate: Rate = 25.0
-    checkpoint_every: Annotated[float, Unit("s"), Interval(ge=0)] = 60.0
-    xdmf: bool = False
-
-
-@dataclass(frozen=True)
-class Video:
-    """The picture's size in pixels, what colours the grains, whose frame, the playback speed."""
-
-    width: Annotated[int, Interval(ge=320, le=7680)] = 1280
-    height: Annotated[int, Interval(ge=180, le=4320)] = 720
-    colour: Literal[*MODES] = "speed"
-    frame: Literal["tank", "earth"] = "tank"
-    speed: Annotated[float, Interval(gt=0)] = 1.0
 
 
 @dataclass(frozen=True)
@@ -548,13 +526,6 @@ def _check_cohesion(law: str, material: Material) -> None:
         if getattr(material, name) is None:
             example = {"humidity": "70 %", "bridge_volume": "0.002 mm^3"}[name]
             raise LabError(f'material.{name}: missing; contact.cohesion = "{law}" needs it, e.g. "{example}".')
-
-
-def check_video(video: Video) -> None:
-    """Raise LabError for pictures that cannot be filmed."""
-    for name in ("width", "height"):
-        if getattr(video, name) % 2:
-            raise LabError(f"video.{name}: must be even for H.264 (got {getattr(video, name)}).")
 
 
 def _kinds(given: Mapping[str, KindGiven], material: Material) -> dict[str, Kind]:

@@ -10,6 +10,7 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageOps
 
 from lab.paint import decorations as deco
+from lab.paint import palette
 from lab.paint.colours import Colouring, colouring, mark_colours
 from lab.paint.painter import Camera, paint_grains, paint_plate, paint_strokes, paint_tank, to_discs
 from lab.paint.sea import LINE
@@ -40,7 +41,7 @@ class Page:
     def __init__(self, size: tuple[int, int]) -> None:
         self.width, self.height = size
         self.unit = min(self.width / 64, self.height / 36)
-        self._paper = np.tile(np.array(deco.PAPER, dtype=np.uint8), (self.height, self.width, 1))
+        self._paper = np.tile(np.array(palette.PAPER, dtype=np.uint8), (self.height, self.width, 1))
         self._colouring: tuple[tuple, float, Colouring] | None = None
         self._sliders: dict[str, tuple[float, float, float, float]] = {}
         self._kept: dict[str, tuple[tuple, float, np.ndarray]] = {}
@@ -190,15 +191,15 @@ class Page:
         bed = footage.bed
         colour = scale.colours(bed, frame)
         if shown.look.overlay == "forces":
-            colour = 0.25 * colour + 0.75 * np.array(deco.PAPER)
+            colour = 0.25 * colour + 0.75 * np.array(palette.PAPER)
         discs = to_discs(moved, bed.position(frame), bed.radius, bed.angle(frame))
         paint_grains(stage, discs, colour, mark_colours(colour), footage.edges)
         for line, shift in zip(footage.parts.values(), footage.moved_parts(frame), strict=True):
-            paint_plate(stage, moved, line + shift, PLATE * self.unit, deco.PART)
+            paint_plate(stage, moved, line + shift, PLATE * self.unit, palette.PART)
         if shown.look.overlay == "forces":
             paint_strokes(stage, self._force_strokes(shown, moved), FORCE)
         elif shown.look.overlay == "velocities":
-            paint_strokes(stage, self._velocity_strokes(shown, moved), deco.INK)
+            paint_strokes(stage, self._velocity_strokes(shown, moved), palette.INK)
         self._mark(stage, shown, moved)
         if shown.curve != "nothing":
             _put(stage, self._curve(shown), 0, 0)
@@ -225,12 +226,12 @@ class Page:
                 footage.sea.paint_hull(stage, moved, self._wall(camera, footage.sea.hull))
             else:
                 faint = self._wall(camera, footage.outline)
-                paint_tank(stage, camera, footage.outline, faint, deco.GRID, deco.PAPER, footage.open_edges)
+                paint_tank(stage, camera, footage.outline, faint, palette.GRID, palette.PAPER, footage.open_edges)
         thick = self._wall(camera, footage.outline)
-        paint_tank(stage, moved, footage.outline, thick, deco.WALL, deco.HOLD, footage.open_edges)
+        paint_tank(stage, moved, footage.outline, thick, palette.WALL, palette.HOLD, footage.open_edges)
         fixed = footage.fixed
         if len(fixed):
-            grey = np.tile(deco.FIXED, (len(fixed), 1))
+            grey = np.tile(palette.FIXED, (len(fixed), 1))
             paint_grains(stage, to_discs(moved, fixed[:, :2], fixed[:, 2], np.zeros(len(fixed))), grey, grey)
         return stage
 
@@ -269,10 +270,10 @@ class Page:
 
     def _words(self, said: str, hint: str, size: tuple[int, int]) -> Image.Image:
         """A sentence in a few lines, or a hint in one."""
-        image = Image.new("RGB", size, deco.PAPER)
+        image = Image.new("RGB", size, palette.PAPER)
         draw, letters = ImageDraw.Draw(image), SENTENCE[0] * self.unit
         text, face = deco.fitted(hint, size[0], TEXT * self.unit)
-        draw.text((size[0], size[1] - self.u(MARGIN) - 0.3 * TEXT * self.unit), text, deco.QUIET, face, "rm")
+        draw.text((size[0], size[1] - self.u(MARGIN) - 0.3 * TEXT * self.unit), text, palette.QUIET, face, "rm")
         lines = deco.wrapped(said, size[0], letters, SENTENCE[1])
         for k, line in enumerate(lines):
             y = 0.5 * size[1] + (k - 0.5 * (len(lines) - 1)) * 1.3 * letters
@@ -288,15 +289,15 @@ class Page:
         return "H: help"
 
     def _scale_bar(self, width: int, scale: float) -> Image.Image:
-        image = Image.new("RGB", (width, self.u(MARGIN + 1.6)), deco.PAPER)
+        image = Image.new("RGB", (width, self.u(MARGIN + 1.6)), palette.PAPER)
         place = 0, image.height - self.u(MARGIN)
         deco.draw_scale_bar(ImageDraw.Draw(image), place, 0.6 * width, scale, TEXT * self.unit)
         return image
 
     def _title(self, text: str, width: int) -> Image.Image:
-        image = Image.new("RGB", (width, self.u(1.3 * TITLE)), deco.PAPER)
+        image = Image.new("RGB", (width, self.u(1.3 * TITLE)), palette.PAPER)
         said, face = deco.fitted(text, width, TITLE * self.unit, bold=True)
-        ImageDraw.Draw(image).text((0, 0), said, deco.INK, face, anchor="la")
+        ImageDraw.Draw(image).text((0, 0), said, palette.INK, face, anchor="la")
         return image
 
     def _force_strokes(self, shown: Shown, camera: Camera) -> np.ndarray:
@@ -322,10 +323,10 @@ class Page:
 
         def drawn() -> Image.Image:
             drawing = CURVES[shown.curve](shown.footage, shown.frame)
-            labels, colours = (drawing.across, drawing.upwards), deco.SERIES[: len(drawing.curves)]
+            labels, colours = (drawing.across, drawing.upwards), palette.SERIES[: len(drawing.curves)]
             edge, size = self.u(0.5), (self.u(PLOT[0] - 1.5), self.u(PLOT[1] - 1.5))
             plot = deco.LivePlot(size, drawing.curves, colours, labels, 0.9 * TEXT * self.unit)
-            return ImageOps.expand(plot.picture(drawing.counts), edge, deco.PAPER)
+            return ImageOps.expand(plot.picture(drawing.counts), edge, palette.PAPER)
 
         return self._still("plot", (shown.curve, shown.footage, shown.playhead), drawn, CURVE_ANEW)
 
@@ -342,13 +343,13 @@ class Page:
 
     def _lines(self, shown: Shown) -> Image.Image:
         """The clock and the readings below it."""
-        image = Image.new("RGB", (self.u(COLUMN), self.controls[0] - self.u(MARGIN)), deco.PAPER)
+        image = Image.new("RGB", (self.u(COLUMN), self.controls[0] - self.u(MARGIN)), palette.PAPER)
         draw = ImageDraw.Draw(image)
         text, face = deco.fitted(clock(shown), image.width, READING * self.unit)
-        draw.text((0, 0), text, deco.INK, face, anchor="la")
+        draw.text((0, 0), text, palette.INK, face, anchor="la")
         for line, reading in enumerate(readings(shown)):
             text, face = deco.fitted(reading, image.width, TEXT * self.unit)
-            draw.text((0, self.u(1.6 * READING + 1.4 * TEXT * line)), text, deco.INK, face, anchor="la")
+            draw.text((0, self.u(1.6 * READING + 1.4 * TEXT * line)), text, palette.INK, face, anchor="la")
         return image
 
     @property
@@ -360,7 +361,7 @@ class Page:
         """What stands below the readings until somebody changes it: sliders and colour bar."""
         top, bottom = self.controls
         size = self.u(MARGIN + COLUMN), self.height - top
-        image = Image.new("RGB", size, deco.PAPER)
+        image = Image.new("RGB", size, palette.PAPER)
         bar = 0, size[1] - self.u(MARGIN + 4.4), self.u(COLUMN), size[1] - self.u(MARGIN)
         deco.draw_colour_bar(image, bar, scale, TEXT * self.unit)
         self._sliders = {}
@@ -389,13 +390,15 @@ class Page:
             y = (row + 0.5) * pitch
             x, above = corner[0], corner[1] + y - 0.5 * pitch
             self._sliders[name] = (x + begin, above, x + end, above + pitch)
-            colour = deco.QUIET if control.kind == RESTARTS else deco.INK
+            colour = palette.QUIET if control.kind == RESTARTS else palette.INK
             text, face = deco.fitted(control.label, begin - left - self.u(0.5), size)
             draw.text((left, y), text, colour, face, anchor="lm")
-            draw.line([(begin, y), (end, y)], fill=deco.LINE, width=max(2, self.u(0.18)))
+            draw.line([(begin, y), (end, y)], fill=palette.LINE, width=max(2, self.u(0.18)))
             share = (value - control.low) / (control.high - control.low)
             x, r = begin + float(np.clip(share, 0.0, 1.0)) * (end - begin), self.u(HANDLE)
-            draw.ellipse((x - r, y - r, x + r, y + r), fill=deco.SERIES[0] if colour == deco.INK else deco.LINE)
+            draw.ellipse(
+                (x - r, y - r, x + r, y + r), fill=palette.SERIES[0] if colour == palette.INK else palette.LINE
+            )
             text, face = deco.fitted(control.shown(value), right - end - self.u(0.6), size)
             draw.text((right, y), text, colour, face, anchor="rm")
 
@@ -403,12 +406,12 @@ class Page:
 
     def _waiting(self, shown: Shown) -> np.ndarray:
         """The page until the first frame comes, and where none does."""
-        image = Image.new("RGB", (self.width, self.height), deco.PAPER)
+        image = Image.new("RGB", (self.width, self.height), palette.PAPER)
         draw, middle, size = ImageDraw.Draw(image), (self.width / 2, self.height / 2), TEXT * self.unit
         name, face = deco.fitted(shown.name, 0.9 * self.width, size)
-        draw.text((middle[0], middle[1] - 3.0 * size), name, deco.QUIET, face, anchor="mm")
+        draw.text((middle[0], middle[1] - 3.0 * size), name, palette.QUIET, face, anchor="mm")
         for k, line in enumerate(deco.wrapped(shown.over or shown.status, 0.8 * self.width, 1.2 * size, 6)):
-            colour, y = GRAB if shown.over else deco.INK, middle[1] + 1.7 * size * k
+            colour, y = GRAB if shown.over else palette.INK, middle[1] + 1.7 * size * k
             draw.text((middle[0], y), line, colour, deco.font(1.2 * size), anchor="mm")
         return np.array(image)
 

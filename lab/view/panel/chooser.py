@@ -6,6 +6,7 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageOps
 
 from lab.paint import decorations as deco
+from lab.paint import palette
 from lab.preset.find import QUICK, load, names
 
 COLUMNS, ROWS = 4, 3
@@ -30,18 +31,18 @@ class Chooser:
     def picture(self) -> np.ndarray:
         """The cards of this page, the one at hand framed."""
         height = self.size[1]
-        image = Image.new("RGB", self.size, deco.PAPER)
+        image = Image.new("RGB", self.size, palette.PAPER)
         draw = ImageDraw.Draw(image)
         edge, size = round(EDGE * height), 0.026 * height
         page, pages = self._at // (COLUMNS * ROWS) + 1, -(-len(self._names) // (COLUMNS * ROWS))
         head = f"Choose an experiment   ({page} of {pages}; arrows, Enter or the mouse; Q: its quick variant)"
-        draw.text((edge, edge), head, deco.INK, deco.font(1.1 * size, True), anchor="la")
+        draw.text((edge, edge), head, palette.INK, deco.font(1.1 * size, True), anchor="la")
         for k, name in enumerate(self._shown()):
             left, top, wide, high = self._card(k)
             self._draw_card(image, name, left, top, wide, high, size)
             if name == self._names[self._at]:
                 box = (left - 3, top - 3, left + wide + 3, top + high + 3)
-                draw.rectangle(box, outline=deco.SERIES[1], width=3)
+                draw.rectangle(box, outline=palette.SERIES[1], width=3)
         return np.asarray(image)
 
     def key(self, name: str) -> None:
@@ -94,13 +95,15 @@ class Chooser:
         draw, foot = ImageDraw.Draw(image), round(FOOT * size)
         if name not in self._posters:
             self._posters[name] = _poster(name, (wide, high - foot))
-        draw.rectangle((left, top, left + wide, top + high), outline=deco.LINE)
+        draw.rectangle((left, top, left + wide, top + high), outline=palette.LINE)
         image.paste(self._posters[name], (left + 1, top + 1))
         room, x, y = wide - size, left + 0.5 * size, top + high - foot
         said, face = deco.fitted(name, room, 0.85 * size, True)
-        draw.text((x, y + 0.2 * size), said, deco.INK, face, anchor="la")
+        draw.text((x, y + 0.2 * size), said, palette.INK, face, anchor="la")
         for line, part in enumerate(deco.wrapped(self._titles[name], room, TITLE * size, 2)):
-            draw.text((x, y + (1.3 + 1.25 * TITLE * line) * size), part, deco.INK, deco.font(TITLE * size), anchor="la")
+            draw.text(
+                (x, y + (1.3 + 1.25 * TITLE * line) * size), part, palette.INK, deco.font(TITLE * size), anchor="la"
+            )
 
 
 def _poster(name: str, size: tuple[int, int]) -> Image.Image:
@@ -115,7 +118,7 @@ def _sketch(name: str, size: tuple[int, int]) -> Image.Image:
     """The tank, its moving parts and how deep it is filled."""
     preset = load(name).resolved
     outline = np.array(preset.tank.outline)
-    image = Image.new("RGB", size, deco.HOLD)
+    image = Image.new("RGB", size, palette.HOLD)
     draw, middle = ImageDraw.Draw(image), 0.5 * (outline.min(axis=0) + outline.max(axis=0))
     scale = 0.8 * float((np.array(size) / np.ptp(outline, axis=0)).min())
 
@@ -125,12 +128,12 @@ def _sketch(name: str, size: tuple[int, int]) -> Image.Image:
 
     depth = preset.grains.depth or 0.4 * preset.tank.height
     low, high = outline.min(axis=0), outline.max(axis=0)
-    draw.polygon(placed(outline), fill=deco.PAPER)
+    draw.polygon(placed(outline), fill=palette.PAPER)
     if preset.grains.region:
         draw.polygon(placed(preset.grains.region), fill=GRAIN)
     else:
         draw.polygon(placed([low, (high[0], low[1]), (high[0], low[1] + depth), (low[0], low[1] + depth)]), fill=GRAIN)
-    draw.line([*placed(outline), placed(outline)[0]], fill=deco.WALL, width=3)
+    draw.line([*placed(outline), placed(outline)[0]], fill=palette.WALL, width=3)
     for part in preset.parts.values():
-        draw.line(placed(part.points), fill=deco.PART, width=3)
+        draw.line(placed(part.points), fill=palette.PART, width=3)
     return image

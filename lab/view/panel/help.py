@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from PIL import Image, ImageDraw
 
 from lab.paint import decorations as deco
+from lab.paint import palette
 
 MOUSE = (
     ("drag", "move the picture"),
@@ -24,9 +25,9 @@ def draw_help(image: Image.Image, keys: Sequence[tuple[str, str]], size: float) 
     width, height = sum(says) + (2 * NAME + 3 * EDGE) * size, (half * ROW + 2 * EDGE) * size
     left, top = 0.5 * (image.width - width), 0.5 * (image.height - height)
     draw = ImageDraw.Draw(image)
-    draw.rectangle((left, top, left + width, top + height), fill=deco.PAPER, outline=deco.LINE, width=2)
+    draw.rectangle((left, top, left + width, top + height), fill=palette.PAPER, outline=palette.LINE, width=2)
     for k, (name, said) in enumerate(rows):
         x = left + EDGE * size + k // half * (says[0] + (NAME + EDGE) * size)
         y = top + (EDGE + (k % half + 0.5) * ROW) * size
-        draw.text((x, y), name, deco.INK, deco.font(size, True), anchor="lm")
-        draw.text((x + NAME * size, y), said, deco.INK, deco.font(size), anchor="lm")
+        draw.text((x, y), name, palette.INK, deco.font(size, True), anchor="lm")
+        draw.text((x + NAME * size, y), said, palette.INK, deco.font(size), anchor="lm")

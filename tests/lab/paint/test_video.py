@@ -14,7 +14,7 @@ from lab.paint.colours import MODES
 from lab.paint.film import Film, choose_beds, choose_look
 from lab.paint.footage import Bed, open_footage
 from lab.paint.video import playback, poster, render_grid, render_recording
-from lab.preset.schema import Video
+from lab.preset.sections.video import Video
 from solvers.machine.runtime import initialise
 from tests.oracles.synthetic import box, frame, recorder, sample
 

@@ -12,7 +12,7 @@ from lab.assembly.scene import vessels
 from lab.assembly.ship import flooding_angles
 from lab.base.errors import LabError
 from lab.measures import measure_all, ship_roll
-from lab.paint import decorations as deco
+from lab.paint import palette
 from lab.paint.film import Film, choose_beds, choose_look
 from lab.paint.footage import open_footage
 from lab.paint.video import HELD, render_recording
@@ -119,8 +119,8 @@ def test_the_last_seconds_of_the_video_say_it(flooded, tmp_path):
         film = Film(choose_beds(footage), look)
         before, after = (film.picture(int(np.searchsorted(film.time, now - 1e-6))) for now in (WHEN - 0.05, WHEN))
         assert film.lost
-    assert not (before == deco.LOST).all(axis=2).any()
-    rows = np.flatnonzero((after == deco.LOST).all(axis=2).sum(axis=1) > 100)
+    assert not (before == palette.LOST).all(axis=2).any()
+    rows = np.flatnonzero((after == palette.LOST).all(axis=2).sum(axis=1) > 100)
     assert len(rows) > 15 and rows.min() > 180
     made = render_recording(flooded, tmp_path / "v.mp4", width=640, height=360)
     pictures = imageio.mimread(made, memtest=False)
