@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 
 from lab.base.errors import LabError
 from lab.cli import main
+from lab.cli.options import read_overrides
 from solvers.machine.errors import BadState, Unavailable
 
 
@@ -116,9 +117,7 @@ def test_quiet_says_only_where(runner):
     ],
 )  # fmt: skip
 def test_values_are_toml_or_text(value, read):
-    from lab.cli import _overrides
-
-    assert _overrides(None, None, (f"grains.x = {value}",)) == {"grains.x": read}
+    assert read_overrides(None, None, (f"grains.x = {value}",)) == {"grains.x": read}
 
 
 @pytest.mark.parametrize(

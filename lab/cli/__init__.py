@@ -1,0 +1,43 @@
+"""The command `cargolab`, a file a family of commands. They import what they need when they run: help stays fast."""
+
+import click
+
+from lab import __version__
+from lab.cli.benches import bench
+from lab.cli.errors import Commands
+from lab.cli.pictures import render, view
+from lab.cli.runs import explain, resume, run
+from lab.cli.studies import gallery, list_presets, reproduce, verify
+from lab.cli.sweeps import calibrate, sweep
+
+
+@click.group(cls=Commands, context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(__version__, prog_name="cargolab", message="%(prog)s %(version)s", help="Show the version.")
+def main() -> None:
+    """Experiments on loose cargo: run one, watch it, get a number with its error.
+
+    \b
+    cargolab list                    what there is
+    cargolab run tilting/quick       run one, with video, plot and summary
+    cargolab view tilting/quick      run one live in a window, under your hand
+    cargolab explain tilting/quick   what it is and what it will cost
+    cargolab sweep shaking/sway ...  run one for many values of its keys
+    cargolab resume DIR              go on with a run or sweep that was cut short
+    """
+
+
+for command in (
+    bench,
+    calibrate,
+    explain,
+    gallery,
+    list_presets,
+    render,
+    reproduce,
+    resume,
+    run,
+    sweep,
+    verify,
+    view,
+):
+    main.add_command(command)

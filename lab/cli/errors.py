@@ -1,0 +1,65 @@
+"""What goes wrong, in one sentence on stderr and an exit code.
+
+Exit codes: 0 done; 1 the simulation could not go on; 2 what was asked for cannot be done; 130 interrupted by Ctrl-C,
+143 by SIGTERM, 129 by SIGHUP.
+"""
+
+import errno
+import os
+import sys
+
+import click
+
+from lab.base.errors import LabError
+from lab.base.interrupt import exit_code, heeding
+from lab.base.text import one_line
+from solvers.machine.errors import BadState, Unavailable
+
+REMEDIES = {
+    errno.ENOSPC: "free some space or choose another folder with --out",
+    errno.EDQUOT: "free some space or choose another folder with --out",
+    errno.EACCES: "choose another folder with --out",
+    errno.EPERM: "choose another folder with --out",
+    errno.EROFS: "choose another folder with --out",
+}
+
+
+class Commands(click.Group):
+    """A group whose errors are one sentence on stderr."""
+
+    def main(self, *args, **kwargs):
+        """Run a command line and exit."""
+        # Matrices are small here, and threads of numpy's that wait by spinning would take the cores from the grains.
+        os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+        try:
+            with heeding():
+                code = super().main(*args, **{**kwargs, "standalone_mode": False})
+        except click.exceptions.NoArgsIsHelpError as error:
+            error.show()
+            code = 2
+        except click.Abort as error:  # Ctrl-C and its like
+            said = str(error.__cause__ or "") or "interrupted; what was written until then is kept."
+            code = _say(said, exit_code())
+        except click.ClickException as error:
+            code = _say(error.format_message(), 2)
+        except (LabError, Unavailable) as error:
+            code = _say(str(error), 2)
+        except BadState as error:
+            code = _say(str(error), 1)
+        except OSError as error:
+            code = _say(_os_sentence(error), 2)
+        except MemoryError:
+            code = _say("there is not enough memory for this: ask for fewer grains or repeats, or free some.", 2)
+        sys.exit(code if isinstance(code, int) else 0)
+
+
+def _say(sentence: str, code: int) -> int:
+    click.echo(f"cargolab: {one_line(sentence)}", err=True)
+    return code
+
+
+def _os_sentence(error: OSError) -> str:
+    where = f"{error.filename}: " if error.filename else ""
+    what = error.strerror or str(error) or type(error).__name__
+    remedy = REMEDIES.get(error.errno)
+    return f"{where}{what[0].lower()}{what[1:]}{f'; {remedy}' if remedy else ''}."

@@ -1,0 +1,82 @@
+"""Options that several commands have, and what they are read into."""
+
+from pathlib import Path
+
+import click
+
+from lab.base.errors import LabError
+from lab.preset.units import quoted
+
+
+def texts_by_key(texts: tuple[str, ...]) -> dict[str, str]:
+    """The texts of values by key, from KEY=VALUE texts."""
+    settings = {}
+    for text in texts:
+        key, equals, value = text.partition("=")
+        if not equals or not key.strip():
+            raise LabError(f"--set {quoted(text)[1:-1]}: write it like --set grains.diameter='4 mm'.")
+        settings[key.strip()] = value.strip()
+    return settings
+
+
+def read_overrides(_context, _option, texts: tuple[str, ...]) -> dict[str, object]:
+    """Overrides from KEY=VALUE texts; a value that is not TOML, such as 4 mm, is taken as text."""
+    if not texts:
+        return {}
+    from lab.sweeps.axes import plain
+
+    return {key: plain(text) for key, text in texts_by_key(texts).items()}
+
+
+def short_overrides(repeats: int | None, arch: str | None) -> dict[str, object]:
+    """The overrides that have options of their own."""
+    wanted = {"run.repeats": repeats, "run.arch": arch}
+    return {key: value for key, value in wanted.items() if value is not None}
+
+
+set_option = click.option(
+    "--set",
+    "overrides",
+    multiple=True,
+    metavar="KEY=VALUE",
+    callback=read_overrides,
+    help="Change a key of the preset; repeat for more.",
+)
+repeats_option = click.option("--repeats", type=int, metavar="N", help="Beds, each with its own seed.")
+arch_option = click.option(
+    "--arch", type=click.Choice(["auto", "cpu", "cuda", "vulkan"]), help="What computes.  [default: as the preset says]"
+)
+quiet_option = click.option("--quiet", is_flag=True, help="Say only where the results are.")
+cluster_option = click.option(
+    "--cluster", metavar="ADDRESS", help="Run on the workers of this Dask scheduler, e.g. tcp://node1:8786."
+)
+video_option = click.option("--no-video", is_flag=True, help="Do not paint a video.")
+
+
+class ColourOption(click.Option):
+    """An option whose help names the colourings; only help needs them."""
+
+    def get_help_record(self, context: click.Context) -> tuple[str, str] | None:
+        """Flags and help."""
+        from lab.preset.sections.video import COLOURS
+
+        self.help = f"What the colour says: {', '.join(COLOURS)}."
+        return super().get_help_record(context)
+
+
+page_option = click.option(
+    "--out",
+    type=click.Path(path_type=Path, file_okay=False),
+    metavar="DIR",
+    default=Path("renders/bench"),
+    show_default=True,
+    help="Folder of the page and its figures.",
+)
+fast_option = click.option("--fast", is_flag=True, help="Only what takes seconds.")
+
+
+def show(result, quiet: bool) -> None:
+    """Say where the results are, after their summary unless that is not wanted."""
+    if not quiet:
+        click.echo(result.summary_text)
+    click.echo(result.folder)

@@ -1,0 +1,95 @@
+"""The commands for one run: run, resume, explain."""
+
+from pathlib import Path
+
+import click
+
+from lab.base.errors import LabError
+from lab.cli.options import arch_option, quiet_option, repeats_option, set_option, short_overrides, show, video_option
+
+
+@click.command()
+@click.argument("preset", required=False)
+@set_option
+@click.option(
+    "--replay",
+    type=click.Path(path_type=Path),
+    metavar="DIR",
+    help="Instead of a preset: a recording of `cargolab view`, steered again as it was, bit for bit.",
+)
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path, file_okay=False),
+    metavar="DIR",
+    help="Folder for the results.  [default: renders/PRESET]",
+)
+@repeats_option
+@arch_option
+@video_option
+@quiet_option
+def run(
+    preset: str | None,
+    overrides: dict,
+    replay: Path | None,
+    out: Path | None,
+    repeats: int | None,
+    arch: str | None,
+    no_video: bool,
+    quiet: bool,
+) -> None:
+    """Run PRESET: a name from `cargolab list`, or your own .toml file.
+
+    \b
+    cargolab run tilting/quick
+    cargolab run tilting/quick --set grains.diameter="4 mm" --repeats 12
+    cargolab run shaking/roll --set motion.roll.centre='["0 mm", "0 mm"]' --out centre0
+    cargolab run my.toml --no-video
+    cargolab run --replay renders/view/tilting/quick
+    """
+    overrides |= short_overrides(repeats, arch)
+    if replay is not None:
+        if preset is not None or overrides:
+            raise LabError("--replay: repeats a recording as it was; leave out the preset and all changes.")
+        from lab.view.replay import replay as replayed
+
+        show(replayed(replay, out, video=not no_video, quiet=quiet), quiet)
+        return
+    if preset is None:
+        raise LabError("run: which preset? `cargolab list` shows all.")
+    from lab.preset.find import load
+
+    load(preset, overrides)  # before the slow imports, so that a slip is answered at once
+    from lab.runs.runner import run_preset
+
+    show(run_preset(preset, overrides, out, video=not no_video, quiet=quiet), quiet)
+
+
+@click.command()
+@click.argument("folder", type=click.Path(path_type=Path))
+@video_option
+@quiet_option
+def resume(folder: Path, no_video: bool, quiet: bool) -> None:
+    """Go on with the run, sweep or calibration in FOLDER that was killed, interrupted or stopped.
+
+    \b
+    cargolab resume renders/tilting/quick
+    """
+    from lab.sweeps.resume import resume_any
+
+    show(resume_any(folder, video=not no_video, quiet=quiet), quiet)
+
+
+@click.command()
+@click.argument("preset")
+@set_option
+def explain(preset: str, overrides: dict) -> None:
+    """Say what PRESET is, what it switches on and what it will cost.
+
+    \b
+    cargolab explain shaking/sway
+    cargolab explain shaking/sway --set motion.sway.frequency="0.8 Hz"
+    """
+    from lab.preset.find import load
+    from lab.report.explain import explain as explained
+
+    click.echo(explained(load(preset, overrides)))

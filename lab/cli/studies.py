@@ -1,0 +1,99 @@
+"""The commands that show what the lab has and what its numbers are worth: list, gallery, reproduce, verify."""
+
+import sys
+from pathlib import Path
+
+import click
+
+from lab.cli.options import cluster_option, fast_option, page_option, quiet_option
+
+
+@click.command("list")
+def list_presets() -> None:
+    """List the presets."""
+    from lab.preset.find import QUICK, names
+
+    titles = names()
+    shown = {
+        name + f"[{QUICK}]" * (name + QUICK in titles): title
+        for name, title in titles.items()
+        if not name.endswith(QUICK)
+    }
+    width = max(map(len, shown), default=0)
+    for name, title in shown.items():
+        click.echo(f"{name:<{width}}  {title}")
+    click.echo(f"\n[{QUICK}]: also by that longer name, cheaper and less exact", err=True)
+
+
+@click.command()
+@click.argument("cases", nargs=-1)
+@page_option
+@fast_option
+def verify(cases: tuple[str, ...], out: Path, fast: bool) -> None:
+    """Compare small scenes with closed forms, independent integrations and published numbers.
+
+    \b
+    cargolab verify                     all CASES, and a page with a table and figures
+    cargolab verify --fast
+    cargolab verify oblique incline     those whose names begin like this
+    """
+    from lab.studies.verify import run_cases
+
+    if not run_cases(cases, out, fast):
+        sys.exit(1)
+
+
+@click.command()
+@click.argument("what", metavar="REPORT", type=click.Choice(["granular", "shapes", "ship"]))
+@click.argument("experiments", nargs=-1)
+@click.option("--quick", is_flag=True, help="Fewer beds, faster tilts, draft accuracy: under 20 minutes on two cores.")
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path, file_okay=False),
+    metavar="DIR",
+    default=Path("renders/reproduce"),
+    show_default=True,
+    help="Folder of the report and of its runs.",
+)
+@cluster_option
+@quiet_option
+def reproduce(
+    what: str, experiments: tuple[str, ...], quick: bool, out: Path, cluster: str | None, quiet: bool
+) -> None:
+    """Run the experiments of the source and write one report: what it states, what we get, the difference, the cost.
+
+    \b
+    cargolab reproduce granular --quick
+    cargolab reproduce granular                 hours on two cores; asked again, it goes on
+    cargolab reproduce granular tilt-fill stack EXPERIMENTS whose names begin like this
+    cargolab reproduce shapes --quick           those with irregular grains
+    cargolab reproduce ship --quick             those with ships in waves
+    cargolab reproduce granular --cluster tcp://node1:8786
+    """
+    from lab.studies.reproduce import reproduce as reproduced
+
+    click.echo(reproduced(what, experiments, out, quick, quiet, cluster))
+
+
+@click.command()
+@click.argument("presets", nargs=-1)
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path, file_okay=False),
+    metavar="DIR",
+    default=Path("renders/gallery/presets"),
+    show_default=True,
+    help="Folder of the page.",
+)
+@click.option("--repeats", "beds", type=click.IntRange(1), default=1, show_default=True, help="Beds of each preset.")
+@quiet_option
+def gallery(presets: tuple[str, ...], out: Path, beds: int, quiet: bool) -> None:
+    """Run every preset, or those whose names begin like PRESETS, and show them on one page: clips and numbers.
+
+    \b
+    cargolab gallery                  some hours on two cores; asked again, it goes on
+    cargolab gallery tilting funnel
+    """
+    from lab.studies.gallery import make_gallery
+
+    click.echo(make_gallery(presets, out, quiet, beds))

@@ -1,0 +1,131 @@
+"""The house itself: rooms import those below them only, no files in a circle, no room and no file too full.
+
+`docs/developing.md` says what each room is for. A new room gets its place in the lists here.
+"""
+
+import ast
+from collections.abc import Iterator
+from functools import cache
+from graphlib import CycleError, TopologicalSorter
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+FLOORS = {  # from the ground up: a room imports those before it
+    "solvers": ["machine", "ship", "space", "tank", "motion", "grains", "time", "scene", "simulation"],
+    "lab": [
+        "base",
+        "preset",
+        "assembly",
+        "recording",
+        "measures",
+        "paint",
+        "report",
+        "runs",
+        "sweeps",
+        "view",
+        "studies",
+        "cli",
+    ],
+}
+FACES = "solvers", "lab", "lab.__main__"  # they hand on what the rooms offer
+FOR_ALL = "solvers", "lab.__version__"  # what every room may ask a face for: that Taichi is set up, the version
+
+MOST_FILES = 14  # in a folder, its __init__.py aside
+REGISTRIES = "lab/measures", "solvers/grains/laws", "solvers/motion"  # as many as there are measures, laws, motions
+FULL = {"lab/studies/reproduce": 23, "lab/studies/verify": 20}  # too full, and not to become fuller
+
+MOST_LINES = 300  # of a file
+LONG = {  # too long, and not to become longer
+    "lab/paint/film.py": 399,
+    "lab/paint/painter.py": 445,
+    "lab/preset/find.py": 308,
+    "lab/recording/writer.py": 344,
+    "lab/report/plots.py": 612,
+    "lab/runs/beds.py": 310,
+    "lab/runs/launch.py": 331,
+    "lab/studies/reproduce/outlines.py": 375,
+    "lab/studies/reproduce/shaking.py": 353,
+    "lab/studies/reproduce/ship.py": 310,
+    "lab/studies/reproduce/tilting.py": 385,
+    "lab/studies/verify/chung_ooi.py": 324,
+    "lab/sweeps/calibrate.py": 321,
+    "lab/sweeps/sweep.py": 327,
+    "lab/view/page.py": 437,
+    "lab/view/session.py": 366,
+    "solvers/grains/shapes/rules/continuous.py": 408,
+    "solvers/machine/runtime.py": 314,
+    "solvers/motion/afloat.py": 403,
+    "solvers/simulation.py": 367,
+}
+
+
+@cache
+def modules() -> dict[str, Path]:
+    """The files of both packages, by their dotted names."""
+    files = [path for package in FLOORS for path in sorted((ROOT / package).rglob("*.py"))]
+    return {".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__"): path for path in files}
+
+
+def imported(name: str) -> Iterator[str]:
+    """What a module imports of both packages, at its head or inside a function: modules, or names of a face."""
+    for node in ast.walk(ast.parse(modules()[name].read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            found = [alias.name for alias in node.names]
+        elif isinstance(node, ast.ImportFrom):
+            assert not node.level, f"{name}: import by the whole name"
+            full = [f"{node.module}.{alias.name}" for alias in node.names]
+            found = [one if one in modules() or node.module in FLOORS else node.module for one in full]
+        else:
+            continue
+        yield from (one for one in found if one.split(".")[0] in FLOORS)
+
+
+def floor(name: str) -> int:
+    """How high the room of a module is in its package."""
+    package, _, rest = name.partition(".")
+    room = rest.partition(".")[0]
+    assert room in FLOORS[package], f"{name}: no floor for {package}/{room}; give it one in {Path(__file__).name}"
+    return FLOORS[package].index(room)
+
+
+def uphill() -> list[str]:
+    """The imports that run up."""
+    found = []
+    for name in modules().keys() - set(FACES):
+        for other in set(imported(name)) - set(FOR_ALL):
+            package = name.split(".")[0]
+            same = other.split(".")[0] == package
+            up = other in FACES or floor(other) > floor(name) if same else package == "solvers"
+            found += [f"{name} imports {other}"] * up
+    return sorted(found)
+
+
+def test_rooms_import_only_those_below_them():
+    assert uphill() == []
+
+
+def test_no_files_import_each_other_in_a_circle():
+    known = set(modules())
+    try:
+        TopologicalSorter({name: known & set(imported(name)) - set(FACES) for name in known}).prepare()
+    except CycleError as error:
+        pytest.fail(" → ".join(error.args[1]))
+
+
+def test_no_folder_is_too_full():
+    folders = {path.parent for path in modules().values()}
+    count = {folder: sum(path.name != "__init__.py" for path in folder.glob("*.py")) for folder in folders}
+    for folder, files in count.items():
+        name = folder.relative_to(ROOT).as_posix()
+        assert name in REGISTRIES or files <= FULL.get(name, MOST_FILES), f"{name}: {files} files"
+
+
+def test_no_file_is_too_long():
+    lines = {
+        path.relative_to(ROOT).as_posix(): len(path.read_text(encoding="utf-8").splitlines())
+        for path in modules().values()
+    }
+    assert [f"{name}: {count}" for name, count in lines.items() if count > LONG.get(name, MOST_LINES)] == []
+    assert [name for name in LONG if lines.get(name, 0) <= MOST_LINES] == []  # they need no exception any more
