@@ -4,6 +4,7 @@
 """
 
 import ast
+import re
 from collections.abc import Iterator
 from functools import cache
 from graphlib import CycleError, TopologicalSorter
@@ -120,3 +121,9 @@ def test_no_file_is_too_long():
     }
     assert [f"{name}: {count}" for name, count in lines.items() if count > LONG.get(name, MOST_LINES)] == []
     assert [name for name in LONG if lines.get(name, 0) <= MOST_LINES] == []  # they need no exception any more
+
+
+def test_the_page_for_developers_names_every_room():
+    text = (ROOT / "docs" / "developing.md").read_text(encoding="utf-8")
+    tables = re.findall(r"^\| `(\w+)/` \| is \|\n(.+?)\n\n", text, re.MULTILINE | re.DOTALL)
+    assert {package: tuple(re.findall(r"^\| `(\w+)` \|", rows, re.MULTILINE)) for package, rows in tables} == FLOORS

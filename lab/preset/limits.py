@@ -11,14 +11,16 @@ from dataclasses import fields, is_dataclass
 
 from lab.base.errors import LabError
 from lab.preset.bed_file import MOST as MOST_LISTED
-from lab.preset.history import check_history
 from lab.preset.outline import simple_polygon
-from lab.preset.parts import check_parts
 from lab.preset.reader import BOUND, check_interval
-from lab.preset.schema import Resolved, check_grains, check_lining
+from lab.preset.schema import Resolved
+from lab.preset.sections.grains import check_grains
+from lab.preset.sections.history import check_history
+from lab.preset.sections.parts import check_parts
+from lab.preset.sections.shapes import MOST_DESCRIPTORS, MOST_DRAWS
+from lab.preset.sections.ship_checks import check_ship
+from lab.preset.sections.tank import check_lining
 from lab.preset.sections.video import check_video
-from lab.preset.shapes import MOST_DESCRIPTORS, MOST_DRAWS
-from lab.preset.ship_checks import check_ship
 from lab.preset.toml import BARE_KEY
 
 LONGEST_LIST = 1000  # of classes of sizes, of kinds and of shapes

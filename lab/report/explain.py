@@ -11,7 +11,7 @@ from lab.measures.ship_roll import FROZEN_INTERVAL
 from lab.preset.accuracy import LEVELS
 from lab.preset.find import LoadedPreset
 from lab.preset.schema import Resolved
-from lab.preset.shapes import Shape, caution
+from lab.preset.sections.shapes import Shape, caution
 from lab.preset.units import show
 from lab.report.ship import describe
 from solvers.grains.laws import COHESION

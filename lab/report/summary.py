@@ -12,7 +12,7 @@ from lab.base.errors import LabError
 from lab.base.text import code, fenced, inline, one_line, paragraphs, printable
 from lab.measures.value import Value
 from lab.preset.accuracy import LEVELS
-from lab.preset.shapes import caution
+from lab.preset.sections.shapes import caution
 from lab.preset.ship import axis_place, recorded_ship
 from lab.preset.units import show
 from lab.recording import Recording, ship_end

@@ -16,7 +16,8 @@ from lab.assembly.scene import build
 from lab.base.errors import LabError
 from lab.base.progress import Progress
 from lab.preset.find import LoadedPreset
-from lab.preset.schema import Motion, Resolved
+from lab.preset.schema import Resolved
+from lab.preset.sections.motion import Motion
 from lab.recording import WAVES, Recorder
 from lab.runs.beds import settled, settling
 from lab.runs.launch import Run, pose_of, sampled

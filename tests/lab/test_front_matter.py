@@ -1,5 +1,6 @@
 """What a package tells of itself: one version everywhere, a licence that its libraries allow, how to cite it."""
 
+import re
 import tomllib
 from importlib import metadata
 from pathlib import Path
@@ -13,6 +14,9 @@ from lab.cli import main
 from lab.recording.writer import versions
 
 ROOT = Path(lab.__file__).parents[1]
+PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
+LINK = re.compile(r"\]\(([^)#\s]+)[^)]*\)")
+NAMED = re.compile(r"(?<![\w/])(?:lab|solvers|tests|docs|presets|\.ci)/[\w./-]*")
 
 
 def test_one_version_everywhere():
@@ -42,3 +46,13 @@ def test_no_library_that_is_needed_forbids_the_licence(package):
     told = metadata.metadata(package)
     texts = [told.get("License-Expression") or "", (told.get("License") or "")[:200], *told.get_all("Classifier", [])]
     assert not any("GPL" in text and "LGPL" not in text for text in texts)
+
+
+def test_every_path_that_a_page_names_is_there():
+    found = []
+    for page in PAGES:
+        text = page.read_text(encoding="utf-8")
+        found += [page.parent / link for link in LINK.findall(text) if "://" not in link]
+        found += [ROOT / name.rstrip(".") for name in NAMED.findall(text)]
+    assert len(found) > 20
+    assert [str(path) for path in found if not path.exists()] == []

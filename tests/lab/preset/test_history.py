@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 from scipy.interpolate import CubicSpline
 
 from lab.base.errors import LabError
-from lab.preset import history
 from lab.preset.find import load
 from lab.preset.schema import Resolved
+from lab.preset.sections import history
 from lab.runs.runner import run_preset
 
 TANK = """

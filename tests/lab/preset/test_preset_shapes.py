@@ -14,7 +14,7 @@ from lab.base.errors import LabError
 from lab.paint.video import poster, render_grid
 from lab.preset.find import load
 from lab.preset.schema import Resolved
-from lab.preset.shapes import Shape
+from lab.preset.sections.shapes import Shape
 from lab.recording import Recorder, open_recording
 from lab.report.explain import explain
 from lab.runs.beds import bed_key, settling
