@@ -9,18 +9,20 @@ import json
 import os
 import shlex
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
 import numpy as np
 
 from lab.base.errors import LabError
-from lab.preset.find import load, nested
+from lab.preset.find import load
+from lab.preset.merge import nested
 from lab.preset.reader import dotted_key, taken_by
 from lab.preset.schema import Given
 from lab.preset.units import NUMBER, in_unit, quoted
 from lab.runs.runner import RENDERS
+from lab.sweeps.asked import Asked, check_folder, read_asked, write_asked
 from lab.sweeps.axes import values
 from lab.sweeps.calibration_report import Calibration, Tried, write_report
 from lab.sweeps.inverse import LEAST_BEDS, Response, beds_for, crossings, fitted, misfit, solved
@@ -32,18 +34,6 @@ POINTS = 5  # values of the key in a round
 CLOSER = 0.25  # half the width of the second round, of the first one's range
 WITHIN = 0.05  # of the range: half the width of an interval that is called narrow
 ALIASES = {"repose": ("critical_angle", "heap_angle")}
-FORMAT = "cargo-shift-lab calibration 1"
-FILE_NAME = "asked.json"  # what says that a folder holds a calibration
-
-
-@dataclass(frozen=True)
-class Asked:
-    """What was asked for, as texts; the overrides as nested tables."""
-
-    preset: str
-    target: str
-    vary: str
-    overrides: dict = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -93,9 +83,9 @@ def calibrate(
     preset = os.path.abspath(name) if os.path.isfile(name) else str(name)
     asked = Asked(preset, target, vary, json.loads(json.dumps(nested(overrides or {}), default=str)))
     folder = Path(out) if out is not None else RENDERS / f"{Path(preset).stem}-calibration"
-    _check_folder(asked, folder)
+    check_folder(asked, folder)
     plan = understood(asked)
-    _write_asked(asked, folder)
+    write_asked(asked, folder)
     try:
         return _carried_out(plan, folder, quiet, cluster)
     except KeyboardInterrupt:
@@ -140,22 +130,6 @@ def _target(text: str, unit: str) -> tuple[float, float]:
     return in_unit(value, unit, "--target"), spread
 
 
-def read_asked(folder: Path) -> Asked:
-    """What was asked for of the calibration in a folder. Raises LabError."""
-    path = folder / FILE_NAME
-    try:
-        content = json.loads(path.read_text(encoding="utf-8"))
-        if content.pop("format") != FORMAT or not all(
-            isinstance(content[k], str) for k in ("preset", "target", "vary")
-        ):
-            raise ValueError("another form")
-        return Asked(**{**content, "overrides": dict(content["overrides"])})
-    except OSError as error:
-        raise LabError(f"{path} cannot be read ({error.strerror}): name the folder of a calibration.") from error
-    except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
-        raise LabError(f"{path} is damaged: calibrate anew in another folder.") from error
-
-
 def _pair(option: str, text: str, example: str) -> tuple[str, str]:
     left, equals, right = text.partition("=")
     if not (left.strip() and equals and right.strip()):
@@ -184,21 +158,6 @@ def _with_beds(asked: Asked) -> dict:
         return asked.overrides
     own = load(asked.preset, asked.overrides).resolved.run.repeats
     return nested({**asked.overrides, "run": {**(run or {}), "repeats": max(own, LEAST_BEDS)}})
-
-
-def _check_folder(asked: Asked, folder: Path) -> None:
-    """Raise LabError where the folder holds another calibration."""
-    if (folder / FILE_NAME).exists() and read_asked(folder) != asked:
-        raise LabError(f"{folder} holds another calibration than is asked for: choose another folder with --out.")
-
-
-def _write_asked(asked: Asked, folder: Path) -> None:
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        content = json.dumps({"format": FORMAT, **asdict(asked)}, indent=1)
-        (folder / FILE_NAME).write_text(content + "\n", encoding="utf-8")
-    except OSError as error:
-        raise LabError(f"{folder} cannot be written ({error.strerror or error}): make room there.") from error
 
 
 def _carried_out(plan: Plan, folder: Path, quiet: bool, cluster: str | None) -> Calibration:

@@ -3,10 +3,10 @@
 from pathlib import Path
 
 from lab.runs.runner import Result, resume_run
-from lab.sweeps.calibrate import FILE_NAME as CALIBRATION
+from lab.sweeps.asked import FILE_NAME as CALIBRATION
 from lab.sweeps.calibrate import resume_calibration
 from lab.sweeps.calibration_report import Calibration
-from lab.sweeps.sweep import FILE_NAME as SWEEP
+from lab.sweeps.grid import FILE_NAME as SWEEP
 from lab.sweeps.sweep import SweepResult, resume_sweep
 
 

@@ -4,82 +4,27 @@ Points whose scenes can share a launch run side by side; what is recorded of a p
 that was cut short goes on where it stood when it is asked for again.
 """
 
-import json
-import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from itertools import product
 from pathlib import Path
 
-import numpy as np
-
-from lab.assembly.scene import grain_count
 from lab.base.errors import LabError, Useless
 from lab.base.lock import only_one
 from lab.base.progress import Progress
-from lab.preset.find import LoadedPreset, load
-from lab.preset.limits import resolved_from
 from lab.recording import FILE_NAME as RECORDING
 from lab.recording import open_recording
 from lab.runs.belongs import check_belongs
 from lab.runs.checkpoint import Checkpoint, read_checkpoint, remove_checkpoint
 from lab.runs.launch import Run, launch, prepare
 from lab.runs.runner import RENDERS, hint, report, reported
-from lab.sweeps.axes import values
 from lab.sweeps.cluster import Errand, fetch
+from lab.sweeps.grid import FILE_NAME, Sweep, ask, read_sweep
 from lab.sweeps.report import write_report
 from solvers.machine.runtime import available_cores, choose_arch
 
-FORMAT = "cargo-shift-lab sweep 1"
-FILE_NAME = "sweep.json"
-
 # A launch holds so many worlds a core that none idles long while the last ones end, and grains and files in bounds.
 WORLDS_A_CORE, MOST_GRAINS, MOST_RUNS = 8, 1_000_000, 100
-MOST_POINTS = 100_000
-
-
-@dataclass(frozen=True)
-class Sweep:
-    """What was asked: the preset's name, the values of each swept key, the preset of each point of their grid.
-
-    The last key changes fastest.
-    """
-
-    name: str
-    axes: dict[str, list]
-    points: list[LoadedPreset] = field(repr=False)
-
-    @property
-    def settings(self) -> list[dict[str, object]]:
-        """The values of the swept keys at each point."""
-        return [dict(zip(self.axes, chosen, strict=True)) for chosen in product(*self.axes.values())]
-
-    def worth(self, number: int) -> float:
-        """What a point costs, up to a factor: seconds of model time times grains."""
-        preset = self.points[number].resolved
-        return preset.run.duration * preset.run.repeats * grain_count(preset)
-
-    def same_as(self, other: "Sweep") -> bool:
-        """Whether the other asks for the same points."""
-        asked = [(sweep.name, sweep.axes, [point.resolved for point in sweep.points]) for sweep in (self, other)]
-        return asked[0] == asked[1]
-
-    def write(self, folder: Path) -> None:
-        """Keep what was asked in the sweep's folder. Raises LabError."""
-        points = [
-            {"given": point.given_text, "resolved": json.loads(point.resolved.model_dump_json())}
-            for point in self.points
-        ]
-        content = {"format": FORMAT, "preset": self.name, "axes": self.axes, "points": points}
-        path = folder / FILE_NAME
-        try:
-            folder.mkdir(parents=True, exist_ok=True)
-            unfinished = path.with_name(f"{FILE_NAME}.new")
-            unfinished.write_text(json.dumps(content, indent=1), encoding="utf-8")
-            unfinished.replace(path)
-        except OSError as error:
-            raise LabError(f"{folder} cannot be written ({error.strerror}): choose another folder.") from error
 
 
 @dataclass
@@ -94,35 +39,6 @@ class SweepResult:
     def points(self) -> list[Path]:
         """The folder of each point's run, in the order of the rows."""
         return [point_folder(self.folder, number) for number in range(len(self.rows))]
-
-
-def ask(name: str | Path, axes: Mapping[str, str | Sequence], overrides: Mapping | None = None) -> Sweep:
-    """The sweep of a preset over `axes`: for each key a text (see `lab.sweeps.axes`) or a sequence of values.
-
-    Raises LabError where a point is no valid preset.
-    """
-    listed = {key: values(key, said) if isinstance(said, str) else _plain(said) for key, said in axes.items()}
-    fixed = {key: found[0] for key, found in listed.items() if len(found) == 1}
-    swept = {key: found for key, found in listed.items() if len(found) != 1}
-    if not swept or not all(swept.values()):
-        raise LabError("a sweep needs a key with several values, e.g. --set motion.sway.frequency=0.5:2:7Hz.")
-    count = math.prod(map(len, swept.values()))
-    if count > MOST_POINTS:
-        raise LabError(f"the sweep has {count} points, more than {MOST_POINTS}: take fewer values.")
-    points = []
-    for chosen in product(*swept.values()):
-        setting = dict(zip(swept, chosen, strict=True))
-        try:
-            points.append(load(name, {**(overrides or {}), **fixed, **setting}))
-        except LabError as error:
-            said = ", ".join(f"{key} = {value}" for key, value in setting.items())
-            raise LabError(f"point {said}: {error}") from None
-    return Sweep(points[0].name, swept, points)
-
-
-def _plain(numbers: Sequence) -> list:
-    """The values without numpy's types, which no file takes."""
-    return [value.item() if isinstance(value, np.generic) else value for value in numbers]
 
 
 def run_sweep(
@@ -161,28 +77,6 @@ def errands(
 def resume_sweep(folder: Path | str, *, video: bool = True, quiet: bool = False) -> SweepResult:
     """Go on with the sweep in a folder as it was asked for. Raises as `run_sweep`."""
     return _complete(read_sweep(Path(folder)), Path(folder), video, quiet)
-
-
-def read_sweep(folder: Path) -> Sweep:
-    """The sweep that a folder holds. Raises LabError."""
-    path = folder / FILE_NAME
-    try:
-        content = json.loads(path.read_text(encoding="utf-8"))
-        if content["format"] != FORMAT:
-            raise LabError(f"{path} was written by another version: sweep anew in another folder.")
-        name, axes = content["preset"], dict(content["axes"])
-        if not isinstance(name, str) or not axes or not all(isinstance(found, list) for found in axes.values()):
-            raise ValueError("no preset, or no values of its keys")
-        if not 1 < math.prod(map(len, axes.values())) == len(content["points"]) <= MOST_POINTS:
-            raise ValueError("values and points do not belong together")
-        points = [
-            LoadedPreset(name, str(point["given"]), resolved_from(point["resolved"])) for point in content["points"]
-        ]
-        return Sweep(name, axes, points)
-    except OSError as error:
-        raise LabError(f"{path} cannot be read ({error.strerror}): name the folder of a sweep.") from error
-    except (ValueError, KeyError, TypeError, RecursionError) as error:
-        raise LabError(f"{path} is damaged: sweep anew in another folder.") from error
 
 
 def point_folder(folder: Path, number: int) -> Path:

@@ -12,9 +12,10 @@ from lab.preset.find import load
 from lab.recording import FILE_NAME, Recording, open_recording
 from lab.runs.runner import recorded_preset, resume_run, run_preset
 from lab.sweeps.cluster import Errand
-from lab.sweeps.sweep import FILE_NAME as SWEEP
+from lab.sweeps.grid import FILE_NAME as SWEEP
+from lab.sweeps.grid import read_sweep
 from lab.sweeps.sweep import errands as sweep_errands
-from lab.sweeps.sweep import point_folder, read_sweep, run_sweep, state_of
+from lab.sweeps.sweep import point_folder, run_sweep, state_of
 from solvers.machine.errors import BadState
 
 

@@ -26,6 +26,7 @@ from lab.preset.units import NUMBER
 from lab.recording import Recorder
 from lab.runs.checkpoint import Checkpoint, read_checkpoint
 from lab.runs.launch import prepare
+from lab.sweeps import grid
 from lab.sweeps import sweep as sweeps
 from tests.oracles.synthetic import frame, sample
 
@@ -554,14 +555,14 @@ def test_a_checkpoint_that_does_not_say_what_it_is_is_refused(idle, recorded, tm
 
 
 def test_a_sweep_over_numbers_of_numpy_is_read_again(tmp_path):
-    asked = sweeps.ask("tilting/quick", {"run.seed": np.arange(1, 3), "grains.spread": [np.float64(0.1), 0.2]}, SMALL)
+    asked = grid.ask("tilting/quick", {"run.seed": np.arange(1, 3), "grains.spread": [np.float64(0.1), 0.2]}, SMALL)
     asked.write(tmp_path)
-    assert sweeps.read_sweep(tmp_path).same_as(asked)
+    assert grid.read_sweep(tmp_path).same_as(asked)
 
 
 @often
 def test_damaged_sweeps_are_refused(idle, tmp_path, times):
-    sweep = sweeps.ask("tilting/quick", {"run.seed": "1, 2"}, SMALL)
+    sweep = grid.ask("tilting/quick", {"run.seed": "1, 2"}, SMALL)
     sweep.write(tmp_path)
     content = (tmp_path / "sweep.json").read_bytes()
 

@@ -13,9 +13,9 @@ from hypothesis import strategies as st
 
 from lab.assembly.scene import build
 from lab.base.errors import LabError
-from lab.preset import find as presets
 from lab.preset import reader, toml
-from lab.preset.find import QUICK, load, merged, names
+from lab.preset.find import QUICK, load, names
+from lab.preset.merge import merged, nested
 from lab.preset.outline import area, simple_polygon
 from lab.preset.schema import Given, Resolved, resolve
 from solvers.machine.marks import Interval, Unit
@@ -43,7 +43,7 @@ duration = "1 s"
 def minimal(**overrides) -> Resolved:
     """The minimal preset with dotted keys (double underscores for dots) over it."""
     dotted = {key.replace("__", "."): value for key, value in overrides.items()}
-    return resolve(merged(tomllib.loads(MINIMAL), presets.nested(dotted)))
+    return resolve(merged(tomllib.loads(MINIMAL), nested(dotted)))
 
 
 def fault(**overrides) -> str:

@@ -10,7 +10,8 @@ import pytest
 from lab.assembly.scene import build
 from lab.base.errors import LabError
 from lab.base.progress import Progress
-from lab.preset.find import load, merged
+from lab.preset.find import load
+from lab.preset.merge import merged
 from lab.runs import beds
 from lab.runs.beds import BedStore, bed_key, lay, made, settled, settling
 from solvers.simulation import Simulation

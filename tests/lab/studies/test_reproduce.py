@@ -29,7 +29,7 @@ from lab.studies.reproduce.findings import Finding, asked, read_findings
 from lab.studies.reproduce.report import write_report
 from lab.studies.reproduce.runs import Batch, Outcome
 from lab.studies.reproduce.shaking import FREQUENCY, onset
-from lab.sweeps.sweep import ask
+from lab.sweeps.grid import ask
 from solvers.machine import runtime
 
 ROOT = Path(lab.__file__).parents[1]

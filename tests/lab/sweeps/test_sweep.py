@@ -27,9 +27,10 @@ from lab.runs.launch import _without
 from lab.runs.runner import run_preset
 from lab.sweeps import report as sweep_report
 from lab.sweeps.axes import plain, values
+from lab.sweeps.grid import ask, read_sweep
 from lab.sweeps.report import numeric, write_report
 from lab.sweeps.resume import resume_any
-from lab.sweeps.sweep import _plan, ask, read_sweep, run_sweep
+from lab.sweeps.sweep import _plan, run_sweep
 from tests.oracles.synthetic import frame, record
 
 ROOT = Path(__file__).parents[3]

@@ -1,0 +1,114 @@
+"""What a sweep asks for: a preset at every point of a grid of values of its keys, and the file that keeps it."""
+
+import json
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import product
+from pathlib import Path
+
+import numpy as np
+
+from lab.assembly.scene import grain_count
+from lab.base.errors import LabError
+from lab.preset.find import LoadedPreset, load
+from lab.preset.limits import resolved_from
+from lab.sweeps.axes import values
+
+FORMAT = "cargo-shift-lab sweep 1"
+FILE_NAME = "sweep.json"
+MOST_POINTS = 100_000
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """What was asked: the preset's name, the values of each swept key, the preset of each point of their grid.
+
+    The last key changes fastest.
+    """
+
+    name: str
+    axes: dict[str, list]
+    points: list[LoadedPreset] = field(repr=False)
+
+    @property
+    def settings(self) -> list[dict[str, object]]:
+        """The values of the swept keys at each point."""
+        return [dict(zip(self.axes, chosen, strict=True)) for chosen in product(*self.axes.values())]
+
+    def worth(self, number: int) -> float:
+        """What a point costs, up to a factor: seconds of model time times grains."""
+        preset = self.points[number].resolved
+        return preset.run.duration * preset.run.repeats * grain_count(preset)
+
+    def same_as(self, other: "Sweep") -> bool:
+        """Whether the other asks for the same points."""
+        asked = [(sweep.name, sweep.axes, [point.resolved for point in sweep.points]) for sweep in (self, other)]
+        return asked[0] == asked[1]
+
+    def write(self, folder: Path) -> None:
+        """Keep what was asked in the sweep's folder. Raises LabError."""
+        points = [
+            {"given": point.given_text, "resolved": json.loads(point.resolved.model_dump_json())}
+            for point in self.points
+        ]
+        content = {"format": FORMAT, "preset": self.name, "axes": self.axes, "points": points}
+        path = folder / FILE_NAME
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            unfinished = path.with_name(f"{FILE_NAME}.new")
+            unfinished.write_text(json.dumps(content, indent=1), encoding="utf-8")
+            unfinished.replace(path)
+        except OSError as error:
+            raise LabError(f"{folder} cannot be written ({error.strerror}): choose another folder.") from error
+
+
+def ask(name: str | Path, axes: Mapping[str, str | Sequence], overrides: Mapping | None = None) -> Sweep:
+    """The sweep of a preset over `axes`: for each key a text (see `lab.sweeps.axes`) or a sequence of values.
+
+    Raises LabError where a point is no valid preset.
+    """
+    listed = {key: values(key, said) if isinstance(said, str) else _plain(said) for key, said in axes.items()}
+    fixed = {key: found[0] for key, found in listed.items() if len(found) == 1}
+    swept = {key: found for key, found in listed.items() if len(found) != 1}
+    if not swept or not all(swept.values()):
+        raise LabError("a sweep needs a key with several values, e.g. --set motion.sway.frequency=0.5:2:7Hz.")
+    count = math.prod(map(len, swept.values()))
+    if count > MOST_POINTS:
+        raise LabError(f"the sweep has {count} points, more than {MOST_POINTS}: take fewer values.")
+    points = []
+    for chosen in product(*swept.values()):
+        setting = dict(zip(swept, chosen, strict=True))
+        try:
+            points.append(load(name, {**(overrides or {}), **fixed, **setting}))
+        except LabError as error:
+            said = ", ".join(f"{key} = {value}" for key, value in setting.items())
+            raise LabError(f"point {said}: {error}") from None
+    return Sweep(points[0].name, swept, points)
+
+
+def _plain(numbers: Sequence) -> list:
+    """The values without numpy's types, which no file takes."""
+    return [value.item() if isinstance(value, np.generic) else value for value in numbers]
+
+
+def read_sweep(folder: Path) -> Sweep:
+    """The sweep that a folder holds. Raises LabError."""
+    path = folder / FILE_NAME
+    try:
+        content = json.loads(path.read_text(encoding="utf-8"))
+        if content["format"] != FORMAT:
+            raise LabError(f"{path} was written by another version: sweep anew in another folder.")
+        name, axes = content["preset"], dict(content["axes"])
+        if not isinstance(name, str) or not axes or not all(isinstance(found, list) for found in axes.values()):
+            raise ValueError("no preset, or no values of its keys")
+        if not 1 < math.prod(map(len, axes.values())) == len(content["points"]) <= MOST_POINTS:
+            raise ValueError("values and points do not belong together")
+        points = [
+            LoadedPreset(name, str(point["given"]), resolved_from(point["resolved"])) for point in content["points"]
+        ]
+        return Sweep(name, axes, points)
+    except OSError as error:
+        raise LabError(f"{path} cannot be read ({error.strerror}): name the folder of a sweep.") from error
+    except (ValueError, KeyError, TypeError, RecursionError) as error:
+        raise LabError(f"{path} is damaged: sweep anew in another folder.") from error
