@@ -1,6 +1,7 @@
 """A running simulation: the scene's arrays, its clock, and the calls that advance and read it."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
+from collections.abc import Sequence as Several
 from dataclasses import replace
 
 import numpy as np
@@ -8,6 +9,7 @@ import numpy as np
 from solvers.grains.contacts import Contacts
 from solvers.grains.integrators import INTEGRATORS
 from solvers.grains.laws.chosen import ChosenLaws
+from solvers.grains.matter import GrainMatter
 from solvers.grains.mover import Mover
 from solvers.grains.neighbours import Neighbours
 from solvers.grains.observe import Observer
@@ -24,17 +26,17 @@ from solvers.machine import runtime
 from solvers.machine.errors import Unavailable
 from solvers.machine.runtime import Arrays
 from solvers.machine.units import Units
-from solvers.motion.afloat import Afloat, steps_an_interval
-from solvers.motion.frame import Frame
+from solvers.motion.carrier import carrier_kind, make_carrier
 from solvers.scene import Scene
 from solvers.ship.body import Body
 from solvers.ship.vessel import Vessel
 from solvers.space import order as renumber
+from solvers.tank.load import Load
 from solvers.tank.walls import Walls
 from solvers.time import watch
 from solvers.time.clock import Clock
 from solvers.time.schedules import SCHEDULES, choose_schedule, units_a_world
-from solvers.time.schedules.engine import Engine
+from solvers.time.sequence import Sequence
 
 LOOK_FOR_MIXING = 0.25  # s, between looks at whether the grains' numbers still follow their places
 SKIN = 0.05  # of the mean diameter; in settled and in shaken beds the fastest of 0.05 … 0.3
@@ -63,13 +65,13 @@ class Simulation:
         units: int | None = None,
     ):
         self.threads = threads or runtime.available_cores()
-        self.afloat = bool(scene.vessels)
-        self.arch = "cpu" if self.afloat and arch == "auto" else runtime.choose_arch(arch, scene.precision)
+        answers = carrier_kind(scene.vessels).answers
+        self.arch = "cpu" if answers and arch == "auto" else runtime.choose_arch(arch, scene.precision)
         runtime.initialise(self.threads, self.arch, scene.precision)
         worlds, count = scene.radius.shape
         self.scene, self.dt = scene, scene.time_step()
         self.longest_step = scene.step_limits()[0].step  # s, at which it was made
-        self.schedule_name = choose_schedule(scene.schedule, self.arch, worlds, count, self.threads, self.afloat)
+        self.schedule_name = choose_schedule(scene.schedule, self.arch, worlds, count, self.threads, answers)
         self.units_a_world = units or units_a_world(self.schedule_name, worlds, count, self.threads)
         self.skin = skin or (SKIN_OF_CONVEX if scene.shapes and scene.shapes.convex else SKIN) * 2.0 * scene.mean_radius
         self.steps, self.room = 0, 1
@@ -104,18 +106,14 @@ class Simulation:
             self.grains = ShapedGrains(arrays, scene.shapes, *grains)
             self.neighbours = ShapedNeighbours(arrays, units, self.grains, self.walls, *lists, rule)
             self.contacts = ShapedContacts(arrays, units, self.grains, self.walls, self.neighbours, laws, rule)
-        if self.afloat:
-            every = steps_an_interval(scene.vessels, scene.interval, self.dt)
-            self.frame = Afloat(arrays, scene.vessels, scene.gravity, every)
-        else:
-            self.frame = Frame(arrays, scene.motions, scene.soft_start, scene.gravity)
-        self.mover = Mover(arrays, units, self.grains, integrator, self.frame.rotating, self.frame.afloat)
+        self.tank_load = Load(arrays, units, carrier_kind(scene.vessels).answers)
+        self.carrier = make_carrier(arrays, scene, self.dt, self.tank_load)
+        self.mover = Mover(arrays, units, self.grains, integrator, self.carrier.rotating, self.tank_load)
         self.clock = Clock(arrays, units)
-        engine = Engine(
-            units, self.grains, self.walls, self.neighbours, self.contacts, self.mover, self.frame, self.clock
-        )
-        self.schedule = SCHEDULES[self.schedule_name](engine, self.threads)
-        parts = units, self.grains, self.walls, self.neighbours, self.contacts, self.frame, self.mover
+        way = watch.FASTEST_STEP * scene.sizes[0]
+        matter = GrainMatter(arrays, units, self.grains, self.neighbours, self.contacts, self.mover, way)
+        self.schedule = SCHEDULES[self.schedule_name](Sequence([matter], self.carrier), self.clock, self.threads)
+        parts = units, self.grains, self.walls, self.neighbours, self.contacts, self.carrier, self.tank_load
         self.observer = Observer(arrays, *parts)
         self.presser = Presser(units, self.grains, self.walls, self.neighbours, self.contacts)
         arrays.finish()
@@ -177,9 +175,8 @@ class Simulation:
     def _reach_step(self) -> None:
         """Take every running world to the step that `steps` says."""
         runtime.merge_repeats(self.scene.shapes is None)
-        fastest = watch.FASTEST_STEP * self.scene.sizes[0] / self.dt
         while True:
-            self.schedule.advance(self.steps, self.origin, self.unkicked, self.dt, fastest)
+            self.schedule.advance(self.steps, self.origin, self.unkicked, self.dt)
             status = self.clock.status.to_numpy()
             if not np.any(status == watch.NO_ROOM):
                 break
@@ -237,11 +234,10 @@ class Simulation:
         self.observer.observe(self.origin + self.time, max(self.steps - self.observed, 1) * self.dt)
         rows = dict(zip(Observer.NAMES, self.observer.rows.to_numpy().T.astype(float), strict=True))
         # Where no time has passed there is nothing to average over.
-        ended = np.isin(self.clock.status.to_numpy(), (watch.WAITING, watch.CAPSIZED))
+        ended = np.isin(self.clock.status.to_numpy(), (watch.WAITING, watch.OVER))
         still = ended | (self.observed == self.steps)
         rows |= {name: np.where(still, self.load[name], rows[name]) for name in LOAD}
-        if self.afloat:
-            rows |= self.frame.account()
+        rows |= self.carrier.account()
         self.observed, self.load = self.steps, {name: rows[name] for name in LOAD}
         watch.check_state(rows["overlap"], rows["escaped"].astype(int), self.time)
         return rows
@@ -267,14 +263,14 @@ class Simulation:
         self.start_clock()
         return bool(np.all(quiet >= 2))
 
-    def steer(self, pieces: Sequence[np.ndarray]) -> None:
+    def steer(self, pieces: Several[np.ndarray]) -> None:
         """From now on, have the scene's motions, all of them steered, follow these polynomials (6,)."""
-        self.frame.steer(self.time, pieces)
+        self.carrier.steer(self.time, pieces)
 
-    def meet(self, vessels: Sequence[Vessel]) -> None:
+    def meet(self, vessels: Several[Vessel]) -> None:
         """Have the ships meet other waves, those of these vessels, which are else as they were."""
         self.scene = replace(self.scene, vessels=list(vessels))
-        self.frame.meet(vessels)
+        self.carrier.meet(vessels)
 
     def alter(self, **changes: object) -> None:
         """Go on with other materials or another gravity: fields of the scene. The grains stay as they are.
@@ -287,7 +283,7 @@ class Simulation:
         if altered.longest_bridge > self.scene.longest_bridge:
             raise Unavailable("this lets the liquid reach farther: start the experiment anew with it")
         self.scene = altered
-        self.frame.gravity.fill(altered.gravity)
+        self.carrier.gravity.fill(altered.gravity)
         self.neighbours.laws.learn(altered.interfaces_of)
         self.neighbours.expire()  # what was worked out for each contact is worked out anew
 
@@ -301,9 +297,9 @@ class Simulation:
         self.moored = False
 
     def _moor(self) -> None:
-        """Have ships float with their cargo where it lies, once it has settled. Raises Unavailable if they cannot."""
-        if self.afloat and not self.moored and self.origin == 0.0:
-            self.frame.begin(self.cargo())
+        """Have the carrier begin with the cargo where it lies, once it has settled. Raises Unavailable if it cannot."""
+        if not self.moored and self.origin == 0.0:
+            self.carrier.begin(self.cargo)
             self.moored = True
 
     def cargo(self) -> list[Body]:

@@ -108,9 +108,9 @@ def _scene(preset, scene) -> list[tuple[str, str]]:
 
 def _ship(preset, simulation: Simulation) -> list[str]:
     """The ship, if there is one."""
-    if not simulation.afloat:
+    if not simulation.carrier.answers:
         return []
-    every = int(simulation.frame.every[0]) * simulation.dt
+    every = int(simulation.carrier.every[0]) * simulation.dt
     return [_section("Ship", describe(preset.ship, simulation.scene.vessels[0], preset.waves, every))]
 
 
@@ -172,12 +172,12 @@ def _step(scene) -> list[tuple[str, str]]:
 
 
 def _parts(preset: Resolved, simulation: Simulation) -> list[tuple[str, str]]:
-    scene, frame, walls = simulation.scene, simulation.frame, simulation.walls
+    scene, carrier, walls = simulation.scene, simulation.carrier, simulation.walls
     remembered = len(simulation.neighbours.laws.memory)
     terms = "gravity"
-    if frame.moving:
+    if carrier.moving:
         terms += ", translation"
-    if frame.rotating:
+    if carrier.rotating:
         terms += ", Euler, centrifugal and Coriolis terms"
     laws = [("normal law", scene.normal), ("tangential law", scene.tangential)]
     if scene.shapes:
@@ -238,10 +238,10 @@ def cost_in_seconds(preset, scene, simulation: Simulation) -> dict[str, float]:
     rule = scene.shapes.contact if scene.shapes else "discs"
     duration, record = preset.run.duration, preset.record
     found = {
-        "to start and compile": STARTING + COMPILING[rule] + (COMPILING_SHIP if simulation.afloat else 0.0),
+        "to start and compile": STARTING + COMPILING[rule] + (COMPILING_SHIP if simulation.carrier.answers else 0.0),
         "of steps": _stepping(duration, preset, scene) + duration * record.series_rate * SAMPLE,
     }
-    if simulation.afloat:
+    if simulation.carrier.answers:
         found["of her hull and water"] = _floating(preset, simulation)
     return found | {"of figures": REPORTING, "of pictures": duration * record.picture_rate * PICTURE}
 
@@ -256,10 +256,10 @@ def _stepping(duration: float, preset, scene) -> float:
 
 def _floating(preset, simulation: Simulation) -> float:
     """Of the water's forces, and of the ship with her cargo frozen."""
-    states, _, waves = simulation.frame.sizes
+    states, _, waves = simulation.carrier.sizes
     rounds = -(-len(simulation.scene.vessels) // simulation.threads)
     look = LOOK + LOOK_PAIR * states**2 + LOOK_WAVE * waves
-    looks = preset.run.duration / (float(simulation.frame.every[0]) * simulation.dt)
+    looks = preset.run.duration / (float(simulation.carrier.every[0]) * simulation.dt)
     return rounds * looks * look + preset.run.duration / FROZEN_INTERVAL * FROZEN
 
 

@@ -188,7 +188,7 @@ def bed_key(simulation: Simulation, world: int, position: np.ndarray, how: Settl
     parts += [simulation.arch, simulation.schedule_name, simulation.units_a_world, simulation.skin]
     parts += [(type(motion).__name__, motion.coordinate) for motion in scene.motions[world]]
     if scene.vessels:
-        parts.append(simulation.frame.sizes)  # by which its arrays, and with them the bed's, are numbered
+        parts.append(simulation.carrier.sizes)  # by which its arrays, and with them the bed's, are numbered
     for field in fields(scene):
         if field.init and field.name not in UNRELATED:  # the rest is derived from these
             value = getattr(scene, field.name)

@@ -5,35 +5,33 @@ import taichi as ti
 from solvers.grains.shapes.pose import towards
 from solvers.grains.state import Grains
 from solvers.machine.runtime import Arrays
-from solvers.machine.units import APART, Units
+from solvers.machine.units import Units
+from solvers.tank.load import Load
 
 
 @ti.data_oriented
 class Mover:
-    """Moves grains and keeps account of the force on the tank.
+    """Moves grains in a tank that may be `rotating`, and books the force on the tank.
 
     Forces between grains cancel in the sum over all, so what is left of the sum of all contact forces is what walls,
-    fixed grains and parts do to the cargo: `load[u]` adds up its impulse (N s) and its moment about the tank's
-    origin (N m s), with the sign of the cargo on the tank.
+    fixed grains and parts do to the cargo: with the other sign, the `load` on the tank.
     """
 
-    def __init__(self, arrays: Arrays, units: Units, grains: Grains, integrator, rotating: bool, weighed: bool = False):
-        self.units, self.grains, self.integrator, self.rotating = units, grains, integrator, rotating
-        self.weighed = weighed  # before every move, by `weigh`
-        if weighed:
-            self.weights = arrays.reals(3, (APART * units.count,), arrays.exact, kept=False)
+    def __init__(self, arrays: Arrays, units: Units, grains: Grains, integrator, rotating: bool, load: Load):
+        self.units, self.grains, self.integrator, self.rotating, self.load = units, grains, integrator, rotating, load
+        self.weighed = load.answered  # before every move, by `weigh`
         shape = (grains.worlds, grains.count + grains.ghosts)
         self.extra = arrays.reals(integrator.extra, shape)
-        self.load_y, self.load_z, self.load_moment = arrays.reals(3, (units.count,), arrays.exact)
 
     def rest(self) -> None:
         """Forget higher derivatives and the load, for grains that were put somewhere or launched."""
-        for field in (*self.extra, self.load_y, self.load_z, self.load_moment):
+        for field in self.extra:
             field.fill(0.0)
+        self.load.forget()
 
     @ti.func
     def weigh(self, g: ti.template(), u, dt):
-        """Note a unit's force (N) on the tank and its moment (N m), before the move; adds up their impulse."""
+        """Book a unit's force (N) on the tank and its moment (N m), before the move."""
         w = self.units.world(u)
         load_y, load_z, moment = ti.cast(0.0, g.real), ti.cast(0.0, g.real), ti.cast(0.0, g.real)
         for i in range(self.units.first(u), self.units.end(u)):
@@ -41,19 +39,7 @@ class Mover:
             load_y -= force_y
             load_z -= force_z
             moment -= ti.cast(g.y[w, i], g.real) * force_z - ti.cast(g.z[w, i], g.real) * force_y + g.torque[w, i]
-        self.add_up(u, load_y, load_z, moment, dt)
-        self.weights[0][APART * u], self.weights[1][APART * u], self.weights[2][APART * u] = load_y, load_z, moment
-
-    @ti.func
-    def weight(self, u):
-        """What `weigh` has noted."""
-        return ti.Vector([self.weights[k][APART * u] for k in ti.static(range(3))])
-
-    @ti.func
-    def add_up(self, u, load_y, load_z, moment, dt):
-        self.load_y[u] = self.load_y[u] + load_y * dt
-        self.load_z[u] = self.load_z[u] + load_z * dt
-        self.load_moment[u] = self.load_moment[u] + moment * dt
+        self.load.book(u, load_y, load_z, moment, dt)
 
     @ti.func
     def move(self, g: ti.template(), u, body, first, dt):
@@ -99,7 +85,7 @@ class Mover:
         if ti.static(g.shaped):
             self.turn(g, u)
         if ti.static(not self.weighed):
-            self.add_up(u, load_y, load_z, moment, dt)
+            self.load.book(u, load_y, load_z, moment, dt)
         return ti.sqrt(ti.sqrt(ti.sqrt(ti.sqrt(total))))
 
     @ti.func

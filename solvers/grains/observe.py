@@ -3,12 +3,11 @@
 import taichi as ti
 
 from solvers.grains.contacts import Contacts
-from solvers.grains.mover import Mover
 from solvers.grains.neighbours import Neighbours
 from solvers.grains.state import Grains
 from solvers.machine.runtime import Arrays
 from solvers.machine.units import Units
-from solvers.motion.frame import Frame
+from solvers.tank.load import Load
 from solvers.tank.walls import Walls
 
 CHUNK = 1024  # grains whose sum one thread takes
@@ -56,11 +55,11 @@ class Observer:
         walls: Walls,
         neighbours: Neighbours,
         contacts: Contacts,
-        frame: Frame,
-        mover: Mover,
+        carrier,
+        load: Load,
     ):
         self.units, self.grains, self.walls, self.neighbours = units, grains, walls, neighbours
-        self.contacts, self.frame, self.mover = contacts, frame, mover
+        self.contacts, self.carrier, self.load = contacts, carrier, load
         self.exact, self.may_leave = arrays.exact, grains.may_leave
         self.chunks = -(-grains.mobile // CHUNK)
         (self.rows,) = arrays.reals(1, (grains.worlds, len(self.NAMES)), arrays.exact, kept=False)
@@ -123,8 +122,7 @@ class Observer:
             contacts[TOUCHING] += self.counted[TOUCHING][u]
             contacts[DEEPEST] = ti.max(contacts[DEEPEST], self.counted[DEEPEST][u])
             contacts[ELASTIC] += self.counted[ELASTIC][u]
-            load += ti.Vector([self.mover.load_y[u], self.mover.load_z[u], self.mover.load_moment[u]])
-            self.mover.load_y[u], self.mover.load_z[u], self.mover.load_moment[u] = 0.0, 0.0, 0.0
+            load += self.load.take(u)
         self.write_row(w, time, since, sums, contacts, load)
 
     @ti.func
@@ -132,14 +130,14 @@ class Observer:
         mass = ti.max(sums[MASS], 1e-30)
         centre_y, centre_z = sums[MOMENT_Y] / mass, sums[MOMENT_Z] / mass
         pose = ti.Vector([ti.cast(0.0, self.exact) for _ in ti.static(range(9))])
-        if ti.static(self.frame.moving):
-            pose = self.frame.kinematics(w, time)
+        if ti.static(self.carrier.moving):
+            pose = self.carrier.kinematics(w, time)
         height = pose[1] + ti.sin(pose[2]) * centre_y + ti.cos(pose[2]) * centre_z
         for k in ti.static(range(6)):
             self.rows[w, k] = pose[k]
         self.rows[w, 6], self.rows[w, 7] = centre_y, centre_z
         self.rows[w, 8], self.rows[w, 9] = sums[KINETIC], sums[ROTATIONAL]
-        self.rows[w, 10] = sums[MASS] * self.frame.gravity[0] * height
+        self.rows[w, 10] = sums[MASS] * self.carrier.gravity[0] * height
         self.rows[w, 11], self.rows[w, 12], self.rows[w, 13] = contacts[ELASTIC], contacts[TOUCHING], contacts[DEEPEST]
         self.rows[w, 14], self.rows[w, 15] = sums[ESCAPED], sums[SPILLED]
         for k in ti.static(range(3)):

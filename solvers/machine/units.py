@@ -6,6 +6,8 @@ from solvers.machine.runtime import Arrays
 
 # Ghosts of different bands stand this far apart, so that no two threads write to one cache line.
 APART = 16
+# A parallel loop of Taichi's CPU backend gives each thread at least this many iterations.
+ITERATIONS_A_THREAD = 512
 
 
 @ti.data_oriented

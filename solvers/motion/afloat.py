@@ -16,11 +16,12 @@ M with the added mass. A smaller H alters nothing but the water's share, by its 
 what the deviation within one H does to the water's force, by its second.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 import taichi as ti
 
+from solvers.machine.phase import Phase
 from solvers.machine.runtime import Arrays
 from solvers.motion.buoyancy import Hulls
 from solvers.motion.frame import turned
@@ -28,6 +29,7 @@ from solvers.motion.harmonic import soft_start
 from solvers.ship.body import Body
 from solvers.ship.hydrostatics import turned as turned_point
 from solvers.ship.vessel import Vessel
+from solvers.tank.load import Load
 
 POSE, VELOCITY, MEMORY = 0, 3, 6  # where in a state
 WORKS = 3  # its last entries: work (J/m) of the waves, against what is radiated, against viscosity
@@ -48,16 +50,17 @@ def _apart(rows: Sequence[Sequence[float]]) -> np.ndarray:
 
 @ti.data_oriented
 class Afloat:
-    """The frame of the tank in each of W ships; see `frame.Frame`, whose place it takes.
+    """The tank in each of W ships, a carrier as `Prescribed` is; `load` is what its cargo does to it.
 
     The earth's axes have z = 0 on the calm surface and y = 0 where the ship's hull lay at the start. All of the ship is
     per metre of length; the cargo's load is divided by the thickness of its sheet.
     """
 
-    rotating = moving = afloat = True
+    rotating = moving = answers = True
 
-    def __init__(self, arrays: Arrays, vessels: Sequence[Vessel], gravity: float, every: int):
-        self.exact, self.real, self.vessels = arrays.exact, arrays.real, tuple(vessels)
+    def __init__(self, arrays: Arrays, vessels: Sequence[Vessel], gravity: float, every: int, load: Load):
+        self.exact, self.real, self.vessels, self.cargo = arrays.exact, arrays.real, tuple(vessels), load
+        self.phases = (Phase(self.follow),)
         worlds = len(self.vessels)
         self.hulls = Hulls(arrays, [v.ship for v in self.vessels], [v.openings for v in self.vessels])
         memories = [vessel.ship.radiation.memory for vessel in self.vessels]
@@ -123,13 +126,13 @@ class Afloat:
             whole[: part.shape[0], : part.shape[1]] = part
         return whole
 
-    def begin(self, cargo: Sequence[Body]) -> None:
-        """Hold the ships still, upright and in balance; `cargo` (W,) per metre of length, in the tank's frame.
+    def begin(self, cargo: Callable[[], Sequence[Body]]) -> None:
+        """Hold the ships still, upright and in balance; `cargo` tells theirs (W,), per metre and in the tank's axes.
 
         Raises Unavailable where a ship sinks, or where a hull laden so cannot be.
         """
         body, upright, heeled = [], [], []
-        for vessel, load in zip(self.vessels, cargo, strict=True):
+        for vessel, load in zip(self.vessels, cargo(), strict=True):
             centre = np.add(load.centre, vessel.hold)
             aboard = Body(load.mass, (float(centre[0]), float(centre[1])), load.inertia)
             hull = vessel.hull(aboard)
@@ -166,8 +169,8 @@ class Afloat:
         return {"ship_works": np.hstack([works, given]).astype(float), **ends}
 
     @ti.func
-    def body_force(self, w, t):
-        """What every grain feels per unit mass in the tank's frame: (b_y, b_z, φ̇, φ̈) with b = R(−φ)(g − P̈)."""
+    def frame(self, w, t):
+        """What all cargo feels per unit mass in the tank's frame: (b_y, b_z, φ̇, φ̈) with b = R(−φ)(g − P̈)."""
         return ti.cast(ti.Vector([self.felt[w, k] for k in ti.static(range(4))]), self.real)
 
     @ti.func
@@ -181,16 +184,16 @@ class Afloat:
         return self.capsized[w] < 0.0 and self.flooded[w] < 0.0
 
     @ti.func
-    def follow(self, w, time, dt, kick, load):
-        """Take the ship through the step of dt (s) that begins now, with the force and moment of the cargo now.
+    def follow(self, w, time, first, dt):
+        """Take the ship through the step of dt (s) that begins now, with the load of the cargo now.
 
-        `load` is on the whole sheet, about the tank's origin in its own axes; `kick` (s) is for how long the grains
-        are going to feel what she does now.
+        The load is on the whole sheet. In their `first` step the cargo's velocities take half a kick.
         """
-        t, step = ti.cast(time, self.exact), ti.cast(dt, self.exact)
+        t, step, load = ti.cast(time, self.exact), ti.cast(dt, self.exact), self.cargo.of_world(w)
         if t < self.release[w]:
             self.hold_still(w, t, step)
         else:
+            kick = ti.select(first, 0.5 * dt, dt)
             self.move(w, t, step, ti.cast(kick, self.exact), ti.cast(load, self.exact))
 
     @ti.func

@@ -22,7 +22,7 @@ def piece(table: ti.template(), w, first, t):
 
 @dataclass(frozen=True)
 class Steered:
-    """One coordinate of the tank under a hand; at rest until `Frame.steer` tells of a piece.
+    """One coordinate of the tank under a hand; at rest until `Prescribed.steer` tells of a piece.
 
     `limit` (m/s or rad/s) is the fastest that it may be steered, for the step.
     """

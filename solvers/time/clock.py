@@ -14,15 +14,21 @@ class Clock:
 
     `says` (units,) and `arrived` (W,) are what bands tell each other, `fastest` and `farthest` (W,) what the
     per-grain schedule looks up now and then: the highest speed (m/s), the longest way since the lists were built (m);
-    `pushed` (W,) is the largest acceleration (m/s²) by the frame to come.
+    `pushed` (W,) is the largest acceleration (m/s²) by the frame to come, `frame` what the carrier says of a step.
     """
 
     def __init__(self, arrays: Arrays, units: Units):
+        self.units, self.worlds, self.real = units, units.worlds, arrays.real
         self.step, self.status, self.arrived = arrays.integers(3, (units.worlds,))
         (self.says,) = arrays.integers(1, (units.count,), kept=False)
         self.fastest, self.farthest, self.pushed = arrays.reals(3, (units.worlds,), kept=False)
-        self.body = arrays.reals(4, (units.worlds,), kept=False)
+        self.frame = arrays.reals(4, (units.worlds,), kept=False)
 
     def running(self) -> np.ndarray:
         """Which worlds run (W,)."""
         return self.status.to_numpy() == RUNNING
+
+    @ti.func
+    def world(self, u):
+        """The world of unit u."""
+        return self.units.world(u)

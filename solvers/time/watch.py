@@ -4,7 +4,7 @@ import numpy as np
 
 from solvers.machine.errors import BadState
 
-RUNNING, WAITING, NO_ROOM, TOO_FAST, CAPSIZED = range(5)
+RUNNING, WAITING, NO_ROOM, TOO_FAST, OVER = range(5)
 
 # A grain that crosses a tenth of the smallest radius in a step is not colliding, it is being thrown.
 FASTEST_STEP = 0.1

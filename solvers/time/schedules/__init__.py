@@ -16,12 +16,13 @@ SCHEDULES = {"per-world": PerWorld, "per-band": PerBand, "per-grain": PerGrain}
 WORTH_BANDS = 2000
 
 
-def choose_schedule(wanted: str, arch: str, worlds: int, grains: int, threads: int, afloat: bool = False) -> str:
+def choose_schedule(wanted: str, arch: str, worlds: int, grains: int, threads: int, answering: bool = False) -> str:
     """What "auto" stands for: on a graphics processor per-grain; on the CPU bands for few large worlds.
 
-    A ship follows from her whole cargo at every step. Raises Unavailable for her on per-grain schedules.
+    A carrier that is `answering` follows from the load of a whole world at every step, as a ship does. Raises
+    Unavailable for it on per-grain schedules.
     """
-    if afloat:
+    if answering:
         if wanted == "per-grain" or arch != "cpu":
             raise Unavailable('run.schedule: ships run per-world or per-band, on the processor; set run.arch = "cpu".')
         wanted = "per-world" if wanted == "auto" and not 2 * worlds <= threads else wanted

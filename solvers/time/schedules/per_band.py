@@ -3,54 +3,56 @@
 import taichi as ti
 
 from solvers.machine.runtime import available_cores, spread_threads
-from solvers.time.schedules.engine import ITERATIONS_A_THREAD, Engine
-from solvers.time.watch import CAPSIZED, NO_ROOM, RUNNING, TOO_FAST
+from solvers.machine.units import ITERATIONS_A_THREAD
+from solvers.time.clock import Clock
+from solvers.time.sequence import Sequence
+from solvers.time.watch import NO_ROOM, OVER, RUNNING, TOO_FAST
 
-FINE, ASKED, STALE, OVER, FAST, FULL = range(6)  # what a band says of itself, the worst last
+FINE, ASKED, STALE, ENDED, FAST, FULL = range(6)  # what a band says of itself, the worst last
 
 
 @ti.data_oriented
 class PerBand:
     """Advances worlds of several bands; each band's whole time loop is one task of the thread pool.
 
-    Bands meet twice a step: after the forces, which read what all grains do, and after the move, where they agree on
-    building the lists anew; in a ship once more in between, after the first one has steered her. They wait by spinning,
-    since a wake-up takes longer than a step. With fewer threads than bands one thread does them in turn. The bits
-    depend on the numbers of bands and of threads, for which the compiler rounds differently here and there.
+    Bands meet after each phase, and after the last they agree on making the lists anew. They wait by spinning, since a
+    wake-up takes longer than a step. What acts on whole worlds the first band does alone. With fewer threads than bands
+    one thread does them in turn. The bits depend on the numbers of bands and of threads, for which the compiler rounds
+    differently here and there.
     """
 
-    def __init__(self, engine: Engine, threads: int):
-        self.units, self.neighbours, self.contacts = engine.units, engine.neighbours, engine.contacts
-        self.grains, self.mover, self.frame, self.clock = engine.grains, engine.mover, engine.frame, engine.clock
-        self.unseen, self.real, self.bands = engine.unseen, engine.grains.real, engine.units.a_world
-        self.together = min(threads, available_cores()) >= engine.units.count
+    def __init__(self, sequence: Sequence, clock: Clock, threads: int):
+        self.sequence, self.carrier, self.clock = sequence, sequence.carrier, clock
+        self.before, self.after = sequence.before, sequence.after
+        self.real, self.worlds, self.bands = clock.real, clock.worlds, clock.units.a_world
+        self.together = min(threads, available_cores()) >= clock.units.count
         if self.together:
             spread_threads()
 
-    def advance(self, target: int, origin: float, unkicked: int, step: float, fastest: float) -> None:
+    def advance(self, target: int, origin: float, unkicked: int, step: float) -> None:
         """Take every running world to step `target`; see PerWorld."""
         if self.together:
             self.clock.arrived.fill(0)
-            self._advance_together(target, origin, unkicked, step, fastest)
+            self._advance_together(target, origin, unkicked, step)
         else:
-            self._advance_in_turn(target, origin, unkicked, step, fastest)
+            self._advance_in_turn(target, origin, unkicked, step)
 
     @ti.kernel
-    def _advance_together(self, target: ti.i32, origin: ti.f64, unkicked: ti.i32, step: ti.f64, fastest: ti.f64):
-        for k in range(self.units.count * ITERATIONS_A_THREAD):
+    def _advance_together(self, target: ti.i32, origin: ti.f64, unkicked: ti.i32, step: ti.f64):
+        for k in range(self.worlds * self.bands * ITERATIONS_A_THREAD):
             if k % ITERATIONS_A_THREAD == 0:
-                self.advance_band(k // ITERATIONS_A_THREAD, target, origin, unkicked, step, fastest)
+                self.advance_band(k // ITERATIONS_A_THREAD, target, origin, unkicked, step)
 
     @ti.kernel
-    def _advance_in_turn(self, target: ti.i32, origin: ti.f64, unkicked: ti.i32, step: ti.f64, fastest: ti.f64):
-        for k in range(self.grains.worlds * ITERATIONS_A_THREAD):
+    def _advance_in_turn(self, target: ti.i32, origin: ti.f64, unkicked: ti.i32, step: ti.f64):
+        for k in range(self.worlds * ITERATIONS_A_THREAD):
             if k % ITERATIONS_A_THREAD == 0:
-                self.advance_world(k // ITERATIONS_A_THREAD, target, origin, unkicked, step, fastest)
+                self.advance_world(k // ITERATIONS_A_THREAD, target, origin, unkicked, step)
 
     @ti.func
-    def advance_band(self, u, target, origin, unkicked, step, fastest):
+    def advance_band(self, u, target, origin, unkicked, step):
         """As PerWorld does it; the bands of a world are at the same line wherever they meet."""
-        w, dt = self.units.world(u), ti.cast(step, self.real)
+        w, dt = self.clock.world(u), ti.cast(step, self.real)
         done, running = self.clock.step[w], self.clock.status[w] == RUNNING
         says = self.freshness(u, origin + done * step)
         self.clock.says[u] = says
@@ -59,29 +61,28 @@ class PerBand:
         while running and worst <= STALE and done < target:
             if worst != FINE:
                 if worst == STALE and u % self.bands == 0:
-                    self.neighbours.cells.sort_world(w)
+                    self.sequence.sort(w)
                 meetings = self.meet(w, meetings)
-                says = FINE if self.neighbours.rebuild(u, origin + done * step, dt, worst == STALE) else FULL
+                says = FINE if self.sequence.make_lists(u, origin + done * step, dt, worst == STALE) else FULL
                 self.clock.says[u] = says
                 meetings = self.meet(w, meetings)
                 worst = self.worst(w)
             while worst == FINE and done < target:
-                t = origin + done * step
-                self.contacts.forces(u, t, dt)
-                if ti.static(self.frame.afloat):
-                    self.mover.weigh(self.grains, u, dt)
-                meetings = self.meet(w, meetings)
-                if ti.static(self.frame.afloat):
-                    if u % self.bands == 0:
-                        self.steer(w, t, done == unkicked, dt)
+                t, first = origin + done * step, done == unkicked
+                for k in ti.static(range(len(self.before))):
+                    self.begin(k, u, t, first, dt)
                     meetings = self.meet(w, meetings)
-                says = self.move(u, t, done == unkicked, dt, fastest)
+                says = FINE
+                for k in ti.static(range(len(self.after))):
+                    if not self.end(k, u, t, first, dt):
+                        says = FAST
+                    if ti.static(k < len(self.after) - 1):
+                        meetings = self.meet(w, meetings)
                 done += 1
                 if says == FINE:
                     says = self.freshness(u, t + step)
-                if ti.static(self.frame.afloat):  # noqa: SIM102 (compiled only for ships)
-                    if says <= STALE and not self.frame.goes_on(w):
-                        says = OVER
+                if says <= STALE and not self.carrier.goes_on(w):
+                    says = ENDED
                 self.clock.says[u] = says
                 meetings = self.meet(w, meetings)
                 worst = self.worst(w)
@@ -90,60 +91,68 @@ class PerBand:
         self.report(w, says)
 
     @ti.func
-    def advance_world(self, w, target, origin, unkicked, step, fastest):
+    def advance_world(self, w, target, origin, unkicked, step):
         """The same on one thread, band after band."""
-        dt, first = ti.cast(step, self.real), w * self.bands
+        dt, start = ti.cast(step, self.real), w * self.bands
         while self.clock.step[w] < target and self.clock.status[w] == RUNNING:
             t, worst = origin + self.clock.step[w] * step, FINE
-            for u in range(first, first + self.bands):
+            for u in range(start, start + self.bands):
                 worst = ti.max(worst, self.freshness(u, t))
             if worst != FINE:
                 whole, worst = worst == STALE, FINE
                 if whole:
-                    self.neighbours.cells.sort_world(w)
-                for u in range(first, first + self.bands):
-                    if not self.neighbours.rebuild(u, t, dt, whole):
+                    self.sequence.sort(w)
+                for u in range(start, start + self.bands):
+                    if not self.sequence.make_lists(u, t, dt, whole):
                         worst = FULL
             if worst == FINE:
-                for u in range(first, first + self.bands):
-                    self.contacts.forces(u, t, dt)
-                    if ti.static(self.frame.afloat):
-                        self.mover.weigh(self.grains, u, dt)
-                if ti.static(self.frame.afloat):
-                    self.steer(w, t, self.clock.step[w] == unkicked, dt)
-                for u in range(first, first + self.bands):
-                    worst = ti.max(worst, self.move(u, t, self.clock.step[w] == unkicked, dt, fastest))
+                first = self.clock.step[w] == unkicked
+                for k in ti.static(range(len(self.before))):
+                    for u in range(start, start + self.bands):
+                        self.begin(k, u, t, first, dt)
+                for k in ti.static(range(len(self.after))):
+                    for u in range(start, start + self.bands):
+                        if not self.end(k, u, t, first, dt):
+                            worst = FAST
                 self.clock.step[w] = self.clock.step[w] + 1
-                if ti.static(self.frame.afloat):  # noqa: SIM102
-                    if worst == FINE and not self.frame.goes_on(w):
-                        worst = OVER
+                if worst == FINE and not self.carrier.goes_on(w):
+                    worst = ENDED
             self.report(w, worst)
 
     @ti.func
+    def begin(self, k: ti.template(), u, t, first, dt):
+        """A band's part in a phase before the particles move."""
+        if ti.static(self.before[k].units is None):
+            if u % self.bands == 0:
+                self.before[k].act(u // self.bands, t, first, dt)
+        else:
+            self.before[k].act(u, t, first, dt)
+
+    @ti.func
+    def end(self, k: ti.template(), u, t, first, dt):
+        """A band's part in a phase in which they move; returns whether all is sound."""
+        sound = True
+        if ti.static(self.after[k].units is None):
+            if u % self.bands == 0:
+                sound = self.act_on(k, u // self.bands, u // self.bands, t, first, dt)
+        else:
+            sound = self.act_on(k, u, self.clock.world(u), t, first, dt)
+        return sound
+
+    @ti.func
+    def act_on(self, k: ti.template(), u, w, t, first, dt):
+        """A phase in which they move, of a unit or of a world."""
+        return self.after[k].act(u, self.carrier.frame(w, t), first, dt)
+
+    @ti.func
     def freshness(self, u, t):
-        """Whether a band's lists are FINE, or some or all contacts are to be sought anew."""
+        """Whether a band's lists are FINE, or some or all entries are to be sought anew."""
         says = FINE
-        if self.neighbours.asked(u):
+        if self.sequence.asked(u):
             says = ASKED
-        if self.neighbours.stale(u, t):
+        if self.sequence.stale(u, t):
             says = STALE
         return says
-
-    @ti.func
-    def move(self, u, t, first, dt, fastest):
-        """Move the grains of a band; says whether they have become too fast."""
-        body = self.frame.body_force(self.units.world(u), t)
-        speed = self.mover.move(self.grains, u, body, first, dt)
-        self.neighbours.travel[u] = self.neighbours.travel[u] + (speed + self.unseen) * dt
-        return FINE if speed < fastest else FAST
-
-    @ti.func
-    def steer(self, w, t, first, dt):
-        """Take a world's ship through the step with the load of all its bands."""
-        load = self.mover.weight(w * self.bands)
-        for u in range(w * self.bands + 1, (w + 1) * self.bands):
-            load += self.mover.weight(u)
-        self.frame.follow(w, t, dt, ti.select(first, 0.5 * dt, dt), load)
 
     @ti.func
     def worst(self, w):
@@ -164,8 +173,8 @@ class PerBand:
 
     @ti.func
     def report(self, w, says):
-        if says == OVER:
-            self.clock.status[w] = CAPSIZED
+        if says == ENDED:
+            self.clock.status[w] = OVER
         if says == FAST:
             self.clock.status[w] = TOO_FAST
         if says == FULL:

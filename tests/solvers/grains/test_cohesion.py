@@ -114,7 +114,7 @@ def test_a_bridge_carries_its_pull_and_what_it_presses_rubs(law):
     run = simulation(place, RADIUS, box(1.0, 1.0), wet(), velocity=velocity, **laws)
     fallen = []
     for share in (0.99, 1.01):
-        run.frame.gravity.fill(share * force / MASS)
+        run.carrier.gravity.fill(share * force / MASS)
         run.place(place, velocity)
         run.advance(int(0.02 / run.dt))
         fallen.append(place[0, 0, 1] - run.snapshot()["position"][0, 0, 1])

@@ -14,7 +14,7 @@ import taichi as ti
 
 from solvers.machine import runtime
 from solvers.machine.runtime import Arrays
-from solvers.time.schedules.engine import ITERATIONS_A_THREAD
+from solvers.machine.units import ITERATIONS_A_THREAD
 
 REPOSITORY = Path(__file__).parents[3]
 GUARDED = "from solvers import runtime; runtime.initialise(1)"

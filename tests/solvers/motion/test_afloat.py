@@ -137,7 +137,7 @@ class Run:
         self.simulation.settle(1e-7, 0.8)
         self.height = self.simulation.snapshot()["position"][TINY, :, 1].mean()
         self.settled = self.simulation.state()
-        self.every = int(self.simulation.frame.every[0])
+        self.every = int(self.simulation.carrier.every[0])
         self.cargo = self.simulation.cargo()
 
     def sail(self, every: int, lasts: float, looks: int = 60, nudged: bool = False):
@@ -154,7 +154,7 @@ class Run:
         velocity = np.zeros((*run.scene.radius.shape, 2))
         velocity[VACUUM] = np.random.default_rng(2).normal(0.0, 0.5, velocity.shape[1:])
         run.launch(velocity)
-        run.frame.every.fill(every)
+        run.carrier.every.fill(every)
         steps = every * max(1, round(lasts / (run.dt * every * looks)))
         found = [self.look()]
         for _ in range(looks):
@@ -166,7 +166,7 @@ class Run:
         run = self.simulation
         snapshot, rows = run.snapshot(), run.observe()
         frame = {
-            name: getattr(run.frame, name).to_numpy()
+            name: getattr(run.carrier, name).to_numpy()
             for name in ("tank", "state", "given", "capsized", "flooded", "pose", "body", "felt")
         }
         frame |= {"pose": frame["pose"][:, :3], "tank": frame["tank"][:, :9], "given": frame["given"][:, 0]}
@@ -354,7 +354,7 @@ def test_water_over_the_edge_of_a_hatch_ends_a_world_and_no_other(run, voyage):
 
 def test_a_ship_is_heeled_softly(run, voyage):
     """Until she is let go her tank's speed and acceleration are those of its path (eq. F.1); the grains feel them."""
-    frame, held = run.simulation.frame, slice(1, 5)
+    frame, held = run.simulation.carrier, slice(1, 5)
     upright, heeled = (field.to_numpy()[ROLLING] for field in (frame.upright, frame.heeled))
     hold = np.subtract(HOLD, AXIS)
 
@@ -423,7 +423,7 @@ def test_more_room_for_contacts_alters_nothing():
         if grow:
             run._make_room()
         run.advance(1000)
-        found.append((run.snapshot()["position"], run.frame.pose.to_numpy(), run.frame.given.to_numpy()))
+        found.append((run.snapshot()["position"], run.carrier.pose.to_numpy(), run.carrier.given.to_numpy()))
         run.close()
     for one, other in zip(*found, strict=True):
         assert np.array_equal(one, other)
@@ -479,7 +479,7 @@ def test_bands_steer_the_same_ship(together):
             run.schedule.together = together
         run.settle(1e-7, 0.1)
         run.advance(25_000)
-        found.append((run.frame.pose.to_numpy(), run.snapshot()["position"]))
+        found.append((run.carrier.pose.to_numpy(), run.snapshot()["position"]))
         run.close()
     assert abs(found[0][0][0, 2]) > 0.01
     for one, other in zip(*found, strict=True):
@@ -500,7 +500,7 @@ def test_other_waves_are_met_from_then_on(run):
     """Twice as high and shorter, after the first second: as by the method of Runge and Kutta, waves changed then."""
     simulation, every = run.simulation, run.every
     simulation.restore(run.settled)
-    simulation.frame.every.fill(every)
+    simulation.carrier.every.fill(every)
     before = list(simulation.scene.vessels)
     ship = before[ALONE].ship
     interval = every * simulation.dt
@@ -509,7 +509,7 @@ def test_other_waves_are_met_from_then_on(run):
     other = replace(ship, load=floating(0.04, 5.2))
     simulation.meet([replace(v, ship=other) if w == ALONE else v for w, v in enumerate(before)])
     simulation.advance(steps)
-    roll = simulation.frame.pose.to_numpy()[ALONE, 2]
+    roll = simulation.carrier.pose.to_numpy()[ALONE, 2]
     simulation.meet(before)
     second = steps * simulation.dt
     first = sail(ship, start(ship, before[ALONE].heave(Body(0.0, (0.0, 0.0), 0.0), 0.0)), interval, second)

@@ -12,9 +12,9 @@ from scipy.interpolate import CubicSpline
 from solvers.machine import runtime
 from solvers.machine.runtime import Arrays
 from solvers.motion import Heave, Roll, Sway, Tilt
-from solvers.motion.frame import Frame
 from solvers.motion.harmonic import soft_start
 from solvers.motion.history import History, Recorded
+from solvers.motion.prescribed import Prescribed
 from solvers.motion.tilt import KNOTS
 
 DEG = pi / 180
@@ -24,12 +24,12 @@ SOFT_START = 0.8
 
 @ti.data_oriented
 class Probe:
-    """Reads `Frame.kinematics` and `Frame.body_force` of each of W worlds at many times."""
+    """Reads `Prescribed.kinematics` and `Prescribed.frame` of each of W worlds at many times."""
 
     def __init__(self, motions, soft_start=0.0):
         runtime.initialise(1)
         self.worlds, self.arrays = len(motions), Arrays()
-        self.frame = Frame(self.arrays, motions, soft_start, GRAVITY)
+        self.frame = Prescribed(self.arrays, motions, soft_start, GRAVITY)
         self.arrays.finish()
 
     @ti.kernel
@@ -37,7 +37,7 @@ class Probe:
         for k in range(times.shape[0]):
             for w in range(rows.shape[0]):
                 state = self.frame.kinematics(w, times[k])
-                body = self.frame.body_force(w, times[k])
+                body = self.frame.frame(w, times[k])
                 for c in ti.static(range(9)):
                     rows[w, k, c] = state[c]
                 for c in ti.static(range(4)):

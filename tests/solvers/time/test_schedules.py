@@ -106,7 +106,7 @@ def used(request, told: Callable[[str, str], Told]) -> Simulation:
 def run(used) -> Simulation:
     """The same, its clock at zero, of which a test may change what is set here."""
     used.dt = STEP
-    used.frame.gravity.fill(used.scene.gravity)
+    used.carrier.gravity.fill(used.scene.gravity)
     used.start_clock()
     used.place(start()[1])
     return used
@@ -231,7 +231,7 @@ def momenta(run: Simulation) -> np.ndarray:
 
 def test_momentum_is_kept_without_walls(run):
     """A cloud that collapses in free space; the tank stands still before its motion begins."""
-    run.frame.gravity.fill(0.0)
+    run.carrier.gravity.fill(0.0)
     run.origin = AT_REST
     middle = np.array([0.0, 0.07])
     place = start()[1] - start()[1].mean(axis=1, keepdims=True) + middle
@@ -279,7 +279,7 @@ def test_lists_that_outgrow_their_room_change_nothing(told, schedule):
 
 def test_worlds_at_rest_wait_for_the_others(run):
     """A drift too slow to count goes on for the two looks that tell rest, stops, and goes on when the clock starts."""
-    run.frame.gravity.fill(0.0)
+    run.carrier.gravity.fill(0.0)
     rest, slow = 1e-4, 1e-3
     velocity = np.zeros((WORLDS, COUNT, 2))
     velocity[0, :, 1], velocity[1, ::2, 1] = slow, 0.05

@@ -24,7 +24,7 @@ class Parts:
     def __init__(self, simulation: Simulation):
         self.real = simulation.grains.real
         self.grains, self.neighbours, self.contacts = simulation.grains, simulation.neighbours, simulation.contacts
-        self.frame, self.mover = simulation.frame, simulation.mover
+        self.carrier, self.mover = simulation.carrier, simulation.mover
         self.sink = ti.field(self.real, shape=LANES)
 
     @ti.kernel
@@ -46,7 +46,7 @@ class Parts:
         """The frame's force and the motion of the grains; their forces are cleared."""
         ti.loop_config(serialize=True)
         for _ in range(times):
-            body = self.frame.body_force(0, 0.0)
+            body = self.carrier.frame(0, 0.0)
             self.sink[0] = self.mover.move(self.grains, 0, body, False, ti.cast(step, self.real))
 
     @ti.kernel

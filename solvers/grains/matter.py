@@ -1,0 +1,119 @@
+"""Grains as a matter: what a step asks of them."""
+
+import numpy as np
+import taichi as ti
+
+from solvers.grains.contacts import Contacts
+from solvers.grains.mover import Mover
+from solvers.grains.neighbours import Neighbours
+from solvers.grains.state import Grains
+from solvers.machine.phase import Phase
+from solvers.machine.runtime import Arrays
+from solvers.machine.units import Units
+
+# A speed (m/s) whose 16th power is no number in 32 bits any more.
+UNSEEN = 5e-3
+
+
+@ti.data_oriented
+class GrainMatter:
+    """Grains, discs or irregular ones: their contacts push before they move, then all move.
+
+    A matter has `units`, the phases `before` and `after`, and lists: it says when these are `stale`, `worn` or `asked`
+    for in part, and makes them anew (`sort`, `make_lists`). `way_a_step` (m) is how far a grain may go in one.
+    """
+
+    def __init__(
+        self,
+        arrays: Arrays,
+        units: Units,
+        grains: Grains,
+        neighbours: Neighbours,
+        contacts: Contacts,
+        mover: Mover,
+        way_a_step: float,
+    ):
+        self.units, self.grains, self.neighbours = units, grains, neighbours
+        self.contacts, self.mover = contacts, mover
+        self.unseen = UNSEEN if arrays.real is ti.f32 else 0.0  # speed (m/s) below which the mover's bound may miss one
+        self.way_a_step = arrays.holding(np.array([way_a_step]), arrays.exact)
+        self.before = (Phase(self.push, units),)
+        self.after = (Phase(self.move, units),)
+
+    @property
+    def extent(self) -> float:
+        """How far (m) from the tank's origin a grain may be."""
+        return float(np.hypot(*np.abs(self.neighbours.walls.bounds).max(axis=0)))
+
+    @property
+    def nearing(self) -> float:
+        """How fast (m/s) parts of the tank come at grains."""
+        return self.neighbours.walls.fastest
+
+    def slack(self) -> float:
+        """How far (m) two grains may near each other before the lists are no good."""
+        return float(self.neighbours.skin.to_numpy()[0])
+
+    def sort_all(self) -> None:
+        """Sort the grains of all worlds into cells."""
+        self.neighbours.cells.sort_all()
+
+    @ti.func
+    def push(self, u, t, first, dt):
+        """The forces of all contacts of a unit, with what they do to the tank where its carrier answers to that."""
+        self.contacts.forces(u, t, dt)
+        if ti.static(self.mover.weighed):
+            self.mover.weigh(self.grains, u, dt)
+
+    @ti.func
+    def move(self, u, frame, first, dt):
+        """Move the grains of a unit; returns whether all of them are slow enough for the step."""
+        speed = self.mover.move(self.grains, u, frame, first, dt)
+        if ti.static(not self.units.single):
+            self.neighbours.travel[u] = self.neighbours.travel[u] + (speed + self.unseen) * dt
+        return self.is_sound(speed, dt)
+
+    @ti.func
+    def is_sound(self, speed, dt):
+        """Whether a speed (m/s) is one the step bears; not one that is no number."""
+        return speed * dt < self.way_a_step[0]
+
+    @ti.func
+    def speed(self, u):
+        """The speed (m/s) of a unit that is a single grain."""
+        w, i = self.units.world(u), self.units.first(u)
+        vy, vz = self.grains.velocity_y[w, i], self.grains.velocity_z[w, i]
+        return ti.sqrt(vy * vy + vz * vz)
+
+    @ti.func
+    def way(self, u, t):
+        """How far (m) any grain of a unit has gone since there are lists; huge where there are none."""
+        moved = self.neighbours.travel[u]
+        if moved == 0.0:  # there are lists; without, it says NEVER
+            moved = self.neighbours.moved(u, t)
+        return moved
+
+    @ti.func
+    def stale(self, u, t):
+        """Whether two grains may be in reach of each other unlisted at time t (s)."""
+        return self.neighbours.stale(u, t)
+
+    @ti.func
+    def worn(self, u):
+        """Whether that may be so by a bound on what grains have travelled."""
+        return self.neighbours.worn(u)
+
+    @ti.func
+    def asked(self, u):
+        """Whether some contacts are to be sought anew."""
+        return self.neighbours.asked(u)
+
+    @ti.func
+    def sort(self, w):
+        """Sort the grains of a world into cells."""
+        self.neighbours.cells.sort_world(w)
+
+    @ti.func
+    def make_lists(self, u, t, dt, whole):
+        """List the contacts of a unit anew, or seek some; False, with the old lists, where they do not fit."""
+        return self.neighbours.rebuild(u, t, dt, whole)

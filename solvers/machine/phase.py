@@ -1,0 +1,21 @@
+"""A piece of a step: what acts, and on what at a time."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from solvers.machine.units import Units
+
+
+@dataclass(frozen=True)
+class Phase:
+    """A Taichi function that a step calls once for each unit of a matter, or once for each world.
+
+    Before the particles move, `act(u, t, first, dt)`: what follows from where they are at time t (s). Afterwards
+    `act(u, frame, first, dt)`, in a tank that moves as `frame` says (`Carrier.frame`), and returns whether all is
+    sound. `first` tells the first step since the particles were launched; dt (s) is the step. What acts on a unit
+    writes to nothing that others read in the same phase: schedules run units side by side, and phases one after
+    another. `units` is None where it acts on whole worlds.
+    """
+
+    act: Callable
+    units: Units | None = None

@@ -1,0 +1,22 @@
+"""Which carrier moves the tanks of a scene."""
+
+from collections.abc import Sequence
+
+from solvers.machine.runtime import Arrays
+from solvers.motion.afloat import Afloat, steps_an_interval
+from solvers.motion.prescribed import Prescribed
+from solvers.ship.vessel import Vessel
+from solvers.tank.load import Load
+
+
+def carrier_kind(vessels: Sequence[Vessel]) -> type[Prescribed] | type[Afloat]:
+    """Ships where there are vessels, else prescribed motions."""
+    return Afloat if vessels else Prescribed
+
+
+def make_carrier(arrays: Arrays, scene, dt: float, load: Load) -> Prescribed | Afloat:
+    """The carrier of a scene (`solvers.scene.Scene`) that takes steps of dt (s)."""
+    if scene.vessels:
+        every = steps_an_interval(scene.vessels, scene.interval, dt)
+        return Afloat(arrays, scene.vessels, scene.gravity, every, load)
+    return Prescribed(arrays, scene.motions, scene.soft_start, scene.gravity)
