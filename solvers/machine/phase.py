@@ -19,3 +19,8 @@ class Phase:
 
     act: Callable
     units: Units | None = None
+
+    @property
+    def of_worlds(self) -> bool:
+        """Whether it acts on whole worlds."""
+        return self.units is None

@@ -122,7 +122,7 @@ class PerBand:
     @ti.func
     def begin(self, k: ti.template(), u, t, first, dt):
         """A band's part in a phase before the particles move."""
-        if ti.static(self.before[k].units is None):
+        if ti.static(self.before[k].of_worlds):
             if u % self.bands == 0:
                 self.before[k].act(u // self.bands, t, first, dt)
         else:
@@ -132,7 +132,7 @@ class PerBand:
     def end(self, k: ti.template(), u, t, first, dt):
         """A band's part in a phase in which they move; returns whether all is sound."""
         sound = True
-        if ti.static(self.after[k].units is None):
+        if ti.static(self.after[k].of_worlds):
             if u % self.bands == 0:
                 sound = self.act_on(k, u // self.bands, u // self.bands, t, first, dt)
         else:

@@ -102,7 +102,7 @@ class PerGrain:
     def take_step(self, time: ti.f64, first: ti.i32, step: ti.f64):
         """One step of every running world."""
         for k in ti.static(range(len(self.before))):
-            if ti.static(self.before[k].units is None):
+            if ti.static(self.before[k].of_worlds):
                 for w in range(self.worlds):
                     if self.clock.status[w] == RUNNING:
                         self.before[k].act(w, time, first == 1, ti.cast(step, self.real))
