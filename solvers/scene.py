@@ -13,6 +13,7 @@ from solvers.grains.relaxing import AT_REST, BURSTING, lifting_overlap, relaxed
 from solvers.grains.shapes.given import Shapes
 from solvers.ship.vessel import Vessel
 from solvers.tank.parts import Part
+from solvers.tank.tank import Tank
 from solvers.time.timestep import Limit, limits, watched
 
 
@@ -20,7 +21,7 @@ from solvers.time.timestep import Limit, limits, watched
 class Scene:
     """A batch of W worlds of n grains in equal tanks.
 
-    `radius` (W, n) m; `outline` (m, 2) m, counter-clockwise; `grain`, `wall` materials, one or one a world;
+    `radius` (W, n) m; `outline` (m, 2) m of the tank, counter-clockwise; `grain`, `wall` materials, one or one a world;
     `motions[w]` the tank's motions in world w, the same kinds in every world; `step` Δt in s, or None for the
     derived one; `start_speed` (m/s) at which the fastest two grains, or one and a wall, may meet at the start; `sizes`
     the smallest and largest radius (m) a world may hold. What is derived for all worlds follows from `sizes`, so that a
@@ -30,7 +31,9 @@ class Scene:
     `unlike` says how two kinds touch. `fixed` (k, 3) y, z and radius in m of grains that never move; `open_edges` the
     edges of the outline without a wall, by their first corners; `parts` plates that move in the tank. `shapes` of
     irregular grains, whose `radius` and `sizes` are those of discs of equal area; None for discs. `vessels` the ships
-    (W,) whose holds the tanks are, in place of motions; `interval` (s) of the water's forces, None: as they need it.
+    (W,) in whose holds the tanks stand, in place of motions; `interval` (s) of the water's forces, None: as they need
+    it. The tank is `thickness` (m) thick, None: as the mean grain, and `length` (m) long along a ship, None: as long as
+    she is; `more_tanks` stand beside it. Parts and fixed grains count to the first tank.
     """
 
     radius: np.ndarray
@@ -59,6 +62,9 @@ class Scene:
     shapes: Shapes | None = None
     vessels: Sequence[Vessel] = ()
     interval: float | None = None
+    thickness: float | None = None
+    length: float | None = None
+    more_tanks: tuple[Tank, ...] = ()
     integrator: str = "verlet"
     precision: str = "f64"
     schedule: str = "auto"
@@ -89,6 +95,21 @@ class Scene:
             other = kinds[b] if a == b else touching(kinds[low], kinds[high], unlike.get((low, high)))
             rows.append(interface(kinds[low], other, mass[a] * mass[b] / (mass[a] + mass[b]), mean / 2.0, scale))
         return (*rows, *(interface(kind, wall, m, mean, scale) for kind, m in zip(kinds, mass, strict=True)))
+
+    @property
+    def tanks(self) -> tuple[Tank, ...]:
+        """All tanks of a world."""
+        thickness = self.thickness or 2.0 * self.mean_radius
+        return (Tank(self.outline, thickness, tuple(self.open_edges), self.length), *self.more_tanks)
+
+    @property
+    def shares(self) -> np.ndarray | None:
+        """Of each piece's load on the ship (W, pieces), per metre of hers; None where there is none."""
+        if not self.vessels:
+            return None
+        more = len(self.parts) + bool(len(self.fixed))
+        rows = [[tank.share(vessel.length) for tank in self.tanks] for vessel in self.vessels]
+        return np.array([[*row, *row[:1] * more] for row in rows])
 
     @property
     def kinds(self) -> int:
@@ -142,14 +163,15 @@ class Scene:
 
     def credible_speed(self) -> float:
         """Highest speed (m/s) at which grains may be expected to meet: a fall through the tank, and the tank's own."""
-        height = np.ptp(self.outline[:, 1])
+        corners = np.concatenate([tank.outline for tank in self.tanks])
+        height = np.ptp(corners[:, 1])
         speed = max(self.start_speed, float(np.sqrt(2.0 * self.gravity * height)))
         speed = max([speed, *(part.fastest() for part in self.parts)])
         for motion in (m for world in self.motions for m in world):
             fastest = motion.fastest(self.soft_start)
             lever = 1.0
             if motion.coordinate == "turn":
-                lever = float(np.linalg.norm(self.outline - np.asarray(motion.centre), axis=1).max())
+                lever = float(np.linalg.norm(corners - np.asarray(motion.centre), axis=1).max())
             speed = max(speed, fastest * lever)
         return speed
 
@@ -204,7 +226,7 @@ class Scene:
 
     def shared(self) -> tuple:
         """All that must be equal for worlds of two scenes to run in one launch; the steps must be set."""
-        lengths = [table.tobytes() for table in (self.outline, self.fixed)]
+        tanks = [(tank.outline.tobytes(), tank.thickness, tank.open_edges, tank.length) for tank in self.tanks]
         kinds = tuple(
             (type(motion), len(motion.parameters(self.soft_start)), motion.coordinate) for motion in self.motions[0]
         )
@@ -212,9 +234,9 @@ class Scene:
         words = self.integrator, self.precision, self.schedule
         numbers = self.radius.shape[1], self.gravity, self.soft_start, self.step, self.sizes, self.stiffness_scale
         shapes = (self.shapes.outlines, self.shapes.contact, self.shapes.nodes) if self.shapes else None
-        afloat = bool(self.vessels), self.interval
-        rest = afloat, self.others, self.unlike, self.open_edges, self.parts, self.velocity is None, shapes
-        return (*lengths, kinds, *laws, *words, *numbers, *rest)
+        carried = bool(self.vessels), self.interval
+        rest = carried, self.others, self.unlike, self.parts, self.velocity is None, shapes
+        return (*tanks, self.fixed.tobytes(), kinds, *laws, *words, *numbers, *rest)
 
     @classmethod
     def joined(cls, scenes: "Sequence[Scene]") -> "Scene":

@@ -88,9 +88,11 @@ class Simulation:
         self.arrays = arrays = Arrays(scene.precision)
         count = scene.radius.shape[1]
         units = Units(worlds, count, self.units_a_world, count + len(scene.fixed))
-        may_leave = bool(scene.open_edges)
+        may_leave = any(tank.open_edges for tank in scene.tanks)
         grains = scene.radius, scene.density, scene.fixed, units.ghosts, may_leave, scene.kind
-        self.walls = Walls(arrays, scene.outline, scene.open_edges, scene.parts)
+        self.walls = Walls(arrays, scene.tanks, scene.parts)
+        pieces = len(scene.tanks) + len(scene.parts) + bool(len(scene.fixed))
+        self.load_on_tank = load = Load(arrays, units, pieces, scene.shares)
         integrator = INTEGRATORS[scene.integrator]()
         laws = ChosenLaws(arrays, units, *scene.laws, scene.interfaces_of, scene.kinds, integrator)
         moduli = np.array([[between.young_modulus for between in world] for world in scene.interfaces_of])
@@ -100,20 +102,19 @@ class Simulation:
         if scene.shapes is None:
             self.grains = Grains(arrays, *grains)
             self.neighbours = Neighbours(arrays, units, self.grains, self.walls, *lists)
-            self.contacts = Contacts(arrays, units, self.grains, self.walls, self.neighbours, laws)
+            self.contacts = Contacts(arrays, units, self.grains, self.walls, self.neighbours, laws, load)
         else:
             rule = RULES[scene.shapes.contact](arrays, units, self.walls, scene.shapes)
             self.grains = ShapedGrains(arrays, scene.shapes, *grains)
             self.neighbours = ShapedNeighbours(arrays, units, self.grains, self.walls, *lists, rule)
-            self.contacts = ShapedContacts(arrays, units, self.grains, self.walls, self.neighbours, laws, rule)
-        self.tank_load = Load(arrays, units, carrier_kind(scene.vessels).answers)
-        self.carrier = make_carrier(arrays, scene, self.dt, self.tank_load)
-        self.mover = Mover(arrays, units, self.grains, integrator, self.carrier.rotating, self.tank_load)
+            self.contacts = ShapedContacts(arrays, units, self.grains, self.walls, self.neighbours, laws, load, rule)
+        self.carrier = make_carrier(arrays, scene, self.dt, load)
+        self.mover = Mover(arrays, units, self.grains, integrator, self.carrier.rotating)
         self.clock = Clock(arrays, units)
         way = watch.FASTEST_STEP * scene.sizes[0]
         matter = GrainMatter(arrays, units, self.grains, self.neighbours, self.contacts, self.mover, way)
         self.schedule = SCHEDULES[self.schedule_name](Sequence([matter], self.carrier), self.clock, self.threads)
-        parts = units, self.grains, self.walls, self.neighbours, self.contacts, self.carrier, self.tank_load
+        parts = units, self.grains, self.walls, self.neighbours, self.contacts, self.carrier, load
         self.observer = Observer(arrays, *parts)
         self.presser = Presser(units, self.grains, self.walls, self.neighbours, self.contacts)
         arrays.finish()
@@ -132,6 +133,7 @@ class Simulation:
         spin = np.zeros(self.scene.radius.shape) if spin is None else spin
         self.grains.launch(self._in_solver_order(velocity), self._in_solver_order(spin))
         self.mover.rest()
+        self.load_on_tank.forget()
         self.unkicked = self.observed = self.steps
         self.moored = False
 
@@ -242,6 +244,13 @@ class Simulation:
         watch.check_state(rows["overlap"], rows["escaped"].astype(int), self.time)
         return rows
 
+    def loads(self) -> np.ndarray:
+        """Force (y, z; N) and moment (N m) of the cargo on each piece of the tank (W, pieces, 3), as last observed.
+
+        Pieces are the walls of each tank, the parts, and the fixed grains if there are any.
+        """
+        return self.observer.loads.to_numpy()
+
     def settle(self, rest: float, limit: float, tell: Callable[[float], None] = lambda _: None) -> bool:
         """Let the grains come to rest in the upright tank; the clock then starts at zero. Returns whether all rest.
 
@@ -305,14 +314,23 @@ class Simulation:
     def cargo(self) -> list[Body]:
         """The grains of each world as they lie, as if frozen: per metre of a ship's length, in the tank's frame."""
         place, mass = self.grains.read()["position"], self._in_solver_order(self.grains.mass)
-        own = 1.0 / self.grains.inverse_inertia.to_numpy()[:, : mass.shape[1]]
+        share = self._per_metre(place)
+        own = share / self.grains.inverse_inertia.to_numpy()[:, : mass.shape[1]]
+        mass = share * mass
         total = mass.sum(axis=1)
         centre = (mass[..., None] * place).sum(axis=1) / total[:, None]
         apart = ((place - centre[:, None]) ** 2).sum(axis=2)
         inertia = (mass * apart + own).sum(axis=1)
-        thick = [vessel.thickness for vessel in self.scene.vessels]
-        rows = zip(total, centre.tolist(), inertia, thick, strict=True)
-        return [Body(float(m / d), tuple(c), float(i / d)) for m, c, i, d in rows]
+        return [Body(float(m), tuple(c), float(i)) for m, c, i in zip(total, centre.tolist(), inertia, strict=True)]
+
+    def _per_metre(self, position: np.ndarray) -> np.ndarray:
+        """How much of a metre of her ship each grain (W, n) stands for, by the tank that it lies in, 1/m."""
+        share = np.empty(position.shape[:2])
+        for w, vessel in enumerate(self.scene.vessels):
+            share[w] = self.scene.tanks[0].share(vessel.length)
+            for tank in self.scene.more_tanks:
+                share[w][tank.holds(position[w])] = tank.share(vessel.length)
+        return share
 
     def snapshot(self) -> dict[str, np.ndarray]:
         """Positions, velocities (W, n, 2), angles and spins (W, n) now, in the tank's frame."""

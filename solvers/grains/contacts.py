@@ -8,6 +8,7 @@ from solvers.grains.neighbours import Neighbours
 from solvers.grains.state import FAR, Grains
 from solvers.machine.runtime import Arrays
 from solvers.machine.units import Units
+from solvers.tank.load import Load
 from solvers.tank.walls import Walls
 
 # Vectors of different units stand this far apart, so that no two threads write to one cache line.
@@ -23,8 +24,19 @@ class Contacts:
     is exact. (Spandonidis 2016, eq. 4.7, takes whole radii.) A wall's takes half the overlap.
     """
 
-    def __init__(self, arrays: Arrays, units: Units, grains: Grains, walls: Walls, lists: Neighbours, laws: ChosenLaws):
+    def __init__(
+        self,
+        arrays: Arrays,
+        units: Units,
+        grains: Grains,
+        walls: Walls,
+        lists: Neighbours,
+        laws: ChosenLaws,
+        load: Load,
+    ):
         self.units, self.grains, self.walls, self.lists, self.laws = units, grains, walls, lists, laws
+        self.load, self.lined = load, grains.count > grains.mobile
+        self.lining = load.pieces - 1  # the piece that fixed grains are, where there are any
         # What a block of pairs does to its grains: forces (N) along y and z, torques (N m) on the first and the second.
         # Nobody reads it. Neighbouring numbers that are written together are what makes the compiler look for SIMD.
         self.given = arrays.vectors(4, lists.pairs.lanes, (GIVEN_APART * units.count,), kept=False)
@@ -42,6 +54,7 @@ class Contacts:
         Straight-line arithmetic on short vectors: the compiler turns it into SIMD instructions, and pairs that do not
         touch come out with zero overlap, force and memory. Gathering and scattering grains stays scalar.
         """
+        load = self.nothing()
         for block in range(pairs.blocks(u)):
             i, j = pairs.grain[u, block], pairs.mate[u, block]
             reach, share = pairs.reach[u, block], pairs.share[u, block]
@@ -68,6 +81,46 @@ class Contacts:
                 target = pairs.target[u, block]
                 for k in ti.static(range(pairs.lanes)):
                     g.push(0, target[k], -fy[k], -fz[k], turn_j[k])
+            if ti.static(self.lined):
+                load += self.on_lining(g, pairs, u, i, j, fy, fz, turn_i)
+        if ti.static(self.lined):
+            self.load.book(u, self.lining, load, dt)
+
+    @ti.func
+    def on_lining(self, g: ti.template(), pairs: ti.template(), u, i, j, fy, fz, turn):
+        """What a block of pairs does to the fixed grains in it; `fy`, `fz` (N) and `turn` (N m) push grains i."""
+        start = self.units.world(u) * pairs.stride
+        fixed = ti.select(j - start >= g.mobile, ti.cast(-1.0, g.real), ti.cast(0.0, g.real))
+        y, z = ti.cast(gathered(g.y, i, pairs.lanes), g.real), ti.cast(gathered(g.z, i, pairs.lanes), g.real)
+        moment = fixed * (y * fz - z * fy + turn)
+        return ti.Vector([(fixed * fy).sum(), (fixed * fz).sum(), moment.sum()])
+
+    @ti.func
+    def nothing(self):
+        """A load that is none."""
+        return ti.Vector([ti.cast(0.0, self.grains.real) for _ in ti.static(range(3))])
+
+    @ti.func
+    def push_off(self, g: ti.template(), w, i, u, feature, fy, fz, torque, load: ti.template()):
+        """Push grain i off a wall with a force (N) and a torque (N m), and the wall the other way.
+
+        `load` adds up what a single tank without parts feels.
+        """
+        g.push(w, i, fy, fz, torque)
+        y, z = ti.cast(g.y[w, i], g.real), ti.cast(g.z[w, i], g.real)
+        back = ti.Vector([-fy, -fz, -(y * fz - z * fy + torque)])
+        if ti.static(self.walls.pieces == 1):
+            load += back
+        elif fy != 0.0 or fz != 0.0:
+            self.load.note(u, self.walls.piece(feature), back)
+
+    @ti.func
+    def book_walls(self, u, load: ti.template(), dt):
+        """Book what a unit's contacts with walls do, once a step."""
+        if ti.static(self.walls.pieces == 1):
+            self.load.book(u, 0, load, dt)
+        else:
+            self.load.book_noted(u, dt)
 
     @ti.func
     def geometry(self, g: ti.template(), i, j, reach, count: ti.template()):
@@ -90,7 +143,7 @@ class Contacts:
     @ti.func
     def wall_forces(self, g: ti.template(), contacts: ti.template(), u, t, dt):
         """Forces of the walls on the grains g."""
-        w = self.units.world(u)
+        w, load = self.units.world(u), self.nothing()
         shift = self.walls.shift(w, t)
         for p in range(contacts.length[u]):
             i, feature = contacts.grain[u, p][0], contacts.mate[u, p][0]
@@ -114,7 +167,8 @@ class Contacts:
                     approach = ti.cast(radius - gap[0], g.real)
                 fn = fn - self.laws.pull(contacts, u, p, ti.Vector([approach]), ti.Vector([rate]), dt)
             fy, fz = fn[0] * ny - ft[0] * nz, fn[0] * nz + ft[0] * ny
-            g.push(w, i, fy, fz, roll[0] - lever * ft[0])
+            self.push_off(g, w, i, u, feature, fy, fz, roll[0] - lever * ft[0], load)
+        self.book_walls(u, load, dt)
 
     @ti.func
     def pair_press(self, g: ti.template(), pairs: ti.template(), w, i, j, u, p):

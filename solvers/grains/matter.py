@@ -60,10 +60,8 @@ class GrainMatter:
 
     @ti.func
     def push(self, u, t, first, dt):
-        """The forces of all contacts of a unit, with what they do to the tank where its carrier answers to that."""
+        """The forces of all contacts of a unit, on the grains and on the tank."""
         self.contacts.forces(u, t, dt)
-        if ti.static(self.mover.weighed):
-            self.mover.weigh(self.grains, u, dt)
 
     @ti.func
     def move(self, u, frame, first, dt):

@@ -6,40 +6,21 @@ from solvers.grains.shapes.pose import towards
 from solvers.grains.state import Grains
 from solvers.machine.runtime import Arrays
 from solvers.machine.units import Units
-from solvers.tank.load import Load
 
 
 @ti.data_oriented
 class Mover:
-    """Moves grains in a tank that may be `rotating`, and books the force on the tank.
+    """Moves grains, in a tank that may be `rotating`."""
 
-    Forces between grains cancel in the sum over all, so what is left of the sum of all contact forces is what walls,
-    fixed grains and parts do to the cargo: with the other sign, the `load` on the tank.
-    """
-
-    def __init__(self, arrays: Arrays, units: Units, grains: Grains, integrator, rotating: bool, load: Load):
-        self.units, self.grains, self.integrator, self.rotating, self.load = units, grains, integrator, rotating, load
-        self.weighed = load.answered  # before every move, by `weigh`
+    def __init__(self, arrays: Arrays, units: Units, grains: Grains, integrator, rotating: bool):
+        self.units, self.grains, self.integrator, self.rotating = units, grains, integrator, rotating
         shape = (grains.worlds, grains.count + grains.ghosts)
         self.extra = arrays.reals(integrator.extra, shape)
 
     def rest(self) -> None:
-        """Forget higher derivatives and the load, for grains that were put somewhere or launched."""
+        """Forget higher derivatives, for grains that were put somewhere or launched."""
         for field in self.extra:
             field.fill(0.0)
-        self.load.forget()
-
-    @ti.func
-    def weigh(self, g: ti.template(), u, dt):
-        """Book a unit's force (N) on the tank and its moment (N m), before the move."""
-        w = self.units.world(u)
-        load_y, load_z, moment = ti.cast(0.0, g.real), ti.cast(0.0, g.real), ti.cast(0.0, g.real)
-        for i in range(self.units.first(u), self.units.end(u)):
-            force_y, force_z = g.force_y[w, i], g.force_z[w, i]
-            load_y -= force_y
-            load_z -= force_z
-            moment -= ti.cast(g.y[w, i], g.real) * force_z - ti.cast(g.z[w, i], g.real) * force_y + g.torque[w, i]
-        self.load.book(u, load_y, load_z, moment, dt)
 
     @ti.func
     def move(self, g: ti.template(), u, body, first, dt):
@@ -54,14 +35,10 @@ class Mover:
         """
         w = self.units.world(u)
         zero = ti.cast(0.0, g.real)
-        total, load_y, load_z, moment = zero, zero, zero, zero
+        total = zero
         for i in range(self.units.first(u), self.units.end(u)):
             force_y, force_z, torque = g.force_y[w, i], g.force_z[w, i], g.torque[w, i]
             y, z = ti.cast(g.y[w, i], g.real), ti.cast(g.z[w, i], g.real)
-            if ti.static(not self.weighed):
-                load_y -= force_y
-                load_z -= force_z
-                moment -= y * force_z - z * force_y + torque
             by, bz, spin_up = body[0], body[1], zero
             if ti.static(self.rotating):
                 rate = body[2]
@@ -84,8 +61,6 @@ class Mover:
             total += eighth * eighth
         if ti.static(g.shaped):
             self.turn(g, u)
-        if ti.static(not self.weighed):
-            self.load.book(u, load_y, load_z, moment, dt)
         return ti.sqrt(ti.sqrt(ti.sqrt(ti.sqrt(total))))
 
     @ti.func

@@ -63,6 +63,7 @@ class Observer:
         self.exact, self.may_leave = arrays.exact, grains.may_leave
         self.chunks = -(-grains.mobile // CHUNK)
         (self.rows,) = arrays.reals(1, (grains.worlds, len(self.NAMES)), arrays.exact, kept=False)
+        (self.loads,) = arrays.reals(1, (grains.worlds, load.pieces, 3), arrays.exact, kept=False)
         self.sums = arrays.reals(7, (grains.worlds, self.chunks), arrays.exact, kept=False)
         self.counted = arrays.reals(3, (units.count,), arrays.exact, kept=False)
 
@@ -116,13 +117,20 @@ class Observer:
             for k in ti.static(range(ESCAPED)):
                 sums[k] += self.sums[k][w, chunk]
             sums[ESCAPED] = ti.max(sums[ESCAPED], self.sums[ESCAPED][w, chunk])
+        for piece in range(self.load.pieces):
+            for k in ti.static(range(3)):
+                self.loads[w, piece, k] = 0.0
         contacts = ti.Vector([ti.cast(0.0, self.exact) for _ in ti.static(range(3))])
         load = ti.Vector([ti.cast(0.0, self.exact) for _ in ti.static(range(3))])
         for u in range(w * self.units.a_world, (w + 1) * self.units.a_world):
             contacts[TOUCHING] += self.counted[TOUCHING][u]
             contacts[DEEPEST] = ti.max(contacts[DEEPEST], self.counted[DEEPEST][u])
             contacts[ELASTIC] += self.counted[ELASTIC][u]
-            load += self.load.take(u)
+            for piece in range(self.load.pieces):
+                impulse = self.load.take(u, piece)
+                for k in ti.static(range(3)):
+                    self.loads[w, piece, k] = self.loads[w, piece, k] + impulse[k] / ti.cast(since, self.exact)
+                load += impulse
         self.write_row(w, time, since, sums, contacts, load)
 
     @ti.func

@@ -53,7 +53,7 @@ class Afloat:
     """The tank in each of W ships, a carrier as `Prescribed` is; `load` is what its cargo does to it.
 
     The earth's axes have z = 0 on the calm surface and y = 0 where the ship's hull lay at the start. All of the ship is
-    per metre of length; the cargo's load is divided by the thickness of its sheet.
+    per metre of length, and so is the load that her cargo's `Load` tells.
     """
 
     rotating = moving = answers = True
@@ -81,7 +81,6 @@ class Afloat:
         self.spring = table([ship.rig.spring for ship in ships])
         self.rest = table([ship.rig.rest for ship in ships])
         self.hold = table([np.subtract(vessel.hold, vessel.ship.about) for vessel in self.vessels])
-        self.thickness = table([vessel.thickness for vessel in self.vessels])
         self.heel = table([vessel.heel for vessel in self.vessels])
         self.release = table([vessel.release for vessel in self.vessels])
         self.limits = table([np.clip(vessel.limits, -1e9, 1e9) for vessel in self.vessels])
@@ -187,7 +186,7 @@ class Afloat:
     def follow(self, w, time, first, dt):
         """Take the ship through the step of dt (s) that begins now, with the load of the cargo now.
 
-        The load is on the whole sheet. In their `first` step the cargo's velocities take half a kick.
+        In their `first` step the cargo's velocities take half a kick.
         """
         t, step, load = ti.cast(time, self.exact), ti.cast(dt, self.exact), self.cargo.of_world(w)
         if t < self.release[w]:
@@ -356,10 +355,10 @@ class Afloat:
 
     @ti.func
     def aboard(self, w, roll, load):
-        """The cargo's force and moment about P in the earth's axes, per metre of length."""
-        force = turned(load[0], load[1], roll) / self.thickness[w]
+        """The cargo's force and moment per metre about P in the earth's axes, of those in the tank's."""
+        force = turned(load[0], load[1], roll)
         arm = turned(self.hold[w, 0], self.hold[w, 1], roll)
-        moment = load[2] / self.thickness[w] + arm[0] * force[1] - arm[1] * force[0]
+        moment = load[2] + arm[0] * force[1] - arm[1] * force[0]
         return ti.Vector([force[0], force[1], moment])
 
     @ti.func

@@ -16,7 +16,7 @@ SHORTEST_MEMORY = 0.02  # of the fastest memory's time: Runge and Kutta's error 
 
 @dataclass(frozen=True, eq=False)
 class Vessel:
-    """A hull in water (`ship`, its load a `Floating`) with a hold; the cargo is a sheet `thickness` (m) thick.
+    """A hull in water (`ship`, its load a `Floating`) of `length` (m), with a hold.
 
     `hold` is the tank's origin in the hull's frame (m). With `laden` the ship's body is that of hull and cargo together
     as they are when she is let go, and the hull is what is left of it without the cargo; else it is the hull alone. She
@@ -28,7 +28,7 @@ class Vessel:
 
     ship: Ship
     hold: tuple[float, float]
-    thickness: float
+    length: float = 1.0
     laden: bool = False
     heel: float = 0.0
     release: float = 0.0

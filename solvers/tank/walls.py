@@ -1,4 +1,4 @@
-"""Walls: the tank's outline, a polygon of straight segments, some maybe missing, and plates that move in it."""
+"""Walls: the outlines of the tanks, polygons of straight segments, some maybe missing, and plates that move in them."""
 
 from collections.abc import Sequence
 
@@ -7,6 +7,7 @@ import taichi as ti
 
 from solvers.machine.runtime import Arrays
 from solvers.tank.parts import Part, travel
+from solvers.tank.tank import Tank
 
 Y, Z, ALONG_Y, ALONG_Z, LENGTH, TWO_SIDED, PART = range(7)
 AFTER_Y, AFTER_Z = LENGTH, TWO_SIDED  # of a corner
@@ -18,7 +19,7 @@ CHIMNEY = 5.0  # how far above its mouth a grain still counts as in the tank, in
 
 @ti.data_oriented
 class Walls:
-    """A simple polygon (m, 2), counter-clockwise, with the grains inside, and thin plates.
+    """The outlines of a world's tanks, with the grains inside, and thin plates.
 
     Features are segments and corners. A grain touches a segment only where its centre projects onto it, and a corner
     only beyond the ends of both of the corner's segments, so no contact counts twice. The walls of a closed tank are
@@ -26,18 +27,13 @@ class Walls:
     plates without thickness, felt from both sides and round their edges.
     """
 
-    def __init__(self, arrays: Arrays, outline: np.ndarray, open_edges: Sequence[int] = (), parts: Sequence[Part] = ()):
-        self.outline = np.asarray(outline, dtype=np.float64)
-        self.open = bool(open_edges)
-        self.parts = len(parts)
-        tank = _Features(self.open, -1.0)
-        count = len(self.outline)
-        closed = [k for k in range(count) if k not in open_edges]
-        for k in closed:
-            tank.add_segment(self.outline[k], self.outline[(k + 1) % count])
-        for k in range(count):
-            tank.add_corner(self.outline, (k - 1) % count if (k - 1) % count in closed else None, k, k in closed)
-        plates = [tank] + [_plate(part, number) for number, part in enumerate(parts)]
+    def __init__(self, arrays: Arrays, tanks: Sequence[Tank], parts: Sequence[Part] = ()):
+        self.tanks = len(tanks)
+        self.outline = np.concatenate([tank.outline for tank in tanks])
+        self.open = any(tank.open_edges for tank in tanks)
+        self.parts, self.pieces = len(parts), len(tanks) + len(parts)
+        plates = [_shell(tank, number) for number, tank in enumerate(tanks)]
+        plates += [_plate(part, number) for number, part in enumerate(parts)]
         segments = [row for plate in plates for row in plate.segments]
         corners = [row for plate in plates for row in plate.corners]
         self.segments, self.corners = len(segments), len(corners)
@@ -49,9 +45,10 @@ class Walls:
         rows = np.array([part.parameters() for part in parts]) if parts else np.zeros((1, MOVE + 2))
         self.programmes = arrays.holding(rows, arrays.exact)
         (self.places,) = arrays.reals(1, (max(1, len(parts)), 2), kept=False)  # displacements (m) when last noted
-        mouth = _with_chimneys(self.outline, open_edges)
-        self.mouth_edges = len(mouth)
-        self.mouth = arrays.holding(np.column_stack([mouth, np.roll(mouth, -1, axis=0)]), arrays.place)
+        mouths = [_with_chimneys(tank.outline, tank.open_edges) for tank in tanks]
+        edges = np.concatenate([np.column_stack([mouth, np.roll(mouth, -1, axis=0)]) for mouth in mouths])
+        self.mouth_edges = len(edges)
+        self.mouth = arrays.holding(edges, arrays.place)
         self.real = arrays.real
         self.edge = arrays.holding(np.concatenate(self.bounds), arrays.place)
 
@@ -89,6 +86,12 @@ class Walls:
             dy, dz = now[SHIFT * p] - before[SHIFT * p], now[SHIFT * p + 1] - before[SHIFT * p + 1]
             farthest = ti.max(farthest, ti.sqrt(dy * dy + dz * dz))
         return farthest
+
+    @ti.func
+    def piece(self, feature):
+        """The piece of the tank that a feature belongs to: the walls of each tank, then the parts."""
+        part = ti.cast(self.table[feature, PART], ti.i32)
+        return ti.select(part < 0, -1 - part, self.tanks + part)
 
     @ti.func
     def from_start(self, feature, shift: ti.template(), y, z):
@@ -168,7 +171,10 @@ class Walls:
 
 
 class _Features:
-    """Rows of the table: segments and corners of one polyline, `two_sided` or not, of the part with that number."""
+    """Rows of the table: segments and corners of one polyline, `two_sided` or not, of the part with that number.
+
+    Tanks have the numbers −1, −2, …
+    """
 
     def __init__(self, two_sided: bool, part: float):
         self.two_sided, self.part = two_sided, part
@@ -193,6 +199,18 @@ def _direction(points: np.ndarray, k: int) -> np.ndarray:
     """Unit vector from corner k to the next."""
     edge = points[(k + 1) % len(points)] - points[k]
     return edge / np.hypot(*edge)
+
+
+def _shell(tank: Tank, number: int) -> _Features:
+    """The features of a tank's outline."""
+    outline, count = tank.outline, len(tank.outline)
+    shell = _Features(bool(tank.open_edges), -1.0 - number)
+    closed = [k for k in range(count) if k not in tank.open_edges]
+    for k in closed:
+        shell.add_segment(outline[k], outline[(k + 1) % count])
+    for k in range(count):
+        shell.add_corner(outline, (k - 1) % count if (k - 1) % count in closed else None, k, k in closed)
+    return shell
 
 
 def _plate(part: Part, number: int) -> _Features:

@@ -33,7 +33,7 @@ SITES = RADIUS * np.array(
 )  # in a triangular lattice from wall to wall, which does not shift at small angles
 COUNT = len(SITES)
 SHEET = 2.0 * RADIUS
-NO_CARGO = 1e15  # m thick: nothing of it counts a metre
+NO_CARGO = 1e15  # m, length of a ship on whose every metre the cargo counts for nothing
 GRAIN = material(young=5e7, friction=0.6, restitution=0.3)
 ELASTIC = material(young=5e7, friction=0.0, dissipative_time=0.0)
 LOOSE = material(young=5e7, friction=0.2, restitution=0.5)
@@ -84,13 +84,12 @@ def fleet() -> list[Vessel]:
             HOLD,
             NO_CARGO,
         ),
-        Vessel(tiny, HOLD, SHEET, heel=HEEL, release=RELEASE),
-        Vessel(lively, HOLD, SHEET),
-        Vessel(Ship(hull, floating(0.0, 4.0, Water(density=0.0)), NONE, AXIS), HOLD, SHEET, height=0.0),
+        Vessel(tiny, HOLD, heel=HEEL, release=RELEASE),
+        Vessel(lively, HOLD),
+        Vessel(Ship(hull, floating(0.0, 4.0, Water(density=0.0)), NONE, AXIS), HOLD, height=0.0),
         Vessel(
             Ship(laden, floating(0.03, 5.5), Radiation(ADDED.added_mass, 0.0 * ADDED.damping), AXIS),
             HOLD,
-            SHEET,
             laden=True,
             limits=(-0.3, 0.3),
         ),
@@ -100,8 +99,8 @@ def fleet() -> list[Vessel]:
             NO_CARGO,
             limits=(-0.5, 0.5),
         ),
-        Vessel(rolling, HOLD, SHEET, heel=2.0, release=RELEASE),
-        Vessel(lively, HOLD, SHEET),
+        Vessel(rolling, HOLD, heel=2.0, release=RELEASE),
+        Vessel(lively, HOLD),
         Vessel(
             Ship(Body(37.0, (0.0, 0.09), 0.6), floating(0.03, 5.4), NONE, AXIS, free=(False, False, True)),
             HOLD,
@@ -129,6 +128,8 @@ class Run:
             materials,
             tangential="mindlin",
             vessels=vessels,
+            thickness=SHEET,
+            length=1.0,
             step=2e-5,
         )
         with pytest.MonkeyPatch.context() as patch:
@@ -437,7 +438,7 @@ def test_half_an_hour_in_an_irregular_sea(height):
     load = Floating(BARGE, WATER, AXIS, sea, np.tile([[30.0j, 300.0, 4.0]], (len(sea.amplitude), 1)))
     rig = Rig(damping=np.array([5.0, 0.0, 0.0]), spring=np.array([30.0, 0.0, 0.0]))
     ship = Ship(Body(37.0, (0.0, 0.09), 0.6), load, Radiation(ADDED.added_mass, ADDED.damping, memory()), AXIS, rig=rig)
-    vessel = Vessel(replace(ship, damping=RollDamping(0.2, 0.2)), HOLD, SHEET)
+    vessel = Vessel(replace(ship, damping=RollDamping(0.2, 0.2)), HOLD)
     scene = Scene([[RADIUS]], tank(0.3, 0.25), material(young=1e5), material(young=1e5), vessels=[vessel], step=1e-4)
     run = Simulation(scene, np.array([[[0.0, RADIUS]]]), 1)
     rolls = []

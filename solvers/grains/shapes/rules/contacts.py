@@ -20,19 +20,22 @@ class ShapedContacts(Contacts):
     become one its force may jump.
     """
 
-    def __init__(self, arrays, units, grains, walls, lists, laws, rule):
-        super().__init__(arrays, units, grains, walls, lists, laws)
+    def __init__(self, arrays, units, grains, walls, lists, laws, load, rule):
+        super().__init__(arrays, units, grains, walls, lists, laws, load)
         self.rule, self.rest = rule, rule.rest
 
     @ti.func
     def pair_forces(self, g: ti.template(), pairs: ti.template(), u, dt):
         """Forces between the grains g, a block of contacts at a time; one across two units is worked out in both."""
+        load = self.nothing()
         for block in range(pairs.blocks(u)):
             i, j = self.in_order(pairs, u, block)
             if not self.idle(g, pairs, i, j, u, block):
                 if self.rest.carry(g, pairs, i, j, u, block) > 0.0:
                     self.ask(g, pairs, u, block, dt)
-                self.block_forces(g, pairs, i, j, u, block, dt)
+                self.block_forces(g, pairs, i, j, u, block, load, dt)
+        if ti.static(self.lined):
+            self.load.book(u, self.lining, load, dt)
 
     @ti.func
     def in_order(self, pairs: ti.template(), u, block):
@@ -68,8 +71,10 @@ class ShapedContacts(Contacts):
                 self.rest.note(g, pairs, w, i, j, u, p, c, d, dt)
 
     @ti.func
-    def block_forces(self, g: ti.template(), pairs: ti.template(), i, j, u, block, dt):
+    def block_forces(self, g: ti.template(), pairs: ti.template(), i, j, u, block, load: ti.template(), dt):
         """Push grains i and j apart at a block of contacts, by so much less as the saddles before them say.
+
+        `load` adds up what fixed grains feel.
 
         Straight-line arithmetic on short vectors, as `Contacts.pair_forces`.
         """
@@ -97,7 +102,7 @@ class ShapedContacts(Contacts):
         slip = uz * ny - uy * nz
         ft, roll = self.laws.rub(PAIR, pairs, u, block, overlap, rate, greater(pressing, 0.0), slip, turning, dt)
         fy, fz, torque = fy - ft * nz, fz + ft * ny, torque + ft * (ly * ny + lz * nz) + roll
-        self.push_block(g, pairs, i, u, block, fy, fz, torque, -torque - (apart_y * fz - apart_z * fy))
+        self.push_block(g, pairs, i, u, block, fy, fz, torque, -torque - (apart_y * fz - apart_z * fy), load)
 
     @ti.func
     def passing(self, g: ti.template(), pairs: ti.template(), i, j, ly, lz, apart_y, apart_z):
@@ -110,7 +115,9 @@ class ShapedContacts(Contacts):
         return uy, uz, spin_i - spin_j
 
     @ti.func
-    def push_block(self, g: ti.template(), pairs: ti.template(), i, u, block, fy, fz, torque_i, torque_j):
+    def push_block(
+        self, g: ti.template(), pairs: ti.template(), i, u, block, fy, fz, torque_i, torque_j, load: ti.template()
+    ):
         """Push the grains of a block of contacts with forces (N) on i, and turn both with torques (N m)."""
         listed, target = pairs.grain[u, block], pairs.target[u, block]
         if ti.static(not self.units.whole):
@@ -125,6 +132,8 @@ class ShapedContacts(Contacts):
         if ti.static(not self.units.single):
             for k in ti.static(range(pairs.lanes)):
                 g.push(0, target[k], -fy[k], -fz[k], torque_j[k])
+        if ti.static(self.lined):
+            load += self.on_lining(g, pairs, u, listed, pairs.mate[u, block], fy, fz, torque_i)
 
     @ti.func
     def unsettled(self, contacts: ti.template(), u, p, c):
@@ -162,15 +171,18 @@ class ShapedContacts(Contacts):
     @ti.func
     def wall_forces(self, g: ti.template(), contacts: ti.template(), u, t, dt):
         """Forces of the walls on the grains g."""
-        w = self.units.world(u)
+        w, load = self.units.world(u), self.nothing()
         shift = self.walls.shift(w, t)
         for p in range(contacts.length[u]):
             if not self.rule.is_lost(contacts, u, p):
-                self.wall_force(g, contacts, w, u, p, shift, dt)
+                self.wall_force(g, contacts, w, u, p, shift, load, dt)
+        self.book_walls(u, load, dt)
 
     @ti.func
-    def wall_force(self, g: ti.template(), contacts: ti.template(), w, u, p, shift: ti.template(), dt):
-        """The force of contact p on a grain."""
+    def wall_force(
+        self, g: ti.template(), contacts: ti.template(), w, u, p, shift: ti.template(), load: ti.template(), dt
+    ):
+        """The force of contact p on a grain, and on the wall."""
         i, feature = contacts.first_of(u, p), contacts.second_of(u, p)
         c = self.rule.wall(g, contacts, w, i, feature, shift, u, p, True)
         if self.unsettled(contacts, u, p, c):
@@ -188,7 +200,7 @@ class ShapedContacts(Contacts):
                 force, torque, pressing = force - less * m, torque - less * arm.cross(m), pressing - less
         ft, roll = self.rubbed(WALL, contacts, u, p, c, rate, pressing, slip, g.spin_now[w, i], dt)
         force += ft * ti.Vector([-n[1], n[0]])
-        g.push(w, i, force[0], force[1], torque + ft * lever.dot(n) + roll)
+        self.push_off(g, w, i, u, feature, force[0], force[1], torque + ft * lever.dot(n) + roll, load)
 
     @ti.func
     def wall_pressed(
