@@ -52,7 +52,8 @@ class Simulation:
     """W worlds of one scene, from `position` (W, n, 2) m, at rest or with the scene's velocities.
 
     `threads` 0 uses all cores; `arch` is one of `runtime.ARCHES`; `skin` (m) of the Verlet lists affects speed alone.
-    `units` is the number of units a world is cut into; None: as the schedule likes it here. Raises Unavailable.
+    `units` is the number of units a world is cut into; None: as the schedule likes it here. Steps are up to `stretch`
+    times the scene's, the base step. Raises Unavailable.
     """
 
     def __init__(
@@ -63,6 +64,7 @@ class Simulation:
         skin: float | None = None,
         arch: str = "auto",
         units: int | None = None,
+        stretch: int = 1,
     ):
         self.threads = threads or runtime.available_cores()
         answers = carrier_kind(scene.vessels).answers
@@ -74,7 +76,7 @@ class Simulation:
         self.schedule_name = choose_schedule(scene.schedule, self.arch, worlds, count, self.threads, answers)
         self.units_a_world = units or units_a_world(self.schedule_name, worlds, count, self.threads)
         self.skin = skin or (SKIN_OF_CONVEX if scene.shapes and scene.shapes.convex else SKIN) * 2.0 * scene.mean_radius
-        self.steps, self.room = 0, 1
+        self.steps, self.room, self.stretch = 0, 1, stretch
         self.origin = 0.0  # what the tank's motion takes for the time at step 0
         self.unkicked = 0  # the step that is the grains' first
         self.observed, self.load = 0, dict.fromkeys(LOAD, np.zeros(worlds))  # when last, and what the load was
@@ -112,7 +114,7 @@ class Simulation:
         self.mover = Mover(arrays, units, self.grains, integrator, self.carrier.rotating)
         self.clock = Clock(arrays, units)
         way = watch.FASTEST_STEP * scene.sizes[0]
-        matter = GrainMatter(arrays, units, self.grains, self.neighbours, self.contacts, self.mover, way)
+        matter = GrainMatter(arrays, units, self.grains, self.neighbours, self.contacts, self.mover, way, self.stretch)
         self.schedule = SCHEDULES[self.schedule_name](Sequence([matter], self.carrier), self.clock, self.threads)
         parts = units, self.grains, self.walls, self.neighbours, self.contacts, self.carrier, load
         self.observer = Observer(arrays, *parts)
@@ -134,6 +136,7 @@ class Simulation:
         self.grains.launch(self._in_solver_order(velocity), self._in_solver_order(spin))
         self.mover.rest()
         self.load_on_tank.forget()
+        self.clock.launch()
         self.unkicked = self.observed = self.steps
         self.moored = False
 
@@ -160,7 +163,7 @@ class Simulation:
         return self.steps * self.scene.radius.size
 
     def advance(self, steps: int) -> None:
-        """Take `steps` steps of Δt in every world.
+        """Take every world `steps` base steps on.
 
         Raises BadState where the watch stops a world; the state is kept as it is.
         """
@@ -178,7 +181,7 @@ class Simulation:
         """Take every running world to the step that `steps` says."""
         runtime.merge_repeats(self.scene.shapes is None)
         while True:
-            self.schedule.advance(self.steps, self.origin, self.unkicked, self.dt)
+            self.schedule.advance(self.steps, self.origin, self.dt)
             status = self.clock.status.to_numpy()
             if not np.any(status == watch.NO_ROOM):
                 break

@@ -20,7 +20,8 @@ class GrainMatter:
     """Grains, discs or irregular ones: their contacts push before they move, then all move.
 
     A matter has `units`, the phases `before` and `after`, and lists: it says when these are `stale`, `worn` or `asked`
-    for in part, and makes them anew (`sort`, `make_lists`). `way_a_step` (m) is how far a grain may go in one.
+    for in part, and makes them anew (`sort`, `make_lists`). Where it is `paced` its steps may be longer than the
+    base step, as many of those as its `pace` says. `way_a_step` (m) is how far a grain may go in one.
     """
 
     def __init__(
@@ -32,11 +33,14 @@ class GrainMatter:
         contacts: Contacts,
         mover: Mover,
         way_a_step: float,
+        stretch: int = 1,
     ):
         self.units, self.grains, self.neighbours = units, grains, neighbours
         self.contacts, self.mover = contacts, mover
         self.unseen = UNSEEN if arrays.real is ti.f32 else 0.0  # speed (m/s) below which the mover's bound may miss one
         self.way_a_step = arrays.holding(np.array([way_a_step]), arrays.exact)
+        self.paced = stretch > 1
+        self.stretch = arrays.holding(np.array([stretch]), ti.i32)
         self.before = (Phase(self.push, units),)
         self.after = (Phase(self.move, units),)
 
@@ -59,14 +63,14 @@ class GrainMatter:
         self.neighbours.cells.sort_all()
 
     @ti.func
-    def push(self, u, t, first, dt):
+    def push(self, u, t, kick, dt):
         """The forces of all contacts of a unit, on the grains and on the tank."""
         self.contacts.forces(u, t, dt)
 
     @ti.func
-    def move(self, u, frame, first, dt):
+    def move(self, u, frame, kick, dt):
         """Move the grains of a unit; returns whether all of them are slow enough for the step."""
-        speed = self.mover.move(self.grains, u, frame, first, dt)
+        speed = self.mover.move(self.grains, u, frame, kick, dt)
         if ti.static(not self.units.single):
             self.neighbours.travel[u] = self.neighbours.travel[u] + (speed + self.unseen) * dt
         return self.is_sound(speed, dt)
@@ -90,6 +94,11 @@ class GrainMatter:
         if moved == 0.0:  # there are lists; without, it says NEVER
             moved = self.neighbours.moved(u, t)
         return moved
+
+    @ti.func
+    def pace(self, w):
+        """Base steps that a step may take."""
+        return self.stretch[0]
 
     @ti.func
     def stale(self, u, t):

@@ -23,7 +23,7 @@ class Mover:
             field.fill(0.0)
 
     @ti.func
-    def move(self, g: ti.template(), u, body, first, dt):
+    def move(self, g: ti.template(), u, body, kick, dt):
         """Take the grains of a unit through one step of dt (s), and clear their forces.
 
         `body` = (b_y, b_z, φ̇, φ̈) is the tank's motion; in its frame a grain feels b − φ̈ × r + φ̇² r − 2 φ̇ × u and
@@ -50,7 +50,7 @@ class Mover:
             ay = force_y * g.inverse_mass[w, i] + by
             az = force_z * g.inverse_mass[w, i] + bz
             turn = torque * g.inverse_inertia[w, i] + spin_up
-            square = self.integrator.step(g, self.extra, w, i, ay, az, turn, first, dt)
+            square = self.integrator.step(g, self.extra, w, i, ay, az, turn, kick, dt)
             if ti.static(g.shaped):
                 # No point of an outline is faster: (v + ω R)² is at most twice v² + ω² R².
                 around = g.spin[w, i] * g.reach[w, i]

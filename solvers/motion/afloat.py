@@ -57,6 +57,7 @@ class Afloat:
     """
 
     rotating = moving = answers = True
+    paced = False  # her own leapfrog has steps of one length
 
     def __init__(self, arrays: Arrays, vessels: Sequence[Vessel], gravity: float, every: int, load: Load):
         self.exact, self.real, self.vessels, self.cargo = arrays.exact, arrays.real, tuple(vessels), load
@@ -178,21 +179,25 @@ class Afloat:
         return ti.Vector([self.tank[w, k] for k in ti.static(range(9))])
 
     @ti.func
+    def pace(self, w):
+        """Base steps that a step may take."""
+        return 1
+
+    @ti.func
     def goes_on(self, w):
         """Whether a ship has neither capsized nor flooded."""
         return self.capsized[w] < 0.0 and self.flooded[w] < 0.0
 
     @ti.func
-    def follow(self, w, time, first, dt):
+    def follow(self, w, time, kick, dt):
         """Take the ship through the step of dt (s) that begins now, with the load of the cargo now.
 
-        In their `first` step the cargo's velocities take half a kick.
+        `kick` (s) is for how long the cargo is going to feel what she does now.
         """
         t, step, load = ti.cast(time, self.exact), ti.cast(dt, self.exact), self.cargo.of_world(w)
         if t < self.release[w]:
             self.hold_still(w, t, step)
         else:
-            kick = ti.select(first, 0.5 * dt, dt)
             self.move(w, t, step, ti.cast(kick, self.exact), ti.cast(load, self.exact))
 
     @ti.func

@@ -9,6 +9,8 @@ from solvers.machine.runtime import Arrays
 from solvers.motion.frame import turned
 from solvers.motion.steered import Steered
 
+ANY = 2**30
+
 
 def _centre(motion) -> tuple[float, float]:
     """The earth point (m) a motion turns about; the origin for one that does not turn."""
@@ -25,6 +27,7 @@ class Prescribed:
 
     answers = False  # to the load of the cargo
     phases = ()  # what it does in a step before the cargo moves
+    paced = True  # it bears steps of any length
 
     def __init__(self, arrays: Arrays, motions: Sequence[Sequence], soft_start: float, gravity: float):
         self.exact, self.real = arrays.exact, arrays.real
@@ -105,6 +108,11 @@ class Prescribed:
             b = turned(-s[6], -self.gravity[0] - s[7], -s[2])
             force = ti.Vector([b[0], b[1], s[5], s[8]])
         return ti.cast(force, self.real)
+
+    @ti.func
+    def pace(self, w):
+        """Base steps that a step may take: any number."""
+        return ANY
 
     @ti.func
     def goes_on(self, w):

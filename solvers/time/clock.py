@@ -10,7 +10,10 @@ from solvers.time.watch import RUNNING
 
 @ti.data_oriented
 class Clock:
-    """`step`, the steps of Δt done, and `status`, a word of `solvers.time.watch`, each (W,).
+    """`step`, the base steps done, and `status`, a word of `solvers.time.watch`, each (W,).
+
+    A step of a world is `stride` base steps long, and the one before was `before`, 0 where there was none since the
+    particles were launched.
 
     `says` (units,) and `arrived` (W,) are what bands tell each other, `fastest` and `farthest` (W,) what the
     per-grain schedule looks up now and then: the highest speed (m/s), the longest way since the lists were built (m);
@@ -20,9 +23,15 @@ class Clock:
     def __init__(self, arrays: Arrays, units: Units):
         self.units, self.worlds, self.real = units, units.worlds, arrays.real
         self.step, self.status, self.arrived = arrays.integers(3, (units.worlds,))
+        self.stride, self.before = arrays.integers(2, (units.worlds,))
         (self.says,) = arrays.integers(1, (units.count,), kept=False)
         self.fastest, self.farthest, self.pushed = arrays.reals(3, (units.worlds,), kept=False)
         self.frame = arrays.reals(4, (units.worlds,), kept=False)
+
+    def launch(self) -> None:
+        """The particles have been put somewhere or launched: their next step is the first."""
+        self.before.fill(0)
+        self.stride.fill(1)
 
     def running(self) -> np.ndarray:
         """Which worlds run (W,)."""

@@ -11,7 +11,9 @@ from solvers.machine.phase import Phase
 class Sequence:
     """What every schedule runs, for worlds that hold `matters` and are moved by a `carrier`.
 
-    A step at time t (s) is, in a world: every phase of `before`, in which matters find their forces and book those on
+    A step is a whole number of base steps, its stride, which changes only where all lists are made anew: the least that
+    any matter or the carrier allows then (`pace`), without overshooting what is asked for. At time t (s) it is, in a
+    world: every phase of `before`, in which matters find their forces and book those on
     the tank, and the carrier then answers to that load; the carrier's frame; every phase of `after`, in which matters
     move. A matter has `before`, `after` and `units`, and says when its lists are worn (see `GrainMatter`).
     """
@@ -20,6 +22,15 @@ class Sequence:
         self.matters, self.carrier = tuple(matters), carrier
         self.before: tuple[Phase, ...] = (*(phase for matter in matters for phase in matter.before), *carrier.phases)
         self.after: tuple[Phase, ...] = tuple(phase for matter in matters for phase in matter.after)
+        self.paced = carrier.paced and all(matter.paced for matter in matters)  # whether any step may be longer
+
+    @ti.func
+    def stride(self, w, due):
+        """Base steps that the steps to come may take in a world, `due` at most."""
+        stride = ti.min(due, self.carrier.pace(w))
+        for k in ti.static(range(len(self.matters))):
+            stride = ti.min(stride, self.matters[k].pace(w))
+        return stride
 
     @ti.func
     def stale(self, u, t):

@@ -22,9 +22,9 @@ class Gear:
     ahead, stiffer = 0.5, 0.5
 
     @ti.func
-    def step(self, g: ti.template(), extra: ti.template(), w, i, ay, az, turn, first, dt):
+    def step(self, g: ti.template(), extra: ti.template(), w, i, ay, az, turn, kick, dt):
         """Correct grain i by its acceleration (m/s², rad/s²) and predict it dt (s) later."""
-        half = 0.5 * dt * dt
+        half, first = 0.5 * dt * dt, kick < dt
         y = self.along(extra, 0, w, i, g.velocity_y[w, i] * dt, half * ay, first)
         z = self.along(extra, 1, w, i, g.velocity_z[w, i] * dt, half * az, first)
         a = self.along(extra, 2, w, i, g.spin[w, i] * dt, half * turn, first)

@@ -15,7 +15,7 @@ class SymplecticEuler:
     ahead, stiffer = 0.0, -1.0 / 12.0
 
     @ti.func
-    def step(self, g: ti.template(), extra: ti.template(), w, i, ay, az, turn, first, dt):
+    def step(self, g: ti.template(), extra: ti.template(), w, i, ay, az, turn, kick, dt):
         """Move grain i by its acceleration (m/s²) and angular acceleration (rad/s²) over dt (s)."""
         vy = g.velocity_y[w, i] + dt * ay
         vz = g.velocity_z[w, i] + dt * az

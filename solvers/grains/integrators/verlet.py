@@ -7,17 +7,16 @@ import taichi as ti
 class Verlet:
     """Kick, then drift, with velocities half a step behind the positions (Hairer, Lubich and Wanner 2003, eq. 1.5).
 
-    The very first kick is half a step. Second order. What forces see of the velocity at the positions' own time is
-    predicted with the last acceleration.
+    The very first kick is half a step, and where the step changes the mean of both. Second order. What forces see of
+    the velocity at the positions' own time is predicted with the last acceleration.
     """
 
     extra, reach, damping = 0, 1.0, 1.0
     ahead, stiffer = 0.5, 1.0 / 6.0
 
     @ti.func
-    def step(self, g: ti.template(), extra: ti.template(), w, i, ay, az, turn, first, dt):
+    def step(self, g: ti.template(), extra: ti.template(), w, i, ay, az, turn, kick, dt):
         """Move grain i by its acceleration (m/s²) and angular acceleration (rad/s²) over dt (s)."""
-        kick = ti.select(first, 0.5 * dt, dt)
         vy = g.velocity_y[w, i] + kick * ay
         vz = g.velocity_z[w, i] + kick * az
         spin = g.spin[w, i] + kick * turn

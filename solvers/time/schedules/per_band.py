@@ -29,32 +29,33 @@ class PerBand:
         if self.together:
             spread_threads()
 
-    def advance(self, target: int, origin: float, unkicked: int, step: float) -> None:
-        """Take every running world to step `target`; see PerWorld."""
+    def advance(self, target: int, origin: float, base: float) -> None:
+        """Take every running world to base step `target`; see PerWorld."""
         if self.together:
             self.clock.arrived.fill(0)
-            self._advance_together(target, origin, unkicked, step)
+            self._advance_together(target, origin, base)
         else:
-            self._advance_in_turn(target, origin, unkicked, step)
+            self._advance_in_turn(target, origin, base)
 
     @ti.kernel
-    def _advance_together(self, target: ti.i32, origin: ti.f64, unkicked: ti.i32, step: ti.f64):
+    def _advance_together(self, target: ti.i32, origin: ti.f64, base: ti.f64):
         for k in range(self.worlds * self.bands * ITERATIONS_A_THREAD):
             if k % ITERATIONS_A_THREAD == 0:
-                self.advance_band(k // ITERATIONS_A_THREAD, target, origin, unkicked, step)
+                self.advance_band(k // ITERATIONS_A_THREAD, target, origin, base)
 
     @ti.kernel
-    def _advance_in_turn(self, target: ti.i32, origin: ti.f64, unkicked: ti.i32, step: ti.f64):
+    def _advance_in_turn(self, target: ti.i32, origin: ti.f64, base: ti.f64):
         for k in range(self.worlds * ITERATIONS_A_THREAD):
             if k % ITERATIONS_A_THREAD == 0:
-                self.advance_world(k // ITERATIONS_A_THREAD, target, origin, unkicked, step)
+                self.advance_world(k // ITERATIONS_A_THREAD, target, origin, base)
 
     @ti.func
-    def advance_band(self, u, target, origin, unkicked, step):
+    def advance_band(self, u, target, origin, base):
         """As PerWorld does it; the bands of a world are at the same line wherever they meet."""
-        w, dt = self.clock.world(u), ti.cast(step, self.real)
+        w = self.clock.world(u)
         done, running = self.clock.step[w], self.clock.status[w] == RUNNING
-        says = self.freshness(u, origin + done * step)
+        before, stride = self.clock.before[w], self.stride_of(w)
+        says = self.freshness(u, origin + done * base, stride, target - done)
         self.clock.says[u] = says
         meetings = self.meet(w, 0)
         worst = self.worst(w)
@@ -62,42 +63,53 @@ class PerBand:
             if worst != FINE:
                 if worst == STALE and u % self.bands == 0:
                     self.sequence.sort(w)
+                if ti.static(self.sequence.paced):  # noqa: SIM102 (compiled only where steps may be longer)
+                    if worst == STALE:
+                        stride = self.sequence.stride(w, target - done)
                 meetings = self.meet(w, meetings)
-                says = FINE if self.sequence.make_lists(u, origin + done * step, dt, worst == STALE) else FULL
+                dt = ti.cast(stride * base, self.real)
+                says = FINE if self.sequence.make_lists(u, origin + done * base, dt, worst == STALE) else FULL
                 self.clock.says[u] = says
                 meetings = self.meet(w, meetings)
                 worst = self.worst(w)
             while worst == FINE and done < target:
-                t, first = origin + done * step, done == unkicked
+                t, dt = origin + done * base, ti.cast(stride * base, self.real)
+                kick = ti.cast(0.5 * (before + stride) * base, self.real)
                 for k in ti.static(range(len(self.before))):
-                    self.begin(k, u, t, first, dt)
+                    self.begin(k, u, t, kick, dt)
                     meetings = self.meet(w, meetings)
                 says = FINE
                 for k in ti.static(range(len(self.after))):
-                    if not self.end(k, u, t, first, dt):
+                    if not self.end(k, u, t, kick, dt):
                         says = FAST
                     if ti.static(k < len(self.after) - 1):
                         meetings = self.meet(w, meetings)
-                done += 1
+                done, before = done + stride, stride
                 if says == FINE:
-                    says = self.freshness(u, t + step)
+                    says = self.freshness(u, origin + done * base, stride, target - done)
                 if says <= STALE and not self.carrier.goes_on(w):
                     says = ENDED
                 self.clock.says[u] = says
                 meetings = self.meet(w, meetings)
                 worst = self.worst(w)
         if u % self.bands == 0:
-            self.clock.step[w] = done
+            self.clock.step[w], self.clock.before[w], self.clock.stride[w] = done, before, stride
         self.report(w, says)
 
     @ti.func
-    def advance_world(self, w, target, origin, unkicked, step):
+    def advance_world(self, w, target, origin, base):
         """The same on one thread, band after band."""
-        dt, start = ti.cast(step, self.real), w * self.bands
+        start, stride = w * self.bands, self.stride_of(w)
         while self.clock.step[w] < target and self.clock.status[w] == RUNNING:
-            t, worst = origin + self.clock.step[w] * step, FINE
+            due = target - self.clock.step[w]
+            t, worst = origin + self.clock.step[w] * base, FINE
             for u in range(start, start + self.bands):
-                worst = ti.max(worst, self.freshness(u, t))
+                worst = ti.max(worst, self.freshness(u, t, stride, due))
+            if ti.static(self.sequence.paced):  # noqa: SIM102
+                if worst == STALE:
+                    stride = self.sequence.stride(w, due)
+                    self.clock.stride[w] = stride
+            dt = ti.cast(stride * base, self.real)
             if worst != FINE:
                 whole, worst = worst == STALE, FINE
                 if whole:
@@ -106,52 +118,66 @@ class PerBand:
                     if not self.sequence.make_lists(u, t, dt, whole):
                         worst = FULL
             if worst == FINE:
-                first = self.clock.step[w] == unkicked
+                kick = ti.cast(0.5 * (self.clock.before[w] + stride) * base, self.real)
                 for k in ti.static(range(len(self.before))):
                     for u in range(start, start + self.bands):
-                        self.begin(k, u, t, first, dt)
+                        self.begin(k, u, t, kick, dt)
                 for k in ti.static(range(len(self.after))):
                     for u in range(start, start + self.bands):
-                        if not self.end(k, u, t, first, dt):
+                        if not self.end(k, u, t, kick, dt):
                             worst = FAST
-                self.clock.step[w] = self.clock.step[w] + 1
+                self.clock.step[w], self.clock.before[w] = self.clock.step[w] + stride, stride
                 if worst == FINE and not self.carrier.goes_on(w):
                     worst = ENDED
             self.report(w, worst)
 
     @ti.func
-    def begin(self, k: ti.template(), u, t, first, dt):
+    def begin(self, k: ti.template(), u, t, kick, dt):
         """A band's part in a phase before the particles move."""
         if ti.static(self.before[k].of_worlds):
             if u % self.bands == 0:
-                self.before[k].act(u // self.bands, t, first, dt)
+                self.before[k].act(u // self.bands, t, kick, dt)
         else:
-            self.before[k].act(u, t, first, dt)
+            self.before[k].act(u, t, kick, dt)
 
     @ti.func
-    def end(self, k: ti.template(), u, t, first, dt):
+    def end(self, k: ti.template(), u, t, kick, dt):
         """A band's part in a phase in which they move; returns whether all is sound."""
         sound = True
         if ti.static(self.after[k].of_worlds):
             if u % self.bands == 0:
-                sound = self.act_on(k, u // self.bands, u // self.bands, t, first, dt)
+                sound = self.act_on(k, u // self.bands, u // self.bands, t, kick, dt)
         else:
-            sound = self.act_on(k, u, self.clock.world(u), t, first, dt)
+            sound = self.act_on(k, u, self.clock.world(u), t, kick, dt)
         return sound
 
     @ti.func
-    def act_on(self, k: ti.template(), u, w, t, first, dt):
+    def act_on(self, k: ti.template(), u, w, t, kick, dt):
         """A phase in which they move, of a unit or of a world."""
-        return self.after[k].act(u, self.carrier.frame(w, t), first, dt)
+        return self.after[k].act(u, self.carrier.frame(w, t), kick, dt)
 
     @ti.func
-    def freshness(self, u, t):
-        """Whether a band's lists are FINE, or some or all entries are to be sought anew."""
+    def stride_of(self, w):
+        """Base steps that a world's steps take now."""
+        stride = 1
+        if ti.static(self.sequence.paced):
+            stride = self.clock.stride[w]
+        return stride
+
+    @ti.func
+    def freshness(self, u, t, stride, due):
+        """Whether a band's lists are FINE for a step at time t (s), or some or all entries are to be sought anew.
+
+        All are where a step of `stride` base steps would overshoot, with `due` of them to go.
+        """
         says = FINE
         if self.sequence.asked(u):
             says = ASKED
         if self.sequence.stale(u, t):
             says = STALE
+        if ti.static(self.sequence.paced):  # noqa: SIM102
+            if 0 < due < stride:
+                says = STALE
         return says
 
     @ti.func

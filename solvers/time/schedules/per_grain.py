@@ -28,26 +28,40 @@ class PerGrain:
         self.extent = max(matter.extent for matter in self.matters)  # m, from the origin
         self.nearing = max(matter.nearing for matter in self.matters)  # m/s, of parts
 
-    def advance(self, target: int, origin: float, unkicked: int, step: float) -> None:
-        """Take every running world to step `target`; see PerWorld."""
+    def advance(self, target: int, origin: float, base: float) -> None:
+        """Take every running world to base step `target`; see PerWorld. All take steps of one length."""
         running = self.clock.running()
         if not running.any():
             return
         done = int(self.clock.step.to_numpy()[running].min())
         half_skin = 0.5 * min(matter.slack() for matter in self.matters)
+        before, stride = (int(field.to_numpy()[running].min()) for field in (self.clock.before, self.clock.stride))
         while done < target:
-            safe = self.safe_steps(half_skin, origin + done * step, step)
-            if safe < 1 and self.clock.running().any():
+            safe = self.safe_steps(half_skin, origin + done * base, stride * base)
+            if (safe < 1 or stride > target - done) and self.clock.running().any():
                 for matter in self.matters:
                     matter.sort_all()
-                self.make_lists(origin + done * step, step)
-                safe = max(1, self.safe_steps(half_skin, origin + done * step, step))
+                stride = self.choose_stride(target - done)
+                self.make_lists(origin + done * base, stride * base)
+                safe = max(1, self.safe_steps(half_skin, origin + done * base, stride * base))
             if not self.clock.running().all() and not self.may_go_on():
                 break
-            for k in range(done, min(target, done + safe)):
-                self.take_step(origin + k * step, k == unkicked, step)
-            done = min(target, done + safe)
-            self.reach(done)
+            for _ in range(min(safe, (target - done) // stride)):
+                self.take_step(origin + done * base, 0.5 * (before + stride) * base, stride * base)
+                done, before = done + stride, stride
+            self.reach(done, before)
+
+    def choose_stride(self, due: int) -> int:
+        """Base steps of the steps to come, `due` at most."""
+        if self.sequence.paced:
+            self.set_strides(due)
+        return int(self.clock.stride.to_numpy()[self.clock.running()].min())
+
+    @ti.kernel
+    def set_strides(self, due: ti.i32):
+        """How many base steps each world may take at a time."""
+        for w in range(self.worlds):
+            self.clock.stride[w] = self.sequence.stride(w, due)
 
     def may_go_on(self) -> bool:
         """Whether some worlds run and none has been stopped by the watch."""
@@ -99,17 +113,17 @@ class PerGrain:
                         self.clock.status[w] = NO_ROOM
 
     @ti.kernel
-    def take_step(self, time: ti.f64, first: ti.i32, step: ti.f64):
+    def take_step(self, time: ti.f64, kick: ti.f64, step: ti.f64):
         """One step of every running world."""
         for k in ti.static(range(len(self.before))):
             if ti.static(self.before[k].of_worlds):
                 for w in range(self.worlds):
                     if self.clock.status[w] == RUNNING:
-                        self.before[k].act(w, time, first == 1, ti.cast(step, self.real))
+                        self.before[k].act(w, time, ti.cast(kick, self.real), ti.cast(step, self.real))
             else:
                 for u in range(self.before[k].units.count):
                     if self.clock.status[self.before[k].units.world(u)] == RUNNING:
-                        self.before[k].act(u, time, first == 1, ti.cast(step, self.real))
+                        self.before[k].act(u, time, ti.cast(kick, self.real), ti.cast(step, self.real))
         for w in range(self.worlds):
             frame = self.carrier.frame(w, time)
             for k in ti.static(range(4)):
@@ -119,11 +133,11 @@ class PerGrain:
                 w = self.after[k].units.world(u)
                 if self.clock.status[w] == RUNNING:
                     frame = ti.Vector([self.clock.frame[k][w] for k in ti.static(range(4))])
-                    self.after[k].act(u, frame, first == 1, ti.cast(step, self.real))
+                    self.after[k].act(u, frame, ti.cast(kick, self.real), ti.cast(step, self.real))
 
     @ti.kernel
-    def reach(self, step: ti.i32):
-        """All running worlds have come to this step."""
+    def reach(self, step: ti.i32, before: ti.i32):
+        """All running worlds have come to this base step, by steps of `before` of them."""
         for w in range(self.worlds):
             if self.clock.status[w] == RUNNING:
-                self.clock.step[w] = step
+                self.clock.step[w], self.clock.before[w] = step, before

@@ -18,25 +18,28 @@ class PerWorld:
         self.real, self.worlds = clock.real, clock.worlds
 
     @ti.kernel
-    def advance(self, target: ti.i32, origin: ti.f64, unkicked: ti.i32, step: ti.f64):
-        """Take every running world to step `target`; step k is the time origin + k·step (s).
-
-        The step `unkicked` is the particles' first.
-        """
+    def advance(self, target: ti.i32, origin: ti.f64, base: ti.f64):
+        """Take every running world to base step `target`; step k is the time origin + k·base (s)."""
         for k in range(self.worlds * ITERATIONS_A_THREAD):
             if k % ITERATIONS_A_THREAD == 0:
-                self.advance_world(k // ITERATIONS_A_THREAD, target, origin, unkicked, step)
+                self.advance_world(k // ITERATIONS_A_THREAD, target, origin, base)
 
     @ti.func
-    def advance_world(self, world, target, origin, unkicked, step):
+    def advance_world(self, world, target, origin, base):
         """Make the lists where they are stale, then take steps for as long as they last.
 
         The steps are a loop of their own: the compiler keeps at hand what they work with, and not what the lists need.
         """
-        w, dt = self.clock.world(world), ti.cast(step, self.real)
+        w, stride = self.clock.world(world), 1
         while self.clock.step[w] < target and self.clock.status[w] == RUNNING:
-            t, fresh = origin + self.clock.step[w] * step, True
+            t, fresh = origin + self.clock.step[w] * base, True
             stale = self.sequence.stale(w, t)
+            if ti.static(self.sequence.paced):
+                due = target - self.clock.step[w]
+                if stale or self.clock.stride[w] > due:
+                    stale, self.clock.stride[w] = True, self.sequence.stride(w, due)
+                stride = self.clock.stride[w]
+            dt = ti.cast(stride * base, self.real)
             if stale or self.sequence.asked(w):
                 if stale:
                     self.sequence.sort(w)
@@ -44,22 +47,24 @@ class PerWorld:
                 if not fresh:
                     self.clock.status[w] = NO_ROOM
             while fresh:
-                t = origin + self.clock.step[w] * step
-                sound = self.take_step(w, t, self.clock.step[w] == unkicked, dt)
-                self.clock.step[w] = self.clock.step[w] + 1
-                fresh = self.clock.step[w] < target and not self.sequence.worn(w) and not self.sequence.asked(w)
+                t = origin + self.clock.step[w] * base
+                kick = ti.cast(0.5 * (self.clock.before[w] + stride) * base, self.real)
+                sound = self.take_step(w, t, kick, dt)
+                self.clock.step[w], self.clock.before[w] = self.clock.step[w] + stride, stride
+                fresh = self.clock.step[w] + stride <= target
+                fresh = fresh and not self.sequence.worn(w) and not self.sequence.asked(w)
                 if not sound:
                     self.clock.status[w], fresh = TOO_FAST, False
                 if fresh and not self.carrier.goes_on(w):
                     self.clock.status[w], fresh = OVER, False
 
     @ti.func
-    def take_step(self, w, t, first, dt):
+    def take_step(self, w, t, kick, dt):
         """One step of a world, which is its only unit; returns whether all is sound."""
         for k in ti.static(range(len(self.before))):
-            self.before[k].act(w, t, first, dt)
+            self.before[k].act(w, t, kick, dt)
         frame, sound = self.carrier.frame(w, t), True
         for k in ti.static(range(len(self.after))):
-            if not self.after[k].act(w, frame, first, dt):
+            if not self.after[k].act(w, frame, kick, dt):
                 sound = False
         return sound

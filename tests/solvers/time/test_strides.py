@@ -1,0 +1,83 @@
+"""Steps of several base steps: the same as steps of that length, and exact where their length changes."""
+
+import numpy as np
+import pytest
+
+from solvers.motion import Sway
+from solvers.scene import Scene
+from solvers.simulation import Simulation
+from tests.oracles.scenes import box, material
+
+G, RADIUS, BASE = 9.81, 1.5e-3, 4e-6
+SOFT = material(young=1e7, friction=0.4, restitution=0.5)
+
+
+def started(base: float, stretch: int, schedule: str) -> Simulation:
+    """Thirty grains above one another's gaps in a swayed box."""
+    rng = np.random.default_rng(5)
+    sites = RADIUS * np.array([(2.4 * k - 6.0, 1.2 + 2.4 * row) for row in range(5) for k in range(6)])
+    place = (sites + RADIUS * rng.uniform(-0.15, 0.15, sites.shape))[None]
+    sway = [[Sway(amplitude=4e-3, frequency=4.0)]]
+    scene = Scene(
+        np.full((1, len(sites)), RADIUS),
+        box(0.022, 0.04),
+        SOFT,
+        SOFT,
+        tangential="mindlin",
+        motions=sway,
+        schedule=schedule,
+        step=base,
+        start_speed=1.0,
+    )
+    units = 2 if schedule == "per-band" else None
+    return Simulation(scene, place, 1, arch="cpu", units=units, stretch=stretch)
+
+
+@pytest.mark.parametrize("schedule", ["per-world", pytest.param("per-band", marks=pytest.mark.slow)])
+def test_steps_of_two_base_steps_are_steps_of_twice_the_length(schedule):
+    """Bit for bit, through falls, knocks and lists made anew."""
+    found = []
+    for base, stretch in ((BASE, 2), (2.0 * BASE, 1)):
+        run = started(base, stretch, schedule)
+        looks = []
+        for _ in range(4):
+            run.advance(stretch * 2500)
+            looks.append({**run.snapshot(), **run.observe()})
+        assert run.time == pytest.approx(0.08)
+        run.close()
+        found.append(looks)
+    for one, other in zip(*found, strict=True):
+        assert all(np.array_equal(one[name], other[name]) for name in one)
+    assert found[0][-1]["contacts"][0] > 20
+
+
+@pytest.mark.parametrize("schedule", ["per-world", "per-band", "per-grain"])
+def test_free_fall_is_exact_where_the_step_changes(schedule):
+    """Leapfrog of constant acceleration is exact if each kick goes from the middle of a step to that of the next."""
+    place = np.array([[[0.0, 0.3], [0.005, 0.3]]])
+    scene = Scene(np.full((1, 2), RADIUS), box(0.1, 0.6), SOFT, SOFT, schedule=schedule, step=1e-5, start_speed=1.0)
+    run = Simulation(scene, place, 1, arch="cpu", units=2 if schedule == "per-band" else None, stretch=4)
+    done = 0
+    for steps in (7, 1, 2, 13, 4, 3, 5000, 9):  # the last steps to each are shorter ones
+        run.advance(steps)
+        done += steps
+        fall = 0.3 - run.snapshot()["position"][0, :, 1]
+        assert fall == pytest.approx(0.5 * G * (done * 1e-5) ** 2, rel=1e-12, abs=1e-16)
+    run.close()
+
+
+def test_a_state_goes_on_bit_for_bit_between_steps_of_unlike_length():
+    whole, cut = [], []
+    for looks, stops in ((whole, [5009, 4991]), (cut, [5009, None, 4991])):
+        run = started(BASE, 4, "per-world")
+        for steps in stops:
+            if steps is None:
+                state = run.state()
+                run.close()
+                run = started(BASE, 4, "per-world")
+                run.restore(state)
+            else:
+                run.advance(steps)
+        looks.append(run.snapshot())
+        run.close()
+    assert all(np.array_equal(whole[0][name], cut[0][name]) for name in whole[0])
