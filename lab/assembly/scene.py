@@ -97,6 +97,7 @@ def build(preset: Resolved, hands: Sequence[Steered] | None = None) -> tuple[Sce
         open_edges=preset.tank.open_edges,
         parts=tuple(preset.parts.values()),
         vessels=vessels(preset) * len(radius),
+        thickness=slab(preset),
         integrator=preset.run.integrator,
         precision=preset.run.precision,
         schedule=preset.run.schedule,
@@ -113,8 +114,12 @@ def vessels(preset: Resolved) -> list[Vessel]:
     """The ship whose hold the tank is, if there is one. Raises LabError where she does not float."""
     if preset.ship is None:
         return []
-    sheet = preset.ship.sheet or preset.grains.diameter
-    return [make_vessel(preset.ship, preset.water, preset.waves, sheet, preset.run.gravity)]
+    return [make_vessel(preset.ship, preset.water, preset.waves, preset.run.gravity)]
+
+
+def slab(preset: Resolved) -> float:
+    """How thick (m) the world is: the mean grain unless the tank says so."""
+    return preset.tank.thickness or preset.grains.diameter
 
 
 def _filled(preset: Resolved) -> tuple[np.ndarray, np.ndarray, dict]:

@@ -48,15 +48,15 @@ def make_water(given: WaterGiven, gravity: float) -> Water:
 
 
 @lru_cache(maxsize=8)
-def make_vessel(given: ShipGiven, water: WaterGiven, waves: WavesGiven | None, sheet: float, gravity: float) -> Vessel:
+def make_vessel(given: ShipGiven, water: WaterGiven, waves: WavesGiven | None, gravity: float) -> Vessel:
     """The ship, laden as she floats at the start. Raises LabError where she cannot float so."""
     try:
-        return _vessel(given, make_water(water, gravity), waves, sheet)
+        return _vessel(given, make_water(water, gravity), waves)
     except Unavailable as error:
         raise LabError(f"ship: {error}") from None
 
 
-def _vessel(given: ShipGiven, water: Water, sea: WavesGiven | None, sheet: float) -> Vessel:
+def _vessel(given: ShipGiven, water: Water, sea: WavesGiven | None) -> Vessel:
     section, about = Section(given.corners), given.about
     mass = water.density * float(section.immersion(given.heave, 0.0).area)
     body = Body(mass, (0.0, given.gravity_height), mass * (given.gyradius or 0.3 * section.size) ** 2)
@@ -87,7 +87,15 @@ def _vessel(given: ShipGiven, water: Water, sea: WavesGiven | None, sheet: float
         require_damped(ship, start(ship, given.heave))
     limits = (-given.capsize, given.capsize) if given.capsize else (-inf, inf)
     openings = given.flooding_points
-    return Vessel(ship, given.hold, sheet, True, given.heel, given.release, limits, openings=openings)
+    return Vessel(
+        ship,
+        given.hold,
+        laden=True,
+        heel=given.heel,
+        release=given.release,
+        limits=limits,
+        openings=openings,
+    )
 
 
 def _by_slope(load: Floating, table, body: Body) -> Floating:

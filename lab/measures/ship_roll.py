@@ -217,7 +217,7 @@ def levers(recording: Recording) -> tuple[np.ndarray, np.ndarray, np.ndarray | N
     mass = grain_mass(recording)
     if mass is None:
         return heel, frozen, None
-    cargo = float(mass.sum(axis=1).mean()) / vessel.thickness
+    cargo = float(mass.sum(axis=1).mean()) / _thickness(recording)
     repose = recorded_ship(recording.preset).repose
     try:
         hold = Section(recording.outline)
@@ -226,6 +226,12 @@ def levers(recording: Recording) -> tuple[np.ndarray, np.ndarray, np.ndarray | N
     except Unavailable:
         return heel, frozen, None
     return heel, frozen, relaxed
+
+
+def _thickness(recording: Recording) -> float:
+    """How thick (m) the slab is that the cargo makes up."""
+    tank, grains = recording.preset["tank"], recording.preset["grains"]
+    return tank.get("thickness") or grains["diameter"]
 
 
 def _powers(recording: Recording) -> dict[str, Value]:

@@ -18,7 +18,6 @@ from solvers.ship.hydrostatics import turned
 FREEDOM = {"roll": (False, False, True), "heave-roll": (False, True, True), "sway-heave-roll": (True, True, True)}
 
 Length = Annotated[float, Unit("m"), Interval(ge=1e-3, le=1e3)]  # of a model or a ship
-Thickness = Annotated[float, Unit("m"), Interval(gt=0, le=1e3)]
 AngularFrequency = Annotated[float, Unit("rad/s"), Interval(gt=0)]
 
 
@@ -70,7 +69,6 @@ class ShipGiven:
     hold: Annotated[tuple[float, float], Unit("m")] = (0.0, 0.0)
     axis: Annotated[tuple[float, float], Unit("m")] | None = None
     freedom: Literal[*FREEDOM] = "sway-heave-roll"
-    sheet: Thickness | None = None  # thickness of the cargo's sheet; the grains' mean diameter unless given
     radiation: Literal["memory", "at-frequency", "none"] = "memory"
     excitation: Literal["diffraction", "froude-krylov", "wave-slope"] = "diffraction"
     damping: Annotated[float, Interval(ge=0, le=1)] = 0.0

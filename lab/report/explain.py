@@ -111,7 +111,8 @@ def _ship(preset, simulation: Simulation) -> list[str]:
     if not simulation.carrier.answers:
         return []
     every = int(simulation.carrier.every[0]) * simulation.dt
-    return [_section("Ship", describe(preset.ship, simulation.scene.vessels[0], preset.waves, every))]
+    vessels, tanks = simulation.scene.vessels, simulation.scene.tanks
+    return [_section("Ship", describe(preset.ship, vessels[0], preset.waves, tanks[0].thickness, every))]
 
 
 def _shape(name: str, shape: Shape) -> str:

@@ -11,17 +11,19 @@ from solvers.ship.water import Water
 from solvers.ship.waves import froude_factors
 
 
-def describe(given: ShipGiven, vessel: Vessel, waves: WavesGiven | None, every: float) -> list[tuple[str, str]]:
-    """Rows of words on a ship: balance, roll, what the water does; `every` (s) its forces are stepped."""
+def describe(
+    given: ShipGiven, vessel: Vessel, waves: WavesGiven | None, thickness: float, every: float
+) -> list[tuple[str, str]]:
+    """Rows of words on a ship: balance, roll, what the water does; `every` (s) its forces are stepped.
+
+    Her cargo is a slab of that thickness (m).
+    """
     ship, body = vessel.ship, vessel.ship.body
     water, memory = ship.load.water, ship.radiation.memory
     height = metacentric_height(ship.load.section, body.loading, water)
     rows = [
         ("with her cargo", f"{body.mass:.4g} kg/m, GM {show(height, 'm')}, gyradius {show(body.gyradius, 'm')}"),
-        (
-            "cargo's sheet",
-            f"{show(vessel.thickness, 'm')} thick: its load counts {1.0 / vessel.thickness:.4g} times a metre",
-        ),
+        ("cargo", f"a slab {show(thickness, 'm')} thick: its load counts {1.0 / thickness:.4g} times a metre"),
         ("free in", given.freedom.replace("-", ", ") + f", about her axis, {axis_place(given)}"),
         (
             "viscous roll damping",

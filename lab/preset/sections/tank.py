@@ -14,17 +14,23 @@ from solvers.tank.outline import top_edges
 MOST_LINING = 20_000  # grains that line a tank
 
 Length = Annotated[float, Unit("m"), Interval(gt=0)]
+Thickness = Annotated[float, Unit("m"), Interval(gt=0, le=1e3)]
 
 
 @dataclass(frozen=True)
 class TankGiven:
-    """A tank as a preset gives it: width and height, or an outline; whether it has a lid and a lining of grains."""
+    """A tank as a preset gives it: width and height, or an outline; whether it has a lid and a lining of grains.
+
+    The plane is a slab `thickness` thick, that of the grains' mean diameter unless given: forces are those on the slab,
+    and a ship carries as many of them as fit into a metre.
+    """
 
     width: Length | None = None
     height: Length | None = None
     outline: Annotated[tuple[tuple[float, float], ...], Unit("m")] | None = None
     lid: bool = True
     roughness: Length | None = None
+    thickness: Thickness | None = None
 
 
 @dataclass(frozen=True)
@@ -32,12 +38,14 @@ class Tank:
     """The tank's outline (m) in its own frame, a simple polygon, counter-clockwise.
 
     `open_edges` carry no wall; edge k runs from corner k to corner k + 1. `roughness` is the diameter (m) of the fixed
-    grains that line floor and sides, None where these are smooth.
+    grains that line floor and sides, None where these are smooth; `thickness` (m) is the slab's, None for the grains'
+    mean diameter.
     """
 
     outline: tuple[tuple[float, float], ...]
     open_edges: tuple[int, ...] = ()
     roughness: float | None = None
+    thickness: float | None = None
 
     @property
     def width(self) -> float:
@@ -58,7 +66,7 @@ def full_tank(given: TankGiven) -> Tank:
     open_edges = () if given.lid else top_edges(outline)
     if not given.lid and not open_edges:
         raise LabError("tank.lid: this outline has no edge along its top to leave open; leave lid out.")
-    tank = Tank(tuple(map(tuple, outline.tolist())), open_edges, given.roughness)
+    tank = Tank(tuple(map(tuple, outline.tolist())), open_edges, given.roughness, given.thickness)
     check_lining(tank)
     return tank
 

@@ -76,8 +76,7 @@ def swell_of(preset: Resolved) -> RegularSwell | RandomSwell | None:
 
 def _afloat(preset: Resolved, **changes: float) -> Vessel:
     """The ship in other waves."""
-    sheet = preset.ship.sheet or preset.grains.diameter
-    return make_vessel(preset.ship, preset.water, replace(preset.waves, **changes), sheet, preset.run.gravity)
+    return make_vessel(preset.ship, preset.water, replace(preset.waves, **changes), preset.run.gravity)
 
 
 def _raised(vessel: Vessel, height: Follower) -> Vessel:

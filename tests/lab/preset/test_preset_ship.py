@@ -86,7 +86,7 @@ def test_faults_name_the_key(changes, words):
 @pytest.fixture(scope="module")
 def barge():
     said = load(BARGE).resolved
-    return said, make_vessel(said.ship, said.water, said.waves, said.grains.diameter, said.run.gravity)
+    return said, make_vessel(said.ship, said.water, said.waves, said.run.gravity)
 
 
 def test_barge_is_as_given(barge):
@@ -96,13 +96,12 @@ def test_barge_is_as_given(barge):
     assert ship.body.mass == pytest.approx(1000.0 * 0.34 * 0.11)
     height = 0.055 + 0.34**2 / (12.0 * 0.11) - 0.0926
     assert metacentric_height(ship.load.section, ship.body.loading, ship.load.water) == pytest.approx(height)
-    assert (vessel.laden, vessel.thickness, vessel.hold) == (True, 0.003, (0.0, 0.02))
+    assert (vessel.laden, vessel.hold) == (True, (0.0, 0.02))
     assert vessel.limits == (-0.5 * pi, 0.5 * pi)
     memory = make_vessel(
         ShipGiven(**{**vars(said.ship), "radiation": "memory", "damping": 0.0, "quadratic_damping": 0.0}),
         said.water,
         None,
-        0.003,
         9.81,
     )
     found = oscillations(memory.ship, start(memory.ship, -0.11)).imag
@@ -180,7 +179,7 @@ def test_a_ship_held_by_her_axis_is_heeled_about_it(about):
     """Let go from 8 deg she rolls, and her axis neither sways nor heaves, wherever it is in her."""
     said = load("ship/free-decay").resolved
     given = replace(said.ship, axis=about, radiation="none")
-    vessel = make_vessel(given, said.water, None, 0.003, 9.81)
+    vessel = make_vessel(given, said.water, None, 9.81)
     ship = vessel.ship
     state = start(ship, vessel.heave(ship.body, vessel.heel), vessel.heel)
     voyage = sail(ship, state, 0.01, 2.0)
@@ -197,9 +196,9 @@ def test_a_ship_held_by_her_axis_is_heeled_about_it(about):
 def test_words_on_a_ship(barge):
     said, vessel = barge
     given = ShipGiven(**{**vars(said.ship), "scale": 100.0})
-    rows = dict(describe(given, vessel, said.waves, 1e-3))
+    rows = dict(describe(given, vessel, said.waves, 0.003, 1e-3))
     assert "GM 49.98 mm" in rows["with her cargo"] and rows["capsized"] == "beyond 90 deg"
-    assert "333.3 times a metre" in rows["cargo's sheet"]
+    assert "333.3 times a metre" in rows["cargo"]
     assert rows["her cargo's repose"].startswith("25 deg")
     full = rows["full scale 1:100"]
     assert "draught 11 m" in full and "times 10 as long" in full and "waves of 1 m" in full and "14.28 s" in full
@@ -326,7 +325,7 @@ def test_measures_of_frozen_cargo(rolling, monkeypatch):
 def test_frozen_cargo_sails_on_when_the_loose_has_capsized_the_ship(monkeypatch):
     """To the end that the run was to have; beside a run that was broken off, no longer than that."""
     said = load(BARGE).resolved
-    vessel = make_vessel(said.ship, said.water, said.waves, said.grains.diameter, said.run.gravity)
+    vessel = make_vessel(said.ship, said.water, said.waves, said.run.gravity)
     monkeypatch.setattr(ship_roll, "_vessel", lambda _: vessel)
 
     def sailed(name: str, capsized: float) -> float:
@@ -342,7 +341,7 @@ def test_frozen_cargo_sails_on_when_the_loose_has_capsized_the_ship(monkeypatch)
 def test_vessels_without_a_limit():
     said = load("ship/model-test").resolved
     assert said.ship.capsize is None
-    vessel = make_vessel(said.ship, said.water, said.waves, said.grains.diameter, said.run.gravity)
+    vessel = make_vessel(said.ship, said.water, said.waves, said.run.gravity)
     assert vessel.limits == (-inf, inf)
     assert vessel.ship.load.water.depth == 1.0
     assert vessel.ship.body.mass == pytest.approx(46.8 / 0.586, rel=0.02)
