@@ -6,7 +6,7 @@ from solvers.grains.laws.chosen import PAIR, WALL, ChosenLaws
 from solvers.grains.laws.extremes import greater
 from solvers.grains.neighbours import Neighbours
 from solvers.grains.state import FAR, Grains
-from solvers.machine.runtime import Arrays
+from solvers.machine.state import Axis, State
 from solvers.machine.units import Units
 from solvers.tank.walls import Walls
 
@@ -23,11 +23,13 @@ class Contacts:
     is exact. (Spandonidis 2016, eq. 4.7, takes whole radii.) A wall's takes half the overlap.
     """
 
-    def __init__(self, arrays: Arrays, units: Units, grains: Grains, walls: Walls, lists: Neighbours, laws: ChosenLaws):
+    def __init__(self, arrays: State, units: Units, grains: Grains, walls: Walls, lists: Neighbours, laws: ChosenLaws):
         self.units, self.grains, self.walls, self.lists, self.laws = units, grains, walls, lists, laws
         # What a block of pairs does to its grains: forces (N) along y and z, torques (N m) on the first and the second.
         # Nobody reads it. Neighbouring numbers that are written together are what makes the compiler look for SIMD.
-        self.given = arrays.vectors(4, lists.pairs.lanes, (GIVEN_APART * units.count,), kept=False)
+        self.given = arrays.under("given").vectors(
+            (Axis("unit", GIVEN_APART * units.count), lists.pairs.lane), "y", "z", "turn_i", "turn_j", kept=False
+        )
 
     @ti.func
     def forces(self, u, t, dt):

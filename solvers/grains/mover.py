@@ -4,7 +4,7 @@ import taichi as ti
 
 from solvers.grains.shapes.pose import towards
 from solvers.grains.state import Grains
-from solvers.machine.runtime import Arrays
+from solvers.machine.state import Axis, State
 from solvers.machine.units import APART, Units
 
 
@@ -17,14 +17,16 @@ class Mover:
     origin (N m s), with the sign of the cargo on the tank.
     """
 
-    def __init__(self, arrays: Arrays, units: Units, grains: Grains, integrator, rotating: bool, weighed: bool = False):
+    def __init__(self, arrays: State, units: Units, grains: Grains, integrator, rotating: bool, weighed: bool = False):
         self.units, self.grains, self.integrator, self.rotating = units, grains, integrator, rotating
+        own = arrays.under("mover")
         self.weighed = weighed  # before every move, by `weigh`
         if weighed:
-            self.weights = arrays.reals(3, (APART * units.count,), arrays.exact, kept=False)
-        shape = (grains.worlds, grains.count + grains.ghosts)
-        self.extra = arrays.reals(integrator.extra, shape)
-        self.load_y, self.load_z, self.load_moment = arrays.reals(3, (units.count,), arrays.exact)
+            apart = Axis("unit", APART * units.count)
+            self.weights = own.reals((apart,), "weight_y", "weight_z", "weight_moment", kind=own.exact, kept=False)
+        self.extra = own.reals(grains.axes, *(f"extra.{k}" for k in range(integrator.extra)))
+        loads = own.reals((units.axis,), "load_y", "load_z", "load_moment", kind=own.exact)
+        self.load_y, self.load_z, self.load_moment = loads
 
     def rest(self) -> None:
         """Forget higher derivatives and the load, for grains that were put somewhere or launched."""

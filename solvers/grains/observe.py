@@ -6,7 +6,7 @@ from solvers.grains.contacts import Contacts
 from solvers.grains.mover import Mover
 from solvers.grains.neighbours import Neighbours
 from solvers.grains.state import Grains
-from solvers.machine.runtime import Arrays
+from solvers.machine.state import Axis, State
 from solvers.machine.units import Units
 from solvers.motion.frame import Frame
 from solvers.tank.walls import Walls
@@ -50,7 +50,7 @@ class Observer:
 
     def __init__(
         self,
-        arrays: Arrays,
+        arrays: State,
         units: Units,
         grains: Grains,
         walls: Walls,
@@ -63,9 +63,12 @@ class Observer:
         self.contacts, self.frame, self.mover = contacts, frame, mover
         self.exact, self.may_leave = arrays.exact, grains.may_leave
         self.chunks = -(-grains.mobile // CHUNK)
-        (self.rows,) = arrays.reals(1, (grains.worlds, len(self.NAMES)), arrays.exact, kept=False)
-        self.sums = arrays.reals(7, (grains.worlds, self.chunks), arrays.exact, kept=False)
-        self.counted = arrays.reals(3, (units.count,), arrays.exact, kept=False)
+        own, scratch = arrays.under("observed"), {"kind": arrays.exact, "kept": False}
+        world, chunk = Axis("world", grains.worlds), Axis("chunk", self.chunks)
+        (self.rows,) = own.reals((world, Axis("quantity", len(self.NAMES))), "rows", **scratch)
+        sums = "mass", "moment_y", "moment_z", "kinetic", "rotational", "spilled", "escaped"
+        self.sums = own.reals((world, chunk), *sums, **scratch)
+        self.counted = own.reals((units.axis,), "touching", "deepest", "elastic", **scratch)
 
     @ti.kernel
     def observe(self, time: ti.f64, since: ti.f64):

@@ -3,7 +3,7 @@
 import numpy as np
 import taichi as ti
 
-from solvers.machine.runtime import Arrays
+from solvers.machine.state import Axis, State
 from solvers.machine.units import Units
 from solvers.time.watch import RUNNING
 
@@ -17,11 +17,12 @@ class Clock:
     `pushed` (W,) is the largest acceleration (m/s²) by the frame to come.
     """
 
-    def __init__(self, arrays: Arrays, units: Units):
-        self.step, self.status, self.arrived = arrays.integers(3, (units.worlds,))
-        (self.says,) = arrays.integers(1, (units.count,), kept=False)
-        self.fastest, self.farthest, self.pushed = arrays.reals(3, (units.worlds,), kept=False)
-        self.body = arrays.reals(4, (units.worlds,), kept=False)
+    def __init__(self, arrays: State, units: Units):
+        own, world = arrays.under("clock"), (Axis("world", units.worlds),)
+        self.step, self.status, self.arrived = own.integers(world, "step", "status", "arrived")
+        (self.says,) = own.integers((units.axis,), "says", kept=False)
+        self.fastest, self.farthest, self.pushed = own.reals(world, "fastest", "farthest", "pushed", kept=False)
+        self.body = own.reals(world, *(f"body.{k}" for k in range(4)), kept=False)
 
     def running(self) -> np.ndarray:
         """Which worlds run (W,)."""
