@@ -93,23 +93,30 @@ class Scope:
 
     def reals(self, axes: Axes, *names: str, kind=None, kept: bool = True) -> list[ti.Field]:
         """Fields of floats: of the reals' kind, or of another, such as `self.place`."""
-        return [self._declare(name, Array(ti.field(kind or self.real), axes, kept=kept)) for name in names]
+        return [self._declare(name, Array(ti.field(kind or self.real), axes, kept=kept)) for name in self._free(names)]
 
     def integers(
         self, axes: Axes, *names: str, across: bool = False, kept: bool = True, below: int | None = None
     ) -> list[ti.Field]:
         """Fields of 32-bit integers; places in other arrays are `below` a number, which `write` checks."""
-        return [self._declare(name, Array(ti.field(ti.i32), axes, across, kept, below=below)) for name in names]
+        return [
+            self._declare(name, Array(ti.field(ti.i32), axes, across, kept, below=below)) for name in self._free(names)
+        ]
 
     def vectors(self, axes: Axes, *names: str, across: bool = False, kept: bool = True) -> list[ti.Field]:
         """Fields of vectors of reals, along the last axis."""
         size = axes[-1].length
-        return [self._declare(name, Array(ti.Vector.field(size, self.real), axes, across, kept)) for name in names]
+        return [
+            self._declare(name, Array(ti.Vector.field(size, self.real), axes, across, kept))
+            for name in self._free(names)
+        ]
 
     def wide(self, axes: Axes, *names: str, kind=None, kept: bool = True) -> list[ti.Field]:
         """Fields (blocks, lanes) of floats that lie block by block, for kernels on real vectors (`machine.wide`)."""
-        arrays = [Array(ti.field(kind or self.real), axes, kept=kept, blocks=True) for _ in names]
-        return [self._declare(name, array) for name, array in zip(names, arrays, strict=True)]
+        return [
+            self._declare(name, Array(ti.field(kind or self.real), axes, kept=kept, blocks=True))
+            for name in self._free(names)
+        ]
 
     def integer_vectors(
         self, axes: Axes, *names: str, across: bool = False, base: np.ndarray | None = None, below: int | None = None
@@ -117,16 +124,25 @@ class Scope:
         """Fields of vectors of 32-bit integers; `read` and `write` count from `base`, a number a place of axis 0."""
         size = axes[-1].length
         return [
-            self._declare(name, Array(ti.Vector.field(size, ti.i32), axes, across, True, base, below)) for name in names
+            self._declare(name, Array(ti.Vector.field(size, ti.i32), axes, across, True, base, below))
+            for name in self._free(names)
         ]
 
     def holding(self, name: str, values: np.ndarray, axes: str = "", kind=None, kept: bool = False) -> ti.Field:
         """A field of reals, or of another kind, that starts with these values; `axes` are the names of theirs."""
         lengths = zip(axes.split(), values.shape, strict=True)
         whole = tuple(Axis(*axis) for axis in lengths)
+        [name] = self._free([name])
         field = self._declare(name, Array(ti.field(kind or self.real), whole, kept=kept))
         self._state.hold(field, values)
         return field
+
+    def _free(self, names: Iterable[str]) -> Iterator[str]:
+        """The names, each before its array is made. Raises ValueError where one is taken."""
+        for name in names:
+            if f"{self._owner}{name}" in self._state.arrays:
+                raise ValueError(f"two arrays are named {self._owner}{name}")
+            yield name
 
     def _declare(self, name: str, array: Array) -> ti.Field:
         self._state.declare(f"{self._owner}{name}", array)
@@ -160,9 +176,7 @@ class State(Scope):
         return [array.field for array in self.arrays.values()]
 
     def declare(self, name: str, array: Array) -> None:
-        """Give a field its place in memory. Raises ValueError where the name is taken."""
-        if name in self.arrays:
-            raise ValueError(f"two arrays are named {name}")
+        """Give a field its place in memory."""
         within = array.axes[:-1] if hasattr(array.field, "n") else array.axes
         shape = tuple(axis.length for axis in within)
         if array.across:

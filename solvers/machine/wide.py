@@ -2,8 +2,8 @@
 
 Taichi 1.7.4 takes vectors apart into scalars before it compiles a kernel, unless `real_matrix_scalarize` is off. What
 such a kernel reads and writes are the scalar fields of `State.wide`, as `ti.Vector([f[b, l] for l in lanes])` with
-`lanes` of `ti.static`: elements of a `ti.Vector.field` come out as rubbish without a word. Within it negate and subtract
-as 0.0 - v and a = a - v, and take no abs, exp, sin, casts or real powers of vectors: most of these abort the process.
+`lanes` of `ti.static`: elements of a `ti.Vector.field` come out as rubbish without a word. Within it negate as 0.0 - v,
+subtract as a = a - v, and take no abs, exp, sin, casts or real powers of vectors: most of these abort the process.
 """
 
 from collections.abc import Iterator

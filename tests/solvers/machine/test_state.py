@@ -23,6 +23,7 @@ def test_no_two_arrays_have_one_name(arrays):
     arrays.under("contacts").reals(axes(3), "mate")
     with pytest.raises(ValueError, match=r"two arrays are named pairs\.mate"):
         arrays.under("pairs").integers(axes(3), "mate")
+    arrays.finish()
 
 
 def test_what_is_kept_is_read_and_written_by_name(arrays):
@@ -59,7 +60,7 @@ def test_all_that_lies_along_an_axis_is_reordered_in_the_worlds_that_are_named(a
 
 @ti.data_oriented
 class Both:
-    """One kernel on whole vectors, from scalars in blocks of lanes, and one on a field of vectors, beside each other."""
+    """A kernel on whole vectors, from scalars in blocks of lanes, beside one on fields of vectors."""
 
     LANES, BLOCKS = 16, 5
 
