@@ -19,7 +19,8 @@ OPENED = ("to_numpy", "from_numpy", "fill")
 def lay_open(fields: Sequence[ti.Field], across: Sequence[bool], nested: Sequence[bool]) -> None:
     """Have the dense fields of one tree on the processor read and written directly.
 
-    The first index is contiguous of those that lie across; nested ones were declared axis by axis. They must be closed before their memory is given back.
+    The first index is contiguous of those that lie across; nested ones were declared axis by axis. They must be closed
+    before their memory is given back.
     """
     levels = [2 if inner else 1 for inner in nested]
     nodes = [field.parent(level) for field, level in zip(fields, levels, strict=True)]

@@ -10,7 +10,7 @@ these names and axes. Three axes mean something to everybody: along "world" and 
 other, and what lies along "grain" follows the grains when they are numbered anew.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
