@@ -24,7 +24,7 @@ from solvers.grains.shapes.rules.lists import ShapedNeighbours
 from solvers.grains.state import Grains
 from solvers.machine import runtime
 from solvers.machine.errors import Unavailable
-from solvers.machine.runtime import Arrays
+from solvers.machine.state import Axes, Axis, State
 from solvers.machine.units import Units
 from solvers.motion.carrier import carrier_kind, make_carrier
 from solvers.scene import Scene
@@ -87,7 +87,7 @@ class Simulation:
     def _build(self) -> None:
         """Make the arrays and the kernels that work on them."""
         scene, worlds = self.scene, self.scene.worlds
-        self.arrays = arrays = Arrays(scene.precision)
+        self.arrays = arrays = State(scene.precision)
         count = scene.radius.shape[1]
         units = Units(worlds, count, self.units_a_world, count + len(scene.fixed))
         may_leave = any(tank.open_edges for tank in scene.tanks)
@@ -201,7 +201,7 @@ class Simulation:
         for w, old in order.items():
             self.number[w], self.ordered[w] = self.number[w][old], position[w][old]
         if order:
-            self.grains.permute(order, self.mover.extra)
+            self.arrays.reorder("grain", order)
             lists, laws = self.neighbours, self.neighbours.laws
             renumber_list(lists.pairs, lists.units, order, laws.odd, mates=True)
             renumber_list(lists.contacts, lists.units, order, laws.odd, mates=False)
@@ -366,6 +366,13 @@ class Simulation:
             **self.load,
             **self.arrays.read(),
         }
+
+    def axes(self) -> dict[str, Axes]:
+        """The axes of all that `state` tells, by its names."""
+        world, grain = Axis("world", self.scene.worlds), Axis("grain", self.scene.radius.shape[1])
+        own = {"numbers": (Axis("number", 6),), "origin": (), **dict.fromkeys(LOAD, (world,))}
+        order = {"number": (world, grain), "ordered": (world, grain, Axis("direction", 2))}
+        return own | order | self.arrays.axes()
 
     def restore(self, state: dict[str, np.ndarray]) -> None:
         """Become what `state` was told of, by a simulation of the same scene."""

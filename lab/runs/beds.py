@@ -30,10 +30,11 @@ from lab.preset.units import show
 from solvers.grains.filling import clear_of_walls, levelled
 from solvers.grains.materials import Material
 from solvers.grains.shapes.given import Shapes
+from solvers.machine.state import Axes, of_world
 from solvers.scene import Scene
 from solvers.simulation import Simulation
 
-FORMAT = "cargo-shift-lab bed 1"
+FORMAT = "cargo-shift-lab bed 2"
 LARGEST_STORE = 2**28  # bytes
 ABANDONED = 3600.0  # s after which a half-written file belongs to nobody
 
@@ -45,7 +46,6 @@ Bed = dict[str, np.ndarray]
 UNRELATED = ("motions", "soft_start", "start_speed", "step", "vessels", "interval")
 PER_WORLD = ("radius", "grain", "wall", "velocity", "spin")
 
-CLOCK = ("numbers", "origin")  # entries of a simulation's state that all its worlds share
 FREE = 0.9  # of its radius: how near a wall a grain of a settled bed may be
 
 
@@ -109,7 +109,8 @@ def settled(scene: Scene, position: np.ndarray, how: Settling, start: Start, pro
                 f"The grains still moved after {how.limit:g} s of settling; raise run.settle_limit or run.rest."
             )
         elif store:
-            for key, bed in zip(keys, made(before, simulation.state(), len(position)), strict=True):
+            beds = made(before, simulation.state(), simulation.axes(), len(position))
+            for key, bed in zip(keys, beds, strict=True):
                 store.save(key, bed)
     except BaseException:
         simulation.close()
@@ -188,7 +189,7 @@ def bed_key(simulation: Simulation, world: int, position: np.ndarray, how: Settl
     parts += [simulation.arch, simulation.schedule_name, simulation.units_a_world, simulation.skin]
     parts += [(type(motion).__name__, motion.coordinate) for motion in scene.motions[world]]
     if scene.vessels:
-        parts.append(simulation.carrier.sizes)  # by which its arrays, and with them the bed's, are numbered
+        parts.append(simulation.carrier.sizes)  # of its arrays, and with them of the bed's
     for field in fields(scene):
         if field.init and field.name not in UNRELATED:  # the rest is derived from these
             value = getattr(scene, field.name)
@@ -230,13 +231,15 @@ def _engine() -> str:
     return f"{digest.hexdigest()} taichi {version('taichi')} numpy {version('numpy')} {platform.machine()}"
 
 
-def made(before: Mapping[str, np.ndarray], after: Mapping[str, np.ndarray], worlds: int) -> list[Bed]:
-    """What settling made of each world: the entries of the state that it changed, cut along their first axis.
+def made(
+    before: Mapping[str, np.ndarray], after: Mapping[str, np.ndarray], axes: Mapping[str, Axes], worlds: int
+) -> list[Bed]:
+    """What settling made of each world: its part of the entries of the state that changed.
 
     All that it left as it was, such as the motions' numbers, belongs to the scene and not to the bed.
     """
-    changed = [k for k in after if k in CLOCK or not _same(before[k], after[k])]
-    return [{k: after[k] if k in CLOCK else np.split(after[k], worlds)[w] for k in changed} for w in range(worlds)]
+    changed = [name for name in after if not _same(before[name], after[name])]
+    return [{name: of_world(after[name], axes[name], worlds, w) for name in changed} for w in range(worlds)]
 
 
 def lay(simulation: Simulation, beds: list[Bed | None]) -> bool:
@@ -244,9 +247,12 @@ def lay(simulation: Simulation, beds: list[Bed | None]) -> bool:
     if any(bed is None for bed in beds):
         return False
     state = {name: np.array(values) for name, values in simulation.state().items()}
+    axes = simulation.axes()
     for w, bed in enumerate(beds):
+        if not bed.keys() <= state.keys():
+            return False
         for name, values in bed.items():
-            place = state[name] if name in CLOCK else np.split(state.get(name, np.empty(0)), len(beds))[w]
+            place = of_world(state[name], axes[name], len(beds), w)
             if place.shape != values.shape:
                 return False
             place[...] = values

@@ -17,7 +17,7 @@ import numpy as np
 from lab.base.errors import LabError, Useless
 from lab.base.trust import check_archive, check_progress
 
-FORMAT = "cargo-shift-lab checkpoint 1"
+FORMAT = "cargo-shift-lab checkpoint 2"
 FILE_NAME = "checkpoint.npz"
 
 
@@ -64,8 +64,8 @@ def read_checkpoint(folder: Path) -> Checkpoint | None:
             about = json.loads(str(file["about"]))
             state = {name.removeprefix("state/"): file[name] for name in file.files if name != "about"}
             if about["format"] != FORMAT:
-                raise Useless(f"{path} was written by another version: start the run anew.")
-            if about.get("digest") not in (None, _digest(state)):  # None: of an earlier version
+                raise Useless(f"{path} was made by another version of the lab: start the run anew.")
+            if about["digest"] != _digest(state):
                 raise ValueError("not what was written")
             series, frames = about["rows"]
             check_progress(about["runs"], (series, frames), (about["warnings"], about["notes"]))

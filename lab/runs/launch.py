@@ -28,6 +28,7 @@ from lab.runs.beds import settled, settling
 from lab.runs.checkpoint import Checkpoint, remove_checkpoint
 from solvers.machine.errors import BadState
 from solvers.machine.runtime import available_cores, choose_arch
+from solvers.machine.state import without_worlds
 from solvers.scene import Scene
 from solvers.simulation import Simulation
 from solvers.time.schedules import choose_schedule, units_a_world
@@ -293,25 +294,12 @@ class Launch:
         self.runs.pop(out)
         self._recorders.pop(out).close(status)
         if self.runs and self._simulation:
-            before = self._simulation.state()
+            before, axes, worlds = self._simulation.state(), self._simulation.axes(), slices[-1].stop
             self._simulation.close()
             self._simulation = self._simulate(self._scene(), self._position())
-            self._simulation.restore(_without(before, self._simulation.state(), slices[-1].stop, slices[out]))
-
-
-def _without(
-    state: Mapping[str, np.ndarray], fewer: Mapping[str, np.ndarray], worlds: int, out: slice
-) -> dict[str, np.ndarray]:
-    """A simulation's state less some of its worlds; `fewer` is one of a simulation of the others.
-
-    What has the same shape in both belongs to all worlds; the rest has the worlds one after the other.
-    """
-
-    def others(values: np.ndarray) -> np.ndarray:
-        blocks = np.split(values, worlds)
-        return np.concatenate(blocks[: out.start] + blocks[out.stop :])
-
-    return {name: values if values.shape == fewer[name].shape else others(values) for name, values in state.items()}
+            self._simulation.restore(
+                {name: without_worlds(values, axes[name], worlds, slices[out]) for name, values in before.items()}
+            )
 
 
 def pose_of(rows: Mapping[str, np.ndarray]) -> np.ndarray:

@@ -4,7 +4,7 @@ import numpy as np
 import taichi as ti
 
 from solvers.grains.laws.chosen import ChosenLaws
-from solvers.machine.runtime import Arrays
+from solvers.machine.state import Axis, State
 from solvers.machine.units import Units
 
 
@@ -25,7 +25,7 @@ class ContactList:
 
     def __init__(
         self,
-        arrays: Arrays,
+        arrays: State,
         units: Units,
         room: int,
         lanes: int,
@@ -36,35 +36,39 @@ class ContactList:
         fleeting: tuple[str, ...] = (),
     ):
         self.units, self.lanes, self.stride = units, lanes, stride
-        blocks = -(-room // lanes)
+        blocks, across = -(-room // lanes), units.single
         self.capacity = blocks * lanes
-        shape, across = (units.count, blocks), units.single
-        (self.length,) = units.integers(arrays, 1, self.capacity + 1)
+        self.arrays, self.lane = arrays, Axis("lane", lanes)
+        axes, contacts = (units.axis, Axis("block", blocks), self.lane), Axis("contact", self.capacity)
+        self.each = (units.axis, contacts, Axis("one", 1))
+        (self.length,) = arrays.integers((units.axis,), "length", below=self.capacity + 1)
         base = stride * (np.arange(units.count) // units.a_world)
-        (self.grain,) = arrays.integer_vectors(1, lanes, shape, across, base, places[0])
-        (self.mate,) = arrays.integer_vectors(1, lanes, shape, across, base, places[1])
+        (self.grain,) = arrays.integer_vectors(axes, "grain", across=across, base=base, below=places[0])
+        (self.mate,) = arrays.integer_vectors(axes, "mate", across=across, base=base, below=places[1])
         self.has_targets = not (units.whole or units.single)
         self.target = self.mate
         if self.has_targets:
-            (self.target,) = arrays.integer_vectors(1, lanes, shape, False, base, places[1])
-        self.stiffness, self.reach, self.share = arrays.vectors(3, lanes, shape, across)
+            (self.target,) = arrays.integer_vectors(axes, "target", base=base, below=places[1])
+        constants = "stiffness", "reach", "share"
+        self.stiffness, self.reach, self.share = arrays.vectors(axes, *constants, across=across)
         if laws.kinds > 1:
             rows = laws.kinds * (laws.kinds + 1)
-            (self.row,) = arrays.integer_vectors(1, lanes, shape, across, below=rows)  # of the interface
+            (self.row,) = arrays.integer_vectors(axes, "row", across=across, below=rows)  # of the interface
         self.kinds = laws.kinds
-        self.constants = arrays.vectors(len(laws.constants), lanes, shape, across)
-        memory = (*laws.memory, *more)
-        self.memory = arrays.vectors(len(laws.memory), lanes, shape, across)
-        self.memory += arrays.vectors(len(more), 1, (units.count, self.capacity), across)
+        self.constants = arrays.under("constant").vectors(axes, *laws.constants, across=across)
+        memory, remembered = (*laws.memory, *more), arrays.under("memory")
+        self.memory = remembered.vectors(axes, *laws.memory, across=across)
+        self.memory += remembered.vectors(self.each, *more, across=across)
         for name, field in zip((*laws.constants, *memory), (*self.constants, *self.memory), strict=True):
             setattr(self, name, field)
         self.memories = len(self.memory)
-        for name, field in zip(fleeting, arrays.vectors(len(fleeting), lanes, shape, across), strict=True):
+        for name, field in zip(fleeting, arrays.under("fleeting").vectors(axes, *fleeting, across=across), strict=True):
             setattr(self, name, field)
-        (self.first,) = arrays.integers(1, (units.count, units.size + 1), across, below=self.capacity + 1)
-        (self.old_first,) = arrays.integers(1, (units.count, units.size + 1), across, kept=False)
-        (self.old_mate,) = arrays.integers(1, (units.count, self.capacity), across, kept=False)
-        self.old_memory = arrays.vectors(self.memories, 1, (units.count, self.capacity), across, kept=False)
+        old, starts = arrays.under("old"), (units.axis, Axis("start", units.size + 1))
+        (self.first,) = arrays.integers(starts, "first", across=across, below=self.capacity + 1)
+        (self.old_first,) = old.integers(starts, "first", across=across, kept=False)
+        (self.old_mate,) = old.integers((units.axis, contacts), "mate", across=across, kept=False)
+        self.old_memory = old.under("memory").vectors(self.each, *memory, across=across, kept=False)
         for name, field in zip(memory, self.old_memory, strict=True):
             setattr(self, f"old_{name}", field)
 

@@ -6,7 +6,7 @@ from solvers.grains.laws.chosen import PAIR, WALL, ChosenLaws
 from solvers.grains.laws.extremes import greater
 from solvers.grains.neighbours import Neighbours
 from solvers.grains.state import FAR, Grains
-from solvers.machine.runtime import Arrays
+from solvers.machine.state import Axis, State
 from solvers.machine.units import Units
 from solvers.tank.load import Load
 from solvers.tank.walls import Walls
@@ -26,7 +26,7 @@ class Contacts:
 
     def __init__(
         self,
-        arrays: Arrays,
+        arrays: State,
         units: Units,
         grains: Grains,
         walls: Walls,
@@ -39,7 +39,9 @@ class Contacts:
         self.lining = load.pieces - 1  # the piece that fixed grains are, where there are any
         # What a block of pairs does to its grains: forces (N) along y and z, torques (N m) on the first and the second.
         # Nobody reads it. Neighbouring numbers that are written together are what makes the compiler look for SIMD.
-        self.given = arrays.vectors(4, lists.pairs.lanes, (GIVEN_APART * units.count,), kept=False)
+        self.given = arrays.under("given").vectors(
+            (Axis("unit", GIVEN_APART * units.count), lists.pairs.lane), "y", "z", "turn_i", "turn_j", kept=False
+        )
 
     @ti.func
     def forces(self, u, t, dt):

@@ -8,7 +8,7 @@ from solvers.grains.mover import Mover
 from solvers.grains.neighbours import Neighbours
 from solvers.grains.state import Grains
 from solvers.machine.phase import Phase
-from solvers.machine.runtime import Arrays
+from solvers.machine.state import State
 from solvers.machine.units import Units
 
 # A speed (m/s) whose 16th power is no number in 32 bits any more.
@@ -26,7 +26,7 @@ class GrainMatter:
 
     def __init__(
         self,
-        arrays: Arrays,
+        arrays: State,
         units: Units,
         grains: Grains,
         neighbours: Neighbours,
@@ -35,12 +35,13 @@ class GrainMatter:
         way_a_step: float,
         stretch: int = 1,
     ):
+        own = arrays.under("grains")
         self.units, self.grains, self.neighbours = units, grains, neighbours
         self.contacts, self.mover = contacts, mover
         self.unseen = UNSEEN if arrays.real is ti.f32 else 0.0  # speed (m/s) below which the mover's bound may miss one
-        self.way_a_step = arrays.holding(np.array([way_a_step]), arrays.exact)
+        self.way_a_step = own.holding("way_a_step", np.array([way_a_step]), "one", own.exact)
         self.paced = stretch > 1
-        self.stretch = arrays.holding(np.array([stretch]), ti.i32)
+        self.stretch = own.holding("stretch", np.array([stretch]), "one", ti.i32)
         self.before = (Phase(self.push, units),)
         self.after = (Phase(self.move, units),)
 

@@ -4,7 +4,7 @@ import taichi as ti
 
 from solvers.grains.shapes.pose import towards
 from solvers.grains.state import Grains
-from solvers.machine.runtime import Arrays
+from solvers.machine.state import State
 from solvers.machine.units import Units
 
 
@@ -12,10 +12,10 @@ from solvers.machine.units import Units
 class Mover:
     """Moves grains, in a tank that may be `rotating`."""
 
-    def __init__(self, arrays: Arrays, units: Units, grains: Grains, integrator, rotating: bool):
+    def __init__(self, arrays: State, units: Units, grains: Grains, integrator, rotating: bool):
         self.units, self.grains, self.integrator, self.rotating = units, grains, integrator, rotating
-        shape = (grains.worlds, grains.count + grains.ghosts)
-        self.extra = arrays.reals(integrator.extra, shape)
+        names = (f"extra.{k}" for k in range(integrator.extra))
+        self.extra = arrays.under("mover").reals(grains.axes, *names)
 
     def rest(self) -> None:
         """Forget higher derivatives, for grains that were put somewhere or launched."""

@@ -10,7 +10,7 @@ import taichi as ti
 from solvers.grains.contact_list import ContactList
 from solvers.grains.laws.chosen import PAIR, WALL, ChosenLaws
 from solvers.grains.state import Grains
-from solvers.machine.runtime import Arrays
+from solvers.machine.state import Axis, State
 from solvers.machine.units import Units
 from solvers.space.cells import Cells
 from solvers.tank.walls import Walls
@@ -31,7 +31,7 @@ class Neighbours:
 
     def __init__(
         self,
-        arrays: Arrays,
+        arrays: State,
         units: Units,
         grains: Grains,
         walls: Walls,
@@ -51,17 +51,22 @@ class Neighbours:
         more_pairs, more_contacts = (rule.pair_memory, rule.wall_memory) if rule else ((), ())
         fleeting, more_fleeting = self.pair_fleeting, self.wall_fleeting
         of_all, of_walls = 2 * (grains.worlds * grains.stride,), (grains.stride, walls.features)
-        self.pairs = ContactList(arrays, units, room * pairs, lanes, grains.stride, laws, of_all, more_pairs, fleeting)
-        self.contacts = ContactList(arrays, units, room * contacts, 1, 0, laws, of_walls, more_contacts, more_fleeting)
-        self.modulus = arrays.holding(4.0 / 3.0 * modulus)  # k = (4/3) E* √R_eff of each interface
-        self.skin = arrays.holding(np.array([skin]))
+        self.pairs = ContactList(
+            arrays.under("pairs"), units, room * pairs, lanes, grains.stride, laws, of_all, more_pairs, fleeting
+        )
+        self.contacts = ContactList(
+            arrays.under("contacts"), units, room * contacts, 1, 0, laws, of_walls, more_contacts, more_fleeting
+        )
+        own, place = arrays.under("lists"), (Axis("world", grains.worlds), Axis("grain", grains.count))
+        self.modulus = own.holding("modulus", 4.0 / 3.0 * modulus, "world row")  # k = (4/3) E* √R_eff of each interface
+        self.skin = own.holding("skin", np.array([skin]), "one")
         if laws.cohesive:
-            self.bridges = arrays.holding(np.array([bridges]))  # the longest there may be, m
+            self.bridges = own.holding("bridges", np.array([bridges]), "one")  # the longest there may be, m
         self.cells = Cells(arrays, grains, *walls.bounds, reach)
-        self.built_y, self.built_z = arrays.reals(2, (grains.worlds, grains.count), arrays.place)
+        self.built_y, self.built_z = own.reals(place, "built_y", "built_z", kind=own.place)
         # No grain has moved farther than `travel` (m) since the lists were built, at the time `built_at` (s).
-        self.travel = arrays.holding(np.full(units.count, NEVER), kept=True)
-        self.built_at = arrays.holding(np.zeros(units.count), arrays.exact, kept=True)
+        self.travel = own.holding("travel", np.full(units.count, NEVER), "unit", kept=True)
+        self.built_at = own.holding("built_at", np.zeros(units.count), "unit", own.exact, kept=True)
 
     def forget(self) -> None:
         """Drop all history, for grains that were put somewhere else."""

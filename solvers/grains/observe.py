@@ -5,7 +5,7 @@ import taichi as ti
 from solvers.grains.contacts import Contacts
 from solvers.grains.neighbours import Neighbours
 from solvers.grains.state import Grains
-from solvers.machine.runtime import Arrays
+from solvers.machine.state import Axis, State
 from solvers.machine.units import Units
 from solvers.tank.load import Load
 from solvers.tank.walls import Walls
@@ -49,7 +49,7 @@ class Observer:
 
     def __init__(
         self,
-        arrays: Arrays,
+        arrays: State,
         units: Units,
         grains: Grains,
         walls: Walls,
@@ -62,10 +62,14 @@ class Observer:
         self.contacts, self.carrier, self.load = contacts, carrier, load
         self.exact, self.may_leave = arrays.exact, grains.may_leave
         self.chunks = -(-grains.mobile // CHUNK)
-        (self.rows,) = arrays.reals(1, (grains.worlds, len(self.NAMES)), arrays.exact, kept=False)
-        (self.loads,) = arrays.reals(1, (grains.worlds, load.pieces, 3), arrays.exact, kept=False)
-        self.sums = arrays.reals(7, (grains.worlds, self.chunks), arrays.exact, kept=False)
-        self.counted = arrays.reals(3, (units.count,), arrays.exact, kept=False)
+        own, scratch = arrays.under("observed"), {"kind": arrays.exact, "kept": False}
+        world, chunk = Axis("world", grains.worlds), Axis("chunk", self.chunks)
+        (self.rows,) = own.reals((world, Axis("quantity", len(self.NAMES))), "rows", **scratch)
+        pieces = world, Axis("piece", load.pieces), Axis("component", 3)
+        (self.loads,) = own.reals(pieces, "loads", **scratch)
+        sums = "mass", "moment_y", "moment_z", "kinetic", "rotational", "spilled", "escaped"
+        self.sums = own.reals((world, chunk), *sums, **scratch)
+        self.counted = own.reals((units.axis,), "touching", "deepest", "elastic", **scratch)
 
     @ti.kernel
     def observe(self, time: ti.f64, since: ti.f64):

@@ -1,11 +1,9 @@
 """The grains: what is known of each of n discs in each of W worlds."""
 
-from collections.abc import Sequence
-
 import numpy as np
 import taichi as ti
 
-from solvers.machine.runtime import Arrays
+from solvers.machine.state import Axis, State
 
 FAR = 1e3  # m
 
@@ -24,7 +22,7 @@ class Grains:
 
     def __init__(
         self,
-        arrays: Arrays,
+        arrays: State,
         radius: np.ndarray,
         density: np.ndarray,
         fixed: np.ndarray,
@@ -40,23 +38,25 @@ class Grains:
         self.real, self.exact = arrays.real, arrays.exact
         self.mixed = arrays.real is not arrays.place
         self.stride = self.count + ghosts  # numbers from a grain of one world to its like of the next
-        shape = (self.worlds, self.stride)
-        self.y, self.z = arrays.reals(2, shape, arrays.place)
-        (self.angle,) = arrays.reals(1, shape)
-        self.velocity_y, self.velocity_z, self.spin = arrays.reals(3, shape)
-        self.now_y, self.now_z, self.spin_now = arrays.reals(3, shape)
-        self.force_y, self.force_z, self.torque = arrays.reals(3, shape)
+        own, axes = arrays.under("grains"), "world grain"
+        self.axes = Axis("world", self.worlds), Axis("grain", self.stride)
+        self.y, self.z = own.reals(self.axes, "y", "z", kind=own.place)
+        (self.angle,) = own.reals(self.axes, "angle")
+        self.velocity_y, self.velocity_z, self.spin = own.reals(self.axes, "velocity_y", "velocity_z", "spin")
+        self.now_y, self.now_z, self.spin_now = own.reals(self.axes, "now_y", "now_z", "spin_now")
+        self.force_y, self.force_z, self.torque = own.reals(self.axes, "force_y", "force_z", "torque")
         self.mass = 4.0 / 3.0 * np.pi * radius**3 * density
-        self.radius = arrays.holding(self._filled(radius, fixed[:, 2], 0.0), kept=True)
+        self.radius = own.holding("radius", self._filled(radius, fixed[:, 2], 0.0), axes, kept=True)
         self.reach = self.radius
-        self.inverse_mass = arrays.holding(self._filled(1.0 / self.mass, 0.0, 0.0), kept=True)
+        self.inverse_mass = own.holding("inverse_mass", self._filled(1.0 / self.mass, 0.0, 0.0), axes, kept=True)
         inverse_inertia = 2.5 / (self.mass * radius**2 * spread)
-        self.inverse_inertia = arrays.holding(self._filled(inverse_inertia, 0.0, 0.0), kept=True)
+        inverse_inertia = self._filled(inverse_inertia, 0.0, 0.0)
+        self.inverse_inertia = own.holding("inverse_inertia", inverse_inertia, axes, kept=True)
         if kind is not None:
-            self.kind = arrays.holding(self._filled(kind, 0.0, 0.0), ti.i32, kept=True)
+            self.kind = own.holding("kind", self._filled(kind, 0.0, 0.0), axes, ti.i32, kept=True)
         if may_leave:
-            self.present = arrays.holding(np.ones(shape), kept=True)
-            self.spilled = arrays.holding(np.zeros(shape), kept=True)
+            self.present = own.holding("present", np.ones((self.worlds, self.stride)), axes, kept=True)
+            self.spilled = own.holding("spilled", np.zeros((self.worlds, self.stride)), axes, kept=True)
 
     def _filled(self, values: np.ndarray, fixed: np.ndarray | float, ghost: float) -> np.ndarray:
         """Values (W, n) of the grains that move, with those of the fixed ones and the ghosts after them."""
@@ -113,14 +113,6 @@ class Grains:
     def fields(self) -> list[ti.Field]:
         """All arrays of the grains, each once: some have two names."""
         return list({id(field): field for field in vars(self).values() if isinstance(field, ti.Field)}.values())
-
-    def permute(self, order: dict[int, np.ndarray], more: Sequence[ti.Field]) -> None:
-        """Put the moving grains of some worlds into another order, `order[w]` their old numbers, with `more` fields."""
-        for field in (*self.fields(), *more):
-            values = field.to_numpy()
-            for w, old in order.items():
-                values[w, : self.mobile] = values[w, old]
-            field.from_numpy(values)
 
     @ti.func
     def push(self, w, i, force_y, force_z, torque):

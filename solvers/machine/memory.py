@@ -16,13 +16,15 @@ KINDS = {ti.i32: np.int32, ti.f32: np.float32, ti.f64: np.float64}
 OPENED = ("to_numpy", "from_numpy", "fill")
 
 
-def lay_open(fields: Sequence[ti.Field], across: Sequence[bool]) -> None:
+def lay_open(fields: Sequence[ti.Field], across: Sequence[bool], nested: Sequence[bool]) -> None:
     """Have the dense fields of one tree on the processor read and written directly.
 
-    The first index is contiguous of those that lie across. They must be closed before their memory is given back.
+    The first index is contiguous of those that lie across; nested ones were declared axis by axis. They must be closed
+    before their memory is given back.
     """
-    pairs = list(zip(fields, across, strict=True))
-    offsets = [field.parent(2 if crossed else 1)._offset_bytes_in_parent_cell for field, crossed in pairs]
+    levels = [2 if inner else 1 for inner in nested]
+    nodes = [field.parent(level) for field, level in zip(fields, levels, strict=True)]
+    offsets = [node._offset_bytes_in_parent_cell for node in nodes]
     start = First(fields[0]).address() - offsets[0]
     for field, crossed, offset in zip(fields, across, offsets, strict=True):
         view = _view(field, start + offset, crossed)

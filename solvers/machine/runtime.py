@@ -15,7 +15,6 @@ from glob import glob
 from io import StringIO
 from weakref import WeakSet
 
-import numpy as np
 import taichi as ti
 from taichi.lang.ast.ast_transformer_utils import ASTTransformerContext
 
@@ -49,9 +48,8 @@ ASTTransformerContext.get_pos_info = _place
 
 _most_cores = 2**31
 _running: tuple | None = None
-_starts = 0
-_used = False  # whether arrays were made since the last start
-_live: WeakSet["Arrays"] = WeakSet()  # those that have not been released
+_used = False  # whether a state was made since the last start
+_live: WeakSet = WeakSet()  # states (`machine.state`) that have not been released
 _threads: list[int] = []  # Taichi's, in the order in which they began (Linux)
 
 
@@ -109,20 +107,19 @@ def initialise(threads: int = 0, arch: str = "cpu", precision: str = "f64", **op
     more: Taichi numbers its fields from the start on, and finds a kernel that it has compiled before only where the
     fields have the same numbers. Raises Unavailable (see `choose_arch`), also where Taichi lacks a folder or memory.
     """
-    global _running, _starts, _used
+    global _running, _used
     if kernel_cache.missing():
         raise Unavailable(kernel_cache.lacking())
     wanted = (threads or available_cores(), choose_arch(arch, precision), PRECISIONS[precision].real)
     if _running == wanted and not options and (_live or not _used):
         return
-    for arrays in _live:
-        memory.close(arrays.fields)
+    for state in _live:
+        memory.close(state.fields)
     _live.clear()
     _used = False
     with redirect_stdout(StringIO()):  # Taichi announces its backend, and has no switch for it
         _start(*wanted, options)
     _running = None if options else wanted
-    _starts += 1
 
 
 def _start(threads: int, arch: str, real, options: dict) -> None:
@@ -175,140 +172,15 @@ def running_arch() -> str:
     return _running[1] if _running else "cpu"
 
 
-class Arrays:
-    """Fields of one simulation, in one Taichi field tree.
+def take_in(state) -> None:
+    """Count a `State` that has its memory now among those in use."""
+    global _used
+    _used = True
+    _live.add(state)
 
-    One tree, since each tree a kernel touches costs it a pointer to reload in the inner loops (three times slower
-    with a tree a field), and since Taichi holds at most 512 trees and frees none by itself. Fields are declared
-    first, then `finish` makes and fills them, before others are begun; the last index is contiguous, or with `across`
-    the first. What is `kept` makes up the state of a simulation; the rest is scratch, or follows from the scene.
-    """
 
-    def __init__(self, precision: str = "f64"):
-        kinds = PRECISIONS[precision]
-        self.place, self.real = kinds.place, kinds.real
-        # Sums and times deserve 64 bits whatever the grains have, where the device can.
-        self.exact = ti.f32 if running_arch() == "vulkan" else ti.f64
-        self._builder = ti.FieldsBuilder()
-        self.fields: list[ti.Field] = []
-        self._across: list[bool] = []
-        self._kept: dict[str, ti.Field] = {}
-        self._bases: dict[int, np.ndarray] = {}
-        self._below: dict[int, int] = {}
-        self._contents: list[tuple[ti.Field, np.ndarray]] = []
-        self._tree = None
-        self._born = _starts
-
-    def reals(self, count: int, shape: tuple[int, ...], kind=None, kept: bool = True) -> list[ti.Field]:
-        """`count` fields of floats: of the reals' kind, or of another, such as `self.place`."""
-        return [self._placed(ti.field(kind or self.real), shape, kept=kept) for _ in range(count)]
-
-    def integers(
-        self, count: int, shape: tuple[int, ...], across: bool = False, kept: bool = True, below: int | None = None
-    ) -> list[ti.Field]:
-        """`count` fields of 32-bit integers; places in other arrays are `below` a number, which `write` checks."""
-        fields = [self._placed(ti.field(ti.i32), shape, across, kept) for _ in range(count)]
-        return self._bounded(fields, below)
-
-    def vectors(
-        self, count: int, size: int, shape: tuple[int, ...], across: bool = False, kept: bool = True
-    ) -> list[ti.Field]:
-        """`count` fields of vectors of `size` reals."""
-        return [self._placed(ti.Vector.field(size, self.real), shape, across, kept) for _ in range(count)]
-
-    def integer_vectors(
-        self,
-        count: int,
-        size: int,
-        shape: tuple[int, ...],
-        across: bool = False,
-        base: np.ndarray | None = None,
-        below: int | None = None,
-    ) -> list[ti.Field]:
-        """`count` fields of vectors of `size` 32-bit integers; `read` and `write` count from `base` (shape[0],)."""
-        fields = [self._placed(ti.Vector.field(size, ti.i32), shape, across) for _ in range(count)]
-        if base is not None:
-            self._bases.update({id(field): base for field in fields})
-        return self._bounded(fields, below)
-
-    def _bounded(self, fields: list[ti.Field], below: int | None) -> list[ti.Field]:
-        if below is not None:
-            self._below.update({id(field): below for field in fields})
-        return fields
-
-    def holding(self, values: np.ndarray, kind=None, kept: bool = False) -> ti.Field:
-        """A field of reals, or of numbers of another kind, that starts with these values."""
-        field = self._placed(ti.field(kind or self.real), values.shape, kept=kept)
-        self._contents.append((field, np.ascontiguousarray(values, dtype=np.float64)))
-        return field
-
-    def _placed(self, field: ti.Field, shape: tuple[int, ...], across: bool = False, kept: bool = True) -> ti.Field:
-        if across:
-            self._builder.dense(ti.j, shape[1]).dense(ti.i, shape[0]).place(field)
-        else:
-            self._builder.dense((ti.i, ti.ij, ti.ijk)[len(shape) - 1], shape).place(field)
-        if kept:
-            self._kept[f"{len(self.fields):03}"] = field
-        self.fields.append(field)
-        self._across.append(across)
-        return field
-
-    def finish(self) -> None:
-        """Make the declared fields, zero but for what they are to hold."""
-        global _used
-        self._tree = self._builder.finalize()
-        _used = True
-        _live.add(self)
-        if running_arch() == "cpu":
-            memory.lay_open(self.fields, self._across)
-        for field, values in self._contents:
-            field.from_numpy(values.astype(memory.KINDS[field.dtype]))
-        self._contents = []
-
-    @property
-    def bytes(self) -> int:
-        """Memory of the declared fields."""
-        return sum(
-            int(np.prod(f.shape)) * getattr(f, "n", 1) * np.dtype(memory.KINDS[f.dtype]).itemsize for f in self.fields
-        )
-
-    def read(self) -> dict[str, np.ndarray]:
-        """What is in the kept fields, by their numbers: all but scratch and what never changes."""
-        return {name: field.to_numpy() - self._base(field) for name, field in self._kept.items()}
-
-    def write(self, contents: dict[str, np.ndarray]) -> None:
-        """Put back what `read` gave from the same declarations.
-
-        No number is left that is no place in the array that it points into, for a kernel would read and write elsewhere
-        in memory. Vectors of places may hold such where they are not in use, in a world that has come from another
-        number: these are made zero. Elsewhere they raise ValueError, before anything is put back.
-        """
-        whole = {name: np.ascontiguousarray(contents[name] + self._base(field)) for name, field in self._kept.items()}
-        for name, field in self._kept.items():
-            places, below = whole[name], self._below.get(id(field))
-            if below is None or not places.size or 0 <= places.min() <= places.max() < below:
-                continue
-            if not hasattr(field, "n"):
-                raise ValueError(f"array {name} has numbers that are no places")
-            whole[name] = np.where((places >= 0) & (places < below), places, 0).astype(places.dtype)
-        for name, field in self._kept.items():
-            field.from_numpy(whole[name])
-
-    def _base(self, field: ti.Field) -> np.ndarray | int:
-        base = self._bases.get(id(field))
-        return 0 if base is None else base.astype(np.int32).reshape(-1, 1, 1)
-
-    def take_over(self, smaller: "Arrays") -> None:
-        """Copy what the same declarations hold in arrays of smaller or equal shapes."""
-        for field, old in zip(self.fields, smaller.fields, strict=True):
-            contents, held = field.to_numpy(), old.to_numpy()
-            contents[tuple(slice(size) for size in held.shape)] = held
-            field.from_numpy(contents)
-
-    def release(self) -> None:
-        """Give the memory back; the fields must not be used after it."""
-        if self._tree is not None and self._born == _starts:
-            memory.close(self.fields)
-            self._tree.destroy()
-        self._tree = None
-        _live.discard(self)
+def let_go(state) -> bool:
+    """Count a state as released; returns whether Taichi still has its memory, not having been started anew."""
+    held = state in _live
+    _live.discard(state)
+    return held

@@ -2,7 +2,7 @@
 
 import taichi as ti
 
-from solvers.machine.runtime import Arrays
+from solvers.machine.state import Axis
 
 # Ghosts of different bands stand this far apart, so that no two threads write to one cache line.
 APART = 16
@@ -30,9 +30,10 @@ class Units:
         """Far-off points of a world, for pairs that stand for none, and to keep it off the next one's cache lines."""
         return 1 if self.single else APART * self.a_world
 
-    def integers(self, arrays: Arrays, count: int, below: int | None = None) -> list[ti.Field]:
-        """`count` fields of one integer a unit."""
-        return arrays.integers(count, (self.count,), below=below)
+    @property
+    def axis(self) -> Axis:
+        """A place for each unit."""
+        return Axis("unit", self.count)
 
     @ti.func
     def world(self, u):

@@ -22,7 +22,7 @@ import numpy as np
 import taichi as ti
 
 from solvers.machine.phase import Phase
-from solvers.machine.runtime import Arrays
+from solvers.machine.state import Axis, State
 from solvers.motion.buoyancy import Hulls
 from solvers.motion.frame import turned
 from solvers.motion.harmonic import soft_start
@@ -59,7 +59,7 @@ class Afloat:
     rotating = moving = answers = True
     paced = False  # her own leapfrog has steps of one length
 
-    def __init__(self, arrays: Arrays, vessels: Sequence[Vessel], gravity: float, every: int, load: Load):
+    def __init__(self, arrays: State, vessels: Sequence[Vessel], gravity: float, every: int, load: Load):
         self.exact, self.real, self.vessels, self.cargo = arrays.exact, arrays.real, tuple(vessels), load
         self.phases = (Phase(self.follow),)
         worlds = len(self.vessels)
@@ -67,44 +67,49 @@ class Afloat:
         memories = [vessel.ship.radiation.memory for vessel in self.vessels]
         self.states = max(0 if memory is None else len(memory.matrix) for memory in memories)
         self.size = MEMORY + self.states + WORKS
-        self.gravity = arrays.holding(np.array([gravity]), arrays.exact)
-        self.every = arrays.holding(np.array([every]), ti.i32)
+        own, world = arrays.under("ship"), Axis("world", worlds)
+        self.gravity = own.holding("gravity", np.array([gravity]), "one", own.exact)
+        self.every = own.holding("every", np.array([every]), "one", ti.i32)
 
-        def table(values) -> ti.Field:
-            return arrays.holding(np.array(values, dtype=float), arrays.exact, kept=True)
+        def table(name: str, values, axes: str = "") -> ti.Field:
+            return own.holding(name, np.array(values, dtype=float), f"world {axes}", own.exact, kept=True)
 
         ships = [vessel.ship for vessel in self.vessels]
-        self.free = table([ship.free for ship in ships])
-        self.added = table([ship.radiation.added_mass + np.diag(ship.rig.mass) for ship in ships])
-        self.damping = table([ship.radiation.damping for ship in ships])
-        self.viscous = table([[ship.damping.linear, ship.damping.quadratic] for ship in ships])
-        self.dashpot = table([ship.rig.damping for ship in ships])
-        self.spring = table([ship.rig.spring for ship in ships])
-        self.rest = table([ship.rig.rest for ship in ships])
-        self.hold = table([np.subtract(vessel.hold, vessel.ship.about) for vessel in self.vessels])
-        self.heel = table([vessel.heel for vessel in self.vessels])
-        self.release = table([vessel.release for vessel in self.vessels])
-        self.limits = table([np.clip(vessel.limits, -1e9, 1e9) for vessel in self.vessels])
+        self.free = table("free", [ship.free for ship in ships], "motion")
+        added = [ship.radiation.added_mass + np.diag(ship.rig.mass) for ship in ships]
+        self.added = table("added", added, "motion motion")
+        self.damping = table("damping", [ship.radiation.damping for ship in ships], "motion motion")
+        self.viscous = table("viscous", [[ship.damping.linear, ship.damping.quadratic] for ship in ships], "number")
+        self.dashpot = table("dashpot", [ship.rig.damping for ship in ships], "motion")
+        self.spring = table("spring", [ship.rig.spring for ship in ships], "motion")
+        self.rest = table("rest", [ship.rig.rest for ship in ships], "motion")
+        self.hold = table("hold", [np.subtract(vessel.hold, vessel.ship.about) for vessel in self.vessels], "direction")
+        self.heel = table("heel", [vessel.heel for vessel in self.vessels])
+        self.release = table("release", [vessel.release for vessel in self.vessels])
+        self.limits = table("limits", [np.clip(vessel.limits, -1e9, 1e9) for vessel in self.vessels], "number")
         if self.states:
-            self.matrix = table([self._padded(m, "matrix", (self.states, self.states)) for m in memories])
-            self.entry = table([self._padded(m, "entry", (self.states, 3)) for m in memories])
-            self.exit = table([self._padded(m, "exit", (3, self.states)) for m in memories])
+            matrix = [self._padded(m, "matrix", (self.states, self.states)) for m in memories]
+            self.matrix = table("matrix", matrix, "state state")
+            self.entry = table("entry", [self._padded(m, "entry", (self.states, 3)) for m in memories], "state motion")
+            self.exit = table("exit", [self._padded(m, "exit", (3, self.states)) for m in memories], "motion state")
         # Mass, centre from P (y, z) and inertia of the hull alone; her pose upright, and when she is let go
-        (self.body,) = arrays.reals(1, (worlds, 4), arrays.exact)
-        (self.upright, self.heeled) = arrays.reals(2, (worlds, 3), arrays.exact)
-        (self.state, self.trial, self.slope, self.total) = arrays.reals(4, (worlds, self.size), arrays.exact)
+        (self.body,) = own.reals((world, Axis("number", 4)), "body", kind=own.exact)
+        self.upright, self.heeled = own.reals((world, Axis("motion", 3)), "upright", "heeled", kind=own.exact)
+        states = own.reals((world, Axis("state", self.size)), "state", "trial", "slope", "total", kind=own.exact)
+        self.state, self.trial, self.slope, self.total = states
         # Pose at the time of the step to come and velocity half a step before; the interval's accelerations now and
         # before, its drift, its mean load and the one before; the load so far; motion of the tank, accelerations last.
         names = "pose", "velocity", "steady", "steady_before", "drift", "mean", "mean_before", "load"
+        row = world, Axis("number", APART)
         for name in (*names, "last", "tank"):
-            (field,) = arrays.reals(1, (worlds, APART), arrays.exact)
+            (field,) = own.reals(row, name, kind=own.exact)
             setattr(self, name, field)
-        self.felt = arrays.holding(_apart([[0.0, -gravity, 0.0, 0.0]] * worlds), arrays.exact, kept=True)
-        (self.done,) = arrays.integers(1, (worlds, APART))
+        self.felt = table("felt", _apart([[0.0, -gravity, 0.0, 0.0]] * worlds), "number")
+        (self.done,) = own.integers(row, "done")
         # When (s) she capsized, and when she flooded, or −1; the cargo's work on her (J/m)
-        self.capsized = arrays.holding(np.full(worlds, -1.0), arrays.exact, kept=True)
-        self.flooded = arrays.holding(np.full(worlds, -1.0), arrays.exact, kept=True)
-        (self.given,) = arrays.reals(1, (worlds, APART), arrays.exact)
+        self.capsized = table("capsized", np.full(worlds, -1.0))
+        self.flooded = table("flooded", np.full(worlds, -1.0))
+        (self.given,) = own.reals(row, "given", kind=own.exact)
 
     def meet(self, vessels: Sequence[Vessel]) -> None:
         """Have the waves of these vessels, which are as they were but for those, from now on."""

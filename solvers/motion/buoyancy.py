@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 import taichi as ti
 
-from solvers.machine.runtime import Arrays
+from solvers.machine.state import State
 from solvers.motion.frame import turned
 from solvers.motion.harmonic import soft_start
 from solvers.ship.loads import Floating
@@ -19,25 +19,33 @@ class Hulls:
     `openings`: points (m) of each hull through which it floods.
     """
 
-    def __init__(self, arrays: Arrays, ships: Sequence[Ship], openings: Sequence[Sequence[tuple[float, float]]]):
+    def __init__(self, arrays: State, ships: Sequence[Ship], openings: Sequence[Sequence[tuple[float, float]]]):
         self.exact = arrays.exact
         loads = [ship.load for ship in ships]
         self.corners = max(len(load.section.outline) for load in loads)
         self.waves = max(len(load.waves.amplitude) for load in loads)
 
-        def table(values) -> ti.Field:
-            return arrays.holding(np.array(values, dtype=float), arrays.exact, kept=True)
+        own = arrays.under("hull")
 
-        self.outline = table([self._closed(load.section.outline) for load in loads])
-        self.pressure = table([load.water.density * load.water.gravity for load in loads])
-        self.about = table([load.about for load in loads])
+        def table(name: str, values, axes: str) -> ti.Field:
+            return own.holding(name, np.array(values, dtype=float), f"world {axes}", own.exact, kept=True)
+
+        self.outline = table("outline", [self._closed(load.section.outline) for load in loads], "corner direction")
+        self.pressure = table("pressure", [load.water.density * load.water.gravity for load in loads], "")
+        self.about = table("about", [load.about for load in loads], "direction")
         self.openings = max(len(points) for points in openings)
         if self.openings:
-            self.opening = table([[*points, *[(0.0, 0.0)] * (self.openings - len(points))] for points in openings])
-            self.opened = arrays.holding(np.array([len(points) for points in openings]), ti.i32, kept=True)
+            places = [[*points, *[(0.0, 0.0)] * (self.openings - len(points))] for points in openings]
+            self.opening = table("opening", places, "opening direction")
+            counts = np.array([len(points) for points in openings])
+            self.opened = own.holding("opened", counts, "world", ti.i32, kept=True)
         if self.waves:
-            self.length = table([load.waves.soft_start for load in loads])
-            self.number, self.frequency, self.real_part, self.imaginary_part = map(table, self._of_waves(loads))
+            self.length = table("length", [load.waves.soft_start for load in loads], "")
+            number, frequency, real_part, imaginary_part = self._of_waves(loads)
+            self.number = table("number", number, "wave")
+            self.frequency = table("frequency", frequency, "wave")
+            self.real_part = table("real_part", real_part, "wave factor")
+            self.imaginary_part = table("imaginary_part", imaginary_part, "wave factor")
 
     def _of_waves(self, loads: Sequence[Floating]) -> list[list[np.ndarray]]:
         """Numbers and frequencies of the components of each ship's waves, and factors, real and imaginary.

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from solvers.machine.runtime import Arrays
+from solvers.machine.state import State
 from solvers.motion.afloat import Afloat, steps_an_interval
 from solvers.motion.prescribed import Prescribed
 from solvers.ship.vessel import Vessel
@@ -14,7 +14,7 @@ def carrier_kind(vessels: Sequence[Vessel]) -> type[Prescribed] | type[Afloat]:
     return Afloat if vessels else Prescribed
 
 
-def make_carrier(arrays: Arrays, scene, dt: float, load: Load) -> Prescribed | Afloat:
+def make_carrier(arrays: State, scene, dt: float, load: Load) -> Prescribed | Afloat:
     """The carrier of a scene (`solvers.scene.Scene`) that takes steps of dt (s)."""
     if scene.vessels:
         every = steps_an_interval(scene.vessels, scene.interval, dt)

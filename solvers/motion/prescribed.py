@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 import taichi as ti
 
-from solvers.machine.runtime import Arrays
+from solvers.machine.state import State
 from solvers.motion.frame import turned
 from solvers.motion.steered import Steered
 
@@ -29,7 +29,7 @@ class Prescribed:
     phases = ()  # what it does in a step before the cargo moves
     paced = True  # it bears steps of any length
 
-    def __init__(self, arrays: Arrays, motions: Sequence[Sequence], soft_start: float, gravity: float):
+    def __init__(self, arrays: State, motions: Sequence[Sequence], soft_start: float, gravity: float):
         self.exact, self.real = arrays.exact, arrays.real
         self.kinds = tuple(motions[0])
         rows = [[[*_centre(m), *m.parameters(soft_start)] for m in world] for world in motions]
@@ -37,9 +37,11 @@ class Prescribed:
         self.first = tuple(int(k) for k in np.cumsum([0, *sizes])[:-1])
         self.rotating = any(m.coordinate == "turn" for m in self.kinds)
         self.moving = bool(self.kinds)
-        self.gravity = arrays.holding(np.array([gravity]), arrays.exact)
+        own = arrays.under("motion")
+        self.gravity = own.holding("gravity", np.array([gravity]), "one", own.exact)
         table = np.array([[value for p in row for value in p] for row in rows]).reshape(len(rows), -1)
-        self.table = arrays.holding(table if table.size else np.zeros((len(rows), 1)), arrays.exact, kept=self.steered)
+        table = table if table.size else np.zeros((len(rows), 1))
+        self.table = own.holding("motions", table, "world number", own.exact, kept=self.steered)
 
     @property
     def steered(self) -> bool:

@@ -5,7 +5,7 @@ from typing import Protocol
 import numpy as np
 import taichi as ti
 
-from solvers.machine.runtime import Arrays
+from solvers.machine.state import Axis, State
 
 ORIGIN_Y, ORIGIN_Z, CELL = range(3)
 CHUNK = 256  # cells that one thread sums up
@@ -30,19 +30,21 @@ class Cells:
     have left the scene are in a cell of their own beyond the last, which is nobody's neighbour.
     """
 
-    def __init__(self, arrays: Arrays, grains: Places, lower: np.ndarray, upper: np.ndarray, reach: float):
+    def __init__(self, arrays: State, grains: Places, lower: np.ndarray, upper: np.ndarray, reach: float):
         self.grains = grains
         extent = upper - lower
         size = max(reach, float(np.sqrt(extent[0] * extent[1] / (4.0 * grains.count + 64.0))))
         # In an array and not in the code, so that scenes that differ in lengths alone share a compiled kernel.
-        self.lengths = arrays.holding(np.array([lower[0], lower[1], size]), arrays.place)
+        own, world = arrays.under("cells"), Axis("world", grains.worlds)
+        self.lengths = own.holding("lengths", np.array([lower[0], lower[1], size]), "number", own.place)
         self.columns = int(extent[0] / size) + 1
         self.rows = int(extent[1] / size) + 1
         self.cells = self.columns * self.rows
         self.chunks = -(-(self.cells + 2) // CHUNK)
-        (self.first,) = arrays.integers(1, (grains.worlds, self.chunks * CHUNK), kept=False)
-        (self.chunk_first,) = arrays.integers(1, (grains.worlds, self.chunks), kept=False)
-        self.cell_of, self.sorted = arrays.integers(2, (grains.worlds, grains.count), kept=False)
+        (self.first,) = own.integers((world, Axis("cell", self.chunks * CHUNK)), "first", kept=False)
+        (self.chunk_first,) = own.integers((world, Axis("chunk", self.chunks)), "chunk_first", kept=False)
+        (self.cell_of,) = own.integers((world, Axis("grain", grains.count)), "cell_of", kept=False)
+        (self.sorted,) = own.integers((world, Axis("place", grains.count)), "sorted", kept=False)
 
     @ti.func
     def find(self, w, i):

@@ -8,8 +8,10 @@ grains.
 import numpy as np
 import taichi as ti
 
-from solvers.machine.runtime import Arrays
+from solvers.machine.state import Axis, State
 from solvers.machine.units import APART, Units
+
+NAMES = ("y", "z", "moment")
 
 
 @ti.data_oriented
@@ -20,15 +22,19 @@ class Load:
     of them; without, None, nothing answers.
     """
 
-    def __init__(self, arrays: Arrays, units: Units, pieces: int, shares: np.ndarray | None = None):
+    def __init__(self, arrays: State, units: Units, pieces: int, shares: np.ndarray | None = None):
         self.units, self.pieces, self.answered = units, pieces, shares is not None
         room = pieces if units.single else -(-pieces // APART) * APART  # no two units write to one cache line
         self.exact = arrays.exact
-        self.impulse = arrays.reals(3, (units.count, room), arrays.exact)
-        self.noted = arrays.reals(3, (units.count, room), arrays.exact, kept=False)
+        own, axes = arrays.under("load"), (units.axis, Axis("piece", room))
+
+        def declared(what: str, kept: bool) -> list[ti.Field]:
+            return own.reals(axes, *(f"{what}_{name}" for name in NAMES), kind=own.exact, kept=kept)
+
+        self.impulse, self.noted = declared("impulse", True), declared("noted", False)
         if self.answered:
-            self.instant = arrays.reals(3, (units.count, room), arrays.exact, kept=False)
-            self.shares = arrays.holding(shares, arrays.exact)
+            self.instant = declared("instant", False)
+            self.shares = own.holding("shares", shares, "world piece", own.exact)
 
     def forget(self) -> None:
         """Nothing has pushed yet."""

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 import taichi as ti
 
-from solvers.machine.runtime import Arrays
+from solvers.machine.state import Axis, State
 from solvers.tank.parts import Part, travel
 from solvers.tank.tank import Tank
 
@@ -27,7 +27,7 @@ class Walls:
     plates without thickness, felt from both sides and round their edges.
     """
 
-    def __init__(self, arrays: Arrays, tanks: Sequence[Tank], parts: Sequence[Part] = ()):
+    def __init__(self, arrays: State, tanks: Sequence[Tank], parts: Sequence[Part] = ()):
         self.tanks = len(tanks)
         self.outline = np.concatenate([tank.outline for tank in tanks])
         self.open = any(tank.open_edges for tank in tanks)
@@ -39,18 +39,20 @@ class Walls:
         self.segments, self.corners = len(segments), len(corners)
         self.features = self.segments + self.corners
         self.rows = np.array(segments + corners, dtype=np.float64)
-        self.table = arrays.holding(self.rows, arrays.place)
+        own = arrays.under("walls")
+        self.table = own.holding("table", self.rows, "feature number", own.place)
         self.fastest = max((part.fastest() for part in parts), default=0.0)  # m/s
         self.moving = self.fastest > 0.0
         rows = np.array([part.parameters() for part in parts]) if parts else np.zeros((1, MOVE + 2))
-        self.programmes = arrays.holding(rows, arrays.exact)
-        (self.places,) = arrays.reals(1, (max(1, len(parts)), 2), kept=False)  # displacements (m) when last noted
+        self.programmes = own.holding("programmes", rows, "part number", own.exact)
+        places = Axis("part", max(1, len(parts))), Axis("direction", 2)
+        (self.places,) = own.reals(places, "places", kept=False)  # displacements (m) when last noted
         mouths = [_with_chimneys(tank.outline, tank.open_edges) for tank in tanks]
         edges = np.concatenate([np.column_stack([mouth, np.roll(mouth, -1, axis=0)]) for mouth in mouths])
         self.mouth_edges = len(edges)
-        self.mouth = arrays.holding(edges, arrays.place)
+        self.mouth = own.holding("mouth", edges, "edge number", own.place)
         self.real = arrays.real
-        self.edge = arrays.holding(np.concatenate(self.bounds), arrays.place)
+        self.edge = own.holding("edge", np.concatenate(self.bounds), "number", own.place)
 
     @property
     def bounds(self) -> tuple[np.ndarray, np.ndarray]:

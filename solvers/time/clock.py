@@ -3,7 +3,7 @@
 import numpy as np
 import taichi as ti
 
-from solvers.machine.runtime import Arrays
+from solvers.machine.state import Axis, State
 from solvers.machine.units import Units
 from solvers.time.watch import RUNNING
 
@@ -20,13 +20,14 @@ class Clock:
     `pushed` (W,) is the largest acceleration (m/s²) by the frame to come, `frame` what the carrier says of a step.
     """
 
-    def __init__(self, arrays: Arrays, units: Units):
+    def __init__(self, arrays: State, units: Units):
         self.units, self.worlds, self.real = units, units.worlds, arrays.real
-        self.step, self.status, self.arrived = arrays.integers(3, (units.worlds,))
-        self.stride, self.before = arrays.integers(2, (units.worlds,))
-        (self.says,) = arrays.integers(1, (units.count,), kept=False)
-        self.fastest, self.farthest, self.pushed = arrays.reals(3, (units.worlds,), kept=False)
-        self.frame = arrays.reals(4, (units.worlds,), kept=False)
+        own, world = arrays.under("clock"), (Axis("world", units.worlds),)
+        self.step, self.status, self.arrived = own.integers(world, "step", "status", "arrived")
+        self.stride, self.before = own.integers(world, "stride", "before")
+        (self.says,) = own.integers((units.axis,), "says", kept=False)
+        self.fastest, self.farthest, self.pushed = own.reals(world, "fastest", "farthest", "pushed", kept=False)
+        self.frame = own.reals(world, *(f"frame.{k}" for k in range(4)), kept=False)
 
     def launch(self) -> None:
         """The particles have been put somewhere or launched: their next step is the first."""

@@ -4,6 +4,7 @@ import taichi as ti
 
 from solvers.grains.laws.chosen import ChosenLaws
 from solvers.grains.laws.extremes import greater
+from solvers.machine.state import Axis
 from solvers.machine.units import APART
 
 SOFTEST = 1e-6  # N/m: a contact that only just touches
@@ -19,7 +20,7 @@ class CountedLaws(ChosenLaws):
 
     def __init__(self, arrays, units, *laws):
         super().__init__(arrays, units, *laws)
-        (self.lost,) = arrays.reals(1, (APART * units.count,), arrays.exact)
+        (self.lost,) = arrays.reals((Axis("unit", APART * units.count),), "lost", kind=arrays.exact)
 
     @ti.func
     def forces(self, kind: ti.template(), contacts: ti.template(), u, block, overlap, rate, slip, turning, dt):

@@ -11,7 +11,8 @@ from solvers.grains.shapes.rules.nodes import Nodes
 from solvers.grains.shapes.rules.tracked import MINIMUM, SADDLE, Places, Tracked
 from solvers.grains.shapes.tables import Tables
 from solvers.machine import runtime
-from solvers.machine.runtime import Arrays
+from solvers.machine.state import Axis, State
+from tests.oracles.axes import axes
 
 ROOM = 8
 SKIN = 0.05
@@ -39,16 +40,16 @@ class Collisions:
         runtime.initialise(1)
         self.rule, self.stiffness = rule, stiffness
         self.mass = [outline.mass(1.0), outline.mass(1.0), outline.inertia(1.0)]
-        arrays = Arrays()
+        arrays = State()
         self.tables = Tables(arrays, [outline])
         if rule == "nodes":
             self.nodes = Nodes(arrays, self.tables, [outline], nodes)
         else:
             self.tracked = Tracked(self.tables)
-        self.place, self.rate, self.push = arrays.reals(3, (count, 2, 3))
-        self.places = Places(arrays, count, ROOM)
-        (self.number, self.steps) = arrays.integers(2, (count,))
-        (self.deepest,) = arrays.reals(1, (count,))
+        self.place, self.rate, self.push = arrays.reals(axes(count, 2, 3), "place", "rate", "push")
+        self.places = Places(arrays, Axis("unit", count), ROOM)
+        self.number, self.steps = arrays.integers(axes(count), "number", "steps")
+        (self.deepest,) = arrays.reals(axes(count), "deepest")
         arrays.finish()
 
     def run(self, place: np.ndarray, rate: np.ndarray, time: float, steps: np.ndarray) -> Outcome:

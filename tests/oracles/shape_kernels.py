@@ -11,7 +11,8 @@ from solvers.grains.shapes.rules.nodes import Nodes
 from solvers.grains.shapes.rules.tracked import MINIMUM, SADDLE, Places, Tracked
 from solvers.grains.shapes.tables import Tables
 from solvers.machine import runtime
-from solvers.machine.runtime import Arrays
+from solvers.machine.state import Axis, State
+from tests.oracles.axes import axes
 from tests.oracles.crossing import Placed
 
 ROOM = 8  # contacts of a pair
@@ -71,17 +72,17 @@ class Asked:
 
     def __init__(self, outlines: list[Contour], count: int, nodes: int = 100, precision: str = "f64"):
         runtime.initialise(1, precision=precision)
-        arrays = Arrays(precision)
+        arrays = State(precision)
         self.tables = Tables(arrays, outlines)
         self.nodes, self.tracked = Nodes(arrays, self.tables, outlines, nodes), Tracked(self.tables)
-        self.shape, self.node = arrays.integers(2, (count, 2))
-        (self.scale,) = arrays.reals(1, (count, 2))
-        self.turn = arrays.reals(1, (count, 2, 2))[0]
-        (self.apart,) = arrays.reals(1, (count, 2))
-        self.places = Places(arrays, count, ROOM)
-        (self.number,) = arrays.integers(1, (count,))
-        (self.found,) = arrays.reals(1, (count, ROOM, 10))
-        (self.shallow,) = arrays.reals(1, (count, ROOM))
+        self.shape, self.node = arrays.integers(axes(count, 2), "shape", "node")
+        (self.scale,) = arrays.reals(axes(count, 2), "scale")
+        (self.turn,) = arrays.reals(axes(count, 2, 2), "turn")
+        (self.apart,) = arrays.reals(axes(count, 2), "apart")
+        self.places = Places(arrays, Axis("unit", count), ROOM)
+        (self.number,) = arrays.integers(axes(count), "number")
+        (self.found,) = arrays.reals(axes(count, ROOM, 10), "found")
+        (self.shallow,) = arrays.reals(axes(count, ROOM), "shallow")
         arrays.finish()
         self.arrays = arrays
 
@@ -181,8 +182,8 @@ class Asked:
 def orientations(angle: np.ndarray) -> np.ndarray:
     """Cosines and sines (n, 2) of angles (n,) in rad, as kernels work them out."""
     runtime.initialise(1)
-    arrays = Arrays()
-    given, (found,) = arrays.holding(angle), arrays.reals(1, (len(angle), 2))
+    arrays = State()
+    given, (found,) = arrays.holding("given", angle, "pair"), arrays.reals(axes(len(angle), 2), "found")
     arrays.finish()
     _turn_towards(given, found)
     values = found.to_numpy()

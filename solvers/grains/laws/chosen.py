@@ -4,7 +4,7 @@ import numpy as np
 import taichi as ti
 
 from solvers.grains.integrators.verlet import Verlet
-from solvers.machine.runtime import Arrays
+from solvers.machine.state import State
 from solvers.machine.units import Units
 
 PAIR, WALL = 0, 1  # rows of the interfaces where all grains are of one kind
@@ -23,7 +23,7 @@ class ChosenLaws:
 
     def __init__(
         self,
-        arrays: Arrays,
+        arrays: State,
         units: Units,
         normal,
         tangential,
@@ -40,7 +40,11 @@ class ChosenLaws:
         for law in laws:
             law.integrator = integrator
         self.laws = laws
-        self.tables = [arrays.holding(self.tabulate(law, interfaces)) for law in laws]
+        own, names = arrays.under("laws"), ("normal", "tangential", "rolling", "cohesion")[: len(laws)]
+        self.tables = [
+            own.holding(name, self.tabulate(law, interfaces), "world row coefficient")
+            for name, law in zip(names, laws, strict=True)
+        ]
         self.constants = tuple(name for law in laws for name in law.constants)
         self.memory = tuple(name for law in laws for name in law.memory)
         self.counts = tuple(len(law.constants) for law in laws)

@@ -7,7 +7,7 @@ from solvers.grains.shapes.contour import Contour
 from solvers.grains.shapes.given import Shapes
 from solvers.grains.shapes.pose import posed
 from solvers.grains.state import Grains
-from solvers.machine.runtime import Arrays
+from solvers.machine.state import State
 
 DISC = Contour(1.0)
 
@@ -24,7 +24,7 @@ class ShapedGrains(Grains):
 
     def __init__(
         self,
-        arrays: Arrays,
+        arrays: State,
         shapes: Shapes,
         radius: np.ndarray,
         density: np.ndarray,
@@ -40,9 +40,10 @@ class ShapedGrains(Grains):
         self.start_angle = shapes.angle
         self.crowding = float((bounding**2).mean())  # so many times the neighbours that discs have are near
         disc = len(outlines) - 1
-        self.shape = arrays.holding(self._filled(shapes.which, disc, disc), ti.i32, kept=True)
-        self.reach = arrays.holding(self._filled(radius * bounding, fixed[:, 2], 0.0), kept=True)
-        self.turn_y, self.turn_z = arrays.reals(2, (self.worlds, self.stride))
+        own, axes = arrays.under("grains"), "world grain"
+        self.shape = own.holding("shape", self._filled(shapes.which, disc, disc), axes, ti.i32, kept=True)
+        self.reach = own.holding("reach", self._filled(radius * bounding, fixed[:, 2], 0.0), axes, kept=True)
+        self.turn_y, self.turn_z = own.reals(self.axes, "turn_y", "turn_z")
 
     def place(self, position: np.ndarray) -> None:
         """Put the grains at `position` (W, n, 2) m, turned as they are to start, at rest and without history."""

@@ -6,7 +6,7 @@ import taichi as ti
 from solvers.grains.laws.extremes import greater, lesser
 from solvers.grains.shapes.contour import Contour
 from solvers.machine.errors import BadOutline
-from solvers.machine.runtime import Arrays
+from solvers.machine.state import State
 
 ERROR = 1e-6  # of R0, the most that a table may be off
 LEAST, MOST = 64, 4096  # cells
@@ -25,13 +25,18 @@ class Tables:
     to its class, `scale` times as large. Raises BadOutline where an outline needs more than MOST cells.
     """
 
-    def __init__(self, arrays: Arrays, outlines: list[Contour]):
+    def __init__(self, arrays: State, outlines: list[Contour]):
         self.cells = cells_for(outlines)
-        self.curve = arrays.holding(np.array([curve_cells(outline, self.cells) for outline in outlines]))
-        self.radii = arrays.holding(np.array([polar_cells(outline, self.cells) for outline in outlines]))
-        self.bounding = arrays.holding(np.array([outline.bounding_radius for outline in outlines]))
-        self.convex = arrays.holding(np.array([float(outline.convex) for outline in outlines]))
-        self.smallest = arrays.holding(np.array([outline.smallest_radius for outline in outlines]))
+        own = arrays.under("outlines")
+        self.curve = own.holding(
+            "curve", np.array([curve_cells(outline, self.cells) for outline in outlines]), "outline cell number"
+        )
+        self.radii = own.holding(
+            "radii", np.array([polar_cells(outline, self.cells) for outline in outlines]), "outline cell number"
+        )
+        self.bounding = own.holding("bounding", np.array([outline.bounding_radius for outline in outlines]), "outline")
+        self.convex = own.holding("convex", np.array([float(outline.convex) for outline in outlines]), "outline")
+        self.smallest = own.holding("smallest", np.array([outline.smallest_radius for outline in outlines]), "outline")
 
     @ti.func
     def wrapped(self, place):

@@ -14,6 +14,7 @@ from lab.preset.find import load
 from lab.preset.merge import merged
 from lab.runs import beds
 from lab.runs.beds import BedStore, bed_key, lay, made, settled, settling
+from solvers.machine.state import Axis
 from solvers.simulation import Simulation
 
 # Soft, dissipative grains come to rest soon; friction decides on the surface.
@@ -112,7 +113,7 @@ def test_where_parts_stand_does_not_belong_to_a_bed():
     simulation = Simulation(*build(resolved(run={"repeats": 2}, parts=parts)))
     before = simulation.state()
     simulation.observe()
-    beds = made(before, simulation.state(), 2)  # of two worlds beside one part
+    beds = made(before, simulation.state(), simulation.axes(), 2)  # of two worlds beside one part
     assert lay(simulation, beds)
     simulation.close()
 
@@ -144,25 +145,32 @@ class Fake:
         self.fields = {
             "numbers": np.array([0, 1, 0]),
             "origin": np.array(0.0),
-            "000": self.position,
-            "001": np.zeros((2 * worlds, 3), dtype=np.int32),
-            "002": np.array([[m.angle for m in motions] for motions in scene.motions]),
-            "003": np.arange(4.0),
+            "grains.y": self.position,
+            "pairs.mate": np.zeros((2 * worlds, 3), dtype=np.int32),
+            "frame.motions": np.array([[m.angle for m in motions] for motions in scene.motions]),
+            "walls.edge": np.arange(4.0),
         }
 
     def settle(self, rest, limit, tell):
         self.settles += 1
         self.position[..., 1] -= 1e-3 * self.scene.radius
-        self.fields["001"][:] = np.repeat(np.round(self.scene.radius[:, :3] * 1e6), 2, axis=0)
+        self.fields["pairs.mate"][:] = np.repeat(np.round(self.scene.radius[:, :3] * 1e6), 2, axis=0)
         self.fields["numbers"][2] = -100
         return True
 
     def state(self):
         return {name: values.copy() for name, values in self.fields.items()}
 
+    def axes(self):
+        first = {"grains.y": "world", "pairs.mate": "unit", "frame.motions": "world"}
+        return {
+            name: tuple(Axis(first.get(name, "number") if k == 0 else "number", n) for k, n in enumerate(values.shape))
+            for name, values in self.fields.items()
+        }
+
     def restore(self, state):
         self.fields = {name: values.copy() for name, values in state.items()}
-        self.position = self.fields["000"]
+        self.position = self.fields["grains.y"]
 
     def close(self):
         self.closed = True
@@ -185,9 +193,9 @@ def test_a_bed_is_stored_a_world_and_found_in_any_company(store):
     two, reused = fake(run={"repeats": 2, "seed": 3}, motion={"tilt": {"angle": "7 deg"}})
     assert reused and two.settles == 0
     np.testing.assert_array_equal(two.position, four.position[2:])
-    np.testing.assert_array_equal(two.fields["001"], four.fields["001"][4:])
+    np.testing.assert_array_equal(two.fields["pairs.mate"], four.fields["pairs.mate"][4:])
     assert two.fields["numbers"][2] == -100
-    np.testing.assert_allclose(two.fields["002"], np.radians(7.0))  # the motion is the run's own
+    np.testing.assert_allclose(two.fields["frame.motions"], np.radians(7.0))  # the motion is the run's own
     _, reused = fake(run={"repeats": 3, "seed": 3})
     assert not reused  # seed 5 is new
 
@@ -251,7 +259,7 @@ def test_a_bit_that_flipped_or_a_bed_of_another_name_is_noticed(store):
     content[len(content) // 2] ^= 1
     path.write_bytes(content)
     assert store.load(path.stem) is None
-    store.save("other", {"000": np.zeros(3)})
+    store.save("other", {"grains.y": np.zeros(3)})
     (store.folder / "other.npz").replace(path)
     assert store.load(path.stem) is None
 
@@ -259,7 +267,7 @@ def test_a_bit_that_flipped_or_a_bed_of_another_name_is_noticed(store):
 def test_a_bed_of_another_shape_is_settled_anew(store):
     fake(run={"repeats": 1})
     (path,) = store.folder.iterdir()
-    store.save(path.stem, {"000": np.zeros((1, 3, 2)), "numbers": np.zeros(3)})
+    store.save(path.stem, {"grains.y": np.zeros((1, 3, 2)), "numbers": np.zeros(3)})
     again, reused = fake(run={"repeats": 1})
     assert not reused and again.settles == 1
     store.save(path.stem, {"of the future": np.zeros((1, 3, 2))})
@@ -317,6 +325,7 @@ def vars_of(simulation: Fake) -> dict:
         "snapshot": lambda: {"position": simulation.position},
         "close": simulation.close,
         "state": simulation.state,
+        "axes": simulation.axes,
         "scene": simulation.scene,
         "dt": simulation.dt,
         **{name: getattr(Fake, name) for name in ("arch", "schedule_name", "units_a_world", "skin")},
@@ -324,21 +333,28 @@ def vars_of(simulation: Fake) -> dict:
 
 
 def test_what_settling_leaves_alone_is_not_the_beds():
-    before = {"numbers": np.zeros(2), "origin": np.zeros(()), "000": np.zeros((4, 3)), "001": np.arange(2.0)}
-    after = {**before, "000": np.arange(12.0).reshape(4, 3)}
-    first, second = made(before, after, 2)
-    assert first.keys() == {"numbers", "origin", "000"}
-    np.testing.assert_array_equal(first["000"], [[0, 1, 2], [3, 4, 5]])
+    before = {
+        "numbers": np.zeros(2),
+        "origin": np.zeros(()),
+        "grains.y": np.zeros((4, 3)),
+        "pairs.mate": np.arange(2.0),
+    }
+    after = {**before, "grains.y": np.arange(12.0).reshape(4, 3), "numbers": np.ones(2)}
+    axes = {"numbers": (Axis("number", 2),), "grains.y": (Axis("unit", 4), Axis("place", 3))}
+    first, second = made(before, after, axes, 2)
+    assert first.keys() == {"numbers", "grains.y"}
+    np.testing.assert_array_equal(first["grains.y"], [[0, 1, 2], [3, 4, 5]])
     restored = {}
-    simulation = SimpleNamespace(state=lambda: before, restore=restored.update)
+    simulation = SimpleNamespace(state=lambda: before, axes=lambda: axes, restore=restored.update)
     assert lay(simulation, [second, first])
-    np.testing.assert_array_equal(restored["000"], after["000"][[2, 3, 0, 1]])
-    np.testing.assert_array_equal(restored["001"], before["001"])
+    np.testing.assert_array_equal(restored["grains.y"], after["grains.y"][[2, 3, 0, 1]])
+    np.testing.assert_array_equal(restored["pairs.mate"], before["pairs.mate"])
+    np.testing.assert_array_equal(restored["numbers"], [1, 1])
     assert not lay(simulation, [first, None]) and not lay(simulation, [first])
 
 
 def test_the_store_stays_small_and_forgets_what_was_used_longest_ago(store, monkeypatch):
-    bed = {"000": np.random.default_rng(1).random(1000)}  # does not compress
+    bed = {"grains.y": np.random.default_rng(1).random(1000)}  # does not compress
     for k, key in enumerate(("a", "b", "c")):
         store.save(key, bed)
         os.utime(store.folder / f"{key}.npz", (k, k))
@@ -357,18 +373,18 @@ def test_the_store_stays_small_and_forgets_what_was_used_longest_ago(store, monk
 
 def test_a_bed_is_replaced_whole(store, monkeypatch):
     """A reader that has the old file open goes on with it; a writer that fails leaves nothing behind."""
-    store.save("a", {"000": np.zeros(9)})
+    store.save("a", {"grains.y": np.zeros(9)})
     with np.load(store.folder / "a.npz") as old:
-        store.save("a", {"000": np.ones(9)})
-        assert not old["000"].any()
-    assert store.load("a")["000"].all()
+        store.save("a", {"grains.y": np.ones(9)})
+        assert not old["grains.y"].any()
+    assert store.load("a")["grains.y"].all()
 
     def fail(file, **_):
         file.write(b"half")
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(np, "savez_compressed", fail)
-    store.save("b", {"000": np.ones(9)})
+    store.save("b", {"grains.y": np.ones(9)})
     assert [path.name for path in store.folder.iterdir()] == ["a.npz"]
 
 

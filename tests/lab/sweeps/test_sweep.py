@@ -23,7 +23,6 @@ from lab.base.progress import Progress
 from lab.recording import open_recording
 from lab.recording.xdmf import write_xdmf
 from lab.runs.checkpoint import Checkpoint
-from lab.runs.launch import _without
 from lab.runs.runner import run_preset
 from lab.sweeps import report as sweep_report
 from lab.sweeps.axes import plain, values
@@ -31,6 +30,7 @@ from lab.sweeps.grid import ask, read_sweep
 from lab.sweeps.report import numeric, write_report
 from lab.sweeps.resume import resume_any
 from lab.sweeps.sweep import _plan, run_sweep
+from solvers.machine.state import Axis, without_worlds
 from tests.oracles.synthetic import frame, record
 
 ROOT = Path(__file__).parents[3]
@@ -316,8 +316,8 @@ def test_a_damaged_request_is_refused(swept, tmp_path):
 def test_a_state_without_some_worlds_has_the_others_blocks():
     """3 worlds of 2 units each; the second world leaves."""
     state = {"clock": np.array([7, 1, 0]), "origin": np.array(0.5), "y": np.arange(12).reshape(6, 2)}
-    fewer = {"clock": np.zeros(3), "origin": np.zeros(()), "y": np.zeros((4, 1))}
-    left = _without(state, fewer, 3, slice(1, 2))
+    axes = {"clock": (Axis("number", 3),), "origin": (), "y": (Axis("unit", 6), Axis("place", 2))}
+    left = {name: without_worlds(values, axes[name], 3, slice(1, 2)) for name, values in state.items()}
     np.testing.assert_array_equal(left["clock"], [7, 1, 0])
     assert left["origin"] == 0.5
     np.testing.assert_array_equal(left["y"], [[0, 1], [2, 3], [8, 9], [10, 11]])

@@ -13,8 +13,9 @@ from solvers.grains.laws.chosen import PAIR, ChosenLaws
 from solvers.grains.materials import hertz_stiffness, interface
 from solvers.grains.restitution import CONSTANT, FIRST_ORDER, VISCOELASTIC, damping_for, linear_restitution, restitution
 from solvers.machine import runtime
-from solvers.machine.runtime import Arrays
+from solvers.machine.state import State
 from solvers.machine.units import Units
+from tests.oracles.axes import axes
 from tests.oracles.scenes import material
 
 RADIUS = 7.5e-4  # m, effective
@@ -33,12 +34,12 @@ class Driven:
 
     def __init__(self, normal="hertz-viscoelastic", tangential="none", rolling="none", between=BETWEEN):
         runtime.initialise(1)
-        arrays = Arrays()
+        arrays = State()
         laws = NORMAL[normal](), TANGENTIAL[tangential](), ROLLING[rolling](), COHESION["none"]()
         self.laws = ChosenLaws(arrays, Units(1, 1, 1, 1), *laws, [(between, between)])
-        (self.stiffness,) = arrays.vectors(1, self.lanes, (1, 1))
-        self.constants = arrays.vectors(len(self.laws.constants), self.lanes, (1, 1))
-        self.memory = arrays.vectors(len(self.laws.memory), self.lanes, (1, 1))
+        (self.stiffness,) = arrays.vectors(axes(1, 1, self.lanes), "stiffness")
+        self.constants = arrays.vectors(axes(1, 1, self.lanes), *self.laws.constants)
+        self.memory = arrays.vectors(axes(1, 1, self.lanes), *self.laws.memory)
         names = self.laws.constants + self.laws.memory
         assert len(set(names)) == len(names)
         for name, field in zip(names, self.constants + self.memory, strict=True):

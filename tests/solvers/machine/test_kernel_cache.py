@@ -10,11 +10,12 @@ import pytest
 REPOSITORY = Path(__file__).parents[3]
 SIMULATE = """
 import numpy as np
-from solvers import kernel_cache, runtime
+from solvers.machine import kernel_cache, runtime
+from solvers.machine.state import Axis, State
 
 runtime.initialise(1)
-arrays = runtime.Arrays()
-(field,) = arrays.reals(1, (3, 4))
+arrays = State()
+(field,) = arrays.reals((Axis("row", 3), Axis("column", 4)), "numbers")
 arrays.finish()
 field.fill(2.5)
 print(field.to_numpy().sum())

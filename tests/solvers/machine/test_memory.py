@@ -4,21 +4,22 @@ import numpy as np
 import pytest
 
 from solvers.machine import runtime
-from solvers.machine.runtime import Arrays
+from solvers.machine.state import State
+from tests.oracles.axes import axes
 
 
 @pytest.fixture
 def arrays():
     """Fields of all kinds and layouts, of sizes that are no powers of two."""
     runtime.initialise()
-    arrays = Arrays("mixed")
-    arrays.reals(1, (3, 37), arrays.place)
-    arrays.integers(1, (6, 11), across=True)
-    arrays.vectors(1, 3, (5, 7))
-    arrays.vectors(1, 8, (5, 7), across=True)
-    arrays.integer_vectors(1, 2, (5, 13), across=True)
-    arrays.reals(1, (9,))
-    arrays.reals(1, (2, 3, 4))
+    arrays = State("mixed")
+    arrays.reals(axes(3, 37), "places", kind=arrays.place)
+    arrays.integers(axes(6, 11), "across", across=True)
+    arrays.vectors(axes(5, 7, 3), "vectors")
+    arrays.vectors(axes(5, 7, 8), "vectors across", across=True)
+    arrays.integer_vectors(axes(5, 13, 2), "integers", across=True)
+    arrays.reals(axes(9), "row")
+    arrays.reals(axes(2, 3, 4), "cube")
     arrays.finish()
     yield arrays
     arrays.release()
@@ -26,8 +27,8 @@ def arrays():
 
 def made():
     """Arrays of a single field."""
-    arrays = Arrays()
-    arrays.reals(1, (4,))
+    arrays = State()
+    arrays.reals(axes(4), "row")
     arrays.finish()
     return arrays
 

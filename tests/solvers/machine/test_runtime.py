@@ -13,11 +13,12 @@ import pytest
 import taichi as ti
 
 from solvers.machine import runtime
-from solvers.machine.runtime import Arrays
+from solvers.machine.state import State
 from solvers.machine.units import ITERATIONS_A_THREAD
+from tests.oracles.axes import axes
 
 REPOSITORY = Path(__file__).parents[3]
-GUARDED = "from solvers import runtime; runtime.initialise(1)"
+GUARDED = "from solvers.machine import runtime; runtime.initialise(1)"
 UNGUARDED = "ti.init(arch=ti.cpu, default_fp=ti.f64, cpu_max_num_threads=1, log_level=ti.WARN)"
 
 # Each reads an element of a vector, passes a branch or a loop, reassigns the vector and reads the element again:
@@ -121,12 +122,12 @@ def test_the_miscompile_is_still_there(unguarded, name):
 
 
 MANY_ARRAYS = """
-from solvers import runtime
-from solvers.machine.runtime import Arrays
+from solvers.machine import runtime
+from solvers.machine.state import Axis, State
 runtime.initialise(1)
 for k in range(600):
-    arrays = Arrays()
-    (numbers,) = arrays.reals(1, (2, 3))
+    arrays = State()
+    (numbers,) = arrays.reals((Axis("row", 2), Axis("column", 3)), "numbers")
     arrays.finish()
     if k == 599:
         numbers.fill(7.0)
@@ -141,21 +142,21 @@ def test_released_arrays_leave_room_for_others(tmp_path):
     assert fresh(tmp_path, MANY_ARRAYS) == "42.0"
 
 
-def made(values: np.ndarray) -> tuple[Arrays, ti.Field]:
+def made(values: np.ndarray) -> tuple[State, ti.Field]:
     """Arrays that hold these values."""
-    arrays = Arrays()
-    field = arrays.holding(values)
+    arrays = State()
+    field = arrays.holding("field", values, "row")
     arrays.finish()
     return arrays, field
 
 
 START_TWICE = """
 import numpy as np
-from solvers import runtime
-from solvers.machine.runtime import Arrays
+from solvers.machine import runtime
+from solvers.machine.state import Axis, State
 runtime.initialise(1)
-arrays = Arrays()
-field = arrays.holding(np.array([1.0, 2.0, 4.0]))
+arrays = State()
+field = arrays.holding("field", np.array([1.0, 2.0, 4.0]), "row")
 arrays.finish()
 runtime.initialise(1)
 print(field.to_numpy().sum())
@@ -182,10 +183,11 @@ def test_arrays_may_be_released_twice_and_after_another_start():
 
 def test_declared_fields_start_at_zero_or_with_what_they_hold():
     runtime.initialise(1)
-    arrays = Arrays()
-    reals, integers, vectors = arrays.reals(2, (2, 3)), arrays.integers(1, (4,)), arrays.vectors(1, 2, (2, 5))
+    arrays = State()
+    reals, integers = arrays.reals(axes(2, 3), "a", "b"), arrays.integers(axes(4), "c")
+    vectors = arrays.vectors(axes(2, 5, 2), "d")
     values = np.arange(24.0).reshape(2, 3, 4)
-    held = arrays.holding(values)
+    held = arrays.holding("held", values, "a b c")
     arrays.finish()
     for field, shape in ((reals[0], (2, 3)), (reals[1], (2, 3)), (integers[0], (4,)), (vectors[0], (2, 5, 2))):
         assert field.to_numpy().shape == shape
@@ -197,11 +199,11 @@ def test_declared_fields_start_at_zero_or_with_what_they_hold():
 
 def test_larger_arrays_take_over_what_smaller_ones_hold():
     runtime.initialise(1)
-    small = Arrays()
-    (little,), (words,) = small.reals(1, (2, 3)), small.vectors(1, 2, (2, 2))
+    small = State()
+    (little,), (words,) = small.reals(axes(2, 3), "a"), small.vectors(axes(2, 2, 2), "b")
     small.finish()
-    large = Arrays()
-    (roomy,), (more_words,) = large.reals(1, (2, 6)), large.vectors(1, 2, (2, 4))
+    large = State()
+    (roomy,), (more_words,) = large.reals(axes(2, 6), "a"), large.vectors(axes(2, 4, 2), "b")
     large.finish()
     values, vectors = np.arange(6.0).reshape(2, 3), np.arange(8.0).reshape(2, 2, 2)
     little.from_numpy(values)
@@ -221,10 +223,10 @@ def test_available_cores():
 def test_what_is_in_use_stays_and_what_comes_after_all_is_released_has_the_same_numbers():
     """Taichi knows compiled kernels by the numbers of their fields, which go on counting until it starts anew."""
 
-    def begun() -> tuple[runtime.Arrays, ti.Field]:
+    def begun() -> tuple[State, ti.Field]:
         runtime.initialise(1)
-        arrays = runtime.Arrays()
-        (field,) = arrays.reals(1, (3,))
+        arrays = State()
+        (field,) = arrays.reals(axes(3), "row")
         arrays.finish()
         return arrays, field
 
@@ -283,7 +285,7 @@ def test_too_little_memory_to_start_is_told_in_a_sentence(limit):
     code = f"""
 import resource
 resource.setrlimit(resource.RLIMIT_AS, ({limit}, {limit}))
-from solvers import runtime
+from solvers.machine import runtime
 from solvers.machine.errors import Unavailable
 try:
     runtime.initialise(1)

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from scipy.interpolate import CubicSpline
 
 from solvers.machine import runtime
-from solvers.machine.runtime import Arrays
+from solvers.machine.state import State
 from solvers.motion import Heave, Roll, Sway, Tilt
 from solvers.motion.harmonic import soft_start
 from solvers.motion.history import History, Recorded
@@ -28,7 +28,7 @@ class Probe:
 
     def __init__(self, motions, soft_start=0.0):
         runtime.initialise(1)
-        self.worlds, self.arrays = len(motions), Arrays()
+        self.worlds, self.arrays = len(motions), State()
         self.frame = Prescribed(self.arrays, motions, soft_start, GRAVITY)
         self.arrays.finish()
 

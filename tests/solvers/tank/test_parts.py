@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from solvers.machine import runtime
-from solvers.machine.runtime import Arrays
+from solvers.machine.state import State
 from solvers.tank.parts import Part, travel
 
 PLATE = ((0.0, 0.0), (0.0, 0.1))
@@ -23,8 +23,8 @@ class Probe:
 
     def __init__(self):
         runtime.initialise(1)
-        self.arrays = Arrays()
-        self.table = self.arrays.holding(np.zeros((ROWS, AHEAD + 6)))
+        self.arrays = State()
+        self.table = self.arrays.holding("table", np.zeros((ROWS, AHEAD + 6)), "row number")
         self.arrays.finish()
 
     @ti.kernel

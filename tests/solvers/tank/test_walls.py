@@ -6,7 +6,7 @@ import taichi as ti
 from matplotlib.path import Path
 
 from solvers.machine import runtime
-from solvers.machine.runtime import Arrays
+from solvers.machine.state import State
 from solvers.tank.tank import Tank
 from solvers.tank.walls import Walls
 from tests.oracles.scenes import box, material, simulation
@@ -45,7 +45,7 @@ def probe(
 def ask(outline: np.ndarray, points: np.ndarray, reach: float):
     """Signed distances (N, features), normals (N, features, 2), near (N, features) and holds (N,) of an outline."""
     runtime.initialise(1)
-    arrays = Arrays()
+    arrays = State()
     walls = Walls(arrays, [Tank(outline, 1.0)])
     arrays.finish()
     gaps = np.zeros((len(points), walls.features, 3))

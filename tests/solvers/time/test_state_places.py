@@ -29,16 +29,10 @@ def run():
     run.close()
 
 
-def names_of(run, fields) -> list[str]:
-    """The names under which a state holds fields."""
-    wanted = {id(field) for field in fields}
-    return [name for name, field in run.arrays._kept.items() if id(field) in wanted]
-
-
 def forged(run, kind: str, which: str, value: int) -> tuple[str, dict[str, np.ndarray]]:
     """The name of an array of a state, and the state with another number in it."""
     state = run.state()
-    [name] = names_of(run, [getattr(getattr(run.neighbours, kind), which)])
+    name = f"{kind}.{which}"
     values = state[name].copy()
     values.flat[0] = value
     return name, {**state, name: values}

@@ -10,7 +10,7 @@ import taichi as ti
 from solvers.grains.contacts import gathered
 from solvers.grains.laws.chosen import PAIR
 from solvers.grains.neighbours import LANES
-from solvers.machine.runtime import Arrays
+from solvers.machine.state import State
 from solvers.simulation import Simulation
 
 OVERLAP = 1e-6  # m, of the contacts that the laws are tried on alone
@@ -130,10 +130,13 @@ class Limits:
     """
 
     def __init__(self, precision: str, size: int):
-        arrays = Arrays(precision)
+        arrays = State(precision)
         self.size = size
-        self.a, self.b, self.c = (arrays.holding(np.full(size, value)) for value in (0.0, 1.0, 0.5))
-        self.s = arrays.holding(np.array([0.5]))
+        self.a, self.b, self.c = (
+            arrays.holding(name, np.full(size, value), "element")
+            for name, value in (("a", 0.0), ("b", 1.0), ("c", 0.5))
+        )
+        self.s = arrays.holding("s", np.array([0.5]), "one")
         arrays.finish()
         self.close = arrays.release
 

@@ -13,7 +13,7 @@ from solvers.grains.shapes.rules.rest import Rest
 from solvers.grains.shapes.rules.single import Single
 from solvers.grains.shapes.rules.wall import FAR, SeenWalls
 from solvers.grains.shapes.tables import TINY, Tables
-from solvers.machine.runtime import Arrays
+from solvers.machine.state import State
 from solvers.machine.units import Units
 from solvers.tank.walls import Walls
 
@@ -36,7 +36,7 @@ class Area(Single):
     wall_memory = ("window", "edge_first", "edges", "from_y", "from_z", "from_far")
     pair_memory = ("window", "edge_first", "edges", "from_y", "from_z", "from_first", "from_second")
 
-    def __init__(self, arrays: Arrays, units: Units, walls: Walls, shapes: Shapes):
+    def __init__(self, arrays: State, units: Units, walls: Walls, shapes: Shapes):
         outlines = with_disc(shapes)
         self.tables, self.walls = Tables(arrays, outlines), SeenWalls(arrays, walls)
         self.rest = Rest(arrays, units, bent=False)

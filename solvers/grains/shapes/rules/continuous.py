@@ -38,7 +38,7 @@ from solvers.grains.shapes.rules.tracked import (
 )
 from solvers.grains.shapes.rules.wall import SeenWalls
 from solvers.grains.shapes.tables import TINY, Tables
-from solvers.machine.runtime import Arrays
+from solvers.machine.state import State
 from solvers.machine.units import Units
 from solvers.tank.walls import Walls
 
@@ -63,7 +63,7 @@ class Continuous:
     are `bent` also beside those that are known, a place at a time. Only these have saddles.
     """
 
-    def __init__(self, arrays: Arrays, units: Units, walls: Walls, shapes: Shapes):
+    def __init__(self, arrays: State, units: Units, walls: Walls, shapes: Shapes):
         self.units = units
         outlines = with_disc(shapes)
         self.tables = Tables(arrays, outlines)
@@ -73,7 +73,7 @@ class Continuous:
         self.kept = Kept(self.tracked, self.bent)
         self.pair_memory, self.wall_memory = self.kept.pair_memory, self.kept.wall_memory
         self.farthest, self.most = NEAR * self.tables.cells, ROOM
-        self.places = Places(arrays, units.count, ROOM)
+        self.places = Places(arrays, units.axis, ROOM)
 
     @ti.func
     def seek_pair(self, g: ti.template(), w, i, j, margin, u):

@@ -13,7 +13,7 @@ from solvers.grains.shapes.rules.rest import Rest
 from solvers.grains.shapes.rules.single import Single
 from solvers.grains.shapes.rules.wall import FAR, SeenWalls
 from solvers.grains.shapes.tables import Tables
-from solvers.machine.runtime import Arrays
+from solvers.machine.state import State
 from solvers.machine.units import Units
 from solvers.tank.walls import Walls
 
@@ -32,7 +32,7 @@ class Discrete(Single):
     wall_memory = ("looked", "node_first")
     pair_memory = (*wall_memory, "node_second")
 
-    def __init__(self, arrays: Arrays, units: Units, walls: Walls, shapes: Shapes):
+    def __init__(self, arrays: State, units: Units, walls: Walls, shapes: Shapes):
         outlines = with_disc(shapes)
         self.tables = Tables(arrays, outlines)
         # Where outlines bend another node may come to lie deeper elsewhere as two are pressed together.

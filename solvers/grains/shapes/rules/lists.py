@@ -8,6 +8,7 @@ import taichi as ti
 from solvers.grains.laws.extremes import greater
 from solvers.grains.neighbours import NEVER, Neighbours
 from solvers.grains.shapes.rules.rest import STILL
+from solvers.machine.state import Axis
 
 BENT_PLACES = 4  # for contacts of two of whose outlines one bends, for a start
 
@@ -29,9 +30,10 @@ class ShapedNeighbours(Neighbours):
         self.rule = rule
         for contacts in (self.pairs, self.contacts):
             # Whether, at the first contact of two, theirs are to be sought anew.
-            (contacts.wanted,) = arrays.vectors(1, 1, (units.count, contacts.capacity), units.single)
-        (self.built_angle,) = arrays.reals(1, (grains.worlds, grains.count))
-        self.asking = arrays.holding(np.zeros(units.count), ti.i32, kept=True)
+            (contacts.wanted,) = contacts.arrays.vectors(contacts.each, "wanted", across=units.single)
+        own, place = arrays.under("lists"), (Axis("world", grains.worlds), Axis("grain", grains.count))
+        (self.built_angle,) = own.reals(place, "built_angle")
+        self.asking = own.holding("asking", np.zeros(units.count), "unit", ti.i32, kept=True)
 
     @ti.func
     def list_pair(self, g: ti.template(), u, found, i, j, target, dt):

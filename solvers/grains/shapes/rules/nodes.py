@@ -9,7 +9,7 @@ from solvers.grains.shapes import series
 from solvers.grains.shapes.contour import Contour
 from solvers.grains.shapes.pose import turned, turned_back
 from solvers.grains.shapes.tables import TINY, Tables
-from solvers.machine.runtime import Arrays
+from solvers.machine.state import State
 
 PARTS = 4  # into which a run of nodes is cut
 ARCS = 8  # at the top
@@ -30,16 +30,23 @@ class Nodes:
     A disc of n nodes then rolls as a polygon of n corners does, at any stiffness: on slopes over π/n alone.
     """
 
-    def __init__(self, arrays: Arrays, tables: Tables, outlines: list[Contour], count: int):
+    def __init__(self, arrays: State, tables: Tables, outlines: list[Contour], count: int):
         self.tables, self.count = tables, count
         runs = _runs(count)
         self.length = len(runs)
-        self.after = arrays.holding(np.array([after for _, _, after in runs]), ti.i32)
-        self.start = arrays.holding(np.array([first for first, _, _ in runs]), ti.i32)
-        self.circle = arrays.holding(np.array([_circles(outline, count, runs) for outline in outlines]))
-        self.point = arrays.holding(np.array([_points(outline, count) for outline in outlines]))
-        self.steepest = arrays.holding(SLACK * np.array([_steepest(outline) for outline in outlines]))
-        self.least = arrays.holding(np.array([_least(outline) for outline in outlines]))
+        own = arrays.under("nodes")
+        self.after = own.holding("after", np.array([after for _, _, after in runs]), "run", ti.i32)
+        self.start = own.holding("start", np.array([first for first, _, _ in runs]), "run", ti.i32)
+        self.circle = own.holding(
+            "circle", np.array([_circles(outline, count, runs) for outline in outlines]), "outline run number"
+        )
+        self.point = own.holding(
+            "point", np.array([_points(outline, count) for outline in outlines]), "outline node number"
+        )
+        self.steepest = own.holding(
+            "steepest", SLACK * np.array([_steepest(outline) for outline in outlines]), "outline"
+        )
+        self.least = own.holding("least", np.array([_least(outline) for outline in outlines]), "outline")
 
     @ti.func
     def contact(self, one: ti.template(), two: ti.template(), apart, node_i, node_j, all_nodes):

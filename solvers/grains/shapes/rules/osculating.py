@@ -8,7 +8,7 @@ import taichi as ti
 from solvers.grains.laws.extremes import greater, lesser
 from solvers.grains.shapes.contour import Contour
 from solvers.grains.shapes.rules.rest import HOLDS, OVERLAP, Rest
-from solvers.machine.runtime import Arrays
+from solvers.machine.state import State
 from solvers.machine.units import Units
 
 CURVED_I, CURVED_J = HOLDS + 1, HOLDS + 2  # elements of what a rule says: radii of curvature (m)
@@ -29,9 +29,10 @@ class Osculating(Rest):
     said = (*Rest.said, "curved_i", "curved_j")
     elements = (*Rest.elements, CURVED_I, CURVED_J)
 
-    def __init__(self, arrays: Arrays, units: Units, outlines: list[Contour], most: float = inf):
+    def __init__(self, arrays: State, units: Units, outlines: list[Contour], most: float = inf):
         super().__init__(arrays, units, False)
-        self.slides = arrays.holding(np.array([min(most, slide_of(outline)) for outline in outlines]))
+        slides = np.array([min(most, slide_of(outline)) for outline in outlines])
+        self.slides = arrays.holding("rest.slides", slides, "outline")
 
     @ti.func
     def carried(self, to: ti.template(), names: ti.template(), pairs: ti.template(), u, block, moves: ti.template()):

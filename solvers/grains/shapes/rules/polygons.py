@@ -9,7 +9,7 @@ from solvers.grains.laws.extremes import greater, lesser, within
 from solvers.grains.shapes.contour import Contour
 from solvers.grains.shapes.pose import turned, turned_back
 from solvers.grains.shapes.tables import TINY
-from solvers.machine.runtime import Arrays
+from solvers.machine.state import State
 
 # Elements of what two share: the area A (m²); of the first outline's part in the other its outward normals n, summed
 # over the length (m); the moments ∫ r n dl (m²) about its centre.
@@ -25,12 +25,13 @@ class Polygons:
     between the rays through the second's corners. The centre of neither may lie in the other.
     """
 
-    def __init__(self, arrays: Arrays, outlines: list[Contour], count: int):
+    def __init__(self, arrays: State, outlines: list[Contour], count: int):
         self.count = count
         corners = np.array([_corners(outline, count) for outline in outlines])
-        self.corner = arrays.holding(corners)
-        self.bounding = arrays.holding(np.linalg.norm(corners, axis=-1).max(axis=-1))
-        self.least = arrays.holding(np.array([_least(one) for one in corners]))
+        own = arrays.under("polygons")
+        self.corner = own.holding("corner", corners, "outline corner number")
+        self.bounding = own.holding("bounding", np.linalg.norm(corners, axis=-1).max(axis=-1), "outline")
+        self.least = own.holding("least", np.array([_least(one) for one in corners]), "outline")
 
     @ti.func
     def shared(self, one: ti.template(), between, centre, other: ti.template(), start, edges, margin):

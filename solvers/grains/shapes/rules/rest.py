@@ -5,7 +5,7 @@ import taichi as ti
 from solvers.grains.contacts import gathered
 from solvers.grains.laws.extremes import greater, lesser
 from solvers.grains.neighbours import LANES, NEVER
-from solvers.machine.runtime import Arrays
+from solvers.machine.state import Axis, State
 from solvers.machine.units import Units
 
 # Elements of what a rule says of a contact: m, 1, m from the first grain's centre, and whether it is one.
@@ -33,18 +33,18 @@ class Rest:
 
     said, elements = SAID, (OVERLAP, NORMAL_Y, NORMAL_Z, POINT_Y, POINT_Z)  # what is remembered, by name and number
 
-    def __init__(self, arrays: Arrays, units: Units, bent: bool):
+    def __init__(self, arrays: State, units: Units, bent: bool):
         # Where outlines bend most of the room for contacts is empty, and is passed over.
         self.bent, self.lanes = bent, 1 if bent or units.single else LANES
         self.contact = tuple(f"was_{name}" for name in self.said)
         self.saddle = tuple(f"saddle_{name}" for name in self.said) if bent else ()
         self.memory = SEEN + self.contact + self.saddle
         self.spacing = 1 if units.single else max(2, CACHE_LINES // self.lanes)
-        rows = (self.spacing * units.count,)
-        self.ways = arrays.vectors(2, self.lanes, rows, kept=False)
-        self.now = arrays.vectors(len(SAID), self.lanes, rows, kept=False)
-        self.saddle_now = arrays.vectors(len(SAID) if bent else 0, self.lanes, rows, kept=False)
-        (self.asked,) = arrays.vectors(1, self.lanes, rows, kept=False)
+        own, axes = arrays.under("rest"), (Axis("unit", self.spacing * units.count), Axis("lane", self.lanes))
+        self.ways = own.vectors(axes, "way_y", "way_z", kept=False)
+        self.now = own.vectors(axes, *SAID, kept=False)
+        self.saddle_now = own.vectors(axes, *self.saddle, kept=False)
+        (self.asked,) = own.vectors(axes, "asked", kept=False)
 
     @ti.func
     def is_open(self, g: ti.template(), pairs: ti.template(), i, j, u, p):

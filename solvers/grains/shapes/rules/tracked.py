@@ -7,7 +7,7 @@ import taichi as ti
 from solvers.grains.laws.extremes import greater, lesser, within
 from solvers.grains.shapes.pose import turned, turned_back
 from solvers.grains.shapes.tables import Tables, radius_of_curvature
-from solvers.machine.runtime import Arrays
+from solvers.machine.state import Axis, State
 
 LOOKS = 128  # points of an outline from which contacts are sought
 TRIES = 40  # steps to a contact from where it is sought
@@ -32,8 +32,10 @@ class Places:
     Each of these is (rows, room): a row for each unit that seeks at the same time.
     """
 
-    def __init__(self, arrays: Arrays, rows: int, room: int):
-        self.i, self.j, self.saddle_i, self.saddle_j = arrays.reals(4, (rows, room), kept=False)
+    def __init__(self, arrays: State, rows: Axis, room: int):
+        names = "i", "j", "saddle_i", "saddle_j"
+        axes = rows, Axis("contact", room)
+        self.i, self.j, self.saddle_i, self.saddle_j = arrays.under("sought").reals(axes, *names, kept=False)
 
 
 @ti.data_oriented

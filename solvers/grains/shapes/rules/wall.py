@@ -4,7 +4,7 @@ import numpy as np
 import taichi as ti
 
 from solvers.grains.shapes.pose import turned, turned_back
-from solvers.machine.runtime import Arrays
+from solvers.machine.state import State
 from solvers.tank.walls import AFTER_Y, AFTER_Z, ALONG_Y, ALONG_Z, LENGTH, PART, TWO_SIDED, Walls, Y, Z
 
 ENDLESS = 1e3  # m
@@ -20,9 +20,9 @@ class SeenWalls:
     other. A segment has no end where the next one turns towards the grains, since that one stops them.
     """
 
-    def __init__(self, arrays: Arrays, walls: Walls):
+    def __init__(self, arrays: State, walls: Walls):
         self.walls = walls
-        self.ends = arrays.holding(_ends(walls), arrays.place)
+        self.ends = arrays.holding("walls.ends", _ends(walls), "feature number", arrays.place)
 
     @ti.func
     def facing(self, feature, shift: ti.template(), y, z):

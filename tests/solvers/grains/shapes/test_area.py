@@ -12,7 +12,8 @@ from solvers.grains.shapes.pose import posed, turned_back
 from solvers.grains.shapes.rules.area import contact_of
 from solvers.grains.shapes.rules.polygons import AREA, PUSH_X, PUSH_Y, XY, YX, Polygons
 from solvers.machine import runtime
-from solvers.machine.runtime import Arrays
+from solvers.machine.state import State
+from tests.oracles.axes import axes
 from tests.oracles.outlines import ellipse, irregular, star
 from tests.oracles.overlap_area import area_contacts
 from tests.oracles.shape_kernels import Pairs, random_pairs
@@ -38,11 +39,13 @@ class Shared:
 
     def __init__(self, nodes):
         runtime.initialise(1)
-        arrays = Arrays()
+        arrays = State()
         self.polygons = Polygons(arrays, OUTLINES, nodes)
-        (self.shape,) = arrays.integers(1, (COUNT, 2))
-        self.scale, self.turn = arrays.reals(1, (COUNT, 2))[0], arrays.reals(1, (COUNT, 2, 2))[0]
-        self.apart, self.total, self.contact = (arrays.reals(1, (COUNT, n))[0] for n in (2, 7, 6))
+        (self.shape,) = arrays.integers(axes(COUNT, 2), "shape")
+        (self.scale,) = arrays.reals(axes(COUNT, 2), "scale")
+        (self.turn,) = arrays.reals(axes(COUNT, 2, 2), "turn")
+        sizes = {"apart": 2, "total": 7, "contact": 6}
+        self.apart, self.total, self.contact = (arrays.reals(axes(COUNT, n), name)[0] for name, n in sizes.items())
         arrays.finish()
 
     def of(self, pairs):

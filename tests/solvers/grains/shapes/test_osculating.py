@@ -11,8 +11,9 @@ from solvers.grains.shapes.rules.osculating import OFF, Osculating, slide_of
 from solvers.grains.shapes.rules.rest import SAID
 from solvers.grains.shapes.rules.tracked import CURVED_I, CURVED_J
 from solvers.machine import runtime
-from solvers.machine.runtime import Arrays
+from solvers.machine.state import State
 from solvers.machine.units import Units
+from tests.oracles.axes import axes
 from tests.oracles.outlines import ellipse, star
 from tests.oracles.shape_kernels import Asked, Pairs, random_pairs
 
@@ -27,15 +28,15 @@ class Carrying:
 
     def __init__(self, count: int):
         runtime.initialise(1)
-        arrays = Arrays()
+        arrays = State()
         self.blocks = count // 8
         units = Units(self.blocks, 1, 1, 1)
         self.rest = Osculating(arrays, units, OUTLINES)
         for name in self.rest.memory:
-            (field,) = arrays.vectors(1, 8, (self.blocks, 1))
+            (field,) = arrays.vectors(axes(self.blocks, 1, 8), name)
             setattr(self, name, field)
-        self.moves = arrays.vectors(4, 8, (self.blocks,))
-        (self.slid,) = arrays.vectors(1, 8, (self.blocks,))
+        self.moves = arrays.vectors(axes(self.blocks, 8), *(f"move {k}" for k in range(4)))
+        (self.slid,) = arrays.vectors(axes(self.blocks, 8), "slid")
         arrays.finish()
         self.arrays = arrays
 

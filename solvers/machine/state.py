@@ -1,0 +1,277 @@
+"""State: arrays by name, each with named axes, in one Taichi field tree.
+
+Whoever owns arrays declares them under a name of its own:
+
+    own = arrays.under("clock")
+    self.step, self.status = own.integers((Axis("world", worlds),), "step", "status")
+
+makes the arrays "clock.step" and "clock.status". Checkpoints, resume, growing, reordering and leaving a world out go by
+these names and axes. Three axes mean something to everybody: along "world" and "unit" the worlds lie one after the
+other, and what lies along "grain" follows the grains when they are numbered anew.
+"""
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import taichi as ti
+
+from solvers.machine import memory, runtime
+
+OF_WORLDS = ("world", "unit")
+
+
+@dataclass(frozen=True)
+class Axis:
+    """What an array's places along one direction are, in a word, and how many there are."""
+
+    name: str
+    length: int
+
+
+Axes = tuple[Axis, ...]
+
+
+def world_axis(axes: Axes) -> int | None:
+    """Along which axis the worlds lie one after the other; None for what is of all worlds together."""
+    return next((k for k, axis in enumerate(axes) if axis.name in OF_WORLDS), None)
+
+
+def of_world(values: np.ndarray, axes: Axes, worlds: int, w: int) -> np.ndarray:
+    """What world w of so many has of an array, as a view; the whole of what is of all worlds together."""
+    along = world_axis(axes)
+    return values if along is None else np.split(values, worlds, axis=along)[w]
+
+
+def without_worlds(values: np.ndarray, axes: Axes, worlds: int, out: slice) -> np.ndarray:
+    """An array of so many worlds less some of them; the whole of what is of all worlds together."""
+    along = world_axis(axes)
+    if along is None:
+        return values
+    size = values.shape[along] // worlds
+    return np.delete(values, slice(out.start * size, out.stop * size), axis=along)
+
+
+@dataclass(frozen=True)
+class Array:
+    """A declared field; of vectors, the last axis is the one within them.
+
+    across: the first axis is the contiguous one. kept: it belongs to what a simulation goes on from. base (length of
+    the first axis,): what `read` takes off and `write` adds. below: its numbers are places, fewer than this. blocks:
+    Taichi is told of its two axes one by one.
+    """
+
+    field: ti.Field
+    axes: Axes
+    across: bool = False
+    kept: bool = True
+    base: np.ndarray | None = None
+    below: int | None = None
+    blocks: bool = False
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Its lengths."""
+        return tuple(axis.length for axis in self.axes)
+
+    @property
+    def offset(self) -> np.ndarray | int:
+        """What `read` takes off."""
+        return 0 if self.base is None else self.base.astype(np.int32).reshape(-1, 1, 1)
+
+
+class Scope:
+    """Where arrays are declared, whose names begin with the owner's."""
+
+    def __init__(self, state: "State", owner: str):
+        self._state, self._owner = state, owner
+        self.place, self.real, self.exact = state.place, state.real, state.exact
+
+    def under(self, owner: str) -> "Scope":
+        """Where an owner declares its arrays."""
+        return Scope(self._state, f"{self._owner}{owner}.")
+
+    def reals(self, axes: Axes, *names: str, kind=None, kept: bool = True) -> list[ti.Field]:
+        """Fields of floats: of the reals' kind, or of another, such as `self.place`."""
+        return [self._declare(name, Array(ti.field(kind or self.real), axes, kept=kept)) for name in self._free(names)]
+
+    def integers(
+        self, axes: Axes, *names: str, across: bool = False, kept: bool = True, below: int | None = None
+    ) -> list[ti.Field]:
+        """Fields of 32-bit integers; places in other arrays are `below` a number, which `write` checks."""
+        return [
+            self._declare(name, Array(ti.field(ti.i32), axes, across, kept, below=below)) for name in self._free(names)
+        ]
+
+    def vectors(self, axes: Axes, *names: str, across: bool = False, kept: bool = True) -> list[ti.Field]:
+        """Fields of vectors of reals, along the last axis."""
+        size = axes[-1].length
+        return [
+            self._declare(name, Array(ti.Vector.field(size, self.real), axes, across, kept))
+            for name in self._free(names)
+        ]
+
+    def wide(self, axes: Axes, *names: str, kind=None, kept: bool = True) -> list[ti.Field]:
+        """Fields (blocks, lanes) of floats that lie block by block, for kernels on real vectors (`machine.wide`)."""
+        return [
+            self._declare(name, Array(ti.field(kind or self.real), axes, kept=kept, blocks=True))
+            for name in self._free(names)
+        ]
+
+    def integer_vectors(
+        self, axes: Axes, *names: str, across: bool = False, base: np.ndarray | None = None, below: int | None = None
+    ) -> list[ti.Field]:
+        """Fields of vectors of 32-bit integers; `read` and `write` count from `base`, a number a place of axis 0."""
+        size = axes[-1].length
+        return [
+            self._declare(name, Array(ti.Vector.field(size, ti.i32), axes, across, True, base, below))
+            for name in self._free(names)
+        ]
+
+    def holding(self, name: str, values: np.ndarray, axes: str = "", kind=None, kept: bool = False) -> ti.Field:
+        """A field of reals, or of another kind, that starts with these values; `axes` are the names of theirs."""
+        lengths = zip(axes.split(), values.shape, strict=True)
+        whole = tuple(Axis(*axis) for axis in lengths)
+        [name] = self._free([name])
+        field = self._declare(name, Array(ti.field(kind or self.real), whole, kept=kept))
+        self._state.hold(field, values)
+        return field
+
+    def _free(self, names: Iterable[str]) -> Iterator[str]:
+        """The names, each before its array is made. Raises ValueError where one is taken."""
+        for name in names:
+            if f"{self._owner}{name}" in self._state.arrays:
+                raise ValueError(f"two arrays are named {self._owner}{name}")
+            yield name
+
+    def _declare(self, name: str, array: Array) -> ti.Field:
+        self._state.declare(f"{self._owner}{name}", array)
+        return array.field
+
+
+class State(Scope):
+    """Fields of one simulation by their names, in one Taichi field tree.
+
+    One tree, since each tree a kernel touches costs it a pointer to reload in the inner loops (three times slower
+    with a tree a field), and since Taichi holds at most 512 trees and frees none by itself. Fields lie in memory in the
+    order in which they are declared; then `finish` makes and fills them, before others are begun. The last index is
+    contiguous, or with `across` the first. What is `kept` makes up the state of a simulation; the rest is scratch, or
+    follows from the scene.
+    """
+
+    def __init__(self, precision: str = "f64"):
+        kinds = runtime.PRECISIONS[precision]
+        self.place, self.real = kinds.place, kinds.real
+        # Sums and times deserve 64 bits whatever the grains have, where the device can.
+        self.exact = ti.f32 if runtime.running_arch() == "vulkan" else ti.f64
+        self.arrays: dict[str, Array] = {}
+        self._builder = ti.FieldsBuilder()
+        self._contents: list[tuple[ti.Field, np.ndarray]] = []
+        self._tree = None
+        super().__init__(self, "")
+
+    @property
+    def fields(self) -> list[ti.Field]:
+        """The fields, in the order in which they were declared."""
+        return [array.field for array in self.arrays.values()]
+
+    def declare(self, name: str, array: Array) -> None:
+        """Give a field its place in memory."""
+        within = array.axes[:-1] if hasattr(array.field, "n") else array.axes
+        shape = tuple(axis.length for axis in within)
+        if array.across:
+            self._builder.dense(ti.j, shape[1]).dense(ti.i, shape[0]).place(array.field)
+        elif array.blocks:
+            self._builder.dense(ti.i, shape[0]).dense(ti.j, shape[1]).place(array.field)
+        else:
+            self._builder.dense((ti.i, ti.ij, ti.ijk)[len(shape) - 1], shape).place(array.field)
+        self.arrays[name] = array
+
+    def hold(self, field: ti.Field, values: np.ndarray) -> None:
+        """Have a declared field start with these values."""
+        self._contents.append((field, np.ascontiguousarray(values, dtype=np.float64)))
+
+    def finish(self) -> None:
+        """Make the declared fields, zero but for what they are to hold."""
+        self._tree = self._builder.finalize()
+        runtime.take_in(self)
+        if runtime.running_arch() == "cpu":
+            layouts = [(array.across, array.across or array.blocks) for array in self.arrays.values()]
+            memory.lay_open(self.fields, *zip(*layouts, strict=True))
+        for field, values in self._contents:
+            field.from_numpy(values.astype(memory.KINDS[field.dtype]))
+        self._contents = []
+
+    @property
+    def bytes(self) -> int:
+        """Memory of the declared fields."""
+        sizes = (np.dtype(memory.KINDS[array.field.dtype]).itemsize for array in self.arrays.values())
+        return sum(int(np.prod(array.shape)) * size for array, size in zip(self.arrays.values(), sizes, strict=True))
+
+    def axes(self) -> dict[str, Axes]:
+        """The axes of what `read` gives."""
+        return {name: array.axes for name, array in self._kept()}
+
+    def read(self) -> dict[str, np.ndarray]:
+        """What is in the kept arrays, by name: all but scratch and what never changes."""
+        return {name: array.field.to_numpy() - array.offset for name, array in self._kept()}
+
+    def write(self, contents: Mapping[str, np.ndarray]) -> None:
+        """Put back what `read` gave from the same declarations. Raises KeyError for what is missing.
+
+        No number is left that is no place in the array that it points into, for a kernel would read and write elsewhere
+        in memory. Vectors of places may hold such where they are not in use, in a world that has come from another
+        number: these are made zero. Elsewhere they raise ValueError, as wrong shapes do, before anything is put back.
+        """
+        whole = {name: self._checked(name, array, contents[name]) for name, array in self._kept()}
+        for name, array in self._kept():
+            array.field.from_numpy(whole[name])
+
+    @staticmethod
+    def _checked(name: str, array: Array, values: np.ndarray) -> np.ndarray:
+        if values.shape != array.shape:
+            raise ValueError(f"array {name} has the shape {values.shape} and not {array.shape}")
+        places, below = np.ascontiguousarray(values + array.offset), array.below
+        if below is None or not places.size or 0 <= places.min() <= places.max() < below:
+            return places
+        if not hasattr(array.field, "n"):
+            raise ValueError(f"array {name} has numbers that are no places")
+        return np.where((places >= 0) & (places < below), places, 0).astype(places.dtype)
+
+    def take_over(self, smaller: "State") -> None:
+        """Copy what the same arrays hold in another state; those with an axis that has grown keep zeros beyond it.
+
+        Raises ValueError where the names or the axes are others.
+        """
+        for (name, array), (old_name, old) in zip(self.arrays.items(), smaller.arrays.items(), strict=True):
+            if name != old_name or [axis.name for axis in array.axes] != [axis.name for axis in old.axes]:
+                raise ValueError(f"array {name} does not take over from {old_name}")
+            held = old.field.to_numpy()
+            if array.axes != old.axes:
+                held, part = array.field.to_numpy(), held
+                held[tuple(slice(size) for size in part.shape)] = part
+            array.field.from_numpy(held)
+
+    def reorder(self, name: str, order: Mapping[int, np.ndarray]) -> None:
+        """Put what lies along an axis into another order in some worlds, in all arrays: `order[w]` are the old places.
+
+        Places beyond those named stay.
+        """
+        for array in self.arrays.values():
+            names = [axis.name for axis in array.axes]
+            if name in names:
+                values = array.field.to_numpy()
+                rows = np.moveaxis(values, (names.index("world"), names.index(name)), (0, 1))
+                for w, old in order.items():
+                    rows[w, : len(old)] = rows[w, old]
+                array.field.from_numpy(values)
+
+    def _kept(self) -> list[tuple[str, Array]]:
+        return [(name, array) for name, array in self.arrays.items() if array.kept]
+
+    def release(self) -> None:
+        """Give the memory back; the fields must not be used after it."""
+        if self._tree is not None and runtime.let_go(self):
+            memory.close(self.fields)
+            self._tree.destroy()
+        self._tree = None
