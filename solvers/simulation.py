@@ -124,7 +124,7 @@ class Simulation:
     def place(self, position: np.ndarray, velocity: np.ndarray | None = None, spin: np.ndarray | None = None) -> None:
         """Put the grains somewhere, (W, n, 2) m, without history: at rest, or at (W, n, 2) m/s and (W, n) rad/s."""
         position = self._in_solver_order(position)
-        self.grains.place(position)
+        self.grains.put(position)
         self.neighbours.forget()
         self.ordered = position.copy()  # where they were when they got their places in the arrays
         self.launch(velocity, spin)

@@ -40,8 +40,8 @@ def test_a_regrouped_sum_is_seen(tmp_path, regroup, code):
     """b_y + (φ̈ z + φ̇ (φ̇ y + 2 ż)) is (φ̈ z + φ̇² y) + 2 φ̇ ż but for rounding."""
     copy = tmp_path / "copy"
     subprocess.run(["git", "clone", "--quiet", str(HERE), str(copy)], check=True)
-    before = "body[3] * z + rate * (rate * y + 2.0 * g.now_z[w, i])"
-    after = "(body[3] * z + rate * rate * y) + 2.0 * rate * g.now_z[w, i]"
+    before = "rise * z + rate * (rate * y + 2.0 * g.now[1][w, i])"
+    after = "(rise * z + rate * rate * y) + 2.0 * rate * g.now[1][w, i]"
     file = next(path for path in copy.glob("solvers/**/*.py") if before in path.read_text(encoding="utf-8"))
     text = file.read_text(encoding="utf-8")
     if regroup:

@@ -8,6 +8,8 @@ from solvers.grains.neighbours import Neighbours
 from solvers.grains.state import FAR, Grains
 from solvers.machine.state import Axis, State
 from solvers.machine.units import Units
+from solvers.space import tangent
+from solvers.space.axes import dot, named
 from solvers.tank.load import Load
 from solvers.tank.walls import Walls
 
@@ -19,9 +21,9 @@ GIVEN_APART = 2
 class Contacts:
     """What the listed contacts do to the grains, by the chosen laws.
 
-    The tangent is the normal turned counter-clockwise by 90°. The levers of two grains reach to where their undeformed
-    outlines cross, R_i − ξ R_j/(R_i + R_j) to first order, and add up to the distance of the centres: angular momentum
-    is exact. (Spandonidis 2016, eq. 4.7, takes whole radii.) A wall's takes half the overlap.
+    What is along the tangent is left to `solvers.space.tangent`. The levers of two grains reach to where their
+    undeformed outlines cross, R_i − ξ R_j/(R_i + R_j) to first order, and add up to the distance of the centres:
+    angular momentum is exact. (Spandonidis 2016, eq. 4.7, takes whole radii.) A wall's takes half the overlap.
     """
 
     def __init__(
@@ -37,11 +39,11 @@ class Contacts:
         self.units, self.grains, self.walls, self.lists, self.laws = units, grains, walls, lists, laws
         self.load, self.lined = load, grains.count > grains.mobile
         self.lining = load.pieces - 1  # the piece that fixed grains are, where there are any
-        # What a block of pairs does to its grains: forces (N) along y and z, torques (N m) on the first and the second.
+        # What a block of pairs does to its grains: forces (N) along the axes, torques (N m) on the first and second.
         # Nobody reads it. Neighbouring numbers that are written together are what makes the compiler look for SIMD.
-        self.given = arrays.under("given").vectors(
-            (Axis("unit", GIVEN_APART * units.count), lists.pairs.lane), "y", "z", "turn_i", "turn_j", kept=False
-        )
+        names = (*named("force", grains.axes), "turn_i", "turn_j")
+        rows = Axis("unit", GIVEN_APART * units.count), lists.pairs.lane
+        self.given = arrays.under("given").vectors(rows, *names, kept=False)
 
     @ti.func
     def forces(self, u, t, dt):
@@ -60,60 +62,67 @@ class Contacts:
         for block in range(pairs.blocks(u)):
             i, j = pairs.grain[u, block], pairs.mate[u, block]
             reach, share = pairs.reach[u, block], pairs.share[u, block]
-            ny, nz, distance, approach = self.geometry(g, i, j, reach, pairs.lanes)
+            normal, distance, approach = self.geometry(g, i, j, reach, pairs.lanes)
             overlap = greater(approach, 0.0)
-            uy = gathered(g.now_y, i, pairs.lanes) - gathered(g.now_y, j, pairs.lanes)
-            uz = gathered(g.now_z, i, pairs.lanes) - gathered(g.now_z, j, pairs.lanes)
+            velocity = self.differences(g.now, i, j, pairs.lanes)
             spin_i, spin_j = gathered(g.spin_now, i, pairs.lanes), gathered(g.spin_now, j, pairs.lanes)
             lever_i = share * (reach + overlap) - overlap
             lever_j = distance - lever_i
-            rate = -(uy * ny + uz * nz)
-            slip = uz * ny - uy * nz - (lever_i * spin_i + lever_j * spin_j)
+            rate = -dot(velocity, normal)
+            slip = tangent.slip(velocity, normal, lever_i * spin_i + lever_j * spin_j)
             fn, ft, roll = self.laws.forces(PAIR, pairs, u, block, overlap, rate, slip, spin_i - spin_j, dt)
             if ti.static(self.laws.cohesive):
                 fn = fn - self.laws.pull(pairs, u, block, approach, rate, dt)
-            fy, fz = fn * ny - ft * nz, fn * nz + ft * ny
-            turn_i, turn_j = roll - lever_i * ft, -roll - lever_j * ft
-            if ti.static(not self.units.single):
-                at = GIVEN_APART * u
-                self.given[0][at], self.given[1][at], self.given[2][at], self.given[3][at] = fy, fz, turn_i, turn_j
-            for k in ti.static(range(pairs.lanes)):
-                g.push(0, i[k], fy[k], fz[k], turn_i[k])
-            if ti.static(not self.units.single):
-                target = pairs.target[u, block]
-                for k in ti.static(range(pairs.lanes)):
-                    g.push(0, target[k], -fy[k], -fz[k], turn_j[k])
+            force = tangent.force(normal, fn, ft)
+            turn_i, turn_j = tangent.torque(lever_i, ft, roll), tangent.torque(lever_j, ft, -roll)
+            self.push_both(g, pairs, u, block, i, force, turn_i, turn_j)
             if ti.static(self.lined):
-                load += self.on_lining(g, pairs, u, i, j, fy, fz, turn_i)
+                load += self.on_lining(g, pairs, u, i, j, force, turn_i)
         if ti.static(self.lined):
             self.load.book(u, self.lining, load, dt)
 
     @ti.func
-    def on_lining(self, g: ti.template(), pairs: ti.template(), u, i, j, fy, fz, turn):
-        """What a block of pairs does to the fixed grains in it; `fy`, `fz` (N) and `turn` (N m) push grains i."""
+    def push_both(self, g: ti.template(), pairs: ti.template(), u, block, i, force: ti.template(), turn_i, turn_j):
+        """Push grains i with forces (N), their mates the other way, and turn both with torques (N m)."""
+        if ti.static(not self.units.single):
+            at = GIVEN_APART * u
+            for a in ti.static(range(g.axes)):
+                self.given[a][at] = force[a]
+            self.given[g.axes][at], self.given[g.axes + 1][at] = turn_i, turn_j
+        for k in ti.static(range(pairs.lanes)):
+            g.push(0, i[k], [force[a][k] for a in ti.static(range(g.axes))], turn_i[k])
+        if ti.static(not self.units.single):
+            target = pairs.target[u, block]
+            for k in ti.static(range(pairs.lanes)):
+                g.push(0, target[k], [-force[a][k] for a in ti.static(range(g.axes))], turn_j[k])
+
+    @ti.func
+    def on_lining(self, g: ti.template(), pairs: ti.template(), u, i, j, force: ti.template(), turn):
+        """What a block of pairs does to the fixed grains in it; `force` (N) and `turn` (N m) push grains i."""
         start = self.units.world(u) * pairs.stride
         fixed = ti.select(j - start >= g.mobile, ti.cast(-1.0, g.real), ti.cast(0.0, g.real))
-        y, z = ti.cast(gathered(g.y, i, pairs.lanes), g.real), ti.cast(gathered(g.z, i, pairs.lanes), g.real)
-        moment = fixed * (y * fz - z * fy + turn)
-        return ti.Vector([(fixed * fy).sum(), (fixed * fz).sum(), moment.sum()])
+        place = [ti.cast(gathered(g.place[a], i, pairs.lanes), g.real) for a in ti.static(range(g.axes))]
+        moment = fixed * (tangent.moment(place, force) + turn)
+        return ti.Vector([(fixed * force[a]).sum() for a in ti.static(range(g.axes))] + [moment.sum()])
 
     @ti.func
     def nothing(self):
         """A load that is none."""
-        return ti.Vector([ti.cast(0.0, self.grains.real) for _ in ti.static(range(3))])
+        return ti.Vector([ti.cast(0.0, self.grains.real) for _ in ti.static(range(self.grains.axes + 1))])
 
     @ti.func
-    def push_off(self, g: ti.template(), w, i, u, feature, fy, fz, torque, load: ti.template()):
+    def push_off(self, g: ti.template(), w, i, u, feature, force: ti.template(), torque, load: ti.template()):
         """Push grain i off a wall with a force (N) and a torque (N m), and the wall the other way.
 
         `load` adds up what a single tank without parts feels.
         """
-        g.push(w, i, fy, fz, torque)
-        y, z = ti.cast(g.y[w, i], g.real), ti.cast(g.z[w, i], g.real)
-        back = ti.Vector([-fy, -fz, -(y * fz - z * fy + torque)])
+        g.push(w, i, force, torque)
+        place = [ti.cast(g.place[a][w, i], g.real) for a in ti.static(range(g.axes))]
+        moment = tangent.moment(place, force) + torque
+        back = ti.Vector([-force[a] for a in ti.static(range(g.axes))] + [-moment])
         if ti.static(self.walls.pieces == 1):
             load += back
-        elif fy != 0.0 or fz != 0.0:
+        elif is_some(force):
             self.load.note(u, self.walls.piece(feature), back)
 
     @ti.func
@@ -127,20 +136,24 @@ class Contacts:
     @ti.func
     def geometry(self, g: ti.template(), i, j, reach, count: ti.template()):
         """Normals (towards the first grains), distances (m) and overlaps (m; negative: gaps) of `count` pairs."""
-        dy = gathered(g.y, i, count) - gathered(g.y, j, count)
-        dz = gathered(g.z, i, count) - gathered(g.z, j, count)
+        apart = self.differences(g.place, i, j, count)
         if ti.static(g.mixed):
             # The difference of squares in 64 bits: an overlap of 1e-7 m keeps all digits of the force's 32.
             whole = ti.cast(reach, ti.f64)
-            square = dy * dy + dz * dz
+            square = dot(apart, apart)
             distance = ti.sqrt(ti.cast(square, g.real))
             inverse = 1.0 / distance
             approach = ti.cast(whole * whole - square, g.real) / (reach + distance)
-            return ti.cast(dy, g.real) * inverse, ti.cast(dz, g.real) * inverse, distance, approach
+            return [ti.cast(apart[a], g.real) * inverse for a in ti.static(range(g.axes))], distance, approach
         else:
-            distance = ti.sqrt(dy * dy + dz * dz)
+            distance = ti.sqrt(dot(apart, apart))
             inverse = 1.0 / distance
-            return dy * inverse, dz * inverse, distance, reach - distance
+            return [apart[a] * inverse for a in ti.static(range(g.axes))], distance, reach - distance
+
+    @ti.func
+    def differences(self, fields: ti.template(), i, j, count: ti.template()):
+        """What grains i have less what grains j have along each axis, of fields an axis, for `count` pairs."""
+        return [gathered(field, i, count) - gathered(field, j, count) for field in ti.static(fields)]
 
     @ti.func
     def wall_forces(self, g: ti.template(), contacts: ti.template(), u, t, dt):
@@ -149,17 +162,16 @@ class Contacts:
         shift = self.walls.shift(w, t)
         for p in range(contacts.length[u]):
             i, feature = contacts.grain[u, p][0], contacts.mate[u, p][0]
-            gap = self.walls.gap(feature, shift, g.y[w, i], g.z[w, i])
-            ny, nz, radius = ti.cast(gap[1], g.real), ti.cast(gap[2], g.real), g.radius[w, i]
+            gap, radius = self.walls.gap(feature, shift, g.place[0][w, i], g.place[1][w, i]), g.radius[w, i]
+            normal = [ti.cast(gap[1 + a], g.real) for a in ti.static(range(g.axes))]
             overlap = ti.cast(0.0, g.real)
             if 0.0 < gap[0] < radius:
                 overlap = ti.cast(radius - gap[0], g.real)
-            velocity = self.walls.velocity(feature, shift)
-            uy, uz = g.now_y[w, i] - velocity[0], g.now_z[w, i] - velocity[1]
+            moved = self.walls.velocity(feature, shift)
+            velocity = [g.now[a][w, i] - moved[a] for a in ti.static(range(g.axes))]
             spin = g.spin_now[w, i]
             lever = radius - 0.5 * overlap
-            rate = -(uy * ny + uz * nz)
-            slip = uz * ny - uy * nz - lever * spin
+            rate, slip = -dot(velocity, normal), tangent.slip(velocity, normal, lever * spin)
             fn, ft, roll = self.laws.forces(
                 WALL, contacts, u, p, ti.Vector([overlap]), ti.Vector([rate]), ti.Vector([slip]), ti.Vector([spin]), dt
             )
@@ -168,29 +180,30 @@ class Contacts:
                 if gap[0] > 0.0:
                     approach = ti.cast(radius - gap[0], g.real)
                 fn = fn - self.laws.pull(contacts, u, p, ti.Vector([approach]), ti.Vector([rate]), dt)
-            fy, fz = fn[0] * ny - ft[0] * nz, fn[0] * nz + ft[0] * ny
-            self.push_off(g, w, i, u, feature, fy, fz, roll[0] - lever * ft[0], load)
+            force = tangent.force(normal, fn[0], ft[0])
+            self.push_off(g, w, i, u, feature, force, tangent.torque(lever, ft[0], roll[0]), load)
         self.book_walls(u, load, dt)
 
     @ti.func
     def pair_press(self, g: ti.template(), pairs: ti.template(), w, i, j, u, p):
-        """Where contact p of grains i and j is (y, z) m, and its elastic force on i (N); nothing is remembered."""
-        apart = ti.Vector([g.y[w, i] - g.y[w, j], g.z[w, i] - g.z[w, j]])
+        """Where contact p of grains i and j is (m), and its elastic force on i (N); nothing is remembered."""
+        apart = ti.Vector(g.between(w, i, j))
         overlap = ti.cast(g.radius[w, i] + g.radius[w, j] - apart.norm(), g.real)
         return self.press_along(g, pairs, w, i, u, p, overlap, apart / apart.norm())
 
     @ti.func
     def wall_press(self, g: ti.template(), contacts: ti.template(), w, i, feature, shift: ti.template(), u, p):
-        """Where contact p of a grain with a wall is (y, z) m, and its elastic force on the grain (N)."""
-        gap = self.walls.gap(feature, shift, g.y[w, i], g.z[w, i])
+        """Where contact p of a grain with a wall is (m), and its elastic force on the grain (N)."""
+        gap = self.walls.gap(feature, shift, g.place[0][w, i], g.place[1][w, i])
         overlap = ti.select(gap[0] > 0.0, ti.cast(g.radius[w, i] - gap[0], g.real), ti.cast(0.0, g.real))
-        return self.press_along(g, contacts, w, i, u, p, overlap, ti.Vector([gap[1], gap[2]]))
+        return self.press_along(g, contacts, w, i, u, p, overlap, ti.Vector([gap[1 + a] for a in range(g.axes)]))
 
     @ti.func
     def press_along(self, g: ti.template(), contacts: ti.template(), w, i, u, p, overlap, n):
-        """Place and elastic force of contact p, whose normal towards grain i is n."""
+        """Place and elastic force of contact p, whose normal towards grain i is n: first the one, then the other."""
         force, back = self.laws.elastic(contacts, u, p, overlap), g.radius[w, i] - 0.5 * overlap
-        return ti.Vector([g.y[w, i] - back * n[0], g.z[w, i] - back * n[1], force * n[0], force * n[1]])
+        place = [g.place[a][w, i] - back * n[a] for a in ti.static(range(g.axes))]
+        return ti.Vector(place + [force * n[a] for a in ti.static(range(g.axes))])
 
     @ti.func
     def census(self, g: ti.template(), pairs: ti.template(), contacts: ti.template(), u, t):
@@ -203,8 +216,8 @@ class Contacts:
         touching, deepest, energy = zero, zero, zero
         for p in range(pairs.length[u]):
             i, j = pairs.first_of(u, p), pairs.second_of(u, p)
-            dy, dz = g.y[w, i] - g.y[w, j], g.z[w, i] - g.z[w, j]
-            overlap = ti.cast(g.radius[w, i] + g.radius[w, j] - ti.sqrt(dy * dy + dz * dz), g.real)
+            apart = g.between(w, i, j)
+            overlap = ti.cast(g.radius[w, i] + g.radius[w, j] - ti.sqrt(dot(apart, apart)), g.real)
             if overlap > 0.0:
                 part = ti.select(start <= j < end or j >= g.mobile, 1.0, 0.5)
                 touching += part
@@ -216,7 +229,7 @@ class Contacts:
         shift = self.walls.shift(w, t)
         for p in range(contacts.length[u]):
             i = contacts.first_of(u, p)
-            gap = self.walls.gap(contacts.second_of(u, p), shift, g.y[w, i], g.z[w, i])
+            gap = self.walls.gap(contacts.second_of(u, p), shift, g.place[0][w, i], g.place[1][w, i])
             if 0.0 < gap[0] < g.radius[w, i]:
                 overlap = ti.cast(g.radius[w, i] - gap[0], g.real)
                 touching += 1.0
@@ -227,6 +240,15 @@ class Contacts:
                     approach = ti.cast(g.radius[w, i] - gap[0], g.real)
                     energy += self.laws.bridge_energy(contacts, u, p, approach)
         return ti.Vector([touching, deepest, energy])
+
+
+@ti.func
+def is_some(force: ti.template()):
+    """Whether a force, a list with an entry an axis, is not zero."""
+    some = force[0] != 0.0
+    for a in ti.static(range(1, len(force))):
+        some = some or force[a] != 0.0
+    return some
 
 
 @ti.func

@@ -10,6 +10,7 @@ from solvers.grains.state import Grains
 from solvers.machine.phase import Phase
 from solvers.machine.state import State
 from solvers.machine.units import Units
+from solvers.space.axes import dot
 
 # A speed (m/s) whose 16th power is no number in 32 bits any more.
 UNSEEN = 5e-3
@@ -48,7 +49,7 @@ class GrainMatter:
     @property
     def extent(self) -> float:
         """How far (m) from the tank's origin a grain may be."""
-        return float(np.hypot(*np.abs(self.neighbours.walls.bounds).max(axis=0)))
+        return float(np.hypot.reduce(np.abs(self.neighbours.walls.bounds).max(axis=0)))
 
     @property
     def nearing(self) -> float:
@@ -85,8 +86,8 @@ class GrainMatter:
     def speed(self, u):
         """The speed (m/s) of a unit that is a single grain."""
         w, i = self.units.world(u), self.units.first(u)
-        vy, vz = self.grains.velocity_y[w, i], self.grains.velocity_z[w, i]
-        return ti.sqrt(vy * vy + vz * vz)
+        v = [field[w, i] for field in ti.static(self.grains.velocity)]
+        return ti.sqrt(dot(v, v))
 
     @ti.func
     def way(self, u, t):

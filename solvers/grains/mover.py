@@ -14,8 +14,8 @@ class Mover:
 
     def __init__(self, arrays: State, units: Units, grains: Grains, integrator, rotating: bool):
         self.units, self.grains, self.integrator, self.rotating = units, grains, integrator, rotating
-        names = (f"extra.{k}" for k in range(integrator.extra))
-        self.extra = arrays.under("mover").reals(grains.axes, *names)
+        names = (f"extra.{k}" for k in range(integrator.extra * (grains.axes + 1)))
+        self.extra = arrays.under("mover").reals(grains.each, *names)
 
     def rest(self) -> None:
         """Forget higher derivatives, for grains that were put somewhere or launched."""
@@ -26,8 +26,7 @@ class Mover:
     def move(self, g: ti.template(), u, body, kick, dt):
         """Take the grains of a unit through one step of dt (s), and clear their forces.
 
-        `body` = (b_y, b_z, φ̇, φ̈) is the tank's motion; in its frame a grain feels b − φ̈ × r + φ̇² r − 2 φ̇ × u and
-        its spin changes by −φ̈.
+        `body` is the tank's motion, as `felt` takes it.
 
         Returns a bound on the speeds (m/s), their 16-norm: at most n^(1/16) times the largest (1.6 for 2000 grains),
         and NaN or huge where the state is bad. The compiler turns the loop into SIMD instructions with sums in it, but
@@ -37,31 +36,44 @@ class Mover:
         zero = ti.cast(0.0, g.real)
         total = zero
         for i in range(self.units.first(u), self.units.end(u)):
-            force_y, force_z, torque = g.force_y[w, i], g.force_z[w, i], g.torque[w, i]
-            y, z = ti.cast(g.y[w, i], g.real), ti.cast(g.z[w, i], g.real)
-            by, bz, spin_up = body[0], body[1], zero
-            if ti.static(self.rotating):
-                rate = body[2]
-                by += body[3] * z + rate * (rate * y + 2.0 * g.now_z[w, i])
-                bz += -body[3] * y + rate * (rate * z - 2.0 * g.now_y[w, i])
-                spin_up = -body[3]
+            force, torque = [g.force[a][w, i] for a in ti.static(range(g.axes))], g.torque[w, i]
+            b, spin_up = self.felt(g, w, i, body)
             if ti.static(g.may_leave):
-                by, bz, spin_up = by * g.present[w, i], bz * g.present[w, i], spin_up * g.present[w, i]
-            ay = force_y * g.inverse_mass[w, i] + by
-            az = force_z * g.inverse_mass[w, i] + bz
+                for a in ti.static(range(g.axes)):
+                    b[a] = b[a] * g.present[w, i]
+                spin_up = spin_up * g.present[w, i]
+            acceleration = [force[a] * g.inverse_mass[w, i] + b[a] for a in ti.static(range(g.axes))]
             turn = torque * g.inverse_inertia[w, i] + spin_up
-            square = self.integrator.step(g, self.extra, w, i, ay, az, turn, kick, dt)
+            square = self.integrator.step(g, self.extra, w, i, acceleration, turn, kick, dt)
             if ti.static(g.shaped):
                 # No point of an outline is faster: (v + ω R)² is at most twice v² + ω² R².
                 around = g.spin[w, i] * g.reach[w, i]
                 square = 2.0 * (square + around * around)
-            g.force_y[w, i], g.force_z[w, i], g.torque[w, i] = 0.0, 0.0, 0.0
+            for a in ti.static(range(g.axes)):
+                g.force[a][w, i] = 0.0
+            g.torque[w, i] = 0.0
             fourth = square * square
             eighth = fourth * fourth
             total += eighth * eighth
         if ti.static(g.shaped):
             self.turn(g, u)
         return ti.sqrt(ti.sqrt(ti.sqrt(ti.sqrt(total))))
+
+    @ti.func
+    def felt(self, g: ti.template(), w, i, body: ti.template()):
+        """What grain i feels of the tank's motion: accelerations (m/s²) along the axes, and that of its spin (1/s²).
+
+        In the frame of `body` = (b, φ̇, φ̈) it feels b − φ̈ × r + φ̇² r − 2 φ̇ × u, and its spin changes by −φ̈. b has an
+        entry an axis; the tank turns in the plane alone, about x.
+        """
+        b, spin_up = [body[a] for a in ti.static(range(g.axes))], ti.cast(0.0, g.real)
+        if ti.static(self.rotating):
+            y, z = ti.cast(g.place[0][w, i], g.real), ti.cast(g.place[1][w, i], g.real)
+            rate, rise = body[g.axes], body[g.axes + 1]
+            b[0] += rise * z + rate * (rate * y + 2.0 * g.now[1][w, i])
+            b[1] += -rise * y + rate * (rate * z - 2.0 * g.now[0][w, i])
+            spin_up = -rise
+        return b, spin_up
 
     @ti.func
     def turn(self, g: ti.template(), u):

@@ -12,6 +12,7 @@ from solvers.grains.laws.chosen import PAIR, WALL, ChosenLaws
 from solvers.grains.state import Grains
 from solvers.machine.state import Axis, State
 from solvers.machine.units import Units
+from solvers.space.axes import dot, named
 from solvers.space.cells import Cells
 from solvers.tank.walls import Walls
 
@@ -63,7 +64,7 @@ class Neighbours:
         if laws.cohesive:
             self.bridges = own.holding("bridges", np.array([bridges]), "one")  # the longest there may be, m
         self.cells = Cells(arrays, grains, *walls.bounds, reach)
-        self.built_y, self.built_z = own.reals(place, "built_y", "built_z", kind=own.place)
+        self.built = own.reals(place, *named("built", grains.axes), kind=own.place)
         # No grain has moved farther than `travel` (m) since the lists were built, at the time `built_at` (s).
         self.travel = own.holding("travel", np.full(units.count, NEVER), "unit", kept=True)
         self.built_at = own.holding("built_at", np.zeros(units.count), "unit", own.exact, kept=True)
@@ -118,14 +119,17 @@ class Neighbours:
     @ti.func
     def note_built(self, w, i):
         """Remember where a grain is as the lists are built."""
-        self.built_y[w, i], self.built_z[w, i] = self.grains.y[w, i], self.grains.z[w, i]
+        for a in ti.static(range(self.grains.axes)):
+            self.built[a][w, i] = self.grains.place[a][w, i]
 
     @ti.func
     def way(self, w, i):
         """How far (m) a grain has gone since then."""
-        dy = ti.cast(self.grains.y[w, i] - self.built_y[w, i], self.grains.real)
-        dz = ti.cast(self.grains.z[w, i] - self.built_z[w, i], self.grains.real)
-        return ti.sqrt(dy * dy + dz * dz)
+        gone = [
+            ti.cast(self.grains.place[a][w, i] - self.built[a][w, i], self.grains.real)
+            for a in ti.static(range(self.grains.axes))
+        ]
+        return ti.sqrt(dot(gone, gone))
 
     @ti.func
     def list_pairs(self, g: ti.template(), c: ti.template(), u, dt) -> ti.i32:
@@ -134,18 +138,18 @@ class Neighbours:
         start, end = self.units.first(u), self.units.end(u)
         for i in range(start, end):
             self.pairs.first[u, i - start] = found
-            y, z, reach = g.y[w, i], g.z[w, i], g.reach[w, i] + self.margin()
-            row, column = c.cell_of[w, i] // c.columns, c.cell_of[w, i] % c.columns
-            for r in range(ti.max(0, row - 1), ti.min(c.rows, row + 2)):
+            place, reach = [g.place[a][w, i] for a in ti.static(range(g.axes))], g.reach[w, i] + self.margin()
+            lower, upper = c.box(w, i)
+            for n in range(c.rows(lower, upper)):
                 # Three neighbouring cells of a row are one run of the sorted grains.
-                left = r * c.columns + ti.max(0, column - 1)
-                right = r * c.columns + ti.min(c.columns - 1, column + 1)
-                for k in range(c.first[w, left], c.first[w, right + 1]):
+                row = c.row(lower, upper, n)
+                for k in range(c.first[w, row + lower[0]], c.first[w, row + upper[0] + 1]):
                     j = c.sorted[w, k]
                     own = start <= j < end
                     if j > i or (j < i and not own):
-                        dy, dz, far = y - g.y[w, j], z - g.z[w, j], reach + g.reach[w, j]
-                        if dy * dy + dz * dz < far * far:
+                        apart = [place[a] - g.place[a][w, j] for a in ti.static(range(g.axes))]
+                        far = reach + g.reach[w, j]
+                        if dot(apart, apart) < far * far:
                             found = self.list_pair(g, u, found, i, j, j if own else ghost, dt)
         for k in range(end - start, self.units.size + 1):
             self.pairs.first[u, k] = found
@@ -183,7 +187,7 @@ class Neighbours:
             reach = self.grains.reach[w, i] + self.margin()
             for feature in range(self.walls.features):
                 # A wall contact may begin as the grain slides past a segment's end, so ask with a margin.
-                if self.walls.near(feature, shift, self.grains.y[w, i], self.grains.z[w, i], reach):
+                if self.walls.near(feature, shift, self.grains.place[0][w, i], self.grains.place[1][w, i], reach):
                     found = self.list_contact(self.grains, u, found, i, feature, shift, dt)
         for k in range(end - start, self.units.size + 1):
             self.contacts.first[u, k] = found

@@ -7,13 +7,14 @@ from solvers.grains.neighbours import Neighbours
 from solvers.grains.state import Grains
 from solvers.machine.state import Axis, State
 from solvers.machine.units import Units
+from solvers.space.axes import dot, named
 from solvers.tank.load import Load
 from solvers.tank.walls import Walls
 
 CHUNK = 1024  # grains whose sum one thread takes
 NEVER = -1.0
 
-MASS, MOMENT_Y, MOMENT_Z, KINETIC, ROTATIONAL, SPILLED, ESCAPED = range(7)
+ESCAPED, MASS, KINETIC, ROTATIONAL, SPILLED, MOMENT = range(6)  # of mass, about each axis' origin
 TOUCHING, DEEPEST, ELASTIC = range(3)
 
 
@@ -67,7 +68,8 @@ class Observer:
         (self.rows,) = own.reals((world, Axis("quantity", len(self.NAMES))), "rows", **scratch)
         pieces = world, Axis("piece", load.pieces), Axis("component", 3)
         (self.loads,) = own.reals(pieces, "loads", **scratch)
-        sums = "mass", "moment_y", "moment_z", "kinetic", "rotational", "spilled", "escaped"
+        self.numbers = MOMENT + grains.axes
+        sums = "escaped", "mass", "kinetic", "rotational", "spilled", *named("moment", grains.axes)
         self.sums = own.reals((world, chunk), *sums, **scratch)
         self.counted = own.reals((units.axis,), "touching", "deepest", "elastic", **scratch)
 
@@ -88,37 +90,41 @@ class Observer:
     @ti.func
     def sum_chunk(self, g: ti.template(), w, chunk):
         """Sums over one chunk of grains; an open tank's that are out of it are spilled, and let go of far away."""
-        zero = ti.cast(0.0, self.exact)
-        mass, moment_y, moment_z, kinetic, rotational, spilled = zero, zero, zero, zero, zero, zero
-        escaped = ti.cast(NEVER, self.exact)
+        sums = [ti.cast(0.0, self.exact) for _ in range(self.numbers)]
+        sums[ESCAPED] = NEVER
         for i in range(chunk * CHUNK, ti.min(g.mobile, (chunk + 1) * CHUNK)):
-            inside = self.walls.holds(g.y[w, i], g.z[w, i])
+            inside = self.walls.holds(g.place[0][w, i], g.place[1][w, i])
             if ti.static(self.may_leave):
                 if not inside:
                     g.spilled[w, i] = 1.0
                 inside = g.spilled[w, i] == 0.0
-                spilled += g.spilled[w, i]
-                if not inside and g.present[w, i] == 1.0 and not self.walls.follows(g.y[w, i], g.z[w, i]):
+                sums[SPILLED] += g.spilled[w, i]
+                if not inside and g.present[w, i] == 1.0 and not self.follows(g, w, i):
                     g.remove(w, i)
             elif not inside:
-                escaped = i
+                sums[ESCAPED] = i
             if inside:
                 m, j = 1.0 / g.inverse_mass[w, i], 1.0 / g.inverse_inertia[w, i]
-                mass += m
-                moment_y += m * g.y[w, i]
-                moment_z += m * g.z[w, i]
-                kinetic += 0.5 * m * (g.now_y[w, i] * g.now_y[w, i] + g.now_z[w, i] * g.now_z[w, i])
-                rotational += 0.5 * j * g.spin_now[w, i] * g.spin_now[w, i]
-        row = ti.Vector([mass, moment_y, moment_z, kinetic, rotational, spilled, escaped])
-        for k in ti.static(range(7)):
-            self.sums[k][w, chunk] = row[k]
+                sums[MASS] += m
+                for a in ti.static(range(g.axes)):
+                    sums[MOMENT + a] += m * g.place[a][w, i]
+                velocity = [g.now[a][w, i] for a in ti.static(range(g.axes))]
+                sums[KINETIC] += 0.5 * m * dot(velocity, velocity)
+                sums[ROTATIONAL] += 0.5 * j * g.spin_now[w, i] * g.spin_now[w, i]
+        for k in ti.static(range(self.numbers)):
+            self.sums[k][w, chunk] = sums[k]
+
+    @ti.func
+    def follows(self, g: ti.template(), w, i):
+        """Whether a grain is so near the tank that it is followed though it has left."""
+        return self.walls.follows(g.place[0][w, i], g.place[1][w, i])
 
     @ti.func
     def sum_world(self, w, time, since):
-        sums = ti.Vector([ti.cast(0.0, self.exact) for _ in ti.static(range(7))])
+        sums = ti.Vector([ti.cast(0.0, self.exact) for _ in ti.static(range(self.numbers))])
         sums[ESCAPED] = NEVER
         for chunk in range(self.chunks):
-            for k in ti.static(range(ESCAPED)):
+            for k in ti.static(range(MASS, self.numbers)):
                 sums[k] += self.sums[k][w, chunk]
             sums[ESCAPED] = ti.max(sums[ESCAPED], self.sums[ESCAPED][w, chunk])
         for piece in range(self.load.pieces):
@@ -140,14 +146,14 @@ class Observer:
     @ti.func
     def write_row(self, w, time, since, sums, contacts, load):
         mass = ti.max(sums[MASS], 1e-30)
-        centre_y, centre_z = sums[MOMENT_Y] / mass, sums[MOMENT_Z] / mass
+        centre = [sums[MOMENT + a] / mass for a in ti.static(range(self.grains.axes))]
         pose = ti.Vector([ti.cast(0.0, self.exact) for _ in ti.static(range(9))])
         if ti.static(self.carrier.moving):
             pose = self.carrier.kinematics(w, time)
-        height = pose[1] + ti.sin(pose[2]) * centre_y + ti.cos(pose[2]) * centre_z
+        height = pose[1] + ti.sin(pose[2]) * centre[0] + ti.cos(pose[2]) * centre[1]
         for k in ti.static(range(6)):
             self.rows[w, k] = pose[k]
-        self.rows[w, 6], self.rows[w, 7] = centre_y, centre_z
+        self.rows[w, 6], self.rows[w, 7] = centre[0], centre[1]
         self.rows[w, 8], self.rows[w, 9] = sums[KINETIC], sums[ROTATIONAL]
         self.rows[w, 10] = sums[MASS] * self.carrier.gravity[0] * height
         self.rows[w, 11], self.rows[w, 12], self.rows[w, 13] = contacts[ELASTIC], contacts[TOUCHING], contacts[DEEPEST]

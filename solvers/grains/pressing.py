@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 import taichi as ti
 
-from solvers.grains.contacts import Contacts
+from solvers.grains.contacts import Contacts, is_some
 from solvers.grains.neighbours import Neighbours
 from solvers.grains.state import Grains
 from solvers.machine.units import Units
@@ -49,11 +49,12 @@ class Presser:
         listed = [kind.length.to_numpy()[units] for kind in (self.neighbours.pairs, self.neighbours.contacts)]
         first = np.concatenate([[0], np.cumsum(sum(listed))]).astype(np.int32)
         names = np.full((max(1, first[-1]), 2), NOBODY, dtype=np.int32)
-        rows = np.zeros((len(names), 4), dtype=np.float32)
+        axes = self.grains.axes
+        rows = np.zeros((len(names), 2 * axes), dtype=np.float32)
         self.read_world(world, time, first, names, rows)
         pressing = names[:, 0] != NOBODY
         names, rows = names[pressing], rows[pressing]
-        return Pressing(np.where(names == NOBODY, NOBODY, number[names]), rows[:, :2], rows[:, 2:])
+        return Pressing(np.where(names == NOBODY, NOBODY, number[names]), rows[:, :axes], rows[:, axes:])
 
     @ti.kernel
     def read_world(self, w: ti.i32, t: ti.f64, first: Offsets, names: Names, rows: Rows):
@@ -89,10 +90,11 @@ class Presser:
 
     @ti.func
     def write(self, row, i, j, press, names: ti.template(), rows: ti.template()):
-        """A row, left empty where nothing presses."""
-        if press[2] != 0.0 or press[3] != 0.0:
+        """A row, left empty where nothing presses: of a contact's place and its force, as `press` has them."""
+        force = [press[self.grains.axes + a] for a in ti.static(range(self.grains.axes))]
+        if is_some(force):
             names[row, 0] = i
             if j < self.grains.mobile:
                 names[row, 1] = j
-            for k in ti.static(range(4)):
+            for k in ti.static(range(2 * self.grains.axes)):
                 rows[row, k] = ti.cast(press[k], ti.f32)

@@ -4,6 +4,7 @@ import numpy as np
 import taichi as ti
 
 from solvers.machine.state import Axis, State
+from solvers.space.axes import PLANE, named
 
 FAR = 1e3  # m
 
@@ -12,12 +13,16 @@ FAR = 1e3  # m
 class Grains:
     """Arrays (W, n + k + ghosts), SI, in the tank's frame: n that move, k fixed ones of rough walls, far-off points.
 
+    `place` (m), `velocity` and `now` (m/s) and `force` (N) are lists with an array for each of the `axes`; angles,
+    spins and torques are those of the plane, about x.
+
     A disc has the mass and inertia of the sphere it stands for. `velocity` and `spin` are what the integrator keeps;
-    `now_*` are their values at the positions' own time, for forces that depend on velocity. Grains that may leave the
-    tank have `spilled` set once they are out of it, and `present` cleared once they are far away. `reach` (m) is how
-    far from its centre a grain can touch; `spread` its moment of inertia relative to that of the sphere.
+    `now` and `spin_now` are their values at the positions' own time, for forces that depend on velocity. Grains that
+    may leave the tank have `spilled` set once they are out of it, and `present` cleared once they are far away. `reach`
+    (m) is how far from its centre a grain can touch; `spread` its moment of inertia relative to that of the sphere.
     """
 
+    axes = PLANE
     shaped = False  # whether grains have an orientation, `turn_y` and `turn_z` its cosine and sine
 
     def __init__(
@@ -39,12 +44,12 @@ class Grains:
         self.mixed = arrays.real is not arrays.place
         self.stride = self.count + ghosts  # numbers from a grain of one world to its like of the next
         own, axes = arrays.under("grains"), "world grain"
-        self.axes = Axis("world", self.worlds), Axis("grain", self.stride)
-        self.y, self.z = own.reals(self.axes, "y", "z", kind=own.place)
-        (self.angle,) = own.reals(self.axes, "angle")
-        self.velocity_y, self.velocity_z, self.spin = own.reals(self.axes, "velocity_y", "velocity_z", "spin")
-        self.now_y, self.now_z, self.spin_now = own.reals(self.axes, "now_y", "now_z", "spin_now")
-        self.force_y, self.force_z, self.torque = own.reals(self.axes, "force_y", "force_z", "torque")
+        self.each = Axis("world", self.worlds), Axis("grain", self.stride)
+        self.place = own.reals(self.each, *named("place", self.axes), kind=own.place)
+        (self.angle,) = own.reals(self.each, "angle")
+        *self.velocity, self.spin = own.reals(self.each, *named("velocity", self.axes), "spin")
+        *self.now, self.spin_now = own.reals(self.each, *named("now", self.axes), "spin_now")
+        *self.force, self.torque = own.reals(self.each, *named("force", self.axes), "torque")
         self.mass = 4.0 / 3.0 * np.pi * radius**3 * density
         self.radius = own.holding("radius", self._filled(radius, fixed[:, 2], 0.0), axes, kept=True)
         self.reach = self.radius
@@ -65,9 +70,9 @@ class Grains:
         whole[:, self.mobile : self.count] = fixed
         return whole
 
-    def place(self, position: np.ndarray) -> None:
-        """Put the grains at `position` (W, n, 2) m, all present, at rest and without history."""
-        for field, axis in ((self.y, 0), (self.z, 1)):
+    def put(self, position: np.ndarray) -> None:
+        """Put the grains at `position` (W, n, axes) m, all present, at rest and without history."""
+        for axis, field in enumerate(self.place):
             values = self._filled(position[..., axis], self.fixed[:, axis], FAR)
             field.from_numpy(values.astype(np.float32) if field.dtype == ti.f32 else values)
         self.angle.fill(0.0)
@@ -81,50 +86,52 @@ class Grains:
         self.angle.fill(0.0)
 
     def launch(self, velocity: np.ndarray, spin: np.ndarray) -> None:
-        """Set the velocities (W, n, 2) m/s and spins (W, n) rad/s."""
-        for fields, values in (
-            ((self.velocity_y, self.now_y), velocity[..., 0]),
-            ((self.velocity_z, self.now_z), velocity[..., 1]),
-            ((self.spin, self.spin_now), spin),
-        ):
+        """Set the velocities (W, n, axes) m/s and spins (W, n) rad/s."""
+        kept, now = (*self.velocity, self.spin), (*self.now, self.spin_now)
+        for *fields, values in zip(kept, now, (*np.moveaxis(velocity, -1, 0), spin), strict=True):
             whole = self._filled(values, 0.0, 0.0)
             for field in fields:
                 field.from_numpy(whole.astype(np.float32) if field.dtype == ti.f32 else whole)
-        for field in (self.force_y, self.force_z, self.torque):
+        for field in (*self.force, self.torque):
             field.fill(0.0)
 
     def read(self) -> dict[str, np.ndarray]:
-        """Positions (W, n, 2), velocities (W, n, 2), angles (W, n) and spins (W, n) at the present time.
+        """Positions (W, n, axes), velocities (W, n, axes), angles (W, n) and spins (W, n) at the present time.
 
         A grain that has left the scene has no position: NaN.
         """
-        fields = self.y, self.z, self.now_y, self.now_z, self.angle, self.spin_now
-        y, z, velocity_y, velocity_z, angle, spin = (field.to_numpy()[:, : self.mobile] for field in fields)
-        position = np.stack([y, z], axis=-1)
+        position, velocity = (
+            np.stack([field.to_numpy()[:, : self.mobile] for field in fields], axis=-1)
+            for fields in (self.place, self.now)
+        )
+        angle, spin = (field.to_numpy()[:, : self.mobile] for field in (self.angle, self.spin_now))
         if self.may_leave:
             position[self.present.to_numpy()[:, : self.mobile] == 0.0] = np.nan
-        return {
-            "position": position,
-            "velocity": np.stack([velocity_y, velocity_z], axis=-1),
-            "angle": angle,
-            "spin": spin,
-        }
+        return {"position": position, "velocity": velocity, "angle": angle, "spin": spin}
 
     def fields(self) -> list[ti.Field]:
         """All arrays of the grains, each once: some have two names."""
-        return list({id(field): field for field in vars(self).values() if isinstance(field, ti.Field)}.values())
+        held = (held if isinstance(held, list) else [held] for held in vars(self).values())
+        return list({id(field): field for fields in held for field in fields if isinstance(field, ti.Field)}.values())
 
     @ti.func
-    def push(self, w, i, force_y, force_z, torque):
+    def push(self, w, i, force: ti.template(), torque):
         """Add a force (N) and a torque (N m) on grain i. Written out, since Taichi takes `+=` on a field as atomic."""
-        self.force_y[w, i] = self.force_y[w, i] + force_y
-        self.force_z[w, i] = self.force_z[w, i] + force_z
+        for a in ti.static(range(self.axes)):
+            self.force[a][w, i] = self.force[a][w, i] + force[a]
         self.torque[w, i] = self.torque[w, i] + torque
+
+    @ti.func
+    def between(self, w, i, j):
+        """The centre of grain i less that of j (m), with the digits of places."""
+        return [self.place[a][w, i] - self.place[a][w, j] for a in ti.static(range(self.axes))]
 
     @ti.func
     def remove(self, w, i):
         """Take a grain out of the scene, to rest far away from all others: no two may be in one place."""
         self.present[w, i] = 0.0
-        self.y[w, i], self.z[w, i] = 2.0 * FAR + 10.0 * i, FAR
-        self.velocity_y[w, i], self.velocity_z[w, i], self.spin[w, i] = 0.0, 0.0, 0.0
-        self.now_y[w, i], self.now_z[w, i], self.spin_now[w, i] = 0.0, 0.0, 0.0
+        for a in ti.static(range(self.axes)):
+            self.place[a][w, i] = FAR
+            self.velocity[a][w, i], self.now[a][w, i] = 0.0, 0.0
+        self.place[0][w, i] = 2.0 * FAR + 10.0 * i
+        self.spin[w, i], self.spin_now[w, i] = 0.0, 0.0

@@ -1,5 +1,6 @@
 """A grid of cells over the tank, and the grains sorted into it."""
 
+from math import prod
 from typing import Protocol
 
 import numpy as np
@@ -7,18 +8,20 @@ import taichi as ti
 
 from solvers.machine.state import Axis, State
 
-ORIGIN_Y, ORIGIN_Z, CELL = range(3)
 CHUNK = 256  # cells that one thread sums up
 
 
 class Places(Protocol):
-    """What is sorted: `count` places y, z (m) in each of `worlds`; some may have left (`present` 0) if `may_leave`."""
+    """What is sorted: `count` places (m) in each of `worlds`, an array an axis.
 
+    Some may have left (`present` 0) if `may_leave`.
+    """
+
+    axes: int
     worlds: int
     count: int
     may_leave: bool
-    y: ti.Field
-    z: ti.Field
+    place: list[ti.Field]
     present: ti.Field
 
 
@@ -26,20 +29,23 @@ class Places(Protocol):
 class Cells:
     """Cells no smaller than the reach of a contact, and no more of them than a few a grain.
 
+    `shape` says how many there are along each axis. Cells are numbered in rows along the first axis.
+
     The grains of cell c are `sorted[w, first[w, c]]` to `sorted[w, first[w, c + 1] - 1]`, by their numbers; those that
     have left the scene are in a cell of their own beyond the last, which is nobody's neighbour.
     """
 
     def __init__(self, arrays: State, grains: Places, lower: np.ndarray, upper: np.ndarray, reach: float):
         self.grains = grains
-        extent = upper - lower
-        size = max(reach, float(np.sqrt(extent[0] * extent[1] / (4.0 * grains.count + 64.0))))
+        extent, self.axes = upper - lower, grains.axes
+        size = max(reach, float(np.prod(extent) / (4.0 * grains.count + 64.0)) ** (1.0 / self.axes))
         # In an array and not in the code, so that scenes that differ in lengths alone share a compiled kernel.
         own, world = arrays.under("cells"), Axis("world", grains.worlds)
-        self.lengths = own.holding("lengths", np.array([lower[0], lower[1], size]), "number", own.place)
-        self.columns = int(extent[0] / size) + 1
-        self.rows = int(extent[1] / size) + 1
-        self.cells = self.columns * self.rows
+        lengths = np.array([*lower, size])  # the origin, and the size of a cell
+        self.lengths = own.holding("lengths", lengths, "number", own.place)
+        self.shape = tuple(int(length / size) + 1 for length in extent)
+        self.strides = tuple(prod(self.shape[:a]) for a in range(self.axes))  # from a cell to the next along an axis
+        self.cells = prod(self.shape)
         self.chunks = -(-(self.cells + 2) // CHUNK)
         (self.first,) = own.integers((world, Axis("cell", self.chunks * CHUNK)), "first", kept=False)
         (self.chunk_first,) = own.integers((world, Axis("chunk", self.chunks)), "chunk_first", kept=False)
@@ -49,14 +55,39 @@ class Cells:
     @ti.func
     def find(self, w, i):
         """The cell a grain is in; beyond the grid, the nearest."""
-        column = ti.cast((self.grains.y[w, i] - self.lengths[ORIGIN_Y]) / self.lengths[CELL], ti.i32)
-        row = ti.cast((self.grains.z[w, i] - self.lengths[ORIGIN_Z]) / self.lengths[CELL], ti.i32)
-        column = ti.max(0, ti.min(self.columns - 1, column))
-        row = ti.max(0, ti.min(self.rows - 1, row))
-        cell = row * self.columns + column
+        cell = 0
+        for a in ti.static(range(self.axes)):
+            along = ti.cast((self.grains.place[a][w, i] - self.lengths[a]) / self.lengths[self.axes], ti.i32)
+            cell += self.strides[a] * ti.max(0, ti.min(self.shape[a] - 1, along))
         if ti.static(self.grains.may_leave):  # noqa: SIM102 (compiled only for open tanks)
             if self.grains.present[w, i] == 0.0:
                 cell = self.cells
+        return cell
+
+    @ti.func
+    def box(self, w, i):
+        """The first and the last cells along each axis, of the cell that a grain is in and those around it."""
+        at = [self.cell_of[w, i] // self.strides[a] % self.shape[a] for a in ti.static(range(self.axes))]
+        lower = [ti.max(0, at[a] - 1) for a in ti.static(range(self.axes))]
+        upper = [ti.min(self.shape[a] - 1, at[a] + 1) for a in ti.static(range(self.axes))]
+        return lower, upper
+
+    @ti.func
+    def rows(self, lower: ti.template(), upper: ti.template()):
+        """How many rows of cells there are in a box."""
+        count = 1
+        for a in ti.static(range(1, self.axes)):
+            count *= upper[a] - lower[a] + 1
+        return count
+
+    @ti.func
+    def row(self, lower: ti.template(), upper: ti.template(), n):
+        """The cell with which the n-th row of a box begins at the edge of the grid."""
+        cell, rest = 0, n
+        for a in ti.static(range(1, self.axes)):
+            span = upper[a] - lower[a] + 1
+            cell += self.strides[a] * (lower[a] + rest % span)
+            rest //= span
         return cell
 
     @ti.func

@@ -6,6 +6,8 @@ solver alone: what is read from it keeps the grains' own.
 
 import numpy as np
 
+from solvers.space.axes import UP
+
 FEWEST = 5000  # grains a world for which order matters: below, all of it fits the processor's caches
 MIXED = 5.0  # mean way, in mean diameters, after which the order is taken for lost
 
@@ -19,5 +21,6 @@ def has_mixed(position: np.ndarray, ordered: np.ndarray, diameter: float) -> boo
 
 def spatial_order(position: np.ndarray, diameter: float) -> np.ndarray:
     """The grains (n,) of a world column by column, two diameters wide, from the floor up; lost ones last."""
-    place = np.nan_to_num(position, nan=1e9)
-    return np.lexsort((place[:, 1], np.floor(place[:, 0] / (2.0 * diameter))))
+    place = np.nan_to_num(position, nan=1e9).T
+    columns = np.floor(np.delete(place, UP, axis=0) / (2.0 * diameter))
+    return np.lexsort((place[UP], *columns[::-1]))

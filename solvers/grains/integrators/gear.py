@@ -2,6 +2,8 @@
 
 import taichi as ti
 
+from solvers.space.axes import dot
+
 # Correctors of the six-value scheme for second-order equations whose force depends on velocity (Gear 1971; Allen and
 # Tildesley 1987, table E.1), for the scaled derivatives q_k = Δt^k/k! d^k r/dt^k.
 C0, C1, C3, C4, C5 = 3.0 / 16.0, 251.0 / 360.0, 11.0 / 18.0, 1.0 / 6.0, 1.0 / 60.0
@@ -18,27 +20,30 @@ class Gear:
     its step), where Verlet with predicted velocities bears 2 and 1.
     """
 
-    extra, reach, damping = 3 * DERIVATIVES, 0.25, 0.15
+    extra, reach, damping = DERIVATIVES, 0.25, 0.15
     ahead, stiffer = 0.5, 0.5
 
     @ti.func
-    def step(self, g: ti.template(), extra: ti.template(), w, i, ay, az, turn, kick, dt):
+    def step(self, g: ti.template(), extra: ti.template(), w, i, acceleration: ti.template(), turn, kick, dt):
         """Correct grain i by its acceleration (m/s², rad/s²) and predict it dt (s) later."""
         half, first = 0.5 * dt * dt, kick < dt
-        y = self.along(extra, 0, w, i, g.velocity_y[w, i] * dt, half * ay, first)
-        z = self.along(extra, 1, w, i, g.velocity_z[w, i] * dt, half * az, first)
-        a = self.along(extra, 2, w, i, g.spin[w, i] * dt, half * turn, first)
-        g.y[w, i] = g.y[w, i] + y[0]
-        g.z[w, i] = g.z[w, i] + z[0]
-        g.angle[w, i] = g.angle[w, i] + a[0]
-        vy, vz, spin = y[1] / dt, z[1] / dt, a[1] / dt
-        g.velocity_y[w, i], g.velocity_z[w, i], g.spin[w, i] = vy, vz, spin
-        g.now_y[w, i], g.now_z[w, i], g.spin_now[w, i] = vy, vz, spin
-        return vy * vy + vz * vz
+        way = [
+            self.along(extra, a, w, i, g.velocity[a][w, i] * dt, half * acceleration[a], first)
+            for a in ti.static(range(g.axes))
+        ]
+        turned = self.along(extra, g.axes, w, i, g.spin[w, i] * dt, half * turn, first)
+        v = [way[a][1] / dt for a in ti.static(range(g.axes))]
+        for a in ti.static(range(g.axes)):
+            g.place[a][w, i] = g.place[a][w, i] + way[a][0]
+            g.velocity[a][w, i], g.now[a][w, i] = v[a], v[a]
+        spin = turned[1] / dt
+        g.angle[w, i] = g.angle[w, i] + turned[0]
+        g.spin[w, i], g.spin_now[w, i] = spin, spin
+        return dot(v, v)
 
     @ti.func
     def along(self, extra: ti.template(), axis: ti.template(), w, i, q1, bend, first):
-        """One coordinate: its change and the next q_1, from the present q_1 and q_2 = Δt²/2 r̈."""
+        """One coordinate, the angle after the axes: its change and the next q_1, from q_1 and q_2 = Δt²/2 r̈ now."""
         k = ti.static(axis * DERIVATIVES)
         q2, q3, q4, q5 = extra[k][w, i], extra[k + 1][w, i], extra[k + 2][w, i], extra[k + 3][w, i]
         miss = bend - q2

@@ -2,6 +2,8 @@
 
 import taichi as ti
 
+from solvers.space.axes import dot
+
 
 @ti.data_oriented
 class SymplecticEuler:
@@ -15,14 +17,13 @@ class SymplecticEuler:
     ahead, stiffer = 0.0, -1.0 / 12.0
 
     @ti.func
-    def step(self, g: ti.template(), extra: ti.template(), w, i, ay, az, turn, kick, dt):
+    def step(self, g: ti.template(), extra: ti.template(), w, i, acceleration: ti.template(), turn, kick, dt):
         """Move grain i by its acceleration (m/s²) and angular acceleration (rad/s²) over dt (s)."""
-        vy = g.velocity_y[w, i] + dt * ay
-        vz = g.velocity_z[w, i] + dt * az
+        v = [g.velocity[a][w, i] + dt * acceleration[a] for a in ti.static(range(g.axes))]
         spin = g.spin[w, i] + dt * turn
-        g.velocity_y[w, i], g.velocity_z[w, i], g.spin[w, i] = vy, vz, spin
-        g.y[w, i] = g.y[w, i] + dt * vy
-        g.z[w, i] = g.z[w, i] + dt * vz
+        for a in ti.static(range(g.axes)):
+            g.velocity[a][w, i], g.now[a][w, i] = v[a], v[a]
+            g.place[a][w, i] = g.place[a][w, i] + dt * v[a]
+        g.spin[w, i], g.spin_now[w, i] = spin, spin
         g.angle[w, i] = g.angle[w, i] + dt * spin
-        g.now_y[w, i], g.now_z[w, i], g.spin_now[w, i] = vy, vz, spin
-        return vy * vy + vz * vz
+        return dot(v, v)

@@ -2,6 +2,8 @@
 
 import taichi as ti
 
+from solvers.space.axes import dot
+
 
 @ti.data_oriented
 class Verlet:
@@ -15,16 +17,15 @@ class Verlet:
     ahead, stiffer = 0.5, 1.0 / 6.0
 
     @ti.func
-    def step(self, g: ti.template(), extra: ti.template(), w, i, ay, az, turn, kick, dt):
+    def step(self, g: ti.template(), extra: ti.template(), w, i, acceleration: ti.template(), turn, kick, dt):
         """Move grain i by its acceleration (m/s²) and angular acceleration (rad/s²) over dt (s)."""
-        vy = g.velocity_y[w, i] + kick * ay
-        vz = g.velocity_z[w, i] + kick * az
+        v = [g.velocity[a][w, i] + kick * acceleration[a] for a in ti.static(range(g.axes))]
         spin = g.spin[w, i] + kick * turn
-        g.velocity_y[w, i], g.velocity_z[w, i], g.spin[w, i] = vy, vz, spin
-        g.y[w, i] = g.y[w, i] + dt * vy
-        g.z[w, i] = g.z[w, i] + dt * vz
+        for a in ti.static(range(g.axes)):
+            g.velocity[a][w, i] = v[a]
+            g.place[a][w, i] = g.place[a][w, i] + dt * v[a]
+            g.now[a][w, i] = v[a] + 0.5 * dt * acceleration[a]
+        g.spin[w, i] = spin
         g.angle[w, i] = g.angle[w, i] + dt * spin
-        g.now_y[w, i] = vy + 0.5 * dt * ay
-        g.now_z[w, i] = vz + 0.5 * dt * az
         g.spin_now[w, i] = spin + 0.5 * dt * turn
-        return vy * vy + vz * vz
+        return dot(v, v)

@@ -17,7 +17,7 @@ class ShapedGrains(Grains):
     """Grains with `shape` (W, n + k + ghosts), numbers of their outlines; the fixed ones are discs, the last of them.
 
     Mass is that of the sphere of equal area, inertia that of `Contour.inertia`. `turn_y` and `turn_z` are cos and sin
-    of the angle, so that the contacts of a step share them.
+    of the angle, so that the contacts of a step share them. Outlines are of the plane: `y` and `z` are all of `place`.
     """
 
     shaped = True
@@ -36,6 +36,7 @@ class ShapedGrains(Grains):
         outlines = with_disc(shapes)
         spread = np.array([outline.spread for outline in outlines])[shapes.which]
         super().__init__(arrays, radius, density, fixed, ghosts, may_leave, kind, spread)
+        self.y, self.z = self.place
         bounding = np.array([outline.bounding_radius for outline in outlines])[shapes.which]
         self.start_angle = shapes.angle
         self.crowding = float((bounding**2).mean())  # so many times the neighbours that discs have are near
@@ -43,11 +44,11 @@ class ShapedGrains(Grains):
         own, axes = arrays.under("grains"), "world grain"
         self.shape = own.holding("shape", self._filled(shapes.which, disc, disc), axes, ti.i32, kept=True)
         self.reach = own.holding("reach", self._filled(radius * bounding, fixed[:, 2], 0.0), axes, kept=True)
-        self.turn_y, self.turn_z = own.reals(self.axes, "turn_y", "turn_z")
+        self.turn_y, self.turn_z = own.reals(self.each, "turn_y", "turn_z")
 
-    def place(self, position: np.ndarray) -> None:
+    def put(self, position: np.ndarray) -> None:
         """Put the grains at `position` (W, n, 2) m, turned as they are to start, at rest and without history."""
-        super().place(position)
+        super().put(position)
         angle = self._filled(self.start_angle, 0.0, 0.0)
         for field, values in ((self.angle, angle), (self.turn_y, np.cos(angle)), (self.turn_z, np.sin(angle))):
             field.from_numpy(values.astype(np.float32) if field.dtype == ti.f32 else values)
@@ -68,8 +69,7 @@ class ShapedGrains(Grains):
     @ti.func
     def apart(self, w, i, j):
         """The centre of grain i less that of j (m)."""
-        dy, dz = self.y[w, i] - self.y[w, j], self.z[w, i] - self.z[w, j]
-        return ti.Vector([ti.cast(dy, self.real), ti.cast(dz, self.real)])
+        return ti.cast(ti.Vector(self.between(w, i, j)), self.real)
 
 
 def with_disc(shapes: Shapes) -> list[Contour]:

@@ -84,7 +84,7 @@ def test_the_walls_carry_the_bed_in_the_parts_that_are_timed(resting):
     for name in ("pair_forces", "wall_forces"):
         kernels.move(1, 0.0)  # clears the forces
         getattr(kernels, name)(1, 0.0)
-        forces[name] = np.array([field.to_numpy()[0, :COUNT] for field in (run.grains.force_y, run.grains.force_z)])
+        forces[name] = np.array([field.to_numpy()[0, :COUNT] for field in run.grains.force])
     weight = float(run.grains.mass.sum() * run.scene.gravity)
     scale = np.abs(forces["pair_forces"]).sum()
     assert np.abs(forces["pair_forces"].sum(axis=1)).max() < 1e-12 * scale  # Newton's third law, rounding
@@ -99,11 +99,11 @@ def test_parts_done_often_leave_the_bed_as_it_is(resting):
     kernels.pair_forces(1, 0.0)
     once = [field.to_numpy() for field in lists.memory]
     assert np.abs(once[0]).max() > 0.0
-    force = run.grains.force_z.to_numpy()
+    force = run.grains.force[1].to_numpy()
     kernels.pair_forces(3, 0.0)
-    np.testing.assert_allclose(run.grains.force_z.to_numpy(), 4.0 * force, atol=1e-12 * np.abs(force).max())
+    np.testing.assert_allclose(run.grains.force[1].to_numpy(), 4.0 * force, atol=1e-12 * np.abs(force).max())
     kernels.scatter(3, 0.0)
-    np.testing.assert_allclose(run.grains.force_z.to_numpy(), 4.0 * force, atol=1e-12 * np.abs(force).max())
+    np.testing.assert_allclose(run.grains.force[1].to_numpy(), 4.0 * force, atol=1e-12 * np.abs(force).max())
     for name in ("move", "wall_forces", "gather"):
         getattr(kernels, name)(3, 0.0)
     length = int(lists.length.to_numpy()[0])

@@ -124,7 +124,7 @@ def shaken(skin: float, room: int = 1) -> Simulation:
         run.arrays.release()
         run.room = room
         run._build()
-        run.grains.place(np.stack([stack, gas]))
+        run.grains.put(np.stack([stack, gas]))
     run.launch(velocity)
     return run
 

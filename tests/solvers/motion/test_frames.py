@@ -5,39 +5,13 @@ from math import pi
 
 import numpy as np
 import pytest
-import taichi as ti
 
 from solvers.grains.filling import radii, start_positions
 from solvers.motion import Heave, Roll, Sway
+from tests.oracles.held import Held
 from tests.oracles.scenes import box, material, simulation
 
 GRAVITY = 9.81
-
-
-@ti.func
-def held(table: ti.template(), w, first, t):
-    """An angle that is always the same."""
-    return ti.Vector([table[w, first], 0.0, 0.0])
-
-
-@dataclass(frozen=True)
-class Held:
-    """A tank that stands at an angle (rad) about its origin."""
-
-    angle: float
-    centre: tuple[float, float] = (0.0, 0.0)
-
-    coordinate = "turn"
-    state = staticmethod(held)
-
-    def duration(self) -> float:
-        return 0.0
-
-    def parameters(self, soft_start: float) -> list[float]:
-        return [self.angle]
-
-    def fastest(self, soft_start: float) -> float:
-        return 0.0
 
 
 def rotation(angle: float) -> np.ndarray:

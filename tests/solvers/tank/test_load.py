@@ -59,7 +59,7 @@ def momenta(run: Simulation) -> np.ndarray:
     Of the velocities that Verlet's kicks have changed: what they gain is the impulse, to rounding.
     """
     r, mass, g = run.snapshot()["position"], run.grains.mass, run.grains
-    y, z, spin = (field.to_numpy()[:, :COUNT] for field in (g.velocity_y, g.velocity_z, g.spin))
+    y, z, spin = (field.to_numpy()[:, :COUNT] for field in (*g.velocity, g.spin))
     v = np.stack([y, z], axis=2)
     angular = mass * (r[..., 0] * v[..., 1] - r[..., 1] * v[..., 0]) + 0.4 * mass * RADIUS**2 * spin
     return np.concatenate([(mass[..., None] * v).sum(axis=1), angular.sum(axis=1)[:, None]], axis=1)

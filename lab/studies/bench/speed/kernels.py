@@ -12,6 +12,7 @@ from solvers.grains.laws.chosen import PAIR
 from solvers.grains.neighbours import LANES
 from solvers.machine.state import State
 from solvers.simulation import Simulation
+from solvers.space.axes import dot
 
 OVERLAP = 1e-6  # m, of the contacts that the laws are tried on alone
 MULTIPLY_ADDS = 16
@@ -69,11 +70,10 @@ class Parts:
         total = self.nothing()
         for block in range(pairs.blocks(0)):
             i, j = pairs.grain[0, block], pairs.mate[0, block]
-            ny, nz, distance, approach = self.contacts.geometry(g, i, j, pairs.reach[0, block], pairs.lanes)
-            uy = gathered(g.now_y, i, pairs.lanes) - gathered(g.now_y, j, pairs.lanes)
-            uz = gathered(g.now_z, i, pairs.lanes) - gathered(g.now_z, j, pairs.lanes)
+            normal, distance, approach = self.contacts.geometry(g, i, j, pairs.reach[0, block], pairs.lanes)
+            velocity = self.contacts.differences(g.now, i, j, pairs.lanes)
             spin = gathered(g.spin_now, i, pairs.lanes) + gathered(g.spin_now, j, pairs.lanes)
-            total += distance + ti.max(approach, 0.0) + uy * ny + uz * nz + spin
+            total += distance + ti.max(approach, 0.0) + dot(velocity, normal) + spin
         self.keep(total)
 
     @ti.kernel
@@ -106,9 +106,9 @@ class Parts:
             i, target = pairs.grain[0, block], pairs.target[0, block]
             f = dt * pairs.share[0, block]
             for k in ti.static(range(pairs.lanes)):
-                g.push(0, i[k], f[k], f[k], f[k])
+                g.push(0, i[k], [f[k] for _ in range(g.axes)], f[k])
             for k in ti.static(range(pairs.lanes)):
-                g.push(0, target[k], -f[k], -f[k], -f[k])
+                g.push(0, target[k], [-f[k] for _ in range(g.axes)], -f[k])
 
     @ti.func
     def nothing(self):

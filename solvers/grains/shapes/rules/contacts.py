@@ -108,8 +108,8 @@ class ShapedContacts(Contacts):
     def passing(self, g: ti.template(), pairs: ti.template(), i, j, ly, lz, apart_y, apart_z):
         """Velocities (y, z) m/s past j of grains i, at points (y, z) m from their centres, and spins past theirs."""
         spin_i, spin_j = gathered(g.spin_now, i, pairs.lanes), gathered(g.spin_now, j, pairs.lanes)
-        uy = gathered(g.now_y, i, pairs.lanes) - gathered(g.now_y, j, pairs.lanes)
-        uz = gathered(g.now_z, i, pairs.lanes) - gathered(g.now_z, j, pairs.lanes)
+        uy = gathered(g.now[0], i, pairs.lanes) - gathered(g.now[0], j, pairs.lanes)
+        uz = gathered(g.now[1], i, pairs.lanes) - gathered(g.now[1], j, pairs.lanes)
         uy += -spin_i * lz + spin_j * (lz + apart_z)
         uz += spin_i * ly - spin_j * (ly + apart_y)
         return uy, uz, spin_i - spin_j
@@ -128,12 +128,12 @@ class ShapedContacts(Contacts):
             at = GIVEN_APART * u
             self.given[0][at], self.given[1][at], self.given[2][at], self.given[3][at] = fy, fz, torque_i, torque_j
         for k in ti.static(range(pairs.lanes)):
-            g.push(0, listed[k], fy[k], fz[k], torque_i[k])
+            g.push(0, listed[k], [fy[k], fz[k]], torque_i[k])
         if ti.static(not self.units.single):
             for k in ti.static(range(pairs.lanes)):
-                g.push(0, target[k], -fy[k], -fz[k], torque_j[k])
+                g.push(0, target[k], [-fy[k], -fz[k]], torque_j[k])
         if ti.static(self.lined):
-            load += self.on_lining(g, pairs, u, listed, pairs.mate[u, block], fy, fz, torque_i)
+            load += self.on_lining(g, pairs, u, listed, pairs.mate[u, block], [fy, fz], torque_i)
 
     @ti.func
     def unsettled(self, contacts: ti.template(), u, p, c):
@@ -200,15 +200,15 @@ class ShapedContacts(Contacts):
                 force, torque, pressing = force - less * m, torque - less * arm.cross(m), pressing - less
         ft, roll = self.rubbed(WALL, contacts, u, p, c, rate, pressing, slip, g.spin_now[w, i], dt)
         force += ft * ti.Vector([-n[1], n[0]])
-        self.push_off(g, w, i, u, feature, force[0], force[1], torque + ft * lever.dot(n) + roll, load)
+        self.push_off(g, w, i, u, feature, [force[0], force[1]], torque + ft * lever.dot(n) + roll, load)
 
     @ti.func
     def wall_pressed(
         self, g: ti.template(), contacts: ti.template(), w, i, u, p, c, lever, velocity: ti.template(), dt
     ):
         """Approach and slip (m/s) of a grain on a wall that moves at a velocity (m/s), and the normal force (N)."""
-        uy = g.now_y[w, i] - velocity[0] - g.spin_now[w, i] * lever[1]
-        uz = g.now_z[w, i] - velocity[1] + g.spin_now[w, i] * lever[0]
+        uy = g.now[0][w, i] - velocity[0] - g.spin_now[w, i] * lever[1]
+        uz = g.now[1][w, i] - velocity[1] + g.spin_now[w, i] * lever[0]
         return self.pressed(WALL, contacts, u, p, c, ti.Vector([uy, uz]), dt)
 
     @ti.func

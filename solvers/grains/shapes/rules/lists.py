@@ -148,14 +148,15 @@ class ShapedNeighbours(Neighbours):
     @ti.func
     def note_built(self, w, i):
         """Remember where a grain is as the lists are built."""
-        self.built_y[w, i], self.built_z[w, i] = self.grains.y[w, i], self.grains.z[w, i]
+        for a in ti.static(range(self.grains.axes)):
+            self.built[a][w, i] = self.grains.place[a][w, i]
         self.built_angle[w, i] = self.grains.angle[w, i]
 
     @ti.func
     def way(self, w, i):
         """How far (m) any point of a grain can have gone since then."""
-        dy = ti.cast(self.grains.y[w, i] - self.built_y[w, i], self.grains.real)
-        dz = ti.cast(self.grains.z[w, i] - self.built_z[w, i], self.grains.real)
+        dy = ti.cast(self.grains.y[w, i] - self.built[0][w, i], self.grains.real)
+        dz = ti.cast(self.grains.z[w, i] - self.built[1][w, i], self.grains.real)
         turned = ti.abs(self.grains.angle[w, i] - self.built_angle[w, i])
         return ti.sqrt(dy * dy + dz * dz) + turned * self.grains.reach[w, i]
 

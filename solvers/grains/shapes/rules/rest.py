@@ -134,7 +134,7 @@ class Rest:
         """Take down contact p of grains i and j, and the saddle before it, as the rule sees them now."""
         still = self.still(g, pairs, w, i, j, u, p, c, d)
         turns = g.reach[w, i] * ti.abs(g.spin_now[w, i]) + g.reach[w, j] * ti.abs(g.spin_now[w, j])
-        speed = ti.abs(g.now_y[w, i] - g.now_y[w, j]) + ti.abs(g.now_z[w, i] - g.now_z[w, j]) + turns
+        speed = ti.abs(g.now[0][w, i] - g.now[0][w, j]) + ti.abs(g.now[1][w, i] - g.now[1][w, j]) + turns
         still = ti.select(speed * dt < still, still, 0.0 * still)
         block, lane, at = p // self.lanes, p % self.lanes, self.place(u)
         for k in ti.static(range(len(SAID))):

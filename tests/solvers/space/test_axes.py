@@ -1,0 +1,67 @@
+"""One axis is like the other: a scene turned by a quarter, its gravity and motion too, goes on as before, turned."""
+
+from math import pi
+
+import numpy as np
+import pytest
+
+from solvers.grains.filling import radii, start_positions
+from solvers.motion import Roll
+from tests.oracles.held import Held
+from tests.oracles.scenes import box, simulation
+
+COUNT = 60
+QUARTER = np.array([[0.0, -1.0], [1.0, 0.0]])  # counter-clockwise
+FLAT = box(0.06, 0.02)  # so that turned, its cells are as many along the other axis
+ROLL = Roll(0.4, 6.0, 1.0, (0.02, -0.05))
+TIME = 8e-3  # s; rounding grows as the grains collide
+
+
+def scenes(integrator):
+    """Grains in a flat tank that rolls, and the same in a tank that is turned in its own frame."""
+    random = np.random.default_rng(7)
+    radius, velocity = radii(COUNT, 3e-3, 0.2, random), random.normal(0.0, 0.3, (COUNT, 2))
+    place, spin = start_positions(radius, FLAT, random), random.normal(0.0, 100.0, COUNT)
+    setting = {"stiffness_scale": 1e-3, "tangential": "mindlin", "spin": spin, "integrator": integrator}
+    start_speed = {"start_speed": float(np.abs(velocity).max())}
+    upright = simulation([place], radius, FLAT, velocity=velocity, motions=[[ROLL]], **setting, **start_speed)
+    turned = simulation(
+        [place @ QUARTER.T],
+        radius,
+        FLAT @ QUARTER.T,
+        velocity=velocity @ QUARTER.T,
+        motions=[[Held(-0.5 * pi), ROLL]],
+        **setting,
+        **start_speed,
+        step=upright.dt,
+    )
+    return upright, turned
+
+
+def pressing(run) -> tuple[np.ndarray, np.ndarray]:
+    """Whom the contacts that press are between, in order, and their places (m) and forces (N), (k, 2, 2)."""
+    found = run.pressing()
+    order = np.lexsort((found.place @ [1.0, 1.0], *found.grains.T))
+    return found.grains[order], np.stack([found.place, found.force], axis=1)[order]
+
+
+@pytest.mark.parametrize("integrator", ["verlet", "symplectic-euler", "gear"])
+def test_a_scene_turned_by_a_quarter_goes_on_as_before(integrator):
+    runs = scenes(integrator)
+    for run in runs:
+        run.advance(round(TIME / run.dt))
+    (before, after), (rows, turned_rows) = [run.snapshot() for run in runs], [run.observe() for run in runs]
+    (whom, where), (turned_whom, turned_where) = map(pressing, runs)
+    for run in runs:
+        run.close()
+    for name, nearness in (("position", 1e-12), ("velocity", 1e-8)):
+        np.testing.assert_allclose(after[name], before[name] @ QUARTER.T, rtol=0.0, atol=nearness, err_msg=name)
+    np.testing.assert_allclose(after["spin"], before["spin"], rtol=0.0, atol=1e-5)
+    for name in ("kinetic", "rotational", "elastic", "potential", "contacts", "overlap", "wall_moment"):
+        np.testing.assert_allclose(turned_rows[name], rows[name], rtol=1e-6, err_msg=name)
+    for name in ("centre", "wall"):
+        vector, expected = ([found[f"{name}_{axis}"][0] for axis in "yz"] for found in (turned_rows, rows))
+        np.testing.assert_allclose(vector, QUARTER @ expected, rtol=1e-6, err_msg=name)
+    assert rows["contacts"][0] > 10.0
+    np.testing.assert_array_equal(turned_whom, whom)
+    np.testing.assert_allclose(turned_where, where @ QUARTER.T, rtol=1e-4, atol=1e-7)
