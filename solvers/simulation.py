@@ -6,32 +6,21 @@ from dataclasses import replace
 
 import numpy as np
 
-from solvers.grains.contacts import Contacts
-from solvers.grains.integrators import INTEGRATORS
-from solvers.grains.laws.chosen import ChosenLaws
-from solvers.grains.matter import GrainMatter
-from solvers.grains.mover import Mover
-from solvers.grains.neighbours import Neighbours
 from solvers.grains.observe import Observer
 from solvers.grains.pressing import Presser, Pressing
 from solvers.grains.renumbering import renumber_list
-from solvers.grains.shapes.grains import ShapedGrains
-from solvers.grains.shapes.rules.area import Area
-from solvers.grains.shapes.rules.contacts import ShapedContacts
-from solvers.grains.shapes.rules.continuous import Continuous
-from solvers.grains.shapes.rules.discrete import Discrete
-from solvers.grains.shapes.rules.lists import ShapedNeighbours
-from solvers.grains.state import Grains
 from solvers.machine import runtime
 from solvers.machine.errors import Unavailable
 from solvers.machine.state import Axes, Axis, State
 from solvers.machine.units import Units
+from solvers.matters import MATTERS
 from solvers.motion.carrier import carrier_kind, make_carrier
 from solvers.scene import Scene
 from solvers.ship.body import Body
 from solvers.ship.vessel import Vessel
 from solvers.space import order as renumber
 from solvers.tank.load import Load
+from solvers.tank.setting import Setting
 from solvers.tank.walls import Walls
 from solvers.time import watch
 from solvers.time.clock import Clock
@@ -41,7 +30,6 @@ from solvers.time.sequence import Sequence
 LOOK_FOR_MIXING = 0.25  # s, between looks at whether the grains' numbers still follow their places
 SKIN = 0.05  # of the mean diameter; in settled and in shaken beds the fastest of 0.05 … 0.3
 SKIN_OF_CONVEX = 0.1  # outlines, whose lists cost more to make
-RULES = {"continuous": Continuous, "nodes": Discrete, "area": Area}  # of contact between outlines
 SHORTER = 0.9  # of the limit on the step: how much shorter one may come to be while the grains move
 AT_REST = -1e9  # a time long before any motion starts
 LOAD = ("wall_y", "wall_z", "wall_moment")
@@ -86,36 +74,22 @@ class Simulation:
 
     def _build(self) -> None:
         """Make the arrays and the kernels that work on them."""
-        scene, worlds = self.scene, self.scene.worlds
+        scene, (worlds, count) = self.scene, self.scene.radius.shape
         self.arrays = arrays = State(scene.precision)
-        count = scene.radius.shape[1]
         units = Units(worlds, count, self.units_a_world, count + len(scene.fixed))
-        may_leave = any(tank.open_edges for tank in scene.tanks)
-        grains = scene.radius, scene.density, scene.fixed, units.ghosts, may_leave, scene.kind
         self.walls = Walls(arrays, scene.tanks, scene.parts)
         pieces = len(scene.tanks) + len(scene.parts) + bool(len(scene.fixed))
         self.load_on_tank = load = Load(arrays, units, pieces, scene.shares)
-        integrator = INTEGRATORS[scene.integrator]()
-        laws = ChosenLaws(arrays, units, *scene.laws, scene.interfaces_of, scene.kinds, integrator)
-        moduli = np.array([[between.young_modulus for between in world] for world in scene.interfaces_of])
-        bridges = scene.longest_bridge
-        reach = 2.0 * scene.farthest_reach + max(self.skin, bridges)
-        lists = self.skin, bridges, reach, laws, moduli, self.room
-        if scene.shapes is None:
-            self.grains = Grains(arrays, *grains)
-            self.neighbours = Neighbours(arrays, units, self.grains, self.walls, *lists)
-            self.contacts = Contacts(arrays, units, self.grains, self.walls, self.neighbours, laws, load)
-        else:
-            rule = RULES[scene.shapes.contact](arrays, units, self.walls, scene.shapes)
-            self.grains = ShapedGrains(arrays, scene.shapes, *grains)
-            self.neighbours = ShapedNeighbours(arrays, units, self.grains, self.walls, *lists, rule)
-            self.contacts = ShapedContacts(arrays, units, self.grains, self.walls, self.neighbours, laws, load, rule)
         self.carrier = make_carrier(arrays, scene, self.dt, load)
-        self.mover = Mover(arrays, units, self.grains, integrator, self.carrier.rotating)
-        self.clock = Clock(arrays, units)
         way = watch.FASTEST_STEP * scene.sizes[0]
-        matter = GrainMatter(arrays, units, self.grains, self.neighbours, self.contacts, self.mover, way, self.stretch)
-        self.schedule = SCHEDULES[self.schedule_name](Sequence([matter], self.carrier), self.clock, self.threads)
+        lists = self.skin, self.room, way, self.stretch
+        setting = Setting(arrays, units, self.walls, load, self.carrier.rotating, *lists)
+        self.matters = [matter for make in MATTERS if (matter := make(scene, setting))]
+        self.clock = Clock(arrays, units)
+        self.schedule = SCHEDULES[self.schedule_name](Sequence(self.matters, self.carrier), self.clock, self.threads)
+        [matter] = self.matters
+        self.grains, self.neighbours, self.contacts = matter.grains, matter.neighbours, matter.contacts
+        self.mover = matter.mover
         parts = units, self.grains, self.walls, self.neighbours, self.contacts, self.carrier, load
         self.observer = Observer(arrays, *parts)
         self.presser = Presser(units, self.grains, self.walls, self.neighbours, self.contacts)

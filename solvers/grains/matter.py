@@ -4,16 +4,24 @@ import numpy as np
 import taichi as ti
 
 from solvers.grains.contacts import Contacts
+from solvers.grains.integrators import INTEGRATORS
+from solvers.grains.laws.chosen import ChosenLaws
 from solvers.grains.mover import Mover
 from solvers.grains.neighbours import Neighbours
+from solvers.grains.shapes.grains import ShapedGrains
+from solvers.grains.shapes.rules.area import Area
+from solvers.grains.shapes.rules.contacts import ShapedContacts
+from solvers.grains.shapes.rules.continuous import Continuous
+from solvers.grains.shapes.rules.discrete import Discrete
+from solvers.grains.shapes.rules.lists import ShapedNeighbours
 from solvers.grains.state import Grains
 from solvers.machine.phase import Phase
-from solvers.machine.state import State
-from solvers.machine.units import Units
 from solvers.space.axes import dot
+from solvers.tank.setting import Setting
 
 # A speed (m/s) whose 16th power is no number in 32 bits any more.
 UNSEEN = 5e-3
+RULES = {"continuous": Continuous, "nodes": Discrete, "area": Area}  # of contact between outlines
 
 
 @ti.data_oriented
@@ -25,26 +33,16 @@ class GrainMatter:
     base step, as many of those as its `pace` says. `way_a_step` (m) is how far a grain may go in one.
     """
 
-    def __init__(
-        self,
-        arrays: State,
-        units: Units,
-        grains: Grains,
-        neighbours: Neighbours,
-        contacts: Contacts,
-        mover: Mover,
-        way_a_step: float,
-        stretch: int = 1,
-    ):
-        own = arrays.under("grains")
-        self.units, self.grains, self.neighbours = units, grains, neighbours
+    def __init__(self, setting: Setting, grains: Grains, neighbours: Neighbours, contacts: Contacts, mover: Mover):
+        self.units, self.grains, self.neighbours = setting.units, grains, neighbours
         self.contacts, self.mover = contacts, mover
-        self.unseen = UNSEEN if arrays.real is ti.f32 else 0.0  # speed (m/s) below which the mover's bound may miss one
-        self.way_a_step = own.holding("way_a_step", np.array([way_a_step]), "one", own.exact)
-        self.paced = stretch > 1
-        self.stretch = own.holding("stretch", np.array([stretch]), "one", ti.i32)
-        self.before = (Phase(self.push, units),)
-        self.after = (Phase(self.move, units),)
+        own = setting.arrays.under("grains")
+        self.unseen = UNSEEN if own.real is ti.f32 else 0.0  # speed (m/s) below which the mover's bound may miss one
+        self.way_a_step = own.holding("way_a_step", np.array([setting.way_a_step]), "one", own.exact)
+        self.paced = setting.stretch > 1
+        self.stretch = own.holding("stretch", np.array([setting.stretch]), "one", ti.i32)
+        self.before = (Phase(self.push, self.units),)
+        self.after = (Phase(self.move, self.units),)
 
     @property
     def extent(self) -> float:
@@ -126,3 +124,30 @@ class GrainMatter:
     def make_lists(self, u, t, dt, whole):
         """List the contacts of a unit anew, or seek some; False, with the old lists, where they do not fit."""
         return self.neighbours.rebuild(u, t, dt, whole)
+
+
+def make_grains(scene, setting: Setting) -> GrainMatter | None:
+    """The grains of a scene (`solvers.scene.Scene`); None where it has none."""
+    if not scene.radius.size:
+        return None
+    arrays, units, walls = setting.arrays, setting.units, setting.walls
+    may_leave = any(tank.open_edges for tank in scene.tanks)
+    given = scene.radius, scene.density, scene.fixed, units.ghosts, may_leave, scene.kind
+    integrator = INTEGRATORS[scene.integrator]()
+    laws = ChosenLaws(arrays, units, *scene.laws, scene.interfaces_of, scene.kinds, integrator)
+    moduli = np.array([[between.young_modulus for between in world] for world in scene.interfaces_of])
+    bridges = scene.longest_bridge
+    reach = 2.0 * scene.farthest_reach + max(setting.skin, bridges)
+    lists = setting.skin, bridges, reach, laws, moduli, setting.room
+    if scene.shapes is None:
+        grains = Grains(arrays, *given)
+        neighbours = Neighbours(arrays, units, grains, walls, *lists)
+        contacts = Contacts(arrays, units, grains, walls, neighbours, laws, setting.load)
+    else:
+        rule = RULES[scene.shapes.contact](arrays, units, walls, scene.shapes)
+        grains = ShapedGrains(arrays, scene.shapes, *given)
+        neighbours = ShapedNeighbours(arrays, units, grains, walls, *lists, rule)
+        contacts = ShapedContacts(arrays, units, grains, walls, neighbours, laws, setting.load, rule)
+    return GrainMatter(
+        setting, grains, neighbours, contacts, Mover(arrays, units, grains, integrator, setting.rotating)
+    )

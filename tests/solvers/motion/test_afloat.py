@@ -133,7 +133,7 @@ class Run:
             step=2e-5,
         )
         with pytest.MonkeyPatch.context() as patch:
-            patch.setattr("solvers.simulation.ChosenLaws", CountedLaws)
+            patch.setattr("solvers.grains.matter.ChosenLaws", CountedLaws)
             self.simulation = Simulation(scene, np.tile(np.add(SITES, [0.0, 0.1 * RADIUS]), (len(vessels), 1, 1)), 1)
         self.simulation.settle(1e-7, 0.8)
         self.height = self.simulation.snapshot()["position"][TINY, :, 1].mean()

@@ -1,0 +1,5 @@
+"""The matters that a tank may hold, a line each: what makes one from a scene, or None where the scene has none."""
+
+from solvers.grains.matter import make_grains
+
+MATTERS = (make_grains,)
