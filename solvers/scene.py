@@ -1,4 +1,4 @@
-"""A scene: everything the solver has to know of an experiment, in SI units."""
+"""The scene: everything the solver needs to know about an experiment, in SI units."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
@@ -21,19 +21,19 @@ from solvers.time.timestep import Limit, limits, watched
 class Scene:
     """A batch of W worlds of n grains in equal tanks.
 
-    `radius` (W, n) m; `outline` (m, 2) m of the tank, counter-clockwise; `grain`, `wall` materials, one or one a world;
-    `motions[w]` the tank's motions in world w, the same kinds in every world; `step` Δt in s, or None for the
-    derived one; `start_speed` (m/s) at which the fastest two grains, or one and a wall, may meet at the start; `sizes`
-    the smallest and largest radius (m) a world may hold. What is derived for all worlds follows from `sizes`, so that a
-    world does not depend on its company; it defaults to the range of `radius`. `velocity` (W, n, 2) m/s and `spin`
-    (W, n) rad/s at the start, or None: at rest. `kind` (W, n) numbers the kinds of grains, 0 of `grain` and the rest of
-    `others`, None where all are of one;
-    `unlike` says how two kinds touch. `fixed` (k, 3) y, z and radius in m of grains that never move; `open_edges` the
-    edges of the outline without a wall, by their first corners; `parts` plates that move in the tank. `shapes` of
-    irregular grains, whose `radius` and `sizes` are those of discs of equal area; None for discs. `vessels` the ships
-    (W,) in whose holds the tanks stand, in place of motions; `interval` (s) of the water's forces, None: as they need
-    it. The tank is `thickness` (m) thick, None: as the mean grain, and `length` (m) long along a ship, None: as long as
-    she is; `more_tanks` stand beside it. Parts and fixed grains count to the first tank.
+    - `radius` (W, n) m; `sizes`: smallest and largest radius (m) a world may hold, by default the range of `radius`.
+      What is derived for all worlds follows from `sizes`, so that a world does not depend on the others in its batch.
+    - `outline` (m, 2) m of the tank, counter-clockwise; `open_edges`: its edges without a wall, by their first corners;
+      `parts`: plates that move in the tank; `fixed` (k, 3): y, z and radius in m of grains that never move.
+    - `thickness` (m) of the tank, by default the mean grain diameter; `length` (m) along a ship, by default the whole
+      ship; `more_tanks` stand beside it. Parts and fixed grains belong to the first tank.
+    - `grain`, `wall`: materials, one or one per world. `kind` (W, n) is 0 for grains of `grain` and counts on through
+      `others`, None if there is one kind; `unlike`: the contact materials of pairs of kinds.
+    - `motions[w]`: the tank's motions in world w, of the same kinds in every world; or `vessels` (W,): the ships whose
+      holds the tanks are in. `interval` (s) between updates of the water's forces, by default derived.
+    - `step` Δt in s, None: derived; `start_speed` (m/s): the highest closing speed of two grains, or of one and a wall,
+      at the start; `velocity` (W, n, 2) m/s and `spin` (W, n) rad/s at the start, None: at rest.
+    - `shapes` of irregular grains, whose `radius` and `sizes` are those of discs of equal area; None for discs.
     """
 
     radius: np.ndarray
@@ -68,7 +68,7 @@ class Scene:
     integrator: str = "verlet"
     precision: str = "f64"
     schedule: str = "auto"
-    interfaces_of: list[tuple[Interface, ...]] = field(init=False)  # of each world, in the rows of `ChosenLaws`
+    interfaces_of: list[tuple[Interface, ...]] = field(init=False)  # per world, in the row order of `ChosenLaws`
 
     def __post_init__(self):
         self.radius = np.atleast_2d(np.asarray(self.radius, dtype=np.float64))
@@ -85,7 +85,7 @@ class Scene:
         return (material,) * self.worlds if isinstance(material, Material) else tuple(material)
 
     def _interfaces(self, grain: Material, wall: Material) -> tuple[Interface, ...]:
-        """Between the kinds of grains, each with each, and between each and a wall."""
+        """Interfaces between all pairs of kinds of grains, then between each kind and a wall."""
         mean, scale, kinds = self.mean_radius, self.stiffness_scale, (grain, *self.others)
         mass = [4.0 / 3.0 * np.pi * mean**3 * kind.density for kind in kinds]
         unlike = {tuple(sorted(pair)): material for pair, material in self.unlike}
@@ -98,13 +98,13 @@ class Scene:
 
     @property
     def tanks(self) -> tuple[Tank, ...]:
-        """All tanks of a world."""
+        """All tanks of a world, the first one included."""
         thickness = self.thickness or 2.0 * self.mean_radius
         return (Tank(self.outline, thickness, tuple(self.open_edges), self.length), *self.more_tanks)
 
     @property
     def shares(self) -> np.ndarray | None:
-        """Of each piece's load on the ship (W, pieces), per metre of hers; None where there is none."""
+        """Factors (W, pieces), 1/m, from each piece's load to the load per metre of ship; None without ships."""
         if not self.vessels:
             return None
         more = len(self.parts) + bool(len(self.fixed))
@@ -113,12 +113,12 @@ class Scene:
 
     @property
     def kinds(self) -> int:
-        """How many kinds of grains there are."""
+        """Number of kinds of grains."""
         return 1 + len(self.others)
 
     @property
     def interfaces(self) -> tuple[Interface, Interface]:
-        """Between two grains of the first kind, and between one and a wall, in the first world."""
+        """Interfaces of the first world between two grains of the first kind, and between one and a wall."""
         return self.interfaces_of[0][0], self.interfaces_of[0][self.kinds**2]
 
     @property
@@ -132,7 +132,7 @@ class Scene:
 
     @property
     def worlds(self) -> int:
-        """W."""
+        """Number of worlds, W."""
         return len(self.radius)
 
     @property
@@ -142,27 +142,27 @@ class Scene:
 
     @property
     def farthest_reach(self) -> float:
-        """The farthest (m) that any grain may reach from its centre."""
+        """Largest distance (m) from any grain's centre to its outline."""
         reach = self.shapes.reach if self.shapes else 1.0
         return max(self.sizes[1] * reach, self.fixed[:, 2].max(initial=0.0))
 
     @property
     def laws(self) -> tuple:
-        """The normal, the tangential and the rolling law, and that of cohesion."""
+        """The normal, tangential, rolling and cohesion laws."""
         return NORMAL[self.normal](), TANGENTIAL[self.tangential](), ROLLING[self.rolling](), COHESION[self.cohesion]()
 
     @property
     def longest_bridge(self) -> float:
-        """The longest gap (m) across which liquid may hold, to the next micrometre.
+        """The longest gap (m) of a liquid bridge, rounded up to a micrometre.
 
-        Worlds whose bridges differ by nanometres then have equal lists, and may run in one launch.
+        Worlds whose bridges differ by nanometres then have equal lists and may run in one launch.
         """
         law = COHESION[self.cohesion]()
         longest = max(law.range(between) for world in self.interfaces_of for between in world)
         return 1e-6 * float(np.ceil(1e6 * longest))
 
     def credible_speed(self) -> float:
-        """Highest speed (m/s) at which grains may be expected to meet: a fall through the tank, and the tank's own."""
+        """Highest closing speed (m/s) to be expected: of a fall through the tank, or the tank's or a part's own."""
         corners = np.concatenate([tank.outline for tank in self.tanks])
         height = np.ptp(corners[:, 1])
         speed = max(self.start_speed, float(np.sqrt(2.0 * self.gravity * height)))
@@ -176,13 +176,13 @@ class Scene:
         return speed
 
     def step_limits(self) -> list[Limit]:
-        """Bounds on the step, the tightest first; of what Verlet bears, an integrator's `reach`."""
+        """Bounds on the step, the tightest first: those of Verlet's scheme times the integrator's `reach`."""
         speed = max(self.credible_speed(), 1e-3)
         share = self.shapes.least_mass if self.shapes else 1.0
         found: dict[tuple, list[Limit]] = {}
         for grain, rows in zip(self.grain, self.interfaces_of, strict=True):
             for a, b in product(range(self.kinds), repeat=2):
-                # The lighter of two kinds of grains stands for both: its contacts are the faster.
+                # The lighter of two kinds of grains stands for both, since its collisions are shorter.
                 lighter = min((grain, *self.others)[a], (grain, *self.others)[b], key=lambda kind: kind.density)
                 key = lighter, (rows[a * self.kinds + b], rows[self.kinds**2 + a])
                 if key not in found:
@@ -195,13 +195,13 @@ class Scene:
         return sorted(bounds, key=lambda limit: limit.step)
 
     def longest_step(self, longer: float) -> float:
-        """The step (s) that is `longer` times the derived one, as far as its bounds may be stretched."""
+        """The step (s) `longer` times the derived one, within the bounds that are `firm`."""
         return min(limit.step if limit.firm else longer * limit.step for limit in self.step_limits())
 
     def deepest_overlap(self, speed: float) -> float:
-        """How deep, in its radii, the smallest grain overlaps with the largest or a wall met at a speed (m/s).
+        """Largest overlap, in radii of the smallest grain, as it hits the largest grain or a wall at a speed (m/s).
 
-        Without losses. Between equal grains it is less, and grains of any size overlap by as many radii.
+        Losses are ignored. Between equal grains it is less, and in radii it is the same for grains of any size.
         """
         law, (radius, largest), found = self.laws[0], self.sizes, 0.0
         of_mass, of_radius = 1.0 / (1.0 + (radius / largest) ** 3), 1.0 / (1.0 + radius / largest)
@@ -213,7 +213,7 @@ class Scene:
         return found
 
     def relaxed(self, position: np.ndarray) -> np.ndarray:
-        """Places (n, 2) m of the grains of the first world, moved apart where they would burst; see `relaxing`."""
+        """Positions (n, 2) m of the first world's grains, with excessive overlaps removed; see `relaxing`."""
         edges = np.stack([self.outline, np.roll(self.outline, -1, axis=0)], axis=1)
         edges = np.delete(edges, list(self.open_edges), axis=0)
         lightest = self.sizes[0], float(self.density.min()), self.interfaces[0].young_modulus, self.gravity
@@ -225,7 +225,7 @@ class Scene:
         return self.step or self.step_limits()[0].step
 
     def shared(self) -> tuple:
-        """All that must be equal for worlds of two scenes to run in one launch; the steps must be set."""
+        """Everything that must be equal for worlds of two scenes to run in one launch; the steps must be set."""
         tanks = [(tank.outline.tobytes(), tank.thickness, tank.open_edges, tank.length) for tank in self.tanks]
         kinds = tuple(
             (type(motion), len(motion.parameters(self.soft_start)), motion.coordinate) for motion in self.motions[0]
@@ -240,7 +240,7 @@ class Scene:
 
     @classmethod
     def joined(cls, scenes: "Sequence[Scene]") -> "Scene":
-        """One scene of the worlds of all, whose `shared()` must be equal."""
+        """One scene with the worlds of all `scenes`; raises ValueError unless their `shared()` are equal."""
         first = scenes[0]
         if any(scene.shared() != first.shared() for scene in scenes):
             raise ValueError("these scenes cannot run in one launch")

@@ -27,10 +27,10 @@ from solvers.time.clock import Clock
 from solvers.time.schedules import SCHEDULES, choose_schedule, units_a_world
 from solvers.time.sequence import Sequence
 
-LOOK_FOR_MIXING = 0.25  # s, between looks at whether the grains' numbers still follow their places
-SKIN = 0.05  # of the mean diameter; in settled and in shaken beds the fastest of 0.05 … 0.3
-SKIN_OF_CONVEX = 0.1  # outlines, whose lists cost more to make
-SHORTER = 0.9  # of the limit on the step: how much shorter one may come to be while the grains move
+LOOK_FOR_MIXING = 0.25  # s, between checks of whether the grains' numbers still follow their positions
+SKIN = 0.05  # of the mean diameter: the fastest of 0.05 … 0.3, in settled and in shaken beds
+SKIN_OF_CONVEX = 0.1  # for convex outlines, whose lists cost more to build
+SHORTER = 0.9  # of the limit on the step at set-up: the lowest limit that `alter` accepts
 AT_REST = -1e9  # a time long before any motion starts
 LOAD = ("wall_y", "wall_z", "wall_moment")
 OF_CONTACTS = ("elastic", "contacts", "overlap")
@@ -39,9 +39,9 @@ OF_CONTACTS = ("elastic", "contacts", "overlap")
 class Simulation:
     """W worlds of one scene, from `position` (W, n, 2) m, at rest or with the scene's velocities.
 
-    `threads` 0 uses all cores; `arch` is one of `runtime.ARCHES`; `skin` (m) of the Verlet lists affects speed alone.
-    `units` is the number of units a world is cut into; None: as the schedule likes it here. Steps are up to `stretch`
-    times the scene's, the base step. Raises Unavailable.
+    `threads` 0 uses all cores; `arch` is one of `runtime.ARCHES`; the `skin` (m) of the Verlet lists affects speed
+    only. `units` is the number of units per world, by default the schedule's choice. Steps are up to `stretch` times
+    the scene's step, which is the base step. Raises Unavailable.
     """
 
     def __init__(
@@ -60,20 +60,20 @@ class Simulation:
         runtime.initialise(self.threads, self.arch, scene.precision)
         worlds, count = scene.radius.shape
         self.scene, self.dt = scene, scene.time_step()
-        self.longest_step = scene.step_limits()[0].step  # s, at which it was made
+        self.longest_step = scene.step_limits()[0].step  # s, the limit at set-up
         self.schedule_name = choose_schedule(scene.schedule, self.arch, worlds, count, self.threads, answers)
         self.units_a_world = units or units_a_world(self.schedule_name, worlds, count, self.threads)
         self.skin = skin or (SKIN_OF_CONVEX if scene.shapes and scene.shapes.convex else SKIN) * 2.0 * scene.mean_radius
         self.steps, self.room, self.stretch = 0, 1, stretch
-        self.origin = 0.0  # what the tank's motion takes for the time at step 0
-        self.unkicked = 0  # the step that is the grains' first
-        self.observed, self.load = 0, dict.fromkeys(LOAD, np.zeros(worlds))  # when last, and what the load was
-        self.number = np.tile(np.arange(count), (worlds, 1))  # the grains' own, in solver order
+        self.origin = 0.0  # s, time of the tank's motion at step 0
+        self.unkicked = 0  # the first step since the launch
+        self.observed, self.load = 0, dict.fromkeys(LOAD, np.zeros(worlds))  # step and load of the last `observe`
+        self.number = np.tile(np.arange(count), (worlds, 1))  # the grains' own numbers, in solver order
         self._build()
         self.place(np.asarray(position, dtype=np.float64).reshape(worlds, count, 2), scene.velocity, scene.spin)
 
     def _build(self) -> None:
-        """Make the arrays and the kernels that work on them."""
+        """Make the arrays and the objects whose kernels work on them."""
         scene, (worlds, count) = self.scene, self.scene.radius.shape
         self.arrays = arrays = State(scene.precision)
         units = Units(worlds, count, self.units_a_world, count + len(scene.fixed))
@@ -96,15 +96,15 @@ class Simulation:
         arrays.finish()
 
     def place(self, position: np.ndarray, velocity: np.ndarray | None = None, spin: np.ndarray | None = None) -> None:
-        """Put the grains somewhere, (W, n, 2) m, without history: at rest, or at (W, n, 2) m/s and (W, n) rad/s."""
+        """Place the grains at `position` (W, n, 2) m without contact history, and `launch` them."""
         position = self._in_solver_order(position)
         self.grains.put(position)
         self.neighbours.forget()
-        self.ordered = position.copy()  # where they were when they got their places in the arrays
+        self.ordered = position.copy()  # positions at the time of the last renumbering
         self.launch(velocity, spin)
 
     def launch(self, velocity: np.ndarray | None = None, spin: np.ndarray | None = None) -> None:
-        """Set the grains' velocities (W, n, 2) m/s and spins (W, n) rad/s; None is rest."""
+        """Set the grains' velocities (W, n, 2) m/s and spins (W, n) rad/s; None: at rest."""
         velocity = np.zeros((*self.scene.radius.shape, 2)) if velocity is None else velocity
         spin = np.zeros(self.scene.radius.shape) if spin is None else spin
         self.grains.launch(self._in_solver_order(velocity), self._in_solver_order(spin))
@@ -115,11 +115,11 @@ class Simulation:
         self.moored = False
 
     def _in_solver_order(self, values: np.ndarray) -> np.ndarray:
-        """Values (W, n, …) of the grains by their own numbers, as the arrays hold them."""
+        """Reorder values (W, n, …) from the grains' own numbers to solver order."""
         return values[np.arange(self.scene.worlds)[:, None], self.number]
 
     def _make_room(self) -> None:
-        """Double the room of the contact lists; what the worlds hold stays as it is."""
+        """Double the capacity of the contact lists; all other state is kept."""
         old = self.arrays
         self.room *= 2
         self._build()
@@ -128,31 +128,31 @@ class Simulation:
 
     @property
     def time(self) -> float:
-        """Model time (s); while settling, since that began."""
+        """Model time (s); while settling, the time since settling began."""
         return self.steps * self.dt
 
     @property
     def grain_steps(self) -> int:
-        """Grains times steps of all worlds so far."""
+        """Total number of grain updates so far: grains times steps, over all worlds."""
         return self.steps * self.scene.radius.size
 
     def advance(self, steps: int) -> None:
-        """Take every world `steps` base steps on.
+        """Advance every world by `steps` base steps.
 
-        Raises BadState where the watch stops a world; the state is kept as it is.
+        Raises BadState if the state check stops a world; the state is kept as it is.
         """
         self._moor()
         target, often = self.steps + steps, max(1, round(LOOK_FOR_MIXING / self.dt))
-        # Contacts of outlines are remembered in the order of their grains' numbers, so these stay as they are.
+        # Contact history of outlines depends on the order of the two grains' numbers, so these are not renumbered.
         large = self.ordered.shape[1] >= renumber.FEWEST and self.scene.shapes is None
         while self.steps < target:
             if large and self.steps % often == 0:
-                self._keep_order()  # before steps, which make new lists: the old ones are no good for looking at
+                self._keep_order()  # before the steps: it expires the lists, which `observe` needs and a step rebuilds
             self.steps = min(target, often * (self.steps // often + 1)) if large else target
             self._reach_step()
 
     def _reach_step(self) -> None:
-        """Take every running world to the step that `steps` says."""
+        """Advance every running world to base step `self.steps`, with larger contact lists if they overflow."""
         runtime.merge_repeats(self.scene.shapes is None)
         while True:
             self.schedule.advance(self.steps, self.origin, self.dt)
@@ -165,7 +165,7 @@ class Simulation:
             watch.report_speed(status, self.grains.read()["velocity"], self.clock.step.to_numpy() * self.dt, self.dt)
 
     def _keep_order(self) -> None:
-        """Number the grains anew in worlds where they have mixed."""
+        """Renumber the grains in worlds where they have mixed."""
         position, diameter = self.grains.read()["position"], 2.0 * self.scene.mean_radius
         order = {
             w: renumber.spatial_order(places, diameter)
@@ -182,17 +182,17 @@ class Simulation:
             lists.expire()
 
     def observe(self) -> dict[str, np.ndarray]:
-        """Numbers of every world now, each (W,), named as in `Observer.NAMES`. Raises BadState from the watch.
+        """Quantities of every world now, each (W,), named as in `Observer.NAMES`. Raises BadState if a check fails.
 
-        The force on the tank is the mean since the last look; of grains that were just put where they are, that of now.
+        The force on the tank is the mean since the last observation; right after grains were placed, the present one.
         """
         self._moor()
         return self._observe_unmoved() if self.steps == self.unkicked else self._observe()
 
     def _observe_unmoved(self) -> dict[str, np.ndarray]:
-        """The numbers of grains that have taken no step yet, so that nothing is known of their contacts.
+        """Observe grains that have taken no step yet, so that no contacts are known.
 
-        A step makes the contact lists and adds up the forces at its start; then it is taken back, bit for bit.
+        One step builds the contact lists and sums the forces at its start; then it is undone, bit for bit.
         """
         rows, before = self._observe(), self.state()
         start = [(field, field.to_numpy()) for field in self.grains.fields()]
@@ -212,7 +212,7 @@ class Simulation:
         runtime.merge_repeats(self.scene.shapes is None)
         self.observer.observe(self.origin + self.time, max(self.steps - self.observed, 1) * self.dt)
         rows = dict(zip(Observer.NAMES, self.observer.rows.to_numpy().T.astype(float), strict=True))
-        # Where no time has passed there is nothing to average over.
+        # Worlds in which no time has passed keep the last mean load.
         ended = np.isin(self.clock.status.to_numpy(), (watch.WAITING, watch.OVER))
         still = ended | (self.observed == self.steps)
         rows |= {name: np.where(still, self.load[name], rows[name]) for name in LOAD}
@@ -222,17 +222,17 @@ class Simulation:
         return rows
 
     def loads(self) -> np.ndarray:
-        """Force (y, z; N) and moment (N m) of the cargo on each piece of the tank (W, pieces, 3), as last observed.
+        """Force y, z (N) and moment (N m) of the cargo on each piece of the tank, (W, pieces, 3), as last observed.
 
-        Pieces are the walls of each tank, the parts, and the fixed grains if there are any.
+        The pieces are the walls of each tank, then the parts, then the fixed grains if there are any.
         """
         return self.observer.loads.to_numpy()
 
     def settle(self, rest: float, limit: float, tell: Callable[[float], None] = lambda _: None) -> bool:
-        """Let the grains come to rest in the upright tank; the clock then starts at zero. Returns whether all rest.
+        """Let the grains settle in the upright tank, then start the clock at zero; returns whether all are at rest.
 
-        A world rests, and waits for the others, when the mean kinetic energy of its grains (spin included) is below
-        `rest` times m g d at two looks in a row, 10 ms apart. At most `limit` s.
+        A world is at rest, and waits for the others, once the mean kinetic energy of its grains (spin included) is
+        below `rest` times m g d in two checks in a row, 10 ms apart. Settling ends after `limit` s at the latest.
         """
         self.origin = AT_REST
         look = max(1, round(0.01 / self.dt))
@@ -250,18 +250,18 @@ class Simulation:
         return bool(np.all(quiet >= 2))
 
     def steer(self, pieces: Several[np.ndarray]) -> None:
-        """From now on, have the scene's motions, all of them steered, follow these polynomials (6,)."""
+        """Let the scene's motions, which must all be `Steered`, follow these polynomials (6,) from now on."""
         self.carrier.steer(self.time, pieces)
 
     def meet(self, vessels: Several[Vessel]) -> None:
-        """Have the ships meet other waves, those of these vessels, which are else as they were."""
+        """Change the waves to those of `vessels`, which must equal the present ones in everything else."""
         self.scene = replace(self.scene, vessels=list(vessels))
         self.carrier.meet(vessels)
 
     def alter(self, **changes: object) -> None:
-        """Go on with other materials or another gravity: fields of the scene. The grains stay as they are.
+        """Go on with other materials or another gravity, given as fields of the scene. The grains stay as they are.
 
-        Raises Unavailable for what asks for shorter steps, or lets liquid reach farther, than the arrays were made for.
+        Raises Unavailable if the changes need shorter steps or longer liquid bridges than the arrays were made for.
         """
         altered = replace(self.scene, **changes)
         if altered.step_limits()[0].step < SHORTER * self.longest_step:
@@ -271,10 +271,10 @@ class Simulation:
         self.scene = altered
         self.carrier.gravity.fill(altered.gravity)
         self.neighbours.laws.learn(altered.interfaces_of)
-        self.neighbours.expire()  # what was worked out for each contact is worked out anew
+        self.neighbours.expire()  # so that the constants of each contact are recomputed
 
     def start_clock(self) -> None:
-        """The tank's motion begins now, at time zero."""
+        """Start the tank's motion now, at time zero."""
         self.unkicked -= self.steps
         self.origin, self.steps, self.observed = 0.0, 0, 0
         self.clock.step.fill(0)
@@ -283,13 +283,13 @@ class Simulation:
         self.moored = False
 
     def _moor(self) -> None:
-        """Have the carrier begin with the cargo where it lies, once it has settled. Raises Unavailable if it cannot."""
+        """Let the carrier begin with the settled cargo in place, once. Raises Unavailable if it cannot."""
         if not self.moored and self.origin == 0.0:
             self.carrier.begin(self.cargo)
             self.moored = True
 
     def cargo(self) -> list[Body]:
-        """The grains of each world as they lie, as if frozen: per metre of a ship's length, in the tank's frame."""
+        """The grains of each world as one rigid body, per metre of the ship's length, in the tank's frame."""
         place, mass = self.grains.read()["position"], self._in_solver_order(self.grains.mass)
         share = self._per_metre(place)
         own = share / self.grains.inverse_inertia.to_numpy()[:, : mass.shape[1]]
@@ -301,7 +301,7 @@ class Simulation:
         return [Body(float(m), tuple(c), float(i)) for m, c, i in zip(total, centre.tolist(), inertia, strict=True)]
 
     def _per_metre(self, position: np.ndarray) -> np.ndarray:
-        """How much of a metre of her ship each grain (W, n) stands for, by the tank that it lies in, 1/m."""
+        """Factor (W, n), 1/m, from each grain's mass to mass per metre of ship, by the tank that it lies in."""
         share = np.empty(position.shape[:2])
         for w, vessel in enumerate(self.scene.vessels):
             share[w] = self.scene.tanks[0].share(vessel.length)
@@ -319,7 +319,7 @@ class Simulation:
         return found
 
     def pressing(self, world: int = 0) -> Pressing:
-        """The elastic forces of the contacts in a world now."""
+        """The present elastic contact forces in a world."""
         runtime.merge_repeats(self.scene.shapes is None)
         return self.presser.read(world, self.origin + self.time, self.number[world])
 
@@ -329,7 +329,7 @@ class Simulation:
         return np.tile(places, (self.scene.worlds, 1, 1))
 
     def state(self) -> dict[str, np.ndarray]:
-        """All it takes to go on bit for bit, for `restore`."""
+        """The complete state, from which `restore` continues bit for bit."""
         schedule = list(SCHEDULES).index(self.schedule_name)
         numbers = self.steps, self.room, self.unkicked, self.observed, self.units_a_world, schedule
         order = {"number": self.number, "ordered": self.ordered}
@@ -349,7 +349,7 @@ class Simulation:
         return own | order | self.arrays.axes()
 
     def restore(self, state: dict[str, np.ndarray]) -> None:
-        """Become what `state` was told of, by a simulation of the same scene."""
+        """Restore what `state` returned in a simulation of the same scene."""
         self.steps, room, self.unkicked, self.observed, units, schedule = (int(number) for number in state["numbers"])
         self.origin, self.load = float(state["origin"]), {name: np.array(state[name]) for name in LOAD}
         self.number, self.ordered = np.array(state["number"]), np.array(state["ordered"])
@@ -361,5 +361,5 @@ class Simulation:
         self.moored = self.steps > 0
 
     def close(self) -> None:
-        """Give the arrays back; the simulation must not be used after it."""
+        """Free the arrays; the simulation must not be used afterwards."""
         self.arrays.release()

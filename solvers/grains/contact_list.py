@@ -1,4 +1,4 @@
-"""The list of candidate contacts of each unit of work, with what the laws remember of each."""
+"""The list of candidate contacts of each unit of work, with their contact history."""
 
 import numpy as np
 import taichi as ti
@@ -12,15 +12,14 @@ from solvers.machine.units import Units
 class ContactList:
     """Candidate contacts of one kind (grain–grain or grain–wall) of each unit u, sorted by their first grain.
 
-    Contact p stands in lane p % lanes of block p // lanes. `mate` is the other grain or the wall feature; `target` the
-    grain that takes the reaction, which is a ghost where the mate belongs to another unit. Grains go by their places in
-    the arrays of all worlds, `stride` numbers a world, which saves the forces an addition a number they read; with a
-    stride of 0 by their numbers in their world. What does not change while a
-    contact is listed: `stiffness` k (N/m^1.5), `reach` (m), the distance at which the two touch, `share`, the
-    first grain's part of it, and the laws' constants. The laws' memory does change, and is zero while the two do not
-    touch. `places` are how many there are for grains and for mates. What the laws keep, and `more` memories that
-    others do, contact by contact, are fields by the names they give; `fleeting` ones are not handed on to the next
-    list.
+    Contact p is in lane p % lanes of block p // lanes. `mate` is the other grain or the wall feature; `target` the
+    grain that takes the reaction, which is a ghost if the mate belongs to another unit. Grains are stored as indices
+    into the arrays of all worlds, with `stride` entries per world, which saves the force loop an addition per read;
+    with a stride of 0 they are numbers within their world. `places` are the numbers of valid indices of grains and of
+    mates. Constant while a contact is listed are `stiffness` k (N/m^1.5), `reach` (m), the centre distance at which the
+    two touch, `share`, the first grain's part of it, and the laws' constants. The laws' memory changes, and is zero
+    while the two do not touch. Constants, memory and `more` memories of other owners are fields under the names given;
+    `fleeting` ones are not carried over to the next list.
     """
 
     def __init__(
@@ -53,7 +52,7 @@ class ContactList:
         self.stiffness, self.reach, self.share = arrays.vectors(axes, *constants, across=across)
         if laws.kinds > 1:
             rows = laws.kinds * (laws.kinds + 1)
-            (self.row,) = arrays.integer_vectors(axes, "row", across=across, below=rows)  # of the interface
+            (self.row,) = arrays.integer_vectors(axes, "row", across=across, below=rows)  # row of the interface
         self.kinds = laws.kinds
         self.constants = arrays.under("constant").vectors(axes, *laws.constants, across=across)
         memory, remembered = (*laws.memory, *more), arrays.under("memory")
@@ -73,40 +72,40 @@ class ContactList:
             setattr(self, f"old_{name}", field)
 
     def forget(self) -> None:
-        """Empty the list, history and all."""
+        """Empty the list and its contact history."""
         self.length.fill(0)
         self.first.fill(0)
 
     @ti.func
     def blocks(self, u):
-        """Blocks in use, the last maybe padded."""
+        """Number of blocks in use; the last may be padded."""
         return (self.length[u] + self.lanes - 1) // self.lanes
 
     @ti.func
     def first_of(self, u, p):
-        """The first grain of contact p, in its world."""
+        """The first grain of contact p, by its number within its world."""
         return self.grain[u, p // self.lanes][p % self.lanes] - self.units.world(u) * self.stride
 
     @ti.func
     def second_of(self, u, p):
-        """The other grain, or the wall feature, of contact p, in its world."""
+        """The other grain (by its number within its world), or the wall feature, of contact p."""
         return self.mate[u, p // self.lanes][p % self.lanes] - self.units.world(u) * self.stride
 
     @ti.func
     def remembered(self, which: ti.template(), u, p):
-        """One of the things that contact p remembers."""
+        """The memory of contact p with number `which`."""
         field = ti.static(self.memory[which])
         return field[u, p // field.n][p % field.n]
 
     @ti.func
     def remember(self, which: ti.template(), u, p, value):
-        """Have contact p remember another value of it."""
+        """Set the memory of contact p with number `which`."""
         field = ti.static(self.memory[which])
         field[u, p // field.n][p % field.n] = value
 
     @ti.func
     def set_aside(self, u):
-        """Keep the present list as the old one, for `add` to find memory in."""
+        """Copy the present list to the old one, in which `add` finds the contact history."""
         for k in range(self.units.size + 1):
             self.old_first[u, k] = self.first[u, k]
         for p in range(self.length[u]):
@@ -114,7 +113,7 @@ class ContactList:
 
     @ti.func
     def set_aside_some(self, u, row, start, end):
-        """Keep only these contacts of a grain as the old list."""
+        """Copy only these contacts of a grain to the old list."""
         self.old_first[u, row], self.old_first[u, row + 1] = start, end
         for p in range(start, end):
             self.keep_old(u, p)
@@ -129,7 +128,7 @@ class ContactList:
 
     @ti.func
     def put_back(self, u):
-        """Undo a rebuild that ran out of room."""
+        """Undo a rebuild that exceeded the capacity."""
         start = self.units.world(u) * self.stride + self.units.first(u)
         self.length[u] = self.old_first[u, self.units.size]
         for k in range(self.units.size + 1):
@@ -144,7 +143,7 @@ class ContactList:
 
     @ti.func
     def write(self, u, p, i, mate, target):
-        """Contact p is between grain i and its mate, and remembers nothing."""
+        """Write contact p between grain i and its mate, without memory."""
         block, lane, before = p // self.lanes, p % self.lanes, self.units.world(u) * self.stride
         self.grain[u, block][lane] = before + i
         self.mate[u, block][lane] = before + mate
@@ -154,13 +153,13 @@ class ContactList:
 
     @ti.func
     def clear(self, u, p):
-        """Contact p remembers nothing."""
+        """Clear the memory of contact p."""
         for k in ti.static(range(self.memories)):
             self.remember(k, u, p, 0.0)
 
     @ti.func
     def add(self, u, p, i, mate, target, row, stiffness, reach, share):
-        """Write contact p with the memory it had, if any."""
+        """Write contact p with its memory from the old list, if it was listed there."""
         self.add_new(u, p, i, mate, target, row, stiffness, reach, share)
         k, place = i - self.units.first(u), self.units.world(u) * self.stride + mate
         for q in range(self.old_first[u, k], self.old_first[u, k + 1]):
@@ -169,13 +168,13 @@ class ContactList:
 
     @ti.func
     def recall(self, u, p, q):
-        """Contact p remembers what contact q of the old list did."""
+        """Copy the memory of contact q of the old list to contact p."""
         for m in ti.static(range(self.memories)):
             self.remember(m, u, p, self.old_memory[m][u, q][0])
 
     @ti.func
     def add_new(self, u, p, i, mate, target, row, stiffness, reach, share):
-        """Write contact p, which remembers nothing."""
+        """Write contact p and its constant properties, without memory."""
         self.write(u, p, i, mate, target)
         block, lane = p // self.lanes, p % self.lanes
         if ti.static(self.kinds > 1):
@@ -186,7 +185,7 @@ class ContactList:
 
     @ti.func
     def pad(self, u):
-        """Fill the last block with pairs that never touch: of the unit's first grain and a far-off ghost."""
+        """Pad the last block with pairs that never touch: the unit's first grain and a far-off ghost."""
         i, ghost = self.units.first(u), self.units.ghost(u)
         for p in range(self.length[u], self.blocks(u) * self.lanes):
             self.write(u, p, i, ghost, ghost)

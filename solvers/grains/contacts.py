@@ -1,4 +1,4 @@
-"""Contact forces: overlaps and slips of listed contacts, and the laws of the scene on them."""
+"""Contact forces of discs: kinematics of the listed contacts, and the forces of the scene's laws."""
 
 import taichi as ti
 
@@ -13,17 +13,17 @@ from solvers.space.axes import dot, named
 from solvers.tank.load import Load
 from solvers.tank.walls import Walls
 
-# Vectors of different units stand this far apart, so that no two threads write to one cache line.
+# Distance between the vectors of different units, so that no two threads write to one cache line.
 GIVEN_APART = 2
 
 
 @ti.data_oriented
 class Contacts:
-    """What the listed contacts do to the grains, by the chosen laws.
+    """Forces of the listed contacts on the grains, by the chosen laws.
 
-    What is along the tangent is left to `solvers.space.tangent`. The levers of two grains reach to where their
-    undeformed outlines cross, R_i − ξ R_j/(R_i + R_j) to first order, and add up to the distance of the centres:
-    angular momentum is exact. (Spandonidis 2016, eq. 4.7, takes whole radii.) A wall's takes half the overlap.
+    Tangential kinematics are in `solvers.space.tangent`. The levers of two grains reach to where their undeformed
+    outlines cross, R_i − ξ R_j/(R_i + R_j) to first order. They add up to the distance of the centres, so angular
+    momentum is conserved exactly. (Spandonidis 2016, eq. 4.7, takes whole radii.) At a wall the lever is R − ξ/2.
     """
 
     def __init__(
@@ -38,9 +38,9 @@ class Contacts:
     ):
         self.units, self.grains, self.walls, self.lists, self.laws = units, grains, walls, lists, laws
         self.load, self.lined = load, grains.count > grains.mobile
-        self.lining = load.pieces - 1  # the piece that fixed grains are, where there are any
-        # What a block of pairs does to its grains: forces (N) along the axes, torques (N m) on the first and second.
-        # Nobody reads it. Neighbouring numbers that are written together are what makes the compiler look for SIMD.
+        self.lining = load.pieces - 1  # the piece of the fixed grains, if there are any
+        # Forces (N) along the axes of a block of pairs, and torques (N m) on the first and second grains. They are
+        # never read: writing them to adjacent memory is what makes the compiler vectorise the block.
         names = (*named("force", grains.axes), "turn_i", "turn_j")
         rows = Axis("unit", GIVEN_APART * units.count), lists.pairs.lane
         self.given = arrays.under("given").vectors(rows, *names, kept=False)
@@ -55,8 +55,8 @@ class Contacts:
     def pair_forces(self, g: ti.template(), pairs: ti.template(), u, dt):
         """Forces between the grains g, a block of pairs at a time.
 
-        Straight-line arithmetic on short vectors: the compiler turns it into SIMD instructions, and pairs that do not
-        touch come out with zero overlap, force and memory. Gathering and scattering grains stays scalar.
+        The arithmetic on short vectors has no branches, so the compiler vectorises it (SIMD); pairs that do not touch
+        come out with zero overlap, force and memory. Gathering and scattering of grains stays scalar.
         """
         load = self.nothing()
         for block in range(pairs.blocks(u)):
@@ -83,7 +83,7 @@ class Contacts:
 
     @ti.func
     def push_both(self, g: ti.template(), pairs: ti.template(), u, block, i, force: ti.template(), turn_i, turn_j):
-        """Push grains i with forces (N), their mates the other way, and turn both with torques (N m)."""
+        """Apply forces (N) to grains i, the reactions to their mates, and torques (N m) to both."""
         if ti.static(not self.units.single):
             at = GIVEN_APART * u
             for a in ti.static(range(g.axes)):
@@ -98,7 +98,7 @@ class Contacts:
 
     @ti.func
     def on_lining(self, g: ti.template(), pairs: ti.template(), u, i, j, force: ti.template(), turn):
-        """What a block of pairs does to the fixed grains in it; `force` (N) and `turn` (N m) push grains i."""
+        """Load of a block of pairs on its fixed grains; `force` (N) and `turn` (N m) are those on grains i."""
         start = self.units.world(u) * pairs.stride
         fixed = ti.select(j - start >= g.mobile, ti.cast(-1.0, g.real), ti.cast(0.0, g.real))
         place = [ti.cast(gathered(g.place[a], i, pairs.lanes), g.real) for a in ti.static(range(g.axes))]
@@ -107,14 +107,14 @@ class Contacts:
 
     @ti.func
     def nothing(self):
-        """A load that is none."""
+        """A zero load."""
         return ti.Vector([ti.cast(0.0, self.grains.real) for _ in ti.static(range(self.grains.axes + 1))])
 
     @ti.func
     def push_off(self, g: ti.template(), w, i, u, feature, force: ti.template(), torque, load: ti.template()):
-        """Push grain i off a wall with a force (N) and a torque (N m), and the wall the other way.
+        """Apply a wall's force (N) and torque (N m) to grain i, and the reaction to the wall.
 
-        `load` adds up what a single tank without parts feels.
+        The reaction is added to `load` if the tank is a single piece; else it is noted for the wall's piece.
         """
         g.push(w, i, force, torque)
         place = [ti.cast(g.place[a][w, i], g.real) for a in ti.static(range(g.axes))]
@@ -127,7 +127,7 @@ class Contacts:
 
     @ti.func
     def book_walls(self, u, load: ti.template(), dt):
-        """Book what a unit's contacts with walls do, once a step."""
+        """Book the load of a unit's wall contacts, once per step."""
         if ti.static(self.walls.pieces == 1):
             self.load.book(u, 0, load, dt)
         else:
@@ -138,7 +138,7 @@ class Contacts:
         """Normals (towards the first grains), distances (m) and overlaps (m; negative: gaps) of `count` pairs."""
         apart = self.differences(g.place, i, j, count)
         if ti.static(g.mixed):
-            # The difference of squares in 64 bits: an overlap of 1e-7 m keeps all digits of the force's 32.
+            # The difference of squares in 64 bits: an overlap of 1e-7 m then has full 32-bit precision.
             whole = ti.cast(reach, ti.f64)
             square = dot(apart, apart)
             distance = ti.sqrt(ti.cast(square, g.real))
@@ -152,7 +152,7 @@ class Contacts:
 
     @ti.func
     def differences(self, fields: ti.template(), i, j, count: ti.template()):
-        """What grains i have less what grains j have along each axis, of fields an axis, for `count` pairs."""
+        """Differences, i less j, of the values of grains along each axis for `count` pairs; one field per axis."""
         return [gathered(field, i, count) - gathered(field, j, count) for field in ti.static(fields)]
 
     @ti.func
@@ -186,30 +186,30 @@ class Contacts:
 
     @ti.func
     def pair_press(self, g: ti.template(), pairs: ti.template(), w, i, j, u, p):
-        """Where contact p of grains i and j is (m), and its elastic force on i (N); nothing is remembered."""
+        """Place (m) of contact p of grains i and j, and its elastic force (N) on i; memory is not changed."""
         apart = ti.Vector(g.between(w, i, j))
         overlap = ti.cast(g.radius[w, i] + g.radius[w, j] - apart.norm(), g.real)
         return self.press_along(g, pairs, w, i, u, p, overlap, apart / apart.norm())
 
     @ti.func
     def wall_press(self, g: ti.template(), contacts: ti.template(), w, i, feature, shift: ti.template(), u, p):
-        """Where contact p of a grain with a wall is (m), and its elastic force on the grain (N)."""
+        """Place (m) of contact p of a grain with a wall, and its elastic force (N) on the grain."""
         gap = self.walls.gap(feature, shift, g.place[0][w, i], g.place[1][w, i])
         overlap = ti.select(gap[0] > 0.0, ti.cast(g.radius[w, i] - gap[0], g.real), ti.cast(0.0, g.real))
         return self.press_along(g, contacts, w, i, u, p, overlap, ti.Vector([gap[1 + a] for a in range(g.axes)]))
 
     @ti.func
     def press_along(self, g: ti.template(), contacts: ti.template(), w, i, u, p, overlap, n):
-        """Place and elastic force of contact p, whose normal towards grain i is n: first the one, then the other."""
+        """Place (m), then elastic force (N), of contact p with the normal n towards grain i."""
         force, back = self.laws.elastic(contacts, u, p, overlap), g.radius[w, i] - 0.5 * overlap
         place = [g.place[a][w, i] - back * n[a] for a in ti.static(range(g.axes))]
         return ti.Vector(place + [force * n[a] for a in ti.static(range(g.axes))])
 
     @ti.func
     def census(self, g: ti.template(), pairs: ti.template(), contacts: ti.template(), u, t):
-        """Number of touching contacts, largest overlap in radii of the smaller grain, their energy (J), of a unit.
+        """Number of touching contacts of a unit, largest overlap in radii of the smaller grain, and energy (J).
 
-        The energy is elastic, and that of liquid bridges. What two units share counts half in each.
+        The energy is elastic energy plus that of liquid bridges. A pair across two units counts half in each.
         """
         w, start, end = self.units.world(u), self.units.first(u), self.units.end(u)
         zero = ti.cast(0.0, g.exact)
@@ -244,7 +244,7 @@ class Contacts:
 
 @ti.func
 def is_some(force: ti.template()):
-    """Whether a force, a list with an entry an axis, is not zero."""
+    """Whether a force, a list with one entry per axis, is not zero."""
     some = force[0] != 0.0
     for a in ti.static(range(1, len(force))):
         some = some or force[a] != 0.0
@@ -253,5 +253,5 @@ def is_some(force: ti.template()):
 
 @ti.func
 def gathered(field: ti.template(), places, count: ti.template()):
-    """The values of a grain field (W, stride) for `count` grains, by their places in all of it."""
+    """The values of a grain field (W, stride) for `count` grains, by their indices into the whole field."""
     return ti.Vector([field[0, places[k]] for k in ti.static(range(count))])

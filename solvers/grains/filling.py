@@ -1,11 +1,11 @@
-"""Filling: how many grains, and where they start before they settle.
+"""Filling: the number of grains, and their start positions before they settle.
 
 Three surfaces, in the words of Spandonidis (2016), section 5.3.1. Undisturbed: "compacted to an extent that void
 spaces are minimized as much as possible and also the free surface is almost completely flat". Slightly disturbed: "an
 in-between case", "the reasonably smoothed surface requested by the regulations". Disturbed: "a somehow naturally
 occurring free surface: the particles are thrown uniformly from a height and they are left to arrange themselves".
-Here they settle, in turn, without friction, and are levelled (`levelled`); from a level lattice; and from heaps
-thrown at random over the width (`start_positions(..., thrown=True)`).
+Here the first settles without friction and is then levelled (`levelled`); the second settles from a level lattice; the
+third from heaps thrown at random over the width (`start_positions(..., thrown=True)`).
 """
 
 from collections.abc import Sequence
@@ -18,13 +18,13 @@ from matplotlib.path import Path
 from solvers.grains.sizes import Sizes
 from solvers.tank.outline import free_area
 
-# Share of the area that settled frictional discs cover: 0.82 (random close packing of discs, Berryman 1983) less the
-# loose layers at walls and surface; used only to turn a depth into a count.
+# Area fraction of settled frictional discs: 0.82 (random close packing of discs, Berryman 1983) less the loose layers
+# at walls and surface; used only to convert a depth to a count.
 PACKING = 0.81
 SPACING = 1.04
-HANDFUL = 3  # grains across and upwards of a heap that is thrown at once
-PROUD = 0.125  # of a diameter: how far a grain must come down to be moved by levelling
-LAYERS = 6  # how many diameters below its highest grain a bed is looked at for hollows
+HANDFUL = 3  # grains across and upwards in a heap that is thrown at once
+PROUD = 0.125  # of a diameter: the least descent for which levelling moves a grain
+LAYERS = 6  # diameters below the highest grain in which levelling searches for hollows
 
 NONE_FIXED = np.empty((0, 3))
 
@@ -34,20 +34,20 @@ class DoesNotFit(ValueError):
 
 
 def count_for_depth(depth: float, outline: np.ndarray, sizes: Sizes, fixed: np.ndarray = NONE_FIXED) -> int:
-    """Number of grains that fill a tank to this depth (m) beside its `fixed` ones, at the packing of a settled bed."""
+    """Number of grains that fill a tank with `fixed` grains to a depth (m), at the packing of a settled bed."""
     return max(1, round(PACKING * free_area(outline, depth, fixed) / (0.25 * pi * sizes.mean_square)))
 
 
 def radii(count: int, diameter: float, spread: float, random: np.random.Generator) -> np.ndarray:
-    """Radii (n,) m, diameters uniform within ±spread of the mean."""
+    """Radii (n,) m, with diameters uniform within ±`spread` times the mean."""
     return Sizes(((diameter, 1.0),), spread).draw(count, random)
 
 
 def headroom(count: int, largest: float, width: float) -> float:
     """Height (m) in which `count` grains of radii up to `largest` (m) start over this width, thrown or not.
 
-    A column of n places holds n grains on average; thrown, it gets more than n by four standard deviations of a
-    number of handfuls so seldom that these may go elsewhere.
+    A column with n grains on average gets room for more, by four standard deviations of the number of handfuls that are
+    thrown on it; the few grains beyond that may go elsewhere.
     """
     pitch = 2.0 * SPACING * largest
     rows = count / max(1.0, width / pitch - 1.0)
@@ -63,11 +63,11 @@ def start_positions(
     thrown: bool = False,
     region: np.ndarray | None = None,
 ) -> np.ndarray:
-    """Positions (n, 2) m on a shaken square lattice from the floor up, no two touching, in columns.
+    """Positions (n, 2) m on a randomly perturbed square lattice from the floor up, no two touching, by columns.
 
     They keep clear of the outline, of the `fixed` grains (k, 3) and of `plates`, polylines (m, 2), and within the
-    polygon `region` (m, 2) if there is one. If `thrown`, heaps of 3 by 3 grains come down at places uniform over the
-    width, one upon the other. Raises DoesNotFit when the lattice has fewer places than there are grains.
+    polygon `region` (m, 2) if there is one. If `thrown`, heaps of 3 by 3 grains are dropped on one another, uniformly
+    over the width. Raises DoesNotFit if the lattice has fewer sites than there are grains.
     """
     reach = float(radius.max())
     lower, upper = outline.min(axis=0), outline.max(axis=0)
@@ -84,27 +84,27 @@ def start_positions(
     shaken = chosen + random.uniform(-1.0, 1.0, chosen.shape) * (SPACING - 1.0) * reach * 0.7
     shaken = np.clip(shaken, lower + reach, upper - reach)
     shaken = np.where(clear_of_walls(shaken, outline, reach, fixed, plates)[:, None], shaken, chosen)
-    # Column by column, neighbours in space are neighbours in memory.
+    # By columns, so that neighbours in space are neighbours in memory.
     return shaken[np.lexsort((chosen[:, 1], chosen[:, 0]))]
 
 
 def lattice(
     reach: float, outline: np.ndarray, fixed: np.ndarray = NONE_FIXED, plates: Sequence[np.ndarray] = ()
 ) -> np.ndarray:
-    """Places (k, 2) m for grains of radii up to `reach` (m), row by row from the floor up."""
+    """Lattice sites (k, 2) m for grains of radii up to `reach` (m), row by row from the floor up."""
     pitch = 2.0 * SPACING * reach
     lower, upper = outline.min(axis=0), outline.max(axis=0)
     sites_y = np.arange(lower[0] + reach, upper[0] - reach + 1e-9 * pitch, pitch)
     sites_z = np.arange(lower[1] + reach, upper[1] - reach + 1e-9 * pitch, pitch)
     if len(sites_y):
-        # Spread the columns over the width that is there.
+        # Centre the columns in the width.
         sites_y += 0.5 * (upper[0] - reach - sites_y[-1])
     sites = np.stack(np.meshgrid(sites_y, sites_z), axis=-1).reshape(-1, 2)
     return sites[clear_of_walls(sites, outline, reach, fixed, plates)] if len(sites) else sites
 
 
 def _thrown(columns: np.ndarray, count: int, random: np.random.Generator) -> np.ndarray:
-    """Which of the places, given by their column's y from the floor up, heaps thrown at random come to fill."""
+    """Indices of the sites, given by their columns' y from the floor up, that randomly thrown heaps fill."""
     free = [list(np.flatnonzero(columns == y)[::-1]) for y in np.unique(columns)]
     filled: list[int] = []
     while len(filled) < count:
@@ -117,10 +117,10 @@ def _thrown(columns: np.ndarray, count: int, random: np.random.Generator) -> np.
 def levelled(
     position: np.ndarray, radius: np.ndarray, outline: np.ndarray, fixed: np.ndarray = NONE_FIXED
 ) -> np.ndarray:
-    """A settled bed's positions (n, 2) m with its highest grains put, one by one, into its lowest hollows.
+    """Positions (n, 2) m of a settled bed after moving its highest grains, one by one, into its lowest hollows.
 
-    A grain comes straight down from above on what it meets first, grains or fixed grains, where it is clear of the
-    walls. Ends when the highest would not come down by an eighth of its diameter.
+    A grain is dropped vertically onto the first grain or fixed grain below, where it is clear of the walls. Levelling
+    ends when the highest grain would not descend by an eighth of its diameter.
     """
     position = position.copy()
     across = np.linspace(*_sides(outline), 1 + ceil(8.0 * np.ptp(outline[:, 0]) / (2.0 * radius.mean())))
@@ -138,7 +138,7 @@ def _sides(outline: np.ndarray) -> tuple[float, float]:
 
 
 def _hollow(grain, position, radius, across, outline, fixed) -> np.ndarray | None:
-    """The lowest place (2,) at which the grain would land, a hair above what it lands on; None where there is none."""
+    """The lowest position (2,) at which the grain would land, slightly above contact; None if there is none."""
     reach = radius[grain]
     bottom = position[grain, 1] - LAYERS * 2.0 * radius.max()
     near = position[:, 1] > bottom
@@ -146,7 +146,7 @@ def _hollow(grain, position, radius, across, outline, fixed) -> np.ndarray | Non
     below = np.concatenate([np.column_stack([position, radius])[near], fixed])
     square = (reach + below[:, 2]) ** 2 - (across[:, None] - below[:, 0]) ** 2
     floor = outline[:, 1].min()
-    nothing = floor + reach if bottom < floor else -np.inf  # below: the floor, or grains too deep to be looked at
+    nothing = floor + reach if bottom < floor else -np.inf  # without a grain below; deep ones are left out
     lands = np.where(square > 0.0, below[:, 1] + np.sqrt(np.maximum(square, 0.0)), -np.inf).max(axis=1, initial=nothing)
     places = np.column_stack([across, lands + 1e-3 * reach])[np.isfinite(lands)]
     places = places[clear_of_walls(places, outline, reach)]

@@ -1,4 +1,4 @@
-"""What grains and walls are made of, and what two of them are to each other."""
+"""Materials of grains and walls, and the contact properties of two materials."""
 
 from dataclasses import dataclass, replace
 from math import pi
@@ -7,7 +7,7 @@ from typing import Annotated
 from solvers.grains.restitution import dissipative_time_for, restitution_from
 from solvers.machine.marks import Interval, Unit
 
-# Of two kinds of grains, what has a mean; the moduli have their own rule.
+# Properties that are averaged for the contact of two kinds of grains; the moduli have their own rule.
 MEANT = (
     "friction",
     "restitution_speed",
@@ -20,7 +20,7 @@ MEANT = (
     "humidity",
     "bridge_volume",
 )
-LEAST_RESTITUTION = 0.01  # stands for all less that a dissipative time may give; a law needs some
+LEAST_RESTITUTION = 0.01  # lower bound of the restitution from a dissipative time; laws need a positive one
 
 
 @dataclass(frozen=True)
@@ -28,12 +28,11 @@ class Material:
     """An elastic, dissipative, frictional material (SI).
 
     Exactly one of `restitution` and `dissipative_time` is given. `restitution` is that of two equal grains of the
-    scene's mean diameter meeting head-on at `restitution_speed`; the dissipative time A of Brilliantov et al. (1996)
-    follows from it, or it from A. Rolling friction μ_r is the tangent of the steepest slope that holds a sphere, and
-    `rolling_damping` η_r a share of critical damping; only rolling laws use them.
-    Only laws of cohesion use the surface tension γ_s (of water unless given) and the contact angle θ of the liquid, the
-    height of the `asperities` that keep surfaces apart, the relative humidity of the air and the volume of a liquid
-    bridge.
+    scene's mean diameter in a head-on collision at `restitution_speed`. The dissipative time A of Brilliantov et al.
+    (1996) follows from it, or it from A. Rolling friction μ_r is the tangent of the steepest slope that holds a sphere,
+    and `rolling_damping` η_r a share of critical damping; only rolling laws use them. Only cohesion laws use the
+    surface tension γ_s (of water unless given) and contact angle θ of the liquid, the height of the `asperities` that
+    keep surfaces apart, the relative humidity of the air and the volume of a liquid bridge.
     """
 
     density: Annotated[float, Unit("kg/m^3"), Interval(gt=0)]
@@ -90,9 +89,10 @@ def hertz_stiffness(young: float, radius: float) -> float:
 
 
 def touching(a: Material, b: Material, given: Material | None) -> Material:
-    """What a grain of kind a meets in one of kind b: b's elasticity, and the pair's own friction and losses.
+    """Material of kind b as seen by kind a: b's elasticity, with the pair's own friction and losses.
 
-    These are `given`, or else the mean of the two kinds'.
+    Friction and losses are those of `given`, or else the means of the two kinds. Raises ValueError if one kind has a
+    restitution and the other a dissipative time.
     """
     if given is not None:
         return replace(given, young=b.young, poisson=b.poisson)
@@ -109,10 +109,10 @@ def touching(a: Material, b: Material, given: Material | None) -> Material:
 def interface(grain: Material, other: Material, mass: float, radius: float, scale: float) -> Interface:
     """Contact of a grain with another material, for an effective mass (kg) and radius (m) typical of the scene.
 
-    But for the moduli all is of `other`: a wall's material says how grains touch that wall. Restitution and dissipative
-    time follow from each other by the viscoelastic law.
-    `scale` multiplies Young's moduli; the dissipative time then grows by scale^(−2/5), so that every collision keeps
-    its restitution (x = β v^(1/5) is unchanged).
+    All properties except the moduli are those of `other`: a wall's material says how grains touch that wall.
+    Restitution and dissipative time follow from each other by the viscoelastic law. `scale` multiplies Young's moduli;
+    the dissipative time is multiplied by scale^(−2/5), so that every collision keeps its restitution (x = β v^(1/5) is
+    unchanged).
     """
     young = effective_young(grain, other)
     speed, stiffness = other.restitution_speed, hertz_stiffness(young, radius)

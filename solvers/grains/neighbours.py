@@ -1,7 +1,7 @@
-"""Who may touch whom: Verlet lists with a skin, made from a grid of cells, that carry the contacts' history.
+"""Neighbour lists: Verlet lists with a skin, built from a cell grid, that carry the contact history.
 
 A unit lists its pairs in the order of their first grains, so its forces are summed in one order on any number of
-threads. A pair within a unit stands once, i < j; one across units stands in both.
+threads. A pair within a unit is listed once, i < j (half-list); a pair across two units is listed in both.
 """
 
 import numpy as np
@@ -16,19 +16,20 @@ from solvers.space.axes import dot, named
 from solvers.space.cells import Cells
 from solvers.tank.walls import Walls
 
-# Pairs that one pass of the force loop takes: two AVX2 registers of 64-bit numbers, a fifth faster than one.
+# Pairs per pass of the force loop: two AVX2 registers of 64-bit numbers, a fifth faster than one.
 LANES = 8
-# Room a unit's lists have at first: (contacts a grain, and more). A single grain lists its mates on every side.
+# Initial capacity of a unit's lists of pairs and of wall contacts: (contacts per grain, and more). A unit of a single
+# grain lists all of its neighbours (full list).
 ROOM = {False: ((4, 16), (2, 16)), True: ((0, 12), (0, 4))}
-NEVER = 1e30  # a travel so large that the lists are stale
+NEVER = 1e30  # m, a displacement that makes the lists stale
 
 
 @ti.data_oriented
 class Neighbours:
-    """The two contact lists of every unit and when to build them anew."""
+    """The two contact lists of every unit, and when they are rebuilt."""
 
     lanes = LANES
-    pair_fleeting, wall_fleeting = (), ()  # what is remembered of contacts for as long as a list lasts
+    pair_fleeting, wall_fleeting = (), ()  # memories of contacts that last until the next rebuild
 
     def __init__(
         self,
@@ -62,26 +63,26 @@ class Neighbours:
         self.modulus = own.holding("modulus", 4.0 / 3.0 * modulus, "world row")  # k = (4/3) E* √R_eff of each interface
         self.skin = own.holding("skin", np.array([skin]), "one")
         if laws.cohesive:
-            self.bridges = own.holding("bridges", np.array([bridges]), "one")  # the longest there may be, m
+            self.bridges = own.holding("bridges", np.array([bridges]), "one")  # m, longest possible bridge
         self.cells = Cells(arrays, grains, *walls.bounds, reach)
         self.built = own.reals(place, *named("built", grains.axes), kind=own.place)
-        # No grain has moved farther than `travel` (m) since the lists were built, at the time `built_at` (s).
+        # `travel` (m) bounds the displacement of all grains since the lists were built, at the time `built_at` (s).
         self.travel = own.holding("travel", np.full(units.count, NEVER), "unit", kept=True)
         self.built_at = own.holding("built_at", np.zeros(units.count), "unit", own.exact, kept=True)
 
     def forget(self) -> None:
-        """Drop all history, for grains that were put somewhere else."""
+        """Empty the lists with all contact history, after grains were placed somewhere else."""
         self.pairs.forget()
         self.contacts.forget()
         self.expire()
 
     def expire(self) -> None:
-        """Have the lists built anew before the next step."""
+        """Have the lists rebuilt before the next step."""
         self.travel.fill(NEVER)
 
     @ti.func
     def margin(self):
-        """The gap (m) up to which two are listed: they may touch before the next lists, or hold a bridge now."""
+        """The gap (m) up to which pairs are listed: they may touch before the next rebuild, or have a liquid bridge."""
         wide = self.skin[0]
         if ti.static(self.laws.cohesive):
             wide = ti.max(wide, self.bridges[0])
@@ -89,17 +90,17 @@ class Neighbours:
 
     @ti.func
     def worn(self, u):
-        """Whether a grain may have moved farther than half the skin, so that two may be in reach unlisted."""
+        """Whether a grain may have moved by more than half the skin, so that an unlisted pair may touch."""
         return self.travel[u] > 0.5 * self.skin[0]
 
     @ti.func
     def stale(self, u, t):
-        """Whether one has."""
+        """Whether a unit's lists must be rebuilt at time t (s); if only the bound was too large, it is updated."""
         old, skin = False, self.skin[0]
         if self.worn(u):
             old = True
             if self.travel[u] < 0.5 * NEVER:
-                # The running sum of speeds overestimates what shaking grains travel; look at where they are.
+                # The running sum of speeds overestimates the displacement of shaken grains; use the actual one.
                 moved = self.moved(u, t)
                 if moved < 0.3 * skin:
                     old = False
@@ -108,7 +109,7 @@ class Neighbours:
 
     @ti.func
     def moved(self, u, t):
-        """How far (m) any grain of a unit has gone since its lists were built, and any part of the walls on top."""
+        """Largest displacement (m) of a unit's grains since its lists were built, plus twice that of moving parts."""
         w, farthest = self.units.world(u), ti.cast(0.0, self.grains.real)
         for i in range(self.units.first(u), self.units.end(u)):
             farthest = ti.max(farthest, self.way(w, i))
@@ -118,13 +119,13 @@ class Neighbours:
 
     @ti.func
     def note_built(self, w, i):
-        """Remember where a grain is as the lists are built."""
+        """Store the position of a grain when the lists are built."""
         for a in ti.static(range(self.grains.axes)):
             self.built[a][w, i] = self.grains.place[a][w, i]
 
     @ti.func
     def way(self, w, i):
-        """How far (m) a grain has gone since then."""
+        """Displacement (m) of a grain since the lists were built."""
         gone = [
             ti.cast(self.grains.place[a][w, i] - self.built[a][w, i], self.grains.real)
             for a in ti.static(range(self.grains.axes))
@@ -133,7 +134,7 @@ class Neighbours:
 
     @ti.func
     def list_pairs(self, g: ti.template(), c: ti.template(), u, dt) -> ti.i32:
-        """List the pairs of a unit; returns their number, also where it exceeds the room there is."""
+        """List the pairs of a unit; returns their number, also if it exceeds the capacity."""
         w, ghost, found = self.units.world(u), self.units.ghost(u), 0
         start, end = self.units.first(u), self.units.end(u)
         for i in range(start, end):
@@ -141,7 +142,7 @@ class Neighbours:
             place, reach = [g.place[a][w, i] for a in ti.static(range(g.axes))], g.reach[w, i] + self.margin()
             lower, upper = c.box(w, i)
             for n in range(c.rows(lower, upper)):
-                # Three neighbouring cells of a row are one run of the sorted grains.
+                # Three adjacent cells of a row are one contiguous range of the sorted grains.
                 row = c.row(lower, upper, n)
                 for k in range(c.first[w, row + lower[0]], c.first[w, row + upper[0] + 1]):
                     j = c.sorted[w, k]
@@ -157,14 +158,14 @@ class Neighbours:
 
     @ti.func
     def list_pair(self, g: ti.template(), u, found, i, j, target, dt):
-        """List the contact of two grains that are near each other; returns how many there are then."""
+        """List the contact of two neighbouring grains; returns the new number of contacts."""
         if found < self.pairs.capacity:
             self.write_pair(g, u, found, i, j, target, True, dt)
         return found + 1
 
     @ti.func
     def write_pair(self, g: ti.template(), u, p, i, j, target, recalled: ti.template(), dt):
-        """Write contact p of grains i and j, with the memory that the two had or without."""
+        """Write contact p of grains i and j, with its old memory if `recalled`."""
         w = self.units.world(u)
         radius, touch = g.radius[w, i], g.radius[w, i] + g.radius[w, j]
         effective = radius * g.radius[w, j] / touch
@@ -179,14 +180,14 @@ class Neighbours:
 
     @ti.func
     def list_contacts(self, u, t, dt) -> ti.i32:
-        """List the grains near walls; returns their number, also where it exceeds the room there is."""
+        """List the contacts of grains near walls; returns their number, also if it exceeds the capacity."""
         w, start, end, found = self.units.world(u), self.units.first(u), self.units.end(u), 0
         shift = self.walls.shift(w, t)
         for i in range(start, end):
             self.contacts.first[u, i - start] = found
             reach = self.grains.reach[w, i] + self.margin()
             for feature in range(self.walls.features):
-                # A wall contact may begin as the grain slides past a segment's end, so ask with a margin.
+                # A contact may begin when a grain slides past a segment's end, so grains beyond it are listed too.
                 if self.walls.near(feature, shift, self.grains.place[0][w, i], self.grains.place[1][w, i], reach):
                     found = self.list_contact(self.grains, u, found, i, feature, shift, dt)
         for k in range(end - start, self.units.size + 1):
@@ -195,14 +196,14 @@ class Neighbours:
 
     @ti.func
     def list_contact(self, g: ti.template(), u, found, i, feature, shift: ti.template(), dt):
-        """List the contact of a grain with a wall that is near; returns how many there are then."""
+        """List the contact of a grain with a nearby wall; returns the new number of contacts."""
         if found < self.contacts.capacity:
             self.write_contact(g, u, found, i, feature, True, dt)
         return found + 1
 
     @ti.func
     def write_contact(self, g: ti.template(), u, p, i, feature, recalled: ti.template(), dt):
-        """Write contact p of grain i with a wall, with the memory that the two had or without."""
+        """Write contact p of grain i with a wall, with its old memory if `recalled`."""
         w = self.units.world(u)
         radius, mass = g.radius[w, i], 1.0 / g.inverse_mass[w, i]
         row = self.laws.wall_row(g, w, i)
@@ -215,14 +216,14 @@ class Neighbours:
 
     @ti.func
     def asked(self, u):
-        """Whether some contacts of a unit are to be sought anew, though its lists are good."""
+        """Whether some contacts of a unit must be searched for again although its lists are valid."""
         return False
 
     @ti.func
     def rebuild(self, u, t, dt, whole):
-        """List all contacts of a unit anew, the grains being sorted into cells, or those asked for; t in s.
+        """Rebuild a unit's lists at time t (s) after the cell sort, or with `whole` false only contacts asked for.
 
-        Returns False, with the old lists in place, where they do not fit.
+        Returns False, with the old lists in place, if the contacts exceed the capacity.
         """
         fits = True
         if whole:
@@ -233,12 +234,12 @@ class Neighbours:
 
     @ti.func
     def seek(self, u, t, whole):
-        """Discs that are near each other have a contact: there is nothing to seek."""
+        """Nothing to seek for discs: each listed pair has exactly one contact."""
         return True
 
     @ti.func
     def list_all(self, u, t, dt):
-        """List who is near whom; returns False, with the old lists in place, where they do not fit."""
+        """Rebuild both neighbour lists; returns False, with the old lists in place, if they do not fit."""
         w = self.units.world(u)
         self.pairs.set_aside(u)
         self.contacts.set_aside(u)
@@ -257,9 +258,9 @@ class Neighbours:
 
     @ti.func
     def put_back(self, u):
-        """Undo `list_all`, which ran out of room: the lists are to be built anew with more.
+        """Undo `list_all` after it exceeded the capacity; the lists will be rebuilt with more room.
 
-        The laws' constants are lost, but no force is worked out before.
+        The laws' constants are lost, but no force is computed before the rebuild.
         """
         self.pairs.put_back(u)
         self.contacts.put_back(u)

@@ -1,4 +1,4 @@
-"""What presses on what: the elastic forces of all contacts of a world, for whoever looks at it."""
+"""Elastic contact forces of a world, for display and analysis."""
 
 from dataclasses import dataclass
 
@@ -20,10 +20,10 @@ Rows = ti.types.ndarray(dtype=ti.f32, ndim=2)
 
 @dataclass(frozen=True)
 class Pressing:
-    """The k contacts of a world that press, in the tank's frame.
+    """The k contacts of a world with a nonzero elastic force, in the tank's frame.
 
-    grains (k, 2): their numbers, the second NOBODY where it is a wall, a part or a fixed grain; place (k, 2) m;
-    force (k, 2) N, elastic and along the normal, on the first.
+    `grains` (k, 2): numbers of the two grains, the second NOBODY for a wall, a part or a fixed grain; `place` (k, 2) m
+    of the contact; `force` (k, 2) N, elastic and along the normal, on the first grain.
     """
 
     grains: np.ndarray
@@ -32,19 +32,19 @@ class Pressing:
 
 
 UNTOUCHED = Pressing(np.zeros((0, 2), dtype=int), np.zeros((0, 2)), np.zeros((0, 2)))
-"""Of grains at which nobody looked, or that do not touch."""
+"""No contacts: the grains do not touch, or have not been read."""
 
 
 @ti.data_oriented
 class Presser:
-    """Reads the lists of contacts; what they remember stays as it is."""
+    """Reads the contact lists without changing the contact history."""
 
     def __init__(self, units: Units, grains: Grains, walls: Walls, neighbours: Neighbours, contacts: Contacts):
         self.units, self.grains, self.walls = units, grains, walls
         self.neighbours, self.contacts = neighbours, contacts
 
     def read(self, world: int, time: float, number: np.ndarray) -> Pressing:
-        """What presses in a world at its time (s); number (n,): the grains' own, in solver order."""
+        """The contact forces in a world at its time (s); `number` (n,): the grains' own numbers in solver order."""
         units = slice(world * self.units.a_world, (world + 1) * self.units.a_world)
         listed = [kind.length.to_numpy()[units] for kind in (self.neighbours.pairs, self.neighbours.contacts)]
         first = np.concatenate([[0], np.cumsum(sum(listed))]).astype(np.int32)
@@ -58,7 +58,7 @@ class Presser:
 
     @ti.kernel
     def read_world(self, w: ti.i32, t: ti.f64, first: Offsets, names: Names, rows: Rows):
-        """Fill the rows of each unit, from `first` on, with the contacts that press."""
+        """Fill the rows of each unit, from `first` on, with its contact forces."""
         for k in range(self.units.a_world):
             u = w * self.units.a_world + k
             self.read_pairs(self.grains, self.neighbours.pairs, w, u, first[k], names, rows)
@@ -69,7 +69,7 @@ class Presser:
     def read_pairs(
         self, g: ti.template(), pairs: ti.template(), w, u, first, names: ti.template(), rows: ti.template()
     ):
-        """One row a pair; of one that two units list, in the unit of its lower number."""
+        """One row per pair; a pair listed by two units goes to the unit of its lower-numbered grain."""
         start, end = self.units.first(u), self.units.end(u)
         for p in range(pairs.length[u]):
             listed, mate = pairs.first_of(u, p), pairs.second_of(u, p)
@@ -81,7 +81,7 @@ class Presser:
     def read_walls(
         self, g: ti.template(), contacts: ti.template(), w, u, t, first, names: ti.template(), rows: ti.template()
     ):
-        """One row a contact with a wall or a part."""
+        """One row per contact with a wall or a part."""
         shift = self.walls.shift(w, t)
         for p in range(contacts.length[u]):
             i, feature = contacts.first_of(u, p), contacts.second_of(u, p)
@@ -90,7 +90,7 @@ class Presser:
 
     @ti.func
     def write(self, row, i, j, press, names: ti.template(), rows: ti.template()):
-        """A row, left empty where nothing presses: of a contact's place and its force, as `press` has them."""
+        """Write a contact's place and force from `press` to a row, left empty if the force is zero."""
         force = [press[self.grains.axes + a] for a in ti.static(range(self.grains.axes))]
         if is_some(force):
             names[row, 0] = i

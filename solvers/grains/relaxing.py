@@ -1,4 +1,4 @@
-"""Grains that were put on top of each other are moved apart before they can burst."""
+"""Removal of excessive overlaps at the start, which would make grains burst apart."""
 
 from collections.abc import Iterator
 
@@ -7,18 +7,19 @@ from scipy.spatial import cKDTree
 
 from solvers.grains.materials import hertz_stiffness
 
-# Of the energy that lifts the smallest grain by its diameter: what a contact may hold at the start, and may keep.
+# Elastic energy that a contact may have at the start, and may keep, relative to that which lifts the smallest grain by
+# its diameter.
 BURSTING, AT_REST = 1.0, 0.01
 SWEEPS = 2000
 
 
 def relaxed(position: np.ndarray, radius: np.ndarray, edges: np.ndarray, bursting: float, at_rest: float) -> np.ndarray:
-    """Places (n, 2) m of a world's grains, moved apart where a contact of two would make them jump by a diameter.
+    """Positions (n, 2) m of a world's grains, moved apart if any overlap would make grains jump by a diameter.
 
     `radius` (n,) m; `edges` (k, 2, 2) m, the two ends of each wall; `bursting` and `at_rest` (m) are the overlaps that
-    a contact may have at the start and may keep. Overlaps are halved between the two grains, and grains pushed off
-    walls, again and again (projection of constraints, Müller, Heidelberger, Hennix and Ratcliff 2007) until none is
-    deeper than `at_rest`, or after SWEEPS sweeps. Beds with the overlaps of their weight stay as they are.
+    a contact may have at the start and may keep. Each sweep shares a pair's overlap equally between its grains and
+    pushes grains off walls (projection of constraints, Müller, Heidelberger, Hennix and Ratcliff 2007), until none is
+    deeper than `at_rest`, or for SWEEPS sweeps. Beds with overlaps due to their weight only stay as they are.
     """
     if _deepest(position, radius, edges) <= bursting:
         return position
@@ -31,9 +32,9 @@ def relaxed(position: np.ndarray, radius: np.ndarray, edges: np.ndarray, burstin
 
 
 def lifting_overlap(share: float, radius: float, density: float, young_modulus: float, gravity: float) -> float:
-    """The overlap ξ (m) of two grains that holds a share of what lifts one by its diameter: (2/5) k ξ^(5/2).
+    """Overlap ξ (m) of two grains whose elastic energy (2/5) k ξ^(5/2) is a share of that to lift one by its diameter.
 
-    `radius` (m) and `density` (kg/m³) of the grains, `young_modulus` (Pa) between them, `gravity` (m/s²).
+    `radius` (m) and `density` (kg/m³) of the grains, effective `young_modulus` (Pa), `gravity` (m/s²).
     """
     weight = 4.0 / 3.0 * np.pi * radius**3 * density * gravity
     stiffness = hertz_stiffness(young_modulus, 0.5 * radius)
@@ -41,7 +42,7 @@ def lifting_overlap(share: float, radius: float, density: float, young_modulus: 
 
 
 def _deepest(position: np.ndarray, radius: np.ndarray, edges: np.ndarray) -> float:
-    """The deepest overlap (m) of two grains, or of a grain and a wall."""
+    """The largest overlap (m) of two grains, or of a grain and a wall."""
     pairs = _pairs(position, radius)
     apart = np.linalg.norm(position[pairs[:, 0]] - position[pairs[:, 1]], axis=1)
     overlap = (radius[pairs].sum(axis=1) - apart).max(initial=0.0)
@@ -49,7 +50,7 @@ def _deepest(position: np.ndarray, radius: np.ndarray, edges: np.ndarray) -> flo
 
 
 def _pushes(position: np.ndarray, radius: np.ndarray, edges: np.ndarray, kept: float) -> np.ndarray:
-    """How far (n, 2) m grains move: the mean of what their contacts ask for, which keep an overlap of `kept` (m)."""
+    """Displacements (n, 2) m of grains: the mean of those that leave each of their contacts an overlap `kept` (m)."""
     pairs = _pairs(position, radius)
     away = position[pairs[:, 0]] - position[pairs[:, 1]]
     apart = np.maximum(np.linalg.norm(away, axis=1), 1e-12)
@@ -68,12 +69,12 @@ def _pushes(position: np.ndarray, radius: np.ndarray, edges: np.ndarray, kept: f
 
 
 def _pairs(position: np.ndarray, radius: np.ndarray) -> np.ndarray:
-    """Grains (k, 2) that may overlap."""
+    """Pairs (k, 2) of grains that may overlap."""
     return cKDTree(position).query_pairs(2.0 * radius.max(), output_type="ndarray")
 
 
 def _walls(position: np.ndarray, radius: np.ndarray, edges: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-    """Of each wall the direction (n, 2) away from its nearest point and the depth (n,) m of the grains in it."""
+    """For each wall, the grains' directions (n, 2) away from its nearest point, and their overlaps (n,) m with it."""
     for a, b in edges:
         along = np.clip((position - a) @ (b - a) / ((b - a) @ (b - a)), 0.0, 1.0)
         away = position - (a + along[:, None] * (b - a))

@@ -1,22 +1,22 @@
-"""Restitution of damped contacts, and the damping that gives it. Every contact ends where its force does."""
+"""Restitution of damped contacts as a function of damping, and the inverse. A contact ends when its force vanishes."""
 
 from functools import cache
 from math import acos, acosh, exp, log, sqrt
 
-# How the damping of a Hertz contact grows with the overlap ξ, as ξ to this power.
+# Powers of the overlap ξ to which the damping of a Hertz contact is proportional.
 VISCOELASTIC = 0.5  # Brilliantov et al. (1996)
 CONSTANT = 0.0  # a linear dashpot
-# 1 − e = C x for a little damping x, by power: C = 2 (5/4)^q B(q, 3/2)/(5/2), q = 2 (power + 1)/5, the work of the
-# damping along the elastic collision; 1.15344 in Schwager and Pöschel (1998).
+# C of 1 − e = C x for weak damping x, by power: C = 2 (5/4)^q B(q, 3/2)/(5/2), q = 2 (power + 1)/5, from the work of
+# the damping along the elastic collision; 1.15344 in Schwager and Pöschel (1998).
 FIRST_ORDER = {VISCOELASTIC: 1.15344, CONSTANT: 1.78781}
 
 
 @cache
 def restitution(damping: float, power: float = VISCOELASTIC) -> float:
-    """Coefficient of restitution of a Hertz contact with damping ∝ ξ^power, against that damping x.
+    """Coefficient of restitution of a Hertz contact with a damping x proportional to ξ^power.
 
     In units of the elastic collision, time (m²/(k² v))^(1/5) and length v times that, the motion is
-    ξ̈ = −ξ^(3/2) − x ξ^power ξ̇ from ξ = 0, ξ̇ = 1. Of the viscoelastic law, x = β v^(1/5) with
+    ξ̈ = −ξ^(3/2) − x ξ^power ξ̇ from ξ = 0, ξ̇ = 1. For the viscoelastic law x = β v^(1/5) with
     β = (γ_n/m_eff)(m_eff/k)^(3/5).
     """
     from scipy.integrate import solve_ivp  # slow to import, and only making a scene needs it

@@ -1,21 +1,21 @@
-"""The sizes of grains: distributions of the diameter, by number."""
+"""Grain sizes: distributions of the diameter by number."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-MOST_DEVIATIONS = 3.0  # a normal distribution is cut there, on both sides
-SMALLEST_SHARE = 0.1  # and no grain is smaller than this share of its class's diameter
+MOST_DEVIATIONS = 3.0  # standard deviations at which a normal distribution is truncated, on both sides
+SMALLEST_SHARE = 0.1  # smallest diameter of a normal distribution, relative to its class's diameter
 
 
 @dataclass(frozen=True)
 class Sizes:
     """Diameters of one or several classes of grains, each class spread about its own diameter.
 
-    `classes`: (diameter m, share by number), the shares of any sum. `spread`: half-width of a uniform distribution
-    relative to the diameter or, if `normal`, the relative standard deviation of a normal one before it is cut at
-    ± 3 standard deviations and at a tenth of the diameter.
+    `classes`: (diameter m, share by number); the shares may have any sum. `spread`: half-width of a uniform
+    distribution relative to the diameter or, if `normal`, the relative standard deviation of a normal one before it is
+    truncated at ± 3 standard deviations and at a tenth of the diameter.
     """
 
     classes: tuple[tuple[float, float], ...]
@@ -30,13 +30,13 @@ class Sizes:
 
     @property
     def mean_square(self) -> float:
-        """Mean of the squared diameter (m²) by number, which is what a grain covers of the plane, times 4/π."""
+        """Mean squared diameter (m²) by number: 4/π times the mean area of a grain in the plane."""
         diameter, share = self._classes
         return float(share @ diameter**2 * self._moments[1])
 
     @property
     def range(self) -> tuple[float, float]:
-        """Smallest and largest diameter (m) that may come."""
+        """Smallest and largest possible diameter (m)."""
         diameter = self._classes[0]
         low, high = -self.spread, self.spread
         if self.normal and self.spread:
@@ -44,7 +44,7 @@ class Sizes:
         return float(diameter.min() * (1.0 + low)), float(diameter.max() * (1.0 + high))
 
     def draw(self, count: int, random: np.random.Generator) -> np.ndarray:
-        """Radii (count,) m; of each class its share to within one grain, in random order."""
+        """Draw radii (count,) m in random order, with each class's share exact to within one grain."""
         diameter, share = self._classes
         each = np.repeat(diameter, apportion(share * count))
         if len(diameter) > 1:
@@ -60,7 +60,7 @@ class Sizes:
 
     @property
     def _cuts(self) -> tuple[float, float]:
-        """Where the standard normal distribution is cut."""
+        """Bounds at which the standard normal distribution is truncated."""
         return max(-MOST_DEVIATIONS, (SMALLEST_SHARE - 1.0) / self.spread), MOST_DEVIATIONS
 
     @property
@@ -71,7 +71,7 @@ class Sizes:
 
     @property
     def _moments(self) -> tuple[float, float]:
-        """Mean and mean square of a diameter relative to its class's."""
+        """Mean and mean square of a diameter relative to its class's diameter."""
         if self.normal and self.spread:
             mean, variance = self._standard.stats("mv")
             first = 1.0 + self.spread * mean
@@ -80,7 +80,7 @@ class Sizes:
 
 
 def apportion(wanted: Sequence[float]) -> np.ndarray:
-    """Whole numbers within one of those wanted, of the same sum: by the largest remainders (Hamilton's method)."""
+    """Round numbers to integers with the same sum, each within one, by the largest remainders (Hamilton's method)."""
     wanted = np.asarray(wanted, dtype=np.float64)
     whole = np.floor(wanted).astype(int)
     missing = round(wanted.sum()) - whole.sum()

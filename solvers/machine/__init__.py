@@ -1,1 +1,1 @@
-"""What the physics runs on: Taichi started once, fields in memory, units of work, marks of what numbers mean."""
+"""The runtime below the physics: starting Taichi, fields in memory, units of work, markers of units and ranges."""

@@ -1,4 +1,4 @@
-"""Whether a limit on memory leaves Taichi what it takes as it starts; where it does not, it aborts the program."""
+"""Check that a memory limit leaves Taichi enough address space to start; without it Taichi aborts the program."""
 
 import os
 from pathlib import Path
@@ -10,11 +10,11 @@ try:
 except ImportError:  # Windows
     resource = None
 
-NEEDED = 1.6e9  # bytes of address space: a pool of 1 GiB, the compiler, stacks; 1.4e9 were taken on one thread
+NEEDED = 1.6e9  # bytes of address space: a pool of 1 GiB, the compiler, stacks; 1.4e9 measured on one thread
 
 
 def check() -> None:
-    """Raise Unavailable, one sentence, where it does not."""
+    """Raise Unavailable, one sentence, if less than NEEDED bytes are left."""
     limit = resource.getrlimit(resource.RLIMIT_AS)[0] if resource else -1
     if limit in (-1, getattr(resource, "RLIM_INFINITY", -1)):
         return

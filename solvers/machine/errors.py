@@ -1,10 +1,10 @@
-"""What a solver says when it cannot go on."""
+"""Errors that a solver raises when it cannot continue."""
 
 
 class BadState(RuntimeError):
-    """A running simulation reached a state that is no longer physics; the message is one sentence with the remedy.
+    """A running simulation reached an unphysical state; the message is one sentence with the remedy.
 
-    `world` is the number of the world in the simulation, `what` the sentence without it.
+    `world` is the number of the world in the simulation, `what` the sentence without that number.
     """
 
     def __init__(self, world: int, what: str):
@@ -13,8 +13,8 @@ class BadState(RuntimeError):
 
 
 class Unavailable(ValueError):
-    """This machine or this scene has not what was asked for; the message is one sentence with the remedy."""
+    """This machine or scene cannot provide what was asked for; the message is one sentence with the remedy."""
 
 
 class BadOutline(ValueError):
-    """No grain can have this outline, or no contact these outlines; the message is one sentence."""
+    """An outline that no grain, or no contact rule, can use; the message is one sentence."""

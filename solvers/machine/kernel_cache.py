@@ -1,9 +1,9 @@
-"""A folder in which Taichi can keep compiled kernels, found before Taichi is imported.
+"""The folder in which Taichi caches compiled kernels, provided before Taichi is imported.
 
-Taichi 1.7.4 keeps them in taichi/ticache of the user's cache folder. Without a home it aborts as it is imported, and
-where it cannot make that folder it ends in a segmentation fault. Such a person gets a folder for this process and those
-that it starts, which goes when it ends. A process that was killed while it wrote there leaves Taichi's lock behind;
-Taichi then neither reads nor writes kernels any more, without a word, until that file is removed.
+Taichi 1.7.4 keeps them in taichi/ticache of the user's cache folder. If HOME is not set it aborts on import, and if it
+cannot make that folder it ends in a segmentation fault. In both cases this process and its children get a temporary
+folder, which is removed when the process ends. A process killed while it writes there leaves Taichi's lock file behind;
+Taichi then silently stops reading and writing cached kernels until that file is removed.
 """
 
 import atexit
@@ -23,7 +23,7 @@ _lacking = ""
 
 
 def provide() -> None:
-    """Have the environment name a folder that can be written, if it does not, and remove a lock that is left there."""
+    """Make sure that the environment names a writable cache folder, and remove a stale lock from it."""
     global _lacking
     if os.name != "posix":  # elsewhere Taichi has a folder of its own
         return
@@ -40,17 +40,17 @@ def provide() -> None:
 
 
 def lacking() -> str:
-    """What this process lacks and what that costs, in a sentence; empty where it has a folder that lasts."""
+    """One sentence on the missing cache folder and what that costs; empty if the folder is a permanent one."""
     return _lacking
 
 
 def missing() -> bool:
-    """Whether there is no folder at all, so that Taichi must not be started."""
+    """Whether there is no cache folder at all, so that Taichi must not be started."""
     return os.environ.get("XDG_CACHE_HOME") == NOWHERE
 
 
 def _usual() -> Path | None:
-    """Where Taichi looks."""
+    """The folder that Taichi uses by default; None if there is none."""
     base, home = os.environ.get("XDG_CACHE_HOME"), os.environ.get("HOME")
     if base == NOWHERE or not (base or home):
         return None
@@ -58,7 +58,7 @@ def _usual() -> Path | None:
 
 
 def _usable(folder: Path) -> bool:
-    """Whether files can be made in a folder, itself made if missing."""
+    """Whether files can be written in a folder, which is made if missing."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=folder):
@@ -74,7 +74,7 @@ def _unlock(folder: Path) -> None:
 
 
 def _temporary() -> str:
-    """A folder that goes when this process ends; empty where none can be made."""
+    """A temporary folder, removed when this process ends; empty if none can be made."""
     try:
         folder = tempfile.mkdtemp(prefix="cargolab-")
     except OSError:
@@ -87,5 +87,5 @@ def _remove(folder: str, maker: int) -> None:
     if os.getpid() != maker:
         return
     if taichi := sys.modules.get("taichi"):
-        taichi.reset()  # which writes its kernels, and would make the folder again later
+        taichi.reset()  # it writes its kernels now; at exit it would make the folder again
     shutil.rmtree(folder, ignore_errors=True)

@@ -1,7 +1,7 @@
-"""Markers that say what a number means: its SI unit, the range it may take, the words it may be.
+"""Markers of a parameter's SI unit and of the range it may take.
 
-They annotate the fields of the solvers' parameter classes, `Annotated[float, Unit("Pa"), Interval(gt=0)]`, so that
-whoever reads parameters from people (the presets of `lab`) can check them without a second list of keys.
+They annotate the fields of the solvers' parameter classes, `Annotated[float, Unit("Pa"), Interval(gt=0)]`, so that code
+that reads user input (the presets of `lab`) can check it without a second list of keys.
 """
 
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ class Unit:
 
 @dataclass(frozen=True)
 class Interval:
-    """The values a field may take: greater than, at least, less than, at most."""
+    """The values a field may take: greater than `gt`, at least `ge`, less than `lt`, at most `le`."""
 
     gt: float | None = None
     ge: float | None = None

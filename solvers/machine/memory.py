@@ -1,8 +1,8 @@
-"""Fields read and written where they lie in the processor's memory.
+"""Direct access to fields in the processor's memory.
 
-Taichi compiles a kernel for every field that is read, one for every field that is written and one for every field that
-is filled: a third of the time that a simulation takes to set up. Here one kernel tells where the first of them lies,
-and Taichi how far from it the others do.
+Taichi compiles one kernel for each field that is read, one for each that is written and one for each that is filled: a
+third of the set-up time of a simulation. Here one kernel gets the address of the first field, and Taichi knows the
+offsets of the others.
 """
 
 import ctypes
@@ -17,10 +17,10 @@ OPENED = ("to_numpy", "from_numpy", "fill")
 
 
 def lay_open(fields: Sequence[ti.Field], across: Sequence[bool], nested: Sequence[bool]) -> None:
-    """Have the dense fields of one tree on the processor read and written directly.
+    """Read and write the dense fields of one tree on the processor directly from now on.
 
-    The first index is contiguous of those that lie across; nested ones were declared axis by axis. They must be closed
-    before their memory is given back.
+    `across` marks fields whose first index is contiguous, `nested` those declared axis by axis. Fields must be closed
+    before their memory is freed.
     """
     levels = [2 if inner else 1 for inner in nested]
     nodes = [field.parent(level) for field, level in zip(fields, levels, strict=True)]
@@ -32,7 +32,7 @@ def lay_open(fields: Sequence[ti.Field], across: Sequence[bool], nested: Sequenc
 
 
 def close(fields: Sequence[ti.Field]) -> None:
-    """Have fields read and written by Taichi again, which knows when they are gone."""
+    """Let Taichi read and write the fields again; unlike a direct view, it knows when they have been freed."""
     for field in fields:
         for name in OPENED:
             vars(field).pop(name, None)
@@ -40,7 +40,7 @@ def close(fields: Sequence[ti.Field]) -> None:
 
 @ti.data_oriented
 class First:
-    """A field whose first element Taichi is asked for."""
+    """A field and a kernel that returns the address of its first element."""
 
     def __init__(self, field: ti.Field):
         self.field = field.get_scalar_field(0) if _size(field) else field
@@ -48,17 +48,17 @@ class First:
 
     @ti.kernel
     def address(self) -> ti.u64:
-        """Where it lies."""
+        """Address of the first element."""
         return ti.get_addr(self.field, self.origin)
 
 
 def _size(field: ti.Field) -> tuple[int, ...]:
-    """The axis along which the vectors of a field lie, if it holds vectors."""
+    """Shape of one element: (n,) for a field of n-vectors, () for a scalar field."""
     return (field.n,) if hasattr(field, "n") else ()
 
 
 def _view(field: ti.Field, address: int, across: bool) -> np.ndarray:
-    """The memory of a field as an array of its shape, and of its vectors'."""
+    """The memory of a field as an array of its shape, with a last axis for the components of vectors."""
     kind, shape = np.dtype(KINDS[field.dtype]), (*field.shape[:: -1 if across else 1], *_size(field))
     memory = (ctypes.c_char * (int(np.prod(shape)) * kind.itemsize)).from_address(address)
     whole = np.frombuffer(memory, kind).reshape(shape)

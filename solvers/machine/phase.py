@@ -1,4 +1,4 @@
-"""A piece of a step: what acts, and on what at a time."""
+"""A phase of the time step: a function and the units of work it runs over."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -10,12 +10,12 @@ from solvers.machine.units import Units
 class Phase:
     """A Taichi function that a step calls once for each unit of a matter, or once for each world.
 
-    Before the particles move, `act(u, t, kick, dt)`: what follows from where they are at time t (s). Afterwards
-    `act(u, frame, kick, dt)`, in a tank that moves as `frame` says (`Prescribed.frame`), and returns whether all is
-    sound. dt (s) is the step, and `kick` (s) from the middle of the last to the middle of this one, for velocities that
-    are kept half a step behind: half a step since the particles were launched. What acts on a unit writes to nothing
-    that others read in the same phase: schedules run units side by side, and phases one after
-    another. `units` is None where it acts on whole worlds.
+    Before the particles move it is `act(u, t, kick, dt)`, which works from their positions at time t (s). Afterwards it
+    is `act(u, frame, kick, dt)`, in a tank whose motion is `frame` (`Prescribed.frame`); it moves the particles and
+    returns whether their state is sound. dt (s) is the step. `kick` (s) runs from the middle of the last step to the
+    middle of this one, for velocities kept half a step behind; in the first step after a launch it is dt/2. Schedules
+    run units side by side and phases one after another, so a phase acting on one unit must not write what other units
+    read in the same phase. `units` is None for a phase that acts on whole worlds.
     """
 
     act: Callable

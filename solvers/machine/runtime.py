@@ -1,9 +1,9 @@
 """The one place where Taichi is started.
 
 Taichi 1.7.4 silently miscompiles reads of a local vector's element after the vector was reassigned (upstream report
-8744); switching its control-flow-graph optimisation off cures it. It also draws, for every expression that it traces,
-the source lines with a mark under them, in case that one is wrong: half of the time that a simulation takes to set up.
-Here it tells file and line. Every kernel of the lab relies on this module.
+8744); switching its control-flow-graph optimisation off cures it. For every expression that it traces it also formats
+the marked source lines of a possible error message, which takes half of a simulation's set-up time; here it formats
+file and line only. Every kernel of the lab relies on this module.
 """
 
 import ctypes
@@ -26,7 +26,7 @@ ARCHES = ("auto", "cpu", "cuda", "vulkan")
 
 @dataclass(frozen=True)
 class Precision:
-    """Kinds of numbers: of places (m) and times, and of all the rest."""
+    """Number types: `place` for positions (m), `real` for the rest."""
 
     place: object
     real: object
@@ -40,7 +40,7 @@ PRECISIONS = {
 
 
 def _place(context: ASTTransformerContext, node) -> str:
-    """Where an expression stands, in words."""
+    """File, line and function of an expression, for error messages."""
     return f'File "{context.file}", line {node.lineno + context.lineno_offset}, in {context.func.func.__name__}:\n'
 
 
@@ -50,11 +50,11 @@ _most_cores = 2**31
 _running: tuple | None = None
 _used = False  # whether a state was made since the last start
 _live: WeakSet = WeakSet()  # states (`machine.state`) that have not been released
-_threads: list[int] = []  # Taichi's, in the order in which they began (Linux)
+_threads: list[int] = []  # Taichi's threads in the order in which they started (Linux)
 
 
 def use_cores(most: int) -> None:
-    """Have `available_cores` say no more than this, in a process that shares the machine with others like it."""
+    """Limit what `available_cores` returns, in a process that shares the machine with others like it."""
     global _most_cores
     _most_cores = most
 
@@ -66,10 +66,10 @@ def available_cores() -> int:
 
 
 def choose_arch(wanted: str, precision: str) -> str:
-    """What "auto" stands for here: CUDA, else a real Vulkan GPU, else the CPU; else what is wanted, if it is there.
+    """The arch to use: for "auto" CUDA, else a Vulkan GPU in hardware, else the CPU; otherwise the one `wanted`.
 
-    Taichi's Vulkan has no 64-bit functions, so it is for f32 alone; one that runs in software is 5 to 8 times slower
-    than the CPU, so it is used on request only. Raises Unavailable, one sentence.
+    Taichi's Vulkan backend has no 64-bit functions, so it serves f32 only. Software Vulkan is 5 to 8 times slower than
+    the CPU, so it is used on request only. Raises Unavailable, one sentence, if the wanted arch is not there.
     """
     if wanted == "auto":
         if _cuda():
@@ -86,7 +86,7 @@ def choose_arch(wanted: str, precision: str) -> str:
 
 
 def _cuda() -> bool:
-    """Whether there is a CUDA driver; asked here first, since Taichi grumbles where there is none."""
+    """Whether there is a CUDA driver; checked here first, since Taichi prints a warning if there is none."""
     try:
         ctypes.CDLL("nvcuda.dll" if sys.platform == "win32" else "libcuda.so.1")
     except OSError:
@@ -95,17 +95,17 @@ def _cuda() -> bool:
 
 
 def _real_vulkan() -> bool:
-    """Whether there is Vulkan and a graphics device behind it."""
+    """Whether there is Vulkan with a graphics device behind it."""
     device = not sys.platform.startswith("linux") or bool(glob("/dev/dri/renderD*"))
     return device and bool(ti._lib.core.with_vulkan())
 
 
 def initialise(threads: int = 0, arch: str = "cpu", precision: str = "f64", **options) -> None:
-    """Start Taichi with `threads` threads (0: all cores); nothing happens if it runs like that already.
+    """Start Taichi with `threads` threads (0: all cores); nothing happens if it runs with these settings already.
 
-    Starting it anew invalidates every field and kernel made before. It is also done where no arrays are in use any
-    more: Taichi numbers its fields from the start on, and finds a kernel that it has compiled before only where the
-    fields have the same numbers. Raises Unavailable (see `choose_arch`), also where Taichi lacks a folder or memory.
+    A restart invalidates every field and kernel made before. Taichi is also restarted when no arrays are in use any
+    more: it numbers its fields from the start on, and finds a cached kernel only if the fields have the same numbers
+    again. Raises Unavailable (see `choose_arch`), also if Taichi lacks a cache folder or memory.
     """
     global _running, _used
     if kernel_cache.missing():
@@ -117,7 +117,7 @@ def initialise(threads: int = 0, arch: str = "cpu", precision: str = "f64", **op
         memory.close(state.fields)
     _live.clear()
     _used = False
-    with redirect_stdout(StringIO()):  # Taichi announces its backend, and has no switch for it
+    with redirect_stdout(StringIO()):  # Taichi prints its backend, and no option turns that off
         _start(*wanted, options)
     _running = None if options else wanted
 
@@ -130,7 +130,7 @@ def _start(threads: int, arch: str, real, options: dict) -> None:
         default_fp=real,
         cpu_max_num_threads=threads,
         cfg_optimization=False,
-        # Taichi warns of every place where a 64-bit time is meant to lose digits, and when two processes share a cache.
+        # Taichi warns at every intended cast of a 64-bit time to 32 bits, and when two processes share a cache.
         log_level=ti.ERROR,
         offline_cache=True,
         **options,
@@ -143,26 +143,26 @@ def _own_threads() -> set[int]:
 
 
 def spread_threads() -> None:
-    """Hold Taichi's threads, where they are as many as the cores, to cores of their own (Linux).
+    """Pin each of Taichi's threads to its own core if there are as many threads as cores (Linux).
 
-    Bands of a world wait for each other by spinning. Beside a busy program Linux may give all of them one core, where
-    each waits until the other's time is up: a step then took 180 times as long, held to their cores 2.6 times (2500
+    Bands of a world wait for each other by spinning. Beside a busy program Linux may put all of them on one core, where
+    each spins until its time slice ends: a step then took 180 times as long, with pinned threads 2.6 times (2500
     grains, two cores).
     """
     if not _threads or not _running or _running[0] != len(os.sched_getaffinity(0)):
         return
     cores = sorted(os.sched_getaffinity(0))
-    for place, thread in enumerate(_threads):  # a pool's threads follow one another, so none of its share a core
-        with suppress(OSError):  # it has ended
+    for place, thread in enumerate(_threads):  # threads of one pool are consecutive, so no two of them share a core
+        with suppress(OSError):  # the thread has ended
             os.sched_setaffinity(thread, {cores[place % len(cores)]})
 
 
 def merge_repeats(wanted: bool) -> None:
-    """Whether Taichi is to look in kernels that are compiled from here on for what is worked out twice.
+    """Switch Taichi's elimination of common subexpressions on or off for kernels compiled from here on.
 
-    Its search takes a time that grows as the square of a kernel's length, and much of what it finds LLVM finds, too. Of
-    discs' kernels it takes 3 of 7 s and makes them a fifth faster; of outlines' 15 of 25 s, or 42 of 60 where they
-    bend, for 5 to 15 % (each measured side by side on one core).
+    Its time grows as the square of a kernel's length, and LLVM finds much of the same. For discs it takes 3 of 7 s of
+    compilation and makes kernels a fifth faster; for outlines 15 of 25 s, for non-convex ones 42 of 60 s, and gains 5
+    to 15 % (each measured side by side on one core).
     """
     ti.lang.impl.current_cfg().opt_level = int(wanted)
 
@@ -173,14 +173,14 @@ def running_arch() -> str:
 
 
 def take_in(state) -> None:
-    """Count a `State` that has its memory now among those in use."""
+    """Register a `State` whose memory has been allocated."""
     global _used
     _used = True
     _live.add(state)
 
 
 def let_go(state) -> bool:
-    """Count a state as released; returns whether Taichi still has its memory, not having been started anew."""
+    """Unregister a state; returns whether its memory is still allocated, since Taichi was not restarted."""
     held = state in _live
     _live.discard(state)
     return held

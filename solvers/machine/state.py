@@ -1,13 +1,13 @@
 """State: arrays by name, each with named axes, in one Taichi field tree.
 
-Whoever owns arrays declares them under a name of its own:
+Each owner declares its arrays under its own name:
 
     own = arrays.under("clock")
     self.step, self.status = own.integers((Axis("world", worlds),), "step", "status")
 
-makes the arrays "clock.step" and "clock.status". Checkpoints, resume, growing, reordering and leaving a world out go by
-these names and axes. Three axes mean something to everybody: along "world" and "unit" the worlds lie one after the
-other, and what lies along "grain" follows the grains when they are numbered anew.
+makes the arrays "clock.step" and "clock.status". Checkpoints, resume, growing, reordering and leaving a world out use
+these names and axes. Three axis names have a general meaning: along "world" and "unit" the worlds are consecutive, and
+entries along "grain" follow the grains when they are renumbered.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
@@ -23,7 +23,7 @@ OF_WORLDS = ("world", "unit")
 
 @dataclass(frozen=True)
 class Axis:
-    """What an array's places along one direction are, in a word, and how many there are."""
+    """An axis of an array: a word for what its entries are, and their number."""
 
     name: str
     length: int
@@ -33,18 +33,18 @@ Axes = tuple[Axis, ...]
 
 
 def world_axis(axes: Axes) -> int | None:
-    """Along which axis the worlds lie one after the other; None for what is of all worlds together."""
+    """Number of the axis along which the worlds are consecutive; None for an array common to all worlds."""
     return next((k for k, axis in enumerate(axes) if axis.name in OF_WORLDS), None)
 
 
 def of_world(values: np.ndarray, axes: Axes, worlds: int, w: int) -> np.ndarray:
-    """What world w of so many has of an array, as a view; the whole of what is of all worlds together."""
+    """The part of world w in an array, as a view; the whole array if it is common to all worlds."""
     along = world_axis(axes)
     return values if along is None else np.split(values, worlds, axis=along)[w]
 
 
 def without_worlds(values: np.ndarray, axes: Axes, worlds: int, out: slice) -> np.ndarray:
-    """An array of so many worlds less some of them; the whole of what is of all worlds together."""
+    """An array of `worlds` worlds without some of them; the whole array if it is common to all worlds."""
     along = world_axis(axes)
     if along is None:
         return values
@@ -54,11 +54,11 @@ def without_worlds(values: np.ndarray, axes: Axes, worlds: int, out: slice) -> n
 
 @dataclass(frozen=True)
 class Array:
-    """A declared field; of vectors, the last axis is the one within them.
+    """A declared field; the last axis of a vector field is that of the components.
 
-    across: the first axis is the contiguous one. kept: it belongs to what a simulation goes on from. base (length of
-    the first axis,): what `read` takes off and `write` adds. below: its numbers are places, fewer than this. blocks:
-    Taichi is told of its two axes one by one.
+    across: the first axis is contiguous. kept: the field is part of a simulation's saved state. base (length of the
+    first axis,): `read` subtracts it and `write` adds it. below: the entries are indices less than this. blocks: the
+    two axes are declared to Taichi one by one.
     """
 
     field: ti.Field
@@ -71,40 +71,40 @@ class Array:
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """Its lengths."""
+        """Lengths of the axes."""
         return tuple(axis.length for axis in self.axes)
 
     @property
     def offset(self) -> np.ndarray | int:
-        """What `read` takes off."""
+        """The base, in the shape in which `read` subtracts it."""
         return 0 if self.base is None else self.base.astype(np.int32).reshape(-1, 1, 1)
 
 
 class Scope:
-    """Where arrays are declared, whose names begin with the owner's."""
+    """Declares arrays of a state whose names begin with that of their owner."""
 
     def __init__(self, state: "State", owner: str):
         self._state, self._owner = state, owner
         self.place, self.real, self.exact = state.place, state.real, state.exact
 
     def under(self, owner: str) -> "Scope":
-        """Where an owner declares its arrays."""
+        """The scope in which an owner declares its arrays."""
         return Scope(self._state, f"{self._owner}{owner}.")
 
     def reals(self, axes: Axes, *names: str, kind=None, kept: bool = True) -> list[ti.Field]:
-        """Fields of floats: of the reals' kind, or of another, such as `self.place`."""
+        """Fields of floats, of type `real` or of another `kind` such as `self.place`."""
         return [self._declare(name, Array(ti.field(kind or self.real), axes, kept=kept)) for name in self._free(names)]
 
     def integers(
         self, axes: Axes, *names: str, across: bool = False, kept: bool = True, below: int | None = None
     ) -> list[ti.Field]:
-        """Fields of 32-bit integers; places in other arrays are `below` a number, which `write` checks."""
+        """Fields of 32-bit integers; indices into other arrays are less than `below`, which `write` checks."""
         return [
             self._declare(name, Array(ti.field(ti.i32), axes, across, kept, below=below)) for name in self._free(names)
         ]
 
     def vectors(self, axes: Axes, *names: str, across: bool = False, kept: bool = True) -> list[ti.Field]:
-        """Fields of vectors of reals, along the last axis."""
+        """Fields of vectors of reals, with the components along the last axis."""
         size = axes[-1].length
         return [
             self._declare(name, Array(ti.Vector.field(size, self.real), axes, across, kept))
@@ -112,7 +112,7 @@ class Scope:
         ]
 
     def wide(self, axes: Axes, *names: str, kind=None, kept: bool = True) -> list[ti.Field]:
-        """Fields (blocks, lanes) of floats that lie block by block, for kernels on real vectors (`machine.wide`)."""
+        """Fields (blocks, lanes) of floats stored block by block, for kernels on real vectors (`machine.wide`)."""
         return [
             self._declare(name, Array(ti.field(kind or self.real), axes, kept=kept, blocks=True))
             for name in self._free(names)
@@ -121,7 +121,7 @@ class Scope:
     def integer_vectors(
         self, axes: Axes, *names: str, across: bool = False, base: np.ndarray | None = None, below: int | None = None
     ) -> list[ti.Field]:
-        """Fields of vectors of 32-bit integers; `read` and `write` count from `base`, a number a place of axis 0."""
+        """Fields of vectors of 32-bit integers; `read` and `write` count from `base`, one number per row."""
         size = axes[-1].length
         return [
             self._declare(name, Array(ti.Vector.field(size, ti.i32), axes, across, True, base, below))
@@ -129,7 +129,7 @@ class Scope:
         ]
 
     def holding(self, name: str, values: np.ndarray, axes: str = "", kind=None, kept: bool = False) -> ti.Field:
-        """A field of reals, or of another kind, that starts with these values; `axes` are the names of theirs."""
+        """A field with these initial values, of type `real` or of another `kind`; `axes` are the axes' names."""
         lengths = zip(axes.split(), values.shape, strict=True)
         whole = tuple(Axis(*axis) for axis in lengths)
         [name] = self._free([name])
@@ -138,7 +138,7 @@ class Scope:
         return field
 
     def _free(self, names: Iterable[str]) -> Iterator[str]:
-        """The names, each before its array is made. Raises ValueError where one is taken."""
+        """Yield each name before its array is made; raises ValueError if it is taken."""
         for name in names:
             if f"{self._owner}{name}" in self._state.arrays:
                 raise ValueError(f"two arrays are named {self._owner}{name}")
@@ -152,17 +152,17 @@ class Scope:
 class State(Scope):
     """Fields of one simulation by their names, in one Taichi field tree.
 
-    One tree, since each tree a kernel touches costs it a pointer to reload in the inner loops (three times slower
-    with a tree a field), and since Taichi holds at most 512 trees and frees none by itself. Fields lie in memory in the
-    order in which they are declared; then `finish` makes and fills them, before others are begun. The last index is
-    contiguous, or with `across` the first. What is `kept` makes up the state of a simulation; the rest is scratch, or
-    follows from the scene.
+    It is one tree because a kernel reloads a pointer in its inner loops for each tree that it touches (three times
+    slower with a tree for each field), and because Taichi holds at most 512 trees and frees none by itself. Fields lie
+    in memory in the order of their declaration; `finish` then makes and fills them, before another state is begun. The
+    last index is contiguous, or the first with `across`. `kept` arrays make up the state of a simulation; the rest is
+    scratch or given by the scene.
     """
 
     def __init__(self, precision: str = "f64"):
         kinds = runtime.PRECISIONS[precision]
         self.place, self.real = kinds.place, kinds.real
-        # Sums and times deserve 64 bits whatever the grains have, where the device can.
+        # Sums and times have 64 bits whatever the grains have, if the device supports it.
         self.exact = ti.f32 if runtime.running_arch() == "vulkan" else ti.f64
         self.arrays: dict[str, Array] = {}
         self._builder = ti.FieldsBuilder()
@@ -172,11 +172,11 @@ class State(Scope):
 
     @property
     def fields(self) -> list[ti.Field]:
-        """The fields, in the order in which they were declared."""
+        """The fields in the order of their declaration."""
         return [array.field for array in self.arrays.values()]
 
     def declare(self, name: str, array: Array) -> None:
-        """Give a field its place in memory."""
+        """Add a field to the tree, under a name."""
         within = array.axes[:-1] if hasattr(array.field, "n") else array.axes
         shape = tuple(axis.length for axis in within)
         if array.across:
@@ -188,11 +188,11 @@ class State(Scope):
         self.arrays[name] = array
 
     def hold(self, field: ti.Field, values: np.ndarray) -> None:
-        """Have a declared field start with these values."""
+        """Set the initial values of a declared field."""
         self._contents.append((field, np.ascontiguousarray(values, dtype=np.float64)))
 
     def finish(self) -> None:
-        """Make the declared fields, zero but for what they are to hold."""
+        """Allocate the declared fields: zero, or with the values given to `holding`."""
         self._tree = self._builder.finalize()
         runtime.take_in(self)
         if runtime.running_arch() == "cpu":
@@ -204,24 +204,25 @@ class State(Scope):
 
     @property
     def bytes(self) -> int:
-        """Memory of the declared fields."""
+        """Memory of the declared fields, bytes."""
         sizes = (np.dtype(memory.KINDS[array.field.dtype]).itemsize for array in self.arrays.values())
         return sum(int(np.prod(array.shape)) * size for array, size in zip(self.arrays.values(), sizes, strict=True))
 
     def axes(self) -> dict[str, Axes]:
-        """The axes of what `read` gives."""
+        """The axes of the arrays that `read` returns."""
         return {name: array.axes for name, array in self._kept()}
 
     def read(self) -> dict[str, np.ndarray]:
-        """What is in the kept arrays, by name: all but scratch and what never changes."""
+        """Contents of the kept arrays by name, without scratch arrays and constants."""
         return {name: array.field.to_numpy() - array.offset for name, array in self._kept()}
 
     def write(self, contents: Mapping[str, np.ndarray]) -> None:
-        """Put back what `read` gave from the same declarations. Raises KeyError for what is missing.
+        """Restore what `read` returned from the same declarations. Raises KeyError for a missing array.
 
-        No number is left that is no place in the array that it points into, for a kernel would read and write elsewhere
-        in memory. Vectors of places may hold such where they are not in use, in a world that has come from another
-        number: these are made zero. Elsewhere they raise ValueError, as wrong shapes do, before anything is put back.
+        Every index must lie in the array that it points into, since a kernel would access other memory otherwise. An
+        index vector may hold invalid entries that are not in use, in a world that was read under another number: these
+        are set to zero. An invalid index in a scalar field raises ValueError, as a wrong shape does, before anything is
+        written.
         """
         whole = {name: self._checked(name, array, contents[name]) for name, array in self._kept()}
         for name, array in self._kept():
@@ -239,9 +240,9 @@ class State(Scope):
         return np.where((places >= 0) & (places < below), places, 0).astype(places.dtype)
 
     def take_over(self, smaller: "State") -> None:
-        """Copy what the same arrays hold in another state; those with an axis that has grown keep zeros beyond it.
+        """Copy the contents of the same arrays in another state; along an axis that has grown the rest is kept.
 
-        Raises ValueError where the names or the axes are others.
+        Raises ValueError if the names of arrays or axes differ.
         """
         for (name, array), (old_name, old) in zip(self.arrays.items(), smaller.arrays.items(), strict=True):
             if name != old_name or [axis.name for axis in array.axes] != [axis.name for axis in old.axes]:
@@ -253,9 +254,9 @@ class State(Scope):
             array.field.from_numpy(held)
 
     def reorder(self, name: str, order: Mapping[int, np.ndarray]) -> None:
-        """Put what lies along an axis into another order in some worlds, in all arrays: `order[w]` are the old places.
+        """Reorder the entries along an axis in some worlds, in all arrays that have it: `order[w]` are the old places.
 
-        Places beyond those named stay.
+        Entries beyond those in `order[w]` stay.
         """
         for array in self.arrays.values():
             names = [axis.name for axis in array.axes]
@@ -270,7 +271,7 @@ class State(Scope):
         return [(name, array) for name, array in self.arrays.items() if array.kept]
 
     def release(self) -> None:
-        """Give the memory back; the fields must not be used after it."""
+        """Free the memory; the fields must not be used afterwards."""
         if self._tree is not None and runtime.let_go(self):
             memory.close(self.fields)
             self._tree.destroy()

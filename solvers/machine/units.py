@@ -1,21 +1,21 @@
-"""Units of work: the runs of grains that one thread moves, a whole world, a band of one, or a single grain."""
+"""Units of work: runs of grains that one thread moves. A unit is a whole world, a band of it, or a single grain."""
 
 import taichi as ti
 
 from solvers.machine.state import Axis
 
-# Ghosts of different bands stand this far apart, so that no two threads write to one cache line.
+# Distance between the ghosts of different bands, so that no two threads write to one cache line.
 APART = 16
-# A parallel loop of Taichi's CPU backend gives each thread at least this many iterations.
+# In a parallel loop Taichi's CPU backend gives each thread at least this many iterations.
 ITERATIONS_A_THREAD = 512
 
 
 @ti.data_oriented
 class Units:
-    """W worlds of `mobile` grains, each cut into `a_world` units of neighbouring numbers.
+    """W worlds of `mobile` grains, each cut into `a_world` units of consecutive grain numbers.
 
-    Unit u belongs to world u // a_world. With one unit a world every pair is listed once; with several a pair whose
-    grains are in two units is listed and worked out in both, so that no unit writes to another's grains.
+    Unit u belongs to world u // a_world. With one unit per world each pair is listed once (half-list). With several
+    units a pair across two of them is listed and evaluated in both, so that no unit writes to another's grains.
     """
 
     def __init__(self, worlds: int, mobile: int, a_world: int, ghost: int):
@@ -27,12 +27,12 @@ class Units:
 
     @property
     def ghosts(self) -> int:
-        """Far-off points of a world, for pairs that stand for none, and to keep it off the next one's cache lines."""
+        """Number of ghosts of a world: far-off points for padding pairs, which also keep worlds on own cache lines."""
         return 1 if self.single else APART * self.a_world
 
     @property
     def axis(self) -> Axis:
-        """A place for each unit."""
+        """The axis of arrays with one entry per unit."""
         return Axis("unit", self.count)
 
     @ti.func
@@ -55,12 +55,12 @@ class Units:
 
     @ti.func
     def end(self, u):
-        """One past the last grain of unit u, which may have none."""
+        """One past the last grain of unit u; a unit may be empty."""
         return ti.max(self.first(u), ti.min(self.mobile, self.first(u) + self.size))
 
     @ti.func
     def ghost(self, u):
-        """The far-off point that is this unit's own."""
+        """The ghost (far-off point) of unit u."""
         g = self.first_ghost
         if ti.static(not (self.whole or self.single)):
             g += APART * (u % self.a_world)

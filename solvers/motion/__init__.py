@@ -1,8 +1,8 @@
-"""Motions of the tank, one file a kind; the registry names them as presets do.
+"""Motions of the tank, one file per kind; the registry has their names in presets.
 
 A motion moves one coordinate of the tank (`coordinate`: "y", "z" or "turn" about its `centre`). It offers `parameters`,
-the numbers its kernel function `state` reads; `duration`, and `fastest` for the step size. A
-`history.History` is not one of them, but a record of several.
+the numbers that its kernel function `state` reads, `duration`, and `fastest`, from which the step is derived. A
+`history.History` is not a motion itself but a record of several.
 """
 
 from solvers.motion.harmonic import Heave, Roll, Sway

@@ -1,19 +1,19 @@
-"""A tank in a ship: a frame whose motion follows from the water's forces and from what the cargo does to the tank.
+"""A tank in a ship: a frame that moves under the water's forces and the load of the cargo on the tank.
 
-The hull is one more body of the grains' time loop. At each step it takes the contact forces of that very instant,
-before the grains are moved, so that nothing lags behind: schemes that hand the cargo's force of the last interval to
-the hull and the hull's acceleration back are unstable with a rigid cargo heavier than the hull, and drive an elastic
-one a little where its own damping is less than their delay (added-mass instability; Causin, Gerbeau and Nobile 2005).
-Here the cargo's mass is no limit; what must be light beside the hull is the layer of grains at the walls alone.
+The hull is one more body in the grains' time loop. At each step it takes the contact forces of that instant, before the
+grains are moved, so that neither lags behind the other. Staggered schemes pass the cargo's force of the last interval
+to the hull and the hull's acceleration back. They are unstable with a rigid cargo heavier than the hull, and drive an
+elastic cargo slightly if its damping is weaker than the effect of their delay (added-mass instability; Causin, Gerbeau
+and Nobile 2005). Here the cargo may have any mass; only its layer at the walls must be light beside the hull.
 
-The water is slow and its forces cost more: every interval H, of many steps, the ship is advanced over the next one by
-the method of Runge and Kutta (`motion.advance`) with the cargo's mean load of the last. Within it she has that motion's
-mean acceleration, and on top, at each step, what the load's difference from that mean gives her,
+The water's forces vary slowly and cost more. For every interval H, of many steps, the ship is advanced by the classical
+Runge–Kutta method (`motion.advance`) with the cargo's mean load F̄ of the previous interval. Within H the ship has the
+mean acceleration of that motion, plus at each step the response to the difference of the load F from that mean,
 
     a = (v(t + H) − v(t))/H + M(φ)⁻¹ (F − F̄),
 
-M with the added mass. A smaller H alters nothing but the water's share, by its fourth order, and
-what the deviation within one H does to the water's force, by its second.
+with the added mass in M. H affects only the water's forces: their integration to fourth order, and the effect on them
+of the deviation within one interval to second order.
 """
 
 from collections.abc import Callable, Sequence
@@ -31,33 +31,33 @@ from solvers.ship.hydrostatics import turned as turned_point
 from solvers.ship.vessel import Vessel
 from solvers.tank.load import Load
 
-POSE, VELOCITY, MEMORY = 0, 3, 6  # where in a state
-WORKS = 3  # its last entries: work (J/m) of the waves, against what is radiated, against viscosity
-APART = 16  # numbers from what is written of one ship at each step to what is of the next
-STAGES = 4  # of the method of Runge and Kutta
+POSE, VELOCITY, MEMORY = 0, 3, 6  # first entries of these parts of a state
+WORKS = 3  # last entries of a state: work (J/m) of the waves, against radiation, against viscosity
+APART = 16  # row length of arrays that are written for each ship at each step
+STAGES = 4  # of the Runge–Kutta method
 
 
 def steps_an_interval(vessels: Sequence[Vessel], interval: float | None, dt: float) -> int:
-    """Steps of dt (s) in an interval H: of the given one (s), else of the shortest that a ship needs."""
+    """Number of steps of dt (s) in an interval H, which is the given one (s) or the shortest that any ship needs."""
     return max(1, round((interval or min(vessel.interval for vessel in vessels)) / dt))
 
 
 def _apart(rows: Sequence[Sequence[float]]) -> np.ndarray:
-    """Rows (W, k) in rows of APART: no two worlds write to one cache line."""
+    """Rows (W, k) padded to length APART, so that no two worlds write to one cache line."""
     values = np.array(rows, dtype=float)
     return np.pad(values, ((0, 0), (0, APART - values.shape[1])))
 
 
 @ti.data_oriented
 class Afloat:
-    """The tank in each of W ships, a carrier as `Prescribed` is; `load` is what its cargo does to it.
+    """The carrier of tanks in W ships, with the interface of `Prescribed`; `load` is the load of the cargo on the tank.
 
-    The earth's axes have z = 0 on the calm surface and y = 0 where the ship's hull lay at the start. All of the ship is
-    per metre of length, and so is the load that her cargo's `Load` tells.
+    The earth's axes have z = 0 on the calm surface and y = 0 at the hull's origin at the start. All quantities of the
+    ship are per metre of length, and so is the load from `Load.of_world`.
     """
 
     rotating = moving = answers = True
-    paced = False  # her own leapfrog has steps of one length
+    paced = False  # the ship's leapfrog needs steps of one length
 
     def __init__(self, arrays: State, vessels: Sequence[Vessel], gravity: float, every: int, load: Load):
         self.exact, self.real, self.vessels, self.cargo = arrays.exact, arrays.real, tuple(vessels), load
@@ -92,13 +92,13 @@ class Afloat:
             self.matrix = table("matrix", matrix, "state state")
             self.entry = table("entry", [self._padded(m, "entry", (self.states, 3)) for m in memories], "state motion")
             self.exit = table("exit", [self._padded(m, "exit", (3, self.states)) for m in memories], "motion state")
-        # Mass, centre from P (y, z) and inertia of the hull alone; her pose upright, and when she is let go
+        # Mass, centre from P (y, z) and inertia of the hull alone; the pose upright, and at the release
         (self.body,) = own.reals((world, Axis("number", 4)), "body", kind=own.exact)
         self.upright, self.heeled = own.reals((world, Axis("motion", 3)), "upright", "heeled", kind=own.exact)
         states = own.reals((world, Axis("state", self.size)), "state", "trial", "slope", "total", kind=own.exact)
         self.state, self.trial, self.slope, self.total = states
-        # Pose at the time of the step to come and velocity half a step before; the interval's accelerations now and
-        # before, its drift, its mean load and the one before; the load so far; motion of the tank, accelerations last.
+        # Pose at the beginning of the next step and velocity half a step before; mean acceleration, drift and mean load
+        # of this interval, and of the previous one; sum of the load so far; last acceleration; motion of the tank.
         names = "pose", "velocity", "steady", "steady_before", "drift", "mean", "mean_before", "load"
         row = world, Axis("number", APART)
         for name in (*names, "last", "tank"):
@@ -106,13 +106,13 @@ class Afloat:
             setattr(self, name, field)
         self.felt = table("felt", _apart([[0.0, -gravity, 0.0, 0.0]] * worlds), "number")
         (self.done,) = own.integers(row, "done")
-        # When (s) she capsized, and when she flooded, or −1; the cargo's work on her (J/m)
+        # Times (s) of capsize and of flooding, or −1; the cargo's work on the ship (J/m)
         self.capsized = table("capsized", np.full(worlds, -1.0))
         self.flooded = table("flooded", np.full(worlds, -1.0))
         (self.given,) = own.reals(row, "given", kind=own.exact)
 
     def meet(self, vessels: Sequence[Vessel]) -> None:
-        """Have the waves of these vessels, which are as they were but for those, from now on."""
+        """Change the waves to those of `vessels`, which must equal the present ones in everything else."""
         self.vessels = tuple(vessels)
         self.hulls.meet([vessel.ship.load for vessel in vessels])
         self.added.from_numpy(np.array([v.ship.radiation.added_mass + np.diag(v.ship.rig.mass) for v in vessels]))
@@ -120,7 +120,7 @@ class Afloat:
 
     @property
     def sizes(self) -> tuple[int, int, int]:
-        """States of the memory, corners of the sections, components of the waves."""
+        """Numbers of states of the radiation memory, corners of a section, and wave components."""
         return self.states, self.hulls.corners, self.hulls.waves
 
     @staticmethod
@@ -132,9 +132,9 @@ class Afloat:
         return whole
 
     def begin(self, cargo: Callable[[], Sequence[Body]]) -> None:
-        """Hold the ships still, upright and in balance; `cargo` tells theirs (W,), per metre and in the tank's axes.
+        """Hold the ships at rest, upright in equilibrium; `cargo` returns theirs (W,), per metre in the tank's axes.
 
-        Raises Unavailable where a ship sinks, or where a hull laden so cannot be.
+        Raises Unavailable if a ship sinks, or if the cargo leaves a hull no mass or no inertia.
         """
         body, upright, heeled = [], [], []
         for vessel, load in zip(self.vessels, cargo(), strict=True):
@@ -164,9 +164,9 @@ class Afloat:
         return np.array(values, dtype=np.float64 if self.exact is ti.f64 else np.float32)
 
     def account(self) -> dict[str, np.ndarray]:
-        """Works (W, 4) J/m so far: of waves, against radiation, against viscosity, of the cargo on the ship.
+        """Work done so far, `ship_works` (W, 4) J/m: of waves, against radiation, against viscosity, of the cargo.
 
-        And when (s) each capsized and when she flooded (W,), −1 where she has not.
+        And the times (s) at which a ship `capsized` and `flooded`, (W,) each, −1 if that has not happened.
         """
         works = self.state.to_numpy()[:, -WORKS:]
         given = self.given.to_numpy()[:, :1]
@@ -175,7 +175,7 @@ class Afloat:
 
     @ti.func
     def frame(self, w, t):
-        """What all cargo feels per unit mass in the tank's frame: (b_y, b_z, φ̇, φ̈) with b = R(−φ)(g − P̈)."""
+        """The tank's frame for the cargo: (b_y, b_z, φ̇, φ̈), with the body force per mass b = R(−φ)(g − P̈)."""
         return ti.cast(ti.Vector([self.felt[w, k] for k in ti.static(range(4))]), self.real)
 
     @ti.func
@@ -185,19 +185,19 @@ class Afloat:
 
     @ti.func
     def pace(self, w):
-        """Base steps that a step may take."""
+        """Largest stride in base steps."""
         return 1
 
     @ti.func
     def goes_on(self, w):
-        """Whether a ship has neither capsized nor flooded."""
+        """Whether a ship goes on: it has neither capsized nor flooded."""
         return self.capsized[w] < 0.0 and self.flooded[w] < 0.0
 
     @ti.func
     def follow(self, w, time, kick, dt):
-        """Take the ship through the step of dt (s) that begins now, with the load of the cargo now.
+        """Advance the ship by the step of dt (s) that begins now, with the present load of the cargo.
 
-        `kick` (s) is for how long the cargo is going to feel what she does now.
+        `kick` (s) is the time for which the cargo will be accelerated by the present frame.
         """
         t, step, load = ti.cast(time, self.exact), ti.cast(dt, self.exact), self.cargo.of_world(w)
         if t < self.release[w]:
@@ -207,7 +207,7 @@ class Afloat:
 
     @ti.func
     def hold_still(self, w, t, step):
-        """Upright before the start, then turned to her heel; all of it known beforehand."""
+        """Prescribed motion before the release: upright before the start, then turned to the initial heel."""
         d = soft_start(t, self.release[w])
         pose, velocity, acceleration = self.vector(self.upright, w), self.nothing(), self.nothing()
         for k in ti.static(range(3)):
@@ -220,7 +220,7 @@ class Afloat:
 
     @ti.func
     def move(self, w, t, step, kick, load):
-        """One step of the leapfrog: velocities half a step behind the poses, as those of the grains."""
+        """One leapfrog step, with velocities half a step behind the poses, as for the grains."""
         first = self.done[w, 0] == 0
         if first:
             self.put(self.pose, w, self.vector(self.heeled, w))
@@ -235,7 +235,7 @@ class Afloat:
             if first:
                 now, share = before, 0.5 * share
             self.begin_interval(w, t, step, first, pose, now, force)
-            # The kick from half a step before to half a step after has half of both intervals.
+            # The kick runs from half a step before to half a step after: half of it belongs to each interval.
             steady, mean = self.vector(self.steady, w), self.vector(self.mean, w)
             if not first:
                 steady = 0.5 * (steady + self.vector(self.steady_before, w))
@@ -259,7 +259,7 @@ class Afloat:
 
     @ti.func
     def begin_interval(self, w, t, step, first, pose, velocity, force):
-        """Look an interval ahead with the mean load of the last one."""
+        """Begin an interval: advance the ship over it with the mean load of the last one."""
         length = step * self.every[0]
         if ti.static(self.hulls.openings > 0):  # noqa: SIM102 (compiled only for ships that have some)
             if self.hulls.floods(w, pose, t):
@@ -280,7 +280,7 @@ class Afloat:
 
     @ti.func
     def look_ahead(self, w, t, length):
-        """The state an interval (s) later by the classical method of Runge and Kutta (Kutta 1901)."""
+        """Advance the state by an interval (s), with the classical Runge–Kutta method (Kutta 1901)."""
         for k in range(self.size):
             self.trial[w, k], self.total[w, k] = self.state[w, k], 0.0
         for stage in range(STAGES):
@@ -325,7 +325,7 @@ class Afloat:
 
     @ti.func
     def radiated(self, w, velocity):
-        """Force and moment that make waves, without the added mass."""
+        """Radiation force and moment, without the added mass."""
         force = self.nothing()
         for k in ti.static(range(3)):
             for j in ti.static(range(3)):
@@ -347,7 +347,7 @@ class Afloat:
 
     @ti.func
     def accelerated(self, w, roll, force):
-        """What a force and moment about P accelerate P and roll by, M(φ)⁻¹ F; nothing where she is not free."""
+        """Accelerations of P and of roll under a force and moment about P, M(φ)⁻¹ F; zero where not free."""
         mass, arm = self.body[w, 0], turned(self.body[w, 1], self.body[w, 2], roll)
         turning = self.body[w, 3] + mass * (arm[0] * arm[0] + arm[1] * arm[1])
         zero = ti.cast(0.0, self.exact)
@@ -365,7 +365,7 @@ class Afloat:
 
     @ti.func
     def aboard(self, w, roll, load):
-        """The cargo's force and moment per metre about P in the earth's axes, of those in the tank's."""
+        """The cargo's force and moment per metre about P in the earth's axes, from those in the tank's."""
         force = turned(load[0], load[1], roll)
         arm = turned(self.hold[w, 0], self.hold[w, 1], roll)
         moment = load[2] + arm[0] * force[1] - arm[1] * force[0]
@@ -373,7 +373,7 @@ class Afloat:
 
     @ti.func
     def feel(self, w, pose, velocity, acceleration, share):
-        """Tell the grains of the tank's acceleration; `share` of the ship's is what they are to feel."""
+        """Set the frame that the grains feel, with `share` of the ship's acceleration."""
         a = self.carried(w, pose[2], velocity[2], acceleration)
         b = turned(-share * a[0], -self.gravity[0] - share * a[1], -pose[2])
         self.felt[w, 0], self.felt[w, 1] = b[0], b[1]
@@ -381,7 +381,7 @@ class Afloat:
 
     @ti.func
     def carried(self, w, roll, rate, acceleration):
-        """Acceleration of the tank's origin, P's and that of turning about P."""
+        """Acceleration of the tank's origin: that of P and that of the rotation about P."""
         arm = turned(self.hold[w, 0], self.hold[w, 1], roll)
         return ti.Vector(
             [
@@ -392,7 +392,7 @@ class Afloat:
 
     @ti.func
     def note(self, w, pose, velocity, acceleration):
-        """Remember the motion of the tank's origin."""
+        """Store the motion of the tank's origin, for `kinematics`."""
         arm = turned(self.hold[w, 0], self.hold[w, 1], pose[2])
         a = self.carried(w, pose[2], velocity[2], acceleration)
         self.tank[w, 0], self.tank[w, 1], self.tank[w, 2] = pose[0] + arm[0], pose[1] + arm[1], pose[2]

@@ -1,4 +1,4 @@
-"""The water's force on hulls in waves as Taichi functions: `loads.Floating` for the time loop, W ships at once."""
+"""The water's force on W hulls in waves as Taichi functions: `loads.Floating` for the time loop."""
 
 from collections.abc import Sequence
 
@@ -14,7 +14,7 @@ from solvers.ship.motion import Ship
 
 @ti.data_oriented
 class Hulls:
-    """Sections, waves and openings of W ships whose loads are `Floating`; of each as many as the most have.
+    """Sections, waves and openings of W ships whose loads are `Floating`, padded to the largest numbers of these.
 
     `openings`: points (m) of each hull through which it floods.
     """
@@ -48,9 +48,10 @@ class Hulls:
             self.imaginary_part = table("imaginary_part", imaginary_part, "wave factor")
 
     def _of_waves(self, loads: Sequence[Floating]) -> list[list[np.ndarray]]:
-        """Numbers and frequencies of the components of each ship's waves, and factors, real and imaginary.
+        """Wave numbers, frequencies, and real and imaginary parts of the factors, per ship and wave component.
 
-        A factor is of the component times its complex amplitude: elevation, slope and the force over these two's.
+        The factors of a component, each times its complex amplitude, are those of elevation, slope and excess force
+        (`Floating.factors`).
         """
         factors = [load.waves.amplitude[:, None] * load.factors for load in loads]
         of_ships = [
@@ -60,13 +61,13 @@ class Hulls:
         return [[self._filled(values) for values in column] for column in zip(*of_ships, strict=True)]
 
     def meet(self, loads: Sequence[Floating]) -> None:
-        """Have other waves, of as many components, from now on."""
+        """Change the waves from now on, to others with as many components."""
         fields = self.number, self.frequency, self.real_part, self.imaginary_part
         for field, values in zip(fields, self._of_waves(loads), strict=True):
             field.from_numpy(np.array(values))
 
     def _closed(self, outline: np.ndarray) -> np.ndarray:
-        """An outline with its last corner again and again: edges of no length."""
+        """An outline padded with copies of its last corner, which add edges of zero length."""
         return np.pad(outline, ((0, self.corners - len(outline)), (0, 0)), "edge")
 
     def _filled(self, values: np.ndarray) -> np.ndarray:
@@ -76,7 +77,7 @@ class Hulls:
 
     @ti.func
     def water(self, w, pose, t):
-        """Force y, z (N/m) and moment (N) about P at a pose of it (m, m, rad) and a time (s)."""
+        """Force y, z (N/m) and moment (N) about P at a pose of P (m, m, rad) and a time (s)."""
         arm = turned(self.about[w, 0], self.about[w, 1], pose[2])
         sea = self.sea(w, pose[0] - arm[0], t)
         force = self.buoyancy(w, pose[1] - arm[1], pose[2], arm, sea[0], sea[1])
@@ -84,14 +85,14 @@ class Hulls:
 
     @ti.func
     def calm(self, w, pose):
-        """The same in calm water."""
+        """Force and moment about P in calm water."""
         arm = turned(self.about[w, 0], self.about[w, 1], pose[2])
         zero = ti.cast(0.0, self.exact)
         return self.buoyancy(w, pose[1] - arm[1], pose[2], arm, zero, zero)
 
     @ti.func
     def floods(self, w, pose, t):
-        """Whether an opening is under the local surface; see `loads.Floating.depths`."""
+        """Whether an opening is below the local water surface; see `loads.Floating.depths`."""
         arm = turned(self.about[w, 0], self.about[w, 1], pose[2])
         found = False
         for k in range(self.opened[w]):
@@ -103,7 +104,7 @@ class Hulls:
 
     @ti.func
     def sea(self, w, y, t):
-        """Elevation (m) and slope of the surface at the hull's origin, and the force over what these give."""
+        """Elevation (m) and slope of the surface at the hull's origin, and the excess force over their buoyancy."""
         sums = ti.Vector([ti.cast(0.0, self.exact) for _ in ti.static(range(5))])
         if ti.static(self.waves > 0):
             for n in range(self.waves):
@@ -142,6 +143,6 @@ class Hulls:
 
     @ti.func
     def corner(self, w, k, heave, roll, elevation, slope):
-        """A corner's y from the hull's origin and its depth (m)."""
+        """A corner's y from the hull's origin and its depth below the surface (m)."""
         place = turned(self.outline[w, k, 0], self.outline[w, k, 1], roll)
         return ti.Vector([place[0], elevation + slope * place[0] - heave - place[1]])

@@ -1,4 +1,4 @@
-"""Which carrier moves the tanks of a scene."""
+"""The choice of the carrier that moves the tanks of a scene."""
 
 from collections.abc import Sequence
 
@@ -10,12 +10,12 @@ from solvers.tank.load import Load
 
 
 def carrier_kind(vessels: Sequence[Vessel]) -> type[Prescribed] | type[Afloat]:
-    """Ships where there are vessels, else prescribed motions."""
+    """The carrier's class: `Afloat` if there are vessels, else `Prescribed`."""
     return Afloat if vessels else Prescribed
 
 
 def make_carrier(arrays: State, scene, dt: float, load: Load) -> Prescribed | Afloat:
-    """The carrier of a scene (`solvers.scene.Scene`) that takes steps of dt (s)."""
+    """The carrier of a scene (`solvers.scene.Scene`) with steps of dt (s)."""
     if scene.vessels:
         every = steps_an_interval(scene.vessels, scene.interval, dt)
         return Afloat(arrays, scene.vessels, scene.gravity, every, load)

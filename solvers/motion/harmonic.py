@@ -22,7 +22,7 @@ def soft_start(t, length):
         tau = t / length
         q = tau * (2.0 - tau)  # 1 − (τ − 1)²
         value = 0.0
-        if q > 2e-3:  # below, exp(−1/q) and its derivatives are under the smallest number
+        if q > 2e-3:  # for smaller q, exp(−1/q) and its derivatives underflow
             value = ti.exp(1.0 - 1.0 / q)
             slope = 2.0 * (1.0 - tau) / (q * q)
             first = value * slope / length
@@ -48,12 +48,12 @@ def harmonic(table: ti.template(), w, first, t):
 
 
 class Harmonic:
-    """What sway, heave and roll share."""
+    """Common base of sway, heave and roll."""
 
     state = staticmethod(harmonic)
 
     def duration(self) -> float:
-        """A harmonic motion has no end of its own."""
+        """Zero: a harmonic motion has no end of its own."""
         return 0.0
 
     def parameters(self, soft_start: float) -> list[float]:
@@ -61,7 +61,7 @@ class Harmonic:
         return [self.amplitude, 2 * pi * self.frequency, self.phase, soft_start]
 
     def fastest(self, soft_start: float) -> float:
-        """Bound on the speed (m/s or rad/s): Aω, and what the soft start adds."""
+        """Upper bound on the speed (m/s or rad/s): Aω plus the contribution of the soft start."""
         return self.amplitude * (2 * pi * self.frequency + (STEEPEST / soft_start if soft_start else 0.0))
 
 

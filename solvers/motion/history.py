@@ -1,4 +1,4 @@
-"""Motion as recorded: a smooth curve through samples of sway, heave and roll, however they are spaced."""
+"""Recorded motion: smooth curves through samples of sway, heave and roll at any spacing."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -10,17 +10,17 @@ import taichi as ti
 from solvers.machine.marks import Unit
 from solvers.motion.harmonic import STEEPEST, soft_start
 
-LEAST_SAMPLES = 4  # that determine a cubic spline
+LEAST_SAMPLES = 4  # needed for a cubic spline
 HEAD = 2  # numbers in the kernel's table before the pieces
-PIECE = 5  # numbers a piece: where it begins, and its four coefficients
-SLOW = 0.05  # of the largest speed: slower at its first or last sample, a record counts as being at rest there
+PIECE = 5  # numbers per piece: the time at which it begins, and its four coefficients
+SLOW = 0.05  # of the largest speed: a record counts as at rest at an end if it is slower there
 
 
 @ti.func
 def recorded(table: ti.template(), w, first, t):
     """Displacement, velocity and acceleration at time t of D(t) x(t); at rest before t = 0.
 
-    x is piecewise cubic, x = c₀ + c₁ s + c₂ s² + c₃ s³ with s the time since the piece began; the last piece has no
+    x is piecewise cubic, x = c₀ + c₁ s + c₂ s² + c₃ s³ with s the time since the piece began. The last piece has no
     end. D is the soft start.
     """
     displacement, velocity, acceleration = ti.zero(t), ti.zero(t), ti.zero(t)
@@ -50,11 +50,11 @@ def recorded(table: ti.template(), w, first, t):
 class Recorded:
     """Motion of one coordinate ("y", "z" or "turn") through `values` (m or rad) at the rising times `time` (s).
 
-    The first sample is at the start of the motion. Between samples runs the cubic spline with continuous acceleration
-    (de Boor 1978, A Practical Guide to Splines, chapter IV). At an end where the record rests, its slope is zero, so
-    that the tank sets out from rest or comes to rest without a jump of its speed; at any other end the spline takes
-    the record's own speed ("not a knot"), for a zero slope there would be a jolt that nobody recorded. After the last
-    sample the tank keeps the speed it has then: none where the record comes to rest.
+    The first sample is at the start of the motion. The samples are joined by the cubic spline with continuous
+    acceleration (de Boor 1978, A Practical Guide to Splines, chapter IV). At an end where the record is at rest the
+    spline's slope is zero, so that the tank starts or stops without a jump of its speed. At any other end the spline
+    follows the record's own speed ("not a knot"), since a zero slope would add a jolt that was not recorded. After the
+    last sample the tank keeps its last speed, which is zero if the record comes to rest.
     """
 
     coordinate: str
@@ -87,7 +87,7 @@ class Recorded:
         return self.time[-1] - self.time[0]
 
     def parameters(self, soft_start: float) -> list[float]:
-        """The kernel's table: number of pieces, length of the soft start (s), the pieces."""
+        """The kernel's table: number of pieces, length of the soft start (s), then the pieces."""
         time, curve = self.curve.x, self.curve
         pieces = np.column_stack([time[:-1], curve.c[::-1].T])
         last_speed = 0.0 if self.rests[1] else float(curve(time[-1], 1))
@@ -95,13 +95,13 @@ class Recorded:
         return [len(time), soft_start, *pieces.ravel().tolist(), *onwards]
 
     def fastest(self, soft_start: float) -> float:
-        """Bound on the speed (m/s or rad/s): the spline's largest, and what the soft start adds."""
+        """Upper bound on the speed (m/s or rad/s): the spline's largest plus the contribution of the soft start."""
         speed = _largest(self.curve.derivative())
         return speed + (STEEPEST / soft_start * _largest(self.curve) if soft_start else 0.0)
 
 
 def _largest(curve) -> float:
-    """Largest size of a piecewise polynomial: it lies at a knot or where the slope is zero."""
+    """Largest absolute value of a piecewise polynomial, found at its knots and where its slope is zero."""
     turning = curve.derivative().roots(extrapolate=False)
     places = np.concatenate([curve.x, turning[np.isfinite(turning)]])
     return float(np.abs(curve(places)).max())
@@ -109,7 +109,7 @@ def _largest(curve) -> float:
 
 @dataclass(frozen=True)
 class History:
-    """Recorded sway, heave (m) and roll (rad) of the tank at the same times (s); what was not recorded is left out."""
+    """Recorded sway, heave (m) and roll (rad) of the tank at common times (s); None for one that was not recorded."""
 
     time: Annotated[tuple[float, ...], Unit("s")]
     sway: Annotated[tuple[float, ...] | None, Unit("m")] = None

@@ -1,4 +1,4 @@
-"""A carrier that is told how to move: the tank follows prescribed motions, whatever its load."""
+"""A carrier with prescribed motions, which do not depend on the load."""
 
 from collections.abc import Callable, Sequence
 
@@ -13,7 +13,7 @@ ANY = 2**30
 
 
 def _centre(motion) -> tuple[float, float]:
-    """The earth point (m) a motion turns about; the origin for one that does not turn."""
+    """The point (m) in the earth frame about which a motion turns; the origin if it does not turn."""
     return motion.centre if motion.coordinate == "turn" else (0.0, 0.0)
 
 
@@ -25,9 +25,9 @@ class Prescribed:
     a tilt followed by a sway is a tilting table on a swaying deck.
     """
 
-    answers = False  # to the load of the cargo
-    phases = ()  # what it does in a step before the cargo moves
-    paced = True  # it bears steps of any length
+    answers = False  # the motion does not respond to the cargo's load
+    phases = ()  # it has no phases in a step
+    paced = True  # steps may have any length
 
     def __init__(self, arrays: State, motions: Sequence[Sequence], soft_start: float, gravity: float):
         self.exact, self.real = arrays.exact, arrays.real
@@ -45,18 +45,18 @@ class Prescribed:
 
     @property
     def steered(self) -> bool:
-        """Whether a hand moves the tank."""
+        """Whether the tank is moved interactively."""
         return any(isinstance(motion, Steered) for motion in self.kinds)
 
     def begin(self, cargo: Callable[[], Sequence]) -> None:
-        """Nothing: it is told when to begin."""
+        """Do nothing: the motions start with the clock."""
 
     def account(self) -> dict[str, np.ndarray]:
-        """What it has to tell of each world beside its motion: nothing."""
+        """Further output of each world: none."""
         return {}
 
     def steer(self, time: float, pieces: Sequence[np.ndarray]) -> None:
-        """Have each motion follow its polynomial (6,) from a time (s) on, in every world; all must be steered."""
+        """Let each motion follow its polynomial (6,) from `time` (s) on, in every world; all must be `Steered`."""
         table = self.table.to_numpy()
         for first, coefficients in zip(self.first, pieces, strict=True):
             table[:, first + 2] = time
@@ -102,7 +102,7 @@ class Prescribed:
 
     @ti.func
     def frame(self, w, t):
-        """What all cargo feels per unit mass in the tank's frame: (b_y, b_z, φ̇, φ̈) with b = R(−φ)(g − P̈)."""
+        """The tank's frame for the cargo: (b_y, b_z, φ̇, φ̈), with the body force per mass b = R(−φ)(g − P̈)."""
         zero = ti.cast(0.0, self.exact)
         force = ti.Vector([zero, -self.gravity[0], zero, zero])
         if ti.static(self.moving):
@@ -113,10 +113,10 @@ class Prescribed:
 
     @ti.func
     def pace(self, w):
-        """Base steps that a step may take: any number."""
+        """Largest stride in base steps: no limit."""
         return ANY
 
     @ti.func
     def goes_on(self, w):
-        """Whether the world is to go on: always."""
+        """Whether the world goes on: always."""
         return True

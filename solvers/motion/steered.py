@@ -1,4 +1,4 @@
-"""A motion that a hand gives while the grains move: pieces of a polynomial, each told as it begins."""
+"""A motion steered interactively: polynomial pieces, each given when it begins."""
 
 from dataclasses import dataclass
 
@@ -10,7 +10,7 @@ DEGREE = 5  # value, rate and acceleration at both ends of a piece
 
 @ti.func
 def piece(table: ti.template(), w, first, t):
-    """Value, rate and acceleration at time t of the polynomial that is told, in the time since its beginning."""
+    """Value, rate and acceleration at time t of the present piece, a polynomial in the time since its beginning."""
     s = t - table[w, first]
     value, rate, acceleration = 0.0 * s, 0.0 * s, 0.0 * s
     for n in ti.static(range(DEGREE, -1, -1)):  # Horner's scheme, with its first and second derivatives
@@ -22,9 +22,9 @@ def piece(table: ti.template(), w, first, t):
 
 @dataclass(frozen=True)
 class Steered:
-    """One coordinate of the tank under a hand; at rest until `Prescribed.steer` tells of a piece.
+    """An interactively steered coordinate of the tank, at rest until `Prescribed.steer` gives the first piece.
 
-    `limit` (m/s or rad/s) is the fastest that it may be steered, for the step.
+    `limit` (m/s or rad/s) is the highest speed allowed, from which the step is derived.
     """
 
     coordinate: str
@@ -34,22 +34,22 @@ class Steered:
     state = staticmethod(piece)
 
     def duration(self) -> float:
-        """It has no end of its own."""
+        """Zero: it has no end of its own."""
         return 0.0
 
     def parameters(self, soft_start: float) -> list[float]:
-        """The kernel's table: when the piece begins (s), and its coefficients."""
+        """The kernel's table: the time (s) at which the piece begins, and its coefficients; all zero at first."""
         return [0.0] * (2 + DEGREE)
 
     def fastest(self, soft_start: float) -> float:
-        """Bound on the speed (m/s or rad/s)."""
+        """Upper bound on the speed (m/s or rad/s)."""
         return self.limit
 
 
 def hermite(length: float, begin: np.ndarray, end: np.ndarray) -> np.ndarray:
     """Coefficients (6,) of the quintic with value, rate and acceleration (3,) at 0 and at `length` (s).
 
-    Quintic Hermite interpolation: pieces that share an end have a continuous acceleration there.
+    Quintic Hermite interpolation: the acceleration is continuous where two pieces meet.
     """
     h = length
     known = np.array([begin[0], begin[1], 0.5 * begin[2]])

@@ -1,4 +1,4 @@
-"""Slow tilting: a constant rate to an angle, a hold, and back if asked."""
+"""Slow tilting: at a constant rate to an angle, a hold, and optionally back."""
 
 from dataclasses import dataclass
 from math import sqrt
@@ -15,7 +15,7 @@ KNOTS = 8
 def rate_programme(table: ti.template(), w, first, t):
     """Angle, rate and acceleration at time t of a rate that is piecewise linear between (time, rate) knots.
 
-    The angle is the exact integral of the rate, so the three belong together to rounding.
+    The angle is the exact integral of the rate, so the three are consistent to rounding.
     """
     angle, rate, acceleration = 0.0, 0.0, 0.0
     for k in range(KNOTS - 1):
@@ -35,8 +35,8 @@ def rate_programme(table: ti.template(), w, first, t):
 class Tilt:
     """Slow turning of the tank about a fixed point.
 
-    The rate rises and falls linearly over `ease`, so that the angular acceleration stays finite; a negative angle
-    tilts to starboard. With `reverse` the tank turns back to upright after the hold, at the same rate.
+    The rate rises and falls linearly over the time `ease`, so that the angular acceleration stays finite. A negative
+    angle tilts to starboard. With `reverse` the tank turns back to upright after the hold, at the same rate.
     """
 
     rate: Annotated[float, Unit("rad/s"), Interval(gt=0)]
@@ -54,7 +54,7 @@ class Tilt:
         size = abs(self.angle)
         if size == 0.0:
             return [(0.0, 0.0)]
-        # A tilt too short to reach its rate keeps the acceleration and turns at a lower top rate.
+        # A tilt too short to reach its rate has the same acceleration and a lower top rate.
         rate = min(self.rate, sqrt(size * self.rate / self.ease))
         ease = self.ease * rate / self.rate
         turning = size / rate + ease

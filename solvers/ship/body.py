@@ -1,4 +1,4 @@
-"""A rigid body in the plane, and bodies bolted together: a hull with frozen cargo. All per metre of length."""
+"""A rigid body in the plane, and rigidly joined bodies such as a hull with frozen cargo. All per metre of length."""
 
 from dataclasses import dataclass
 from math import sqrt
@@ -23,12 +23,12 @@ class Body:
 
     @property
     def loading(self) -> Loading:
-        """What hydrostatics needs of it."""
+        """Mass and centre of gravity, for hydrostatics."""
         return Loading(self.mass, self.centre)
 
 
 def bolted(*bodies: Body) -> Body:
-    """Bodies as one, by the parallel-axis theorem (Huygens and Steiner)."""
+    """Rigidly joined bodies as one, by the parallel-axis theorem (Huygens and Steiner)."""
     mass = np.array([body.mass for body in bodies])
     centres = np.array([body.centre for body in bodies])
     centre = mass @ centres / mass.sum()

@@ -1,7 +1,7 @@
-"""Loose cargo at rest in a heeled hold: a homogeneous filling with a plane surface, as steep as its grains can hold.
+"""Loose cargo at rest in a heeled hold: a homogeneous filling with a plane surface, limited by the angle of repose.
 
-Heeled slowly, a bed stays as it is up to the angle of repose; beyond it grains slide until the slope against the
-horizon is that angle again. So the surface leans by heel − repose against the deck. A fluid has a repose of 0.
+In a slow heel a bed keeps its shape up to the angle of repose. Beyond it grains slide until the surface slopes against
+the horizon by that angle again, so it leans by heel − repose against the deck. A fluid has an angle of repose of 0.
 """
 
 import numpy as np
@@ -11,20 +11,20 @@ from solvers.ship.hydrostatics import Loading, balanced_heave, righting_lever, t
 from solvers.ship.section import Section
 from solvers.ship.water import Water
 
-ONE = Water(density=1.0)  # what a filling is the buoyancy of: its area is the mass
+ONE = Water(density=1.0)  # a fluid in which a displaced area (m²) is the mass (kg/m)
 
 
 def lean(heel, repose: float) -> np.ndarray:
-    """Angle (rad) of the surface against the deck, with the sign of the heel, at heels (rad) come to slowly from 0."""
+    """Angle (rad) of the surface against the deck, with the sign of the heel, at heels (rad) reached slowly from 0."""
     heel = np.asarray(heel, dtype=float)
     return np.sign(heel) * np.maximum(np.abs(heel) - repose, 0.0)
 
 
 def filling_centre(hold: Section, area: float, leaning: float) -> np.ndarray:
-    """Centre (2,) m, in the hold's frame, of a filling of an area (m²) whose surface leans by an angle (rad).
+    """Centroid (2,) m, in the hold's frame, of a filling of an area (m²) whose surface leans by an angle (rad).
 
-    It is the part of the hold that is under water where it floats with that area immersed. A positive angle is that of
-    a heel to port, where it is deepest. Raises `Unavailable` where there is no room for it.
+    The filling is the immersed part of the hold when it floats with that immersed area. A positive angle is that of a
+    heel to port, where the filling is deepest. Raises `Unavailable` if the hold has no room for it.
     """
     heave = balanced_heave(hold, Loading(area, (0.0, 0.0)), ONE, leaning)
     centre = hold.immersion(heave, leaning).centroid - np.array([0.0, heave])
@@ -32,7 +32,7 @@ def filling_centre(hold: Section, area: float, leaning: float) -> np.ndarray:
 
 
 def level_area(hold: Section, height: float) -> float:
-    """Area (m²) of a level filling whose centre is at a height (m). Raises `Unavailable` where none has."""
+    """Area (m²) of the level filling whose centroid is at a height (m). Raises `Unavailable` if there is none."""
     from scipy.optimize import brentq  # slow to import
 
     low, high = hold.outline[:, 1].min(), hold.outline[:, 1].max()
@@ -53,9 +53,10 @@ def relaxed_levers(
     mass: float,
     repose: float,
 ) -> np.ndarray:
-    """GZ (m) at heels (rad) with a cargo of a `mass` (kg/m) and an area (m²) that has slid to its repose (rad).
+    """Righting levers GZ (m) at heels (rad) with a cargo that has slid to its angle of `repose` (rad).
 
-    `loading` is of hull and cargo together, the cargo level as upright; the hold's axes are the hull's.
+    The cargo has a `mass` (kg/m) and an `area` (m²). `loading` is that of hull and level cargo together, upright; the
+    hold's axes are the hull's.
     """
     upright = filling_centre(hold, area, 0.0)
     levers = []

@@ -1,8 +1,7 @@
-"""Waves as a flap makes them in a flume: a train with a beginning, which spreads on its way to the model.
+"""Waves made by a flap in a flume: a train with a beginning, which disperses on its way to the model.
 
-A model with little damping near its natural frequency is still gaining amplitude when a flume has to stop measuring,
-since its own waves come back from the flap. Then it must be computed in the train that it met, not in waves that have
-always been there.
+Near its natural frequency a lightly damped model still gains amplitude when the measurement has to stop because its own
+waves return from the flap. It must then be computed in the wave train that it met, not in waves without beginning.
 """
 
 from dataclasses import dataclass
@@ -13,23 +12,23 @@ import numpy as np
 from solvers.ship.water import Water
 from solvers.ship.waves import Waves
 
-BAND = 0.3, 2.2  # of the flap's frequency: what is beyond is under 0.1 % of a train that begins over some periods
-QUIET = 60.0  # s that the sum's period is longer than the train, so that its recurrence is not seen
-SAMPLES = 32  # a period of the flap
+BAND = 0.3, 2.2  # of the flap's frequency: a train that begins over some periods has less than 0.1 % outside
+QUIET = 60.0  # s by which the period of the Fourier series exceeds the train, so that it does not recur
+SAMPLES = 32  # per period of the flap
 
 
 @dataclass(frozen=True)
 class Flap:
-    """A flap hinged `hinge` (m) under the surface, `distance` (m) before the model, begun over `ramp` periods."""
+    """A flap hinged `hinge` (m) below the surface, `distance` (m) from the model, started over `ramp` periods."""
 
     hinge: float
     distance: float
     ramp: float
 
     def transfer(self, frequency: np.ndarray, water: Water) -> np.ndarray:
-        """Amplitude of the waves far from the flap over its stroke's at the surface (Dean and Dalrymple 1991, 6.2).
+        """Ratio of wave amplitude far from the flap to stroke amplitude at the surface (Dean and Dalrymple 1991, 6.2).
 
-        Of linear theory, a/S = 4 sinh kh {sinh kh − [cosh kh − cosh k(h − l)]/kl} / (sinh 2kh + 2kh), l the hinge's
+        In linear theory a/S = 4 sinh kh {sinh kh − [cosh kh − cosh k(h − l)]/kl} / (sinh 2kh + 2kh), l the hinge's
         depth in water of depth h, which must be finite.
         """
         k = water.wave_number(frequency)
@@ -38,9 +37,9 @@ class Flap:
         return 4.0 * np.sinh(depth) * push / (np.sinh(2.0 * depth) + 2.0 * depth)
 
     def train(self, amplitude: float, frequency: float, water: Water, duration: float) -> Waves:
-        """Waves at the model of `amplitude` (m) once they are steady; the flap moves from t = 0 to `duration` (s).
+        """Waves at the model, with `amplitude` (m) when steady; the flap moves from t = 0 to `duration` (s).
 
-        They are the flap's stroke as a Fourier series, each component made and carried by linear theory.
+        The flap's stroke is a Fourier series, whose components generate waves and propagate by linear theory.
         """
         period = 2.0 * pi / frequency
         count = int(np.ceil((duration + QUIET) / period))
@@ -57,7 +56,7 @@ class Flap:
 
 
 def fundamental(time: np.ndarray, values: np.ndarray, frequency: float) -> np.ndarray:
-    """Complex amplitude c of values (n, …) at times (n,) s as mean + Re c e^(−iωt), by least squares."""
+    """Complex amplitude c of values (n, …) at times (n,) s, fitted as mean + Re c e^(−iωt) by least squares."""
     design = np.column_stack([np.ones_like(time), np.cos(frequency * time), np.sin(frequency * time)])
     found = np.linalg.lstsq(design, np.reshape(values, (len(time), -1)))[0]
     return np.reshape(found[1] + 1j * found[2], np.shape(values)[1:])

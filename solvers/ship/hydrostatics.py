@@ -1,7 +1,7 @@
 """Buoyancy and weight of a hull at rest: forces, moments, equilibrium, stability, energy. Per metre of length.
 
-The water's pressure is ρ g d, d the depth under the surface z = ζ + s y, calm or sloping. The force of that field on
-the immersed area A is its exact integral, ρ g A (−s, 1) at the centroid of A (Archimedes): under a wave longer than the
+The water's pressure is ρ g d, d the depth below the surface z = ζ + s y, calm or sloping. The force of this field on
+the immersed area A is its exact integral, ρ g A (−s, 1) at the centroid of A (Archimedes). Under a wave longer than the
 hull it is the Froude–Krylov force to first order, sway force included.
 """
 
@@ -15,7 +15,7 @@ from solvers.ship.section import Section
 from solvers.ship.water import Water
 
 SEARCH = pi / 180.0  # step (rad) of the search for an angle of equilibrium
-LEVEL = 1e-12  # a righting lever of this share of the hull's size is none
+LEVEL = 1e-12  # of the hull's size: righting levers up to this count as zero
 
 
 @dataclass(frozen=True)
@@ -27,10 +27,10 @@ class Loading:
 
 
 def turned(point: tuple[float, float], roll) -> np.ndarray:
-    """A point (y, z) of the hull's frame from the hull's origin, in the earth's axes: (…, 2) m."""
+    """Vector (…, 2) m, in the earth's axes, from the hull's origin to a point (y, z) of its frame at a roll (rad)."""
     cos, sin = np.cos(roll), np.sin(roll)
     y = cos * point[0] - sin * point[1]
-    arm = np.empty((*np.shape(y), 2))  # sooner done than stacking them
+    arm = np.empty((*np.shape(y), 2))  # faster than np.stack
     arm[..., 0], arm[..., 1] = y, sin * point[0] + cos * point[1]
     return arm
 
@@ -54,15 +54,16 @@ def buoyancy(
 
 
 def restoring(section: Section, loading: Loading, water: Water, heave, roll, elevation=0.0, slope=0.0) -> np.ndarray:
-    """Force y, z (N/m) of water and weight and their moment (N) about the centre of gravity, (…, 3)."""
+    """Restoring force y, z (N/m) of buoyancy and weight, and moment (N) about the centre of gravity, (…, 3)."""
     load = buoyancy(section, water, heave, roll, elevation, slope, about=loading.centre)
     return load - np.array([0.0, loading.mass * water.gravity, 0.0])
 
 
 def stiffness(section: Section, loading: Loading, water: Water, heave: float, roll: float) -> np.ndarray:
-    """Minus the slopes (3, 3) of the restoring force and moment by sway, heave and roll about the centre of gravity.
+    """Hydrostatic stiffness (3, 3) in sway, heave and roll about the centre of gravity.
 
-    At a pose where weight and buoyancy are in balance; N/m², N/m and N per rad.
+    It is minus the derivative of the restoring force and moment, at a pose where buoyancy balances the weight; in N/m²,
+    N/m and N per rad.
     """
     wet, first, second = _about(section, heave, roll, loading.centre)
     above = heave + turned(loading.centre, roll)[1] - wet.centroid[1]  # z_G − z_B
@@ -74,7 +75,7 @@ def stiffness(section: Section, loading: Loading, water: Water, heave: float, ro
 def surface_force(
     section: Section, water: Water, heave: float, roll: float, about: tuple[float, float] = (0.0, 0.0)
 ) -> np.ndarray:
-    """Slopes (2, 3) of `buoyancy` by the surface's elevation (per m) and by its slope, in calm water.
+    """Derivatives (2, 3) of `buoyancy` with respect to the surface's elevation (per m) and slope, in calm water.
 
     In a long wave a e^(i(ky − ωt)) the Froude–Krylov force is a times the first row and ika times the second.
     """
@@ -94,14 +95,14 @@ def _about(section: Section, heave: float, roll: float, point: tuple[float, floa
 
 
 def potential_energy(section: Section, loading: Loading, water: Water, heave, roll) -> np.ndarray:
-    """Energy (J/m) of weight and calm water, M g z_G + ρ g ∫∫d dA; minus its slopes are restoring force and moment."""
+    """Potential energy (J/m) in calm water, M g z_G + ρ g ∫∫d dA; its negative gradient is force and moment."""
     height = np.asarray(heave) + turned(loading.centre, roll)[..., 1]
     wet = section.immersion(heave, roll)
     return water.gravity * (loading.mass * height + water.density * wet.depth_moment)
 
 
 def balanced_heave(section: Section, loading: Loading, water: Water, roll: float) -> float:
-    """The heave (m) at which buoyancy carries the weight at a roll (rad); raises `Unavailable` where the hull sinks."""
+    """The heave (m) at which buoyancy balances the weight at a roll (rad); raises `Unavailable` if the hull sinks."""
     from scipy.optimize import brentq  # slow to import
 
     needed = loading.mass / water.density
@@ -116,7 +117,7 @@ def balanced_heave(section: Section, loading: Loading, water: Water, roll: float
 
 
 def righting_lever(section: Section, loading: Loading, water: Water, roll: float) -> float:
-    """GZ (m) at a roll (rad), weight and buoyancy in balance; it rights where it has the sign of the roll."""
+    """Righting lever GZ (m) at a roll (rad) in vertical equilibrium; it rights if it has the sign of the roll."""
     heave = balanced_heave(section, loading, water, roll)
     return float(-restoring(section, loading, water, heave, roll)[2] / (loading.mass * water.gravity))
 
@@ -127,7 +128,7 @@ def righting_levers(section: Section, loading: Loading, water: Water, rolls: np.
 
 
 def metacentric_height(section: Section, loading: Loading, water: Water, roll: float = 0.0) -> float:
-    """GM (m), the slope of the righting lever at a roll (rad): I/A − B̄G, I about the waterline's middle."""
+    """Metacentric height GM (m), the slope of GZ at a roll (rad): I/A − B̄G, I about the middle of the waterline."""
     heave = balanced_heave(section, loading, water, roll)
     wet, plane = section.immersion(heave, roll), section.waterplane(heave, roll)
     second = plane.second_moment - plane.moment**2 / plane.breadth
@@ -136,9 +137,9 @@ def metacentric_height(section: Section, loading: Loading, water: Water, roll: f
 
 
 def equilibrium(section: Section, loading: Loading, water: Water, roll: float = 0.0) -> tuple[float, float]:
-    """Heave (m) and roll (rad) at which the hull comes to rest in calm water, starting from a roll.
+    """Heave (m) and roll (rad) at which the hull comes to rest in calm water, starting from a roll (rad).
 
-    It goes the way its moment turns it; from an unstable balance to port, the positive side.
+    It turns in the direction of its moment; from an unstable equilibrium to port, the positive side.
     """
     from scipy.optimize import brentq
 

@@ -1,4 +1,4 @@
-"""Small motions: response in the frequency domain, modes and their damping, inertia from a period of roll."""
+"""Small motions: response in the frequency domain, modes and their damping, inertia from a roll period."""
 
 from dataclasses import replace
 
@@ -12,18 +12,18 @@ from solvers.ship.potential.radiation import Hydrodynamics
 from solvers.ship.section import Section
 from solvers.ship.water import Water
 
-STEP = 1e-5  # m, rad, m/s and rad/s of the difference quotients
-STILL = 1e-4  # of the fastest rate: slower is drift or heel, no oscillation
-GROWTH = 5e-6  # of the fastest rate: some 10 % in a run of a thousand periods
+STEP = 1e-5  # m, rad, m/s and rad/s, step of the difference quotients
+STILL = 1e-4  # of the fastest rate: a slower mode is drift or heel, not an oscillation
+GROWTH = 5e-6  # of the fastest rate: growth allowed, some 10 % in a run of a thousand periods
 ROLL = 2
 
 
 def impedance(
     ship: Ship, section: Section, water: Water, heave: float, table: Hydrodynamics, roll: float = 0.0
 ) -> np.ndarray:
-    """Z (n, 3, 3) with Z x = X at each frequency of a table about P: −ω² (M + A) − iω (B + viscous) + C.
+    """Impedance Z (n, 3, 3) about P at each frequency of a table, Z x = X: −ω² (M + A) − iω (B + viscous) + C.
 
-    At a rest in balance; x and X are the amplitudes of motion and excitation, as e^(−iωt). Quadratic damping is none.
+    At an equilibrium; x and X are the amplitudes of motion and excitation, as e^(−iωt). Quadratic damping is left out.
     """
     own = replace(ship, radiation=replace(ship.radiation, added_mass=np.zeros((3, 3)))).inertia(roll)
     y, z = ship.lever(roll)
@@ -44,7 +44,7 @@ def response(
     roll: float = 0.0,
     diffraction: bool = True,
 ) -> np.ndarray:
-    """Complex amplitudes (n, 3) of sway, heave, roll of P per metre of wave amplitude, 0 where not free."""
+    """Complex amplitudes (n, 3) of sway, heave and roll of P per metre of wave amplitude, 0 in fixed modes."""
     free = np.flatnonzero(ship.free)
     force = table.excitation if diffraction else table.froude_krylov
     whole = impedance(ship, section, water, heave, table, roll)
@@ -54,10 +54,10 @@ def response(
 
 
 def inertia_for_roll(ship: Ship, section: Section, water: Water, heave: float, table: Hydrodynamics) -> Body:
-    """The ship's body with the inertia that puts its undamped roll at the one frequency of a table about P.
+    """The ship's body with the inertia whose undamped natural roll frequency is the only one of a table about P.
 
-    There the impedance of roll, other free motions eliminated, has no real part. Raises `Unavailable` where only a
-    negative inertia would do: the frequency is too high for the righting moment.
+    There the impedance of roll, with the other free motions eliminated, has no real part. Raises `Unavailable` if the
+    inertia would have to be negative: the frequency is too high for the righting moment.
     """
     body = ship.body
     whole = impedance(replace(ship, body=replace(body, inertia=0.0)), section, water, heave, table)[0]
@@ -74,14 +74,14 @@ def inertia_for_roll(ship: Ship, section: Section, water: Water, heave: float, t
 
 
 def flow(ship: Ship, state: np.ndarray) -> np.ndarray:
-    """Slopes (6 + s, 6 + s) of the rate by the state, in calm water, by central differences."""
+    """Jacobian (6 + s, 6 + s) of the state's rate in calm water, by central differences."""
     calm = replace(ship, load=ship.load.still)
     columns = [rate(calm, state + d, 0.0) - rate(calm, state - d, 0.0) for d in STEP * np.eye(len(state))]
     return np.array(columns).T / (2.0 * STEP)
 
 
 def oscillations(ship: Ship, state: np.ndarray) -> np.ndarray:
-    """Eigenvalues (n,) 1/s of small motions about a rest that oscillate, the least damped first; positive Im only."""
+    """Eigenvalues (n,) 1/s of small oscillations about an equilibrium, the least damped first; positive Im only."""
     moving = np.concatenate([np.tile(ship.free, 2), np.ones(len(state) - 6, bool)])
     values = np.linalg.eigvals(flow(ship, state)[np.ix_(moving, moving)])
     values = values[values.imag > STILL * np.abs(values).max()]
@@ -89,9 +89,9 @@ def oscillations(ship: Ship, state: np.ndarray) -> np.ndarray:
 
 
 def require_damped(ship: Ship, state: np.ndarray) -> None:
-    """Raises `Unavailable` where a small oscillation about a rest grows by itself in calm water.
+    """Raise `Unavailable` if a small oscillation about an equilibrium grows by itself in calm water.
 
-    A hull cannot do that: the system fitted to its memory gives energy at a frequency at which little is lost.
+    A real hull cannot do that: here the fitted radiation memory supplies energy at a frequency with little damping.
     """
     values = oscillations(ship, state)
     if len(values) and values.real.max() > GROWTH * np.abs(values).max():

@@ -1,4 +1,4 @@
-"""The water's force on a hull in waves, apart from what its motion radiates: buoyancy and excitation."""
+"""The water's force on a hull in waves without radiation: buoyancy and excitation."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -17,10 +17,10 @@ NO_WAVES = Waves(np.zeros(0, complex), np.zeros(0), np.zeros(0))
 
 @dataclass(frozen=True, eq=False)
 class Floating:
-    """Buoyancy of the section clipped at the sloping surface of the waves, and the rest of their linear force.
+    """Buoyancy of the section under the waves' sloping surface, and the rest of the waves' linear force.
 
-    `about` (m) is the point of the hull whose pose (y, z, roll) is given and about which moments are taken; `excess`
-    (n, 3), complex, is the force and moment per metre of amplitude of each wave over what the slope's buoyancy gives.
+    `about` (m) is the point of the hull whose pose (y, z, roll) is given and about which moments are taken. `excess`
+    (n, 3), complex, is each wave's force and moment per metre of amplitude, less the part that this buoyancy gives.
     """
 
     section: Section
@@ -39,20 +39,20 @@ class Floating:
         return buoyancy(self.section, self.water, heave, pose[2], elevation, slope, self.about) + np.array(excess)
 
     def depths(self, points: Sequence[tuple[float, float]], pose: np.ndarray, time: float) -> np.ndarray:
-        """How deep (k,) m points of the hull (m) are under the waves' surface, each where it is."""
+        """Depths (k,) m of points of the hull (m) below the local wave surface."""
         place = pose[:2] + turned(tuple(np.transpose(points)), pose[2]) - turned(self.about, pose[2])
         return self.waves.elevation(place[:, 0], np.full(len(place), time)) - place[:, 1]
 
     @cached_property
     def factors(self) -> np.ndarray:
-        """Of elevation, slope, and the force over what these give: (n, 5)."""
+        """Complex factors (n, 5) of each wave's amplitude: for elevation, slope and the three `excess` forces."""
         number = self.waves.wave_number[:, None]
         excess = np.zeros((len(number), 3)) if self.excess is None else self.excess
         return np.hstack([np.ones_like(number), 1j * number, excess])
 
     @cached_property
     def still(self) -> "Floating":
-        """The same in calm water."""
+        """The same hull in calm water."""
         return replace(self, waves=NO_WAVES, excess=None)
 
 
@@ -65,10 +65,10 @@ def floating_in_waves(
     rest: tuple[float, float],
     diffraction: bool = True,
 ) -> Floating:
-    """A hull in waves whose force in small ones is the table's: all of it, or the Froude–Krylov part alone.
+    """A hull in waves whose force in small waves is the table's excitation, or only its Froude–Krylov part.
 
     The table's moments are about `about`, its pose the heave (m) and roll (rad) `rest`. Buoyancy under the sloping
-    surface is the long waves' Froude–Krylov force already; it is taken off the table's, else it would count twice.
+    surface already is the Froude–Krylov force of long waves, so it is subtracted from the table's force.
     """
     here = table.at(waves.frequency)
     wanted = here.excitation if diffraction else here.froude_krylov

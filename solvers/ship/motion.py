@@ -1,8 +1,8 @@
-"""A hull as a rigid body in sway, heave and roll, per metre of length, stepped in time.
+"""Rigid-body motion of a hull in sway, heave and roll, per metre of length, in the time domain.
 
-Its pose is that of one of its points, the axis P, `about`: y, z (m, earth's axes) and roll φ (rad). Sway and heave are
-the motions of P, wherever they are told of. With c from P to the centre
-of gravity in the earth's axes, Newton's and Euler's laws about P are
+The pose is that of one point of the hull, the axis P (`about`): y, z (m, earth's axes) and roll φ (rad). Sway and heave
+are always those of P. With c the vector from P to the centre of gravity in the earth's axes, Newton's and Euler's laws
+about P are
 
     [[m, 0, −m c_z], [0, m, m c_y], [−m c_z, m c_y, I_G + m c²]] (a_P, φ̈) = force, moment + m φ̇² (c_y, c_z, 0).
 
@@ -24,24 +24,24 @@ from solvers.ship.potential.memory import Memory
 from solvers.ship.potential.radiation import Hydrodynamics
 
 NO_LOAD = np.zeros(3)
-HEAVE = 1  # of a pose
-BEYOND = 1e6  # a velocity (m/s or rad/s) that is no ship's
+HEAVE = 1  # index in a pose
+BEYOND = 1e6  # m/s or rad/s: no ship is as fast
 
 
 class WaterLoad(Protocol):
-    """The water's force on the hull apart from what its motion radiates."""
+    """The water's force on the hull, without radiation."""
 
     def force(self, pose: np.ndarray, time: float) -> np.ndarray:
         """Force y, z (N/m) and moment (N) about P, (3,), at a pose (m, m, rad) and time (s)."""
 
     @property
     def still(self) -> "WaterLoad":
-        """The same in calm water."""
+        """The same load in calm water."""
 
 
 @dataclass(frozen=True, eq=False)
 class Radiation:
-    """The water's resistance to motion about P: `added_mass` and `damping` (3, 3), and its memory if it has one."""
+    """Radiation about P: `added_mass` and `damping` (3, 3), and the radiation memory if there is one."""
 
     added_mass: np.ndarray
     damping: np.ndarray
@@ -49,12 +49,12 @@ class Radiation:
 
 
 def remembered(table: Hydrodynamics, memory: Memory) -> Radiation:
-    """Cummins' (1962): the added mass of infinite frequency and a system that stands for the retardation."""
+    """Radiation of Cummins (1962): the added mass at infinite frequency and a fitted retardation function."""
     return Radiation(table.infinite_added_mass, np.zeros((3, 3)), memory)
 
 
 def frozen_at(table: Hydrodynamics, frequency: float) -> Radiation:
-    """The coefficients of one frequency (rad/s): exact in a steady motion of that frequency, and in no other."""
+    """Radiation by the coefficients at one frequency (rad/s), exact only for steady motion at that frequency."""
     one = table.at([frequency])
     return Radiation(one.added_mass[0], one.damping[0])
 
@@ -73,7 +73,7 @@ def _nothing() -> np.ndarray:
 
 @dataclass(frozen=True, eq=False)
 class Rig:
-    """What holds a model in sway, heave and roll (3,) each: masses that move along, dashpots, springs from a pose."""
+    """The rig that holds a model: masses moving along, dashpots, springs and their `rest` pose, (3,) for each mode."""
 
     mass: np.ndarray = field(default_factory=_nothing)
     damping: np.ndarray = field(default_factory=_nothing)
@@ -83,7 +83,7 @@ class Rig:
 
 @dataclass(frozen=True, eq=False)
 class Ship:
-    """A hull with all that is fixed to it, the water and the rig; `free` says which of sway, heave, roll can move."""
+    """A hull with everything fixed to it, the water and the rig; `free` says which of sway, heave, roll can move."""
 
     body: Body
     load: WaterLoad
@@ -95,11 +95,11 @@ class Ship:
     gravity: float = 9.81
 
     def lever(self, roll: float) -> np.ndarray:
-        """From P to the centre of gravity (2,) m, earth's axes."""
+        """Vector (2,) m from P to the centre of gravity, earth's axes."""
         return turned((self.body.centre[0] - self.about[0], self.body.centre[1] - self.about[1]), roll)
 
     def inertia(self, roll: float) -> np.ndarray:
-        """Of body, rig and added mass, (3, 3)."""
+        """Inertia matrix (3, 3) about P of body, rig and added mass."""
         y, z = self.lever(roll).tolist()
         mass, turning = self.body.mass, self.body.inertia
         body = np.array(
@@ -108,11 +108,11 @@ class Ship:
         return body + np.diag(self.rig.mass) + self.radiation.added_mass
 
     def resistance(self, state: np.ndarray) -> np.ndarray:
-        """Force and moment (3,) against the motion: radiated without the added mass, viscous, of the rig's dashpots."""
+        """Force and moment (3,) against the motion: radiation without the added mass, viscosity, the rig's dashpots."""
         return self.radiated(state) + self.viscous(state[3:6])
 
     def radiated(self, state: np.ndarray) -> np.ndarray:
-        """Force and moment (3,) that make waves."""
+        """Radiation force and moment (3,), without the added mass."""
         force = self.radiation.damping @ state[3:6]
         memory = self.radiation.memory
         return force if memory is None else force + memory.exit @ state[6:]
@@ -125,9 +125,9 @@ class Ship:
 
 
 def start(ship: Ship, heave: float, roll: float = 0.0, velocity: np.ndarray = NO_LOAD) -> np.ndarray:
-    """The state of a hull whose origin is at a heave (m) at a roll (rad) about P, the water calm until then.
+    """The state of a hull at a heave (m) of its origin and a roll (rad) about P, in water that was calm until then.
 
-    Turned about P, which stays where it is in y: above y = 0 the origin is upright.
+    P keeps its y as the hull turns about it, so the origin is at y = 0 only when the hull is upright.
     """
     arm = turned(ship.about, roll)
     memory = ship.radiation.memory
@@ -136,7 +136,7 @@ def start(ship: Ship, heave: float, roll: float = 0.0, velocity: np.ndarray = NO
 
 
 def rate(ship: Ship, state: np.ndarray, time: float, cargo: np.ndarray = NO_LOAD) -> np.ndarray:
-    """Time derivative (6 + s,) of a state; `cargo` (3,) is the force and moment about P of what is not fixed."""
+    """Time derivative (6 + s,) of a state; `cargo` (3,) is the force and moment about P of the moving cargo."""
     pose, velocity = state[:3], state[3:6]
     y, z = ship.lever(pose[2])
     mass, spin = ship.body.mass, velocity[2]
@@ -153,12 +153,12 @@ def rate(ship: Ship, state: np.ndarray, time: float, cargo: np.ndarray = NO_LOAD
 
 
 def advance(ship: Ship, state: np.ndarray, time: float, interval: float, cargo: np.ndarray = NO_LOAD) -> np.ndarray:
-    """The state an interval (s) later, `cargo` held."""
+    """The state an interval (s) later, with constant `cargo` load."""
     return runge_kutta(lambda at, t: rate(ship, at, t, cargo), state, time, interval)
 
 
 def runge_kutta(slope: Callable, state: np.ndarray, time: float, interval: float) -> np.ndarray:
-    """One interval (s) of the classical method of Runge and Kutta (Kutta 1901)."""
+    """One interval (s) of the classical Runge–Kutta method (Kutta 1901)."""
     half = 0.5 * interval
     first = slope(state, time)
     second = slope(state + half * first, time + half)
@@ -171,7 +171,7 @@ def runge_kutta(slope: Callable, state: np.ndarray, time: float, interval: float
 class Voyage:
     """States (n, 6 + s) at times (n,) s, the start first.
 
-    `capsized` is when (s) roll passed its limits, `flooded` when an opening went under water, or None.
+    `capsized` and `flooded` are the times (s) at which roll left its limits and an opening went under water, or None.
     """
 
     time: np.ndarray
@@ -194,11 +194,10 @@ def sail(
     begin: float = 0.0,
     openings: tuple[tuple[float, float], ...] = (),
 ) -> Voyage:
-    """Motion from a state at the time `begin` (s), ended where roll leaves its limits (rad) or an opening (m) is wet.
+    """Motion from a state at the time `begin` (s) until roll leaves its limits (rad) or an opening (m) is immersed.
 
-    Openings are points of the hull, whose load then is a `loads.Floating`.
-    Raises `BadState` where it is no longer a number or faster than any ship: the interval is too long for the ship's
-    fastest motion or memory.
+    Openings are points of the hull, whose load must then be a `loads.Floating`. Raises `BadState` if the motion is not
+    finite or faster than any ship: the interval is too long for the ship's fastest motion or memory.
     """
     count = round(duration / interval)
     states, capsized, flooded = [state], None, None

@@ -1,4 +1,4 @@
-"""Heels at which points of a hull, the edge of her deck or of an opening, meet the calm water."""
+"""Heels at which points of a hull, such as deck edges or openings, reach the calm water surface."""
 
 from collections.abc import Sequence
 from math import pi
@@ -13,10 +13,10 @@ from solvers.ship.water import Water
 def immersion_angle(
     section: Section, loading: Loading, water: Water, points: Sequence[tuple[float, float]]
 ) -> float | None:
-    """Least |heel| (rad), to either side, at which one of the points (m) meets the still waterline; None if none does.
+    """Least |heel| (rad), to either side, at which one of the points (m) reaches the still waterline, or None.
 
-    At constant displacement: at each heel weight and buoyancy are in balance. For a deck's edges this is the angle of
-    deck immersion, for openings the angle of downflooding φ_f (IMO, 2008 IS Code, part A, 2.3.1.4).
+    The displacement is constant. For a deck's edges this is the angle of deck immersion, for openings the angle of
+    downflooding φ_f (IMO, 2008 IS Code, part A, 2.3.1.4).
     """
     found = [
         angle for side in (1.0, -1.0) if (angle := _to_one_side(section, loading, water, points, side)) is not None

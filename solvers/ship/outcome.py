@@ -1,4 +1,4 @@
-"""What became of a ship in waves: its limits of roll, whether it stayed upright, took a bias, capsized or flooded."""
+"""The outcome of a run in waves: whether the ship stayed upright, took a bias, capsized or flooded; roll limits."""
 
 from dataclasses import dataclass
 from math import pi
@@ -10,16 +10,16 @@ from solvers.ship.hydrostatics import SEARCH, Loading, equilibrium, righting_lev
 from solvers.ship.section import Section
 from solvers.ship.water import Water
 
-CYCLES = 10  # of the waves, at the end, that are the steady motion
-HARMONICS = 5  # of the waves' frequency that are one motion with it
-BIAS = np.radians(0.5)  # mean roll that is no longer upright
-STRAY = 0.1  # of the motion's rms that is of other frequencies than the waves'
+CYCLES = 10  # of the waves at the end of a run, which count as the steady motion
+HARMONICS = 5  # of the wave frequency that belong to the response to it
+BIAS = np.radians(0.5)  # mean roll beyond which a ship is not upright
+STRAY = 0.1  # of the motion's rms: with more at other frequencies the motion has several
 
 
 def roll_limits(section: Section, loading: Loading, water: Water, largest: float = pi) -> tuple[float, float]:
-    """Rolls (rad) to starboard and to port at which the righting lever vanishes, or ∓`largest` where that is nearer.
+    """Angles of vanishing stability (rad) to starboard and to port, or ∓`largest` if that is nearer.
 
-    On each side from where the hull comes to rest if let go there a little off upright.
+    On each side the search starts where the hull comes to rest if released slightly off upright to that side.
     """
     return tuple(float(np.clip(_vanishing(section, loading, water, s, largest), -largest, largest)) for s in (-1, 1))
 
@@ -39,9 +39,9 @@ def _vanishing(section: Section, loading: Loading, water: Water, side: int, larg
 
 @dataclass(frozen=True)
 class Outcome:
-    """How a roll ended: `kind` upright, biased, capsized or flooded, and whether it has `several` frequencies.
+    """How a roll motion ended: `kind` upright, biased, capsized or flooded, and whether it has `several` frequencies.
 
-    Of the last cycles: `mean` (rad), `amplitude` (rad), the mean of half the way from a top to the next bottom, and
+    Over the last cycles: `mean` (rad), `amplitude` (rad), the mean of half the range of roll in each period, and the
     `largest` |roll| (rad).
     """
 
@@ -53,9 +53,9 @@ class Outcome:
 
 
 def outcome(time: np.ndarray, roll: np.ndarray, frequency: float, lost: str = "") -> Outcome:
-    """Class of a roll (n,) rad at even times (n,) s in waves of a frequency (rad/s), by its last cycles.
+    """Classify a roll (n,) rad at equally spaced times (n,) s in waves of a frequency (rad/s), by its last cycles.
 
-    `lost`: "capsized" or "flooded" where the roll ended so. Raises `Unavailable` where it is shorter and did not.
+    `lost`: "capsized" or "flooded" if the run ended so. Else raises `Unavailable` if the run is too short.
     """
     period = 2.0 * pi / frequency
     if time[-1] - time[0] < CYCLES * period and not lost:
@@ -73,7 +73,7 @@ def outcome(time: np.ndarray, roll: np.ndarray, frequency: float, lost: str = ""
 
 
 def _amplitude(time: np.ndarray, roll: np.ndarray, period: float) -> float:
-    """Mean over whole periods back from the end of half their range."""
+    """Mean, over whole periods back from the end, of half the range of roll in each."""
     number = np.floor((time[-1] - time) / period).astype(int)
     spans = [0.5 * np.ptp(roll[number == k]) for k in range(number.max() + 1) if (number == k).sum() > 1]
     return float(np.mean(spans))

@@ -1,8 +1,9 @@
 """A hull's section: a polygon, and the part of it under a calm or sloping water surface at any pose.
 
-Under a surface z = ζ + s (y − Y) (Y the sway of the hull's origin) a point's depth is d = ζ + s (y − Y) − z. In the
-coordinates (y, d), a shear that keeps areas, every integral over the immersed part is one along the outline alone, by
-Green's theorem: the surface itself has d = 0 and adds nothing. So the pieces need neither sorting nor closing.
+Under a surface z = ζ + s (y − Y) (Y the sway of the hull's origin) a point's depth is d = ζ + s (y − Y) − z. The
+coordinates (y, d) are a shear that preserves areas. In them, by Green's theorem, every integral over the immersed part
+is one along the outline only: on the surface d = 0, which adds nothing. So immersed pieces of the outline need not be
+sorted or closed.
 """
 
 from dataclasses import dataclass
@@ -12,7 +13,7 @@ import numpy as np
 
 from solvers.machine.errors import Unavailable
 
-ROUNDING = 1e-12  # of the section's size: shorter than this is nothing
+ROUNDING = 1e-12  # of the section's size: shorter lengths count as zero
 
 
 @dataclass(frozen=True)
@@ -30,7 +31,7 @@ class Immersion:
 
     @property
     def centroid(self) -> np.ndarray:
-        """Its centroid (…, 2) m in the earth's axes, y from the hull's origin, z from the calm surface; nan if dry."""
+        """Centroid (…, 2) m in the earth's axes, y from the hull's origin, z from the calm surface; nan if dry."""
         with np.errstate(invalid="ignore", divide="ignore"):
             y, depth = self.moment / self.area, self.depth_moment / self.area
         return np.stack([y, self.elevation + self.slope * y - depth], axis=-1)
@@ -38,7 +39,7 @@ class Immersion:
 
 @dataclass(frozen=True)
 class Waterplane:
-    """What the surface cuts: breadth ∫dy (m), ∫y dy (m²) and ∫y² dy (m³), y from the hull's origin."""
+    """The waterline's breadth ∫dy (m), ∫y dy (m²) and ∫y² dy (m³), y from the hull's origin."""
 
     breadth: np.ndarray
     moment: np.ndarray
@@ -47,9 +48,9 @@ class Waterplane:
 
 @dataclass(frozen=True, eq=False)
 class Section:
-    """A simple polygon (m, 2) of y, z in m, counter-clockwise, in the hull's own frame.
+    """A section: a simple polygon (m, 2) of y, z in m, counter-clockwise, in the hull's own frame.
 
-    Raises `Unavailable` where it is anything else.
+    Raises `Unavailable` for any other outline.
     """
 
     outline: np.ndarray
@@ -61,16 +62,16 @@ class Section:
 
     @cached_property
     def size(self) -> float:
-        """The larger of its width and height (m)."""
+        """The larger of the section's width and height (m)."""
         return float(np.ptp(self.outline, axis=0).max())
 
     @cached_property
     def area(self) -> float:
-        """Its whole area (m²)."""
+        """Area (m²) of the whole section."""
         return _enclosed(self.outline)
 
     def immersion(self, heave, roll, elevation=0.0, slope=0.0) -> Immersion:
-        """The part under the surface `elevation` (m) + `slope` (∂ζ/∂y) × y at poses that broadcast together."""
+        """The part below the surface `elevation` (m) + `slope` (∂ζ/∂y) × y, at poses that broadcast together."""
         y, depth, elevation, slope = self._below(heave, roll, elevation, slope)
         y0, d0, y1, d1 = _clipped(y, depth)
         along = y1 - y0
@@ -80,7 +81,7 @@ class Section:
         return Immersion(area.sum(-1), moment.sum(-1), depth_moment.sum(-1), elevation, slope)
 
     def waterplane(self, heave, roll, elevation=0.0, slope=0.0) -> Waterplane:
-        """Moments of the waterline's pieces, at poses that broadcast together."""
+        """Breadth and moments of the waterline, at poses that broadcast together."""
         y, depth, _, _ = self._below(heave, roll, elevation, slope)
         crossing, sign = _crossings(y, depth)
         powers = [(sign * crossing**n / n).sum(-1) for n in (1, 2, 3)]
@@ -98,14 +99,14 @@ class Section:
         return np.stack([ends, elevation + slope * ends], axis=-1)
 
     def wet_edges(self, heave: float, roll: float) -> np.ndarray:
-        """Start and end (k, 2, 2) m of each edge's part under calm water, the water to its right, earth's axes."""
+        """Start and end (k, 2, 2) m of each edge's part below calm water, the water to its right, earth's axes."""
         y, depth, _, _ = self._below(heave, roll, 0.0, 0.0)
         y0, d0, y1, d1 = _clipped(y, depth)
         wet = np.hypot(y1 - y0, d1 - d0) > ROUNDING * self.size
         return np.stack([np.stack([y0, -d0], axis=-1), np.stack([y1, -d1], axis=-1)], axis=1)[wet]
 
     def _below(self, heave, roll, elevation, slope):
-        """Corners' y from the hull's origin and depth (…, m), the first corner once more at the end; the surface."""
+        """Corners' y from the hull's origin and depth (…, m), the first corner repeated at the end; the surface."""
         heave, roll, elevation, slope = np.broadcast_arrays(heave, roll, elevation, slope)
         corners = np.concatenate([self.outline, self.outline[:1]])
         cos, sin = np.cos(roll)[..., None], np.sin(roll)[..., None]
@@ -121,31 +122,31 @@ def box(width: float, height: float) -> Section:
 
 
 def _clipped(y: np.ndarray, depth: np.ndarray):
-    """Start y, depth and end y, depth (…, m) of the edges' parts with depth > 0, of no length where there is none."""
+    """Start y, depth and end y, depth (…, m) of the edges' immersed parts; dry edges have zero length."""
     y0, d0, y1, d1 = y[..., :-1], depth[..., :-1], y[..., 1:], depth[..., 1:]
     crossing = _crossing(y0, d0, y1, d1)
     in0, in1 = d0 > 0.0, d1 > 0.0
-    # A dry end moves to the crossing; an edge that is all dry shrinks to a point of the surface.
+    # A dry end moves to the crossing; an edge that is wholly dry shrinks to a point on the surface.
     start_y, end_y = np.where(in0, y0, crossing), np.where(in1, y1, crossing)
     return start_y, np.where(in0, d0, 0.0), end_y, np.where(in1, d1, 0.0)
 
 
 def _crossing(y0, d0, y1, d1) -> np.ndarray:
-    """Where edges cross the surface; of those that do not, some point."""
+    """The y at which edges cross the surface; an arbitrary point for edges that do not."""
     cuts = (d0 > 0.0) != (d1 > 0.0)
     share = np.where(cuts, d0 / np.where(cuts, d0 - d1, 1.0), 0.0)
     return y0 + share * (y1 - y0)
 
 
 def _crossings(y: np.ndarray, depth: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The y (…, m) where each edge leaves (sign 1) or enters (−1) the water; sign 0 where it does neither."""
+    """The y (…, m) at which each edge leaves (sign 1) or enters (−1) the water; sign 0 if it does neither."""
     y0, d0, y1, d1 = y[..., :-1], depth[..., :-1], y[..., 1:], depth[..., 1:]
     sign = (d0 > 0.0).astype(float) - (d1 > 0.0)
     return np.where(sign != 0.0, _crossing(y0, d0, y1, d1), 0.0), sign
 
 
 def _check(outline: np.ndarray) -> None:
-    """One sentence where an outline is not a simple polygon, counter-clockwise."""
+    """Raise `Unavailable`, one sentence, if an outline is not a simple polygon, counter-clockwise."""
     if outline.ndim != 2 or outline.shape[1] != 2 or len(outline) < 3:
         raise Unavailable("the hull's outline needs at least three corners of two coordinates (y, z).")
     if not np.isfinite(outline).all():

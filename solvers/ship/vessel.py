@@ -1,4 +1,4 @@
-"""A ship that carries grains: what the solver must know of it before they are laid in her hold."""
+"""A ship that carries grains: what the solver must know of it before the cargo is in its hold."""
 
 from dataclasses import dataclass, replace
 from math import inf
@@ -11,19 +11,19 @@ from solvers.ship.hydrostatics import balanced_heave, turned
 from solvers.ship.motion import HEAVE, Ship
 
 LONGEST_INTERVAL = 1e-3  # s
-SHORTEST_MEMORY = 0.02  # of the fastest memory's time: Runge and Kutta's error of an interval is then under 1e-10
+SHORTEST_MEMORY = 0.02  # of the memory's shortest time scale: the Runge–Kutta error per interval is then below 1e-10
 
 
 @dataclass(frozen=True, eq=False)
 class Vessel:
     """A hull in water (`ship`, its load a `Floating`) of `length` (m), with a hold.
 
-    `hold` is the tank's origin in the hull's frame (m). With `laden` the ship's body is that of hull and cargo together
-    as they are when she is let go, and the hull is what is left of it without the cargo; else it is the hull alone. She
-    is let go at `release` (s), until then heeled softly to `heel` (rad) about the ship's axis, which stays where it is
-    but for its heave where she is free to heave. She has capsized where her roll leaves `limits` (rad), and floods
-    where one of her `openings` (m, hull's frame) goes under the water's local surface. `height` (m) is where the hull's
-    origin is upright, None: where she floats in balance.
+    `hold` is the tank's origin in the hull's frame (m). With `laden` the ship's body is hull and cargo together at the
+    release, and the hull is that body less the cargo; otherwise the body is the hull alone. The ship is released at
+    `release` (s). Until then it is heeled smoothly to `heel` (rad) about its axis, which moves only in heave, and only
+    if the ship is free to heave. The ship has capsized when its roll leaves `limits` (rad), and floods when one of its
+    `openings` (m, hull's frame) is below the local water surface. `height` (m) is that of the hull's origin when
+    upright, None: as the ship floats in equilibrium.
     """
 
     ship: Ship
@@ -38,13 +38,13 @@ class Vessel:
 
     @property
     def interval(self) -> float:
-        """Longest step (s) of the water's forces: that of her fastest memory, a millisecond at most."""
+        """Longest interval (s) for the water's forces: set by the fastest state of the memory, at most 1 ms."""
         memory = self.ship.radiation.memory
         fastest = 0.0 if memory is None else np.abs(np.linalg.eigvals(memory.matrix)).max()
         return min(LONGEST_INTERVAL, SHORTEST_MEMORY / max(fastest, 1e-9))
 
     def hull(self, cargo: Body) -> Body:
-        """The hull alone. Raises Unavailable where the cargo (hull's frame) leaves it no mass or no inertia."""
+        """The hull alone. Raises Unavailable if the cargo (hull's frame) leaves it no mass or no inertia."""
         body = self.ship.body
         if not self.laden:
             return body
@@ -61,11 +61,11 @@ class Vessel:
         return replace(bare, inertia=inertia)
 
     def whole(self, cargo: Body) -> Body:
-        """Hull and cargo as one."""
+        """Hull and cargo as one body."""
         return self.ship.body if self.laden else bolted(self.ship.body, cargo)
 
     def heave(self, cargo: Body, roll: float) -> float:
-        """Of the hull's origin (m) at a roll (rad) before she is let go: in balance, or her axis as high as upright."""
+        """Heave (m) of the hull's origin at a roll (rad) before the release, in equilibrium or with the axis fixed."""
         about, load = self.ship.about, self.ship.load
         if self.height is not None:
             return self.height + about[1] - float(turned(about, roll)[1])

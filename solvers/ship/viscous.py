@@ -1,7 +1,7 @@
-"""Viscous damping of a section's roll without forward speed, from its shape alone: eddies at the bilges and friction.
+"""Viscous roll damping of a section without forward speed, from its shape: bilge eddies and skin friction.
 
-After Ikeda's component method (Himeno 1981; ITTC 7.5-02-07-04.5, 2011). Both are empirical, for model ships: good to
-some tens of per cent, and the friction's formula is for a laminar boundary layer.
+After Ikeda's component method (Himeno 1981; ITTC 7.5-02-07-04.5, 2011). Both components are empirical, for model ships,
+and good to some tens of per cent. The friction formula is for a laminar boundary layer.
 """
 
 from math import acos, cos, exp, pi, sin, sqrt, tanh
@@ -12,15 +12,15 @@ from solvers.machine.errors import Unavailable
 from solvers.ship.motion import RollDamping
 
 VISCOSITY = 1.1e-6  # m²/s, of fresh water at 16 °C
-COMMON = 0.02, 0.05  # of the critical: linear, and with what is quadratic at COMMON_ANGLE, of a hull without keels
+COMMON = 0.02, 0.05  # of critical damping, without bilge keels: linear alone, and with quadratic at COMMON_ANGLE
 COMMON_ANGLE = np.radians(15.0)
 
 
 def common_damping(frequency: float, inertia: float) -> tuple[RollDamping, RollDamping]:
-    """The range that is usual for hulls without bilge keels, of a roll of a frequency (rad/s) and inertia (kg m).
+    """The usual range of damping of hulls without bilge keels, for a roll frequency (rad/s) and inertia (kg m).
 
-    From 2 % of the critical to 5 % at 15 deg, what is added being quadratic: an engineer's choice that holds the decay
-    tests of bare hulls. By the energy of a cycle −b φ̇|φ̇| at an amplitude a is a share (4/3π) b a of the critical.
+    From 2 % of critical damping to 5 % at 15 deg, the increase being quadratic: an engineer's choice that covers the
+    decay tests of bare hulls. By the energy of a cycle −b φ̇|φ̇| at an amplitude a is (4/3π) b a of the critical.
     """
     low, high = COMMON
     linear = 2.0 * low * frequency * inertia
@@ -30,9 +30,9 @@ def common_damping(frequency: float, inertia: float) -> tuple[RollDamping, RollD
 def estimated_damping(
     breadth: float, draught: float, radius: float, centre: float, frequency: float, density: float = 1000.0
 ) -> RollDamping:
-    """Eddies (Ikeda, Himeno and Tanaka 1978) and friction (Kato 1957) of a box with bilges of a `radius` (m).
+    """Eddy (Ikeda, Himeno and Tanaka 1978) and friction damping (Kato 1957) of a box with bilge `radius` (m).
 
-    `centre` (m): the height of the axis of roll above the keel. Per metre of length.
+    `centre` (m): the height of the roll axis above the keel. Per metre of length.
     """
     coefficient = eddy_coefficient(breadth, draught, radius, centre)
     friction = friction_damping(breadth, draught, radius, centre, frequency, density)
@@ -44,7 +44,7 @@ def friction_damping(
 ) -> float:
     """B₁ (N s) of skin friction per metre: B = (4/3π) ρ s r³ ω a C_f, C_f = 1.328 (3.22 r² a²/T ν)^(−1/2) (Kato 1957).
 
-    ITTC 7.5-02-07-04.5, eqs. 2.9 to 2.13; C_f falls with the amplitude a as B grows with it, so that a drops out.
+    ITTC 7.5-02-07-04.5, eqs. 2.9 to 2.13. C_f is proportional to 1/a, so the amplitude a cancels.
     """
     fullness, below = _fullness(breadth, draught, radius), draught - centre
     girth = 1.7 * draught + fullness * breadth
@@ -56,8 +56,8 @@ def friction_damping(
 def eddy_coefficient(breadth: float, draught: float, radius: float, centre: float) -> float:
     """C_R of the moment ½ ρ d⁴ C_R φ̇|φ̇| per metre, d the draught (Ikeda, Himeno and Tanaka 1978; Himeno 1981).
 
-    C_R = {(1 − f₁R/d)(1 − OG/d − f₁R/d) + f₂ (H₀ − f₁R/d)²} C_P (r/d)², r the furthest point's distance from the axis
-    and C_P the pressure behind it by the speed of the potential flow there, in a ratio γ to the mean one.
+    C_R = {(1 − f₁R/d)(1 − OG/d − f₁R/d) + f₂ (H₀ − f₁R/d)²} C_P (r/d)², r the distance of the furthest point from the
+    axis. C_P is the pressure coefficient behind it, from the ratio γ of the potential flow's speed there to the mean.
     """
     fullness = _fullness(breadth, draught, radius)
     half, deep, bilge = 0.5 * breadth / draught, (draught - centre) / draught, radius / draught
@@ -76,9 +76,9 @@ def _fullness(breadth: float, draught: float, radius: float) -> float:
 
 
 def _lewis_flow(breadth: float, draught: float, fullness: float, deep: float) -> tuple[float, float]:
-    """Distance (m) of the Lewis section's furthest point, and γ there (Ikeda et al. 1978, A-1 to A-10)
+    """Distance (m) of the Lewis section's furthest point from the axis, and γ there (Ikeda et al. 1978, A-1 to A-10).
 
-    The Lewis form's coefficients a₁, a₃ are those of breadth, draught and fullness (von Kerczek and Tuck 1969).
+    The Lewis form's coefficients a₁, a₃ follow from breadth, draught and fullness (von Kerczek and Tuck 1969).
     """
     half = 0.5 * breadth / draught
     shape = 3.0 + 4.0 * fullness / pi + (1.0 - 4.0 * fullness / pi) * ((half - 1.0) / (half + 1.0)) ** 2

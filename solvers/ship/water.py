@@ -5,7 +5,7 @@ from math import inf
 
 import numpy as np
 
-NEWTON_STEPS = 6  # from a start within a few per cent; the error squares at each
+NEWTON_STEPS = 6  # from a start within a few per cent; each step squares the error
 
 
 @dataclass(frozen=True)

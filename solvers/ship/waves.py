@@ -1,4 +1,4 @@
-"""Waves at the ship: regular, in packets, or a random sea, as sums of linear waves that travel to starboard."""
+"""Waves at the ship: regular waves, wave packets or a random sea, as sums of linear waves travelling to starboard."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -7,16 +7,16 @@ import numpy as np
 
 from solvers.ship.water import Water
 
-PACKET_REACH = 4.0  # standard deviations of a packet's spectrum that are summed
+PACKET_REACH = 4.0  # standard deviations to which a packet's spectrum is summed
 SEA_RANGE = 0.5, 5.0  # of the peak frequency: 99.8 % of a Pierson–Moskowitz sea's energy
-FINE = 50  # points of the integral of a spectrum over one band
+FINE = 50  # points for the integral of a spectrum over one band
 
 
 @dataclass(frozen=True, eq=False)
 class Waves:
-    """Components (n,): elevation ζ = D(t) Σ Re a e^(i(ky − ωt)), D the soft start over its length (s), none if 0.
+    """Wave components (n,): elevation ζ = D(t) Σ Re a e^(i(ky − ωt)), D the soft start of a length (s), none if 0.
 
-    Amplitudes are complex (m): the argument is the phase ε of |a| cos(ky − ωt + ε).
+    Amplitudes (m) are complex: the argument is the phase ε of |a| cos(ky − ωt + ε).
     """
 
     amplitude: np.ndarray
@@ -29,7 +29,7 @@ class Waves:
         return self.sums(np.ones((len(self.amplitude), 1)), y, time)[..., 0]
 
     def slope(self, y, time) -> np.ndarray:
-        """Slope ∂ζ/∂y of the surface."""
+        """Slope ∂ζ/∂y of the surface at y (m) and times (s) that broadcast together."""
         return self.sums(1j * self.wave_number[:, None], y, time)[..., 0]
 
     def force(self, excitation: np.ndarray, y, time) -> np.ndarray:
@@ -56,7 +56,7 @@ def soft_start(time, length: float) -> np.ndarray:
 
 
 def regular(amplitude: float, frequency: float, water: Water, soft_start: float = 0.0) -> Waves:
-    """One wave of amplitude (m) and angular frequency (rad/s), a crest at y = 0 at t = 0."""
+    """One wave of amplitude (m) and angular frequency (rad/s) with a crest at y = 0 at t = 0."""
     omega = np.array([frequency])
     return Waves(np.array([amplitude], complex), omega, water.wave_number(omega), soft_start)
 
@@ -66,7 +66,7 @@ def packet(
 ) -> Waves:
     """A Gaussian packet whose components, of standard deviation `spread` (rad/s), all crest at `y` (m) at `time` (s).
 
-    There and then it is `amplitude` (m) high. The sum recurs after 2π/Δω, Δω the distance of its components.
+    There and then its elevation is `amplitude` (m). The sum recurs after 2π/Δω, Δω the spacing of its components.
     """
     omega = frequency + spread * PACKET_REACH * np.linspace(-1.0, 1.0, count)
     omega = omega[omega > 0.0]
@@ -91,7 +91,7 @@ def pierson_moskowitz(height: float, frequency: float) -> Callable[[np.ndarray],
 def jonswap(height: float, frequency: float, peakedness: float = 3.3) -> Callable[[np.ndarray], np.ndarray]:
     """Spectrum S(ω) (m² s) of a growing sea (Hasselmann et al. 1973), ∫S dω = H_s²/16.
 
-    Pierson and Moskowitz's times γ^exp(−(ω/ω_p − 1)²/2σ²), σ = 0.07 below the peak and 0.09 above, normalised.
+    The Pierson–Moskowitz spectrum times γ^exp(−(ω/ω_p − 1)²/2σ²), σ = 0.07 below the peak and 0.09 above, normalised.
     """
     from scipy.integrate import quad
 
@@ -115,10 +115,10 @@ def random_sea(
     soft_start: float = 0.0,
     count: int = 200,
 ) -> Waves:
-    """A sea of `count` components of a spectrum about a peak frequency (rad/s), the same for the same seed.
+    """A sea of `count` components of a spectrum with a peak frequency (rad/s), the same for the same seed.
 
-    Each band of the frequencies between 0.5 and 5 peaks has one component of all its energy, at a random place in it,
-    so that the sea does not recur, and with a random phase.
+    The range from 0.5 to 5 times the peak is cut into bands. Each band has one component with all of its energy, at a
+    random frequency in the band, so that the sea does not recur, and with a random phase.
     """
     random = np.random.default_rng(seed)
     edges = frequency * np.geomspace(*SEA_RANGE, count + 1)
@@ -130,9 +130,9 @@ def random_sea(
 
 
 def froude_factors(scale: float) -> dict[str, float]:
-    """What to multiply a model's quantities by at full scale, `scale` times as long, in the same water and gravity.
+    """Factors from a model's quantities to full scale, `scale` times as long, in the same water and gravity.
 
-    ω √(l/g) and n/l are kept (Spandonidis 2016, eq. C.1); forces, masses and moments are per metre of length.
+    ω √(l/g) and n/l are kept (Spandonidis 2016, eq. C.1). Forces, masses and moments are per metre of length.
     """
     return {
         "length": scale,

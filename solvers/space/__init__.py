@@ -1,1 +1,1 @@
-"""The plane in cells: who is near whom, and the order of grains in memory."""
+"""The plane in cells: neighbour search by a cell grid, and the spatial order of grains in memory."""

@@ -1,4 +1,4 @@
-"""A grid of cells over the tank, and the grains sorted into it."""
+"""A cell grid over the tank, with the grains sorted into it."""
 
 from math import prod
 from typing import Protocol
@@ -12,9 +12,9 @@ CHUNK = 256  # cells that one thread sums up
 
 
 class Places(Protocol):
-    """What is sorted: `count` places (m) in each of `worlds`, an array an axis.
+    """What is sorted: `count` points (m) in each of `worlds`, in one array per axis.
 
-    Some may have left (`present` 0) if `may_leave`.
+    With `may_leave` some may be gone (`present` 0).
     """
 
     axes: int
@@ -27,19 +27,19 @@ class Places(Protocol):
 
 @ti.data_oriented
 class Cells:
-    """Cells no smaller than the reach of a contact, and no more of them than a few a grain.
+    """Square cells no smaller than the reach of a contact, and not more than a few per grain.
 
-    `shape` says how many there are along each axis. Cells are numbered in rows along the first axis.
+    `shape` is the number of cells along each axis. Cells are numbered in rows along the first axis.
 
-    The grains of cell c are `sorted[w, first[w, c]]` to `sorted[w, first[w, c + 1] - 1]`, by their numbers; those that
-    have left the scene are in a cell of their own beyond the last, which is nobody's neighbour.
+    The grains of cell c are `sorted[w, first[w, c]]` to `sorted[w, first[w, c + 1] - 1]`, in the order of their
+    numbers. Grains that have left the scene are in an extra cell after the last, which is no cell's neighbour.
     """
 
     def __init__(self, arrays: State, grains: Places, lower: np.ndarray, upper: np.ndarray, reach: float):
         self.grains = grains
         extent, self.axes = upper - lower, grains.axes
         size = max(reach, float(np.prod(extent) / (4.0 * grains.count + 64.0)) ** (1.0 / self.axes))
-        # In an array and not in the code, so that scenes that differ in lengths alone share a compiled kernel.
+        # In an array, not compiled in, so that scenes that differ in lengths only share a compiled kernel.
         own, world = arrays.under("cells"), Axis("world", grains.worlds)
         lengths = np.array([*lower, size])  # the origin, and the size of a cell
         self.lengths = own.holding("lengths", lengths, "number", own.place)
@@ -54,7 +54,7 @@ class Cells:
 
     @ti.func
     def find(self, w, i):
-        """The cell a grain is in; beyond the grid, the nearest."""
+        """The cell of a grain; outside the grid, the nearest cell."""
         cell = 0
         for a in ti.static(range(self.axes)):
             along = ti.cast((self.grains.place[a][w, i] - self.lengths[a]) / self.lengths[self.axes], ti.i32)
@@ -66,7 +66,7 @@ class Cells:
 
     @ti.func
     def box(self, w, i):
-        """The first and the last cells along each axis, of the cell that a grain is in and those around it."""
+        """First and last cells along each axis of the box of a grain's cell and its neighbours."""
         at = [self.cell_of[w, i] // self.strides[a] % self.shape[a] for a in ti.static(range(self.axes))]
         lower = [ti.max(0, at[a] - 1) for a in ti.static(range(self.axes))]
         upper = [ti.min(self.shape[a] - 1, at[a] + 1) for a in ti.static(range(self.axes))]
@@ -74,7 +74,7 @@ class Cells:
 
     @ti.func
     def rows(self, lower: ti.template(), upper: ti.template()):
-        """How many rows of cells there are in a box."""
+        """Number of rows of cells in a box."""
         count = 1
         for a in ti.static(range(1, self.axes)):
             count *= upper[a] - lower[a] + 1
@@ -82,7 +82,7 @@ class Cells:
 
     @ti.func
     def row(self, lower: ti.template(), upper: ti.template(), n):
-        """The cell with which the n-th row of a box begins at the edge of the grid."""
+        """The first cell, at the edge of the grid, of the n-th row of a box."""
         cell, rest = 0, n
         for a in ti.static(range(1, self.axes)):
             span = upper[a] - lower[a] + 1
@@ -92,7 +92,7 @@ class Cells:
 
     @ti.func
     def sort_world(self, w):
-        """Sort the grains of one world by counting, on one thread."""
+        """Sort the grains of one world by a counting sort, on one thread."""
         for c in range(self.cells + 2):
             self.first[w, c] = 0
         for i in range(self.grains.count):
@@ -109,7 +109,7 @@ class Cells:
 
     @ti.func
     def count_up(self, w, cell, by):
-        """Add to a cell's count, with no atomic: a world is one thread's."""
+        """Add to a cell's count; no atomic is needed, since one thread has the whole world."""
         self.first[w, cell] = self.first[w, cell] + by
 
     @ti.kernel
@@ -138,7 +138,7 @@ class Cells:
             place = ti.atomic_add(self.first[w, self.cell_of[w, i]], -1) - 1
             self.sorted[w, place] = i
         for w, c in self.first:
-            # Threads came in any order; by number, the lists and so all sums have one order.
+            # The threads' order is arbitrary; sorted by number, the lists and so all sums have one order.
             if c < self.cells:
                 for k in range(self.first[w, c] + 1, self.first[w, c + 1]):
                     i, hole = self.sorted[w, k], k

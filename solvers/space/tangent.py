@@ -1,7 +1,7 @@
-"""What is across a normal, in the plane: one tangent, the normal turned counter-clockwise by 90°, and turning about x.
+"""Tangential kinematics in the plane: one tangent, the normal turned counter-clockwise by 90°, and rotation about x.
 
-So slip, friction, spin and torque are one number each. In space they have components of their own, and what replaces
-these functions is all that the contacts of spheres need for it.
+So slip, friction, spin and torque are one number each. In three dimensions they have components; for spheres it is then
+enough to replace these functions.
 """
 
 import taichi as ti
@@ -9,16 +9,16 @@ import taichi as ti
 
 @ti.func
 def slip(velocity: ti.template(), normal: ti.template(), surfaces):
-    """Slip (m/s) along the tangent of two that pass each other at a velocity (m/s), where their spins turn surfaces.
+    """Slip (m/s) along the tangent of a contact with a relative velocity of the centres (m/s).
 
-    `surfaces` (m/s) is how fast both spins together take the surfaces along the tangent, the other way.
+    `surfaces` (m/s) is the tangential velocity of the surfaces due to both spins, which is subtracted.
     """
     return velocity[1] * normal[0] - velocity[0] * normal[1] - surfaces
 
 
 @ti.func
 def force(normal: ti.template(), pressing, shearing):
-    """The force (N) of a part along the normal and one along the tangent, a list with an entry an axis."""
+    """The force (N), one entry per axis, from its normal part `pressing` and its tangential part `shearing`."""
     return [
         pressing * normal[0] - shearing * normal[1],
         pressing * normal[1] + shearing * normal[0],
@@ -27,7 +27,7 @@ def force(normal: ti.template(), pressing, shearing):
 
 @ti.func
 def torque(lever, shearing, roll):
-    """Torque (N m) of a tangential force (N) at so far (m) from a centre against the normal, and of rolling."""
+    """Torque (N m) of rolling `roll` and of a tangential force (N) at a `lever` (m) from a grain's centre."""
     return roll - lever * shearing
 
 

@@ -1,1 +1,1 @@
-"""What holds the cargo: outline, walls and parts that move."""
+"""The tank that holds the cargo: outline, walls, moving parts, and the load on them."""

@@ -1,8 +1,8 @@
-"""What the cargo does to the tank: a force (N) and its moment (N m) about the tank's origin, in the tank's axes.
+"""The load of the cargo on the tank: a force (N) and its moment (N m) about the tank's origin, in the tank's axes.
 
-Whoever pushes off a piece of the tank books it there, at that moment: it is never rebuilt from what the cargo felt,
-since a drag or a buoyancy is no force on a wall. Pieces are the walls of each tank, the parts, and the lining of fixed
-grains.
+A contact with a piece of the tank books its reaction on that piece when it computes the force. The load is never
+rebuilt from the forces on the cargo, since drag and buoyancy are not forces on a wall. Pieces are the walls of each
+tank, the parts, and the lining of fixed grains.
 """
 
 import numpy as np
@@ -16,10 +16,10 @@ NAMES = ("y", "z", "moment")
 
 @ti.data_oriented
 class Load:
-    """The load of each unit on each piece: its impulse (N s, N m s) since it was last looked at, and what it is now.
+    """The load of each unit on each of `pieces` pieces, as impulse (N s, N m s) since it was last taken.
 
-    `pieces` are how many. What a carrier answers to is kept as well, added up over the pieces with `shares` (W, pieces)
-    of them; without, None, nothing answers.
+    With `shares` (W, pieces) the present load is kept as well; summed over the pieces with these factors it is what a
+    carrier responds to. None: no carrier responds.
     """
 
     def __init__(self, arrays: State, units: Units, pieces: int, shares: np.ndarray | None = None):
@@ -37,15 +37,15 @@ class Load:
             self.shares = own.holding("shares", shares, "world piece", own.exact)
 
     def forget(self) -> None:
-        """Nothing has pushed yet."""
+        """Set all loads to zero."""
         for field in (*self.impulse, *self.noted, *(self.instant if self.answered else ())):
             field.fill(0.0)
 
     @ti.func
     def book(self, u, piece, load, dt):
-        """Add what a unit does to a piece, force (y, z) and moment, during a step of dt (s).
+        """Add a unit's load on a piece, force (y, z) and moment, during a step of dt (s).
 
-        Once a step: a running sum of so many small numbers loses digits.
+        Called once per step and piece, since a running sum over single contacts would lose digits.
         """
         for k in ti.static(range(3)):
             pushed = ti.cast(load[k], self.exact)
@@ -55,13 +55,13 @@ class Load:
 
     @ti.func
     def note(self, u, piece, load):
-        """Add what one contact of a unit does to a piece, for `book_noted`."""
+        """Add the load of one contact of a unit on a piece, for `book_noted`."""
         for k in ti.static(range(3)):
             self.noted[k][u, piece] = self.noted[k][u, piece] + ti.cast(load[k], self.exact)
 
     @ti.func
     def book_noted(self, u, dt):
-        """Book what has been noted of a unit."""
+        """Book all that has been noted for a unit, and clear it."""
         for piece in range(self.pieces):
             self.book(u, piece, ti.Vector([self.noted[k][u, piece] for k in ti.static(range(3))]), dt)
             for k in ti.static(range(3)):
@@ -69,7 +69,7 @@ class Load:
 
     @ti.func
     def of_world(self, w):
-        """What a world's carrier answers to: the shares of all pieces and units, in their order; booked anew then."""
+        """The load that a world's carrier responds to, summed over units and pieces in their order, and clear it."""
         load = ti.Vector([ti.cast(0.0, self.exact) for _ in ti.static(range(3))])
         for u in range(w * self.units.a_world, (w + 1) * self.units.a_world):
             for piece in range(self.pieces):
@@ -80,7 +80,7 @@ class Load:
 
     @ti.func
     def take(self, u, piece):
-        """The impulse of a unit on a piece since the last look; it starts anew."""
+        """The impulse of a unit on a piece since it was last taken, and clear it."""
         found = ti.Vector([self.impulse[k][u, piece] for k in ti.static(range(3))])
         for k in ti.static(range(3)):
             self.impulse[k][u, piece] = 0.0

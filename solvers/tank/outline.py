@@ -1,4 +1,4 @@
-"""The tank's outline as a filler sees it: its top, the room below a level, walls carried on upwards, a rough lining.
+"""The tank's outline for filling: its top edges, the area below a level, walls extended upwards, a rough lining.
 
 An outline is a simple polygon (m, 2) in m, counter-clockwise; its edge k runs from corner k to corner k + 1.
 """
@@ -7,13 +7,13 @@ from math import pi
 
 import numpy as np
 
-# Grains of a lining: diameters uniform within ± this share, gaps up to this share of a diameter. Beds crystallise on
-# even rows of grains of their own size.
+# Grains of a lining: diameters uniform within ± this share, gaps up to this share of a diameter. On a regular row of
+# equal grains a bed of the same size would crystallise.
 UNEVEN = 0.1
 
 
 def top_edges(outline: np.ndarray) -> tuple[int, ...]:
-    """The edges both of whose ends lie at the outline's top: what a lid would cover."""
+    """The edges with both ends at the outline's top, which a lid would cover."""
     outline = np.asarray(outline)
     at_top = outline[:, 1] > outline[:, 1].max() - 1e-9 * np.ptp(outline[:, 1])
     return tuple(int(k) for k in np.flatnonzero(at_top & np.roll(at_top, -1)))
@@ -34,13 +34,13 @@ def area_below(outline: np.ndarray, depth: float) -> float:
 
 
 def free_area(outline: np.ndarray, depth: float, fixed: np.ndarray) -> float:
-    """Area (m²) up to `depth` that a lining of half-sunk grains `fixed` (k, 3) leaves to the bed."""
+    """Area (m²) up to `depth` (m) that a lining of half-sunk grains `fixed` (k, 3) leaves free for the bed."""
     low = fixed[:, 1] - outline[:, 1].min() < depth
     return area_below(outline, depth) - 0.5 * pi * float((fixed[low, 2] ** 2).sum())
 
 
 def raised(outline: np.ndarray, by: float) -> np.ndarray:
-    """The outline with upright walls of height `by` (m) set upon the ends of its top edges, and the lid upon them.
+    """The outline with its top edges raised by `by` (m) on vertical walls.
 
     An outline that ends in a point at the top stays as it is.
     """
@@ -62,9 +62,9 @@ def lining(outline: np.ndarray, diameter: float, random: np.random.Generator) ->
     """Fixed grains (k, 3) y, z, radius in m, side by side along all edges but the top ones.
 
     Walls built of grains as in Spandonidis (2016), section 5.4, after Schäfer et al. (1996). The grains are half sunk
-    into the wall, their centres on the outline: the tank keeps its width, and no grain can hide behind them.
-    Diameters are uniform within ± 10 % and gaps up to a tenth of a diameter, so that no bed crystallises on them; a
-    grain stands on each corner, and what is left of an edge goes into its gaps.
+    into the wall, with their centres on the outline: the tank keeps its width, and no grain can get behind them.
+    Diameters are uniform within ± 10 % and gaps up to a tenth of a diameter, so that no bed crystallises on them. Each
+    corner has a grain, and the rest of an edge's length is spread over its gaps.
     """
     lids = set(top_edges(outline))
     count = len(outline)
@@ -86,7 +86,7 @@ def lining(outline: np.ndarray, diameter: float, random: np.random.Generator) ->
 def _row(length: float, diameter: float, first: float, last: float, random: np.random.Generator) -> list:
     """Places along an edge of `length` (m) and radii of the grains between those on its two corners."""
     row = []
-    end = first  # of the grain before
+    end = first  # where the previous grain ends
     while True:
         radius = 0.5 * diameter * (1.0 + UNEVEN * random.uniform(-1.0, 1.0))
         gap = diameter * UNEVEN * random.uniform()

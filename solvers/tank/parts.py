@@ -1,4 +1,4 @@
-"""Parts that move in the tank's frame: gates, funnels, floors that drop; and still ones, such as baffles."""
+"""Parts that move in the tank's frame, such as gates, funnels and dropping floors, or stand still, such as baffles."""
 
 from dataclasses import dataclass
 from math import hypot, sqrt
@@ -8,15 +8,16 @@ import taichi as ti
 
 from solvers.machine.marks import Interval, Unit
 
-SHORTEST = 1e-12  # s, far below any step: a part that speeds up in less takes this long
+SHORTEST = 1e-12  # s, the least time in which a part speeds up; far below any step
 
 
 @ti.func
 def travel(table: ti.template(), row, first, t):
-    """Share of its way that a part has done at time t, from 0 to exactly 1, and the rate of that (1/s).
+    """Fraction of its move that a part has made at time t, from 0 to exactly 1, and its rate (1/s).
 
-    The speed v rises evenly in the time T to its top and falls as it rose, so that at τ after the start or before the
-    end v τ²/2T of the way are done or left, from T on v (τ − T/2). Read are `Part.parameters`, from column `first` on.
+    The rate rises linearly to its top v in the time T, and falls likewise at the end. At τ after the start (or before
+    the end) v τ²/2T is done (or left) for τ < T, and v (τ − T/2) from then on. Reads `Part.parameters` from column
+    `first` on.
     """
     ramp, total, rate = table[row, first + 1], table[row, first + 2], table[row, first + 3]
     passed = ti.min(ti.max(t - table[row, first], 0.0), total)
@@ -31,11 +32,11 @@ def travel(table: ti.template(), row, first, t):
 
 @dataclass(frozen=True)
 class Part:
-    """Thin plates along a polyline (m), felt from both sides, that move together.
+    """Thin plates along a polyline (m), with contact on both sides, that move together.
 
-    From `start` (s after the tank's motion begins) they move by `move` (y, z; m) in the tank's frame: with
-    `acceleration` up to `speed`, and braked as much at the end. A way too short for `speed` has a lower top speed. A
-    part whose `move` is zero stands still.
+    From `start` (s after the tank's motion begins) they are displaced by `move` (y, z; m) in the tank's frame: they
+    accelerate with `acceleration` up to `speed`, and brake likewise at the end. If the way is too short to reach
+    `speed`, the top speed is lower. A part whose `move` is zero stands still.
     """
 
     points: Annotated[tuple[tuple[float, float], ...], Unit("m")]

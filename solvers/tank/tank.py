@@ -1,4 +1,4 @@
-"""What holds matter: a closed outline, where it stands in its carrier, and how much of a ship it stands for."""
+"""A tank: its outline in the carrier's axes, its thickness, and the length of ship that it stands for."""
 
 from dataclasses import dataclass
 
@@ -9,9 +9,9 @@ import numpy as np
 class Tank:
     """A tank of a world in the plane.
 
-    `outline` (m, 2) m in its carrier's axes, a simple polygon, counter-clockwise; `open_edges` those without a wall, by
-    their first corners. The world is a slab `thickness` (m) thick there: forces are those on the slab. Along a ship the
-    tank is `length` (m) long, as long as she is where that is None. What it holds follows from where particles are.
+    `outline` (m, 2) m in its carrier's axes is a simple polygon, counter-clockwise; `open_edges` are its edges without
+    a wall, by their first corners. The world is a slab of `thickness` (m): forces are those on the slab. Along a ship
+    the tank is `length` (m) long, None: as long as the ship. Its contents are the particles inside the outline.
     """
 
     outline: np.ndarray
@@ -20,11 +20,11 @@ class Tank:
     length: float | None = None
 
     def share(self, whole: float) -> float:
-        """Force per metre (N/m) of a ship `whole` m long for each newton on the slab, 1/m."""
+        """Factor (1/m) from a force on the slab (N) to force per metre of a ship `whole` m long (N/m)."""
         return (1.0 if self.length is None else self.length / whole) / self.thickness
 
     def holds(self, points: np.ndarray) -> np.ndarray:
-        """Which of the points (n, 2) m lie in it (n,), by the even–odd rule."""
+        """Which of the points (n, 2) m lie in the tank, (n,), by the even–odd rule."""
         (ay, az), (by, bz) = self.outline.T, np.roll(self.outline, -1, axis=0).T
         y, z = points[:, :1], points[:, 1:]
         with np.errstate(divide="ignore", invalid="ignore"):

@@ -1,4 +1,4 @@
-"""Walls: the outlines of the tanks, polygons of straight segments, some maybe missing, and plates that move in them."""
+"""Walls: the tanks' outlines, polygons of straight segments, some of them open, and plates that move in them."""
 
 from collections.abc import Sequence
 
@@ -10,21 +10,21 @@ from solvers.tank.parts import Part, travel
 from solvers.tank.tank import Tank
 
 Y, Z, ALONG_Y, ALONG_Z, LENGTH, TWO_SIDED, PART = range(7)
-AFTER_Y, AFTER_Z = LENGTH, TWO_SIDED  # of a corner
-MOVE = 4  # where a part's parameters have its move (y, z; m)
-SHIFT = 4  # numbers a moving part: its displacement (m) and its velocity (m/s)
-BEYOND = 0.5  # how far beyond an open tank grains that have left it are followed, in its own width and height
-CHIMNEY = 5.0  # how far above its mouth a grain still counts as in the tank, in the tank's size
+AFTER_Y, AFTER_Z = LENGTH, TWO_SIDED  # columns that in a corner's row hold the direction of the segment after it
+MOVE = 4  # index of the move (y, z; m) in a part's parameters
+SHIFT = 4  # numbers per part: its displacement (m) and velocity (m/s), y and z
+BEYOND = 0.5  # margin round an open tank in which spilled grains are followed, in its own width and height
+CHIMNEY = 5.0  # height above the mouth at which a grain still counts as in the tank, in the tank's size
 
 
 @ti.data_oriented
 class Walls:
     """The outlines of a world's tanks, with the grains inside, and thin plates.
 
-    Features are segments and corners. A grain touches a segment only where its centre projects onto it, and a corner
-    only beyond the ends of both of the corner's segments, so no contact counts twice. The walls of a closed tank are
-    felt from inside alone, and only the corners that jut into it count. Those of an open tank and the parts are
-    plates without thickness, felt from both sides and round their edges.
+    Features are segments and corners. A grain touches a segment only if its centre projects onto it, and a corner only
+    beyond the ends of both of the corner's segments, so no contact counts twice. The walls of a closed tank act on the
+    inside only, and only its re-entrant corners count. The walls of an open tank and the parts are plates without
+    thickness, which act on both sides and round their edges.
     """
 
     def __init__(self, arrays: State, tanks: Sequence[Tank], parts: Sequence[Part] = ()):
@@ -56,7 +56,7 @@ class Walls:
 
     @property
     def bounds(self) -> tuple[np.ndarray, np.ndarray]:
-        """Lower and upper corner (m) of where grains that have left the tank are followed."""
+        """Lower and upper corner (m) of the box in which grains that have left the tank are followed."""
         lower, upper = self.outline.min(axis=0), self.outline.max(axis=0)
         margin = BEYOND * (upper - lower) if self.open else 0.0
         return lower - margin, upper + margin
@@ -74,14 +74,14 @@ class Walls:
 
     @ti.func
     def note_places(self, t):
-        """Keep where the parts are at time t, for `places`."""
+        """Store the parts' displacements at time t in `places`."""
         shift = self.shift(0, t)
         for p in ti.static(range(self.parts)):
             self.places[p, 0], self.places[p, 1] = shift[SHIFT * p], shift[SHIFT * p + 1]
 
     @ti.func
     def gone(self, w, since, t):
-        """The farthest (m) that a part has moved between two times."""
+        """Largest displacement (m) of any part between two times."""
         before, now = self.shift(w, since), self.shift(w, t)
         farthest = ti.cast(0.0, self.real)
         for p in ti.static(range(self.parts)):
@@ -91,13 +91,13 @@ class Walls:
 
     @ti.func
     def piece(self, feature):
-        """The piece of the tank that a feature belongs to: the walls of each tank, then the parts."""
+        """Number of the piece that a feature belongs to: the walls of each tank come first, then the parts."""
         part = ti.cast(self.table[feature, PART], ti.i32)
         return ti.select(part < 0, -1 - part, self.tanks + part)
 
     @ti.func
     def from_start(self, feature, shift: ti.template(), y, z):
-        """The point (y, z) as seen from where a feature starts, m."""
+        """The vector (m) from the start of a feature to the point (y, z)."""
         py, pz = y - self.table[feature, Y], z - self.table[feature, Z]
         if ti.static(self.parts > 0):
             part = ti.cast(self.table[feature, PART], ti.i32)
@@ -122,8 +122,8 @@ class Walls:
     def gap(self, feature, shift: ti.template(), y, z):
         """Signed distance (m) of a point from a wall feature and the unit normal towards the point.
 
-        The distance is huge where the point does not face the feature, negative behind a one-sided segment: no contact
-        either.
+        There is no contact if the distance is huge, as for a point that does not face the feature, or negative, as
+        behind a one-sided segment.
         """
         point = self.from_start(feature, shift, y, z)
         py, pz = point[0], point[1]
@@ -146,7 +146,7 @@ class Walls:
 
     @ti.func
     def near(self, feature, shift: ti.template(), y, z, reach):
-        """Whether a point is within `reach` (m) of a wall feature, to whichever side."""
+        """Whether a point is within `reach` (m) of a wall feature, on either side."""
         point = self.from_start(feature, shift, y, z)
         py, pz = point[0], point[1]
         if feature < self.segments:
@@ -168,14 +168,14 @@ class Walls:
 
     @ti.func
     def follows(self, y, z):
-        """Whether a point is so near the tank that a grain which has left is still followed."""
+        """Whether a point lies in the box in which grains that have left the tank are followed."""
         return self.edge[0] <= y <= self.edge[2] and self.edge[1] <= z <= self.edge[3]
 
 
 class _Features:
-    """Rows of the table: segments and corners of one polyline, `two_sided` or not, of the part with that number.
+    """Rows of the table: segments and corners of one polyline, `two_sided` or not, that belongs to part `part`.
 
-    Tanks have the numbers −1, −2, …
+    Tanks have the part numbers −1, −2, …
     """
 
     def __init__(self, two_sided: bool, part: float):
@@ -188,7 +188,7 @@ class _Features:
         self.segments.append([*start, *(end - start) / length, length, float(self.two_sided), self.part])
 
     def add_corner(self, points: np.ndarray, before: int | None, at: int, follows: bool) -> None:
-        """A corner after segment `before` (if any) and, where one `follows`, before the one that starts at `at`."""
+        """Add the corner `at`, between segment `before` (or None) and the one that starts there, if one `follows`."""
         if before is None and not follows:
             return
         ahead = _direction(points, at) if follows else -_direction(points, before)
@@ -227,7 +227,7 @@ def _plate(part: Part, number: int) -> _Features:
 
 
 def _with_chimneys(outline: np.ndarray, open_edges: Sequence[int]) -> np.ndarray:
-    """The outline with a shaft raised on each open edge that faces up: what is above the mouth has not been spilled."""
+    """The outline with a shaft on each open edge that faces up, since a grain above the mouth has not been spilled."""
     size = CHIMNEY * float(np.ptp(outline, axis=0).max())
     points = []
     for k, corner in enumerate(outline):

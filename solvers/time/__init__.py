@@ -1,1 +1,1 @@
-"""The step: its length, the clock, the watch, and the schedules that run it."""
+"""Time stepping: the step length, the clock, the state checks, and the schedules that run a step."""

@@ -1,4 +1,4 @@
-"""Where each world stands: steps done, and the status of the watch."""
+"""The clock of each world: steps done, and its status."""
 
 import numpy as np
 import taichi as ti
@@ -10,14 +10,14 @@ from solvers.time.watch import RUNNING
 
 @ti.data_oriented
 class Clock:
-    """`step`, the base steps done, and `status`, a word of `solvers.time.watch`, each (W,).
+    """Base steps done, `step`, and `status`, a constant of `solvers.time.watch`, each (W,).
 
-    A step of a world is `stride` base steps long, and the one before was `before`, 0 where there was none since the
+    A world's step is `stride` base steps long, and its previous one was `before`, 0 if there was none since the
     particles were launched.
 
-    `says` (units,) and `arrived` (W,) are what bands tell each other, `fastest` and `farthest` (W,) what the
-    per-grain schedule looks up now and then: the highest speed (m/s), the longest way since the lists were built (m);
-    `pushed` (W,) is the largest acceleration (m/s²) by the frame to come, `frame` what the carrier says of a step.
+    Bands synchronise by `says` (units,) and `arrived` (W,). The per-grain schedule reads `fastest` (W,) m/s, the
+    highest speed, and `farthest` (W,) m, the largest displacement since the lists were built, now and then. `pushed`
+    (W,) m/s² is the largest frame acceleration to come, and `frame` holds the carrier's frame during a step.
     """
 
     def __init__(self, arrays: State, units: Units):
@@ -30,12 +30,12 @@ class Clock:
         self.frame = own.reals(world, *(f"frame.{k}" for k in range(4)), kept=False)
 
     def launch(self) -> None:
-        """The particles have been put somewhere or launched: their next step is the first."""
+        """Note that the particles were placed or launched, so that their next step is the first."""
         self.before.fill(0)
         self.stride.fill(1)
 
     def running(self) -> np.ndarray:
-        """Which worlds run (W,)."""
+        """Which worlds are running, (W,)."""
         return self.status.to_numpy() == RUNNING
 
     @ti.func

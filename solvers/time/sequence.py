@@ -1,4 +1,4 @@
-"""The step, written once: the phases of all matters and of the carrier, in the order in which they act."""
+"""The time step as one list: the phases of all matters and of the carrier, in their order."""
 
 from collections.abc import Sequence as Several
 
@@ -9,13 +9,13 @@ from solvers.machine.phase import Phase
 
 @ti.data_oriented
 class Sequence:
-    """What every schedule runs, for worlds that hold `matters` and are moved by a `carrier`.
+    """The step that every schedule runs, for worlds that hold `matters` and are moved by a `carrier`.
 
-    A step is a whole number of base steps, its stride, which changes only where all lists are made anew: the least that
-    any matter or the carrier allows then (`pace`), without overshooting what is asked for. At time t (s) it is, in a
-    world: every phase of `before`, in which matters find their forces and book those on
-    the tank, and the carrier then answers to that load; the carrier's frame; every phase of `after`, in which matters
-    move. A matter has `before`, `after` and `units`, and says when its lists are worn (see `GrainMatter`).
+    A step of a world at time t (s) is: every phase of `before`, in which matters compute their forces and book those on
+    the tank, and the carrier then responds to that load; the carrier's frame; every phase of `after`, in which matters
+    move. A step is `stride` base steps long. The stride changes only when all lists are rebuilt, to the least that any
+    matter or the carrier allows (`pace`), and never overshoots the target. A matter has `before`, `after` and `units`,
+    and says when its lists must be rebuilt (see `GrainMatter`).
     """
 
     def __init__(self, matters: Several, carrier):
@@ -26,7 +26,7 @@ class Sequence:
 
     @ti.func
     def stride(self, w, due):
-        """Base steps that the steps to come may take in a world, `due` at most."""
+        """Stride of a world's next steps, in base steps, at most `due`."""
         stride = ti.min(due, self.carrier.pace(w))
         for k in ti.static(range(len(self.matters))):
             stride = ti.min(stride, self.matters[k].pace(w))
@@ -34,7 +34,7 @@ class Sequence:
 
     @ti.func
     def stale(self, u, t):
-        """Whether the lists of a unit, of any matter, are no good any more at time t (s)."""
+        """Whether a unit's lists, of any matter, must be rebuilt at time t (s)."""
         found = False
         for k in ti.static(range(len(self.matters))):
             if self.matters[k].stale(u, t):
@@ -43,7 +43,7 @@ class Sequence:
 
     @ti.func
     def worn(self, u):
-        """Whether they may be: a bound that costs nothing."""
+        """Whether a unit's lists may be stale, by a cheap upper bound on the displacements."""
         found = False
         for k in ti.static(range(len(self.matters))):
             if self.matters[k].worn(u):
@@ -52,7 +52,7 @@ class Sequence:
 
     @ti.func
     def asked(self, u):
-        """Whether some entries are to be sought anew though the lists are good."""
+        """Whether some entries of a unit's lists must be searched for again although the lists are valid."""
         found = False
         for k in ti.static(range(len(self.matters))):
             if self.matters[k].asked(u):
@@ -61,13 +61,13 @@ class Sequence:
 
     @ti.func
     def sort(self, w):
-        """Sort a world's particles into cells, before lists are made."""
+        """Sort a world's particles into cells before the lists are rebuilt."""
         for k in ti.static(range(len(self.matters))):
             self.matters[k].sort(w)
 
     @ti.func
     def make_lists(self, u, t, dt, whole):
-        """Make the lists of a unit anew, or with `whole` false only what is asked for; False where they do not fit."""
+        """Rebuild a unit's lists, or with `whole` false only the entries asked for; returns whether they fit."""
         fits = True
         for k in ti.static(range(len(self.matters))):
             if not self.matters[k].make_lists(u, t, dt, whole):

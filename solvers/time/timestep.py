@@ -1,4 +1,4 @@
-"""The step size, derived from the scene: waves, and what its contact laws and the watch bear at the highest speed."""
+"""The time step derived from the scene: limits of Rayleigh waves, of the contact laws, and of the speed check."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -10,12 +10,12 @@ from solvers.grains.materials import Interface, Material
 from solvers.time.watch import FASTEST_STEP
 
 RAYLEIGH_SHARE = 0.2
-FASTER = 1.5  # times the highest credible speed: what the watch lets pass all the same
+FASTER = 1.5  # times the highest credible speed: what the speed check must still accept
 
 
 @dataclass(frozen=True)
 class Limit:
-    """A bound on the step and what sets it; one that is `firm` no integrator and no level of accuracy stretches."""
+    """A bound on the step and its reason; neither integrator nor level of accuracy stretches a `firm` one."""
 
     step: float  # s
     reason: str
@@ -23,10 +23,10 @@ class Limit:
 
 
 def watched(smallest: float, speed: float, count: int, shaped: bool) -> Limit:
-    """The step at which the watch lets `count` grains of at least the radius `smallest` (m) all be FASTER than `speed`.
+    """The longest step at which the speed check accepts `count` grains that all move FASTER times `speed` (m/s).
 
-    What it sees of their speeds is the 16-norm, of outlines at most √2 times that of their farthest points
-    (`Mover.move`).
+    `smallest` (m) is the smallest radius. The check sees the 16-norm of the speeds; for outlines that is at most √2
+    times the norm for their farthest points (`Mover.move`).
     """
     seen = FASTER * count ** (1.0 / 16.0) * (sqrt(2.0) if shaped else 1.0)
     way = (
@@ -36,16 +36,16 @@ def watched(smallest: float, speed: float, count: int, shaped: bool) -> Limit:
 
 
 def closing_speed(velocity: np.ndarray) -> float:
-    """The highest speed (m/s) of any of n grains, or of any two at each other, of velocities (n, 2) m/s.
+    """Highest closing speed (m/s) of n grains with velocities (n, 2) m/s: of any two, or of one and a wall at rest.
 
-    The farthest two of a set of points are corners of its convex hull.
+    The two velocities farthest apart are corners of the convex hull of all.
     """
     from scipy.spatial import ConvexHull, QhullError  # slow to import, and only listed beds need it
 
     corners = np.unique(velocity, axis=0)
     try:
         corners = corners[ConvexHull(corners).vertices]
-    except (QhullError, ValueError):  # on one line, or fewer than three: its ends are the farthest
+    except (QhullError, ValueError):  # collinear or fewer than three: the two ends are farthest apart
         along = (corners - corners[0]) @ (corners[np.linalg.norm(corners - corners[0], axis=1).argmax()] - corners[0])
         corners = corners[[along.argmin(), along.argmax()]]
     fastest = np.linalg.norm(velocity, axis=1).max()
@@ -53,7 +53,7 @@ def closing_speed(velocity: np.ndarray) -> float:
 
 
 def rayleigh_time(radius: float, density: float, shear: float, poisson: float) -> float:
-    """Time (s) of a Rayleigh wave over half a grain, π R √(ρ/G)/(0.1631 ν + 0.8766) (Thornton and Randall 1988)."""
+    """Time (s) of a Rayleigh wave round half a grain, π R √(ρ/G)/(0.1631 ν + 0.8766) (Thornton and Randall 1988)."""
     return pi * radius * sqrt(density / shear) / (0.1631 * poisson + 0.8766)
 
 
@@ -66,10 +66,10 @@ def limits(
     laws: Iterable,
     share: float = 1.0,
 ) -> list[Limit]:
-    """All bounds on the step for grains of at least the radius `smallest` (m) that meet at up to `speed` (m/s).
+    """All bounds on the step for grains of at least the radius `smallest` (m) with closing speeds up to `speed` (m/s).
 
-    `laws` are the contact laws of the scene; each says which steps it bears (`limits`). `share` is the smallest part of
-    its mass with which a grain resists a push on its outline: less than 1 where the push also turns it.
+    `laws` are the contact laws of the scene; each gives its own limits (`limits`). `share` is the smallest share of its
+    mass with which a grain resists a push on its outline: less than 1 if the push also turns it.
     """
     mass = share * 4.0 / 3.0 * pi * smallest**3 * grain.density
     shear = grain.young * scale / (2.0 * (1.0 + grain.poisson))

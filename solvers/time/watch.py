@@ -1,4 +1,4 @@
-"""The watch: states that are no longer physics, what they are called and what helps."""
+"""State checks: unphysical states of a world, their status, and errors that name the remedy."""
 
 import numpy as np
 
@@ -6,13 +6,13 @@ from solvers.machine.errors import BadState
 
 RUNNING, WAITING, NO_ROOM, TOO_FAST, OVER = range(5)
 
-# A grain that crosses a tenth of the smallest radius in a step is not colliding, it is being thrown.
+# Largest displacement in a step, in radii of the smallest grain: beyond it the step does not resolve a collision.
 FASTEST_STEP = 0.1
 DEEPEST_OVERLAP = 0.3
 
 
 def report_speed(status: np.ndarray, velocity: np.ndarray, time: np.ndarray, dt: float) -> None:
-    """Raise what stopped the time loop of a world: a speed too large for the step, or not a number."""
+    """Raise BadState for a world stopped by a speed that is too high for the step, or not a number."""
     for w in np.flatnonzero(status == TOO_FAST):
         speed = np.linalg.norm(velocity[w], axis=1).max()
         what = f"a grain moves at {speed:.3g} m/s" if np.isfinite(speed) else "a grain's speed is not a number"
@@ -24,9 +24,9 @@ def report_speed(status: np.ndarray, velocity: np.ndarray, time: np.ndarray, dt:
 
 
 def check_state(deepest: np.ndarray, escaped: np.ndarray, time: float) -> None:
-    """Stop when a grain has left the tank or two grains overlap far beyond elastic contact.
+    """Raise BadState if a grain has left the tank or an overlap is far beyond elastic contact.
 
-    `deepest` (W,) overlap in radii, `escaped` (W,) index of a grain outside the walls or −1.
+    `deepest` (W,) is the largest overlap in radii, `escaped` (W,) the index of a grain outside the walls or −1.
     """
     for w in np.flatnonzero(escaped >= 0):
         raise BadState(

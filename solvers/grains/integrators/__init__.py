@@ -1,9 +1,9 @@
-"""Integrators of the grains' motion, one file each; the registry names them as presets do.
+"""Integrators of the grains' motion, one file each; the registry has their names in presets.
 
-An integrator is a class with `extra`, the number of fields it keeps of each of a grain's coordinates, the places along
-the axes and the angle, beyond that and its rate, and a Taichi function `step` that takes one grain from the forces at
-its present place to its next place. Beside Verlet it bears steps `reach` times as long and dampers `damping` times as
-strong; `cargolab bench stability` measures both. What springs with history have to know of it is `ahead` and `stiffer`,
+An integrator is a class with `extra`, the number of fields that it keeps per coordinate of a grain (positions along the
+axes, and the angle) beyond the coordinate and its rate, and a Taichi function `step` that moves one grain under the
+forces at its present position. Relative to Verlet it is stable with steps `reach` times as long and dampers `damping`
+times as strong; `cargolab bench stability` measures both. Springs with contact history use its `ahead` and `stiffer`,
 see `solvers.grains.laws.history`.
 """
 

@@ -4,20 +4,20 @@ import taichi as ti
 
 from solvers.space.axes import dot
 
-# Correctors of the six-value scheme for second-order equations whose force depends on velocity (Gear 1971; Allen and
-# Tildesley 1987, table E.1), for the scaled derivatives q_k = Δt^k/k! d^k r/dt^k.
+# Corrector coefficients of the six-value scheme for second-order equations with velocity-dependent forces (Gear 1971;
+# Allen and Tildesley 1987, table E.1), for the scaled derivatives q_k = Δt^k/k! d^k r/dt^k.
 C0, C1, C3, C4, C5 = 3.0 / 16.0, 251.0 / 360.0, 11.0 / 18.0, 1.0 / 6.0, 1.0 / 60.0
 DERIVATIVES = 4  # kept beyond position and velocity
 
 
 @ti.data_oriented
 class Gear:
-    """Between steps the arrays hold the prediction: forces are worked out there, then corrected, then predicted anew.
+    """Gear's scheme. Between steps the arrays hold the prediction, at which forces are computed for the correction.
 
-    The source writes Δr̈ Δt²/2 for the correction (its eq. B.4), which is Δq_2 here. The first step only learns the
-    acceleration: the derivatives above it begin at zero. Fifth order where the force is smooth; a contact that begins
-    or ends within a step is not. Stable for ω Δt < 0.47 on a spring and γ Δt/m < 0.164 on a damper (spectral radius of
-    its step), where Verlet with predicted velocities bears 2 and 1.
+    The source writes Δr̈ Δt²/2 for the correction (its eq. B.4), which is Δq_2 here. The first step only sets the
+    acceleration; higher derivatives start at zero. Fifth order for smooth forces, which a contact that begins or ends
+    within a step is not. Stable for ω Δt < 0.47 with a spring and γ Δt/m < 0.164 with a damper (spectral radius of
+    the step), where Verlet with predicted velocities reaches 2 and 1.
     """
 
     extra, reach, damping = DERIVATIVES, 0.25, 0.15

@@ -9,8 +9,8 @@ from solvers.space.axes import dot
 class SymplecticEuler:
     """Kick by a whole step, drift with the new velocity (Hairer, Lubich and Wanner 2006, I.1.9). First order.
 
-    A contact's losses are of first order in the step, too: at the derived one the restitution is 1.4 % off for a given
-    one of 0.02, 0.5 % for 0.4, and within 0.1 % from 0.8 on.
+    The losses of a contact are of first order in the step, too: at the derived step a restitution of 0.02 is off by
+    1.4 %, one of 0.4 by 0.5 %, and one of 0.8 or more by at most 0.1 %.
     """
 
     extra, reach, damping = 0, 1.0, 1.0

@@ -9,8 +9,8 @@ from solvers.space.axes import dot
 class Verlet:
     """Kick, then drift, with velocities half a step behind the positions (Hairer, Lubich and Wanner 2003, eq. 1.5).
 
-    The very first kick is half a step, and where the step changes the mean of both. Second order. What forces see of
-    the velocity at the positions' own time is predicted with the last acceleration.
+    The first kick is half a step; where the step changes, the kick is the mean of both steps. Second order. The forces
+    use a velocity at the time of the positions, predicted with the last acceleration.
     """
 
     extra, reach, damping = 0, 1.0, 1.0

@@ -1,16 +1,15 @@
-"""Contact laws, one file each; the registries name them as presets do.
+"""Contact laws, one file each; the registries have their names in presets.
 
 A law is a class with
-- `coefficients`, the numbers it needs of an interface between two materials, and `limits`, the longest steps it bears;
-  a normal law also `deepest`, how deep an impact without losses goes;
-- `constants` and `memory`, names of what it keeps for each listed contact, which no other kind of law may use too;
-  `prepare` works out the constants of a new contact;
-- `force` (a rolling law: `torque`, one of cohesion: `pull`) and `energy`, Taichi functions. They take a block of
-  contacts at once, as vectors of lanes, and so hold element-wise arithmetic alone; a coefficient may be a number or a
-  vector of lanes. A contact whose overlap is zero must come out with no force and no memory; under a law of cohesion,
-  one whose gap is beyond the law's `range`.
-  A law of cohesion names the keys of a material that it `needs`.
-Only the laws a scene names are compiled.
+- `coefficients`, the numbers it needs of an interface between two materials, and `limits`, the longest steps at which
+  it is resolved; a normal law also has `deepest`, the largest overlap of an impact without losses;
+- `constants` and `memory`, names of what it keeps for each listed contact, unique among the kinds of laws; `prepare`
+  computes the constants of a new contact;
+- `force` (a rolling law: `torque`, a cohesion law: `pull`) and `energy`, Taichi functions. They take a block of
+  contacts at once, as vectors of lanes, so only element-wise arithmetic is allowed; a coefficient may be a number or a
+  vector of lanes. A contact with zero overlap must come out with no force and no memory; under a cohesion law, one
+  whose gap is beyond the law's `range`. A cohesion law lists in `needs` the keys that a material must have.
+Only the laws that a scene uses are compiled.
 """
 
 from solvers.grains.laws.bridge import Bridge
@@ -31,7 +30,7 @@ from solvers.grains.laws.no_cohesion import NoCohesion
 from solvers.grains.laws.no_rolling import NoRolling
 from solvers.grains.laws.viscous import Viscous
 
-# Along the line of the centres: what keeps grains apart and takes their energy.
+# Along the normal: repulsion and restitution.
 NORMAL = {
     "hertz-viscoelastic": HertzViscoelastic,
     "hertz": Hertz,
@@ -39,7 +38,7 @@ NORMAL = {
     "linear": Linear,
     "hysteretic": Hysteretic,
 }
-# Across it: friction.
+# Along the tangent: friction.
 TANGENTIAL = {
     "haff-werner": HaffWerner,
     "mindlin": Mindlin,
@@ -48,7 +47,7 @@ TANGENTIAL = {
     "viscous": Viscous,
     "none": Frictionless,
 }
-# Against turning on one another.
+# Against relative rotation: rolling friction.
 ROLLING = {"none": NoRolling, "constant-torque": ConstantTorque, "elastic-plastic": ElasticPlastic}
-# Across a gap: liquid that pulls.
+# Across a gap: liquid bridges.
 COHESION = {"none": NoCohesion, "humid": Humid, "bridge": Bridge}

@@ -1,4 +1,4 @@
-"""Capillary cohesion of wet grains: liquid bridges of one volume."""
+"""Capillary cohesion of wet grains: liquid bridges of a given volume."""
 
 from math import cos, pi
 
@@ -7,7 +7,7 @@ import taichi as ti
 from solvers.grains.laws.capillary import Capillary
 from solvers.grains.materials import Interface
 
-LINEAR, SQUARE = 1.05, 2.5  # of the force's fall with the gap
+LINEAR, SQUARE = 1.05, 2.5  # coefficients of x and x² in the decay of the force with the gap
 ROOT = (4.0 * SQUARE - LINEAR**2) ** 0.5
 
 
@@ -21,17 +21,17 @@ def unwound(x):
 class Bridge(Capillary):
     """f₀/(1 + 1.05 x + 2.5 x²), x = s √(R/V), f₀ = 2π γ R cos θ (Willett, Adams, Johnson and Seville 2000, eq. 12).
 
-    V is the bridge's volume, R = 2 R_eff: the radius of equal spheres, the harmonic mean of unequal ones, twice the
-    radius on a wall. Their eq. 12 is for small bridges, V < 1e-3 R³ within some per cent. The bridge forms on contact,
-    has its volume at once, and breaks at s = (1 + θ/2) V^(1/3) (Lian, Thornton and Adams 1993). Its viscosity is left
-    out.
+    V is the bridge's volume and R = 2 R_eff: the radius of equal spheres, the harmonic mean of unequal ones, twice the
+    radius on a wall. Their eq. 12 holds for small bridges, V < 1e-3 R³ within some per cent. The bridge forms on
+    contact with its full volume and breaks at s = (1 + θ/2) V^(1/3) (Lian, Thornton and Adams 1993). Viscous forces are
+    left out.
     """
 
     constants = ("bridge_pull", "bridge_range", "bridge_scale")
     needs = ("bridge_volume",)
 
     def range(self, between: Interface) -> float:
-        """(1 + θ/2) V^(1/3) (m)."""
+        """Rupture distance (1 + θ/2) V^(1/3) (m)."""
         return (1.0 + 0.5 * between.contact_angle) * between.bridge_volume ** (1.0 / 3.0)
 
     def coefficients(self, between: Interface) -> list[float]:

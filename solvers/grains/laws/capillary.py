@@ -1,4 +1,4 @@
-"""What the cohesion laws share: a bridge of liquid that forms on contact, pulls, and breaks at its range."""
+"""The common part of the cohesion laws: a liquid bridge that forms on contact, pulls, and breaks at its range."""
 
 from math import pi
 
@@ -7,8 +7,8 @@ import taichi as ti
 from solvers.grains.laws.extremes import greater, lesser
 from solvers.grains.materials import Interface, hertz_stiffness
 
-STEPS = 36.0  # of a period of two grains that swing about where the pull and their elasticity balance
-SHORTEST = 1e-3  # of the range: the way that a step is taken to go at least
+STEPS = 36.0  # per period of two grains that oscillate about the balance of pull and elasticity
+SHORTEST = 1e-3  # of the range: the least way per step over which the force is averaged
 NO_RANGE = 1e-15  # m; keeps divisions finite where there is no bridge
 
 
@@ -16,22 +16,22 @@ NO_RANGE = 1e-15  # m; keeps divisions finite where there is no bridge
 class Capillary:
     """F = f₀ while the grains touch, f₀ p(s) at a gap s up to the range, then nothing until they touch again.
 
-    The pull stands beside the normal law, whose force F_n stays what grains press with: friction's cap is μ F_n without
-    the pull, as Spandonidis (2016), eq. 4.6, names the force of eq. 4.4. A wet contact that carries no load presses
-    with f₀, so it resists with μ f₀.
+    The pull is added to the normal law, whose repulsive force F_n is unchanged: the Coulomb cap is μ F_n without the
+    pull, as Spandonidis (2016), eq. 4.6, refers to the force of eq. 4.4. In a wet contact without external load F_n
+    balances f₀, so friction resists with up to μ f₀.
 
-    A step may go much farther than the range. So the force is its mean over the way Δ = |u_n| Δt of the step that has
-    the present gap in its middle, [f₀ (what of Δ overlaps) + f₀ p(middle of the rest) (what of Δ is within the
-    range)]/Δ. The ways of successive steps join, and the work of a cycle of touch and break is that of the law,
-    whatever the step. The energy of a bridge is counted from first touch: negative while grains overlap, and what it
-    cost to stretch it, f₀ ∫ p ds, otherwise; this is lost as it breaks.
+    A step may be much longer than the range. So the force is the mean over the way Δ = |u_n| Δt of a step with the
+    present gap in its middle, [f₀ (part of Δ that overlaps) + f₀ p(middle of the rest) (part of Δ within the range)]/Δ.
+    The ways of successive steps join, so that the work over a cycle of contact and rupture is that of the law,
+    whatever the step. The energy of a bridge is counted from first touch: it is negative while grains overlap, and
+    otherwise the work of stretching it, f₀ ∫ p ds, which is lost at rupture.
     """
 
     memory = ("bridged",)
     pulls = True
 
     def limits(self, between: Interface, mass: float, radius: float, speed: float) -> list[tuple[float, str]]:
-        """Longest steps (s) and what sets them: f₀ against Hertz's elasticity, (3/2) f₀/ξ (N/m) at k ξ^(3/2) = f₀."""
+        """Longest steps (s) and reasons: f₀ against Hertz's elasticity, (3/2) f₀/ξ (N/m) at k ξ^(3/2) = f₀."""
         pull = self.coefficients(between)[0] * radius
         if pull == 0.0:
             return []
@@ -46,7 +46,7 @@ class Capillary:
         way = greater(ti.abs(rate) * dt, SHORTEST * reach)
         near, far = -approach - 0.5 * way, -approach + 0.5 * way
         bridged = ti.select(near < 0.0, 1.0 + 0.0 * held, held)
-        pulling = ti.select(rate < 0.0, bridged, held)  # a bridge forms where the overlap begins, not before
+        pulling = ti.select(rate < 0.0, bridged, held)  # a bridge forms when the overlap begins, not before
         begin, end = greater(lesser(near, reach), 0.0), greater(lesser(far, reach), 0.0)
         overlapping = greater(lesser(-near, way), 0.0)
         tail = pulling * (end - begin) * self.profile(contacts, w, block, 0.5 * (begin + end), reach)
@@ -56,7 +56,7 @@ class Capillary:
 
     @ti.func
     def energy(self, contacts: ti.template(), w, block, lane, approach):
-        """Energy (J) of one contact's bridge, if there is one."""
+        """Energy (J) of one contact's bridge; zero if there is none."""
         pull, reach = contacts.bridge_pull[w, block][lane], contacts.bridge_range[w, block][lane]
         stored = -pull * approach
         if approach < 0.0:

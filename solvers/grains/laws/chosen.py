@@ -1,4 +1,4 @@
-"""The laws a scene has chosen, with their coefficients in every world."""
+"""The contact laws of a scene, with their coefficients in every world."""
 
 import numpy as np
 import taichi as ti
@@ -7,18 +7,18 @@ from solvers.grains.integrators.verlet import Verlet
 from solvers.machine.state import State
 from solvers.machine.units import Units
 
-PAIR, WALL = 0, 1  # rows of the interfaces where all grains are of one kind
-NEAR = 0.01  # of an overlap: over which its energy is differentiated
+PAIR, WALL = 0, 1  # rows of the interfaces if all grains are of one kind
+NEAR = 0.01  # of an overlap: step of the difference quotient of its energy
 
 
 @ti.data_oriented
 class ChosenLaws:
-    """A normal, a tangential, a rolling law and one of cohesion for grain–grain (PAIR) and grain–wall (WALL) contacts.
+    """Normal, tangential, rolling and cohesion laws of grain–grain (PAIR) and grain–wall (WALL) contacts.
 
-    `interfaces[w]` are those of world w: of kinds a and b of grains in row a·K + b, of kind a and a wall in row K² + a,
-    with K `kinds`. Contacts come in blocks of lanes (`ContactList`); what a law returns for a block is a vector of
-    lanes. With one kind of grains a law's coefficients are numbers, with several vectors of lanes. Laws know the
-    `integrator`: they are told of a step longer than it is by its `damping`, and keep their dampers within that.
+    `interfaces[w]` are those of world w: kinds a and b of grains in row a·K + b, kind a and a wall in row K² + a, with
+    K `kinds`. Contacts come in blocks of lanes (`ContactList`), and a law returns a vector of lanes for a block. With
+    one kind of grains a law's coefficients are numbers, with several they are vectors of lanes. Laws know the
+    `integrator`: the step that `prepare` gets is divided by its `damping`, which keeps dampers stable under it.
     """
 
     def __init__(
@@ -48,17 +48,17 @@ class ChosenLaws:
         self.constants = tuple(name for law in laws for name in law.constants)
         self.memory = tuple(name for law in laws for name in law.memory)
         self.counts = tuple(len(law.constants) for law in laws)
-        # A torque turns its sign where the first and the second grain change places; forces along n and t do not.
+        # A torque changes sign if the first and the second grain are swapped; forces along n and t do not.
         self.odd = [law is rolling for law in laws for _ in law.memory]
 
     def learn(self, interfaces) -> None:
-        """Have the coefficients of other interfaces from the next lists of contacts on."""
+        """Take the coefficients of other interfaces; constants follow when the contact lists are next rebuilt."""
         for law, table in zip(self.laws, self.tables, strict=True):
             table.from_numpy(self.tabulate(law, interfaces))
 
     @staticmethod
     def tabulate(law, interfaces) -> np.ndarray:
-        """Coefficients (W, rows, number) of a law; one zero for a law that has none."""
+        """Coefficients (W, rows, number) of a law; a single zero for a law without any."""
         return np.array([[law.coefficients(between) or [0.0] for between in world] for world in interfaces])
 
     @ti.func
@@ -100,7 +100,7 @@ class ChosenLaws:
 
     @ti.func
     def prepare(self, kind: ti.template(), contacts: ti.template(), u, block, lane, mass, radius, dt):
-        """Work out the laws' constants of a newly listed contact, m_eff in kg, R_eff in m, Δt in s."""
+        """Compute the laws' constants of a newly listed contact, m_eff in kg, R_eff in m, Δt in s."""
         self.prepare_law(self.normal, 0, 0, kind, contacts, u, block, lane, mass, radius, dt)
         first = ti.static(self.counts[0])
         self.prepare_law(self.tangential, 1, first, kind, contacts, u, block, lane, mass, radius, dt)
@@ -125,7 +125,7 @@ class ChosenLaws:
         radius,
         dt,
     ):
-        """Work out one law's constants, which stand from `first` on."""
+        """Compute one law's constants, which are stored from number `first` on."""
         if ti.static(self.counts[which] > 0):
             c = self.coefficients_of_one(which, u, kind, contacts, block, lane)
             values = law.prepare(c, contacts.stiffness[u, block][lane], mass, radius, dt / self.damping)
@@ -136,8 +136,8 @@ class ChosenLaws:
     def forces(self, kind: ti.template(), contacts: ti.template(), u, block, overlap, rate, slip, turning, dt):
         """Normal and tangential forces (N) and rolling torques (N m) of a block of contacts; memory is updated.
 
-        `overlap` in m, its `rate` and the `slip` in m/s, `turning` ω_i − ω_j (ω_i at a wall) in rad/s. The torque acts
-        on the first grain, and its opposite on the second.
+        `overlap` in m, its `rate` (the closing speed) and the `slip` in m/s, `turning` ω_i − ω_j (ω_i at a wall) in
+        rad/s. The torque acts on the first grain, and its opposite on the second.
         """
         pressing = self.press(kind, contacts, u, block, overlap, rate, dt)
         shearing, torque = self.rub(kind, contacts, u, block, overlap, rate, pressing, slip, turning, dt)
@@ -145,7 +145,7 @@ class ChosenLaws:
 
     @ti.func
     def press(self, kind: ti.template(), contacts: ti.template(), u, block, overlap, rate, dt):
-        """Normal forces (N) alone."""
+        """Normal forces (N) of a block of contacts; their memory is updated."""
         coefficients = self.coefficients(0, u, kind, contacts, block)
         return self.normal.force(coefficients, contacts, u, block, overlap, ti.sqrt(overlap), rate, dt)
 
@@ -160,15 +160,15 @@ class ChosenLaws:
 
     @ti.func
     def pull(self, contacts: ti.template(), u, block, approach, rate, dt):
-        """Cohesion (N) of a block of contacts that approach by so much (m; negative: a gap), at a rate (m/s).
+        """Cohesive forces (N) of a block of contacts with overlap `approach` (m; negative: a gap) and its rate (m/s).
 
-        Memory is updated. Only where the scene is `cohesive`.
+        Memory is updated. To be called only if the scene is `cohesive`.
         """
         return self.cohesion.pull(contacts, u, block, approach, rate, dt)
 
     @ti.func
     def energy(self, kind: ti.template(), contacts: ti.template(), u, p, overlap):
-        """Elastic energy (J) of contact p, which overlaps."""
+        """Elastic energy (J) of contact p, whose overlap must be positive."""
         block, lane, root = p // contacts.lanes, p % contacts.lanes, ti.sqrt(overlap)
         pressed = self.pressed_energy(contacts, u, p, overlap)
         tangential_c = self.coefficients_of_one(1, u, kind, contacts, block, lane)
@@ -177,14 +177,14 @@ class ChosenLaws:
 
     @ti.func
     def pressed_energy(self, contacts: ti.template(), u, p, overlap):
-        """Elastic energy (J) of the normal force alone."""
+        """Elastic energy (J) of the normal force of contact p."""
         return self.normal.energy(contacts, u, p // contacts.lanes, p % contacts.lanes, overlap, ti.sqrt(overlap))
 
     @ti.func
     def elastic(self, contacts: ti.template(), u, p, overlap):
-        """Elastic normal force ∂U/∂ξ (N) of contact p, none where it does not overlap; nothing is remembered.
+        """Elastic normal force ∂U/∂ξ (N) of contact p, zero without overlap; memory is not changed.
 
-        A central difference over NEAR of the overlap to both sides: for Hertz's U ~ ξ^(5/2) it errs by 1.3e-5.
+        A central difference with a step of NEAR times the overlap: for Hertz's U ~ ξ^(5/2) its error is 1.3e-5.
         """
         force = 0.0 * overlap
         if overlap > 0.0:
@@ -195,5 +195,5 @@ class ChosenLaws:
 
     @ti.func
     def bridge_energy(self, contacts: ti.template(), u, p, approach):
-        """Energy (J) of the liquid between the two of contact p, only where the scene is `cohesive`."""
+        """Energy (J) of the liquid bridge of contact p; to be called only if the scene is `cohesive`."""
         return self.cohesion.energy(contacts, u, p // contacts.lanes, p % contacts.lanes, approach)

@@ -1,4 +1,4 @@
-"""Rolling friction: a torque of constant size against the rolling, with a short ramp where it would jump."""
+"""Rolling friction: a torque of constant size against the rolling, with a short ramp instead of a jump at zero."""
 
 import taichi as ti
 
@@ -6,17 +6,17 @@ from solvers.grains.laws.extremes import greater, lesser, within
 from solvers.grains.laws.splitting import AT_ONCE, FOLLOWING, lagging
 from solvers.grains.materials import Interface
 
-TURNING = 1e-3  # rad/s, where the ramp ends: a 3 mm grain creeps 5 mm an hour under the full torque
-SMALLEST_TORQUE = 1e-30  # N m; keeps the division finite where grains do not press
+TURNING = 1e-3  # rad/s, where the ramp ends: under the full torque a 3 mm grain creeps 5 mm an hour
+SMALLEST_TORQUE = 1e-30  # N m; keeps the division finite in contacts without normal force
 
 
 @ti.data_oriented
 class ConstantTorque:
     """M = −μ_r R_eff F_n sign(ω_i − ω_j) (Ai, Chen, Rotter and Ooi 2011, type A), with a ramp below 1e-3 rad/s.
 
-    R_eff is a wall contact's whole radius, so a sphere rolls down slopes steeper than μ_r. The ramp is a damper
-    c = μ_r R_eff F_n/(1e-3 rad/s), too stiff for any step, and split as `splitting.lagging` says. A torque M that the
-    law can hold turns the grain at M/c: it creeps.
+    At a wall R_eff is the grain's radius, so a sphere rolls down slopes steeper than μ_r. The ramp is a damper
+    c = μ_r R_eff F_n/(1e-3 rad/s), too stiff for any step, so it is split as in `splitting.lagging`. Under a torque M
+    below the cap the grain creeps: it turns at M/c.
     """
 
     constants = ("rolling_radius", "rolling_limit")
@@ -27,12 +27,12 @@ class ConstantTorque:
         return [between.rolling_friction]
 
     def limits(self, between: Interface, mass: float, radius: float, speed: float) -> list[tuple[float, str]]:
-        """None: the ramp is split to suit the step."""
+        """None: the ramp is split, so that it is stable at any step."""
         return []
 
     @ti.func
     def prepare(self, c: ti.template(), stiffness, mass, radius, dt):
-        """μ_r R_eff (m) and I/Δt (N m s), I = (2/5) m_eff R_eff²: a sphere's on a wall, less than two spheres' own."""
+        """μ_r R_eff (m) and I/Δt (N m s), I = (2/5) m_eff R_eff²: a sphere's on a wall, less than two spheres'."""
         return ti.Vector([c[0] * radius, 0.4 * mass * radius * radius / dt])
 
     @ti.func

@@ -1,4 +1,4 @@
-"""Coulomb friction, with a short ramp where it would jump."""
+"""Coulomb friction, with a short ramp instead of a jump at zero slip."""
 
 import taichi as ti
 
@@ -6,16 +6,16 @@ from solvers.grains.laws.extremes import greater, lesser, within
 from solvers.grains.laws.splitting import AT_ONCE, FOLLOWING, lagging
 from solvers.grains.materials import Interface
 
-SLIP = 1e-6  # m/s, where the ramp ends: 4 mm an hour of creep under the full load that friction can hold
-SMALLEST_FORCE = 1e-30  # N; keeps the division finite where grains do not press
+SLIP = 1e-6  # m/s, where the ramp ends: creep of 4 mm an hour under a load at the Coulomb cap
+SMALLEST_FORCE = 1e-30  # N; keeps the division finite in contacts without normal force
 
 
 @ti.data_oriented
 class Coulomb:
     """F_t = −μ F_n sign(u_s) (Spandonidis 2016, table 4.2, first row), with a linear ramp for |u_s| < 1e-6 m/s.
 
-    The ramp is a damper γ = μ F_n/(1e-6 m/s), too stiff for any step, and split as `splitting.lagging` says. A load F
-    that friction can hold creeps at F/γ.
+    The ramp is a damper γ = μ F_n/(1e-6 m/s), too stiff for any step, so it is split as in `splitting.lagging`. Under a
+    load F below the Coulomb cap the contact creeps at F/γ.
     """
 
     constants = ("limit",)
@@ -26,7 +26,7 @@ class Coulomb:
         return [between.friction]
 
     def limits(self, between: Interface, mass: float, radius: float, speed: float) -> list[tuple[float, str]]:
-        """None: the ramp is split to suit the step."""
+        """None: the ramp is split, so that it is stable at any step."""
         return []
 
     @ti.func

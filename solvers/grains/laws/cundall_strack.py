@@ -14,10 +14,10 @@ class CundallStrack:
     """F_t = −(S + γ_t u_s), |F_t| ≤ μ F_n, Ṡ = k_t u_s (Spandonidis 2016, table 4.2, fourth row).
 
     k_t = (4 G*/E*) k_l with the spring k_l of the linear normal law, whichever normal law is chosen. The ratio is
-    Mindlin's (1949), 2(1 − ν)/(2 − ν) for equal materials. The history S is a force: k_t does not change with the
-    overlap, so S²/(2 k_t) is what the spring holds and a changing overlap cannot make energy; at the cap S is cut to
-    the cap and the spring slides. γ_t = A k_t, with the dissipative time A of the material. S is of second order in the
-    step (`solvers.grains.laws.history`); the step in which grains touch counts from the first touch on.
+    Mindlin's (1949), 2(1 − ν)/(2 − ν) for equal materials. The contact history S is a force. Since k_t does not depend
+    on the overlap, the spring's energy is S²/(2 k_t) and a changing overlap creates none; at the Coulomb cap S is cut
+    to the cap and the contact slides. γ_t = A k_t, with the dissipative time A of the material. S is of second order in
+    the step (`solvers.grains.laws.history`); in the first step of a contact it counts from first touch.
     """
 
     constants = ("shear_spring", "shear_dashpot")
@@ -36,7 +36,7 @@ class CundallStrack:
 
     @ti.func
     def prepare(self, c: ti.template(), stiffness, mass, radius, dt):
-        """k_t (N/m), a little stiffer for the step, and γ_t (N s/m) as far as the step resolves it."""
+        """k_t (N/m), stiffened for the step (`history`), and γ_t (N s/m), at most what the step resolves."""
         spring = spring_stiffness(c[1], stiffness, mass)
         dashpot = ti.min(c[2] * spring, AT_ONCE * M_T * mass / dt)
         stiffer = stiffening(self.integrator.stiffer, mass, dt * self.integrator.damping) * spring

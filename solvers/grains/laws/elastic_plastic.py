@@ -14,12 +14,12 @@ from solvers.grains.materials import Interface, hertz_stiffness
 class ElasticPlastic:
     """M = −(S + C_r ω), |M| ≤ μ_r R_eff F_n, Ṡ = k_r ω, ω = ω_i − ω_j (Ai, Chen, Rotter and Ooi 2011, type C).
 
-    k_r = 2.25 k_n (μ_r R_eff)², as they take it, with the spring k_l of the linear normal law for k_n, whichever normal
-    law is chosen: k_r then does not change with the overlap, and a changing overlap cannot make energy. The history S
-    is a torque; at the cap it is cut to the cap and the grain rolls. C_r = 2 η_r √(I_r k_r), η_r the material's
-    `rolling_damping` and I_r = (7/5) m_eff R_eff², the inertia about the contact of a sphere on a wall; between equal
-    grains theirs is four times that. S is summed by whole steps and leads by half a step, which acts as a damper
-    k_r Δt/2 (`solvers.grains.laws.history`); the dashpot is weaker by so much.
+    k_r = 2.25 k_n (μ_r R_eff)² as in the source, with the spring k_l of the linear normal law for k_n, whichever normal
+    law is chosen: k_r then does not depend on the overlap, and a changing overlap creates no energy. The contact
+    history S is a torque; at the cap it is cut to the cap and the grain rolls. C_r = 2 η_r √(I_r k_r), η_r the
+    material's `rolling_damping` and I_r = (7/5) m_eff R_eff², the inertia about the contact of a sphere on a wall; for
+    equal grains the actual one is four times that. S is summed by whole steps and leads by half a step, which acts as a
+    damper k_r Δt/2 (`solvers.grains.laws.history`); the dashpot is reduced by as much.
     """
 
     constants = ("rolling_radius", "rolling_spring", "rolling_dashpot")
@@ -39,7 +39,7 @@ class ElasticPlastic:
 
     @ti.func
     def prepare(self, c: ti.template(), stiffness, mass, radius, dt):
-        """μ_r R_eff (m), k_r (N m), C_r (N m s) as far as the step resolves it and S does not do it already."""
+        """μ_r R_eff (m), k_r (N m) and C_r (N m s), at most what the step resolves, less the damping by S."""
         inertia = mass * radius * radius
         spring = spring_stiffness(c[1], stiffness, mass) * radius * radius
         dashpot = ti.min(c[2] * ti.sqrt(spring * inertia), AT_ONCE * 0.4 * inertia / dt)

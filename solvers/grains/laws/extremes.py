@@ -1,7 +1,7 @@
-"""The lesser, the greater and the limited of two numbers or vectors, in the fewest instructions.
+"""Minimum, maximum and clamping of numbers or vectors, in the fewest instructions.
 
-Taichi's own `min` and `max` look out for what is not a number and take three instructions where the processor has one.
-Here a comparison with what is not a number is false, and the second of the two is taken.
+Taichi's own `min` and `max` treat NaN specially and take three instructions where the processor has one. Here a
+comparison with NaN is false, so the second argument is taken.
 """
 
 import taichi as ti
@@ -9,17 +9,17 @@ import taichi as ti
 
 @ti.func
 def lesser(a, b):
-    """The lesser of two."""
+    """The lesser of a and b."""
     return ti.select(a < b, a, b)
 
 
 @ti.func
 def greater(a, b):
-    """The greater of two."""
+    """The greater of a and b."""
     return ti.select(a > b, a, b)
 
 
 @ti.func
 def within(value, most):
-    """The value, or ±most where it is larger, with the value's sign."""
+    """The value, clamped to between −most and most."""
     return greater(lesser(value, most), -most)

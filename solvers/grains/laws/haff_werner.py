@@ -11,8 +11,8 @@ from solvers.grains.materials import Interface
 class HaffWerner:
     """F_t = −min(γ_s |u_s|, μ F_n) sign(u_s) (Spandonidis 2016, eq. 4.6).
 
-    γ_s = 20 N s/m stops the slip of a 3 mm grain within 1e-7 s, far below any step worth taking. So the damper is
-    split as `splitting.lagging` says, on m_t = (2/7) m_eff. Under a lasting load the slip is F_t/γ_s, the creep of the
+    γ_s = 20 N s/m stops the slip of a 3 mm grain within 1e-7 s, far below any practical step. So the damper is split as
+    in `splitting.lagging`, with the mass m_t = (2/7) m_eff. Under a lasting load the slip is F_t/γ_s, the creep of the
     law itself, whatever the step.
     """
 
@@ -25,7 +25,7 @@ class HaffWerner:
         return [between.friction, damping, FOLLOWING / damping if damping else 0.0]
 
     def limits(self, between: Interface, mass: float, radius: float, speed: float) -> list[tuple[float, str]]:
-        """None: the damper is split to suit the step."""
+        """None: the damper is split, so that it is stable at any step."""
         return []
 
     @ti.func

@@ -1,10 +1,10 @@
-"""Elastic Hertz contact (Hertz 1882), which loses nothing."""
+"""Elastic Hertz contact (Hertz 1882), without dissipation."""
 
 import taichi as ti
 
 from solvers.grains.materials import Interface, hertz_stiffness
 
-ELASTIC_STEPS = 36.0  # a collision; an elastic one then keeps its speed to 0.01 %, wherever in a step it begins
+ELASTIC_STEPS = 36.0  # per collision; an elastic one then keeps its speed to 0.01 %, wherever in a step it begins
 
 
 def hertz_duration(mass: float, radius: float, young: float, speed: float) -> float:
@@ -16,7 +16,7 @@ def hertz_duration(mass: float, radius: float, young: float, speed: float) -> fl
 class Hertz:
     """F_n = k ξ^(3/2), k = (4/3) E* √R_eff (Spandonidis 2016, table 4.1, second row).
 
-    The material's restitution and dissipative time mean nothing to it: every collision keeps its energy.
+    The material's restitution and dissipative time are ignored: every collision keeps its energy.
     """
 
     constants = ()

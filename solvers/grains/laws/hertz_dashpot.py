@@ -8,7 +8,7 @@ from solvers.grains.laws.splitting import felt_rate
 from solvers.grains.materials import Interface
 from solvers.grains.restitution import CONSTANT, damping_for
 
-# Steps of a collision, at least and times g: measured as in `felt_rate`, restitution 0.02 … 1 to 0.1 %.
+# Steps per collision, at least and times g: measured with `felt_rate`, restitution 0.02 … 1 is right to 0.1 %.
 STEPS, DAMPED_STEPS = 52.0, 150.0
 
 
@@ -17,9 +17,9 @@ class HertzDashpot(Hertz):
     """F_n = k ξ^(3/2) + γ_n ξ̇, k = (4/3) E* √R_eff, cut at zero (Spandonidis 2016, table 4.1, third row).
 
     γ_n = g (k² m_eff³ v)^(1/5), with the number g that gives the material's restitution at its restitution speed v, for
-    grains of any size. In units of the elastic collision the motion is ξ̈ = −ξ^(3/2) − g ξ̇, and g falls as v^(−1/5):
-    slower collisions lose more, against experiment (Schäfer, Dippel and Wolf 1996), so the restitution is right at
-    that one speed.
+    grains of any size. In units of the elastic collision the motion is ξ̈ = −ξ^(3/2) − g ξ̇, and g falls as v^(−1/5).
+    So slower collisions lose more, contrary to experiment (Schäfer, Dippel and Wolf 1996), and the restitution is right
+    at that one speed only.
     """
 
     constants = ("dashpot",)

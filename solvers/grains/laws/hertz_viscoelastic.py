@@ -8,13 +8,14 @@ from solvers.grains.laws.extremes import greater
 from solvers.grains.laws.hertz import ELASTIC_STEPS, Hertz, hertz_duration
 from solvers.grains.materials import Interface, hertz_stiffness
 
-# Times √x, and past x = 1 by so much more with x: the error of the restitution falls as Δt² and grows with x. Measured
-# with Verlet's scheme, contacts beginning anywhere in a step: restitution 0.02 … 1 to 0.1 %.
+# Steps per collision: DAMPED_STEPS times √x, and for x > 1 a share STRONGLY more per unit of x, since the error of the
+# restitution falls as Δt² and grows with x. Measured with Verlet's scheme and contacts that begin anywhere in a step:
+# restitution 0.02 … 1 is right to 0.1 %.
 DAMPED_STEPS, STRONGLY = 105.0, 0.03
 
 
 def damping(between: Interface, mass: float, radius: float, speed: float) -> float:
-    """x = β v^(1/5), β = (γ_n/m_eff)(m_eff/k)^(3/5): how much of its energy a viscoelastic collision loses."""
+    """Damping x = β v^(1/5), β = (γ_n/m_eff)(m_eff/k)^(3/5), which sets the restitution of a viscoelastic collision."""
     k = hertz_stiffness(between.young_modulus, radius)
     return 1.5 * between.dissipative_time * (k / mass) ** 0.4 * speed**0.2
 
@@ -24,8 +25,8 @@ class HertzViscoelastic(Hertz):
     """F_n = k ξ^(3/2) + γ_n ξ^(1/2) ξ̇, with k = (4/3) E* √R_eff and γ_n = (3/2) A k.
 
     For equal materials k = 2Y√R_eff / (3(1 − ν²)), as Spandonidis (2016), eq. 4.4–4.5, writes it. A is the dissipative
-    time of the material (Brilliantov et al. 1996). Dry grains do not pull: the force is cut at zero, so a contact
-    ends where the force vanishes and not where the overlap does (Schwager and Pöschel 2008).
+    time of the material (Brilliantov et al. 1996). Dry grains do not attract: the force is cut at zero, so a contact
+    ends when the force vanishes, not when the overlap does (Schwager and Pöschel 2008).
     """
 
     def coefficients(self, between: Interface) -> list[float]:

@@ -20,24 +20,25 @@ def kelvin_radius(humidity: float, surface_tension: float) -> float:
 class Humid(Capillary):
     """f₀ = 2π γ_s cos θ R_eff while the grains touch, f₀ (1 − s/r_K) at a gap s < r_K (Spandonidis 2016, eq. 4.9–4.11).
 
-    The source takes the law from Oger et al. (2013) and the line from Charlaix and Crassous (2005). Our reading of it:
-    - R_eff as printed, 1/R_eff = 1/R_i + 1/R_j. It makes f₀ half of what two smooth spheres pull with, 4π γ_s cos θ
-      R_eff (Fisher 1926; `bridge` has it).
-    - The source prints F_m = f₀ (a₀ + a₁ √r_K + a₂ r_K) where the line begins and gives no numbers; they are said to be
-      in Crassous et al. (2011). With a₀ = 1, a₁ = a₂ = 0 the force is continuous at s = 0. A ring between equal smooth
-      spheres pulls with f₀ (1 − √(r_K/2R) + …) by the toroidal form, a thousandth less for grains of mm.
-    - r_K by Kelvin's equation for water at 25 °C: the source's 1.47 nm at 70 % come out of it.
+    The source takes the law from Oger et al. (2013) and the linear decay from Charlaix and Crassous (2005). It is read
+    as follows:
+    - R_eff as printed, 1/R_eff = 1/R_i + 1/R_j. This makes f₀ half of the pull of two smooth spheres, 4π γ_s cos θ
+      R_eff (Fisher 1926; used in `bridge`).
+    - The source prints F_m = f₀ (a₀ + a₁ √r_K + a₂ r_K) at the start of the decay without values, which are said to be
+      in Crassous et al. (2011). With a₀ = 1, a₁ = a₂ = 0 the force is continuous at s = 0. By the toroidal form a ring
+      between equal smooth spheres pulls with f₀ (1 − √(r_K/2R) + …), a thousandth less for grains of mm.
+    - r_K by Kelvin's equation for water at 25 °C, which gives the source's 1.47 nm at 70 %.
 
-    So the humidity changes the range alone, and that is never more than nanometres. Where `asperities` of height h (m)
-    keep the surfaces apart, not in the source, touching grains are at s = h on the line: f₀ (1 − h/r_K) over a range of
-    r_K − h, and nothing in air so dry that r_K < h.
+    So the humidity changes only the range, which is a few nanometres at most. As an extension of the source,
+    `asperities` of height h (m) keep the surfaces apart: touching grains are then at s = h on the line, with a force
+    f₀ (1 − h/r_K) and a range of r_K − h; there is none in air so dry that r_K < h.
     """
 
     constants = ("bridge_pull", "bridge_range")
     needs = ("humidity",)
 
     def range(self, between: Interface) -> float:
-        """r_K − h (m), or zero."""
+        """Range r_K − h (m), or zero if negative."""
         return max(0.0, kelvin_radius(between.humidity, between.surface_tension) - between.asperities)
 
     def coefficients(self, between: Interface) -> list[float]:

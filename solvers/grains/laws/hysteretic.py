@@ -1,4 +1,4 @@
-"""Hysteretic contact: stiffer on the way back, for grains that yield."""
+"""Hysteretic contact: stiffer in unloading than in loading, for grains that yield."""
 
 from math import pi, sqrt
 
@@ -8,17 +8,17 @@ from solvers.grains.laws.extremes import greater
 from solvers.grains.laws.linear_spring import spring_coefficient, spring_stiffness
 from solvers.grains.materials import Interface, hertz_stiffness
 
-STEPS = 36.0  # of half a period of the stiffer, unloading spring; restitution 0.02 … 1 to 0.1 %
+STEPS = 36.0  # per half period of the stiffer, unloading spring; restitution 0.02 … 1 is right to 0.1 %
 
 
 @ti.data_oriented
 class Hysteretic:
-    """F_n = k₁ ξ while it first loads, k₂ (ξ − ξ₀) while it unloads and loads again, never less than zero.
+    """F_n = k₁ ξ in first loading, k₂ (ξ − ξ₀) in unloading and reloading, never less than zero.
 
     Walton and Braun (1986); Spandonidis (2016), table 4.1, fifth row. k₁/k₂ = e², so the restitution is e at every
-    speed and size; k₁ is such that at the restitution speed the overlap is as deep as the elastic Hertz contact's.
-    The memory is the plastic overlap ξ₀ = (1 − e²) ξ_max, whence F_n = k₂ (ξ − ξ₀) on either way; grains that part
-    forget it. A small vibration about a load stays on the k₂ line and loses nothing.
+    speed and size; k₁ is such that at the restitution speed the largest overlap equals that of elastic Hertz contact.
+    The memory is the plastic overlap ξ₀ = (1 − e²) ξ_max, so that F_n = k₂ (ξ − ξ₀) in loading and unloading; it is
+    reset when the grains separate. A small vibration about a load stays on the k₂ line without loss.
     """
 
     constants = ("unloading",)
@@ -36,7 +36,7 @@ class Hysteretic:
         return [(pi * sqrt(mass / unloading) / STEPS, f"1/{STEPS:.0f} of half the unloading spring's period")]
 
     def deepest(self, between: Interface, mass: float, radius: float, speed: float) -> float:
-        """Largest overlap (m) of a head-on impact, v √(m/k₁)."""
+        """Largest overlap (m) of a head-on impact at a speed (m/s), v √(m/k₁)."""
         coefficient = spring_coefficient(between.restitution_speed)
         stiffness = spring_stiffness(coefficient, hertz_stiffness(between.young_modulus, radius), mass)
         return speed * sqrt(mass / stiffness)
@@ -56,6 +56,6 @@ class Hysteretic:
 
     @ti.func
     def energy(self, contacts: ti.template(), w, block, lane, overlap, root):
-        """The energy k₂ (ξ − ξ₀)²/2 (J) that one contact can give back."""
+        """Recoverable energy k₂ (ξ − ξ₀)²/2 (J) of one contact."""
         elastic = ti.max(0.0, overlap - contacts.plastic[w, block][lane])
         return 0.5 * contacts.unloading[w, block][lane] * elastic * elastic

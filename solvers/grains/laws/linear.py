@@ -10,7 +10,7 @@ from solvers.grains.laws.splitting import felt_rate
 from solvers.grains.materials import Interface, hertz_stiffness
 from solvers.grains.restitution import damping_ratio_for
 
-# Steps of half an undamped period, at least and times ζ: measured as in `felt_rate`, restitution 0.02 … 1 to 0.1 %.
+# Steps per half undamped period, at least and times ζ: measured with `felt_rate`, restitution 0.02 … 1 right to 0.1 %.
 STEPS, DAMPED_STEPS = 52.0, 240.0
 
 
@@ -18,9 +18,9 @@ STEPS, DAMPED_STEPS = 52.0, 240.0
 class Linear:
     """F_n = k_l ξ + γ_n ξ̇, cut at zero (Cundall and Strack 1979; Spandonidis 2016, table 4.1, first row).
 
-    k_l is such that at the restitution speed the overlap is as deep as the elastic Hertz contact's. γ_n =
-    2 ζ √(k_l m_eff), with ζ from the restitution of a contact that ends where its force does (Schwager and
-    Pöschel 2007). Restitution and duration are the same at every speed and size.
+    k_l is such that at the restitution speed the largest overlap equals that of elastic Hertz contact. γ_n =
+    2 ζ √(k_l m_eff), with ζ from the restitution of a contact that ends when its force vanishes (Schwager and Pöschel
+    2007). The restitution is the same at every speed and size, the duration at every speed.
     """
 
     constants = ("spring", "dashpot")

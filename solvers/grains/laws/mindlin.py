@@ -7,20 +7,20 @@ from solvers.grains.laws.history import M_T, STIFFEST, stiffening
 from solvers.grains.laws.splitting import AT_ONCE
 from solvers.grains.materials import Interface
 
-SMALLEST_ROOT = 1e-12  # √m; an overlap of 1e-24 m is none
+SMALLEST_ROOT = 1e-12  # √m; keeps ratios finite: an overlap of 1e-24 m counts as none
 
 
 @ti.data_oriented
 class Mindlin:
     """F_t = −(S + A k_t u_s), |F_t| ≤ μ F_n, Ṡ = k_t u_s with k_t = 8 G* √(R_eff ξ) (Mindlin 1949).
 
-    The history S is kept as a force. While the contact loads, it grows with the present stiffness; while it unloads it
-    shrinks with the stiffness, S ← S k_t(now)/k_t(before), as Thornton, Cummins and Cleary (2013) ask for, since
-    otherwise a changing overlap makes energy (Elata and Berryman 1996). The dashpot has the dissipative time A of the
-    normal law, as far as the step resolves it. At the cap S is cut to the cap: the spring slides.
+    The contact history S is kept as a force. In normal loading it grows with the present stiffness; in unloading it
+    shrinks with the stiffness, S ← S k_t(now)/k_t(before), as Thornton, Cummins and Cleary (2013) require, since
+    otherwise a changing overlap creates energy (Elata and Berryman 1996). The dashpot has the dissipative time A of the
+    normal law, at most what the step resolves. At the Coulomb cap S is cut to the cap: the contact slides.
 
-    S is of second order in the step (`solvers.grains.laws.history`). So that it stays so where k_t ~ √ξ begins, a step
-    counts the mean of √ξ over itself, or from the first touch on.
+    S is of second order in the step (`solvers.grains.laws.history`). To keep this order at first touch, where k_t ~ √ξ
+    begins, a step uses the mean of √ξ over its length, or since first touch.
     """
 
     constants = ("shear_limit", "shear_stiffer")
@@ -32,12 +32,12 @@ class Mindlin:
         return [between.friction, ratio, between.dissipative_time]
 
     def limits(self, between: Interface, mass: float, radius: float, speed: float) -> list[tuple[float, str]]:
-        """None: where the overlap is deepest, a step that resolves the Hertz collision resolves this spring."""
+        """None: even at the largest overlap a step that resolves the Hertz collision resolves this spring."""
         return []
 
     @ti.func
     def prepare(self, c: ti.template(), stiffness, mass, radius, dt):
-        """The strongest damper (N s/m) that the step resolves, and the stiffening (m/N) of the step."""
+        """The strongest damper (N s/m) that the step resolves, and the step's stiffening (m/N)."""
         stiffer = stiffening(self.integrator.stiffer, mass, dt * self.integrator.damping)
         return ti.Vector([AT_ONCE * M_T * mass / dt, stiffer])
 
@@ -53,7 +53,7 @@ class Mindlin:
         more = ti.select(begins, root * root, deeper * deeper)
         more /= ti.select(begins, 1.5 * rate * dt, 6.0 * now * (now + before))
         if ti.static(self.integrator.ahead == 0.0):
-            more -= ti.select(begins, 0.0 * root, 0.5 * deeper / now)  # steps end here, and √ξ is that of their middle
+            more -= ti.select(begins, 0.0 * root, 0.5 * deeper / now)  # the step ends here: √ξ of its middle
         way = slip * dt
         ahead = self.integrator.ahead * way
         behind = ti.select(begins, ahead, contacts.ahead[w, block])

@@ -1,4 +1,4 @@
-"""Dry grains, which do not pull at one another."""
+"""Dry grains, without cohesion."""
 
 import taichi as ti
 
@@ -7,7 +7,7 @@ from solvers.grains.materials import Interface
 
 @ti.data_oriented
 class NoCohesion:
-    """No pull: nothing of cohesion is compiled or kept."""
+    """No cohesion: nothing of it is compiled or stored."""
 
     constants = ()
     memory = ()

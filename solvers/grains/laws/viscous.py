@@ -1,20 +1,20 @@
-"""Viscous shear force without a cap."""
+"""Viscous shear force without a Coulomb cap."""
 
 import taichi as ti
 
 from solvers.grains.laws.haff_werner import HaffWerner
 from solvers.grains.materials import Interface
 
-UNCAPPED = 1e9  # a friction coefficient that no force reaches; grains that do not press have a cap of zero all the same
+UNCAPPED = 1e9  # a friction coefficient that no force reaches; without normal force the cap is still zero
 
 
 @ti.data_oriented
 class Viscous(HaffWerner):
-    """F_t = −γ_s u_s (Spandonidis 2016, table 4.2, second row): Haff and Werner's law without friction's cap.
+    """F_t = −γ_s u_s (Spandonidis 2016, table 4.2, second row): Haff and Werner's law without the Coulomb cap.
 
-    Without the cap even a grazing touch stops all slip where γ_s is high, which is not what grains do.
+    Without the cap even a grazing contact stops all slip if γ_s is high, unlike real grains.
     """
 
     def coefficients(self, between: Interface) -> list[float]:
-        """As of Haff–Werner, with a friction that never caps."""
+        """Those of Haff–Werner, with a friction coefficient that never caps the force."""
         return [UNCAPPED, *super().coefficients(between)[1:]]

@@ -1,1 +1,1 @@
-"""Outlines of irregular grains: how they are described, where they come from, and how deep two of them overlap."""
+"""Outlines of irregular grains: their description, their sources, and the rules of contact between them."""

@@ -1,4 +1,4 @@
-"""Named outlines of cargoes, from the table beside this module."""
+"""Named outlines of cargoes, from the table `cargo.toml`."""
 
 import tomllib
 from dataclasses import dataclass
@@ -14,9 +14,9 @@ from solvers.machine.errors import Unavailable
 
 @dataclass(frozen=True)
 class Cargo:
-    """What is known of a cargo's outline: descriptors relative to R0, and phases (rad), or none where they are random.
+    """A cargo's outline: descriptors relative to R0, and phases (rad), None if they are to be drawn at random.
 
-    `diameter` (m) is a usual one of the disc of equal area.
+    `diameter` (m) is a typical one of the disc of equal area.
     """
 
     name: str
@@ -26,7 +26,7 @@ class Cargo:
     phases: tuple[float, ...] | None = None
 
     def outline(self, random: np.random.Generator, diameter: float | None = None) -> Contour:
-        """An outline about its centroid with the area of a disc of this diameter (m), its phases drawn if not given."""
+        """An outline about its centroid with the area of a disc of `diameter` (m); unknown phases are drawn."""
         if self.phases is None:
             contour = draw(1.0, np.array(self.descriptors), random)
         else:

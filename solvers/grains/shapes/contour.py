@@ -1,4 +1,4 @@
-"""The outline of an irregular grain by Fourier descriptors, and what follows from it: sizes, mass, inertia."""
+"""The outline of an irregular grain by Fourier descriptors, and its sizes, mass and inertia."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -9,9 +9,9 @@ import numpy as np
 from solvers.grains.shapes import series
 from solvers.machine.errors import BadOutline
 
-ROUNDING = 1e-14  # of a radius: what differs by less is the same
+ROUNDING = 1e-14  # of a radius: smaller differences count as zero
 MOST_SAMPLES = 2**15
-LOOKS = 16  # at each wave of the last descriptor
+LOOKS = 16  # samples per wave of the last descriptor
 
 
 @dataclass(frozen=True)
@@ -19,7 +19,7 @@ class Contour:
     """R(θ) = R0 + Σ_{n≥1} D_n cos(nθ + δ_n), θ counter-clockwise (Spandonidis 2016, eq. 8.1).
 
     `radius` R0 and `descriptors` D_1, D_2, … in m, `phases` δ_1, δ_2, … in rad. Raises BadOutline unless R is positive
-    everywhere; then the outline does not cross itself, and each of its points is seen from the origin.
+    everywhere, so that the outline is star-shaped about the origin and does not cross itself.
     """
 
     radius: float
@@ -27,7 +27,7 @@ class Contour:
     phases: tuple[float, ...] = ()
 
     def __post_init__(self):
-        for name in ("descriptors", "phases"):  # arrays are welcome, but only tuples can be compared and hashed
+        for name in ("descriptors", "phases"):  # arrays are accepted, but only tuples can be compared and hashed
             object.__setattr__(self, name, tuple(float(x) for x in getattr(self, name)))
         if len(self.descriptors) != len(self.phases):
             counts = f"got {len(self.descriptors)} descriptors and {len(self.phases)} phases"
@@ -42,21 +42,21 @@ class Contour:
 
     @classmethod
     def through(cls, radii: np.ndarray, count: int | None = None) -> "Contour":
-        """The outline with these polar radii (k,) m at even angles from 0, by FFT, or its first `count` descriptors."""
+        """The outline with polar radii (k,) m at equally spaced angles from 0, by FFT; at most `count` descriptors."""
         mean, amplitudes, phases = series.coefficients(radii)
         return cls(mean, amplitudes[:count], phases[:count])
 
     def polar(self, angle: np.ndarray, derivative: int = 0) -> np.ndarray:
-        """R (m) at these angles (rad, any shape), or its derivative of this order (m)."""
+        """R (m) at angles (rad, any shape), or its derivative of a given order (m)."""
         mean = self.radius if derivative == 0 else 0.0
         return mean + series.harmonics(angle, *self._coefficients, derivative)
 
     def points(self, angle: np.ndarray) -> np.ndarray:
-        """Points (…, 2) m of the outline at these polar angles (rad)."""
+        """Points (…, 2) m of the outline at polar angles (rad)."""
         return self.polar(angle)[..., None] * _direction(angle)
 
     def normals(self, angle: np.ndarray) -> np.ndarray:
-        """Outward unit normals (…, 2) at these polar angles (rad)."""
+        """Outward unit normals (…, 2) at polar angles (rad)."""
         radius, slope = self.polar(angle)[..., None], self.polar(angle, 1)[..., None]
         along = _direction(angle)
         across = np.stack([-along[..., 1], along[..., 0]], axis=-1)
@@ -109,7 +109,7 @@ class Contour:
 
     @cached_property
     def perimeter(self) -> float:
-        """Length (m) of the outline, by the trapezoid rule on twice as many points until that changes nothing."""
+        """Length (m) of the outline, by the trapezoid rule with points doubled until it has converged."""
         count, before, length = 4 * len(self._angles), inf, 0.0
         while abs(length - before) > ROUNDING * self.radius and count < MOST_SAMPLES:
             angle = _even(count)
@@ -118,10 +118,10 @@ class Contour:
         return length
 
     def mass(self, density: float) -> float:
-        """Mass (kg) of the sphere of equal area, 4/3 π r³ ρ, of a grain of this density (kg/m³).
+        """Mass (kg) of a grain of a density (kg/m³): that of the sphere of equal area, 4/3 π r³ ρ.
 
-        This and `inertia` are exactly those of the solid that is √(r² − (r s)²) thick on either side of the plane, s
-        running from 0 at the centroid to 1 at the outline: a sphere over a disc, an ellipsoid over an ellipse.
+        Mass and `inertia` are exactly those of the solid with the thickness √(r² − (r s)²) on either side of the plane,
+        s running from 0 at the centroid to 1 at the outline: a sphere over a disc, an ellipsoid over an ellipse.
         """
         return 4.0 / 3.0 * np.pi * self.equivalent_radius**3 * density
 
@@ -131,25 +131,25 @@ class Contour:
 
     @cached_property
     def convex(self) -> bool:
-        """Whether the outline bends one way only, κ ≥ 0 at all angles that are looked at."""
+        """Whether the outline is convex, κ ≥ 0 at all sampled angles."""
         return bool(self._curvature.min() >= 0.0)
 
     @cached_property
     def sharpest_dent(self) -> float:
-        """The least radius of curvature (m) where the outline bends inwards; infinite where it nowhere does."""
+        """The least radius of curvature (m) of the concave parts of the outline; infinite if it is convex."""
         deepest = float(self._curvature.min())
         return -1.0 / deepest if deepest < 0.0 else inf
 
     @cached_property
     def _curvature(self) -> np.ndarray:
-        """Curvature κ = (R² + 2 R'² − R R'')/(R² + R'²)^(3/2) (1/m) at even angles."""
+        """Curvature κ = (R² + 2 R'² − R R'')/(R² + R'²)^(3/2) (1/m) at equally spaced angles."""
         angle = _even(LOOKS * (1 + len(self.descriptors)))
         radius, slope, bend = (self.polar(angle, order) for order in range(3))
         return (radius**2 + 2.0 * slope**2 - radius * bend) / np.hypot(radius, slope) ** 3
 
     @cached_property
     def sharpest_change(self) -> float:
-        """The largest change of curvature along the outline, |dκ/ds| (1/m²), at angles that are looked at."""
+        """The largest rate of change of curvature along the outline, |dκ/ds| (1/m²), at sampled angles."""
         angle = _even(LOOKS * (1 + len(self.descriptors)))
         radius, slope, bend, change = (self.polar(angle, order) for order in range(4))
         size = radius**2 + slope**2
@@ -159,7 +159,7 @@ class Contour:
 
     @cached_property
     def least_mass(self) -> float:
-        """The least mass, relative to its own, with which a grain resists a push along a normal of its outline.
+        """The least effective mass against a push along a normal of the outline, relative to the grain's mass.
 
         1/(1 + m l²/I) with l the lever of the normal about the centroid, which must be the origin; 1 for a disc.
         """
@@ -173,14 +173,14 @@ class Contour:
         return Contour(factor * self.radius, factor * np.array(self.descriptors), self.phases)
 
     def with_diameter(self, diameter: float) -> "Contour":
-        """The similar outline with the area of a disc of this diameter (m)."""
+        """The similar outline with the area of a disc of a diameter (m)."""
         return self.scaled(0.5 * diameter / self.equivalent_radius)
 
     def centred(self, error: float = 1e-9) -> "Contour":
         """The same outline about its centroid, to within `error` times R0 at every angle.
 
-        It has as many descriptors as that takes. Raises BadOutline where the outline cannot be seen from its centroid,
-        or so badly that no number of descriptors will do.
+        It has as many descriptors as this accuracy needs. Raises BadOutline if the outline is not star-shaped about its
+        centroid, or needs too many descriptors.
         """
         centre = self.centroid
         if hypot(*centre) <= ROUNDING * self.radius:
@@ -196,7 +196,7 @@ class Contour:
         raise BadOutline("the outline bends too sharply, as seen from its centroid, to be described about it.")
 
     def _radii_about(self, centre: np.ndarray, direction: np.ndarray) -> np.ndarray:
-        """Distances (m) from a point inside to the outline in these directions (rad), by Newton's method."""
+        """Distances (m) from an interior point to the outline in given directions (rad), by Newton's method."""
         angle = _even(8 * len(self._angles))
         away, advance = self._seen_from(centre, angle)
         if not advance.min() > 0.0:
@@ -212,7 +212,7 @@ class Contour:
         return np.abs(self._seen_from(centre, angle)[0])
 
     def _seen_from(self, centre: np.ndarray, angle: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Outline points from a centre, as complex numbers (m), and by how much their direction turns a rad of θ."""
+        """Outline points from a centre, as complex numbers (m), and the derivative of their direction by θ."""
         turn = np.exp(1j * angle)
         away = self.polar(angle) * turn - complex(*centre)
         along = (self.polar(angle, 1) + 1j * self.polar(angle)) * turn
@@ -224,7 +224,7 @@ class Contour:
 
     @cached_property
     def _angles(self) -> np.ndarray:
-        """Even angles (k,) rad, so many that the trapezoid rule is exact for R⁴, of degree 4 N."""
+        """Equally spaced angles (k,) rad, enough for the trapezoid rule to be exact for R⁴, of degree 4 N."""
         return _even(4 * len(self.descriptors) + 2)
 
     @cached_property

@@ -1,4 +1,4 @@
-"""Fourier descriptors of an outline that is known by points."""
+"""Fourier descriptors fitted to an outline given by points."""
 
 from dataclasses import dataclass
 from math import pi
@@ -11,16 +11,16 @@ from solvers.grains.shapes.contour import ROUNDING, Contour
 from solvers.machine.errors import BadOutline
 
 LEAST_POINTS = 8
-LEFT_OUT = 1e-3  # rms of the descriptors that are left out, relative to R0, where nobody says how many are wanted
-RESAMPLED = 8  # even angles to a point
+LEFT_OUT = 1e-3  # rms of the descriptors left out, relative to R0, if no number of descriptors is given
+RESAMPLED = 8  # equally spaced angles per point
 MOST_MOVES = 50
 
 
 @dataclass(frozen=True)
 class Fit:
-    """A contour about its own centroid, which lies at `centre` (y, z) m of the points; errors in m.
+    """A contour about its own centroid, which lies at `centre` (y, z) m in the points' axes.
 
-    They are the root mean square and the largest of the differences in polar radius at the points.
+    `rms` and `largest` (m) are the errors in polar radius at the points.
     """
 
     contour: Contour
@@ -30,12 +30,12 @@ class Fit:
 
 
 def fit(points: np.ndarray, count: int | None = None) -> Fit:
-    """The contour of `count` descriptors through points (k, 2) m in order, the last perhaps the first once more.
+    """Fit a contour of `count` descriptors to points (k, 2) m in order; the last may repeat the first.
 
-    By the FFT of the polar radius about the centroid, resampled evenly in angle by monotone cubic pieces (Fritsch and
-    Carlson 1980), which do not swing past the points. Without a count there are so many descriptors that those left out
-    have an rms of a thousandth of R0, but at most (k − 1)/2. Raises BadOutline for too few points, and where not all
-    are seen from the centroid.
+    By the FFT of the polar radius about the centroid, resampled at equally spaced angles by monotone cubic pieces
+    (Fritsch and Carlson 1980), which do not overshoot. Without a count the descriptors left out have an rms of at most
+    a thousandth of R0, but there are at most (k − 1)/2. Raises BadOutline for too few points, and if the outline is not
+    star-shaped about the centroid.
     """
     points = _checked(np.asarray(points, dtype=float))
     most = (len(points) - 1) // 2
@@ -56,9 +56,9 @@ def fit(points: np.ndarray, count: int | None = None) -> Fit:
 
 
 def read_points(path: str | Path) -> np.ndarray:
-    """Points (k, 2) of a CSV file: two numbers a line, below a line that names the columns if there is one.
+    """Read points (k, 2) from a CSV file with two numbers per line and an optional header line.
 
-    Lines that begin with # do not count. Raises BadOutline, one sentence with the file's name.
+    Lines that begin with # are ignored. Raises BadOutline, one sentence with the file's name.
     """
     try:
         lines = Path(path).read_text("utf-8-sig").splitlines()
@@ -67,7 +67,7 @@ def read_points(path: str | Path) -> np.ndarray:
         points = np.array([[float(cell) for cell in line.split(",")] for line in lines[named:]])
     except OSError as error:
         raise BadOutline(f"{path}: cannot be read: {error.strerror or error}.") from None
-    except ValueError:  # also of a file that is not text, and of lines with more numbers than others
+    except ValueError:  # also for a file that is not text, and for lines of unequal length
         raise BadOutline(f"{path}: two numbers a line are needed, with a comma between them.") from None
     if points.ndim != 2 or points.shape[1] != 2:
         raise BadOutline(f"{path}: two numbers a line are needed, with a comma between them.")
@@ -83,7 +83,7 @@ def _is_number(text: str) -> bool:
 
 
 def _checked(points: np.ndarray) -> np.ndarray:
-    """The points counter-clockwise, each of them once."""
+    """The points counter-clockwise, without the repeated last one; raises BadOutline if they are no outline."""
     if points.ndim != 2 or points.shape[1] != 2:
         raise BadOutline(f"points (k, 2) are needed (got an array of shape {points.shape}).")
     if not np.isfinite(points).all():
@@ -112,7 +112,7 @@ def _centroid(points: np.ndarray) -> complex:
 
 
 def _resampled(points: np.ndarray, centre: complex) -> np.ndarray:
-    """Polar radii (m) about a centre at even angles from 0."""
+    """Polar radii (m) about a centre at equally spaced angles from 0."""
     away = _complex(points) - centre
     advance = np.angle(np.roll(away, -1) / away)
     if not advance.min() > 0.0:
@@ -129,7 +129,7 @@ def _resampled(points: np.ndarray, centre: complex) -> np.ndarray:
 
 
 def _needed(contour: Contour) -> int:
-    """How many descriptors have to be kept."""
+    """Number of descriptors needed for an rms error of LEFT_OUT times R0."""
     square = 0.5 * np.cumsum(np.array(contour.descriptors[::-1]) ** 2)[::-1]
     return int(np.sum(square > (LEFT_OUT * contour.radius) ** 2))
 

@@ -1,4 +1,4 @@
-"""What a scene says of its irregular grains."""
+"""A scene's data on its irregular grains."""
 
 from dataclasses import dataclass
 
@@ -9,12 +9,12 @@ from solvers.grains.shapes.contour import Contour
 
 @dataclass(frozen=True)
 class Shapes:
-    """Outlines of the grains of W worlds: of grain i in world w `outlines[which[w, i]]`, `radius[w, i]` times as large.
+    """Outlines of the grains of W worlds: grain i in world w has `outlines[which[w, i]]` scaled by `radius[w, i]`.
 
     `outlines` are about their centroids and have the area of a disc of radius 1; a scene's radii are those of discs of
-    equal area. `angle` (W, n) rad is by how much each is turned at the start, counter-clockwise. `contact` is one of
-    CONTACTS; `nodes` are those of an outline for the rules that have nodes. `reach` and `least_mass` are bounds on the
-    outlines' bounding radius and least mass, their own by default: given where a world must not depend on its company.
+    equal area. `angle` (W, n) rad are the angles at the start, counter-clockwise. `contact` is one of CONTACTS; `nodes`
+    is the number per outline for rules that use nodes. `reach` and `least_mass` are bounds on the outlines' bounding
+    radius and least mass; by default they follow from the outlines. Give them if a world must not depend on the others.
     """
 
     outlines: tuple[Contour, ...]
@@ -33,7 +33,7 @@ class Shapes:
 
     @property
     def convex(self) -> bool:
-        """Whether no outline bends inwards anywhere."""
+        """Whether all outlines are convex."""
         return all(outline.convex for outline in self.outlines)
 
 

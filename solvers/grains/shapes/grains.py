@@ -1,4 +1,4 @@
-"""Grains that have an outline of their own, and so an orientation."""
+"""Grains with outlines, which have an orientation."""
 
 import numpy as np
 import taichi as ti
@@ -14,10 +14,10 @@ DISC = Contour(1.0)
 
 @ti.data_oriented
 class ShapedGrains(Grains):
-    """Grains with `shape` (W, n + k + ghosts), numbers of their outlines; the fixed ones are discs, the last of them.
+    """Grains whose outlines have the numbers `shape` (W, n + k + ghosts); fixed grains are discs, the last outline.
 
     Mass is that of the sphere of equal area, inertia that of `Contour.inertia`. `turn_y` and `turn_z` are cos and sin
-    of the angle, so that the contacts of a step share them. Outlines are of the plane: `y` and `z` are all of `place`.
+    of the angle, computed once per step for all contacts. Outlines are plane: `y` and `z` are all of `place`.
     """
 
     shaped = True
@@ -39,7 +39,7 @@ class ShapedGrains(Grains):
         self.y, self.z = self.place
         bounding = np.array([outline.bounding_radius for outline in outlines])[shapes.which]
         self.start_angle = shapes.angle
-        self.crowding = float((bounding**2).mean())  # so many times the neighbours that discs have are near
+        self.crowding = float((bounding**2).mean())  # number of neighbours relative to that of discs
         disc = len(outlines) - 1
         own, axes = arrays.under("grains"), "world grain"
         self.shape = own.holding("shape", self._filled(shapes.which, disc, disc), axes, ti.i32, kept=True)
@@ -47,14 +47,14 @@ class ShapedGrains(Grains):
         self.turn_y, self.turn_z = own.reals(self.each, "turn_y", "turn_z")
 
     def put(self, position: np.ndarray) -> None:
-        """Put the grains at `position` (W, n, 2) m, turned as they are to start, at rest and without history."""
+        """Place the grains at `position` (W, n, 2) m with their start angles, at rest and without history."""
         super().put(position)
         angle = self._filled(self.start_angle, 0.0, 0.0)
         for field, values in ((self.angle, angle), (self.turn_y, np.cos(angle)), (self.turn_z, np.sin(angle))):
             field.from_numpy(values.astype(np.float32) if field.dtype == ti.f32 else values)
 
     def count_turns_anew(self) -> None:
-        """Nothing: angles are those of the outlines."""
+        """Do nothing: the angles are those of the outlines."""
 
     @ti.func
     def turn(self, w, i):
@@ -63,15 +63,15 @@ class ShapedGrains(Grains):
 
     @ti.func
     def outline(self, w, i):
-        """A grain's outline, `posed`."""
+        """A grain's outline as a `posed` struct."""
         return posed(self.shape[w, i], self.radius[w, i], self.turn(w, i))
 
     @ti.func
     def apart(self, w, i, j):
-        """The centre of grain i less that of j (m)."""
+        """Vector (m) from the centre of grain j to that of grain i."""
         return ti.cast(ti.Vector(self.between(w, i, j)), self.real)
 
 
 def with_disc(shapes: Shapes) -> list[Contour]:
-    """A scene's outlines, and after them the disc that fixed grains are."""
+    """A scene's outlines, followed by the disc for fixed grains."""
     return [*shapes.outlines, DISC]

@@ -4,21 +4,21 @@ from math import pi
 
 import numpy as np
 
-STEPS = 8  # to a wave of the highest harmonic, and into how many a step is cut
-CLIMBS = 20  # where the curvature vanishes at a top each comes nearer only by a third
+STEPS = 8  # per wave of the highest harmonic; and the parts into which a step is then cut
+CLIMBS = 20  # Newton steps; at a maximum with zero curvature each reduces the distance by a third only
 TINY = 1e-300
 
 
 def harmonics(angle: np.ndarray, amplitudes: np.ndarray, phases: np.ndarray, derivative: int = 0) -> np.ndarray:
-    """The sum at these angles (rad, any shape), or its derivative of this order."""
+    """The sum at angles (rad, any shape), or its derivative of a given order."""
     n = np.arange(1, len(amplitudes) + 1)
     turn = np.exp(1j * np.asarray(angle))[..., None]
-    waves = np.cumprod(np.broadcast_to(turn, (*turn.shape[:-1], len(n))), axis=-1)  # e^{inθ}, sooner than by cosines
+    waves = np.cumprod(np.broadcast_to(turn, (*turn.shape[:-1], len(n))), axis=-1)  # e^{inθ}, faster than cosines
     return (waves @ (amplitudes * np.exp(1j * phases) * (1j * n) ** derivative)).real
 
 
 def coefficients(values: np.ndarray) -> tuple[float, np.ndarray, np.ndarray]:
-    """Mean, and amplitudes and phases up to n = (k − 1)//2, of the function with these values (k,) at even angles."""
+    """Mean, and amplitudes and phases up to n = (k − 1)//2, of a function with values (k,) at equally spaced angles."""
     spectrum = np.fft.rfft(values)[: (len(values) + 1) // 2] / len(values)
     return float(spectrum[0].real), 2.0 * np.abs(spectrum[1:]), np.angle(spectrum[1:])
 
@@ -27,7 +27,7 @@ def largest(amplitudes: np.ndarray, phases: np.ndarray) -> float:
     """The largest value of the sum, to rounding.
 
     Between two angles a step w apart the sum is at most the larger of its values there plus max|f''| w²/8. Only steps
-    that could hold more than what is found are cut into finer ones; from these Newton's method climbs to the tops.
+    that could exceed the largest value found are cut into finer ones, from which Newton's method climbs to the maxima.
     """
     curvature = np.abs(amplitudes) @ np.arange(1, len(amplitudes) + 1) ** 2.0
     width = 2.0 * pi / (STEPS * max(1, len(amplitudes)))

@@ -1,4 +1,4 @@
-"""Outlines as tables for kernels: points by place along the outline, polar radii by direction, no trigonometry."""
+"""Tables of outlines for kernels: points by place along the outline, polar radii by direction, no trigonometry."""
 
 import numpy as np
 import taichi as ti
@@ -8,21 +8,21 @@ from solvers.grains.shapes.contour import Contour
 from solvers.machine.errors import BadOutline
 from solvers.machine.state import State
 
-ERROR = 1e-6  # of R0, the most that a table may be off
+ERROR = 1e-6  # of R0, the largest error of a table
 LEAST, MOST = 64, 4096  # cells
-BETWEEN = np.array([0.25, 0.5, 0.75])  # of a cell, where the error is looked at; it is largest near the middle
+BETWEEN = np.array([0.25, 0.5, 0.75])  # of a cell, where the error is sampled; it is largest near the middle
 TINY = 1e-30
-FLAT = 1e3  # of a grain's radius: a radius of curvature that need not be told from a larger one
+FLAT = 1e3  # of a grain's radius: upper bound of a radius of curvature
 
 
 @ti.data_oriented
 class Tables:
     """Cubic Hermite interpolants of the outlines of C classes, each cut into `cells`, a power of two.
 
-    Points lie evenly by polar angle: a place a on an outline is θ = 2π a/cells, whatever whole turns it has more. Polar
-    radii lie evenly by slope in each quadrant about an axis, as they are asked for by a point's coordinates. Both have
-    continuous first derivatives, and second ones within a cell. Lengths are those of the contours; a grain is similar
-    to its class, `scale` times as large. Raises BadOutline where an outline needs more than MOST cells.
+    Points are equally spaced by polar angle: a place a on an outline is θ = 2π a/cells, up to whole turns. Polar radii
+    are equally spaced by slope in each quadrant about an axis, since they are looked up by a point's coordinates. Both
+    have continuous first derivatives, and second ones within a cell. Lengths are those of the contours; a grain is
+    similar to its class, `scale` times as large. Raises BadOutline if an outline needs more than MOST cells.
     """
 
     def __init__(self, arrays: State, outlines: list[Contour]):
@@ -40,18 +40,18 @@ class Tables:
 
     @ti.func
     def wrapped(self, place):
-        """A place without its whole turns."""
+        """A place reduced to 0 ≤ a < `cells`, without whole turns."""
         return place - self.cells * ti.floor(place / self.cells)
 
     @ti.func
     def cell(self, place):
-        """The cell that a place is in, and how far in it."""
+        """The cell of a place, and the fraction within it."""
         whole = ti.floor(place)
         return ti.cast(whole, ti.i32) & (self.cells - 1), place - whole
 
     @ti.func
     def trace(self, shape, place):
-        """Point of an outline, and its first two derivatives by place: x, y, x', y', x'', y'' (m, each per cell)."""
+        """Point of an outline and its first two derivatives by place: x, y (m), x', y' (m/cell), x'', y'' (m/cell²)."""
         k, f = self.cell(place)
         x = ti.Vector([self.curve[shape, k, n] for n in ti.static(range(4))])
         y = ti.Vector([self.curve[shape, k, 4 + n] for n in ti.static(range(4))])
@@ -73,14 +73,14 @@ class Tables:
 
     @ti.func
     def curved(self, shape, x, y):
-        """Radius of curvature (m) of an outline in the direction of a point, at most FLAT of what it is for a disc.
+        """Radius of curvature (m) of an outline in the direction of a point, at most FLAT times the polar radius.
 
         (R² + R'²)^(3/2)/(R² + 2 R'² − R R'').
         """
         place, tilt = self.direction(x, y)
         k, f = self.cell(place)
         c, more = ti.Vector([self.radii[shape, k, n] for n in ti.static(range(4))]), 1.0 + tilt * tilt
-        # By the angle, of which the cells count the tangent.
+        # Derivatives by angle; the cells are equally spaced by its tangent.
         r, by_tilt = value(c, f), slope(c, f) * (self.cells / 8.0)
         dr, ddr = by_tilt * more, more * (bend(c, f) * (self.cells / 8.0) ** 2 * more + 2.0 * tilt * by_tilt)
         size = r * r + dr * dr
@@ -88,7 +88,7 @@ class Tables:
 
     @ti.func
     def direction(self, x, y):
-        """Where the direction of (x, y) stands among the cells, 0 to `cells`, and its slope about the nearest axis."""
+        """Place of the direction of (x, y) among the cells, 0 to `cells`, and its slope about the nearest axis."""
         steep = ti.abs(y) > ti.abs(x)
         along, across = ti.select(steep, y, x), ti.select(steep, -x, y)
         quadrant = ti.select(steep, 1.0, 0.0) + ti.select(along < 0.0, 2.0, 0.0)
@@ -98,31 +98,31 @@ class Tables:
 
 @ti.func
 def radius_of_curvature(cube, turns, size):
-    """The ratio of two numbers, with an absolute value of at most FLAT times a `size`."""
+    """The ratio cube/turns, with an absolute value of at most FLAT times `size`."""
     least = cube / (FLAT * size)
     return cube / ti.select(turns < 0.0, lesser(turns, -least), greater(turns, least))
 
 
 @ti.func
 def value(c, f):
-    """The cubic with coefficients c, from the constant up."""
+    """Value at f of the cubic with coefficients c, from the constant up."""
     return c[0] + f * (c[1] + f * (c[2] + f * c[3]))
 
 
 @ti.func
 def slope(c, f):
-    """Its first derivative."""
+    """First derivative of the cubic with coefficients c."""
     return c[1] + f * (2.0 * c[2] + f * (3.0 * c[3]))
 
 
 @ti.func
 def bend(c, f):
-    """Its second derivative."""
+    """Second derivative of the cubic with coefficients c."""
     return 2.0 * c[2] + f * (6.0 * c[3])
 
 
 def cells_for(outlines: list[Contour]) -> int:
-    """Cells, a power of two, with which all tables of these outlines are right to within ERROR."""
+    """Number of cells, a power of two, with which all tables of these outlines are within ERROR."""
     count = LEAST
     while max(table_error(outline, count) for outline in outlines) > ERROR:
         count *= 2
@@ -132,7 +132,7 @@ def cells_for(outlines: list[Contour]) -> int:
 
 
 def table_error(outline: Contour, count: int) -> float:
-    """Largest error of tables with so many cells, of a point or a polar radius, relative to R0."""
+    """Largest error, relative to R0, of a point or a polar radius in tables with `count` cells."""
     place = np.arange(count)[:, None] + BETWEEN
     powers = BETWEEN ** np.arange(4)[:, None]
     cells = curve_cells(outline, count)
@@ -144,7 +144,7 @@ def table_error(outline: Contour, count: int) -> float:
 
 
 def curve_cells(outline: Contour, count: int) -> np.ndarray:
-    """Coefficients (count, 8) of x and y in each cell, evenly by polar angle."""
+    """Coefficients (count, 8) of x and y in each cell, with cells equally spaced by polar angle."""
     angle = 2.0 * np.pi / count * np.arange(count + 1)
     turn = np.exp(1j * angle)
     points = outline.polar(angle) * turn
@@ -167,6 +167,6 @@ def angle_of(place: np.ndarray, count: int) -> np.ndarray:
 
 
 def _hermite(values: np.ndarray, slopes: np.ndarray) -> np.ndarray:
-    """Coefficients (n, 4) of the cubics with these values and slopes (n + 1,) at their ends, a cell's width being 1."""
+    """Coefficients (n, 4) of the cubics with values and slopes (n + 1,) at their ends, for cells of width 1."""
     a, b, p, q = values[:-1], values[1:], slopes[:-1], slopes[1:]
     return np.stack([a, p, 3.0 * (b - a) - 2.0 * p - q, 2.0 * (a - b) + p + q], axis=-1)

@@ -1,1 +1,1 @@
-"""Potential flow past a section: panels, the Green function of waves, radiation and what the water remembers."""
+"""Potential flow past a section: panels, the Green function of waves, radiation, diffraction and memory."""

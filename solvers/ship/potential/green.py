@@ -11,11 +11,11 @@ integral over a panel is a difference between its ends:
 
     ∫ Re f ds = Re (F(b) − F(a))/n,   ∫ ∂(Re f)/∂n ds = Im (f(b) − f(a)),   F′ = f.
 
-Water of finite depth h adds a part without singularity, found by asking ∂G/∂z = 0 at z = −h of each wave number μ:
+Water of finite depth h adds a regular part, which follows from ∂G/∂z = 0 at z = −h for each wave number μ:
 
     G_h − G = −4 ∫ S(z) S(ζ) cos μ(y−η) / {μ (μ−K) [(μ−K) − (μ+K) e^(−2μh)]} dμ,
 
-S(z) = (μ cosh μz + K sinh μz) e^(−μh), along a path below both poles, K and the wave number k.
+S(z) = (μ cosh μz + K sinh μz) e^(−μh), along a path below both poles, which are K and the wave number k.
 """
 
 from math import inf, pi
@@ -26,7 +26,7 @@ from scipy.special import exp1
 from solvers.ship.potential.panels import Panels
 from solvers.ship.water import Water
 
-ORDER = 16  # Gauss–Legendre points a piece of the path
+ORDER = 16  # Gauss–Legendre points per piece of the path
 DECAYED = 20.0  # the path ends where the integrand has fallen to e^−40
 
 
@@ -35,7 +35,7 @@ def panel_integrals(
 ) -> tuple[np.ndarray, np.ndarray]:
     """∫G ds and ∫∂G/∂n ds (m, n) of n panels at m points y + i z; n into the water at the panel, ω may be infinite.
 
-    Of a panel at its own middle the second is the principal value.
+    At a panel's own middle the second is the principal value.
     """
     number = frequency**2 / water.gravity
     single, double = _logarithm(points, panels)
@@ -56,7 +56,7 @@ def _logarithm(points: np.ndarray, panels: Panels) -> tuple[np.ndarray, np.ndarr
 
 
 def _surface(points: np.ndarray, panels: Panels, number: float) -> tuple[np.ndarray, np.ndarray]:
-    """The panel integrals of what the free surface adds in deep water."""
+    """The panel integrals of the free surface's part of G in deep water."""
     first, last = (1j * np.conj(points[:, None] - np.conj(node)) for node in (panels.start, panels.end))
     value_a, integral_a = _surface_functions(first, number)
     value_b, integral_b = _surface_functions(last, number)
@@ -67,14 +67,14 @@ def _surface(points: np.ndarray, panels: Panels, number: float) -> tuple[np.ndar
 
 
 def _surface_functions(c: np.ndarray, number: float):
-    """The two functions of c whose real parts are Re and Im of the surface's part of G, and their integrals over c."""
+    """Two functions of c, whose real parts are Re and Im of the surface's part of G, and their integrals over c."""
     log = np.log(-c)
     if number == inf:
         zero = np.zeros_like(c)
         return (-log, zero), (c - c * log, zero)
     wave = np.exp(number * c)
     upper = np.imag(c) >= 0.0
-    # E₁ has its cut where c is real: come to it from above on both sides.
+    # E₁ has its branch cut on real c: both sides are evaluated from above.
     principal = np.where(upper, c, np.conj(c)) + 0.0
     integral = wave * np.where(upper, 1.0, -1.0) * 1j * pi + wave * _with_cut(principal * number, upper)
     value = -log - 2.0 * integral
@@ -82,7 +82,7 @@ def _surface_functions(c: np.ndarray, number: float):
 
 
 def _with_cut(argument: np.ndarray, upper: np.ndarray) -> np.ndarray:
-    """E₁ of arguments in the upper half-plane, conjugated where they are not `upper`."""
+    """E₁ of arguments in the upper half-plane, conjugated where `upper` is false."""
     value = exp1(argument)
     return np.where(upper, value, np.conj(value))
 
@@ -93,7 +93,7 @@ def _x_log_x(x: np.ndarray) -> np.ndarray:
 
 
 def _bottom(points: np.ndarray, panels: Panels, number: float, frequency: float, water: Water):
-    """The panel integrals of what the bottom adds."""
+    """The panel integrals of the bottom's part of G in water of finite depth."""
     if water.depth == inf:
         return 0.0, 0.0
     depth = water.depth
@@ -112,11 +112,11 @@ def _bottom(points: np.ndarray, panels: Panels, number: float, frequency: float,
 
 
 def _path(number: float, wave_number: float, decay: float, depth: float, width: float):
-    """Places μ and weights of a path from 0 to where e^(−μ × decay) has died out, below the poles."""
+    """Quadrature points μ and weights of a path below the poles, from 0 to where e^(−μ × decay) is negligible."""
     finish, longest = 2.0 * DECAYED / decay, min(2.0 * pi / width, 2.0 / depth)
-    if not 0.0 < number < finish:  # no poles, or none that are felt
+    if not 0.0 < number < finish:  # no poles, or none within the path
         return _quadrature(0.0, finish, longest, longest)
-    # The dip leaves 0 at an angle: on the imaginary axis are the poles of the modes that do not travel.
+    # The path dips from 0 at an angle, since the poles of the evanescent modes lie on the imaginary axis.
     end = 2.0 * wave_number
     sink = min(0.25 * end, 0.5 * longest)
     real, share = _quadrature(0.0, end, 0.5 * number, 0.5 * longest)
@@ -127,7 +127,7 @@ def _path(number: float, wave_number: float, decay: float, depth: float, width: 
 
 
 def _quadrature(begin: float, end: float, first: float, longest: float) -> tuple[np.ndarray, np.ndarray]:
-    """Gauss–Legendre places and weights in pieces that double from a `first` one up to the `longest`."""
+    """Gauss–Legendre points and weights on pieces whose lengths double from `first` up to `longest`."""
     breaks, piece = [begin], first
     while breaks[-1] < end:
         breaks.append(min(end, breaks[-1] + min(piece, longest)))
@@ -139,7 +139,7 @@ def _quadrature(begin: float, end: float, first: float, longest: float) -> tuple
 
 
 def _spectrum(mu: np.ndarray, number: float, depth: float) -> np.ndarray:
-    """What stands before S(z) S(ζ) cos μ(y − η)."""
+    """The factor of S(z) S(ζ) cos μ(y − η) in the bottom's part of G."""
     gone = np.exp(-2.0 * mu * depth)
     if number == inf:  # of S/K
         return -4.0 / (mu * (1.0 + gone))

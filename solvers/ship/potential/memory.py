@@ -1,4 +1,4 @@
-"""What the water remembers of a hull's motion: retardation functions, and linear systems that stand for them.
+"""Radiation memory of a hull: retardation functions, and linear systems fitted to them.
 
 Cummins' (1962) equation: (M + A_∞) v̇ + ∫₀^∞ K(τ) v(t − τ) dτ + restoring = excitation. By Ogilvie (1964)
 
@@ -17,14 +17,14 @@ from solvers.ship.potential.radiation import Hydrodynamics
 TAIL_POWER = 3.0  # B falls as ω^−3 where a wall at the waterline makes waves (Havelock 1929)
 TAIL_REACH, TAIL_POINTS = 30.0, 400
 ITERATIONS = 30
-COUPLED = 1e-4  # of √(K_ii K_jj): less is a coupling that symmetry forbids
+COUPLED = 1e-4  # of √(K_ii K_jj): a weaker coupling counts as zero by symmetry
 MODES = 3
 
 
 def retardation(frequency: np.ndarray, damping: np.ndarray, time: np.ndarray) -> np.ndarray:
     """K (t, 3, 3) at times (t,) s from B (n, 3, 3) at rising frequencies (n,) rad/s (Ogilvie 1964).
 
-    B is taken as 0 at ω = 0, as linear between the table's points (Filon's quadrature) and as falling with ω^−3 beyond.
+    B is taken as 0 at ω = 0, linear between the table's points (Filon's quadrature) and falling as ω^−3 beyond them.
     """
     beyond = frequency[-1] * np.geomspace(1.0, TAIL_REACH, TAIL_POINTS)[1:]
     tail = damping[-1] * (frequency[-1] / beyond[:, None, None]) ** TAIL_POWER
@@ -45,12 +45,12 @@ def _sinc(x: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True, eq=False)
 class Memory:
-    """A linear system that stands for the retardation: ẋ = `matrix` x + `entry` v, memory force = −`exit` x.
+    """A linear system that approximates the retardation: ẋ = `matrix` x + `entry` v, memory force = −`exit` x.
 
-    `matrix` (s, s) 1/s, stable; `entry` (s, 3); `exit` (3, s), in the units of K; v the velocities of sway, heave,
-    roll. `order` (3,) states a mode; `error` (3, 3) the rms error of K̂ over the table, relative to the rms of
-    √(K̂_ii K̂_jj); `least_damping` the lowest eigenvalue of the damping matrix over the table's range and beyond,
-    relative to its largest (each mode scaled): a negative one says how much energy the system could make at worst.
+    `matrix` (s, s) 1/s is stable; `entry` is (s, 3), `exit` (3, s) in the units of K; v are the velocities of sway,
+    heave and roll. `order` (3,) is the number of states per mode, `error` (3, 3) the rms error of K̂ over the table,
+    relative to the rms of √(K̂_ii K̂_jj). `least_damping` is the lowest eigenvalue of the damping matrix over the
+    table's range and beyond, relative to its largest (each mode scaled); below zero the system can supply energy.
     """
 
     matrix: np.ndarray
@@ -75,11 +75,11 @@ class Memory:
 
 
 def fit_memory(table: Hydrodynamics, order: int, deep: bool = True) -> Memory:
-    """The system of `order` states a mode that is nearest to a table's memory, by least squares.
+    """Fit a system of `order` states per mode to a table's retardation, by least squares.
 
-    Vector fitting (Gustavsen and Semlyen 1999): modes that act on each other share their poles, which are kept stable;
-    the residues are symmetric and in `deep` water such that K̂(0) = 0, for a steady motion makes no waves there. In
-    water of finite depth h a slow heave of breadth b does: it pushes long waves away, K̂(0) = ρ b² √(g h)/2h.
+    Vector fitting (Gustavsen and Semlyen 1999): coupled modes share their poles, which are kept stable. The residues
+    are symmetric. In `deep` water they give K̂(0) = 0, since a steady motion makes no waves there. In water of finite
+    depth h a slow heave of breadth b does: it radiates long waves, K̂(0) = ρ b² √(g h)/2h.
     """
     transfer = table.damping + 1j * table.frequency[:, None, None] * (table.added_mass - table.infinite_added_mass)
     transfer = 0.5 * (transfer + transfer.transpose(0, 2, 1))
@@ -106,7 +106,7 @@ def fit_memory(table: Hydrodynamics, order: int, deep: bool = True) -> Memory:
 
 
 def _coupled(linked: np.ndarray) -> list[list[int]]:
-    """Groups of modes that act on each other, directly or through another."""
+    """Groups of modes that are coupled, directly or through another mode."""
     from scipy.sparse.csgraph import connected_components
 
     count, label = connected_components(linked, directed=False)
@@ -135,7 +135,7 @@ def _poles(frequency: np.ndarray, wanted: np.ndarray, order: int) -> np.ndarray:
 
 
 def _residues(frequency: np.ndarray, wanted: np.ndarray, poles: np.ndarray, deep: bool) -> np.ndarray:
-    """Real residues (f, order) in the basis of the poles, of least squares; in deep water of no force at ω = 0."""
+    """Real residues (f, order) in the basis of the poles, by least squares; in deep water with no force at ω = 0."""
     from scipy.linalg import null_space
 
     free = null_space(_basis(np.zeros(1), poles).real) if deep else np.eye(len(poles))
@@ -144,7 +144,7 @@ def _residues(frequency: np.ndarray, wanted: np.ndarray, poles: np.ndarray, deep
 
 
 def _real_system(poles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Real matrix (order, order) and input (order,) with these poles; a pair α ± iβ is [[α, β], [−β, α]], [2, 0]."""
+    """Real matrix (order, order) and input (order,) with given poles; a pair α ± iβ is [[α, β], [−β, α]], [2, 0]."""
     order = len(poles)
     block, drive = np.diag(poles.real), np.ones(order)
     for k in range(order - 1):
@@ -161,7 +161,7 @@ def _basis(frequency: np.ndarray, poles: np.ndarray) -> np.ndarray:
 
 
 def _ordered(poles: np.ndarray) -> np.ndarray:
-    """Poles flipped into the left half-plane, pairs side by side with the upper first, then the real ones."""
+    """Poles flipped into the left half-plane: first the pairs, each with its upper pole first, then the real ones."""
     poles = -np.abs(poles.real) + 1j * poles.imag
     upper = poles[poles.imag > 0.0]
     pairs = np.column_stack([upper, upper.conj()]).ravel()

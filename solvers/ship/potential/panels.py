@@ -8,13 +8,13 @@ import numpy as np
 from solvers.machine.errors import Unavailable
 from solvers.ship.section import Section
 
-INTERIOR = 0.15  # points on the interior waterline for each panel
+INTERIOR = 0.15  # points on the interior waterline per panel
 LEAST_INTERIOR = 8
 
 
 @dataclass(frozen=True, eq=False)
 class Panels:
-    """Panels from `start` to `end` (n,), complex y + i z in m, the water to their right."""
+    """Panels from `start` to `end` (n,), complex y + i z in m, with the water to their right."""
 
     start: np.ndarray
     end: np.ndarray
@@ -41,10 +41,10 @@ class Panels:
 
 
 def wet_panels(section: Section, heave: float, roll: float, count: int) -> Panels:
-    """About `count` panels on what is under calm water, shared out by length, at least one an edge.
+    """About `count` panels on the outline below calm water, distributed by length, with at least one per edge.
 
-    Each edge's are spaced by the cosine, closest at its ends, where the flow is singular at a sharp corner. Raises
-    `Unavailable` where the hull is dry.
+    On each edge they have cosine spacing, densest at its ends, since the flow is singular at a sharp corner. Raises
+    `Unavailable` if the hull is dry.
     """
     edges = section.wet_edges(heave, roll)
     if not len(edges):
@@ -64,7 +64,7 @@ def interior_points(section: Section, heave: float, roll: float, panels: int) ->
     """Points (m,) y + 0i inside the hull on the calm waterline, denser towards its ends."""
     lines = section.waterlines(heave, roll)[:, :, 0]
     count = max(LEAST_INTERIOR, round(INTERIOR * panels))
-    # Gauss–Legendre places: no common spacing with the standing waves inside the hull.
+    # Gauss–Legendre points: their spacing matches no standing wave inside the hull.
     places = np.polynomial.legendre.leggauss(count)[0]
     points = [0.5 * (a + b) + 0.5 * (b - a) * places for a, b in lines]
     return np.concatenate([*points, np.empty(0)]).astype(complex)

@@ -3,11 +3,11 @@
 Green's third identity on the wetted outline with the wave Green function: π φ + ∫ φ ∂G/∂n ds = ∫ G v_n ds, n into the
 water, panels of constant potential, collocation at their middles (the potential-based relative of the close-fit source
 method of Frank 1967: the unknown stays finite at a sharp bilge). It has spurious solutions at the frequencies of
-standing waves inside the hull (John 1950). Inside, the same integrals vanish; asking for it at points of the interior
-waterline, by least squares, removes them (Ohmatsu 1983).
+standing waves inside the hull (John 1950). Inside, the same integrals vanish; requiring this at points of the interior
+waterline, by least squares, removes the spurious solutions (Ohmatsu 1983).
 
-All oscillates as Re (… e^(−iωt)); waves of elevation Re a e^(i(ky−ωt)) travel to starboard (+y) and have their phase at
-the y of the hull's origin. Modes are sway, heave, roll, roll about a fixed point of the hull.
+All quantities oscillate as Re (… e^(−iωt)). Waves of elevation Re a e^(i(ky−ωt)) travel to starboard (+y); their phase
+is taken at the y of the hull's origin. Modes are sway, heave and roll; roll is about a fixed point of the hull.
 """
 
 from collections.abc import Sequence
@@ -33,9 +33,9 @@ class Hydrodynamics:
     """Coefficients over angular frequencies (n,) rad/s in sway, heave, roll.
 
     `added_mass` and `damping` (n, 3, 3): the water's force on motion v is −A v̇ − B v (kg/m, kg, kg m; and those per s).
-    `excitation` (n, 3), complex, force and moment per metre of wave amplitude on the hull held still, from the pressure
-    of incident and scattered waves; `froude_krylov` the incident waves' share; `haskind` the same as `excitation` by
-    the relation of Haskind (1957) from the radiated waves. `infinite_added_mass` (3, 3) is the limit for ω → ∞.
+    `excitation` (n, 3), complex, is the force and moment per metre of wave amplitude on the fixed hull, from the
+    pressure of incident and scattered waves; `froude_krylov` is the incident waves' part; `haskind` is `excitation`
+    from the radiated waves by Haskind's (1957) relation. `infinite_added_mass` (3, 3) is the limit for ω → ∞.
     """
 
     frequency: np.ndarray
@@ -68,9 +68,9 @@ def hydrodynamics(
     about: tuple[float, float] = (0.0, 0.0),
     count: int = PANELS,
 ) -> Hydrodynamics:
-    """Coefficients of a hull that rests at a heave (m) and roll (rad), about a point of its own frame.
+    """Coefficients of a hull at a mean heave (m) and roll (rad), about a point of its own frame.
 
-    `count` panels; errors fall about as its square. Raises `Unavailable` where frequencies or depth are out of range.
+    With `count` panels errors fall about as count⁻². Raises `Unavailable` if frequencies or depth are out of range.
     """
     frequency = np.asarray(frequency, dtype=float)
     panels = wet_panels(section, heave, roll, count)
@@ -83,13 +83,13 @@ def hydrodynamics(
 
 
 class _Body:
-    """Panels and what does not change with the frequency."""
+    """The panels and everything that does not depend on the frequency."""
 
     def __init__(self, panels: Panels, inside: np.ndarray, about: complex, water: Water):
         self.panels, self.water = panels, water
         self.points = np.concatenate([panels.middle, inside])
         n, arm = panels.normal, panels.middle - about
-        # Normal velocities of unit motion in each mode; that of roll is the moment of the normal.
+        # Normal velocities of unit motion in each mode; for roll it is the moment of the normal.
         self.modes = np.stack([n.real, n.imag, arm.real * n.imag - arm.imag * n.real], axis=-1)
         self.weights = self.modes * panels.length[:, None]
 
@@ -114,13 +114,13 @@ class _Body:
         )
 
     def infinite_added_mass(self) -> np.ndarray:
-        """Added mass (3, 3) where the surface is one of constant pressure, φ = 0."""
+        """Added mass (3, 3) for ω → ∞, with the surface condition φ = 0."""
         single, matrix = self._equations(inf)
         potential = _least_squares(matrix, single @ self.modes)
         return (-self.water.density * self.weights.T @ potential).real
 
     def _equations(self, omega: float):
-        """∫G ds and the matrix of the potentials, a row for each panel and for each point inside."""
+        """∫G ds and the matrix of the potentials, with a row for each panel and each interior point."""
         single, matrix = panel_integrals(self.points, self.panels, omega, self.water)
         matrix = matrix.astype(complex)
         matrix[np.diag_indices(len(self.panels.length))] += np.pi
@@ -141,13 +141,13 @@ class _Body:
 
 
 def _least_squares(matrix: np.ndarray, right: np.ndarray) -> np.ndarray:
-    """By the normal equations: those of the second kind are so well conditioned that squaring them costs no digits."""
+    """Least squares by the normal equations; equations of the second kind are well enough conditioned for it."""
     adjoint = matrix.conj().T
     return np.linalg.solve(adjoint @ matrix, adjoint @ right)
 
 
 def _check(panels: Panels, frequency: np.ndarray, water: Water) -> None:
-    """One sentence where frequencies or depth are out of range."""
+    """Raise `Unavailable`, one sentence, if frequencies or depth are out of range."""
     draught = -panels.start.imag.min()
     if not (frequency > 0.0).all() or not np.isfinite(frequency).all():
         raise Unavailable("frequencies must be above zero and finite.")

@@ -1,8 +1,8 @@
 """Schedules: in what order, and on how many threads, the grains are moved. All use the same physics functions.
 
-- per-world: each world's whole time loop on one thread, worlds in parallel; the fastest for small worlds and many.
-- per-band: a world cut into bands, one thread a band, that wait for each other twice a step; for a large world.
-- per-grain: every grain on its own, a launch a step; for graphics processors.
+- per-world: each world's whole time loop on one thread, worlds in parallel; fastest for many small worlds.
+- per-band: a world cut into bands, one thread per band, with a barrier after each phase; for a large world.
+- per-grain: all grains in parallel, with kernel launches for every step; for graphics processors.
 """
 
 from solvers.machine.errors import Unavailable
@@ -12,15 +12,15 @@ from solvers.time.schedules.per_world import PerWorld
 
 SCHEDULES = {"per-world": PerWorld, "per-band": PerBand, "per-grain": PerGrain}
 
-# Grains a world from which bands on two threads beat the whole on one (measured, README "Speed").
+# Grains per world from which bands on two threads are faster than one thread (measured, README "Speed").
 WORTH_BANDS = 2000
 
 
 def choose_schedule(wanted: str, arch: str, worlds: int, grains: int, threads: int, answering: bool = False) -> str:
-    """What "auto" stands for: on a graphics processor per-grain; on the CPU bands for few large worlds.
+    """The schedule to use: for "auto" per-grain on a graphics processor, per-band for few large worlds on the CPU.
 
-    A carrier that is `answering` follows from the load of a whole world at every step, as a ship does. Raises
-    Unavailable for it on per-grain schedules.
+    An `answering` carrier, such as a ship, responds to the load of its whole world at every step. Raises Unavailable
+    for it with the per-grain schedule.
     """
     if answering:
         if wanted == "per-grain" or arch != "cpu":
@@ -34,7 +34,7 @@ def choose_schedule(wanted: str, arch: str, worlds: int, grains: int, threads: i
 
 
 def units_a_world(schedule: str, worlds: int, grains: int, threads: int) -> int:
-    """Into how many units a world of so many grains is cut."""
+    """Number of units into which a world of `grains` is cut."""
     if schedule == "per-grain":
         return grains
     return max(1, min(threads // worlds, grains // 2)) if schedule == "per-band" else 1

@@ -1,4 +1,4 @@
-"""The per-band schedule: the bands of a world on threads of their own, kept in step by a barrier."""
+"""The per-band schedule: one thread per band of a world, synchronised by a barrier."""
 
 import taichi as ti
 
@@ -8,17 +8,17 @@ from solvers.time.clock import Clock
 from solvers.time.sequence import Sequence
 from solvers.time.watch import NO_ROOM, OVER, RUNNING, TOO_FAST
 
-FINE, ASKED, STALE, ENDED, FAST, FULL = range(6)  # what a band says of itself, the worst last
+FINE, ASKED, STALE, ENDED, FAST, FULL = range(6)  # status of a band, the most severe last
 
 
 @ti.data_oriented
 class PerBand:
     """Advances worlds of several bands; each band's whole time loop is one task of the thread pool.
 
-    Bands meet after each phase, and after the last they agree on making the lists anew. They wait by spinning, since a
-    wake-up takes longer than a step. What acts on whole worlds the first band does alone. With fewer threads than bands
-    one thread does them in turn. The bits depend on the numbers of bands and of threads, for which the compiler rounds
-    differently here and there.
+    The bands meet at a barrier after each phase; after the last one they agree on whether to rebuild the lists. They
+    wait by spinning, since waking a thread takes longer than a step. The first band alone runs the phases that act on
+    whole worlds. With fewer threads than bands, one thread runs the bands in turn. The bits depend on the numbers of
+    bands and threads, since the compiler then rounds differently in places.
     """
 
     def __init__(self, sequence: Sequence, clock: Clock, threads: int):
@@ -51,7 +51,7 @@ class PerBand:
 
     @ti.func
     def advance_band(self, u, target, origin, base):
-        """As PerWorld does it; the bands of a world are at the same line wherever they meet."""
+        """The time loop of one band, as in PerWorld; all bands of a world pass the same barriers in the same order."""
         w = self.clock.world(u)
         done, running = self.clock.step[w], self.clock.status[w] == RUNNING
         before, stride = self.clock.before[w], self.stride_of(w)
@@ -98,7 +98,7 @@ class PerBand:
 
     @ti.func
     def advance_world(self, w, target, origin, base):
-        """The same on one thread, band after band."""
+        """The time loop of a world on one thread, band after band."""
         start, stride = w * self.bands, self.stride_of(w)
         while self.clock.step[w] < target and self.clock.status[w] == RUNNING:
             due = target - self.clock.step[w]
@@ -133,7 +133,7 @@ class PerBand:
 
     @ti.func
     def begin(self, k: ti.template(), u, t, kick, dt):
-        """A band's part in a phase before the particles move."""
+        """A band's part of phase k of `before`."""
         if ti.static(self.before[k].of_worlds):
             if u % self.bands == 0:
                 self.before[k].act(u // self.bands, t, kick, dt)
@@ -142,7 +142,7 @@ class PerBand:
 
     @ti.func
     def end(self, k: ti.template(), u, t, kick, dt):
-        """A band's part in a phase in which they move; returns whether all is sound."""
+        """A band's part of phase k of `after`, in which the particles move; returns whether their state is sound."""
         sound = True
         if ti.static(self.after[k].of_worlds):
             if u % self.bands == 0:
@@ -153,12 +153,12 @@ class PerBand:
 
     @ti.func
     def act_on(self, k: ti.template(), u, w, t, kick, dt):
-        """A phase in which they move, of a unit or of a world."""
+        """Run phase k of `after` on unit or world u of world w; returns whether the state is sound."""
         return self.after[k].act(u, self.carrier.frame(w, t), kick, dt)
 
     @ti.func
     def stride_of(self, w):
-        """Base steps that a world's steps take now."""
+        """Present stride of a world, in base steps."""
         stride = 1
         if ti.static(self.sequence.paced):
             stride = self.clock.stride[w]
@@ -166,9 +166,9 @@ class PerBand:
 
     @ti.func
     def freshness(self, u, t, stride, due):
-        """Whether a band's lists are FINE for a step at time t (s), or some or all entries are to be sought anew.
+        """State of a band's lists for a step at time t (s): FINE, some entries to be sought (ASKED), or STALE.
 
-        All are where a step of `stride` base steps would overshoot, with `due` of them to go.
+        They also count as STALE if a step of `stride` base steps would overshoot the `due` ones to go.
         """
         says = FINE
         if self.sequence.asked(u):
@@ -182,7 +182,7 @@ class PerBand:
 
     @ti.func
     def worst(self, w):
-        """The worst that a band of this world says."""
+        """The most severe status of a world's bands."""
         worst = FINE
         for u in range(w * self.bands, (w + 1) * self.bands):
             worst = ti.max(worst, self.clock.says[u])
@@ -190,7 +190,7 @@ class PerBand:
 
     @ti.func
     def meet(self, w, meetings):
-        """Wait until all bands of the world are here; returns how often they have met."""
+        """Barrier: wait until all bands of the world are here; returns how often they have met."""
         ti.atomic_add(self.clock.arrived[w], 1)
         here = 0
         while here < (meetings + 1) * self.bands:

@@ -1,4 +1,4 @@
-"""The per-grain schedule: all particles of all worlds in parallel, a launch a step."""
+"""The per-grain schedule: all particles of all worlds in parallel, with kernel launches for every step."""
 
 import numpy as np
 import taichi as ti
@@ -7,29 +7,29 @@ from solvers.time.clock import Clock
 from solvers.time.sequence import Sequence
 from solvers.time.watch import NO_ROOM, RUNNING, TOO_FAST
 
-# Until the next look no particle is expected to be faster than this times the fastest now, and than what this many
-# times the frame's acceleration, and this one of the contacts' own (m/s²), add.
+# Assumed until the next check: speeds of at most HASTE times the highest now, growing with HASTE times the frame's
+# acceleration plus RUSH (m/s²) for contacts.
 HASTE, RUSH = 2.0, 50.0
-GLIMPSES = 4  # of the frame's acceleration, between one look and the last time the next can be
+GLIMPSES = 4  # samples of the frame's acceleration from one check to the latest time of the next
 
 
 @ti.data_oriented
 class PerGrain:
-    """Advances all worlds together. Each side of a contact works out its own force, so nothing is summed by atomics.
+    """Advances all worlds together. Each side of a contact computes its own force, so nothing is summed by atomics.
 
-    Reading from a graphics processor takes as long as several steps. So particles are looked at only as often as the
-    fastest of them (see HASTE, RUSH) could have used up half the lists' skin.
+    Reading from a graphics processor takes as long as several steps. So speeds and displacements are checked only when
+    the fastest particle (see HASTE, RUSH) could have used up half of the Verlet lists' skin.
     """
 
     def __init__(self, sequence: Sequence, clock: Clock, threads: int):
         self.sequence, self.carrier, self.clock = sequence, sequence.carrier, clock
         self.matters, self.before, self.after = sequence.matters, sequence.before, sequence.after
         self.real, self.worlds = clock.real, clock.worlds
-        self.extent = max(matter.extent for matter in self.matters)  # m, from the origin
-        self.nearing = max(matter.nearing for matter in self.matters)  # m/s, of parts
+        self.extent = max(matter.extent for matter in self.matters)  # m, largest distance from the origin
+        self.nearing = max(matter.nearing for matter in self.matters)  # m/s, what moving parts add to closing speeds
 
     def advance(self, target: int, origin: float, base: float) -> None:
-        """Take every running world to base step `target`; see PerWorld. All take steps of one length."""
+        """Take every running world to base step `target`; see PerWorld. All worlds have the same step length."""
         running = self.clock.running()
         if not running.any():
             return
@@ -52,24 +52,24 @@ class PerGrain:
             self.reach(done, before)
 
     def choose_stride(self, due: int) -> int:
-        """Base steps of the steps to come, `due` at most."""
+        """Stride of the next steps of all running worlds, in base steps, at most `due`."""
         if self.sequence.paced:
             self.set_strides(due)
         return int(self.clock.stride.to_numpy()[self.clock.running()].min())
 
     @ti.kernel
     def set_strides(self, due: ti.i32):
-        """How many base steps each world may take at a time."""
+        """Set the stride that each world allows, at most `due`."""
         for w in range(self.worlds):
             self.clock.stride[w] = self.sequence.stride(w, due)
 
     def may_go_on(self) -> bool:
-        """Whether some worlds run and none has been stopped by the watch."""
+        """Whether some worlds are running and no state check has stopped one."""
         status = self.clock.status.to_numpy()
         return bool(np.any(status == RUNNING)) and not np.any((status == NO_ROOM) | (status == TOO_FAST))
 
     def safe_steps(self, half_skin: float, time: float, step: float) -> int:
-        """Steps in which no particle can come into reach of another unlisted."""
+        """Number of steps in which no two unlisted particles can come within reach of each other."""
         self.look(time, np.sqrt(2.0 * half_skin / RUSH), step)
         running = self.clock.running()
         if not running.any():
@@ -83,13 +83,13 @@ class PerGrain:
 
     @ti.kernel
     def look(self, time: ti.f64, ahead: ti.f64, step: ti.f64):
-        """Find the highest speed and the longest way in every world, and how the frame will push until `ahead` (s)."""
+        """Find each world's highest speed, largest displacement and, for `ahead` (s) to come, frame acceleration."""
         for w in range(self.worlds):
             self.clock.fastest[w], self.clock.farthest[w], self.clock.pushed[w] = 0.0, 0.0, 0.0
             for k in range(GLIMPSES):
                 body = self.carrier.frame(w, time + ahead * k / (GLIMPSES - 1))
                 push = ti.sqrt(body[0] * body[0] + body[1] * body[1])
-                # What turns a particle's way only (Coriolis) makes it no faster.
+                # The Coriolis acceleration turns a velocity but does not change the speed.
                 push += (ti.abs(body[3]) + body[2] * body[2]) * self.extent
                 self.clock.pushed[w] = ti.max(self.clock.pushed[w], push)
         for k in ti.static(range(len(self.matters))):
@@ -104,7 +104,7 @@ class PerGrain:
 
     @ti.kernel
     def make_lists(self, time: ti.f64, step: ti.f64):
-        """Make all lists anew."""
+        """Rebuild all lists."""
         for k in ti.static(range(len(self.matters))):
             for u in range(self.matters[k].units.count):
                 w = self.matters[k].units.world(u)
@@ -114,7 +114,7 @@ class PerGrain:
 
     @ti.kernel
     def take_step(self, time: ti.f64, kick: ti.f64, step: ti.f64):
-        """One step of every running world."""
+        """Take one step in every running world."""
         for k in ti.static(range(len(self.before))):
             if ti.static(self.before[k].of_worlds):
                 for w in range(self.worlds):
@@ -137,7 +137,7 @@ class PerGrain:
 
     @ti.kernel
     def reach(self, step: ti.i32, before: ti.i32):
-        """All running worlds have come to this base step, by steps of `before` of them."""
+        """Note that all running worlds have reached base step `step` with steps of `before` base steps."""
         for w in range(self.worlds):
             if self.clock.status[w] == RUNNING:
                 self.clock.step[w], self.clock.before[w] = step, before

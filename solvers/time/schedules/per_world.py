@@ -1,4 +1,4 @@
-"""The per-world schedule: one fused kernel, a serial time loop in each world, worlds in parallel on the cores."""
+"""The per-world schedule: one fused kernel with a serial time loop per world, worlds in parallel on the cores."""
 
 import taichi as ti
 
@@ -10,7 +10,7 @@ from solvers.time.watch import NO_ROOM, OVER, RUNNING, TOO_FAST
 
 @ti.data_oriented
 class PerWorld:
-    """Advances all worlds. What a world does depends on nothing but itself: the same bits on any number of threads."""
+    """Advances all worlds. A world's result depends on that world only: same bits on any number of threads."""
 
     def __init__(self, sequence: Sequence, clock: Clock, threads: int):
         self.sequence, self.carrier, self.clock = sequence, sequence.carrier, clock
@@ -26,9 +26,9 @@ class PerWorld:
 
     @ti.func
     def advance_world(self, world, target, origin, base):
-        """Make the lists where they are stale, then take steps for as long as they last.
+        """Rebuild the lists if they are stale, then take steps for as long as they are valid.
 
-        The steps are a loop of their own: the compiler keeps at hand what they work with, and not what the lists need.
+        The steps are an inner loop of their own, so that the compiler keeps their data in registers, not the lists'.
         """
         w, stride = self.clock.world(world), 1
         while self.clock.step[w] < target and self.clock.status[w] == RUNNING:
@@ -60,7 +60,7 @@ class PerWorld:
 
     @ti.func
     def take_step(self, w, t, kick, dt):
-        """One step of a world, which is its only unit; returns whether all is sound."""
+        """Take one step in a world, which is a single unit; returns whether its state is sound."""
         for k in ti.static(range(len(self.before))):
             self.before[k].act(w, t, kick, dt)
         frame, sound = self.carrier.frame(w, t), True

@@ -1,1 +1,1 @@
-"""Rules of contact for outlines: which contacts two of them have, and how deep they overlap."""
+"""Contact rules for outlines: which contacts two outlines have, and their overlaps."""

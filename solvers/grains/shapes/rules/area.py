@@ -1,4 +1,4 @@
-"""The rule of shared areas: the contact force is the gradient of an energy of the area that two outlines share."""
+"""The shared-area rule: the contact force is the gradient of an energy of the area that two outlines share."""
 
 from math import sqrt
 
@@ -17,20 +17,20 @@ from solvers.machine.state import State
 from solvers.machine.units import Units
 from solvers.tank.walls import Walls
 
-WINDOW = 1.0 / 32.0  # of the smaller grain's radius
+WINDOW = 1.0 / 32.0  # of the smaller grain's radius: distance within which edges are evaluated
 
 
 @ti.data_oriented
 class Area(Single):
     """One contact of two grains, or of a grain and a wall, by the area A that they share (Feng and Owen 2004).
 
-    Its overlap is that of discs which share as much, ξ = (3 A/(4 √(2 R)))^⅔ with R = R_i R_j/(R_i + R_j), so that the
-    laws' elastic energy is one of A alone. The normal is −∂ξ/∂x: of length 1 between discs, longer between flat sides
-    and shorter at tips. Forces, rates and slip all have that factor, so that the power of each is right. Where outlines
-    meet in several places these push together, and rub at a point on the line of their joint force.
+    Its overlap is that of discs with the same shared area, ξ = (3 A/(4 √(2 R)))^⅔ with R = R_i R_j/(R_i + R_j), so that
+    the laws' elastic energy depends on A only. The normal is −∂ξ/∂x: of length 1 between discs, longer between flat
+    sides and shorter at tips. Forces, rates and slip all have that factor, so that the power of each is right. If
+    outlines overlap in several places, there is one resultant force, and friction acts at a point on its line.
 
-    Only edges within a `window` (m) of the other body are looked at, until the two have moved by that much since these
-    were chosen, from where they lay then.
+    Only edges within a `window` (m) of the other body are evaluated. They are chosen anew when the two have moved
+    relative to each other by that much.
     """
 
     wall_memory = ("window", "edge_first", "edges", "from_y", "from_z", "from_far")
@@ -44,9 +44,9 @@ class Area(Single):
 
     @ti.func
     def pair(self, g: ti.template(), pairs: ti.template(), w, i, j, u, p, moves: ti.template()):
-        """The contact of grains i and j: overlap (m), normal towards i, point from i's centre (m), 1.0: it holds.
+        """The contact of grains i and j: overlap (m), normal towards i, point from i's centre (m), 1 (it holds).
 
-        Where they share nothing the overlap is at most 0: no gap is smaller.
+        If they share no area, the overlap is zero or negative: minus a lower bound of the gap.
         """
         one, two, apart = g.outline(w, i), g.outline(w, j), g.apart(w, i, j)
         between, centre = turned_back(two.turn, one.turn), turned_back(two.turn, apart)
@@ -75,7 +75,7 @@ class Area(Single):
     def wall(
         self, g: ti.template(), contacts: ti.template(), w, i, feature, shift: ti.template(), u, p, moves: ti.template()
     ):
-        """The contact of a grain with a wall, as `pair`; it does not count where it is another feature's."""
+        """The contact of a grain with a wall, in the form of `pair`; no overlap if it belongs to another feature."""
         contact = ti.Vector([0.0 * g.radius[w, i], 0.0, 0.0, 0.0, 0.0, 1.0])
         if feature < self.walls.walls.segments:
             face = self.walls.facing(feature, shift, g.y[w, i], g.z[w, i])
@@ -106,14 +106,14 @@ class Area(Single):
 
 @ti.func
 def contact_of(total, radius, turn):
-    """The contact at what is shared, in a frame that is turned so far, by bodies of an effective radius (m)."""
+    """The contact from a shared area `total`, in a frame rotated by `turn`, with an effective radius (m)."""
     contact = ti.Vector([0.0 * radius, 0.0, 0.0, 0.0, 0.0, 1.0])
     push, area = ti.Vector([total[PUSH_X], total[PUSH_Y]]), total[AREA]
     width = push.norm()
     if area > 0.0 and width > TINY:
         overlap = (area / (ti.static(4.0 * sqrt(2.0) / 3.0) * ti.sqrt(radius))) ** ti.static(2.0 / 3.0)
         normal, along = (-2.0 / 3.0) * overlap / area * push, push / width
-        # On the line of the force that has this moment, in the middle of what is shared as seen along the force.
+        # A point on the line of the force with this moment, in the middle of the shared area along the force.
         across = (total[XY] - total[YX]) / width
         depth = along[0] * along[0] * total[XX] + along[1] * along[1] * total[YY]
         depth += along[0] * along[1] * (total[XY] + total[YX])

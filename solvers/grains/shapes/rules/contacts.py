@@ -1,4 +1,4 @@
-"""Contact forces of grains with outlines: the laws of the scene on what a rule of contact says."""
+"""Contact forces of grains with outlines: the scene's laws applied to the contacts of a rule."""
 
 import taichi as ti
 
@@ -10,14 +10,14 @@ from solvers.grains.shapes.rules.rest import HOLDS, NORMAL_Y, NORMAL_Z, OVERLAP,
 
 @ti.data_oriented
 class ShapedContacts(Contacts):
-    """What the listed contacts do to grains with outlines.
+    """Forces of the listed contacts on grains with outlines.
 
-    The force acts at one point on both grains, so angular momentum is exact: between their outlines, where it is for
-    discs, too (see `Contacts`). Slip and rate are of that point. The laws' effective radius is that of the discs of
-    equal area, so that the elastic energy depends on the overlap alone. Where a rule knows saddles, a contact's normal
-    force is less by what the law says of the saddle's overlap (`Tracked`); what is left is what friction has.
-    A law that remembers, the hysteretic one, takes what it knows of the contact for its saddle, too: where two contacts
-    become one its force may jump.
+    The force acts on both grains at one point between their outlines, as for discs (see `Contacts`), so angular
+    momentum is conserved exactly. Slip and closing speed are those at that point. The laws' effective radius is that of
+    the discs of equal area, so that the elastic energy depends on the overlap only. If a rule has saddles, the force of
+    the normal law at the saddle's overlap is subtracted from a contact's normal force (`Tracked`), and friction uses
+    the difference. The hysteretic law has memory and uses the contact's memory for its saddle, too, so its force may
+    jump when two contacts merge.
     """
 
     def __init__(self, arrays, units, grains, walls, lists, laws, load, rule):
@@ -26,7 +26,7 @@ class ShapedContacts(Contacts):
 
     @ti.func
     def pair_forces(self, g: ti.template(), pairs: ti.template(), u, dt):
-        """Forces between the grains g, a block of contacts at a time; one across two units is worked out in both."""
+        """Forces between the grains g, a block of contacts at a time; those across two units are computed in both."""
         load = self.nothing()
         for block in range(pairs.blocks(u)):
             i, j = self.in_order(pairs, u, block)
@@ -39,7 +39,7 @@ class ShapedContacts(Contacts):
 
     @ti.func
     def in_order(self, pairs: ti.template(), u, block):
-        """The two grains of each contact, that with the lower number first."""
+        """The two grains of each contact, the lower number first."""
         listed, mate = pairs.grain[u, block], pairs.mate[u, block]
         i, j = listed, mate
         if ti.static(not self.units.whole):
@@ -48,7 +48,7 @@ class ShapedContacts(Contacts):
 
     @ti.func
     def idle(self, g: ti.template(), pairs: ti.template(), i, j, u, p):
-        """Whether there is nothing to do for a block of one contact; larger ones are not passed over."""
+        """Whether a block of a single contact can be skipped; larger blocks never are."""
         nothing = False
         if ti.static(pairs.lanes == 1):
             nothing = self.rule.is_lost(pairs, u, p) or self.rest.is_open(g, pairs, i, j, u, p)
@@ -56,7 +56,7 @@ class ShapedContacts(Contacts):
 
     @ti.func
     def ask(self, g: ti.template(), pairs: ti.template(), u, block, dt):
-        """Have the rule say what those contacts of a block are now that have come too far."""
+        """Evaluate the rule for those contacts of a block that have moved too far since its last evaluation."""
         w = self.units.world(u)
         for lane in range(pairs.lanes):
             if self.rest.is_asked(u, lane):
@@ -72,16 +72,16 @@ class ShapedContacts(Contacts):
 
     @ti.func
     def block_forces(self, g: ti.template(), pairs: ti.template(), i, j, u, block, load: ti.template(), dt):
-        """Push grains i and j apart at a block of contacts, by so much less as the saddles before them say.
+        """Apply the forces of a block of contacts, less those of their saddles, to grains i and j.
 
-        `load` adds up what fixed grains feel.
+        `load` sums the load on fixed grains.
 
-        Straight-line arithmetic on short vectors, as `Contacts.pair_forces`.
+        Arithmetic on short vectors without branches, as in `Contacts.pair_forces`.
         """
         overlap, ny, nz, py, pz = self.rest.present(self.rest.now, u)
         at = self.rest.place(u)
         apart_y, apart_z = self.rest.ways[0][at], self.rest.ways[1][at]
-        # From the middle of the overlap to where the outlines of discs would cross.
+        # Offset from the middle of the overlap to where the outlines of discs would cross, in overlaps.
         back = 0.5 - pairs.share[u, block]
         if ti.static(not self.units.whole):
             back = ti.select(pairs.grain[u, block] == i, back, -back)
@@ -106,7 +106,7 @@ class ShapedContacts(Contacts):
 
     @ti.func
     def passing(self, g: ti.template(), pairs: ti.template(), i, j, ly, lz, apart_y, apart_z):
-        """Velocities (y, z) m/s past j of grains i, at points (y, z) m from their centres, and spins past theirs."""
+        """Velocities (y, z) m/s of grains i relative to j at points (y, z) m from i's centres, and relative spins."""
         spin_i, spin_j = gathered(g.spin_now, i, pairs.lanes), gathered(g.spin_now, j, pairs.lanes)
         uy = gathered(g.now[0], i, pairs.lanes) - gathered(g.now[0], j, pairs.lanes)
         uz = gathered(g.now[1], i, pairs.lanes) - gathered(g.now[1], j, pairs.lanes)
@@ -118,7 +118,7 @@ class ShapedContacts(Contacts):
     def push_block(
         self, g: ti.template(), pairs: ti.template(), i, u, block, fy, fz, torque_i, torque_j, load: ti.template()
     ):
-        """Push the grains of a block of contacts with forces (N) on i, and turn both with torques (N m)."""
+        """Apply the forces (N) on grains i of a block, their reactions, and the torques (N m) on i and j."""
         listed, target = pairs.grain[u, block], pairs.target[u, block]
         if ti.static(not self.units.whole):
             swapped = listed != i
@@ -137,7 +137,7 @@ class ShapedContacts(Contacts):
 
     @ti.func
     def unsettled(self, contacts: ti.template(), u, p, c):
-        """Whether contact p does not hold any more; asks for a new look if it has been lost, or others have come up."""
+        """Whether contact p no longer exists; its pair is searched again if it is lost or other contacts appear."""
         if c[HOLDS] == 0.0:
             self.lists.lose(contacts, u, p)
         elif c[HOLDS] > 1.0:
@@ -146,7 +146,7 @@ class ShapedContacts(Contacts):
 
     @ti.func
     def pressed(self, kind: ti.template(), contacts: ti.template(), u, p, c, velocity, dt):
-        """Approach and slip (m/s), normal force (N) of a contact whose bodies pass each other at a velocity (m/s)."""
+        """Closing speed and slip (m/s) and normal force (N) of a contact with a relative velocity (m/s)."""
         n = ti.Vector([c[NORMAL_Y], c[NORMAL_Z]])
         overlap, rate = ti.Vector([greater(c[OVERLAP], 0.0)]), -velocity.dot(n)
         return rate, n.cross(velocity), self.laws.press(kind, contacts, u, p, overlap, ti.Vector([rate]), dt)[0]
@@ -182,7 +182,7 @@ class ShapedContacts(Contacts):
     def wall_force(
         self, g: ti.template(), contacts: ti.template(), w, u, p, shift: ti.template(), load: ti.template(), dt
     ):
-        """The force of contact p on a grain, and on the wall."""
+        """Apply the force of contact p to its grain and to the wall."""
         i, feature = contacts.first_of(u, p), contacts.second_of(u, p)
         c = self.rule.wall(g, contacts, w, i, feature, shift, u, p, True)
         if self.unsettled(contacts, u, p, c):
@@ -206,14 +206,14 @@ class ShapedContacts(Contacts):
     def wall_pressed(
         self, g: ti.template(), contacts: ti.template(), w, i, u, p, c, lever, velocity: ti.template(), dt
     ):
-        """Approach and slip (m/s) of a grain on a wall that moves at a velocity (m/s), and the normal force (N)."""
+        """Closing speed and slip (m/s) of a grain on a wall with a velocity (m/s), and the normal force (N)."""
         uy = g.now[0][w, i] - velocity[0] - g.spin_now[w, i] * lever[1]
         uz = g.now[1][w, i] - velocity[1] + g.spin_now[w, i] * lever[0]
         return self.pressed(WALL, contacts, u, p, c, ti.Vector([uy, uz]), dt)
 
     @ti.func
     def pair_press(self, g: ti.template(), pairs: ti.template(), w, i, j, u, p):
-        """Where contact p of grains i and j is (y, z) m, and its elastic force on i (N); nothing is remembered."""
+        """Place (y, z) m of contact p of grains i and j, and its elastic force (N) on i; memory is not changed."""
         c = self.rule.pair(g, pairs, w, i, j, u, p, False)
         force = self.elastic_along(pairs, u, p, c, self.rule.is_lost(pairs, u, p))
         if ti.static(self.rule.bent):  # noqa: SIM102 (compiled only there)
@@ -224,7 +224,7 @@ class ShapedContacts(Contacts):
 
     @ti.func
     def wall_press(self, g: ti.template(), contacts: ti.template(), w, i, feature, shift: ti.template(), u, p):
-        """Where contact p of a grain with a wall is (y, z) m, and its elastic force on the grain (N)."""
+        """Place (y, z) m of contact p of a grain with a wall, and its elastic force (N) on the grain."""
         c = self.rule.wall(g, contacts, w, i, feature, shift, u, p, False)
         force = self.elastic_along(contacts, u, p, c, self.rule.is_lost(contacts, u, p))
         if ti.static(self.rule.bent):  # noqa: SIM102 (compiled only there)
@@ -235,13 +235,13 @@ class ShapedContacts(Contacts):
 
     @ti.func
     def elastic_along(self, contacts: ti.template(), u, p, c, lost):
-        """Elastic force (N) along the normal of a contact or saddle c; none of one that has been lost sight of."""
+        """Elastic force (N) along the normal of a contact or saddle c; zero if it is lost."""
         force = self.laws.elastic(contacts, u, p, ti.select(lost, 0.0 * c[OVERLAP], c[OVERLAP]))
         return force * ti.Vector([c[NORMAL_Y], c[NORMAL_Z]])
 
     @ti.func
     def census(self, g: ti.template(), pairs: ti.template(), contacts: ti.template(), u, t):
-        """Number of touching contacts, largest overlap in radii of the smaller grain, their energy (J), of a unit."""
+        """Number of touching contacts of a unit, largest overlap in radii of the smaller grain, elastic energy (J)."""
         w, start, end = self.units.world(u), self.units.first(u), self.units.end(u)
         zero = ti.cast(0.0, g.exact)
         touching, deepest, energy = zero, zero, zero
@@ -272,7 +272,7 @@ class ShapedContacts(Contacts):
 
 @ti.func
 def lever_of(c, back):
-    """From a grain's centre (y, z) m to where the force of a contact acts, that part of the overlap from its middle."""
+    """Lever (y, z) m from a grain's centre to the force of a contact, `back` overlaps from the overlap's middle."""
     return ti.Vector(
         [
             c[POINT_Y] + back * greater(c[OVERLAP], 0.0) * c[NORMAL_Y],

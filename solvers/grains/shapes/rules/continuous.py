@@ -1,4 +1,4 @@
-"""The rule of smooth outlines: contacts along common normals, each followed from step to step."""
+"""The rule for smooth outlines: contacts along common normals, each tracked from step to step."""
 
 from math import pi
 
@@ -42,25 +42,25 @@ from solvers.machine.state import State
 from solvers.machine.units import Units
 from solvers.tank.walls import Walls
 
-ROOM = 32  # contacts of a grain with another, or with one wall, at most
-NEAR = 1.0 / 16.0  # of the outlines, together: how far a contact may go between lists and be known again
-PLACES = 8  # on either side of a contact, where others may come up
-# Elements of `Tracked.contact` that are passed on: of any contact, and of one between grains.
+ROOM = 32  # most contacts of a grain with another grain or with one wall
+NEAR = 1.0 / 16.0  # of both outlines' cells together: how far a contact may move between rebuilds and be identified
+PLACES = 8  # on either side of a contact, checked for new contacts
+# Elements of `Tracked.contact` that are passed on: for any contact, and for one between grains.
 SAID = OVERLAP, NORMAL_Y, NORMAL_Z, POINT_Y, POINT_Z, HOLDS
 SAID_OF_PAIR = *SAID, CURVED_I, CURVED_J
-WIDE = 1.0 / 8.0  # of an outline: what they span
-ATTEMPTS = 8  # of Newton's method to find a contact again before it has ended or been lost
-GROWN = 2.0  # a contact that holds and wants new lists
-SELDOM = 4  # steps from one look at such a place to the next
+WIDE = 1.0 / 8.0  # of an outline: range of the PLACES on one side
+ATTEMPTS = 8  # Newton steps to find a contact again before it counts as ended or lost
+GROWN = 2.0  # value of HOLDS for a contact that exists while its pair must be searched again
+SELDOM = 4  # steps between checks of these places
 
 
 @ti.data_oriented
 class Continuous:
     """Every local minimum of the gap between two outlines, or between one and a wall, is a contact of its own.
 
-    A contact is remembered by the places on the outlines where it is, and where the saddle before it is (`Tracked`);
-    one step of Newton's method a time step keeps it there. They are sought where lists are made, and where outlines
-    are `bent` also beside those that are known, a place at a time. Only these have saddles.
+    A contact is stored by its places on the outlines and those of the saddle before it (`Tracked`), which are updated
+    by one Newton step per time step. Contacts are sought when lists are rebuilt. If some outlines are non-convex
+    (`bent`), new ones are also sought next to the known ones, one place at a time; only these outlines have saddles.
     """
 
     def __init__(self, arrays: State, units: Units, walls: Walls, shapes: Shapes):
@@ -77,28 +77,28 @@ class Continuous:
 
     @ti.func
     def seek_pair(self, g: ti.template(), w, i, j, margin, u):
-        """Find the contacts of two grains with gaps below a margin (m); returns how many there are."""
+        """Find the contacts of two grains with gaps below a margin (m); returns their number."""
         one, two = g.outline(w, i), g.outline(w, j)
         return self.tracked.scan(one, two, g.apart(w, i, j), margin, self.places, u)
 
     @ti.func
     def away(self, contacts: ti.template(), u, q, k):
-        """How far (cells) contact q of an old list is from the k-th that has been found of the same two."""
+        """Distance (cells) from contact q of the old list to the k-th contact found for the same pair."""
         place = contacts.old_place_first[u, q][0]
         far = self.tracked.distance(place, self.places.i[u, k])
         if ti.static(hasattr(contacts, "place_second")):
             far += self.tracked.distance(contacts.old_place_second[u, q][0], self.places.j[u, k])
-        # One that has been lost has nothing to hand on.
+        # The memory of a lost contact is not used.
         return ti.select(place < 0.0, self.farthest, far)
 
     @ti.func
     def was_known(self, contacts: ti.template(), u, q):
-        """Whether contact q of an old list had not been lost sight of."""
+        """Whether contact q of the old list was not lost."""
         return contacts.old_place_first[u, q][0] >= 0.0
 
     @ti.func
     def note(self, contacts: ti.template(), u, p, k):
-        """Contact p is where the k-th has been found; it is free where there are not so many."""
+        """Set contact p to the places of the k-th contact found."""
         contacts.place_first[u, p][0] = self.places.i[u, k]
         if ti.static(hasattr(contacts, "place_second")):
             contacts.place_second[u, p][0] = self.places.j[u, k]
@@ -109,37 +109,37 @@ class Continuous:
 
     @ti.func
     def places_for_pair(self, g: ti.template(), w, i, j, most):
-        """Room to leave for contacts of two grains: convex ones have but one, for others there is room for `most`."""
+        """Number of entries for the contacts of two grains: one if both are convex, else `most`."""
         return ti.select(self.tables.convex[g.shape[w, i]] * self.tables.convex[g.shape[w, j]] > 0.0, 1, most)
 
     @ti.func
     def places_for_wall(self, g: ti.template(), w, i, most):
-        """The same for a grain and a wall."""
+        """Number of entries for the contacts of a grain with a wall: one if it is convex, else `most`."""
         return ti.select(self.tables.convex[g.shape[w, i]] > 0.0, 1, most)
 
     @ti.func
     def free(self, contacts: ti.template(), u, p):
-        """Contact p is none."""
+        """Mark entry p as free."""
         contacts.place_first[u, p][0] = -self.tables.cells
         if ti.static(self.bent):
             contacts.saddle_first[u, p][0] = NONE
 
     @ti.func
     def is_lost(self, contacts: ti.template(), u, p):
-        """Whether contact p has ended or been lost sight of."""
+        """Whether contact p has ended or is lost."""
         return self.kept.is_lost(contacts, u, p)
 
     @ti.func
     def lose(self, contacts: ti.template(), u, p):
-        """Remember that it has."""
+        """Mark contact p as ended or lost."""
         self.kept.lose(contacts, u, p)
 
     @ti.func
     def pair(self, g: ti.template(), pairs: ti.template(), w, i, j, u, p, moves: ti.template()):
         """Contact p of grains i and j: overlap (m), normal towards i, point from i's centre (m), whether it holds.
 
-        This is 0 if not, 1 if so, and GROWN if there are others beside it that are not listed. Unless it `moves`, it
-        is looked at where it was found last.
+        The last is 0 if the contact no longer exists, 1 if it does, and GROWN if there are also unlisted contacts next
+        to it. Unless it `moves`, the contact is evaluated at its stored places.
         """
         contact = self.nothing(g, w, i, osculating.CURVED_J + 1)
         if not self.is_lost(pairs, u, p):
@@ -162,9 +162,9 @@ class Continuous:
 
     @ti.func
     def keep(self, contacts: ti.template(), u, p, c, tries):
-        """Note where contact p has gone in so many steps of Newton's method, or that it has ended; returns if it holds.
+        """Store the place of contact p after `tries` Newton steps, or that it has ended; returns whether it exists.
 
-        One that has come far may have come to another: it is then the same.
+        A contact that has moved far may have converged to another one of its pair: then it has ended.
         """
         holds = c[HOLDS]
         if ti.static(self.bent):
@@ -179,10 +179,10 @@ class Continuous:
 
     @ti.func
     def pair_saddle(self, g: ti.template(), pairs: ti.template(), w, i, j, u, p, moves: ti.template()):
-        """The saddle before contact p of grains i and j, as `pair`."""
+        """The saddle before contact p of grains i and j, in the form of `pair`."""
         contact, a = self.nothing(g, w, i, rest.HOLDS + 1), pairs.saddle_first[u, p][0]
         if a >= 0.0:
-            # It counts a last time where it ends, as the contact does that ends with it.
+            # In the step in which it ends it still counts, like the contact that ends with it.
             c = self.between(g, SADDLE, moves, w, i, j, a, pairs.saddle_second[u, p][0])
             contact = ti.Vector([c[n] for n in ti.static(SAID)])
             if ti.static(moves):
@@ -194,7 +194,7 @@ class Continuous:
 
     @ti.func
     def next_look(self, contacts: ti.template(), u, p):
-        """Where to look beside contact p now: so many cells from it, to either side by turns; mostly 0: nowhere."""
+        """Distance (cells) from contact p to the place to check now, to either side in turn; in most steps 0: none."""
         k = contacts.looked[u, p][0] + 1.0
         k = ti.select(k < SELDOM * 2.0 * PLACES, k, 0.0)
         contacts.looked[u, p][0] = k
@@ -205,7 +205,7 @@ class Continuous:
 
     @ti.func
     def grown(self, g: ti.template(), pairs: ti.template(), w, i, j, u, p):
-        """Whether beside a contact that overlaps another has come up with a saddle, or a saddle is missing."""
+        """Whether a new contact and saddle have appeared next to an overlapping contact, or a saddle is missing."""
         away, new = self.next_look(pairs, u, p), False
         if away != 0.0 and self.tables.convex[g.shape[w, i]] * self.tables.convex[g.shape[w, j]] == 0.0:
             side, before = ti.select(away > 0.0, 1.0, -1.0), self.kept.beside(pairs, u, p, -1.0)
@@ -221,18 +221,18 @@ class Continuous:
 
     @ti.func
     def nothing(self, g: ti.template(), w, i, elements: ti.template()):
-        """No contact, with so many elements."""
+        """A vector for no contact, with a given number of elements."""
         return ti.Vector([-g.reach[w, i] if n == 0 else 0.0 * g.reach[w, i] for n in ti.static(range(elements))])
 
     @ti.func
     def between(self, g: ti.template(), way: ti.template(), moves: ti.template(), w, i, j, a, b):
-        """What there is between two grains at these places; see `Tracked.contact`."""
+        """The contact or saddle of two grains at these places; see `Tracked.contact`."""
         one, two = g.outline(w, i), g.outline(w, j)
         return self.tracked.contact(moves, way, one, two, g.apart(w, i, j), a, b)
 
     @ti.func
     def seek_wall(self, g: ti.template(), w, i, feature, shift: ti.template(), margin, u):
-        """Find the contacts of a grain with a wall at gaps below a margin (m); returns how many there are."""
+        """Find the contacts of a grain with a wall with gaps below a margin (m); returns their number."""
         found, looks = 0, ti.static(self.tracked.looks)
         stride = ti.static(self.tables.cells // self.tracked.looks)
         target = self.target(g, w, i, feature, shift)
@@ -258,7 +258,7 @@ class Continuous:
 
     @ti.func
     def followed(self, outline: ti.template(), feature, target, way: ti.template(), start):
-        """What Newton's method leads to from a place; it does not hold where it leads to nothing."""
+        """The contact or saddle to which Newton's method converges from a place; HOLDS is 0 if it does not."""
         c, place, settled = ti.Vector([0.0 * start for _ in ti.static(range(HOLDS + 1))]), start, False
         for _ in range(TRIES):
             c = self.against(outline, feature, target, way, place, True)
@@ -272,7 +272,7 @@ class Continuous:
 
     @ti.func
     def settle(self, outline: ti.template(), feature, target, start, margin, u, before):
-        """Follow a place to the contact near by, write it down if it is new; returns how many there are."""
+        """Find the contact near a place and store it if it is new; returns the new number of contacts."""
         found, c = before, self.followed(outline, feature, target, MINIMUM, start)
         place, fresh = c[PLACE_I], c[HOLDS] > 0.0 and -c[OVERLAP] < margin and before < ROOM
         for k in range(before):
@@ -285,7 +285,7 @@ class Continuous:
 
     @ti.func
     def target(self, g: ti.template(), w, i, feature, shift: ti.template()):
-        """A wall in a grain's frame: a segment's normal and its distance (m) from the centre, or where a corner is."""
+        """A wall in a grain's frame: a segment's normal and distance (m) from the centre, or a corner's position."""
         seen = ti.Vector([ti.cast(0.0, g.real), ti.cast(0.0, g.real), ti.cast(0.0, g.real)])
         if feature < self.walls.walls.segments:
             face = self.walls.facing(feature, shift, g.y[w, i], g.z[w, i])
@@ -299,7 +299,7 @@ class Continuous:
 
     @ti.func
     def rough_gap(self, outline: ti.template(), feature, target, cell):
-        """What has a local minimum where a contact is, at the start of a cell of the outline."""
+        """Gap to a segment, or squared distance to a corner, at the start of a cell; it is least near a contact."""
         at, shape = cell & (self.tables.cells - 1), outline.shape
         x, y = outline.scale * self.tables.curve[shape, at, 0], outline.scale * self.tables.curve[shape, at, 4]
         gap = target[2] + x * target[0] + y * target[1]
@@ -311,7 +311,7 @@ class Continuous:
     def wall(
         self, g: ti.template(), contacts: ti.template(), w, i, feature, shift: ti.template(), u, p, moves: ti.template()
     ):
-        """Contact p of grain i with a wall, as `pair`; it does not count where it is another feature's."""
+        """Contact p of grain i with a wall, in the form of `pair`; no overlap if it belongs to another feature."""
         contact = self.nothing(g, w, i, rest.HOLDS + 1)
         if not self.is_lost(contacts, u, p):
             c, place = self.nothing(g, w, i, HOLDS + 1), contacts.place_first[u, p][0]
@@ -333,7 +333,7 @@ class Continuous:
     def wall_saddle(
         self, g: ti.template(), contacts: ti.template(), w, i, feature, shift: ti.template(), u, p, moves: ti.template()
     ):
-        """The saddle before contact p of grain i with a wall, as `wall`."""
+        """The saddle before contact p of grain i with a wall, in the form of `wall`."""
         contact, place = self.nothing(g, w, i, rest.HOLDS + 1), contacts.saddle_first[u, p][0]
         if place >= 0.0:
             c = self.at_wall(g, SADDLE, moves, w, i, feature, shift, place)
@@ -347,7 +347,7 @@ class Continuous:
 
     @ti.func
     def grown_on_wall(self, g: ti.template(), contacts: ti.template(), w, i, feature, shift: ti.template(), u, p):
-        """As `grown`, of a grain on a segment."""
+        """As `grown`, for a grain on a segment."""
         away, new = self.next_look(contacts, u, p), False
         if away != 0.0 and self.tables.convex[g.shape[w, i]] == 0.0:
             target, a = self.target(g, w, i, feature, shift), contacts.place_first[u, p][0] + away
@@ -361,7 +361,7 @@ class Continuous:
     def at_wall(
         self, g: ti.template(), way: ti.template(), moves: ti.template(), w, i, feature, shift: ti.template(), place
     ):
-        """What there is between a grain and a wall near a place, in the tank's frame; see `against`."""
+        """The contact or saddle of a grain with a wall near a place, in the tank's frame; see `against`."""
         outline = g.outline(w, i)
         c = self.against(outline, feature, self.target(g, w, i, feature, shift), way, place, moves)
         normal = turned(g.turn(w, i), ti.Vector([c[NORMAL_Y], c[NORMAL_Z]]))
@@ -399,7 +399,7 @@ class Continuous:
 
     @ti.func
     def slopes(self, own, target, corner):
-        """First and second derivative of the gap (its half square, for a corner) by the place, and |p'|²."""
+        """First and second derivative by the place of the gap (half its square for a corner), and |p'|²."""
         x, y = target[0], target[1]
         size = own[2] * own[2] + own[3] * own[3]
         more = 0.0 * x

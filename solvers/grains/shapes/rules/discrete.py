@@ -1,4 +1,4 @@
-"""The source's rule: of all nodes of two outlines the one that lies deepest in the other."""
+"""The source's contact rule: the node of either outline that lies deepest in the other."""
 
 from math import pi
 
@@ -17,16 +17,16 @@ from solvers.machine.state import State
 from solvers.machine.units import Units
 from solvers.tank.walls import Walls
 
-NEAR = 0.01  # of the way from one node to the next: how far a contact slides until its neighbours are looked at
-SELDOM = 64  # looks from one at all nodes to the next
+NEAR = 0.01  # of the distance between nodes: slide of a contact after which neighbouring nodes are checked
+SELDOM = 64  # evaluations of a contact from one search of all nodes to the next
 
 
 @ti.data_oriented
 class Discrete(Single):
     """One contact of two grains, or of a grain and a wall, at the deepest node (Spandonidis 2016, table 8.1).
 
-    All nodes are looked at until two touch, and every SELDOM times that the contact is asked for; in between the
-    deepest of either grain is followed from node to node. `looked` counts those times.
+    All nodes are searched until the two touch, and then once in SELDOM evaluations of the contact; in between the
+    deepest node of either grain is followed from node to node. `looked` counts the evaluations.
     """
 
     wall_memory = ("looked", "node_first")
@@ -35,26 +35,29 @@ class Discrete(Single):
     def __init__(self, arrays: State, units: Units, walls: Walls, shapes: Shapes):
         outlines = with_disc(shapes)
         self.tables = Tables(arrays, outlines)
-        # Where outlines bend another node may come to lie deeper elsewhere as two are pressed together.
+        # With non-convex outlines a node elsewhere may become the deepest as the two are pressed together.
         near = NEAR * 2.0 * pi / shapes.nodes
         self.rest = Osculating(arrays, units, outlines, near) if shapes.convex else Rest(arrays, units, bent=False)
         self.nodes, self.walls = Nodes(arrays, self.tables, outlines, shapes.nodes), SeenWalls(arrays, walls)
 
     @ti.func
     def note(self, contacts: ti.template(), u, p, k):
-        """All nodes of contact p are to be looked at."""
+        """Have all nodes of contact p searched at its next evaluation."""
         contacts.looked[u, p][0] = 0.0
 
     @ti.func
     def count_look(self, contacts: ti.template(), u, p):
-        """Looks since all nodes of contact p were looked at, which is done SELDOM."""
+        """Evaluations of contact p since the last search of all nodes, 0 if it is due; counts this one."""
         k = ti.cast(contacts.looked[u, p][0], ti.i32)
         contacts.looked[u, p][0] = (k + 1) % SELDOM
         return k
 
     @ti.func
     def pair(self, g: ti.template(), pairs: ti.template(), w, i, j, u, p, moves: ti.template()):
-        """The contact of grains i and j: overlap (m), normal towards i, point from i's centre (m), 1.0: it holds."""
+        """The contact of grains i and j: overlap (m), normal towards i, point from i's centre (m), 1 (it holds).
+
+        Then come the radii of curvature (m) of i and j, see `Nodes.contact`.
+        """
         anew, first, second = True, 0, 0
         if ti.static(moves):
             anew = self.count_look(pairs, u, p) == 0
@@ -71,7 +74,7 @@ class Discrete(Single):
     def wall(
         self, g: ti.template(), contacts: ti.template(), w, i, feature, shift: ti.template(), u, p, moves: ti.template()
     ):
-        """The contact of a grain with a wall, as `pair`; it does not count where it is another feature's."""
+        """The contact of a grain with a wall, in the form of `pair`; no overlap if it belongs to another feature."""
         contact = ti.Vector([0.0 * g.radius[w, i], 0.0, 0.0, 0.0, 0.0, 1.0])
         if feature < self.walls.walls.segments:
             face = self.walls.facing(feature, shift, g.y[w, i], g.z[w, i])
@@ -98,7 +101,7 @@ class Discrete(Single):
 
     @ti.func
     def lowest(self, shape, normal):
-        """The node of an outline that lies farthest against a unit vector."""
+        """The lowest node of an outline along a unit vector."""
         best, found, k = FAR, 0, 0
         while k < self.nodes.length:
             after = self.nodes.after[k]

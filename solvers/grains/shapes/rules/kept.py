@@ -1,23 +1,23 @@
-"""What is remembered of the contacts of smooth outlines, and how they end in saddles."""
+"""The memory of contacts of smooth outlines, and how contacts end in saddles."""
 
 import taichi as ti
 
 from solvers.grains.shapes.rules.rest import STILL
 from solvers.grains.shapes.rules.tracked import NONE, Tracked
 
-# Of a contact with a wall, and more of one between two grains; the second pair of each for outlines that bend.
+# Memory of a contact with a wall, and what a contact of two grains has in addition; *_BENT for non-convex outlines.
 WALL, WALL_BENT = ("place_first",), ("saddle_first", "looked")
 PAIR, PAIR_BENT = ("place_second",), ("saddle_second",)
-MET = 1.0 / 64.0  # of an outline: nearer a saddle than this, a contact that is not found any more has ended in it
+MET = 1.0 / 64.0  # of an outline: a contact that is no longer found has ended in a saddle nearer than this
 
 
 @ti.data_oriented
 class Kept:
-    """Places of contacts and of saddles, as `ContactList` keeps them.
+    """Places of contacts and of saddles, as stored in `ContactList`.
 
-    `place_first` and `place_second` are where a contact is on both outlines, `saddle_first` and `saddle_second` where
-    the saddle before it is, by places on the first, or NONE. Contacts of the same two stand side by side. One that has
-    ended or been lost sight of has its last place a whole turn too low. `looked` counts steps.
+    `place_first` and `place_second` are the places of a contact on both outlines, `saddle_first` and `saddle_second`
+    those of the saddle before it in the order along the first outline, or NONE. Contacts of a pair are adjacent
+    entries. An ended or lost contact has its last place less one whole turn. `looked` counts steps.
     """
 
     def __init__(self, tracked: Tracked, bent: bool):
@@ -28,17 +28,17 @@ class Kept:
 
     @ti.func
     def is_lost(self, contacts: ti.template(), u, p):
-        """Whether contact p has ended or been lost sight of."""
+        """Whether contact p has ended or is lost."""
         return contacts.place_first[u, p][0] < 0.0
 
     @ti.func
     def lose(self, contacts: ti.template(), u, p):
-        """Remember that it has."""
+        """Mark contact p as ended or lost."""
         contacts.place_first[u, p][0] = self.tables.wrapped(contacts.place_first[u, p][0]) - self.tables.cells
 
     @ti.func
     def beside(self, contacts: ti.template(), u, p, side):
-        """The next contact of the same two on one side of p along the first outline, 1 or −1; p if there is none."""
+        """The pair's next contact on a side (1 or −1) of p along the first outline; p if there is none."""
         row, mate, here = self.row(contacts, u, p), contacts.mate[u, p][0], contacts.place_first[u, p][0]
         found, least = p, 2.0 * self.tables.cells
         for q in range(contacts.first[u, row], contacts.first[u, row + 1]):
@@ -50,7 +50,7 @@ class Kept:
 
     @ti.func
     def has_twin(self, contacts: ti.template(), u, p, place):
-        """Whether another contact of the same two as p is near this place already."""
+        """Whether another contact of p's pair is near this place already."""
         row, mate, found = self.row(contacts, u, p), contacts.mate[u, p][0], False
         for q in range(contacts.first[u, row], contacts.first[u, row + 1]):
             other = contacts.place_first[u, q][0]
@@ -60,18 +60,18 @@ class Kept:
 
     @ti.func
     def row(self, contacts: ti.template(), u, p):
-        """The place of a contact's first grain in its unit, by which the list is sorted."""
+        """Number of a contact's first grain within its unit, by which the list is sorted."""
         return contacts.first_of(u, p) - contacts.units.first(u)
 
     @ti.func
     def to_saddle(self, contacts: ti.template(), u, p, q):
-        """How many cells contact p is from the saddle before q, all round where there is none."""
+        """Distance (cells) from contact p to the saddle before q; a whole turn if there is none."""
         saddle, place = contacts.saddle_first[u, q][0], contacts.place_first[u, p][0]
         return ti.select(saddle >= 0.0, self.tracked.distance(place, saddle), 1.0 * self.tables.cells)
 
     @ti.func
     def end(self, contacts: ti.template(), u, p, surely):
-        """Contact p is not found any more: note if it has ended in the saddle before it, or in the one after it."""
+        """End contact p, which is no longer found, in the saddle before or after it, if one is near or `surely`."""
         after = self.beside(contacts, u, p, 1.0)
         own, following = self.to_saddle(contacts, u, p, p), self.to_saddle(contacts, u, p, after)
         if ti.min(own, following) < self.met or surely:
@@ -82,7 +82,7 @@ class Kept:
 
     @ti.func
     def end_saddle(self, contacts: ti.template(), u, p):
-        """The saddle before contact p is not found any more: one of the contacts beside it may have ended in it."""
+        """Remove the saddle before contact p, which is no longer found; a neighbouring contact near it ends with it."""
         before = self.beside(contacts, u, p, -1.0)
         own, other = self.to_saddle(contacts, u, p, p), self.to_saddle(contacts, u, before, p)
         if own < self.met and own <= other:
@@ -94,34 +94,34 @@ class Kept:
 
     @ti.func
     def end_with_own(self, contacts: ti.template(), u, p):
-        """Contact p has ended in the saddle before it."""
+        """End contact p together with the saddle before it."""
         if not self.is_lost(contacts, u, p):
             self.lose(contacts, u, p)
         contacts.saddle_first[u, p][0] = NONE
 
     @ti.func
     def end_before(self, contacts: ti.template(), u, p, after):
-        """Contact p has ended in the saddle before the one after it, which takes over the saddle before p."""
+        """End contact p in the saddle before contact `after`, which takes over the saddle before p."""
         self.take_over_saddle(contacts, u, after, p)
         self.end_with_own(contacts, u, p)
 
     @ti.func
     def take_over_saddle(self, contacts: ti.template(), u, p, q):
-        """The saddle before contact p is now the one that was before q."""
+        """Set the saddle before contact p to the one before q."""
         contacts.saddle_first[u, p][0] = contacts.saddle_first[u, q][0]
         if ti.static(hasattr(contacts, "saddle_second")):
             contacts.saddle_second[u, p][0] = contacts.saddle_second[u, q][0]
         if ti.static(hasattr(contacts, STILL)):
-            contacts.still[u, p][0] = 0.0  # what was seen of it was another
+            contacts.still[u, p][0] = 0.0  # the stored saddle is no longer valid
 
     @ti.func
     def way_back(self, contacts: ti.template(), u, p, q):
-        """How many cells it is along the first outline from contact q to p."""
+        """Distance (cells) along the first outline from contact q onwards to p."""
         return self.tables.wrapped(contacts.place_first[u, p][0] - contacts.place_first[u, q][0])
 
     @ti.func
     def beyond(self, contacts: ti.template(), u, p, away):
-        """Whether what is so many cells from contact p lies beyond a saddle that is known, or another contact."""
+        """Whether the place `away` (cells) from contact p lies beyond a known saddle or another contact."""
         side = ti.select(away > 0.0, 1.0, -1.0)
         other = self.beside(contacts, u, p, side)
         far, between = ti.abs(away), ti.select(side > 0.0, other, p)

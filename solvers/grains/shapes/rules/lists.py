@@ -1,4 +1,4 @@
-"""Who may touch whom where grains have outlines: one entry a contact, of which two grains may have several."""
+"""Neighbour lists of grains with outlines: one entry per contact, of which two grains may have several."""
 
 from math import ceil
 
@@ -10,16 +10,16 @@ from solvers.grains.neighbours import NEVER, Neighbours
 from solvers.grains.shapes.rules.rest import STILL
 from solvers.machine.state import Axis
 
-BENT_PLACES = 4  # for contacts of two of whose outlines one bends, for a start
+BENT_PLACES = 4  # initial entries per pair if an outline is non-convex
 
 
 @ti.data_oriented
 class ShapedNeighbours(Neighbours):
     """Neighbour lists of grains whose bounding circles are near each other; a rule says how many contacts they have.
 
-    Two that are near are given as much room as they may need, side by side, and their contacts are sought: with all
-    others where lists are built, or alone where one of them is lost or more come up. The two grains of a pair are put
-    to the rule in the order of their numbers, so that units that share a pair work out the same numbers.
+    Each listed pair gets a block of adjacent entries, as many as it may need, and its contacts are sought: with all
+    others when the lists are rebuilt, or separately when one of them is lost or new ones appear. The rule gets the two
+    grains of a pair in the order of their numbers, so that units that share a pair compute identical results.
     """
 
     def __init__(self, arrays, units, grains, walls, skin, bridges, reach, laws, modulus, room, rule):
@@ -29,7 +29,7 @@ class ShapedNeighbours(Neighbours):
         super().__init__(arrays, units, grains, walls, skin, bridges, reach, laws, modulus, room, rule)
         self.rule = rule
         for contacts in (self.pairs, self.contacts):
-            # Whether, at the first contact of two, theirs are to be sought anew.
+            # In a pair's first entry: whether its contacts must be searched for again.
             (contacts.wanted,) = contacts.arrays.vectors(contacts.each, "wanted", across=units.single)
         own, place = arrays.under("lists"), (Axis("world", grains.worlds), Axis("grain", grains.count))
         (self.built_angle,) = own.reals(place, "built_angle")
@@ -37,7 +37,7 @@ class ShapedNeighbours(Neighbours):
 
     @ti.func
     def list_pair(self, g: ti.template(), u, found, i, j, target, dt):
-        """Make room for the contacts of two grains that are near each other; returns how many there are then."""
+        """Reserve entries for the contacts of two neighbouring grains; returns the new number of entries."""
         places = self.rule.places_for_pair(g, self.units.world(u), i, j, self.places)
         for p in range(found, ti.min(found + places, self.pairs.capacity)):
             self.write_pair(g, u, p, i, j, target, False, dt)
@@ -49,7 +49,7 @@ class ShapedNeighbours(Neighbours):
 
     @ti.func
     def list_contact(self, g: ti.template(), u, found, i, feature, shift: ti.template(), dt):
-        """Make room for the contacts of a grain with a wall that is near; returns how many there are then."""
+        """Reserve entries for the contacts of a grain with a nearby wall; returns the new number of entries."""
         places = self.rule.places_for_wall(g, self.units.world(u), i, self.places)
         for p in range(found, ti.min(found + places, self.contacts.capacity)):
             self.write_contact(g, u, p, i, feature, False, dt)
@@ -59,12 +59,12 @@ class ShapedNeighbours(Neighbours):
 
     @ti.func
     def asked(self, u):
-        """Whether some contacts of a unit are to be sought anew, though its lists are good."""
+        """Whether some contacts of a unit must be searched for again although its lists are valid."""
         return self.asking[u] != 0
 
     @ti.func
     def seek(self, u, t, whole):
-        """Seek the contacts of all pairs that are wanted; returns False where two have more than there is room for."""
+        """Seek the contacts of all pairs marked `wanted`; returns False if a pair has more contacts than entries."""
         g, w, fits = self.grains, self.units.world(u), True
         shift = self.walls.shift(w, t)
         for p in range(self.pairs.length[u], self.pairs.blocks(u) * self.pairs.lanes):
@@ -89,7 +89,7 @@ class ShapedNeighbours(Neighbours):
 
     @ti.func
     def goes_on(self, u, p, i):
-        """Whether contact p is the only one of its two, and known from the old list, so that it need not be sought."""
+        """Whether contact p is its pair's only one and known from the old list, so that it need not be sought."""
         known = False
         if ti.static(not self.rule.bent):
             row, mate = i - self.units.first(u), self.pairs.second_of(u, p)
@@ -105,9 +105,9 @@ class ShapedNeighbours(Neighbours):
 
     @ti.func
     def replace(self, contacts: ti.template(), u, head, i, mate, count, whole):
-        """The contacts of these two, from `head` on, are now the `count` that the rule has found, if they fit.
+        """Replace a pair's contacts, in entries from `head` on, by the `count` found by the rule; returns if they fit.
 
-        What these remember is in the old lists; there, or if not the `whole` list is new, in the present ones.
+        Their memory comes from the old list, or from the present entries if not the `whole` list was rebuilt.
         """
         row, end = i - self.units.first(u), head
         while end < contacts.first[u, row + 1] and contacts.second_of(u, end) == mate:
@@ -127,9 +127,9 @@ class ShapedNeighbours(Neighbours):
 
     @ti.func
     def recall(self, contacts: ti.template(), u, p, i, mate, k, count):
-        """Contact p, the k-th of `count` that the rule has found of these two, remembers what it did in the old list.
+        """Restore the memory of contact p, the k-th of `count` that the rule has found for a pair, from the old list.
 
-        That is what the nearest of the old contacts did, if none of the others found is nearer to that one.
+        It is that of the nearest old contact, unless another contact found is nearer to that one.
         """
         row, place = i - self.units.first(u), self.units.world(u) * contacts.stride + mate
         best, nearest = -1, ti.cast(self.rule.farthest, self.grains.real)
@@ -147,14 +147,14 @@ class ShapedNeighbours(Neighbours):
 
     @ti.func
     def note_built(self, w, i):
-        """Remember where a grain is as the lists are built."""
+        """Store the position and angle of a grain when the lists are built."""
         for a in ti.static(range(self.grains.axes)):
             self.built[a][w, i] = self.grains.place[a][w, i]
         self.built_angle[w, i] = self.grains.angle[w, i]
 
     @ti.func
     def way(self, w, i):
-        """How far (m) any point of a grain can have gone since then."""
+        """Upper bound on the displacement (m) of any point of a grain since the lists were built."""
         dy = ti.cast(self.grains.y[w, i] - self.built[0][w, i], self.grains.real)
         dz = ti.cast(self.grains.z[w, i] - self.built[1][w, i], self.grains.real)
         turned = ti.abs(self.grains.angle[w, i] - self.built_angle[w, i])
@@ -162,14 +162,14 @@ class ShapedNeighbours(Neighbours):
 
     @ti.func
     def lose(self, contacts: ti.template(), u, p):
-        """Contact p has been lost sight of: look for it before the next step."""
+        """Mark contact p as lost; its pair's contacts are searched for again before the next step."""
         if not self.rule.is_lost(contacts, u, p):
             self.rule.lose(contacts, u, p)
             self.want(contacts, u, p)
 
     @ti.func
     def want(self, contacts: ti.template(), u, p):
-        """Have the contacts of the two that touch at p sought anew before the next step."""
+        """Have the contacts of p's pair searched for again before the next step."""
         contacts.wanted[u, self.head(contacts, u, p)][0] = 1.0
         if ti.static(self.units.single):
             self.travel[u] = NEVER
@@ -178,7 +178,7 @@ class ShapedNeighbours(Neighbours):
 
     @ti.func
     def head(self, contacts: ti.template(), u, p):
-        """The first contact of the two that touch at p."""
+        """The first entry of p's pair."""
         first, start = p, contacts.first[u, contacts.first_of(u, p) - self.units.first(u)]
         while first > start and contacts.second_of(u, ti.max(first - 1, 0)) == contacts.second_of(u, p):
             first -= 1

@@ -1,4 +1,4 @@
-"""The source's discrete rule for two grains: the deepest node of either inside the other's outline."""
+"""The source's discrete rule for two grains: the deepest node of either grain inside the other's outline."""
 
 from itertools import pairwise
 
@@ -11,23 +11,23 @@ from solvers.grains.shapes.pose import turned, turned_back
 from solvers.grains.shapes.tables import TINY, Tables
 from solvers.machine.state import State
 
-PARTS = 4  # into which a run of nodes is cut
-ARCS = 8  # at the top
+PARTS = 4  # number of parts into which a run of nodes is cut
+ARCS = 8  # number of runs at the top level
 SLACK = 1.0 + 1e-6  # on bounds, for the tables' errors and rounding
-NEARBY = 0.1  # of the other grain's bounding radius: nodes farther outside than this are not told apart
-DEPTH = 0  # an element of what `Nodes.seen` gives
+NEARBY = 0.1  # of the other grain's bounding radius: nodes farther outside than this are not searched
+DEPTH = 0  # element of the result of `Nodes.seen`
 
 
 @ti.data_oriented
 class Nodes:
-    """`count` nodes on each outline, evenly by polar angle, in runs within runs with a circle about each.
+    """`count` nodes on each outline, equally spaced by polar angle, in a tree of runs with a bounding circle for each.
 
-    The result is that of Spandonidis (2016), table 8.1, over all nodes, but for step 6: the tangent is the other
-    outline's at the node's polar angle, not a chord of two nodes. A look at all of them passes over a run if no point
-    of its circle can lie deeper in the other grain than what has been found. Between such looks the deepest nodes of
-    either grain are followed: each time those beside them are asked if they lie deeper.
+    The result is that of Spandonidis (2016), table 8.1, over all nodes, except for step 6: the tangent is the other
+    outline's at the node's polar angle, not a chord of two nodes. A search of all nodes skips a run if no point of its
+    circle can lie deeper in the other grain than the deepest node found. Between searches the deepest node of either
+    grain is followed: each time its two neighbours are checked.
 
-    A disc of n nodes then rolls as a polygon of n corners does, at any stiffness: on slopes over π/n alone.
+    A disc of n nodes then rolls like a polygon with n corners, at any stiffness: only on slopes steeper than π/n.
     """
 
     def __init__(self, arrays: State, tables: Tables, outlines: list[Contour], count: int):
@@ -50,13 +50,12 @@ class Nodes:
 
     @ti.func
     def contact(self, one: ti.template(), two: ti.template(), apart, node_i, node_j, all_nodes):
-        """Overlap ξ (m; negative: no gap is smaller; 0: open), normal towards i, contact point from i's centre, nodes.
+        """The contact of grains i and j, with the deepest nodes of i and of j.
 
-        Before these come the outlines' radii of curvature (m) there, 0 of the one of which it is a node.
-
-        `one` and `two` are the outlines of i and j, `apart` the centre of i less that of j (m). The contact point is
-        the deepest node, of which either grain's is given, too: of `all_nodes`, or of `node_i`, `node_j` and those
-        beside them.
+        The contact is: overlap ξ (m; negative: minus a lower bound of the gap; 0: no contact, gap unknown), normal
+        towards i, contact point from i's centre (m), and the radii of curvature (m) of i and j there, 0 for the grain
+        whose node it is. `one` and `two` are the outlines of i and j, `apart` the centre of i less that of j (m). The
+        contact point is the deepest node: of all nodes if `all_nodes`, else of `node_i`, `node_j` and their neighbours.
         """
         between, back = turned_back(two.turn, one.turn), turned_back(one.turn, two.turn)
         centre, centre_back = turned_back(two.turn, apart), turned_back(one.turn, -apart)
@@ -96,7 +95,7 @@ class Nodes:
 
     @ti.func
     def deeper(self, one: ti.template(), between, other: ti.template(), centre, known, depth_known):
-        """The deepest of a node of which the depth is known, and its two neighbours."""
+        """The deepest of a node with a known depth and its two neighbours."""
         best, which = depth_known, known
         for side in ti.static((-1, 1)):
             node = self.beside(known, side)
@@ -107,17 +106,17 @@ class Nodes:
 
     @ti.func
     def place(self, shape, n):
-        """A node of an outline."""
+        """Position of node n of an outline."""
         return ti.Vector([self.point[shape, n, 0], self.point[shape, n, 1]])
 
     @ti.func
     def nearby(self, outline: ti.template()):
-        """How far outside (m) of a grain nodes are told apart."""
+        """Largest distance (m) outside a grain at which nodes are searched."""
         return NEARBY * outline.scale * self.tables.bounding[outline.shape]
 
     @ti.func
     def beside(self, node, side):
-        """The next node on one side, 1 or −1."""
+        """The next node on a side, 1 or −1."""
         n = node + side
         return ti.select(n < 0, self.count - 1, ti.select(n == self.count, 0, n))
 
@@ -129,16 +128,16 @@ class Nodes:
 
     @ti.func
     def seen(self, one: ti.template(), between, other: ti.template(), centre, n):
-        """Depth by polar radius (m) of a node in the other grain, R and R' there (m), the node in the other's frame."""
+        """Depth by polar radius (m) of a node in the other grain, R and R' there (m), the node in its frame (m)."""
         own = centre + one.scale * turned(between, self.place(one.shape, n))
         radius = other.scale * self.tables.radius_and_slope(other.shape, own[0], own[1])
         return ti.Vector([radius[0] - own.norm(), radius[0], radius[1], own[0], own[1]])
 
     @ti.func
     def search(self, one: ti.template(), between, other: ti.template(), centre, known, depth_known):
-        """The node that lies deepest by polar radius, even if that is outside, unless none is NEARBY.
+        """The node that is deepest by polar radius, even if outside; `known` if no node is NEARBY.
 
-        The deeper the node that is `known`, the fewer others are looked at.
+        The deeper the `known` node, the fewer others are checked.
         """
         reach, steepest = other.scale * self.tables.bounding[other.shape], other.scale * self.steepest[other.shape]
         best, which, k = ti.max(depth_known, -self.nearby(other)), known, 0
@@ -154,7 +153,7 @@ class Nodes:
                     if depth > best:
                         best, which = depth, self.start[k]
                 else:
-                    # From the circle's middle R changes by R' times the angle asin(s), which is less than this.
+                    # Within the circle R changes by less than R' times asin(s), which is bounded by this polynomial.
                     s = width / ti.max(distance, TINY)
                     if s > 1.0 or depth + width + steepest * s * (1.0 + 0.5708 * s * s) > best:
                         after = k + 1
@@ -164,26 +163,26 @@ class Nodes:
 
 @ti.func
 def own_of(node):
-    """A node's place in the other grain's frame."""
+    """A node's position in the other grain's frame."""
     return ti.Vector([node[3], node[4]])
 
 
 @ti.func
 def overlap_of(node):
-    """How far a node is from the other outline's tangent at its polar angle."""
+    """Distance (m) of a node from the other outline's tangent at its polar angle."""
     return node[DEPTH] * node[1] / ti.sqrt(node[1] * node[1] + node[2] * node[2])
 
 
 @ti.func
 def normal_of(node, turn):
-    """The other outline's normal R e_r − R' e_θ there, that grain being turned so far."""
+    """The other outline's unit normal along R e_r − R' e_θ at a node, with that grain rotated by `turn`."""
     own = own_of(node)
     size = 1.0 / (ti.sqrt(node[1] * node[1] + node[2] * node[2]) * ti.max(own.norm(), TINY))
     return turned(turn, ti.Vector([node[1] * own[0] + node[2] * own[1], node[1] * own[1] - node[2] * own[0]]) * size)
 
 
 def _runs(count: int) -> list[tuple[int, int, int]]:
-    """Runs of nodes, each before its parts: first node, one past the last, and the next run that is not within."""
+    """Runs of nodes in depth-first order: first node, one past the last, and the next run that is not a part of it."""
     runs = []
 
     def cut(first: int, end: int, parts: int) -> None:
@@ -203,7 +202,7 @@ def _runs(count: int) -> list[tuple[int, int, int]]:
 
 
 def _circles(outline: Contour, count: int, runs: list[tuple[int, int, int]]) -> np.ndarray:
-    """Middle (x, y) and radius (m) of a circle about each run, (n, 3); a node's radius is 0."""
+    """Centre (x, y) and radius (m) of each run's bounding circle, (n, 3); a single node has radius 0."""
     points, circles = _points(outline, count), []
     for first, end, _ in runs:
         part = points[first:end]
@@ -218,7 +217,7 @@ def _points(outline: Contour, count: int) -> np.ndarray:
 
 
 def _least(outline: Contour) -> float:
-    """At least how far a point outside is from an outline, relative to its distance by polar radius.
+    """Lower bound of the distance of an outside point from an outline, relative to its distance by polar radius.
 
     The gradient of |p| − R(θ) is (1, −R'/|p|) along and across the radius, and |p| exceeds the smallest R outside.
     """

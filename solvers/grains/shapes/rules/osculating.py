@@ -1,4 +1,4 @@
-"""Contacts carried along on the circles that fit the outlines where they touch."""
+"""Contacts carried along on the osculating circles of the outlines."""
 
 from math import inf
 
@@ -11,19 +11,19 @@ from solvers.grains.shapes.rules.rest import HOLDS, OVERLAP, Rest
 from solvers.machine.state import State
 from solvers.machine.units import Units
 
-CURVED_I, CURVED_J = HOLDS + 1, HOLDS + 2  # elements of what a rule says: radii of curvature (m)
-OFF, LONGEST = 1e-7, 0.02  # of R0: an overlap's error after a slide, and the longest slide
+CURVED_I, CURVED_J = HOLDS + 1, HOLDS + 2  # elements of a rule's contact: radii of curvature (m)
+OFF, LONGEST = 1e-7, 0.02  # of R0: error of an overlap after a slide, and the longest slide
 TINY = 1e-30
-TOGETHER = 0.05  # rad: how far the two grains may turn
+TOGETHER = 0.05  # rad: largest sum of the rotations of the two grains
 
 
 @ti.data_oriented
 class Osculating(Rest):
-    """Takes both outlines for their osculating circles, so that contacts become those of discs that stick to grains.
+    """Replaces both outlines by their osculating circles, so that contacts are those of discs fixed to the grains.
 
-    That lasts until a contact has slid along the outlines: by s, and with κ their curvature, its overlap is off by
-    κ' s³/6 (local canonical form, do Carmo 1976, section 1-6), which `slides` (classes,) m, of grains of radius 1,
-    keeps small. Where grains were apart they may move by as much.
+    This holds until a contact has slid too far along the outlines. After a slide s the error of its overlap is κ' s³/6,
+    with κ the curvature (local canonical form, do Carmo 1976, section 1-6); `slides` (classes,) m, for grains of radius
+    1, are limits that keep it small. Grains that were apart may move by their gap.
     """
 
     said = (*Rest.said, "curved_i", "curved_j")
@@ -36,16 +36,16 @@ class Osculating(Rest):
 
     @ti.func
     def carried(self, to: ti.template(), names: ti.template(), pairs: ti.template(), u, block, moves: ti.template()):
-        """Write down contacts as they are after these moves; returns how far (m) they have slid on both outlines.
+        """Write contacts as they are after these moves to `to`; returns how far (m) they have slid on both outlines.
 
-        In components along the normal and across it, as it was, counted from the grains' centres.
+        Computed in components along and across the old normal, from the grains' centres.
         """
         was, ny, nz, py, pz = self.heard(names, pairs, u, block)
         overlap = greater(was, 0.0)
         curved_i, curved_j = pairs.was_curved_i[u, block], pairs.was_curved_j[u, block]
         far_y, far_z = py + pairs.apart_y[u, block], pz + pairs.apart_z[u, block]
         at, half = self.place(u), 0.5 * overlap
-        # The centres of curvature, and how they go as the grains turn.
+        # The centres of curvature, and their displacements as the grains turn.
         n_i, t_i = py * ny + pz * nz + (curved_i - half), pz * ny - py * nz
         n_j, t_j = far_y * ny + far_z * nz - (curved_j - half), far_z * ny - far_y * nz
         sine_i, lost_i = turn_by(moves[2])
@@ -53,7 +53,7 @@ class Osculating(Rest):
         to_n, to_t = -sine_i * t_i - lost_i * n_i, sine_i * n_i - lost_i * t_i
         un = moves[0] * ny + moves[1] * nz + to_n + sine_j * t_j + lost_j * n_j
         ut = moves[1] * ny - moves[0] * nz + to_t - sine_j * n_j + lost_j * t_j
-        # x is the tangent of the angle by which the line of the centres has turned.
+        # x is the tangent of the angle by which the line through both centres of curvature has turned.
         apart = curved_i + curved_j - overlap + un
         x = ut / ti.select(was > 0.0, apart, 1.0 + 0.0 * apart)
         square = x * x
@@ -68,13 +68,13 @@ class Osculating(Rest):
 
     @ti.func
     def far(self, pairs: ti.template(), u, block, way, slid, angle_i, angle_j):
-        """How far (m) a contact has slid, or grains that were apart have moved."""
+        """Slide (m) of a contact, or displacement (m) of grains that were apart."""
         slid = ti.select(ti.abs(angle_i) + ti.abs(angle_j) < TOGETHER, slid, 1.0 + 0.0 * slid)
         return ti.select(pairs.was_overlap[u, block] > 0.0, slid, way)
 
     @ti.func
     def still(self, g: ti.template(), pairs: ti.template(), w, i, j, u, p, c, d):
-        """How far (m) a contact that the rule has just seen may slide, or its grains may move before they touch."""
+        """How far (m) a contact may slide, or grains that are apart move, until the rule must be evaluated again."""
         first, second = self.slides[g.shape[w, i]], self.slides[g.shape[w, j]]
         still = lesser(first * g.radius[w, i], second * g.radius[w, j])
         still = ti.select(c[OVERLAP] > 0.0, still, -c[OVERLAP])
@@ -83,7 +83,7 @@ class Osculating(Rest):
 
 @ti.func
 def turn_by(angle):
-    """Sine, and one less cosine, of a small angle (rad)."""
+    """Sine and 1 − cosine of a small angle (rad)."""
     square = angle * angle
     return angle * (1.0 - square * (1.0 / 6.0)), square * (0.5 - square * (1.0 / 24.0))
 

@@ -1,4 +1,4 @@
-"""Outlines as polygons, and the area that one shares with another or with what lies behind a wall."""
+"""Outlines as polygons, and the area of overlap of two polygons, or of one with a wall."""
 
 from math import pi
 
@@ -11,18 +11,18 @@ from solvers.grains.shapes.pose import turned, turned_back
 from solvers.grains.shapes.tables import TINY
 from solvers.machine.state import State
 
-# Elements of what two share: the area A (m²); of the first outline's part in the other its outward normals n, summed
-# over the length (m); the moments ∫ r n dl (m²) about its centre.
+# Elements of a shared area: the area A (m²); the integral ∫ n dl (m) of the outward normals of the first outline's part
+# inside the other; the moments ∫ r n dl (m²) about the first outline's centre.
 AREA, PUSH_X, PUSH_Y, XX, XY, YX, YY = range(7)
 
 
 @ti.data_oriented
 class Polygons:
-    """Corners of C outlines, evenly by polar angle, with the outlines' areas.
+    """Corners of C outlines, equally spaced by polar angle, scaled to the outlines' areas.
 
-    What two of them share is exact, however often they cross: with the second star-shaped about its centre, A =
-    −∫ ½ (R² − ρ²) dφ along that part of the first that lies in it (Green's theorem), a sum over pieces of its edges
-    between the rays through the second's corners. The centre of neither may lie in the other.
+    The shared area of two of them is exact, however often they cross. With the second star-shaped about its centre, A =
+    −∫ ½ (R² − ρ²) dφ along the part of the first that lies in it (Green's theorem), a sum over pieces of its edges
+    between the rays through the second's corners. Neither centre may lie in the other outline.
     """
 
     def __init__(self, arrays: State, outlines: list[Contour], count: int):
@@ -35,10 +35,10 @@ class Polygons:
 
     @ti.func
     def shared(self, one: ti.template(), between, centre, other: ti.template(), start, edges, margin):
-        """What so many edges of an outline share with the other, in whose frame it is turned and its centre is.
+        """Shared area of `edges` edges of an outline from corner `start` on with the other, in the other's frame.
 
-        And at least how far (m) they are from it if that is nothing; and which first corner and number of edges have
-        all that may be within a margin (m).
+        `between` and `centre` are the first outline's rotation and centre in that frame. Also returns a lower bound of
+        the distance (m) if nothing is shared, and the first corner and number of edges that may be within `margin` (m).
         """
         total, gap = nothing(one.scale), one.scale * self.bounding[one.shape]
         begin, end = edges, 0
@@ -56,7 +56,7 @@ class Polygons:
 
     @ti.func
     def facing(self, one: ti.template(), between, centre, reach):
-        """The first corner and the number of edges that a circle of this radius about the origin may hold."""
+        """First corner and number of edges that may lie within a circle of radius `reach` (m) about the origin."""
         distance, own = centre.norm(), one.scale * self.bounding[one.shape]
         start, edges = 0, 0
         if distance < own + reach:
@@ -69,7 +69,7 @@ class Polygons:
 
     @ti.func
     def about(self, direction, cosine):
-        """The first corner and the number of edges about a direction in the outline's frame, to either side."""
+        """First corner and number of edges within an angle of given cosine about a direction in the outline's frame."""
         half = ti.acos(within(cosine, 1.0)) * ti.static(0.5 * self.count / pi)
         middle = ti.atan2(direction[1], direction[0]) * ti.static(0.5 * self.count / pi)
         start = ti.cast(ti.floor(middle - half), ti.i32)
@@ -77,27 +77,27 @@ class Polygons:
 
     @ti.func
     def own(self, shape, k):
-        """A corner, counted on after whole turns."""
+        """Corner k of an outline, modulo their number."""
         n = k % self.count
         return ti.Vector([self.corner[shape, n, 0], self.corner[shape, n, 1]])
 
     @ti.func
     def seen(self, one: ti.template(), between, centre, k):
-        """A corner of a scaled outline that is turned, its centre being there."""
+        """Corner k of a scaled outline with the rotation `between` and its centre at `centre`."""
         return centre + one.scale * turned(between, self.own(one.shape, k))
 
     @ti.func
     def ray(self, p, other: ti.template()):
-        """The sector that a point is in, from one corner's ray to the next, and R/ρ − 1 there."""
+        """The sector of a point, between the rays of two successive corners, and R/ρ − 1 there."""
         s = ti.cast(ti.floor(ti.atan2(p[1], p[0]) * ti.static(0.5 * self.count / pi)), ti.i32)
         return s, beyond_side(p, other.scale * self.own(other.shape, s), other.scale * self.own(other.shape, s + 1))
 
     @ti.func
     def edge(self, p, q, centre, other: ti.template(), sector, beyond):
-        """What an edge p q adds, at least how far (m) it is from the other outline, and the `ray` of q from that of p.
+        """Contribution of an edge p q, a lower bound (m) of its distance from the other outline, and the `ray` of q.
 
-        Outside, where a ray goes on to ρ from R, the distance is at least (ρ − R) cos ψ, ψ being the largest angle
-        between the other outline's normal and its radius; along a piece in a sector 1 − R/ρ is least at an end.
+        A point outside at ρ, on a ray that meets the outline at R, has a distance of at least (ρ − R) cos ψ, with ψ the
+        largest angle between the other outline's normal and its radius. Within a sector 1 − R/ρ is least at an end.
         """
         total, s, t, left = nothing(other.scale), sector, 0.0 * other.scale, self.count
         here, least = beyond, beyond
@@ -119,7 +119,7 @@ class Polygons:
 
     @ti.func
     def below(self, shape, normal, height):
-        """The first corner and the number of edges that may lie lower than a height (m) along a unit normal."""
+        """First corner and number of edges that may lie lower than a height (m) along a unit normal."""
         start, edges = 0, 0
         if height > -self.bounding[shape]:
             start, edges = self.about(-normal, -height / self.bounding[shape])
@@ -127,9 +127,9 @@ class Polygons:
 
     @ti.func
     def behind(self, one: ti.template(), normal, distance, start, edges, margin):
-        """What so many edges share with a half-plane, its normal in the outline's frame, its edge at −distance.
+        """Shared area of `edges` edges with a half-plane, its normal in the outline's frame, its edge at −distance.
 
-        And which first corner and number of edges have all that are within a margin (m).
+        Also returns the first corner and number of edges that contain all those within `margin` (m).
         """
         total, begin, end = nothing(one.scale), edges, 0
         p = one.scale * self.own(one.shape, start)
@@ -150,13 +150,13 @@ class Polygons:
 
 @ti.func
 def nothing(like):
-    """Nothing is shared."""
+    """The shared area where nothing is shared: zeros."""
     return ti.Vector([0.0 * like for _ in ti.static(range(YY + 1))])
 
 
 @ti.func
 def beyond_side(p, a, b):
-    """R/ρ − 1 of a point at ρ, whose ray meets the side a b at R."""
+    """R/ρ − 1 for a point at ρ whose ray meets the side a b at R."""
     side = b - a
     at = side.cross(p - a)
     return at / (a.cross(b) - at)
@@ -164,7 +164,7 @@ def beyond_side(p, a, b):
 
 @ti.func
 def inside(p, q, start, end, beyond_start, beyond_end, a, b, centre):
-    """What the piece of an edge p q from `start` to `end`, parts of it, adds within the triangle of 0, a and b."""
+    """Contribution of an edge p q, between its fractions `start` and `end`, inside the triangle of 0, a and b."""
     side = b - a
     at_p, at_q = side.cross(p - a), side.cross(q - a)
     crossing = at_p / ti.select(at_p == at_q, 1.0, at_p - at_q)
@@ -176,13 +176,13 @@ def inside(p, q, start, end, beyond_start, beyond_end, a, b, centre):
 
 @ti.func
 def part(area, a, b, centre):
-    """What a piece a b of an outline adds."""
+    """Contribution of a piece a b of an outline with its `area`."""
     push, arm = ti.Vector([b[1] - a[1], a[0] - b[0]]), 0.5 * (a + b) - centre
     return ti.Vector([area, push[0], push[1], arm[0] * push[0], arm[0] * push[1], arm[1] * push[0], arm[1] * push[1]])
 
 
 def _edges(corners: np.ndarray) -> np.ndarray:
-    """From each corner to the next (count, 2), m."""
+    """Vectors (count, 2) m from each corner to the next."""
     return np.roll(corners, -1, axis=0) - corners
 
 
@@ -194,7 +194,7 @@ def _least(corners: np.ndarray) -> float:
 
 
 def _corners(outline: Contour, count: int) -> np.ndarray:
-    """The corners (count, 2), m."""
+    """Corners (count, 2) m on the outline, scaled to its area."""
     points = outline.points(2.0 * np.pi / count * np.arange(count))
     ahead = np.roll(points, -1, axis=0)
     area = 0.5 * (points[:, 0] * ahead[:, 1] - points[:, 1] * ahead[:, 0]).sum()

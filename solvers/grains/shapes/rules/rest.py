@@ -1,4 +1,4 @@
-"""Contacts looked at once, and carried along with their grains until these have moved past each other."""
+"""Reuse of contacts between evaluations of a rule: carried along with the grains until these have moved too far."""
 
 import taichi as ti
 
@@ -8,33 +8,33 @@ from solvers.grains.neighbours import LANES, NEVER
 from solvers.machine.state import Axis, State
 from solvers.machine.units import Units
 
-# Elements of what a rule says of a contact: m, 1, m from the first grain's centre, and whether it is one.
+# Elements of a rule's contact: overlap (m), unit normal, point from the first grain's centre (m), whether it exists.
 OVERLAP, NORMAL_Y, NORMAL_Z, POINT_Y, POINT_Z, HOLDS = range(6)
-# Of the smaller grain's radius. By then an overlap is off by the square of it, a normal by it, each times a radius over
-# the outlines' radii of curvature.
+# Movement, in radii of the smaller grain, after which a rule is evaluated again. The errors are then HARDLY² radii for
+# an overlap and HARDLY for a normal, each times a radius over the outlines' radii of curvature.
 HARDLY = 1e-5
 STILL = "still"
 SEEN = (STILL, "apart_y", "apart_z", "angle_first", "angle_second")
 SAID = ("overlap", "normal_y", "normal_z", "point_y", "point_z")
-CACHE_LINES = 16  # numbers: two of them, so that no two threads write to one
+CACHE_LINES = 16  # numbers in two cache lines, a distance at which no two threads write to one line
 
 
 @ti.data_oriented
 class Rest:
-    """What a contact's rule said last, how the two grains lay then, and how far (m) they may move before it is asked.
+    """The last contacts from a rule, the grains' poses then, and how far (m) they may move until it is evaluated again.
 
-    That is HARDLY, or as far as they were apart. The overlap changes as the points that touch move along the normal,
-    which is exact to first order; normal and point stay.
+    That distance is HARDLY, or the gap if the grains were apart. Meanwhile the overlap changes with the motion of the
+    contact point along the normal, which is exact to first order; normal and point are kept.
 
-    Contacts are carried a block at a time. What those of a unit's block are `now`, and the `saddle` before each where
-    outlines are `bent`, is written down in the order of SAID, with the `ways` (y, z) m from j to i, and in `asked` 1
-    where the rule is to be asked, else 0.
+    Contacts are carried one block at a time. For a unit's block, the present contacts are in `now`, and their saddles
+    in `saddle_now` if outlines are non-convex (`bent`), in the order of SAID; `ways` are the vectors (y, z) m from j to
+    i; `asked` is 1 if the rule must be evaluated, else 0.
     """
 
-    said, elements = SAID, (OVERLAP, NORMAL_Y, NORMAL_Z, POINT_Y, POINT_Z)  # what is remembered, by name and number
+    said, elements = SAID, (OVERLAP, NORMAL_Y, NORMAL_Z, POINT_Y, POINT_Z)  # stored elements by name and number
 
     def __init__(self, arrays: State, units: Units, bent: bool):
-        # Where outlines bend most of the room for contacts is empty, and is passed over.
+        # With non-convex outlines most entries are free; blocks of one contact can be skipped.
         self.bent, self.lanes = bent, 1 if bent or units.single else LANES
         self.contact = tuple(f"was_{name}" for name in self.said)
         self.saddle = tuple(f"saddle_{name}" for name in self.said) if bent else ()
@@ -48,14 +48,14 @@ class Rest:
 
     @ti.func
     def is_open(self, g: ti.template(), pairs: ti.template(), i, j, u, p):
-        """Whether two grains that were apart still are, where a block is one contact."""
+        """Whether two grains that were apart still are, for blocks of a single contact."""
         y, z, angle_i, angle_j = self.moves(g, pairs, i, j, u, p)
         way = self.way(pairs, u, p, y, z, angle_i, angle_j)[0]
         return pairs.was_overlap[u, p][0] <= -way and way < pairs.still[u, p][0]
 
     @ti.func
     def carry(self, g: ti.template(), pairs: ti.template(), i, j, u, block):
-        """Carry a block of contacts along with their grains i and j; returns for how many the rule is to be asked."""
+        """Carry a block of contacts along with grains i and j; returns for how many the rule must be evaluated."""
         y, z, angle_i, angle_j = self.moves(g, pairs, i, j, u, block)
         moves = [y, z, angle_i, angle_j]
         slid = self.carried(self.now, self.contact, pairs, u, block, moves)
@@ -64,29 +64,29 @@ class Rest:
         way, at, still = self.way(pairs, u, block, y, z, angle_i, angle_j), self.place(u), pairs.still[u, block]
         far = self.far(pairs, u, block, way, slid, angle_i, angle_j)
         self.ways[0][at], self.ways[1][at] = y + pairs.apart_y[u, block], z + pairs.apart_z[u, block]
-        asked = ti.select(far < still, 0.0 * still, 1.0 + 0.0 * still)  # 1, too, where `far` is not a number
+        asked = ti.select(far < still, 0.0 * still, 1.0 + 0.0 * still)  # 1 also if `far` is NaN
         self.asked[at] = asked
         return asked.sum()
 
     @ti.func
     def place(self, u):
-        """Where what is now of a unit's block is written down."""
+        """Index of a unit's block in `now`, `saddle_now`, `ways` and `asked`."""
         return self.spacing * u
 
     @ti.func
     def is_asked(self, u, lane):
-        """Whether the rule is to be asked of this contact of a unit's block."""
+        """Whether the rule must be evaluated for this contact of a unit's block."""
         return self.asked[self.place(u)][lane] > 0.0
 
     @ti.func
     def present(self, of: ti.template(), u):
-        """Overlaps (m), normals (y, z) and points (y, z) m of a unit's block, of its contacts `now` or saddles."""
+        """Overlaps (m), normals (y, z) and points (y, z) m of a unit's block, from `now` or `saddle_now`."""
         at = self.place(u)
         return of[OVERLAP][at], of[NORMAL_Y][at], of[NORMAL_Z][at], of[POINT_Y][at], of[POINT_Z][at]
 
     @ti.func
     def moves(self, g: ti.template(), pairs: ti.template(), i, j, u, block):
-        """How the ways from j to i (y, z) m and the angles of i and j (rad) have changed since the rule was asked."""
+        """Changes of the vectors from j to i (y, z) m and the angles of i and j (rad) since the last evaluation."""
         y = gathered(g.y, i, self.lanes) - gathered(g.y, j, self.lanes)
         z = gathered(g.z, i, self.lanes) - gathered(g.z, j, self.lanes)
         angle_i = gathered(g.angle, i, self.lanes) - pairs.angle_first[u, block]
@@ -100,17 +100,17 @@ class Rest:
 
     @ti.func
     def way(self, pairs: ti.template(), u, block, y, z, angle_i, angle_j):
-        """At most so far (m) any point of one grain has moved as the other sees it."""
+        """Upper bound on the displacement (m) of any point of one grain relative to the other."""
         return ti.abs(y) + ti.abs(z) + pairs.reach[u, block] * (ti.abs(angle_i) + ti.abs(angle_j))
 
     @ti.func
     def far(self, pairs: ti.template(), u, block, way, slid, angle_i, angle_j):
-        """What is not to exceed what a contact's grains may move, m."""
+        """The displacement (m) to compare with the limit `still`."""
         return way
 
     @ti.func
     def carried(self, to: ti.template(), names: ti.template(), pairs: ti.template(), u, block, moves: ti.template()):
-        """Write down contacts as they are after these moves; returns how far (m) they have slid, which is not known."""
+        """Write contacts as they are after these moves to `to`; returns zero for the slide (m), which is not known."""
         overlap, ny, nz, py, pz = self.heard(names, pairs, u, block)
         at, far_y, far_z = self.place(u), py + pairs.apart_y[u, block], pz + pairs.apart_z[u, block]
         uy = moves[0] - moves[2] * pz + moves[3] * far_z
@@ -120,7 +120,7 @@ class Rest:
 
     @ti.func
     def heard(self, names: ti.template(), pairs: ti.template(), u, block):
-        """What the rule said of a block of contacts, or of the saddles before them."""
+        """Stored overlaps, normals and points of a block of contacts or of their saddles."""
         return (
             ti.static(getattr(pairs, names[OVERLAP]))[u, block],
             ti.static(getattr(pairs, names[NORMAL_Y]))[u, block],
@@ -131,7 +131,7 @@ class Rest:
 
     @ti.func
     def note(self, g: ti.template(), pairs: ti.template(), w, i, j, u, p, c, d, dt):
-        """Take down contact p of grains i and j, and the saddle before it, as the rule sees them now."""
+        """Store contact p of grains i and j, and its saddle, as the rule has just given them."""
         still = self.still(g, pairs, w, i, j, u, p, c, d)
         turns = g.reach[w, i] * ti.abs(g.spin_now[w, i]) + g.reach[w, j] * ti.abs(g.spin_now[w, j])
         speed = ti.abs(g.now[0][w, i] - g.now[0][w, j]) + ti.abs(g.now[1][w, i] - g.now[1][w, j]) + turns
@@ -152,27 +152,27 @@ class Rest:
 
     @ti.func
     def remember(self, names: ti.template(), pairs: ti.template(), u, block, lane, c):
-        """Take down what the rule says of a contact or a saddle."""
+        """Store the elements of a contact or a saddle."""
         for name, element in ti.static(zip(names, self.elements, strict=True)):
             field = ti.static(getattr(pairs, name))
             field[u, block][lane] = c[element]
 
     @ti.func
     def forget(self, pairs: ti.template(), u, p, is_one):
-        """Contact p is another from now on, of which the rule is to be asked if it `is_one`."""
+        """Forget the stored contact p; the rule must be evaluated for it if the entry `is_one`."""
         block, lane = p // self.lanes, p % self.lanes
         pairs.was_overlap[u, block][lane] = -NEVER
         pairs.still[u, block][lane] = ti.select(is_one, 0.0, NEVER)
 
     @ti.func
     def still(self, g: ti.template(), pairs: ti.template(), w, i, j, u, p, c, d):
-        """How far (m) the grains of a contact that the rule has just seen may move before it is asked again."""
+        """How far (m) the grains of a contact may move until the rule must be evaluated again."""
         hardly = HARDLY * lesser(g.radius[w, i], g.radius[w, j])
-        # A rule may know that there is a gap, and not where.
+        # A rule may give a gap without a normal.
         still = ti.select(c[NORMAL_Y] == 0.0 and c[NORMAL_Z] == 0.0, 0.0 * hardly, hardly)
         watched = False
         if ti.static(self.bent):
             watched = pairs.saddle_first[u, p][0] >= 0.0
         still = ti.select(watched, still, greater(still, -c[OVERLAP]))
-        ended = d[OVERLAP] > 0.0 and d[HOLDS] == 0.0  # a saddle that counts a last time
+        ended = d[OVERLAP] > 0.0 and d[HOLDS] == 0.0  # a saddle that ends in this step and still counts
         return ti.select(c[HOLDS] == 1.0 and not ended, still, 0.0 * still)

@@ -1,11 +1,11 @@
-"""What rules have in common that see one contact of two grains, or of a grain and a wall."""
+"""The common part of rules with a single contact of two grains, or of a grain and a wall."""
 
 import taichi as ti
 
 
 @ti.data_oriented
 class Single:
-    """Nothing is sought, found again or lost: two that are near each other have their one contact."""
+    """A rule without search or loss of contacts: each neighbouring pair has exactly one contact."""
 
     farthest, bent, most = 1.0, False, 1
 
@@ -21,37 +21,37 @@ class Single:
 
     @ti.func
     def away(self, contacts: ti.template(), u, q, k):
-        """How far contact q of an old list of the same two is from the one that has been found: it is the same."""
+        """Distance from contact q of the old list to the pair's contact: zero, since it is the same."""
         return 0.0 * contacts.stiffness[u, 0][0]
 
     @ti.func
     def was_known(self, contacts: ti.template(), u, q):
-        """Whether contact q of an old list had not been lost sight of."""
+        """Whether contact q of the old list was not lost: always."""
         return True
 
     @ti.func
     def note(self, contacts: ti.template(), u, p, k):
-        """Nothing more is known of contact p."""
+        """Do nothing: contact p has no places to store."""
 
     @ti.func
     def places_for_pair(self, g: ti.template(), w, i, j, most):
-        """Room to leave for contacts of two grains."""
+        """Number of entries for the contacts of two grains."""
         return 1
 
     @ti.func
     def places_for_wall(self, g: ti.template(), w, i, most):
-        """Room to leave for contacts of a grain and a wall."""
+        """Number of entries for the contacts of a grain with a wall."""
         return 1
 
     @ti.func
     def free(self, contacts: ti.template(), u, p):
-        """Nothing: it is a contact."""
+        """Do nothing: every entry is a contact."""
 
     @ti.func
     def is_lost(self, contacts: ti.template(), u, p):
-        """Whether a contact has been lost sight of: none is."""
+        """Whether contact p is lost: never."""
         return False
 
     @ti.func
     def lose(self, contacts: ti.template(), u, p):
-        """Remember that it has."""
+        """Do nothing: no contact is lost."""

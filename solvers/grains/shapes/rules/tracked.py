@@ -1,4 +1,4 @@
-"""Contacts of two smooth outlines along their common normal, followed from step to step by Newton's method."""
+"""Contacts of two smooth outlines along their common normal, tracked from step to step by Newton's method."""
 
 from math import pi
 
@@ -10,26 +10,26 @@ from solvers.grains.shapes.tables import Tables, radius_of_curvature
 from solvers.machine.state import Axis, State
 
 LOOKS = 128  # points of an outline from which contacts are sought
-TRIES = 40  # steps to a contact from where it is sought
-LONGEST = 0.1  # rad by polar angle: the longest step along an outline
-FLATTEST = 1e-5  # of what two discs have: relative curvature, below which a step is not stretched further
-CLOSE = 1e-3  # rad between the tangents, and m of offset to m of the lesser smallest radius, of a contact in hand
-STEEPEST = 4.0  # by how much a distance by polar radius may exceed a gap
-DEEP = 0.5  # of the lesser smallest polar radius: an overlap that is none
-SETTLED, ALIKE = 1e-4, 0.05  # cells: the last step to a contact, and by what two ways to the same one may differ
-MINIMUM, SADDLE = 1.0, -1.0  # ways to turn
-NONE = -1.0  # a place that is none
-HALVINGS, NEARER = 6, 2  # on the way to a saddle, and steps to a place on j that is nearest to one on i
+TRIES = 40  # most Newton steps in seeking a contact
+LONGEST = 0.1  # rad of polar angle: the longest Newton step along an outline
+FLATTEST = 1e-5  # relative curvature, as a share of that of two discs, below which a Newton step is limited
+CLOSE = 1e-3  # rad between the tangents, and offset over the lesser smallest radius, up to which a contact holds
+STEEPEST = 4.0  # largest ratio of a distance by polar radius to the gap
+DEEP = 0.5  # of the lesser smallest polar radius: a deeper overlap is not a contact
+SETTLED, ALIKE = 1e-4, 0.05  # cells: last Newton step at convergence, and difference of two results that are the same
+MINIMUM, SADDLE = 1.0, -1.0  # signs of the Newton step, for what is sought
+NONE = -1.0  # no place
+HALVINGS, NEARER = 6, 2  # bisections towards a saddle, and Newton steps to the place on j nearest to one on i
 
-# Elements of what `contact` gives.
+# Elements of the result of `contact`.
 OVERLAP, NORMAL_Y, NORMAL_Z, POINT_Y, POINT_Z, PLACE_I, PLACE_J, HOLDS, CURVED_I, CURVED_J = range(10)
 
 
 @ti.data_oriented
 class Places:
-    """Where the contacts of two outlines are that are being sought: on i, on j, and the saddles before them.
+    """Scratch arrays for the contacts of two outlines being sought: places on i and j, and of the saddles before them.
 
-    Each of these is (rows, room): a row for each unit that seeks at the same time.
+    Each is (rows, room), with a row for each unit that may seek at the same time.
     """
 
     def __init__(self, arrays: State, rows: Axis, room: int):
@@ -40,17 +40,17 @@ class Places:
 
 @ti.data_oriented
 class Tracked:
-    """The gap between two outlines at one of its local minima, where both have one normal through both points.
+    """The gap between two outlines at one of its local minima, where both have a common normal through both points.
 
-    The overlap is −(p_i − p_j) · n with n the outward normal of j at p_j. It is stationary in both places, so errors of
-    the places count squared, and its gradient by the grains' positions and angles is −n and the torque of −n about each
-    centre: a force U'(ξ) n is conservative. The places are two numbers for each contact to remember. Newton's method
-    solves t_i × t_j = 0 and t_j · (p_i − p_j) = 0, turned the way that leads to a MINIMUM, or to a SADDLE: between two
-    minima, where the gap is stationary, too, and along the outlines largest.
+    The overlap is −(p_i − p_j) · n with n the outward normal of j at p_j. It is stationary in both places, so the
+    effect of errors in the places is of second order. Its gradient by the grains' positions and angles is −n and the
+    torque of −n about each centre, so a force U'(ξ) n is conservative. A contact is stored as its two places. Newton's
+    method solves t_i × t_j = 0 and t_j · (p_i − p_j) = 0, with the sign that leads to a MINIMUM, or to a SADDLE: a
+    stationary point between two minima, at which the gap is largest along the outlines.
 
-    Where outlines bend, minima and saddles come and go in twos, at equal gaps (Morse 1934). So the sum of U(ξ) over
-    the minima less that over the saddles has no jumps; it is the energy, and a minimum in a dent that is but a trifle
-    deeper than the saddle beside it counts for that trifle only.
+    With non-convex outlines minima and saddles appear and vanish in pairs, at equal gaps (Morse 1934). So the sum of
+    U(ξ) over the minima less that over the saddles is continuous. This is the energy; a minimum in a dent that is only
+    slightly deeper than the saddle next to it counts by the difference only.
     """
 
     def __init__(self, tables: Tables):
@@ -59,14 +59,14 @@ class Tracked:
 
     @ti.func
     def contact(self, moves: ti.template(), way, one: ti.template(), two: ti.template(), apart, place_i, place_j):
-        """The contact, or saddle, that was at these places; if it `moves`, one step of Newton's method further.
+        """The contact or saddle at these places or, if it `moves`, one Newton step further.
 
-        That step is short, so the outlines' points there follow from their derivatives here.
+        The step is short, so the outlines' points after it follow from their derivatives before it.
 
-        `one` and `two` are the outlines of i and j, `apart` the centre of i less that of j (m). Gives overlap ξ (m,
+        `one` and `two` are the outlines of i and j, `apart` the centre of i less that of j (m). Returns overlap ξ (m,
         negative: a gap), normal towards i (y, z), contact point from i's centre (y, z) m, halfway between the two
-        points, the new places, and 1 if this is what is sought: the normals face each other, the gap is stationary of
-        that kind, and Newton's method has come CLOSE.
+        points, the new places, whether it holds (0 or 1), and the radii of curvature (m) of i and j. It holds if the
+        normals are opposite, the gap is stationary of the kind sought, and Newton's method has come CLOSE.
         """
         between, centre = turned_back(two.turn, one.turn), turned_back(two.turn, apart)
         a, b, least = place_i, place_j, 1.0 + 0.0 * one.scale
@@ -83,7 +83,7 @@ class Tracked:
         facing = along.dot(tangent)
         smallest = lesser(one.scale * self.tables.smallest[one.shape], two.scale * self.tables.smallest[two.shape])
         close = ti.abs(gap.dot(tangent)) < CLOSE * smallest and ti.abs(along.cross(tangent)) < -CLOSE * facing
-        # The far sides of two grains have facing normals, too.
+        # The far sides of two grains have opposite normals, too.
         near = -gap.dot(normal) < DEEP * smallest
         holds = ti.select(close and near and least > 0.0, 1.0, 0.0)
         n, point = turned(two.turn, normal), turned(two.turn, p - 0.5 * gap)
@@ -93,7 +93,7 @@ class Tracked:
 
     @ti.func
     def seen(self, one: ti.template(), between, place):
-        """Point of the first outline, from its centre, and derivatives, in the second grain's frame."""
+        """Point of the first outline from its centre, and its derivatives, in the second grain's frame."""
         own = one.scale * self.tables.trace(one.shape, place)
         p = turned(between, ti.Vector([own[0], own[1]]))
         d = turned(between, ti.Vector([own[2], own[3]]))
@@ -102,7 +102,7 @@ class Tracked:
 
     @ti.func
     def step(self, way, first, second, centre):
-        """Changes of both places, and a number that is positive where what is sought is near by."""
+        """Newton step of both places, and a number that is positive if the curvature is that of the kind sought."""
         gap = centre + ti.Vector([first[0] - second[0], first[1] - second[1]])
         d, e = ti.Vector([first[2], first[3]]), ti.Vector([first[4], first[5]])
         g, h = ti.Vector([second[2], second[3]]), ti.Vector([second[4], second[5]])
@@ -110,13 +110,13 @@ class Tracked:
         # ∂/∂a and ∂/∂b of d × g and of gap · g.
         turn_a, turn_b = e.cross(g), d.cross(h)
         slide_a, slide_b = d.dot(g), gap.dot(h) - size_j
-        # Negative where 1/R_i + 1/R_j − ξ/(R_i R_j) > 0, with R the radii of curvature: there is a minimum.
+        # Negative if 1/R_i + 1/R_j − ξ/(R_i R_j) > 0, with R the radii of curvature: a minimum.
         bend = turn_a * slide_b - turn_b * slide_a
         along, turned_by = gap.dot(g), d.cross(g)
         longest = ti.static(LONGEST * self.tables.cells / (2.0 * pi))
         steep = greater(ti.abs(bend), self.flattest * size_i * size_j)
         change_a = within(way * (turned_by * slide_b - along * turn_b) / steep, longest)
-        # The overlap may exceed the radius of curvature of j; then j turns so much more.
+        # The overlap may exceed the radius of curvature of j; then the other equation gives the step on j.
         shallow = slide_b < -0.1 * size_j
         over = ti.select(shallow, along + slide_a * change_a, turned_by + turn_a * change_a)
         under = ti.select(shallow, slide_b, turn_b)
@@ -125,9 +125,9 @@ class Tracked:
 
     @ti.func
     def fall(self, one: ti.template(), two: ti.template(), apart, place_i, place_j):
-        """How the gap gets less along i at a place, the place on j nearest to it, and the gap there.
+        """Decrease of the gap along i at a place, the place on j nearest to it, and the gap there.
 
-        Fall and gap have the factor |t_j| (m per cell): their signs are of use.
+        Decrease and gap have the factor |t_j| (m per cell), since only their signs are used.
         """
         between, centre = turned_back(two.turn, one.turn), turned_back(two.turn, apart)
         first, b = self.seen(one, between, place_i), place_j
@@ -143,7 +143,7 @@ class Tracked:
     def saddle(self, one: ti.template(), two: ti.template(), apart, low_i, low_j, high_i, high_j):
         """The saddle between two minima, of which the one at `high` comes after that at `low` along i.
 
-        Halving what lies between them, uphill, leads near it (Bolzano), whatever the outlines do there.
+        Bisection on the sign of the gap's slope gets near it for any outlines; Newton's method does the rest.
         """
         wide = self.tables.wrapped(high_i - low_i)
         a, b, bottom, top = low_i, low_j, 0.0 * wide, wide
@@ -164,7 +164,7 @@ class Tracked:
 
     @ti.func
     def nearer(self, first, second, centre):
-        """By how much (cells) a place on j is to change to be nearest to that on i, by one step of Newton's method."""
+        """Newton step (cells) of a place on j towards the one nearest to the place on i."""
         gap = centre + ti.Vector([first[0] - second[0], first[1] - second[1]])
         g, h = ti.Vector([second[2], second[3]]), ti.Vector([second[4], second[5]])
         inverse = 1.0 / lesser(gap.dot(h) - g.norm_sqr(), -0.1 * g.norm_sqr())
@@ -172,16 +172,16 @@ class Tracked:
 
     @ti.func
     def scan(self, one: ti.template(), two: ti.template(), apart, skin, places: ti.template(), row):
-        """Find the contacts of a pair with a gap below `skin` (m); writes them to a row of `places`.
+        """Find the contacts of a pair with a gap below `skin` (m), and write them to a row of `places`.
 
-        Gives their number, at most as many as there is room for. They are sought from those of LOOKS points of either
-        outline at which the distance from the other, by polar radius, has a local minimum. They come in their order
-        along i, each with the saddle between it and the one before, or NONE.
+        Returns their number, at most the room there is. They are sought from those of LOOKS points on either outline at
+        which the distance from the other, by polar radius, has a local minimum. They are stored in their order along i,
+        each with the saddle between it and the previous one, or NONE.
         """
         found, points, stride = 0, ti.static(self.looks), ti.static(self.tables.cells // self.looks)
         convex = self.tables.convex[one.shape] * self.tables.convex[two.shape] > 0.0
         done = False
-        # Convex ones have but one contact, which is found from the line of their centres; else all round either.
+        # Two convex outlines have one contact, sought from the line of centres; else, or if that fails, all round both.
         for side in range(ti.select(convex, -1, 0), 2):
             swap = side == 1
             own, other = one, two
@@ -238,7 +238,7 @@ class Tracked:
 
     @ti.func
     def is_new(self, c, places: ti.template(), row, found):
-        """Whether this is a contact, is none of those that have been found, and there is room for it."""
+        """Whether c is a contact that has not been found yet, and there is room for it."""
         new, a, b = c[HOLDS] > 0.0 and found < places.i.shape[1], c[PLACE_I], c[PLACE_J]
         for k in range(found):
             if self.same(a, places.i[row, k], ALIKE) and self.same(b, places.j[row, k], ALIKE):
@@ -247,7 +247,7 @@ class Tracked:
 
     @ti.func
     def followed(self, way, one: ti.template(), two: ti.template(), apart, place_i, place_j):
-        """What Newton's method leads to from these places; it does not hold where it leads to nothing."""
+        """The contact or saddle to which Newton's method converges from these places; HOLDS is 0 if it does not."""
         a, b, settled = place_i, place_j, False
         c = ti.Vector([0.0 * one.scale for _ in ti.static(range(CURVED_J + 1))])
         for _ in range(TRIES):
@@ -262,30 +262,30 @@ class Tracked:
 
     @ti.func
     def way_from(self, a, b):
-        """How many cells it is from place a on an outline to b, the shorter way round."""
+        """Signed distance in cells from place a on an outline to b, the shorter way round."""
         return self.tables.wrapped(b - a + 0.5 * self.tables.cells) - 0.5 * self.tables.cells
 
     @ti.func
     def distance(self, a, b):
-        """How many cells two places on an outline are apart."""
+        """Distance in cells of two places on an outline."""
         return ti.abs(self.way_from(a, b))
 
     @ti.func
     def same(self, a, b, error):
-        """Whether two places on an outline differ by less than so many cells."""
+        """Whether two places on an outline differ by less than `error` cells."""
         return self.distance(a, b) < error
 
 
 @ti.func
 def curved(own, scale):
-    """Radius of curvature (m) of an outline with this point and derivatives."""
+    """Radius of curvature (m) of an outline from its derivatives at a point (`Tables.trace`)."""
     along = ti.Vector([own[2], own[3]]).norm()
     return radius_of_curvature(along * along * along, own[2] * own[5] - own[3] * own[4], scale)
 
 
 @ti.func
 def advanced(own, step):
-    """Point of an outline and derivatives (`Tables.trace`) a short step onwards, to the second order."""
+    """Point of an outline and its derivatives (`Tables.trace`) after a short step, to second order."""
     return ti.Vector(
         [
             own[0] + step * (own[2] + 0.5 * step * own[4]),

@@ -1,4 +1,4 @@
-"""Walls as an outline meets them: a segment by a direction and a distance, a corner by a point."""
+"""Walls for grains with outlines: a segment as a normal and a distance, a corner as a point."""
 
 import numpy as np
 import taichi as ti
@@ -15,9 +15,9 @@ FAR = 1e3  # of an outline's size
 class SeenWalls:
     """A tank's walls for grains with outlines.
 
-    An outline touches a segment where its point of contact projects onto it, and a corner where the contact's normal
-    lies between those of the corner's segments: together they count each contact once, without a jump from one to the
-    other. A segment has no end where the next one turns towards the grains, since that one stops them.
+    An outline touches a segment if its contact point projects onto it, and a corner if the contact's normal lies
+    between those of the corner's segments. So each contact counts once, without a jump from one feature to the other. A
+    segment does not end where the next one turns towards the grains, since that one stops them.
     """
 
     def __init__(self, arrays: State, walls: Walls):
@@ -26,7 +26,7 @@ class SeenWalls:
 
     @ti.func
     def facing(self, feature, shift: ti.template(), y, z):
-        """Of a segment, the unit normal (y, z) to the side that a point is on, and the point's distance (m) from it."""
+        """A segment's unit normal (y, z) towards the side of a point, and the point's distance (m) from it."""
         point = self.walls.from_start(feature, shift, y, z)
         ty, tz = self.walls.table[feature, ALONG_Y], self.walls.table[feature, ALONG_Z]
         distance, side = point[1] * ty - point[0] * tz, 1.0
@@ -51,7 +51,7 @@ class SeenWalls:
 
     @ti.func
     def corner_contact(self, g: ti.template(), tables: ti.template(), w, i, feature, shift: ti.template()):
-        """A corner in grain i by polar radius: overlap (m), normal, point from its centre (m), 1.0: it holds."""
+        """Contact of grain i with a corner, by polar radius: overlap (m), normal, point from the centre (m), 1."""
         away = self.walls.from_start(feature, shift, g.y[w, i], g.z[w, i])
         corner = -ti.Vector([ti.cast(away[0], g.real), ti.cast(away[1], g.real)])
         own = turned_back(g.turn(w, i), corner)
@@ -68,7 +68,7 @@ class SeenWalls:
 
 
 def _ends(walls: Walls) -> np.ndarray:
-    """From where to where along itself (features, 2) m each segment counts."""
+    """Bounds (features, 2) m, along each segment, between which it counts."""
     segments = walls.rows[: walls.segments]
     ends = np.zeros((walls.features, 2))
     for k, row in enumerate(segments):
