@@ -21,6 +21,7 @@ from solvers.grains.shapes.rules.lists import ShapedNeighbours
 from solvers.grains.state import Grains
 from solvers.machine import runtime
 from solvers.machine.errors import Unavailable
+from solvers.machine.quantity import parted
 from solvers.machine.runtime import Arrays
 from solvers.machine.units import Units
 from solvers.motion.afloat import Afloat, steps_an_interval
@@ -41,7 +42,6 @@ SKIN_OF_CONVEX = 0.1  # outlines, whose lists cost more to make
 RULES = {"continuous": Continuous, "nodes": Discrete, "area": Area}  # of contact between outlines
 SHORTER = 0.9  # of the limit on the step: how much shorter one may come to be while the grains move
 AT_REST = -1e9  # a time long before any motion starts
-LOAD = ("wall_y", "wall_z", "wall_moment")
 OF_CONTACTS = ("elastic", "contacts", "overlap")
 
 
@@ -74,9 +74,11 @@ class Simulation:
         self.steps, self.room = 0, 1
         self.origin = 0.0  # what the tank's motion takes for the time at step 0
         self.unkicked = 0  # the step that is the grains' first
-        self.observed, self.load = 0, dict.fromkeys(LOAD, np.zeros(worlds))  # when last, and what the load was
         self.number = np.tile(np.arange(count), (worlds, 1))  # the grains' own, in solver order
         self._build()
+        means = [quantity for quantity in self.observer.quantities if quantity.mean]
+        # When last, and what the means were
+        self.observed, self.means = 0, {mean.name: np.zeros((worlds, *mean.shape)) for mean in means}
         self.place(np.asarray(position, dtype=np.float64).reshape(worlds, count, 2), scene.velocity, scene.spin)
 
     def _build(self) -> None:
@@ -205,7 +207,7 @@ class Simulation:
             lists.expire()
 
     def observe(self) -> dict[str, np.ndarray]:
-        """Numbers of every world now, each (W,), named as in `Observer.NAMES`. Raises BadState from the watch.
+        """Numbers of every world now, (W, *shape) of each quantity by name. Raises BadState from the watch.
 
         The force on the tank is the mean since the last look; of grains that were just put where they are, that of now.
         """
@@ -228,20 +230,21 @@ class Simulation:
             touching = self._observe()
         finally:
             self.restore(before)
-        self.load = {name: load[name] for name in LOAD}
-        return rows | {name: touching[name] for name in OF_CONTACTS} | self.load
+        self.means = {name: load[name] for name in self.means}
+        return rows | {name: touching[name] for name in OF_CONTACTS} | self.means
 
     def _observe(self) -> dict[str, np.ndarray]:
         runtime.merge_repeats(self.scene.shapes is None)
         self.observer.observe(self.origin + self.time, max(self.steps - self.observed, 1) * self.dt)
-        rows = dict(zip(Observer.NAMES, self.observer.rows.to_numpy().T.astype(float), strict=True))
+        rows = parted(self.observer.rows.to_numpy().astype(float), self.observer.quantities)
         # Where no time has passed there is nothing to average over.
         ended = np.isin(self.clock.status.to_numpy(), (watch.WAITING, watch.CAPSIZED))
         still = ended | (self.observed == self.steps)
-        rows |= {name: np.where(still, self.load[name], rows[name]) for name in LOAD}
+        for name, before in self.means.items():
+            rows[name] = np.where(still.reshape(-1, *[1] * (before.ndim - 1)), before, rows[name])
         if self.afloat:
             rows |= self.frame.account()
-        self.observed, self.load = self.steps, {name: rows[name] for name in LOAD}
+        self.observed, self.means = self.steps, {name: rows[name] for name in self.means}
         watch.check_state(rows["overlap"], rows["escaped"].astype(int), self.time)
         return rows
 
@@ -345,14 +348,14 @@ class Simulation:
             "numbers": np.array(numbers),
             "origin": np.array(self.origin),
             **order,
-            **self.load,
+            **self.means,
             **self.arrays.read(),
         }
 
     def restore(self, state: dict[str, np.ndarray]) -> None:
         """Become what `state` was told of, by a simulation of the same scene."""
         self.steps, room, self.unkicked, self.observed, units, schedule = (int(number) for number in state["numbers"])
-        self.origin, self.load = float(state["origin"]), {name: np.array(state[name]) for name in LOAD}
+        self.origin, self.means = float(state["origin"]), {name: np.array(state[name]) for name in self.means}
         self.number, self.ordered = np.array(state["number"]), np.array(state["ordered"])
         if (room, units) != (self.room, self.units_a_world):
             self.arrays.release()

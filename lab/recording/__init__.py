@@ -8,7 +8,7 @@ writer on its file, with which HDF5 refuses it; whatever reads the recording in 
 mark, and so does HDF5's own `h5clear -s recording.h5`.
 """
 
-from lab.recording.layout import FILE_NAME, GRAIN_FRAMES, SERIES, WAVES
+from lab.recording.layout import FILE_NAME, WAVES
 from lab.recording.outlines import Outlines
 from lab.recording.reader import Recording, open_recording
 from lab.recording.writer import BUFFER_BYTES, FLUSH_EVERY, Recorder, new_recording, versions
@@ -17,8 +17,6 @@ __all__ = [
     "BUFFER_BYTES",
     "FILE_NAME",
     "FLUSH_EVERY",
-    "GRAIN_FRAMES",
-    "SERIES",
     "WAVES",
     "Outlines",
     "Recorder",

@@ -1,14 +1,19 @@
 """What is measured of a world as it runs: sums over its grains, taken in one order on any number of threads."""
 
+from types import SimpleNamespace
+
 import taichi as ti
 
+from solvers.grains import quantities
 from solvers.grains.contacts import Contacts
 from solvers.grains.mover import Mover
 from solvers.grains.neighbours import Neighbours
 from solvers.grains.state import Grains
+from solvers.machine.quantity import places
 from solvers.machine.runtime import Arrays
 from solvers.machine.units import Units
 from solvers.motion.frame import Frame
+from solvers.tank import quantities as tank
 from solvers.tank.walls import Walls
 
 CHUNK = 1024  # grains whose sum one thread takes
@@ -22,31 +27,9 @@ TOUCHING, DEEPEST, ELASTIC = range(3)
 class Observer:
     """One row of numbers a world: of the grains in the tank, whose spilled ones are only counted.
 
-    `wall_y`, `wall_z` (N) and `wall_moment` (N m, about the tank's origin) are the force of the cargo on the tank, with
-    its fixed grains and parts, in its own frame, averaged over the time since it was last asked for.
+    `quantities` says which, and `at` where in the row each begins. The force on the tank is also that on its fixed
+    grains and parts; its moment is about the tank's origin.
     """
-
-    NAMES = (
-        "pose_y",
-        "pose_z",
-        "pose_angle",
-        "rate_y",
-        "rate_z",
-        "rate_angle",
-        "centre_y",
-        "centre_z",
-        "kinetic",
-        "rotational",
-        "potential",
-        "elastic",
-        "contacts",
-        "overlap",
-        "escaped",
-        "spilled",
-        "wall_y",
-        "wall_z",
-        "wall_moment",
-    )
 
     def __init__(
         self,
@@ -63,7 +46,10 @@ class Observer:
         self.contacts, self.frame, self.mover = contacts, frame, mover
         self.exact, self.may_leave = arrays.exact, grains.may_leave
         self.chunks = -(-grains.mobile // CHUNK)
-        (self.rows,) = arrays.reals(1, (grains.worlds, len(self.NAMES)), arrays.exact, kept=False)
+        self.quantities = (*tank.SERIES, *quantities.SERIES, quantities.ESCAPED)
+        self.at = SimpleNamespace(**places(self.quantities))
+        columns = sum(quantity.width for quantity in self.quantities)
+        (self.rows,) = arrays.reals(1, (grains.worlds, columns), arrays.exact, kept=False)
         self.sums = arrays.reals(7, (grains.worlds, self.chunks), arrays.exact, kept=False)
         self.counted = arrays.reals(3, (units.count,), arrays.exact, kept=False)
 
@@ -135,12 +121,16 @@ class Observer:
         if ti.static(self.frame.moving):
             pose = self.frame.kinematics(w, time)
         height = pose[1] + ti.sin(pose[2]) * centre_y + ti.cos(pose[2]) * centre_z
-        for k in ti.static(range(6)):
-            self.rows[w, k] = pose[k]
-        self.rows[w, 6], self.rows[w, 7] = centre_y, centre_z
-        self.rows[w, 8], self.rows[w, 9] = sums[KINETIC], sums[ROTATIONAL]
-        self.rows[w, 10] = sums[MASS] * self.frame.gravity[0] * height
-        self.rows[w, 11], self.rows[w, 12], self.rows[w, 13] = contacts[ELASTIC], contacts[TOUCHING], contacts[DEEPEST]
-        self.rows[w, 14], self.rows[w, 15] = sums[ESCAPED], sums[SPILLED]
         for k in ti.static(range(3)):
-            self.rows[w, 16 + k] = load[k] / ti.cast(since, self.exact)
+            self.rows[w, self.at.pose + k] = pose[k]
+            self.rows[w, self.at.pose_rate + k] = pose[3 + k]
+            self.rows[w, self.at.wall_force + k] = load[k] / ti.cast(since, self.exact)
+        self.rows[w, self.at.centre_of_mass], self.rows[w, self.at.centre_of_mass + 1] = centre_y, centre_z
+        self.rows[w, self.at.kinetic] = sums[KINETIC]
+        self.rows[w, self.at.rotational] = sums[ROTATIONAL]
+        self.rows[w, self.at.potential] = sums[MASS] * self.frame.gravity[0] * height
+        self.rows[w, self.at.elastic] = contacts[ELASTIC]
+        self.rows[w, self.at.contacts] = contacts[TOUCHING]
+        self.rows[w, self.at.overlap] = contacts[DEEPEST]
+        self.rows[w, self.at.spilled] = sums[SPILLED]
+        self.rows[w, self.at.escaped] = sums[ESCAPED]

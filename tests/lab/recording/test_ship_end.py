@@ -130,8 +130,8 @@ def test_the_last_seconds_of_the_video_say_it(flooded, tmp_path):
 
 def test_the_window_says_it_for_as_long_as_it_is_so():
     rows = [
-        {"capsized": -1.0, "flooded": -1.0, "pose_angle": 0.2},
-        {"capsized": -1.0, "flooded": 3.0, "pose_angle": 0.7},
+        {"capsized": -1.0, "flooded": -1.0, "pose": [0.0, 0.0, 0.2]},
+        {"capsized": -1.0, "flooded": 3.0, "pose": [0.0, 0.0, 0.7]},
     ]
     shown = Shown()
     shown.making, shown.look = False, Look("kind", "earth")
