@@ -80,15 +80,15 @@ def create_tables(file: h5py.File, tables: Mapping[str, Iterable[Quantity]], siz
     for name, quantities in tables.items():
         group = file.create_group(name)
         for quantity, (shape, kind) in zip(quantities, rows_of(quantities, sizes).values(), strict=True):
-            _describe(_create(group, quantity.name, shape, kind), quantity)
-        checks = _create(file.require_group(CHECKS), name, (len(quantities),), "<u4")
+            _describe(_create(group, quantity.name, shape, kind, CHUNK_ROWS), quantity)
+        checks = _create(file.require_group(CHECKS), name, (len(quantities),), "<u4", CHUNK_ROWS // 4)
         checks.attrs[COLUMNS] = np.array([quantity.name for quantity in quantities], dtype="S")
         checks.attrs[STANDING] = 0
 
 
-def _create(group: h5py.Group, name: str, shape: tuple[int, ...], kind: str) -> h5py.Dataset:
-    """An empty data set with such rows, which can grow."""
-    rows = max(1, min(CHUNK_ROWS, CHUNK_BYTES // max(1, row_bytes(shape, kind))))
+def _create(group: h5py.Group, name: str, shape: tuple[int, ...], kind: str, most: int) -> h5py.Dataset:
+    """An empty data set with such rows, which can grow, at most so many of them a chunk."""
+    rows = max(1, min(most, CHUNK_BYTES // max(1, row_bytes(shape, kind))))
     chunk = (rows, *(max(1, size) for size in shape))
     room = (None, *(size or None for size in shape))  # HDF5 wants chunks no larger than the data set may become
     return group.create_dataset(name, (0, *shape), kind, maxshape=room, chunks=chunk)

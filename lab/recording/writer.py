@@ -251,6 +251,7 @@ class _Table:
         self.names = tuple(attribute_words(self._checks, COLUMNS))
         self._datasets: dict[str, h5py.Dataset] = {name: group[name] for name in self.names}
         self._rows: dict[str, list[np.ndarray]] = {name: [] for name in self.names}
+        self._row = {name: (data.shape[1:], data.dtype) for name, data in self._datasets.items()}  # h5py is slow to ask
         grow = (*self._datasets.values(), self._checks)
         self._row_bytes = sum(row_bytes(data.shape[1:], data.dtype) for data in grow)
         self._written = rows
@@ -278,10 +279,10 @@ class _Table:
         if values.keys() != self._datasets.keys():
             raise ValueError(f"a row has {sorted(values)}, the table {sorted(self._datasets)}")
         row = {}
-        for name, data in self._datasets.items():
-            row[name] = np.array(values[name], dtype=data.dtype)  # a copy: the caller may reuse its array
-            if row[name].shape != data.shape[1:]:
-                raise ValueError(f"{name} has the shape {row[name].shape}, the table {data.shape[1:]}")
+        for name, (shape, kind) in self._row.items():
+            row[name] = np.array(values[name], dtype=kind)  # a copy: the caller may reuse its array
+            if row[name].shape != shape:
+                raise ValueError(f"{name} has the shape {row[name].shape}, the table {shape}")
         for name, value in row.items():
             self._rows[name].append(value)
 
