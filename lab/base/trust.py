@@ -61,7 +61,10 @@ def attribute_words(data: h5py.Dataset, name: str) -> list[str]:
         raise Useless(
             f"{data.file.filename}: the attribute {name} of {data.name[1:]} is no text: do not use this file."
         )
-    return [_decoded(word) for word in np.atleast_1d(data.attrs[name]).tolist()]
+    words = np.empty(held.shape, held.dtype)
+    if words.size:
+        held.read(words)
+    return [_decoded(word) for word in np.atleast_1d(words).tolist()]
 
 
 def text(data: h5py.Dataset) -> str:

@@ -16,7 +16,7 @@ import h5py
 import numpy as np
 
 from lab import __version__
-from lab.base.errors import LabError
+from lab.base.errors import LabError, Useless
 from lab.base.trust import attribute_words, format_of
 from lab.preset.ship import axis_place, recorded_ship
 from lab.recording.checks import Checks, row_checks
@@ -121,7 +121,7 @@ class Recorder:
     of the frames that stand, those behind them stay until they are written over as they come again; flush_every:
     wall-clock seconds between writings, so what a killed run loses; buffer: bytes kept in memory at most. The runner
     keeps `wall_s` and `grain_steps` up to date; every flush writes them. Raises LabError when the folder cannot be
-    written, or when fewer rows are there than should stand.
+    written, or when fewer rows are there than should stand; Useless when one of those is damaged.
     """
 
     def __init__(
@@ -141,7 +141,7 @@ class Recorder:
             otherwise.callback(self._file.close)
             self.wall_s, self.grain_steps = float(self._file.attrs["wall_s"]), int(self._file.attrs["grain_steps"])
             if format_of(self._file) != FORMAT:
-                raise LabError(f"{self.path} was begun by another version: start the run anew.")
+                raise Useless(f"{self.path} was begun by another version: start the run anew.")
             standing = {"series": samples, "frames": frames}
             standing |= {"steering": 0} if "steering" in self._file else {}
             self._tables = {name: _Table(self._file, name, rows) for name, rows in standing.items()}
@@ -150,7 +150,7 @@ class Recorder:
                 raise LabError(f"{self.path} holds less than its checkpoint says: start the run anew.")
             for table in self._tables.values():
                 if damaged := table.damage():
-                    raise LabError(f"{self.path}: {damaged}, before its checkpoint: start the run anew.")
+                    raise Useless(f"{self.path}: {damaged}, before its checkpoint: start the run anew.")
             self._reserved = 0
             self._make_room()
             self._file.attrs.modify("status", _status("running"))
