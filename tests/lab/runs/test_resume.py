@@ -276,13 +276,12 @@ def test_a_run_with_damage_behind_its_checkpoint_goes_on_with_the_same_bits(whol
     ):
         resume_run(folder, video=False, quiet=True)
     (folder / "recording.h5").write_bytes(before)
-    with Recorder(folder, samples=rows, frames=kept[-1][1]) as longer:  # rows that will come again
-        with open_recording(folder) as found:
-            last = {name: values[-1] for name, values in found.series.items()}
-        longer.sample(last)
-        longer.sample(last)
-    with h5py.File(folder / "recording.h5", "r+") as file:
-        file.attrs.modify("status", np.array(b"running", "S500"))
+    with open_recording(folder) as found:
+        last = {name: values[-1] for name, values in found.series.items()}
+    longer = Recorder(folder, samples=rows, frames=kept[-1][1])
+    longer.sample(last)  # rows that will come again
+    longer.sample(last)
+    longer.close("running")
     flip(folder, "series/kinetic", rows + 1)
     resume_run(folder, video=False, quiet=True)
     assert_same(folder, whole)
