@@ -85,8 +85,8 @@ def seen(place: np.ndarray, time: float) -> Seen:
         "angle": still,
         "spin": still,
     }
-    names = "pose_y", "pose_z", "pose_angle", "centre_y", "centre_z", "kinetic", "contacts"
-    rows = {name: np.array([time if name.startswith("centre") else 0.0]) for name in names}
+    rows = {"pose": np.zeros((1, 3)), "centre_of_mass": np.full((1, 2), time)}
+    rows |= {name: np.zeros(1) for name in ("kinetic", "contacts")}
     return Seen(time, {**rows, "part": np.zeros((1, 0, 2))}, grains, PRESSING)
 
 
