@@ -6,10 +6,10 @@ from itertools import product
 
 import numpy as np
 
+from solvers.grains.bed.relaxing import AT_REST, BURSTING, lifting_overlap, relaxed
 from solvers.grains.integrators import INTEGRATORS
 from solvers.grains.laws import COHESION, NORMAL, ROLLING, TANGENTIAL
 from solvers.grains.materials import Interface, Material, interface, touching
-from solvers.grains.relaxing import AT_REST, BURSTING, lifting_overlap, relaxed
 from solvers.grains.shapes.given import Shapes
 from solvers.ship.vessel import Vessel
 from solvers.tank.parts import Part

@@ -11,6 +11,7 @@ from solvers.grains.pressing import Presser, Pressing
 from solvers.grains.renumbering import renumber_list
 from solvers.machine import runtime
 from solvers.machine.errors import Unavailable
+from solvers.machine.quantity import parted
 from solvers.machine.state import Axes, Axis, State
 from solvers.machine.units import Units
 from solvers.matters import MATTERS
@@ -32,7 +33,6 @@ SKIN = 0.05  # of the mean diameter: the fastest of 0.05 … 0.3, in settled and
 SKIN_OF_CONVEX = 0.1  # for convex outlines, whose lists cost more to build
 SHORTER = 0.9  # of the limit on the step at set-up: the lowest limit that `alter` accepts
 AT_REST = -1e9  # a time long before any motion starts
-LOAD = ("wall_y", "wall_z", "wall_moment")
 OF_CONTACTS = ("elastic", "contacts", "overlap")
 
 
@@ -67,9 +67,11 @@ class Simulation:
         self.steps, self.room, self.stretch = 0, 1, stretch
         self.origin = 0.0  # s, time of the tank's motion at step 0
         self.unkicked = 0  # the first step since the launch
-        self.observed, self.load = 0, dict.fromkeys(LOAD, np.zeros(worlds))  # step and load of the last `observe`
         self.number = np.tile(np.arange(count), (worlds, 1))  # the grains' own numbers, in solver order
         self._build()
+        means = [quantity for quantity in self.observer.quantities if quantity.mean]
+        # When last, and what the means were
+        self.observed, self.means = 0, {mean.name: np.zeros((worlds, *mean.shape)) for mean in means}
         self.place(np.asarray(position, dtype=np.float64).reshape(worlds, count, 2), scene.velocity, scene.spin)
 
     def _build(self) -> None:
@@ -182,7 +184,7 @@ class Simulation:
             lists.expire()
 
     def observe(self) -> dict[str, np.ndarray]:
-        """Quantities of every world now, each (W,), named as in `Observer.NAMES`. Raises BadState if a check fails.
+        """Quantities of every world now, (W, *shape) of each by name. Raises BadState if a check fails.
 
         The force on the tank is the mean since the last observation; right after grains were placed, the present one.
         """
@@ -205,19 +207,20 @@ class Simulation:
             touching = self._observe()
         finally:
             self.restore(before)
-        self.load = {name: load[name] for name in LOAD}
-        return rows | {name: touching[name] for name in OF_CONTACTS} | self.load
+        self.means = {name: load[name] for name in self.means}
+        return rows | {name: touching[name] for name in OF_CONTACTS} | self.means
 
     def _observe(self) -> dict[str, np.ndarray]:
         runtime.merge_repeats(self.scene.shapes is None)
         self.observer.observe(self.origin + self.time, max(self.steps - self.observed, 1) * self.dt)
-        rows = dict(zip(Observer.NAMES, self.observer.rows.to_numpy().T.astype(float), strict=True))
-        # Worlds in which no time has passed keep the last mean load.
+        rows = parted(self.observer.rows.to_numpy().astype(float), self.observer.quantities)
+        # Worlds in which no time has passed keep the last means.
         ended = np.isin(self.clock.status.to_numpy(), (watch.WAITING, watch.OVER))
         still = ended | (self.observed == self.steps)
-        rows |= {name: np.where(still, self.load[name], rows[name]) for name in LOAD}
+        for name, before in self.means.items():
+            rows[name] = np.where(still.reshape(-1, *[1] * (before.ndim - 1)), before, rows[name])
         rows |= self.carrier.account()
-        self.observed, self.load = self.steps, {name: rows[name] for name in LOAD}
+        self.observed, self.means = self.steps, {name: rows[name] for name in self.means}
         watch.check_state(rows["overlap"], rows["escaped"].astype(int), self.time)
         return rows
 
@@ -337,21 +340,22 @@ class Simulation:
             "numbers": np.array(numbers),
             "origin": np.array(self.origin),
             **order,
-            **self.load,
+            **self.means,
             **self.arrays.read(),
         }
 
     def axes(self) -> dict[str, Axes]:
         """The axes of all that `state` tells, by its names."""
         world, grain = Axis("world", self.scene.worlds), Axis("grain", self.scene.radius.shape[1])
-        own = {"numbers": (Axis("number", 6),), "origin": (), **dict.fromkeys(LOAD, (world,))}
+        means = {name: (world, *(Axis("component", size) for size in m.shape[1:])) for name, m in self.means.items()}
+        own = {"numbers": (Axis("number", 6),), "origin": (), **means}
         order = {"number": (world, grain), "ordered": (world, grain, Axis("direction", 2))}
         return own | order | self.arrays.axes()
 
     def restore(self, state: dict[str, np.ndarray]) -> None:
         """Restore what `state` returned in a simulation of the same scene."""
         self.steps, room, self.unkicked, self.observed, units, schedule = (int(number) for number in state["numbers"])
-        self.origin, self.load = float(state["origin"]), {name: np.array(state[name]) for name in LOAD}
+        self.origin, self.means = float(state["origin"]), {name: np.array(state[name]) for name in self.means}
         self.number, self.ordered = np.array(state["number"]), np.array(state["ordered"])
         if (room, units) != (self.room, self.units_a_world):
             self.arrays.release()

@@ -6,8 +6,8 @@ import numpy as np
 
 from lab.base.errors import LabError
 from lab.preset.schema import Resolved
+from solvers.grains.bed.sizes import apportion
 from solvers.grains.shapes.given import Shapes
-from solvers.grains.sizes import apportion
 from solvers.machine.errors import BadOutline
 
 STREAM = 2  # of the random numbers of a repeat, beside those of sizes and places and those of kinds

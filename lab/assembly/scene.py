@@ -13,9 +13,9 @@ from lab.base.errors import LabError
 from lab.preset.accuracy import LEVELS, check_forced
 from lab.preset.schema import Resolved
 from lab.preset.units import show
-from solvers.grains.filling import NONE_FIXED, DoesNotFit, count_for_depth, headroom, lattice, start_positions
+from solvers.grains.bed.filling import NONE_FIXED, DoesNotFit, count_for_depth, headroom, lattice, start_positions
+from solvers.grains.bed.sizes import Sizes
 from solvers.grains.shapes.given import Shapes
-from solvers.grains.sizes import Sizes
 from solvers.motion.steered import Steered
 from solvers.scene import Scene
 from solvers.ship.vessel import Vessel

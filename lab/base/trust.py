@@ -16,7 +16,7 @@ import numpy as np
 from lab.base.errors import Useless
 from lab.base.memory import SHARE, machine_memory
 
-GROUPS = ("preset", "grains", "tank", "shapes", "series", "frames", "steering")
+GROUPS = ("preset", "grains", "tank", "shapes", "series", "frames", "steering", "checks")
 DEEPER = ("tank/parts",)
 ATTRIBUTES = ("format", "preset", "status", "created", "versions", "machine", "step", "wall_s", "grain_steps")
 TABLES = ("video", "kinds", "shapes", "ship", "water", "waves", "run", "contact", "motion", "record", "parts")
@@ -46,17 +46,33 @@ def format_of(file: h5py.File) -> str:
     """What a file says that it is. Raises Useless as `check_recording`."""
     if "format" in file.attrs:
         _check_attribute(file, "format")
-    return str(file.attrs.get("format"))
+    return str(_decoded(file.attrs.get("format")))
 
 
 def attributes(file: h5py.File) -> dict[str, object]:
-    """The attributes that a recording has, by name, whatever else the file has."""
-    return {name: file.attrs[name] for name in ATTRIBUTES if name in file.attrs}
+    """The attributes that a recording has, by name, whatever else the file has; texts as such."""
+    found = {name: file.attrs[name] for name in ATTRIBUTES if name in file.attrs}
+    return {name: _decoded(value) for name, value in found.items()}
+
+
+def attribute_words(data: h5py.Dataset, name: str) -> list[str]:
+    """The text, or the texts, of an attribute of a data set. Raises KeyError, Useless or ValueError."""
+    held = data.attrs.get_id(name)
+    if len(held.shape) > 1 or held.dtype.kind != "S" or _bytes(held.shape, held.dtype) > LONGEST_ATTRIBUTE:
+        raise Useless(
+            f"{data.file.filename}: the attribute {name} of {data.name[1:]} is no text: do not use this file."
+        )
+    words = np.empty(held.shape, held.dtype)
+    if words.size:
+        held.read(words)
+    return [_decoded(word) for word in np.atleast_1d(words).tolist()]
 
 
 def text(data: h5py.Dataset) -> str:
     """A data set that is one text. Raises Useless where it is longer than any preset."""
-    found = data.asstr()[()]
+    if h5py.check_string_dtype(data.dtype) is None:
+        raise ValueError(f"{data.name[1:]} is no text")
+    found = _decoded(data[()] if data.shape == () else data[0])
     if len(found) > LONGEST_TEXT:
         raise Useless(f"{data.file.filename}: {data.name[1:]} is longer than any preset: do not use this file.")
     return found
@@ -141,10 +157,14 @@ def _members(file: h5py.File, name: str) -> Iterator[tuple[str, h5py.Group | h5p
 
 
 def _linked(file: h5py.File, name: str) -> h5py.Group | h5py.Dataset:
-    """What lies in this very file under that name."""
-    if not isinstance(file.get(name, getlink=True), h5py.HardLink):
-        raise Useless(f"{file.filename}: {name} is a link, maybe to another file: do not use this file.")
-    return file[name]
+    """What lies in this very file under that name. Raises Useless where that is a link, or damaged."""
+    try:
+        is_here = isinstance(file.get(name, getlink=True), h5py.HardLink)
+        if is_here:
+            return file[name]
+    except (OSError, RuntimeError, KeyError) as error:
+        raise Useless(f"{file.filename}: {name} is damaged: record the run again.") from error
+    raise Useless(f"{file.filename}: {name} is a link, maybe to another file: do not use this file.")
 
 
 def _checked_bytes(file: h5py.File, data: h5py.Dataset) -> int:
@@ -155,7 +175,7 @@ def _checked_bytes(file: h5py.File, data: h5py.Dataset) -> int:
     filters = {settings.get_filter(k)[0] for k in range(settings.get_nfilters())}
     if not filters <= set(SAME_SIZE):
         raise Useless(f"{where} is compressed, which the lab never does: undo it with h5repack -f NONE.")
-    is_text = data.shape == () and h5py.check_string_dtype(data.dtype) is not None
+    is_text = data.shape in ((), (1,)) and h5py.check_string_dtype(data.dtype) is not None
     if not is_text and data.dtype.kind not in "fiuS":
         raise Useless(f"{where} has values of another kind than the lab writes: do not use this file.")
     chunk = _bytes(data.chunks, data.dtype) if data.chunks else 0
@@ -176,6 +196,11 @@ def _bytes(shape: tuple[int, ...], kind: np.dtype) -> int:
     for length in shape:
         size *= int(length)
     return size
+
+
+def _decoded(value: object) -> object:
+    """A text of bytes as such, anything else as it is; what is cut in the middle of a letter loses that."""
+    return value.decode(errors="ignore") if isinstance(value, bytes) else value
 
 
 def _size(count: int) -> str:

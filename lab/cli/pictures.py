@@ -67,6 +67,7 @@ def _pixels(text: str) -> tuple[int, int]:
 @click.option("--height", type=int, help="Pixels.")
 @click.option("--world", type=int, help="One of the repeats, from 0.  [default: side by side]")
 @click.option("--png/--mp4", default=False, help="Single pictures, or a video (the default).")
+@click.option("--sound", is_flag=True, help="Of a damaged recording: only what lies before the damage.")
 def render(recording: Path, out: Path | None, png: bool, **look: object) -> None:
     """Paint the video of RECORDING (a recording.h5 or the folder of a run) anew.
 

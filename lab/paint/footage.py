@@ -61,7 +61,7 @@ class Footage:
         return self.sea
 
     def grains(self, name: str, frame: int, world: int) -> np.ndarray:
-        """What each grain has in a frame: (n,) or (n, 2) of one of `recording.GRAIN_FRAMES`."""
+        """What each grain has in a frame: (n,) or (n, 2) of a quantity."""
         if self._read.get(name, (None,))[0] != frame:
             self._read[name] = frame, self._frames[name][frame].astype(float)
         return self._read[name][1][world]
@@ -133,7 +133,7 @@ class Bed:
 
 
 @contextmanager
-def open_footage(path: Path | str) -> Iterator[Footage]:
-    """Open a recording, given as its file or its run's folder; raises LabError (see Recording and Footage)."""
-    with open_recording(path) as recording:
+def open_footage(path: Path | str, sound: bool = False) -> Iterator[Footage]:
+    """Open a recording, its file or its run's folder, or what is `sound` of it; raises LabError (see Recording)."""
+    with open_recording(path, sound=sound) as recording:
         yield Footage(recording)

@@ -39,16 +39,18 @@ def render_recording(
     speed: float | None = None,
     world: int | None = None,
     png: bool = False,
+    sound: bool = False,
     progress: Progress | None = None,
 ) -> Path:
     """Film a recording (its file or its run's folder) and return what was written.
 
     out: an .mp4 file (default: video.mp4 beside the recording), or with png a folder of PNG files
     (pictures). What is not given comes from the preset's [video]. world: one bed, from 0; None: up
-    to six side by side. progress(done, of) is called after each picture. Raises LabError.
+    to six side by side. sound: only what lies before the first damaged row.
+    progress(done, of) is called after each picture. Raises LabError.
     """
     initialise()
-    with open_footage(path) as footage:
+    with open_footage(path, sound) as footage:
         beds = choose_beds(footage, world)
         look = choose_look(footage, colour=colour, frame=frame, width=width, height=height, speed=speed)
         target = _target(path, out, "pictures" if png else "video.mp4")

@@ -8,7 +8,7 @@ from lab.base.errors import LabError
 from lab.preset.outline import Point
 from lab.preset.tables import read_table
 from lab.preset.units import show
-from solvers.grains.filling import clear_of_walls
+from solvers.grains.bed.filling import clear_of_walls
 
 NEEDED = ("y", "z", "radius")
 MOTION = ("vy", "vz", "omega")

@@ -1,13 +1,14 @@
 """The outlines of irregular grains in a recording: their Fourier descriptors, and which outline each grain has."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
-import h5py
 import numpy as np
 
 from solvers.grains.shapes.contour import Contour
 
 GROUP = "shapes"
+TABLES = ("radius", "descriptors", "phases", "kind", "which")
 
 
 @dataclass(frozen=True)
@@ -41,12 +42,11 @@ def outline_tables(outlines: Outlines) -> dict[str, np.ndarray]:
     }
 
 
-def read_outlines(group: h5py.Group) -> Outlines:
-    """The outlines that `outline_tables` has made tables of. Raises KeyError or ValueError where they are none."""
-    tables = {name: group[name][:] for name in ("radius", "descriptors", "phases", "kind", "which")}
+def read_outlines(tables: Mapping[str, np.ndarray]) -> Outlines:
+    """The outlines of which `outline_tables` has made these tables. Raises ValueError where they are none."""
     kind, which = tables["kind"], tables["which"]
     if len(kind) != len(tables["radius"]) or which.size == 0 or not 0 <= which.min() <= which.max() < len(kind):
-        raise ValueError(f"{group.name} is not what the lab writes there")
+        raise ValueError(f"{GROUP} is not what the lab writes there")
     rows = zip(tables["radius"], tables["descriptors"], tables["phases"], strict=True)
     return Outlines(tuple(Contour(float(r), d[: _needed(d)], p[: _needed(d)]) for r, d, p in rows), kind, which)
 

@@ -1,33 +1,38 @@
 """What a recording holds, in the words of errors about what it does not."""
 
-from lab.recording.layout import GRAIN_FRAMES, SERIES, SHIP_SERIES
+from lab.recording.layout import WAVES, frames_of, series_of
+from solvers.machine.quantity import Quantity
+
+SAID = {  # of an axis: what it counts, and the key that makes it so
+    "world": "beds (run.repeats)",
+    "part": "parts (parts.NAME)",
+    "grain": "grains (grains.count)",
+}
 
 
 def recorded_by(name: object) -> str:
     """The rest of a sentence on what is not there: the key that would have it recorded, if one does."""
-    if name in SHIP_SERIES:
-        return "; a preset with a table [ship] records it."
-    if name == "waves":
+    if name == WAVES.name:
         return "; `cargolab view` records it, of a ship in waves."
-    if name in SERIES:
+    if name in _names(series_of(afloat=False)):
         return "; it is in the series (record.series_rate)."
-    if name in GRAIN_FRAMES:
+    if name in _names(series_of(afloat=True)):
+        return "; a preset with a table [ship] records it."
+    if name in _names(frames_of()):
         return "; it is in the frames (record.picture_rate)."
     return "; nothing records that."
 
 
-def axes(name: str, shape: tuple[int, ...]) -> str:
-    """The size of a data set in words, with the keys that make it so."""
-    table, _, column = name.rpartition("/")
-    rate = "record.series_rate" if table == "series" else "record.picture_rate"
-    words = [f"{shape[0]} times ({rate}, run.duration)"]
-    if len(shape) > 1 and column != "waves":
-        words.append(f"{shape[1]} beds (run.repeats)")
-    if len(shape) > 2 and table == "frames":
-        words.append(f"{shape[2]} parts (parts.NAME)" if column == "part" else f"{shape[2]} grains (grains.count)")
-        words = words[:2] if column == "pose" else words
-    rest = shape[len(words) :]
-    return " × ".join([*words, *map(str, rest)])
+def _names(quantities: tuple[Quantity, ...]) -> set[str]:
+    return {quantity.name for quantity in quantities}
+
+
+def axes(name: str, quantity: Quantity, shape: tuple[int, ...]) -> str:
+    """The size of a data set of a quantity in words, with the keys that make it so."""
+    rate = "record.series_rate" if name.startswith("series/") else "record.picture_rate"
+    said = SAID | {"time": f"times ({rate}, run.duration)"}
+    words = (f"{size} {said.get(axis, '')}".strip() for size, axis in zip(shape, quantity.axes, strict=True))
+    return " × ".join(words)
 
 
 def indexed(index: object) -> str:

@@ -16,9 +16,23 @@ import h5py
 import numpy as np
 
 from lab import __version__
-from lab.base.errors import LabError
+from lab.base.errors import LabError, Useless
+from lab.base.trust import attribute_words, format_of
 from lab.preset.ship import axis_place, recorded_ship
-from lab.recording.layout import ADDED, FILE_NAME, FORMAT, STEERING, create_table, row_bytes, sentence, table_shapes
+from lab.recording.checks import Checks, row_checks
+from lab.recording.layout import (
+    CHECKS,
+    COLUMNS,
+    FILE_NAME,
+    FORMAT,
+    STANDING,
+    create_tables,
+    fixed_text,
+    row_bytes,
+    sentence,
+    store,
+    tables_of,
+)
 from lab.recording.opening import create, end_of, open_to_add
 from lab.recording.outlines import GROUP, Outlines, outline_tables
 
@@ -63,12 +77,12 @@ def new_recording(
     radius, parts = np.asarray(radius, dtype=float), parts or {}
     tables = outline_tables(shapes) if shapes else {}
     attributes = {
-        "format": FORMAT,
-        "preset": preset,
+        "format": fixed_text(FORMAT),
+        "preset": fixed_text(preset),
         "status": _status("running"),
-        "created": datetime.now().astimezone().isoformat(timespec="seconds"),
-        "versions": json.dumps(versions()),
-        "machine": json.dumps({**_machine(), **(machine or {})}),
+        "created": fixed_text(datetime.now().astimezone().isoformat(timespec="seconds")),
+        "versions": fixed_text(json.dumps(versions())),
+        "machine": fixed_text(json.dumps({**_machine(), **(machine or {})})),
         "step": float(step),
         "wall_s": 0.0,
         "grain_steps": 0,
@@ -82,23 +96,20 @@ def new_recording(
             tables_bytes = sum(table.nbytes for table in tables.values())
             _reserve(file, radius.nbytes + tables_bytes + len(given) + SPARE_BYTES)
             file.attrs.update(attributes)
-            file["preset/given"] = given
-            file["preset/resolved"] = json.dumps(resolved)
-            file["grains/radius"] = radius
-            file["grains/kind"] = np.zeros(radius.shape, dtype="u1") if kind is None else np.asarray(kind, dtype="u1")
-            file["tank/outline"] = np.asarray(outline, dtype=float)
-            file["tank/fixed"] = np.asarray(fixed, dtype=float).reshape(-1, 3)
-            file["tank/open_edges"] = np.asarray(open_edges, dtype=int)
-            group = file.create_group("tank/parts", track_order=True)
+            store(file, "preset/given", fixed_text(given)[None])
+            store(file, "preset/resolved", fixed_text(json.dumps(resolved))[None])
+            store(file, "grains/radius", radius)
+            store(file, "grains/kind", np.zeros(radius.shape, "u1") if kind is None else np.asarray(kind, dtype="u1"))
+            store(file, "tank/outline", np.asarray(outline, dtype=float))
+            store(file, "tank/fixed", np.asarray(fixed, dtype=float).reshape(-1, 3))
+            store(file, "tank/open_edges", np.asarray(open_edges, dtype=int))
+            file.create_group("tank/parts", track_order=True)
             for name, line in parts.items():
-                group[name] = np.asarray(line, dtype=float)
+                store(file, f"tank/parts/{name}", np.asarray(line, dtype=float))
             for name, table in tables.items():
-                file[f"{GROUP}/{name}"] = table
-            afloat = bool(resolved.get("ship"))
-            for name, rows in table_shapes(*radius.shape, len(parts), afloat, afloat and steered).items():
-                create_table(file.create_group(name), rows)
-            if steered:
-                create_table(file.create_group("steering"), STEERING)
+                store(file, f"{GROUP}/{name}", table)
+            sizes = dict(zip(("world", "grain"), radius.shape, strict=True)) | {"part": len(parts)}
+            create_tables(file, tables_of(bool(resolved.get("ship")), steered), sizes)
         _publish(path)
     return path
 
@@ -110,7 +121,7 @@ class Recorder:
     of the frames that stand, those behind them stay until they are written over as they come again; flush_every:
     wall-clock seconds between writings, so what a killed run loses; buffer: bytes kept in memory at most. The runner
     keeps `wall_s` and `grain_steps` up to date; every flush writes them. Raises LabError when the folder cannot be
-    written, or when fewer rows are there than should stand.
+    written, or when fewer rows are there than should stand; Useless when one of those is damaged.
     """
 
     def __init__(
@@ -129,33 +140,38 @@ class Recorder:
             self._file = open_to_add(self.path)
             otherwise.callback(self._file.close)
             self.wall_s, self.grain_steps = float(self._file.attrs["wall_s"]), int(self._file.attrs["grain_steps"])
-            if "capsized" in self._file["series"] and not ADDED.keys() <= self._file["series"].keys():
-                raise LabError(f"{self.path} was begun by an earlier version, which recorded less: start the run anew.")
+            if format_of(self._file) != FORMAT:
+                raise Useless(f"{self.path} was begun by another version: start the run anew.")
             standing = {"series": samples, "frames": frames}
             standing |= {"steering": 0} if "steering" in self._file else {}
-            self._tables = {name: _Table(self._file[name], rows) for name, rows in standing.items()}
+            self._tables = {name: _Table(self._file, name, rows) for name, rows in standing.items()}
             self._spare = SPARE_BYTES + sum(table.chunk_bytes for table in self._tables.values())
             if any(table.short for table in self._tables.values()):
                 raise LabError(f"{self.path} holds less than its checkpoint says: start the run anew.")
+            for table in self._tables.values():
+                if damaged := table.damage():
+                    raise Useless(f"{self.path}: {damaged}, before its checkpoint: start the run anew.")
             self._reserved = 0
             self._make_room()
             self._file.attrs.modify("status", _status("running"))
             otherwise.pop_all()  # all is well: it stays open
 
     def sample(self, values: Mapping[str, object]) -> None:
-        """Add a row to the series: "time" (s) and every name of SERIES, (W, *shape) each."""
+        """Add a row to the series: "time" (s) and every other quantity of it, (W, *shape) each."""
         self._add("series", values)
 
     def frame(self, values: Mapping[str, object]) -> None:
-        """Add a picture frame: "time" (s), "pose" (W, 3), "part" (W, P, 2) m and GRAIN_FRAMES, (W, n, *shape) each.
-
-        Of a ship under a hand also "waves" (3,).
-        """
+        """Add a picture frame: "time" (s) and every other quantity of it, one for each that has it."""
         self._add("frames", values)
 
     def steer(self, time: float, name: str, value: float) -> None:
         """Add what a hand did: it set a control to a value (SI) at a time (s)."""
         self._add("steering", {"time": time, "name": name.encode(), "value": value})
+
+    @property
+    def series(self) -> tuple[str, ...]:
+        """Names of what the series hold, time first."""
+        return self._tables["series"].names
 
     @property
     def rows(self) -> tuple[int, int]:
@@ -225,18 +241,31 @@ class Recorder:
 
 
 class _Table:
-    """Data sets that grow together along their first axis, and the rows not yet written.
+    """Data sets that grow together along their first axis, their checksums, and the rows not yet written.
 
     The first `rows` rows of the data sets stand; `short` says whether there are so many.
     """
 
-    def __init__(self, group: h5py.Group, rows: int) -> None:
-        self._datasets: dict[str, h5py.Dataset] = {name: group[name] for name in group}
-        self._rows: dict[str, list[np.ndarray]] = {name: [] for name in group}
-        self._row_bytes = sum(row_bytes(data.shape[1:], data.dtype) for data in self._datasets.values())
+    def __init__(self, file: h5py.File, table: str, rows: int) -> None:
+        group, self._checks = file[table], file[f"{CHECKS}/{table}"]
+        self.names = tuple(attribute_words(self._checks, COLUMNS))
+        self._datasets: dict[str, h5py.Dataset] = {name: group[name] for name in self.names}
+        self._rows: dict[str, list[np.ndarray]] = {name: [] for name in self.names}
+        self._row = {name: (data.shape[1:], data.dtype) for name, data in self._datasets.items()}  # h5py is slow to ask
+        grow = (*self._datasets.values(), self._checks)
+        self._row_bytes = sum(row_bytes(data.shape[1:], data.dtype) for data in grow)
         self._written = rows
-        self.chunk_bytes = sum(row_bytes(data.chunks, data.dtype) for data in self._datasets.values())
-        self.short = any(len(data) < rows for data in self._datasets.values())
+        self.chunk_bytes = sum(row_bytes(data.chunks, data.dtype) for data in grow)
+        self.short = any(len(data) < rows for data in grow)
+
+    def damage(self) -> str:
+        """What is damaged of the rows that stand, in words; empty where nothing is."""
+        checks = Checks(self._checks)
+        for data in self._datasets.values():
+            row = checks.first_bad(data, 0, self._written)
+            if row < self._written:
+                return f"{data.name[1:]} is damaged from row {row} of {self._written}"
+        return ""
 
     @property
     def rows(self) -> int:
@@ -250,24 +279,31 @@ class _Table:
         if values.keys() != self._datasets.keys():
             raise ValueError(f"a row has {sorted(values)}, the table {sorted(self._datasets)}")
         row = {}
-        for name, data in self._datasets.items():
-            row[name] = np.array(values[name], dtype=data.dtype)  # a copy: the caller may reuse its array
-            if row[name].shape != data.shape[1:]:
-                raise ValueError(f"{name} has the shape {row[name].shape}, the table {data.shape[1:]}")
+        for name, (shape, kind) in self._row.items():
+            row[name] = np.array(values[name], dtype=kind)  # a copy: the caller may reuse its array
+            if row[name].shape != shape:
+                raise ValueError(f"{name} has the shape {row[name].shape}, the table {shape}")
         for name, value in row.items():
             self._rows[name].append(value)
 
     def write(self) -> None:
         if not self._rows["time"]:
             return
-        end = self.rows
+        end, checks = self.rows, []
         for name, data in self._datasets.items():
-            if len(data) < end:
-                data.resize(end, axis=0)
-            data[self._written : end] = np.stack(self._rows[name])
+            values = np.stack(self._rows[name])
+            checks.append(row_checks(values))
+            self._put(data, end, values)
+        self._put(self._checks, end, np.stack(checks, axis=1))
+        self._checks.attrs.modify(STANDING, end)
         self._written = end
         for rows in self._rows.values():
             rows.clear()
+
+    def _put(self, data: h5py.Dataset, end: int, values: np.ndarray) -> None:
+        if len(data) < end:
+            data.resize(end, axis=0)
+        data[self._written : end] = values
 
 
 def _status(text: str) -> np.ndarray:
@@ -327,12 +363,12 @@ def versions() -> dict[str, str]:
 
 def _reference(resolved: Mapping) -> dict[str, object]:
     """What point the poses are of, and of a ship her axis, of which sway and heave are told: see `lab.preset.ship`."""
-    found = {"pose_is_of": "the origin of the tank's axes"}
+    found = {"pose_is_of": fixed_text("the origin of the tank's axes")}
     if resolved.get("ship"):
         ship = recorded_ship(resolved)
         found["ship_axis"] = np.array(ship.about)
         found["ship_axis_in_tank"] = np.subtract(ship.about, ship.hold)
-        found["sway_and_heave_are_of"] = f"the ship's axis, {axis_place(ship)}"
+        found["sway_and_heave_are_of"] = fixed_text(f"the ship's axis, {axis_place(ship)}")
     return found
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from xml.etree import ElementTree as Xml
 
 from lab.base.errors import LabError
-from lab.recording import GRAIN_FRAMES, Recording
+from lab.recording import Recording
 
 KINDS = {1: "Scalar", 2: "Vector"}  # by numbers a point
 
@@ -46,9 +46,9 @@ def _grains(recording: Recording, world: int, frame: int, time: float) -> Xml.El
     _add(grid, "Topology", TopologyType="Polyvertex", NumberOfElements=count, NodesPerElement=1)
     _add_slab(_add(grid, "Geometry", GeometryType="XY"), recording, "frames/position", (frame, world))
     _add_slab(_add_values(grid, "radius", 1), recording, "grains/radius", (world,))
-    for name, shape in GRAIN_FRAMES.items():
-        if name != "position":
-            _add_slab(_add_values(grid, name, 2 if shape else 1), recording, f"frames/{name}", (frame, world))
+    for name, quantity in recording.frames.quantities.items():
+        if quantity.per == "grain" and name != "position":
+            _add_slab(_add_values(grid, name, quantity.width), recording, f"frames/{name}", (frame, world))
     return grid
 
 

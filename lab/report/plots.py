@@ -1,11 +1,13 @@
 """The figures of a run, as they would stand in a paper: mean over the worlds, their spread as a band.
 
 A new figure is a function `(recording, values) -> Figure | None` and a line in FIGURES; None where
-it does not apply. Import this module only where figures are drawn: Matplotlib is slow to load.
+it does not apply. A quantity of the series that says `plot` is drawn against time without more.
+Import this module only where figures are drawn: Matplotlib is slow to load.
 """
 
 import textwrap
 from collections.abc import Mapping
+from functools import partial
 from pathlib import Path
 
 import matplotlib
@@ -36,6 +38,7 @@ from lab.preset.ship import axis_motion, axis_place, recorded_ship
 from lab.recording import Recording
 from lab.recording.ship_end import End, ends
 from lab.report.numbers import number
+from solvers.machine.quantity import Quantity
 
 # Okabe and Ito's colours, told apart by colour-blind readers as well.
 BLUE, VERMILION, GREEN, GREY = "#0072B2", "#D55E00", "#009E73", "#777777"
@@ -63,6 +66,7 @@ POINTS = 1500  # of a curve; more cannot be seen
 PERIODS = 4  # shown close up
 MARGIN = 0.02  # of the time shown: what is left behind the loss of a ship
 TITLE = 88  # letters in a line
+AXIS = 36  # letters in a line beside an axis
 LEAST_PORTRAIT = 20  # samples
 HIGHEST_ROLL = 3.0  # Hz
 QUIETEST = 1e-4  # of the largest peak: where a spectrum's scale begins
@@ -78,14 +82,32 @@ DRIVE = {
 }
 
 
+def quantity_figure(quantity: Quantity, recording: Recording, _values: Mapping[str, Value]) -> Figure:
+    """A quantity of the series against time, a panel for each component."""
+    time, values = recording.series["time"], recording.series[quantity.name]
+    figure, panels = _figure(recording, heights=(1,) * quantity.width)
+    for k, (axes, unit) in enumerate(zip(panels[:, 0], quantity.units, strict=True)):
+        _band(axes, time, values[..., k] if quantity.components else values, BLUE)
+        said = quantity.components[k] if quantity.components else textwrap.fill(quantity.label, AXIS)
+        axes.set_ylabel(said if unit == "1" else f"{said} ({unit})")
+    panels[-1, 0].set_xlabel("time (s)")
+    panels[-1, 0].set_xlim(time[0], time[-1])
+    if quantity.components:
+        panels[0, 0].set_title(quantity.label)
+    return figure
+
+
 def write_plots(recording: Recording, values: Mapping[str, Value], folder: Path | str) -> dict[str, Path]:
     """Draw every figure that applies as PNG in `folder`; returns the files by name.
 
     Raises LabError when the folder cannot be written.
     """
-    drawn = {}
+    drawn, figures = {}, dict(FIGURES)
+    for quantity in recording.series.quantities.values():
+        if quantity.plot:
+            figures[quantity.name] = partial(quantity_figure, quantity)
     with matplotlib.rc_context(STYLE):
-        for name, draw in FIGURES.items():
+        for name, draw in figures.items():
             figure = draw(recording, values) if len(recording.series["time"]) > 1 else None
             if figure is None:
                 continue

@@ -27,7 +27,7 @@ from lab.base.errors import LabError
 from lab.base.progress import Progress
 from lab.preset.schema import Resolved
 from lab.preset.units import show
-from solvers.grains.filling import clear_of_walls, levelled
+from solvers.grains.bed.filling import clear_of_walls, levelled
 from solvers.grains.materials import Material
 from solvers.grains.shapes.given import Shapes
 from solvers.machine.state import Axes, of_world

@@ -23,7 +23,6 @@ from lab.preset.find import LoadedPreset
 from lab.preset.schema import Resolved
 from lab.preset.units import show
 from lab.recording import BUFFER_BYTES, FLUSH_EVERY, Outlines, Recorder, new_recording
-from lab.recording.layout import SHIP_SERIES
 from lab.runs.beds import settled, settling
 from lab.runs.checkpoint import Checkpoint, remove_checkpoint
 from solvers.machine.errors import BadState
@@ -231,9 +230,8 @@ class Launch:
     def _write(self, rows: Mapping[str, np.ndarray], picture: bool) -> None:
         """Add a row to every recording, and a frame where one is due."""
         now = self._simulation.time
-        sample, frame = sampled(rows), {}
-        if picture:
-            frame = self._frame(rows)
+        sample = {name: rows[name] for name in self._recorders[0].series if name != "time"}
+        frame = self._frame(rows) if picture else {}
         for recorder, worlds in zip(self._recorders, self._worlds(), strict=True):
             recorder.sample({"time": now, **{name: values[worlds] for name, values in sample.items()}})
             if picture:
@@ -241,7 +239,7 @@ class Launch:
 
     def _frame(self, rows: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
         """What is pictured of all worlds now."""
-        return {"pose": pose_of(rows), "part": self._simulation.part_places(), **self._simulation.snapshot()}
+        return {"pose": rows["pose"], "part": self._simulation.part_places(), **self._simulation.snapshot()}
 
     def _end_lost(self, rows: Mapping[str, np.ndarray], pictured: bool) -> None:
         """End the runs all of whose ships have capsized or flooded, with a last picture; the others go on."""
@@ -300,20 +298,3 @@ class Launch:
             self._simulation.restore(
                 {name: without_worlds(values, axes[name], worlds, slices[out]) for name, values in before.items()}
             )
-
-
-def pose_of(rows: Mapping[str, np.ndarray]) -> np.ndarray:
-    """Pose (W, 3) of the tanks in m, m, rad."""
-    return np.stack([rows["pose_y"], rows["pose_z"], rows["pose_angle"]], axis=-1)
-
-
-def sampled(rows: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """What an observation adds to the series."""
-    kept = ("kinetic", "rotational", "potential", "elastic", "contacts", "overlap", "spilled")
-    return {
-        "pose": pose_of(rows),
-        "pose_rate": np.stack([rows["rate_y"], rows["rate_z"], rows["rate_angle"]], axis=-1),
-        "centre_of_mass": np.stack([rows["centre_y"], rows["centre_z"]], axis=-1),
-        "wall_force": np.stack([rows["wall_y"], rows["wall_z"], rows["wall_moment"]], axis=-1),
-        **{name: rows[name] for name in (*kept, *SHIP_SERIES) if name in rows},
-    }

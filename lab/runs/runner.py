@@ -73,7 +73,7 @@ def resume_run(folder: Path | str, *, video: bool = True, plots: bool = True, qu
     folder = Path(folder)
     with open_recording(folder) as recording:
         loaded, complete = recorded_preset(recording), recording.complete
-        rows, changed = len(recording.series["time"]), recording.versions != versions()
+        rows, changed = recording.series.rows, recording.versions != versions()
     if complete and reported(folder, "complete"):
         raise LabError(f"{folder} is complete: there is nothing to resume.")
     with Progress(quiet) as progress, hint(folder), only_one(folder):

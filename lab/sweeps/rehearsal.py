@@ -19,14 +19,13 @@ from lab.measures.value import Value
 from lab.preset.find import LoadedPreset
 from lab.preset.schema import Resolved
 from lab.recording import Recorder, new_recording, open_recording
-from lab.recording.layout import GRAIN_FRAMES, SERIES, SHIP_SERIES
-from solvers.grains.observe import Observer
+from lab.recording.layout import frames_of, rows_of, series_of
+from solvers.machine.quantity import parted
 from solvers.scene import Scene
 from solvers.simulation import Simulation
 
 GRAINS = 50  # that are recorded, at most
 ROLL = 0.1  # rad, of ships
-POSE = [Observer.NAMES.index(name) for name in ("pose_y", "pose_z", "pose_angle")]
 
 
 def rehearsed(loaded: LoadedPreset) -> dict[str, Value]:
@@ -56,13 +55,13 @@ def _record(folder: Path, loaded: LoadedPreset, preset: Resolved, scene: Scene, 
         open_edges=scene.open_edges,
         parts=parts,
     )
-    rate, grains = preset.record.series_rate, {name: np.zeros((1, count, *s)) for name, s in GRAIN_FRAMES.items()}
-    grains["position"] = position[:, :count]
+    rate, sizes = preset.record.series_rate, {"world": 1, "grain": count, "part": len(parts)}
     a_frame = max(1, round(rate / preset.record.picture_rate))
-    row = {name: np.ones((1, *shape)) for name, shape in SERIES.items()}
-    if scene.vessels:
-        row |= {name: np.full((1, *shape), -1.0) for name, shape in SHIP_SERIES.items()}
-    frame = grains | {"part": np.zeros((1, len(parts), 2))}
+    series, frames = series_of(bool(scene.vessels)), frames_of()
+    never = {quantity.name: quantity.never for quantity in series if quantity.never is not None}
+    row = {name: np.full(shape, never.get(name, 1.0)) for name, (shape, _) in rows_of(series, sizes).items()}
+    frame = {name: np.zeros(shape) for name, (shape, _) in rows_of(frames, sizes).items()}
+    frame["position"] = position[:, :count]
     times = np.arange(max(1, round(preset.run.duration * rate)) + 1) / rate
     with Recorder(folder) as recorder:
         for k, (time, pose) in enumerate(zip(times, _poses(preset, scene, position, times), strict=True)):
@@ -80,6 +79,6 @@ def _poses(preset: Resolved, scene: Scene, position: np.ndarray, times: np.ndarr
     try:
         for time in times:
             simulation.observer.observe(float(time), 1.0)
-            yield simulation.observer.rows.to_numpy()[:, POSE].astype(float)
+            yield parted(simulation.observer.rows.to_numpy(), simulation.observer.quantities)["pose"].astype(float)
     finally:
         simulation.close()

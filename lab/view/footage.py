@@ -15,7 +15,7 @@ from lab.paint.sea import Sea
 from lab.preset.find import LoadedPreset
 from lab.preset.schema import Resolved
 from lab.recording import Outlines
-from lab.runs.launch import outlines_of, pose_of
+from lab.runs.launch import outlines_of
 from lab.view.live import Seen
 from solvers.grains.pressing import Pressing
 from solvers.ship.hydrostatics import righting_levers
@@ -98,7 +98,7 @@ class LiveFootage:
     @property
     def pose(self) -> np.ndarray:
         """(F, 1, 3) m, m, rad."""
-        return np.stack([pose_of(seen.rows) for seen in self._seen])
+        return np.stack([seen.rows["pose"] for seen in self._seen])
 
     @property
     def part(self) -> np.ndarray:
@@ -109,9 +109,9 @@ class LiveFootage:
         """The contacts that press in a frame."""
         return self._seen[frame].pressing
 
-    def row(self, frame: int, name: str) -> float:
-        """A number of a frame."""
-        return float(self._seen[frame].rows[name][0])
+    def row(self, frame: int, name: str) -> np.ndarray:
+        """A quantity of a frame: its components, or the one number."""
+        return self._seen[frame].rows[name][0]
 
     def sea_of(self, frame: int) -> Sea | None:
         """The sea as it is in a frame."""
@@ -128,7 +128,7 @@ class LiveFootage:
         return self._seen[frame].rows["part"][0]
 
     def curve(self, name: str, frames: np.ndarray) -> np.ndarray:
-        """A number of some frames."""
+        """A quantity of some frames (k, *shape)."""
         return np.array([self._seen[frame].rows[name][0] for frame in frames])
 
     def grains(self, name: str, frame: int, world: int = 0) -> np.ndarray:
@@ -144,7 +144,7 @@ class LiveFootage:
     @cached_property
     def sea_ground(self) -> tuple[np.ndarray, np.ndarray]:
         """Lower and upper corner (m) of the sea that is shown around a ship, with room to roll and to drift."""
-        y, z, roll = pose_of(self._seen[0].rows)[0]
+        y, z, roll = self._seen[0].rows["pose"][0]
         places = complex(y, z) + np.exp(1j * roll) * (self.sea.hull @ [1.0, 1j])
         radius = 0.5 * float(np.hypot(*np.ptp(self.sea.hull, axis=0)))
         middle = np.array([places.real.mean(), places.imag.mean()])

@@ -20,7 +20,7 @@ from lab.preset.schema import Resolved
 from lab.preset.sections.motion import Motion
 from lab.recording import WAVES, Recorder
 from lab.runs.beds import settled, settling
-from lab.runs.launch import Run, pose_of, sampled
+from lab.runs.launch import Run
 from lab.view.panel.controls import ALTERS, CONTROLS, MOVES, offered
 from lab.view.panel.helm import Helm
 from lab.view.panel.swell import swell_of
@@ -135,11 +135,11 @@ class Live:
     def _record(self) -> dict[str, np.ndarray]:
         """Observe, and add a row to the series and, where one is due, to the frames; gives what was observed."""
         rows, now = self.simulation.observe(), self.time
-        self.recorder.sample({"time": now, **sampled(rows)})
+        self.recorder.sample({"time": now, **{name: rows[name] for name in self.recorder.series if name != "time"}})
         if self.pieces % self._a_frame == 0:
             part = self.simulation.part_places()
             more = {"part": part, **self._waves(), **self.simulation.snapshot()}
-            self.recorder.frame({"time": now, "pose": pose_of(rows), **more})
+            self.recorder.frame({"time": now, "pose": rows["pose"], **more})
         self.recorder.grain_steps = self.simulation.grain_steps
         return rows
 
@@ -147,7 +147,7 @@ class Live:
         """What a frame of a ship says of the waves that she meets."""
         if not self.preset.ship:
             return {}
-        return {"waves": self.swell.now if self.swell else np.full(WAVES, np.nan)}
+        return {"waves": self.swell.now if self.swell else np.full(WAVES.shape, np.nan)}
 
     def close(self, status: str = "complete") -> None:
         """End the recording."""

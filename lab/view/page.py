@@ -147,7 +147,7 @@ class Page:
         return nearest if away[nearest] <= shown.footage.radius[0][nearest] else None
 
     def _pose(self, shown: Shown) -> np.ndarray:
-        return np.array([shown.footage.row(shown.frame, f"pose_{name}") for name in ("y", "z", "angle")])
+        return shown.footage.row(shown.frame, "pose")
 
     def _ground(self, shown: Shown) -> tuple[np.ndarray, np.ndarray]:
         """Lower and upper corner (m) of what is shown where nothing is zoomed."""

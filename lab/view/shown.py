@@ -66,7 +66,7 @@ class Shown:
         """What has become of a ship that is lost in the frame shown."""
         if self.making or not self.footage or not self.footage.sea:
             return None
-        return end_of(*(self.footage.row(self.frame, name) for name in (*VERBS, "pose_angle")))
+        return end_of(*(self.footage.row(self.frame, name) for name in VERBS), self.footage.row(self.frame, "pose")[2])
 
     @property
     def frame(self) -> int:

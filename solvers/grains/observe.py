@@ -1,13 +1,18 @@
 """What is measured of a world as it runs: sums over its grains, taken in one order on any number of threads."""
 
+from types import SimpleNamespace
+
 import taichi as ti
 
+from solvers.grains import quantities
 from solvers.grains.contacts import Contacts
 from solvers.grains.neighbours import Neighbours
 from solvers.grains.state import Grains
+from solvers.machine.quantity import places
 from solvers.machine.state import Axis, State
 from solvers.machine.units import Units
 from solvers.space.axes import dot, named
+from solvers.tank import quantities as tank
 from solvers.tank.load import Load
 from solvers.tank.walls import Walls
 
@@ -22,31 +27,9 @@ TOUCHING, DEEPEST, ELASTIC = range(3)
 class Observer:
     """One row of numbers a world: of the grains in the tank, whose spilled ones are only counted.
 
-    `wall_y`, `wall_z` (N) and `wall_moment` (N m, about the tank's origin) are the force of the cargo on the tank, with
-    its fixed grains and parts, in its own frame, averaged over the time since it was last asked for.
+    `quantities` says which, and `at` where in the row each begins. The force on the tank is also that on its fixed
+    grains and parts; its moment is about the tank's origin.
     """
-
-    NAMES = (
-        "pose_y",
-        "pose_z",
-        "pose_angle",
-        "rate_y",
-        "rate_z",
-        "rate_angle",
-        "centre_y",
-        "centre_z",
-        "kinetic",
-        "rotational",
-        "potential",
-        "elastic",
-        "contacts",
-        "overlap",
-        "escaped",
-        "spilled",
-        "wall_y",
-        "wall_z",
-        "wall_moment",
-    )
 
     def __init__(
         self,
@@ -63,9 +46,12 @@ class Observer:
         self.contacts, self.carrier, self.load = contacts, carrier, load
         self.exact, self.may_leave = arrays.exact, grains.may_leave
         self.chunks = -(-grains.mobile // CHUNK)
+        self.quantities = (*tank.SERIES, *quantities.SERIES, quantities.ESCAPED)
+        self.at = SimpleNamespace(**places(self.quantities))
+        columns = sum(quantity.width for quantity in self.quantities)
         own, scratch = arrays.under("observed"), {"kind": arrays.exact, "kept": False}
         world, chunk = Axis("world", grains.worlds), Axis("chunk", self.chunks)
-        (self.rows,) = own.reals((world, Axis("quantity", len(self.NAMES))), "rows", **scratch)
+        (self.rows,) = own.reals((world, Axis("quantity", columns)), "rows", **scratch)
         pieces = world, Axis("piece", load.pieces), Axis("component", 3)
         (self.loads,) = own.reals(pieces, "loads", **scratch)
         self.numbers = MOMENT + grains.axes
@@ -151,12 +137,17 @@ class Observer:
         if ti.static(self.carrier.moving):
             pose = self.carrier.kinematics(w, time)
         height = pose[1] + ti.sin(pose[2]) * centre[0] + ti.cos(pose[2]) * centre[1]
-        for k in ti.static(range(6)):
-            self.rows[w, k] = pose[k]
-        self.rows[w, 6], self.rows[w, 7] = centre[0], centre[1]
-        self.rows[w, 8], self.rows[w, 9] = sums[KINETIC], sums[ROTATIONAL]
-        self.rows[w, 10] = sums[MASS] * self.carrier.gravity[0] * height
-        self.rows[w, 11], self.rows[w, 12], self.rows[w, 13] = contacts[ELASTIC], contacts[TOUCHING], contacts[DEEPEST]
-        self.rows[w, 14], self.rows[w, 15] = sums[ESCAPED], sums[SPILLED]
         for k in ti.static(range(3)):
-            self.rows[w, 16 + k] = load[k] / ti.cast(since, self.exact)
+            self.rows[w, self.at.pose + k] = pose[k]
+            self.rows[w, self.at.pose_rate + k] = pose[3 + k]
+            self.rows[w, self.at.wall_force + k] = load[k] / ti.cast(since, self.exact)
+        for a in ti.static(range(self.grains.axes)):
+            self.rows[w, self.at.centre_of_mass + a] = centre[a]
+        self.rows[w, self.at.kinetic] = sums[KINETIC]
+        self.rows[w, self.at.rotational] = sums[ROTATIONAL]
+        self.rows[w, self.at.potential] = sums[MASS] * self.carrier.gravity[0] * height
+        self.rows[w, self.at.elastic] = contacts[ELASTIC]
+        self.rows[w, self.at.contacts] = contacts[TOUCHING]
+        self.rows[w, self.at.overlap] = contacts[DEEPEST]
+        self.rows[w, self.at.spilled] = sums[SPILLED]
+        self.rows[w, self.at.escaped] = sums[ESCAPED]

@@ -4,7 +4,8 @@ from pathlib import Path
 
 import numpy as np
 
-from lab.recording import GRAIN_FRAMES, SERIES, Recorder, new_recording
+from lab.recording import Recorder, new_recording
+from lab.recording.layout import frames_of, rows_of, series_of
 
 WIDTH, DEPTH, DIAMETER = 0.180, 0.060, 0.003  # m
 
@@ -44,8 +45,12 @@ def recorder(folder: Path, worlds: int = 1, count: int = 4, **options: object) -
 
 def sample(time: float, worlds: int = 1, **values: object) -> dict:
     """A row of the series; what is not given is zero."""
-    zeros = {name: np.zeros((worlds, *shape)) for name, shape in SERIES.items()}
-    return {"time": time, **zeros, **values}
+    return {**_zeros(series_of(afloat=False), worlds), "time": time, **values}
+
+
+def _zeros(quantities: tuple, worlds: int, count: int = 0) -> dict:
+    rows = rows_of(quantities, {"world": worlds, "grain": count, "part": 0})
+    return {name: np.zeros(shape) for name, (shape, _) in rows.items()}
 
 
 def of_a_ship(worlds: int = 1, **values: object) -> dict:
@@ -55,9 +60,7 @@ def of_a_ship(worlds: int = 1, **values: object) -> dict:
 
 def frame(time: float, worlds: int = 1, count: int = 4, **values: object) -> dict:
     """A picture frame; what is not given is zero, and there are no parts."""
-    zeros = {name: np.zeros((worlds, count, *shape)) for name, shape in GRAIN_FRAMES.items()}
-    zeros |= {"pose": np.zeros((worlds, 3)), "part": np.zeros((worlds, 0, 2))}
-    return {"time": time, **zeros, **values}
+    return {**_zeros(frames_of(), worlds, count), "time": time, **values}
 
 
 def record(

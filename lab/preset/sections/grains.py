@@ -12,7 +12,7 @@ from lab.preset.outline import Point, area, simple_polygon
 from lab.preset.sections.shapes import Shape, by_number
 from lab.preset.sections.tank import Tank
 from lab.preset.units import needed, show
-from solvers.grains.sizes import Sizes
+from solvers.grains.bed.sizes import Sizes
 from solvers.machine.marks import Interval, Unit
 
 DENSEST = math.pi / math.sqrt(12)  # largest share of a plane that equal discs cover (Thue)
@@ -28,7 +28,7 @@ class GrainsGiven:
     Diameters are uniform in diameter·(1 ± spread), or normal with the relative standard deviation `spread`, cut at ± 3
     of these and at a tenth of the diameter, or by a table of [diameter, share], each class uniform within ± spread.
     `shares` of a table or of shapes are by number or by mass. `orientation`: by how much irregular grains are turned
-    at the start (rad). `surface`, after Spandonidis (2016), section 5.3.1: `solvers/grains/filling.py` says what is
+    at the start (rad). `surface`, after Spandonidis (2016), section 5.3.1: `solvers/grains/bed/filling.py` says what is
     done for it. `region`: corners (m) of the part of the tank, such as a funnel in it, in which the grains start.
     `settled_as`: round outlines may settle as discs, into the very bed that these would have.
     """

@@ -14,11 +14,11 @@ from lab.assembly.scene import vessels
 from lab.assembly.ship import FASTEST, FREQUENCIES, SLOWEST, natural_roll
 from lab.assembly.ship_tables import stored_table
 from lab.preset.find import load
-from solvers.ship.flume import Flap, fundamental
 from solvers.ship.hydrostatics import equilibrium, metacentric_height
 from solvers.ship.linear import inertia_for_roll, response
 from solvers.ship.loads import Floating, floating_in_waves
 from solvers.ship.motion import Rig, RollDamping, Ship, remembered, sail, start
+from solvers.ship.potential.flume import Flap, fundamental
 from solvers.ship.potential.memory import fit_memory
 from solvers.ship.potential.radiation import Hydrodynamics, hydrodynamics
 from solvers.ship.viscous import COMMON, common_damping, estimated_damping, friction_damping

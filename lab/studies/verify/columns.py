@@ -46,7 +46,7 @@ def pressure(_: bool) -> Found:
     above = 1e3 * MASS * G * np.arange(COUNT, 0, -1)
     names = [f"force on contact {k + 1}" for k in range(COUNT)]
     lines = [Line(names[k], force[k], above[k], "weight above", 1e-4, SETTLED, "mN") for k in range(COUNT)]
-    load = -1e3 * observed["wall_z"]
+    load = -1e3 * observed["wall_force"][..., 1]
     return Found([*lines, Line("force on the tank", load, above[0], "weight of all", 1e-6, SETTLED, "mN")])
 
 
@@ -69,10 +69,10 @@ def bed(_: bool) -> Found:
     contact = {"tangential": "mindlin", "rolling": "elastic-plastic", "stiffness_scale": SOFT}
     path, observed = settled(Setup(np.array(rows), material, {"width": 0.058, "height": 0.06}, contact=contact))
     weight = G * sphere_mass(1.0, ACETATE["density"]) * (radius**3).sum()
-    sideways = observed["wall_y"] / weight
-    moment, expected = -1e6 * observed["wall_moment"], 1e6 * weight * observed["centre_y"]
+    sideways = observed["wall_force"][..., 0] / weight
+    moment, expected = -1e6 * observed["wall_force"][..., 2], 1e6 * weight * observed["centre_of_mass"][..., 0]
     lines = [
-        Line("force down", -1e3 * observed["wall_z"], 1e3 * weight, "weight", 1e-6, SETTLED, "mN"),
+        Line("force down", -1e3 * observed["wall_force"][..., 1], 1e3 * weight, "weight", 1e-6, SETTLED, "mN"),
         Line("force sideways, of the weight", sideways, 0.0, "rest", 1e-6, SETTLED, relative=False),
         Line("moment about the floor's middle", moment, expected, "weight at its centre", 1e-5, SETTLED, "µN m"),
         creep_line(path),

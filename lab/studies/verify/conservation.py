@@ -68,7 +68,7 @@ def gas(count: int, worlds: int, steps: int) -> Gas:
             place = run.snapshot()["position"] if look == LOOKS else None
             run.advance(1)
             rows = run.observe()
-            impulse += passed * run.dt * np.array([rows["wall_y"], rows["wall_z"], rows["wall_moment"]])
+            impulse += passed * run.dt * rows["wall_force"].T
             energies.append([rows["kinetic"], rows["elastic"]])
             if look % A_SNAPSHOT == 0:
                 square = (run.snapshot()["velocity"] ** 2).sum(axis=1)

@@ -108,7 +108,7 @@ def precisions(_: bool) -> Found:
         found = told(bed(precision=precision))
         gap = apart(found)
         lines.append(Line(f"places, {precision}", gap, 0.0, "f64", COARSE, COARSE_REASON, "m", relative=False))
-        shift = (found["centre_y"] - usual()["centre_y"])[0] / (2.0 * radius.mean())
+        shift = (found["centre_of_mass"][..., 0] - usual()["centre_of_mass"][..., 0])[0] / (2.0 * radius.mean())
         source = "f64; Spandonidis (2016): < 2 % of a diameter"
         name = f"centre of mass, {precision}, in diameters"
         lines.append(Line(name, shift, 0.0, source, SOURCE_SHIFT, "as the source's", relative=False))

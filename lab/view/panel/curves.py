@@ -22,7 +22,7 @@ class Drawing:
 
 
 def _in_time(label: str, name: str, scaled: Callable[[np.ndarray, LiveFootage], np.ndarray]):
-    """A number of the frames against time."""
+    """A quantity of the frames against time, one number of it."""
 
     def draw(footage: LiveFootage, frame: int) -> Drawing:
         rows = np.unique(np.linspace(0, len(footage) - 1, MOST_POINTS).astype(int))
@@ -37,18 +37,18 @@ def levers(footage: LiveFootage, frame: int) -> Drawing:
     heel, lever = footage.levers
     shown = np.degrees(heel) <= FARTHEST
     heel, lever = np.degrees(heel)[shown], 1e3 * lever[shown]
-    now = min(abs(np.degrees(footage.row(frame, "pose_angle"))), FARTHEST)
+    now = min(abs(np.degrees(footage.row(frame, "pose")[2])), FARTHEST)
     point = np.array([now]), np.interp([now], heel, lever)
     return Drawing("heel (°)", "righting lever GZ (mm)", [(heel, lever), point], [len(heel), 1])
 
 
 def _shift(values: np.ndarray, footage: LiveFootage) -> np.ndarray:
-    return (values - values[0]) / footage.bed.diameter
+    return (values - values[0])[:, 0] / footage.bed.diameter
 
 
 CURVES: dict[str, Callable[[LiveFootage, int], Drawing]] = {
-    "shift": _in_time("shift Δy (diameters)", "centre_y", _shift),
-    "turn": _in_time("tilt or roll φ (°)", "pose_angle", lambda values, _: np.degrees(values)),
+    "shift": _in_time("shift Δy (diameters)", "centre_of_mass", _shift),
+    "turn": _in_time("tilt or roll φ (°)", "pose", lambda values, _: np.degrees(values[:, 2])),
     "levers": levers,
     "energy": _in_time("kinetic energy (mJ)", "kinetic", lambda values, _: 1e3 * values),
     "contacts": _in_time("contacts", "contacts", lambda values, _: values),

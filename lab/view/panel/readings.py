@@ -37,7 +37,7 @@ def readings(shown: Shown) -> list[str]:
 
 def _pose(shown: Shown) -> str:
     """Tilt and place of the tank, or of the ship's axis from where it was at rest."""
-    pose = np.array([shown.footage.row(shown.frame, f"pose_{name}") for name in ("y", "z", "angle")])
+    pose = shown.footage.row(shown.frame, "pose")
     if shown.footage.sea:
         pose = axis_motion(shown.footage.sea.ship, pose)
     y, z, turn = pose

@@ -10,7 +10,8 @@ from lab.measures.steady import steady_window
 from lab.measures.surface_slope import free_surface, inclination
 from lab.measures.value import over_worlds
 from lab.measures.wave import column_tops, surface_columns
-from lab.recording import SERIES, open_recording
+from lab.recording import open_recording
+from lab.recording.layout import series_of
 from tests.oracles.synthetic import DEPTH, DIAMETER, WIDTH, box, frame, preset, record, recorder, sample
 
 LIQUID = np.radians(WIDTH**2 / (12 * DEPTH))  # m of shift per deg of give
@@ -389,7 +390,7 @@ def test_a_recording_without_samples_has_no_measures(tmp_path):
 
 def written(folder, time, frames=(), **options):
     """Measures of a recording with such series (T, W, ...) and the options of a recorder."""
-    series = {name: options.pop(name) for name in SERIES if name in options}
+    series = {name: options.pop(name) for name in (q.name for q in series_of(afloat=False)) if name in options}
     worlds = next(iter(series.values())).shape[1] if series else 1
     with recorder(folder, worlds, **options) as writer:
         for k, now in enumerate(time):

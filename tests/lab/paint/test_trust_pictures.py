@@ -9,6 +9,7 @@ import pytest
 from lab.paint.video import playback
 from tests.lab.preset.test_malformed import call, copied, ends_well, refused, unpainted  # noqa: F401 (a fixture)
 from tests.lab.recording.test_trust_recordings import little_memory, sound  # noqa: F401 (fixtures)
+from tests.oracles.tampering import sealed
 
 VIDEOS = [
     {"width": 10**6, "height": 10**6},
@@ -32,7 +33,7 @@ VIDEOS = [
 def changed(folder, key, value):
     """The recording with another part of its preset."""
     with h5py.File(folder / "recording.h5", "r+") as file:
-        table = json.loads(file["preset/resolved"].asstr()[()])
+        table = json.loads(file["preset/resolved"].asstr()[0])
         table[key] = value
         del file["preset/resolved"]
         file["preset/resolved"] = json.dumps(table)
@@ -87,6 +88,7 @@ def test_odd_numbers_of_a_recording_end_in_a_sentence_or_a_picture(sound, unpain
     where, value = NUMBERS[name]
     with h5py.File(folder / "recording.h5", "r+") as file:
         file[where][...] = value
+        sealed(file)
     ends_well(call("render", folder))
 
 

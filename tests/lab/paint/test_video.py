@@ -17,6 +17,7 @@ from lab.paint.video import playback, poster, render_grid, render_recording
 from lab.preset.sections.video import Video
 from solvers.machine.runtime import initialise
 from tests.oracles.synthetic import box, frame, recorder, sample
+from tests.oracles.tampering import sealed
 
 WIDTH, HEIGHT, DIAMETER = 0.18, 0.09, 4e-3
 
@@ -194,6 +195,7 @@ def test_beds_that_move_apart_share_no_reading_but_the_clock(four_beds, tmp_path
     apart = shutil.copy(four_beds, tmp_path)
     with h5py.File(apart, "r+") as file:
         file["frames/pose"][:, 1] *= 0.5
+        sealed(file)
     together, alone = (pictures_of(path, [5])[0] for path in (four_beds, apart))
     dial, names = np.s_[20:78, 560:625], np.s_[45:70, 20:430]
     assert (together[dial] < 200).any() and (alone[dial] == 255).all()

@@ -55,7 +55,7 @@ def test_a_recording_whose_preset_is_beyond_the_limits_is_refused(sound, tmp_pat
     folder = copied(sound, tmp_path / "run")
     (folder / "checkpoint.npz").unlink()
     with h5py.File(folder / "recording.h5", "r+") as file:
-        table = json.loads(file["preset/resolved"].asstr()[()])
+        table = json.loads(file["preset/resolved"].asstr()[0])
         for key, value in EXCESS[name].items():
             put(table, key, value)
         del file["preset/resolved"]

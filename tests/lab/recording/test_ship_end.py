@@ -84,9 +84,9 @@ def test_a_recording_names_the_point_of_reference(flooded):
 
     with h5py.File(flooded / "recording.h5") as file:
         said = dict(file.attrs)
-    assert said["pose_is_of"] == "the origin of the tank's axes"
+    assert said["pose_is_of"] == b"the origin of the tank's axes"
     assert said["ship_axis"] == pytest.approx([0.0, 0.11]) and said["ship_axis_in_tank"] == pytest.approx([0.0, 0.09])
-    assert said["sway_and_heave_are_of"] == "the ship's axis, 110 mm above her origin, in the waterline"
+    assert said["sway_and_heave_are_of"] == b"the ship's axis, 110 mm above her origin, in the waterline"
 
 
 def test_the_summary_begins_with_it(flooded, tmp_path):
@@ -130,8 +130,8 @@ def test_the_last_seconds_of_the_video_say_it(flooded, tmp_path):
 
 def test_the_window_says_it_for_as_long_as_it_is_so():
     rows = [
-        {"capsized": -1.0, "flooded": -1.0, "pose_angle": 0.2},
-        {"capsized": -1.0, "flooded": 3.0, "pose_angle": 0.7},
+        {"capsized": -1.0, "flooded": -1.0, "pose": [0.0, 0.0, 0.2]},
+        {"capsized": -1.0, "flooded": 3.0, "pose": [0.0, 0.0, 0.7]},
     ]
     shown = Shown()
     shown.making, shown.look = False, Look("kind", "earth")
@@ -154,9 +154,10 @@ def test_a_recording_without_the_column_is_of_ships_that_did_not_flood(tmp_path)
         writer.frame(frame(0.0))
     with h5py.File(tmp_path / "recording.h5", "r+") as file:
         del file["series/flooded"]
+        file.attrs["format"] = "cargo-shift-lab 2"
     with open_recording(tmp_path) as recording:
         assert recording.series["flooded"].tolist() == [[-1.0]] * 3
-    with pytest.raises(LabError, match="begun by an earlier version, which recorded less: start the run anew"):
+    with pytest.raises(LabError, match="begun by another version: start the run anew"):
         Recorder(tmp_path, samples=3, frames=1)
 
 

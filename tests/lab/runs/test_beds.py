@@ -128,7 +128,7 @@ def test_a_reused_bed_goes_on_bit_for_bit_in_other_company_and_motion():
     for one in (reused, anew):
         one.advance(round(0.4 / one.dt))
     assert alike(reused.state(), anew.state())
-    np.testing.assert_allclose(reused.observe()["pose_angle"], np.radians(5.0), rtol=1e-6)
+    np.testing.assert_allclose(reused.observe()["pose"][..., 2], np.radians(5.0), rtol=1e-6)
     for one in (reused, anew):
         one.close()
 

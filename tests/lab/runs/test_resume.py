@@ -23,9 +23,10 @@ from lab.cli import main
 from lab.preset.find import load
 from lab.recording import Recorder, open_recording
 from lab.runs.checkpoint import Checkpoint, read_checkpoint
-from lab.runs.launch import prepare
+from lab.runs.launch import Launch, prepare
 from lab.runs.runner import hint, resume_run, run_preset
 from tests.oracles.synthetic import frame, recorder, sample
+from tests.oracles.tampering import flipped
 
 ROOT = Path(__file__).parents[3]
 SMALL = {
@@ -251,6 +252,49 @@ def test_a_damaged_checkpoint_is_refused_in_a_sentence_and_never_taken_for_anoth
         for name, values in whole.state.items():
             np.testing.assert_array_equal(kept.state[name], values)
     assert refused > 1500
+
+
+def test_a_run_with_damage_behind_its_checkpoint_goes_on_with_the_same_bits(whole, tmp_path):
+    """A flipped bit is written over where its row comes again; before the checkpoint it is said."""
+    folder = tmp_path / "run"
+    kept = []
+
+    def interrupt(launch, *_):
+        save(launch)
+        kept.append(launch._recorders[0].rows)
+        if kept[-1][0] > 20:
+            raise KeyboardInterrupt
+
+    save = Launch.save
+    with pytest.MonkeyPatch.context() as patch, pytest.raises(KeyboardInterrupt):
+        patch.setattr(Launch, "save", interrupt)
+        run_preset("tilting/quick", SMALL, folder, video=False, quiet=True)
+    before, (rows, _) = (folder / "recording.h5").read_bytes(), kept[-1]
+    flip(folder, "series/kinetic", rows - 1)
+    with pytest.raises(
+        LabError, match=f"series/kinetic is damaged from row {rows - 1} of {rows}, before its checkpoint"
+    ):
+        resume_run(folder, video=False, quiet=True)
+    (folder / "recording.h5").write_bytes(before)
+    with open_recording(folder) as found:
+        last = {name: values[-1] for name, values in found.series.items()}
+    longer = Recorder(folder, samples=rows, frames=kept[-1][1])
+    longer.sample(last)  # rows that will come again
+    longer.sample(last)
+    longer.close("running")
+    flip(folder, "series/kinetic", rows + 1)
+    resume_run(folder, video=False, quiet=True)
+    assert_same(folder, whole)
+
+
+def flip(folder: Path, name: str, row: int) -> None:
+    """Flip a bit of a row of a data set, behind HDF5's back."""
+    path = folder / "recording.h5"
+    with h5py.File(path) as file:
+        data = file[name]
+        chunk = data.id.get_chunk_info(row // data.chunks[0])
+        at = chunk.byte_offset + row % data.chunks[0] * int(np.prod(data.shape[1:])) * data.dtype.itemsize
+    path.write_bytes(flipped(path.read_bytes(), 8 * at + 3))
 
 
 def test_what_cannot_be_resumed_is_said(tmp_path):

@@ -85,8 +85,8 @@ def seen(place: np.ndarray, time: float) -> Seen:
         "angle": still,
         "spin": still,
     }
-    names = "pose_y", "pose_z", "pose_angle", "centre_y", "centre_z", "kinetic", "contacts"
-    rows = {name: np.array([time if name.startswith("centre") else 0.0]) for name in names}
+    rows = {"pose": np.zeros((1, 3)), "centre_of_mass": np.full((1, 2), time)}
+    rows |= {name: np.zeros(1) for name in ("kinetic", "contacts")}
     return Seen(time, {**rows, "part": np.zeros((1, 0, 2))}, grains, PRESSING)
 
 
@@ -182,8 +182,7 @@ def test_the_centre_of_roll_is_dragged(opened):
 def test_the_centre_of_roll_is_an_earth_point_in_the_frame_of_a_tilted_tank_too(opened):
     session, pipes, place = opened
     tilted = seen(place, 0.5)
-    tilted.rows["pose_angle"] = np.array([0.4])
-    tilted.rows["pose_y"] = np.array([0.01])
+    tilted.rows["pose"] = np.array([[0.01, 0.0, 0.4]])
     pipes[-1].send(("seen", (tilted, 1.0)))
     session.tick()
     session.look.frame = "tank"

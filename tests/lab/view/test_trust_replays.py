@@ -16,6 +16,7 @@ from lab.view.live import under_a_hand
 from tests.lab.preset.test_malformed import SMALL, call, copied, refused
 from tests.lab.recording.test_trust_recordings import sound  # noqa: F401 (a fixture)
 from tests.oracles.synthetic import frame, recorder, sample
+from tests.oracles.tampering import sealed
 
 
 @pytest.fixture(scope="module")
@@ -58,6 +59,7 @@ def test_a_replay_that_no_hand_could_have_steered_is_refused(steered, tmp_path, 
     with h5py.File(folder / "recording.h5", "r+") as file:
         for name, value in zip(("time", "name", "value"), step, strict=True):
             file[f"steering/{name}"][0] = value
+        sealed(file)
     assert "steering" in refused(call("run", "--replay", folder, "--out", tmp_path / "again", "--no-video", "--quiet"))
     assert not list(tmp_path.glob("again/*"))
 
@@ -69,6 +71,7 @@ def test_a_replay_whose_times_are_none_is_refused(steered, tmp_path, times):
     folder = copied(steered, tmp_path / "run")
     with h5py.File(folder / "recording.h5", "r+") as file:
         file["series/time"][...] = times
+        sealed(file)
     refused(call("run", "--replay", folder, "--out", tmp_path / "again", "--no-video", "--quiet"))
 
 
@@ -88,7 +91,7 @@ def test_a_recording_of_another_preset_than_it_holds_is_not_gone_on_with(sound, 
         for table in ("series", "frames"):
             for name in file[table]:
                 file[table][name].resize(0, axis=0)
-        table = json.loads(file["preset/resolved"].asstr()[()])
+        table = json.loads(file["preset/resolved"].asstr()[0])
         for key, value in changes.items():
             holder = table
             *outer, last = key.split(".")

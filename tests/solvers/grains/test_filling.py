@@ -5,8 +5,8 @@ from math import pi
 import numpy as np
 import pytest
 
-from solvers.grains.filling import DoesNotFit, count_for_depth, headroom, levelled, radii, start_positions
-from solvers.grains.sizes import Sizes
+from solvers.grains.bed.filling import DoesNotFit, count_for_depth, headroom, levelled, radii, start_positions
+from solvers.grains.bed.sizes import Sizes
 from solvers.motion import Sway
 from solvers.scene import Scene
 from solvers.simulation import Simulation
@@ -222,6 +222,6 @@ def test_a_bed_settles_to_the_depth_asked_for():
     run.advance(round(0.05 / run.dt))  # now it sways
     assert run.time == pytest.approx(0.05, rel=1e-3)
     pose = 0.05 * np.sin(2.0 * pi * 3.0 * run.time + 1.0)
-    assert run.observe()["pose_y"] == pytest.approx(pose)
+    assert run.observe()["pose"][..., 0] == pytest.approx(pose)
     assert np.linalg.norm(run.snapshot()["velocity"], axis=-1).mean() > 1e-3
     run.close()

@@ -6,7 +6,7 @@ from math import pi
 import numpy as np
 import pytest
 
-from solvers.grains.filling import start_positions
+from solvers.grains.bed.filling import start_positions
 from solvers.grains.materials import interface
 from solvers.scene import Scene
 from solvers.simulation import Simulation
@@ -80,5 +80,5 @@ def test_kinds_that_are_alike_are_as_one_kind():
         states.append(run.snapshot() | run.observe())
         run.close()
     assert states[0]["contacts"][0] > 15
-    for name in ("position", "velocity", "angle", "elastic", "wall_z"):
+    for name in ("position", "velocity", "angle", "elastic", "wall_force"):
         np.testing.assert_allclose(states[1][name], states[0][name], rtol=1e-7, atol=1e-9, err_msg=name)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy import integrate, stats
 
-from solvers.grains.sizes import Sizes, apportion
+from solvers.grains.bed.sizes import Sizes, apportion
 
 MANY = 40_000
 

@@ -204,8 +204,9 @@ def test_a_software_vulkan_agrees_with_the_processor():
     assert usual["contacts"][0] > 8
     assert np.abs(place - expected).max() < 1e-3 * R
     assert np.abs(expected - place.mean(axis=0)).max() > R
-    for name in ("centre_y", "centre_z", "kinetic", "potential", "wall_z"):
+    for name in ("centre_of_mass", "kinetic", "potential"):
         assert rows[name] == pytest.approx(usual[name], rel=2e-2), name
+    assert rows["wall_force"][:, 1] == pytest.approx(usual["wall_force"][:, 1], rel=2e-2)
 
 
 @pytest.mark.parametrize(("arch", "precision"), [("cuda", "f64"), ("vulkan", "f64"), ("vulkan", "mixed")])

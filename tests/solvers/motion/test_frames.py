@@ -6,7 +6,7 @@ from math import pi
 import numpy as np
 import pytest
 
-from solvers.grains.filling import radii, start_positions
+from solvers.grains.bed.filling import radii, start_positions
 from solvers.motion import Heave, Roll, Sway
 from tests.oracles.held import Held
 from tests.oracles.scenes import box, material, simulation

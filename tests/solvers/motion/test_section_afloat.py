@@ -14,11 +14,11 @@ import numpy as np
 import pytest
 
 from solvers.ship.body import Body
-from solvers.ship.flume import Flap, fundamental
 from solvers.ship.hydrostatics import balanced_heave, metacentric_height
 from solvers.ship.linear import inertia_for_roll, oscillations, response
 from solvers.ship.loads import Floating
 from solvers.ship.motion import Radiation, Rig, RollDamping, Ship, start
+from solvers.ship.potential.flume import Flap, fundamental
 from solvers.ship.potential.radiation import hydrodynamics
 from solvers.ship.water import Water
 from tests.oracles.hulls import rounded

@@ -95,7 +95,7 @@ def test_a_ship_feels_each_tank_by_its_share(laden):
     while run.time < LASTS:
         run.advance(500)
         time.append(run.time)
-        roll.append(run.observe()["pose_angle"][0])
+        roll.append(run.observe()["pose"][0, 2])
     later = np.array(time) > RELEASE + 0.01
     told, roll = np.array(time)[later] - RELEASE, np.array(roll)[later]
     expected = np.interp(told, wanted.time, wanted.roll)

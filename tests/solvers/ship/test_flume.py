@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from solvers.ship.flume import Flap, fundamental
+from solvers.ship.potential.flume import Flap, fundamental
 from solvers.ship.water import Water
 
 WATER = Water(depth=1.0)

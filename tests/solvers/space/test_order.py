@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from solvers import simulation
-from solvers.grains.filling import start_positions
+from solvers.grains.bed.filling import start_positions
 from solvers.motion import Sway
 from solvers.scene import Scene
 from solvers.simulation import Simulation

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from solvers.grains.filling import radii, start_positions
+from solvers.grains.bed.filling import radii, start_positions
 from solvers.motion import Tilt
 from solvers.scene import Scene
 from solvers.simulation import Simulation

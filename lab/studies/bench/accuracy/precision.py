@@ -75,6 +75,6 @@ def _centres(name: str, scale: float, beds: int) -> np.ndarray:
     for _ in range(LOOKS):
         run.advance(steps)
         rows = run.observe()
-        centres.append(np.stack([rows["centre_y"], rows["centre_z"]], axis=-1))
+        centres.append(rows["centre_of_mass"])
     run.close()
     return np.array(centres)

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from solvers.grains.filling import radii, start_positions
+from solvers.grains.bed.filling import radii, start_positions
 from solvers.grains.materials import Material
 from solvers.scene import Scene
 from solvers.simulation import Simulation

@@ -111,8 +111,8 @@ def followed_here(how: Tilting, bed: Bed) -> Curve:
     duration = how.angle / how.rate + 0.5 * Tilt.ease
     for _ in range(1 + round(duration * how.rate / EVERY)):
         rows = run.observe()
-        angle.append(np.degrees(rows["pose_angle"][0]))
-        centre.append(rows["centre_y"][0])
+        angle.append(np.degrees(rows["pose"][0, 2]))
+        centre.append(rows["centre_of_mass"][0, 0])
         run.advance(every(how, run.dt))
     run.close()
     return Curve(np.array(angle), -(np.array(centre) - centre[0]) / DIAMETER)

@@ -5,7 +5,7 @@ from math import ceil
 import numpy as np
 
 from lab.studies.bench.stability.trial import Trial
-from solvers.grains.filling import SPACING, radii, start_positions
+from solvers.grains.bed.filling import SPACING, radii, start_positions
 from solvers.grains.materials import Material
 from solvers.scene import Scene
 

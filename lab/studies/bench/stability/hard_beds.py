@@ -17,7 +17,7 @@ PROJECTILE = (2.0, -9.8)  # m/s, together 10
 
 def height(trial: Trial, course: Course) -> float:
     """Height (m) of the centre of mass above the floor at the last look."""
-    return course.last("centre_z")
+    return course.last("centre_of_mass")[1]
 
 
 HEIGHT = Measure("height of the centre of mass at the end (m)", height, 0.05, "chaos of a small bed")
@@ -27,7 +27,7 @@ def weighed(trial: Trial, course: Course) -> list[Check]:
     """The mean load on the floor over the last quarter, against the weight."""
     late = course.time > LATE * course.time[-1]
     passed = np.diff(course.time, prepend=0.0)[late]
-    load = -float(course.rows["wall_z"][late] @ passed) / passed.sum()
+    load = -float(course.rows["wall_force"][late, 1] @ passed) / passed.sum()
     error = abs(load / trial.weight - 1.0)
     return [Check("load on the floor in the last quarter (share)", "weight", error, BOUNCES, "last bounces")]
 

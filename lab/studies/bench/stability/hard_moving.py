@@ -30,13 +30,13 @@ def turned(fast: bool) -> Trial:
 
 def end_height(trial: Trial, course: Course) -> float:
     """Height (m) of the centre of mass above the floor at the end."""
-    return course.last("centre_z")
+    return course.last("centre_of_mass")[1]
 
 
 def upside_down(trial: Trial, course: Course) -> list[Check]:
     """All the grains lie on the lid, which bears their weight."""
     late = course.time > 0.9 * course.time[-1]
-    load = float(course.rows["wall_z"][late].mean())
+    load = float(course.rows["wall_force"][late, 1].mean())
     lid = trial.scene.outline[:, 1].max()
     higher = float((course.position[-1, :, 1] > 0.5 * lid).mean())
     return [
@@ -53,8 +53,8 @@ def slowly_tilted(fast: bool) -> Trial:
 
 def slid(trial: Trial, course: Course) -> list[Check]:
     """The tank stands at 45 deg at last; no bed of spheres keeps such a slope, so the centre of mass has shifted."""
-    angle = abs(course.last("pose_angle") - RATE * LASTING)
-    shift = float(np.ptp(course.rows["centre_y"])) / (2.0 * trial.scene.mean_radius)
+    angle = abs(course.last("pose")[2] - RATE * LASTING)
+    shift = float(np.ptp(course.rows["centre_of_mass"][..., 0])) / (2.0 * trial.scene.mean_radius)
     return [
         Check("angle at the end (rad)", "45 deg", angle, RATE * 0.2, "the ease at its ends"),
         Check("missing of a shift by one diameter", "a slope of 45 deg flows", max(0.0, 1.0 - shift), 0.0, "must flow"),

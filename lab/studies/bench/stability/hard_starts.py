@@ -38,7 +38,7 @@ def squeezed(fast: bool) -> Trial:
 
 def settles(trial: Trial, course: Course) -> list[Check]:
     """Grains that are put a little too close should come apart, not fly up."""
-    height = course.rows["centre_z"]
+    height = course.rows["centre_of_mass"][..., 1]
     risen = float(height.max() - height[0]) / (2.0 * RADIUS)
     return [Check("rise of the centre of mass (diameters)", "relaxed, not burst", risen, RISE, "rearranging")]
 

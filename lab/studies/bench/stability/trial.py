@@ -5,7 +5,6 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from solvers.grains.materials import hertz_stiffness
-from solvers.grains.observe import Observer
 from solvers.machine.errors import BadState
 from solvers.scene import Scene
 from solvers.simulation import Simulation
@@ -51,9 +50,9 @@ class Trial:
 class Course:
     """What came of a trial at its T looks, the first of them before anything moves.
 
-    `time` (T,) s; `rows` numbers (T,) as `Observer` names them; `position` (T, n, 2) m; `energy` (T,) J in the earth
-    frame: kinetic with spin, potential and elastic; `work` (T,) J that the tank has done on the grains; `stopped`
-    what the watch said, if it stopped the run.
+    `time` (T,) s; `rows` (T, *shape) of each quantity that is observed, by name; `position` (T, n, 2) m; `energy` (T,)
+    J in the earth frame: kinetic with spin, potential and elastic; `work` (T,) J that the tank has done on the grains;
+    `stopped` what the watch said, if it stopped the run.
     """
 
     step: float
@@ -65,9 +64,9 @@ class Course:
     work: np.ndarray
     stopped: str | None = None
 
-    def last(self, name: str) -> float:
-        """A row's number at the last look."""
-        return float(self.rows[name][-1])
+    def last(self, name: str) -> np.ndarray:
+        """A quantity at the last look."""
+        return self.rows[name][-1]
 
 
 @dataclass
@@ -75,7 +74,7 @@ class _Look:
     """The tank and its grains at one time; `carried` (2,) m/s is the velocity of the tank's origin along its axes."""
 
     time: float
-    rows: dict[str, float]
+    rows: dict[str, np.ndarray]
     position: np.ndarray
     spin: np.ndarray
     kinetic: float
@@ -105,7 +104,7 @@ def follow(run: Simulation, trial: Trial, step: float) -> Course:
     return Course(
         step=step,
         time=np.array([look.time for look in looks]),
-        rows={name: np.array([look.rows[name] for look in looks]) for name in Observer.NAMES},
+        rows={name: np.array([look.rows[name] for look in looks]) for name in (looks[0].rows if looks else ())},
         position=np.array([look.position for look in looks]),
         spin=np.array([look.spin for look in looks]),
         energy=np.array([look.energy for look in looks]),
@@ -138,10 +137,10 @@ def _begin(run: Simulation, trial: Trial, step: float) -> None:
 
 def _look(run: Simulation) -> _Look:
     """Raises BadState from the watch."""
-    rows = {name: float(values[0]) for name, values in run.observe().items()}
+    rows = {name: values[0] for name, values in run.observe().items()}
     state = {name: values[0] for name, values in run.snapshot().items()}
-    cosine, sine = np.cos(rows["pose_angle"]), np.sin(rows["pose_angle"])
-    rate_y, rate_z, turning = rows["rate_y"], rows["rate_z"], rows["rate_angle"]
+    cosine, sine = np.cos(rows["pose"][2]), np.sin(rows["pose"][2])
+    rate_y, rate_z, turning = rows["pose_rate"]
     carried = np.array([cosine * rate_y + sine * rate_z, -sine * rate_y + cosine * rate_z])
     y, z = state["position"].T
     velocity = state["velocity"] + carried + turning * np.column_stack([-z, y])
@@ -154,5 +153,5 @@ def _work(before: _Look, after: _Look) -> float:
     """Work (J) of the tank on its grains between two looks: its mean forces times its mean velocities."""
     rows, passed = after.rows, after.time - before.time
     carried = 0.5 * (before.carried + after.carried)
-    turning = 0.5 * (before.rows["rate_angle"] + rows["rate_angle"])
-    return -passed * float(carried @ [rows["wall_y"], rows["wall_z"]] + turning * rows["wall_moment"])
+    turning = 0.5 * (before.rows["pose_rate"][2] + rows["pose_rate"][2])
+    return -passed * float(carried @ rows["wall_force"][:2] + turning * rows["wall_force"][2])

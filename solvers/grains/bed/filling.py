@@ -15,7 +15,7 @@ from math import ceil, pi, sqrt
 import numpy as np
 from matplotlib.path import Path
 
-from solvers.grains.sizes import Sizes
+from solvers.grains.bed.sizes import Sizes
 from solvers.tank.outline import free_area
 
 # Area fraction of settled frictional discs: 0.82 (random close packing of discs, Berryman 1983) less the loose layers

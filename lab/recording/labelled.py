@@ -1,0 +1,29 @@
+"""A recording's arrays with named axes (xarray), which take their names, units and labels along."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    import xarray
+
+
+def labelled(recording, frames: slice | None = None) -> "xarray.Dataset":
+    """The series of a recording, or some of its frames: see `Recording.labelled`."""
+    import xarray  # slow to load, and few need it
+
+    table = recording.series if frames is None else recording.frames
+    rows = slice(None) if frames is None else frames
+    found, coordinates = {}, {}
+    for name, quantity in table.quantities.items():
+        about = {"units": quantity.unit, "long_name": quantity.label, "mean_over_sample": quantity.mean}
+        values = xarray.Variable(quantity.axes, table[name][rows], about)
+        if name == "time":
+            coordinates[name] = values
+            continue
+        found[name] = values
+        if quantity.components:
+            coordinates[quantity.dimension] = list(quantity.components)
+    coordinates["world"] = np.arange(recording.worlds)
+    about = {"preset": recording.name, "created": recording.created, "status": recording.status}
+    return xarray.Dataset(found, coordinates, about)

@@ -1,0 +1,76 @@
+"""Quantities: what is worth knowing of a scene, each declared once in the room that fills it.
+
+Whoever stores, draws or explains numbers reads these declarations and keeps no list of names, units or labels.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+PLANE = ("y", "z")
+FREEDOMS = ("y", "z", "roll")
+OWNERS = {"run": (), "world": ("world",), "grain": ("world", "grain"), "part": ("world", "part")}
+DIMENSIONS = {PLANE: "axis", FREEDOMS: "freedom"}  # what runs over components that many quantities have
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """What an array of numbers means.
+
+    name: of the array; unit: SI, "1" of a pure number, "N, N, N m" where the components have different ones;
+    components: their names, none of a single number; label: what it is, for people, a noun without an article;
+    mean: whether it is averaged over the time since the last sample, else it is that of the instant; per: what has
+    one each, a key of OWNERS; never: the value that stands for "has not happened"; plot: whether a run's report draws
+    it against time in a figure of its own.
+    """
+
+    name: str
+    unit: str
+    components: tuple[str, ...] = ()
+    label: str = ""
+    mean: bool = False
+    per: str = "world"
+    never: float | None = None
+    plot: bool = False
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Of one value: (components,), or () of a single number."""
+        return (len(self.components),) if self.components else ()
+
+    @property
+    def width(self) -> int:
+        """How many numbers one value has."""
+        return len(self.components) or 1
+
+    @property
+    def units(self) -> tuple[str, ...]:
+        """The unit of each component, or the one of a single number."""
+        said = tuple(self.unit.split(", "))
+        return said * self.width if len(said) == 1 else said
+
+    @property
+    def dimension(self) -> str:
+        """The name of the axis along the components: the same of quantities that have the same ones."""
+        return DIMENSIONS.get(self.components, f"{self.name}_component")
+
+    @property
+    def axes(self) -> tuple[str, ...]:
+        """Names of the axes of what is recorded of it, time first."""
+        return ("time", *OWNERS[self.per], *((self.dimension,) if self.components else ()))
+
+
+def places(quantities: Sequence[Quantity]) -> dict[str, int]:
+    """The first column of each quantity by name, where all their numbers stand side by side in a row."""
+    ends = np.cumsum([0, *(quantity.width for quantity in quantities)])
+    return {quantity.name: int(begin) for quantity, begin in zip(quantities, ends, strict=False)}
+
+
+def parted(rows: np.ndarray, quantities: Sequence[Quantity]) -> dict[str, np.ndarray]:
+    """Rows (W, columns) as `places` orders them, as one array (W, *shape) a quantity, by name."""
+    begin, found = places(quantities), {}
+    for quantity in quantities:
+        block = rows[:, begin[quantity.name] : begin[quantity.name] + quantity.width]
+        found[quantity.name] = block if quantity.components else block[:, 0]
+    return found

@@ -1,0 +1,11 @@
+"""What is known of the tank: how it moves (`motion.frame`, `motion.afloat`), and its parts (`walls`).
+
+Files of quantities import no Taichi, for those who read recordings need none.
+"""
+
+from solvers.machine.quantity import FREEDOMS, PLANE, Quantity
+
+POSE = Quantity("pose", "m, m, rad", FREEDOMS, "place and roll of the tank in the earth's axes")
+POSE_RATE = Quantity("pose_rate", "m/s, m/s, rad/s", FREEDOMS, "velocity and rate of roll of the tank")
+SERIES = (POSE, POSE_RATE)
+FRAMES = (POSE, Quantity("part", "m", PLANE, "displacement of each moving part in the tank", per="part"))
