@@ -146,7 +146,7 @@ class Launch:
     def start(self, kept: Checkpoint | None) -> None:
         """Settle the beds, or restore a checkpoint, and open the recordings."""
         rows = kept.rows if kept else (0, 0)
-        count = len(self.runs)  # of recordings written side by side each writes larger pieces, so that writes are no more frequent
+        count = len(self.runs)  # each of several recordings writes larger pieces, so that writes stay as rare
         opened = {"flush_every": count * FLUSH_EVERY, "buffer": BUFFER_BYTES // count}
         self._recorders = [
             self._stack.enter_context(Recorder(run.folder, samples=rows[0], frames=rows[1], **opened))

@@ -118,7 +118,7 @@ def understood(asked: Asked) -> Plan:
 
 
 def _target(text: str, unit: str) -> tuple[float, float]:
-    """Value and standard error in a unit of "41.3 deg" or "41.3 ± 0.8 deg". Raises LabError."""
+    """Parse "41.3 deg" or "41.3 ± 0.8 deg" into value and standard error in `unit`. Raises LabError."""
     value, _, error = (part.strip() for part in text.replace("+-", "±").partition("±"))
     if not error:
         return in_unit(value, unit, "--target"), 0.0
@@ -212,7 +212,7 @@ def _beds(plan: Plan) -> int:
 
 
 def _met(made: Calibration, span: tuple[float, float]) -> float:
-    """The value at which the means of a round meet the target. If there is none, writes a report and raises LabError."""
+    """The value at which the means of a round meet the target; without one, writes a report and raises LabError."""
     x, means = made.means()
     response = fitted(*made.measures())
     if len(x) < 2 or response is None:

@@ -91,14 +91,14 @@ def _warn_of(address: str, progress: Progress) -> None:
 
 
 def is_open(address: str) -> bool:
-    """Whether others than this machine may reach a scheduler at such an address, and its messages are not secured."""
+    """Whether other machines can reach a scheduler at this address without TLS."""
     protocol, _, rest = address.rpartition("://")
     host = rest.rpartition(":")[0].strip("[]")
     if protocol in ("tls", "wss", "inproc") or host == "localhost":
         return False
     try:
         return not ip_address(host).is_loopback
-    except ValueError:  # a name of the network
+    except ValueError:  # a host name
         return True
 
 

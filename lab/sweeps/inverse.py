@@ -20,10 +20,10 @@ from scipy import stats
 
 from lab.measures.value import LEVEL, half_width
 
-DEGREE = 2  # of the polynomial; 1 where there are no more than LEAST_FOR_PARABOLA - 1 values
+DEGREE = 2  # of the polynomial; 1 if there are fewer than LEAST_FOR_PARABOLA values
 LEAST_FOR_PARABOLA = 4
-LEAST_BEDS = 8  # for an interval of any worth: t is 2.4 there, and 12.7 of two
-GRID = 4001  # places of the curve that are looked at
+LEAST_BEDS = 8  # for a useful interval: t is 2.4 with eight beds, 12.7 with two
+GRID = 4001  # points at which the curve is evaluated
 MOST_BEDS = 100_000
 
 

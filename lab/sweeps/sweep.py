@@ -197,6 +197,7 @@ def state_of(folder: Path) -> str:
 
 def _plan(sweep: Sweep) -> Iterator[list[int]]:
     """Group the numbers of the points into launches that they can share. Raises LabError as `prepare`."""
+    begun: dict[tuple, dict[int, int]] = {}  # launches that are not full yet: worlds by number of the point
     for number, point in enumerate(sweep.points):
         run = prepare(point, Path())
         if not run.sociable:
