@@ -1,4 +1,4 @@
-"""A recording as the painter looks at it: frame by frame, bed by bed."""
+"""A recording as the painter reads it: frame by frame, bed by bed."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -61,7 +61,7 @@ class Footage:
         return self.sea
 
     def grains(self, name: str, frame: int, world: int) -> np.ndarray:
-        """What each grain has in a frame: (n,) or (n, 2) of one of `recording.GRAIN_FRAMES`."""
+        """The value of each grain in a frame: (n,) or (n, 2) of one of `recording.GRAIN_FRAMES`."""
         if self._read.get(name, (None,))[0] != frame:
             self._read[name] = frame, self._frames[name][frame].astype(float)
         return self._read[name][1][world]
@@ -69,7 +69,7 @@ class Footage:
 
 @dataclass(frozen=True, eq=False)
 class Bed:
-    """One world of a footage, and the name it goes by in a picture."""
+    """One world of a footage, and its name in a picture."""
 
     footage: Footage
     world: int

@@ -1,4 +1,4 @@
-"""The ship and the sea in a picture: her hull around the tank, the water up to the waves that pass."""
+"""The ship and the sea in a picture: the hull around the tank, and the water up to the wave surface."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -22,7 +22,7 @@ AROUND = np.array([0.45, 0.2])  # of the hull's size: how much of the sea is sho
 class Sea:
     """What the recording of a ship (its preset in full) says of hull and waves.
 
-    `waves`: those that a hand has made of the preset's, as a frame has them (`recording.WAVES`), or None.
+    `waves`: the waves of a frame (`recording.WAVES`) if a user has changed those of the preset, or None.
     """
 
     waves: np.ndarray | None = None
