@@ -1,4 +1,4 @@
-"""What graphics processors are here, by the names that their drivers give."""
+"""The graphics processors of this machine, with the names that their drivers give."""
 
 import ctypes
 import sys

@@ -1,4 +1,4 @@
-"""cargolab bench outlines: how irregular grains touch, by rule and nodes: what energy it loses, what a step costs."""
+"""cargolab bench outlines: contact rules of irregular grains, by rule and number of nodes: energy error and cost."""
 
 import statistics
 import time

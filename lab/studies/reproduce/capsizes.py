@@ -1,7 +1,8 @@
-"""What would capsize the barge as the source's capsizes: readings of its equation of roll, scanned without grains.
+"""What would capsize the barge as in the source: readings of its equation of roll, scanned without grains.
 
-The source's barge rolls most below its natural frequency, so her lever softens, and capsizes with cargo that has slid;
-ours does neither. Two readings that could make her, alone and together: another lever, and cargo that counts twice.
+The source's barge rolls most below its natural frequency, so its righting lever must soften, and it capsizes with cargo
+that has slid; ours does neither. Two readings could explain it, alone or together: another lever, and cargo that is
+counted twice.
 """
 
 from collections.abc import Mapping, Sequence

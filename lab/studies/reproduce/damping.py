@@ -1,4 +1,4 @@
-"""Which damping the roll with frozen cargo asks for: scans of the barge about her fixed axis, without grains."""
+"""The damping that the source's roll with frozen cargo implies: scans of the barge about a fixed axis, no grains."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import astuple, dataclass, replace
@@ -97,7 +97,7 @@ def _steady(time: np.ndarray, roll: np.ndarray, frequency: float) -> float:
 
 
 def implied(tried: Sequence[Damping], responses: Sequence[Response], peak: float) -> Damping | None:
-    """Between the last two of ever stronger dampings whose peaks (deg) are above and below the given one, or None."""
+    """Interpolate the damping with the given peak (deg) between two of the increasing dampings tried, or None."""
     peaks = np.array([response.peak[0] for response in responses])
     above = np.flatnonzero(peaks >= peak)
     if not len(above) or above[-1] == len(tried) - 1:
@@ -109,7 +109,7 @@ def implied(tried: Sequence[Damping], responses: Sequence[Response], peak: float
 
 
 def safe(tried: Sequence[Damping], responses: Sequence[Response]) -> Damping | None:
-    """The weakest of ever stronger dampings from which on she never capsizes, or None."""
+    """The weakest of the increasing dampings tried from which on the barge never capsizes, or None."""
     lost = [index for index, response in enumerate(responses) if len(response.capsized)]
     first = lost[-1] + 1 if lost else 0
     return tried[first] if first < len(tried) else None

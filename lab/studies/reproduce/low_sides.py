@@ -1,7 +1,7 @@
-"""A barge that loose cargo does take: her deck is little above the water, and she floods through her hatch.
+"""A barge that loose cargo does capsize: it has little freeboard and floods through its hatch.
 
-Sound hydrostatics, cargo that counts once: grains beside the heap of `lab.studies.reproduce.sliding_heap` at the edge
-of loss.
+With correct hydrostatics and cargo counted once: grains compared with the heap of `lab.studies.reproduce.sliding_heap`
+near the limit of loss.
 """
 
 from collections.abc import Mapping, Sequence

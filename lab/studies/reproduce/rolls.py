@@ -1,4 +1,4 @@
-"""How far ships roll, loose cargo beside frozen, laid out as figures 7.6 to 7.19 of Spandonidis (2016)."""
+"""Figures of the roll of ships with loose and frozen cargo, laid out as figures 7.6 to 7.19 of Spandonidis (2016)."""
 
 from collections.abc import Collection, Mapping, Sequence
 

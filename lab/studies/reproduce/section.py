@@ -1,4 +1,4 @@
-"""The measured section against the lab, like with like: in its flume's wave train, and what each term explains."""
+"""Compare the measured section with the lab in the flume's own wave train, and find what each term explains."""
 
 from collections.abc import Mapping, Sequence
 from math import pi

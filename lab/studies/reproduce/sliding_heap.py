@@ -2,10 +2,10 @@
 
     (I + δI) φ̈ + B₁ φ̇ + B₂ φ̇|φ̇| + W GZ(φ) = W GM A k D(t) cos ωt + M_cargo,  k = ω²/g
 
-per metre of length; D is the soft start of eq. F.1 and GZ(φ) any lever of the ship with her cargo frozen. The heap is
-the plane filling of `solvers.ship.cargo`: it lies still in the hold until its surface is steeper than its repose, and
-then slides at once, as far as it must (the play of Prandtl 1928). Unlike grains it needs no time to slide, and feels
-gravity alone.
+per metre of length; D is the soft start of eq. F.1 and GZ(φ) any righting lever of the ship with her cargo frozen. The
+heap is the plane filling of `solvers.ship.cargo`: it stays at rest in the hold until its surface is steeper than its
+angle of repose, and then slides at once, as far as it must (the play operator of Prandtl 1928). Unlike grains it needs
+no time to slide, and only gravity acts on it.
 """
 
 from collections.abc import Callable
@@ -24,7 +24,7 @@ LEANS = np.radians(np.linspace(-120.0, 120.0, 481))  # of a heap's table; rolls 
 
 @dataclass(frozen=True, eq=False)
 class Heap:
-    """A loose cargo of a mass (kg/m), as steep as its `repose` (rad), or a repose for each of many ships.
+    """A loose cargo of a mass (kg/m) and an angle of `repose` (rad), or one angle for each of many ships.
 
     `inertia` (kg m) is about the ship's axis while it lies level; `centres` (n, 2) m from that axis, in the hull's
     frame, with the surface at each of `LEANS` against the deck.

@@ -1,4 +1,4 @@
-"""Tanks that are tilted: materials, surfaces, low walls, depths of fill, the way back, sizes of tanks."""
+"""Tilted tanks: materials, surfaces, low walls, depths of fill, hysteresis, sizes of tanks."""
 
 from collections.abc import Mapping, Sequence
 

@@ -1,4 +1,4 @@
-"""What must be kept: momenta, energy, and the source's own checks of its code (Spandonidis 2016, tables 4.3, 6.3)."""
+"""Conservation of momenta and energy, and the source's own checks of its code (Spandonidis 2016, tables 4.3, 6.3)."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""Restitution: what a material is given comes out, and the viscoelastic law over all its range of damping."""
+"""Restitution: collisions have the material's given value; the viscoelastic law over its whole range of damping."""
 
 from functools import cache
 

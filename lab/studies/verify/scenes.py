@@ -1,4 +1,4 @@
-"""Small scenes by the way that every experiment takes: a preset's tables and a file of grains, loaded and built."""
+"""Small scenes made like any experiment: a preset's tables and a file of grains are loaded and built."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager

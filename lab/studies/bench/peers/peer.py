@@ -1,4 +1,4 @@
-"""What peer codes have in common: a folder, a file with the bed, how they are run, and what is read."""
+"""Shared code for the peer codes: working folder, file with the bed, running them, reading the results."""
 
 import os
 import re
@@ -21,7 +21,7 @@ HEADER = 9  # lines of a dump before its rows
 
 @dataclass(frozen=True)
 class PeerRun:
-    """What a peer code made of a bed: how long it took and where the grains went.
+    """The result of a peer code on a bed: its time and the motion of the grains.
 
     loop_s: wall time of the stepping as the code itself reports it, without set-up (s).
     grain_steps_per_s: grains times steps over that time (1/s).

@@ -1,4 +1,4 @@
-"""What a grain-step costs in worlds of any size, and what bands on all cores give."""
+"""Cost of a grain-step in worlds of any size, and the gain from bands on all cores."""
 
 from pathlib import Path
 

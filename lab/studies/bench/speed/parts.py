@@ -1,4 +1,4 @@
-"""Where the time of a step goes, and how far the force loop is from what the core could do at most."""
+"""Where the time of a step goes, and how close the force loop is to the limits of the core."""
 
 import time
 from collections.abc import Mapping

@@ -1,6 +1,6 @@
 """Simulations in processes of their own, so that runs on different threads and precisions can be timed in turn.
 
-Taichi holds one number of threads and one precision a process; a simulation that starts it anew ends all others.
+Taichi has one number of threads and one precision per process; a simulation that restarts Taichi ends all others.
 """
 
 import time

@@ -1,4 +1,4 @@
-"""Processes killed at random times, gone on with, killed again, and compared with those that nobody disturbed."""
+"""Processes killed at random times, continued, killed again, and compared with undisturbed ones."""
 
 import random
 import shutil

@@ -1,4 +1,4 @@
-"""Processes that lack something: memory, files, room, a home, a display, locks, or a clock that can be trusted."""
+"""Processes that lack something: memory, files, disk space, a home, a display, locks, or a reliable clock."""
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
