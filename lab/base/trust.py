@@ -102,7 +102,7 @@ def check_progress(runs: object, rows: Sequence, said: Sequence) -> None:
 def check_state(state: Mapping[str, np.ndarray], worlds: int, count: int) -> None:
     """Raise ValueError if the state of worlds of `count` grains asks for too much memory or refers to other grains.
 
-    The simulation itself refuses places in its lists of contacts that are none (`State.write`).
+    The simulation itself refuses invalid indices in its contact lists (`State.write`).
     """
     numbers, order = state["numbers"], state["number"]
     room, counts = int(numbers[1]), np.delete(numbers, UNKICKED)

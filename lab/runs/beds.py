@@ -46,7 +46,7 @@ Bed = dict[str, np.ndarray]
 UNRELATED = ("motions", "soft_start", "start_speed", "step", "vessels", "interval")
 PER_WORLD = ("radius", "grain", "wall", "velocity", "spin")
 
-FREE = 0.9  # of its radius: how near a wall a grain of a settled bed may be
+FREE = 0.9  # least distance of a grain of a settled bed from a wall, in its radius
 
 
 @dataclass(frozen=True)
@@ -234,7 +234,7 @@ def _engine() -> str:
 def made(
     before: Mapping[str, np.ndarray], after: Mapping[str, np.ndarray], axes: Mapping[str, Axes], worlds: int
 ) -> list[Bed]:
-    """What settling made of each world: its part of the entries of the state that changed.
+    """The bed of each world: its part of the entries of the state that settling changed.
 
     Entries that it did not change, such as the motions' numbers, belong to the scene and not to the bed.
     """
