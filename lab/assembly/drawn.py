@@ -15,7 +15,7 @@ MOST_OUTLINES = 20_000
 
 
 def draw_shapes(preset: Resolved, count: int) -> Shapes | None:
-    """The outlines of `count` grains in each repeat, and their angles at the start; None where all are discs.
+    """The outlines of `count` grains in each repeat, and their angles at the start; None if all are discs.
 
     The outlines are in the order of `classes`. Those of a repeat do not depend on the other repeats. Raises LabError
     for an impossible outline.

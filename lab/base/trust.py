@@ -71,7 +71,7 @@ def is_preset(table: object) -> bool:
 
 
 def check_room(data: h5py.Dataset, rows: int) -> None:
-    """Raise Useless if so many rows of a data set do not fit into this machine's memory."""
+    """Raise Useless if `rows` rows of a data set do not fit into this machine's memory."""
     needed = rows * _bytes(data.shape[1:], data.dtype)
     if needed > SHARE * machine_memory():
         where = f"{data.file.filename}: {data.name[1:]}"

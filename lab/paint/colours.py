@@ -142,7 +142,7 @@ def mark_colours(colours: np.ndarray) -> np.ndarray:
 
 
 def bed_colours(count: int) -> list[tuple[int, int, int]]:
-    """Colours for the names and curves of so many beds, in an order that the eye can follow."""
+    """Colours for the names and curves of `count` beds, in a perceptual order."""
     from matplotlib import colormaps
 
     shades = colormaps["turbo"](np.linspace(0.05, 0.95, count))[:, :3]

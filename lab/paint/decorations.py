@@ -24,7 +24,7 @@ def font(size: float, bold: bool = False) -> ImageFont.FreeTypeFont:
 
 
 def number(value: float, digits: int) -> str:
-    """A number with so many decimals, a true minus sign, and no minus before zero."""
+    """A number with `digits` decimals, a true minus sign, and no minus before zero."""
     text = f"{value:.{digits}f}"
     return text.replace("-", "\N{MINUS SIGN}" if float(text) else "")
 
@@ -169,7 +169,7 @@ class LivePlot:
         self._draw_axes(labels)
 
     def picture(self, counts: Sequence[int]) -> Image.Image:
-        """The plot with the first so many samples of each curve."""
+        """The plot with the first `counts` samples of each curve."""
         image = self._image.copy()
         draw = ImageDraw.Draw(image)
         thick, dot = round(0.16 * self._text), 0.32 * self._text

@@ -139,7 +139,7 @@ def paint_tank(
 
 
 def paint_plate(picture: np.ndarray, camera: Camera, line: np.ndarray, thickness: float, colour: tuple) -> None:
-    """Paint a polyline (m, 2) in m as a plate, so many pixels thick, with round ends."""
+    """Paint a polyline (m, 2) in m as a plate with round ends, `thickness` in pixels."""
     corners = camera.pixels(line)
     box = _box(picture, corners, thickness)
     if box[0] < box[2] and box[1] < box[3]:
@@ -240,7 +240,7 @@ def _depth(offset, radius, towards, radii: ti.template(), row):
 
 @ti.func
 def _outline_coverage(offset, radius, inset, towards, radii: ti.template(), row):
-    """Share of a pixel that an outline moved inwards by so many pixels covers; one too small for its ramp is faint."""
+    """Share of a pixel that an outline covers when moved inwards by `inset` pixels; very small outlines are faint."""
     within = _depth(offset, radius, towards, radii, row) - inset
     return ti.min(3.0 * radius * radius, 1.0) * ti.math.clamp(within + 0.5, 0.0, 1.0)
 

@@ -39,7 +39,7 @@ class Sea:
         return self.ship.corners - np.array(self.ship.hold)
 
     def paint_hull(self, picture: np.ndarray, camera: Camera, thick: float) -> None:
-        """Paint the hull, her walls so many pixels thick, her hatch open; the camera is that of the tank's points."""
+        """Paint the hull with walls `thick` pixels thick and an open hatch; the camera is that of the tank's points."""
         paint_tank(picture, camera, self.hull, thick, palette.WALL, palette.LINE, (HATCH,) if self.ship.hatch else ())
         if self.ship.hatch:
             inside = self.hull[[HATCH + 2, HATCH - 1, HATCH, HATCH + 1]]

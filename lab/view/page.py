@@ -140,7 +140,7 @@ class Page:
         return place is not None and np.hypot(place[0] - x, place[1] - y) < self.u(GRIP)
 
     def grain_at(self, shown: Shown, x: float, y: float) -> int | None:
-        """The number of the grain at a pixel, None where there is none."""
+        """The number of the grain at a pixel, None if there is none."""
         places = self.tank_camera(shown).pixels(shown.footage.grains("position", shown.frame))
         away = np.hypot(places[:, 0] - x, places[:, 1] - y) / self.camera(shown).scale
         nearest = int(np.nanargmin(away - shown.footage.radius[0]))

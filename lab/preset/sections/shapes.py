@@ -165,7 +165,7 @@ def _shape(key: str, given: ShapeGiven, diameter: float | None) -> Shape:
 
 
 def _described(key: str, given: ShapeGiven) -> tuple[tuple[float, ...], tuple[float, ...] | None]:
-    """Descriptors relative to R0 and phases (rad), None where they are random. Raises BadOutline, LabError."""
+    """Descriptors relative to R0 and phases (rad), None if they are random. Raises BadOutline, LabError."""
     if given.cargo is not None:
         return cargo(given.cargo).descriptors, cargo(given.cargo).phases
     if given.contour is not None:

@@ -61,7 +61,7 @@ def _ellipse(a: float, b: float) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Tried:
-    """A rule with so many nodes: relative changes of the pairs' energy, and what steps cost, those of discs being 1."""
+    """A rule with a number of nodes: relative changes of the pairs' energy, and cost of steps relative to discs."""
 
     rule: str
     nodes: int | None

@@ -29,7 +29,7 @@ PEAK = 36.0  # deg, of the source's frozen cargo in waves of 10 mm
 
 @dataclass(frozen=True)
 class Damping:
-    """Of the roll: a share of the critical, and a quadratic one per rad, as in the preset's [ship]."""
+    """Damping of the roll: a fraction of the critical one, and a quadratic one per rad, as in the preset's [ship]."""
 
     linear: float = 0.0
     quadratic: float = 0.0

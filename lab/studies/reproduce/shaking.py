@@ -32,8 +32,8 @@ def shaken(preset: str, quick: bool, frequencies: Sequence[str] = (), motion: st
 def materials_batches(motion: str, quick: bool) -> dict[str, Batch]:
     """The three ores, in 2 beds; a thousandth of the stiffness would let the gold ore overlap too far at 2 m/s.
 
-    Beds of so many grains differ little; and nothing lifts in heave, so few frequencies say it all. The gold ore, which
-    takes three times as many steps, has the fewest, and is not in the quick report.
+    Beds of this many grains differ little; and in heave nothing is lifted, so few frequencies suffice. The gold ore,
+    which takes three times as many steps, has the fewest, and is not in the quick report.
     """
     slower = ["0.5 Hz", "0.8 Hz", "1.1 Hz"]
     between = {} if motion == "heave" else {"B": slower[-1:]} if quick else {"A": slower, "B": slower}

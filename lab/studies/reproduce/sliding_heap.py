@@ -37,15 +37,15 @@ class Heap:
 
     @property
     def height(self) -> float:
-        """Of its centre above the axis (m) while it lies level."""
+        """Height of its centre of mass above the axis (m) while its surface is level."""
         return float(np.interp(0.0, LEANS, self.centres[:, 1]))
 
     def slid(self, lean: np.ndarray, roll: np.ndarray) -> np.ndarray:
-        """How the surface leans (rad) once the ship has come to a roll (rad)."""
+        """Lean of the surface (rad) once the ship has reached a roll (rad)."""
         return np.clip(lean, roll - self.repose, roll + self.repose)
 
     def arm(self, lean: np.ndarray, roll: np.ndarray) -> np.ndarray:
-        """How far (m) to starboard of the axis its centre is."""
+        """Horizontal distance (m) of its centre of mass to starboard of the axis."""
         y, z = (np.interp(lean, LEANS, column) for column in self.centres.T)
         return np.cos(roll) * y - np.sin(roll) * z
 
@@ -90,17 +90,17 @@ class HeapShip:
 
     @property
     def natural_frequency(self) -> float:
-        """Of small rolls (rad/s), which do not move the heap."""
+        """Natural frequency of small rolls (rad/s), which do not move the heap."""
         again = -self.heap.mass * self.gravity * self.heap.height if self.twice else 0.0
         return sqrt((self.weight * self.height + again) / self.whole_inertia)
 
     def tuned(self, frequency: float) -> "HeapShip":
-        """The same with the inertia that small rolls of a frequency (rad/s) ask for."""
+        """The same ship with the inertia that gives small rolls this natural frequency (rad/s)."""
         again = self.whole_inertia - self.inertia
         return replace(self, inertia=(self.natural_frequency / frequency) ** 2 * self.whole_inertia - again)
 
     def cargo_moment(self, lean: np.ndarray, roll: np.ndarray) -> np.ndarray:
-        """Moment (N) of the cargo's weight over what the frozen cargo's lever has of it."""
+        """Moment (N) of the cargo's weight beyond that in the righting lever with frozen cargo."""
         lean = self.heap.slid(lean, roll)
         moved = self.heap.arm(lean, roll) - self.heap.arm(np.zeros_like(roll), roll)
         again = self.heap.arm(lean, roll) if self.twice else 0.0
@@ -115,7 +115,7 @@ class HeapShip:
         return (elevation(across) > up).any(axis=0)
 
     def acceleration(self, roll: np.ndarray, speed: np.ndarray, lean: np.ndarray, push: np.ndarray) -> np.ndarray:
-        """Of the roll (rad/s²) under a wave moment `push` (N)."""
+        """Acceleration of the roll (rad/s²) under a wave moment `push` (N)."""
         resisted = (self.damping.linear + self.damping.quadratic * np.abs(speed)) * speed
         moment = push - self.weight * self.lever(roll) - resisted
         if self.heap is not None:

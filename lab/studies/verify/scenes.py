@@ -146,7 +146,7 @@ class Track:
 
 
 def track(run: Simulation, looks: int, steps: int = 1) -> Track:
-    """The state now and after each of so many looks, `steps` steps apart."""
+    """The state now and at each of `looks` times, `steps` steps apart."""
     states, times = [run.snapshot()], [run.time]
     for _ in range(looks):
         run.advance(steps)

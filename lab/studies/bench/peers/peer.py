@@ -76,7 +76,7 @@ def bed_file(position: np.ndarray, radius: np.ndarray, density: float, width: fl
 def execute(name: str, executable: str, arguments: Sequence[str], folder: Path, processes: int = 1) -> float:
     """Run a peer in `folder`, each process on one thread; returns the loop time it prints (s).
 
-    Raises LabError where it, or mpirun for several processes, is not installed, or where it stops.
+    Raises LabError if it, or mpirun for several processes, is not installed, or if it stops.
     """
     for needed in (executable, *(["mpirun"] if processes > 1 else [])):
         if shutil.which(needed) is None:
@@ -97,7 +97,7 @@ def execute(name: str, executable: str, arguments: Sequence[str], folder: Path, 
 
 
 def _launcher(processes: int) -> list[str]:
-    """What starts so many processes, each bound to a core of its own."""
+    """The command that starts several processes, each bound to its own core."""
     if processes == 1:
         return []
     as_root = ["--allow-run-as-root"] if hasattr(os, "geteuid") and os.geteuid() == 0 else []

@@ -32,7 +32,7 @@ def study(page: Page, work: Path, fast: bool) -> None:
 
 
 def measured(work: Path, size: int, turns: int, seconds: float) -> Speeds:
-    """Grain-steps a second (turns,) of a world of so many grains on one core and on all."""
+    """Grain-steps per second (turns,) of a world of `size` grains, on one core and on all."""
     print(f"grains: {size}", flush=True)
     bed = usual_bed(work, COUNT).times(size // COUNT)
     made = {

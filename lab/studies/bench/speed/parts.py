@@ -208,7 +208,7 @@ def limits(size: int, turns: int, seconds: float) -> dict[str, float]:
 
 
 def repeated(do, seconds: float):
-    """A timing: the seconds that doing something once takes, `do(times)` being done for about so many seconds."""
+    """A timing: the seconds per call, from repeating it by `do(times)` for about `seconds` seconds."""
 
     def once(times: int) -> float:
         begun = time.perf_counter()

@@ -49,7 +49,7 @@ def gallery(work: Path, kills: int) -> Tally:
 
 
 def _tour(work: Path, kills: int, what: str, first: Sequence, again: Sequence, code: str | None = None) -> Tally:
-    """Kill so often in all; each tour is gone on with until it is done."""
+    """Kill the command `kills` times in all; each tour is continued until it is done."""
     tally = Tally(f"kill -9 of {what} at random times, then resumed: the same bits as undisturbed")
     how = {"code": code} if code else {}
     whole, cut = work / "whole", work / "cut"
