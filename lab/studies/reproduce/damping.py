@@ -116,7 +116,7 @@ def safe(tried: Sequence[Damping], responses: Sequence[Response]) -> Damping | N
 
 
 def tell(found: Mapping[str, Sequence[Outcome]]) -> Told:
-    """The dampings of the source's peak, and whether she stands the higher waves with them; no run is looked at."""
+    """The dampings that give the source's peak, and whether she survives the higher waves with them; needs no runs."""
     barge = Barge(FREQUENCIES)
     rows, curves = [], {}
     for name, tried in TRIED.items():

@@ -64,7 +64,7 @@ def _by_workers(batches: Mapping[Path, Batch], cores: int, progress: Progress) -
             for worker in active_children():
                 os.kill(worker.pid, signal.SIGINT)
             if isinstance(error, BrokenProcessPool):
-                raise LabError(f"{BROKEN}: ask again, and what was begun is gone on with.") from None
+                raise LabError(f"{BROKEN}: run the command again to continue.") from None
             raise
 
 
