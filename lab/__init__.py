@@ -41,8 +41,8 @@ def sweep(
 ) -> SweepResult:
     """Run a preset at every combination of values: `lab.sweep("shaking/sway", {"motion.sway.frequency": "0.5:2:7Hz"})`.
 
-    axes: by key a range or list as a text, as `cargolab sweep` takes it, or a sequence of values; cluster: the address
-    of a Dask scheduler whose workers are to run the points; `overrides` as in `run`.
+    axes: for each key a range or list as text, as `cargolab sweep` takes it, or a sequence of values; cluster: the
+    address of a Dask scheduler whose workers run the points; `overrides` as in `run`.
     """
     from lab.sweeps.sweep import run_sweep
 
@@ -50,7 +50,7 @@ def sweep(
 
 
 def resume(folder: Path | str, *, video: bool = True, quiet: bool = False) -> Result | SweepResult:
-    """Go on with the run or the sweep in a folder that was killed, interrupted or stopped, bit for bit."""
+    """Continue the run or sweep in a folder that was killed, interrupted or stopped; the result has the same bits."""
     from lab.sweeps.resume import resume_any
 
     return resume_any(folder, video=video, quiet=quiet)

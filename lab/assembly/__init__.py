@@ -1,1 +1,1 @@
-"""From a preset to the solver's scene."""
+"""Build the solver's scene from a preset."""

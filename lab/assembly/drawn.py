@@ -1,4 +1,4 @@
-"""Irregular grains of each repeat, drawn by a seed of their own: which outline each has, and how it is turned."""
+"""Draw the outlines and starting angles of irregular grains, each repeat from its own seed."""
 
 from itertools import accumulate
 
@@ -15,10 +15,10 @@ MOST_OUTLINES = 20_000
 
 
 def draw_shapes(preset: Resolved, count: int) -> Shapes | None:
-    """The outlines of `count` grains in each repeat, and their angles at the start; None where all are discs.
+    """The outlines of `count` grains in each repeat, and their angles at the start; None if all are discs.
 
-    The outlines lie as `classes` says. A repeat's are the same in any company. Raises LabError where an outline
-    cannot be.
+    The outlines are in the order of `classes`. Those of a repeat do not depend on the other repeats. Raises LabError
+    for an impossible outline.
     """
     if not preset.shapes:
         return None
@@ -60,7 +60,7 @@ def _outlines(preset: Resolved, name: str, random: list[np.random.Generator]) ->
 
 
 def _ordered(preset: Resolved, count: int, repeat: int) -> np.ndarray:
-    """The outlines (n,) of a repeat, class by class: of each its share, of each outline in it as many."""
+    """The outline (n,) of each grain of a repeat, class by class: each class has its share, divided equally."""
     shapes = preset.shapes.values()
     each = apportion([shape.share * count for shape in shapes])
     first = accumulate(_numbers(preset)[:-1], initial=0)

@@ -1,17 +1,17 @@
-"""How many grains there is room for in this machine's memory, before anything is made of them."""
+"""Check that a scene fits into this machine's memory, before anything is allocated for it."""
 
 from lab.base.errors import LabError
 from lab.base.memory import SHARE, machine_memory
 from lab.preset.schema import Resolved
 
-# Bytes that a grain takes at the peak of a run, with its contacts, its share of the checkpoint and of the settled bed
-# that is stored: 1.7 kB of discs and 7 kB of grains of rice not settled, measured as what 60 beds take more than one.
+# Bytes per grain at the peak of a run, with its contacts and its share of the checkpoint and of the stored bed.
+# Measured as the difference between 60 beds and one: 1.7 kB for discs, 7 kB for grains of rice that are not settled.
 A_DISC, AN_OUTLINE = 2_000, 20_000
-A_BED = 10  # grains: what a bed takes by itself, as these would
+A_BED = 10  # fixed cost of a bed, as a number of grains
 
 
 def check_room(preset: Resolved, count: int) -> None:
-    """Raise LabError where the beds of `count` grains do not fit into this machine's memory."""
+    """Raise LabError if the beds of `count` grains do not fit into this machine's memory."""
     a_grain, beds = AN_OUTLINE if preset.shapes else A_DISC, preset.run.repeats
     room, a_bed = SHARE * machine_memory(), (count + A_BED) * a_grain
     if beds * a_bed <= room:
@@ -25,7 +25,7 @@ def check_room(preset: Resolved, count: int) -> None:
 
 
 def _count_key(preset: Resolved) -> str:
-    """The key that says how many grains there are."""
+    """The key that sets the number of grains."""
     grains = preset.grains
     if grains.listed:
         return "grains.bed"
@@ -33,7 +33,7 @@ def _count_key(preset: Resolved) -> str:
 
 
 def _size(size: float) -> str:
-    """Bytes as people read them."""
+    """A number of bytes as text."""
     for unit in ("bytes", "kB", "MB", "GB", "TB"):
         if size < 1000.0 or unit == "TB":
             break

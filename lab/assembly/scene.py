@@ -1,4 +1,4 @@
-"""From a resolved preset to the solver's scene and the grains' starting places."""
+"""Build the solver's scene and the grains' starting positions from a resolved preset."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -23,7 +23,7 @@ from solvers.tank.outline import lining, raised
 from solvers.time.timestep import closing_speed
 from solvers.time.watch import DEEPEST_OVERLAP
 
-THROUGH = 1.0  # radii: grains that overlap so far pass each other and the walls
+THROUGH = 1.0  # radii: at this overlap grains pass through each other and the walls
 
 
 def grain_count(preset: Resolved) -> int:
@@ -35,7 +35,7 @@ def grain_count(preset: Resolved) -> int:
 
 
 def fixed_grains(preset: Resolved) -> np.ndarray:
-    """The grains (k, 3) y, z, radius in m that line a rough tank, the same in all repeats: their seed is run.seed."""
+    """The fixed grains (k, 3) y, z, radius in m that line a rough tank, the same in all repeats (seed run.seed)."""
     tank = preset.tank
     if tank.roughness is None:
         return NONE_FIXED
@@ -43,10 +43,10 @@ def fixed_grains(preset: Resolved) -> np.ndarray:
 
 
 def filling_outline(preset: Resolved) -> np.ndarray:
-    """The outline (m, 2) m of the tank that the grains settle in first.
+    """The outline (m, 2) m of the tank in which the grains settle.
 
-    Grains start higher than they will lie. Where they are thrown, or fill an open tank to its rim, or have no room to
-    start in a closed one, the walls go on upwards while the bed is made.
+    Grains start higher than they come to rest. If they are thrown, fill an open tank to its rim, or have no room to
+    start in a closed one, the walls are extended upwards until the bed has settled.
     """
     outline, grains = np.array(preset.tank.outline), preset.grains
     if grains.listed or grains.region or not preset.run.settle:
@@ -59,7 +59,7 @@ def filling_outline(preset: Resolved) -> np.ndarray:
 
 
 def _farthest(preset: Resolved) -> float:
-    """No grain has an edge farther from its middle than this (m)."""
+    """Upper bound (m) on the distance of a grain's outline from its centroid."""
     if not preset.shapes:
         return 0.5 * preset.grains.range[1]
     alone = [(replace(preset.grains, table=((shape.diameter, 1.0),)), shape) for shape in preset.shapes.values()]
@@ -67,13 +67,13 @@ def _farthest(preset: Resolved) -> float:
 
 
 def build(preset: Resolved, hands: Sequence[Steered] | None = None) -> tuple[Scene, np.ndarray]:
-    """The scene of all repeats and positions (W, n, 2) m to settle from; repeat w has the seed run.seed + w.
+    """The scene of all repeats and the starting positions (W, n, 2) m; repeat w has the seed run.seed + w.
 
-    hands: what moves the tanks in place of the preset's motions.
+    hands: steered motions of the tanks, which replace those of the preset.
 
     The positions lie within `filling_outline`; listed grains that overlap too deeply to settle are moved apart. The
-    step, by the level of accuracy unless given, divides the sampling interval of the series, so samples fall on steps.
-    Raises LabError where the grains do not fit, into the tank or the memory, or a given step is past the limit.
+    step follows from the level of accuracy unless given; it divides the sampling interval of the series, so samples
+    fall on steps. Raises LabError if the grains do not fit into the tank or the memory, or a given step is too long.
     """
     check_room(preset, grain_count(preset))
     radius, position, more = _listed(preset) if preset.grains.listed else _filled(preset)
@@ -105,27 +105,27 @@ def build(preset: Resolved, hands: Sequence[Steered] | None = None) -> tuple[Sce
     )
     _check_softness(scene)
     scene.step = _step(preset, scene)
-    if preset.grains.listed and preset.run.settle:  # without settling it may be meant so
+    if preset.grains.listed and preset.run.settle:  # without settling, overlaps may be intended
         position = np.tile(scene.relaxed(position[0]), (len(radius), 1, 1))
     return scene, position
 
 
 def vessels(preset: Resolved) -> list[Vessel]:
-    """The ship whose hold the tank is, if there is one. Raises LabError where she does not float."""
+    """The ship whose hold is the tank, if there is one. Raises LabError if she does not float."""
     if preset.ship is None:
         return []
     return [make_vessel(preset.ship, preset.water, preset.waves, preset.run.gravity)]
 
 
 def slab(preset: Resolved) -> float:
-    """How thick (m) the world is: the mean grain unless the tank says so."""
+    """Thickness (m) of the slab: the tank's, else the grains' mean diameter."""
     return preset.tank.thickness or preset.grains.diameter
 
 
 def _filled(preset: Resolved) -> tuple[np.ndarray, np.ndarray, dict]:
-    """Radii (W, n) and positions (W, n, 2) of a tank to be filled, each repeat by its own seed, and their shapes.
+    """Radii (W, n), positions (W, n, 2) and shapes of the grains that fill a tank, each repeat from its own seed.
 
-    Nothing moves, and grains of any shape are so far apart that they may turn.
+    The grains are at rest, and so far apart that irregular ones can turn freely.
     """
     grains, count = preset.grains, grain_count(preset)
     shapes = draw_shapes(preset, count)
@@ -157,12 +157,12 @@ def _sized(preset: Resolved, shapes: Shapes, random: list[np.random.Generator]) 
 
 
 def _plates(preset: Resolved) -> list[np.ndarray]:
-    """The tank's parts, polylines (m, 2) m at rest."""
+    """The tank's parts as polylines (m, 2) in m, in their rest position."""
     return [np.array(part.points) for part in preset.parts.values()]
 
 
 def _kinds(preset: Resolved, shape: tuple[int, int]) -> dict:
-    """The kinds of grains, mixed at random, each repeat by its own seed; nothing where there is but one."""
+    """The kinds of grains, mixed at random, each repeat from its own seed; empty if there is only one kind."""
     if not preset.kinds:
         return {}
     worlds, count = shape
@@ -178,7 +178,7 @@ def _kinds(preset: Resolved, shape: tuple[int, int]) -> dict:
 
 
 def _listed(preset: Resolved) -> tuple[np.ndarray, np.ndarray, dict]:
-    """Radii and positions of the grains listed one by one, in all repeats, and how they move if they do."""
+    """Radii and positions of the listed grains, the same in all repeats, and their velocities if any."""
     listed = np.array([preset.grains.listed] * preset.run.repeats)
     velocity, spin = listed[..., 3:5], listed[..., 5]
     motion = {}
@@ -188,9 +188,9 @@ def _listed(preset: Resolved) -> tuple[np.ndarray, np.ndarray, dict]:
 
 
 def _check_softness(scene: Scene) -> None:
-    """Raise LabError where the watch would stop the run: grains that start so fast overlap too deep as they meet.
+    """Raise LabError if the starting speeds make grains overlap so deeply in a collision that the watch stops the run.
 
-    How far they fall, and where the tank hits them, is not known beforehand; but none may go through another.
+    Speeds from a fall or from the moving tank are not known beforehand; for these only passing through is refused.
     """
     for what, speed, most in (
         ("start", scene.start_speed, DEEPEST_OVERLAP),

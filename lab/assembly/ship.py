@@ -1,4 +1,4 @@
-"""The vessel that the solver is given, from what a preset says of a ship, her water and waves."""
+"""Build the solver's vessel from the ship, water and waves of a preset."""
 
 from dataclasses import replace
 from functools import lru_cache
@@ -22,8 +22,8 @@ from solvers.ship.vessel import Vessel
 from solvers.ship.water import Water
 from solvers.ship.waves import Waves, jonswap, packet, pierson_moskowitz, random_sea, regular
 
-SLOWEST, FASTEST, FREQUENCIES = 0.08, 3.5, 48  # of the table, times √(g/draught), and how many
-MEMORY_ORDER = 8  # states a mode
+SLOWEST, FASTEST, FREQUENCIES = 0.08, 3.5, 48  # range of the hydrodynamic table in √(g/draught), and its length
+MEMORY_ORDER = 8  # states per mode
 
 
 def make_waves(given: WavesGiven | None, water: Water) -> Waves | None:
@@ -49,7 +49,7 @@ def make_water(given: WaterGiven, gravity: float) -> Water:
 
 @lru_cache(maxsize=8)
 def make_vessel(given: ShipGiven, water: WaterGiven, waves: WavesGiven | None, gravity: float) -> Vessel:
-    """The ship, laden as she floats at the start. Raises LabError where she cannot float so."""
+    """The ship as she floats with her cargo at the start. Raises LabError if she cannot float so."""
     try:
         return _vessel(given, make_water(water, gravity), waves)
     except Unavailable as error:
@@ -99,7 +99,7 @@ def _vessel(given: ShipGiven, water: Water, sea: WavesGiven | None) -> Vessel:
 
 
 def _by_slope(load: Floating, table, body: Body) -> Floating:
-    """The roll moment W GM ∂ζ/∂y in place of the Froude–Krylov one: eq. 7.1 of Spandonidis (2016) with r = 1."""
+    """Replace the Froude–Krylov roll moment by W GM ∂ζ/∂y: eq. 7.1 of Spandonidis (2016) with r = 1."""
     righting = body.mass * load.water.gravity * metacentric_height(load.section, body.loading, load.water)
     change = np.zeros_like(load.excess)
     change[:, 2] = 1j * load.waves.wave_number * righting - table.at(load.waves.frequency).froude_krylov[:, 2]
@@ -117,7 +117,7 @@ def _with_rig(ship: Ship, given: RigGiven) -> Ship:
 
 
 def _frequencies(given: ShipGiven, water: Water, waves: Waves | None) -> np.ndarray:
-    """Of the table (rad/s): as far as the memory reaches, and the waves."""
+    """Frequencies (rad/s) of the table: the range that the memory needs, and that of the waves."""
     unit = sqrt(water.gravity / given.draught)
     low, high = SLOWEST * unit, FASTEST * unit
     if waves is not None:
@@ -153,7 +153,7 @@ def _damping(given: ShipGiven, ship: Ship, water: Water, table) -> RollDamping:
 
 
 def flooding_angles(given: ShipGiven, vessel: Vessel) -> dict[str, float | None]:
-    """Heels (rad) of deck immersion and of downflooding in calm water at constant displacement, None where none is."""
+    """Heels (rad) of deck immersion and of downflooding in calm water at constant displacement, None if never."""
     load, loading = vessel.ship.load, vessel.ship.body.loading
     points = {"deck_immersion_angle": given.deck_edges, "downflooding_angle": given.flooding_points}
     return {

@@ -1,7 +1,7 @@
-"""A store of hydrodynamic tables, so that a section that was solved once is not solved again.
+"""A cache of hydrodynamic tables, so that each section is solved only once.
 
-The folder `hydrodynamics` of the user's cache, or of the folder that CARGOLAB_CACHE names; what cannot be read there
-counts as not there.
+It is the folder `hydrodynamics` in the user's cache, or in the folder that CARGOLAB_CACHE names. A file that cannot be
+read counts as missing.
 """
 
 import hashlib
@@ -19,7 +19,7 @@ from solvers.ship.section import Section
 from solvers.ship.water import Water
 
 PANELS = 80
-SOLVED_BY = (green, panels, radiation, section, water, hydrostatics)  # a change of their code is another table
+SOLVED_BY = (green, panels, radiation, section, water, hydrostatics)  # a change of their code makes stored tables stale
 FORMAT = "cargo-shift-lab hydrodynamics 1"
 COLUMNS = (
     "frequency",
@@ -35,7 +35,7 @@ COLUMNS = (
 def stored_table(
     hull: Section, sea: Water, heave: float, frequency: np.ndarray, about: tuple[float, float]
 ) -> Hydrodynamics:
-    """`hydrodynamics` of an upright section, from the store if it is there. Raises Unavailable as that does."""
+    """`hydrodynamics` of an upright section, from the cache if possible. Raises Unavailable as `hydrodynamics`."""
     path = cache_folder() / "hydrodynamics" / f"{_key(hull, sea, heave, frequency, about)}.npz"
     found = _load(path)
     if found is None:
@@ -59,12 +59,12 @@ def _load(path: Path) -> Hydrodynamics | None:
     try:
         with np.load(path, allow_pickle=False) as file:
             return Hydrodynamics(*(file[name] for name in COLUMNS))
-    except Exception:  # whatever may be wrong with a file, there is no table in it then
+    except Exception:  # a damaged file, in whatever way, counts as missing
         return None
 
 
 def _save(path: Path, table: Hydrodynamics) -> None:
-    """As far as the disk allows; a reader sees the whole file or none."""
+    """Store a table if the disk allows; the file is replaced atomically."""
     with suppress(OSError):
         path.parent.mkdir(parents=True, exist_ok=True)
         with NamedTemporaryFile(dir=path.parent, suffix=".part", delete=False) as file:

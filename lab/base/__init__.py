@@ -1,1 +1,1 @@
-"""What every room of the lab stands on: errors, texts, files, caches, signals, progress."""
+"""What all other packages of the lab use: errors, texts, files, caches, signals, progress."""

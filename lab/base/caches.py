@@ -1,4 +1,4 @@
-"""Folders in which things are kept that cost time to make again: settled beds, tables, kernels, lists of fonts."""
+"""Cache folders for what takes time to make again: settled beds, tables, kernels, lists of fonts."""
 
 import os
 from pathlib import Path
@@ -9,15 +9,15 @@ from solvers.machine import kernel_cache
 
 
 def cache_folder() -> Path:
-    """The lab's own: that which CARGOLAB_CACHE names, or one in the user's cache."""
+    """The lab's cache folder: the one that CARGOLAB_CACHE names, else one in the user's cache."""
     own = os.environ.get("CARGOLAB_CACHE")
     return Path(own) if own else user_cache_path("cargo-shift-lab", appauthor=False)
 
 
 def provide_for_matplotlib() -> None:
-    """Give Matplotlib, before it is imported, a folder in the user's cache where it could not make its usual one.
+    """Point Matplotlib to a folder in the user's cache if it could not create its usual one. Call before importing it.
 
-    It would say so at length, and look for the fonts anew in every process.
+    Without a folder Matplotlib prints a long warning and searches for fonts again in every process.
     """
     if os.name != "posix" or os.environ.get("MPLCONFIGDIR"):
         return
@@ -31,11 +31,11 @@ def provide_for_matplotlib() -> None:
 
 
 def _could_make(folder: Path) -> bool:
-    """Whether a folder could be made, or files in it, as far as rights tell."""
+    """Whether the permissions allow creating this folder, or files in it."""
     there = next(one for one in (folder, *folder.parents) if os.path.lexists(one))
     return there.is_dir() and os.access(there, os.W_OK | os.X_OK)
 
 
 def lacking() -> str:
-    """What costs time since the user has no folder that can be written, in a sentence; empty where there is one."""
+    """One sentence on what is slower because the user has no writable folder; empty if there is one."""
     return kernel_cache.lacking()

@@ -1,4 +1,4 @@
-"""What the lab says to a person when something cannot be done."""
+"""Errors that tell a user what cannot be done."""
 
 
 class LabError(Exception):
@@ -6,10 +6,10 @@ class LabError(Exception):
 
 
 class NotRecorded(LabError, KeyError, IndexError):
-    """What is asked of a recording is not in it. As for any mapping and sequence, it ends a loop and has a default."""
+    """A recording lacks what was asked for. Also a KeyError and an IndexError, so that `get` and iteration work."""
 
     __str__ = Exception.__str__  # a KeyError puts its sentence in quotes
 
 
 class Useless(LabError):
-    """A file that no run can go on from."""
+    """A file that cannot be used: a run cannot continue from it, or it is not safe to read."""

@@ -1,4 +1,4 @@
-"""Files that people name."""
+"""Reading files that users name."""
 
 import os
 from pathlib import Path
@@ -6,10 +6,10 @@ from stat import S_ISREG
 
 
 def read_bytes(path: str | Path, most: int) -> bytes | None:
-    """What a file holds, at most so many bytes; None where it is none: a folder, a device, a pipe that never ends.
+    """The first `most` bytes of a file; None if it is not a regular file: a folder, a device, a pipe.
 
-    What the system makes as it is read, such as /proc/kmsg, may never end either; it has no size, and counts as empty.
-    Raises OSError, and ValueError for what is no name of a file.
+    Files that the system generates on reading, such as /proc/kmsg, may never end; their size is 0, so they count as
+    empty. Raises OSError, and ValueError for an impossible file name.
     """
     found = os.stat(path)
     if not S_ISREG(found.st_mode):

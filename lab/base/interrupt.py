@@ -1,7 +1,7 @@
-"""Ctrl-C, SIGTERM and SIGHUP: the first asks to stop where all can be saved, a second one stops at once.
+"""Ctrl-C, SIGTERM and SIGHUP: the first asks the run to save and stop, the second stops it at once.
 
-A signal that is ignored, as SIGHUP is under nohup, stays ignored. Only the main thread can hear signals; elsewhere
-nothing changes.
+A signal that is ignored, as SIGHUP is under nohup, stays ignored. Only the main thread can handle signals; in other
+threads nothing changes.
 """
 
 import os
@@ -15,19 +15,19 @@ from types import FrameType
 SIGNALS = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name))
 SHOW_CURSOR = b"\x1b[?25h"
 
-_heard = signal.SIGINT  # the last one
-_afterwards = signal.SIG_DFL  # what the next one is to do
+_heard = signal.SIGINT  # the last signal received
+_afterwards = signal.SIG_DFL  # the handler of the next signal
 
 
 def exit_code() -> int:
-    """Of a process that has ended since it was asked to: 128 and the number of the signal."""
+    """Exit code of a process that ended because of a signal: 128 plus the signal's number."""
     return 128 + _heard
 
 
 def heed(patient: bool = False) -> None:
-    """Have all signals that ask a process to end raise KeyboardInterrupt, once; the next one ends it at once.
+    """Make the first signal that asks the process to end raise KeyboardInterrupt; the next one ends it at once.
 
-    patient: nothing comes of the next ones, for a process that is asked by several others.
+    patient: ignore the next ones, for a process that gets the request from several others.
     """
     global _afterwards, _heard
     _afterwards, _heard = _ignore if patient else signal.SIG_DFL, signal.SIGINT
@@ -37,7 +37,7 @@ def heed(patient: bool = False) -> None:
 
 @contextmanager
 def heeding() -> Iterator[None]:
-    """`heed` while this lasts."""
+    """`heed` inside this context."""
     before = _audible()
     heed()
     try:
@@ -47,7 +47,7 @@ def heeding() -> Iterator[None]:
 
 
 class Interrupt:
-    """A context manager in which the first signal sets `asked`; a second one acts as it did before, or ends at once."""
+    """A context manager in which the first signal sets `asked`; the second has the handler from before, or kills."""
 
     def __init__(self) -> None:
         self.asked = False
@@ -75,11 +75,11 @@ def _raise(number: int, _: FrameType | None) -> None:
 
 
 def _ignore(*_: object) -> None:
-    """Not SIG_IGN: Python complains of signals that wait while they become ignored."""
+    """Do nothing. SIG_IGN will not do: Python complains if a signal is pending when it becomes ignored."""
 
 
 def _note(number: int) -> None:
-    """Remember the signal, and leave the terminal in order: the process may end at once, or has lost it."""
+    """Remember the signal and restore the terminal: the process may end at once, or the terminal may be gone."""
     global _heard
     _heard = number
     if number not in (signal.SIGINT, signal.SIGTERM):
@@ -89,7 +89,7 @@ def _note(number: int) -> None:
 
 
 def _let_go_of_terminal() -> None:
-    """What is said from now on goes nowhere, where it would go to a terminal that is closed and be an error there."""
+    """Send output to the null device instead of to a closed terminal, where writing would be an error."""
     with suppress(OSError):
         nowhere = os.open(os.devnull, os.O_WRONLY)
         for stream in (1, 2):
@@ -99,7 +99,7 @@ def _let_go_of_terminal() -> None:
 
 
 def _audible() -> dict[int, Callable | int]:
-    """What each signal does now that this thread can hear and that is not ignored."""
+    """The present handler of each signal that this thread can handle and that is not ignored."""
     if threading.current_thread() is not threading.main_thread():
         return {}
     found = {number: signal.getsignal(number) for number in SIGNALS}

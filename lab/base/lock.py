@@ -1,4 +1,4 @@
-"""One run at a time in a folder."""
+"""A lock that lets only one run at a time use a folder."""
 
 import os
 from collections.abc import Iterator
@@ -15,10 +15,9 @@ except ImportError:  # Windows cannot lock folders
 
 @contextmanager
 def only_one(folder: Path) -> Iterator[None]:
-    """Hold a folder, made if missing; the system lets go of it when the process ends in whatever way.
+    """Lock a folder, created if missing; the system releases the lock however the process ends.
 
-    Raises LabError when another process holds it or it cannot be made. Where folders cannot be locked nobody is kept
-    out.
+    Raises LabError if another process holds it or it cannot be created. Does nothing where folders cannot be locked.
     """
     try:
         folder.mkdir(parents=True, exist_ok=True)

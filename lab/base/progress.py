@@ -1,4 +1,4 @@
-"""Progress for people: a bar with the time left where there is a terminal, a line a stage where there is none."""
+"""Progress messages: a bar with the remaining time in a terminal, otherwise one line per stage."""
 
 import sys
 import time
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class Progress:
-    """Stages of a run, one after the other; silent when `quiet`. Of a whole of many runs the stages come and go."""
+    """The stages of one run, one after the other, or of many runs below a bar for the whole; silent if `quiet`."""
 
     def __init__(self, quiet: bool):
         self.console = Console(stderr=True, quiet=quiet, highlight=False, markup=False, emoji=False)
@@ -45,12 +45,12 @@ class Progress:
         self.bar.stop()
 
     def begin_whole(self, name: str, total: float, done: float) -> None:
-        """Count stages that follow towards a whole, of which so much is done, by what each is worth of its `total`."""
+        """Start a bar for a whole of size `total`, of which `done` is done; later stages add their `worth` to it."""
         self.whole = self.bar.add_task(name, total=total, completed=done)
         self.whole_total, self.done, self.begun, self.since = total, done, done, time.monotonic()
 
     def time_left(self) -> str:
-        """How long the rest of the whole takes at the pace so far, in words; empty at its beginning."""
+        """The remaining time of the whole at the pace so far, in words; empty at the beginning."""
         if self.done == self.begun:
             return ""
         pace = (time.monotonic() - self.since) / (self.done - self.begun)
@@ -58,33 +58,33 @@ class Progress:
         return f"about {seconds:.0f} s left" if seconds < 90 else f"about {seconds / 60:.0f} min left"
 
     def start(self, stage: str, total: float | None, worth: float = 0.0) -> None:
-        """Begin a stage that ends at `total`, in any unit, and is worth so much of the whole."""
+        """Begin a stage that ends at `total`, in any unit, and adds `worth` to the whole."""
         if not self.live:
             self.say(f"{stage} …")
         self.task, self.total, self.worth = self.bar.add_task(stage, total=total), total, worth
 
     def reach(self, done: float) -> None:
-        """Say how far the stage is."""
+        """Update the bar: `done` of the stage's total."""
         self.bar.update(self.task, completed=done)
         if self.whole is not None and self.total:
             self.bar.update(self.whole, completed=self.done + self.worth * min(done / self.total, 1.0))
 
     def watch(self, simulation: "Simulation") -> None:
-        """Look at the beds that come to rest; there is nobody here who does."""
+        """Show beds as they come to rest; does nothing here, the live window overrides it."""
 
     def count_one(self, sentence: str) -> None:
-        """One more of the whole is done, of which each is worth 1."""
+        """Count one more unit of the whole as done."""
         self.done += 1.0
         self.bar.update(self.whole, completed=self.done)
         left = self.time_left() if self.done < self.whole_total else ""
         self.say(f"{sentence} ({self.done:.0f} of {self.whole_total:.0f}{left and f', {left}'})")
 
     def count(self, done: int, total: int) -> None:
-        """Say how far a stage is whose total was not known at its start."""
+        """Update a stage whose total was not known at its start."""
         self.bar.update(self.task, completed=done, total=total)
 
     def finish(self) -> None:
-        """The stage is done, maybe before its total."""
+        """End the stage, maybe before its total."""
         if self.whole is not None:
             self.done += self.worth
             self.bar.update(self.whole, completed=self.done)
@@ -93,15 +93,15 @@ class Progress:
             self.bar.update(self.task, completed=self.bar.tasks[self.task].total)
 
     def warn(self, sentence: str) -> None:
-        """A sentence a person should read, now and in the summary."""
+        """Print a warning now and keep it for the summary."""
         self.warnings.append(sentence)
         self.say(f"note: {sentence}")
 
     def note(self, sentence: str) -> None:
-        """A sentence on how the run was made, which takes nothing from its numbers."""
+        """Print and keep a sentence on how the run was made that does not put its numbers in doubt."""
         self.notes.append(sentence)
         self.say(f"note: {sentence}")
 
     def say(self, sentence: str) -> None:
-        """A line for whoever watches."""
+        """Print one line."""
         self.console.print(one_line(sentence), soft_wrap=True)

@@ -1,4 +1,4 @@
-"""Texts of people and files on screens, in Markdown pages and in tables: shown as they stand, and obeyed by nothing."""
+"""Escape texts from users and files, so that terminals, Markdown and spreadsheets show them and do not run them."""
 
 import re
 
@@ -7,7 +7,7 @@ FORMULA = ("=", "+", "-", "@", "\t", "\r")  # what begins a formula in a spreads
 
 
 def printable(text: str) -> str:
-    """A text with ? for what is no sign, such as a terminal's commands; the ends of its lines stay."""
+    """A text with ? for characters that cannot be printed, such as terminal control codes; line ends stay."""
     return "".join(c if c.isprintable() or c == "\n" else " " if c == "\t" else "?" for c in text)
 
 
@@ -17,18 +17,18 @@ def one_line(text: object) -> str:
 
 
 def inline(text: object) -> str:
-    """A text as a part of a line of a Markdown page, or of a cell of its tables."""
+    """A text escaped for use within a line or a table cell of a Markdown page."""
     return "".join(MARKUP.get(c, c) for c in one_line(text))
 
 
 def paragraphs(text: str) -> str:
-    """A text of several paragraphs in a Markdown page."""
+    """A text of several paragraphs, escaped for a Markdown page."""
     lines = [inline(part) for part in re.split(r"\n\s*\n", text)]
     return "\n\n".join(f"\\{line}" if line[0] in "#+=~-" else _numbered(line) for line in lines if line)
 
 
 def _numbered(line: str) -> str:
-    """A line that begins with a number and a point, which is not meant to begin a list."""
+    """Escape a number and a full stop at the start of a line, which would begin a list."""
     return re.sub(r"^(\d+)([.)])(?=\s)", r"\1\\\2", line)
 
 
@@ -38,12 +38,12 @@ def code(text: object) -> str:
 
 
 def fenced(text: str, language: str) -> str:
-    """A text of many lines as code in a Markdown page, whatever it holds."""
+    """A text of many lines as a fenced code block in a Markdown page; the fence is longer than any in the text."""
     longest = max((len(run) for run in re.findall("`+", text)), default=0)
     fence = "`" * max(3, longest + 1)
     return f"{fence}{language}\n{printable(text).strip()}\n{fence}"
 
 
 def cell(value: object) -> object:
-    """A value of a table for spreadsheets; a text that they would compute gets an apostrophe before it."""
+    """A value for a spreadsheet; a text that would be read as a formula gets an apostrophe before it."""
     return f"'{value}" if isinstance(value, str) and value.startswith(FORMULA) else value

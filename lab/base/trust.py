@@ -1,8 +1,8 @@
-"""What a file from a stranger may be: what it says of itself is checked before memory is taken or another file read.
+"""Checks of files from unknown sources, made before memory is allocated or another file is opened.
 
-HDF5 can link to other files, keep or compose data sets of parts of them, and declare data sets of any size in a few
-bytes; so can the archives that numpy writes. The lab writes none of that, so all of it is refused. Faults of HDF5's own
-code are not covered: its version should be a recent one.
+HDF5 can link to other files, store or assemble data sets from parts of them, and declare data sets of any size in a few
+bytes; numpy's archives can also declare more than they hold. The lab writes none of that, so all of it is refused. Bugs
+in HDF5 itself are not covered: use a recent version.
 """
 
 import os
@@ -24,16 +24,16 @@ TEXTS = ("title", "source", "reports", "quick")
 BEYOND = 1e15  # no SI number of a recording is as large
 MOST_MEMBERS = 1000  # of a group
 UNWRITTEN = 2**26  # bytes that data sets may have beyond what the file holds: rows that a killed run did not write
-UNKICKED = 2  # of a state's numbers: the grains' first step, which lies before zero where the clock began anew
-MOST_ROOM = 1024  # times as many contacts as grains of a bed at rest have
+UNKICKED = 2  # index in a state's numbers: the grains' first step, negative if the clock was reset
+MOST_ROOM = 1024  # places for contacts per grain, many times what a grain in a bed at rest has
 LARGEST_CHUNK = 2**26  # bytes
 LONGEST_ATTRIBUTE = 2**20  # bytes
 LONGEST_TEXT = 2**25  # characters: a preset with 100 000 listed grains has some 12 million
-SAME_SIZE = (h5py.h5z.FILTER_SHUFFLE, h5py.h5z.FILTER_FLETCHER32)  # filters that make no small file of a large one
+SAME_SIZE = (h5py.h5z.FILTER_SHUFFLE, h5py.h5z.FILTER_FLETCHER32)  # filters that do not compress
 
 
 def check_recording(file: h5py.File) -> None:
-    """Raise Useless where an HDF5 file leads to others, or has data sets that so large a file cannot hold."""
+    """Raise Useless if an HDF5 file refers to other files, or declares more data than its size allows."""
     for name in ATTRIBUTES:
         if name in file.attrs:
             _check_attribute(file, name)
@@ -43,7 +43,7 @@ def check_recording(file: h5py.File) -> None:
 
 
 def format_of(file: h5py.File) -> str:
-    """What a file says that it is. Raises Useless as `check_recording`."""
+    """The `format` attribute of a file. Raises Useless as `check_recording`."""
     if "format" in file.attrs:
         _check_attribute(file, "format")
     return str(_decoded(file.attrs.get("format")))
@@ -79,7 +79,7 @@ def text(data: h5py.Dataset) -> str:
 
 
 def is_preset(table: object) -> bool:
-    """Whether a preset in full has tables and texts where those who show it expect them."""
+    """Whether a resolved preset has tables and texts where the code that displays it expects them."""
     if not isinstance(table, dict):
         return False
     kinds = dict.fromkeys(TABLES, dict) | dict.fromkeys(TEXTS, str)
@@ -87,7 +87,7 @@ def is_preset(table: object) -> bool:
 
 
 def check_room(data: h5py.Dataset, rows: int) -> None:
-    """Raise Useless where so many rows of a data set do not fit into the memory of this machine."""
+    """Raise Useless if `rows` rows of a data set do not fit into this machine's memory."""
     needed = rows * _bytes(data.shape[1:], data.dtype)
     if needed > SHARE * machine_memory():
         where = f"{data.file.filename}: {data.name[1:]}"
@@ -95,7 +95,7 @@ def check_room(data: h5py.Dataset, rows: int) -> None:
 
 
 def check_archive(path: Path) -> None:
-    """Raise Useless where an archive of arrays, as `numpy.savez` writes it, is not as large as its arrays are."""
+    """Raise Useless if an archive of arrays, as `numpy.savez` writes it, is smaller than the arrays it declares."""
     with ZipFile(path) as archive:
         members = archive.infolist()
         sound = len(members) <= MOST_MEMBERS and all(member.compress_type == ZIP_STORED for member in members)
@@ -105,7 +105,7 @@ def check_archive(path: Path) -> None:
 
 
 def check_progress(runs: object, rows: Sequence, said: Sequence) -> None:
-    """Raise ValueError where a checkpoint names folders outside its own, or no numbers of rows, or says no texts."""
+    """Raise ValueError unless a checkpoint's runs are below its folder, its rows are counts and its messages texts."""
     named = isinstance(runs, list) and runs and all(isinstance(run, str) for run in runs)
     if not named or any(PurePosixPath(run).is_absolute() or ".." in PurePosixPath(run).parts for run in runs):
         raise ValueError("its runs are not in its folder")
@@ -116,9 +116,9 @@ def check_progress(runs: object, rows: Sequence, said: Sequence) -> None:
 
 
 def check_state(state: Mapping[str, np.ndarray], worlds: int, count: int) -> None:
-    """Raise ValueError where the state of worlds of `count` grains asks for memory or grains that are not there.
+    """Raise ValueError if the state of worlds of `count` grains asks for too much memory or refers to other grains.
 
-    The simulation itself refuses places in its lists of contacts that are none (`State.write`).
+    The simulation itself refuses invalid indices in its contact lists (`State.write`).
     """
     numbers, order = state["numbers"], state["number"]
     room, counts = int(numbers[1]), np.delete(numbers, UNKICKED)
@@ -129,7 +129,7 @@ def check_state(state: Mapping[str, np.ndarray], worlds: int, count: int) -> Non
 
 
 def _is_whole(archive: ZipFile, member: ZipInfo) -> bool:
-    """Whether an array of an archive has as many bytes as its head says."""
+    """Whether an array of an archive has as many bytes as its header says."""
     with archive.open(member) as file:
         np.lib.format.read_magic(file)
         shape, _, kind = np.lib.format.read_array_header_1_0(file)
@@ -137,7 +137,7 @@ def _is_whole(archive: ZipFile, member: ZipInfo) -> bool:
 
 
 def _data_sets(file: h5py.File) -> Iterator[h5py.Dataset]:
-    """All data sets that a recording may have, each once a name. Raises Useless for links and for odd groups."""
+    """All data sets that a recording may have. Raises Useless for links and unexpected groups."""
     for name in sorted(set(GROUPS) & set(file)):
         for path, item in _members(file, name):
             if path in DEEPER and isinstance(item, h5py.Group):
@@ -168,7 +168,7 @@ def _linked(file: h5py.File, name: str) -> h5py.Group | h5py.Dataset:
 
 
 def _checked_bytes(file: h5py.File, data: h5py.Dataset) -> int:
-    """Memory of a data set. Raises Useless where it is not one of plain numbers or one text, or lies elsewhere."""
+    """Size of a data set in bytes. Raises Useless unless it is plain numbers or one text, stored in this file."""
     where, settings = f"{file.filename}: {data.name[1:]}", data.id.get_create_plist()
     if data.is_virtual or data.external:
         raise Useless(f"{where} lies in another file: do not use this file.")
@@ -191,7 +191,7 @@ def _check_attribute(file: h5py.File, name: str) -> None:
 
 
 def _bytes(shape: tuple[int, ...], kind: np.dtype) -> int:
-    """Of an array; in Python's numbers, which do not overflow."""
+    """Size of an array in bytes, in Python integers, which do not overflow."""
     size = kind.itemsize
     for length in shape:
         size *= int(length)

@@ -1,4 +1,4 @@
-"""The command `cargolab`, a file a family of commands. They import what they need when they run: help stays fast."""
+"""The command `cargolab`, one file per family of commands. They import late, so that `--help` stays fast."""
 
 import click
 
@@ -19,10 +19,10 @@ def main() -> None:
     \b
     cargolab list                    what there is
     cargolab run tilting/quick       run one, with video, plot and summary
-    cargolab view tilting/quick      run one live in a window, under your hand
+    cargolab view tilting/quick      run one live in a window and steer it
     cargolab explain tilting/quick   what it is and what it will cost
     cargolab sweep shaking/sway ...  run one for many values of its keys
-    cargolab resume DIR              go on with a run or sweep that was cut short
+    cargolab resume DIR              continue a run or sweep that was cut short
     """
 
 

@@ -21,7 +21,7 @@ def accuracy(studies: tuple[str, ...], out: Path, fast: bool) -> None:
     """Error against cost: integrator, step, stiffness, precision, tilt rate, laws, repeats; why the defaults are so.
 
     \b
-    cargolab bench accuracy                an hour or two on two cores; asked again, it goes on
+    cargolab bench accuracy                an hour or two on two cores; run again, it continues
     cargolab bench accuracy stiffness rate
     """
     from lab.studies.bench.accuracy import run_page
@@ -71,7 +71,7 @@ def survival(cases: tuple[str, ...], kills: int | None, out: Path, fast: bool) -
     """Kill the lab at random times, starve and mislead it; count how it ends.
 
     \b
-    cargolab bench survival                   all of it; --fast: a few kills, odd folders, things that lack
+    cargolab bench survival                   all of it; --fast: a few kills, odd folders, missing programs
     cargolab bench survival kill --kills 200
     """
     from lab.studies.bench.survival import run_cases
@@ -84,7 +84,7 @@ def survival(cases: tuple[str, ...], kills: int | None, out: Path, fast: bool) -
 @page_option
 @fast_option
 def outlines(out: Path, fast: bool) -> None:
-    """How irregular grains touch: what energy each rule loses, by nodes, and what a step costs."""
+    """Contact rules of irregular grains: energy error by rule and number of nodes, and cost of a step."""
     from lab.studies.bench.outlines import run_page
 
     click.echo(run_page(out, fast))

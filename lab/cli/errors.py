@@ -1,6 +1,6 @@
-"""What goes wrong, in one sentence on stderr and an exit code.
+"""Turn errors of the commands into one sentence on stderr and an exit code.
 
-Exit codes: 0 done; 1 the simulation could not go on; 2 what was asked for cannot be done; 130 interrupted by Ctrl-C,
+Exit codes: 0 done; 1 the simulation could not go on; 2 the request cannot be carried out; 130 interrupted by Ctrl-C,
 143 by SIGTERM, 129 by SIGHUP.
 """
 
@@ -25,11 +25,11 @@ REMEDIES = {
 
 
 class Commands(click.Group):
-    """A group whose errors are one sentence on stderr."""
+    """A group of commands whose errors are one sentence on stderr."""
 
     def main(self, *args, **kwargs):
         """Run a command line and exit."""
-        # Matrices are small here, and threads of numpy's that wait by spinning would take the cores from the grains.
+        # Matrices are small here, and numpy's threads, which spin while they wait, would take cores from the solver.
         os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
         try:
             with heeding():

@@ -1,4 +1,4 @@
-"""Options that several commands have, and what they are read into."""
+"""Options that several commands share, and their parsing."""
 
 from pathlib import Path
 
@@ -9,7 +9,7 @@ from lab.preset.units import quoted
 
 
 def texts_by_key(texts: tuple[str, ...]) -> dict[str, str]:
-    """The texts of values by key, from KEY=VALUE texts."""
+    """Split KEY=VALUE texts into texts of values by key."""
     settings = {}
     for text in texts:
         key, equals, value = text.partition("=")
@@ -29,7 +29,7 @@ def read_overrides(_context, _option, texts: tuple[str, ...]) -> dict[str, objec
 
 
 def short_overrides(repeats: int | None, arch: str | None) -> dict[str, object]:
-    """The overrides that have options of their own."""
+    """The overrides from --repeats and --arch."""
     wanted = {"run.repeats": repeats, "run.arch": arch}
     return {key: value for key, value in wanted.items() if value is not None}
 
@@ -54,7 +54,7 @@ video_option = click.option("--no-video", is_flag=True, help="Do not paint a vid
 
 
 class ColourOption(click.Option):
-    """An option whose help names the colourings; only help needs them."""
+    """An option whose help lists the colourings, which are imported only for the help."""
 
     def get_help_record(self, context: click.Context) -> tuple[str, str] | None:
         """Flags and help."""
@@ -76,7 +76,7 @@ fast_option = click.option("--fast", is_flag=True, help="Only what takes seconds
 
 
 def show(result, quiet: bool) -> None:
-    """Say where the results are, after their summary unless that is not wanted."""
+    """Print the summary, unless `quiet`, and where the results are."""
     if not quiet:
         click.echo(result.summary_text)
     click.echo(result.folder)

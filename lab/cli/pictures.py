@@ -26,10 +26,10 @@ from lab.preset.units import quoted
     help="GGUI needs Vulkan; gui is drawn by the processor.  [default: the first that opens]",
 )
 def view(preset: str | None, overrides: dict, out: Path | None, size: str, window: str) -> None:
-    """Run PRESET live in a window: tilt and shake the tank, change friction, look back, keep what you saw.
+    """Run PRESET live in a window: tilt and shake the tank, change friction, rewind, keep what you saw.
 
     \b
-    cargolab view                                         choose one there
+    cargolab view                                         choose one in the window
     cargolab view tilting/quick
     cargolab view shaking/sway-quick --set grains.diameter="4 mm" --size 1920x1080
     cargolab run --replay renders/view/tilting/quick      the same again, without a window
@@ -82,7 +82,7 @@ def render(recording: Path, out: Path | None, png: bool, **look: object) -> None
     with Progress(quiet=False) as progress:
 
         def count(done: int, total: int) -> None:
-            if done == 1:  # not before: what cannot be painted is said in one line
+            if done == 1:  # not before, so that an error is one line without a bar
                 progress.start("painting", total)
             progress.reach(done)
 

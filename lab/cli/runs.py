@@ -58,7 +58,7 @@ def run(
         raise LabError("run: which preset? `cargolab list` shows all.")
     from lab.preset.find import load
 
-    load(preset, overrides)  # before the slow imports, so that a slip is answered at once
+    load(preset, overrides)  # before the slow imports, so that a typing error is reported at once
     from lab.runs.runner import run_preset
 
     show(run_preset(preset, overrides, out, video=not no_video, quiet=quiet), quiet)
@@ -69,7 +69,7 @@ def run(
 @video_option
 @quiet_option
 def resume(folder: Path, no_video: bool, quiet: bool) -> None:
-    """Go on with the run, sweep or calibration in FOLDER that was killed, interrupted or stopped.
+    """Continue the run, sweep or calibration in FOLDER that was killed, interrupted or stopped.
 
     \b
     cargolab resume renders/tilting/quick
@@ -83,7 +83,7 @@ def resume(folder: Path, no_video: bool, quiet: bool) -> None:
 @click.argument("preset")
 @set_option
 def explain(preset: str, overrides: dict) -> None:
-    """Say what PRESET is, what it switches on and what it will cost.
+    """Explain PRESET: what it simulates, which models it uses and what it will cost.
 
     \b
     cargolab explain shaking/sway

@@ -1,4 +1,4 @@
-"""The commands that show what the lab has and what its numbers are worth: list, gallery, reproduce, verify."""
+"""The commands that list presets and check the lab's numbers: list, gallery, reproduce, verify."""
 
 import sys
 from pathlib import Path
@@ -60,11 +60,11 @@ def verify(cases: tuple[str, ...], out: Path, fast: bool) -> None:
 def reproduce(
     what: str, experiments: tuple[str, ...], quick: bool, out: Path, cluster: str | None, quiet: bool
 ) -> None:
-    """Run the experiments of the source and write one report: what it states, what we get, the difference, the cost.
+    """Run the experiments of the source and write a report: its statements, our results, the difference, the cost.
 
     \b
     cargolab reproduce granular --quick
-    cargolab reproduce granular                 hours on two cores; asked again, it goes on
+    cargolab reproduce granular                 hours on two cores; run again, it continues
     cargolab reproduce granular tilt-fill stack EXPERIMENTS whose names begin like this
     cargolab reproduce shapes --quick           those with irregular grains
     cargolab reproduce ship --quick             those with ships in waves
@@ -91,7 +91,7 @@ def gallery(presets: tuple[str, ...], out: Path, beds: int, quiet: bool) -> None
     """Run every preset, or those whose names begin like PRESETS, and show them on one page: clips and numbers.
 
     \b
-    cargolab gallery                  some hours on two cores; asked again, it goes on
+    cargolab gallery                  some hours on two cores; run again, it continues
     cargolab gallery tilting funnel
     """
     from lab.studies.gallery import make_gallery

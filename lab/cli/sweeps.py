@@ -53,7 +53,7 @@ def sweep(
     cargolab sweep shaking/sway --set motion.sway.frequency="0.2:1.5:14 Hz" --repeats 12
     cargolab sweep tilting/quick --set grains.diameter="2, 3, 4 mm" --set material.friction=0.1:0.5:5
     cargolab sweep shaking/sway --set run.seed=1:200:200 --cluster tcp://node1:8786
-    Asked again, it goes on where it was cut short.
+    Run again, it continues where it was cut short.
     """
     from lab.sweeps.sweep import run_sweep
 
@@ -90,7 +90,7 @@ def calibrate(
 ) -> None:
     """Find the value of a key of PRESET at which a measure meets its target, with its interval.
 
-    Runs eight beds at the least unless --repeats says otherwise. A target may have a standard error.
+    Runs at least eight beds unless --repeats is given. A target may have a standard error.
 
     \b
     cargolab calibrate tilting/chickpeas-quick --target "repose=30 deg" --vary friction=0.2:0.7

@@ -1,4 +1,4 @@
-"""Beds of cargoes side by side as they lie, each as large as it fits and in the colour of its grains."""
+"""One picture of settled beds of several cargoes side by side, each scaled to its cell, in its cargo's colour."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -23,8 +23,8 @@ COLOURS = {
     "sand": (201, 168, 120),
     "chickpeas": (224, 188, 128),
 }
-PLAIN = (150, 160, 172)  # of any other
-SHADES = 0.12  # by which grains of one cargo differ
+PLAIN = (150, 160, 172)  # of any other cargo
+SHADES = 0.12  # variation of brightness among the grains of one cargo
 COLUMNS, CELL, EDGE, TEXT = 2, (640, 292), 24, 22  # pixels
 ABOVE = 1.25  # of the bed's height: how much of the tank is shown
 WALL = 5.0  # pixels

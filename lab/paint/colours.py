@@ -1,7 +1,7 @@
-"""What the colour of a grain says.
+"""Colourings: the quantity that a grain's colour shows.
 
-A new way to colour takes one function from beds to `Colouring` and one line in MODES; its word joins the COLOURS that
-a preset may say. Only what every preset needs is loaded here: Matplotlib comes with the first picture.
+A new colouring takes one function from beds to `Colouring`, one line in MODES, and its name in the COLOURS of the
+presets. Matplotlib is imported only with the first picture.
 """
 
 from __future__ import annotations
@@ -17,18 +17,18 @@ from lab.base.errors import LabError
 if TYPE_CHECKING:
     from lab.paint.footage import Bed
 
-LOOKED_AT = 100  # frames of a bed looked at to fix a scale
-LIVELIEST = 98.0  # percentile of the liveliest frame at which a scale ends
+LOOKED_AT = 100  # frames of a bed sampled to fix a scale
+LIVELIEST = 98.0  # a scale ends at this percentile of the values of the frame where it is largest
 LIGHT, DARK = (255.0, 255.0, 255.0), (25.0, 30.0, 40.0)  # spin marks
 MOST_LAYERS = 8
 
 
 @dataclass(frozen=True)
 class Colouring:
-    """A scale that stays the same through the film, and a number on it for each grain.
+    """A colour scale that stays the same through the film, and the value of each grain on it.
 
     label: with its unit; low, high: ends of the scale; table: its colours (k, 3) in 0..255;
-    values: from bed and frame to numbers (n,); ticks: places and texts (None: round numbers).
+    values: function from bed and frame to numbers (n,); ticks: positions and texts (None: round numbers).
     """
 
     label: str
@@ -98,7 +98,7 @@ def size(beds: Sequence[Bed]) -> Colouring:
     """Diameter, from the smallest grain to the largest."""
     radius = np.concatenate([bed.radius for bed in beds])
     low, high = 2e3 * radius.min(), 2e3 * radius.max()
-    if high - low < 1e-3 * high:  # all alike: any scale around them will do
+    if high - low < 1e-3 * high:  # all equal: any scale around them will do
         low, high = 0.9 * high, 1.1 * high
 
     def values(bed: Bed, frame: int) -> np.ndarray:
@@ -142,7 +142,7 @@ def mark_colours(colours: np.ndarray) -> np.ndarray:
 
 
 def bed_colours(count: int) -> list[tuple[int, int, int]]:
-    """Colours for the names and curves of so many beds, in an order that the eye can follow."""
+    """Colours for the names and curves of `count` beds, in a perceptual order."""
     from matplotlib import colormaps
 
     shades = colormaps["turbo"](np.linspace(0.05, 0.95, count))[:, :3]
@@ -160,14 +160,14 @@ def _named(label: str, names: Sequence[str], number: Callable[[Bed], np.ndarray]
 
 
 def _liveliest(beds: Sequence[Bed], values: Callable[[Bed, int], np.ndarray]) -> float:
-    """The largest of the percentiles LIVELIEST of all frames looked at; 0 where no grain is left."""
+    """The largest of the percentiles LIVELIEST over all frames sampled; 0 if no grain is left."""
     looks = [values(bed, frame) for bed, frame in spread(beds)]
     seen = [look[np.isfinite(look)] for look in looks]
     return max((float(np.percentile(look, LIVELIEST)) for look in seen if len(look)), default=0.0)
 
 
 def spread(beds: Sequence[Bed]) -> Iterator[tuple[Bed, int]]:
-    """Frames spread evenly over each bed's film, those of all beds at about one time together, as they are read."""
+    """Frames spread evenly over each bed's film, ordered by time across the beds, as they are stored."""
     for share in np.linspace(0, 1, LOOKED_AT):
         yield from ((bed, round(share * (bed.frames - 1))) for bed in beds)
 

@@ -1,4 +1,4 @@
-"""What is on a picture beside grains and walls: scale bar, colour bar, gravity dial, live plot."""
+"""The parts of a picture other than grains and walls: scale bar, colour bar, gravity dial, live plot."""
 
 from collections.abc import Sequence
 from functools import cache
@@ -12,7 +12,7 @@ from PIL import Image, ImageDraw, ImageFont
 from lab.paint.colours import Colouring
 from lab.paint.palette import GRID, HOLD, INK, LINE, LOST, PAPER, QUIET
 
-SMALLER = 0.65  # of its size: how small a text may become before it is cut
+SMALLER = 0.65  # smallest size of a text, over its normal size, before it is cut
 FINER = 3  # the plot and the dial are drawn this many times larger, then shrunk to smooth their lines
 
 
@@ -24,7 +24,7 @@ def font(size: float, bold: bool = False) -> ImageFont.FreeTypeFont:
 
 
 def number(value: float, digits: int) -> str:
-    """A number with so many decimals, a true minus sign, and no minus before zero."""
+    """A number with `digits` decimals, a true minus sign, and no minus before zero."""
     text = f"{value:.{digits}f}"
     return text.replace("-", "\N{MINUS SIGN}" if float(text) else "")
 
@@ -98,7 +98,7 @@ def draw_scale_bar(draw: ImageDraw.ImageDraw, corner: tuple, longest: float, sca
 
 
 def draw_band(draw: ImageDraw.ImageDraw, box: tuple, text: str, size: float) -> None:
-    """A sentence that must be seen: white on a bar of colour, in the middle of a box (left, top, right, bottom)."""
+    """A prominent sentence: white on a coloured bar, in the middle of a box (left, top, right, bottom)."""
     left, top, right, bottom = (round(edge) for edge in box)
     draw.rectangle((left, top, right, bottom), fill=LOST)
     words, face = fitted(text, right - left - size, size, bold=True)
@@ -126,7 +126,7 @@ def draw_colour_bar(image: Image.Image, box: tuple, colouring: Colouring, size: 
 
 
 def gravity_dial(diameter: int, tilt: float) -> Image.Image:
-    """A dial with an arrow where gravity points for one who tilts with the tank (tilt in rad)."""
+    """A dial with an arrow in the direction of gravity in the tank's frame (tilt in rad)."""
     size = FINER * diameter
     image = Image.new("RGB", (size, size), PAPER)
     draw = ImageDraw.Draw(image)
@@ -159,7 +159,7 @@ class LivePlot:
         self._image = Image.new("RGB", (width, height), PAPER)
         self._low, self._high = _limits(curves)
         top, bottom = 1.7 * self._text, height - 3.1 * self._text
-        room = int((bottom - top) / (1.6 * self._text))  # for as many levels without touching
+        room = int((bottom - top) / (1.6 * self._text))  # number of labels that fit without touching
         self._levels = ticks(self._low[1], self._high[1], min(4, max(1, room)))
         widest = max(font(self._text).getlength(plain(level)) for level in self._levels)
         left, right = widest + 0.5 * self._text, width - 0.4 * self._text
@@ -169,7 +169,7 @@ class LivePlot:
         self._draw_axes(labels)
 
     def picture(self, counts: Sequence[int]) -> Image.Image:
-        """The plot with the first so many samples of each curve."""
+        """The plot with the first `counts` samples of each curve."""
         image = self._image.copy()
         draw = ImageDraw.Draw(image)
         thick, dot = round(0.16 * self._text), 0.32 * self._text
@@ -206,7 +206,7 @@ class LivePlot:
 
 
 def _limits(curves: list) -> tuple[np.ndarray, np.ndarray]:
-    """Lower and upper end of both axes: x as it comes, y with air around it."""
+    """Lower and upper end of both axes: x as given, y with a margin."""
     x, y = (np.concatenate([np.asarray(curve[k], dtype=float) for curve in curves]) for k in (0, 1))
     y = y[np.isfinite(y)] if np.isfinite(y).any() else np.zeros(1)
     low, high = y.min(), y.max()

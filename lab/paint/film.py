@@ -1,7 +1,7 @@
-"""One film: where everything stands on the page, and the picture of any frame.
+"""A film: the layout of its page, and the picture of any frame.
 
-Lengths on the page are counted in units u, 1/36 of the height of a 16:9 picture, so that every size
-looks alike: the tanks on the left, a column of readings, plot and colour bar on the right.
+Lengths on the page are in units u, 1/36 of the height of a 16:9 picture, so that all sizes have the same layout: the
+tanks on the left, a column of readings, plot and colour bar on the right.
 """
 
 import math
@@ -27,19 +27,19 @@ FALLBACK = asdict(Video())
 FRAMES = get_args(get_type_hints(Video)["frame"])
 SMALLEST, LARGEST = (320, 180), (7680, 4320)  # pixels
 MOST_BEDS = 6  # of one recording shown side by side
-MOST_SAMPLES = 800  # of a curve of the plot
+MOST_SAMPLES = 800  # per curve of the plot
 
 MARGIN, COLUMN, GAP, WALL, PLATE = 2.0, 17.0, 2.5, 0.36, 0.3  # in u
 TEXT, READING, TITLE = 1.1, 1.35, 1.45  # heights of letters in u
-BAND = 2.6  # height in u of what is said of a ship that is lost
-THICKEST = 0.04  # of the tank's smaller side: its wall at most
-ROOM = 0.3  # of the tank's larger side: shown beside and below an open tank at most; less of many
+BAND = 2.6  # height in u of the band across a ship that is lost
+THICKEST = 0.04  # largest wall thickness over the tank's smaller side
+ROOM = 0.3  # largest margin shown beside and below an open tank, over its larger side; less for many tanks
 ALIKE = 1e-9  # poses that differ by less (m, rad) are the same
 
 
 @dataclass(frozen=True)
 class Look:
-    """What a person may choose: size in pixels, colour and frame by name, playback speed (1: real time)."""
+    """The user's choices: size in pixels, colour and frame by name, playback speed (1: real time)."""
 
     width: int
     height: int
@@ -49,7 +49,7 @@ class Look:
 
 
 def choose_look(footage: Footage, **wishes: object) -> Look:
-    """The wishes that are not None, else the preset's [video], else FALLBACK; raises LabError."""
+    """The look from the `wishes` that are not None, else the preset's [video], else FALLBACK; raises LabError."""
     wanted = {key: value for key, value in wishes.items() if value is not None}
     settings = {**FALLBACK, **footage.settings, **wanted}
     look = Look(**{key: settings[key] for key in FALLBACK})
@@ -80,8 +80,8 @@ def choose_beds(footage: Footage, world: int | None = None) -> list[Bed]:
 class Film:
     """The pictures of some beds in one look; Taichi must be running (`solvers.machine.runtime`).
 
-    beds: of one or several recordings, all drawn to one scale and on one clock, that of the recording that
-    lasts longest: the others stand still at their end. most: how many are shown; the plot has all.
+    beds: of one or several recordings, all drawn to one scale and on the clock of the longest recording; the others
+    hold their last frame. most: how many are shown; the plot has all.
     time (F,): of the pictures, s.
     """
 
@@ -117,11 +117,11 @@ class Film:
 
     @property
     def lost(self) -> bool:
-        """Whether a ship that is shown is lost in the end."""
+        """Whether a ship that is shown capsizes or floods in the end."""
         return any(bed.footage.ends[bed.world] for bed in self._beds)
 
     def _draw_ends(self, image: Image.Image, frame: int) -> None:
-        """What became of the ships that are lost by now, each across the foot of her picture."""
+        """Write how each ship lost so far was lost, across the foot of her picture."""
         draw = ImageDraw.Draw(image)
         for bed, camera, ground in zip(self._beds, self._cameras, self._grounds, strict=True):
             end = bed.footage.ends[bed.world]
@@ -150,7 +150,7 @@ class Film:
         return self._u(MARGIN), self._u(MARGIN + TITLE + 1.5), right, bottom
 
     def _find_grounds(self) -> list[tuple[np.ndarray, np.ndarray]]:
-        """Lower and upper corner (m) of the box that holds each tank, its parts and, within reason, its grains."""
+        """Lower and upper corner (m) of the box around each tank, its parts and, up to a limit, its grains."""
         tanks = [self._seen(bed.footage.outline, bed.pose).reshape(-1, 2) for bed in self._beds]
         reached = {bed: [tank.min(axis=0), tank.max(axis=0)] for bed, tank in zip(self._beds, tanks, strict=True)}
         for bed, frame in spread([bed for bed in self._beds if bed.footage.open_edges or bed.footage.parts]):
@@ -198,7 +198,7 @@ class Film:
         cells = [start + pitch * (k % columns, k // columns) for k in range(count)]
         cameras = []
         for cell, (low, high) in zip(cells, self._grounds, strict=True):
-            spare = largest * (extent - (high - low)) * (0.5, 1.0)  # a smaller one stands in the middle, on the ground
+            spare = largest * (extent - (high - low)) * (0.5, 1.0)  # a smaller tank is centred, at the bottom
             inner = np.array([wall, wall + name]) + spare + largest * np.array([-low[0], high[1]])
             cameras.append(Camera(largest, tuple(cell + inner)))
         names = [(x, y + name - 0.5 * self._unit) for x, y in cells]
@@ -225,7 +225,7 @@ class Film:
         return deco.LivePlot(size, curves, colours, labels, TEXT * self._unit), samples
 
     def _draw_page(self) -> np.ndarray:
-        """What stays the same in all frames."""
+        """Draw the parts that stay the same in all frames."""
         look, text = self._look, TEXT * self._unit
         image = Image.new("RGB", (look.width, look.height), palette.PAPER)
         draw = ImageDraw.Draw(image)
@@ -243,13 +243,13 @@ class Film:
         colours = (palette.WALL, palette.HOLD) if look.frame == "tank" else (palette.GRID, palette.PAPER)
         for bed, camera in zip(self._beds, self._cameras, strict=True):
             if not (bed.footage.sea and look.frame == "earth"):
-                self._paint_tank(page, bed, camera, *colours)  # in the earth frame a faint one stays where it rested
+                self._paint_tank(page, bed, camera, *colours)  # in the earth frame, a faint tank at its rest position
             if look.frame == "tank":
                 _paint_fixed(page, bed, camera)
         return page
 
     def _note(self) -> str:
-        """What a person must know to read the film rightly."""
+        """The note that is needed to read the film correctly."""
         notes = []
         if self._look.speed != 1:
             notes.append(f"played at {self._look.speed:g} times real time")
@@ -284,7 +284,7 @@ class Film:
         sea.paint_hull(picture, camera.carried(self._pose[frame, k]), thick)
 
     def _on_ground(self, k: int, position: np.ndarray, pose: np.ndarray) -> np.ndarray:
-        """Grain places (n, 2), NaN for those that have fallen off the ground shown of bed k."""
+        """Grain positions (n, 2), NaN for those outside the box that is shown of bed k."""
         low, high = self._grounds[k]
         radius = self._beds[k].radius[:, None]
         seen = self._seen(position, pose)
@@ -316,7 +316,7 @@ class Film:
             self._draw_names(draw, frame)
 
     def _draw_names(self, draw: ImageDraw.ImageDraw, frame: int) -> None:
-        """The beds' names, and what tells the poses of a few apart."""
+        """The beds' names and, for a few beds, the readings in which their poses differ."""
         telling = not self._together and len(self._beds) <= MOST_BEDS
         for k, bed in enumerate(self._beds):
             aside = f" ({self._pose_readings(frame, k)[0][1]})" if telling else ""
@@ -324,7 +324,7 @@ class Film:
             draw.text(self._names_at[k], text, self._hues[k], face, anchor="ls")
 
     def _pose_readings(self, frame: int, k: int) -> list[tuple[str, str]]:
-        """Names and values of tilt, sway and heave of a shown bed, of those that are ever used."""
+        """Names and values of those of tilt, sway and heave of a shown bed that ever change."""
         sway, heave, tilt = self._moved[frame, k].tolist()
         moves = (np.abs(self._moved) > ALIKE).any(axis=(0, 1))[[2, 0, 1]]
         readings = [
@@ -336,15 +336,15 @@ class Film:
 
 
 def _motion(bed: Bed, pose: np.ndarray) -> np.ndarray:
-    """Sway, heave and roll (F, 3) that is told of: of a ship that of her axis, in place of her tank."""
+    """Sway, heave and roll (F, 3) as displayed: of the tank, or of a ship's axis."""
     return axis_motion(bed.footage.sea.ship, pose) if bed.footage.sea else pose
 
 
 def _quantity(beds: Sequence[Bed]) -> tuple[str, Callable[[Bed], np.ndarray]]:
-    """What the plot shows, the same for all beds: its label and the values (T,) of a bed.
+    """The quantity of the plot, the same for all beds: its label and a function to the values (T,) of a bed.
 
-    The roll of ships; what has spilled where anything has; else the shift of the centre of mass, upwards where nothing
-    but heave or parts can move the grains, sideways otherwise.
+    The roll of ships; the spilled grains if there are any; else the shift of the centre of mass, upwards if only heave
+    or parts can move the grains, sideways otherwise.
     """
     if any(bed.footage.sea for bed in beds):
         return "roll φ (°)", lambda bed: np.degrees(bed.footage.series_pose[:, bed.world, 2])
@@ -361,7 +361,7 @@ def _quantity(beds: Sequence[Bed]) -> tuple[str, Callable[[Bed], np.ndarray]]:
 
 
 def _sort_by_shape(beds: Sequence[Bed]) -> list[tuple[list[int], Edges | None]]:
-    """Numbers of the beds of discs, and of those of irregular grains with the edges of all these, as far as any are."""
+    """Numbers of the beds of discs, and of those of irregular grains with all their edges; empty groups left out."""
     round_ones = [k for k, bed in enumerate(beds) if bed.edges is None]
     others = [k for k, bed in enumerate(beds) if bed.edges is not None]
     groups = [(round_ones, None)] if round_ones else []

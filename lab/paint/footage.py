@@ -1,4 +1,4 @@
-"""A recording as the painter looks at it: frame by frame, bed by bed."""
+"""A recording as the painter reads it: frame by frame, bed by bed."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -21,9 +21,9 @@ class Footage:
 
     time (F,) s, pose (F, W, 3) m, m, rad; series_time (T,), series_pose (T, W, 3), centre_of_mass (T, W, 2) m;
     spilled (T, W) grains; radius (W, n) m; kind (W, n); kinds: their names; shapes: the outlines of irregular grains,
-    None where all are discs; shape_names: of their classes; outline (m, 2) m; open_edges: those without a wall;
+    None if all are discs; shape_names: of their classes; outline (m, 2) m; open_edges: those without a wall;
     fixed (k, 3) y, z, radius m; parts: polylines at rest (m, 2) m by name; part (F, W, P, 2): their displacements, m;
-    sea: the ship whose hold the tank is, and her waves, or None; ends: how each ship was lost, None where she was not;
+    sea: the ship whose hold the tank is, and her waves, or None; ends: how each ship was lost, None if she was not;
     settings: the preset's [video]; title. Raises LabError when there is no frame or no sample.
     """
 
@@ -69,7 +69,7 @@ class Footage:
 
 @dataclass(frozen=True, eq=False)
 class Bed:
-    """One world of a footage, and the name it goes by in a picture."""
+    """One world of a footage, and its name in a picture."""
 
     footage: Footage
     world: int
@@ -97,7 +97,7 @@ class Bed:
 
     @cached_property
     def edges(self) -> Edges | None:
-        """The edges of irregular grains, None where all are discs."""
+        """The edges of irregular grains, None if all are discs."""
         shapes = self.footage.shapes
         if shapes is None:
             return None

@@ -1,11 +1,11 @@
-"""The raster: walls and grains into a picture, a numpy array (height, width, 3) of u8.
+"""Rasterise walls and grains into a picture, a numpy array (height, width, 3) of u8.
 
 A picture is cut into horizontal bands. Each band is one task that paints its own grains in the
 order of their numbers, so no two tasks touch the same pixel and the picture does not depend on the
-number of threads. Edges are smooth because a pixel takes as much paint as its distance from the
-edge says it is covered. The edge of an irregular grain is looked up in a table of its polar radius.
+number of threads. Edges are antialiased: the share of a pixel that is covered follows from its
+distance from the edge. The edge of an irregular grain is looked up in a table of its polar radius.
 
-Pixels are gone through in two loops, row by row, as `ti.ndrange` would divide for each of them.
+Loops over pixels are nested, by row and column, since `ti.ndrange` would need a division per pixel.
 
 Pixel coordinates: x to the right, y downwards; the pixel in row i and column j is the square
 [j, j+1] x [i, i+1].
@@ -21,7 +21,7 @@ import taichi as ti
 from solvers.grains.shapes.contour import Contour
 
 BAND = 16  # rows of a band
-PER_TASK = 512  # Taichi gives each thread at least so many turns of a parallel loop
+PER_TASK = 512  # least number of iterations of a parallel loop that Taichi gives to a thread
 
 SHADE = 0.10  # how much lighter the top and darker the bottom of a grain is
 RIM = 0.32  # how much darker the rim is
@@ -100,8 +100,8 @@ def paint_grains(
 ) -> None:
     """Paint discs (n, 5), or irregular grains with their areas, over a picture (height, width, 3), u8, in place.
 
-    colour and mark (of spin): (n, 3) in 0..255. edges: of irregular grains, which are turned as their marks are.
-    Grains at no finite place are left out.
+    colour and mark (of spin): (n, 3) in 0..255. edges: of irregular grains, turned by the angle of their marks.
+    Grains without a finite position are left out.
     """
     seen = np.isfinite(discs).all(axis=1)
     paints = np.column_stack([colour, mark]).astype(float)[seen]
@@ -139,7 +139,7 @@ def paint_tank(
 
 
 def paint_plate(picture: np.ndarray, camera: Camera, line: np.ndarray, thickness: float, colour: tuple) -> None:
-    """Paint a polyline (m, 2) in m as a plate, so many pixels thick, with round ends."""
+    """Paint a polyline (m, 2) in m as a plate with round ends, `thickness` in pixels."""
     corners = camera.pixels(line)
     box = _box(picture, corners, thickness)
     if box[0] < box[2] and box[1] < box[3]:
@@ -149,7 +149,7 @@ def paint_plate(picture: np.ndarray, camera: Camera, line: np.ndarray, thickness
 def paint_strokes(picture: np.ndarray, strokes: np.ndarray, colour: tuple) -> None:
     """Paint straight lines (n, 6) in pixels in one colour, in place: x, y and half the thickness at either end.
 
-    Where lines meet or cross nothing is painted twice. Lines with an end at no finite place are left out.
+    Where lines meet or cross nothing is painted twice. Lines without finite ends are left out.
     """
     strokes = strokes[np.isfinite(strokes).all(axis=1)].astype(float)
     if not len(strokes):
@@ -176,7 +176,7 @@ def _box(picture: np.ndarray, corners: np.ndarray, reach: float) -> ti.Vector:
 
 
 def _sort_into_bands(y: np.ndarray, reach: np.ndarray, height: int) -> tuple:
-    """Who is in each band: band b holds the grains members[starts[b]:starts[b + 1]], ascending."""
+    """Sort grains into bands: band b holds the grains members[starts[b]:starts[b + 1]], ascending."""
     bands = -(-height // BAND)
     first = np.clip(np.floor((y - reach) / BAND), 0, bands).astype(int)
     last = np.clip(np.floor((y + reach) / BAND), -1, bands - 1).astype(int)
@@ -240,7 +240,7 @@ def _depth(offset, radius, towards, radii: ti.template(), row):
 
 @ti.func
 def _outline_coverage(offset, radius, inset, towards, radii: ti.template(), row):
-    """Share of a pixel that an outline moved inwards by so many pixels covers; one too small for its ramp is faint."""
+    """Share of a pixel that an outline covers when moved inwards by `inset` pixels; very small outlines are faint."""
     within = _depth(offset, radius, towards, radii, row) - inset
     return ti.min(3.0 * radius * radius, 1.0) * ti.math.clamp(within + 0.5, 0.0, 1.0)
 
@@ -293,7 +293,7 @@ def _paint_bands(
     radii: Table,
     irregular: ti.template(),
 ):
-    """Coverages of neighbours add up to one at most: where discs touch, nothing shines through."""
+    """Paint all bands. The coverages of a pixel add up to one at most, so no background shows where discs touch."""
     for k in range((starts.shape[0] - 1) * PER_TASK):
         if k % PER_TASK == 0:
             band = k // PER_TASK

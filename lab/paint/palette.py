@@ -1,4 +1,4 @@
-"""The colours of a picture beside those of its grains, in 0..255."""
+"""The colours of a picture other than those of its grains, in 0..255."""
 
 PAPER = (255, 255, 255)
 INK = (33, 41, 52)

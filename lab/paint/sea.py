@@ -1,4 +1,4 @@
-"""The ship and the sea in a picture: her hull around the tank, the water up to the waves that pass."""
+"""The ship and the sea in a picture: the hull around the tank, and the water up to the wave surface."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -22,7 +22,7 @@ AROUND = np.array([0.45, 0.2])  # of the hull's size: how much of the sea is sho
 class Sea:
     """What the recording of a ship (its preset in full) says of hull and waves.
 
-    `waves`: those that a hand has made of the preset's, as a frame has them (`recording.WAVES`), or None.
+    `waves`: the waves of a frame (`recording.WAVES`) if a user has changed those of the preset, or None.
     """
 
     waves: np.ndarray | None = None
@@ -39,7 +39,7 @@ class Sea:
         return self.ship.corners - np.array(self.ship.hold)
 
     def paint_hull(self, picture: np.ndarray, camera: Camera, thick: float) -> None:
-        """Paint the hull, her walls so many pixels thick, her hatch open; the camera is that of the tank's points."""
+        """Paint the hull with walls `thick` pixels thick and an open hatch; the camera is that of the tank's points."""
         paint_tank(picture, camera, self.hull, thick, palette.WALL, palette.LINE, (HATCH,) if self.ship.hatch else ())
         if self.ship.hatch:
             inside = self.hull[[HATCH + 2, HATCH - 1, HATCH, HATCH + 1]]

@@ -17,8 +17,8 @@ from solvers.machine.runtime import initialise
 
 MOST_IN_GRID = 24
 SLOWEST, FASTEST = 0.01, 60.0  # pictures a second of a video
-USUAL = 0.04  # s between two pictures whose times do not tell
-HELD = 3.0  # s that the last picture stays where a ship is lost
+USUAL = 0.04  # s between pictures if their times do not give it
+HELD = 3.0  # s that the last picture stays if a ship is lost
 BT709 = "scale=out_color_matrix=bt709:out_range=tv"
 ENCODING = (
     *("-crf", "20", "-preset", "veryfast", "-movflags", "+faststart", "-vf", BT709),
@@ -130,9 +130,9 @@ def poster(
 
 
 def playback(time: np.ndarray, speed: float) -> tuple[float, int]:
-    """Pictures a second of the video, and of how many frames one is shown; time (F,) in s."""
+    """The video's pictures per second, and k if only every k-th frame is shown; time (F,) in s."""
     interval = float(np.median(np.diff(time))) if len(time) > 1 else 0.0
-    with np.errstate(over="ignore"):  # of times and speeds that are none
+    with np.errstate(over="ignore"):  # absurd times and speeds
         wanted = float(np.float64(speed) / interval) if 0.0 < interval < math.inf else speed / USUAL
     wanted = min(max(wanted, SLOWEST), FASTEST * len(time))
     stride = max(1, math.ceil(wanted / FASTEST - 1e-9))
@@ -148,7 +148,7 @@ def _write(out: Path, film: Film, speed: float, png: bool, progress: Progress | 
 
 
 def _held(pictures: Iterator[np.ndarray], times: int) -> Iterator[np.ndarray]:
-    """Pictures, the last of them so many times more."""
+    """The pictures, then the last one `times` more times."""
     for picture in pictures:
         yield picture
     for _ in range(times):
@@ -163,7 +163,7 @@ def _counted(film: Film, shown: range, progress: Progress | None) -> Iterator[np
 
 
 def _target(path: Path | str, out: Path | str | None, name: str) -> Path:
-    """Where to write; its folder is made."""
+    """The file to write to; its folder is created."""
     path = Path(path)
     beside = (path if path.is_dir() else path.parent) / name
     return _made(beside if out is None else Path(out))
@@ -184,7 +184,7 @@ def _write_folder(folder: Path, pictures: Iterator[np.ndarray]) -> Path:
 
 
 def _write_video(out: Path, pictures: Iterator[np.ndarray], rate: float) -> Path:
-    """H.264 in out; half a video is never left under that name."""
+    """Write an H.264 video to `out`, atomically."""
     if out.suffix != ".mp4":
         raise LabError(f"{out} cannot be written: a video is an .mp4 file.")
     part = out.with_suffix(".part.mp4")

@@ -1,1 +1,1 @@
-"""What a preset may say, section by section, and how presets are found and read."""
+"""The presets: what each section may contain, and how presets are found, read and checked."""

@@ -1,22 +1,22 @@
-"""Levels of accuracy: what a person asks for in one word, and what it sets. `cargolab bench accuracy` measures them."""
+"""Levels of accuracy: one word of a preset, and the settings behind it. `cargolab bench accuracy` measures them."""
 
 from dataclasses import dataclass
 
 from lab.base.errors import LabError
 from lab.preset.units import show
 
-# Largest errors of the restitution at the derived step, and at draft's 2.75 times that: `cargolab verify` and the tests
-# hold the code to them. All five normal laws, restitution 0.02 to 1, grains and walls, wherever in a step the contact
-# begins, by Verlet's scheme and Gear's. Symplectic Euler is of first order where grains lose energy.
+# Largest relative errors of the restitution at the derived step, and at draft's 2.75 times that step. `cargolab verify`
+# and the tests check them for all five normal laws, restitution 0.02 to 1, grains and walls, contacts that begin
+# anywhere within a step, Verlet's scheme and Gear's. Symplectic Euler is of first order where grains lose energy.
 RESTITUTION, DRAFT_RESTITUTION = 1e-3, 1e-2
 
 
 @dataclass(frozen=True)
 class Level:
-    """What a level sets, and the error that it stands for in words."""
+    """The settings of a level, and its error in words."""
 
     stiffness_scale: float  # on Young's moduli, unless contact.stiffness_scale is given
-    longer_steps: float  # times the derived step, as far as its bounds may be stretched
+    longer_steps: float  # factor by which the bounds on the derived step are stretched
     restitution: float  # largest relative error
     beyond: str  # what else is known of its error
 
@@ -33,14 +33,14 @@ LEVELS = {
 }
 DEFAULT = "standard"
 
-# A step may be forced this many times past the derived one, about 16 steps a collision: restitution then errs by some
-# 2 %, as the square of the step, and beds settle as they should. Beyond, runs go on without a sign of trouble while
-# restitution is wrong by more.
+# The largest step that may be forced, in derived steps: about 16 steps per collision. The error of restitution grows as
+# the square of the step and is some 2 % there, and beds still settle as they should. With larger steps it is wrong by
+# more, and nothing in the run shows it.
 FURTHEST = 5.0
 
 
 def check_forced(step: float, derived: float, reason: str, force: bool) -> None:
-    """Raise LabError for a step (s) past the derived one that is not forced, or further than results bear."""
+    """Raise LabError for a step (s) longer than the derived one if it is not forced or more than FURTHEST times it."""
     limit = f"the limit of {show(derived, 's')} ({reason})"
     if step > FURTHEST * derived:
         raise LabError(

@@ -1,4 +1,4 @@
-"""A bed whose grains are listed one by one in a file, for scenes that verify the physics."""
+"""Beds whose grains are listed one by one in a CSV file, for scenes that verify the physics."""
 
 from collections.abc import Sequence
 
@@ -14,18 +14,18 @@ NEEDED = ("y", "z", "radius")
 MOTION = ("vy", "vz", "omega")
 MOST = 100_000
 SMALLEST = 1e-7  # m, of a radius
-FASTEST = 1e6  # m/s or rad/s: numbers beyond are not what their units say
+FASTEST = 1e6  # m/s or rad/s: larger numbers are probably in another unit
 DEEPEST = 0.01  # overlap of two grains, or of a grain and a wall, in radii of the smaller
 
 Grain = tuple[float, float, float, float, float, float]
 
 
 def read_bed(path: str, outline: Sequence[Point], moving: bool) -> tuple[Grain, ...]:
-    """The grains of a CSV file: columns y, z, radius and, where they start moving, any of vy, vz, omega; SI.
+    """Read the grains of a CSV file: columns y, z, radius and, if they start in motion, any of vy, vz, omega; SI.
 
-    Returns y, z, radius (m), v_y, v_z (m/s), ω (rad/s) of each. Raises LabError: a file that cannot be used, grains
-    outside the tank (`outline`, m), overlapping by more than 1 % of a radius or too many, or a motion where they are to
-    settle first (`moving` false).
+    Returns y, z, radius (m), v_y, v_z (m/s), ω (rad/s) of each. Raises LabError for a file that cannot be used, for
+    grains that are outside the tank (`outline`, m), overlap by more than 1 % of a radius or are too many, and for
+    velocities if the grains are to settle first (`moving` false).
     """
     columns = read_table(path, NEEDED, MOTION, "grains.bed", MOST)
     zero = np.zeros(len(columns["y"]))
@@ -39,7 +39,7 @@ def read_bed(path: str, outline: Sequence[Point], moving: bool) -> tuple[Grain, 
 
 
 def _check(grains: np.ndarray, outline: np.ndarray) -> None:
-    """Raise LabError for grains that no tank can hold; grains are counted from 1, as rows below the header."""
+    """Raise LabError for invalid grains. Messages count grains from 1, as rows below the header."""
     position, radius = grains[:, :2], grains[:, 2]
     wrong = np.flatnonzero(radius < SMALLEST)
     if len(wrong):
@@ -48,7 +48,7 @@ def _check(grains: np.ndarray, outline: np.ndarray) -> None:
     wrong = np.flatnonzero(np.abs(grains[:, 3:]).max(axis=1) > FASTEST)
     if len(wrong):
         raise LabError(f"grains.bed: the grain in row {wrong[0] + 1} is too fast; look at its numbers and their units.")
-    with np.errstate(over="ignore", invalid="ignore"):  # of places beyond all measure
+    with np.errstate(over="ignore", invalid="ignore"):  # absurdly large positions
         wrong = np.flatnonzero(~clear_of_walls(position, outline, (1.0 - DEEPEST) * radius))
     if len(wrong):
         place = ", ".join(show(x, "m") for x in position[wrong[0]])
@@ -61,7 +61,7 @@ def _check_overlaps(position: np.ndarray, radius: np.ndarray) -> None:
 
     order = np.argsort(radius)
     tree = cKDTree(position[order])
-    for rank, i in enumerate(order):  # each with the smaller ones, so that its own size bounds the search
+    for rank, i in enumerate(order):  # only against smaller grains, so its own size bounds the search
         near = order[[k for k in tree.query_ball_point(position[i], 2.0 * radius[i]) if k < rank]]
         overlap = radius[i] + radius[near] - np.linalg.norm(position[near] - position[i], axis=1)
         deep = near[overlap > DEEPEST * radius[near]]

@@ -1,11 +1,10 @@
 """Presets: find, load, inherit, override.
 
-A preset is a TOML file: one of those shipped, called by name ("tilting/quick"), or a person's own,
-called by its path. It may be `based_on` another one; its keys go over the base's, and overrides go
-over both. Title, source and what the source reports are a preset's own: no base hands them down.
-A path in a preset starts from the folder of the file that says it, one among the overrides from the
-working directory. A preset may have a table `quick`, keys that make it cheaper; by the name with
-QUICK behind it, "tilting/fill-deep-quick", these go over it.
+A preset is a TOML file: a shipped one, called by name ("tilting/quick"), or a user's own, called by its path. It may be
+`based_on` another preset: its keys override the base's, and overrides go over both. Title, source and what the source
+reports are not inherited. A path in a preset is relative to the folder of the file that contains it; a path in an
+override is relative to the working directory. A preset may have a table `quick` of keys that make it cheaper; the name
+with the suffix QUICK, "tilting/fill-deep-quick", applies them.
 """
 
 import os
@@ -29,23 +28,23 @@ if TYPE_CHECKING:
     from lab.preset.schema import Resolved
 
 LARGEST_FILE = 1_000_000  # bytes
-# Of the squares of the numbers of dots in the lines: memory and time that the standard library takes for a key of many
-# parts, a.b.c…, grow so, and a key is within a line.
+# Limit on the sum over the lines of (number of dots)²: the standard library's memory and time for a key of many parts,
+# a.b.c…, grow with the square, and a key is within one line.
 MOST_DOTS = 10_000_000
 
-QUICK = "-quick"  # behind the name of a preset: its quick variant
-# What the quick variant of a preset may change: what it costs, and with it how exact it is, but not what it is about.
+QUICK = "-quick"  # suffix of a preset's name: its quick variant
+# The keys that a quick variant may change: those of cost and accuracy, not those of the experiment itself.
 QUICK_KEYS = ("run", "record", "grains.diameter", "grains.count", "contact.stiffness_scale", "motion.tilt.rate")
 
-# What tells of the very experiment that a preset is of, and not of one that is based on it.
+# Keys that describe one experiment and are not inherited by presets based on it.
 OWN_KEYS = ("title", "source", "reports", "based_on")
 
-PATH_KEYS = ("grains.bed", "motion.history.file", "shapes.*.contour")  # whose values are paths; *: any name
+PATH_KEYS = ("grains.bed", "motion.history.file", "shapes.*.contour")  # keys whose values are paths; *: any name
 
 
 @dataclass(frozen=True)
 class LoadedPreset:
-    """A preset ready to run: its name, its TOML text with all merged in, what it resolves to.
+    """A preset ready to run: its name, its TOML text with base and overrides merged in, and the resolved values.
 
     In the text, paths are as written.
     """
@@ -57,7 +56,7 @@ class LoadedPreset:
 
 @dataclass(frozen=True)
 class Source:
-    """Where a preset is written; `shown` is how people call it, `own` marks a person's file."""
+    """The file of a preset; `shown` is its name in messages, `own` marks a user's file."""
 
     shown: str
     file: Traversable | Path
@@ -65,30 +64,30 @@ class Source:
 
     @property
     def name(self) -> str:
-        """A short name: a person's own file goes by its name without the ending."""
+        """A short name; for a user's own file, the file name without its extension."""
         if not self.own:
             return self.shown
         return self.file.stem if self.file.stem.strip(".") else "preset"  # results lie in a folder of that name
 
     @property
     def folder(self) -> Path:
-        """Where the paths in the preset start."""
+        """The folder that paths in the preset are relative to."""
         return Path(str(self.file)).parent
 
 
 @dataclass(frozen=True)
 class Layer:
-    """A table of keys to be merged with others, and the folder where the paths in it start."""
+    """A table of keys to be merged with others, and the folder that paths in it are relative to."""
 
     table: dict
     folder: Path
 
     def without(self, keys: Collection[str]) -> "Layer":
-        """The layer less some of its uppermost keys."""
+        """The layer without some of its top-level keys."""
         return Layer({key: value for key, value in self.table.items() if key not in keys}, self.folder)
 
     def located(self) -> dict:
-        """The table with full paths under PATH_KEYS."""
+        """The table with the paths under PATH_KEYS made absolute."""
         return reduce(self._with_full_path, PATH_KEYS, dict(self.table))
 
     def _with_full_path(self, table: dict, dotted: str) -> dict:
@@ -105,7 +104,7 @@ class Layer:
 
 
 def names() -> dict[str, str]:
-    """The shipped presets and their quick variants, sorted: name and title."""
+    """Titles of the shipped presets and their quick variants by name, sorted."""
     found = {}
     for name, file in _shipped().items():
         layers = _layers(Source(name, file))
@@ -117,11 +116,11 @@ def names() -> dict[str, str]:
 
 
 def load(name_or_path: str | Path, overrides: Mapping | None = None) -> LoadedPreset:
-    """A preset by name or path, under `overrides`: {"grains.diameter": "4 mm"} or nested tables.
+    """Load a preset by name or path, with `overrides`: {"grains.diameter": "4 mm"} or nested tables.
 
     Raises LabError: no such preset, a file that cannot be read, or a key that is unknown or wrong.
     """
-    from lab.preset.schema import resolve  # brings the solvers; the list of presets does without
+    from lab.preset.schema import resolve  # imports the solvers, which the list of presets does not need
 
     source, quick = _find_variant(str(name_or_path))
     try:
@@ -159,8 +158,8 @@ def _quick_variant(source: Source, layers: list[Layer]) -> dict:
 
 
 def _quick_tables(layers: list[Layer]) -> list:
-    """What layers say under `quick`, taken out of them, from behind the last that says false."""
-    # A text under `quick` says that the preset is one already.
+    """Remove the `quick` tables from the layers and return those after the last `quick = false`."""
+    # A text under `quick` marks a preset that is a quick variant already.
     tables = [layer.table.pop("quick") for layer in layers if not isinstance(layer.table.get("quick", ""), str)]
     refused = [place for place, table in enumerate(tables) if table is False]
     return tables[refused[-1] + 1 :] if refused else tables
@@ -187,7 +186,7 @@ def _shipped() -> dict[str, Traversable]:
 
 
 def _find_variant(name: str) -> tuple[Source, bool]:
-    """The preset called by that name, and whether its quick variant is meant."""
+    """The preset of that name, and whether its quick variant is meant."""
     plain = name.removesuffix(QUICK)
     shipped = _shipped()
     quick = plain != name and name not in shipped and plain in shipped
@@ -195,7 +194,7 @@ def _find_variant(name: str) -> tuple[Source, bool]:
 
 
 def _find(name: str, beside: Path | None = None) -> Source:
-    """The shipped preset `name`, else the file at that path (relative to the folder `beside`)."""
+    """The shipped preset `name`, else the file at that path, relative to the folder `beside`."""
     shipped = _shipped()
     if name in shipped:
         return Source(name, shipped[name])
@@ -210,7 +209,7 @@ def _find(name: str, beside: Path | None = None) -> Source:
 
 
 def _layers(source: Source, heirs: tuple[str, ...] = ()) -> list[Layer]:
-    """What a preset is based on, bottom first, and itself on top; `heirs` are the files that led here."""
+    """The layers of a preset: its bases, the lowest first, then its own; `heirs` are the files that led here."""
     table = _parsed(source)
     chain = (*heirs, os.path.realpath(str(source.file)))
     if chain[-1] in heirs:
@@ -231,7 +230,7 @@ def _layers(source: Source, heirs: tuple[str, ...] = ()) -> list[Layer]:
 
 
 def _written(layers: list[Layer]) -> dict:
-    """Each layer over those before it, the paths in them as written, and nothing left to be followed."""
+    """All layers merged in order, with paths as written and without `based_on`."""
     return reduce(merged, (layer.without(("based_on",)).table for layer in layers))
 
 

@@ -1,7 +1,7 @@
-"""A preset in full, as files of the lab hold it, held to the limits of presets as people write them.
+"""Check a resolved preset from a file of the lab against the limits for presets that users write.
 
-Such a file may come from a stranger. What reads presets checks every number that a person gives; here the same is asked
-of numbers that are in SI already, before memory is taken by them.
+Such a file may come from an unknown source. The reader of presets checks every number that a user gives; the same
+checks are made here on numbers that are in SI already, before memory is allocated for them.
 """
 
 import json
@@ -27,7 +27,7 @@ LONGEST_LIST = 1000  # of classes of sizes, of kinds and of shapes
 
 
 def resolved_from(table: object) -> Resolved:
-    """The preset in full that a file holds. Raises ValueError where it is none that a preset could have come to."""
+    """The resolved preset that a file holds. Raises ValueError if no valid preset could have given it."""
     try:
         preset = Resolved.model_validate_json(json.dumps(table))
         _check(preset)
@@ -55,7 +55,7 @@ def _check(preset: Resolved) -> None:
 
 
 def _check_lengths(preset: Resolved) -> None:
-    """Raise LabError for longer lists than a preset may have, and for names that are none."""
+    """Raise LabError for lists that are too long, and for invalid names, outlines or edges."""
     grains = preset.grains
     for outline in filter(None, (preset.tank.outline, grains.region)):
         simple_polygon(outline)

@@ -1,11 +1,11 @@
-"""One table of a preset laid over another: heirs over their base, overrides over both."""
+"""Merge tables of presets: a preset over its base, overrides over both."""
 
 from collections.abc import Mapping
 
 from lab.base.errors import LabError
 from lab.preset.units import quoted
 
-# Keys of a section that stand for one another: giving one side drops the other, inherited one.
+# Alternative keys of a section: giving one side drops an inherited value of the other.
 ALTERNATIVES = {
     "tank": ({"width", "height"}, {"outline"}),
     "grains": ({"count"}, {"depth"}),
@@ -32,7 +32,7 @@ def nested(overrides: Mapping) -> dict:
 
 
 def merged(base: Mapping, over: Mapping, path: str = "", alternatives: Mapping = ALTERNATIVES) -> dict:
-    """`over` laid over `base`, table by table; of keys that stand for one another `over`'s stay."""
+    """Merge `over` into `base`, table by table; where keys are alternatives, those of `over` win."""
     result = dict(base)
     for side, other in _both_ways(alternatives.get(path)):
         if side & over.keys() and not other & over.keys():

@@ -11,7 +11,7 @@ MOST_CORNERS = 200
 
 
 def rectangle(width: float, height: float) -> tuple[Point, ...]:
-    """A rectangle (m) whose floor's middle is the origin."""
+    """A rectangle (m) with the origin in the middle of its floor."""
     half = width / 2
     return ((-half, 0.0), (half, 0.0), (half, height), (-half, height))
 
@@ -22,7 +22,7 @@ def area(outline: Sequence[Point]) -> float:
 
 
 def simple_polygon(corners: Sequence[Point]) -> tuple[Point, ...]:
-    """The corners (m) counter-clockwise, without a repeated last one.
+    """The corners (m) in counter-clockwise order; a last corner equal to the first is dropped.
 
     Raises LabError if they do not bound an area or if the outline touches itself.
     """

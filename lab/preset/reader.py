@@ -1,8 +1,8 @@
-"""TOML tables into dataclasses: a field's annotation says what it takes, a fault is one sentence.
+"""Read TOML tables into dataclasses: a field's annotation says what it takes; an error is one sentence.
 
-A field is `bool`, `int`, `str`, a `Literal` of words, a number or a tuple of numbers with the
-markers of `solvers.machine.marks`, another dataclass (a table), or a `dict[str, dataclass]` (tables that people name).
-`X | None` may be left out; for a table, `false` leaves it out too, and so it does for a named one.
+A field is `bool`, `int`, `str`, a `Literal` of words, a number or a tuple of numbers with the markers of
+`solvers.machine.marks`, another dataclass (a table), or a `dict[str, dataclass]` (tables that users name). `X | None`
+may be left out. A value of `false` removes an inherited optional value or a named table.
 """
 
 import types
@@ -20,9 +20,9 @@ from solvers.machine.marks import Interval, Unit
 
 T = TypeVar("T")
 
-LIKELY = 0.7  # likeness of a word that is meant, rather than a key of that very name elsewhere
-LONGEST_NAME = 40  # characters of a table's name that a person chooses
-BOUND = 1e15  # no SI number of a laboratory is larger, or as small as its inverse; squares and cubes stay finite
+LIKELY = 0.7  # similarity above which a key here is suggested before a key of the same name in another section
+LONGEST_NAME = 40  # characters of a table's name that a user chooses
+BOUND = 1e15  # SI numbers must be within 1/BOUND and BOUND; their squares and cubes stay finite
 
 
 @dataclass
@@ -37,12 +37,12 @@ class Taken:
 
 
 def check_keys(kind: type, table: object) -> None:
-    """Raise LabError on the first key that the dataclass `kind` lacks, with the likely right one."""
+    """Raise LabError on the first key that the dataclass `kind` lacks, suggesting a similar one."""
     _check_keys(kind, table, "", list(_dotted(kind)))
 
 
 def dotted_key(kind: type, given: str) -> str:
-    """The whole key of one that may be told by its last part alone. Raises LabError where that is none or several."""
+    """The full dotted key for one given by its last part alone. Raises LabError if none or several match."""
     known = list(_dotted(kind))
     if given in known or "." in given:
         return given
@@ -54,7 +54,7 @@ def dotted_key(kind: type, given: str) -> str:
 
 
 def taken_by(kind: type, dotted: str) -> Taken | None:
-    """What a dotted key below the dataclass `kind` takes, whatever the names that people choose; None: no such key."""
+    """What a dotted key below the dataclass `kind` takes, with any names that users choose; None: no such key."""
     taken, parts = Taken(kind), dotted.split(".")
     while parts:
         if inner := _named_kind(taken.kind):
@@ -68,7 +68,7 @@ def taken_by(kind: type, dotted: str) -> Taken | None:
 
 
 def read(kind: type[T], table: object, path: str = "") -> T:
-    """The dataclass `kind` from a table whose keys `check_keys` has passed.
+    """Build the dataclass `kind` from a table whose keys `check_keys` has accepted.
 
     Raises LabError on a value that is missing or wrong, with its dotted key below `path`.
     """
@@ -119,7 +119,7 @@ def _dotted(kind: type, path: str = "") -> Iterator[str]:
 
 
 def _named_kind(kind: Any) -> type | None:
-    """The dataclass of the tables that people name, if the kind is a `dict` of such."""
+    """The dataclass of the tables that users name, if the kind is a `dict` of such."""
     return get_args(kind)[1] if get_origin(kind) is dict else None
 
 
@@ -153,7 +153,7 @@ def _taken(hint: Any) -> Taken:
 def _value(taken: Taken, raw: object, key: str) -> Any:
     if isinstance(raw, str) and raw in taken.words:
         return raw
-    if raw is False and taken.optional:  # takes back what a preset that this one is based on gives
+    if raw is False and taken.optional:  # removes the value inherited from the base
         return None
     if taken.kind is None:
         raise LabError(f"{key}: {quoted(raw)} is unknown; {_word_hint(taken, raw)}")
@@ -186,7 +186,7 @@ def _scalar(taken: Taken, raw: object, key: str) -> Any:
 
 
 def _named(kind: type, raw: object, key: str) -> dict[str, Any]:
-    """The tables that people name, in their order; one that is false is left out."""
+    """The tables that users name, in their order; one that is false is left out."""
     if not isinstance(raw, Mapping):
         raise LabError(f"{key}: tables with names of your own are needed (got {quoted(raw)}).")
     for name in raw:
@@ -207,14 +207,14 @@ def _tuple(taken: Taken, raw: object, key: str) -> tuple:
 
 
 def _item(taken: Taken, kind: Any) -> Taken:
-    """What an item of a list takes: what its own annotation says, else the unit and range of the whole list."""
+    """What an item of a list takes: by its own annotation, else the unit and range of the whole list."""
     if get_origin(kind) is Annotated:
         return _taken(kind)
     return Taken(kind, symbol=taken.symbol, interval=taken.interval)
 
 
 def _needed(taken: Taken) -> str:
-    """The half-sentence that asks for a value."""
+    """The clause of an error message that asks for a value."""
     if taken.kind is float:
         return needed(taken.symbol)
     if get_origin(taken.kind) is tuple:

@@ -1,8 +1,8 @@
-"""What a preset may say, and what comes of it.
+"""The schema of a preset, and its resolution into complete SI values.
 
-The keys of `material` and of the motions, and the names of the contact laws, come from `solvers`: a
-new motion or law in its registry is a new key or word here. Each section is a dataclass in a file of
-`lab.preset.sections`, which `lab.preset.reader` fills, in SI.
+The keys of `material` and of the motions, and the names of the contact laws, come from `solvers`: a new motion or law
+in its registry is a new key or word here. Each section is a dataclass in a file of `lab.preset.sections`;
+`lab.preset.reader` fills it, in SI.
 """
 
 from collections.abc import Mapping
@@ -37,7 +37,7 @@ from solvers.tank.parts import Part
 
 @dataclass(frozen=True)
 class Given:
-    """A whole preset as read. `based_on` has been followed by then, and names the base as people call it."""
+    """A whole preset as read, after its base has been merged in; `based_on` only names the base."""
 
     title: str
     tank: TankGiven
@@ -62,7 +62,7 @@ class Given:
 
 
 class Resolved(BaseModel):
-    """A preset in full, in SI. To JSON and back: `model_dump_json`, `model_validate_json`."""
+    """A preset with all values filled in, in SI. To JSON and back: `model_dump_json`, `model_validate_json`."""
 
     model_config = ConfigDict(frozen=True)
 
@@ -89,7 +89,7 @@ class Resolved(BaseModel):
 
     @model_validator(mode="after")
     def _rebounds(self) -> "Resolved":
-        """What a damaged or changed file may lack: a material that says nothing of its rebound is none."""
+        """Raise ValueError for a material without its rebound values, as a damaged or edited file may have."""
         given = [self.material, self.wall, *(kind.material for kind in self.kinds.values())]
         if any(material.restitution is None and material.dissipative_time is None for material in given):
             raise ValueError("a material has neither restitution nor dissipative_time")
@@ -99,7 +99,7 @@ class Resolved(BaseModel):
 
 
 def resolve(table: Mapping) -> Resolved:
-    """A preset's table, inheritance and overrides done, in full.
+    """Resolve a preset's table, with its base and overrides already merged in.
 
     Raises LabError, one sentence with the dotted key.
     """
@@ -142,7 +142,7 @@ def resolve(table: Mapping) -> Resolved:
 
 
 def _check_shapeless(given: Given) -> None:
-    """Raise LabError for what goes with irregular grains alone, where there are none."""
+    """Raise LabError for settings that need irregular grains if there are none."""
     said = (
         ("grains.orientation", given.grains.orientation, GrainsGiven.orientation),
         ("grains.settled_as", given.grains.settled_as, GrainsGiven.settled_as),
@@ -155,7 +155,7 @@ def _check_shapeless(given: Given) -> None:
 
 
 def _check_shapely(given: Given) -> None:
-    """Raise LabError for what goes with round grains alone, where there are others."""
+    """Raise LabError for settings that need discs if the grains are irregular."""
     if given.kinds:
         raise LabError("kinds: irregular grains are of one material; leave out the kinds, or the shapes.")
     if given.contact.cohesion != "none":

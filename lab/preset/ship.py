@@ -1,6 +1,6 @@
-"""A ship in a preset: what may be said of her, her water and waves, and where her axis is and goes.
+"""The ship, water and waves of a preset, and the position and motion of the ship's axis.
 
-`lab.assembly.ship` makes a vessel of it.
+`lab.assembly.ship` builds the solver's vessel from them.
 """
 
 from collections.abc import Mapping
@@ -23,7 +23,7 @@ AngularFrequency = Annotated[float, Unit("rad/s"), Interval(gt=0)]
 
 @dataclass(frozen=True)
 class RigGiven:
-    """What holds a model, per metre of its length: masses that move along, dashpots and a spring, in sway and heave."""
+    """The rig that holds a model, per metre of length: moving masses and dashpots in sway and heave, a sway spring."""
 
     sway_mass: Annotated[float, Unit("kg/m"), Interval(ge=0)] = 0.0
     heave_mass: Annotated[float, Unit("kg/m"), Interval(ge=0)] = 0.0
@@ -34,7 +34,7 @@ class RigGiven:
 
 @dataclass(frozen=True)
 class HatchGiven:
-    """A hatch in the middle of the deck: how broad it is, and how high its coaming stands over the deck."""
+    """A hatch in the middle of the deck: its breadth, and the height of its coaming above the deck."""
 
     breadth: Length
     coaming: Length
@@ -44,19 +44,20 @@ class HatchGiven:
 class ShipGiven:
     """The hull's section and how the ship floats with her cargo aboard; the tank of the preset is her hold.
 
-    The origin of the hull's own axes is the middle of the keel of a box of `breadth` and `height`, the depth to its
-    deck, or as the `outline`'s corners have it. A box may have a `hatch`; its coaming keeps water out as the sides do,
-    up to its edges, which are openings. `openings`: further points, of any hull, through which she floods when they are
-    under water. `deck`: how high the deck's edge is above the origin, of an `outline`; a box's is its height.
-    `draught`, `gravity_height` (above the origin) and `gyradius` or `roll_period` are of ship and cargo together, as it
-    lies at the start. `hold`: where the tank's origin is. `axis`: the ship's point of reference, the middle of the
-    waterline unless given. Sway and heave are the motions of this point from where it is at rest (`axis_motion`), in
-    equations, recordings, figures and pictures alike; they are held or not, and she is heeled about it. The source's
-    model has `radiation` at the waves' frequency, and as `excitation` of roll the waves' slope. `damping` is a
-    share of the critical, `quadratic_damping` per rad: φ̈ + 2 ζ ω₀ φ̇ + b φ̇|φ̇| + ω₀² φ. `repose`: how steep the cargo can
-    lie, for the curve of righting levers with relaxed cargo alone; the grains of a run know nothing of it. Unless given
-    it is that of the source's acetate, the first of the critical angles that it found by tilting (Spandonidis 2016,
-    section 7.1). `scale`: how many times as long the ship is that she is a model of; nothing but words depends on it.
+    The hull is a box of `breadth` and `height` (depth to the deck) with the origin at the middle of its keel, or an
+    `outline` with corners in the hull's own axes. A box may have a `hatch`: its coaming keeps water out as sides do,
+    and its upper edges are openings. `openings`: further points, of any hull, through which the ship floods once they
+    are under water. `deck`: height of the deck's edge above the origin, for an `outline`; that of a box is `height`.
+    `draught`, `gravity_height` (above the origin) and `gyradius` or `roll_period` are those of ship and cargo together,
+    as the cargo lies at the start. `hold`: position of the tank's origin. `axis`: the ship's point of reference, by
+    default the middle of the waterline. Sway and heave are the motions of this point from its position at rest
+    (`axis_motion`), in equations, recordings, figures and pictures; `freedom` frees or holds them, and the ship is
+    heeled about this point. The source's model has `radiation` at the waves' frequency, and the waves' slope as
+    `excitation` of roll. `damping` is a fraction of the critical damping, `quadratic_damping` is per rad:
+    φ̈ + 2 ζ ω₀ φ̇ + b φ̇|φ̇| + ω₀² φ. `repose`: the cargo's angle of repose, used only for the righting-arm curve with
+    relaxed cargo, not by the grains of a run; the default is that of the source's acetate, the first of the critical
+    angles that it found by tilting (Spandonidis 2016, section 7.1). `scale`: ratio of the full-scale ship's length to
+    the model's; it changes only texts.
     """
 
     draught: Length
@@ -108,12 +109,12 @@ class ShipGiven:
 
     @property
     def deck_height(self) -> float | None:
-        """Of the deck's edge above the hull's origin (m), None where an outline's is not given."""
+        """Height of the deck's edge above the hull's origin (m), None if not given for an outline."""
         return self.height if self.outline is None else self.deck
 
     @property
     def deck_edges(self) -> tuple[tuple[float, float], ...]:
-        """Where the hull is as high as her deck, farthest to either side (m); none where that is not known."""
+        """The outermost points of the hull at deck height, starboard and port (m); none if the deck is not known."""
         if self.deck_height is None:
             return ()
         begin, end = self.corners, np.roll(self.corners, -1, axis=0)
@@ -132,13 +133,13 @@ class ShipGiven:
 
     @property
     def heave(self) -> float:
-        """Of the hull's origin at rest (m)."""
+        """Heave of the hull's origin at rest (m)."""
         return -self.draught - float(self.corners[:, 1].min())
 
 
 @dataclass(frozen=True)
 class WaterGiven:
-    """The water the ship floats in; deep unless its depth is given."""
+    """The water that the ship floats in; deep unless its depth is given."""
 
     density: Annotated[float, Unit("kg/m^3"), Interval(ge=500, le=2000)] = 1000.0
     depth: Annotated[float, Unit("m"), Interval(ge=1e-3, le=2e4)] | None = None
@@ -148,8 +149,8 @@ class WaterGiven:
 class WavesGiven:
     """Waves that travel to starboard.
 
-    Regular: `amplitude` and `frequency`. A packet: highest, `amplitude`, at the ship at the `time`, `spread` its
-    standard deviation of frequency. A random sea: `height` the significant one, `frequency` that of the peak.
+    Regular: `amplitude` and `frequency`. A packet: it peaks with `amplitude` at the ship at `time`; `spread` is the
+    standard deviation of its frequency. A random sea: `height` is the significant wave height, `frequency` the peak's.
     """
 
     frequency: AngularFrequency
@@ -176,9 +177,9 @@ def axis_place(given: ShipGiven) -> str:
 
 
 def axis_motion(ship: ShipGiven, pose: np.ndarray) -> np.ndarray:
-    """Sway, heave (m) of the ship's axis from where it is at rest, and roll (rad), from the tank's poses (…, 3).
+    """Sway and heave (m) of the ship's axis from its position at rest, and roll (rad), from the tank's poses (…, 3).
 
-    This, and nothing else, is what sway and heave of a ship are, wherever the lab tells of them.
+    Everywhere in the lab, sway and heave of a ship are defined in this way.
     """
     arm = turned(tuple(np.subtract(ship.hold, ship.about)), pose[..., 2])
     rest = np.array([ship.about[0], ship.heave + ship.about[1]])

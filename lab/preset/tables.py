@@ -1,4 +1,4 @@
-"""Tables of numbers that people bring along: CSV files with a line of column names."""
+"""Read users' tables of numbers: CSV files with a header line of column names."""
 
 import csv
 import math
@@ -25,9 +25,9 @@ def read_table(
 ) -> dict[str, np.ndarray]:
     """Columns (rows,) of a CSV file by name, in the file's order: all `needed` ones and any of the `optional` ones.
 
-    The first line names the columns; cells are parted by commas, or by semicolons if the first line is. Blank lines
-    and lines that begin with # do not count. Raises LabError, one sentence that begins with the preset's `key`, the
-    file and the line, for whatever is not such a table of finite numbers, and for more than `most` rows.
+    The first line names the columns; cells are separated by commas, or by semicolons if the first line has any. Blank
+    lines and lines that begin with # are skipped. Raises LabError, one sentence that begins with the preset's `key`,
+    the file and the line, for anything but such a table of finite numbers, and for more than `most` rows.
     """
     try:
         return _columns(_text(path), needed, optional, most)
@@ -54,7 +54,7 @@ def _text(path: str) -> str:
         content = read_bytes(path, LARGEST_FILE + 1)
     except OSError as error:
         raise LabError(f": cannot be read: {error.strerror or error}.") from None
-    except ValueError:  # characters that no file name has
+    except ValueError:  # characters that a file name cannot have
         raise LabError(": is not a file name.") from None
     if content is None:
         raise LabError(": is not a file.")
@@ -70,7 +70,7 @@ def _text(path: str) -> str:
 
 
 def _lines(text: str) -> Iterator[Line]:
-    """The lines that count, with their numbers, as cells without the blanks around them."""
+    """The lines that are not skipped, with their numbers, as cells without surrounding blanks."""
     delimiter = ""
     for number, line in enumerate(StringIO(text, newline=None), start=1):
         line = line.strip()

@@ -1,4 +1,4 @@
-"""Tables to TOML text (the standard library only reads it)."""
+"""Write tables as TOML text (the standard library only reads it)."""
 
 import json
 import re

@@ -1,7 +1,7 @@
-"""Quantities as people write them ("3.2e9 Pa", "0.3 deg/s", "30 %") to SI numbers and back.
+"""Convert quantities as users write them ("3.2e9 Pa", "0.3 deg/s", "30 %") to SI numbers and back.
 
-The registry is a short list of our own. Pint's default one takes angles for pure numbers, so
-"3 deg/s" would pass for a frequency and 60 rpm would be 6.28 Hz; here an angle is a dimension.
+The lab has its own short list of units. Pint's default registry treats angles as pure numbers, so "3 deg/s" would pass
+for a frequency and 60 rpm would be 6.28 Hz; here an angle is a dimension.
 """
 
 import math
@@ -40,7 +40,7 @@ percent = 0.01 = %
 
 
 class Kind(NamedTuple):
-    """How people speak of an SI unit: what it measures, the unit they would use, an example."""
+    """How messages describe an SI unit: what it measures, the usual unit, an example."""
 
     name: str
     unit: str
@@ -67,20 +67,20 @@ KINDS = {
 }
 MEASURED = {"deg": "rad", "mm": "m", "mN": "N", "µJ": "J", "Hz": "Hz", "s": "s", "%": "1"}  # units of measures
 PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
-# Units shown with a prefix, and the smallest power of ten they are shown with.
+# Units shown with a prefix, and the smallest power of ten of that prefix.
 PREFIXED = {"m": -9, "s": -9, "Pa": 0, "N": -9, "J": -9, "Hz": 0}
 
 NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 FACTOR = re.compile(r"\s*([*/·]?)\s*([^\W\d]+|[%°]|1(?=\s*/))(?:\s*(?:\^|\*\*)\s*(-?[1-9]))?")
 TYPOGRAPHY = str.maketrans({"\N{MINUS SIGN}": "-", "²": "^2", "³": "^3"})
 LONGEST = 100  # characters of a quantity
-QUOTED = 40  # characters of a person's text that an error quotes
-LONGEST_PATH = 100  # and of a path
+QUOTED = 40  # characters of a user's text that an error quotes
+LONGEST_PATH = 100  # characters of a path that an error quotes
 
 
 @cache
 def _registry():
-    from pint import UnitRegistry  # a third of a second that `--help` need not wait for
+    from pint import UnitRegistry  # takes a third of a second; `--help` does not need it
 
     registry = UnitRegistry(None)
     for line in DEFINITIONS.strip().splitlines():
@@ -94,13 +94,13 @@ def kind(symbol: str) -> Kind:
 
 
 def needed(symbol: str) -> str:
-    """The half-sentence that asks for a quantity: 'a length is needed, e.g. "3 mm"'."""
+    """The clause of an error message that asks for a quantity: 'a length is needed, e.g. "3 mm"'."""
     name, _, example = kind(symbol)
     return f"{name} is needed, e.g. {example}" if symbol == "1" else f'{name} is needed, e.g. "{example}"'
 
 
 def quoted(value: object) -> str:
-    """A person's value on one line, no longer than an error can bear."""
+    """A user's value on one line, shortened for an error message."""
     try:
         text = str(value).lower() if isinstance(value, bool) else str(value)
     except ValueError:  # an integer of more than 4300 digits
@@ -111,16 +111,16 @@ def quoted(value: object) -> str:
 
 
 def shown_path(path: object) -> str:
-    """A path on one line, the end of one that is too long."""
+    """A path on one line; of a long path only its end."""
     text = "".join(c if c.isprintable() else "?" for c in str(path))
     return text if len(text) <= LONGEST_PATH else f"…{text[-LONGEST_PATH:]}"
 
 
 def parse(value: object, symbol: str) -> float:
-    """The SI number, in the unit `symbol`, of a text such as "3 mm".
+    """Parse a text such as "3 mm" into a number in the SI unit `symbol`.
 
-    Plain numbers are taken where `symbol` is "1". Raises LabError: a wrong dimension, no unit, an
-    unknown unit, nonsense, or a number that is not finite.
+    Plain numbers are accepted only if `symbol` is "1". Raises LabError: a wrong dimension, no unit, an unknown unit,
+    text that is no quantity, or a number that is not finite.
     """
     if isinstance(value, str):
         number, unit = _split(value, symbol)
@@ -137,7 +137,7 @@ def parse(value: object, symbol: str) -> float:
 
 
 def in_unit(text: str, unit: str, key: str) -> float:
-    """The number, in a unit that a measure comes in, of a text such as "0.72 rad". Raises LabError."""
+    """Parse a text such as "0.72 rad" into a number in `unit`, the unit of a measure. Raises LabError."""
     symbol = MEASURED.get(unit)
     try:
         if symbol:
@@ -148,7 +148,7 @@ def in_unit(text: str, unit: str, key: str) -> float:
 
 
 def show(value: float, symbol: str) -> str:
-    """A number in the SI unit `symbol` as people like to read it: show(0.003, "m") is "3 mm"."""
+    """Format a number in the SI unit `symbol` for reading: show(0.003, "m") is "3 mm"."""
     unit = kind(symbol).unit
     if symbol in PREFIXED and math.isfinite(value):
         return _with_prefix(value, symbol)
@@ -168,7 +168,7 @@ def _split(text: str, symbol: str) -> tuple[float, str]:
 
 
 def _factor(unit: str, value: str, symbol: str) -> float:
-    """What turns a number in `unit` into one in `symbol`; `value` is the text that errors quote."""
+    """The factor from `unit` to `symbol`; `value` is the text that errors quote."""
     if not unit and symbol != "1":
         raise LabError(f"{quoted(value)} has no unit; {needed(symbol)}.")
     given = _unit(unit, value, symbol)

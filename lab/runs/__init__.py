@@ -1,1 +1,1 @@
-"""Runs: beds are settled, worlds launched together, checkpoints kept, and what was cut short goes on."""
+"""Runs: settle beds, advance worlds together, keep checkpoints, and continue interrupted runs."""

@@ -1,9 +1,9 @@
-"""Settled beds: how they are made, and a store of them, so that a bed that was settled once is not settled again.
+"""Settle beds, and keep them in a store, so that each bed is settled only once.
 
-A stored bed is what settling made of the solver's state of one world, under a hash of all that it follows from: a run
-goes on from it bit for bit as from a bed settled anew. The store is the folder `beds` of the user's cache, or of the
-folder that the environment variable CARGOLAB_CACHE names. It holds at most 256 MiB; beds that have not been used for
-longest go first. What cannot be read there counts as not there.
+A stored bed holds the entries of one world's solver state that settling changed, under a hash of everything that
+determines them; a run from it has the same bits as a run from a newly settled bed. The store is the folder `beds` in
+the user's cache, or in the folder that the environment variable CARGOLAB_CACHE names. It holds at most 256 MiB; the
+least recently used beds are deleted first. A file that cannot be read counts as missing.
 """
 
 import hashlib
@@ -36,25 +36,25 @@ from solvers.simulation import Simulation
 
 FORMAT = "cargo-shift-lab bed 2"
 LARGEST_STORE = 2**28  # bytes
-ABANDONED = 3600.0  # s after which a half-written file belongs to nobody
+ABANDONED = 3600.0  # s after which a half-written file is deleted
 
 Start = Callable[[Scene, np.ndarray], Simulation]
 Bed = dict[str, np.ndarray]
 
-# Fields of a scene that beds do not follow from: no tank moves while its bed settles. A motion comes in by the step
-# that it asks for, and by its kind, which chooses the compiled kernel.
+# Fields of a scene that do not affect its beds: no tank moves while its bed settles. A motion matters only through the
+# step that it asks for, and through its kind, which selects the compiled kernel.
 UNRELATED = ("motions", "soft_start", "start_speed", "step", "vessels", "interval")
 PER_WORLD = ("radius", "grain", "wall", "velocity", "spin")
 
-FREE = 0.9  # of its radius: how near a wall a grain of a settled bed may be
+FREE = 0.9  # least distance of a grain of a settled bed from a wall, in its radius
 
 
 @dataclass(frozen=True)
 class Settling:
-    """How beds are made: in the tank `outline`, with which surface, to which rest, within `limit` (s) at most.
+    """How beds are settled: tank `outline`, kind of surface, residual energy at rest, time `limit` (s).
 
-    `settle` false: not at all, the grains start where they are put. `reuse` false: the store is left alone. `disc_step`
-    (s): irregular grains, round ones, are to settle as discs before they settle as they are, in such steps.
+    `settle` false: the grains start where they are placed. `reuse` false: the store is not used. `disc_step` (s): round
+    irregular grains first settle as discs, with this step, and then as they are.
     """
 
     outline: tuple[tuple[float, float], ...]
@@ -67,7 +67,7 @@ class Settling:
 
 
 def settling(preset: Resolved) -> Settling:
-    """How a preset's beds are made. Worlds that are to settle in one batch must agree in it."""
+    """The settling of a preset's beds. Worlds that settle in one batch must agree in it."""
     run, grains = preset.run, preset.grains
     outline = tuple(map(tuple, filling_outline(preset).tolist()))
     disc_step = build(_of_discs(preset))[0].step if grains.settled_as == "discs" else None
@@ -75,7 +75,7 @@ def settling(preset: Resolved) -> Settling:
 
 
 def _of_discs(preset: Resolved) -> Resolved:
-    """The preset with discs for its round outlines."""
+    """The preset with discs in place of its round outlines."""
     grains = replace(preset.grains, table=None, settled_as="outlines")
     return preset.model_copy(update={"shapes": {}, "grains": grains})
 
@@ -83,8 +83,8 @@ def _of_discs(preset: Resolved) -> Resolved:
 def settled(scene: Scene, position: np.ndarray, how: Settling, start: Start, progress: Progress) -> Simulation:
     """A simulation of `scene` with its beds settled, from `position` (W, n, 2) m; the clock stands at zero.
 
-    The beds come from the store if it has all of them. `start` makes a simulation of a scene and positions. Raises
-    BadState from the watch, LabError where a bed does not fit under its tank's lid.
+    The beds come from the store if it has all of them. `start` makes a simulation from a scene and positions. Raises
+    BadState from the watch, LabError if a bed does not fit under its tank's lid.
     """
     simulation = start(scene, position)
     if not how.settle:
@@ -121,7 +121,7 @@ def settled(scene: Scene, position: np.ndarray, how: Settling, start: Start, pro
 def _settled_as_discs(
     scene: Scene, position: np.ndarray, how: Settling, start: Start, progress: Progress
 ) -> np.ndarray:
-    """Where discs (W, n, 2) m of the same sizes come to rest, those of the store if they have been there before."""
+    """Positions (W, n, 2) m of settled discs of the same sizes, from the store if they are in it."""
     discs = replace(scene, shapes=None, step=how.disc_step)
     simulation = settled(discs, position, replace(how, disc_step=None), start, progress)
     try:
@@ -136,7 +136,7 @@ def _settle(simulation: Simulation, how: Settling, stage: str, progress: Progres
         progress.watch(simulation)
 
     progress.start(stage, how.limit)
-    progress.watch(simulation)  # before kernels are compiled, which takes its time
+    progress.watch(simulation)  # before kernels are compiled, which takes a while
     rests = simulation.settle(how.rest, how.limit, tell)
     progress.finish()
     return rests
@@ -147,8 +147,8 @@ def _poured(
 ) -> tuple[Scene, np.ndarray]:
     """The scene, and where its grains lie (W, n, 2) m once they are poured into a closed tank that stands still.
 
-    Its walls go up as far as the grains do. An undisturbed bed is poured without friction, which packs it as densely as
-    shaking would, and is levelled then. In the scene that is returned, irregular grains are turned as they lie.
+    Its walls reach as high as the grains. An undisturbed bed is poured without friction, which packs it as densely as
+    shaking would, and is then levelled. In the returned scene irregular grains have the angles at which they lie.
     """
     pouring = replace(scene, outline=np.array(how.outline), open_edges=(), motions=())
     if how.surface == "undisturbed":
@@ -183,7 +183,7 @@ def _corners(scene: Scene) -> tuple[tuple[float, float], ...]:
 
 
 def bed_key(simulation: Simulation, world: int, position: np.ndarray, how: Settling) -> str:
-    """Hash of all that the bed of one world follows from: scene, start (n, 2) m, settling, and the engine's code."""
+    """Hash of all that determines the bed of one world: scene, start (n, 2) m, settling, and the solver's code."""
     scene = simulation.scene
     parts = [FORMAT, _engine(), repr(how), position, simulation.dt]
     parts += [simulation.arch, simulation.schedule_name, simulation.units_a_world, simulation.skin]
@@ -203,7 +203,7 @@ def bed_key(simulation: Simulation, world: int, position: np.ndarray, how: Settl
 
 
 def _shapes_of(shapes: Shapes, world: int) -> tuple:
-    """All that is said of the shapes in one world, whatever the others hold."""
+    """All data on the shapes in one world, independent of the other worlds."""
     used, which = np.unique(shapes.which[world], return_inverse=True)
     outlines = tuple(shapes.outlines[k] for k in used)
     return outlines, which, shapes.angle[world], shapes.contact, shapes.nodes
@@ -224,7 +224,7 @@ def _feed(digest, value: object) -> None:
 
 @cache
 def _engine() -> str:
-    """What computes: the solver's own text, its compiler, and the processor it compiles for."""
+    """Identifies the engine: the solver's source text, its compiler, and the processor that it compiles for."""
     digest = hashlib.blake2b(digest_size=16)
     for path in sorted(Path(str(files("solvers"))).rglob("*.py")):
         digest.update(path.read_bytes())
@@ -234,16 +234,16 @@ def _engine() -> str:
 def made(
     before: Mapping[str, np.ndarray], after: Mapping[str, np.ndarray], axes: Mapping[str, Axes], worlds: int
 ) -> list[Bed]:
-    """What settling made of each world: its part of the entries of the state that changed.
+    """The bed of each world: its part of the entries of the state that settling changed.
 
-    All that it left as it was, such as the motions' numbers, belongs to the scene and not to the bed.
+    Entries that it did not change, such as the motions' numbers, belong to the scene and not to the bed.
     """
     changed = [name for name in after if not _same(before[name], after[name])]
     return [{name: of_world(after[name], axes[name], worlds, w) for name in changed} for w in range(worlds)]
 
 
 def lay(simulation: Simulation, beds: list[Bed | None]) -> bool:
-    """Put beds into the worlds of a simulation just started; False where they are not all there or do not fit."""
+    """Put beds into the worlds of a new simulation; returns False if one is missing or does not fit."""
     if any(bed is None for bed in beds):
         return False
     state = {name: np.array(values) for name, values in simulation.state().items()}
@@ -265,24 +265,24 @@ def _same(a: np.ndarray, b: np.ndarray) -> bool:
 
 
 class BedStore:
-    """Beds by their keys, one file each, in a folder that several processes may use at a time."""
+    """Beds by key, one file each, in a folder that several processes may use at the same time."""
 
     def __init__(self, folder: Path | None = None):
         self.folder = folder or cache_folder() / "beds"
 
     def load(self, key: str) -> Bed | None:
-        """The bed of that key; None where there is none that can be read."""
+        """The bed of that key; None if missing or unreadable."""
         path = self._path(key)
         try:
             with np.load(path, allow_pickle=False) as file:
                 bed = {name: file[name] for name in file.files}
-            os.utime(path)  # used now
-        except Exception:  # whatever may be wrong with a file, there is no bed in it then
+            os.utime(path)  # marks it as used now
+        except Exception:  # a damaged file, in whatever way, counts as missing
             return None
         return bed if str(bed.pop("key", "")) == key else None
 
     def save(self, key: str, bed: Bed) -> None:
-        """Keep a bed, as far as the disk allows; a reader sees the whole file or none."""
+        """Store a bed if the disk allows; the file is replaced atomically."""
         with suppress(OSError):
             self.folder.mkdir(parents=True, exist_ok=True)
             with NamedTemporaryFile(dir=self.folder, suffix=".part", delete=False) as file:
@@ -299,11 +299,11 @@ class BedStore:
         return self.folder / f"{key}.npz"
 
     def _tidy(self) -> None:
-        """Drop what was used longest ago until the rest is small enough, and what others left half-written."""
+        """Delete the least recently used beds until the rest is small enough, and abandoned half-written files."""
         now, kept = time.time(), 0
         found = []
         for path in self.folder.iterdir():
-            with suppress(OSError):  # another process was faster
+            with suppress(OSError):  # another process has deleted it first
                 found.append((path.stat().st_mtime, path.stat().st_size, path))
         for used, size, path in sorted(found, reverse=True):
             if path.suffix == ".part":

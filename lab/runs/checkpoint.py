@@ -1,7 +1,7 @@
-"""The checkpoint of a run that goes on: the solver's whole state, from which the run continues bit for bit.
+"""The checkpoint of a running run: the solver's whole state, from which the run continues bit for bit.
 
-It is written under another name and renamed when it is on the disk, so whatever kills the run leaves a whole one. It
-goes when the run completes.
+It is written under another name and renamed once it is on the disk, so a kill at any time leaves a complete one. It is
+deleted when the run completes.
 """
 
 import hashlib
@@ -23,11 +23,11 @@ FILE_NAME = "checkpoint.npz"
 
 @dataclass(frozen=True)
 class Checkpoint:
-    """Where a launch stands.
+    """The state of a launch.
 
-    state: of the simulation (`Simulation.state`); runs: folders of the recordings whose worlds it advances, in their
-    order, relative to the checkpoint's; rows: of the series and of the frames that each of them has; warnings, notes:
-    what was said of the run until then.
+    state: that of the simulation (`Simulation.state`); runs: folders of the recordings whose worlds it advances, in
+    order, relative to the checkpoint's folder; rows: how many rows of series and frames each of them has; warnings,
+    notes: those given so far.
     """
 
     state: Mapping[str, np.ndarray]
@@ -37,7 +37,7 @@ class Checkpoint:
     notes: tuple[str, ...] = ()
 
     def write(self, folder: Path) -> None:
-        """Put it on the disk in place of an earlier one, which stays if that fails. Raises LabError."""
+        """Write it to disk in place of an earlier one, which stays if writing fails. Raises LabError."""
         path, unfinished = folder / FILE_NAME, folder / f"{FILE_NAME}.new"
         about = {"format": FORMAT, "runs": self.runs, "rows": self.rows}
         about |= {"warnings": self.warnings, "notes": self.notes, "digest": _digest(self.state)}
@@ -54,7 +54,7 @@ class Checkpoint:
 
 
 def read_checkpoint(folder: Path) -> Checkpoint | None:
-    """The checkpoint in a folder, or None where there is none. Raises LabError when it cannot be read."""
+    """Read the checkpoint in a folder; None if there is none. Raises LabError if it cannot be read."""
     path = folder / FILE_NAME
     if not path.exists():
         return None
@@ -78,7 +78,7 @@ def read_checkpoint(folder: Path) -> Checkpoint | None:
 
 
 def _digest(state: Mapping[str, np.ndarray]) -> str:
-    """Of names, shapes and all bytes."""
+    """Hash of names, shapes and all bytes of a state."""
     digest = hashlib.blake2b(digest_size=16)
     for name in sorted(state):
         values = np.ascontiguousarray(state[name])
@@ -88,6 +88,6 @@ def _digest(state: Mapping[str, np.ndarray]) -> str:
 
 
 def remove_checkpoint(folder: Path) -> None:
-    """Remove the checkpoint, if there is one, and what a killed run has left of another."""
+    """Remove the checkpoint, if there is one, and any unfinished file that a killed run has left."""
     (folder / FILE_NAME).unlink(missing_ok=True)
     (folder / f"{FILE_NAME}.new").unlink(missing_ok=True)

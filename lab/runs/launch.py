@@ -1,6 +1,6 @@
 """A launch: runs whose worlds advance together in one simulation, each written to a recording of its own.
 
-What a run's recording holds does not depend on the company: it has the same bits as that of the run alone.
+A run's recording does not depend on the other runs of the launch: it has the same bits as that of the run alone.
 """
 
 import json
@@ -32,20 +32,20 @@ from solvers.scene import Scene
 from solvers.simulation import Simulation
 from solvers.time.schedules import choose_schedule, units_a_world
 
-# Steps of a call of the solver, times the grains of a world: so long Ctrl-C waits, some tenths of a second for each
-# world on a core. It must not depend on the company or on the clock: between calls grains may get their numbers anew.
+# Steps per call of the solver times grains per world. It sets how long Ctrl-C waits: some tenths of a second for each
+# world on a core. It must not depend on other runs or on the clock, since grains may be renumbered between calls.
 A_CALL = 2_000_000
 
 
 def outlines_of(preset: Resolved, scene: Scene) -> Outlines | None:
-    """The outlines of a preset's irregular grains, None where all are discs."""
+    """The outlines of a preset's irregular grains, None if all are discs."""
     shapes = scene.shapes
     return Outlines(shapes.outlines, classes(preset), shapes.which) if shapes else None
 
 
 @dataclass(frozen=True)
 class Run:
-    """A run ready to start: its preset, the folder of its recording, its scene, the grains' places (W, n, 2) m."""
+    """A run ready to start: its preset, the folder of its recording, its scene, the grains' positions (W, n, 2) m."""
 
     loaded: LoadedPreset
     folder: Path
@@ -54,7 +54,7 @@ class Run:
 
     @property
     def shared(self) -> tuple:
-        """All that must be equal for two runs to share a launch."""
+        """The values that must be equal for two runs to share a launch."""
         preset = self.loaded.resolved
         run, record = preset.run, preset.record
         times = run.duration, record.series_rate, record.picture_rate, record.checkpoint_every
@@ -62,14 +62,14 @@ class Run:
 
     @property
     def sociable(self) -> bool:
-        """Whether it may share a launch at all: a world is cut into bands for as many threads as it has to itself."""
+        """Whether it may share a launch; not in schedule per-band, which divides a world by the number of threads."""
         settings, (worlds, count) = self.loaded.resolved.run, self.scene.radius.shape
         arch, threads = choose_arch(settings.arch, settings.precision), settings.threads or available_cores()
         afloat = bool(self.scene.vessels)
         return choose_schedule(settings.schedule, arch, worlds, count, threads, afloat) != "per-band"
 
     def engaged(self, worlds: int = 0) -> dict[str, object]:
-        """What computes so many worlds (0: the run's own) in a launch: `arch`, `schedule`, on the CPU `threads`."""
+        """The device for a launch of `worlds` worlds (0: the run's own): `arch`, `schedule`, on the CPU `threads`."""
         settings, (own, count) = self.loaded.resolved.run, self.scene.radius.shape
         afloat, worlds = bool(self.scene.vessels), worlds or own
         arch = "cpu" if afloat and settings.arch == "auto" else choose_arch(settings.arch, settings.precision)
@@ -81,9 +81,9 @@ class Run:
         return {"arch": arch, "schedule": schedule, "threads": min(threads, units)}
 
     def make_recording(self, steered: bool = False, engaged: Mapping[str, object] | None = None) -> None:
-        """Make the recording, without rows yet, of a run that a hand may steer.
+        """Create the recording, without rows yet; `steered`: of a run that a user steers.
 
-        engaged: what computes it in company, as `engaged` tells. Raises LabError (`new_recording`).
+        engaged: the device of the whole launch, as from `engaged`. Raises LabError (`new_recording`).
         """
         preset, scene = self.loaded.resolved, self.scene
         new_recording(
@@ -105,20 +105,20 @@ class Run:
 
 
 def prepare(loaded: LoadedPreset, folder: Path) -> Run:
-    """A run of this preset with its recording in `folder`.
+    """Prepare a run of this preset with its recording in `folder`.
 
-    Raises LabError where grains or step do not fit, Unavailable where this machine lacks what is to compute.
+    Raises LabError if the grains or the step do not fit, Unavailable if this machine lacks the device.
     """
     choose_arch(loaded.resolved.run.arch, loaded.resolved.run.precision)
     return Run(loaded, folder, *build(loaded.resolved))
 
 
 def launch(runs: Sequence[Run], home: Path, progress: Progress, kept: Checkpoint | None = None) -> dict[Path, BadState]:
-    """Settle the beds of all runs, move them, and add to their recordings, which must be there.
+    """Settle the beds of all runs, advance them to the end, and append to their recordings, which must exist.
 
-    home: the folder of the checkpoint, kept up to date until all is done; kept: one to go on from. Returns by folder
-    why the watch stopped a run; the others go on without it. Raises LabError where something cannot be written and
-    KeyboardInterrupt, both with a checkpoint left from when the beds had settled on.
+    home: the folder of the checkpoint, which is updated until all is done; kept: a checkpoint to continue from. If the
+    watch stops a run, the others go on; returns the reasons by folder. Raises LabError if something cannot be written,
+    and KeyboardInterrupt; once the beds have settled, both leave a checkpoint.
     """
     with ExitStack() as stack:
         together = Launch(runs, home, progress, stack)
@@ -135,7 +135,7 @@ class Launch:
     def __init__(self, runs: Sequence[Run], home: Path, progress: Progress, stack: ExitStack) -> None:
         self.runs, self.home, self.progress, self._stack = list(runs), home, progress, stack
         self.stopped: dict[Path, BadState] = {}
-        preset = runs[0].loaded.resolved  # the runs agree in all that is asked of it here
+        preset = runs[0].loaded.resolved  # the runs agree in all that is read from it here
         self._duration, self._record = preset.run.duration, preset.record
         self._simulate = partial(Simulation, threads=preset.run.threads, arch=preset.run.arch)
         self._settling = settling(preset)
@@ -143,9 +143,9 @@ class Launch:
         self._saved = time.monotonic()
 
     def start(self, kept: Checkpoint | None) -> None:
-        """Settle the beds, or take up what a checkpoint has kept, and open the recordings."""
+        """Settle the beds, or restore a checkpoint, and open the recordings."""
         rows = kept.rows if kept else (0, 0)
-        count = len(self.runs)  # recordings that are written side by side are written in larger pieces, as often in all
+        count = len(self.runs)  # each of several recordings writes larger pieces, so that writes stay as rare
         opened = {"flush_every": count * FLUSH_EVERY, "buffer": BUFFER_BYTES // count}
         self._recorders = [
             self._stack.enter_context(Recorder(run.folder, samples=rows[0], frames=rows[1], **opened))
@@ -174,7 +174,7 @@ class Launch:
             self.save()
 
     def run(self, interrupt: Interrupt) -> None:
-        """Take sample after sample until the end. Raises KeyboardInterrupt when that is asked for, all saved."""
+        """Take samples until the end. On an interrupt, saves everything and raises KeyboardInterrupt."""
         if not self.runs:
             return
         rate = self._record.series_rate
@@ -195,7 +195,7 @@ class Launch:
         self.progress.finish()
 
     def save(self) -> None:
-        """Leave a checkpoint, and all that was recorded until it, on the disk."""
+        """Write a checkpoint, and everything recorded up to it, to the disk."""
         for recorder in self._recorders:
             recorder.sync()
         Checkpoint(
@@ -215,10 +215,10 @@ class Launch:
             self.save()
 
     def _reach(self, step: int, pause: Callable[[], None]) -> Mapping[str, np.ndarray]:
-        """Advance to a step and observe; runs that the watch stops are left out, in the end maybe all."""
+        """Advance to a step and observe; drops runs that the watch stops, possibly all of them."""
         while self.runs:
             try:
-                self._simulation.advance(0)  # says what else the watch has stopped where a run was left out
+                self._simulation.advance(0)  # raises again if the watch has stopped another run, too
                 while self._simulation.steps < step:
                     self._simulation.advance(min(self._a_call, step - self._simulation.steps))
                     pause()
@@ -242,7 +242,7 @@ class Launch:
         return {"pose": rows["pose"], "part": self._simulation.part_places(), **self._simulation.snapshot()}
 
     def _end_lost(self, rows: Mapping[str, np.ndarray], pictured: bool) -> None:
-        """End the runs all of whose ships have capsized or flooded, with a last picture; the others go on."""
+        """End the runs whose ships have all capsized or flooded, with a last frame; the others go on."""
         if "capsized" not in rows:
             return
         lost = np.maximum(rows["capsized"], rows["flooded"]) >= 0.0
@@ -266,7 +266,7 @@ class Launch:
         self._counted = now
 
     def _worlds(self) -> Iterator[slice]:
-        """Which worlds of the simulation are each run's."""
+        """The worlds of each run in the simulation."""
         begin = 0
         for run in self.runs:
             yield slice(begin, begin + len(run.scene.radius))
@@ -279,7 +279,7 @@ class Launch:
         return np.concatenate([run.position for run in self.runs])
 
     def _leave_out(self, error: BadState) -> None:
-        """Close the recording of the run that the watch has stopped, and go on with the others' worlds."""
+        """Close the recording of the run that the watch has stopped, and go on with the other runs."""
         slices = list(self._worlds())
         out = next(k for k, worlds in enumerate(slices) if worlds.start <= error.world < worlds.stop)
         own = BadState(error.world - slices[out].start, error.what)
@@ -287,7 +287,7 @@ class Launch:
         self._close(out, f"stopped: {own}")
 
     def _close(self, out: int, status: str) -> None:
-        """Close the recording of a run, and go on with the others' worlds."""
+        """Close the recording of a run, and go on with the other runs."""
         slices = list(self._worlds())
         self.runs.pop(out)
         self._recorders.pop(out).close(status)

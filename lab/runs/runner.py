@@ -1,4 +1,4 @@
-"""Runs an experiment to its end: settle, move, record, measure, plot, paint, sum up; and goes on with one cut short."""
+"""Run an experiment to its end (settle, move, record, measure, plot, film, summarise), or continue one."""
 
 import json
 import shlex
@@ -29,7 +29,7 @@ RENDERS = Path("renders")
 
 @dataclass
 class Result:
-    """What a run gives: its folder, its measures by name, and its recording's arrays."""
+    """The result of a run: its folder, its measures by name, and the arrays of its recording."""
 
     folder: Path
     measures: dict[str, Value]
@@ -50,10 +50,10 @@ def run_preset(
     plots: bool = True,
     quiet: bool = False,
 ) -> Result:
-    """Run a preset and leave recording, plots, video and summary in a folder (default: renders/NAME).
+    """Run a preset and write recording, plots, video and summary to a folder (default: renders/NAME).
 
-    Raises LabError for what a person can mend, BadState where the watch stopped the run, KeyboardInterrupt; what was
-    recorded until then stays, with its summary and what `resume_run` needs.
+    Raises LabError for what a user can correct, BadState if the watch stopped the run, and KeyboardInterrupt; what was
+    recorded so far stays, with its summary and what `resume_run` needs.
     """
     loaded = load(name, overrides)
     folder = Path(out) if out is not None else free_folder(RENDERS / loaded.name)
@@ -65,10 +65,10 @@ def run_preset(
 
 
 def resume_run(folder: Path | str, *, video: bool = True, plots: bool = True, quiet: bool = False) -> Result:
-    """Go on with a run that was killed, interrupted or stopped, from its checkpoint, bit for bit.
+    """Continue a run that was killed, interrupted or stopped, from its checkpoint, with the same bits.
 
-    The preset is the recording's own. A run that only lacks its results gets these. Raises as `run_preset` does, and
-    LabError where there is nothing to go on with.
+    The preset is the one in the recording. If only the results are missing, only they are made. Raises as `run_preset`
+    does, and LabError if there is nothing to continue.
     """
     folder = Path(folder)
     with open_recording(folder) as recording:
@@ -91,7 +91,7 @@ def resume_run(folder: Path | str, *, video: bool = True, plots: bool = True, qu
 
 
 def recorded_preset(recording: Recording) -> LoadedPreset:
-    """The preset of a recording, ready to run again. Raises Useless where it is none."""
+    """The preset of a recording, ready to run again. Raises Useless if it is not a valid one."""
     try:
         resolved = resolved_from(recording.preset)
     except ValueError as error:
@@ -100,7 +100,7 @@ def recorded_preset(recording: Recording) -> LoadedPreset:
 
 
 def report(folder: Path, progress: Progress, *, video: bool, plots: bool = True) -> Result:
-    """Measure the recording, plot and paint it, and write the summary."""
+    """Measure, plot and film the recording, and write the summary."""
     with open_recording(folder) as recording:
         measures = measure_all(recording)
         files = {"recording": recording.path}
@@ -115,7 +115,7 @@ def report(folder: Path, progress: Progress, *, video: bool, plots: bool = True)
 
 
 def reported(folder: Path, status: str) -> bool:
-    """Whether the folder's summary is that of its recording, which has this status."""
+    """Whether the folder has the summary of its recording, with this status."""
     try:
         return json.loads((folder / "summary.json").read_text(encoding="utf-8"))["status"] == status
     except (OSError, ValueError, KeyError, TypeError):
@@ -124,7 +124,7 @@ def reported(folder: Path, status: str) -> bool:
 
 @contextmanager
 def hint(folder: Path, begun: str = FILE_NAME) -> Iterator[None]:
-    """Tell a person whose run is cut short how to go on with it; `begun` is the file that says that it has begun."""
+    """If the run is cut short, tell the user how to continue it; the file `begun` shows that it had started."""
     resume = f"cargolab resume {shlex.quote(str(folder))}"
     try:
         yield
@@ -139,7 +139,7 @@ def hint(folder: Path, begun: str = FILE_NAME) -> Iterator[None]:
 
 
 def _complete(run: Run, kept: Checkpoint | None, progress: Progress, video: bool, plots: bool) -> Result:
-    """Run to the end, or on to it, and report."""
+    """Run, or continue, to the end and report."""
     try:
         stopped = launch([run], run.folder, progress, kept)
     except KeyboardInterrupt:

@@ -1,1 +1,1 @@
-"""What is known about the lab: verification, the sources' experiments, benches, the gallery."""
+"""Studies of the lab itself: verification, reproduction of the sources' experiments, benchmarks, the gallery."""

@@ -1,7 +1,7 @@
 """cargolab gallery: a poster, a clip and the numbers of every preset, and a page that shows them all.
 
-The page is plain HTML beside its pictures, so it works from the disk. A preset is run in its quick variant, where it
-has one, in the folder `runs`; what was run already is not run again.
+The page is plain HTML beside its pictures, so it opens from the disk. A preset is run in its quick variant, if it has
+one, in the folder `runs`; runs that are done are not repeated.
 """
 
 import json
@@ -26,7 +26,7 @@ from solvers.machine.errors import BadState
 
 WIDTH, HEIGHT = 640, 360  # pixels
 LONGEST = 8.0  # s of a clip
-MOMENT = 0.85  # of the film: what the poster shows, when most has happened; of a ship that is lost the end
+MOMENT = 0.85  # fraction of the film that the poster shows; of a ship that is lost, the end
 UNITS = {"deg": "°", "d": "diameters"}
 MOST_NUMBERS = 4
 CARGOES = "cargoes.png"
@@ -62,7 +62,7 @@ for (const clip of document.querySelectorAll("video")) {
 def make_gallery(wanted: Sequence[str], out: Path | str, quiet: bool = False, beds: int = 1) -> Path:
     """Run the presets whose names begin like one of `wanted`, or all, and write the page; returns its file.
 
-    Each is run with so many `beds`. Raises LabError for a name that begins no preset, and where something cannot be
+    Each is run with this number of `beds`. Raises LabError if no preset begins with a name, and if something cannot be
     written.
     """
     every = names()
@@ -83,7 +83,7 @@ def make_gallery(wanted: Sequence[str], out: Path | str, quiet: bool = False, be
 
 
 def _show(name: str, out: Path, beds: int) -> None:
-    """Run a preset as far as it has not been, and leave its poster, its clip and its numbers."""
+    """Run a preset, or what is left of its run, and write its poster, its clip and its numbers."""
     clip = out / f"{_plain(name)}.mp4"
     if clip.exists():
         return
@@ -124,7 +124,7 @@ def _plain(name: str) -> str:
 
 
 def _made(recording: Recording) -> dict[str, object]:
-    """With which accuracy a recording was made, of how many beds, by which version and when."""
+    """The accuracy, number of beds, version and date of a recording."""
     return {
         "accuracy": recording.preset["run"]["accuracy"],
         "beds": recording.worlds,
@@ -134,7 +134,7 @@ def _made(recording: Recording) -> dict[str, object]:
 
 
 def _telling(summary: Mapping) -> dict[str, object]:
-    """How the run ended, and of its measures those that tell most, as people read them."""
+    """How the run ended, and its most important measures as text."""
     measures = read_values(summary["measures"])
     order = [name for name in TELLING if name in measures] + [name for name in measures if name not in TELLING]
     numbers = {}
@@ -170,7 +170,7 @@ def _origin(found: Mapping) -> str:
 
 
 def _told(path: Path) -> tuple[dict[str, str], str, str]:
-    """The numbers of a preset as `_telling` has left them, how its run ended, how they were made. Raises LabError."""
+    """Read the numbers of a preset that `_telling` gave, how its run ended, how they were made. Raises LabError."""
     try:
         found = json.loads(path.read_text(encoding="utf-8"))
         numbers, status, origin = dict(found["numbers"]), found["status"], _origin(found)
@@ -182,7 +182,7 @@ def _told(path: Path) -> tuple[dict[str, str], str, str]:
 
 
 def _card(name: str, title: str, cheapest: str, out: Path) -> str:
-    """A preset: its clip, or its poster where that is left of it, how to run its cheapest variant, its numbers."""
+    """The card of a preset: its clip, else its poster, the command of its cheapest variant, its numbers."""
     plain = _plain(name)
     if not (out / f"{plain}.json").exists():
         picture, told = "<img alt='not run yet'>", "<p class='why'>not run yet</p>"

@@ -1,1 +1,1 @@
-"""Grids of runs, calibration, and runs on other machines."""
+"""Sweeps (grids of runs), calibration, and runs on other machines."""

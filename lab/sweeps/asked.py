@@ -1,4 +1,4 @@
-"""What a calibration was asked for, and the file that keeps it."""
+"""The request of a calibration, and the file that keeps it."""
 
 import json
 from dataclasses import asdict, dataclass, field
@@ -7,12 +7,12 @@ from pathlib import Path
 from lab.base.errors import LabError
 
 FORMAT = "cargo-shift-lab calibration 1"
-FILE_NAME = "asked.json"  # what says that a folder holds a calibration
+FILE_NAME = "asked.json"  # marks a folder as that of a calibration
 
 
 @dataclass(frozen=True)
 class Asked:
-    """What was asked for, as texts; the overrides as nested tables."""
+    """The request, as texts; the overrides as nested tables."""
 
     preset: str
     target: str
@@ -21,7 +21,7 @@ class Asked:
 
 
 def read_asked(folder: Path) -> Asked:
-    """What was asked for of the calibration in a folder. Raises LabError."""
+    """Read the request of the calibration in a folder. Raises LabError."""
     path = folder / FILE_NAME
     try:
         content = json.loads(path.read_text(encoding="utf-8"))
@@ -37,13 +37,13 @@ def read_asked(folder: Path) -> Asked:
 
 
 def check_folder(asked: Asked, folder: Path) -> None:
-    """Raise LabError where the folder holds another calibration."""
+    """Raise LabError if the folder holds another calibration."""
     if (folder / FILE_NAME).exists() and read_asked(folder) != asked:
         raise LabError(f"{folder} holds another calibration than is asked for: choose another folder with --out.")
 
 
 def write_asked(asked: Asked, folder: Path) -> None:
-    """Keep what was asked in the calibration's folder. Raises LabError."""
+    """Write the request to the calibration's folder. Raises LabError."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
         content = json.dumps({"format": FORMAT, **asdict(asked)}, indent=1)

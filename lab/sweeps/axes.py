@@ -1,4 +1,4 @@
-"""Values to sweep over as people write them: ranges "0.2:1.5:14 Hz", lists "2 mm, 3 mm", single values."""
+"""Parse the values of a sweep: ranges "0.2:1.5:14 Hz", lists "2 mm, 3 mm", single values."""
 
 import re
 import tomllib
@@ -15,10 +15,10 @@ MOST = 10_000  # values of a range
 
 
 def values(key: str, text: str) -> list[object]:
-    """What `text` stands for: the values of a range (`:log` spaces them evenly in the logarithm) or a list, else one.
+    """The values that `text` stands for: a range (`:log`: evenly spaced in the logarithm), a list, or one value.
 
-    A unit after a range or a list holds for all numbers in it that have none. Each value is as a preset has it: a
-    number, a text, a TOML value. Raises LabError on a range that cannot be.
+    A unit after a range or a list applies to all numbers in it without a unit. Each value is as in a preset: a number,
+    a text, a TOML value. Raises LabError on an impossible range.
     """
     text = text.strip()
     found = RANGE.fullmatch(text)
@@ -28,7 +28,7 @@ def values(key: str, text: str) -> list[object]:
 
 
 def plain(text: str) -> object:
-    """One value: TOML, or a text such as 4 mm that needs no quotes."""
+    """One value: TOML, or a text such as 4 mm, which needs no quotes here."""
     listed = _toml(text)
     return listed[0] if len(listed) == 1 else text
 
@@ -63,7 +63,7 @@ def _listed(text: str) -> list[object]:
 
 
 def _with_last_unit(items: list[object]) -> list[object]:
-    """Numbers of a list take the unit of its last quantity, as in 2, 3, 4 mm."""
+    """Give numbers of a list the unit of its last quantity, as in 2, 3, 4 mm."""
     last = QUANTITY.fullmatch(items[-1]) if isinstance(items[-1], str) else None
     if len(items) < 2 or last is None or not last[2]:
         return items
@@ -71,7 +71,7 @@ def _with_last_unit(items: list[object]) -> list[object]:
 
 
 def _toml(text: str) -> list[object]:
-    """The TOML values that `text` lists, none where it is not TOML."""
+    """The TOML values that `text` lists; empty if it is not TOML."""
     try:
         table = tomllib.loads(f"value = [{text}]")
     except (ValueError, RecursionError):

@@ -1,8 +1,8 @@
-"""Calibration: which value of one key of a preset gives a measure its target.
+"""Calibration: find the value of one key of a preset at which a measure has its target value.
 
-The measure is simulated at POINTS values of the key over the whole range, then at as many around where the means of the
-beds meet the target; the same beds at all values. `lab.sweeps.inverse` says how value and interval follow from the
-second round's range. All that can be wrong with what is asked is said before anything is simulated.
+The first round simulates the measure at POINTS values of the key over the whole range, the second at as many around
+the value where the mean over the beds meets the target; all values have the same beds. `lab.sweeps.inverse` derives
+value and interval from the second round's range. Errors in the request are reported before anything is simulated.
 """
 
 import json
@@ -31,14 +31,14 @@ from lab.sweeps.report import Point, numeric
 from lab.sweeps.sweep import SweepResult, ask, run_sweep
 
 POINTS = 5  # values of the key in a round
-CLOSER = 0.25  # half the width of the second round, of the first one's range
-WITHIN = 0.05  # of the range: half the width of an interval that is called narrow
+CLOSER = 0.25  # half the width of the second round's range, over the first one's range
+WITHIN = 0.05  # half the width of an interval that counts as narrow, over the range
 ALIASES = {"repose": ("critical_angle", "heap_angle")}
 
 
 @dataclass(frozen=True)
 class Plan:
-    """What was asked for, understood: the values of the first round, the target (with its standard error), its unit."""
+    """The parsed request: the values of the first round, the target (with its standard error), its unit."""
 
     asked: Asked
     key: str
@@ -76,9 +76,10 @@ def calibrate(
     """Find the value of the key in `vary`, "friction=0.2:0.7", at which a measure is as in `target`, "repose=41.3 deg".
 
     A target may have a standard error, "repose=41.3 ± 0.8 deg". Unless `overrides` say otherwise, at least LEAST_BEDS
-    beds are run. Leaves summary.md, calibration.json, calibration.png and both rounds' sweeps in a folder (default:
-    renders/NAME-calibration); asked again it goes on. cluster: as of `run_sweep`. Raises LabError, one sentence: what
-    cannot be read, run or measured; a target that no value in the range gives; and as `run_sweep`.
+    beds are run. Writes summary.md, calibration.json, calibration.png and both rounds' sweeps to a folder (default:
+    renders/NAME-calibration); called again with the same request, it continues. cluster: as for `run_sweep`. Raises
+    LabError, one sentence, if something cannot be read, run or measured, or if no value in the range gives the target;
+    and as `run_sweep`.
     """
     preset = os.path.abspath(name) if os.path.isfile(name) else str(name)
     asked = Asked(preset, target, vary, json.loads(json.dumps(nested(overrides or {}), default=str)))
@@ -93,13 +94,13 @@ def calibrate(
 
 
 def resume_calibration(folder: Path | str, *, quiet: bool = False) -> Calibration:
-    """Go on with the calibration in a folder as it was asked for. Raises as `calibrate`."""
+    """Continue the calibration in a folder as it was requested. Raises as `calibrate`."""
     asked = read_asked(Path(folder))
     return calibrate(asked.preset, asked.target, asked.vary, asked.overrides, folder, quiet=quiet)
 
 
 def understood(asked: Asked) -> Plan:
-    """The plan, with all checked that can be before a run. Raises LabError."""
+    """Parse and check a request as far as is possible before a run. Raises LabError."""
     said, wanted = _pair("--target", asked.target, 'repose="41.3 deg"')
     given, span = _pair("--vary", asked.vary, "friction=0.2:0.7")
     key = dotted_key(Given, given)
@@ -117,7 +118,7 @@ def understood(asked: Asked) -> Plan:
 
 
 def _target(text: str, unit: str) -> tuple[float, float]:
-    """Value and standard error in a unit of "41.3 deg" or "41.3 ± 0.8 deg". Raises LabError."""
+    """Parse "41.3 deg" or "41.3 ± 0.8 deg" into value and standard error in `unit`. Raises LabError."""
     value, _, error = (part.strip() for part in text.replace("+-", "±").partition("±"))
     if not error:
         return in_unit(value, unit, "--target"), 0.0
@@ -138,7 +139,7 @@ def _pair(option: str, text: str, example: str) -> tuple[str, str]:
 
 
 def _listed(key: str, span: str) -> list:
-    """POINTS values of a range "0.2:0.7" or "1 mm:2 mm" in rising order, whole ones of a key that takes such."""
+    """POINTS values of a range "0.2:0.7" or "1 mm:2 mm" in ascending order, whole numbers if the key takes these."""
     taken = taken_by(Given, key)
     if taken and taken.kind not in (float, int):
         raise LabError(f"{key}: takes no single number, so no range of it can be varied.")
@@ -152,7 +153,7 @@ def _listed(key: str, span: str) -> list:
 
 
 def _with_beds(asked: Asked) -> dict:
-    """The overrides, with as many beds as an interval needs where nothing is said of them."""
+    """The overrides, with as many beds as an interval needs unless they set the number of beds."""
     run = asked.overrides.get("run")
     if isinstance(run, Mapping) and "repeats" in run:
         return asked.overrides
@@ -176,7 +177,7 @@ def _carried_out(plan: Plan, folder: Path, quiet: bool, cluster: str | None) -> 
 
 
 def _tried(plan: Plan, result: SweepResult, number: int) -> list[Tried]:
-    """What came of each value of a round."""
+    """The results of each value of a round."""
     column = next(name for name in result.rows[0] if name.partition(" (")[0] == plan.key)
     found = []
     for row, where in zip(result.rows, result.points, strict=True):
@@ -190,7 +191,7 @@ def _tried(plan: Plan, result: SweepResult, number: int) -> list[Tried]:
 
 
 def _empty(plan: Plan, folder: Path, tried: list[Tried]) -> Calibration:
-    """A calibration of which nothing but what was tried is known."""
+    """A calibration with the values tried, and no result yet."""
     return Calibration(
         folder=folder,
         preset=plan.asked.preset,
@@ -211,7 +212,7 @@ def _beds(plan: Plan) -> int:
 
 
 def _met(made: Calibration, span: tuple[float, float]) -> float:
-    """Where the means of a round meet the target. Raises LabError, with a report, where they do not."""
+    """The value at which the means of a round meet the target; without one, writes a report and raises LabError."""
     x, means = made.means()
     response = fitted(*made.measures())
     if len(x) < 2 or response is None:
@@ -240,8 +241,8 @@ def _around(plan: Plan, near: float) -> list:
 
 
 def _solved(made: Calibration) -> Calibration:
-    """The calibration with its value and interval. Raises LabError, with a report, where there is none."""
-    for near in (made, replace(made, window=None)):  # around the value; else as far as all values go
+    """The calibration with its value and interval. If there is none, writes a report and raises LabError."""
+    for near in (made, replace(made, window=None)):  # around the value, else over all values
         x, measures = near.measures()
         response = fitted(x, measures)
         roots = crossings(response, made.target) if response else []
@@ -275,6 +276,6 @@ def _with_solution(made: Calibration, response: Response, root: float, beside: l
 
 
 def _give_up(made: Calibration, sentence: str) -> None:
-    """Leave the report of what was tried, and raise LabError."""
+    """Write the report of what was tried, and raise LabError."""
     write_report(replace(made, refused=sentence))
     raise LabError(f"{sentence}; see {made.folder / 'summary.md'}.")

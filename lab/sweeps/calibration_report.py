@@ -1,4 +1,4 @@
-"""What a calibration found: summary.md with its figure for people, calibration.json for programs, a line for both."""
+"""The results of a calibration: summary.md with a figure for people, calibration.json for programs."""
 
 import json
 from collections.abc import Iterator
@@ -18,7 +18,7 @@ from lab.report.numbers import interval, plus_minus, with_error
 from lab.report.plots import BLUE, GREY, STYLE, VERMILION
 from lab.sweeps.inverse import LEAST_BEDS, Response, half_of
 
-HALF = 0.5  # of the beds: a value of the key at which fewer have the measure is left out
+HALF = 0.5  # a value of the key is left out if a smaller fraction of its beds has the measure
 METHOD = """\
 The same beds are run at every value of the key. To each bed's numbers a parabola is fitted; their mean is the \
 response, and the value is where it meets the target. The interval holds every value at which Student's test does not \
@@ -29,7 +29,7 @@ the key ends."""
 
 @dataclass(frozen=True)
 class Tried:
-    """One value of the key that was run: the measure in each bed, None where not found; `note` says what went wrong."""
+    """One value of the key that was run: the measure in each bed, None if not found; `note` says what went wrong."""
 
     x: float
     round: str
@@ -38,7 +38,7 @@ class Tried:
 
     @property
     def found(self) -> np.ndarray:
-        """The measures that there are."""
+        """The measures that were found."""
         return np.array([bed for bed in self.beds if bed is not None], dtype=float)
 
 
@@ -46,10 +46,10 @@ class Tried:
 class Calibration:
     """The value of `key` that gives `measure` its `target`, with its standard error and 95 % interval.
 
-    std: the scatter over beds of the value that each would ask for; `beds`: how many told; an end of the interval is
-    infinite where it is beyond the range. None: not known; `refused` says why where there is no value at all.
-    `window`: the range of values that the curve is fitted in (None: all); `enough`: so many beds would give an interval
-    of half the width `wanted`. Units as in the texts.
+    std: standard deviation over beds of the value that each bed alone would give; `beds`: the number of beds used; an
+    end of the interval is infinite if it is beyond the range. None: not known; `refused` says why there is no value.
+    `window`: the range of values in which the curve is fitted (None: all); `enough`: the number of beds that would give
+    an interval of half width `wanted`. Units as in the texts.
     """
 
     folder: Path = field(repr=False)
@@ -78,14 +78,14 @@ class Calibration:
 
     @property
     def usable(self) -> list[Tried]:
-        """The values at which at least half of the beds have the measure, and that lie in the window."""
+        """The values in the window at which at least half of the beds have the measure."""
         low, high = self.window or (-np.inf, np.inf)
         slack = 1e-4 * (self.range[1] - self.range[0])
         least = max(1.0, HALF * self.asked_beds)
         return [p for p in self.tried if len(p.found) >= least and low - slack <= p.x <= high + slack]
 
     def measures(self) -> tuple[np.ndarray, np.ndarray]:
-        """The usable values (N,) and the measure in every bed (N, B), NaN where there is none."""
+        """The usable values (N,) and the measure in every bed (N, B), NaN if not found."""
         rows = [[np.nan if bed is None else bed for bed in point.beds] for point in self.usable]
         values = np.array([point.x for point in self.usable])
         return values, np.array(rows, dtype=float).reshape(len(rows), self.asked_beds)
@@ -96,11 +96,11 @@ class Calibration:
 
     @property
     def lost(self) -> int:
-        """Runs, a bed at a value each, that have no measure."""
+        """Number of beds, counted at each value, in which the measure was not found."""
         return sum(self.asked_beds - len(point.found) for point in self.tried)
 
     def nowhere(self) -> str:
-        """That no value in the range gives the target."""
+        """The sentence that no value in the range gives the target."""
         x, means = self.means()
         beds = f"the means of {self.asked_beds} beds are" if self.asked_beds > 1 else "one bed's are"
         return (
@@ -110,7 +110,7 @@ class Calibration:
         )
 
     def _nearest(self) -> str:
-        """That the nearest mean may be the target after all, if its beds leave that open (Student 1908)."""
+        """The sentence that the nearest mean may equal the target, if its interval contains it (Student 1908)."""
         near = min(self.usable, key=lambda point: abs(point.found.mean() - self.target))
         n = len(near.found)
         if n < 2 or abs(near.found.mean() - self.target) > half_of(n, near.found.std(ddof=1)):
@@ -121,7 +121,7 @@ class Calibration:
         )
 
     def text(self) -> str:
-        """A line for people, and one for each warning."""
+        """The result in one line, and a line for each warning."""
         tried = f"{self.beds} beds at {len(self.usable)} values" if self.beds > 1 else "one bed"
         lines = [f"{self._value()} gives {_words(self.measure)} {self._target()}; {tried}"]
         lines += [f"  warning: {warning}" for warning in self.warnings()]
@@ -129,7 +129,7 @@ class Calibration:
 
     @property
     def summary_text(self) -> str:
-        """As of runs and sweeps."""
+        """The text to print, as runs and sweeps have it."""
         return self.text()
 
     def _target(self) -> str:
@@ -144,7 +144,7 @@ class Calibration:
         return f"{self.key} = {known}, {interval(*self.interval, self.unit)}"
 
     def warnings(self) -> list[str]:
-        """Sentences that a reader must know."""
+        """The warnings that a reader must know, one sentence each."""
         said = []
         if self.value is not None and self.worthless:
             said.append(self._worthless())

@@ -1,13 +1,13 @@
-"""Launches on other machines: the workers of a Dask scheduler run them, and the files of their runs come back.
+"""Run launches on the workers of a Dask scheduler, and fetch the files of their runs.
 
-A launch is one task. A worker runs it in a folder of its own, with as many threads and on the kind of device that this
-machine would have taken, so that its recordings have the bits that they would have here. What a launch has recorded
-goes as bytes, one run at a time: the worker holds all runs of its last launches until they are fetched, this machine
-one. Dask does a launch again whose worker is lost.
+A launch is one task. A worker runs it in a folder of its own, with the number of threads and the kind of device that
+this machine would have used, so that its recordings have the same bits as here. Recordings are sent as bytes, one run
+at a time: a worker holds all runs of its last launches in memory until they are fetched, this machine only one. If a
+worker is lost, Dask repeats its launch.
 
-Dask sends Python's pickles, which run code as they are read: whoever reaches a scheduler can run code on its workers
-and on the machines that ask it. So ask only schedulers of your own; those that listen beyond a machine need TLS
-(distributed.dask.org, "TLS/SSL").
+Dask sends Python pickles, which run code when they are read: whoever can reach a scheduler can run code on its workers
+and on its clients. Use only schedulers of your own; those that other machines can reach need TLS (distributed.dask.org,
+"TLS/SSL").
 """
 
 import asyncio
@@ -40,24 +40,24 @@ from solvers.machine.runtime import available_cores, choose_arch
 if TYPE_CHECKING:
     from distributed import Client
 
-PATIENCE = 10.0  # s until a scheduler that does not answer is not there
-LAST = "summary.json"  # of a run's files: with it the run counts as done
+PATIENCE = 10.0  # s to wait for an answer from the scheduler
+LAST = "summary.json"  # the last file of a run to arrive: with it the run counts as done
 PLAIN = re.compile(r"\w[\w.-]*")  # the name of a file of a run
-ALIKE = ("cargo-shift-lab", "taichi")  # a worker needs the very versions of this machine: the bits follow from them
+ALIKE = ("cargo-shift-lab", "taichi")  # packages of which a worker needs the same version, for the same bits
 
 Files = dict[str, bytes]
 
 
 @dataclass(frozen=True)
 class Errand:
-    """A launch for a worker: the presets of its runs by the folders that these are to have here."""
+    """A launch for a worker: the presets of its runs by their folders on this machine."""
 
     runs: Mapping[Path, LoadedPreset]
 
 
 @dataclass(frozen=True)
 class Terms:
-    """How a worker is to run a launch: what this machine would have taken, so that the bits are the same."""
+    """The settings with which a worker runs a launch: those of this machine, for the same bits."""
 
     threads: int
     arch: str
@@ -66,10 +66,10 @@ class Terms:
 
 
 def fetch(errands: Sequence[Errand], address: str, progress: Progress) -> None:
-    """Have the workers of the scheduler at `address` run all launches, and put each run's files into its folder.
+    """Let the workers of the scheduler at `address` run all launches, and put each run's files into its folder.
 
-    Runs that came back stay, whatever happens to the others; launches that are still under way when this ends are
-    dropped. Raises LabError, Unavailable where a worker lacks what is to compute, and KeyboardInterrupt.
+    Runs that have arrived stay, whatever happens to the others; launches that are still running when this ends are
+    cancelled. Raises LabError, Unavailable if a worker lacks the device, and KeyboardInterrupt.
     """
     if not errands:
         return
@@ -91,14 +91,14 @@ def _warn_of(address: str, progress: Progress) -> None:
 
 
 def is_open(address: str) -> bool:
-    """Whether others than this machine may reach a scheduler at such an address, and its messages are not secured."""
+    """Whether other machines can reach a scheduler at this address without TLS."""
     protocol, _, rest = address.rpartition("://")
     host = rest.rpartition(":")[0].strip("[]")
     if protocol in ("tls", "wss", "inproc") or host == "localhost":
         return False
     try:
         return not ip_address(host).is_loopback
-    except ValueError:  # a name of the network
+    except ValueError:  # a host name
         return True
 
 
@@ -111,7 +111,7 @@ def _fetch(client: "Client", errands: Sequence[Errand], progress: Progress) -> N
         texts = [(one.name, one.given_text, one.resolved.model_dump_json()) for one in presets]
         work = pickle.dumps(partial(run_launch, texts, _terms(presets[0])))
         done = client.submit(_unpacked({name: versions().get(name, "") for name in ALIKE}), work, pure=False)
-        # One task more a run, before any further launch: runs go over the wire and leave the worker one by one.
+        # One more task per run, before any further launch, so that runs are sent and freed on the worker one by one.
         folders |= {client.submit(getitem, done, k, pure=False, priority=1): at for k, at in enumerate(errand.runs)}
     del done
     total = len(folders)
@@ -132,7 +132,7 @@ def _terms(preset: LoadedPreset) -> Terms:
 
 @cache
 def sources() -> str:
-    """A hash of the text of lab and solvers: copies of one version that someone has worked on differ in it."""
+    """A hash of the source of lab and solvers: it tells edited copies of one version apart."""
     digest = hashlib.blake2b(digest_size=16)
     for package in ("lab", "solvers"):
         home = Path(str(files(package)))
@@ -142,9 +142,9 @@ def sources() -> str:
 
 
 def _unpacked(wanted: Mapping[str, str]) -> Callable[[bytes], list[Files]]:
-    """A function that does pickled work; it travels by value, for what cannot be read kills workers without a word.
+    """A function that unpickles and runs work. It is pickled by value: a failed import would kill a worker silently.
 
-    wanted: by package the version that a worker must have, which is looked at before the work is read.
+    wanted: the versions that a worker must have, by package; they are checked before the work is unpickled.
     """
 
     def task(work: bytes) -> list[Files]:
@@ -167,9 +167,9 @@ def _unpacked(wanted: Mapping[str, str]) -> Callable[[bytes], list[Files]]:
 
 
 def run_launch(texts: Sequence[tuple[str, str, str]], terms: Terms) -> list[Files]:
-    """Run presets side by side, in a task of a worker; returns the files of each run, the summary last.
+    """Run presets side by side in a task of a worker; returns the files of each run, the summary last.
 
-    texts: of each preset its name, its TOML and, as JSON, what it resolves to. Raises LabError where the worker has
+    texts: for each preset its name, its TOML text and its resolved values as JSON. Raises LabError if the worker has
     several threads, and as `launch` does.
     """
     from distributed import get_worker
@@ -202,7 +202,7 @@ def run_launch(texts: Sequence[tuple[str, str, str]], terms: Terms) -> list[File
 
 @contextmanager
 def _in_a_folder(place: str | Path) -> Iterator[Path]:
-    """A folder of its own for a launch on a worker; what cannot be written there is said to be there."""
+    """A temporary folder for a launch on a worker; write errors name the worker as their place."""
     try:
         with TemporaryDirectory(prefix="cargolab-", dir=place) as home:
             yield Path(home)
@@ -217,7 +217,7 @@ def _in_a_folder(place: str | Path) -> Iterator[Path]:
 
 
 class _Dutiful(Progress):
-    """Silent progress in a task, which ends the task when nobody waits for it any more."""
+    """Silent progress in a task; it ends the task once that has been cancelled."""
 
     def __init__(self) -> None:
         from distributed import get_worker
@@ -226,7 +226,7 @@ class _Dutiful(Progress):
         self._tasks, self._own = get_worker().state.tasks, get_worker().get_current_task()
 
     def reach(self, done: float) -> None:
-        """Go on, or raise Reschedule, which Dask takes for an end of a task that was dropped."""
+        """Go on, or raise Reschedule if the task has been cancelled."""
         from distributed import Reschedule
 
         super().reach(done)
@@ -236,7 +236,7 @@ class _Dutiful(Progress):
 
 
 def _on_terms(run: Run, terms: Terms) -> Run:
-    """The run with its threads and device settled; its recording, made before, says what was asked for."""
+    """The run with the threads and device of `terms`; its recording, made before, has the requested ones."""
     resolved = run.loaded.resolved
     settled = replace(resolved.run, threads=terms.threads, arch=terms.arch)
     return replace(run, loaded=replace(run.loaded, resolved=resolved.model_copy(update={"run": settled})))
@@ -247,7 +247,7 @@ def _taken(folder: Path) -> Files:
 
 
 def _put(sent: Files, folder: Path) -> None:
-    """Write files so that each is whole or not there, in their order."""
+    """Write files in order, each atomically."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
         for name, content in sent.items():
@@ -262,16 +262,16 @@ def _put(sent: Files, folder: Path) -> None:
 
 @contextmanager
 def _connected(address: str) -> Iterator["Client"]:
-    """A client of the scheduler; what Dask says of the cluster becomes one sentence."""
+    """A client of the scheduler; Dask's errors become one sentence."""
     try:
         from distributed import Client, KilledWorker, Security
         from distributed.comm import connect
     except ImportError as error:
         raise LabError("--cluster: the package distributed is missing here: pip install distributed.") from error
-    logging.getLogger("distributed").setLevel(logging.CRITICAL)  # it tells of every lost connection at length
+    logging.getLogger("distributed").setLevel(logging.CRITICAL)  # it logs every lost connection at length
 
     async def knock() -> None:
-        """Try the address first: a client that finds nobody waits once more at its end, and complains."""
+        """Try the address first: a client without a scheduler waits once more when it closes, and logs errors."""
         found = await connect(address, timeout=PATIENCE, **Security().get_connection_args("client"))
         await found.close()
 

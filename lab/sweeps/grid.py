@@ -1,4 +1,4 @@
-"""What a sweep asks for: a preset at every point of a grid of values of its keys, and the file that keeps it."""
+"""The request of a sweep, a preset at every point of a grid of values of its keys, and the file that keeps it."""
 
 import json
 import math
@@ -22,7 +22,7 @@ MOST_POINTS = 100_000
 
 @dataclass(frozen=True)
 class Sweep:
-    """What was asked: the preset's name, the values of each swept key, the preset of each point of their grid.
+    """The request: the preset's name, the values of each swept key, the preset at each point of the grid.
 
     The last key changes fastest.
     """
@@ -37,17 +37,17 @@ class Sweep:
         return [dict(zip(self.axes, chosen, strict=True)) for chosen in product(*self.axes.values())]
 
     def worth(self, number: int) -> float:
-        """What a point costs, up to a factor: seconds of model time times grains."""
+        """Relative cost of a point: model time (s) times number of grains."""
         preset = self.points[number].resolved
         return preset.run.duration * preset.run.repeats * grain_count(preset)
 
     def same_as(self, other: "Sweep") -> bool:
-        """Whether the other asks for the same points."""
+        """Whether the other sweep has the same points."""
         asked = [(sweep.name, sweep.axes, [point.resolved for point in sweep.points]) for sweep in (self, other)]
         return asked[0] == asked[1]
 
     def write(self, folder: Path) -> None:
-        """Keep what was asked in the sweep's folder. Raises LabError."""
+        """Write the request to the sweep's folder. Raises LabError."""
         points = [
             {"given": point.given_text, "resolved": json.loads(point.resolved.model_dump_json())}
             for point in self.points
@@ -66,7 +66,7 @@ class Sweep:
 def ask(name: str | Path, axes: Mapping[str, str | Sequence], overrides: Mapping | None = None) -> Sweep:
     """The sweep of a preset over `axes`: for each key a text (see `lab.sweeps.axes`) or a sequence of values.
 
-    Raises LabError where a point is no valid preset.
+    Raises LabError if a point is not a valid preset.
     """
     listed = {key: values(key, said) if isinstance(said, str) else _plain(said) for key, said in axes.items()}
     fixed = {key: found[0] for key, found in listed.items() if len(found) == 1}
@@ -88,7 +88,7 @@ def ask(name: str | Path, axes: Mapping[str, str | Sequence], overrides: Mapping
 
 
 def _plain(numbers: Sequence) -> list:
-    """The values without numpy's types, which no file takes."""
+    """The values as Python numbers; numpy's types cannot be written to the file."""
     return [value.item() if isinstance(value, np.generic) else value for value in numbers]
 
 

@@ -1,15 +1,15 @@
-"""Inverse regression: at which value of a key the mean of a measure over beds is as wanted, and how well that is known.
+"""Inverse regression: the value of a key at which the mean of a measure over beds meets a target, with its interval.
 
-Every bed is one draw, its measures at all values of the key belonging together: the same seeds are run at each (common
-random numbers; Law and Kelton 2000, section 11.2). To each bed's measures a parabola is fitted by least squares, and
-the mean of the beds' parabolas is the response (a response surface in one dimension, Box and Wilson 1951). The value
-looked for is where it meets the target. Its interval is found by inverting Student's test along the curve: it holds
-every value at which the beds' deviations from the target, y_b(x) − target, have a mean that differs from zero by no
-more than t times its standard error (Fieller 1954; for calibration curves Seber 1977, section 7.2). So the beds are
-drawn upon once, a response as flat as its scatter makes the interval as wide as it is, and nothing is fitted twice.
+The same seeds are run at every value of the key, so the measures of a bed at all values belong together and each bed is
+one draw (common random numbers; Law and Kelton 2000, section 11.2). A parabola is fitted to each bed's measures by
+least squares; the mean of the beds' parabolas is the response (a response surface in one dimension, Box and Wilson
+1951). The value sought is where the response meets the target. Its interval comes from inverting Student's test along
+the curve: it contains every value at which the beds' deviations from the target, y_b(x) − target, have a mean that
+differs from zero by no more than t times its standard error (Fieller 1954; for calibration curves Seber 1977, section
+7.2). Where the response is flat compared with its scatter, the interval is correspondingly wide.
 
-The standard error is that of first order, that of the mean over the slope; the scatter of the key over beds, that of
-the beds over the slope, tells how many beds an interval of a given width asks for.
+The standard error is that of first order: the standard error of the mean over the slope. The scatter of the key over
+beds is the scatter of the beds over the slope; it gives the number of beds for an interval of a given width.
 """
 
 from dataclasses import dataclass
@@ -20,10 +20,10 @@ from scipy import stats
 
 from lab.measures.value import LEVEL, half_width
 
-DEGREE = 2  # of the polynomial; 1 where there are no more than LEAST_FOR_PARABOLA - 1 values
+DEGREE = 2  # of the polynomial; 1 if there are fewer than LEAST_FOR_PARABOLA values
 LEAST_FOR_PARABOLA = 4
-LEAST_BEDS = 8  # for an interval of any worth: t is 2.4 there, and 12.7 of two
-GRID = 4001  # places of the curve that are looked at
+LEAST_BEDS = 8  # for a useful interval: t is 2.4 with eight beds, 12.7 with two
+GRID = 4001  # points at which the curve is evaluated
 MOST_BEDS = 100_000
 
 
@@ -49,7 +49,7 @@ class Response:
         return self.coefficients @ np.vander(u, self.coefficients.shape[1]).T
 
     def mean(self, x: np.ndarray) -> np.ndarray:
-        """Over the beds (k,)."""
+        """Mean of the beds' curves (k,) at values (k,) of the key."""
         return self.at(x).mean(axis=0)
 
     def error(self, x: np.ndarray) -> np.ndarray:
@@ -59,7 +59,7 @@ class Response:
         return self.at(x).std(axis=0, ddof=1) / sqrt(self.beds)
 
     def slope(self, x: float) -> float:
-        """Of the mean at a value of the key."""
+        """Slope of the mean curve at a value of the key."""
         low, high = self.span
         step = 1e-4 * (high - low)
         return float(np.diff(self.mean(np.array([x - step, x + step])))[0] / (2.0 * step))
@@ -67,9 +67,9 @@ class Response:
 
 @dataclass(frozen=True)
 class Solution:
-    """The value of the key, its standard error, the scatter (std) over beds of what each would ask for, its interval.
+    """The value of the key, its standard error, the standard deviation over beds of each bed's own value, its interval.
 
-    An end of the interval is infinite where it is not within the range that was run. None: of a single bed.
+    An end of the interval is infinite if it is not within the range that was run. None: only a single bed.
     """
 
     value: float
@@ -80,9 +80,9 @@ class Solution:
 
 
 def fitted(x: np.ndarray, measures: np.ndarray) -> Response | None:
-    """The response of measures (N, B), NaN where there is none, at values (N,) of a key; None of too few numbers.
+    """Fit the response to measures (N, B), NaN if missing, at values (N,) of a key; None if there are too few.
 
-    Beds that have fewer values than a polynomial has coefficients are left out.
+    Beds with fewer measures than the polynomial has coefficients are left out.
     """
     degree = DEGREE if len(x) >= LEAST_FOR_PARABOLA else 1
     found = np.isfinite(measures)
@@ -96,7 +96,7 @@ def fitted(x: np.ndarray, measures: np.ndarray) -> Response | None:
 
 
 def crossings(response: Response, target: float) -> list[float]:
-    """Where in its span the mean response meets the target, in rising order."""
+    """The values in the span at which the mean response meets the target, in ascending order."""
     x = np.linspace(*response.span, GRID)
     above = response.mean(x) - target
     exact = x[above == 0.0].tolist()
@@ -106,7 +106,7 @@ def crossings(response: Response, target: float) -> list[float]:
 
 
 def solved(response: Response, target: float, root: float, target_error: float = 0.0) -> Solution:
-    """What is known of the root by the beds, and by the target's own standard error."""
+    """The root with its errors, from the scatter of the beds and the target's own standard error."""
     n = response.beds
     if n < 2:
         return Solution(root, None, None, None, n)
@@ -117,9 +117,9 @@ def solved(response: Response, target: float, root: float, target_error: float =
 
 
 def _interval(response: Response, target: float, root: float, target_error: float) -> tuple[float, float]:
-    """All about the root that Student's test of the difference from the target does not refuse.
+    """The interval around the root in which Student's test does not reject that the mean equals the target.
 
-    Degrees of freedom by Welch (1947) and Satterthwaite (1946) where the target has an error that no bed tells of.
+    Degrees of freedom by Welch (1947) and Satterthwaite (1946) if the target has a standard error of its own.
     """
     x = np.linspace(*response.span, GRID)
     square = response.error(x) ** 2
@@ -137,7 +137,7 @@ def _interval(response: Response, target: float, root: float, target_error: floa
 
 
 def beds_for(half: float, std: float) -> int | None:
-    """The fewest beds whose interval, at this scatter over beds, is no wider to either side; None: more than MOST_BEDS.
+    """The fewest beds n with an interval of half width `half` or less, at this scatter; None: more than MOST_BEDS.
 
     t(n − 1) std/√n ≤ half the width (Student 1908).
     """
@@ -151,15 +151,15 @@ def beds_for(half: float, std: float) -> int | None:
 
 
 def half_of(beds: int, std: float) -> float:
-    """Half the width of the interval of so many beds of this scatter."""
+    """Half the width of the interval with this number and scatter of beds."""
     return half_width(std / sqrt(beds), beds - 1)
 
 
 def misfit(response: Response, x: np.ndarray, measures: np.ndarray) -> list[tuple[float, float]]:
-    """Values at which the measures lie beside their fitted curves, with by how much on average.
+    """Values at which the measures deviate significantly from the fitted curves, with the mean deviation.
 
-    Student's test of the beds' residuals at each value, at a level shared among all of them (Bonferroni; Dunn 1961).
-    Beds that lack a value anywhere are left out.
+    Student's test of the beds' residuals at each value, at a level divided among all values (Bonferroni; Dunn 1961).
+    Beds with a missing measure are left out.
     """
     whole = np.isfinite(measures).all(axis=0)
     if whole.sum() < 3:

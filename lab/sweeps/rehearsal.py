@@ -1,7 +1,7 @@
 """Which measures a preset's runs have, found out before any is run.
 
-The measures are asked of a rehearsal: a recording of the preset's own times and motions, in which the grains do not
-move. What they say of it is of no worth; that they speak of it, and in which unit, is what a run will have.
+All measures are applied to a rehearsal: a recording with the preset's own times and motions, in which the grains do not
+move. Their values mean nothing; which of them exist, and in which unit, is the same as in a run.
 """
 
 import json
@@ -36,7 +36,7 @@ def rehearsed(loaded: LoadedPreset) -> dict[str, Value]:
     with TemporaryDirectory(prefix="cargolab-") as folder:
         _record(Path(folder), loaded, preset, scene, position)
         with open_recording(folder) as recording, warnings.catch_warnings(), np.errstate(all="ignore"):
-            warnings.simplefilter("ignore")  # such as of means of nothing
+            warnings.simplefilter("ignore")  # such as for the mean of an empty array
             return measure_all(recording)
 
 
@@ -71,7 +71,7 @@ def _record(folder: Path, loaded: LoadedPreset, preset: Resolved, scene: Scene, 
 
 
 def _poses(preset: Resolved, scene: Scene, position: np.ndarray, times: np.ndarray) -> Iterator[np.ndarray]:
-    """Pose (1, 3) of the tank at each time (s); a ship's, which nobody knows yet, is a slow roll."""
+    """Pose (1, 3) of the tank at each time (s); a ship, whose motion is not known yet, rolls slowly."""
     if scene.vessels or not scene.motions[0]:
         yield from (np.array([[0.0, 0.0, ROLL * np.sin(time)]]) * bool(scene.vessels) for time in times)
         return

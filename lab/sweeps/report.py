@@ -1,4 +1,4 @@
-"""What a sweep found: a table for programs, figures, a film of the points side by side, and a page for people."""
+"""The results of a sweep: a table for programs, figures, a film of the points side by side, and a page for people."""
 
 import csv
 import json
@@ -20,8 +20,8 @@ from lab.report.numbers import BARS, RULE, number
 from lab.report.plots import STYLE
 from lab.report.summary import headlines
 
-FIGURES = 3  # of the measures that tell most
-FAMILIES = 6  # curves in one figure; more become a map
+FIGURES = 3  # number of measures with a figure
+FAMILIES = 6  # curves in one figure; more are drawn as a map
 QUANTITY = re.compile(r"([-+.0-9eE]+)\s*(\D.*)?")
 
 Row = dict[str, object]
@@ -68,7 +68,7 @@ class Point:
         path = folder / "summary.json"
         try:
             data = json.loads(path.read_text(encoding="utf-8"))
-        except (OSError, ValueError):  # none yet, or one that a killed run has half written
+        except (OSError, ValueError):  # missing, or half written by a killed run
             return
         except RecursionError as error:
             raise _damaged(path) from error
@@ -82,7 +82,7 @@ class Point:
 
     @property
     def caption(self) -> str:
-        """The setting in a few words; of a dotted key the last part."""
+        """The setting in a few words; a dotted key is shortened to its last part."""
         return one_line(", ".join(f"{key.split('.')[-1]} {value}" for key, value in self.setting.items()))
 
 
@@ -91,7 +91,7 @@ def _damaged(path: Path) -> LabError:
 
 
 def numeric(values: Sequence) -> tuple[np.ndarray, str] | None:
-    """Values of a key as numbers with their one unit ("" for none), or None where they are no such."""
+    """Values of a key as numbers with their common unit ("" for none), or None if they are not of this kind."""
     numbers, units = [], set()
     for value in values:
         found = QUANTITY.fullmatch(value) if isinstance(value, str) else None
@@ -106,7 +106,7 @@ def numeric(values: Sequence) -> tuple[np.ndarray, str] | None:
 
 
 def _table(axes: Mapping[str, Sequence], points: Sequence[Point], folder: Path) -> list[Row]:
-    """A row a point: the swept keys in their units, status, and of each measure mean, std, n, own uncertainty."""
+    """One row per point: the swept keys in their units, status, and mean, std, n, own uncertainty of each measure."""
     scales = {key: numeric(values) for key, values in axes.items()}
     measures = {key: value for point in points for key, value in point.measures.items()}
     rows = []
@@ -159,9 +159,9 @@ def _figures(
 def _draw(
     figure: Figure, axes: Mapping[str, Sequence], means: np.ndarray, stds: np.ndarray, label: str, bars: str
 ) -> None:
-    """A measure over the first key: a curve a setting of the others, or a map where these are one key with many.
+    """Draw a measure over the first key: one curve per setting of the other keys, or a map for one key of many values.
 
-    `bars` says what the bars of a curve are, "" where it has none.
+    `bars` says what the bars of a curve are, "" if it has none.
     """
     (key, values), *others = axes.items()
     shape = tuple(map(len, axes.values()))
@@ -197,7 +197,7 @@ def _draw(
 
 
 def _bars(points: Sequence[Point], key: str) -> str:
-    """What the bars of a measure's figure are, with the numbers of beds; "" where no point has two."""
+    """Label of the error bars of a measure's figure, with the numbers of beds; "" if no point has two."""
     counts = {point.measures[key].n for point in points if key in point.measures and point.measures[key].n > 1}
     if not counts:
         return ""
@@ -221,7 +221,7 @@ def _even_in_logarithm(numbers: np.ndarray) -> bool:
 
 
 def _film(name: str, points: Sequence[Point], folder: Path, progress: Progress) -> Path | None:
-    """The points side by side, evenly chosen where there are too many; None where nothing was filmed."""
+    """Film the points side by side, an even selection if there are too many; None if nothing was filmed."""
     filmed = [point for point in points if _has_frames(point.folder)]
     if not filmed:
         return None

@@ -1,4 +1,4 @@
-"""Going on with whatever was cut short in a folder: a run, a sweep or a calibration."""
+"""Continue whatever was cut short in a folder: a run, a sweep or a calibration."""
 
 from pathlib import Path
 
@@ -11,7 +11,7 @@ from lab.sweeps.sweep import SweepResult, resume_sweep
 
 
 def resume_any(folder: Path | str, *, video: bool = True, quiet: bool = False) -> Result | SweepResult | Calibration:
-    """Finish the run, the sweep or the calibration that was cut short in a folder; returns what that returns.
+    """Finish the run, the sweep or the calibration that was cut short in a folder; returns its result.
 
     Raises as `resume_run`, `resume_sweep` and `calibrate`.
     """

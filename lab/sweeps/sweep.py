@@ -1,7 +1,7 @@
 """A sweep: one preset run over a grid of values of its keys, every point an ordinary run in a folder of its own.
 
-Points whose scenes can share a launch run side by side; what is recorded of a point does not depend on that. A sweep
-that was cut short goes on where it stood when it is asked for again.
+Points whose scenes can share a launch run side by side; their recordings do not depend on that. A sweep that was cut
+short continues when it is requested again.
 """
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -23,13 +23,13 @@ from lab.sweeps.grid import FILE_NAME, Sweep, ask, read_sweep
 from lab.sweeps.report import write_report
 from solvers.machine.runtime import available_cores, choose_arch
 
-# A launch holds so many worlds a core that none idles long while the last ones end, and grains and files in bounds.
+# Limits of a launch: enough worlds per core that none idles long at the end, and bounded numbers of grains and files.
 WORLDS_A_CORE, MOST_GRAINS, MOST_RUNS = 8, 1_000_000, 100
 
 
 @dataclass
 class SweepResult:
-    """What a sweep gives: its folder, a row of numbers for each point, and the folders of the points' runs."""
+    """The result of a sweep: its folder, a row of numbers for each point, and the folders of the points' runs."""
 
     folder: Path
     rows: list[dict[str, object]] = field(repr=False)
@@ -53,9 +53,9 @@ def run_sweep(
 ) -> SweepResult:
     """Run a preset at every point of a grid (see `ask`) and sum up in a folder (default: renders/NAME-sweep).
 
-    video: film the points side by side at the end; cluster: the address of a scheduler whose workers are to run the
-    points (see `lab.sweeps.cluster`). A folder that holds the same sweep is gone on with. Raises LabError, one
-    sentence, and KeyboardInterrupt; points that are done stay.
+    video: film the points side by side at the end; cluster: the address of a scheduler whose workers run the points
+    (see `lab.sweeps.cluster`). If the folder holds the same sweep, it is continued. Raises LabError, one sentence, and
+    KeyboardInterrupt; points that are done stay.
     """
     sweep = ask(name, axes, overrides)
     folder = Path(out) if out is not None else RENDERS / f"{sweep.name}-sweep"
@@ -66,7 +66,7 @@ def run_sweep(
 def errands(
     name: str | Path, axes: Mapping[str, str | Sequence], overrides: Mapping | None, folder: Path
 ) -> list[Errand]:
-    """What of a sweep, asked for as of `run_sweep`, is left for a cluster to run. Begins the sweep. Raises LabError."""
+    """Begin a sweep (arguments as of `run_sweep`) and return what is left for a cluster to run. Raises LabError."""
     sweep = ask(name, axes, overrides)
     _check_folder(sweep, folder)
     plan = list(_plan(sweep))
@@ -75,17 +75,17 @@ def errands(
 
 
 def resume_sweep(folder: Path | str, *, video: bool = True, quiet: bool = False) -> SweepResult:
-    """Go on with the sweep in a folder as it was asked for. Raises as `run_sweep`."""
+    """Continue the sweep in a folder as it was requested. Raises as `run_sweep`."""
     return _complete(read_sweep(Path(folder)), Path(folder), video, quiet)
 
 
 def point_folder(folder: Path, number: int) -> Path:
-    """Where the run of a point is."""
+    """The folder of a point's run."""
     return folder / "points" / f"{number:03}"
 
 
 def _check_folder(sweep: Sweep, folder: Path) -> None:
-    """Raise LabError where the folder holds something else."""
+    """Raise LabError if the folder holds something other than this sweep."""
     if (folder / FILE_NAME).exists():
         if not read_sweep(folder).same_as(sweep):
             raise LabError(f"{folder} holds another sweep than is asked for: choose another folder.")
@@ -94,7 +94,7 @@ def _check_folder(sweep: Sweep, folder: Path) -> None:
 
 
 def _errands(sweep: Sweep, folder: Path, plan: Sequence[Sequence[int]]) -> list[Errand]:
-    """The launches of points that were not run yet; one that was cut short here is left to be finished here."""
+    """The launches of points that have not been run; a launch that was cut short here is finished here."""
     kept = read_checkpoint(folder)
     begun = {folder / run for run in kept.runs} if kept else set()
     found = []
@@ -106,8 +106,8 @@ def _errands(sweep: Sweep, folder: Path, plan: Sequence[Sequence[int]]) -> list[
 
 
 def _complete(sweep: Sweep, folder: Path, video: bool, quiet: bool, cluster: str | None = None) -> SweepResult:
-    """Run what has not been run yet, as far as it can be on the cluster, and sum up all."""
-    plan = list(_plan(sweep))  # says early which point cannot be
+    """Run what has not been run yet, on the cluster as far as possible, and summarise all points."""
+    plan = list(_plan(sweep))  # reports an impossible point early
     sweep.write(folder)
     folders = [point_folder(folder, number) for number in range(len(sweep.points))]
     with Progress(quiet) as progress, hint(folder, FILE_NAME), only_one(folder):
@@ -123,13 +123,13 @@ def _complete(sweep: Sweep, folder: Path, video: bool, quiet: bool, cluster: str
 
 
 class _Tour:
-    """The way through the points of a sweep, launch by launch."""
+    """Runs the points of a sweep launch by launch."""
 
     def __init__(self, sweep: Sweep, folder: Path, folders: Sequence[Path], progress: Progress) -> None:
         self.sweep, self.folder, self.folders, self.progress = sweep, folder, folders, progress
 
     def go(self, plan: Sequence[Sequence[int]]) -> None:
-        """Run and report every point that is not done; a launch that was cut short comes first."""
+        """Run and report every point that is not done, first a launch that was cut short."""
         kept = self._kept()
         worth = [self.sweep.worth(number) for number in range(len(self.folders))]
         self._report(number for number, folder in enumerate(self.folders) if state_of(folder) == "recorded")
@@ -147,7 +147,7 @@ class _Tour:
         remove_checkpoint(self.folder)
 
     def _kept(self) -> Checkpoint | None:
-        """The checkpoint of the launch that was cut short. Raises Useless where it is of other runs."""
+        """The checkpoint of the launch that was cut short. Raises Useless if it is of other runs."""
         kept = read_checkpoint(self.folder)
         if kept and not {self.folder / run for run in kept.runs} <= set(self.folders):
             raise Useless(f"{self.folder}: its checkpoint is of other runs: sweep anew in another folder.")
@@ -176,7 +176,7 @@ class _Tour:
 
 
 def _named(numbers: Sequence[int]) -> str:
-    """0 to 5, 8, 10 to 12."""
+    """Numbers as text, such as "0 to 5, 8, 10 to 12"."""
     groups: list[list[int]] = []
     for number in numbers:
         if groups and number == groups[-1][-1] + 1:
@@ -187,7 +187,7 @@ def _named(numbers: Sequence[int]) -> str:
 
 
 def state_of(folder: Path) -> str:
-    """What has become of the run in a folder: "done", "recorded" but without its summary, or "open"."""
+    """State of the run in a folder: "done", "recorded" but without its summary, or "open"."""
     if not (folder / RECORDING).exists():
         return "open"
     with open_recording(folder) as recording:
@@ -196,8 +196,8 @@ def state_of(folder: Path) -> str:
 
 
 def _plan(sweep: Sweep) -> Iterator[list[int]]:
-    """Numbers of the points launch by launch, those that can share one together. Raises LabError as `prepare`."""
-    begun: dict[tuple, dict[int, int]] = {}  # worlds by number of the launches that are not full yet
+    """Group the numbers of the points into launches that they can share. Raises LabError as `prepare`."""
+    begun: dict[tuple, dict[int, int]] = {}  # launches that are not full yet: worlds by number of the point
     for number, point in enumerate(sweep.points):
         run = prepare(point, Path())
         if not run.sociable:

@@ -1,4 +1,4 @@
-"""What has been seen of a live experiment, as the painter looks at it (`lab.paint.footage.Footage`), growing."""
+"""The frames of a live experiment so far, with the interface of `lab.paint.footage.Footage`."""
 
 import json
 from collections.abc import Mapping
@@ -23,12 +23,12 @@ from solvers.simulation import Simulation
 
 HEELS = 91
 MOST_BYTES = 2**29  # of frames kept in memory; the recording has all
-DROPPED = 0.1  # of the frames, at once, where they grow too many
+DROPPED = 0.1  # share of the frames dropped at once if they take too much memory
 
 
 @dataclass(frozen=True)
 class Scenery:
-    """What stays the same in a live experiment; fields as of a `Footage`, for one world."""
+    """The data that stay the same in a live experiment; fields as in a `Footage`, for one world."""
 
     preset: dict
     name: str
@@ -44,7 +44,7 @@ class Scenery:
 
     @classmethod
     def of(cls, loaded: LoadedPreset, folder: Path, simulation: Simulation) -> "Scenery":
-        """That of a simulation of a preset, as it is or while its bed is made."""
+        """The scenery of a preset's simulation, running or while its bed settles."""
         preset, scene = loaded.resolved, simulation.scene
         kind = np.zeros(scene.radius.shape, dtype=int) if scene.kind is None else scene.kind
         lines = {name: np.array(part.points) for name, part in preset.parts.items()}
@@ -53,7 +53,7 @@ class Scenery:
         return cls(said, loaded.name, folder, scene.radius, kind, *bounds, lines, shapes, simulation.dt)
 
     def for_filling(self, top: float) -> "Scenery":
-        """Without a ship around the tank, which is cut off at this height (m) if it goes on above the grains."""
+        """The scenery while the bed settles: no ship, and the tank cut off at the height `top` (m)."""
         above = self.outline[:, 1] > top
         cut = np.column_stack([self.outline[:, 0], np.minimum(self.outline[:, 1], top)])
         lid = tuple(int(k) for k in np.nonzero(above & np.roll(above, -1))[0])
@@ -61,7 +61,7 @@ class Scenery:
 
 
 class LiveFootage:
-    """The frames seen so far, of one world; the oldest go where they grow too many."""
+    """The frames of one world so far; the oldest are dropped when they take too much memory."""
 
     worlds = 1
 
@@ -77,7 +77,7 @@ class LiveFootage:
         self._bytes = 0
 
     def add(self, seen: Seen) -> int:
-        """One more frame; gives how many of the oldest had to go for it."""
+        """Add a frame; returns how many of the oldest were dropped for it."""
         self._seen.append(seen)
         self._bytes += seen.bytes
         if self._bytes <= MOST_BYTES or len(self._seen) < 2:
@@ -106,7 +106,7 @@ class LiveFootage:
         return np.stack([seen.rows["part"] for seen in self._seen])
 
     def pressing(self, frame: int) -> Pressing:
-        """The contacts that press in a frame."""
+        """The contacts with their forces in a frame."""
         return self._seen[frame].pressing
 
     def row(self, frame: int, name: str) -> np.ndarray:
@@ -120,7 +120,7 @@ class LiveFootage:
         return self.sea
 
     def row_time(self, frame: int) -> float:
-        """When a frame was (s)."""
+        """The time of a frame (s)."""
         return self._seen[frame].time
 
     def moved_parts(self, frame: int) -> np.ndarray:
@@ -132,7 +132,7 @@ class LiveFootage:
         return np.array([self._seen[frame].rows[name][0] for frame in frames])
 
     def grains(self, name: str, frame: int, world: int = 0) -> np.ndarray:
-        """What each grain has in a frame."""
+        """The value `name` of each grain in a frame."""
         return self._seen[frame].grains[name][world]
 
     @cached_property
@@ -152,7 +152,7 @@ class LiveFootage:
 
     @cached_property
     def levers(self) -> tuple[np.ndarray, np.ndarray]:
-        """Heels (k,) rad and righting levers (k,) m of the ship, her cargo frozen as it lay at the start."""
+        """Heels (k,) rad and righting levers (k,) m of the ship, with her cargo frozen as it lay at the start."""
         (vessel,) = vessels(Resolved.model_validate(self.scenery.preset))
         heel = np.radians(np.linspace(0.0, 180.0, HEELS))
         ship = vessel.ship
@@ -160,7 +160,7 @@ class LiveFootage:
 
     @cached_property
     def bed(self) -> Bed:
-        """The only one."""
+        """The only bed."""
         return Bed(self, 0, "")
 
     @cached_property

@@ -1,4 +1,4 @@
-"""Video, figures and summary of what was kept of a live experiment, in a process of its own."""
+"""Make video, figures and summary of a kept live experiment, in a process of its own."""
 
 import sys
 from pathlib import Path

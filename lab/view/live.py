@@ -1,7 +1,7 @@
-"""An experiment under a hand: it runs piece by piece, and records what it does and what is done to it.
+"""The live experiment: it runs piece by piece, and records its course and all that the user changes.
 
-A piece is a sampling interval of the series. What a hand changes counts from the next piece on, so that the same
-changes at the same pieces give the same bits again, whoever gives them and whenever (`lab.view.replay`).
+A piece is a sampling interval of the series. A change takes effect with the next piece, so that the same changes at the
+same pieces give the same bits in every replay (`lab.view.replay`).
 """
 
 import time
@@ -28,14 +28,14 @@ from solvers.grains.pressing import Pressing
 from solvers.machine.errors import Unavailable
 from solvers.simulation import Simulation
 
-PICTURES = 25.0  # Hz at least, of the frames of what is watched
+PICTURES = 25.0  # Hz, least rate of the frames
 
 
 @dataclass(frozen=True)
 class Seen:
-    """What stands at the end of a piece: its time (s), the observed rows (W,), the grains (W, n) by name, what presses.
+    """The state at the end of a piece: time (s), observed rows (W,), grains (W, n) by name, contacts with forces.
 
-    The grains are in 32 bits, as in recordings, for many of these are kept to be looked back at.
+    The grains are in 32 bits, as in recordings, since many of these are kept for rewinding.
     """
 
     time: float
@@ -45,20 +45,20 @@ class Seen:
 
     @classmethod
     def of(cls, simulation: Simulation, rows: Mapping[str, np.ndarray], pressing: Pressing) -> "Seen":
-        """What stands now in a simulation of which these rows were observed."""
+        """The present state of a simulation, with the rows just observed of it."""
         grains = {name: values.astype(np.float32) for name, values in simulation.snapshot().items()}
         return cls(simulation.time, {**rows, "part": simulation.part_places()}, grains, pressing)
 
     @property
     def bytes(self) -> int:
-        """Memory that it takes."""
+        """Memory in bytes."""
         pressing = self.pressing
         arrays = *self.rows.values(), *self.grains.values(), pressing.grains, pressing.place, pressing.force
         return sum(array.nbytes for array in arrays)
 
 
 def under_a_hand(loaded: LoadedPreset) -> LoadedPreset:
-    """The preset without motions of its own, in one bed, with pictures often enough to be watched."""
+    """The preset prepared for steering: one bed, no motions of its own, and a high enough picture rate."""
     preset = loaded.resolved
     record = replace(preset.record, picture_rate=max(preset.record.picture_rate, PICTURES))
     changes = {"motion": Motion(), "run": replace(preset.run, repeats=1), "record": record}
@@ -68,8 +68,8 @@ def under_a_hand(loaded: LoadedPreset) -> LoadedPreset:
 class Live:
     """The experiment; a context manager. It starts with the tank at rest.
 
-    loaded: a preset as `under_a_hand` leaves it. Raises LabError and Unavailable where it cannot be run, BadState where
-    its bed cannot settle.
+    loaded: a preset as `under_a_hand` returns it. Raises LabError and Unavailable if it cannot be run, BadState if its
+    bed cannot settle.
     """
 
     def __init__(self, loaded: LoadedPreset, folder: Path, progress: Progress) -> None:
@@ -99,7 +99,7 @@ class Live:
         return self.simulation.time
 
     def set(self, name: str, value: float) -> None:
-        """Set a control, from the next piece on. Raises LabError for what cannot be changed while grains move."""
+        """Set a control from the next piece on. Raises LabError for one that cannot be changed during a run."""
         control = CONTROLS[name]
         mover = self.swell if self.preset.ship else self.helm
         if control.kind == MOVES and mover and name in mover.wanted:
@@ -114,7 +114,7 @@ class Live:
         self.recorder.steer(self.time, name, value)
 
     def advance(self, pause: Callable[[], None] = lambda: None, most: int | None = None) -> None:
-        """Take a piece, in calls of `most` steps with a pause after each. Raises BadState; what was recorded stays."""
+        """Run one piece, calling `pause` after every `most` steps. Raises BadState; what was recorded stays."""
         length = self.steps_a_piece * self.simulation.dt
         if self.helm:
             self.simulation.steer(self.helm.follow(length))
@@ -129,11 +129,11 @@ class Live:
         self.rows = self._record()
 
     def look(self) -> Seen:
-        """What stands now."""
+        """The present state."""
         return Seen.of(self.simulation, {**self.rows, **self._waves()}, self.simulation.pressing())
 
     def _record(self) -> dict[str, np.ndarray]:
-        """Observe, and add a row to the series and, where one is due, to the frames; gives what was observed."""
+        """Observe, add a row to the series and, if one is due, a frame; returns the observation."""
         rows, now = self.simulation.observe(), self.time
         self.recorder.sample({"time": now, **{name: rows[name] for name in self.recorder.series if name != "time"}})
         if self.pieces % self._a_frame == 0:
@@ -144,7 +144,7 @@ class Live:
         return rows
 
     def _waves(self) -> dict[str, np.ndarray]:
-        """What a frame of a ship says of the waves that she meets."""
+        """The data on the present waves for a frame of a ship."""
         if not self.preset.ship:
             return {}
         return {"waves": self.swell.now if self.swell else np.full(WAVES.shape, np.nan)}
@@ -162,5 +162,5 @@ class Live:
 
 
 def own_motion(preset: Resolved) -> dict[str, float]:
-    """What sets the tank moving as the preset itself would."""
+    """The control values that give the preset's own motion."""
     return {name: value for name, value in offered(preset).items() if CONTROLS[name].kind == MOVES}

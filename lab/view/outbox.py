@@ -1,4 +1,4 @@
-"""What the experiment tells the window, sent by a thread of its own: grains do not wait until somebody looks."""
+"""Messages from the experiment to the window, sent by a thread of its own, so that the solver need not wait."""
 
 import threading
 from collections import deque
@@ -6,9 +6,9 @@ from multiprocessing.connection import Connection
 
 
 class Outbox:
-    """Pairs of a word and what belongs to it, in their order; of some only the newest counts, and older ones go.
+    """A queue of messages, pairs of a word and its data, sent in order; some replace older ones of the same word.
 
-    `finish` waits until all is sent. Raises BrokenPipeError once the window is gone.
+    `finish` waits until all are sent. Raises BrokenPipeError once the window is gone.
     """
 
     def __init__(self, pipe: Connection) -> None:
@@ -18,7 +18,7 @@ class Outbox:
         self._thread.start()
 
     def send(self, word: str, what: object, newest: bool = False) -> None:
-        """Have a pair sent; of those whose `newest` counts an older one that still waits is dropped."""
+        """Queue a message; with `newest` an older one of this word that is still waiting is dropped."""
         if not self._thread.is_alive():
             raise BrokenPipeError
         with self._changed:
@@ -28,7 +28,7 @@ class Outbox:
             self._changed.notify()
 
     def finish(self) -> None:
-        """Nothing more comes."""
+        """Send all waiting messages and end the thread."""
         with self._changed:
             self._finished = True
             self._changed.notify()

@@ -27,11 +27,11 @@ TEXT, READING, TITLE, ROW, BAND = 1.0, 1.2, 1.4, 1.5, 2.4  # heights in u
 LINES = 5  # of readings below the clock
 PLOT = 14.0, 8.5  # width and height in u
 SENTENCE = 0.8, 3  # height of its letters in u, lines at most
-ANEW, CURVE_ANEW, WORDS_ANEW = 2.0, 0.25, 0.1  # s after which scale, curve and readings are looked at anew
+ANEW, CURVE_ANEW, WORDS_ANEW = 2.0, 0.25, 0.1  # s after which scale, curve and readings are updated
 HANDLE = 0.42  # u, half the height of a slider's handle
 GRIP = 0.8  # u around the centre of roll
-THICKEST = 0.3  # of the mean radius: half the thickness of a line of the largest force
-LONGEST, FASTEST = 6.0, 0.99  # radii: a velocity's line, of which quantile
+THICKEST = 0.3  # half thickness of the line of the largest force, over the mean radius
+LONGEST, FASTEST = 6.0, 0.99  # length in radii of the line for the speed at this quantile
 GRAB, FORCE, PICKED = (213, 94, 0), (200, 30, 30), (213, 94, 0)
 
 
@@ -66,34 +66,34 @@ class Page:
     # Places
 
     def u(self, units: float) -> int:
-        """Pixels."""
+        """A length in units u as pixels."""
         return round(units * self.unit)
 
     @property
     def stage(self) -> tuple[int, int, int, int]:
-        """Left, top, right, bottom of where the tank stands."""
+        """Left, top, right, bottom of the stage, the part of the picture with the tank."""
         right = self.width - self.u(MARGIN + COLUMN + GAP)
         return self.u(MARGIN), self.u(MARGIN + TITLE + 1.0), right, self.height - self.u(MARGIN + 2.4)
 
     def camera(self, shown: Shown) -> Camera:
-        """Of the frame that is drawn: the tank's or the earth's."""
+        """The camera of the frame that is drawn: the tank's or the earth's."""
         low, high = self._ground(shown)
         scale = self._fit(self._room(shown), high - low) * shown.look.zoom
         (x, y), pan, centre = self.middle(shown), shown.look.pan, 0.5 * (low + high)
         return Camera(scale, (x + pan[0] - scale * centre[0], y + pan[1] + scale * centre[1]))
 
     def middle(self, shown: Shown) -> tuple[float, float]:
-        """The pixel where the middle of what is shown is, as long as it is not moved."""
+        """The pixel of the middle of the view before panning."""
         left, top, right, bottom = self._room(shown)
         return 0.5 * (left + right), 0.5 * (top + bottom)
 
     def _room(self, shown: Shown) -> tuple[int, int, int, int]:
-        """The part of the stage for the tank: the one in which it is largest."""
+        """The part of the stage in which the tank is largest."""
         low, high = self._ground(shown)
         return max(self._rooms(shown), key=lambda room: self._fit(room, high - low))
 
     def _rooms(self, shown: Shown) -> list[tuple[int, int, int, int]]:
-        """Parts of the stage for the tank: all of it, or what is right of the plot or below it."""
+        """The parts of the stage where the tank may be: all of it, or the part right of the plot or below it."""
         left, top, right, bottom = self.stage
         width, height = (self.u(side) for side in PLOT)
         if shown.curve == "nothing":
@@ -109,7 +109,7 @@ class Page:
         return float((spare / extent).min())
 
     def tank_camera(self, shown: Shown) -> Camera:
-        """Of points of the tank."""
+        """The camera for points of the tank."""
         camera = self.camera(shown)
         return camera.carried(self._pose(shown)) if shown.look.frame == "earth" else camera
 
@@ -140,7 +140,7 @@ class Page:
         return place is not None and np.hypot(place[0] - x, place[1] - y) < self.u(GRIP)
 
     def grain_at(self, shown: Shown, x: float, y: float) -> int | None:
-        """The number of the grain at a pixel, None where there is none."""
+        """The number of the grain at a pixel, None if there is none."""
         places = self.tank_camera(shown).pixels(shown.footage.grains("position", shown.frame))
         away = np.hypot(places[:, 0] - x, places[:, 1] - y) / self.camera(shown).scale
         nearest = int(np.nanargmin(away - shown.footage.radius[0]))
@@ -150,7 +150,7 @@ class Page:
         return shown.footage.row(shown.frame, "pose")
 
     def _ground(self, shown: Shown) -> tuple[np.ndarray, np.ndarray]:
-        """Lower and upper corner (m) of what is shown where nothing is zoomed."""
+        """Lower and upper corner (m) of the view without zoom."""
         footage = shown.footage
         low, high = footage.extent
         if footage.sea:
@@ -160,7 +160,7 @@ class Page:
         return low, high
 
     def _centre(self, shown: Shown) -> np.ndarray | None:
-        """The pixel of the centre of roll, None where there is none to be dragged."""
+        """The pixel of the centre of roll, None if there is none to drag."""
         if "centre_y" not in shown.values or not shown.footage:
             return None
         centre = np.array([shown.values["centre_y"], shown.values["centre_z"]])
@@ -173,14 +173,14 @@ class Page:
     # Paint
 
     def _scale(self, shown: Shown) -> Colouring:
-        """The colouring, its scale looked at anew now and then."""
+        """The colouring; its scale is updated from time to time."""
         key, now = (shown.look.colour, shown.footage), time.monotonic()
         if self._colouring is None or self._colouring[0] != key or now - self._colouring[1] > ANEW:
             self._colouring = key, now, colouring(shown.look.colour, [shown.footage.bed])
         return self._colouring[2]
 
     def _stage_picture(self, shown: Shown, scale: Colouring) -> np.ndarray:
-        """The tank with all that is in it, the marks of a hand, and the plot."""
+        """The tank with its contents, the marks of centre and picked grain, and the plot."""
         footage, frame, (left, top, _, _) = shown.footage, shown.frame, self.stage
         camera, moved = (self._shifted(c, left, top) for c in (self.camera(shown), self.tank_camera(shown)))
         if shown.look.frame == "tank":
@@ -208,7 +208,7 @@ class Page:
         return stage
 
     def _lost(self, end: End) -> Image.Image:
-        """What became of a ship, across the foot of the stage."""
+        """The band that says how a ship was lost, across the foot of the stage."""
         left, _, right, _ = self.stage
         image = Image.new("RGB", (right - left, self.u(BAND)))
         deco.draw_band(ImageDraw.Draw(image), (0, 0, *image.size), f"She {end.words}", 1.4 * TEXT * self.unit)
@@ -257,7 +257,7 @@ class Page:
             paint_strokes(stage, _ring(*place, r, 0.08 * self.unit), PICKED)
 
     def _put_texts(self, picture: np.ndarray, shown: Shown) -> None:
-        """The title above the stage; below it the scale, and what has just been said or else what the overlay means."""
+        """The title above the stage; below it the scale, and the latest message or else the meaning of the overlay."""
         left, _, right, bottom = self.stage
         title, scale, said = shown.footage.title, self.camera(shown).scale, shown.said
         _put(picture, self._still("title", (title,), lambda: self._title(title, right - left)), left, self.u(MARGIN))
@@ -301,14 +301,14 @@ class Page:
         return image
 
     def _force_strokes(self, shown: Shown, camera: Camera) -> np.ndarray:
-        """Chains of force: lines as thick as the force, from the grains to where they press."""
+        """Force chains: lines from the grains to their contacts, with thickness proportional to the force."""
         footage, frame = shown.footage, shown.frame
         lines, thickness, self._largest = chains(footage.pressing(frame), footage.grains("position", frame))
         half = thickness * (THICKEST * footage.radius[0].mean() * camera.scale)
         return _strokes(camera, lines, half, half)
 
     def _velocity_strokes(self, shown: Shown, camera: Camera) -> np.ndarray:
-        """Lines along the velocities in the tank, which end in a point."""
+        """Tapered lines along the velocities relative to the tank."""
         footage, frame = shown.footage, shown.frame
         place, velocity = (footage.grains(name, frame) for name in ("position", "velocity"))
         speed, radius = np.hypot(*velocity.T), footage.radius[0].mean()
@@ -319,7 +319,7 @@ class Page:
         return _strokes(camera, np.stack([place, tips], axis=1)[moving], half, 0.0 * half)
 
     def _curve(self, shown: Shown) -> np.ndarray:
-        """A small plot of what the experiment does, drawn anew a few times a second."""
+        """The small plot of the experiment, redrawn a few times a second."""
 
         def drawn() -> Image.Image:
             drawing = CURVES[shown.curve](shown.footage, shown.frame)
@@ -354,11 +354,11 @@ class Page:
 
     @property
     def controls(self) -> tuple[int, int]:
-        """Top and bottom of where the sliders are in the column."""
+        """Top and bottom of the sliders in the column."""
         return self.u(MARGIN + 1.6 * READING + 1.4 * TEXT * LINES + 0.6), self.height - self.u(MARGIN + 5.2)
 
     def _still_column(self, shown: Shown, scale: Colouring) -> Image.Image:
-        """What stands below the readings until somebody changes it: sliders and colour bar."""
+        """The part below the readings, which changes only when the user acts: sliders and colour bar."""
         top, bottom = self.controls
         size = self.u(MARGIN + COLUMN), self.height - top
         image = Image.new("RGB", size, palette.PAPER)
@@ -372,14 +372,14 @@ class Page:
     def _still(
         self, name: str, key: tuple, make: Callable[[], Image.Image | np.ndarray], lasts: float = np.inf
     ) -> np.ndarray:
-        """A part of the picture that stays as it is while its key does, for some seconds at most."""
+        """A cached part of the picture, made again when its `key` changes or after `lasts` seconds."""
         now = time.monotonic()
         if name not in self._kept or self._kept[name][0] != key or now - self._kept[name][1] > lasts:
             self._kept[name] = key, now, np.asarray(make())
         return self._kept[name][2]
 
     def _draw_sliders(self, draw: ImageDraw.ImageDraw, shown: Shown, corner: tuple[int, int], height: float) -> None:
-        """A row a control, name, slider and value, on a part of the picture with this corner, so many pixels high."""
+        """Draw one row per control, with name, slider and value, from this corner on, `height` pixels high."""
         left, right = 0, self.u(COLUMN)
         names = list(shown.values)
         pitch = min(self.u(ROW), height / max(1, len(names)))
@@ -405,7 +405,7 @@ class Page:
     # Whole pages
 
     def _waiting(self, shown: Shown) -> np.ndarray:
-        """The page until the first frame comes, and where none does."""
+        """The page before the first frame, or if none comes."""
         image = Image.new("RGB", (self.width, self.height), palette.PAPER)
         draw, middle, size = ImageDraw.Draw(image), (self.width / 2, self.height / 2), TEXT * self.unit
         name, face = deco.fitted(shown.name, 0.9 * self.width, size)
@@ -423,13 +423,13 @@ def _put(picture: np.ndarray, part: np.ndarray, left: int, top: int) -> None:
 
 
 def _ring(x: float, y: float, radius: float, half: float) -> np.ndarray:
-    """A circle as strokes (k, 6) in pixels, half as thick as this."""
+    """A circle as strokes (k, 6) in pixels; `half` is half its thickness."""
     turn = np.linspace(0.0, 2.0 * np.pi, 33)
     points = np.column_stack([x + radius * np.cos(turn), y + radius * np.sin(turn), np.full(33, half)])
     return np.hstack([points[:-1], points[1:]])
 
 
 def _strokes(camera: Camera, lines: np.ndarray, first: np.ndarray, second: np.ndarray) -> np.ndarray:
-    """Lines (k, 2, 2) m as strokes (k, 6) in pixels, half as thick (pixels) as this at their ends."""
+    """Lines (k, 2, 2) m as strokes (k, 6) in pixels; `first`, `second`: half thickness (pixels) at their ends."""
     ends = camera.pixels(lines.reshape(-1, 2)).reshape(-1, 2, 2)
     return np.column_stack([ends[:, 0], first, ends[:, 1], second])

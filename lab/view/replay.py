@@ -1,4 +1,4 @@
-"""An experiment that was steered by hand, run again from its recording: the same bits on the same machine."""
+"""Run a manually steered experiment again from its recording: the same bits on the same machine."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -14,13 +14,13 @@ from lab.runs.runner import Result, free_folder, recorded_preset, report
 from lab.view.live import Live
 from lab.view.panel.controls import ALTERS, CONTROLS, MOVES, offered
 
-LARGEST = 1e3  # SI: nothing that a hand can set is as large
+LARGEST = 1e3  # SI: upper bound on the value of any control
 
 
 def replay(path: Path | str, out: Path | str | None = None, *, video: bool = True, quiet: bool = False) -> Result:
-    """Run a recording of `cargolab view` again (default: in a folder beside it), and sum it up as a run.
+    """Run a recording of `cargolab view` again (default: in a folder beside it), and report it as a run.
 
-    Raises LabError where it is none.
+    Raises LabError if it is not such a recording.
     """
     with open_recording(path) as recording:
         done, loaded = recording.steering, recorded_preset(recording)
@@ -48,7 +48,7 @@ def replay(path: Path | str, out: Path | str | None = None, *, video: bool = Tru
 
 
 def _possible(done: Sequence[tuple[float, str, float]], series: np.ndarray, own: Mapping[str, float]) -> bool:
-    """Whether a hand may have done this in an experiment that offers such controls, with the preset's own values."""
+    """Whether the recorded actions `done` are possible with the controls offered (`own`: their preset values)."""
     times = np.array([time for time, *_ in done])
     if not np.isfinite(series).all() or np.any(np.diff(series) <= 0.0) or np.abs(series).max(initial=0.0) > BEYOND:
         return False

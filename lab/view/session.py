@@ -1,6 +1,6 @@
-"""What a person has before them: the experiment as it is seen, and what keys, mouse and sliders do to it.
+"""The user's side of a live experiment: its picture, and the actions of keys, mouse and sliders.
 
-A front end calls `tick`, shows `picture`, and passes on events in pixels of that picture and in names of keys.
+A front end calls `tick`, shows `picture`, and passes on events, in pixels of that picture and names of keys.
 """
 
 import subprocess
@@ -24,18 +24,18 @@ from lab.view.worker import begin
 from solvers.grains.shapes.cargo import cargoes
 
 PACES = (0.02, 0.05, 0.1, 0.25, 0.5, 1.0, 2.0, 5.0, np.inf)
-NUDGE = np.radians(5.0)  # of the tilt, by a key
+NUDGE = np.radians(5.0)  # change of the tilt by a key
 CLICK = 4.0  # pixels: a mouse that moves less was not dragged
 ZOOM = 1.25
-PATIENCE = 5.0  # s for the experiment to end
+PATIENCE = 5.0  # s to wait for the experiment to end
 OVERLAYS = ("nothing", "forces", "velocities")
 
 
 @dataclass
 class Session(Shown):
-    """A preset under `overrides`, live in a window of `size` pixels; `types`: one with a panel to type values in.
+    """A preset with `overrides`, live in a window of `size` pixels; `types`: the window has a panel to type values.
 
-    Raises LabError where the preset cannot be run.
+    Raises LabError if the preset cannot be run.
     """
 
     name: str
@@ -55,7 +55,7 @@ class Session(Shown):
         self._restart(self.overrides)
 
     def _restart(self, overrides: Mapping) -> None:
-        """Begin anew, with what a restart was asked for."""
+        """Start again with these overrides and the changes that needed a restart."""
         self.overrides = dict(overrides)
         self.footage, self.values, self._own, self.making = None, {}, {}, True
         self.going, self.playhead, self.factor, self.over = False, None, 0.0, ""
@@ -64,10 +64,10 @@ class Session(Shown):
         self.folder = free_folder(folder)
         self._process, self._pipe = begin(self.name, self.overrides, self.folder)
 
-    # What comes from the experiment
+    # Messages from the experiment
 
     def tick(self) -> None:
-        """Take in what the experiment has sent."""
+        """Process the messages that the experiment has sent."""
         try:
             while not self.over and self._pipe.poll():
                 word, what = self._pipe.recv()
@@ -76,12 +76,12 @@ class Session(Shown):
             self._miss()
 
     def _miss(self) -> None:
-        """The experiment's process is gone."""
+        """Handle that the experiment's process is gone."""
         self.over, self.going = self.over or f"the experiment broke off; {self.left}.", False
 
     @property
     def left(self) -> str:
-        """What is left of an experiment that did not end by itself."""
+        """A sentence on what an experiment that did not end by itself has left behind."""
         return "nothing was recorded yet" if self.making else f"{self.folder} has what was recorded"
 
     def _on_told(self, sentence: str) -> None:
@@ -128,17 +128,17 @@ class Session(Shown):
             except (BrokenPipeError, ConnectionResetError):
                 self._miss()
 
-    # What a person does
+    # Actions of the user
 
     def go(self, going: bool) -> None:
-        """Run or pause; who goes on is back at the newest frame."""
+        """Run or pause; running returns to the newest frame."""
         self.going = going
         if going:
             self.playhead = None
         self._send("go", going)
 
     def set(self, name: str, value: float) -> None:
-        """Set a control (SI), within its range; what needs a restart waits for `restart`."""
+        """Set a control (SI), within its range; a control that needs a restart waits for `restart`."""
         if name not in self.values:
             return
         control = CONTROLS[name]
@@ -150,7 +150,7 @@ class Session(Shown):
             self._send("set", (name, value))
 
     def restart(self) -> None:
-        """Start anew with what was asked for; what was recorded stays where it is."""
+        """Start again with the changes that wait for it; the recording so far stays where it is."""
         asked = {
             control.key: control.shown(self.values[name])
             for name, control in CONTROLS.items()
@@ -159,7 +159,7 @@ class Session(Shown):
         self._begin_with({**self.overrides, **asked})
 
     def reshape(self) -> None:
-        """Start anew with grains of the next cargo's outlines; after the last come discs."""
+        """Start again with grains of the next cargo's outlines; discs follow the last cargo."""
         from lab.preset.find import load
 
         order = ["disc", *cargoes()]
@@ -184,11 +184,11 @@ class Session(Shown):
         return given is not None and abs(given - self.values[name]) > 1e-9 * abs(given)
 
     def keep(self) -> None:
-        """Have what was seen kept in a folder of its own, with video, figures and summary."""
+        """Keep the experiment so far in a folder of its own, with video, figures and summary."""
         self._send("keep", free_folder(self.folder.with_name(f"{self.folder.name}-kept")))
 
     def rewind(self, frames: int) -> None:
-        """Go back or forth in what was seen, paused."""
+        """Pause, and move back or forth by a number of frames."""
         if not self.footage or not len(self.footage):
             return
         if self.going:
@@ -199,27 +199,27 @@ class Session(Shown):
         self.playhead = None if wanted == last else wanted
 
     def zoom(self, turns: float) -> None:
-        """Nearer, or with negative turns farther, about the middle of the stage."""
+        """Zoom in, or with negative turns out, about the middle of the stage."""
         left, top, right, bottom = self.page.stage
         self.wheel(turns, 0.5 * (left + right), 0.5 * (top + bottom))
 
     def toggle_typing(self) -> None:
-        """Have the window's panel instead of the sliders, or these again."""
+        """Switch between the sliders and the window's own panel."""
         self.look.typing = self.types and not self.look.typing
 
     @property
     def keys(self) -> list[tuple[str, str]]:
-        """What the keys are called and do here."""
+        """Names and actions of the keys in this experiment."""
         return [(name, says) for name, (says, _) in KEYS.items() if self.types or name != "p"]
 
     def key(self, name: str) -> None:
-        """A key was pressed, by its name: a letter, space, left, right, up, down, escape."""
+        """Handle a key by its name: a letter, space, left, right, up, down, escape."""
         action = KEYS.get(name)
         if action:
             action[1](self)
 
     def press(self, x: float, y: float, button: str = "left") -> None:
-        """The mouse was pressed."""
+        """Handle a mouse button pressed at a pixel."""
         slider = self.page.slider_at(x, y)
         centre = self.page.centre_at(self, x, y)
         self._grip = ("slider", slider) if slider else ("centre",) if centre else ("stage", button)
@@ -227,7 +227,7 @@ class Session(Shown):
         self.drag(x, y)
 
     def drag(self, x: float, y: float) -> None:
-        """The mouse was moved with its button down."""
+        """Handle a mouse move with the button down."""
         if not self._grip:
             return
         what, (x0, y0) = self._grip[0], self._last
@@ -247,14 +247,14 @@ class Session(Shown):
         self._last = (x, y)
 
     def release(self, x: float, y: float) -> None:
-        """The mouse was let go; a click picks the grain below it."""
+        """Handle the button's release; a click picks the grain at the pixel."""
         clicked = self._grip == ("stage", "left") and np.hypot(x - self._start[0], y - self._start[1]) <= CLICK
         self._grip = None
         if clicked and self.footage and len(self.footage):
             self.look.picked = self.page.grain_at(self, x, y)
 
     def wheel(self, turns: float, x: float, y: float) -> None:
-        """Zoom; what is at a pixel stays there."""
+        """Zoom about the pixel under the mouse."""
         before = self.look.zoom
         self.look.zoom = float(np.clip(before * ZOOM**turns, 0.2, 50.0))
         grown = self.look.zoom / before
@@ -273,7 +273,7 @@ class Session(Shown):
 
     def _end_experiment(self) -> None:
         self._send("end")
-        if self.making:  # nothing is recorded yet, and it listens no sooner than its bed is ready
+        if self.making:  # nothing is recorded yet, and it does not listen before its bed is ready
             self._process.terminate()
         until = time.monotonic() + PATIENCE
         while self._process.is_alive() and time.monotonic() < until:

@@ -1,4 +1,4 @@
-"""What a picture of a live experiment is painted from: what was seen of it, and how it is looked at."""
+"""The data for a picture of a live experiment: its frames so far, and how they are shown."""
 
 import time
 from dataclasses import dataclass
@@ -27,9 +27,9 @@ class Look:
 class Shown:
     """An experiment as it is shown.
 
-    values: its controls, as a hand has set them (SI); playhead: the frame shown, None for the newest; pace: how much of
-    real time it is held to, and factor: how much it reaches; making: whether its bed is still being made, status: how
-    far that is; over: how it ended; keys: what keys are called and do.
+    values: its controls as the user has set them (SI); playhead: the frame shown, None for the newest; pace: the
+    requested speed over real time, factor: the speed reached; making: whether its bed is still settling, status: how
+    far that is; over: how it ended; keys: names and actions of the keys.
     """
 
     name: str
@@ -48,7 +48,7 @@ class Shown:
 
     @property
     def curve(self) -> str:
-        """The curve that is drawn: of a bed that is made how it comes to rest."""
+        """The name of the curve that is drawn; while a bed settles, that of its coming to rest."""
         return "energy" if self.making else self.look.inset
 
     def say(self, sentence: str) -> None:
@@ -57,13 +57,13 @@ class Shown:
 
     @property
     def said(self) -> str:
-        """The sentence to be shown now."""
+        """The sentence to show now."""
         sentence, when = self._said
         return self.over or (sentence if time.monotonic() - when < SAID_FOR else "")
 
     @property
     def lost(self) -> End | None:
-        """What has become of a ship that is lost in the frame shown."""
+        """How the ship was lost, if she is lost in the frame shown."""
         if self.making or not self.footage or not self.footage.sea:
             return None
         return end_of(*(self.footage.row(self.frame, name) for name in VERBS), self.footage.row(self.frame, "pose")[2])

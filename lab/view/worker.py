@@ -1,6 +1,6 @@
 """The live experiment in a process of its own, so that pictures and grains do not wait for each other.
 
-Between the processes go pairs of a word and what belongs to it. To the experiment: `set` (name, value), `go`, `pace`,
+The processes exchange messages, pairs of a word and its data. To the experiment: `set` (name, value), `go`, `pace`,
 `piece`, `keep` (folder), `end`. From it: `told`, `makes` (Scenery of a bed that is not ready yet), `ready` (Scenery,
 own motion), `seen` (Seen, pace), `kept` (folder), `over` (sentence).
 """
@@ -29,12 +29,12 @@ from solvers.machine.errors import BadState, Unavailable
 from solvers.simulation import Simulation
 
 A_LOOK = 0.03  # s, the shortest time between two pictures sent
-IDLE = 0.01  # s between looks at what is asked, while nothing runs
-A_CALL = 100_000  # grain-steps between looks at what is asked, some milliseconds
+IDLE = 0.01  # s between checks for messages while paused
+A_CALL = 100_000  # grain-steps between checks for messages, some milliseconds
 
 
 class Told(Progress):
-    """Progress that goes to the person at the window, with pictures of the bed of a preset as it is made."""
+    """Progress sent to the window, with pictures of the bed as it settles."""
 
     def __init__(self, outbox: Outbox, loaded: LoadedPreset, folder: Path) -> None:
         super().__init__(quiet=True)
@@ -103,13 +103,13 @@ class Worker:
         self._factor += 0.2 * (length / max(taken, 1e-9) - self._factor)
         self._pieces = max(0, self._pieces - 1)
         if max(self._live.rows.get(kind, [-1.0])[0] for kind in VERBS) >= 0.0:
-            self._going = False  # the picture says what became of her
+            self._going = False  # the picture shows how the ship was lost
         if time.monotonic() - self._sent >= A_LOOK or not self._going:
             self._send()
         self._wait()
 
     def _wait(self) -> None:
-        """Keep the pace that is asked for; who is behind starts counting anew."""
+        """Wait to keep the requested pace; if the experiment is too slow, restart the clock."""
         wall, model = self._anchor
         due = wall + (self._live.time - model) / self._pace
         if time.monotonic() > due + 0.1:
@@ -155,7 +155,7 @@ class Worker:
 def serve(pipe: Connection, name: str, overrides: Mapping, folder: Path, cores: int) -> None:
     """Begin the experiment and run it for the window at the other end."""
     for number in set(SIGNALS) - {signal.SIGTERM}:
-        signal.signal(number, signal.SIG_IGN)  # who closes the window closes this
+        signal.signal(number, signal.SIG_IGN)  # the window ends this process when it closes
     runtime.use_cores(cores)
     outbox = Outbox(pipe)
     try:
@@ -182,7 +182,7 @@ def _run(name: str, overrides: Mapping, folder: Path, pipe: Connection, outbox: 
 
 
 def begin(name: str, overrides: Mapping, folder: Path) -> tuple[object, Connection]:
-    """Start the process; gives it and the window's end of the pipe. One core is left to the pictures."""
+    """Start the process; returns it and the window's end of the pipe. One core is left for the pictures."""
     context = get_context("spawn")
     here, there = context.Pipe()
     cores = max(1, runtime.available_cores() - 1)

@@ -1,1 +1,1 @@
-"""The sections of a preset, each as it may be given and as it comes out in full."""
+"""The sections of a preset, each as a user may give it and as resolved."""

@@ -13,10 +13,9 @@ StiffnessScale = Annotated[float, Interval(gt=0, le=1)]
 
 @dataclass(frozen=True)
 class ContactGiven:
-    """The contact laws, and the factor on Young's moduli that buys larger steps (None: as `run.accuracy` has it).
+    """The contact laws, and the factor on Young's moduli that allows longer steps (None: set by `run.accuracy`).
 
-    `outlines`: the rule by which irregular grains touch; `nodes`: on each outline, for the rules
-    that have nodes.
+    `outlines`: the contact rule of irregular grains; `nodes`: number on each outline, for the rules that use nodes.
     """
 
     normal: Literal[*NORMAL] = "hertz-viscoelastic"
@@ -30,12 +29,12 @@ class ContactGiven:
 
 @dataclass(frozen=True)
 class Contact(ContactGiven):
-    """The contact laws and the stiffness in full."""
+    """The contact laws with the stiffness factor filled in."""
 
     stiffness_scale: StiffnessScale = field(kw_only=True)
 
 
 def full_contact(given: ContactGiven, accuracy: str) -> Contact:
-    """The contact laws, the stiffness by the level of accuracy where it is not given."""
+    """The resolved contact laws; a stiffness factor that is not given follows from the level of accuracy."""
     scale = given.stiffness_scale or LEVELS[accuracy].stiffness_scale
     return Contact(**{**vars(given), "stiffness_scale": scale})

@@ -1,4 +1,4 @@
-"""The grains in a preset: as they are given, in full, and which do not fit."""
+"""The grains of a preset: as given, as resolved, and the check that they fit into the tank."""
 
 import math
 from collections.abc import Mapping
@@ -16,14 +16,14 @@ from solvers.grains.bed.sizes import Sizes
 from solvers.machine.marks import Interval, Unit
 
 DENSEST = math.pi / math.sqrt(12)  # largest share of a plane that equal discs cover (Thue)
-MOST_PLACES = 4e6  # of the largest grains, in a tank that is filled: its lattice is held in memory
+MOST_PLACES = 4e6  # lattice sites, one per largest grain, in a tank to be filled: they are held in memory
 
 Length = Annotated[float, Unit("m"), Interval(gt=0)]
 
 
 @dataclass(frozen=True)
 class GrainsGiven:
-    """Spheres in a plane as a preset gives them: so many, or so deep a bed, or a file of single ones.
+    """Spheres in a plane as a preset gives them: a count, a depth of the bed, or a file that lists them.
 
     Diameters are uniform in diameter·(1 ± spread), or normal with the relative standard deviation `spread`, cut at ± 3
     of these and at a tenth of the diameter, or by a table of [diameter, share], each class uniform within ± spread.
@@ -50,9 +50,9 @@ class GrainsGiven:
 
 @dataclass(frozen=True)
 class Grains(GrainsGiven):
-    """The grains in full: `diameter` (m) is the mean, `listed` what `bed` lists: y, z, radius, v_y, v_z, ω in SI.
+    """The resolved grains: `diameter` (m) is the mean; `listed` holds y, z, radius, v_y, v_z, ω (SI) from `bed`.
 
-    The shares in `table` are by number. Of irregular grains it has the diameters and shares of all shapes.
+    The shares in `table` are by number. For irregular grains it has the diameters and shares of all shapes.
     """
 
     listed: tuple[tuple[float, float, float, float, float, float], ...] = ()
@@ -65,7 +65,7 @@ class Grains(GrainsGiven):
 
     @property
     def range(self) -> tuple[float, float]:
-        """Smallest and largest diameter (m) that may come."""
+        """Smallest and largest possible diameter (m)."""
         if self.listed:
             radius = [grain[2] for grain in self.listed]
             return 2.0 * min(radius), 2.0 * max(radius)
@@ -73,7 +73,7 @@ class Grains(GrainsGiven):
 
 
 def full_grains(given: GrainsGiven, shapes: Mapping[str, Shape], tank: Tank, settle: bool) -> Grains:
-    """The grains in full, all sizes known; a file of grains takes the place of all that says how a bed is made."""
+    """The resolved grains, with all sizes; a file of grains replaces all keys on how a bed is made."""
     if given.surface != "slightly-disturbed" and not settle:
         raise LabError(f"grains.surface: a bed is {given.surface} by how it settles; leave run.settle true.")
     if given.bed is not None:
@@ -100,7 +100,7 @@ def full_grains(given: GrainsGiven, shapes: Mapping[str, Shape], tank: Tank, set
 
 
 def _size_key(grains: Grains, shapes: Mapping[str, Shape]) -> str:
-    """The key that says how large the largest grains are."""
+    """The key that sets the size of the largest grains."""
     if shapes:
         return f"shapes.{max(shapes, key=lambda name: shapes[name].diameter)}.diameter"
     return "grains.diameter" if grains.table is None else "grains.table"
@@ -127,7 +127,7 @@ def _listed_grains(given: GrainsGiven, tank: Tank, settle: bool) -> Grains:
 
 
 def check_grains(grains: Grains, tank: Tank, size_key: str) -> None:
-    """Raise LabError for grains that do not fit, or of which there would be too many; size_key says how large."""
+    """Raise LabError for grains that do not fit or would be too many; `size_key` is the key of their size."""
     if (grains.count is None) == (grains.depth is None):
         got = "neither" if grains.count is None else "both"
         raise LabError(f"grains.depth: give exactly one of depth and count (got {got}).")

@@ -1,4 +1,4 @@
-"""A tank's motion from a file: the record read, brought to SI, and refused where the tank could not follow it."""
+"""A tank's motion from a file: read the record, convert it to SI, and refuse what the tank could not follow."""
 
 from dataclasses import dataclass
 from typing import Annotated
@@ -13,8 +13,8 @@ from solvers.motion.history import LEAST_SAMPLES, History, Recorded
 
 KEY = "motion.history.file"
 MOST_SAMPLES = 100_000
-FASTEST = 1e3  # m/s or rad/s: numbers that come to more are not what their units say
-AT_ZERO = 1e-3  # of the largest displacement: a record that starts closer to zero starts there
+FASTEST = 1e3  # m/s or rad/s: a faster motion probably has wrong units
+AT_ZERO = 1e-3  # of the largest displacement: a record that starts closer to zero counts as starting at zero
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class HistoryGiven:
 
 
 def read_history(given: HistoryGiven) -> History:
-    """The record in SI. Raises LabError: a file that cannot be used, or samples no smooth curve goes through."""
+    """The record in SI. Raises LabError: a file that cannot be used, or samples that no smooth curve fits."""
     units = {
         "sway": _in_si(given.length_unit, "length_unit", "m"),
         "heave": _in_si(given.length_unit, "length_unit", "m"),
@@ -45,7 +45,7 @@ def read_history(given: HistoryGiven) -> History:
 
 
 def check_history(history: History) -> None:
-    """Raise LabError for too many samples, times that do not rise, or samples no smooth curve goes through."""
+    """Raise LabError for too many samples, times that do not increase, or samples that no smooth curve fits."""
     _check_times(np.array(history.time))
     for name, motion in history.motions.items():
         if len(motion.values) != len(motion.time):
@@ -54,7 +54,7 @@ def check_history(history: History) -> None:
 
 
 def check_start(history: History, soft_start: float) -> None:
-    """Raise LabError for a record that starts away from zero or in motion, if no soft start (s) brings it up."""
+    """Raise LabError for a record that starts away from zero or in motion, unless there is a soft start (s)."""
     for name, motion in history.motions.items() if soft_start == 0.0 else ():
         symbol, first = _symbol(motion), motion.values[0]
         if abs(first) > AT_ZERO * np.abs(motion.values).max():
@@ -65,7 +65,7 @@ def check_start(history: History, soft_start: float) -> None:
 
 
 def check_end(history: History, duration: float) -> None:
-    """Raise LabError for a run (s) that outlasts a record that ends in motion."""
+    """Raise LabError if the run lasts longer (s) than a record that ends in motion."""
     for name, motion in history.motions.items():
         length = motion.duration()
         if duration > length * (1.0 + 1e-9) and not motion.rests[1]:
@@ -86,11 +86,11 @@ def _check_times(time: np.ndarray) -> None:
 
 
 def _check_curve(name: str, motion: Recorded) -> None:
-    """Raise LabError for absurd speeds, and where times are so close that arithmetic fails."""
+    """Raise LabError for absurd speeds, or times so close that the curve cannot be computed."""
     with np.errstate(all="ignore"):
         try:
             usable = motion.fastest(0.0) < FASTEST and np.isfinite(motion.parameters(0.0)).all()
-        except ValueError:  # scipy's word for it
+        except ValueError:  # raised by scipy
             usable = False
     if not usable:
         raise LabError(f"{KEY}: {name} moves too fast to be followed; look at its numbers and units.")

@@ -1,4 +1,4 @@
-"""The materials in a preset: of grains, walls and kinds of grains, and what each inherits."""
+"""The materials of a preset: those of grains, walls and kinds of grains, and what each inherits."""
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, make_dataclass, replace
@@ -10,7 +10,7 @@ from solvers.grains.laws import COHESION
 from solvers.grains.materials import Material
 from solvers.machine.marks import Interval
 
-LEAST_RESTITUTION, LONGEST_DISSIPATION = 1e-6, 0.1  # and s: beyond these nothing rebounds that one could see
+LEAST_RESTITUTION, LONGEST_DISSIPATION = 1e-6, 0.1  # 1 and s: beyond these no rebound is visible
 
 WallGiven = make_dataclass(
     "WallGiven",
@@ -36,9 +36,9 @@ KindGiven = make_dataclass(
 
 @dataclass(frozen=True)
 class Kind:
-    """A share of the grains, by number, that is of another material than the rest.
+    """A fraction of the grains, by number, of another material than the rest.
 
-    `against` says how a grain of this kind touches one of the rest; None: by the mean of the two materials.
+    `against`: the material for contacts of this kind with the rest; None: the mean of the two materials.
     """
 
     share: float
@@ -47,7 +47,7 @@ class Kind:
 
 
 def check_dissipation(material: Material | WallGiven, section: str, needed: bool) -> None:
-    """Raise LabError where a material says how it rebounds twice or, if `needed`, not at all, or beyond all measure."""
+    """Raise LabError if the rebound is given twice, is out of range or, if `needed`, is missing."""
     given = [material.restitution, material.dissipative_time]
     if None not in given:
         raise LabError(f"{section}.restitution: give restitution or dissipative_time, not both.")
@@ -61,7 +61,7 @@ def check_dissipation(material: Material | WallGiven, section: str, needed: bool
 
 
 def check_cohesion(law: str, material: Material) -> None:
-    """Raise LabError where a law of cohesion lacks what it needs; walls and other kinds of grains inherit it."""
+    """Raise LabError if a value that the cohesion law needs is missing; walls and kinds of grains inherit these."""
     for name in COHESION[law].needs:
         if getattr(material, name) is None:
             example = {"humidity": "70 %", "bridge_volume": "0.002 mm^3"}[name]
@@ -69,7 +69,7 @@ def check_cohesion(law: str, material: Material) -> None:
 
 
 def full_kinds(given: Mapping[str, KindGiven], material: Material) -> dict[str, Kind]:
-    """The kinds of grains beside those of `material`."""
+    """The resolved kinds of grains, other than those of `material`."""
     kinds = {}
     for name, kind in given.items():
         check_dissipation(kind, f"kinds.{name}", needed=False)
@@ -94,7 +94,7 @@ def full_kinds(given: Mapping[str, KindGiven], material: Material) -> dict[str, 
 
 
 def over(material: Material, given: object) -> Material:
-    """A material with what is given in place of its own."""
+    """The material with the given values in place of its own."""
     names = {name for name in asdict(material)}
     own = {name: value for name, value in asdict(given).items() if name in names and value is not None}
     if "restitution" in own:

@@ -1,4 +1,4 @@
-"""What moves the tank in a preset: every registered motion, and a record."""
+"""The motion of the tank in a preset: every registered motion, and a recorded one."""
 
 from dataclasses import dataclass, make_dataclass
 from typing import Annotated
@@ -11,13 +11,13 @@ from solvers.motion.history import History
 
 @dataclass(frozen=True)
 class MotionGroup:
-    """What moves the tank."""
+    """The motions of the tank."""
 
     soft_start: Annotated[float, Unit("s"), Interval(ge=0)] = 0.0
 
     @property
     def parts(self) -> dict[str, object]:
-        """The motions in use, by name, innermost first; those of a record are the outermost."""
+        """The motions in use by name, innermost first; those from a record are outermost."""
         named = {name: getattr(self, name) for name in MOTIONS}
         used = {name: part for name, part in named.items() if part is not None}
         recorded = self.history.motions if self.history else {}
@@ -37,7 +37,7 @@ Motion = _motions("Motion", History)
 
 
 def full_motion(given: MotionGiven) -> Motion:
-    """The motions in full, a record read from its file."""
+    """The resolved motions; a record is read from its file."""
     kept = {name: getattr(given, name) for name in ("soft_start", *MOTIONS)}
     if given.history is None:
         return Motion(**kept)

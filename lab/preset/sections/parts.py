@@ -1,4 +1,4 @@
-"""Parts in the tank, as a preset gives them: what no part can be or do is refused."""
+"""Checks of the parts in the tank, as a preset gives them."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from math import isfinite
@@ -21,7 +21,7 @@ def check_parts(parts: Mapping[str, Part], outline: Sequence[Point]) -> None:
 
 
 def _faults(part: Part, outline: Sequence[Point]) -> Iterator[tuple[str, str]]:
-    """Keys and what is wrong with them."""
+    """The keys at fault, each with what is wrong."""
     points = part.points
     if not 2 <= len(points) <= MOST_CORNERS:
         yield "points", f"from 2 to {MOST_CORNERS} points are needed (got {len(points)})"
@@ -45,7 +45,7 @@ def _faults_of_move(part: Part) -> Iterator[tuple[str, str]]:
 
 
 def _near(point: Point, outline: Sequence[Point]) -> bool:
-    """Whether a point is within the box around the tank widened by the tank's larger extent: a funnel stands above."""
+    """Whether a point is in the tank's bounding box widened by its larger side; a funnel may stand above the tank."""
     bounds = [(min(axis), max(axis)) for axis in zip(*outline, strict=True)]
     size = max(high - low for low, high in bounds)
     return all(low - size <= x <= high + size for x, (low, high) in zip(point, bounds, strict=True))

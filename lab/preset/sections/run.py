@@ -1,4 +1,4 @@
-"""How a run is made in a preset: how long, how often, how finely, and on what."""
+"""The run of a preset: duration, repeats, step, accuracy and device."""
 
 import math
 from dataclasses import dataclass, field
@@ -15,7 +15,7 @@ Time = Annotated[float, Unit("s"), Interval(gt=0)]
 
 @dataclass(frozen=True)
 class RunGiven:
-    """How long, how often and how finely; `duration` is derived where a motion has an end."""
+    """Duration, repeats, step, accuracy and device; by default `duration` lasts until the last motion ends."""
 
     duration: Time | None = None
     repeats: Annotated[int, Interval(ge=1, le=100_000)] = 1

@@ -1,4 +1,4 @@
-"""Irregular grains as a preset gives them: classes of outlines, and the outlines that grains of a class may have."""
+"""Irregular grains of a preset: classes of outlines, and the outlines of each class."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
@@ -17,10 +17,10 @@ from solvers.machine.errors import BadOutline
 from solvers.machine.marks import Interval, Unit
 
 MOST_DESCRIPTORS, MOST_DRAWS = 100, 1000
-TRIED, BELOW = 6, 0.75  # outlines that are drawn to see how easily such grains are turned; what lies below all
-SHARP = 0.05  # of R0: dents of which `continuous` may lose contacts; with those of 0.076 it does not
+TRIED, BELOW = 6, 0.75  # outlines drawn to estimate `least_mass`; factor on their least, as a safe lower value
+SHARP = 0.05  # of R0: in dents of smaller radius `continuous` may lose contacts; with 0.076 it does not
 MOST_POINTS = 1000  # of an outline in a file
-DESCRIBED = ("cargo", "descriptors", "contour", "spectrum", "disc")  # the keys of which a class has exactly one
+DESCRIBED = ("cargo", "descriptors", "contour", "spectrum", "disc")  # a class has exactly one of these keys
 
 # No outline has a descriptor of twice R0: the mean of R (1 − cos(nθ + δ_n)), which is positive, is R0 − D_n/2.
 Descriptor = Annotated[float, Interval(gt=-2, lt=2)]
@@ -43,7 +43,7 @@ class SpectrumGiven:
 class ShapeGiven:
     """A class of outlines as a preset gives it: exactly one of DESCRIBED, its share, its size.
 
-    `descriptors` are relative to R0, their `phases` random where they are left out, as those of a spectrum: then
+    `descriptors` are relative to R0. Their `phases` are random if left out, as those of a spectrum always are; then
     `draws` outlines are drawn for each repeat. `diameter` is that of the disc of equal area.
     """
 
@@ -65,9 +65,9 @@ class ShapeGiven:
 
 @dataclass(frozen=True)
 class Shape:
-    """A class of outlines in full: its share of the grains by number, the diameter (m) of the disc of equal area.
+    """A resolved class of outlines: its share of the grains by number, the diameter (m) of the disc of equal area.
 
-    `descriptors` D_1, D_2, … relative to R0 and `phases` (rad); None: drawn at random, `draws` times for each repeat.
+    `descriptors` D_1, D_2, … are relative to R0; `phases` in rad, None: drawn at random, `draws` times per repeat.
     """
 
     share: float
@@ -83,7 +83,7 @@ class Shape:
 
     @property
     def reach(self) -> float:
-        """No outline goes farther from its centroid than this, in radii of the disc of equal area.
+        """Upper bound on the outlines' distance from their centroid, in radii of the disc of equal area.
 
         Exact for given phases. For random ones a bound: R is at most (1 + S) R0 with S = Σ|D_n|/R0, and the centroid,
         ∫ R³ (cos θ, sin θ) dθ/(3 A) with A ≥ π R0², at most |D_1| + (1 + S/3) Σ D_n²/R0 off the origin.
@@ -96,10 +96,10 @@ class Shape:
 
     @property
     def least_mass(self) -> float:
-        """With what part of its mass a grain resists a push on its outline at least, see `Contour.least_mass`.
+        """Least effective mass of a grain against a push on its outline, over its mass; see `Contour.least_mass`.
 
-        Exact for given phases. For random ones, a little less than the least of some that are drawn with a seed of
-        their own, so that it does not depend on which repeats there are.
+        Exact for given phases. For random ones, BELOW times the least of TRIED outlines, drawn with a fixed seed so
+        that it does not depend on the repeats.
         """
         if not self.random:
             return self.outlines()[0].least_mass
@@ -108,7 +108,7 @@ class Shape:
 
     def outlines(self, random: np.random.Generator | None = None) -> list[Contour]:
         """The outlines of one repeat, centred, with the area of a disc of radius 1. Raises BadOutline."""
-        radius = 0.5 * self.diameter  # so that what is said of an outline has the size that people know
+        radius = 0.5 * self.diameter  # so that messages about an outline have its real size
         sizes = radius * np.array(self.descriptors)
         if self.random:
             drawn = [draw(radius, sizes, random) for _ in range(self.draws)]
@@ -118,7 +118,7 @@ class Shape:
 
 
 def read_shapes(given: Mapping[str, ShapeGiven], diameter: float | None, shares: str) -> dict[str, Shape]:
-    """The classes in full, those without a diameter of `diameter` (m); shares are by number or by mass.
+    """The resolved classes; `diameter` (m) is for those without their own; `shares`: by number or by mass.
 
     Raises LabError, one sentence with the key.
     """
@@ -133,9 +133,9 @@ def read_shapes(given: Mapping[str, ShapeGiven], diameter: float | None, shares:
 
 
 def by_number(classes, shares: str) -> tuple[tuple[float, float], ...]:
-    """Classes (diameter m, share) with their shares by number, which add up to 1; `shares`: number, or mass of spheres.
+    """Convert shares of classes (diameter m, share) to shares by number, with sum 1; `shares`: number or sphere mass.
 
-    A spread of the diameters relative to those of their classes changes all mean masses alike.
+    A relative spread of the diameters within the classes changes all mean masses by the same factor.
     """
     power = 3 if shares == "mass" else 0
     numbers = [share / diameter**power for diameter, share in classes]
@@ -165,7 +165,7 @@ def _shape(key: str, given: ShapeGiven, diameter: float | None) -> Shape:
 
 
 def _described(key: str, given: ShapeGiven) -> tuple[tuple[float, ...], tuple[float, ...] | None]:
-    """Descriptors relative to R0 and phases (rad), None where they are random. Raises BadOutline, LabError."""
+    """Descriptors relative to R0 and phases (rad), None if they are random. Raises BadOutline, LabError."""
     if given.cargo is not None:
         return cargo(given.cargo).descriptors, cargo(given.cargo).phases
     if given.contour is not None:
@@ -191,7 +191,7 @@ def _fitted(key: str, path: str) -> tuple[tuple[float, ...], tuple[float, ...]]:
 
 
 def caution(contours: Sequence[Contour], rule: str) -> str | None:
-    """What to know of grains of these outlines that touch by a rule, in a sentence; None if nothing.
+    """A warning about these outlines under a contact rule, in one sentence; None if there is nothing to warn of.
 
     Of 24 pairs of discs with 50 lobes, dents of 0.03 R0, four gain energy by `continuous`; those of 0.076 R0 do not.
     """

@@ -1,4 +1,4 @@
-"""What of a ship in a preset does not go together, each in one sentence that names the key."""
+"""Consistency checks of a ship in a preset; each error is one sentence that names the key."""
 
 import numpy as np
 
@@ -8,9 +8,9 @@ from lab.preset.units import show
 from solvers.machine.errors import Unavailable
 from solvers.ship.section import Section
 
-TOUCHING = 1e-9  # of the hull's size: a hold that is no farther out is in
-MOST_FLAT = 200.0  # a section's breadth and draught, one over the other: panels do not resolve what is flatter
-FARTHEST = 10.0  # times a hull's size: what is farther from her origin is not hers
+TOUCHING = 1e-9  # of the hull's size: tolerance for a hold outside the hull
+MOST_FLAT = 200.0  # largest ratio of breadth and draught, either way; the panels do not resolve flatter sections
+FARTHEST = 10.0  # times the hull's size: largest distance of a ship's points from the origin
 
 NEEDS = {
     "regular": ("amplitude",),
@@ -21,7 +21,7 @@ NEEDS = {
 
 
 def check_ship(ship: ShipGiven | None, waves: WavesGiven | None, moves: bool, hold: np.ndarray) -> None:
-    """Raise LabError for what does not go together; `hold` is the tank's outline (m, 2), m."""
+    """Raise LabError for settings that contradict each other; `hold` is the tank's outline (m, 2), m."""
     if ship is None:
         if waves is not None:
             raise LabError("waves: there is no ship in them; add a table [ship], or leave the waves out.")
@@ -56,7 +56,7 @@ def check_ship(ship: ShipGiven | None, waves: WavesGiven | None, moves: bool, ho
 
 
 def _check_lengths(ship: ShipGiven, box: bool) -> None:
-    """Raise LabError for lengths so far apart that nothing can be worked out from them."""
+    """Raise LabError for lengths so different that the hull's coefficients cannot be computed."""
     breadth, draught = float(np.ptp(ship.corners[:, 0])), ship.draught
     if not 1.0 / MOST_FLAT <= breadth / draught <= MOST_FLAT:
         key = "ship.breadth" if box else "ship.outline"
@@ -73,7 +73,7 @@ def _check_lengths(ship: ShipGiven, box: bool) -> None:
 
 
 def _check_hatch(ship: ShipGiven, box: bool) -> None:
-    """Raise LabError where a hatch has no place."""
+    """Raise LabError if the hull cannot have this hatch."""
     if ship.hatch is None:
         return
     if not box:
@@ -85,7 +85,7 @@ def _check_hatch(ship: ShipGiven, box: bool) -> None:
 
 
 def _check_openings(ship: ShipGiven, box: bool) -> None:
-    """Raise LabError where she floods at rest, or her deck is no deck."""
+    """Raise LabError if an opening is under water at rest, or the deck is not above the waterline."""
     keel, top = (float(end(ship.corners[:, 1])) for end in (np.min, np.max))
     waterline = keel + ship.draught
     for y, z in ship.openings:
@@ -102,7 +102,7 @@ def _check_openings(ship: ShipGiven, box: bool) -> None:
 
 
 def _check_hold(ship: ShipGiven, hold: np.ndarray) -> None:
-    """Raise LabError where the hold stands out of the hull: a corner of it outside, or one of the hull inside."""
+    """Raise LabError if the hold sticks out of the hull: a corner of it outside, or one of the hull inside it."""
     hull, placed = ship.corners, hold + np.array(ship.hold)
     slack = TOUCHING * float(np.ptp(hull, axis=0).max())
     out = [corner for corner in placed if _inside(corner, hull) < -slack]
@@ -115,7 +115,7 @@ def _check_hold(ship: ShipGiven, hold: np.ndarray) -> None:
 
 
 def _inside(point: np.ndarray, outline: np.ndarray) -> float:
-    """How far (m) a point is from the edge of a polygon (m, 2); negative outside."""
+    """Distance (m) of a point from the edge of a polygon (m, 2); negative outside."""
     begin, along = outline, np.roll(outline, -1, axis=0) - outline
     share = np.clip(((point - begin) * along).sum(1) / (along**2).sum(1), 0.0, 1.0)
     away = float(np.hypot(*(point - begin - share[:, None] * along).T).min())

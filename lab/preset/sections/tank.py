@@ -1,4 +1,4 @@
-"""The tank in a preset: as it is given, in full, and what it cannot be."""
+"""The tank of a preset: as given, as resolved, and its checks."""
 
 from dataclasses import dataclass
 from typing import Annotated
@@ -21,8 +21,8 @@ Thickness = Annotated[float, Unit("m"), Interval(gt=0, le=1e3)]
 class TankGiven:
     """A tank as a preset gives it: width and height, or an outline; whether it has a lid and a lining of grains.
 
-    The plane is a slab `thickness` thick, that of the grains' mean diameter unless given: forces are those on the slab,
-    and a ship carries as many of them as fit into a metre.
+    The plane stands for a slab of this `thickness`, by default the grains' mean diameter: forces are those on the slab,
+    and a ship carries as many slabs as fit into a metre.
     """
 
     width: Length | None = None
@@ -37,8 +37,8 @@ class TankGiven:
 class Tank:
     """The tank's outline (m) in its own frame, a simple polygon, counter-clockwise.
 
-    `open_edges` carry no wall; edge k runs from corner k to corner k + 1. `roughness` is the diameter (m) of the fixed
-    grains that line floor and sides, None where these are smooth; `thickness` (m) is the slab's, None for the grains'
+    `open_edges` have no wall; edge k runs from corner k to corner k + 1. `roughness` is the diameter (m) of the fixed
+    grains that line floor and sides, None if these are smooth; `thickness` (m) is the slab's, None for the grains'
     mean diameter.
     """
 
@@ -61,7 +61,7 @@ class Tank:
 
 
 def full_tank(given: TankGiven) -> Tank:
-    """The tank in full. Raises LabError for an outline that is none, and for a lining that does not fit."""
+    """The resolved tank. Raises LabError for an invalid outline, and for a lining that does not fit."""
     outline = np.array(_outline(given))
     open_edges = () if given.lid else top_edges(outline)
     if not given.lid and not open_edges:

@@ -1,4 +1,4 @@
-"""What is kept of a run and how it is filmed."""
+"""What a run records, and how it is filmed."""
 
 from dataclasses import dataclass
 from typing import Annotated, Literal
@@ -13,7 +13,7 @@ Rate = Annotated[float, Unit("Hz"), Interval(gt=0, le=1e6)]
 
 @dataclass(frozen=True)
 class Record:
-    """How often the series and the frames are sampled, how often (wall clock) all is saved, what else is written."""
+    """Sampling rates of series and frames, wall-clock time between checkpoints, and whether XDMF is written."""
 
     series_rate: Rate = 100.0
     picture_rate: Rate = 25.0
@@ -23,7 +23,7 @@ class Record:
 
 @dataclass(frozen=True)
 class Video:
-    """The picture's size in pixels, what colours the grains, whose frame, the playback speed."""
+    """The picture's size in pixels, colouring of the grains, frame of reference, playback speed."""
 
     width: Annotated[int, Interval(ge=320, le=7680)] = 1280
     height: Annotated[int, Interval(ge=180, le=4320)] = 720
@@ -33,7 +33,7 @@ class Video:
 
 
 def check_video(video: Video) -> None:
-    """Raise LabError for pictures that cannot be filmed."""
+    """Raise LabError for picture sizes that the video codec cannot encode."""
     for name in ("width", "height"):
         if getattr(video, name) % 2:
             raise LabError(f"video.{name}: must be even for H.264 (got {getattr(video, name)}).")

@@ -1,1 +1,1 @@
-"""The lab's engine beside other people's: one file for each peer code."""
+"""Benchmarks: accuracy, speed, stability, survival, graphics processors, outlines, and comparisons with peer codes."""

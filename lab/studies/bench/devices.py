@@ -1,4 +1,4 @@
-"""What graphics processors are here, by the names that their drivers give."""
+"""The graphics processors of this machine, with the names that their drivers give."""
 
 import ctypes
 import sys
@@ -23,7 +23,7 @@ class Device:
 
 
 def device(arch: str) -> Device | None:
-    """The device that an arch, "cuda" or "vulkan", computes on; None where its driver tells of none."""
+    """The device that an arch, "cuda" or "vulkan", computes on; None if its driver tells of none."""
     found = _cuda_devices() if arch == "cuda" else _vulkan_devices()
     return found[0] if found else None
 

@@ -1,4 +1,4 @@
-"""cargolab bench gpu: the same bed on graphics processors and on the processor, and what they do in a second."""
+"""cargolab bench gpu: the same bed on GPUs and on the CPU, compared in results and in speed."""
 
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool

@@ -1,4 +1,4 @@
-"""cargolab bench outlines: how irregular grains touch, by rule and nodes: what energy it loses, what a step costs."""
+"""cargolab bench outlines: contact rules of irregular grains, by rule and number of nodes: energy error and cost."""
 
 import statistics
 import time
@@ -61,7 +61,7 @@ def _ellipse(a: float, b: float) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Tried:
-    """A rule with so many nodes: relative changes of the pairs' energy, and what steps cost, those of discs being 1."""
+    """A rule with a number of nodes: relative changes of the pairs' energy, and cost of steps relative to discs."""
 
     rule: str
     nodes: int | None

@@ -1,7 +1,7 @@
-"""cargolab reproduce: every experiment of the source, run, and held against what the source states.
+"""cargolab reproduce: run the experiments of the source and compare them with what the source states.
 
-An experiment is an entry of the EXPERIMENTS list of a module of this package, which has its place in REPORTS. Its runs
-lie in a folder of their own and are not run again; one that was cut short is gone on with.
+An experiment is an entry of the EXPERIMENTS list of a module of this package; REPORTS lists the modules. Its runs are
+kept in a folder of their own and are not repeated; a run that was cut short is continued.
 """
 
 from collections.abc import Mapping, Sequence
@@ -47,12 +47,11 @@ def experiments(report: str) -> dict[str, Experiment]:
 def reproduce(
     report: str, names: Sequence[str], out: Path | str, quick: bool, quiet: bool = False, cluster: str | None = None
 ) -> Path:
-    """Run a report's experiments whose names begin like one of `names`, or all, and write it of all that is there.
+    """Run a report's experiments whose names begin like one of `names`, or all, and write the report.
 
-    Without names, an experiment that the report tells of already is not run again where its runs have been removed.
-    cluster: the address of a scheduler whose workers run all that was not begun yet, before anything runs here. The
-    report is written anew after each experiment. Returns its file. Raises LabError, one sentence, and
-    KeyboardInterrupt; what was run stays.
+    Without names, an experiment that is in the report already is not run again, even if its runs have been removed.
+    cluster: the address of a scheduler whose workers first run all that has not been begun. The report is rewritten
+    after each experiment. Returns its file. Raises LabError, one sentence, and KeyboardInterrupt; finished runs stay.
     """
     known = experiments(report)
     for name in names:
@@ -77,7 +76,7 @@ def reproduce(
 
 
 def places(known: Mapping[str, Experiment], work: Path, quick: bool) -> dict[str, dict[str, Path]]:
-    """Of each experiment the folders of its batches, by their names; what two experiments share is run once."""
+    """The folders of the batches of each experiment, by name; a batch that two experiments share is run once."""
     taken: list[tuple[Batch, Path]] = []
     folders = {}
     for name, experiment in known.items():

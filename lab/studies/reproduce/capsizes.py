@@ -1,7 +1,8 @@
-"""What would capsize the barge as the source's capsizes: readings of its equation of roll, scanned without grains.
+"""What would capsize the barge as in the source: readings of its equation of roll, scanned without grains.
 
-The source's barge rolls most below its natural frequency, so her lever softens, and capsizes with cargo that has slid;
-ours does neither. Two readings that could make her, alone and together: another lever, and cargo that counts twice.
+The source's barge rolls most below its natural frequency, so its righting lever must soften, and it capsizes with cargo
+that has slid; ours does neither. Two readings could explain it, alone or together: another lever, and cargo that is
+counted twice.
 """
 
 from collections.abc import Mapping, Sequence
@@ -42,10 +43,10 @@ SEEN = {17.0: (4.5,), 19.0: (4.4, 4.5, 4.6, 4.7)}  # mm and rad/s: where the sou
 
 @dataclass(frozen=True, eq=False)
 class Scan:
-    """Of ships in waves of all amplitudes (a,) mm and frequencies (f,) rad/s.
+    """Results for ships in waves of all amplitudes (a,) mm and frequencies (f,) rad/s.
 
-    `amplitude` (a, f) deg of the last cycles, not a number where none stayed upright, and `capsized` (a, f), the share
-    of the reposes with which she did.
+    `amplitude` (a, f) deg of the last cycles, NaN if none stayed upright, and `capsized` (a, f), the share of the
+    angles of repose with which the ship capsized.
     """
 
     amplitudes: np.ndarray
@@ -100,7 +101,7 @@ class Reading:
 
     @cached_property
     def ship(self) -> HeapShip:
-        """With the source's natural frequency while her cargo is loose and lies still."""
+        """The ship with the source's natural frequency while her loose cargo does not move."""
         barge, given = box_barge(), load(PRESET).resolved.ship
         lever = softening_lever(barge.height, VANISHING) if self.softens else barge.lever
         one = replace(barge, lever=lever, twice=self.twice).tuned(NATURAL)
@@ -109,12 +110,12 @@ class Reading:
 
     @property
     def frozen(self) -> HeapShip:
-        """The same with her cargo frozen, which counts once."""
+        """The same ship with frozen cargo, counted once."""
         return replace(self.ship, heap=None, twice=False)
 
     @cached_property
     def scans(self) -> tuple[Scan, Scan]:
-        """With loose and with frozen cargo."""
+        """The scans with loose and with frozen cargo."""
         return scan(self.ship, AMPLITUDES, FREQUENCIES), scan(self.frozen, AMPLITUDES, FREQUENCIES)
 
 

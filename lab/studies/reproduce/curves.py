@@ -1,4 +1,4 @@
-"""Figures laid out as the source's: the shift of the centre of mass against the tilt, a response against frequency."""
+"""Figures with the source's layout: shift of the centre of mass against tilt, response against frequency."""
 
 from collections.abc import Mapping, Sequence
 

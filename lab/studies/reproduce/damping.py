@@ -1,4 +1,4 @@
-"""Which damping the roll with frozen cargo asks for: scans of the barge about her fixed axis, without grains."""
+"""The damping that the source's roll with frozen cargo implies: scans of the barge about a fixed axis, no grains."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import astuple, dataclass, replace
@@ -29,7 +29,7 @@ PEAK = 36.0  # deg, of the source's frozen cargo in waves of 10 mm
 
 @dataclass(frozen=True)
 class Damping:
-    """Of the roll: a share of the critical, and a quadratic one per rad, as in the preset's [ship]."""
+    """Damping of the roll: a fraction of the critical one, and a quadratic one per rad, as in the preset's [ship]."""
 
     linear: float = 0.0
     quadratic: float = 0.0
@@ -97,7 +97,7 @@ def _steady(time: np.ndarray, roll: np.ndarray, frequency: float) -> float:
 
 
 def implied(tried: Sequence[Damping], responses: Sequence[Response], peak: float) -> Damping | None:
-    """Between the last two of ever stronger dampings whose peaks (deg) are above and below the given one, or None."""
+    """Interpolate the damping with the given peak (deg) between two of the increasing dampings tried, or None."""
     peaks = np.array([response.peak[0] for response in responses])
     above = np.flatnonzero(peaks >= peak)
     if not len(above) or above[-1] == len(tried) - 1:
@@ -109,14 +109,14 @@ def implied(tried: Sequence[Damping], responses: Sequence[Response], peak: float
 
 
 def safe(tried: Sequence[Damping], responses: Sequence[Response]) -> Damping | None:
-    """The weakest of ever stronger dampings from which on she never capsizes, or None."""
+    """The weakest of the increasing dampings tried from which on the barge never capsizes, or None."""
     lost = [index for index, response in enumerate(responses) if len(response.capsized)]
     first = lost[-1] + 1 if lost else 0
     return tried[first] if first < len(tried) else None
 
 
 def tell(found: Mapping[str, Sequence[Outcome]]) -> Told:
-    """The dampings of the source's peak, and whether she stands the higher waves with them; no run is looked at."""
+    """The dampings that give the source's peak, and whether she survives the higher waves with them; needs no runs."""
     barge = Barge(FREQUENCIES)
     rows, curves = [], {}
     for name, tried in TRIED.items():

@@ -1,8 +1,8 @@
-"""Means over beds beside one another: their ratio, their difference, and whether that lies where it should.
+"""Compare means over beds: their ratio or difference with its interval, and a verdict.
 
-A verdict is of two one-sided tests (Schuirmann 1987): a number agrees where its whole interval lies within what is
-allowed, and differs where its whole interval lies outside. At LEVEL = 95 % each is wrong once in forty times at most.
-What is between is left open, so wide scatter, or a single bed, can neither agree nor differ.
+A verdict comes from two one-sided tests (Schuirmann 1987): a number agrees if its whole interval lies within the
+allowed range, and differs if its whole interval lies outside. At LEVEL = 95 % each is wrong once in forty times at
+most. Everything else is left open, so wide scatter, or a single bed, can neither agree nor differ.
 """
 
 from collections.abc import Sequence
@@ -19,7 +19,7 @@ from lab.report.numbers import interval, with_error
 
 
 class Verdict(StrEnum):
-    """On a statement of the source."""
+    """The verdict on a statement of the source."""
 
     AGREES = "agrees"
     DIFFERS = "differs"
@@ -28,7 +28,7 @@ class Verdict(StrEnum):
 
 @dataclass(frozen=True)
 class Estimate:
-    """A number and its standard error, of so many degrees of freedom; of single beds there are none."""
+    """A number, its standard error and the degrees of freedom; a single bed has none."""
 
     value: float
     error: float
@@ -36,33 +36,33 @@ class Estimate:
 
     @classmethod
     def exact(cls, value: float) -> "Estimate":
-        """Of what does not vary from bed to bed: a ship with her cargo frozen, an equation."""
+        """An estimate without scatter from bed to bed: a ship with frozen cargo, an equation."""
         return cls(value, 0.0, inf)
 
     def ends(self, level: float = LEVEL) -> tuple[float, float]:
-        """Of its interval (Student 1908)."""
+        """The ends of its interval (Student 1908)."""
         margin = float(stats.t.ppf(0.5 + 0.5 * level, self.freedom)) * self.error if self.freedom else inf
         return self.value - margin, self.value + margin
 
     def lies(self, low: float, high: float, level: float = LEVEL) -> Verdict:
-        """Whether it lies between these."""
+        """The verdict on whether it lies between `low` and `high`."""
         least, most = self.ends(level)
         if most < low or least > high:
             return Verdict.DIFFERS
         return Verdict.AGREES if low <= least and most <= high and self.freedom else Verdict.CANNOT_TELL
 
     def less(self, number: float) -> "Estimate":
-        """It less a number."""
+        """The estimate minus a number."""
         return Estimate(self.value - number, self.error, self.freedom)
 
     def told(self, unit: str = "", sign: str = "") -> str:
-        """With its standard error, where there is one: "0.733 ± 0.067 (s.e.)"."""
+        """As text, with its standard error if there is one: "0.733 ± 0.067 (s.e.)"."""
         if self.freedom and isfinite(self.freedom):
             return with_error(self.value, self.error, unit, sign)
         return f"{self.value:{sign}.4g} {unit}".rstrip()
 
     def interval(self, unit: str = "") -> str:
-        """As text; "" where it is not known or a point."""
+        """The interval as text; "" if it is not known or a point."""
         return interval(*self.ends(), unit) if self.freedom and isfinite(self.freedom) else ""
 
 
@@ -76,7 +76,7 @@ def mean(value: Value | None, exact: bool = False) -> Estimate | None:
 
 
 def difference(first: Value | None, second: Value | None) -> Estimate | None:
-    """One mean less another, of beds of their own (Welch 1947); None without either."""
+    """Difference of two means of independent beds (Welch 1947); None if one is missing."""
     if not _known(first, second):
         return None
     errors = _error(first), _error(second)
@@ -84,7 +84,7 @@ def difference(first: Value | None, second: Value | None) -> Estimate | None:
 
 
 def ratio(value: Value | None, reference: Value | None) -> Estimate | None:
-    """One mean over another, of beds of their own (Welch 1947); None without either."""
+    """Ratio of two means of independent beds (Welch 1947); None if one is missing."""
     if not _known(value, reference) or not reference.value:
         return None
     found = value.value / reference.value
@@ -93,7 +93,7 @@ def ratio(value: Value | None, reference: Value | None) -> Estimate | None:
 
 
 def paired_ratio(value: Value | None, reference: Value | None) -> Estimate | None:
-    """The same of beds that begin alike: by their differences, which scatter less than the beds; None without two."""
+    """Ratio of two means of paired beds, which start alike: by their differences; None without two beds."""
     pairs = zip(value.worlds, reference.worlds, strict=True) if value and reference else ()
     both = np.array([pair for pair in pairs if None not in pair])
     if len(both) < 2:
@@ -103,7 +103,7 @@ def paired_ratio(value: Value | None, reference: Value | None) -> Estimate | Non
 
 
 def together(verdicts: Sequence[Verdict]) -> Verdict:
-    """Of a statement that holds where all its parts do (intersection-union test, Berger 1982)."""
+    """The verdict on a statement that holds if all its parts hold (intersection-union test, Berger 1982)."""
     if Verdict.DIFFERS in verdicts:
         return Verdict.DIFFERS
     return Verdict.CANNOT_TELL if Verdict.CANNOT_TELL in verdicts else Verdict.AGREES
@@ -120,7 +120,7 @@ def alike(values: Sequence[Value | None], within: float) -> Verdict:
 
 
 def _all_between(found: Sequence[Estimate | None], low: float, high: float) -> Verdict:
-    """Whether all lie there; that one of many does not is said with the whole's level only (Bonferroni)."""
+    """Whether all estimates lie between `low` and `high`; "differs" needs one outside at the Bonferroni level."""
     strict = 1.0 - (1.0 - LEVEL) / max(1, len(found))
     if any(one is not None and one.lies(low, high, strict) is Verdict.DIFFERS for one in found):
         return Verdict.DIFFERS
@@ -141,7 +141,7 @@ def scatters_more(first: Value | None, second: Value | None) -> Verdict:
 
 
 def chance(seen: int, beds: int) -> tuple[float, float]:
-    """The interval of the share of all beds that do what `seen` of these did (Wilson 1927)."""
+    """The interval of the share of beds with an outcome that `seen` of `beds` had (Wilson 1927)."""
     sure = float(stats.norm.ppf(0.5 + 0.5 * LEVEL))
     share, square = seen / beds, sure**2 / beds
     middle = (share + 0.5 * square) / (1.0 + square)
@@ -150,7 +150,7 @@ def chance(seen: int, beds: int) -> tuple[float, float]:
 
 
 def mostly(seen: int, beds: int) -> Verdict:
-    """Whether more beds do something than do not, where `seen` of these did."""
+    """Whether more than half of all beds have an outcome that `seen` of `beds` had."""
     if not beds:
         return Verdict.CANNOT_TELL
     low, high = chance(seen, beds)
@@ -158,7 +158,7 @@ def mostly(seen: int, beds: int) -> Verdict:
 
 
 def surely(holds: bool) -> Verdict:
-    """Of what does not vary from bed to bed."""
+    """The verdict on something that does not vary from bed to bed."""
     return Verdict.AGREES if holds else Verdict.DIFFERS
 
 
@@ -167,7 +167,7 @@ def _known(*values: Value | None) -> bool:
 
 
 def _error(value: Value) -> float:
-    """The standard error of a mean over beds; none is known of one bed, whose freedom is none."""
+    """The standard error of a mean over beds; unknown for one bed, which has no degrees of freedom."""
     return value.standard_error or 0.0
 
 

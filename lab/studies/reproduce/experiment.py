@@ -1,4 +1,4 @@
-"""An experiment of the source: the runs it takes, and what is told of them beside what the source states."""
+"""An experiment of the source: its runs, and the comparison of their results with the source's statements."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -15,8 +15,8 @@ from lab.studies.reproduce.runs import Batch, Outcome
 class Row:
     """One line of the comparison.
 
-    `apart` is our number less the source's, with its interval; `tolerance` what is allowed, and where that comes from;
-    `verdict` None where the source states nothing that could be held against ours.
+    `apart` is our number minus the source's, with its interval; `tolerance` the allowed difference and its origin;
+    `verdict` is None if the source states nothing comparable.
     """
 
     quantity: str
@@ -29,7 +29,7 @@ class Row:
 
 @dataclass(frozen=True)
 class Told:
-    """What came of an experiment: rows, the figure, and a further table, its header first."""
+    """The results of an experiment: rows, the figure, and a further table, its header first."""
 
     rows: Sequence[Row]
     figure: Figure | None = None
@@ -42,7 +42,7 @@ class Experiment:
 
     `tell` compares the outcomes of the batches, each a list by the points of its grid. `lost` says what the quick runs
     leave out; `shown` is the batch of which a `point`, mostly the last, is pictured, at this fraction of its time;
-    `remark` what one has to know to read the rows, and why they differ where they do.
+    `remark` explains how to read the rows, and why they differ from the source where they do.
     """
 
     name: str
@@ -59,7 +59,7 @@ class Experiment:
 
 @dataclass(frozen=True)
 class Tolerance:
-    """What a number may be off by, and where that comes from."""
+    """The allowed difference from a number, and its origin."""
 
     within: float
     origin: str
@@ -79,7 +79,7 @@ EXACT = "exact: nothing in it varies from bed to bed"
 
 
 def stated(quantity: str, source: float, ours: Value | None, tolerance: Tolerance, exact: bool = False) -> Row:
-    """A number of the source beside ours, in the same unit; `exact` where ours does not vary from bed to bed."""
+    """A row that compares a number of the source with ours, in the same unit; `exact`: ours has no scatter of beds."""
     unit = "" if ours is None or ours.unit == "1" else ours.unit
     said, allowed = f"{source:g} {unit}".rstrip(), tolerance.words(unit)
     found = mean(ours, exact)
@@ -91,20 +91,20 @@ def stated(quantity: str, source: float, ours: Value | None, tolerance: Toleranc
 
 
 def less(apart: Estimate, unit: str) -> str:
-    """A difference with its interval, where that is known: "+3.3, [0.9, 5.6] deg (95 %)"."""
+    """A difference as text, with its interval if known: "+3.3, [0.9, 5.6] deg (95 %)"."""
     known = apart.interval(unit)
     return f"{apart.value:+.3g}, {known}" if known else f"{apart.value:+.3g} {unit}".rstrip()
 
 
 def observed(quantity: str, source: str, ours: str, verdict: Verdict | None, tolerance: str = "") -> Row:
-    """What the source says in words, beside what we see; `tolerance` says how its words are read."""
+    """A row that compares a statement of the source in words with our result; `tolerance`: how we read its words."""
     return Row(quantity, source, ours, "", tolerance, verdict)
 
 
 def held(
     quantity: str, source: str, found: Estimate | None, between: tuple[float, float], tolerance: str, unit: str = ""
 ) -> Row:
-    """A difference or ratio with its standard error and interval, which the source has `between` these."""
+    """A row for a difference or ratio with its standard error and interval; the source's range is `between`."""
     if found is None:
         return Row(quantity, source, "not found", "", tolerance, Verdict.CANNOT_TELL)
     return Row(quantity, source, found.told(unit), found.interval(unit), tolerance, found.lies(*between))

@@ -1,4 +1,4 @@
-"""What a report keeps of an experiment when its runs are gone: what was told of them, in a file beside the page."""
+"""The results of experiments, kept in a file beside the report's page, so that it can do without their runs."""
 
 import hashlib
 import json
@@ -19,9 +19,9 @@ from lab.studies.reproduce.runs import Batch
 class Finding:
     """An experiment as the page tells it.
 
-    `asked` says which runs it was of (see `asked`); `stopped` names those that did not end, and why; `figure` and
-    `picture` are files beside the page, "" for none; `table` is a further one, its header first; `made` says by which
-    version its runs were made, and when.
+    `asked` is a hash of its runs (see `asked`); `stopped` names runs that did not reach their end, and why; `figure`
+    and `picture` are files beside the page, "" for none; `table` is a further one, its header first; `made` gives the
+    version and date of the runs.
     """
 
     asked: str
@@ -35,12 +35,12 @@ class Finding:
     made: str = "version 0.1.0"
 
 
-WORDS = ("title", "source", "reports", "based_on", "quick", "video")  # keys of a preset that no run depends on
+WORDS = ("title", "source", "reports", "based_on", "quick", "video")  # keys of a preset that do not affect a run
 FINDINGS = TypeAdapter(dict[str, Finding])
 
 
 def read_findings(path: Path, experiments: Mapping[str, Experiment], quick: bool) -> dict[str, Finding]:
-    """What is kept of these experiments, but for those that ask for other runs now. Raises LabError."""
+    """Read the findings of these experiments, except those whose runs have changed since. Raises LabError."""
     try:
         found = FINDINGS.validate_json(path.read_bytes())
     except FileNotFoundError:
@@ -55,7 +55,7 @@ def read_findings(path: Path, experiments: Mapping[str, Experiment], quick: bool
 
 
 def write_findings(path: Path, findings: Mapping[str, Finding]) -> None:
-    """Keep what was found; the old file stays until the new one is whole."""
+    """Write the findings, atomically."""
     text = json.dumps({name: asdict(finding) for name, finding in findings.items()}, indent=1, ensure_ascii=False)
     part = path.with_suffix(".part")
     part.write_text(text + "\n", encoding="utf-8")
@@ -63,7 +63,7 @@ def write_findings(path: Path, findings: Mapping[str, Finding]) -> None:
 
 
 def asked(batches: Mapping[str, Batch]) -> str:
-    """A hash of what the batches run: what their presets say of the experiment, and what is varied."""
+    """A hash of what the batches run: the keys of their presets that affect a run, and the varied keys."""
     told = [
         (
             key,
@@ -76,6 +76,6 @@ def asked(batches: Mapping[str, Batch]) -> str:
 
 
 def _of_the_experiment(given: str) -> str:
-    """A preset's keys less its words and its film, which change no number."""
+    """A preset's keys without its texts and video settings, which change no number."""
     table = tomllib.loads(given)
     return json.dumps({key: table[key] for key in sorted(table) if key not in WORDS}, sort_keys=True)

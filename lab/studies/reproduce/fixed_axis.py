@@ -1,4 +1,4 @@
-"""Many ships that roll about one fixed axis, stepped together: `motion.sail` for scans, without memory and springs."""
+"""Step many ships that roll about a fixed axis together: `motion.sail` for scans, without memory and springs."""
 
 from collections.abc import Sequence
 
@@ -15,8 +15,8 @@ def roll_together(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Times (n,) s and rolls (n, k) rad of ships in a regular wave each, from rest, the hull's origin at a heave (m).
 
-    They have one section, water and body, and differ in waves, in coefficients of radiation and in damping. Once a roll
-    has passed ± `limit` (rad) it is not a number.
+    They share section, water and body, and differ in waves, radiation coefficients and damping. Once a roll has passed
+    ± `limit` (rad) it is NaN.
     """
     moment = _moment(ships, heave)
     inertia = np.array([ship.inertia(0.0)[ROLL, ROLL] for ship in ships])

@@ -52,7 +52,7 @@ def batches(quick: bool) -> dict[str, Batch]:
 
 
 def cost(says: str, quick: bool) -> dict[str, object]:
-    """Most heaps of those that the source has a number for, fewest of those that take longest."""
+    """Settings that limit the cost: most heaps where the source has a number, fewest where runs take longest."""
     heaps = {PICTURED: 8, BOX: 12, "rising, 25 mm/s, tip of 3 d": 2}.get(says, 4)
     less = {} if says == BOX else {"grains.count": 1000 if says == NARROW else 1500}
     return {"run.accuracy": "draft", **({"run.repeats": 1, **less} if quick else {"run.repeats": heaps})}

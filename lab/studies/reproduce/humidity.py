@@ -15,7 +15,7 @@ DRY = "dry"
 
 
 def batches(quick: bool) -> dict[str, Batch]:
-    """Both readings over the humidity, and the same bed dry; two humidities do for the one that has no threshold."""
+    """Both readings over the humidity, and the same bed dry; for the one without a threshold two humidities suffice."""
     ends, between = ["50 %", "90 %"], ["50 %", "60 %", "65 %", "70 %", "80 %", "90 %"]
     runs = {DRY: tilted("tilting/wet", quick, rate=ANGLE_RATE, **{"contact.cohesion": "none"})}
     for says, name in list(LAWS.items())[quick:]:

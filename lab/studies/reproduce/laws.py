@@ -1,4 +1,4 @@
-"""What the source leaves open: does the angle of repose come from friction without memory, or from the packing?"""
+"""A question that the source leaves open: is its angle of repose due to friction without history, or to the packing?"""
 
 from collections.abc import Mapping, Sequence
 

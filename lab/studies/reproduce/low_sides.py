@@ -1,7 +1,7 @@
-"""A barge that loose cargo does take: her deck is little above the water, and she floods through her hatch.
+"""A barge that loose cargo does capsize: it has little freeboard and floods through its hatch.
 
-Sound hydrostatics, cargo that counts once: grains beside the heap of `lab.studies.reproduce.sliding_heap` at the edge
-of loss.
+With correct hydrostatics and cargo counted once: grains compared with the heap of `lab.studies.reproduce.sliding_heap`
+near the limit of loss.
 """
 
 from collections.abc import Mapping, Sequence
@@ -42,7 +42,7 @@ def batches(quick: bool) -> dict[str, Batch]:
 
 
 def tell(found: Mapping[str, Sequence[Outcome]]) -> Told:
-    """With how many beds she was lost, and with how many of the heap's reposes; and what became of her frozen cargo."""
+    """In how many beds, and at how many of the heap's angles of repose, she was lost; and with frozen cargo."""
     runs, ship, rows = found["low sides"], low_ship(), []
     sizes = np.array([leading_number(one.setting[AMPLITUDE]) for one in runs])
     _, shares = swung(ship, sizes, np.full(len(runs), FREQUENCY))

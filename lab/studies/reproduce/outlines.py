@@ -19,12 +19,12 @@ Found = Mapping[str, Sequence[Outcome]]
 Course = Callable[[Outcome], tuple[np.ndarray, np.ndarray]]
 BOX, SWAY = "shapes/box", "shapes/sway"
 NODES, OUTLINE, FRICTION = "contact.nodes", "shapes.grain.descriptors", "material.friction"
-MORE = 2.5  # deg by which the source's heap of slightly disturbed discs is steeper
+MORE = 2.5  # deg by which the source's heap of slightly disturbed discs is steeper than that of discs
 HEAPS = Tolerance(0.7, "the source's std of heaps of discs, 0.5 deg, times √2")
-FAR, NEAR = "55 deg", "40 deg"  # what grains of bent outlines slide before, and discs
+FAR, NEAR = "55 deg", "40 deg"  # tilts at which irregular grains, and discs, have slid
 EARLY, EARLY_TIME = 10.0, 0.5  # deg and s, before a bed slides
 SHIFT_LABELS = "tilt (deg)", "shift downhill of one bed (mm)"
-SECONDS = 2.0  # of the course of a swayed bed that is drawn
+SECONDS = 2.0  # length of a swayed bed's course in the figure
 SOURCE_ERRORS = {  # of discs by so many nodes, or more, section 8.2
     36: ("7 to 8 % off", (0.92, 1.08)),
     80: ("2 % off", (0.98, 1.02)),
@@ -60,7 +60,7 @@ def one_descriptor(n: int, value: float) -> list[float]:
 
 
 def over(quantity: str, source: str, found: Estimate | None, between: tuple[float, float] | None = None) -> Row:
-    """A row of a mean over that of discs, which the source has `between` these."""
+    """A row for the ratio of a mean to that of discs; the source's range is `between`."""
     quantity = f"{quantity}, over discs"
     if between:
         return held(quantity, source, found, between, f"{between[0]:g} to {between[1]:g}: the source's own")
@@ -74,9 +74,9 @@ def round_batches(quick: bool) -> dict[str, Batch]:
 
 
 def round_ones(found: Found) -> Told:
-    """The shift of round outlines before their bed slides, over that of discs, their angle, and what they cost.
+    """The shift of round outlines before their bed slides, relative to that of discs, their angle and their cost.
 
-    Once beds slide they part, however near the forces are, as beds of discs do that differ in a last bit.
+    Once beds slide they diverge, however similar the forces, as do beds of discs that differ in the last bit.
     """
     rows = _beside_discs(found, f"shift at {EARLY:g} deg", early_shift, judged=True)
     rows += _beside_discs(found, "critical angle", lambda one: one["critical_angle"], judged=False)
@@ -84,14 +84,14 @@ def round_ones(found: Found) -> Told:
 
 
 def slow_batches(quick: bool) -> dict[str, Batch]:
-    """Round grains tilted as slowly as the source's slowest, as far as their beds but creep."""
+    """Round grains tilted as slowly as the source's slowest, up to angles at which their beds only creep."""
     run = {"run.accuracy": "draft", "motion.tilt.angle": "12 deg", "run.repeats": 2 if quick else 3}
     run["motion.tilt.rate"], run["grains.depth"] = ("1 deg/s", "20 mm") if quick else ("0.3 deg/s", "40 mm")
     return as_discs_and_nodes(BOX, run, [36, 120] if quick else [36, 120, 500])
 
 
 def slow_ones(found: Found) -> Told:
-    """The shift of round outlines tilted slowly over that of discs."""
+    """The shift of slowly tilted round outlines relative to that of discs."""
     rows = _beside_discs(found, f"shift at {EARLY:g} deg", early_shift, judged=True)
     figure = Figure(figsize=(6.4, 3.4), layout="constrained")
     _draw_courses(figure.add_subplot(), found, _shift, EARLY, SHIFT_LABELS)
@@ -110,7 +110,7 @@ def early_shift(one: Outcome) -> Value:
 
 
 def _beside_discs(found: Found, quantity: str, value: Callable[[Outcome], Value | None], judged: bool) -> list[Row]:
-    """Rows of a quantity of smooth outlines and of nodes over that of discs, bed by bed."""
+    """Rows of the ratio of a quantity of smooth outlines and of nodes to that of discs, bed by bed."""
     discs, smooth = (value(found[name][0]) for name in ("discs", "smooth"))
     rows = [observed(f"{quantity}: discs", "", counted(discs), None)]
     rows.append(over(f"{quantity}: smooth outlines", "", paired_ratio(smooth, discs)))
@@ -122,7 +122,7 @@ def _beside_discs(found: Found, quantity: str, value: Callable[[Outcome], Value 
 
 
 def _drawn(found: Found) -> dict[str, Outcome]:
-    """Whose courses are drawn: discs, smooth outlines, and few, more and many nodes."""
+    """The outcomes whose courses are drawn: discs, smooth outlines, and few, more and many nodes."""
     by_nodes = {one.setting[NODES]: one for one in found["nodes"]}
     nodes = {f"{n} nodes": by_nodes[n] for n in (36, 120, 500) if n in by_nodes}
     return {"discs": found["discs"][0], "smooth outlines": found["smooth"][0], **nodes}
@@ -139,7 +139,7 @@ def _draw_courses(axes: Axes, found: Found, course: Course, early: float, labels
 
 
 def _courses_and_cost(found: Found, course: Course, early: float, labels: tuple[str, str]) -> Figure:
-    """Courses, and beside them the time that whole runs took a grain and step."""
+    """Figure of courses and of the computing time of whole runs per grain and step."""
     figure = Figure(figsize=(7.2, 3.4), layout="constrained")
     left, right = figure.subplots(1, 2)
     _draw_courses(left, found, course, early, labels)
@@ -164,7 +164,7 @@ def sway_batches(quick: bool) -> dict[str, Batch]:
 
 
 def swayed(found: Found) -> Told:
-    """The first swing of the centre of mass and its amplitude later over those of discs, and its course."""
+    """First swing and later amplitude of the centre of mass relative to those of discs, and its course."""
     rows = _beside_discs(found, f"range in the first {EARLY_TIME:g} s", early_range, judged=True)
     rows += _beside_discs(found, "amplitude", lambda one: one["response_amplitude"], judged=False)
     labels = "time (s)", "centre of mass of one bed (mm)"
@@ -195,7 +195,7 @@ def descriptor_batches(quick: bool) -> dict[str, Batch]:
 
 
 def descriptors(found: Found) -> Told:
-    """Angles over those of discs, the larger the descriptor the larger."""
+    """Critical angles relative to those of discs; in the source they grow with the descriptor."""
     discs = found["discs"][0]["critical_angle"]
     rows, largest = [observed("discs", "", counted(discs), None)], []
     for name in NAMES.values():
@@ -224,7 +224,7 @@ def _descriptor_figure(found: Found, discs: Value) -> Figure:
 
 
 def phase_batches(quick: bool) -> dict[str, Batch]:
-    """Each bed of grains of one outline, drawn anew for each bed."""
+    """Beds whose grains all have one outline, drawn anew for each bed."""
     draw = {"shapes.grain": False, "shapes.drawn.draws": 1}
     slight = {**cost(quick, 12, NEAR), **draw, "shapes.drawn.spectrum": SLIGHT}
     irregular = {**cost(quick, 12), **draw, "shapes.drawn.spectrum": IRREGULAR}
@@ -233,7 +233,7 @@ def phase_batches(quick: bool) -> dict[str, Batch]:
 
 
 def phases(found: Found) -> Told:
-    """Slightly disturbed ones slide as discs do, irregular ones much later."""
+    """In the source slightly disturbed outlines slide as discs do, irregular ones much later."""
     angle = {name: outcomes[0]["critical_angle"] for name, outcomes in found.items()}
     discs = angle["discs"]
     rows = [observed(name, "", counted(value), None) for name, value in angle.items()]
@@ -253,7 +253,7 @@ def heap_batches(quick: bool) -> dict[str, Batch]:
 
 
 def heaps(found: Found) -> Told:
-    """The heap of slightly disturbed discs is a little steeper."""
+    """In the source the heap of slightly disturbed discs is a little steeper than that of discs."""
     angle = {name: outcomes[0]["heap_angle"] for name, outcomes in found.items()}
     rows = [observed(name, "", counted(value), None) for name, value in angle.items()]
     between = MORE - HEAPS.within, MORE + HEAPS.within

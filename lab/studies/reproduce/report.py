@@ -1,4 +1,4 @@
-"""The report: an overview, and of each experiment what the source states, what we get, a figure and a picture."""
+"""The report: an overview, and for each experiment the source's statement, our result, a figure and a picture."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -22,7 +22,7 @@ TITLES = {
     "shapes": "The source's experiments with irregular grains, reproduced",
     "ship": "The source's ships with loose cargo, reproduced",
 }
-# What the full report loses against the source's own runs.
+# Limits of the full report compared with the source's own runs.
 LESS = {
     "granular": f"""Beds are run at draft accuracy ({LEVELS["draft"].error}) and tilted at 3 or 5 deg/s where the source
         has 0.15 to 3, often four where it has 12: within the scatter of beds neither shows (`cargolab bench
@@ -44,9 +44,9 @@ RULE = f"""A verdict is of the {100.0 * LEVEL:g} % interval of the difference: *
 def write_report(
     name: str, experiments: Mapping[str, Experiment], ended: Mapping[str, Mapping[str, Path]], out: Path, quick: bool
 ) -> Path:
-    """Write NAME.md (quick: NAME-quick.md) of the experiments whose runs have ended, and of what was kept of others.
+    """Write NAME.md (quick: NAME-quick.md) from the experiments whose runs have ended and the kept findings of others.
 
-    ended: of each the folders of its batches. Beside the page are its pictures, and NAME.json, what is kept.
+    ended: the folders of the batches of each. Beside the page are its pictures, and NAME.json with the findings.
     """
     command = f"reproduce {name}{' --quick' if quick else ''}"
     page = Page(out, page_name(name, quick), TITLES[name], command, RUNS)
@@ -64,12 +64,12 @@ def write_report(
 
 
 def page_name(report: str, quick: bool) -> str:
-    """Of the page of a report, and of the files beside it."""
+    """Name of a report's page, and of the files beside it."""
     return f"{report}-quick" if quick else report
 
 
 def kept_file(report: str, out: Path, quick: bool) -> Path:
-    """Where what was found is kept."""
+    """The file with the kept findings."""
     return out / f"{page_name(report, quick)}.json"
 
 
@@ -92,7 +92,7 @@ def _finding(page: Page, experiment: Experiment, found: Mapping[str, list[Outcom
 
 
 def _made(runs: Sequence[Outcome]) -> str:
-    """By which version the last of the runs was made, and when."""
+    """Version and date of the latest of the runs."""
     with open_recording(runs[-1].folder) as recording:
         return f"version {recording.versions.get('cargo-shift-lab', '?')}, {recording.created[:10]}"
 
@@ -124,7 +124,7 @@ def _overview(
 
 
 def _counted(rows: Sequence[Row]) -> str:
-    """How many verdicts of each kind there are."""
+    """Text with the number of verdicts of each kind."""
     counts = {verdict: sum(row.verdict is verdict for row in rows) for verdict in Verdict}
     agree, differ, open_ones = (counts[verdict] for verdict in Verdict)
     return f"""**Of {sum(counts.values())} statements held against the source {agree} agree, {differ} differ, and of

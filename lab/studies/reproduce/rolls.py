@@ -1,4 +1,4 @@
-"""How far ships roll, loose cargo beside frozen, laid out as figures 7.6 to 7.19 of Spandonidis (2016)."""
+"""Figures of the roll of ships with loose and frozen cargo, laid out as figures 7.6 to 7.19 of Spandonidis (2016)."""
 
 from collections.abc import Collection, Mapping, Sequence
 
@@ -55,7 +55,7 @@ def rolls_against(key: str, label: str, families: Mapping[str, Sequence[Outcome]
 
 
 def _curve(axes: Axes, at: Sequence[float], values: Sequence[Value | None], colour, label: str, style: dict) -> None:
-    """A gap where there is no value."""
+    """Draw a curve, with a gap at each missing value."""
     mean = [np.nan if value is None or value.value is None else value.value for value in values]
     spread = [0.0 if value is None or value.std is None else value.std for value in values]
     axes.errorbar(at, mean, spread, ms=4, capsize=2, lw=1.2, color=colour, label=label, **style)

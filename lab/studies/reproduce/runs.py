@@ -1,4 +1,4 @@
-"""The runs of an experiment: done once, gone on with where they were cut short, and read again."""
+"""The runs of an experiment: run once, continued if cut short, and read again."""
 
 import json
 from collections.abc import Mapping, Sequence
@@ -31,7 +31,7 @@ class Batch:
 
 @dataclass(frozen=True)
 class Outcome:
-    """A run that is done: the values of its grid's keys, its folder and measures, and what it cost."""
+    """A finished run: the values of its grid's keys, its folder and measures, and its cost."""
 
     setting: Mapping[str, object]
     folder: Path
@@ -49,7 +49,7 @@ class Outcome:
 
 
 def errands(batch: Batch, folder: Path) -> list[Errand]:
-    """What of a batch was not begun yet and can be run on a cluster. Raises LabError."""
+    """The launches of a batch that have not been begun and can run on a cluster. Raises LabError."""
     if batch.axes:
         return sweep_errands(batch.preset, batch.axes, batch.changes, folder)
     if (folder / FILE_NAME).exists():
@@ -58,7 +58,7 @@ def errands(batch: Batch, folder: Path) -> list[Errand]:
 
 
 def carry_out(batch: Batch, folder: Path, quiet: bool) -> None:
-    """Run what has not been run yet. A bed that the watch stops ends its run and no other. Raises LabError."""
+    """Run what has not been run yet. If the watch stops a bed, only its run ends. Raises LabError."""
     if batch.axes:
         run_sweep(batch.preset, batch.axes, batch.changes, folder, video=False, quiet=quiet)
         return
@@ -72,12 +72,12 @@ def carry_out(batch: Batch, folder: Path, quiet: bool) -> None:
             raise LabError(f"{folder} holds another run than this experiment asks for: remove it.")
         if state_of(folder) != "done":
             resume_run(folder, video=False, plots=False, quiet=quiet)
-    except BadState:  # the recording says so, and the report
+    except BadState:  # the recording and the report say so
         pass
 
 
 def outcomes(folder: Path) -> list[Outcome]:
-    """The runs of a batch in the order of its grid; none unless all are done."""
+    """The runs of a batch in the order of its grid; empty unless all are done."""
     if (folder / SWEEP).exists():
         settings = read_sweep(folder).settings
         runs = [(setting, point_folder(folder, k)) for k, setting in enumerate(settings)]

@@ -1,4 +1,4 @@
-"""The measured section against the lab, like with like: in its flume's wave train, and what each term explains."""
+"""Compare the measured section with the lab in the flume's own wave train, and find what each term explains."""
 
 from collections.abc import Mapping, Sequence
 from math import pi
@@ -28,9 +28,9 @@ from lab.studies.reproduce.section_terms import (
 )
 from lab.studies.reproduce.ship import model_batches
 
-WITHIN = 10.0  # %, beyond what the two instruments read
+WITHIN = 10.0  # %, tolerance beyond the readings of the two instruments
 TOLERANCE = f"{WITHIN:g} % beyond what both instruments read: our choice, they differ by up to 28 %"
-TOLD = 2.0  # % of the camera's reading: a term that changes less in every test is not in the table
+TOLD = 2.0  # % of the camera's reading: terms that change less in every test are left out of the table
 PEAK = 5.0, 5.5  # rad/s, about the natural roll and heave
 DENSE = np.array([4.0, 4.3, 4.6, 4.8, 4.9, 5.0, 5.1, 5.2, 5.3, 5.4, 5.5, 5.7, 6.0, 6.5, 7.0, 8.0, 9.0, 10.0])  # rad/s
 SPLIT = (4.0, 6.0), (6.0, 10.0)  # rad/s, of the figure's columns
@@ -39,7 +39,7 @@ LIGHT, WARM = "#9ecae1", "#f4a582"
 
 
 def tell(found: Mapping[str, Sequence[Outcome]]) -> Told:
-    """Rows of the comparison and of what explains the peak, a table of all terms; no run is looked at."""
+    """Rows of the comparison and of what explains the peak, and a table of all terms; it needs no runs."""
     base, ours = potential_flow(), estimated()
     frequencies = np.array([one.frequency for one in MEASUREMENTS])
     steady = base.steady(frequencies)
@@ -81,7 +81,7 @@ def counted_within(ours: np.ndarray) -> list[Row]:
 
 
 def explained(steady: np.ndarray, train: np.ndarray, with_term: Mapping[Term, np.ndarray]) -> list[Row]:
-    """What of the excess of roll about its peak each term takes away, in per cent of that excess."""
+    """The part of the excess of roll near its peak that each term removes, in per cent of that excess."""
     peak = [k for k, test in enumerate(MEASUREMENTS) if PEAK[0] < test.frequency < PEAK[1]]
     camera = np.array([test.camera[2] for test in MEASUREMENTS])[peak]
     other = np.array([test.accelerometers[2] for test in MEASUREMENTS])[peak]
@@ -124,7 +124,7 @@ def _changed(values: np.ndarray, before: np.ndarray, unit: np.ndarray) -> list[s
 
 
 def window(frequency: float) -> tuple[float, float]:
-    """When (s after the flap's start) to measure: the train steady at the model, its own waves not yet back."""
+    """Time window (s after the flap's start): the train is steady, the model's own waves are not reflected back yet."""
     period, travel = 2.0 * pi / frequency, FLAP.distance / float(FLUME.group_speed(frequency))
     begin = travel + FLAP.ramp * period + 1.5
     return begin, begin + float(np.clip((3.0 * travel - begin) // period, 1, 8)) * period

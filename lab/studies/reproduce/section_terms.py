@@ -1,6 +1,6 @@
-"""The measured section's motion in the very wave train of its flume, and what each term of the model does to it.
+"""Motion of the measured section in the flume's own wave train, and the effect of each term of the model.
 
-No grains: the hull alone, free in sway, heave and roll, as the preset `ship/model-test` has her.
+There are no grains: the hull alone, free in sway, heave and roll, as in the preset `ship/model-test`.
 """
 
 from collections.abc import Callable, Sequence

@@ -1,4 +1,4 @@
-"""Tanks that are swayed, heaved and rolled: materials, sizes of tanks, centres of roll."""
+"""Swayed, heaved and rolled tanks: materials, sizes of tanks, centres of roll."""
 
 from collections.abc import Mapping, Sequence
 
@@ -11,8 +11,8 @@ from lab.studies.reproduce.experiment import ANY, Experiment, Row, Told, Toleran
 from lab.studies.reproduce.runs import Batch, Outcome
 
 FREQUENCY = "motion.sway.frequency"
-ONSET = 0.02  # of the amplitude of the tank: a response that is told from jitter
-STILL = 0.01  # of the amplitude: a bed that does not answer
+ONSET = 0.02  # of the tank's amplitude: a larger response is distinguished from noise
+STILL = 0.01  # of the tank's amplitude: a smaller response counts as none
 OPPOSITE = Tolerance(45.0, "nearer to opposition than to a quarter of a period, how we read 'almost 180'")
 BEGINS = Tolerance(0.2, "the step of our frequencies; the source says 'close to 1.2'")
 FIVE, FACTOR = (2.5, 10.0), "2.5 to 10: a factor of 2, ours, as the source does not tell the tank"
@@ -32,8 +32,8 @@ def shaken(preset: str, quick: bool, frequencies: Sequence[str] = (), motion: st
 def materials_batches(motion: str, quick: bool) -> dict[str, Batch]:
     """The three ores, in 2 beds; a thousandth of the stiffness would let the gold ore overlap too far at 2 m/s.
 
-    Beds of so many grains differ little; and nothing lifts in heave, so few frequencies say it all. The gold ore, which
-    takes three times as many steps, has the fewest, and is not in the quick report.
+    Beds of this many grains differ little; and in heave nothing is lifted, so few frequencies suffice. The gold ore,
+    which takes three times as many steps, has the fewest, and is not in the quick report.
     """
     slower = ["0.5 Hz", "0.8 Hz", "1.1 Hz"]
     between = {} if motion == "heave" else {"B": slower[-1:]} if quick else {"A": slower, "B": slower}

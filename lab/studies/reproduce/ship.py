@@ -33,12 +33,12 @@ DIGITS = Tolerance(1.0, "the source's 'approximately', to whole degrees")
 STEP = Tolerance(0.3, "the step of our frequencies")
 PEAK = 36.0, 4.4  # deg, rad/s: of frozen cargo in the source, in waves of 10 mm
 BOTH = 30.0, 4.7  # deg, rad/s: of frozen and of loose cargo
-NEAR = 0.1  # of the larger: alike, as we read it
+NEAR = 0.1  # largest difference, over the larger value, that we count as "alike"
 Found = Mapping[str, Sequence[Outcome]]
 
 
 def afloat(quick: bool, **changes: object) -> dict:
-    """Changes to a ship's preset that we can pay for."""
+    """Changes to a ship's preset that keep the computing time affordable."""
     cost = {"grains.diameter": "10 mm" if quick else "6 mm", "run.accuracy": "draft", "run.duration": "30 s"}
     return {**cost, **changes}
 
@@ -70,7 +70,7 @@ def response_batches(quick: bool) -> dict[str, Batch]:
 
 
 def response_tell(found: Found) -> Told:
-    """Rolls with frozen and with loose cargo beside the source's where it has them, and what lies off the resonance."""
+    """Rolls with frozen and loose cargo compared with the source's where it has them, and the rolls off resonance."""
     runs = found["10 mm"]
     rows = []
     for one in runs:
@@ -86,7 +86,7 @@ def response_tell(found: Found) -> Told:
 
 
 def _responses(one: Outcome, omega: float) -> list[Row]:
-    """Of one frequency (rad/s)."""
+    """Rows for one frequency (rad/s)."""
     loose, frozen = one["roll_amplitude"], one["frozen_amplitude"]
     if omega == PEAK[1]:
         said = stated(f"{omega:g} rad/s, frozen", PEAK[0], frozen, DIGITS, exact=True)
@@ -140,7 +140,7 @@ def capsize_tell(found: Found) -> Told:
 
 
 def _capsizes(quantity: str, says: str, one: Outcome) -> Row:
-    """Whether she does with loose cargo, where the source `says` so, in more than half of all beds."""
+    """Row on whether she capsizes with loose cargo in more than half of all beds, as the source `says`."""
     if not says:
         return observed(quantity, "", _end(one), None)
     ends = one["capsized_at"].worlds
@@ -190,7 +190,7 @@ def freedom_tell(found: Found) -> Told:
             else:
                 says = "capsizes just before 18 s" if name == "dry" and size == "27 mm" else ""
                 rows.append(_capsizes(quantity, says, one))
-    # Frozen, a wet ship is a dry one.
+    # With frozen cargo, wet and dry ships are the same.
     return Told(rows, rolls_against(AMPLITUDE, "amplitude of the waves (mm)", found, ("dry", "at once")))
 
 

@@ -2,10 +2,10 @@
 
     (I + δI) φ̈ + B₁ φ̇ + B₂ φ̇|φ̇| + W GZ(φ) = W GM A k D(t) cos ωt + M_cargo,  k = ω²/g
 
-per metre of length; D is the soft start of eq. F.1 and GZ(φ) any lever of the ship with her cargo frozen. The heap is
-the plane filling of `solvers.ship.cargo`: it lies still in the hold until its surface is steeper than its repose, and
-then slides at once, as far as it must (the play of Prandtl 1928). Unlike grains it needs no time to slide, and feels
-gravity alone.
+per metre of length; D is the soft start of eq. F.1 and GZ(φ) any righting lever of the ship with her cargo frozen. The
+heap is the plane filling of `solvers.ship.cargo`: it stays at rest in the hold until its surface is steeper than its
+angle of repose, and then slides at once, as far as it must (the play operator of Prandtl 1928). Unlike grains it needs
+no time to slide, and only gravity acts on it.
 """
 
 from collections.abc import Callable
@@ -24,7 +24,7 @@ LEANS = np.radians(np.linspace(-120.0, 120.0, 481))  # of a heap's table; rolls 
 
 @dataclass(frozen=True, eq=False)
 class Heap:
-    """A loose cargo of a mass (kg/m), as steep as its `repose` (rad), or a repose for each of many ships.
+    """A loose cargo of a mass (kg/m) and an angle of `repose` (rad), or one angle for each of many ships.
 
     `inertia` (kg m) is about the ship's axis while it lies level; `centres` (n, 2) m from that axis, in the hull's
     frame, with the surface at each of `LEANS` against the deck.
@@ -37,15 +37,15 @@ class Heap:
 
     @property
     def height(self) -> float:
-        """Of its centre above the axis (m) while it lies level."""
+        """Height of its centre of mass above the axis (m) while its surface is level."""
         return float(np.interp(0.0, LEANS, self.centres[:, 1]))
 
     def slid(self, lean: np.ndarray, roll: np.ndarray) -> np.ndarray:
-        """How the surface leans (rad) once the ship has come to a roll (rad)."""
+        """Lean of the surface (rad) once the ship has reached a roll (rad)."""
         return np.clip(lean, roll - self.repose, roll + self.repose)
 
     def arm(self, lean: np.ndarray, roll: np.ndarray) -> np.ndarray:
-        """How far (m) to starboard of the axis its centre is."""
+        """Horizontal distance (m) of its centre of mass to starboard of the axis."""
         y, z = (np.interp(lean, LEANS, column) for column in self.centres.T)
         return np.cos(roll) * y - np.sin(roll) * z
 
@@ -90,17 +90,17 @@ class HeapShip:
 
     @property
     def natural_frequency(self) -> float:
-        """Of small rolls (rad/s), which do not move the heap."""
+        """Natural frequency of small rolls (rad/s), which do not move the heap."""
         again = -self.heap.mass * self.gravity * self.heap.height if self.twice else 0.0
         return sqrt((self.weight * self.height + again) / self.whole_inertia)
 
     def tuned(self, frequency: float) -> "HeapShip":
-        """The same with the inertia that small rolls of a frequency (rad/s) ask for."""
+        """The same ship with the inertia that gives small rolls this natural frequency (rad/s)."""
         again = self.whole_inertia - self.inertia
         return replace(self, inertia=(self.natural_frequency / frequency) ** 2 * self.whole_inertia - again)
 
     def cargo_moment(self, lean: np.ndarray, roll: np.ndarray) -> np.ndarray:
-        """Moment (N) of the cargo's weight over what the frozen cargo's lever has of it."""
+        """Moment (N) of the cargo's weight beyond that in the righting lever with frozen cargo."""
         lean = self.heap.slid(lean, roll)
         moved = self.heap.arm(lean, roll) - self.heap.arm(np.zeros_like(roll), roll)
         again = self.heap.arm(lean, roll) if self.twice else 0.0
@@ -115,7 +115,7 @@ class HeapShip:
         return (elevation(across) > up).any(axis=0)
 
     def acceleration(self, roll: np.ndarray, speed: np.ndarray, lean: np.ndarray, push: np.ndarray) -> np.ndarray:
-        """Of the roll (rad/s²) under a wave moment `push` (N)."""
+        """Acceleration of the roll (rad/s²) under a wave moment `push` (N)."""
         resisted = (self.damping.linear + self.damping.quadratic * np.abs(speed)) * speed
         moment = push - self.weight * self.lever(roll) - resisted
         if self.heap is not None:

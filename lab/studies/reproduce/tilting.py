@@ -1,4 +1,4 @@
-"""Tanks that are tilted: materials, surfaces, low walls, depths of fill, the way back, sizes of tanks."""
+"""Tilted tanks: materials, surfaces, low walls, depths of fill, hysteresis, sizes of tanks."""
 
 from collections.abc import Mapping, Sequence
 
@@ -21,11 +21,11 @@ from lab.studies.reproduce.experiment import ONE_BED, Experiment, Row, Told, cou
 from lab.studies.reproduce.runs import Batch, Outcome
 
 # The source tilts at 0.15 to 3 deg/s; below 3 a bed costs hours here. `cargolab bench accuracy rate` sees no effect of
-# the rate on the critical angle between 1 and 30 deg/s; a fast tilt does merge the steps of a slide, so studies that
-# ask for that angle alone have a rate of their own.
+# the rate on the critical angle between 1 and 30 deg/s, but a fast tilt merges the steps of a slide. So only studies
+# that need nothing but this angle are tilted faster, at a rate of their own.
 RATE, ANGLE_RATE, QUICK_RATE = "3 deg/s", "5 deg/s", "20 deg/s"
 BEDS, QUICK_BEDS = 4, 2
-QUICK_END = "34 deg"  # by which beds of discs have slid
+QUICK_END = "34 deg"  # tilt at which all beds of discs have slid
 LOST = "2 beds for 4, 20 deg/s for 3 to 34 deg, both at draft accuracy"
 STRICT = "each step above zero"
 MUCH = 80.0  # %: "almost all" of a shift
@@ -37,7 +37,7 @@ Found = Mapping[str, Sequence[Outcome]]
 
 
 def tilted(preset: str, quick: bool, beds: int = BEDS, rate: str = RATE, **changes: object) -> Batch:
-    """A preset at draft accuracy with as many beds and as fast a tilt as we can pay for."""
+    """A preset at draft accuracy, with the number of beds and the tilt rate that the computing time allows."""
     cost = {
         "run.accuracy": "draft",
         "run.repeats": QUICK_BEDS if quick else beds,
@@ -48,7 +48,7 @@ def tilted(preset: str, quick: bool, beds: int = BEDS, rate: str = RATE, **chang
 
 
 def only(found: Found) -> dict[str, Outcome]:
-    """Of each batch its one outcome."""
+    """The single outcome of each batch."""
     return {name: outcomes[0] for name, outcomes in found.items()}
 
 
@@ -134,7 +134,7 @@ def rim_batches(quick: bool) -> dict[str, Batch]:
 
 
 def rims(found: Found) -> Told:
-    """By how much the losses turn upwards before the slide between high walls, and after that of the same bed."""
+    """Lead of the upturn of the losses over the slide between high walls, and lag behind the slide of the same bed."""
     rows = []
     for name in (SMOOTH, LINED, EQUAL):
         if f"{name}, low walls" in found:
@@ -148,14 +148,14 @@ def rims(found: Found) -> Told:
 
 
 def _lead(quantity: str, upturn: Value, slide: Value) -> Row:
-    """By how much losses lead a slide in other beds."""
+    """Row of the lead of the losses' upturn over the slide in other beds."""
     return held(
         quantity, "1.7 to 6.8 deg", difference(slide, upturn), (1.7, 6.8), "1.7 to 6.8 deg: the source's range", "deg"
     )
 
 
 def _lag(low: Outcome) -> str:
-    """By how much the losses of low-walled beds turn upwards after these slide themselves."""
+    """Text of the lag of the losses' upturn behind the slide in the same low-walled beds."""
     both = zip(low["spill_upturn_angle"].worlds, low["critical_angle"].worlds, strict=True)
     return counted(over_worlds([np.nan if None in pair else pair[0] - pair[1] for pair in both], "deg"))
 
@@ -197,7 +197,7 @@ def spreads(found: Found) -> Told:
 
 
 def way_back(found: Found) -> Told:
-    """What the bed keeps when it is tilted back."""
+    """The part of its shift that the bed keeps when it is tilted back."""
     runs, rows = only(found), []
     for name, run in runs.items():
         kept = run["kept_shift"]

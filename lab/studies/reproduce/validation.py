@@ -1,4 +1,4 @@
-"""Experiments that others made and the source follows."""
+"""Experiments of other authors that the source simulates for validation."""
 
 from collections.abc import Mapping, Sequence
 

@@ -1,7 +1,6 @@
-"""Batches side by side: a process a core, which carries out one batch after the other on that core.
+"""Run batches side by side: one process per core, each running one batch after the other.
 
-Beds that settle, kernels that are compiled and files that are written keep one core busy; with a batch a core none
-waits for them.
+Settling beds, compiling kernels and writing files use one core only; with one batch per core the others need not wait.
 """
 
 import os
@@ -22,14 +21,14 @@ from lab.studies.reproduce.runs import Batch, carry_out, outcomes
 from solvers.machine import runtime
 
 BROKEN = "a process that ran a batch was ended from outside, maybe for want of memory"
-GRACE = 60.0  # s in which a worker can save what it has when nobody waits for it any more
+GRACE = 60.0  # s that a worker has to save its state when it is stopped
 
 
 def carry_out_all(batches: Mapping[Path, Batch], progress: Progress) -> Iterator[Path]:
-    """Run what has not been run yet of all batches, by their folders; gives each folder when its batch is done.
+    """Run what has not been run yet of all batches, by folder; yields each folder when its batch is done.
 
-    On a graphics processor, on one core, and a batch alone, here; else in as many processes as there are cores. Raises
-    LabError, one sentence, and KeyboardInterrupt: what is under way is then stopped where it can be gone on with.
+    A single batch, or any on a GPU or a single core, runs in this process; else there is one process per core. Raises
+    LabError, one sentence, and KeyboardInterrupt; running batches are then stopped where they can be continued.
     """
     cores = min(runtime.available_cores(), len(batches))
     if cores <= 1 or runtime.choose_arch("auto", "f64") != "cpu":
@@ -65,7 +64,7 @@ def _by_workers(batches: Mapping[Path, Batch], cores: int, progress: Progress) -
             for worker in active_children():
                 os.kill(worker.pid, signal.SIGINT)
             if isinstance(error, BrokenProcessPool):
-                raise LabError(f"{BROKEN}: ask again, and what was begun is gone on with.") from None
+                raise LabError(f"{BROKEN}: run the command again to continue.") from None
             raise
 
 
@@ -76,7 +75,7 @@ def _hand_out(
     cores: int,
     progress: Progress,
 ) -> None:
-    """Give idle workers something to do; no more, for what waits in line cannot be called back."""
+    """Give batches to idle workers only, since batches waiting in a queue cannot be withdrawn."""
     while len(running) < cores and (following := next(left, None)):
         folder, batch = following
         progress.say(f"{named(folder)} …")
@@ -84,7 +83,7 @@ def _hand_out(
 
 
 def _begin() -> None:
-    """In a worker: take one core, leave Ctrl-C to the process that gives out work, and end with that."""
+    """Set up a worker: use one core, leave Ctrl-C to the parent process, and end with the parent."""
     runtime.use_cores(1)
     signal.signal(signal.SIGINT, signal.default_int_handler)  # what runs in the background may be deaf to it
     heed(patient=True)  # who ends all processes asks this one twice

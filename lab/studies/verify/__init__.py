@@ -1,6 +1,6 @@
-"""Verification: small scenes run as any experiment is, beside references that do not need the solver.
+"""Verification: small scenes, run as any experiment is, compared with references that do not need the solver.
 
-A case is a function in a module of this package that returns what it found, and a line in that module's CASES.
+A case is a function in a module of this package that returns its results, and a line in that module's CASES.
 """
 
 from collections.abc import Sequence
@@ -74,7 +74,7 @@ def select(names: Sequence[str], fast: bool) -> list[Case]:
 
 
 def carried_out(case: Case, fast: bool) -> Outcome:
-    """What came of a case, a fault of its own included."""
+    """Run a case and return its outcome; an exception counts as one."""
     try:
         return Outcome(case, case.check(fast))
     except Exception as error:

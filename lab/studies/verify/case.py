@@ -1,4 +1,4 @@
-"""What a verification consists of: cases, and the lines of results that they give."""
+"""The parts of a verification: cases, and their lines of results."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -31,7 +31,7 @@ class Line:
 
     @property
     def error(self) -> float:
-        """How far the value is from its reference, with its sign."""
+        """Signed error of the value against its reference."""
         return self.value / self.reference - 1.0 if self.relative else self.value - self.reference
 
     @property
@@ -59,7 +59,7 @@ class Table:
 
 @dataclass
 class Found:
-    """What a case gives: its lines, and what the page shows and says besides."""
+    """The results of a case: its lines, and further content for the page."""
 
     lines: Sequence[Line]
     pictures: Sequence[Picture] = ()

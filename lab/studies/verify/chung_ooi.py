@@ -18,7 +18,7 @@ from lab.studies.verify.case import Case, Found, Line, Picture, Table
 from lab.studies.verify.meetings import LARGER, Meetings, Substance
 
 SECTION = "The eight tests of Chung and Ooi (2011)"
-LENGTHS = (1.0, LEVELS["draft"].longer_steps)  # times the derived step
+LENGTHS = (1.0, LEVELS["draft"].longer_steps)  # lengths of step in derived steps
 DERIVED, DRAFT = range(2)
 GLASS = Substance("glass", 48e9, 0.20, 2800.0)
 LIMESTONE = Substance("limestone", 20e9, 0.25, 2500.0)
@@ -74,7 +74,7 @@ _MET: dict[str, np.ndarray] = {}
 
 
 def met(name: str, fast: bool) -> np.ndarray:
-    """What came of the meetings of a curve (lengths, phases, n, 4); if `fast` the derived step is enough."""
+    """Results of the collisions of a curve (lengths, phases, n, 4); if `fast` at the derived step only."""
     if name not in _MET or not (fast or len(_MET[name]) == len(LENGTHS)):
         curve = (oblique() | given_restitutions())[name]
         _MET[name] = curve.run(LENGTHS[:1] if fast else LENGTHS)

@@ -1,4 +1,4 @@
-"""Liquid bridges: what it costs to tear one, and what it carries."""
+"""Liquid bridges: the work to tear one, and the force that it carries."""
 
 from math import atan, cos, log, pi, sqrt
 
@@ -38,7 +38,7 @@ def tearing(law: str, effective: float) -> float:
 
 
 def make_and_break(law: str) -> Found:
-    """Elastic grains meet and part, two of them and one at the floor: they lose what tearing the bridge costs."""
+    """Elastic grains collide, two of them and one with the floor: they lose the work of tearing the bridge."""
     speed, lines = SPEEDS[law], []
     rows = [grain(-0.1, 0.5, RADIUS, speed / 2.0), grain(0.1, 0.5, RADIUS, -speed / 2.0), grain(0.3, 0.5, RADIUS)]
     contact = {"normal": "hertz", "tangential": "none", "cohesion": law}

@@ -1,4 +1,4 @@
-"""Cargo at rest: what the contacts of a column carry, that nothing stirs, and the weight of a bed on its tank."""
+"""Cargo at rest: the contact forces in a column, that nothing moves, and the weight of a bed on its tank."""
 
 from functools import cache
 
@@ -51,7 +51,7 @@ def pressure(_: bool) -> Found:
 
 
 def stillness(_: bool) -> Found:
-    """A settled column stirs no more."""
+    """A settled column stays at rest."""
     path, _ = column()
     allowed = np.sqrt(2.0 * REST * COUNT * G * 2.0 * RADIUS)  # as if one grain had all the energy that may be left
     speed = np.abs(path.velocity).max()

@@ -1,4 +1,4 @@
-"""What must be kept: momenta, energy, and the source's own checks of its code (Spandonidis 2016, tables 4.3, 6.3)."""
+"""Conservation of momenta and energy, and the source's own checks of its code (Spandonidis 2016, tables 4.3, 6.3)."""
 
 from dataclasses import dataclass
 
@@ -56,7 +56,7 @@ def momenta(mass: np.ndarray, radius: np.ndarray, place: np.ndarray, velocity: n
 
 
 def gas(count: int, worlds: int, steps: int) -> Gas:
-    """Let gases that start differently run for so many steps."""
+    """Run gases with different initial states for a number of steps."""
     mass = sphere_mass(RADIUS, ACETATE["density"])
     energies, along, impulse = [], [], np.zeros((3, worlds))
     with simulated(*(gas_setup(count, seed) for seed in range(worlds)), threads=0) as run:

@@ -1,4 +1,4 @@
-"""The tank's frame tells the same physics as the earth's."""
+"""The physics in the tank's frame is the same as in the earth's."""
 
 from math import cos, pi, sin
 

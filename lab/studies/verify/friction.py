@@ -1,4 +1,4 @@
-"""Friction never beyond its cap, whatever the step; what a held load does under each law."""
+"""Friction never exceeds μ F_n, whatever the step; creep of a held load under each law."""
 
 import numpy as np
 

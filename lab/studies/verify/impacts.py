@@ -1,8 +1,8 @@
-"""Two spheres, or a sphere and a plane, that meet once: contact laws as they are written, integrated on their own.
+"""Single collisions of two spheres, or of a sphere and a plane: the contact laws integrated without the solver.
 
-Places and velocities are those of the first body beside the second. The normal points to the first body and the tangent
-is the normal turned counter-clockwise by 90°, so that the slip is u = v·t − (ℓ₁ ω₁ + ℓ₂ ω₂). The levers reach to where
-the undeformed outlines cross, to first order; a sphere's on a plane is R − ξ/2.
+Positions and velocities are those of the first body relative to the second. The normal points to the first body and the
+tangent is the normal turned counter-clockwise by 90°, so that the slip is u = v·t − (ℓ₁ ω₁ + ℓ₂ ω₂). The lever arms
+reach to where the undeformed outlines cross, to first order; a sphere's on a plane is R − ξ/2.
 """
 
 from collections.abc import Callable
@@ -177,7 +177,7 @@ class Impact:
         return motion
 
     def _changes(self, mode: float) -> list[Callable]:
-        """Where a spring that holds reaches the cap on either side, or one that slides comes to hold."""
+        """Events at which a sticking spring reaches the friction limit, or a sliding one sticks again."""
 
         def room(side: float) -> Callable:
             def event(_, state):

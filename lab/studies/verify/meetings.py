@@ -1,4 +1,4 @@
-"""Bodies that meet once, of many speeds and spins: in the solver at several steps, and by the law itself."""
+"""Single collisions at many speeds and spins: in the solver at several steps, and by integrating the law itself."""
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property

@@ -55,9 +55,9 @@ STUCK = {
     "haff-werner": (3e-3, "scheme O(Δt²), kinks at the cap"),
 }
 SLID = 5e-4, "half of the restitution's 0.1 %"
-FINER = 8  # times the step is divided by to see the error fall
-FALLS = {"mindlin": 30.0, "haff-werner": 8.0}  # by so much at least: half of FINER²; the damper's kinks: FINER
-SPUN = 2.5  # times the error of a speed is that of R ω: both come of one impulse
+FINER = 8  # divisor of the step, to see the error fall
+FALLS = {"mindlin": 30.0, "haff-werner": 8.0}  # least factors: half of FINER²; with the damper's kinks: FINER
+SPUN = 2.5  # the error of R ω over that of the speed: both come from one impulse
 
 
 @dataclass(frozen=True)

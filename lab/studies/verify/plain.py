@@ -1,4 +1,4 @@
-"""Another discrete element method, in plain arrays: every pair looked at, walls that move through the earth frame."""
+"""An independent discrete element method in plain arrays: all pairs checked, walls that move in the earth frame."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass

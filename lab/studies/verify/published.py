@@ -1,4 +1,4 @@
-"""Points that others have read off the figures of Chung and Ooi (2011): facts of Kratos' open DEM benchmarks.
+"""Points read off the figures of Chung and Ooi (2011), as given in Kratos' open DEM benchmarks.
 
 Each is (abscissa, ordinate) of a curve of the paper's own DEM code; reading is good to about a hundredth of an axis.
 """

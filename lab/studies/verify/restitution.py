@@ -1,4 +1,4 @@
-"""Restitution: what a material is given comes out, and the viscoelastic law over all its range of damping."""
+"""Restitution: collisions have the material's given value; the viscoelastic law over its whole range of damping."""
 
 from functools import cache
 
@@ -69,7 +69,7 @@ def rebounds(law: str, dampings: tuple[float, ...], longer: float = 1.0) -> np.n
 
 
 def farthest(values: np.ndarray, expected: float) -> float:
-    """That of some values (n,) which is farthest from what is expected."""
+    """The one of the values (n,) that is farthest from the expected value."""
     return float(values[np.abs(values - expected).argmax()])
 
 

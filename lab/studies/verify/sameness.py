@@ -1,4 +1,4 @@
-"""One scene told in many ways: mirrored, with every pair listed, cut into other units of work, in other precisions."""
+"""Invariance of one scene: mirrored, with all pairs listed, with other schedules, in other precisions."""
 
 from functools import cache
 
@@ -37,7 +37,7 @@ def bed(mirrored: bool = False, **run: object) -> Setup:
 
 
 def told(setup: Setup, **options) -> dict[str, np.ndarray]:
-    """What is seen of a setup after the STEPS, the grains' states and the numbers of its world."""
+    """The observation of a setup after STEPS: the grains' states and the numbers of its world."""
     with simulated(setup, **options) as run:
         run.advance(STEPS)
         return run.observe() | run.snapshot()

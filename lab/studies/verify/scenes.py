@@ -1,4 +1,4 @@
-"""Small scenes by the way that every experiment takes: a preset's tables and a file of grains, loaded and built."""
+"""Small scenes made like any experiment: a preset's tables and a file of grains are loaded and built."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -146,7 +146,7 @@ class Track:
 
 
 def track(run: Simulation, looks: int, steps: int = 1) -> Track:
-    """The state now and after each of so many looks, `steps` steps apart."""
+    """The state now and at each of `looks` times, `steps` steps apart."""
     states, times = [run.snapshot()], [run.time]
     for _ in range(looks):
         run.advance(steps)

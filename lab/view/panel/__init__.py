@@ -1,1 +1,1 @@
-"""What stands beside and over the picture of a live experiment: sliders, readings, curves, help."""
+"""The parts beside and over the picture of a live experiment: sliders, readings, curves, help."""

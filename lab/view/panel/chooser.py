@@ -17,7 +17,7 @@ FOOT, TITLE = 3.1, 0.68  # of the letters' height: what is written below a poste
 
 
 class Chooser:
-    """Cards of all presets; `chosen` is the name of the one that was taken, "" before."""
+    """Cards of all presets; `chosen` is the name of the selected one, "" before."""
 
     def __init__(self, size: tuple[int, int]) -> None:
         self.size, self.ended, self.chosen = size, False, ""
@@ -26,10 +26,10 @@ class Chooser:
         self._posters: dict[str, Image.Image] = {}
 
     def tick(self) -> None:
-        """Nothing happens by itself."""
+        """Do nothing: the page changes only by the user's actions."""
 
     def picture(self) -> np.ndarray:
-        """The cards of this page, the one at hand framed."""
+        """The picture of this page of cards, with a frame around the current one."""
         height = self.size[1]
         image = Image.new("RGB", self.size, palette.PAPER)
         draw = ImageDraw.Draw(image)
@@ -57,24 +57,24 @@ class Chooser:
             self.ended = True
 
     def press(self, x: float, y: float, button: str = "left") -> None:
-        """A card is taken."""
+        """Choose the card at the pixel."""
         for k, name in enumerate(self._shown()):
             left, top, wide, high = self._card(k)
             if left <= x <= left + wide and top <= y <= top + high:
                 self._take(name)
 
     def drag(self, x: float, y: float) -> None:
-        """Cards stay where they are."""
+        """Do nothing: cards cannot be dragged."""
 
     def release(self, x: float, y: float) -> None:
-        """A card was taken as the mouse went down."""
+        """Do nothing: the press has chosen the card."""
 
     def wheel(self, turns: float, x: float, y: float) -> None:
-        """A page on or back."""
+        """Turn to the next or the previous page."""
         self.key("up" if turns > 0 else "down")
 
     def close(self) -> None:
-        """Nothing runs."""
+        """Do nothing: no experiment is running."""
         self.ended = True
 
     def _take(self, name: str) -> None:

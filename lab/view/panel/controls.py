@@ -1,4 +1,4 @@
-"""What can be changed while an experiment runs, one line each; and what makes it start anew."""
+"""The controls of a live experiment, one line each: those that act at once, and those that need a restart."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -14,10 +14,10 @@ MOVES, ALTERS, RESTARTS = "moves the tank", "at once", "starts anew"
 
 @dataclass(frozen=True)
 class Control:
-    """Something to be changed, from `low` to `high` (SI), shown in `unit`.
+    """A control with values from `low` to `high` (SI), shown in `unit`.
 
-    `own` tells a preset's own value, None where the control has no place in it. What ALTERS the scene has `changes`,
-    from scene and value to the fields that change; what RESTARTS names the preset's `key`.
+    `own` gives a preset's own value, None if the control does not apply to it. A control that ALTERS the scene has
+    `changes`, a function from scene and value to the changed fields; one that RESTARTS names the preset's `key`.
     """
 
     label: str
@@ -36,7 +36,7 @@ class Control:
 
 
 def _motion(name: str, quantity: str, otherwise: float) -> Callable[[Resolved], float | None]:
-    """A quantity of one of the preset's motions, or else what stands ready for it; ships move by themselves."""
+    """A quantity of one of the preset's motions, else the value `otherwise`; None for ships, which move freely."""
 
     def own(preset: Resolved) -> float | None:
         part = getattr(preset.motion, name)
@@ -71,7 +71,7 @@ def _humidity(preset: Resolved) -> float | None:
 
 
 def _waves(name: str) -> Callable[[Resolved], float | None]:
-    """Of regular waves; calm water and packets stay as they are."""
+    """A quantity of the preset's regular waves; calm water and packets cannot be changed."""
 
     def own(preset: Resolved) -> float | None:
         waves = preset.waves
@@ -126,6 +126,6 @@ CONTROLS: dict[str, Control] = {
 
 
 def offered(preset: Resolved) -> dict[str, float]:
-    """The controls that have a place in a preset, and its own values (SI)."""
+    """The controls that apply to a preset, with its own values (SI)."""
     found = {name: control.own(preset) for name, control in CONTROLS.items()}
     return {name: float(value) for name, value in found.items() if value is not None}

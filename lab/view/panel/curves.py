@@ -1,4 +1,4 @@
-"""The small plot over the stage, a function each: what a live experiment does up to the frame that is shown."""
+"""The curves of the small plot over the stage, one function each, up to the frame that is shown."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ FARTHEST = 90.0  # deg of heel
 
 @dataclass(frozen=True)
 class Drawing:
-    """Curves (x, y) in axes of these names, each drawn up to so many of its points, where its dot is."""
+    """Curves (x, y) with labelled axes, each drawn up to a number of its points, where a dot marks the present."""
 
     across: str
     upwards: str
@@ -33,7 +33,7 @@ def _in_time(label: str, name: str, scaled: Callable[[np.ndarray, LiveFootage], 
 
 
 def levers(footage: LiveFootage, frame: int) -> Drawing:
-    """GZ of a ship with her cargo frozen as it lay at the start, and where she is on it."""
+    """Righting-arm curve GZ of a ship with her cargo frozen as it lay at the start, and her present heel on it."""
     heel, lever = footage.levers
     shown = np.degrees(heel) <= FARTHEST
     heel, lever = np.degrees(heel)[shown], 1e3 * lever[shown]
@@ -56,6 +56,6 @@ CURVES: dict[str, Callable[[LiveFootage, int], Drawing]] = {
 
 
 def offered_curves(footage: LiveFootage | None) -> tuple[str, ...]:
-    """The curves that this experiment has, and none at all."""
+    """The names of the curves of this experiment, and the choice of no curve."""
     afloat = footage is not None and footage.sea is not None
     return (*(name for name in CURVES if afloat or name != "levers"), "nothing")

@@ -4,14 +4,14 @@ import numpy as np
 
 from solvers.grains.pressing import NOBODY, Pressing
 
-TYPICAL = 0.99  # quantile of the forces that is drawn as the largest
-MOST = 1.5  # of the largest's thickness: what a still larger force has at most
+TYPICAL = 0.99  # quantile of the forces that is drawn with thickness 1
+MOST = 1.5  # largest thickness, for still larger forces
 
 
 def chains(pressing: Pressing, place: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
-    """Lines (k, 2, 2) m from grains' centres to where they press, their thickness, and the force (N) of thickness 1.
+    """Lines (k, 2, 2) m from grains' centres to contact points, their thickness, and the force (N) of thickness 1.
 
-    place (n, 2) m of the grains. A force between grains is two lines, which are in line for discs alone.
+    place: positions (n, 2) m of the grains. A force between grains is two lines; only for discs are they collinear.
     """
     force = np.hypot(*pressing.force.T)
     if not len(force):
@@ -30,7 +30,7 @@ def on_grain(pressing: Pressing, grain: int) -> np.ndarray:
 
 
 def contacts_each(pressing: Pressing, count: int) -> float:
-    """How many contacts a grain of so many has on average: one with a wall is one grain's, others are two grains'."""
+    """Mean number of contacts per grain; a contact between grains counts for both, one with a wall for one grain."""
     return float((pressing.grains != NOBODY).sum()) / count
 
 

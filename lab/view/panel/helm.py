@@ -1,7 +1,7 @@
-"""The helm: from what a hand wants to a motion of the tank that is smooth whatever the hand does.
+"""The helm: turn the user's settings into a motion of the tank that is smooth however abruptly they change.
 
-Angles and amplitudes follow the hand as a critically damped oscillator follows its rest, tilts at their rate at most.
-From piece to piece pose, velocity and acceleration of the tank go on without a jump, by quintic Hermite interpolation.
+Angles and amplitudes follow the settings like a critically damped oscillator; the tilt is also limited in rate. Pose,
+velocity and acceleration of the tank are continuous from piece to piece, by quintic Hermite interpolation.
 """
 
 from collections.abc import Mapping
@@ -12,15 +12,15 @@ import numpy as np
 
 from solvers.motion.steered import Steered, hermite
 
-# s, for how long (1/e) a wish takes to be followed. The tilt's is shorter, for its rate bounds it already.
+# Time constants (s) with which settings are followed. The tilt's is shorter, since its rate is limited already.
 EASE, TILT_EASE = 0.2, 0.1
-OSCILLATIONS = {"sway": 1.2, "heave": 1.2, "roll": pi}  # m/s and rad/s: the fastest that a hand may swing the tank
-FASTEST = {"turn": 1.4 * pi, "y": 2.5, "z": 2.5}  # bounds on all that may come of it, for the step
+OSCILLATIONS = {"sway": 1.2, "heave": 1.2, "roll": pi}  # m/s and rad/s: largest settable speeds of oscillation
+FASTEST = {"turn": 1.4 * pi, "y": 2.5, "z": 2.5}  # bounds on the resulting speeds, from which the step is chosen
 
 
 @dataclass
 class Follower:
-    """A value that follows its goal, x″ + 2 x′/τ + (x − goal)/τ² = 0, by the closed solution."""
+    """A value that follows its goal by the closed-form solution of x″ + 2 x′/τ + (x − goal)/τ² = 0."""
 
     value: float
     ease: float
@@ -42,7 +42,7 @@ class Follower:
 
 
 class Oscillation:
-    """A sin ψ whose amplitude and frequency follow a hand."""
+    """An oscillation A sin ψ whose amplitude and frequency follow their settings."""
 
     def __init__(self, frequency: float) -> None:
         self.amplitude, self.omega, self.phase = Follower(0.0, EASE), Follower(2.0 * pi * frequency, EASE), 0.0
@@ -63,7 +63,7 @@ class Oscillation:
 
 
 class Helm:
-    """What a hand wants of the tank, by the names of `controls.CONTROLS`, and the motion that follows from it."""
+    """The settings of the tank's motion, by the names of `controls.CONTROLS`, and the motion that follows them."""
 
     def __init__(self, wanted: Mapping[str, float]) -> None:
         self.wanted = dict(wanted)
@@ -78,7 +78,7 @@ class Helm:
         return tuple(Steered(coordinate, fastest) for coordinate, fastest in FASTEST.items())
 
     def follow(self, time: float) -> list[np.ndarray]:
-        """Go on for so long (s); gives the polynomials (6,) that the hands are to follow in that time."""
+        """Advance by `time` (s); returns the polynomials (6,) that the steered motions follow in that time."""
         wanted = self.wanted
         step = wanted["tilt_rate"] * time
         self._goal += float(np.clip(wanted["tilt"] - self._goal, -step, step))
@@ -92,7 +92,7 @@ class Helm:
         return [hermite(time, begin, end) for begin, end in zip(before, self._pose, strict=True)]
 
     def _posed(self) -> np.ndarray:
-        """Turn φ about the centre c, of which the tank's origin is carried to s + c − R(φ) c; with its derivatives.
+        """Turn φ and position of the tank's origin, s + c − R(φ) c for rotation about the centre c, with derivatives.
 
         Points are complex numbers y + i z, so that R(φ) is e^(iφ).
         """

@@ -1,4 +1,4 @@
-"""The keys and what the mouse does, on a card over the picture."""
+"""The help card over the picture: actions of keys and mouse."""
 
 from collections.abc import Sequence
 
@@ -18,7 +18,7 @@ EDGE, ROW, NAME = 1.5, 1.6, 8.8  # heights of a letter: around the card, of a ro
 
 
 def draw_help(image: Image.Image, keys: Sequence[tuple[str, str]], size: float) -> None:
-    """Draw the card into the middle of the picture, in letters so many pixels high; keys: names and what they do."""
+    """Draw the card in the middle of the picture, with letters `size` pixels high; keys: names and actions."""
     rows = [*keys, *MOUSE]
     half = -(-len(rows) // 2)
     says = [max(deco.font(size).getlength(said) for _, said in part) for part in (rows[:half], rows[half:])]

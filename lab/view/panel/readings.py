@@ -1,4 +1,4 @@
-"""What is told of a live experiment in words: lines at the top of the column, and what its overlay means."""
+"""Texts on a live experiment: the lines at the top of the column, and the meaning of the overlay."""
 
 import numpy as np
 
@@ -9,7 +9,7 @@ from lab.view.shown import Shown
 
 
 def clock(shown: Shown) -> str:
-    """The time, and whether it goes on; how far the bed is while it is made."""
+    """The time, and whether it is running; before that, how far the bed has settled."""
     if shown.making:
         return shown.status
     if shown.playhead is not None:
@@ -21,7 +21,7 @@ def clock(shown: Shown) -> str:
 
 
 def readings(shown: Shown) -> list[str]:
-    """How fast it goes, where the tank is, what the grains do, and of the picked one more."""
+    """Lines on the pace, the pose of the tank, the grains, and the picked grain."""
     limit = "no limit" if np.isinf(shown.pace) else f"limit {shown.pace:g}"
     footage, frame = shown.footage, shown.frame
     count = footage.radius.size

@@ -1,4 +1,4 @@
-"""Waves under a hand: they grow and die away softly."""
+"""Waves that the user changes: they grow and decay smoothly."""
 
 from dataclasses import replace
 
@@ -10,15 +10,15 @@ from lab.view.panel.helm import Follower
 from solvers.ship.vessel import Vessel
 
 EASE = 0.5  # s
-CALM = 1e-4  # m: waves so low may change their frequency
-STEADY = 1e-7  # m and m/s: what is nearer its goal is there
+CALM = 1e-4  # m: below this amplitude the frequency may change
+STEADY = 1e-7  # m and m/s: within this distance the goal counts as reached
 RANDOM = "jonswap", "pierson-moskowitz"
 
 
 class RegularSwell:
-    """Regular waves; they come with another frequency only once they have died away.
+    """Regular waves; a new frequency takes effect only once they have died away.
 
-    `wanted` is a hand's amplitude (m) and frequency (rad/s).
+    `wanted`: the user's amplitude (m) and frequency (rad/s).
     """
 
     def __init__(self, preset: Resolved) -> None:
@@ -35,7 +35,7 @@ class RegularSwell:
         return np.array([self._height.value, self._frequency, waves.wave_number[0]])
 
     def follow(self, time: float) -> Vessel | None:
-        """Go on for so long (s); gives the ship in the waves of then, None where they stay as they are."""
+        """Advance by `time` (s); returns the ship in the new waves, None if they have not changed."""
         other = self.wanted["wave_frequency"] != self._frequency
         goal = 0.0 if other else self.wanted["wave_amplitude"]
         if other and self._height.value < CALM:
@@ -48,7 +48,7 @@ class RegularSwell:
 
 
 class RandomSwell:
-    """A random sea; `wanted` is a hand's significant height (m), to which all its components are in proportion."""
+    """A random sea; `wanted` is the user's significant height (m), to which all components are proportional."""
 
     def __init__(self, preset: Resolved) -> None:
         self.wanted = {"wave_height": preset.waves.height}
@@ -57,11 +57,11 @@ class RandomSwell:
 
     @property
     def now(self) -> np.ndarray:
-        """Significant height (m), and nothing that all its components share."""
+        """Significant height (m), and NaN twice, since its components differ in frequency and wave number."""
         return np.array([self._height.value, np.nan, np.nan])
 
     def follow(self, time: float) -> Vessel | None:
-        """Go on for so long (s); gives the ship in the sea of then, None where it stays as it is."""
+        """Advance by `time` (s); returns the ship in the new sea, None if it has not changed."""
         if _is_there(self._height, self.wanted["wave_height"]):
             return None
         self._height.follow(self.wanted["wave_height"], time)
@@ -69,7 +69,7 @@ class RandomSwell:
 
 
 def swell_of(preset: Resolved) -> RegularSwell | RandomSwell | None:
-    """The waves of a preset under a hand, None where there are none that it can change."""
+    """The steerable waves of a preset, None if it has none."""
     kind = preset.waves.kind if preset.ship and preset.waves else ""
     return RegularSwell(preset) if kind == "regular" else RandomSwell(preset) if kind in RANDOM else None
 
@@ -80,7 +80,7 @@ def _afloat(preset: Resolved, **changes: float) -> Vessel:
 
 
 def _raised(vessel: Vessel, height: Follower) -> Vessel:
-    """A ship in waves of height 1 m, in waves of this height."""
+    """Scale the waves of a ship, given for a height of 1 m, to this height."""
     load = vessel.ship.load
     waves = replace(load.waves, amplitude=max(height.value, 0.0) * load.waves.amplitude)
     return replace(vessel, ship=replace(vessel.ship, load=replace(load, waves=waves)))

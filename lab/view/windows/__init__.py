@@ -18,8 +18,8 @@ def open_window(
 ) -> Path | None:
     """Show a preset live until its window is closed; returns the folder of the last recording, None without one.
 
-    Without a name, a person chooses one first, and another when that is closed. Raises LabError where there is no
-    display, one sentence that names what does without.
+    Without a name, the user chooses one first, and another one when that is closed. Raises LabError if there is no
+    display; its sentence names the commands that need none.
     """
     instead = f"`cargolab run {name or 'PRESET'}` runs it and films it."
     if not has_display():
@@ -61,5 +61,5 @@ def _show(window: Window, name: str, overrides: dict, size: tuple[int, int], out
 
 
 def has_display() -> bool:
-    """Whether windows can be opened at all: X11 or Wayland, or a system that always has them."""
+    """Whether windows can be opened: X11 or Wayland is there, or the system always has a display."""
     return sys.platform in ("win32", "darwin") or bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))

@@ -1,4 +1,4 @@
-"""A window of Taichi's GGUI, with imgui's panel on demand: where there is Vulkan, of a graphics processor or not."""
+"""A window of Taichi's GGUI, with imgui's panel on demand. It needs Vulkan, in hardware or in software."""
 
 import contextlib
 import tempfile
@@ -26,7 +26,7 @@ PANEL, ROW, FRAME = 440, 23, 36
 
 
 class VulkanWindow(Window):
-    """The window; imgui's sliders, in which numbers can be typed, replace the picture's where they are asked for."""
+    """The window; on demand imgui's sliders, in which numbers can be typed, replace those of the picture."""
 
     types = True
 
@@ -36,11 +36,11 @@ class VulkanWindow(Window):
         self._window = ti.ui.Window("Cargo Shift Lab", size, vsync=False)
         self._canvas, self._gui = self._window.get_canvas(), self._window.get_gui()
         self._held: str | None = None
-        # imgui leaves the layout of its panels in the folder it is in, which is the user's: it gets another.
+        # imgui writes the layout of its panels to the working folder, which is the user's: use another one.
         self._scratch = tempfile.TemporaryDirectory()
 
     def close(self) -> None:
-        """Done with it."""
+        """Close the window."""
         with contextlib.chdir(self._scratch.name):
             self._window.destroy()
         self._scratch.cleanup()
@@ -61,7 +61,7 @@ class VulkanWindow(Window):
         return isinstance(session, Session) and session.look.typing and not session.look.help
 
     def _panel(self, session: Session) -> None:
-        """A slider a control, in its unit."""
+        """Show one slider per control, in its unit."""
         (width, height), (top, _) = self._size, session.page.controls
         tall = (ROW * len(session.values) + FRAME) / height
         with self._gui.sub_window("values", 1.0 - PANEL / width, top / height, PANEL / width, tall):
@@ -99,7 +99,7 @@ class VulkanWindow(Window):
 
 @ti.kernel
 def _turn(picture: ti.types.ndarray(dtype=ti.u8, ndim=3), shown: ti.template()):
-    """From rows of pixels, the highest first, to columns, the lowest pixel first."""
+    """Convert rows of pixels, the top row first, to columns, the bottom pixel first."""
     for column in range(picture.shape[1]):
         for row in range(picture.shape[0]):
             for c in ti.static(range(3)):
@@ -107,7 +107,7 @@ def _turn(picture: ti.types.ndarray(dtype=ti.u8, ndim=3), shown: ti.template()):
 
 
 def open_window(size: tuple[int, int]) -> VulkanWindow | None:
-    """The window, None where there is no Vulkan."""
+    """Open the window; None if there is no Vulkan."""
     try:
         return VulkanWindow(size)
     except Exception:  # Taichi raises what its parts raise: no loader, no device, no surface

@@ -1,4 +1,4 @@
-"""A window of `ti.GUI`, drawn by the processor: wherever there is a display."""
+"""A window of `ti.GUI`, drawn by the CPU; it works on any display."""
 
 import sys
 
@@ -20,7 +20,7 @@ NAMES = {
     ti.GUI.RETURN: "return",
 }
 BUTTONS = {ti.GUI.LMB: "left", ti.GUI.RMB: "right"}
-A_TURN = 120.0  # what a turn of the wheel counts
+A_TURN = 120.0  # the wheel's count per notch
 
 
 class PlainWindow(Window):
@@ -33,7 +33,7 @@ class PlainWindow(Window):
         self._window = ti.GUI("Cargo Shift Lab", size, fast_gui=True)
 
     def close(self) -> None:
-        """Done with it."""
+        """Close the window."""
         self._window.close()
 
     def _is_open(self) -> bool:
@@ -59,7 +59,7 @@ class PlainWindow(Window):
 
 
 def _pack(picture: np.ndarray, packed: np.ndarray) -> None:
-    """Into the numbers that ti.GUI shows, 0xffRRGGBB, on macOS 0xffBBGGRR, row by row from the highest."""
+    """Pack pixels into the integers of ti.GUI, 0xffRRGGBB, on macOS 0xffBBGGRR, row by row from the top."""
     channels = packed.view(np.uint8).reshape(*picture.shape[:2], 4)
     for channel, colour in enumerate((0, 1, 2) if sys.platform == "darwin" else (2, 1, 0)):
         channels[..., channel] = picture[..., colour]
@@ -67,7 +67,7 @@ def _pack(picture: np.ndarray, packed: np.ndarray) -> None:
 
 
 def open_window(size: tuple[int, int]) -> PlainWindow | None:
-    """The window, None where the display refuses one."""
+    """Open the window; None if the display refuses it."""
     try:
         return PlainWindow(size)
     except RuntimeError:

@@ -1,4 +1,4 @@
-"""What every window does: show a session's pictures at their pace and pass on what a hand does."""
+"""The base of all windows: show a session's pictures at their rate and pass on the user's events."""
 
 import time
 from abc import ABC, abstractmethod
@@ -9,7 +9,7 @@ from lab.view.panel.chooser import Chooser
 from lab.view.session import Session
 
 PICTURES = 30.0  # Hz
-LATEST = 0.1  # s by which pictures may be late and still be caught up with
+LATEST = 0.1  # s: a larger delay of the pictures is not caught up
 
 
 class Window(ABC):
@@ -21,7 +21,7 @@ class Window(ABC):
         self._size = size
 
     def run(self, session: Session | Chooser) -> None:
-        """Until the window or what it shows ends; a picture that took long is followed by one that waits less."""
+        """Run until the window or the session ends; after a slow picture the next one waits less."""
         due = time.monotonic()
         while self._is_open() and not session.ended:
             session.tick()
@@ -41,8 +41,8 @@ class Window(ABC):
 
     @abstractmethod
     def _pass_on(self, session: Session | Chooser) -> None:
-        """Turn the events since the last time into the session's calls."""
+        """Turn the events since the last call into calls of the session."""
 
     @abstractmethod
     def _show(self, session: Session | Chooser, picture: np.ndarray) -> None:
-        """Show the picture (height, width, 3), u8, and what the window itself has for a session."""
+        """Show the picture (height, width, 3), u8, and the window's own panel for a session."""

@@ -1,7 +1,7 @@
-"""cargolab bench accuracy: what an error costs, by integrator, step, stiffness, precision, tilt rate, law and repeats.
+"""cargolab bench accuracy: error against cost, by integrator, step, stiffness, precision, tilt rate, law and repeats.
 
-Each study is one module with a title and a function `study(page, work, fast)` that adds a section to the page. What is
-run by sweeps lies in the folder `work` and is not run again: the page can be cut short and gone on with.
+Each study is one module with a title and a function `study(page, work, fast)` that adds a section to the page. Sweeps
+are kept in the folder `work` and not run again, so an interrupted page can be continued.
 """
 
 from collections.abc import Sequence

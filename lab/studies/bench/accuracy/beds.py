@@ -1,4 +1,4 @@
-"""The beds that the studies tilt and sway, small so that many can be, and what comes of a sweep over them."""
+"""The beds that the studies tilt and sway, small so that many can be run, and the results of a sweep over them."""
 
 import json
 from collections.abc import Mapping, Sequence

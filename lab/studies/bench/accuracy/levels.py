@@ -1,4 +1,4 @@
-"""The levels of accuracy: what each sets, what it costs, what comes of it; and why the defaults are what they are."""
+"""The levels of accuracy: settings, cost and results of each, and the reasons for the defaults."""
 
 from pathlib import Path
 

@@ -17,7 +17,7 @@ PRESETS = {"sway": (SWAYED, SWAY), "tilt": (TILTED, TILT)}
 
 @cache
 def settled_places(kind: str, beds: int, scale: float) -> tuple[Scene, np.ndarray]:
-    """The scene of so many beds of a kind, "sway" or "tilt", and their settled places (W, n, 2) m."""
+    """The scene of several beds of a kind, "sway" or "tilt", and their settled positions (W, n, 2) m."""
     name, overrides = PRESETS[kind]
     asked = {**overrides, "run.repeats": beds, "contact.stiffness_scale": scale}
     scene, start = build(load(name, asked).resolved)

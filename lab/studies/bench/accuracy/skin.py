@@ -1,4 +1,4 @@
-"""The skin of the neighbour lists: it changes the speed alone."""
+"""The skin of the neighbour lists: it changes only the speed."""
 
 import statistics
 import time

@@ -84,7 +84,7 @@ write_dump all custom {final} id x z modify sort id format float %.17g
 
 
 def available() -> str | None:
-    """Path of the LAMMPS executable, or None where it is not installed."""
+    """Path of the LAMMPS executable, or None if it is not installed."""
     return shutil.which(EXECUTABLE)
 
 
@@ -107,7 +107,7 @@ def run_lammps(
     """Let LAMMPS take `steps` steps from a bed at rest that remembers no earlier contact.
 
     The arguments are those of `run_liggghts`, and on top `processes`, which share the bed among them through MPI.
-    Raises LabError where LAMMPS is not installed or stops, or the material has no restitution.
+    Raises LabError if LAMMPS is not installed or stops, or the material has no restitution.
     """
     if material.restitution is None:
         raise LabError("LAMMPS is given its damping by a restitution: give the material one.")

@@ -90,7 +90,7 @@ write_dump all custom {final} id x z modify format "%d %.17g %.17g"
 
 
 def available() -> str | None:
-    """Path of the LIGGGHTS executable, or None where it is not installed."""
+    """Path of the LIGGGHTS executable, or None if it is not installed."""
     return shutil.which(EXECUTABLE)
 
 
@@ -122,7 +122,7 @@ def run_liggghts(
     sample_every: steps from one sample of the trace to the next, the first being t = 0.
     workdir: folder that keeps deck, bed and log; without it they are thrown away.
 
-    Raises LabError where LIGGGHTS is not installed or stops, or the material has no restitution.
+    Raises LabError if LIGGGHTS is not installed or stops, or the material has no restitution.
     """
     if material.restitution is None:
         raise LabError("LIGGGHTS damps contacts by a restitution: give the material one.")

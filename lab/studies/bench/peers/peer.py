@@ -1,4 +1,4 @@
-"""What peer codes have in common: a folder, a file with the bed, how they are run, and what is read."""
+"""Shared code for the peer codes: working folder, file with the bed, running them, reading the results."""
 
 import os
 import re
@@ -21,7 +21,7 @@ HEADER = 9  # lines of a dump before its rows
 
 @dataclass(frozen=True)
 class PeerRun:
-    """What a peer code made of a bed: how long it took and where the grains went.
+    """The result of a peer code on a bed: its time and the motion of the grains.
 
     loop_s: wall time of the stepping as the code itself reports it, without set-up (s).
     grain_steps_per_s: grains times steps over that time (1/s).
@@ -76,7 +76,7 @@ def bed_file(position: np.ndarray, radius: np.ndarray, density: float, width: fl
 def execute(name: str, executable: str, arguments: Sequence[str], folder: Path, processes: int = 1) -> float:
     """Run a peer in `folder`, each process on one thread; returns the loop time it prints (s).
 
-    Raises LabError where it, or mpirun for several processes, is not installed, or where it stops.
+    Raises LabError if it, or mpirun for several processes, is not installed, or if it stops.
     """
     for needed in (executable, *(["mpirun"] if processes > 1 else [])):
         if shutil.which(needed) is None:
@@ -97,7 +97,7 @@ def execute(name: str, executable: str, arguments: Sequence[str], folder: Path, 
 
 
 def _launcher(processes: int) -> list[str]:
-    """What starts so many processes, each bound to a core of its own."""
+    """The command that starts several processes, each bound to its own core."""
     if processes == 1:
         return []
     as_root = ["--allow-run-as-root"] if hasattr(os, "geteuid") and os.geteuid() == 0 else []

@@ -1,7 +1,7 @@
-"""cargolab bench speed: what a grain-step costs by grains, worlds, precision, schedule, threads and law, and why.
+"""cargolab bench speed: cost of a grain-step by grains, worlds, precision, schedule, threads and law, and its causes.
 
 Each study is one module with a title and a function `study(page, work, fast)` that adds a section to the page. The
-settled beds and the curves of the slow study lie in the folder `work` and are not run again; times are taken anew.
+settled beds and the curves of the slow study are kept in the folder `work`; times are always measured again.
 """
 
 from collections.abc import Sequence

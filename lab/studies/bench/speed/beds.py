@@ -43,10 +43,10 @@ class Bed:
         return np.tile(self.position, (worlds, 1, 1))
 
     def times(self, number: int) -> "Bed":
-        """So many copies of the bed side by side in one tank.
+        """A bed of `number` copies of this one side by side in one tank.
 
-        All worlds made of one bed have the same contacts a grain; where two copies meet the force is nearly that of
-        the walls that stood there.
+        All worlds made from one bed have the same number of contacts per grain; where two copies meet, the force is
+        nearly that of the walls that they replace.
         """
         shifts = self.width * (np.arange(number) - 0.5 * (number - 1))
         position = np.concatenate([self.position + np.array([shift, 0.0]) for shift in shifts])
@@ -60,7 +60,7 @@ def tank(width: float) -> np.ndarray:
 
 
 def usual_bed(work: Path, count: int) -> Bed:
-    """The settled bed of so many grains, one of WIDTHS."""
+    """The settled bed of `count` grains, a key of WIDTHS."""
     return settled_bed(work, count, WIDTHS[count])
 
 

@@ -1,4 +1,4 @@
-"""What precision, schedule and law cost on one and the same bed."""
+"""Cost of precision, schedule and law on one bed."""
 
 from pathlib import Path
 

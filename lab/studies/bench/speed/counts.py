@@ -1,4 +1,4 @@
-"""How much arithmetic and how many bytes a step takes, counted from the engine's source by hand.
+"""Operations and bytes of a step, counted by hand from the engine's source.
 
 Counted for 64-bit numbers, one kind of grains, the viscoelastic Hertz law, Mindlin's friction with history, no rolling
 resistance, a closed tank that does not turn. A sum, difference, product, least or largest value is one simple

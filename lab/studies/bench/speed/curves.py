@@ -27,7 +27,7 @@ APART = 0.1  # d: where two curves have parted
 
 @dataclass(frozen=True)
 class Tilting:
-    """Beds of so many grains in a tank of this width (m), tilted at a rate (deg/s) to an angle (deg)."""
+    """Beds with a number of grains in a tank of a width (m), tilted at a rate (deg/s) to an angle (deg)."""
 
     beds: int = 4
     count: int = 300

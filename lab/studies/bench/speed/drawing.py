@@ -1,4 +1,4 @@
-"""What the figures of speeds share."""
+"""Shared drawing code for the figures of speeds."""
 
 from collections.abc import Sequence
 

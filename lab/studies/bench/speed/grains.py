@@ -1,4 +1,4 @@
-"""What a grain-step costs in worlds of any size, and what bands on all cores give."""
+"""Cost of a grain-step in worlds of any size, and the gain from bands on all cores."""
 
 from pathlib import Path
 
@@ -32,7 +32,7 @@ def study(page: Page, work: Path, fast: bool) -> None:
 
 
 def measured(work: Path, size: int, turns: int, seconds: float) -> Speeds:
-    """Grain-steps a second (turns,) of a world of so many grains on one core and on all."""
+    """Grain-steps per second (turns,) of a world of `size` grains, on one core and on all."""
     print(f"grains: {size}", flush=True)
     bed = usual_bed(work, COUNT).times(size // COUNT)
     made = {

@@ -1,4 +1,4 @@
-"""Parts of a step, and parts of its force loop, run many times over on one state, so that they can be timed alone.
+"""Parts of a step, and of its force loop, repeated many times on one state, so that each can be timed alone.
 
 They call the engine's own functions. With a step of zero these leave places and velocities as they are, and from the
 second time on the history, too.

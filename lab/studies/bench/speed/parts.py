@@ -1,4 +1,4 @@
-"""Where the time of a step goes, and how far the force loop is from what the core could do at most."""
+"""Where the time of a step goes, and how close the force loop is to the limits of the core."""
 
 import time
 from collections.abc import Mapping
@@ -208,7 +208,7 @@ def limits(size: int, turns: int, seconds: float) -> dict[str, float]:
 
 
 def repeated(do, seconds: float):
-    """A timing: the seconds that doing something once takes, `do(times)` being done for about so many seconds."""
+    """A timing: the seconds per call, from repeating it by `do(times)` for about `seconds` seconds."""
 
     def once(times: int) -> float:
         begun = time.perf_counter()

@@ -67,7 +67,7 @@ def on_one_core(bed: Bed, turns: int, seconds: float, grain_steps: float) -> Spe
 
 
 def peer_timing(run: Callable, bed: Bed, dt: float, steps: int, **how: object) -> Timing:
-    """A timing of a peer on a bed: grain-steps a second of so many steps of `dt` (s)."""
+    """A timing of a peer on a bed: grain-steps per second over `steps` steps of `dt` (s)."""
     arguments = bed.position, bed.radius, bed.width, HEIGHT, SOFT, dt, steps
     return lambda: run(*arguments, sample_every=steps, **how).grain_steps_per_s
 

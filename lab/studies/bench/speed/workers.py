@@ -1,6 +1,6 @@
 """Simulations in processes of their own, so that runs on different threads and precisions can be timed in turn.
 
-Taichi holds one number of threads and one precision a process; a simulation that starts it anew ends all others.
+Taichi has one number of threads and one precision per process; a simulation that restarts Taichi ends all others.
 """
 
 import time
@@ -23,7 +23,7 @@ Speeds = dict[Hashable, np.ndarray]
 class Worker:
     """A simulation of a bed in as many equal worlds, in a process of its own; it rests unless it is asked.
 
-    `how` goes to the scene; `arch` and `threads` to the simulation. Raises LabError where it cannot be made or breaks
+    `how` goes to the scene; `arch` and `threads` to the simulation. Raises LabError if it cannot be made or breaks
     off.
     """
 
@@ -36,7 +36,7 @@ class Worker:
         self.dt = self._answer()
 
     def speed(self, seconds: float) -> float:
-        """Grain-steps a second over about so many seconds of stepping."""
+        """Grain-steps per second, measured over about `seconds` seconds."""
         with suppress(BrokenPipeError):  # what it said last is still to be read
             self._pipe.send(seconds)
         return self._answer()
@@ -76,7 +76,7 @@ def _serve(pipe: Connection, bed: Bed, threads: int, worlds: int, arch: str, how
 
 
 def timed(run: Simulation, steps: int) -> float:
-    """Grain-steps a second over so many steps."""
+    """Grain-steps per second, measured over `steps` steps."""
     begun = time.perf_counter()
     run.advance(steps)
     run.clock.step.to_numpy()  # a graphics processor has done its steps when it can be read
@@ -97,7 +97,7 @@ def workers(made: Mapping[Hashable, Callable[[], Worker]]) -> Iterator[dict[Hash
 
 
 def compared(made: Mapping[Hashable, Callable[[], Worker]], turns: int, seconds: float) -> Speeds:
-    """Grain-steps a second (turns,) of workers, each timed for about so many seconds a turn."""
+    """Grain-steps per second (turns,) of workers, each timed for about `seconds` seconds per turn."""
     with workers(made) as found:
         return in_turn({name: lambda w=worker: w.speed(seconds) for name, worker in found.items()}, turns)
 

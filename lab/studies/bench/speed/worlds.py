@@ -1,4 +1,4 @@
-"""What batches of equal worlds give, and what a second thread does for them."""
+"""Speed of batches of equal worlds, and the gain from a second thread."""
 
 from pathlib import Path
 

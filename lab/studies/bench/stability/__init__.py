@@ -1,7 +1,7 @@
-"""cargolab bench stability: hard cases at the automatic step and far beyond it, and where steps do become unstable.
+"""cargolab bench stability: hard cases at the automatic step and far beyond it, and the true limit of stability.
 
-CASES and MAPS name what is tried: the cases, and each integrator's part of the map. What was found is kept in
-stability.json; what is there from the same versions, fast or in full as now, is not run again.
+CASES and MAPS name the tests: the cases, and each integrator's part of the map of limits. Results are kept in
+stability.json and not run again if they are from the same versions and the same choice of fast or full.
 """
 
 from collections.abc import Sequence

@@ -1,4 +1,4 @@
-"""What the cases are made of: materials, tanks, and grains at their start."""
+"""The parts of the cases: materials, tanks, and grains at their start."""
 
 from math import ceil
 

@@ -1,4 +1,4 @@
-"""A case: what is tried, what is asked of it, and the verdict on what came of it."""
+"""A hard case: its trial, its checks, and the verdict on the result."""
 
 from collections.abc import Callable
 from dataclasses import dataclass

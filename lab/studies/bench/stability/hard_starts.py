@@ -1,4 +1,4 @@
-"""Hard cases that begin badly or are very large: grains on top of each other, a gas, a million grains."""
+"""Hard cases with bad starts or very many grains: grains on top of each other, a gas, a million grains."""
 
 from dataclasses import replace
 from math import pi, sqrt

@@ -1,9 +1,9 @@
-"""Where steps do become unstable, against where the lab stops: a compressed packing, disturbed a little.
+"""The true limit of stability against the derived step: a compressed packing with a small disturbance.
 
-Six grains round a seventh in a hexagonal tank that squeezes them, so that every contact is as deep as the hardest
-impact that the derived step is meant for. It is in equilibrium, and the exact motion of a small disturbance keeps its
-energy or loses it. A step is unstable if the kinetic energy of the disturbance, spin included, grows by GROWTH within
-STEPS steps, or if the watch stops the run.
+Six grains surround a seventh in a hexagonal tank that compresses them, so that every contact is as deep as the hardest
+impact for which the step is derived. The packing is in equilibrium, and the exact motion of a small disturbance keeps
+its energy or loses it. A step is unstable if the kinetic energy of the disturbance, spin included, grows by GROWTH
+within STEPS steps, or if the watch stops the run.
 """
 
 from collections.abc import Callable, Iterator

@@ -1,7 +1,7 @@
-"""A case again with longer steps than the lab would take: still right, stopped by the watch, or quietly wrong.
+"""Repeat a case with longer steps than the derived one: still right, stopped by the watch, or silently wrong.
 
-The app refuses steps beyond `lab.preset.accuracy.FURTHEST` times the limit, whatever is forced. These are run all the
-same, to show what they would give.
+Presets cannot force steps beyond `lab.preset.accuracy.FURTHEST` times the limit. Such steps are run here all the same,
+to show what they would give.
 """
 
 from collections.abc import Iterator
@@ -34,7 +34,7 @@ class Pushed:
 
     @property
     def passed(self) -> bool:
-        """Whether nobody is misled: no number comes out, or it is right."""
+        """Whether the result does not mislead: there is no number, or it is right."""
         return self.outcome != WRONG
 
 

@@ -1,4 +1,4 @@
-"""What has been found so far, in one JSON file: a run that was cut off goes on from it."""
+"""The results so far in one JSON file, from which an interrupted benchmark continues."""
 
 import json
 import math
@@ -10,9 +10,9 @@ from lab.recording import versions
 
 
 class Records:
-    """Records by name in a file; those of other versions of the lab or its libraries, or of the other speed, are none.
+    """Records by name in a file; those of other versions, or of the other choice of fast or full, are ignored.
 
-    Raises LabError where the file is not one that this wrote.
+    Raises LabError if the file was not written by this class.
     """
 
     def __init__(self, path: Path, fast: bool) -> None:
@@ -29,7 +29,7 @@ class Records:
         return self._records.get(name, {}).get("made_by") == self._made_by
 
     def keep(self, name: str, record: Mapping[str, object]) -> None:
-        """Put a record, in place of an older one, on the disk."""
+        """Write a record to the disk, in place of an older one."""
         self._records[name] = plain({"made_by": self._made_by, **record})
         self.path.parent.mkdir(parents=True, exist_ok=True)
         new = self.path.with_suffix(".new")
@@ -38,7 +38,7 @@ class Records:
 
 
 def plain(value: object) -> object:
-    """The value with None for numbers that JSON has not: NaN and infinities."""
+    """The value with None for numbers that JSON lacks: NaN and infinities."""
     if isinstance(value, Mapping):
         return {key: plain(item) for key, item in value.items()}
     if isinstance(value, list | tuple):

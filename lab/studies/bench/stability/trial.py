@@ -1,4 +1,4 @@
-"""A scene followed to its end, with its energy counted against what the tank's motion has done."""
+"""Run a scene to its end, with a balance of its energy and the work done by the tank's motion."""
 
 from dataclasses import dataclass, field
 

@@ -1,6 +1,6 @@
-"""cargolab bench survival: the lab killed at random times, starved and misled; how often it was tried, how it ended.
+"""cargolab bench survival: kill the lab at random times, deprive it of resources, and count how it ends.
 
-What is tried is in `kills` and in `straits`. Everything runs in processes of its own.
+The cases are in `kills` and in `straits`. Everything runs in processes of its own.
 """
 
 import shutil

@@ -1,4 +1,4 @@
-"""The lab in processes of its own, to be killed, starved and misled: how each ended, and what it left."""
+"""Run the lab in child processes that are killed or deprived of resources: how each ended, and what it left."""
 
 import os
 import signal
@@ -15,7 +15,7 @@ import h5py
 
 from lab.recording import FILE_NAME
 
-PATIENCE = 600.0  # s: who takes longer hangs
+PATIENCE = 600.0  # s: a process that takes longer counts as hanging
 SETTINGS = {
     "tank.width": "24 mm",
     "tank.height": "24 mm",

@@ -1,4 +1,4 @@
-"""Processes killed at random times, gone on with, killed again, and compared with those that nobody disturbed."""
+"""Processes killed at random times, continued, killed again, and compared with undisturbed ones."""
 
 import random
 import shutil
@@ -49,7 +49,7 @@ def gallery(work: Path, kills: int) -> Tally:
 
 
 def _tour(work: Path, kills: int, what: str, first: Sequence, again: Sequence, code: str | None = None) -> Tally:
-    """Kill so often in all; each tour is gone on with until it is done."""
+    """Kill the command `kills` times in all; each tour is continued until it is done."""
     tally = Tally(f"kill -9 of {what} at random times, then resumed: the same bits as undisturbed")
     how = {"code": code} if code else {}
     whole, cut = work / "whole", work / "cut"

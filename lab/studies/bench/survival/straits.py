@@ -1,4 +1,4 @@
-"""Processes that lack something: memory, files, room, a home, a display, locks, or a clock that can be trusted."""
+"""Processes that lack something: memory, files, disk space, a home, a display, locks, or a reliable clock."""
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -64,7 +64,7 @@ def limits(work: Path, _: int) -> Tally:
 
 
 def room(work: Path, _: int) -> Tally:
-    """A disk that fills: files may grow to so many bytes only, while recording, painting, summing up."""
+    """A full disk: the size of files is limited while recording, filming and summarising."""
     tally = Tally("files that may not grow: done, or a sentence and a recording that can be read")
     for size in SIZES:
         folder = work / f"{size:g}"
@@ -75,7 +75,7 @@ def room(work: Path, _: int) -> Tally:
 
 
 def places(work: Path, _: int) -> Tally:
-    """Odd names of folders, and such as cannot be written."""
+    """Folders with odd names, and folders that cannot be written."""
     tally = Tally("odd folders: the same bits, or a sentence")
     expected = _undisturbed(work)
     for name in ("with spaces", "Füllung ₂ 積荷", "n" * 200, "--out", "a'b\"c$d", "new\nline"):

@@ -1,4 +1,4 @@
-"""Counting what was tried and how it went."""
+"""Count trials by their outcome."""
 
 from collections import Counter
 from collections.abc import Iterator
