@@ -18,6 +18,12 @@ def is_older(form: str) -> bool:
     return form == FORMAT
 
 
+def renamed(preset: dict) -> dict:
+    """A recorded preset by the keys of today: the thickness of the cargo was the ship's."""
+    sheet = (preset.get("ship") or {}).pop("sheet", None)
+    return preset | {"tank": preset["tank"] | {"thickness": sheet}} if sheet else preset
+
+
 def quantities(group: h5py.Group, known: Iterable[Quantity]) -> dict[str, Quantity]:
     """The quantities of a table by name. Raises KeyError where one is missing for which nothing stands."""
     found = {quantity.name: quantity for quantity in known if quantity != WAVES or WAVES.name in group}

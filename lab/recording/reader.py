@@ -57,7 +57,8 @@ class Recording:
             self.step, self.wall_s = float(said["step"]), float(said["wall_s"])
             self.grain_steps = int(said["grain_steps"])
             self.given = self._stored("preset/given", text)
-            self.preset = json.loads(self._stored("preset/resolved", text))
+            preset = json.loads(self._stored("preset/resolved", text))
+            self.preset = older.renamed(preset) if older.is_older(self.form) and is_preset(preset) else preset
             self.radius, self.kind = self._stored("grains/radius"), self._stored("grains/kind")
             self.outline, self.fixed = self._stored("tank/outline"), self._stored("tank/fixed")
             self.open_edges = tuple(int(edge) for edge in self._stored("tank/open_edges"))
