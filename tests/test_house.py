@@ -44,7 +44,7 @@ LONG = {  # too long, and not to become longer
     "lab/view/page.py": 435,
     "lab/view/session.py": 366,
     "solvers/grains/shapes/rules/continuous.py": 408,
-    "solvers/machine/runtime.py": 314,
+    "solvers/machine/runtime.py": 306,
     "solvers/motion/afloat.py": 410,
     "solvers/simulation.py": 384,
 }

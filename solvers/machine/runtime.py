@@ -1,9 +1,7 @@
 """The one place where Taichi is started.
 
 Taichi 1.7.4 silently miscompiles reads of a local vector's element after the vector was reassigned (upstream report
-8744); switching its control-flow-graph optimisation off cures it. It also draws, for every expression that it traces,
-the source lines with a mark under them, in case that one is wrong: half of the time that a simulation takes to set up.
-Here it tells file and line. Every kernel of the lab relies on this module.
+8744); switching its control-flow-graph optimisation off cures it. Every kernel of the lab relies on this module.
 """
 
 import ctypes
@@ -17,9 +15,8 @@ from weakref import WeakSet
 
 import numpy as np
 import taichi as ti
-from taichi.lang.ast.ast_transformer_utils import ASTTransformerContext
 
-from solvers.machine import address_space, kernel_cache, memory
+from solvers.machine import address_space, kernel_cache, memory, sources
 from solvers.machine.errors import Unavailable
 
 ARCHES = ("auto", "cpu", "cuda", "vulkan")
@@ -40,12 +37,7 @@ PRECISIONS = {
 }
 
 
-def _place(context: ASTTransformerContext, node) -> str:
-    """Where an expression stands, in words."""
-    return f'File "{context.file}", line {node.lineno + context.lineno_offset}, in {context.func.func.__name__}:\n'
-
-
-ASTTransformerContext.get_pos_info = _place
+sources.remember()
 
 _most_cores = 2**31
 _running: tuple | None = None
