@@ -1,9 +1,7 @@
 """The one place where Taichi is started.
 
 Taichi 1.7.4 silently miscompiles reads of a local vector's element after the vector was reassigned (upstream report
-8744); switching its control-flow-graph optimisation off cures it. For every expression that it traces it also formats
-the marked source lines of a possible error message, which takes half of a simulation's set-up time; here it formats
-file and line only. Every kernel of the lab relies on this module.
+8744); switching its control-flow-graph optimisation off cures it. Every kernel of the lab relies on this module.
 """
 
 import ctypes
@@ -16,9 +14,8 @@ from io import StringIO
 from weakref import WeakSet
 
 import taichi as ti
-from taichi.lang.ast.ast_transformer_utils import ASTTransformerContext
 
-from solvers.machine import address_space, kernel_cache, memory
+from solvers.machine import address_space, kernel_cache, memory, sources
 from solvers.machine.errors import Unavailable
 
 ARCHES = ("auto", "cpu", "cuda", "vulkan")
@@ -39,12 +36,7 @@ PRECISIONS = {
 }
 
 
-def _place(context: ASTTransformerContext, node) -> str:
-    """File, line and function of an expression, for error messages."""
-    return f'File "{context.file}", line {node.lineno + context.lineno_offset}, in {context.func.func.__name__}:\n'
-
-
-ASTTransformerContext.get_pos_info = _place
+sources.remember()
 
 _most_cores = 2**31
 _running: tuple | None = None

@@ -67,7 +67,9 @@ class Cells:
     @ti.func
     def box(self, w, i):
         """First and last cells along each axis of the box of a grain's cell and its neighbours."""
-        at = [self.cell_of[w, i] // self.strides[a] % self.shape[a] for a in ti.static(range(self.axes))]
+        at = [self.cell_of[w, i] // self.strides[a] for a in ti.static(range(self.axes))]
+        for a in ti.static(range(self.axes - 1)):
+            at[a] = at[a] % self.shape[a]
         lower = [ti.max(0, at[a] - 1) for a in ti.static(range(self.axes))]
         upper = [ti.min(self.shape[a] - 1, at[a] + 1) for a in ti.static(range(self.axes))]
         return lower, upper
@@ -85,9 +87,11 @@ class Cells:
         """The first cell, at the edge of the grid, of the n-th row of a box."""
         cell, rest = 0, n
         for a in ti.static(range(1, self.axes)):
-            span = upper[a] - lower[a] + 1
-            cell += self.strides[a] * (lower[a] + rest % span)
-            rest //= span
+            along = rest
+            if ti.static(a < self.axes - 1):
+                span = upper[a] - lower[a] + 1
+                along, rest = rest % span, rest // span
+            cell += self.strides[a] * (lower[a] + along)
         return cell
 
     @ti.func
