@@ -142,7 +142,7 @@ def test_bands_go_on_in_bands_on_any_number_of_threads(monkeypatch):
 
 def test_bands_do_not_wait_for_cores_that_are_not_there():
     """Taichi starts no more threads than there are cores; a band at the barrier would wait for ever for its mates."""
-    engine, cores = MagicMock(), available_cores()
+    clock, cores = MagicMock(), available_cores()
     for bands in (cores, cores + 1):
-        engine.units.count = bands
-        assert PerBand(engine, bands).together == (bands == cores)
+        clock.units.count = bands
+        assert PerBand(MagicMock(), clock, bands).together == (bands == cores)
