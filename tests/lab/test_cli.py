@@ -205,7 +205,7 @@ def test_render_passes_what_is_asked(monkeypatch):
     assert arguments == (Path("there"), Path("out.mp4"))
     assert callable(options.pop("progress"))
     look = {"colour": "layer", "frame": "earth", "width": 640, "height": 360, "world": 2}
-    assert options == {**look, "png": False}
+    assert options == {**look, "png": False, "sound": False}
     call("render", "there", "--png")
     assert calls[1][0] == (Path("there"), None) and calls[1][1]["png"] is True
 

@@ -39,9 +39,9 @@ class WithHighest(Observer):
 
     @ti.func
     def top(self, w):
-        highest = self.grains.z[w, 0]
+        highest = self.grains.place[1][w, 0]
         for i in range(self.grains.mobile):
-            highest = ti.max(highest, self.grains.z[w, i])
+            highest = ti.max(highest, self.grains.place[1][w, i])
         return highest
 
 
