@@ -43,7 +43,7 @@ def ship() -> Vessel:
     return Vessel(Ship(HULL, load, radiation, AXIS), HOLD, LENGTH, heel=HEEL, release=RELEASE)
 
 
-@pytest.fixture(scope="module", params=["per-world", "per-band"])
+@pytest.fixture(scope="module", params=["per-world", pytest.param("per-band", marks=pytest.mark.slow)])
 def laden(request):
     """A simulation of two tanks with grains and one without, its bed settled."""
     wide, narrow = lattice(9, 2, PORT), lattice(5, 4, BOARD)

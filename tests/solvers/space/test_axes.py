@@ -45,7 +45,9 @@ def pressing(run) -> tuple[np.ndarray, np.ndarray]:
     return found.grains[order], np.stack([found.place, found.force], axis=1)[order]
 
 
-@pytest.mark.parametrize("integrator", ["verlet", "symplectic-euler", "gear"])
+@pytest.mark.parametrize(
+    "integrator", ["verlet", *(pytest.param(name, marks=pytest.mark.slow) for name in ("symplectic-euler", "gear"))]
+)
 def test_a_scene_turned_by_a_quarter_goes_on_as_before(integrator):
     runs = scenes(integrator)
     for run in runs:

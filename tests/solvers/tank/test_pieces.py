@@ -11,9 +11,19 @@ from solvers.tank.parts import Part
 from tests.oracles.scenes import box, material
 
 G, RADIUS = 9.81, 1.5e-3
+CIRCLES = Shapes((Contour(1.0),), np.zeros((1, 4), dtype=int), np.zeros((1, 4)), "continuous")
+HOW = {
+    "discs": {},
+    "bands": {"schedule": "per-band"},
+    "single grains": {"schedule": "per-grain"},
+    "outlines": {"shapes": CIRCLES},
+}
 
 
-def test_each_piece_bears_what_lies_on_it():
+@pytest.mark.parametrize(
+    "how", ["discs", *(pytest.param(how, marks=pytest.mark.slow) for how in HOW if how != "discs")]
+)
+def test_each_piece_bears_what_lies_on_it(how):
     """A grain on the floor, one on a shelf, one on a fixed grain in a pocket, one that a paddle carries: its weight.
 
     Under rules for discs and for outlines, in one unit and in several: booked once each.
@@ -24,26 +34,24 @@ def test_each_piece_bears_what_lies_on_it():
     )
     place = np.array([[[-0.01, RADIUS], [0.01, 0.02 + RADIUS], [-0.04, 4e-3 + RADIUS], [0.025, 0.045 + RADIUS]]])
     weight = 4.0 / 3.0 * np.pi * RADIUS**3 * material().density * G
-    circle = Shapes((Contour(1.0),), np.zeros((1, 4), dtype=int), np.zeros((1, 4)), "continuous")
-    soft = material(young=2e7)
-    for more in ({}, {"schedule": "per-band"}, {"schedule": "per-grain"}, {"shapes": circle}):
-        scene = Scene(
-            np.full((1, 4), RADIUS),
-            box(0.1, 0.1),
-            soft,
-            soft,
-            fixed=fixed,
-            parts=(shelf, tray),
-            start_speed=0.3,
-            **more,
-        )
-        run = Simulation(scene, place, 1, arch="cpu", units=2 if "per-band" in more.values() else None)
-        run.advance(round(0.02 / run.dt))
-        run.observe()
-        run.advance(round(0.02 / run.dt))
-        whole, pieces = run.observe(), run.loads()[0]
-        run.close()
-        assert pieces.sum(axis=0) == pytest.approx(whole["wall_force"][0], rel=1e-12, abs=1e-15)
-        walls, on_shelf, on_tray, lining = pieces
-        for piece, y in ((walls, -0.01), (on_shelf, 0.01), (lining, -0.04), (on_tray, 0.025)):
-            assert piece == pytest.approx([0.0, -weight, -weight * y], rel=0.02, abs=1e-3 * weight), more
+    soft, more = material(young=2e7), HOW[how]
+    scene = Scene(
+        np.full((1, 4), RADIUS),
+        box(0.1, 0.1),
+        soft,
+        soft,
+        fixed=fixed,
+        parts=(shelf, tray),
+        start_speed=0.3,
+        **more,
+    )
+    run = Simulation(scene, place, 1, arch="cpu", units=2 if "per-band" in more.values() else None)
+    run.advance(round(0.02 / run.dt))
+    run.observe()
+    run.advance(round(0.02 / run.dt))
+    whole, pieces = run.observe(), run.loads()[0]
+    run.close()
+    assert pieces.sum(axis=0) == pytest.approx(whole["wall_force"][0], rel=1e-12, abs=1e-15)
+    walls, on_shelf, on_tray, lining = pieces
+    for piece, y in ((walls, -0.01), (on_shelf, 0.01), (lining, -0.04), (on_tray, 0.025)):
+        assert piece == pytest.approx([0.0, -weight, -weight * y], rel=0.02, abs=1e-3 * weight)

@@ -51,7 +51,7 @@ def test_steps_of_two_base_steps_are_steps_of_twice_the_length(schedule):
     assert found[0][-1]["contacts"][0] > 20
 
 
-@pytest.mark.parametrize("schedule", ["per-world", "per-band", "per-grain"])
+@pytest.mark.parametrize("schedule", ["per-world", pytest.param("per-band", marks=pytest.mark.slow), "per-grain"])
 def test_free_fall_is_exact_where_the_step_changes(schedule):
     """Leapfrog of constant acceleration is exact if each kick goes from the middle of a step to that of the next."""
     place = np.array([[[0.0, 0.3], [0.005, 0.3]]])
