@@ -16,18 +16,18 @@ SETTLED = "settled to 1e-14 m g d: a swing of 1e-5 of the overlaps"
 LOOKS, LOOK = 20, 0.01  # s
 
 
-def settled(setup: Setup) -> tuple[Track, dict[str, float]]:
+def settled(setup: Setup) -> tuple[Track, dict[str, np.ndarray]]:
     """What a setup does in 0.2 s once it has come to rest, and what is observed of it, averaged over that time."""
     with simulated(setup) as run:
         if not run.settle(REST, LIMIT):
             raise RuntimeError(f"nothing rests within {LIMIT:g} s")
         run.observe()
         path = track(run, LOOKS, round(LOOK / run.dt))
-        return path, {name: float(values[0]) for name, values in run.observe().items()}
+        return path, {name: values[0] for name, values in run.observe().items()}
 
 
 @cache
-def column() -> tuple[Track, dict[str, float]]:
+def column() -> tuple[Track, dict[str, np.ndarray]]:
     """Twelve grains upon one another in a slot."""
     rows = [grain(0.0, RADIUS * (1 + 2 * k), RADIUS) for k in range(COUNT)]
     tank = {"width": 2.0 * RADIUS * 1.0001, "height": 0.05}
