@@ -86,6 +86,9 @@ def read(kind: type[T], table: object, path: str = "") -> T:
     return kind(**values)
 
 
+RENAMED = {"ship.sheet": "tank.thickness"}  # keys of earlier versions
+
+
 def _check_keys(kind: type, table: object, path: str, everywhere: list[str]) -> None:
     if not isinstance(table, Mapping):
         return
@@ -93,6 +96,8 @@ def _check_keys(kind: type, table: object, path: str, everywhere: list[str]) -> 
     for key, value in table.items():
         if key not in known:
             wrong = _join(path, quoted(str(key))[1:-1])
+            if wrong in RENAMED:
+                raise LabError(f"{wrong}: this key is {RENAMED[wrong]} now.")
             raise LabError(f"{wrong}: unknown key; {_hint(key, known, everywhere)}")
         if is_dataclass(known[key]):
             _check_keys(known[key], value, _join(path, key), everywhere)

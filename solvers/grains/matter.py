@@ -112,7 +112,7 @@ class GrainMatter:
 
     @ti.func
     def asked(self, u):
-        """Whether some contacts are to be sought anew."""
+        """Whether some contacts are to be searched again."""
         return self.neighbours.asked(u)
 
     @ti.func

@@ -406,3 +406,8 @@ def test_others_go_on_when_a_ship_has_capsized(tmp_path):
         assert calm.complete and calm.series["time"][-1] == pytest.approx(3.0)
         assert (calm.series["capsized"] < 0.0).all()
         check_lost(rough)
+
+
+def test_the_former_key_of_the_cargos_thickness_names_the_present_one():
+    with pytest.raises(LabError, match=r"^ship\.sheet: this key is tank\.thickness now\.$"):
+        load("ship/barge-roll", {"ship.sheet": "3 mm"})
