@@ -11,10 +11,10 @@ from solvers.grains.integrators import INTEGRATORS
 from solvers.grains.laws import COHESION, NORMAL, ROLLING, TANGENTIAL
 from solvers.grains.materials import Interface, Material, interface, touching
 from solvers.grains.shapes.given import Shapes
+from solvers.grains.timestep import Limit, limits, watched
 from solvers.ship.vessel import Vessel
 from solvers.tank.parts import Part
 from solvers.tank.tank import Tank
-from solvers.time.timestep import Limit, limits, watched
 
 
 @dataclass
@@ -110,6 +110,15 @@ class Scene:
         more = len(self.parts) + bool(len(self.fixed))
         rows = [[tank.share(vessel.length) for tank in self.tanks] for vessel in self.vessels]
         return np.array([[*row, *row[:1] * more] for row in rows])
+
+    def per_metre(self, position: np.ndarray) -> np.ndarray:
+        """Factors (W, n), 1/m, from masses at `position` (W, n, 2) m to masses per metre of ship, by their tanks."""
+        factor = np.empty(position.shape[:2])
+        for w, vessel in enumerate(self.vessels):
+            factor[w] = self.tanks[0].share(vessel.length)
+            for tank in self.more_tanks:
+                factor[w][tank.holds(position[w])] = tank.share(vessel.length)
+        return factor
 
     @property
     def kinds(self) -> int:

@@ -6,21 +6,17 @@ from dataclasses import replace
 
 import numpy as np
 
-from solvers.grains.observe import Observer
-from solvers.grains.pressing import Presser, Pressing
-from solvers.grains.renumbering import renumber_list
+from solvers.grains.matter import GrainMatter
+from solvers.grains.pressing import Pressing
 from solvers.machine import runtime
 from solvers.machine.errors import Unavailable
-from solvers.machine.quantity import parted
 from solvers.machine.state import Axes, Axis, State
-from solvers.machine.units import Units
 from solvers.matters import MATTERS
 from solvers.motion.carrier import carrier_kind, make_carrier
+from solvers.motion.observer import Observer
 from solvers.scene import Scene
-from solvers.ship.body import Body
+from solvers.ship.body import Body, bolted
 from solvers.ship.vessel import Vessel
-from solvers.space import order as renumber
-from solvers.tank.load import Load
 from solvers.tank.setting import Setting
 from solvers.tank.walls import Walls
 from solvers.time import watch
@@ -33,7 +29,6 @@ SKIN = 0.05  # of the mean diameter: the fastest of 0.05 … 0.3, in settled and
 SKIN_OF_CONVEX = 0.1  # for convex outlines, whose lists cost more to build
 SHORTER = 0.9  # of the limit on the step at set-up: the lowest limit that `alter` accepts
 AT_REST = -1e9  # a time long before any motion starts
-OF_CONTACTS = ("elastic", "contacts", "overlap")
 
 
 class Simulation:
@@ -67,7 +62,6 @@ class Simulation:
         self.steps, self.room, self.stretch = 0, 1, stretch
         self.origin = 0.0  # s, time of the tank's motion at step 0
         self.unkicked = 0  # the first step since the launch
-        self.number = np.tile(np.arange(count), (worlds, 1))  # the grains' own numbers, in solver order
         self._build()
         means = [quantity for quantity in self.observer.quantities if quantity.mean]
         # When last, and what the means were
@@ -76,57 +70,58 @@ class Simulation:
 
     def _build(self) -> None:
         """Make the arrays and the objects whose kernels work on them."""
-        scene, (worlds, count) = self.scene, self.scene.radius.shape
+        scene, worlds = self.scene, self.scene.worlds
         self.arrays = arrays = State(scene.precision)
-        units = Units(worlds, count, self.units_a_world, count + len(scene.fixed))
         self.walls = Walls(arrays, scene.tanks, scene.parts)
+        self.carrier = make_carrier(arrays, scene, self.dt)
+        cut = self.units_a_world, self.schedule_name == "per-grain"
         pieces = len(scene.tanks) + len(scene.parts) + bool(len(scene.fixed))
-        self.load_on_tank = load = Load(arrays, units, pieces, scene.shares)
-        self.carrier = make_carrier(arrays, scene, self.dt, load)
-        way = watch.FASTEST_STEP * scene.sizes[0]
-        lists = self.skin, self.room, way, self.stretch
-        setting = Setting(arrays, units, self.walls, load, self.carrier.rotating, *lists)
-        self.matters = [matter for make in MATTERS if (matter := make(scene, setting))]
-        self.clock = Clock(arrays, units)
-        self.schedule = SCHEDULES[self.schedule_name](Sequence(self.matters, self.carrier), self.clock, self.threads)
-        [matter] = self.matters
-        self.grains, self.neighbours, self.contacts = matter.grains, matter.neighbours, matter.contacts
-        self.mover = matter.mover
-        parts = units, self.grains, self.walls, self.neighbours, self.contacts, self.carrier, load
-        self.observer = Observer(arrays, *parts)
-        self.presser = Presser(units, self.grains, self.walls, self.neighbours, self.contacts)
+        lists = self.skin, self.room, self.stretch
+        setting = Setting(arrays, worlds, *cut, self.walls, pieces, scene.shares, self.carrier, *lists)
+        made = (make(scene, setting) for make in MATTERS)
+        self.matters = {matter.name: matter for matter in made if matter}
+        matters = list(self.matters.values())
+        loads = [matter.load for matter in matters]
+        self.carrier.bear(loads)
+        self.clock = Clock(arrays, matters[0].units)
+        sequence = Sequence(matters, self.carrier)
+        self.beat = sequence.beat
+        self.schedule = SCHEDULES[self.schedule_name](sequence, self.clock, self.threads)
+        self.observer = Observer(arrays, worlds, self.walls, self.carrier, loads)
         arrays.finish()
+
+    @property
+    def grains(self) -> GrainMatter:
+        """The scene's grains."""
+        return self.matters["grains"]
 
     def place(self, position: np.ndarray, velocity: np.ndarray | None = None, spin: np.ndarray | None = None) -> None:
         """Place the grains at `position` (W, n, 2) m without contact history, and `launch` them."""
-        position = self._in_solver_order(position)
-        self.grains.put(position)
-        self.neighbours.forget()
-        self.ordered = position.copy()  # positions at the time of the last renumbering
+        self.grains.place(position)
         self.launch(velocity, spin)
 
     def launch(self, velocity: np.ndarray | None = None, spin: np.ndarray | None = None) -> None:
         """Set the grains' velocities (W, n, 2) m/s and spins (W, n) rad/s; None: at rest."""
         velocity = np.zeros((*self.scene.radius.shape, 2)) if velocity is None else velocity
         spin = np.zeros(self.scene.radius.shape) if spin is None else spin
-        self.grains.launch(self._in_solver_order(velocity), self._in_solver_order(spin))
-        self.mover.rest()
-        self.load_on_tank.forget()
+        self.grains.launch(velocity, spin)
         self.clock.launch()
         self.unkicked = self.observed = self.steps
         self.moored = False
 
-    def _in_solver_order(self, values: np.ndarray) -> np.ndarray:
-        """Reorder values (W, n, …) from the grains' own numbers to solver order."""
-        return values[np.arange(self.scene.worlds)[:, None], self.number]
-
     def _make_room(self) -> None:
         """Double the capacity of the contact lists; all other state is kept."""
-        old = self.arrays
+        old, kept = self.arrays, self._of_matters()
         self.room *= 2
         self._build()
         self.arrays.take_over(old)
+        for matter in self.matters.values():
+            matter.restore(kept)
         old.release()
+
+    def _of_matters(self) -> dict[str, np.ndarray]:
+        """What the matters keep beside the arrays."""
+        return {name: values for matter in self.matters.values() for name, values in matter.state().items()}
 
     @property
     def time(self) -> float:
@@ -145,12 +140,12 @@ class Simulation:
         """
         self._moor()
         target, often = self.steps + steps, max(1, round(LOOK_FOR_MIXING / self.dt))
-        # Contact history of outlines depends on the order of the two grains' numbers, so these are not renumbered.
-        large = self.ordered.shape[1] >= renumber.FEWEST and self.scene.shapes is None
+        mixing = [matter for matter in self.matters.values() if matter.mixes]
         while self.steps < target:
-            if large and self.steps % often == 0:
-                self._keep_order()  # before the steps: it expires the lists, which `observe` needs and a step rebuilds
-            self.steps = min(target, often * (self.steps // often + 1)) if large else target
+            if mixing and self.steps % often == 0:
+                for matter in mixing:  # before the steps: lists expire, which `observe` needs and steps rebuild
+                    matter.keep_order()
+            self.steps = min(target, often * (self.steps // often + 1)) if mixing else target
             self._reach_step()
 
     def _reach_step(self) -> None:
@@ -163,25 +158,9 @@ class Simulation:
                 break
             self._make_room()
             self.clock.status.from_numpy(np.where(status == watch.NO_ROOM, watch.RUNNING, status).astype(np.int32))
-        if np.any(status == watch.TOO_FAST):
-            watch.report_speed(status, self.grains.read()["velocity"], self.clock.step.to_numpy() * self.dt, self.dt)
-
-    def _keep_order(self) -> None:
-        """Renumber the grains in worlds where they have mixed."""
-        position, diameter = self.grains.read()["position"], 2.0 * self.scene.mean_radius
-        order = {
-            w: renumber.spatial_order(places, diameter)
-            for w, places in enumerate(position)
-            if renumber.has_mixed(places, self.ordered[w], diameter)
-        }
-        for w, old in order.items():
-            self.number[w], self.ordered[w] = self.number[w][old], position[w][old]
-        if order:
-            self.arrays.reorder("grain", order)
-            lists, laws = self.neighbours, self.neighbours.laws
-            renumber_list(lists.pairs, lists.units, order, laws.odd, mates=True)
-            renumber_list(lists.contacts, lists.units, order, laws.odd, mates=False)
-            lists.expire()
+        for w in np.flatnonzero(status == watch.TOO_FAST):
+            for matter in self.matters.values():
+                matter.refuse(w, self.clock.step.to_numpy()[w] * self.dt, self.dt)
 
     def observe(self) -> dict[str, np.ndarray]:
         """Quantities of every world now, (W, *shape) of each by name. Raises BadState if a check fails.
@@ -197,7 +176,8 @@ class Simulation:
         One step builds the contact lists and sums the forces at its start; then it is undone, bit for bit.
         """
         rows, before = self._observe(), self.state()
-        start = [(field, field.to_numpy()) for field in self.grains.fields()]
+        start = [(field, field.to_numpy()) for matter in self.matters.values() for field in matter.fields()]
+        of_contacts = [name for matter in self.matters.values() for name in matter.of_contacts]
         try:
             self.advance(1)
             load = self._observe()
@@ -208,12 +188,14 @@ class Simulation:
         finally:
             self.restore(before)
         self.means = {name: load[name] for name in self.means}
-        return rows | {name: touching[name] for name in OF_CONTACTS} | self.means
+        return rows | {name: touching[name] for name in of_contacts} | self.means
 
     def _observe(self) -> dict[str, np.ndarray]:
         runtime.merge_repeats(self.scene.shapes is None)
-        self.observer.observe(self.origin + self.time, max(self.steps - self.observed, 1) * self.dt)
-        rows = parted(self.observer.rows.to_numpy().astype(float), self.observer.quantities)
+        now = self.origin + self.time
+        rows = self.observer.take(now, max(self.steps - self.observed, 1) * self.dt)
+        for matter in self.matters.values():
+            rows |= matter.observe(now)
         # Worlds in which no time has passed keep the last means.
         ended = np.isin(self.clock.status.to_numpy(), (watch.WAITING, watch.OVER))
         still = ended | (self.observed == self.steps)
@@ -221,7 +203,8 @@ class Simulation:
             rows[name] = np.where(still.reshape(-1, *[1] * (before.ndim - 1)), before, rows[name])
         rows |= self.carrier.account()
         self.observed, self.means = self.steps, {name: rows[name] for name in self.means}
-        watch.check_state(rows["overlap"], rows["escaped"].astype(int), self.time)
+        for matter in self.matters.values():
+            matter.check(rows, self.time)
         return rows
 
     def loads(self) -> np.ndarray:
@@ -229,24 +212,23 @@ class Simulation:
 
         The pieces are the walls of each tank, then the parts, then the fixed grains if there are any.
         """
-        return self.observer.loads.to_numpy()
+        return self.observer.on_pieces.to_numpy()
 
     def settle(self, rest: float, limit: float, tell: Callable[[float], None] = lambda _: None) -> bool:
-        """Let the grains settle in the upright tank, then start the clock at zero; returns whether all are at rest.
+        """Let all matters settle in the upright tank, then start the clock at zero; returns whether all are at rest.
 
-        A world is at rest, and waits for the others, once the mean kinetic energy of its grains (spin included) is
-        below `rest` times m g d in two checks in a row, 10 ms apart. Settling ends after `limit` s at the latest.
+        A world is at rest, and waits for the others, once the restlessness of its matters (of grains: the mean kinetic
+        energy, spin included, in units of m g d) is below `rest` in two checks in a row, 10 ms apart. Settling ends
+        after `limit` s at the latest.
         """
         self.origin = AT_REST
-        look = max(1, round(0.01 / self.dt))
-        radius = self.scene.radius
-        scale = (self.grains.mass * self.scene.gravity * 2.0 * radius).mean(axis=1)
-        quiet = np.zeros(len(radius), dtype=int)
+        look = self.beat * max(1, round(0.01 / (self.beat * self.dt)))
+        quiet = np.zeros(self.scene.worlds, dtype=int)
         while np.any(quiet < 2) and self.steps * self.dt < limit:
             self.advance(look)
             rows = self.observe()
-            energy = (rows["kinetic"] + rows["rotational"]) / radius.shape[1]
-            quiet = np.where(energy < rest * scale, quiet + 1, 0)
+            calm = np.all([matter.restlessness(rows) < rest for matter in self.matters.values()], axis=0)
+            quiet = np.where(calm, quiet + 1, 0)
             self.clock.status.from_numpy(np.where(quiet < 2, watch.RUNNING, watch.WAITING).astype(np.int32))
             tell(self.steps * self.dt)
         self.start_clock()
@@ -273,8 +255,8 @@ class Simulation:
             raise Unavailable("this lets the liquid reach farther: start the experiment anew with it")
         self.scene = altered
         self.carrier.gravity.fill(altered.gravity)
-        self.neighbours.laws.learn(altered.interfaces_of)
-        self.neighbours.expire()  # so that the constants of each contact are recomputed
+        for matter in self.matters.values():
+            matter.alter(altered)
 
     def start_clock(self) -> None:
         """Start the tank's motion now, at time zero."""
@@ -282,7 +264,8 @@ class Simulation:
         self.origin, self.steps, self.observed = 0.0, 0, 0
         self.clock.step.fill(0)
         self.clock.status.fill(watch.RUNNING)
-        self.grains.count_turns_anew()
+        for matter in self.matters.values():
+            matter.start_clock()
         self.moored = False
 
     def _moor(self) -> None:
@@ -292,39 +275,18 @@ class Simulation:
             self.moored = True
 
     def cargo(self) -> list[Body]:
-        """The grains of each world as one rigid body, per metre of the ship's length, in the tank's frame."""
-        place, mass = self.grains.read()["position"], self._in_solver_order(self.grains.mass)
-        share = self._per_metre(place)
-        own = share / self.grains.inverse_inertia.to_numpy()[:, : mass.shape[1]]
-        mass = share * mass
-        total = mass.sum(axis=1)
-        centre = (mass[..., None] * place).sum(axis=1) / total[:, None]
-        apart = ((place - centre[:, None]) ** 2).sum(axis=2)
-        inertia = (mass * apart + own).sum(axis=1)
-        return [Body(float(m), tuple(c), float(i)) for m, c, i in zip(total, centre.tolist(), inertia, strict=True)]
-
-    def _per_metre(self, position: np.ndarray) -> np.ndarray:
-        """Factor (W, n), 1/m, from each grain's mass to mass per metre of ship, by the tank that it lies in."""
-        share = np.empty(position.shape[:2])
-        for w, vessel in enumerate(self.scene.vessels):
-            share[w] = self.scene.tanks[0].share(vessel.length)
-            for tank in self.scene.more_tanks:
-                share[w][tank.holds(position[w])] = tank.share(vessel.length)
-        return share
+        """All matters of each world as one rigid body, per metre of the ship's length, in the tank's frame."""
+        bodies = zip(*(matter.bodies() for matter in self.matters.values()), strict=True)
+        return [bolted(*parts) if len(parts) > 1 else parts[0] for parts in bodies]
 
     def snapshot(self) -> dict[str, np.ndarray]:
-        """Positions, velocities (W, n, 2), angles and spins (W, n) now, in the tank's frame."""
-        worlds = np.arange(self.scene.worlds)[:, None]
-        found = {}
-        for name, values in self.grains.read().items():
-            found[name] = np.empty_like(values)
-            found[name][worlds, self.number] = values
-        return found
+        """What is known of each particle now, in the tank's frame: of grains, positions, velocities (W, n, 2) …"""
+        return {name: values for matter in self.matters.values() for name, values in matter.snapshot().items()}
 
     def pressing(self, world: int = 0) -> Pressing:
         """The present elastic contact forces in a world."""
         runtime.merge_repeats(self.scene.shapes is None)
-        return self.presser.read(world, self.origin + self.time, self.number[world])
+        return self.grains.pressing(world, self.origin + self.time)
 
     def part_places(self) -> np.ndarray:
         """Displacements (W, P, 2) m of the scene's parts at the last `observe`; they are the same in every world."""
@@ -335,33 +297,29 @@ class Simulation:
         """The complete state, from which `restore` continues bit for bit."""
         schedule = list(SCHEDULES).index(self.schedule_name)
         numbers = self.steps, self.room, self.unkicked, self.observed, self.units_a_world, schedule
-        order = {"number": self.number, "ordered": self.ordered}
-        return {
-            "numbers": np.array(numbers),
-            "origin": np.array(self.origin),
-            **order,
-            **self.means,
-            **self.arrays.read(),
-        }
+        own = {"numbers": np.array(numbers), "origin": np.array(self.origin)}
+        return own | self._of_matters() | self.means | self.arrays.read()
 
     def axes(self) -> dict[str, Axes]:
         """The axes of all that `state` tells, by its names."""
-        world, grain = Axis("world", self.scene.worlds), Axis("grain", self.scene.radius.shape[1])
+        world = Axis("world", self.scene.worlds)
         means = {name: (world, *(Axis("component", size) for size in m.shape[1:])) for name, m in self.means.items()}
         own = {"numbers": (Axis("number", 6),), "origin": (), **means}
-        order = {"number": (world, grain), "ordered": (world, grain, Axis("direction", 2))}
-        return own | order | self.arrays.axes()
+        for matter in self.matters.values():
+            own |= matter.axes()
+        return own | self.arrays.axes()
 
     def restore(self, state: dict[str, np.ndarray]) -> None:
         """Restore what `state` returned in a simulation of the same scene."""
         self.steps, room, self.unkicked, self.observed, units, schedule = (int(number) for number in state["numbers"])
         self.origin, self.means = float(state["origin"]), {name: np.array(state[name]) for name in self.means}
-        self.number, self.ordered = np.array(state["number"]), np.array(state["ordered"])
         if (room, units) != (self.room, self.units_a_world):
             self.arrays.release()
             self.room, self.units_a_world, self.schedule_name = room, units, list(SCHEDULES)[schedule]
             self._build()
         self.arrays.write(state)
+        for matter in self.matters.values():
+            matter.restore(state)
         self.moored = self.steps > 0
 
     def close(self) -> None:

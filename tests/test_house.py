@@ -44,7 +44,7 @@ LONG = {  # too long, and not to become longer
     "lab/view/session.py": 366,
     "solvers/grains/shapes/rules/continuous.py": 408,
     "solvers/motion/afloat.py": 415,
-    "solvers/simulation.py": 369,
+    "solvers/simulation.py": 327,
 }
 
 

@@ -15,13 +15,13 @@ from lab.preset.schema import Resolved
 from lab.preset.units import show
 from solvers.grains.bed.filling import NONE_FIXED, DoesNotFit, count_for_depth, headroom, lattice, start_positions
 from solvers.grains.bed.sizes import Sizes
+from solvers.grains.checks import DEEPEST_OVERLAP
 from solvers.grains.shapes.given import Shapes
+from solvers.grains.timestep import closing_speed
 from solvers.motion.steered import Steered
 from solvers.scene import Scene
 from solvers.ship.vessel import Vessel
 from solvers.tank.outline import lining, raised
-from solvers.time.timestep import closing_speed
-from solvers.time.watch import DEEPEST_OVERLAP
 
 THROUGH = 1.0  # radii: at this overlap grains pass through each other and the walls
 

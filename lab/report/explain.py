@@ -174,7 +174,7 @@ def _step(scene) -> list[tuple[str, str]]:
 
 def _parts(preset: Resolved, simulation: Simulation) -> list[tuple[str, str]]:
     scene, carrier, walls = simulation.scene, simulation.carrier, simulation.walls
-    remembered = len(simulation.neighbours.laws.memory)
+    remembered = len(simulation.grains.lists.laws.memory)
     terms = "gravity"
     if carrier.moving:
         terms += ", translation"

@@ -1,13 +1,19 @@
-"""Grains as a matter: what a step asks of them."""
+"""Grains as a matter: what a step asks of them, and what a simulation does."""
+
+from typing import ClassVar
 
 import numpy as np
 import taichi as ti
 
+from solvers.grains.census import Census
+from solvers.grains.checks import FASTEST_STEP, check_state, refuse_speed
 from solvers.grains.contacts import Contacts
 from solvers.grains.integrators import INTEGRATORS
 from solvers.grains.laws.chosen import ChosenLaws
 from solvers.grains.mover import Mover
 from solvers.grains.neighbours import Neighbours
+from solvers.grains.numbering import Numbering
+from solvers.grains.pressing import Presser, Pressing
 from solvers.grains.shapes.grains import ShapedGrains
 from solvers.grains.shapes.rules.area import Area
 from solvers.grains.shapes.rules.contacts import ShapedContacts
@@ -16,7 +22,11 @@ from solvers.grains.shapes.rules.discrete import Discrete
 from solvers.grains.shapes.rules.lists import ShapedNeighbours
 from solvers.grains.state import Grains
 from solvers.machine.phase import Phase
+from solvers.machine.state import Axes
+from solvers.ship.body import Body
 from solvers.space.axes import dot
+from solvers.tank.load import Load
+from solvers.tank.matter import Matter
 from solvers.tank.setting import Setting
 
 # A speed (m/s) whose 16th power is no number in 32 bits any more.
@@ -25,46 +35,56 @@ RULES = {"continuous": Continuous, "nodes": Discrete, "area": Area}  # of contac
 
 
 @ti.data_oriented
-class GrainMatter:
+class GrainMatter(Matter):
     """Grains, discs or irregular ones: their contacts push before they move, then all move.
 
-    A matter has `units`, the phases `before` and `after`, and lists: it says when these are `stale`, `worn` or `asked`
-    for in part, and makes them anew (`sort`, `make_lists`). Where it is `paced` its steps may be longer than the
-    base step, as many of those as its `pace` says. `way_a_step` (m) is how far a grain may go in one.
+    `way_a_step` (m) is how far a grain may move in a step, `mass` (W, n) kg.
     """
 
-    def __init__(self, setting: Setting, grains: Grains, neighbours: Neighbours, contacts: Contacts, mover: Mover):
-        self.units, self.grains, self.neighbours = setting.units, grains, neighbours
-        self.contacts, self.mover = contacts, mover
-        own = setting.arrays.under("grains")
+    name = "grains"
+    of_contacts: ClassVar = ("elastic", "contacts", "overlap")  # quantities that are known only after a step
+
+    def __init__(
+        self, scene, setting: Setting, load: Load, grains: Grains, lists: Neighbours, contacts: Contacts, mover: Mover
+    ):
+        arrays, walls, units = setting.arrays, setting.walls, load.units
+        self.scene, self.units, self.load, self.grains, self.lists = scene, units, load, grains, lists
+        self.contacts, self.mover, self.mass = contacts, mover, grains.mass
+        # Contact history of outlines depends on the order of the two grains' numbers, so these are not renumbered.
+        self.numbering = Numbering(arrays, grains, lists, 2.0 * scene.mean_radius, scene.shapes is None)
+        self.census = Census(arrays, units, grains, walls, lists, contacts, setting.carrier)
+        self.presser = Presser(units, grains, walls, lists, contacts)
+        own = arrays.under("grains")
         self.unseen = UNSEEN if own.real is ti.f32 else 0.0  # speed (m/s) below which the mover's bound may miss one
-        self.way_a_step = own.holding("way_a_step", np.array([setting.way_a_step]), "one", own.exact)
+        way = np.array([FASTEST_STEP * scene.sizes[0]])
+        self.way_a_step = own.holding("way_a_step", way, "one", own.exact)
         self.paced = setting.stretch > 1
         self.stretch = own.holding("stretch", np.array([setting.stretch]), "one", ti.i32)
-        self.before = (Phase(self.push, self.units),)
-        self.after = (Phase(self.move, self.units),)
+        self.before = (Phase(self.push, units),)
+        self.after = (Phase(self.move, units),)
 
     @property
     def extent(self) -> float:
         """How far (m) from the tank's origin a grain may be."""
-        return float(np.hypot.reduce(np.abs(self.neighbours.walls.bounds).max(axis=0)))
+        return float(np.hypot.reduce(np.abs(self.lists.walls.bounds).max(axis=0)))
 
     @property
     def nearing(self) -> float:
         """How fast (m/s) parts of the tank come at grains."""
-        return self.neighbours.walls.fastest
+        return self.lists.walls.fastest
 
     def slack(self) -> float:
         """How far (m) two grains may near each other before the lists are no good."""
-        return float(self.neighbours.skin.to_numpy()[0])
+        return float(self.lists.skin.to_numpy()[0])
 
     def sort_all(self) -> None:
         """Sort the grains of all worlds into cells."""
-        self.neighbours.cells.sort_all()
+        self.lists.cells.sort_all()
 
     @ti.func
     def push(self, u, t, kick, dt):
         """The forces of all contacts of a unit, on the grains and on the tank."""
+        self.load.begin(u)
         self.contacts.forces(u, t, dt)
 
     @ti.func
@@ -72,7 +92,7 @@ class GrainMatter:
         """Move the grains of a unit; returns whether all of them are slow enough for the step."""
         speed = self.mover.move(self.grains, u, frame, kick, dt)
         if ti.static(not self.units.single):
-            self.neighbours.travel[u] = self.neighbours.travel[u] + (speed + self.unseen) * dt
+            self.lists.travel[u] = self.lists.travel[u] + (speed + self.unseen) * dt
         return self.is_sound(speed, dt)
 
     @ti.func
@@ -90,9 +110,9 @@ class GrainMatter:
     @ti.func
     def way(self, u, t):
         """How far (m) any grain of a unit has gone since there are lists; huge where there are none."""
-        moved = self.neighbours.travel[u]
+        moved = self.lists.travel[u]
         if moved == 0.0:  # there are lists; without, it says NEVER
-            moved = self.neighbours.moved(u, t)
+            moved = self.lists.moved(u, t)
         return moved
 
     @ti.func
@@ -103,34 +123,122 @@ class GrainMatter:
     @ti.func
     def stale(self, u, t):
         """Whether two grains may be in reach of each other unlisted at time t (s)."""
-        return self.neighbours.stale(u, t)
+        return self.lists.stale(u, t)
 
     @ti.func
     def worn(self, u):
         """Whether that may be so by a bound on what grains have travelled."""
-        return self.neighbours.worn(u)
+        return self.lists.worn(u)
 
     @ti.func
     def asked(self, u):
         """Whether some contacts are to be searched again."""
-        return self.neighbours.asked(u)
+        return self.lists.asked(u)
 
     @ti.func
     def sort(self, w):
         """Sort the grains of a world into cells."""
-        self.neighbours.cells.sort_world(w)
+        self.lists.cells.sort_world(w)
 
     @ti.func
     def make_lists(self, u, t, dt, whole):
         """List the contacts of a unit anew, or seek some; False, with the old lists, where they do not fit."""
-        return self.neighbours.rebuild(u, t, dt, whole)
+        return self.lists.rebuild(u, t, dt, whole)
+
+    def observe(self, time: float) -> dict[str, np.ndarray]:
+        """The quantities of every world at its time (s): (W, *shape) of each by name."""
+        return self.census.take(time)
+
+    def check(self, rows: dict[str, np.ndarray], time: float) -> None:
+        """Raise BadState if the quantities at `time` (s) show an unphysical state."""
+        check_state(rows["overlap"], rows["escaped"].astype(int), time)
+
+    def refuse(self, world: int, time: float, dt: float) -> None:
+        """Raise BadState for a world that was stopped at `time` (s) since its grains are too fast for steps of dt."""
+        refuse_speed(world, self.grains.read()["velocity"][world], time, dt)
+
+    def restlessness(self, rows: dict[str, np.ndarray]) -> np.ndarray:
+        """Mean kinetic energy of a grain, spin included, in units of m g d, (W,)."""
+        radius = self.scene.radius
+        scale = (self.grains.mass * self.scene.gravity * 2.0 * radius).mean(axis=1)
+        return (rows["kinetic"] + rows["rotational"]) / radius.shape[1] / scale
+
+    def place(self, position: np.ndarray) -> None:
+        """Place the grains at `position` (W, n, axes) m, at rest and without contact history."""
+        position = self.numbering.in_solver_order(position)
+        self.grains.put(position)
+        self.lists.forget()
+        self.numbering.ordered = position.copy()
+
+    def launch(self, velocity: np.ndarray, spin: np.ndarray) -> None:
+        """Set the grains' velocities (W, n, axes) m/s and spins (W, n) rad/s."""
+        self.grains.launch(*(self.numbering.in_solver_order(values) for values in (velocity, spin)))
+        self.mover.rest()
+        self.load.forget()
+
+    @property
+    def mixes(self) -> bool:
+        """Whether the grains may have to be renumbered as they mix."""
+        return self.numbering.follows
+
+    def keep_order(self) -> None:
+        """Renumber the grains in worlds where they have mixed."""
+        self.numbering.follow()
+
+    def start_clock(self) -> None:
+        """The clock starts: angles count from here on."""
+        self.grains.count_turns_anew()
+
+    def alter(self, scene) -> None:
+        """Go on with the materials of a scene that equals the present one in everything else."""
+        self.scene = scene
+        self.lists.laws.learn(scene.interfaces_of)
+        self.lists.expire()  # so that the constants of each contact are recomputed
+
+    def snapshot(self) -> dict[str, np.ndarray]:
+        """Positions, velocities (W, n, axes), angles and spins (W, n) now, in the tank's frame."""
+        return {name: self.numbering.in_own_order(values) for name, values in self.grains.read().items()}
+
+    def pressing(self, world: int, time: float) -> Pressing:
+        """The elastic contact forces in a world at its time (s)."""
+        return self.presser.read(world, time, self.numbering.number[world])
+
+    def fields(self) -> list[ti.Field]:
+        """The arrays that a step changes, lists aside."""
+        return self.grains.fields()
+
+    def state(self) -> dict[str, np.ndarray]:
+        """What `restore` continues from, beside the arrays."""
+        return self.numbering.state()
+
+    def axes(self) -> dict[str, Axes]:
+        """The axes of the arrays of `state`, by name."""
+        return self.numbering.axes()
+
+    def restore(self, state: dict[str, np.ndarray]) -> None:
+        """Restore what `state` returned."""
+        self.numbering.restore(state)
+
+    def bodies(self) -> list[Body]:
+        """The grains of each world as one rigid body, per metre of the ship's length, in the tank's frame."""
+        place, mass = self.grains.read()["position"], self.numbering.in_solver_order(self.grains.mass)
+        share = self.scene.per_metre(place)
+        own = share / self.grains.inverse_inertia.to_numpy()[:, : mass.shape[1]]
+        mass = share * mass
+        total = mass.sum(axis=1)
+        centre = (mass[..., None] * place).sum(axis=1) / total[:, None]
+        apart = ((place - centre[:, None]) ** 2).sum(axis=2)
+        inertia = (mass * apart + own).sum(axis=1)
+        return [Body(float(m), tuple(c), float(i)) for m, c, i in zip(total, centre.tolist(), inertia, strict=True)]
 
 
 def make_grains(scene, setting: Setting) -> GrainMatter | None:
     """The grains of a scene (`solvers.scene.Scene`); None where it has none."""
     if not scene.radius.size:
         return None
-    arrays, units, walls = setting.arrays, setting.units, setting.walls
+    arrays, walls, count = setting.arrays, setting.walls, scene.radius.shape[1]
+    units = setting.units(count, len(scene.fixed))
+    load = setting.load(arrays.under("grains"), units)
     may_leave = any(tank.open_edges for tank in scene.tanks)
     given = scene.radius, scene.density, scene.fixed, units.ghosts, may_leave, scene.kind
     integrator = INTEGRATORS[scene.integrator]()
@@ -142,12 +250,11 @@ def make_grains(scene, setting: Setting) -> GrainMatter | None:
     if scene.shapes is None:
         grains = Grains(arrays, *given)
         neighbours = Neighbours(arrays, units, grains, walls, *lists)
-        contacts = Contacts(arrays, units, grains, walls, neighbours, laws, setting.load)
+        contacts = Contacts(arrays, units, grains, walls, neighbours, laws, load)
     else:
         rule = RULES[scene.shapes.contact](arrays, units, walls, scene.shapes)
         grains = ShapedGrains(arrays, scene.shapes, *given)
         neighbours = ShapedNeighbours(arrays, units, grains, walls, *lists, rule)
-        contacts = ShapedContacts(arrays, units, grains, walls, neighbours, laws, setting.load, rule)
-    return GrainMatter(
-        setting, grains, neighbours, contacts, Mover(arrays, units, grains, integrator, setting.rotating)
-    )
+        contacts = ShapedContacts(arrays, units, grains, walls, neighbours, laws, load, rule)
+    mover = Mover(arrays, units, grains, integrator, setting.carrier.rotating)
+    return GrainMatter(scene, setting, load, grains, neighbours, contacts, mover)

@@ -1,8 +1,8 @@
-"""What is known of the grains: their sums (`observe`), and each of them (`state`)."""
+"""What is known of the grains: their sums (`census`), and each of them (`state`)."""
 
-from solvers.machine.quantity import FREEDOMS, PLANE, Quantity
+from solvers.machine.quantity import PLANE, Quantity
 
-# Of an open tank, all but the last two are of the grains in it.
+# Of an open tank, all but the last are of the grains in it.
 SERIES = (
     Quantity("centre_of_mass", "m", PLANE, "centre of mass of the grains in the tank"),
     Quantity("kinetic", "J", label="kinetic energy of the grains, relative to the tank"),
@@ -12,7 +12,6 @@ SERIES = (
     Quantity("contacts", "1", label="number of contacts"),
     Quantity("overlap", "1", label="deepest overlap, in radii"),
     Quantity("spilled", "1", label="number of grains that have left the tank"),
-    Quantity("wall_force", "N, N, N m", FREEDOMS, "force of the cargo on the tank, in the tank's axes", mean=True),
 )
 # What the watch asks and no recording has: the number of a grain that has left a closed tank.
 ESCAPED = Quantity("escaped", "1", label="number of a grain outside the tank", never=-1.0)

@@ -16,10 +16,13 @@ class Phase:
     middle of this one, for velocities kept half a step behind; in the first step after a launch it is dt/2. Schedules
     run units side by side and phases one after another, so a phase acting on one unit must not write what other units
     read in the same phase. `units` is None for a phase that acts on whole worlds.
+
+    The pace of a phase is one call `every` few base steps, over as many times dt and `kick`.
     """
 
     act: Callable
     units: Units | None = None
+    every: int = 1
 
     @property
     def of_worlds(self) -> bool:

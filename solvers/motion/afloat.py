@@ -27,7 +27,6 @@ from solvers.motion.buoyancy import Hulls
 from solvers.motion.frame import turned
 from solvers.motion.harmonic import soft_start
 from solvers.ship.body import Body
-from solvers.ship.hydrostatics import turned as turned_point
 from solvers.ship.vessel import Vessel
 from solvers.tank.load import Load
 
@@ -50,7 +49,7 @@ def _apart(rows: Sequence[Sequence[float]]) -> np.ndarray:
 
 @ti.data_oriented
 class Afloat:
-    """The carrier of tanks in W ships, with the interface of `Prescribed`; `load` is the load of the cargo on the tank.
+    """The carrier of tanks in W ships, with the interface of `Prescribed`.
 
     The earth's axes have z = 0 on the calm surface and y = 0 at the hull's origin at the start. All quantities of the
     ship are per metre of length, and so is the load from `Load.of_world`.
@@ -59,8 +58,8 @@ class Afloat:
     rotating = moving = answers = True
     paced = False  # the ship's leapfrog needs steps of one length
 
-    def __init__(self, arrays: State, vessels: Sequence[Vessel], gravity: float, every: int, load: Load):
-        self.exact, self.real, self.vessels, self.cargo = arrays.exact, arrays.real, tuple(vessels), load
+    def __init__(self, arrays: State, vessels: Sequence[Vessel], gravity: float, every: int):
+        self.exact, self.real, self.vessels, self.loads = arrays.exact, arrays.real, tuple(vessels), ()
         self.phases = (Phase(self.follow),)
         worlds = len(self.vessels)
         self.hulls = Hulls(arrays, [v.ship for v in self.vessels], [v.openings for v in self.vessels])
@@ -131,6 +130,10 @@ class Afloat:
             whole[: part.shape[0], : part.shape[1]] = part
         return whole
 
+    def bear(self, loads: Sequence[Load]) -> None:
+        """Respond to these loads from now on, those of all matters in the tank."""
+        self.loads = tuple(loads)
+
     def begin(self, cargo: Callable[[], Sequence[Body]]) -> None:
         """Hold the ships at rest, upright in equilibrium; `cargo` returns theirs (W,), per metre in the tank's axes.
 
@@ -138,16 +141,11 @@ class Afloat:
         """
         body, upright, heeled = [], [], []
         for vessel, load in zip(self.vessels, cargo(), strict=True):
-            centre = np.add(load.centre, vessel.hold)
-            aboard = Body(load.mass, (float(centre[0]), float(centre[1])), load.inertia)
+            aboard = vessel.aboard(load)
             hull = vessel.hull(aboard)
             body.append([hull.mass, *np.subtract(hull.centre, vessel.ship.about), hull.inertia])
-            poses = []
-            for roll in (0.0, vessel.heel):
-                height = vessel.heave(aboard, roll) + float(turned_point(vessel.ship.about, roll)[1])
-                poses.append([vessel.ship.about[0], height, roll])
-            upright.append(poses[0])
-            heeled.append(poses[1])
+            upright.append(vessel.pose(aboard, 0.0))
+            heeled.append(vessel.pose(aboard, vessel.heel))
         self.body.from_numpy(self._typed(body))
         self.upright.from_numpy(self._typed(upright))
         self.heeled.from_numpy(self._typed(heeled))
@@ -199,7 +197,9 @@ class Afloat:
 
         `kick` (s) is the time for which the cargo will be accelerated by the present frame.
         """
-        t, step, load = ti.cast(time, self.exact), ti.cast(dt, self.exact), self.cargo.of_world(w)
+        t, step, load = ti.cast(time, self.exact), ti.cast(dt, self.exact), self.nothing()
+        for k in ti.static(range(len(self.loads))):
+            load += self.loads[k].of_world(w)
         if t < self.release[w]:
             self.hold_still(w, t, step)
         else:

@@ -6,7 +6,6 @@ from solvers.machine.state import State
 from solvers.motion.afloat import Afloat, steps_an_interval
 from solvers.motion.prescribed import Prescribed
 from solvers.ship.vessel import Vessel
-from solvers.tank.load import Load
 
 
 def carrier_kind(vessels: Sequence[Vessel]) -> type[Prescribed] | type[Afloat]:
@@ -14,9 +13,9 @@ def carrier_kind(vessels: Sequence[Vessel]) -> type[Prescribed] | type[Afloat]:
     return Afloat if vessels else Prescribed
 
 
-def make_carrier(arrays: State, scene, dt: float, load: Load) -> Prescribed | Afloat:
+def make_carrier(arrays: State, scene, dt: float) -> Prescribed | Afloat:
     """The carrier of a scene (`solvers.scene.Scene`) with steps of dt (s)."""
     if scene.vessels:
         every = steps_an_interval(scene.vessels, scene.interval, dt)
-        return Afloat(arrays, scene.vessels, scene.gravity, every, load)
+        return Afloat(arrays, scene.vessels, scene.gravity, every)
     return Prescribed(arrays, scene.motions, scene.soft_start, scene.gravity)

@@ -48,6 +48,9 @@ class Prescribed:
         """Whether the tank is moved interactively."""
         return any(isinstance(motion, Steered) for motion in self.kinds)
 
+    def bear(self, loads: Sequence) -> None:
+        """Do nothing: the motions do not depend on the loads."""
+
     def begin(self, cargo: Callable[[], Sequence]) -> None:
         """Do nothing: the motions start with the clock."""
 

@@ -64,6 +64,16 @@ class Vessel:
         """Hull and cargo as one body."""
         return self.ship.body if self.laden else bolted(self.ship.body, cargo)
 
+    def aboard(self, cargo: Body) -> Body:
+        """The cargo, whose centre is given from the tank's origin, in the hull's frame."""
+        centre = np.add(cargo.centre, self.hold)
+        return replace(cargo, centre=(float(centre[0]), float(centre[1])))
+
+    def pose(self, cargo: Body, roll: float) -> list[float]:
+        """Pose (y, z of the axis in m, roll in rad) at a roll before the release; `cargo` in the hull's frame."""
+        axis = turned(self.ship.about, roll)
+        return [self.ship.about[0], self.heave(cargo, roll) + float(axis[1]), roll]
+
     def heave(self, cargo: Body, roll: float) -> float:
         """Heave (m) of the hull's origin at a roll (rad) before the release, in equilibrium or with the axis fixed."""
         about, load = self.ship.about, self.ship.load

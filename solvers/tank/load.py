@@ -1,14 +1,14 @@
-"""The load of the cargo on the tank: a force (N) and its moment (N m) about the tank's origin, in the tank's axes.
+"""The load of a matter on the tank: a force (N) and its moment (N m) about the tank's origin, in the tank's axes.
 
-A contact with a piece of the tank books its reaction on that piece when it computes the force. The load is never
-rebuilt from the forces on the cargo, since drag and buoyancy are not forces on a wall. Pieces are the walls of each
-tank, the parts, and the lining of fixed grains.
+Each matter has a load of its own. A contact with a piece of the tank books its reaction on that piece when it computes
+the force. The load is never rebuilt from the forces on the cargo, since drag and buoyancy are not forces on a wall.
+Pieces are the walls of each tank, the parts, and the lining of fixed grains.
 """
 
 import numpy as np
 import taichi as ti
 
-from solvers.machine.state import Axis, State
+from solvers.machine.state import Axis, Scope
 from solvers.machine.units import APART, Units
 
 NAMES = ("y", "z", "moment")
@@ -19,10 +19,10 @@ class Load:
     """The load of each unit on each of `pieces` pieces, as impulse (N s, N m s) since it was last taken.
 
     With `shares` (W, pieces) the present load is kept as well; summed over the pieces with these factors it is what a
-    carrier responds to. None: no carrier responds.
+    carrier responds to. None: no carrier responds. The load of a matter that acts `every` few steps stands in between.
     """
 
-    def __init__(self, arrays: State, units: Units, pieces: int, shares: np.ndarray | None = None):
+    def __init__(self, arrays: Scope, units: Units, pieces: int, shares: np.ndarray | None = None, every: int = 1):
         self.units, self.pieces, self.answered = units, pieces, shares is not None
         room = pieces if units.single else -(-pieces // APART) * APART  # no two units write to one cache line
         self.exact = arrays.exact
@@ -33,13 +33,21 @@ class Load:
 
         self.impulse, self.noted = declared("impulse", True), declared("noted", False)
         if self.answered:
-            self.instant = declared("instant", False)
+            self.instant = declared("instant", every > 1)
             self.shares = own.holding("shares", shares, "world piece", own.exact)
 
     def forget(self) -> None:
         """Set all loads to zero."""
         for field in (*self.impulse, *self.noted, *(self.instant if self.answered else ())):
             field.fill(0.0)
+
+    @ti.func
+    def begin(self, u):
+        """Set a unit's present load to zero, before its matter computes a new one."""
+        if ti.static(self.answered):
+            for piece in range(self.pieces):
+                for k in ti.static(range(3)):
+                    self.instant[k][u, piece] = 0.0
 
     @ti.func
     def book(self, u, piece, load, dt):
@@ -69,13 +77,12 @@ class Load:
 
     @ti.func
     def of_world(self, w):
-        """The load that a world's carrier responds to, summed over units and pieces in their order, and clear it."""
+        """The load that a world's carrier responds to, summed over units and pieces in their order."""
         load = ti.Vector([ti.cast(0.0, self.exact) for _ in ti.static(range(3))])
         for u in range(w * self.units.a_world, (w + 1) * self.units.a_world):
             for piece in range(self.pieces):
                 for k in ti.static(range(3)):
                     load[k] += self.shares[w, piece] * self.instant[k][u, piece]
-                    self.instant[k][u, piece] = 0.0
         return load
 
     @ti.func

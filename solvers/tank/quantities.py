@@ -1,4 +1,4 @@
-"""What is known of the tank: how it moves (`motion.frame`, `motion.afloat`), and its parts (`walls`).
+"""What is known of the tank: how it moves and what loads it (`motion.observer`), and its parts (`walls`).
 
 Files of quantities import no Taichi, for those who read recordings need none.
 """
@@ -7,5 +7,8 @@ from solvers.machine.quantity import FREEDOMS, PLANE, Quantity
 
 POSE = Quantity("pose", "m, m, rad", FREEDOMS, "place and roll of the tank in the earth's axes")
 POSE_RATE = Quantity("pose_rate", "m/s, m/s, rad/s", FREEDOMS, "velocity and rate of roll of the tank")
-SERIES = (POSE, POSE_RATE)
+WALL_FORCE = Quantity(
+    "wall_force", "N, N, N m", FREEDOMS, "force of the cargo on the tank, in the tank's axes", mean=True
+)
+SERIES = (POSE, POSE_RATE, WALL_FORCE)
 FRAMES = (POSE, Quantity("part", "m", PLANE, "displacement of each moving part in the tank", per="part"))

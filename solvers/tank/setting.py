@@ -1,8 +1,10 @@
-"""What a matter is made in: the tank, and how its lists and steps are to be."""
+"""What a matter is made in: the tank, the carrier that moves it, and the settings of lists and steps."""
 
 from dataclasses import dataclass
 
-from solvers.machine.state import State
+import numpy as np
+
+from solvers.machine.state import Scope, State
 from solvers.machine.units import Units
 from solvers.tank.load import Load
 from solvers.tank.walls import Walls
@@ -10,18 +12,29 @@ from solvers.tank.walls import Walls
 
 @dataclass(frozen=True)
 class Setting:
-    """The arrays of a simulation, its units, the walls of its tanks and the load on them.
+    """The arrays of a simulation of W `worlds`, the walls of its tanks, their `pieces`, and their `carrier`.
 
-    `rotating` tells whether the tank turns. Lists have a `skin` (m) and `room` times the usual length. No particle may
-    go farther than `way_a_step` (m) in a step; steps are up to `stretch` base steps long.
+    A world is cut into `bands`, or with `per_particle` into single particles. `shares` (W, pieces) are the factors with
+    which the carrier responds to the load on each piece (`Load`). Lists have a `skin` (m) and `room` times the usual
+    length. Steps are up to `stretch` base steps long.
     """
 
     arrays: State
-    units: Units
+    worlds: int
+    bands: int
+    per_particle: bool
     walls: Walls
-    load: Load
-    rotating: bool
+    pieces: int
+    shares: np.ndarray | None
+    carrier: object
     skin: float
     room: int = 1
-    way_a_step: float = 1.0
     stretch: int = 1
+
+    def units(self, count: int, more: int = 0) -> Units:
+        """The units of a matter of `count` particles in each world, and `more` that do not move."""
+        return Units(self.worlds, count, count if self.per_particle else self.bands, count + more)
+
+    def load(self, own: Scope, units: Units, every: int = 1) -> Load:
+        """The load of a matter that acts `every` few steps; its arrays are declared in the matter's `own` scope."""
+        return Load(own, units, self.pieces, self.shares, every)

@@ -1,6 +1,7 @@
 """The time step as one list: the phases of all matters and of the carrier, in their order."""
 
 from collections.abc import Sequence as Several
+from math import lcm
 
 import taichi as ti
 
@@ -13,16 +14,41 @@ class Sequence:
 
     A step of a world at time t (s) is: every phase of `before`, in which matters compute their forces and book those on
     the tank, and the carrier then responds to that load; the carrier's frame; every phase of `after`, in which matters
-    move. A step is `stride` base steps long. The stride changes only when all lists are rebuilt, to the least that any
-    matter or the carrier allows (`pace`), and never overshoots the target. A matter has `before`, `after` and `units`,
-    and says when its lists must be rebuilt (see `GrainMatter`).
+    move. A phase with a longer pace (`Phase.every`) is run at every few steps, and its matter's load stands in between.
+    A step is `stride` base steps long. The stride changes only when all lists are rebuilt, to the least that any
+    matter or the carrier allows (`pace`), and never overshoots the target. What a matter
+    must offer is in `solvers.tank.matter`.
     """
 
     def __init__(self, matters: Several, carrier):
         self.matters, self.carrier = tuple(matters), carrier
         self.before: tuple[Phase, ...] = (*(phase for matter in matters for phase in matter.before), *carrier.phases)
         self.after: tuple[Phase, ...] = tuple(phase for matter in matters for phase in matter.after)
-        self.paced = carrier.paced and all(matter.paced for matter in matters)  # whether any step may be longer
+        alike = all(phase.every == 1 for phase in (*self.before, *self.after))
+        self.paced = alike and carrier.paced and all(matter.paced for matter in matters)  # may any step be longer
+
+    @property
+    def beat(self) -> int:
+        """Base steps after which all phases have acted as often as their pace says."""
+        return lcm(*(phase.every for phase in (*self.before, *self.after)))
+
+    @ti.func
+    def begin(self, k: ti.template(), u, step, t, kick, dt):
+        """Run phase k of `before` on unit or world u at base step `step`, if it is due."""
+        if ti.static(self.before[k].every == 1):
+            self.before[k].act(u, t, kick, dt)
+        elif step % self.before[k].every == 0:
+            self.before[k].act(u, t, self.before[k].every * kick, self.before[k].every * dt)
+
+    @ti.func
+    def end(self, k: ti.template(), u, step, frame: ti.template(), kick, dt):
+        """Run phase k of `after` on unit or world u, if it is due; returns whether the state is sound."""
+        sound = True
+        if ti.static(self.after[k].every == 1):
+            sound = self.after[k].act(u, frame, kick, dt)
+        elif step % self.after[k].every == 0:
+            sound = self.after[k].act(u, frame, self.after[k].every * kick, self.after[k].every * dt)
+        return sound
 
     @ti.func
     def stride(self, w, due):

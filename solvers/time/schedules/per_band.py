@@ -76,11 +76,11 @@ class PerBand:
                 t, dt = origin + done * base, ti.cast(stride * base, self.real)
                 kick = ti.cast(0.5 * (before + stride) * base, self.real)
                 for k in ti.static(range(len(self.before))):
-                    self.begin(k, u, t, kick, dt)
+                    self.begin(k, u, done, t, kick, dt)
                     meetings = self.meet(w, meetings)
                 says = FINE
                 for k in ti.static(range(len(self.after))):
-                    if not self.end(k, u, t, kick, dt):
+                    if not self.end(k, u, done, t, kick, dt):
                         says = FAST
                     if ti.static(k < len(self.after) - 1):
                         meetings = self.meet(w, meetings)
@@ -101,8 +101,9 @@ class PerBand:
         """The time loop of a world on one thread, band after band."""
         start, stride = w * self.bands, self.stride_of(w)
         while self.clock.step[w] < target and self.clock.status[w] == RUNNING:
-            due = target - self.clock.step[w]
-            t, worst = origin + self.clock.step[w] * base, FINE
+            done = self.clock.step[w]
+            due = target - done
+            t, worst = origin + done * base, FINE
             for u in range(start, start + self.bands):
                 worst = ti.max(worst, self.freshness(u, t, stride, due))
             if ti.static(self.sequence.paced):  # noqa: SIM102
@@ -121,10 +122,10 @@ class PerBand:
                 kick = ti.cast(0.5 * (self.clock.before[w] + stride) * base, self.real)
                 for k in ti.static(range(len(self.before))):
                     for u in range(start, start + self.bands):
-                        self.begin(k, u, t, kick, dt)
+                        self.begin(k, u, done, t, kick, dt)
                 for k in ti.static(range(len(self.after))):
                     for u in range(start, start + self.bands):
-                        if not self.end(k, u, t, kick, dt):
+                        if not self.end(k, u, done, t, kick, dt):
                             worst = FAST
                 self.clock.step[w], self.clock.before[w] = self.clock.step[w] + stride, stride
                 if worst == FINE and not self.carrier.goes_on(w):
@@ -132,29 +133,29 @@ class PerBand:
             self.report(w, worst)
 
     @ti.func
-    def begin(self, k: ti.template(), u, t, kick, dt):
+    def begin(self, k: ti.template(), u, step, t, kick, dt):
         """A band's part of phase k of `before`."""
         if ti.static(self.before[k].of_worlds):
             if u % self.bands == 0:
-                self.before[k].act(u // self.bands, t, kick, dt)
+                self.sequence.begin(k, u // self.bands, step, t, kick, dt)
         else:
-            self.before[k].act(u, t, kick, dt)
+            self.sequence.begin(k, u, step, t, kick, dt)
 
     @ti.func
-    def end(self, k: ti.template(), u, t, kick, dt):
+    def end(self, k: ti.template(), u, step, t, kick, dt):
         """A band's part of phase k of `after`, in which the particles move; returns whether their state is sound."""
         sound = True
         if ti.static(self.after[k].of_worlds):
             if u % self.bands == 0:
-                sound = self.act_on(k, u // self.bands, u // self.bands, t, kick, dt)
+                sound = self.act_on(k, u // self.bands, u // self.bands, step, t, kick, dt)
         else:
-            sound = self.act_on(k, u, self.clock.world(u), t, kick, dt)
+            sound = self.act_on(k, u, self.clock.world(u), step, t, kick, dt)
         return sound
 
     @ti.func
-    def act_on(self, k: ti.template(), u, w, t, kick, dt):
+    def act_on(self, k: ti.template(), u, w, step, t, kick, dt):
         """Run phase k of `after` on unit or world u of world w; returns whether the state is sound."""
-        return self.after[k].act(u, self.carrier.frame(w, t), kick, dt)
+        return self.sequence.end(k, u, step, self.carrier.frame(w, t), kick, dt)
 
     @ti.func
     def stride_of(self, w):

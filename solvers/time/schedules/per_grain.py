@@ -47,7 +47,7 @@ class PerGrain:
             if not self.clock.running().all() and not self.may_go_on():
                 break
             for _ in range(min(safe, (target - done) // stride)):
-                self.take_step(origin + done * base, 0.5 * (before + stride) * base, stride * base)
+                self.take_step(done, origin + done * base, 0.5 * (before + stride) * base, stride * base)
                 done, before = done + stride, stride
             self.reach(done, before)
 
@@ -113,27 +113,40 @@ class PerGrain:
                         self.clock.status[w] = NO_ROOM
 
     @ti.kernel
-    def take_step(self, time: ti.f64, kick: ti.f64, step: ti.f64):
-        """Take one step in every running world."""
+    def take_step(self, done: ti.i32, time: ti.f64, kick: ti.f64, step: ti.f64):
+        """Take the step of `step` (s) that begins at base step `done`, in every running world."""
         for k in ti.static(range(len(self.before))):
             if ti.static(self.before[k].of_worlds):
                 for w in range(self.worlds):
                     if self.clock.status[w] == RUNNING:
-                        self.before[k].act(w, time, ti.cast(kick, self.real), ti.cast(step, self.real))
+                        self.begin(k, w, done, time, kick, step)
             else:
                 for u in range(self.before[k].units.count):
                     if self.clock.status[self.before[k].units.world(u)] == RUNNING:
-                        self.before[k].act(u, time, ti.cast(kick, self.real), ti.cast(step, self.real))
+                        self.begin(k, u, done, time, kick, step)
         for w in range(self.worlds):
             frame = self.carrier.frame(w, time)
             for k in ti.static(range(4)):
                 self.clock.frame[k][w] = frame[k]
         for k in ti.static(range(len(self.after))):
-            for u in range(self.after[k].units.count):
-                w = self.after[k].units.world(u)
-                if self.clock.status[w] == RUNNING:
-                    frame = ti.Vector([self.clock.frame[k][w] for k in ti.static(range(4))])
-                    self.after[k].act(u, frame, ti.cast(kick, self.real), ti.cast(step, self.real))
+            if ti.static(self.after[k].of_worlds):
+                for w in range(self.worlds):
+                    self.end(k, w, w, done, kick, step)
+            else:
+                for u in range(self.after[k].units.count):
+                    self.end(k, u, self.after[k].units.world(u), done, kick, step)
+
+    @ti.func
+    def begin(self, k: ti.template(), u, done, time, kick, step):
+        """Run phase k of `before` on unit or world u."""
+        self.sequence.begin(k, u, done, time, ti.cast(kick, self.real), ti.cast(step, self.real))
+
+    @ti.func
+    def end(self, k: ti.template(), u, w, done, kick, step):
+        """Run phase k of `after` on unit or world u of world w, if that is running."""
+        if self.clock.status[w] == RUNNING:
+            frame = ti.Vector([self.clock.frame[a][w] for a in ti.static(range(4))])
+            self.sequence.end(k, u, done, frame, ti.cast(kick, self.real), ti.cast(step, self.real))
 
     @ti.kernel
     def reach(self, step: ti.i32, before: ti.i32):

@@ -49,7 +49,7 @@ class PerWorld:
             while fresh:
                 t = origin + self.clock.step[w] * base
                 kick = ti.cast(0.5 * (self.clock.before[w] + stride) * base, self.real)
-                sound = self.take_step(w, t, kick, dt)
+                sound = self.take_step(w, self.clock.step[w], t, kick, dt)
                 self.clock.step[w], self.clock.before[w] = self.clock.step[w] + stride, stride
                 fresh = self.clock.step[w] + stride <= target
                 fresh = fresh and not self.sequence.worn(w) and not self.sequence.asked(w)
@@ -59,12 +59,12 @@ class PerWorld:
                     self.clock.status[w], fresh = OVER, False
 
     @ti.func
-    def take_step(self, w, t, kick, dt):
-        """Take one step in a world, which is a single unit; returns whether its state is sound."""
+    def take_step(self, w, step, t, kick, dt):
+        """Take the step that begins at base step `step` in a world, a single unit; returns whether it is sound."""
         for k in ti.static(range(len(self.before))):
-            self.before[k].act(w, t, kick, dt)
+            self.sequence.begin(k, w, step, t, kick, dt)
         frame, sound = self.carrier.frame(w, t), True
         for k in ti.static(range(len(self.after))):
-            if not self.after[k].act(w, frame, kick, dt):
+            if not self.sequence.end(k, w, step, frame, kick, dt):
                 sound = False
         return sound

@@ -13,7 +13,7 @@ from lab.preset.accuracy import LEVELS
 from lab.preset.find import load
 from lab.preset.schema import Resolved
 from lab.studies.verify.scenes import ACETATE, WEIGHTLESS, Setup, again, grain, simulated
-from solvers.time.watch import DEEPEST_OVERLAP
+from solvers.grains.checks import DEEPEST_OVERLAP
 
 SMALL = {"tank": {"width": "30 mm", "height": "30 mm"}, "grains": {"depth": "12 mm"}, "run": {"repeats": 2}}
 PEAS = {"distribution": "table", "table": [["3 mm", 35.2], ["4 mm", 64.8]]}

@@ -14,7 +14,7 @@ from lab.recording import open_recording
 from lab.recording.layout import STEERING, frames_of, series_of
 from lab.sweeps.rehearsal import rehearsed
 from solvers.grains import quantities as grains
-from solvers.grains.observe import Observer
+from solvers.grains.census import Census
 from solvers.machine.quantity import FREEDOMS, PLANE, Quantity, parted, places
 from tests.oracles.synthetic import frame, recorder, sample
 
@@ -29,12 +29,12 @@ HIGHEST = Quantity("highest", "m", label="height of the highest grain in the tan
 
 
 @ti.data_oriented
-class WithHighest(Observer):
+class WithHighest(Census):
     """Fills one number more."""
 
     @ti.func
-    def write_row(self, w, time, since, sums, contacts, load):
-        Observer.write_row(self, w, time, since, sums, contacts, load)
+    def write_row(self, w, time, sums, contacts):
+        Census.write_row(self, w, time, sums, contacts)
         self.rows[w, self.at.highest] = self.top(w)
 
     @ti.func
@@ -47,7 +47,7 @@ class WithHighest(Observer):
 
 def test_a_new_quantity_is_one_declaration_and_one_line_that_fills_it(tmp_path, monkeypatch):
     monkeypatch.setattr(grains, "SERIES", (*grains.SERIES, HIGHEST))
-    monkeypatch.setattr("solvers.simulation.Observer", WithHighest)
+    monkeypatch.setattr("solvers.grains.matter.Census", WithHighest)
     result = lab.run("tilting/quick", tmp_path / "run", video=False, quiet=True, **TINY)
     with open_recording(result.folder) as found:
         place, times = found.frames["position"][:], found.frames["time"][:]

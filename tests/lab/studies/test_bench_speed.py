@@ -84,7 +84,7 @@ def test_the_walls_carry_the_bed_in_the_parts_that_are_timed(resting):
     for name in ("pair_forces", "wall_forces"):
         kernels.move(1, 0.0)  # clears the forces
         getattr(kernels, name)(1, 0.0)
-        forces[name] = np.array([field.to_numpy()[0, :COUNT] for field in run.grains.force])
+        forces[name] = np.array([field.to_numpy()[0, :COUNT] for field in run.grains.grains.force])
     weight = float(run.grains.mass.sum() * run.scene.gravity)
     scale = np.abs(forces["pair_forces"]).sum()
     assert np.abs(forces["pair_forces"].sum(axis=1)).max() < 1e-12 * scale  # Newton's third law, rounding
@@ -95,15 +95,15 @@ def test_the_walls_carry_the_bed_in_the_parts_that_are_timed(resting):
 def test_parts_done_often_leave_the_bed_as_it_is(resting):
     run, kernels = resting, Parts(resting)
     kernels.move(1, 0.0)
-    before, lists = run.snapshot(), run.neighbours.pairs
+    before, lists = run.snapshot(), run.grains.lists.pairs
     kernels.pair_forces(1, 0.0)
     once = [field.to_numpy() for field in lists.memory]
     assert np.abs(once[0]).max() > 0.0
-    force = run.grains.force[1].to_numpy()
+    force = run.grains.grains.force[1].to_numpy()
     kernels.pair_forces(3, 0.0)
-    np.testing.assert_allclose(run.grains.force[1].to_numpy(), 4.0 * force, atol=1e-12 * np.abs(force).max())
+    np.testing.assert_allclose(run.grains.grains.force[1].to_numpy(), 4.0 * force, atol=1e-12 * np.abs(force).max())
     kernels.scatter(3, 0.0)
-    np.testing.assert_allclose(run.grains.force[1].to_numpy(), 4.0 * force, atol=1e-12 * np.abs(force).max())
+    np.testing.assert_allclose(run.grains.grains.force[1].to_numpy(), 4.0 * force, atol=1e-12 * np.abs(force).max())
     for name in ("move", "wall_forces", "gather"):
         getattr(kernels, name)(3, 0.0)
     length = int(lists.length.to_numpy()[0])
@@ -117,7 +117,7 @@ def test_parts_done_often_leave_the_bed_as_it_is(resting):
 
 @pytest.mark.slow
 def test_bytes_are_counted_as_the_lists_and_the_grains_hold_them(resting):
-    lists = resting.neighbours.pairs
+    lists = resting.grains.lists.pairs
     reals = 3 + len(lists.constants) + 2 * len(lists.memory)  # stiffness, reach, share; memory is read and written
     assert total(PAIR, "").bytes == 2 * INTEGER + reals * REAL
     held = {id(field) for field in vars(resting.grains).values() if isinstance(field, ti.Field)}

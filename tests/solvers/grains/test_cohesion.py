@@ -161,8 +161,8 @@ def clump(skin: float | None = None, schedule: str = "per-world", units: int = 1
         run.schedule.together = False  # spinning on shared cores takes its time
     run.launch(velocity, np.zeros((worlds, count)))
     run.advance(600)
-    pairs = run.neighbours.pairs
-    bridged, length = pairs.bridged.to_numpy().reshape(run.neighbours.units.count, -1), pairs.length.to_numpy()
+    pairs = run.grains.lists.pairs
+    bridged, length = pairs.bridged.to_numpy().reshape(run.grains.lists.units.count, -1), pairs.length.to_numpy()
     bridges = sum(row[:used].sum() for row, used in zip(bridged, length, strict=True))
     found = run.observe() | run.snapshot() | {"bridges": bridges}
     run.close()
@@ -200,7 +200,7 @@ def test_nothing_is_kept_for_cohesion_where_there_is_none():
     place, kept = np.array([[[0.0, RADIUS], [0.0, 3.0 * RADIUS]]]), []
     for grain, law in ((material(), "none"), (wet(asperities=1e-9), "none"), (wet(), "bridge")):
         run = simulation(place, RADIUS, box(0.1, 0.1), grain, cohesion=law)
-        kept.append((run.arrays.bytes, run.neighbours.laws.memory, run.dt))
+        kept.append((run.arrays.bytes, run.grains.lists.laws.memory, run.dt))
         run.close()
     assert kept[0] == kept[1]
     assert kept[2][0] > kept[0][0]

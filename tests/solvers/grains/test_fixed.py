@@ -48,7 +48,7 @@ def struck(request):
     before = run.snapshot()
     run.advance(round((gap / (SLOWER * SPEEDS.min()) / np.cos(SLANT) + 1.5e-3) / run.dt))
     after, rows = run.snapshot(), run.observe()
-    kept = [field.to_numpy()[:, 3 : 3 + len(FIXED)] for field in run.grains.place]
+    kept = [field.to_numpy()[:, 3 : 3 + len(FIXED)] for field in run.grains.grains.place]
     mass = run.grains.mass[0, 0]
     run.close()
     return scene, mass, before, after, rows, np.stack(kept, axis=2)

@@ -77,7 +77,7 @@ def test_lists_equal_brute_force():
         run.place(moved)
         run.advance(1)
         for w in range(len(radius)):
-            pairs, walls = listed(run.neighbours.pairs, w), listed(run.neighbours.contacts, w)
+            pairs, walls = listed(run.grains.lists.pairs, w), listed(run.grains.lists.contacts, w)
             assert np.all(pairs[:, 0] < pairs[:, 1])
             for name, rows, expected in (
                 ("pairs", pairs, brute_pairs(moved[w], radius[w], skin)),
@@ -94,8 +94,8 @@ def check_stiffness(run: Simulation, w: int, pairs: np.ndarray, walls: np.ndarra
     """k = (4/3) E* √R_eff of all that is listed."""
     curvature = 1.0 / run.scene.radius[w]
     for contacts, between, bend in (
-        (run.neighbours.pairs, run.scene.interfaces[0], curvature[pairs].sum(axis=1)),
-        (run.neighbours.contacts, run.scene.interfaces[1], curvature[walls[:, 0]]),
+        (run.grains.lists.pairs, run.scene.interfaces[0], curvature[pairs].sum(axis=1)),
+        (run.grains.lists.contacts, run.scene.interfaces[1], curvature[walls[:, 0]]),
     ):
         found = contacts.stiffness.to_numpy()[w].reshape(-1)[: len(bend)]
         np.testing.assert_allclose(found, 4.0 / 3.0 * between.young_modulus / np.sqrt(bend), rtol=1e-12)
@@ -124,7 +124,7 @@ def shaken(skin: float, room: int = 1) -> Simulation:
         run.arrays.release()
         run.room = room
         run._build()
-        run.grains.put(np.stack([stack, gas]))
+        run.grains.grains.put(np.stack([stack, gas]))
     run.launch(velocity)
     return run
 
@@ -186,7 +186,7 @@ def test_room_grows_while_running_and_nothing_changes(usual):
     assert run.room == 2
     assert run.steps == steps
     assert np.all(run.clock.step.to_numpy() == steps)
-    assert np.any(run.neighbours.pairs.length.to_numpy() > 4 * COUNT + 16)
+    assert np.any(run.grains.lists.pairs.length.to_numpy() > 4 * COUNT + 16)
     end = run.snapshot() | run.observe()
     run.close()
     for name in usual[3].keys() - {"wall_force"}:  # this is a mean over another time

@@ -72,6 +72,6 @@ def test_grains_go_by_their_own_numbers():
     made = bed()
     whole = made.pressing()
     order = np.random.default_rng(3).permutation(COLUMNS * ROWS)
-    made.number = made.number[:, order]
+    made.grains.numbering.number = made.grains.numbering.number[:, order]
     assert made.pressing().grains[:, 0].tolist() == order[whole.grains[:, 0]].tolist()
     made.close()

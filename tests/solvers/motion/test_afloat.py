@@ -149,9 +149,9 @@ class Run:
         run = self.simulation
         run.restore(self.settled)
         if nudged:
-            place = run.grains.place[0].to_numpy()
+            place = run.grains.grains.place[0].to_numpy()
             side = np.random.default_rng(4).choice([-np.inf, np.inf], place.shape)
-            run.grains.place[0].from_numpy(np.nextafter(place, side))
+            run.grains.grains.place[0].from_numpy(np.nextafter(place, side))
         velocity = np.zeros((*run.scene.radius.shape, 2))
         velocity[VACUUM] = np.random.default_rng(2).normal(0.0, 0.5, velocity.shape[1:])
         run.launch(velocity)
@@ -175,7 +175,7 @@ class Run:
         energy = cargo_energy(run, snapshot, rows, motion)
         speed, _ = earth(snapshot, motion)
         momentum = (run.grains.mass[..., None] * speed).sum(axis=1)
-        lost = run.contacts.laws.lost.to_numpy()[::APART]
+        lost = run.grains.contacts.laws.lost.to_numpy()[::APART]
         return {
             "time": run.time,
             "place": snapshot["position"],

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import taichi as ti
 
 from solvers.motion import Sway, Tilt
 from solvers.scene import Scene
@@ -57,7 +58,7 @@ def momenta(run: Simulation) -> np.ndarray:
 
     Of the velocities that Verlet's kicks have changed: what they gain is the impulse, to rounding.
     """
-    r, mass, g = run.snapshot()["position"], run.grains.mass, run.grains
+    r, mass, g = run.snapshot()["position"], run.grains.mass, run.grains.grains
     y, z, spin = (field.to_numpy()[:, :COUNT] for field in (*g.velocity, g.spin))
     v = np.stack([y, z], axis=2)
     angular = mass * (r[..., 0] * v[..., 1] - r[..., 1] * v[..., 0]) + 0.4 * mass * RADIUS**2 * spin
@@ -131,6 +132,39 @@ def test_a_heap_at_rest_loads_its_weight_where_it_lies(looks, box_run):
 
 def test_a_second_look_at_the_same_time_tells_the_same(box_run):
     assert np.array_equal(load(box_run.observe()), load(box_run.observe()))
+
+
+@ti.data_oriented
+class Pushing:
+    """Computes the forces of the present instant once, without moving anything."""
+
+    def __init__(self, run: Simulation):
+        self.matter = run.grains
+
+    @ti.kernel
+    def push(self, t: ti.f64, dt: ti.f64):
+        for u in range(self.matter.units.count):
+            self.matter.push(u, t, dt, dt)
+
+
+def test_the_load_is_minus_the_forces_on_the_grains_of_that_instant(looks, box_run):
+    """On floor, wall, shelf, paddle and fixed grains, to 1e-12 of Σ|F|; the moment to 1e-12 of Σ|F| times the width."""
+    run, pressed, rng = box_run, RADIUS - 2e-6, np.random.default_rng(1)
+    on_each = [(-0.027, 5e-3 + pressed), (-0.047, 0.012 + pressed), (0.035 - pressed, 0.01), (0.05 - pressed, 0.03)]
+    row = [(2.0 * pressed * k, pressed) for k in range(COUNT - len(on_each))]
+    place, spin = np.tile([*on_each, *row], (3, 1, 1)), rng.normal(0.0, 1.0, (3, COUNT))
+    run.place(place, rng.normal(0.0, 5e-3, place.shape), spin)
+    run.advance(2)
+    run.observe()
+    assert (np.abs(run.loads()).max(axis=2) > 0.0).all(), "walls, shelf, paddle and fixed grains are loaded"
+    Pushing(run).push(run.time, run.dt)
+    g, place = run.grains.grains, run.snapshot()["position"]
+    y, z, torque = (field.to_numpy()[:, :COUNT] for field in (*g.force, g.torque))
+    moment = place[..., 0] * z - place[..., 1] * y + torque
+    acting = np.stack([y.sum(axis=1), z.sum(axis=1), moment.sum(axis=1)], axis=1)
+    scale = np.hypot(y, z).sum(axis=1)[:, None] * [1.0, 1.0, 0.1]
+    found = np.stack([field.to_numpy() for field in run.grains.load.impulse], axis=-1).sum(axis=1) / run.dt
+    assert np.all(np.abs(found + acting) <= 1e-12 * scale)
 
 
 TILT, SWAY = 0.1, Sway(3e-3, 3.0)

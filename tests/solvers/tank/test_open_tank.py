@@ -267,7 +267,7 @@ def test_what_jumps_above_the_mouth_stays_and_what_leaves_by_the_outlet_does_not
         centre = (mass[here] * look["position"][0, here, 1]).sum() / mass[here].sum()
         assert look["centre_of_mass"][0, 1] == pytest.approx(centre, rel=1e-9)
 
-    assert not np.array_equal(run.number[0], [0, 1, 2])
+    assert not np.array_equal(run.grains.numbering.number[0], [0, 1, 2])
     anew = np.array([[[0.0, 0.012], [0.008, 0.012], [-0.008, 0.012]]])
     speeds = np.array([[[0.1, 0.0], [0.2, 0.0], [0.3, 0.0]]])
     run.place(anew, speeds)

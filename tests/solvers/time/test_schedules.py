@@ -139,7 +139,7 @@ def travelled(t: float) -> np.ndarray:
 
 def brute(run: Simulation, place: np.ndarray, radius: np.ndarray, t: float) -> tuple[set, set]:
     """Pairs (i, j) of one world as its units should list them, and (grain, feature) at walls, nearer than the skin."""
-    skin, size = run.skin, run.neighbours.units.size
+    skin, size = run.skin, run.grains.lists.units.size
     others, sizes = np.concatenate([place, FIXED[:, :2]]), np.concatenate([radius, FIXED[:, 2]])
     away = np.linalg.norm(place[:, None] - others, axis=2)
     first, second = np.nonzero(away < radius[:, None] + sizes + skin)
@@ -188,14 +188,14 @@ def test_lists_equal_brute_force(run):
     """Taken with a step so short that nobody moves, when the paddle is under way."""
     run.dt, run.origin = 1e-15, 0.04
     counted = np.zeros(2, dtype=int)
-    for cloud in clouds(float(run.neighbours.cells.lengths.to_numpy()[2])):
+    for cloud in clouds(float(run.grains.lists.cells.lengths.to_numpy()[2])):
         run.place(cloud)
         run.advance(1)
         assert run.room == 1
         for w in range(WORLDS):
             pairs, walls = brute(run, cloud[w], run.scene.radius[w], run.origin)
             counted += np.array([len(pairs), len(walls)])
-            for found, expected in ((run.neighbours.pairs, pairs), (run.neighbours.contacts, walls)):
+            for found, expected in ((run.grains.lists.pairs, pairs), (run.grains.lists.contacts, walls)):
                 rows = listed(found, w)
                 assert len(rows) == len(set(rows))
                 assert set(rows) == expected
@@ -261,10 +261,10 @@ def test_lists_that_outgrow_their_room_change_nothing(told, schedule):
         found.place(start()[1])
         found.advance(EARLY)
         assert found.room == 1
-        found.neighbours.skin.fill(skin)
-        found.neighbours.expire()
+        found.grains.lists.skin.fill(skin)
+        found.grains.lists.expire()
         found.advance(1)
-        found.neighbours.skin.fill(SKIN)
+        found.grains.lists.skin.fill(SKIN)
         found.advance(100)
         ends.append(found.snapshot() | found.observe())
         assert np.all(found.clock.step.to_numpy() == EARLY + 101)

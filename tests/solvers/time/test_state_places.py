@@ -55,17 +55,20 @@ def test_a_list_that_is_longer_than_its_room_is_refused_and_nothing_changes(run,
 @pytest.mark.parametrize("kind", ["pairs", "contacts"])
 def test_no_contact_is_left_of_what_is_nowhere(run, kind, which, value):
     _, state = forged(run, kind, which, value)
-    before, listed = run.state(), getattr(run.neighbours, kind)
+    before, listed = run.state(), getattr(run.grains.lists, kind)
     run.restore(state)
     places = getattr(listed, which).to_numpy()
-    ends = {"grain": run.grains.stride, "mate": run.grains.stride if kind == "pairs" else run.walls.features}
+    ends = {
+        "grain": run.grains.grains.stride,
+        "mate": run.grains.grains.stride if kind == "pairs" else run.walls.features,
+    }
     assert places.min() >= 0 and places.max() < ends[which] * (WORLDS if kind == "pairs" else 1)
     run.restore(before)
 
 
 def test_a_state_of_ones_own_is_taken(run):
     state = run.state()
-    assert run.neighbours.pairs.length.to_numpy().min() > 0
+    assert run.grains.lists.pairs.length.to_numpy().min() > 0
     run.advance(30)
     run.restore(state)
     after = run.state()

@@ -64,7 +64,7 @@ def test_a_bad_speed_stops_its_world_alone(run, trouble, grain):
     start(run)
     run.advance(10)
     speed = np.nan if trouble == "not a number" else 0.2 * RADIUS / run.dt
-    run.grains.velocity[0][1, grain] = speed
+    run.grains.grains.velocity[0][1, grain] = speed
     said = caught(run.advance, STEPS - 10)
     assert said.startswith("world 1: ")
     assert trouble in said
@@ -79,9 +79,9 @@ def test_a_bad_speed_stops_its_world_alone(run, trouble, grain):
 
 
 def test_the_limit_of_speed_is_a_tenth_of_a_radius_a_step(run):
-    run.grains.velocity[1][1, 0] = 0.098 * RADIUS / run.dt
+    run.grains.grains.velocity[1][1, 0] = 0.098 * RADIUS / run.dt
     run.advance(1)
-    run.grains.velocity[1][2, 2] = 0.102 * RADIUS / run.dt
+    run.grains.grains.velocity[1][2, 2] = 0.102 * RADIUS / run.dt
     assert caught(run.advance, 1).startswith("world 2: ")
 
 
@@ -114,5 +114,5 @@ def test_deep_overlap_is_seen(run, against):
 
 
 def test_settling_tells_the_time_since_it_began(run):
-    run.grains.velocity[0][0, 2] = np.nan
+    run.grains.grains.velocity[0][0, 2] = np.nan
     assert told_time(caught(run.settle, 1e-6, 1.0)) == pytest.approx(run.dt, rel=1e-3)

@@ -23,9 +23,9 @@ class Parts:
     """The parts of a step of a simulation of one world, schedule per-world; each method does its part `times` times."""
 
     def __init__(self, simulation: Simulation):
-        self.real = simulation.grains.real
-        self.grains, self.neighbours, self.contacts = simulation.grains, simulation.neighbours, simulation.contacts
-        self.carrier, self.mover = simulation.carrier, simulation.mover
+        matter = simulation.grains
+        self.real, self.grains, self.neighbours = matter.grains.real, matter.grains, matter.lists
+        self.carrier, self.contacts, self.mover = simulation.carrier, matter.contacts, matter.mover
         self.sink = ti.field(self.real, shape=LANES)
 
     @ti.kernel

@@ -164,7 +164,7 @@ def at_rest(bed: Bed, turns: int, seconds: float) -> AtRest:
     run = Simulation(bed.scene(schedule="per-world"), bed.places(), threads=1, arch="cpu")
     run.advance(1000)
     touching = int(run.observe()["contacts"][0])
-    pairs = int(run.neighbours.pairs.length.to_numpy()[0])
+    pairs = int(run.grains.lists.pairs.length.to_numpy()[0])
     parts = Parts(run)
     kernels = {name: partial(getattr(parts, name), step=0.0) for name in (*WHOLE, *PIECES)}
     timings = {name: repeated(do, seconds) for name, do in {STEP: run.advance, **kernels}.items()}
@@ -183,7 +183,7 @@ def in_flow(bed: Bed, duration: float) -> InFlow:
         begun = time.perf_counter()
         run.advance(GLANCE)
         taken += time.perf_counter() - begun
-        built.add(float(run.neighbours.built_at.to_numpy()[0]))
+        built.add(float(run.grains.lists.built_at.to_numpy()[0]))
     build = repeated(lambda n: parts.build(n, run.dt), 0.1)()
     run.close()
     return InFlow(taken / (looks * GLANCE), build, looks * GLANCE / len(built))

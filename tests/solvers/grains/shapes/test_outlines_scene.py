@@ -103,7 +103,7 @@ def collision(contact, outlines, grain=SOFT, step=1e-5, angles=(0.3, 1.9), speed
 def momenta(simulation):
     """Of both grains together: momentum (2,) and angular momentum about the common centre of mass."""
     now, mass = simulation.snapshot(), simulation.grains.mass[0]
-    inertia = 1.0 / simulation.grains.inverse_inertia.to_numpy()[0, :2]
+    inertia = 1.0 / simulation.grains.grains.inverse_inertia.to_numpy()[0, :2]
     position, velocity = now["position"][0], now["velocity"][0]
     centre = (mass[:, None] * position).sum(axis=0) / mass.sum()
     away, momentum = position - centre, mass[:, None] * velocity

@@ -6,8 +6,8 @@ from math import pi, sqrt
 
 import numpy as np
 
+from solvers.grains.checks import FASTEST_STEP
 from solvers.grains.materials import Interface, Material
-from solvers.time.watch import FASTEST_STEP
 
 RAYLEIGH_SHARE = 0.2
 FASTER = 1.5  # times the highest credible speed: what the speed check must still accept

@@ -10,9 +10,9 @@ from solvers.grains.laws import NORMAL, ROLLING, TANGENTIAL
 from solvers.grains.laws.hertz import ELASTIC_STEPS, hertz_duration
 from solvers.grains.laws.hertz_viscoelastic import damping
 from solvers.grains.materials import Material, effective_young
+from solvers.grains.timestep import closing_speed, rayleigh_time
 from solvers.motion import Heave, Roll, Sway, Tilt
 from solvers.scene import Scene
-from solvers.time.timestep import closing_speed, rayleigh_time
 from tests.oracles.scenes import box, material
 
 TANK = box(0.2, 0.1)

@@ -1,19 +1,18 @@
-"""What is measured of a world as it runs: sums over its grains, taken in one order on any number of threads."""
+"""The census of the grains: sums over those of a world, taken in one order on any number of threads."""
 
 from types import SimpleNamespace
 
+import numpy as np
 import taichi as ti
 
 from solvers.grains import quantities
 from solvers.grains.contacts import Contacts
 from solvers.grains.neighbours import Neighbours
 from solvers.grains.state import Grains
-from solvers.machine.quantity import places
+from solvers.machine.quantity import parted, places
 from solvers.machine.state import Axis, State
 from solvers.machine.units import Units
 from solvers.space.axes import dot, named
-from solvers.tank import quantities as tank
-from solvers.tank.load import Load
 from solvers.tank.walls import Walls
 
 CHUNK = 1024  # grains whose sum one thread takes
@@ -24,54 +23,46 @@ TOUCHING, DEEPEST, ELASTIC = range(3)
 
 
 @ti.data_oriented
-class Observer:
-    """One row of numbers a world: of the grains in the tank, whose spilled ones are only counted.
+class Census:
+    """One row of numbers per world, of the grains in the tank; spilled grains are only counted.
 
-    `quantities` says which, and `at` where in the row each begins. The force on the tank is also that on its fixed
-    grains and parts; its moment is about the tank's origin.
+    `quantities` are the numbers' declarations, and `at` has the column in which each begins.
     """
 
     def __init__(
-        self,
-        arrays: State,
-        units: Units,
-        grains: Grains,
-        walls: Walls,
-        neighbours: Neighbours,
-        contacts: Contacts,
-        carrier,
-        load: Load,
+        self, arrays: State, units: Units, grains: Grains, walls: Walls, lists: Neighbours, contacts: Contacts, carrier
     ):
-        self.units, self.grains, self.walls, self.neighbours = units, grains, walls, neighbours
-        self.contacts, self.carrier, self.load = contacts, carrier, load
+        self.units, self.grains, self.walls, self.lists = units, grains, walls, lists
+        self.contacts, self.carrier = contacts, carrier
         self.exact, self.may_leave = arrays.exact, grains.may_leave
         self.chunks = -(-grains.mobile // CHUNK)
-        self.quantities = (*tank.SERIES, *quantities.SERIES, quantities.ESCAPED)
+        self.quantities = (*quantities.SERIES, quantities.ESCAPED)
         self.at = SimpleNamespace(**places(self.quantities))
         columns = sum(quantity.width for quantity in self.quantities)
-        own, scratch = arrays.under("observed"), {"kind": arrays.exact, "kept": False}
+        own, scratch = arrays.under("census"), {"kind": arrays.exact, "kept": False}
         world, chunk = Axis("world", grains.worlds), Axis("chunk", self.chunks)
         (self.rows,) = own.reals((world, Axis("quantity", columns)), "rows", **scratch)
-        pieces = world, Axis("piece", load.pieces), Axis("component", 3)
-        (self.loads,) = own.reals(pieces, "loads", **scratch)
         self.numbers = MOMENT + grains.axes
         sums = "escaped", "mass", "kinetic", "rotational", "spilled", *named("moment", grains.axes)
         self.sums = own.reals((world, chunk), *sums, **scratch)
         self.counted = own.reals((units.axis,), "touching", "deepest", "elastic", **scratch)
 
+    def take(self, time: float) -> dict[str, np.ndarray]:
+        """The quantities of every world at `time` (s), which must be the grains' own: (W, *shape) of each by name."""
+        self.count(time)
+        return parted(self.rows.to_numpy().astype(float), self.quantities)
+
     @ti.kernel
-    def observe(self, time: ti.f64, since: ti.f64):
-        """Fill the rows with the state at `time` (s), the grains' own, `since` (s) after the last look."""
+    def count(self, time: ti.f64):
+        """Fill the rows."""
         for u in range(self.units.count):
-            census = self.contacts.census(self.grains, self.neighbours.pairs, self.neighbours.contacts, u, time)
+            found = self.contacts.census(self.grains, self.lists.pairs, self.lists.contacts, u, time)
             for k in ti.static(range(3)):
-                self.counted[k][u] = census[k]
+                self.counted[k][u] = found[k]
         for w, chunk in self.sums[0]:
             self.sum_chunk(self.grains, w, chunk)
         for w in range(self.units.worlds):
-            self.sum_world(w, time, since)
-            if w == 0:
-                self.walls.note_places(time)
+            self.sum_world(w, time)
 
     @ti.func
     def sum_chunk(self, g: ti.template(), w, chunk):
@@ -106,41 +97,28 @@ class Observer:
         return self.walls.follows(g.place[0][w, i], g.place[1][w, i])
 
     @ti.func
-    def sum_world(self, w, time, since):
+    def sum_world(self, w, time):
         sums = ti.Vector([ti.cast(0.0, self.exact) for _ in ti.static(range(self.numbers))])
         sums[ESCAPED] = NEVER
         for chunk in range(self.chunks):
             for k in ti.static(range(MASS, self.numbers)):
                 sums[k] += self.sums[k][w, chunk]
             sums[ESCAPED] = ti.max(sums[ESCAPED], self.sums[ESCAPED][w, chunk])
-        for piece in range(self.load.pieces):
-            for k in ti.static(range(3)):
-                self.loads[w, piece, k] = 0.0
         contacts = ti.Vector([ti.cast(0.0, self.exact) for _ in ti.static(range(3))])
-        load = ti.Vector([ti.cast(0.0, self.exact) for _ in ti.static(range(3))])
         for u in range(w * self.units.a_world, (w + 1) * self.units.a_world):
             contacts[TOUCHING] += self.counted[TOUCHING][u]
             contacts[DEEPEST] = ti.max(contacts[DEEPEST], self.counted[DEEPEST][u])
             contacts[ELASTIC] += self.counted[ELASTIC][u]
-            for piece in range(self.load.pieces):
-                impulse = self.load.take(u, piece)
-                for k in ti.static(range(3)):
-                    self.loads[w, piece, k] = self.loads[w, piece, k] + impulse[k] / ti.cast(since, self.exact)
-                load += impulse
-        self.write_row(w, time, since, sums, contacts, load)
+        self.write_row(w, time, sums, contacts)
 
     @ti.func
-    def write_row(self, w, time, since, sums, contacts, load):
+    def write_row(self, w, time, sums, contacts):
         mass = ti.max(sums[MASS], 1e-30)
         centre = [sums[MOMENT + a] / mass for a in ti.static(range(self.grains.axes))]
         pose = ti.Vector([ti.cast(0.0, self.exact) for _ in ti.static(range(9))])
         if ti.static(self.carrier.moving):
             pose = self.carrier.kinematics(w, time)
         height = pose[1] + ti.sin(pose[2]) * centre[0] + ti.cos(pose[2]) * centre[1]
-        for k in ti.static(range(3)):
-            self.rows[w, self.at.pose + k] = pose[k]
-            self.rows[w, self.at.pose_rate + k] = pose[3 + k]
-            self.rows[w, self.at.wall_force + k] = load[k] / ti.cast(since, self.exact)
         for a in ti.static(range(self.grains.axes)):
             self.rows[w, self.at.centre_of_mass + a] = centre[a]
         self.rows[w, self.at.kinetic] = sums[KINETIC]

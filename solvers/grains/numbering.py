@@ -1,9 +1,68 @@
-"""New numbers for grains in their lists of contacts: what a contact remembers goes along."""
+"""The grains' numbers: their own, which users know, and the solver's, which follow their order in space."""
 
 import numpy as np
 
 from solvers.grains.contact_list import ContactList
+from solvers.grains.neighbours import Neighbours
+from solvers.grains.state import Grains
+from solvers.machine.state import Axes, Axis, State
 from solvers.machine.units import Units
+from solvers.space import order as spatial
+
+
+class Numbering:
+    """The grains' own numbers in solver order, `number` (W, n).
+
+    `ordered` (W, n, axes) m are their positions when they were last numbered. Grains of `diameter` (m) that have mixed
+    are renumbered if `follows`.
+    """
+
+    def __init__(self, arrays: State, grains: Grains, lists: Neighbours, diameter: float, follows: bool):
+        self.arrays, self.grains, self.lists, self.diameter = arrays, grains, lists, diameter
+        self.follows = follows and grains.mobile >= spatial.FEWEST
+        self.worlds = np.arange(grains.worlds)[:, None]
+        self.number = np.tile(np.arange(grains.mobile), (grains.worlds, 1))
+        self.ordered = np.zeros((grains.worlds, grains.mobile, grains.axes))
+
+    def in_solver_order(self, values: np.ndarray) -> np.ndarray:
+        """Reorder values (W, n, …) from the grains' own numbers to solver order."""
+        return values[self.worlds, self.number]
+
+    def in_own_order(self, values: np.ndarray) -> np.ndarray:
+        """Reorder values (W, n, …) from solver order to the grains' own numbers."""
+        found = np.empty_like(values)
+        found[self.worlds, self.number] = values
+        return found
+
+    def follow(self) -> None:
+        """Renumber the grains in worlds where they have mixed. The lists expire there."""
+        position = self.grains.read()["position"]
+        order = {
+            w: spatial.spatial_order(places, self.diameter)
+            for w, places in enumerate(position)
+            if spatial.has_mixed(places, self.ordered[w], self.diameter)
+        }
+        for w, old in order.items():
+            self.number[w], self.ordered[w] = self.number[w][old], position[w][old]
+        if order:
+            self.arrays.reorder("grain", order)
+            lists, odd = self.lists, self.lists.laws.odd
+            renumber_list(lists.pairs, lists.units, order, odd, mates=True)
+            renumber_list(lists.contacts, lists.units, order, odd, mates=False)
+            lists.expire()
+
+    def state(self) -> dict[str, np.ndarray]:
+        """What `restore` continues from."""
+        return {"number": self.number, "ordered": self.ordered}
+
+    def axes(self) -> dict[str, Axes]:
+        """The axes of the arrays of `state`, by name."""
+        one = Axis("world", self.grains.worlds), Axis("grain", self.grains.mobile)
+        return {"number": one, "ordered": (*one, Axis("direction", self.grains.axes))}
+
+    def restore(self, state: dict[str, np.ndarray]) -> None:
+        """Restore what `state` returned."""
+        self.number, self.ordered = np.array(state["number"]), np.array(state["ordered"])
 
 
 def renumber_list(

@@ -1,0 +1,68 @@
+"""What is recorded of a tank as it moves: its pose, and the load of all matters on it."""
+
+from collections.abc import Sequence
+from types import SimpleNamespace
+
+import numpy as np
+import taichi as ti
+
+from solvers.machine.quantity import parted, places
+from solvers.machine.state import Axis, State
+from solvers.tank import quantities as tank
+from solvers.tank.load import Load
+from solvers.tank.walls import Walls
+
+
+@ti.data_oriented
+class Observer:
+    """One row of numbers per world: pose and velocity of the tank, and the mean force on it since the last sample.
+
+    The force includes that on fixed grains and parts; its moment is about the tank's origin. `loads` are the loads of
+    all matters. `quantities` are the numbers' declarations, and `at` has the column in which each begins.
+    """
+
+    def __init__(self, arrays: State, worlds: int, walls: Walls, carrier, loads: Sequence[Load]):
+        self.worlds, self.walls, self.carrier, self.loads = worlds, walls, carrier, tuple(loads)
+        self.exact, self.pieces = arrays.exact, loads[0].pieces
+        self.quantities = tank.SERIES
+        self.at = SimpleNamespace(**places(self.quantities))
+        columns = sum(quantity.width for quantity in self.quantities)
+        own, world = arrays.under("observer"), Axis("world", worlds)
+        (self.rows,) = own.reals((world, Axis("quantity", columns)), "rows", kind=arrays.exact, kept=False)
+        parts = world, Axis("piece", self.pieces), Axis("component", 3)
+        (self.on_pieces,) = own.reals(parts, "on_pieces", kind=arrays.exact, kept=False)
+
+    def take(self, time: float, since: float) -> dict[str, np.ndarray]:
+        """The quantities at `time` (s), `since` (s) after the last sample: (W, *shape) of each by name."""
+        self.observe(time, since)
+        return parted(self.rows.to_numpy().astype(float), self.quantities)
+
+    @ti.kernel
+    def observe(self, time: ti.f64, since: ti.f64):
+        """Fill the rows, and set the loads' sums to zero."""
+        for w in range(self.worlds):
+            self.observe_world(w, time, since)
+            if w == 0:
+                self.walls.note_places(time)
+
+    @ti.func
+    def observe_world(self, w, time, since):
+        for piece in range(self.pieces):
+            for k in ti.static(range(3)):
+                self.on_pieces[w, piece, k] = 0.0
+        total = ti.Vector([ti.cast(0.0, self.exact) for _ in ti.static(range(3))])
+        for m in ti.static(range(len(self.loads))):
+            for u in range(w * self.loads[m].units.a_world, (w + 1) * self.loads[m].units.a_world):
+                for piece in range(self.pieces):
+                    impulse = self.loads[m].take(u, piece)
+                    for k in ti.static(range(3)):
+                        mean = impulse[k] / ti.cast(since, self.exact)
+                        self.on_pieces[w, piece, k] = self.on_pieces[w, piece, k] + mean
+                    total += impulse
+        pose = ti.Vector([ti.cast(0.0, self.exact) for _ in ti.static(range(9))])
+        if ti.static(self.carrier.moving):
+            pose = self.carrier.kinematics(w, time)
+        for k in ti.static(range(3)):
+            self.rows[w, self.at.pose + k] = pose[k]
+            self.rows[w, self.at.pose_rate + k] = pose[3 + k]
+            self.rows[w, self.at.wall_force + k] = total[k] / ti.cast(since, self.exact)

@@ -1,0 +1,134 @@
+"""A matter: what a tank holds. What a time step asks of it, and what a simulation does."""
+
+from collections.abc import Mapping, Sequence
+from typing import ClassVar
+
+import numpy as np
+import taichi as ti
+
+from solvers.machine.phase import Phase
+from solvers.machine.state import Axes
+from solvers.machine.units import Units
+from solvers.ship.body import Body
+from solvers.tank.load import Load
+
+
+@ti.data_oriented
+class Matter:
+    """The interface of all matters, with the answers of one that has no lists and nothing to say.
+
+    A matter has a `name`, `units`, a `load` on the tank, and the phases `before` and `after` of a step. If it is
+    `paced`, its steps may be longer than the base step, by as many as its `pace` says. If it has neighbour lists, it
+    says when these are `stale`, `worn` or `asked` for in part, and rebuilds them (`sort`, `make_lists`). `of_contacts`
+    are those of its quantities that are known only after a step. If it `mixes`, its particles are renumbered now and
+    then. `extent` (m) is how far from the tank's origin a particle may be, `nearing` (m/s) how fast parts of the tank
+    come at particles.
+    """
+
+    name: str
+    units: Units
+    load: Load
+    before: tuple[Phase, ...] = ()
+    after: tuple[Phase, ...] = ()
+    paced = False
+    mixes = False
+    of_contacts: ClassVar[Sequence[str]] = ()
+    extent = 0.0
+    nearing = 0.0
+
+    def observe(self, time: float) -> dict[str, np.ndarray]:
+        """The quantities of every world at its time (s): (W, *shape) of each by name."""
+        return {}
+
+    def check(self, rows: Mapping[str, np.ndarray], time: float) -> None:
+        """Raise BadState if the quantities at `time` (s) show an unphysical state."""
+
+    def refuse(self, world: int, time: float, dt: float) -> None:
+        """Raise BadState if its particles made the watch stop a world at `time` (s): too fast for steps of dt (s)."""
+
+    def restlessness(self, rows: Mapping[str, np.ndarray]) -> np.ndarray:
+        """How far from rest each world is by its quantities, (W,): `Simulation.settle` waits until it is small."""
+        return np.zeros(self.units.worlds)
+
+    def bodies(self) -> list[Body]:
+        """The matter of each world as one rigid body, per metre of the ship's length, in the tank's frame."""
+        raise NotImplementedError
+
+    def keep_order(self) -> None:
+        """Renumber the particles of worlds where they have mixed."""
+
+    def start_clock(self) -> None:
+        """Note that the clock starts now."""
+
+    def alter(self, scene) -> None:
+        """Go on with the materials of a scene that equals the present one in everything else."""
+
+    def snapshot(self) -> dict[str, np.ndarray]:
+        """What is known of each particle now, in the tank's frame: (W, n, …) by name."""
+        return {}
+
+    def fields(self) -> list[ti.Field]:
+        """The arrays that a step changes, lists aside."""
+        return []
+
+    def state(self) -> dict[str, np.ndarray]:
+        """What `restore` continues from, beside the arrays."""
+        return {}
+
+    def axes(self) -> dict[str, Axes]:
+        """The axes of the arrays of `state`, by name."""
+        return {}
+
+    def restore(self, state: Mapping[str, np.ndarray]) -> None:
+        """Restore what `state` returned."""
+
+    def slack(self) -> float:
+        """How far (m) two particles may near each other before the lists are no good."""
+        return np.inf
+
+    def sort_all(self) -> None:
+        """Sort the particles of all worlds into cells."""
+
+    @ti.func
+    def speed(self, u):
+        """The speed (m/s) of a unit that is a single particle."""
+        return 0.0
+
+    @ti.func
+    def is_sound(self, speed, dt):
+        """Whether a speed (m/s) is one that steps of dt (s) bear."""
+        return True
+
+    @ti.func
+    def way(self, u, t):
+        """How far (m) any particle of a unit has moved since the lists were built; huge where there are none."""
+        return 0.0
+
+    @ti.func
+    def pace(self, w):
+        """Largest stride of a world, in base steps."""
+        return 1
+
+    @ti.func
+    def stale(self, u, t):
+        """Whether two particles may be in reach of each other unlisted at time t (s)."""
+        return False
+
+    @ti.func
+    def worn(self, u):
+        """Whether that may be so by a cheap bound on the displacements."""
+        return False
+
+    @ti.func
+    def asked(self, u):
+        """Whether some entries must be searched for again although the lists are valid."""
+        return False
+
+    @ti.func
+    def sort(self, w):
+        """Sort the particles of a world into cells."""
+
+    @ti.func
+    def make_lists(self, u, t, dt, whole):
+        """Rebuild the lists of a unit, or with `whole` false only what is asked for; returns whether they fit."""
+        return True
