@@ -10,6 +10,9 @@ PYTHON ?= $(shell for p in python3 python3.13 python3.12 python3.11; do \
 demo: $(VENV)/installed
 	$(BIN)/cargolab run tilting/quick
 
+# Tests start Python often, which takes far longer where bytecode is not kept.
+unexport PYTHONDONTWRITEBYTECODE
+
 test: $(VENV)/installed-test
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .

@@ -2,14 +2,14 @@
 
 import os
 
+# Workers share the cores; threads of numpy's that wait for each other by spinning would take all of a busy machine.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # numpy reads it when it is imported
+
 import numpy as np
 import pytest
 
 from solvers.machine import runtime
 from solvers.simulation import Simulation
-
-# Workers share the cores; threads of numpy's that wait for each other by spinning would take all of a busy machine.
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 ROUNDING = """stand in for a processor that rounds otherwise, in this process alone: strict compiles without fast-math;
 a number puts every grain one last digit beside its place, to sides that follow from the number"""

@@ -36,7 +36,7 @@ differ by more: see the std.
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import stats
+from scipy.special import ndtri
 
 from lab.measures.motion import is_tilt, outward_leg
 from lab.measures.value import Value, over_worlds
@@ -139,13 +139,18 @@ def _resting(tilt: np.ndarray, give: np.ndarray) -> tuple[float, float]:
     rates = (np.interp(starts + WINDOW, tilt, give) - np.interp(starts, tilt, give)) / WINDOW
     resting = rates[rates <= rates.mean()]
     creep = float(np.median(resting))
-    sigma = float(stats.median_abs_deviation(resting, scale="normal"))
+    sigma = _spread(resting)
     return creep, creep + max(FLOW, 5 * sigma)
 
 
 def _noise(give: np.ndarray) -> float:
     """Standard deviation of white noise on a smooth curve, from its second differences."""
-    return float(stats.median_abs_deviation(np.diff(give, 2), scale="normal")) / np.sqrt(6)
+    return _spread(np.diff(give, 2)) / np.sqrt(6)
+
+
+def _spread(values: np.ndarray) -> float:
+    """Standard deviation of normal numbers (n,) by the median of their distances from the median."""
+    return float(np.median(np.abs(values - np.median(values))) / ndtri(0.75))
 
 
 def _rises(total: np.ndarray, least: float) -> list[tuple[int, int, int]]:

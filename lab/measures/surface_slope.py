@@ -15,7 +15,6 @@ numbers lies above the true largest by about that error.
 """
 
 import numpy as np
-from scipy import stats
 
 from lab.measures.motion import is_tilt, outward_leg
 from lab.measures.value import Value, over_worlds
@@ -90,5 +89,7 @@ def inclination(y: np.ndarray, z: np.ndarray) -> tuple[float, float]:
     """Angle of the line through points (k,) and its error, rad; NaN for too few points."""
     if len(y) < LEAST_COLUMNS:
         return np.nan, np.nan
-    slope, _, low, high = stats.theilslopes(z, y, alpha=CONFIDENCE)
+    from scipy.stats import theilslopes  # slow to import
+
+    slope, _, low, high = theilslopes(z, y, alpha=CONFIDENCE)
     return float(np.arctan(slope)), float(np.arctan(high) - np.arctan(low)) / 2

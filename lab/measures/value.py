@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import stats
+from scipy.special import stdtrit
 
 LEVEL = 0.95  # of intervals
 
@@ -89,7 +89,7 @@ KINDS = {
 
 def half_width(error: float, freedom: float) -> float:
     """Half the interval of a standard error of so many degrees of freedom that has a confidence of LEVEL (Student)."""
-    return float(stats.t.ppf(0.5 + 0.5 * LEVEL, freedom)) * error
+    return float(stdtrit(freedom, 0.5 + 0.5 * LEVEL)) * error
 
 
 def read_values(table: Mapping) -> dict[str, Value]:

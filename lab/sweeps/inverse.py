@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from math import inf, sqrt
 
 import numpy as np
-from scipy import stats
+from scipy.special import stdtrit
 
 from lab.measures.value import LEVEL, half_width
 
@@ -126,7 +126,7 @@ def _interval(response: Response, target: float, root: float, target_error: floa
     whole = square + target_error**2
     with np.errstate(divide="ignore", invalid="ignore"):
         freedom = np.where(square > 0.0, (response.beds - 1) * (whole / square) ** 2, inf)
-    bound = stats.t.ppf(0.5 + 0.5 * LEVEL, freedom) * np.sqrt(whole)
+    bound = stdtrit(freedom, 0.5 + 0.5 * LEVEL) * np.sqrt(whole)
     held = np.abs(response.mean(x) - target) <= bound
     near = int(np.argmin(np.abs(x - root)))
     refused = np.flatnonzero(~held)
@@ -167,6 +167,6 @@ def misfit(response: Response, x: np.ndarray, measures: np.ndarray) -> list[tupl
     curves = fitted(x, measures[:, whole])
     residual = measures[:, whole] - curves.at(x).T
     mean, error = residual.mean(axis=1), residual.std(axis=1, ddof=1) / sqrt(whole.sum())
-    bound = stats.t.ppf(1.0 - 0.5 * (1.0 - LEVEL) / len(x), whole.sum() - 1) * error
+    bound = stdtrit(whole.sum() - 1, 1.0 - 0.5 * (1.0 - LEVEL) / len(x)) * error
     floor = 1e-9 * np.abs(measures[:, whole]).max()
     return [(float(a), float(m)) for a, m, b in zip(x, mean, bound, strict=True) if abs(m) > max(b, floor)]

@@ -12,7 +12,7 @@ from itertools import combinations, pairwise
 from math import hypot, inf, isfinite, sqrt
 
 import numpy as np
-from scipy import stats
+from scipy.special import fdtri, ndtri, stdtrit
 
 from lab.measures.value import LEVEL, Value
 from lab.report.numbers import interval, with_error
@@ -41,7 +41,7 @@ class Estimate:
 
     def ends(self, level: float = LEVEL) -> tuple[float, float]:
         """The ends of its interval (Student 1908)."""
-        margin = float(stats.t.ppf(0.5 + 0.5 * level, self.freedom)) * self.error if self.freedom else inf
+        margin = float(stdtrit(self.freedom, 0.5 + 0.5 * level)) * self.error if self.freedom else inf
         return self.value - margin, self.value + margin
 
     def lies(self, low: float, high: float, level: float = LEVEL) -> Verdict:
@@ -135,14 +135,14 @@ def scatters_more(first: Value | None, second: Value | None) -> Verdict:
     found = (first.std / second.std) ** 2
     freedom = first.n - 1, second.n - 1
     tail = 0.5 * (1.0 - LEVEL)
-    if found / stats.f.ppf(1.0 - tail, *freedom) > 1.0:
+    if found / fdtri(*freedom, 1.0 - tail) > 1.0:
         return Verdict.AGREES
-    return Verdict.DIFFERS if found / stats.f.ppf(tail, *freedom) < 1.0 else Verdict.CANNOT_TELL
+    return Verdict.DIFFERS if found / fdtri(*freedom, tail) < 1.0 else Verdict.CANNOT_TELL
 
 
 def chance(seen: int, beds: int) -> tuple[float, float]:
     """The interval of the share of beds with an outcome that `seen` of `beds` had (Wilson 1927)."""
-    sure = float(stats.norm.ppf(0.5 + 0.5 * LEVEL))
+    sure = float(ndtri(0.5 + 0.5 * LEVEL))
     share, square = seen / beds, sure**2 / beds
     middle = (share + 0.5 * square) / (1.0 + square)
     half = sure / (1.0 + square) * sqrt(share * (1.0 - share) / beds + 0.25 * square / beds)

@@ -12,25 +12,27 @@ from lab.studies.reproduce.section_terms import MEASUREMENTS, PRESET, Term, esti
 PEAK = [test for test in MEASUREMENTS if 5.0 < test.frequency < 5.5]
 
 
-@pytest.fixture(scope="module")
-def rolls():
-    """Roll at the peak's tests with friction alone, with eddies, and with the least that is usual: (3, tests)."""
+@pytest.fixture(scope="module", params=["the first", pytest.param("all", marks=pytest.mark.slow)])
+def peak(request):
+    """Tests at the peak, and roll in them with friction alone, with eddies, and with the least that is usual."""
+    tests = PEAK if request.param == "all" else PEAK[:1]
     models = (rubbed(), estimated(), usual()[0])
-    return np.array([[model.sailed(test)[2] for test in PEAK] for model in models])
+    return tests, [[model.sailed(test)[2] for test in tests] for model in models]
 
 
-def test_damping_estimated_from_the_shape_brackets_the_measured_peak(rolls):
+def test_damping_estimated_from_the_shape_brackets_the_measured_peak(peak):
     """Both readings lie between friction alone and friction with eddies, or within 5 % of that; nothing is fitted."""
-    friction, eddies, _ = rolls
-    for k, test in enumerate(PEAK):
+    tests, (friction, eddies, _) = peak
+    for k, test in enumerate(tests):
         for reading in (test.camera[2], test.accelerometers[2]):
             assert 0.95 * eddies[k] < reading < 1.05 * friction[k]
 
 
-def test_damping_usual_of_ships_is_too_much_for_it(rolls):
+def test_damping_usual_of_ships_is_too_much_for_it(peak):
     """Told as it is: 2 % of the critical damping leaves less roll than either instrument reads."""
-    for k, test in enumerate(PEAK):
-        assert rolls[2, k] < min(test.camera[2], test.accelerometers[2])
+    tests, (_, _, rolls) = peak
+    for k, test in enumerate(tests):
+        assert rolls[k] < min(test.camera[2], test.accelerometers[2])
 
 
 def test_the_peak_is_not_steady_when_measured():

@@ -121,7 +121,7 @@ def test_integrated_impacts_of_two_spheres_keep_their_momenta():
     spun = 0.4 * mass * radius**2 * (two[2] + 100.0), 0.4 * 8.0 * mass * other**2 * (two[3] - 30.0)
     assert spun[1] / spun[0] == pytest.approx(other / radius, rel=3e-3)
     plane = Impact(Bodies(radius, mass), normal, shear).meet(0.4, 1.0, (-100.0, 0.0))
-    large = Impact(Bodies(radius, mass, 1e4, 1e12), normal, shear).meet(0.4, 1.0, (-100.0, 0.0))
+    large = Impact(Bodies(radius, mass, 1e4 * radius, 1e12 * mass), normal, shear).meet(0.4, 1.0, (-100.0, 0.0))
     assert large == pytest.approx(plane, rel=1e-2, abs=1e-6)  # a plane is a sphere beyond all size, but for the lever
 
 

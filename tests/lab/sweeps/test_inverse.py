@@ -43,7 +43,7 @@ def test_beds_of_one_slope_have_students_interval():
     assert found.interval == pytest.approx((0.5 - 0.1 * half, 0.5 + 0.1 * half), abs=4e-4)
 
 
-@pytest.mark.parametrize("beds", [4, 8, 30])
+@pytest.mark.parametrize("beds", [4, 8, pytest.param(30, marks=pytest.mark.slow)])
 def test_the_interval_holds_the_value_as_often_as_it_says(beds):
     random, held, trials = np.random.default_rng(beds), 0, 1000
     for _ in range(trials):

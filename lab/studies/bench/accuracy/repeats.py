@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import numpy as np
-from scipy import stats
+from scipy.special import stdtrit
 
 from lab.report.page import Page
 from lab.studies.bench.accuracy.beds import SWAY, SWAYED, TILT, TILTED, sweep
@@ -36,6 +36,6 @@ def study(page: Page, work: Path, fast: bool) -> None:
 def beds_for(spread: float, half: float) -> int:
     """The fewest beds, scattering by `spread`, whose mean has a 95 % interval that reaches `half` to either side."""
     count = 2
-    while stats.t.ppf(0.975, count - 1) * spread / np.sqrt(count) > half:
+    while stdtrit(count - 1, 0.975) * spread / np.sqrt(count) > half:
         count += 1
     return count
