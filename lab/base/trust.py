@@ -13,7 +13,7 @@ from zipfile import ZIP_STORED, ZipFile, ZipInfo
 import h5py
 import numpy as np
 
-from lab.base.errors import Useless
+from lab.base.errors import Unusable
 from lab.base.memory import SHARE, machine_memory
 
 GROUPS = ("preset", "grains", "tank", "shapes", "series", "frames", "steering", "checks")
@@ -21,11 +21,11 @@ DEEPER = ("tank/parts",)
 ATTRIBUTES = ("format", "preset", "status", "created", "versions", "machine", "step", "wall_s", "grain_steps")
 TABLES = ("video", "kinds", "shapes", "ship", "water", "waves", "run", "contact", "motion", "record", "parts")
 TEXTS = ("title", "source", "reports", "quick")
-BEYOND = 1e15  # no SI number of a recording is as large
+BEYOND = 1e15  # larger than any SI number in a recording
 MOST_MEMBERS = 1000  # of a group
 UNWRITTEN = 2**26  # bytes that data sets may have beyond what the file holds: rows that a killed run did not write
 UNKICKED = 2  # index in a state's numbers: the grains' first step, negative if the clock was reset
-MOST_ROOM = 1024  # places for contacts per grain, many times what a grain in a bed at rest has
+MOST_ROOM = 1024  # largest number of contacts per grain, many times that of a grain in a bed at rest
 LARGEST_CHUNK = 2**26  # bytes
 LONGEST_ATTRIBUTE = 2**20  # bytes
 LONGEST_TEXT = 2**25  # characters: a preset with 100 000 listed grains has some 12 million
@@ -33,34 +33,34 @@ SAME_SIZE = (h5py.h5z.FILTER_SHUFFLE, h5py.h5z.FILTER_FLETCHER32)  # filters tha
 
 
 def check_recording(file: h5py.File) -> None:
-    """Raise Useless if an HDF5 file refers to other files, or declares more data than its size allows."""
+    """Raise Unusable if an HDF5 file refers to other files, or declares more data than its size allows."""
     for name in ATTRIBUTES:
         if name in file.attrs:
             _check_attribute(file, name)
     total = sum(_checked_bytes(file, data) for data in _data_sets(file))
     if total > os.stat(file.filename).st_size + UNWRITTEN:
-        raise Useless(f"{file.filename} declares {_size(total)}, far more than it holds: do not use this file.")
+        raise Unusable(f"{file.filename} declares {_size(total)}, far more than it holds: do not use this file.")
 
 
 def format_of(file: h5py.File) -> str:
-    """The `format` attribute of a file. Raises Useless as `check_recording`."""
+    """The `format` attribute of a file. Raises Unusable as `check_recording`."""
     if "format" in file.attrs:
         _check_attribute(file, "format")
     return str(_decoded(file.attrs.get("format")))
 
 
 def attributes(file: h5py.File) -> dict[str, object]:
-    """The attributes that a recording has, by name, whatever else the file has; texts as such."""
+    """The attributes of a recording by name, ignoring all others in the file; texts are decoded."""
     found = {name: file.attrs[name] for name in ATTRIBUTES if name in file.attrs}
     return {name: _decoded(value) for name, value in found.items()}
 
 
 def attribute_words(data: h5py.Dataset, name: str) -> list[str]:
-    """The text, or the texts, of an attribute of a data set. Raises KeyError, Useless or ValueError."""
+    """The text, or the texts, of an attribute of a data set. Raises KeyError, Unusable or ValueError."""
     held = data.attrs.get_id(name)
     if len(held.shape) > 1 or held.dtype.kind != "S" or _bytes(held.shape, held.dtype) > LONGEST_ATTRIBUTE:
-        raise Useless(
-            f"{data.file.filename}: the attribute {name} of {data.name[1:]} is no text: do not use this file."
+        raise Unusable(
+            f"{data.file.filename}: the attribute {name} of {data.name[1:]} is not a text: do not use this file."
         )
     words = np.empty(held.shape, held.dtype)
     if words.size:
@@ -69,12 +69,12 @@ def attribute_words(data: h5py.Dataset, name: str) -> list[str]:
 
 
 def text(data: h5py.Dataset) -> str:
-    """A data set that is one text. Raises Useless where it is longer than any preset."""
+    """A data set with a single text. Raises Unusable if it is longer than any preset."""
     if h5py.check_string_dtype(data.dtype) is None:
-        raise ValueError(f"{data.name[1:]} is no text")
+        raise ValueError(f"{data.name[1:]} is not a text")
     found = _decoded(data[()] if data.shape == () else data[0])
     if len(found) > LONGEST_TEXT:
-        raise Useless(f"{data.file.filename}: {data.name[1:]} is longer than any preset: do not use this file.")
+        raise Unusable(f"{data.file.filename}: {data.name[1:]} is longer than any preset: do not use this file.")
     return found
 
 
@@ -87,32 +87,32 @@ def is_preset(table: object) -> bool:
 
 
 def check_room(data: h5py.Dataset, rows: int) -> None:
-    """Raise Useless if `rows` rows of a data set do not fit into this machine's memory."""
+    """Raise Unusable if `rows` rows of a data set do not fit into this machine's memory."""
     needed = rows * _bytes(data.shape[1:], data.dtype)
     if needed > SHARE * machine_memory():
         where = f"{data.file.filename}: {data.name[1:]}"
-        raise Useless(f"{where} has {_size(needed)}, too much for the memory here: read it on a larger machine.")
+        raise Unusable(f"{where} has {_size(needed)}, too much for this machine's memory: read it on a larger one.")
 
 
 def check_archive(path: Path) -> None:
-    """Raise Useless if an archive of arrays, as `numpy.savez` writes it, is smaller than the arrays it declares."""
+    """Raise Unusable if an archive of arrays, as `numpy.savez` writes it, is smaller than the arrays it declares."""
     with ZipFile(path) as archive:
         members = archive.infolist()
         sound = len(members) <= MOST_MEMBERS and all(member.compress_type == ZIP_STORED for member in members)
         held = sum(member.file_size for member in members)
         if not sound or held > path.stat().st_size or not all(_is_whole(archive, member) for member in members):
-            raise Useless(f"{path} declares more than it holds: start the run anew.")
+            raise Unusable(f"{path} declares more than it holds: start the run again.")
 
 
-def check_progress(runs: object, rows: Sequence, said: Sequence) -> None:
+def check_progress(runs: object, rows: Sequence, messages: Sequence) -> None:
     """Raise ValueError unless a checkpoint's runs are below its folder, its rows are counts and its messages texts."""
     named = isinstance(runs, list) and runs and all(isinstance(run, str) for run in runs)
     if not named or any(PurePosixPath(run).is_absolute() or ".." in PurePosixPath(run).parts for run in runs):
         raise ValueError("its runs are not in its folder")
     if not all(isinstance(count, int) and count >= 0 for count in rows):
-        raise ValueError("its rows are no numbers")
-    if not all(isinstance(texts, list) and all(isinstance(text, str) for text in texts) for texts in said):
-        raise ValueError("what it says is no text")
+        raise ValueError("its numbers of rows are invalid")
+    if not all(isinstance(texts, list) and all(isinstance(text, str) for text in texts) for texts in messages):
+        raise ValueError("its warnings or notes are not texts")
 
 
 def check_state(state: Mapping[str, np.ndarray], worlds: int, count: int) -> None:
@@ -123,7 +123,7 @@ def check_state(state: Mapping[str, np.ndarray], worlds: int, count: int) -> Non
     numbers, order = state["numbers"], state["number"]
     room, counts = int(numbers[1]), np.delete(numbers, UNKICKED)
     if numbers.dtype.kind != "i" or counts.min() < 0 or not 1 <= room <= MOST_ROOM or room & (room - 1):
-        raise ValueError("its numbers are none")
+        raise ValueError("its numbers are invalid")
     if order.shape != (worlds, count) or not np.array_equal(np.sort(order), np.tile(np.arange(count), (worlds, 1))):
         raise ValueError("its grains are not those of the scene")
 
@@ -137,7 +137,7 @@ def _is_whole(archive: ZipFile, member: ZipInfo) -> bool:
 
 
 def _data_sets(file: h5py.File) -> Iterator[h5py.Dataset]:
-    """All data sets that a recording may have. Raises Useless for links and unexpected groups."""
+    """All data sets that a recording may have. Raises Unusable for links and unexpected groups."""
     for name in sorted(set(GROUPS) & set(file)):
         for path, item in _members(file, name):
             if path in DEEPER and isinstance(item, h5py.Group):
@@ -145,49 +145,48 @@ def _data_sets(file: h5py.File) -> Iterator[h5py.Dataset]:
             elif isinstance(item, h5py.Dataset):
                 yield item
             else:
-                raise Useless(f"{file.filename}: {path} is no data set: do not use this file.")
+                raise Unusable(f"{file.filename}: {path} is not a data set: do not use this file.")
 
 
 def _members(file: h5py.File, name: str) -> Iterator[tuple[str, h5py.Group | h5py.Dataset]]:
     group = _linked(file, name)
     if not isinstance(group, h5py.Group) or len(group) > MOST_MEMBERS:
-        raise Useless(f"{file.filename}: {name} is no group of a recording: do not use this file.")
+        raise Unusable(f"{file.filename}: {name} is not a group of a recording: do not use this file.")
     for key in group:
         yield f"{name}/{key}", _linked(file, f"{name}/{key}")
 
 
 def _linked(file: h5py.File, name: str) -> h5py.Group | h5py.Dataset:
-    """What lies in this very file under that name. Raises Useless where that is a link, or damaged."""
+    """The group or data set of that name in this file. Raises Unusable if it is a link or damaged."""
     try:
-        is_here = isinstance(file.get(name, getlink=True), h5py.HardLink)
-        if is_here:
+        if isinstance(file.get(name, getlink=True), h5py.HardLink):
             return file[name]
     except (OSError, RuntimeError, KeyError) as error:
-        raise Useless(f"{file.filename}: {name} is damaged: record the run again.") from error
-    raise Useless(f"{file.filename}: {name} is a link, maybe to another file: do not use this file.")
+        raise Unusable(f"{file.filename}: {name} is damaged: record the run again.") from error
+    raise Unusable(f"{file.filename}: {name} is a link, possibly to another file: do not use this file.")
 
 
 def _checked_bytes(file: h5py.File, data: h5py.Dataset) -> int:
-    """Size of a data set in bytes. Raises Useless unless it is plain numbers or one text, stored in this file."""
+    """Size of a data set in bytes. Raises Unusable unless it is plain numbers or one text, stored in this file."""
     where, settings = f"{file.filename}: {data.name[1:]}", data.id.get_create_plist()
     if data.is_virtual or data.external:
-        raise Useless(f"{where} lies in another file: do not use this file.")
+        raise Unusable(f"{where} lies in another file: do not use this file.")
     filters = {settings.get_filter(k)[0] for k in range(settings.get_nfilters())}
     if not filters <= set(SAME_SIZE):
-        raise Useless(f"{where} is compressed, which the lab never does: undo it with h5repack -f NONE.")
+        raise Unusable(f"{where} is compressed, unlike the lab's own files: unpack it with h5repack -f NONE.")
     is_text = data.shape in ((), (1,)) and h5py.check_string_dtype(data.dtype) is not None
     if not is_text and data.dtype.kind not in "fiuS":
-        raise Useless(f"{where} has values of another kind than the lab writes: do not use this file.")
+        raise Unusable(f"{where} has values of another type than the lab writes: do not use this file.")
     chunk = _bytes(data.chunks, data.dtype) if data.chunks else 0
     if chunk > max(LARGEST_CHUNK, _bytes(data.shape[1:], data.dtype)):
-        raise Useless(f"{where} lies in pieces of {_size(chunk)}, larger than the lab writes: do not use this file.")
+        raise Unusable(f"{where} has chunks of {_size(chunk)}, larger than the lab writes: do not use this file.")
     return _bytes(data.shape or (), data.dtype)
 
 
 def _check_attribute(file: h5py.File, name: str) -> None:
     found = file.attrs.get_id(name)
     if found.shape != () or found.get_storage_size() > LONGEST_ATTRIBUTE:
-        raise Useless(f"{file.filename}: its attribute {name} is not one value: do not use this file.")
+        raise Unusable(f"{file.filename}: its attribute {name} is not one value: do not use this file.")
 
 
 def _bytes(shape: tuple[int, ...], kind: np.dtype) -> int:
@@ -199,7 +198,7 @@ def _bytes(shape: tuple[int, ...], kind: np.dtype) -> int:
 
 
 def _decoded(value: object) -> object:
-    """A text of bytes as such, anything else as it is; what is cut in the middle of a letter loses that."""
+    """Bytes decoded as a text, without an incomplete last character; any other value as it is."""
     return value.decode(errors="ignore") if isinstance(value, bytes) else value
 
 

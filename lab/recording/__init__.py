@@ -1,12 +1,13 @@
-"""What a run leaves behind: one HDF5 file, written as the run goes on and readable at any moment.
+"""The recording of a run: one HDF5 file, written during the run and readable at any time.
 
-`new_recording` makes the file, a `Recorder` adds to it, also to one that a dead run has left, and `open_recording`
-reads it. What is in it is laid out from the quantities that the solvers declare; every row has a checksum
-(docs/recordings.md). The file is written in HDF5's single-writer/multiple-reader mode (SWMR): every flush leaves a
-whole file behind, so a run that is killed, or that still goes on, can be read up to its last flush. Of a run that
-goes on other programs must ask for that mode, too: `h5py.File(path, "r", swmr=True)`. A run that was killed leaves
-HDF5's mark of a writer on its file, with which HDF5 refuses it; whatever reads the recording in the lab, or goes on
-with it, clears the mark, and so does HDF5's own `h5clear -s recording.h5`.
+`new_recording` creates the file, `Recorder` appends to it (also after an interruption), and `open_recording` reads it.
+The layout follows from the quantities that the solvers declare; every row has a checksum (docs/recordings.md).
+
+The file is written in HDF5's single-writer/multiple-reader mode (SWMR). Every flush leaves a complete file, so the
+recording of a killed or running run can be read up to its last flush. Other programs must open the file of a running
+run in the same mode: `h5py.File(path, "r", swmr=True)`. A killed run leaves HDF5's writer flag set, and HDF5 refuses to
+open such a file. The lab clears the flag when it reads or continues the recording; `h5clear -s recording.h5`, which
+comes with HDF5, clears it as well.
 """
 
 from lab.recording.layout import FILE_NAME, WAVES

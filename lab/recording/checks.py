@@ -1,9 +1,9 @@
-"""Checksums of a table's rows: CRC-32 of the bytes of each row of each data set, as they lie in the file.
+"""Row checksums: the CRC-32 of the bytes of each row of each data set, as stored in the file.
 
-HDF5's own checksums (Fletcher-32) are of whole chunks. A chunk of rows is written again as more rows come, in place,
-and a run that is killed meanwhile would leave chunk and checksum unlike: rows that had been flushed could not be read.
-With a checksum a row, what is written again has the same bytes, and at worst the new rows are lost.
-(CRC-32 of ISO 3309, ITU-T V.42, as `zlib.crc32` has it.)
+HDF5's own checksums (Fletcher-32) cover whole chunks. A partly filled chunk is rewritten in place when rows are added.
+If the run is killed during that write, the chunk no longer matches its checksum, and rows that had already been flushed
+become unreadable. With one checksum per row, old rows keep their bytes and checksums; at worst the new rows are lost.
+(CRC-32 of ISO 3309 and ITU-T V.42, as in `zlib.crc32`.)
 """
 
 from zlib import crc32
@@ -12,13 +12,13 @@ import h5py
 import numpy as np
 
 from lab.base.trust import attribute_words
-from lab.recording.layout import COLUMNS, STANDING, row_bytes
+from lab.recording.layout import COLUMNS, FLUSHED_ROWS, row_bytes
 
-BLOCK = 2**22  # bytes that are read at a time where all rows are looked through
+BLOCK = 2**22  # bytes read at a time when all rows are checked
 
 
 def row_checks(rows: np.ndarray) -> np.ndarray:
-    """The checksum of each row (k,) of an array (k, …)."""
+    """Checksums (k,) of the rows of an array (k, …)."""
     content = memoryview(np.ascontiguousarray(rows)).cast("B") if rows.size else b""
     size = row_bytes(rows.shape[1:], rows.dtype)
     if not size:
@@ -27,12 +27,12 @@ def row_checks(rows: np.ndarray) -> np.ndarray:
 
 
 class Checks:
-    """The checksums of one table of a file. Raises KeyError, ValueError or Useless where they are none."""
+    """The checksums of one table of a file. Raises KeyError, ValueError or Unusable if the data set is not valid."""
 
     def __init__(self, data: h5py.Dataset) -> None:
         self._data = data
         self._column = {name: k for k, name in enumerate(attribute_words(data, COLUMNS))}
-        self.standing = int(data.attrs[STANDING])
+        self.flushed_rows = int(data.attrs[FLUSHED_ROWS])
         if data.ndim != 2 or data.shape[1] != len(self._column) or data.dtype != np.dtype("<u4"):
             raise ValueError(f"{data.name[1:]} is not what the lab writes there")
 
@@ -41,20 +41,20 @@ class Checks:
 
     @property
     def names(self) -> set[str]:
-        """The data sets whose checksums are here."""
+        """Names of the data sets that have checksums."""
         return set(self._column)
 
     def refresh(self) -> None:
-        """Look at the file again, to which another process writes."""
+        """Reload the data set, which another process may have extended."""
         self._data.id.refresh()
 
     def agree(self, data: h5py.Dataset, rows: slice, values: np.ndarray) -> bool:
-        """Whether these rows of a data set, (k, …), are what was written. Raises OSError."""
+        """Whether `values` (k, …), read from these rows of a data set, match their checksums. Raises OSError."""
         name = data.name.rpartition("/")[2]
         return bool(np.array_equal(row_checks(values), self._data[rows, self._column[name]]))
 
     def first_bad(self, data: h5py.Dataset, begin: int, end: int) -> int:
-        """The first row of some that cannot be read or is not what was written; `end` where all are sound."""
+        """The first damaged or unreadable row in [begin, end); `end` if there is none."""
         step = max(1, BLOCK // max(1, row_bytes(data.shape[1:], data.dtype)))
         for block in range(begin, end, step):
             if self._is_sound(data, slice(block, min(end, block + step))):

@@ -1,4 +1,4 @@
-"""A recording's arrays with named axes (xarray), which take their names, units and labels along."""
+"""The arrays of a recording as xarray data sets, with named axes, units and labels."""
 
 from typing import TYPE_CHECKING
 
@@ -9,8 +9,8 @@ if TYPE_CHECKING:
 
 
 def labelled(recording, frames: slice | None = None) -> "xarray.Dataset":
-    """The series of a recording, or some of its frames: see `Recording.labelled`."""
-    import xarray  # slow to load, and few need it
+    """The series of a recording, or the given frames (see `Recording.labelled`)."""
+    import xarray  # imported here because it loads slowly and few callers need it
 
     table = recording.series if frames is None else recording.frames
     rows = slice(None) if frames is None else frames

@@ -1,6 +1,7 @@
-"""Recordings of format 2, which can still be read: their numbers are where they are now, but nothing says so.
+"""Support for reading recordings of format 2.
 
-They have no checksums, and texts of any length. What lacks in those of early versions is as if it had never happened.
+Their data sets have the present names and shapes, but no attributes that describe them, no checksums, and strings of
+variable length. Data sets that early versions did not write are replaced by the quantity's value `never`.
 """
 
 from collections.abc import Iterable
@@ -14,18 +15,18 @@ FORMAT = "cargo-shift-lab 2"
 
 
 def is_older(form: str) -> bool:
-    """Whether a file says that it is of this format."""
+    """Whether `form`, a file's format, is format 2."""
     return form == FORMAT
 
 
 def renamed(preset: dict) -> dict:
-    """A recorded preset by the keys of today: the thickness of the cargo was the ship's."""
+    """A recorded preset with its keys renamed to the present ones: `ship.sheet` is now `tank.thickness`."""
     sheet = (preset.get("ship") or {}).pop("sheet", None)
     return preset | {"tank": preset["tank"] | {"thickness": sheet}} if sheet else preset
 
 
 def quantities(group: h5py.Group, known: Iterable[Quantity]) -> dict[str, Quantity]:
-    """The quantities of a table by name. Raises KeyError where one is missing for which nothing stands."""
+    """The quantities of a table by name. Raises KeyError if one without a value for `never` is missing."""
     found = {quantity.name: quantity for quantity in known if quantity != WAVES or WAVES.name in group}
     for name, quantity in found.items():
         if name not in group and quantity.never is None:

@@ -1,8 +1,9 @@
-"""Opening recordings: by whom, how often it is tried, and what a writer that was killed has left.
+"""Open recordings for reading and for appending, also after their writer was killed.
 
-Who adds to a recording holds a shared lock on its file, beside HDF5's own locks, until it is closed. Who finds HDF5's
-mark of a writer on a file and can lock it for itself knows that the writer is gone, and clears the mark (`release`).
-Where files cannot be locked, as in some network folders, only who is to go on with a recording does that.
+A writer holds a shared lock on its file, in addition to HDF5's own locks, until it closes the file. A process that
+finds HDF5's writer flag set and can lock the file exclusively knows that the writer is gone, and clears the flag
+(`release`). Where files cannot be locked, as in some network folders, only a process that continues the recording
+clears the flag.
 """
 
 import errno
@@ -17,7 +18,7 @@ import h5py
 
 from lab.base.errors import LabError
 from lab.recording import superblock
-from lab.recording.layout import A_MOMENT, PATIENCE
+from lab.recording.layout import ATTEMPTS, RETRY_DELAY
 
 try:
     import fcntl
@@ -25,25 +26,26 @@ except ImportError:  # Windows
     fcntl = None
 
 NO_LOCKS = (errno.ENOLCK, errno.ENOTSUP, errno.EOPNOTSUPP, errno.ENOSYS)
-RESERVES = hasattr(os, "posix_fallocate")  # whether a recording has all the room that it says, so a short one was cut
-BLOCK = 2**20  # bytes: no piece of an index of chunks is larger
+# Whether the writer reserves disk space before it writes; then a file shorter than its recorded size was truncated.
+RESERVES = hasattr(os, "posix_fallocate")
+BLOCK = 2**20  # bytes; no block of a chunk index is larger
 
 Opened = TypeVar("Opened")
 
 
 def create(path: Path) -> h5py.File:
-    """A new file, in place of another of that name."""
+    """Create a file, replacing one of the same name."""
     return _with_or_without_locks(lambda lock: h5py.File(path, "w", libver="latest", locking=lock))
 
 
 def open_to_read(path: Path) -> h5py.File:
-    """Open what was closed, is being written or was killed. Raises OSError.
+    """Open a recording for reading, whether it was closed, is being written, or its writer was killed. Raises OSError.
 
-    In SWMR mode only what was never closed: HDF5 rereads a damaged file for ever in it. A writer that opens or closes
-    the file just now is waited for.
+    Only a file that was never closed is opened in SWMR mode, since in that mode HDF5 rereads a damaged file endlessly.
+    Waits for a writer that is opening or closing the file.
     """
     error: OSError | None = None
-    for _ in range(PATIENCE):
+    for _ in range(ATTEMPTS):
         try:
             return _plain(path)
         except BlockingIOError as locked:
@@ -53,19 +55,19 @@ def open_to_read(path: Path) -> h5py.File:
                 raise
             error = marked
             if not release(path):
-                with suppress(OSError):  # closed by now, or not yet in that mode
+                with suppress(OSError):  # closed meanwhile, or not yet in SWMR mode
                     return _live(path)
-        time.sleep(A_MOMENT)
+        time.sleep(RETRY_DELAY)
     raise error
 
 
 def open_to_add(path: Path) -> h5py.File:
-    """Open a file that nobody else writes to as its writer in SWMR mode, in one stroke.
+    """Open a file as its only writer, directly in SWMR mode. Raises LabError if another program has it open, OSError.
 
-    Opened first and switched to that mode then, as h5py does it, a file would be unreadable had the writer been killed
-    in between. A reader's lock is waited for: who reads opens and closes. Raises LabError, OSError.
+    h5py opens a file first and then switches to SWMR mode; if the writer were killed in between, the file would be
+    unreadable. Waits for readers, which hold their locks only briefly.
     """
-    for _ in range(PATIENCE):
+    for _ in range(ATTEMPTS):
         release(path, sure=True)
         try:
             file = _with_or_without_locks(lambda lock: _adding(path, lock))
@@ -76,16 +78,16 @@ def open_to_add(path: Path) -> h5py.File:
         except OSError as error:
             if not _is_marked(error):
                 raise
-        time.sleep(A_MOMENT)
+        time.sleep(RETRY_DELAY)
     raise LabError(f"{path} is open in another program: close it there.")
 
 
 def release(path: Path, sure: bool = False) -> bool:
-    """Clear the mark of a writer that is gone, and say where its file ends; whether the file is without it now.
+    """Clear the flag of a writer that is gone and correct the recorded size; returns whether the flag is cleared.
 
-    It is not while a writer lives or somebody reads, nor where the file cannot be written. sure: whether the writer is
-    known to be gone where files cannot be locked. Each head is written in one stroke, the first with all that there
-    is: whatever ends this in between leaves a recording. What is damaged is left to who opens it.
+    Returns False while a writer or a reader has the file open, and if the file cannot be written. sure: treat the
+    writer as gone where files cannot be locked. Each superblock is written in a single call, the first one with the
+    full size of the file, so an interruption in between leaves a valid recording. Damage is not repaired here.
     """
     try:
         with path.open("r+b", buffering=0) as file:
@@ -93,12 +95,12 @@ def release(path: Path, sure: bool = False) -> bool:
                 return False
             head = file.read(superblock.SIZE)
             if superblock.is_sound(head) and superblock.is_marked(head):
-                said, size = superblock.end(head), os.fstat(file.fileno()).st_size
-                if size < said and not RESERVES:  # what was said to be there was not written yet
-                    file.truncate(said)
-                _write_head(file, superblock.amended(head, 0, max(said, size)))
+                recorded, size = superblock.end(head), os.fstat(file.fileno()).st_size
+                if size < recorded and not RESERVES:  # the last blocks had not been written yet
+                    file.truncate(recorded)
+                _write_head(file, superblock.amended(head, 0, max(recorded, size)))
                 with suppress(OSError, RuntimeError):
-                    needed = _needed(path, file, said, size)
+                    needed = _needed(path, file, recorded, size)
                     _write_head(file, superblock.amended(head, 0, needed))
                     file.truncate(needed)
             return True
@@ -107,13 +109,13 @@ def release(path: Path, sure: bool = False) -> bool:
 
 
 def end_of(path: Path) -> int:
-    """Where a closed file ends, in bytes: what was reserved behind it was not needed."""
+    """Size (bytes) of a closed file as recorded in it; what was reserved beyond that is not used."""
     with path.open("rb") as file:
         return superblock.end(file.read(superblock.SIZE))
 
 
 def _alone(file: BinaryIO, sure: bool) -> bool:
-    """Lock a file against everybody else, if it can be."""
+    """Try to lock a file exclusively; returns whether this process has it alone (`sure` where locks are missing)."""
     if fcntl is None:
         return sure
     try:
@@ -126,12 +128,12 @@ def _alone(file: BinaryIO, sure: bool) -> bool:
 
 
 def _hold(file: h5py.File) -> None:
-    """Hold a file that was opened to be added to until it is closed, so that nobody takes its writer for gone."""
+    """Hold a shared lock on a file opened for appending, so that no other process takes its writer for dead."""
     if fcntl is None:
         return
     handle = file.id.get_vfd_handle()
     with suppress(OSError):
-        fcntl.flock(handle, fcntl.LOCK_SH)  # waits for who was about to release the file
+        fcntl.flock(handle, fcntl.LOCK_SH)  # waits for a process that is releasing the file
         head = os.pread(handle, superblock.SIZE, 0)
         if superblock.is_sound(head) and not superblock.is_marked(head):
             os.pwrite(handle, superblock.amended(head, superblock.WRITING, superblock.end(head)), 0)
@@ -142,20 +144,20 @@ def _write_head(file: BinaryIO, head: bytes) -> None:
     file.write(head)
 
 
-def _needed(path: Path, file: BinaryIO, said: int, size: int) -> int:
-    """Bytes that hold something of a file of this size, of which its head said so many.
+def _needed(path: Path, file: BinaryIO, recorded: int, size: int) -> int:
+    """The end (bytes) of the used part of a file of this size, at least the size recorded in its superblock.
 
-    Chunks may be empty at their end, and indices of chunks, too; all else ends with a checksum.
+    Chunks and chunk indices may end with zeros; all other blocks end with a checksum.
     """
-    ends = [said]
+    ends = [recorded]
 
-    def look(_: str, item: object) -> None:
+    def add_chunks(_: str, item: object) -> None:
         if isinstance(item, h5py.Dataset) and item.chunks:
             item.id.chunk_iter(lambda chunk: ends.append(chunk.byte_offset + chunk.size))
 
     with h5py.File(path, "r", locking=False) as recording:
-        recording.visititems(look)
-    for begin in reversed(range(said, size, BLOCK)):
+        recording.visititems(add_chunks)
+    for begin in reversed(range(recorded, size, BLOCK)):
         file.seek(begin)
         if filled := file.read(BLOCK).rstrip(b"\0"):
             ends.append(begin + len(filled) + BLOCK)
@@ -180,7 +182,7 @@ def _adding(path: Path, lock: bool | None) -> h5py.File:
 
 
 def _with_or_without_locks(opened: Callable[[bool | None], Opened]) -> Opened:
-    """Open a file, without HDF5's locks where the file system has none."""
+    """Open a file, without HDF5's locks if the file system does not support them."""
     try:
         return opened(None)
     except OSError as error:

@@ -1,4 +1,4 @@
-"""The outlines of irregular grains in a recording: their Fourier descriptors, and which outline each grain has."""
+"""The outlines of irregular grains in a recording: their Fourier descriptors, and the outline of each grain."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -13,10 +13,10 @@ TABLES = ("radius", "descriptors", "phases", "kind", "which")
 
 @dataclass(frozen=True)
 class Outlines:
-    """K outlines about their centroids, with the area of a disc of radius 1.
+    """K outlines about their centroids, each with the area of a disc of radius 1.
 
-    `kind` (K,): the class of each, a number in the order of the preset's shapes; `which` (W, n): the outline of each
-    grain, as many times as large as its radius says.
+    `kind` (K,): the class of each outline, an index into the preset's shapes; `which` (W, n): the index of each grain's
+    outline, to be scaled by the grain's radius.
     """
 
     contours: tuple[Contour, ...]
@@ -25,9 +25,9 @@ class Outlines:
 
 
 def outline_tables(outlines: Outlines) -> dict[str, np.ndarray]:
-    """The arrays that are stored: `radius` (K,) R0, `descriptors` (K, N), `phases` (K, N) rad, `kind`, `which`.
+    """The arrays to store: `radius` (K,) R0, `descriptors` (K, N), `phases` (K, N) rad, `kind`, `which`.
 
-    Outlines of fewer descriptors than N have zeros in the place of the rest.
+    Outlines with fewer than N descriptors are padded with zeros.
     """
     most = max(len(contour.descriptors) for contour in outlines.contours)
     filled = {name: np.zeros((len(outlines.contours), most)) for name in ("descriptors", "phases")}
@@ -43,7 +43,7 @@ def outline_tables(outlines: Outlines) -> dict[str, np.ndarray]:
 
 
 def read_outlines(tables: Mapping[str, np.ndarray]) -> Outlines:
-    """The outlines of which `outline_tables` has made these tables. Raises ValueError where they are none."""
+    """The outlines stored in tables made by `outline_tables`. Raises ValueError if they are invalid."""
     kind, which = tables["kind"], tables["which"]
     if len(kind) != len(tables["radius"]) or which.size == 0 or not 0 <= which.min() <= which.max() < len(kind):
         raise ValueError(f"{GROUP} is not what the lab writes there")
@@ -52,5 +52,5 @@ def read_outlines(tables: Mapping[str, np.ndarray]) -> Outlines:
 
 
 def _needed(descriptors: np.ndarray) -> int:
-    """How many descriptors there are before those that are all zero."""
+    """Number of descriptors without the zeros that pad the table."""
     return int(np.flatnonzero(descriptors)[-1]) + 1 if np.any(descriptors) else 0

@@ -1,4 +1,4 @@
-"""Reading recordings: the file checked as it is opened, arrays read when they are asked for."""
+"""Read recordings: the file is checked when it is opened, arrays are read on demand."""
 
 import json
 from contextlib import ExitStack
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import h5py
 import numpy as np
 
-from lab.base.errors import LabError, Useless
+from lab.base.errors import LabError, Unusable
 from lab.base.trust import BEYOND, attributes, check_recording, format_of, is_preset, text
 from lab.recording import older
 from lab.recording.checks import Checks
@@ -21,24 +21,25 @@ from solvers.machine.quantity import Quantity
 if TYPE_CHECKING:
     import xarray
 
-SIZES = {"world": 2, "grain": 3, "part": 5}  # any, to compare shapes
+SIZES = {"world": 2, "grain": 3, "part": 5}  # arbitrary but distinct sizes, to compare shapes
 TABLE_KINDS = {"series": Series, "frames": Frames, "steering": Series}
 
 
 class Recording:
-    """A recording opened for reading: a context manager; arrays are read when they are asked for.
+    """A recording opened for reading, a context manager; arrays are read on demand.
 
-    path, folder; name: of the preset; given: its TOML text; preset: all its values in SI, nested as
-    in the TOML; status, created, versions, machine, step (s), wall_s, grain_steps;
-    radius (W, n) m; kind (W, n), 0 of the preset's material and further numbers in the order of its kinds;
-    outline (m, 2) m; fixed (k, 3) y, z, radius m; open_edges; parts, polylines (m, 2) m by name;
-    shapes: the Outlines of irregular grains, None where all are discs.
-    series: "time" (T,) s and its other quantities by name, whole arrays (T, W, ...).
-    frames: "time" (F,) s and its other quantities, (F, W, ...), read from the file by indexing:
-    `recording.frames["position"][-1]`; quantities: what each of them is.
-    steering: what a hand did, as (time (s), control, value in SI), None where none moved the tank.
-    The tables end where the shortest of their arrays ends, with `sound` before the first row that is
-    damaged. Raises LabError when the file is missing, foreign or damaged; of rows when they are read.
+    path, folder; name: of the preset; given: its TOML text; preset: all its values in SI, nested as in the TOML;
+    status, created, versions, machine, step (s), wall_s, grain_steps;
+    radius (W, n) m; kind (W, n): 0 for the preset's material, then the preset's kinds in order;
+    outline (m, 2) m; fixed (k, 3): y, z, radius m; open_edges; parts: polylines (m, 2) m by name;
+    shapes: the Outlines of irregular grains, None if all are discs.
+    series: "time" (T,) s and the other quantities by name, whole arrays (T, W, ...).
+    frames: "time" (F,) s and the other quantities by name, (F, W, ...), read from the file by indexing:
+    `recording.frames["position"][-1]`. quantities: unit, label and axes of each quantity.
+    steering: the user's actions as (time (s), control, value in SI), None if the run was not steered.
+
+    Every table ends with its shortest array; with `sound`, before its first damaged row. Raises LabError if the file is
+    missing, of another kind or damaged. Damaged rows are reported when they are read.
     """
 
     def __init__(self, path: Path | str, *, sound: bool = False) -> None:
@@ -50,12 +51,12 @@ class Recording:
         with ExitStack() as otherwise, reading(self.path):
             otherwise.callback(self._file.close)
             check_recording(self._file)
-            said = attributes(self._file)
-            self.name, self.status, self.created = (str(said[name]) for name in ("preset", "status", "created"))
-            self.versions = json.loads(said["versions"])
-            self.machine = json.loads(said["machine"])
-            self.step, self.wall_s = float(said["step"]), float(said["wall_s"])
-            self.grain_steps = int(said["grain_steps"])
+            stored = attributes(self._file)
+            self.name, self.status, self.created = (str(stored[name]) for name in ("preset", "status", "created"))
+            self.versions = json.loads(stored["versions"])
+            self.machine = json.loads(stored["machine"])
+            self.step, self.wall_s = float(stored["step"]), float(stored["wall_s"])
+            self.grain_steps = int(stored["grain_steps"])
             self.given = self._stored("preset/given", text)
             preset = json.loads(self._stored("preset/resolved", text))
             self.preset = older.renamed(preset) if older.is_older(self.form) and is_preset(preset) else preset
@@ -71,20 +72,20 @@ class Recording:
             self._steering = tables.get("steering")
             for table in tables.values() if sound else ():
                 table.keep_sound()
-            otherwise.pop_all()  # all is well: it stays open
+            otherwise.pop_all()  # no error: the file stays open
 
     def _stored(self, name: str, read=lambda data: data[()]) -> object:
-        """What lies in a data set that does not grow. Raises Useless where it is damaged."""
+        """The content of a data set that does not grow. Raises Unusable if it is damaged."""
         data = self._file[name]
         try:
             return read(data)
         except (OSError, RuntimeError, ValueError) as error:
-            raise Useless(
-                f"{self.path}: {name} is damaged, without which nothing can be made of it: record the run again."
+            raise Unusable(
+                f"{self.path}: {name} is damaged, and without it the recording cannot be used: record the run again."
             ) from error
 
     def _tables(self) -> dict[str, Frames]:
-        """Its tables by name. Raises ValueError or KeyError where one is not what the lab writes."""
+        """The tables by name. Raises ValueError or KeyError if one is not as the lab writes it."""
         (worlds, grains), is_older = self.radius.shape, older.is_older(self.form)
         sizes = {"world": worlds, "grain": grains, "part": len(self.parts)}
         wanted = tables_of(bool(self.preset.get("ship")), "steering" in self._file)
@@ -100,7 +101,7 @@ class Recording:
         return found
 
     def _check_contents(self) -> None:
-        """Raises ValueError where something is not what a Recorder writes."""
+        """Raise ValueError if something is not as a Recorder writes it."""
         worlds_and_grains = self.radius.shape
         sound = {
             "a number of its attributes": all(np.isfinite([self.step, self.wall_s])) and self.step > 0.0,
@@ -121,14 +122,14 @@ class Recording:
 
     @property
     def quantities(self) -> dict[str, Quantity]:
-        """What each array of the series and of the frames is, by name."""
+        """The quantities of the series and of the frames, by name."""
         return {**self.series.quantities, **self.frames.quantities}
 
     def labelled(self, frames: slice | None = None) -> "xarray.Dataset":
-        """The series, or some of the frames, as arrays with named axes, units and labels.
+        """The series, or the given frames, as arrays with named axes, units and labels.
 
-        Axes are time, world, grain and part, and along components `axis` (y, z), `freedom` (y, z, roll) or
-        NAME_component. Raises LabError as reading does.
+        Axes are time, world, grain and part; components lie along `axis` (y, z), `freedom` (y, z, roll) or
+        NAME_component. Raises LabError if the rows are damaged.
         """
         from lab.recording.labelled import labelled
 
@@ -136,7 +137,7 @@ class Recording:
 
     @property
     def steering(self) -> list[tuple[float, str, float]] | None:
-        """What a hand did, in its order."""
+        """The user's actions in order, None if the run was not steered."""
         if self._steering is None:
             return None
         time, name, value = (self._steering[column].tolist() for column in ("time", "name", "value"))
@@ -144,7 +145,7 @@ class Recording:
 
     @property
     def worlds(self) -> int:
-        """W, the beds recorded side by side."""
+        """W, the number of worlds."""
         return len(self.radius)
 
     @property
@@ -154,16 +155,16 @@ class Recording:
 
     @property
     def complete(self) -> bool:
-        """Whether the run came to its end."""
+        """Whether the run reached its end."""
         return self.status == "complete"
 
     def layout(self, name: str) -> tuple[tuple[int, ...], np.dtype]:
-        """Shape and kind of a data set of the file as it lies there."""
+        """Shape and data type of a data set as stored in the file."""
         with reading(self.path):
             return self._file[name].shape, self._file[name].dtype
 
     def close(self) -> None:
-        """Close the file; what was not read before cannot be read any more."""
+        """Close the file; arrays that were not read before can no longer be read."""
         self._file.close()
 
     def __enter__(self) -> "Recording":
@@ -174,24 +175,25 @@ class Recording:
 
 
 def _finite(array: np.ndarray, axes: int, columns: int | None = None) -> bool:
-    """Whether an array holds finite numbers, along so many axes, the last of that length."""
-    right = array.ndim == axes and columns in (None, array.shape[-1]) and array.dtype.kind in "fiu"
-    return bool(right and (np.abs(array) < BEYOND).all())
+    """Whether an array has finite numbers and this many axes, the last one with `columns` entries."""
+    fits = array.ndim == axes and columns in (None, array.shape[-1]) and array.dtype.kind in "fiu"
+    return bool(fits and (np.abs(array) < BEYOND).all())
 
 
 def _wide(outline: np.ndarray) -> bool:
+    """Whether an outline has an extent along both axes."""
     return bool((np.ptp(outline, axis=0) > 0.0).all())
 
 
 def open_recording(path: Path | str, *, sound: bool = False) -> Recording:
-    """Open a recording, given as its file or its run's folder. Raises LabError (see Recording)."""
+    """Open a recording by its file or its run's folder. Raises LabError (see `Recording`)."""
     return Recording(path, sound=sound)
 
 
 def _quantities(group: h5py.Group, known: tuple[Quantity, ...]) -> dict[str, Quantity]:
-    """The quantities of a table by name, as the file tells them: those that this version knows, and any others.
+    """The quantities of a table by name as the file describes them, including any that this version does not know.
 
-    Raises ValueError or KeyError where one that is known is missing or otherwise.
+    Raises ValueError or KeyError if a known one is missing or has another shape or data type.
     """
     found = {}
     for name in (*(quantity.name for quantity in known), *group):
@@ -210,7 +212,7 @@ def _open(path: Path) -> tuple[h5py.File, str]:
     try:
         file = open_to_read(path)
     except PermissionError as error:
-        raise LabError(f"{path} may not be read: ask for the right to read it.") from error
+        raise LabError(f"{path} may not be read: change its permissions.") from error
     except OSError as error:
         raise LabError(f"{path} cannot be read as a recording: it is cut short or another kind of file.") from error
     try:

@@ -1,4 +1,4 @@
-"""How a ship was lost, if she was: she capsizes or floods, when, how far over, and the words for it."""
+"""The loss of a ship: whether she capsizes or floods, when, at which roll, and how to report it."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -10,7 +10,7 @@ VERBS = {"capsized": "capsizes", "flooded": "floods"}
 
 @dataclass(frozen=True)
 class End:
-    """What became of a ship (`kind`, one of VERBS), when (s), and her roll then (rad, positive to port)."""
+    """The loss of a ship: `kind`, a key of VERBS; time (s); roll at that time (rad, positive to port)."""
 
     kind: str
     time: float
@@ -18,13 +18,16 @@ class End:
 
     @property
     def words(self) -> str:
-        """floods at 4.52 s, 39.8 deg to port."""
+        """A text such as "floods at 4.52 s, 39.8 deg to port"."""
         side = "port" if self.roll > 0.0 else "starboard"
         return f"{VERBS[self.kind]} at {self.time:.4g} s, {abs(np.degrees(self.roll)):.3g} deg to {side}"
 
 
 def end_of(capsized: float, flooded: float, roll: float) -> End | None:
-    """From when (s) a ship capsized and when she flooded, −1 where she did not, and how she lies (rad) since."""
+    """The loss of a ship, None if she was not lost.
+
+    capsized, flooded: times (s), −1 if it did not happen; roll: since then (rad).
+    """
     times = {"capsized": float(capsized), "flooded": float(flooded)}
     lost = {kind: when for kind, when in times.items() if when >= 0.0}
     kind = min(lost, key=lost.get, default=None)
@@ -32,16 +35,16 @@ def end_of(capsized: float, flooded: float, roll: float) -> End | None:
 
 
 def ends(series: Mapping[str, np.ndarray]) -> list[End | None]:
-    """Of each ship of a recording's series; none of a tank that is in no ship."""
+    """The loss of the ship in each world of a recording's series, None if she was not lost or there is no ship."""
     if "capsized" not in series or not len(series["time"]):
         return [None] * series["pose"].shape[1]
-    # A ship that is lost stands still, so the last sample has her as she was then.
+    # The world of a lost ship stops, so the last sample has her roll at that time.
     rows = zip(series["capsized"][-1], series["flooded"][-1], series["pose"][-1, :, 2], strict=True)
     return [end_of(*row) for row in rows]
 
 
-def told(found: Sequence[End | None]) -> str:
-    """One sentence on a run whose ships have these ends; empty where none was lost."""
+def losses_sentence(found: Sequence[End | None]) -> str:
+    """One sentence on the ships that were lost in a run; empty if none was."""
     if len(found) == 1:
         return f"She {found[0].words}." if found[0] else ""
     parts = []

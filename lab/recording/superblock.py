@@ -1,49 +1,50 @@
-"""The head of a recording's file, HDF5's superblock of version 3: who writes to the file, and where it ends.
+"""The first bytes of an HDF5 file, its superblock of version 3, with the writer flags and the size of the file.
 
-HDF5 marks a file that is written to, and refuses to open one that bears the mark. A writer that is killed leaves the
-mark behind. The end may also be out of date then: what was written last may lie behind it, and would be written over
-by who goes on with the file. `amended` gives the head without the mark and with another end.
-(HDF5 File Format Specification Version 3.0, section II.A; its checksum is Bob Jenkins's lookup3, 2006.)
+HDF5 sets a flag while a file is open for writing, and refuses to open a file whose flag is set. A killed writer leaves
+the flag set. The recorded size may also be out of date: the last data may lie beyond it and would be overwritten by a
+process that continues the file. `amended` returns a superblock with other flags and another size.
+(HDF5 File Format Specification Version 3.0, section II.A; the checksum is Bob Jenkins's lookup3, 2006.)
 """
 
 import struct
 
 SIZE = 48  # bytes
 SIGNATURE = b"\x89HDF\r\n\x1a\n\x03\x08\x08"  # version 3, offsets and lengths of eight bytes
-MARKS = len(SIGNATURE)  # where the byte with the marks is
+FLAGS = len(SIGNATURE)  # position of the byte with the flags
 WRITING = 0b101  # open for writing, in SWMR mode
 _END = slice(28, 36)
 _WORD = 2**32 - 1
 
 
 def is_sound(head: bytes) -> bool:
-    """Whether these bytes are the head of such a file."""
+    """Whether these bytes are a superblock of version 3 with a correct checksum."""
     return len(head) == SIZE and head.startswith(SIGNATURE) and _sealed(head[:-4]) == head
 
 
 def is_marked(head: bytes) -> bool:
-    """Whether somebody writes to the file, or did when they were killed."""
-    return bool(head[MARKS])
+    """Whether the file is open for writing, or was when its writer was killed."""
+    return bool(head[FLAGS])
 
 
 def end(head: bytes) -> int:
-    """Where the file ends: its size in bytes as the head says it."""
+    """The recorded size of the file in bytes."""
     return int.from_bytes(head[_END], "little")
 
 
-def amended(head: bytes, marks: int, end: int) -> bytes:
-    """The head with other marks and another end."""
+def amended(head: bytes, flags: int, end: int) -> bytes:
+    """The superblock with these flags and this file size (bytes)."""
     changed = bytearray(head[:-4])
-    changed[MARKS], changed[_END] = marks, end.to_bytes(8, "little")
+    changed[FLAGS], changed[_END] = flags, end.to_bytes(8, "little")
     return _sealed(bytes(changed))
 
 
 def _sealed(content: bytes) -> bytes:
+    """The content followed by its checksum."""
     return content + struct.pack("<I", _lookup3(content))
 
 
 def _lookup3(content: bytes) -> int:
-    """The checksum of some bytes, at least one (Jenkins, lookup3.c, function hashlittle)."""
+    """The checksum of at least one byte (Jenkins, lookup3.c, function hashlittle)."""
     a = b = c = (0xDEADBEEF + len(content)) & _WORD
     while len(content) > 12:
         x, y, z = struct.unpack("<3I", content[:12])

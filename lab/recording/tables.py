@@ -1,4 +1,4 @@
-"""The tables of an open recording: data sets by name, whose rows are checked as they are read."""
+"""The tables of an open recording: data sets by name; their rows are checked against checksums when read."""
 
 import time
 from collections.abc import Iterator, Mapping
@@ -8,21 +8,21 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from lab.base.errors import NotRecorded, Useless
+from lab.base.errors import NotRecorded, Unusable
 from lab.base.trust import check_room
 from lab.preset.units import quoted, show
 from lab.recording.checks import Checks
-from lab.recording.layout import A_MOMENT, PATIENCE, rows_of, sentence
+from lab.recording.layout import ATTEMPTS, RETRY_DELAY, rows_of, sentence
 from lab.recording.words import axes, indexed, recorded_by
 from solvers.machine.quantity import Quantity
 
 
 class Frames(Mapping):
-    """The data sets of a group by name, each cut to the length that all of them have; `quantities` by name.
+    """The data sets of a group by name, each cut to their common length; `quantities` by name.
 
-    Rows behind the last flush that were not written whole are as if they were not there. sizes: as of `rows_of`;
-    checks: None in a recording of an earlier version, as are quantities that it lacks, which are as never happened.
-    Raises ValueError where a data set has not the shape that its quantity has.
+    Incomplete rows after the last flush are ignored. sizes: as for `rows_of`. checks: None for a recording of format 2,
+    which may also lack some of the quantities. Raises ValueError if a data set does not have the shape and data type of
+    its quantity.
     """
 
     def __init__(
@@ -44,22 +44,22 @@ class Frames(Mapping):
             if checks.names != self._columns.keys():
                 raise ValueError(f"checks/{self._table} is not what the lab writes there")
             self.rows = min(self.rows, len(checks))
-            self._cut(min(self.rows, checks.standing))
+            self._cut(min(self.rows, checks.flushed_rows))
 
     def _cut(self, begin: int) -> None:
-        """End before the first row from `begin` on that is not what was written."""
+        """End the table before the first damaged row from `begin` on."""
         for data in self._columns.values():
             self.rows = self._checks.first_bad(data, begin, self.rows)
 
     def keep_sound(self) -> None:
-        """End before the first row that is damaged."""
+        """End the table before its first damaged row."""
         if self._checks is not None:
             self._cut(0)
 
     def __getitem__(self, name: str) -> "Column":
         if name not in self._columns:
-            there = ", ".join(self._columns)
-            raise NotRecorded(f"{self._path}: no {quoted(name)} in its {self._table}, but {there}{recorded_by(name)}")
+            known = ", ".join(self._columns)
+            raise NotRecorded(f"{self._path}: no {quoted(name)} in its {self._table}, but {known}{recorded_by(name)}")
         return Column(self, self._columns[name])
 
     def __iter__(self) -> Iterator[str]:
@@ -69,21 +69,21 @@ class Frames(Mapping):
         return len(self.quantities)
 
     def read(self, data: h5py.Dataset, rows: slice) -> np.ndarray:
-        """Some rows of a data set, checked. Raises Useless where they are damaged."""
+        """Read and check rows of a data set. Raises Unusable if they are damaged."""
         live = data.file.swmr_mode
-        for _ in range(PATIENCE if live else 1):
+        for _ in range(ATTEMPTS if live else 1):
             with suppress(OSError, RuntimeError):
                 found = data[rows]
                 if self._checks is None or self._checks.agree(data, rows, found):
                     return found
-            if live:  # its writer may be at these rows just now
-                time.sleep(A_MOMENT)
+            if live:  # the writer may be writing these rows
+                time.sleep(RETRY_DELAY)
                 data.id.refresh()
                 self._checks.refresh()
-        raise Useless(self._damage(data))
+        raise Unusable(self._damage(data))
 
     def _damage(self, data: h5py.Dataset) -> str:
-        """One sentence on what is damaged of a data set, and what can be read."""
+        """One sentence on the damage of a data set and on the rows that can still be read."""
         where = f"{self._path}: {data.name[1:]} is damaged"
         if self._checks is None:
             return f"{where}: record the run again."
@@ -91,17 +91,17 @@ class Frames(Mapping):
         where += f" from row {row} of {self.rows}{self._when(row)}"
         if not row:
             return f"{where}: record the run again."
-        return f"{where}: what lies before can be painted (`cargolab render --sound`); record the run again."
+        return f"{where}: the rows before can be painted (`cargolab render --sound`); record the run again."
 
     def _when(self, row: int) -> str:
-        """The time of a row in words, where it is known."""
+        """The time of a row as a text; empty if it is not known."""
         clock = self._columns["time"]
         known = row < self.rows and self._checks.first_bad(clock, row, row + 1) > row
         return f" ({show(float(clock[row]), 's')})" if known else ""
 
 
 class Series(Frames):
-    """As Frames, but whole arrays, read once and kept; what an earlier version did not write is as it would be."""
+    """As Frames, but with whole arrays, read once and kept; quantities that are missing have their value `never`."""
 
     def __init__(self, *parts: object) -> None:
         super().__init__(*parts)
@@ -119,7 +119,7 @@ class Series(Frames):
 
 
 class Column:
-    """One data set, read by indexing as an array: its first axis with a number or a slice, others as numpy has it."""
+    """One data set, read by indexing: the first axis by a number or a slice, the others as in numpy."""
 
     def __init__(self, table: Frames, dataset: h5py.Dataset) -> None:
         self._table, self._dataset = table, dataset
@@ -149,8 +149,8 @@ class Column:
 
 @contextmanager
 def reading(path: Path) -> Iterator[None]:
-    """Turn what HDF5 or the content of a file says against reading into one sentence."""
+    """Turn errors of HDF5, or of a file's content, into an Unusable with one sentence."""
     try:
         yield
     except (OSError, RuntimeError, KeyError, ValueError, TypeError, AttributeError) as error:
-        raise Useless(f"{path} is damaged ({sentence(error)}): record the run again.") from error
+        raise Unusable(f"{path} is damaged ({sentence(error)}): record the run again.") from error

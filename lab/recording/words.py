@@ -1,9 +1,9 @@
-"""What a recording holds, in the words of errors about what it does not."""
+"""Texts for error messages about data that a recording does not have."""
 
 from lab.recording.layout import WAVES, frames_of, series_of
 from solvers.machine.quantity import Quantity
 
-SAID = {  # of an axis: what it counts, and the key that makes it so
+COUNTED = {  # what each axis counts, and the preset key that sets its size
     "world": "beds (run.repeats)",
     "part": "parts (parts.NAME)",
     "grain": "grains (grains.count)",
@@ -11,7 +11,7 @@ SAID = {  # of an axis: what it counts, and the key that makes it so
 
 
 def recorded_by(name: object) -> str:
-    """The rest of a sentence on what is not there: the key that would have it recorded, if one does."""
+    """The end of a sentence on a missing quantity: what would record it."""
     if name == WAVES.name:
         return "; `cargolab view` records it, of a ship in waves."
     if name in _names(series_of(afloat=False)):
@@ -28,15 +28,15 @@ def _names(quantities: tuple[Quantity, ...]) -> set[str]:
 
 
 def axes(name: str, quantity: Quantity, shape: tuple[int, ...]) -> str:
-    """The size of a data set of a quantity in words, with the keys that make it so."""
+    """The size of a quantity's data set in words, with the preset keys that set it."""
     rate = "record.series_rate" if name.startswith("series/") else "record.picture_rate"
-    said = SAID | {"time": f"times ({rate}, run.duration)"}
-    words = (f"{size} {said.get(axis, '')}".strip() for size, axis in zip(shape, quantity.axes, strict=True))
+    counted = COUNTED | {"time": f"times ({rate}, run.duration)"}
+    words = (f"{size} {counted.get(axis, '')}".strip() for size, axis in zip(shape, quantity.axes, strict=True))
     return " × ".join(words)
 
 
 def indexed(index: object) -> str:
-    """An index as people write it, from numbers and slices."""
+    """An index of numbers and slices as it is written in Python."""
 
     def one(part: object) -> str:
         if not isinstance(part, slice):

@@ -1,4 +1,4 @@
-"""Writing recordings: a new one, and rows added to it or to one that a dead run has left."""
+"""Write recordings: create a new one, and append rows to it, also after an interruption."""
 
 import errno
 import json
@@ -16,7 +16,7 @@ import h5py
 import numpy as np
 
 from lab import __version__
-from lab.base.errors import LabError, Useless
+from lab.base.errors import LabError, Unusable
 from lab.base.trust import attribute_words, format_of
 from lab.preset.ship import axis_place, recorded_ship
 from lab.recording.checks import Checks, row_checks
@@ -24,8 +24,8 @@ from lab.recording.layout import (
     CHECKS,
     COLUMNS,
     FILE_NAME,
+    FLUSHED_ROWS,
     FORMAT,
-    STANDING,
     create_tables,
     fixed_text,
     row_bytes,
@@ -36,11 +36,11 @@ from lab.recording.layout import (
 from lab.recording.opening import create, end_of, open_to_add
 from lab.recording.outlines import GROUP, Outlines, outline_tables
 
-BUFFER_BYTES = 2**25  # kept in memory at most before it is written
-FLUSH_EVERY = 2.0  # s of wall-clock time between writings: what a run that is killed may lose
-SPARE_BYTES = 2**22  # room kept beside that for a chunk of each data set, to close the file and to sum up the run
+BUFFER_BYTES = 2**25  # most that is kept in memory before it is written
+FLUSH_EVERY = 2.0  # wall-clock time (s) between flushes, which a killed run may lose
+SPARE_BYTES = 2**22  # disk space reserved in addition, to close the file and to write the run's summary
 LONGEST_STATUS = 500  # bytes
-FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)  # errors of a full disk or quota
 PACKAGES = ("taichi", "numpy", "scipy", "h5py")
 
 
@@ -61,16 +61,16 @@ def new_recording(
     machine: Mapping | None = None,
     steered: bool = False,
 ) -> Path:
-    """Make the recording of a run, without rows yet; returns its file.
+    """Create the recording of a run, without rows yet; returns its file.
 
-    folder: where recording.h5 is made, created if missing; preset: its name; given: its TOML text;
-    resolved: all its values in SI; radius (W, n) m; outline (m, 2) m; step: the time step, s;
-    kind (W, n): numbers of the kinds of grains, 0 of the preset's material, or None;
-    fixed (k, 3): y, z, radius m of grains that never move; open_edges: outline edges without a wall;
-    parts: moving parts by name, polylines at rest (m, 2) m; shapes: outlines of irregular grains, None
-    where all are discs; machine: what runs it (added to what is found out here); steered: whether a hand
-    moves the tank. The file appears under
-    its name when it is whole, so that it is readable from then on. Raises LabError when the folder
+    folder: of the new recording.h5, created if missing; preset: its name; given: its TOML text; resolved: all its
+    values in SI; radius (W, n) m; outline (m, 2) m; step: the time step, s; kind (W, n): numbers of the kinds of
+    grains, 0 for the preset's material, None if all are 0; fixed (k, 3): y, z, radius m of the fixed grains;
+    open_edges: outline edges without a wall; parts: moving parts by name, polylines at rest (m, 2) m; shapes: outlines
+    of irregular grains, None if all are discs; machine: the device and threads, added to the data found here; steered:
+    whether the user steers the run.
+
+    The file gets its name only when it is complete, so it is readable from then on. Raises LabError if the folder
     cannot be written, is full, or already holds a recording.
     """
     path = Path(folder) / FILE_NAME
@@ -115,13 +115,13 @@ def new_recording(
 
 
 class Recorder:
-    """Adds rows to a recording; a context manager that closes it with the right status.
+    """Appends rows to a recording; a context manager that closes it with its final status.
 
-    folder: of the recording, new or left by a run that was killed or stopped; samples, frames: rows of the series and
-    of the frames that stand, those behind them stay until they are written over as they come again; flush_every:
-    wall-clock seconds between writings, so what a killed run loses; buffer: bytes kept in memory at most. The runner
-    keeps `wall_s` and `grain_steps` up to date; every flush writes them. Raises LabError when the folder cannot be
-    written, or when fewer rows are there than should stand; Useless when one of those is damaged.
+    folder: of the recording, new or of an interrupted run; samples, frames: numbers of rows of the series and of the
+    frames to keep; rows after these are overwritten as the run continues; flush_every: wall-clock seconds between
+    flushes, which a killed run may lose; buffer: most bytes kept in memory. The caller keeps `wall_s` and `grain_steps`
+    up to date; every flush writes them. Raises LabError if the folder cannot be written or has fewer rows than are to
+    be kept, Unusable if one of these is damaged.
     """
 
     def __init__(
@@ -141,45 +141,45 @@ class Recorder:
             otherwise.callback(self._file.close)
             self.wall_s, self.grain_steps = float(self._file.attrs["wall_s"]), int(self._file.attrs["grain_steps"])
             if format_of(self._file) != FORMAT:
-                raise Useless(f"{self.path} was begun by another version: start the run anew.")
-            standing = {"series": samples, "frames": frames}
-            standing |= {"steering": 0} if "steering" in self._file else {}
-            self._tables = {name: _Table(self._file, name, rows) for name, rows in standing.items()}
+                raise Unusable(f"{self.path} was begun by another version: start the run again.")
+            kept = {"series": samples, "frames": frames}
+            kept |= {"steering": 0} if "steering" in self._file else {}
+            self._tables = {name: _Table(self._file, name, rows) for name, rows in kept.items()}
             self._spare = SPARE_BYTES + sum(table.chunk_bytes for table in self._tables.values())
             if any(table.short for table in self._tables.values()):
-                raise LabError(f"{self.path} holds less than its checkpoint says: start the run anew.")
+                raise LabError(f"{self.path} has fewer rows than its checkpoint: start the run again.")
             for table in self._tables.values():
                 if damaged := table.damage():
-                    raise Useless(f"{self.path}: {damaged}, before its checkpoint: start the run anew.")
+                    raise Unusable(f"{self.path}: {damaged}, before its checkpoint: start the run again.")
             self._reserved = 0
             self._make_room()
             self._file.attrs.modify("status", _status("running"))
-            otherwise.pop_all()  # all is well: it stays open
+            otherwise.pop_all()  # no error: the file stays open
 
     def sample(self, values: Mapping[str, object]) -> None:
-        """Add a row to the series: "time" (s) and every other quantity of it, (W, *shape) each."""
+        """Add a row to the series: "time" (s) and each of its other quantities, (W, *shape)."""
         self._add("series", values)
 
     def frame(self, values: Mapping[str, object]) -> None:
-        """Add a picture frame: "time" (s) and every other quantity of it, one for each that has it."""
+        """Add a picture frame: "time" (s) and each of its other quantities, for every world, grain or part."""
         self._add("frames", values)
 
     def steer(self, time: float, name: str, value: float) -> None:
-        """Add what a hand did: it set a control to a value (SI) at a time (s)."""
+        """Add an action of the user: a control was set to a value (SI) at a time (s)."""
         self._add("steering", {"time": time, "name": name.encode(), "value": value})
 
     @property
     def series(self) -> tuple[str, ...]:
-        """Names of what the series hold, time first."""
+        """Names of the quantities in the series, time first."""
         return self._tables["series"].names
 
     @property
     def rows(self) -> tuple[int, int]:
-        """Rows of the series and of the frames so far."""
+        """Numbers of rows of the series and of the frames so far."""
         return self._tables["series"].rows, self._tables["frames"].rows
 
     def flush(self) -> None:
-        """Write what has been added so far. Raises LabError when the folder is full or lost."""
+        """Write the rows added so far to the file. Raises LabError if that fails."""
         with self._writing():
             self._make_room()
             for table in self._tables.values():
@@ -190,13 +190,13 @@ class Recorder:
         self._flushed = time.monotonic()
 
     def sync(self) -> None:
-        """Flush, and have the system put it all on the disk, where a power cut leaves it."""
+        """Flush, and make the system write everything to the disk, so that it survives a power failure."""
         self.flush()
         with self._writing():
             os.fsync(self._file.id.get_vfd_handle())
 
     def close(self, status: str = "complete") -> None:
-        """Write the rest and the status, "complete" or "stopped: <sentence>"; once is enough."""
+        """Write the remaining rows and the status, "complete" or "stopped: <sentence>"; further calls do nothing."""
         if not self._file:
             return
         try:
@@ -214,7 +214,7 @@ class Recorder:
         if error is None:
             self.close()
             return
-        with suppress(LabError):  # what stopped the run is the news
+        with suppress(LabError):  # the error that stopped the run is the one to report
             self.close(f"stopped: {sentence(error)}")
 
     @property
@@ -222,9 +222,9 @@ class Recorder:
         return sum(table.pending_bytes for table in self._tables.values())
 
     def _make_room(self) -> None:
-        """Reserve what the rows to be written need and, by then, closing the file.
+        """Reserve disk space for the pending rows and for closing the file.
 
-        HDF5 can neither go on nor close a file once a writing has failed, so it must not come to that.
+        Once a write has failed, HDF5 can neither continue nor close the file, so space is reserved before writing.
         """
         needed = self._file.id.get_filesize() + self._pending + self._spare
         if needed > self._reserved:
@@ -243,7 +243,7 @@ class Recorder:
 class _Table:
     """Data sets that grow together along their first axis, their checksums, and the rows not yet written.
 
-    The first `rows` rows of the data sets stand; `short` says whether there are so many.
+    rows: number of rows to keep; `short`: whether a data set has fewer.
     """
 
     def __init__(self, file: h5py.File, table: str, rows: int) -> None:
@@ -251,7 +251,7 @@ class _Table:
         self.names = tuple(attribute_words(self._checks, COLUMNS))
         self._datasets: dict[str, h5py.Dataset] = {name: group[name] for name in self.names}
         self._rows: dict[str, list[np.ndarray]] = {name: [] for name in self.names}
-        self._row = {name: (data.shape[1:], data.dtype) for name, data in self._datasets.items()}  # h5py is slow to ask
+        self._row = {name: (data.shape[1:], data.dtype) for name, data in self._datasets.items()}  # slow in h5py
         grow = (*self._datasets.values(), self._checks)
         self._row_bytes = sum(row_bytes(data.shape[1:], data.dtype) for data in grow)
         self._written = rows
@@ -259,7 +259,7 @@ class _Table:
         self.short = any(len(data) < rows for data in grow)
 
     def damage(self) -> str:
-        """What is damaged of the rows that stand, in words; empty where nothing is."""
+        """A text on the first damaged row among those kept; empty if there is none."""
         checks = Checks(self._checks)
         for data in self._datasets.values():
             row = checks.first_bad(data, 0, self._written)
@@ -295,7 +295,7 @@ class _Table:
             checks.append(row_checks(values))
             self._put(data, end, values)
         self._put(self._checks, end, np.stack(checks, axis=1))
-        self._checks.attrs.modify(STANDING, end)
+        self._checks.attrs.modify(FLUSHED_ROWS, end)
         self._written = end
         for rows in self._rows.values():
             rows.clear()
@@ -307,24 +307,24 @@ class _Table:
 
 
 def _status(text: str) -> np.ndarray:
-    """As it is stored: in a place of its own, so that it can be changed under a reader's eyes."""
+    """A status as a string of fixed length, so that it can be changed in place while others read the file."""
     return np.array(text.encode()[:LONGEST_STATUS], h5py.string_dtype(length=LONGEST_STATUS))
 
 
 def _unfinished(path: Path) -> Path:
-    """The name a file goes by until it is whole."""
+    """The name of a file until it is complete."""
     return path.with_name(f"{path.name}.new")
 
 
 def _publish(path: Path) -> None:
-    """Put the unfinished file on the disk and give it its name, in one stroke."""
+    """Write the unfinished file to the disk and rename it atomically."""
     with _unfinished(path).open("r+b") as file:
         os.fsync(file.fileno())
     _unfinished(path).replace(path)
 
 
 def _reserve(file: h5py.File, size: int) -> None:
-    """Have the system set aside `size` bytes for a file. Raises OSError where disk, quota or a limit have no room."""
+    """Reserve `size` bytes of disk space for a file. Raises OSError if disk, quota or file-size limit forbid it."""
     if hasattr(os, "posix_fallocate"):
         os.posix_fallocate(file.id.get_vfd_handle(), 0, size)
     elif shutil.disk_usage(file.filename).free < size - file.id.get_filesize():
@@ -332,13 +332,13 @@ def _reserve(file: h5py.File, size: int) -> None:
 
 
 def _give_back(path: Path) -> None:
-    """Return what was reserved and not used: in SWMR mode HDF5 leaves it to the file."""
+    """Cut off reserved space that was not used, which HDF5 does not do in SWMR mode."""
     os.truncate(path, end_of(path))
 
 
 @contextmanager
 def _writing(folder: Path) -> Iterator[None]:
-    """Turn what the system or HDF5 says against writing into one sentence."""
+    """Turn errors of the system or of HDF5 during writing into a LabError with one sentence."""
     try:
         yield
     except FileExistsError as error:
@@ -351,7 +351,7 @@ def _writing(folder: Path) -> Iterator[None]:
 
 
 def versions() -> dict[str, str]:
-    """Of the lab, of Python and of the packages whose results a recording holds."""
+    """Versions of the lab, of Python and of the packages that the results depend on, by name."""
     found = {"cargo-shift-lab": __version__, "python": platform.python_version()}
     for package in PACKAGES:
         try:
@@ -362,7 +362,7 @@ def versions() -> dict[str, str]:
 
 
 def _reference(resolved: Mapping) -> dict[str, object]:
-    """What point the poses are of, and of a ship her axis, of which sway and heave are told: see `lab.preset.ship`."""
+    """Attributes on the reference point of the poses and, for a ship, of sway and heave (see `lab.preset.ship`)."""
     found = {"pose_is_of": fixed_text("the origin of the tank's axes")}
     if resolved.get("ship"):
         ship = recorded_ship(resolved)

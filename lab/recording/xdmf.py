@@ -1,6 +1,7 @@
-"""A description of a recording in XDMF, a format that ParaView reads: grains as points with what they have.
+"""An XDMF file for ParaView, with the grains of a recording as points and their quantities as attributes.
 
-The file holds no numbers but the times; it points into the recording's data sets (XDMF 3, xdmf.org: Model and Format).
+The file itself contains only the times; all else refers to the recording's data sets (XDMF 3, xdmf.org: Model and
+Format).
 """
 
 from collections.abc import Iterator
@@ -10,11 +11,11 @@ from xml.etree import ElementTree as Xml
 from lab.base.errors import LabError
 from lab.recording import Recording
 
-KINDS = {1: "Scalar", 2: "Vector"}  # by numbers a point
+KINDS = {1: "Scalar", 2: "Vector"}  # by the number of components
 
 
 def write_xdmf(recording: Recording) -> Path:
-    """Write recording.xdmf beside a recording: each world a time series of points. Raises LabError."""
+    """Write recording.xdmf beside a recording, with a time series of points for each world. Raises LabError."""
     path = recording.path.with_suffix(".xdmf")
     try:
         with path.open("w", encoding="utf-8") as file:
@@ -25,7 +26,7 @@ def write_xdmf(recording: Recording) -> Path:
 
 
 def _lines(recording: Recording) -> Iterator[str]:
-    """The file's text, a grid at a time: a recording may have any number of frames."""
+    """The text of the file, one grid at a time, since a recording may have very many frames."""
     times = recording.frames["time"][:]
     yield '<?xml version="1.0" encoding="utf-8"?>\n<Xdmf Version="3.0">\n<Domain>\n'
     for world in range(recording.worlds):
@@ -57,7 +58,7 @@ def _add_values(grid: Xml.Element, name: str, size: int) -> Xml.Element:
 
 
 def _add_slab(parent: Xml.Element, recording: Recording, name: str, place: tuple[int, ...]) -> None:
-    """The part of a data set at `place` on its leading axes, all of the others."""
+    """Add the slab of a data set at `place` on its leading axes and whole along the others."""
     shape, kind = recording.layout(name)
     inner = shape[len(place) :]
     slab = _add(parent, "DataItem", ItemType="HyperSlab", Dimensions=_words(inner))

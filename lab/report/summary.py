@@ -92,7 +92,7 @@ def terminal_summary(
     told = headlines(values, TOLD)
     rows = {name.replace("_", " "): f"{number(value)}{_remark(value)}" for name, value in told.items()}
     made = {name.replace("_", " "): os.path.relpath(path) for name, path in files.items()}
-    lost = ship_end.told(ship_end.ends(recording.series))
+    lost = ship_end.losses_sentence(ship_end.ends(recording.series))
     title = f"{recording.preset['title']} ({recording.name}): {_status(recording)}{f'. {lost}' if lost else ''}"
     lines = [one_line(title)]
     lines += _aligned(rows)
@@ -121,7 +121,7 @@ def _page(
     """The lines of summary.md."""
     preset = recording.preset
     yield f"# {inline(preset['title'])}\n"
-    if lost := ship_end.told(ship_end.ends(recording.series)):
+    if lost := ship_end.losses_sentence(ship_end.ends(recording.series)):
         yield f"**{lost}**\n"
     for name, value in headlines(values, HEADLINES).items():
         yield f"- {name.replace('_', ' ')}: **{number(value)}**{_remark(value)}"

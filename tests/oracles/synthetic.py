@@ -1,4 +1,4 @@
-"""Recordings made up for the tests, with known answers."""
+"""Synthetic recordings for the tests, with known results."""
 
 from pathlib import Path
 
@@ -44,7 +44,7 @@ def recorder(folder: Path, worlds: int = 1, count: int = 4, **options: object) -
 
 
 def sample(time: float, worlds: int = 1, **values: object) -> dict:
-    """A row of the series; what is not given is zero."""
+    """A row of the series; quantities that are not given are zero."""
     return {**_zeros(series_of(afloat=False), worlds), "time": time, **values}
 
 
@@ -54,12 +54,12 @@ def _zeros(quantities: tuple, worlds: int, count: int = 0) -> dict:
 
 
 def of_a_ship(worlds: int = 1, **values: object) -> dict:
-    """What a row of a ship's series has further; what is not given is zero, or did not happen."""
+    """The additional quantities of a row for a ship; values that are not given are zero, events did not happen."""
     return {"ship_works": np.zeros((worlds, 4)), "capsized": [-1.0] * worlds, "flooded": [-1.0] * worlds, **values}
 
 
 def frame(time: float, worlds: int = 1, count: int = 4, **values: object) -> dict:
-    """A picture frame; what is not given is zero, and there are no parts."""
+    """A picture frame without parts; quantities that are not given are zero."""
     return {**_zeros(frames_of(), worlds, count), "time": time, **values}
 
 
@@ -74,7 +74,7 @@ def record(
     status: str = "complete",
     **options: object,
 ) -> Path:
-    """Record motions: time (T,), pose (T, 3) the same in all worlds, centre (T, W, 2) of mass."""
+    """Record a motion: time (T,), pose (T, 3), the same in all worlds, and centre of mass (T, W, 2)."""
     worlds = centre.shape[1]
     kinetic = np.zeros(centre.shape[:2]) if kinetic is None else kinetic
     writer = recorder(folder, worlds, **options)

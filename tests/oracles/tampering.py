@@ -1,4 +1,4 @@
-"""Recordings changed by hand, for tests of what is made of odd numbers."""
+"""Manipulated recordings, for tests of damaged or invalid contents."""
 
 import h5py
 import numpy as np

@@ -94,7 +94,7 @@ def test_a_flipped_bit_is_named_and_never_read(whole, tmp_path, times):
 
 def test_what_lies_before_the_damage_can_be_read_and_painted(whole, tmp_path):
     path = damaged(whole, tmp_path, [bit_of(whole, "frames/position", 6)])
-    said = f"{path}: frames/position is damaged from row 6 of 10 (2.4 s): what lies before can be painted"
+    said = f"{path}: frames/position is damaged from row 6 of 10 (2.4 s): the rows before can be painted"
     with open_recording(path) as found, open_recording(whole) as before:
         assert found.frames["velocity"][:].tobytes() == before.frames["velocity"][:].tobytes()
         assert found.frames["position"][5].tobytes() == before.frames["position"][5].tobytes()
@@ -200,6 +200,6 @@ def test_a_reader_waits_for_a_writer_that_is_at_these_rows(tmp_path, monkeypatch
 def test_a_stored_array_and_a_text_are_named(whole, tmp_path):
     for name in ("grains/radius", "preset/resolved", "tank/outline", "grains/kind"):
         path = damaged(whole, tmp_path, [bit_of(whole, name, 0)])
-        with pytest.raises(LabError, match=f"{name} is damaged, without which nothing"):
+        with pytest.raises(LabError, match=f"{name} is damaged, and without it"):
             open_recording(path)
         assert f"{name} is damaged" in refused(call("resume", tmp_path, "--quiet"))

@@ -47,7 +47,7 @@ def test_it_is_measured_and_drawn(path, tmp_path):
 
 
 def test_it_is_not_gone_on_with(path):
-    with pytest.raises(LabError, match="begun by another version: start the run anew"):
+    with pytest.raises(LabError, match="begun by another version: start the run again"):
         Recorder(path.parent, samples=33, frames=9)
 
 

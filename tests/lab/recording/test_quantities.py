@@ -12,7 +12,7 @@ from lab.base.errors import LabError
 from lab.preset.find import load
 from lab.recording import open_recording
 from lab.recording.layout import STEERING, frames_of, series_of
-from lab.sweeps.rehearsal import rehearsed
+from lab.sweeps.dry_run import available_measures
 from solvers.grains import quantities as grains
 from solvers.grains.census import Census
 from solvers.machine.quantity import FREEDOMS, PLANE, Quantity, parted, places
@@ -60,7 +60,7 @@ def test_a_new_quantity_is_one_declaration_and_one_line_that_fills_it(tmp_path, 
         assert (of_all.dims, of_all.units, of_all.long_name) == (("time", "world"), "m", HIGHEST.label)
     assert (result.folder / "highest.png").stat().st_size > 1000
     assert "highest.png" in (result.folder / "summary.md").read_text()
-    rehearsed(load("tilting/quick", TINY))
+    available_measures(load("tilting/quick", TINY))
     monkeypatch.undo()
     with open_recording(result.folder) as found:  # by a version that does not know it
         assert found.quantities["highest"] == HIGHEST and found.series["highest"].tobytes() == highest.tobytes()

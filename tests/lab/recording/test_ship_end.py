@@ -18,7 +18,7 @@ from lab.paint.footage import open_footage
 from lab.paint.video import HELD, render_recording
 from lab.preset.find import load
 from lab.recording import Recorder, open_recording
-from lab.recording.ship_end import End, end_of, ends, told
+from lab.recording.ship_end import End, end_of, ends, losses_sentence
 from lab.report import plots
 from lab.report.summary import terminal_summary, write_summary
 from lab.view.shown import Look, Shown
@@ -51,9 +51,9 @@ def test_an_end_in_words():
     assert end_of(-1.0, -1.0, 0.3) is None
     assert end_of(4.5156, -1.0, 0.5 * pi).words == "capsizes at 4.516 s, 90 deg to port"
     assert end_of(5.0, 4.0, -0.5) == End("flooded", 4.0, -0.5)
-    assert told([None, None]) == told([None]) == ""
+    assert losses_sentence([None, None]) == losses_sentence([None]) == ""
     found = [End("capsized", 3.0, 1.6), None, End("flooded", 5.0, 0.7), End("flooded", 4.0, 0.7)]
-    assert told(found) == "With 1 of 4 beds she capsizes at 3 s; with 2 of 4 beds she floods after 4 to 5 s."
+    assert losses_sentence(found) == "With 1 of 4 beds she capsizes at 3 s; with 2 of 4 beds she floods after 4 to 5 s."
 
 
 def test_she_lies_since_then_as_the_next_sample_has_her():
@@ -134,9 +134,9 @@ def test_the_window_says_it_for_as_long_as_it_is_so():
         {"capsized": -1.0, "flooded": 3.0, "pose": [0.0, 0.0, 0.7]},
     ]
     shown = Shown()
-    shown.making, shown.look = False, Look("kind", "earth")
+    shown.settling, shown.look = False, Look("kind", "earth")
     shown.footage = type(
-        "Seen", (), {"sea": True, "row": lambda _, frame, name: rows[frame][name], "__len__": lambda _: 2}
+        "Footage", (), {"sea": True, "row": lambda _, frame, name: rows[frame][name], "__len__": lambda _: 2}
     )()
     assert shown.lost == End("flooded", 3.0, 0.7)
     shown.playhead = 0
@@ -157,7 +157,7 @@ def test_a_recording_without_the_column_is_of_ships_that_did_not_flood(tmp_path)
         file.attrs["format"] = "cargo-shift-lab 2"
     with open_recording(tmp_path) as recording:
         assert recording.series["flooded"].tolist() == [[-1.0]] * 3
-    with pytest.raises(LabError, match="begun by another version: start the run anew"):
+    with pytest.raises(LabError, match="begun by another version: start the run again"):
         Recorder(tmp_path, samples=3, frames=1)
 
 

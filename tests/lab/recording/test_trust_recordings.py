@@ -14,8 +14,8 @@ from lab.base.errors import LabError
 from lab.base.trust import check_state
 from lab.preset.find import load
 from lab.recording import Recorder, open_recording
+from lab.runs.batch import prepare
 from lab.runs.checkpoint import Checkpoint, read_checkpoint
-from lab.runs.launch import prepare
 from tests.lab.preset.test_malformed import SMALL, call, copied, refused
 from tests.oracles.synthetic import frame, sample
 
@@ -229,7 +229,7 @@ def test_an_array_larger_than_half_the_memory_is_not_read(sound, monkeypatch):
     monkeypatch.setattr("lab.base.trust.machine_memory", lambda: 100)
     with open_recording(sound) as recording:
         assert recording.frames["angle"][0].shape == (1, 3)
-        with pytest.raises(LabError, match=r"frames/position has .*GB, too much for the memory here"):
+        with pytest.raises(LabError, match=r"frames/position has .*GB, too much for this machine's memory"):
             recording.frames["position"][:]
 
 
