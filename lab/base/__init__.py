@@ -1,1 +1,1 @@
-"""What all other packages of the lab use: errors, texts, files, caches, signals, progress."""
+"""Shared by all other packages of the lab: errors, texts, files, caches, signals, progress."""

@@ -1,4 +1,4 @@
-"""Cache folders for what takes time to make again: settled beds, tables, kernels, lists of fonts."""
+"""Cache folders for results that take time to compute: settled beds, tables, kernels, lists of fonts."""
 
 import os
 from pathlib import Path

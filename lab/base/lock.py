@@ -39,4 +39,4 @@ def _take(handle: int, folder: Path) -> None:
     try:
         fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:
-        raise LabError(f"{folder} is in use by a run that still goes on: wait for its end.") from None
+        raise LabError(f"{folder} is in use by another run: wait until it ends.") from None

@@ -1,16 +1,16 @@
-"""How much memory this machine has for a run."""
+"""The memory that a run may use on this machine."""
 
 import os
 from contextlib import suppress
 from pathlib import Path
 
 SHARE = 0.5  # of the machine's memory that a run may take
-UNKNOWN = 8 * 2**30  # bytes, assumed where the machine does not tell
-GROUP = Path("/sys/fs/cgroup/memory.max")  # what the system allows this process, on Linux
+UNKNOWN = 8 * 2**30  # bytes, assumed where the size is not known
+GROUP = Path("/sys/fs/cgroup/memory.max")  # the limit for this process, on Linux
 
 
 def machine_memory() -> int:
-    """Bytes of memory that this process may count on."""
+    """Bytes of memory available to this process."""
     found = UNKNOWN
     with suppress(AttributeError, ValueError, OSError):  # Windows has no sysconf
         found = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class Progress:
-    """The stages of one run, one after the other, or of many runs below a bar for the whole; silent if `quiet`."""
+    """The stages of one run, one after the other, or of many runs below an overall bar; silent if `quiet`."""
 
     def __init__(self, quiet: bool):
         self.console = Console(stderr=True, quiet=quiet, highlight=False, markup=False, emoji=False)
@@ -30,7 +30,7 @@ class Progress:
             TimeRemainingColumn(),
         )
         self.bar = Bar(*columns, console=self.console, disable=not self.live, speed_estimate_period=600.0)
-        self.task, self.total, self.worth = None, None, 0.0
+        self.task, self.total, self.cost = None, None, 0.0
         self.whole, self.done = None, 0.0
         self.warnings: list[str] = []
         self.notes: list[str] = []
@@ -45,35 +45,35 @@ class Progress:
         self.bar.stop()
 
     def begin_whole(self, name: str, total: float, done: float) -> None:
-        """Start a bar for a whole of size `total`, of which `done` is done; later stages add their `worth` to it."""
+        """Start an overall bar of size `total`, of which `done` is done; later stages add their `cost` to it."""
         self.whole = self.bar.add_task(name, total=total, completed=done)
         self.whole_total, self.done, self.begun, self.since = total, done, done, time.monotonic()
 
     def time_left(self) -> str:
-        """The remaining time of the whole at the pace so far, in words; empty at the beginning."""
+        """The remaining time of the overall bar at the rate so far, as a text; empty at the beginning."""
         if self.done == self.begun:
             return ""
         pace = (time.monotonic() - self.since) / (self.done - self.begun)
         seconds = pace * (self.whole_total - self.done)
         return f"about {seconds:.0f} s left" if seconds < 90 else f"about {seconds / 60:.0f} min left"
 
-    def start(self, stage: str, total: float | None, worth: float = 0.0) -> None:
-        """Begin a stage that ends at `total`, in any unit, and adds `worth` to the whole."""
+    def start(self, stage: str, total: float | None, cost: float = 0.0) -> None:
+        """Begin a stage that ends at `total`, in any unit, and adds `cost` to the overall bar."""
         if not self.live:
             self.say(f"{stage} …")
-        self.task, self.total, self.worth = self.bar.add_task(stage, total=total), total, worth
+        self.task, self.total, self.cost = self.bar.add_task(stage, total=total), total, cost
 
     def reach(self, done: float) -> None:
         """Update the bar: `done` of the stage's total."""
         self.bar.update(self.task, completed=done)
         if self.whole is not None and self.total:
-            self.bar.update(self.whole, completed=self.done + self.worth * min(done / self.total, 1.0))
+            self.bar.update(self.whole, completed=self.done + self.cost * min(done / self.total, 1.0))
 
     def watch(self, simulation: "Simulation") -> None:
         """Show beds as they come to rest; does nothing here, the live window overrides it."""
 
     def count_one(self, sentence: str) -> None:
-        """Count one more unit of the whole as done."""
+        """Count one more unit of the overall bar as done."""
         self.done += 1.0
         self.bar.update(self.whole, completed=self.done)
         left = self.time_left() if self.done < self.whole_total else ""
@@ -84,9 +84,9 @@ class Progress:
         self.bar.update(self.task, completed=done, total=total)
 
     def finish(self) -> None:
-        """End the stage, maybe before its total."""
+        """End the stage, possibly before its total."""
         if self.whole is not None:
-            self.done += self.worth
+            self.done += self.cost
             self.bar.update(self.whole, completed=self.done)
             self.bar.remove_task(self.task)
         elif self.live:

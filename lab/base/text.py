@@ -1,9 +1,9 @@
-"""Escape texts from users and files, so that terminals, Markdown and spreadsheets show them and do not run them."""
+"""Escape texts from users and files, so that terminals, Markdown and spreadsheets show them and never execute them."""
 
 import re
 
 MARKUP = {"\\": "\\\\", "`": "\\`", "[": "\\[", "|": "\\|", "*": "\\*", "<": "&lt;", ">": "&gt;", "&": "&amp;"}
-FORMULA = ("=", "+", "-", "@", "\t", "\r")  # what begins a formula in a spreadsheet
+FORMULA = ("=", "+", "-", "@", "\t", "\r")  # characters that begin a formula in a spreadsheet
 
 
 def printable(text: str) -> str:

@@ -17,12 +17,12 @@ def main() -> None:
     """Experiments on loose cargo: run one, watch it, get a number with its error.
 
     \b
-    cargolab list                    what there is
+    cargolab list                    list the experiments
     cargolab run tilting/quick       run one, with video, plot and summary
     cargolab view tilting/quick      run one live in a window and steer it
-    cargolab explain tilting/quick   what it is and what it will cost
+    cargolab explain tilting/quick   show what it simulates and what it will cost
     cargolab sweep shaking/sway ...  run one for many values of its keys
-    cargolab resume DIR              continue a run or sweep that was cut short
+    cargolab resume DIR              continue an interrupted run or sweep
     """
 
 

@@ -1,4 +1,4 @@
-"""The commands of `cargolab bench`: what numbers cost and how far to trust them, one page each."""
+"""The commands of `cargolab bench`: cost and accuracy of the lab's results, one page each."""
 
 import sys
 from pathlib import Path
@@ -10,7 +10,7 @@ from lab.cli.options import fast_option, page_option
 
 @click.group()
 def bench() -> None:
-    """Measure what the lab's numbers cost and how far to trust them; each writes a page with tables and figures."""
+    """Measure cost and accuracy of the lab's results; each command writes a page with tables and figures."""
 
 
 @bench.command()
@@ -18,7 +18,7 @@ def bench() -> None:
 @page_option
 @fast_option
 def accuracy(studies: tuple[str, ...], out: Path, fast: bool) -> None:
-    """Error against cost: integrator, step, stiffness, precision, tilt rate, laws, repeats; why the defaults are so.
+    """Error against cost: integrator, step, stiffness, precision, tilt rate, laws, repeats; reasons for the defaults.
 
     \b
     cargolab bench accuracy                an hour or two on two cores; run again, it continues
@@ -34,7 +34,7 @@ def accuracy(studies: tuple[str, ...], out: Path, fast: bool) -> None:
 @page_option
 @fast_option
 def stability(cases: tuple[str, ...], out: Path, fast: bool) -> None:
-    """Hard cases at the automatic step and far beyond it: still right, or stopped with a sentence.
+    """Hard cases at the automatic step and far beyond it: correct results, or a stop with one sentence.
 
     \b
     cargolab bench stability
@@ -51,11 +51,11 @@ def stability(cases: tuple[str, ...], out: Path, fast: bool) -> None:
 @page_option
 @fast_option
 def speed(studies: tuple[str, ...], out: Path, fast: bool) -> None:
-    """Grain-steps a second by grains, worlds, precision, schedule and threads; where a step's time goes; other codes.
+    """Grain-steps per second by grains, worlds, precision, schedule, threads; cost of a step's parts; other codes.
 
     \b
     cargolab bench speed
-    cargolab bench speed peers          beside LIGGGHTS and LAMMPS, where they are installed
+    cargolab bench speed peers          compared with LIGGGHTS and LAMMPS, where they are installed
     """
     from lab.studies.bench.speed import run_page
 
@@ -64,14 +64,16 @@ def speed(studies: tuple[str, ...], out: Path, fast: bool) -> None:
 
 @bench.command()
 @click.argument("cases", nargs=-1)
-@click.option("--kills", type=click.IntRange(min=1), metavar="N", help="Of each kind of command.  [default: 50]")
+@click.option(
+    "--kills", type=click.IntRange(min=1), metavar="N", help="Number of kills for each kind of command.  [default: 50]"
+)
 @page_option
 @fast_option
 def survival(cases: tuple[str, ...], kills: int | None, out: Path, fast: bool) -> None:
-    """Kill the lab at random times, starve and mislead it; count how it ends.
+    """Kill the lab at random times, take its memory and disk, give it damaged files; count how it ends.
 
     \b
-    cargolab bench survival                   all of it; --fast: a few kills, odd folders, missing programs
+    cargolab bench survival                   all cases; --fast: a few kills, odd folders, missing programs
     cargolab bench survival kill --kills 200
     """
     from lab.studies.bench.survival import run_cases

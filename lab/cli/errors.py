@@ -11,7 +11,7 @@ import sys
 import click
 
 from lab.base.errors import LabError
-from lab.base.interrupt import exit_code, heeding
+from lab.base.interrupt import exit_code, handling_signals
 from lab.base.text import one_line
 from solvers.machine.errors import BadState, Unavailable
 
@@ -32,14 +32,14 @@ class Commands(click.Group):
         # Matrices are small here, and numpy's threads, which spin while they wait, would take cores from the solver.
         os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
         try:
-            with heeding():
+            with handling_signals():
                 code = super().main(*args, **{**kwargs, "standalone_mode": False})
         except click.exceptions.NoArgsIsHelpError as error:
             error.show()
             code = 2
-        except click.Abort as error:  # Ctrl-C and its like
-            said = str(error.__cause__ or "") or "interrupted; what was written until then is kept."
-            code = _say(said, exit_code())
+        except click.Abort as error:  # Ctrl-C and other signals
+            sentence = str(error.__cause__ or "") or "interrupted; everything written so far is kept."
+            code = _say(sentence, exit_code())
         except click.ClickException as error:
             code = _say(error.format_message(), 2)
         except (LabError, Unavailable) as error:

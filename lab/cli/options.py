@@ -34,6 +34,18 @@ def short_overrides(repeats: int | None, arch: str | None) -> dict[str, object]:
     return {key: value for key, value in wanted.items() if value is not None}
 
 
+def out_option(about: str, shown: str = "", default: Path | None = None):
+    """The option --out for a folder; `about`: its content; `shown`: a default that depends on the preset, as a text."""
+    return click.option(
+        "--out",
+        type=click.Path(path_type=Path, file_okay=False),
+        metavar="DIR",
+        default=default,
+        show_default=default is not None,
+        help=f"Folder {about}.{f'  [default: {shown}]' if shown else ''}",
+    )
+
+
 set_option = click.option(
     "--set",
     "overrides",
@@ -42,11 +54,11 @@ set_option = click.option(
     callback=read_overrides,
     help="Change a key of the preset; repeat for more.",
 )
-repeats_option = click.option("--repeats", type=int, metavar="N", help="Beds, each with its own seed.")
+repeats_option = click.option("--repeats", type=int, metavar="N", help="Number of beds, each with its own seed.")
 arch_option = click.option(
-    "--arch", type=click.Choice(["auto", "cpu", "cuda", "vulkan"]), help="What computes.  [default: as the preset says]"
+    "--arch", type=click.Choice(["auto", "cpu", "cuda", "vulkan"]), help="Device to run on.  [default: from the preset]"
 )
-quiet_option = click.option("--quiet", is_flag=True, help="Say only where the results are.")
+quiet_option = click.option("--quiet", is_flag=True, help="Print only the folder of the results.")
 cluster_option = click.option(
     "--cluster", metavar="ADDRESS", help="Run on the workers of this Dask scheduler, e.g. tcp://node1:8786."
 )
@@ -60,19 +72,12 @@ class ColourOption(click.Option):
         """Flags and help."""
         from lab.preset.sections.video import COLOURS
 
-        self.help = f"What the colour says: {', '.join(COLOURS)}."
+        self.help = f"Quantity shown by the colour: {', '.join(COLOURS)}."
         return super().get_help_record(context)
 
 
-page_option = click.option(
-    "--out",
-    type=click.Path(path_type=Path, file_okay=False),
-    metavar="DIR",
-    default=Path("renders/bench"),
-    show_default=True,
-    help="Folder of the page and its figures.",
-)
-fast_option = click.option("--fast", is_flag=True, help="Only what takes seconds.")
+page_option = out_option("of the page and its figures", default=Path("renders/bench"))
+fast_option = click.option("--fast", is_flag=True, help="Only the parts that take seconds.")
 
 
 def show(result, quiet: bool) -> None:

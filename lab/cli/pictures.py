@@ -5,20 +5,17 @@ from pathlib import Path
 import click
 
 from lab.base.errors import LabError
-from lab.cli.options import ColourOption, set_option
+from lab.cli.options import ColourOption, out_option, set_option
 from lab.preset.units import quoted
 
 
 @click.command()
 @click.argument("preset", required=False)
 @set_option
+@out_option("for the recording", "renders/view/PRESET")
 @click.option(
-    "--out",
-    type=click.Path(path_type=Path, file_okay=False),
-    metavar="DIR",
-    help="Folder for what is recorded.  [default: renders/view/PRESET]",
+    "--size", default="1280x720", show_default=True, metavar="WIDTHxHEIGHT", help="Size of the window in pixels."
 )
-@click.option("--size", default="1280x720", show_default=True, metavar="WIDTHxHEIGHT", help="Of the window, in pixels.")
 @click.option(
     "--window",
     type=click.Choice(["auto", "ggui", "gui"]),
@@ -26,7 +23,7 @@ from lab.preset.units import quoted
     help="GGUI needs Vulkan; gui is drawn by the processor.  [default: the first that opens]",
 )
 def view(preset: str | None, overrides: dict, out: Path | None, size: str, window: str) -> None:
-    """Run PRESET live in a window: tilt and shake the tank, change friction, rewind, keep what you saw.
+    """Run PRESET live in a window: tilt and shake the tank, change friction, rewind, keep the result.
 
     \b
     cargolab view                                         choose one in the window
@@ -62,14 +59,14 @@ def _pixels(text: str) -> tuple[int, int]:
     help="An .mp4 file, or with --png a folder.  [default: beside the recording]",
 )
 @click.option("--colour", cls=ColourOption)
-@click.option("--frame", help="Whose frame to draw in: tank or earth.")
-@click.option("--width", type=int, help="Pixels.")
-@click.option("--height", type=int, help="Pixels.")
+@click.option("--frame", help="Frame of reference: tank or earth.")
+@click.option("--width", type=int, help="Width in pixels.")
+@click.option("--height", type=int, help="Height in pixels.")
 @click.option("--world", type=int, help="One of the repeats, from 0.  [default: side by side]")
 @click.option("--png/--mp4", default=False, help="Single pictures, or a video (the default).")
-@click.option("--sound", is_flag=True, help="Of a damaged recording: only what lies before the damage.")
+@click.option("--sound", is_flag=True, help="Paint a damaged recording up to the damage.")
 def render(recording: Path, out: Path | None, png: bool, **look: object) -> None:
-    """Paint the video of RECORDING (a recording.h5 or the folder of a run) anew.
+    """Paint the video of RECORDING (a recording.h5 or the folder of a run) again.
 
     \b
     cargolab render renders/tilting/quick --colour displacement --out shift.mp4
@@ -82,7 +79,7 @@ def render(recording: Path, out: Path | None, png: bool, **look: object) -> None
     with Progress(quiet=False) as progress:
 
         def count(done: int, total: int) -> None:
-            if done == 1:  # not before, so that an error is one line without a bar
+            if done == 1:  # not before, so that an error is printed as one line without a bar
                 progress.start("painting", total)
             progress.reach(done)
 

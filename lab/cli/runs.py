@@ -5,7 +5,16 @@ from pathlib import Path
 import click
 
 from lab.base.errors import LabError
-from lab.cli.options import arch_option, quiet_option, repeats_option, set_option, short_overrides, show, video_option
+from lab.cli.options import (
+    arch_option,
+    out_option,
+    quiet_option,
+    repeats_option,
+    set_option,
+    short_overrides,
+    show,
+    video_option,
+)
 
 
 @click.command()
@@ -15,14 +24,9 @@ from lab.cli.options import arch_option, quiet_option, repeats_option, set_optio
     "--replay",
     type=click.Path(path_type=Path),
     metavar="DIR",
-    help="Instead of a preset: a recording of `cargolab view`, steered again as it was, bit for bit.",
+    help="Instead of a preset: a recording of `cargolab view`, repeated bit for bit.",
 )
-@click.option(
-    "--out",
-    type=click.Path(path_type=Path, file_okay=False),
-    metavar="DIR",
-    help="Folder for the results.  [default: renders/PRESET]",
-)
+@out_option("for the results", "renders/PRESET")
 @repeats_option
 @arch_option
 @video_option

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import click
 
-from lab.cli.options import cluster_option, fast_option, page_option, quiet_option
+from lab.cli.options import cluster_option, fast_option, out_option, page_option, quiet_option
 
 
 @click.command("list")
@@ -22,7 +22,7 @@ def list_presets() -> None:
     width = max(map(len, shown), default=0)
     for name, title in shown.items():
         click.echo(f"{name:<{width}}  {title}")
-    click.echo(f"\n[{QUICK}]: also by that longer name, cheaper and less exact", err=True)
+    click.echo(f"\n[{QUICK}]: also available under that longer name, cheaper and less accurate", err=True)
 
 
 @click.command()
@@ -35,7 +35,7 @@ def verify(cases: tuple[str, ...], out: Path, fast: bool) -> None:
     \b
     cargolab verify                     all CASES, and a page with a table and figures
     cargolab verify --fast
-    cargolab verify oblique incline     those whose names begin like this
+    cargolab verify oblique incline     those whose names begin with these
     """
     from lab.studies.verify import run_cases
 
@@ -47,25 +47,18 @@ def verify(cases: tuple[str, ...], out: Path, fast: bool) -> None:
 @click.argument("what", metavar="REPORT", type=click.Choice(["granular", "shapes", "ship"]))
 @click.argument("experiments", nargs=-1)
 @click.option("--quick", is_flag=True, help="Fewer beds, faster tilts, draft accuracy: under 20 minutes on two cores.")
-@click.option(
-    "--out",
-    type=click.Path(path_type=Path, file_okay=False),
-    metavar="DIR",
-    default=Path("renders/reproduce"),
-    show_default=True,
-    help="Folder of the report and of its runs.",
-)
+@out_option("of the report and of its runs", default=Path("renders/reproduce"))
 @cluster_option
 @quiet_option
 def reproduce(
     what: str, experiments: tuple[str, ...], quick: bool, out: Path, cluster: str | None, quiet: bool
 ) -> None:
-    """Run the experiments of the source and write a report: its statements, our results, the difference, the cost.
+    """Run the experiments of the source and write a report: its statements, our results, differences, cost.
 
     \b
     cargolab reproduce granular --quick
     cargolab reproduce granular                 hours on two cores; run again, it continues
-    cargolab reproduce granular tilt-fill stack EXPERIMENTS whose names begin like this
+    cargolab reproduce granular tilt-fill stack EXPERIMENTS whose names begin with these
     cargolab reproduce shapes --quick           those with irregular grains
     cargolab reproduce ship --quick             those with ships in waves
     cargolab reproduce granular --cluster tcp://node1:8786
@@ -77,18 +70,11 @@ def reproduce(
 
 @click.command()
 @click.argument("presets", nargs=-1)
-@click.option(
-    "--out",
-    type=click.Path(path_type=Path, file_okay=False),
-    metavar="DIR",
-    default=Path("renders/gallery/presets"),
-    show_default=True,
-    help="Folder of the page.",
-)
+@out_option("of the page", default=Path("renders/gallery/presets"))
 @click.option("--repeats", "beds", type=click.IntRange(1), default=1, show_default=True, help="Beds of each preset.")
 @quiet_option
 def gallery(presets: tuple[str, ...], out: Path, beds: int, quiet: bool) -> None:
-    """Run every preset, or those whose names begin like PRESETS, and show them on one page: clips and numbers.
+    """Run every preset, or those whose names begin with PRESETS, and show them on one page: clips and numbers.
 
     \b
     cargolab gallery                  some hours on two cores; run again, it continues

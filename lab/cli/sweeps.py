@@ -7,6 +7,7 @@ import click
 from lab.cli.options import (
     arch_option,
     cluster_option,
+    out_option,
     quiet_option,
     repeats_option,
     set_option,
@@ -26,12 +27,7 @@ from lab.cli.options import (
     metavar="KEY=VALUES",
     help="Values of a key: a range FROM:TO:NUMBER, with :log for a logarithmic one, or a list; one value just sets it.",
 )
-@click.option(
-    "--out",
-    type=click.Path(path_type=Path, file_okay=False),
-    metavar="DIR",
-    help="Folder for the results.  [default: renders/PRESET-sweep]",
-)
+@out_option("for the results", "renders/PRESET-sweep")
 @repeats_option
 @arch_option
 @video_option
@@ -53,7 +49,7 @@ def sweep(
     cargolab sweep shaking/sway --set motion.sway.frequency="0.2:1.5:14 Hz" --repeats 12
     cargolab sweep tilting/quick --set grains.diameter="2, 3, 4 mm" --set material.friction=0.1:0.5:5
     cargolab sweep shaking/sway --set run.seed=1:200:200 --cluster tcp://node1:8786
-    Run again, it continues where it was cut short.
+    Run again, it continues where it was interrupted.
     """
     from lab.sweeps.sweep import run_sweep
 
@@ -64,15 +60,10 @@ def sweep(
 
 @click.command()
 @click.argument("preset")
-@click.option("--target", required=True, metavar="MEASURE=VALUE", help="What a measure is to be.")
-@click.option("--vary", required=True, metavar="KEY=FROM:TO", help="The key to find the value of, and its range.")
+@click.option("--target", required=True, metavar="MEASURE=VALUE", help="The measure and its wanted value.")
+@click.option("--vary", required=True, metavar="KEY=FROM:TO", help="The key to vary, and its range.")
 @set_option
-@click.option(
-    "--out",
-    type=click.Path(path_type=Path, file_okay=False),
-    metavar="DIR",
-    help="Folder for the results.  [default: renders/PRESET-calibration]",
-)
+@out_option("for the results", "renders/PRESET-calibration")
 @repeats_option
 @arch_option
 @cluster_option

@@ -55,7 +55,8 @@ def test_help_version_and_list():
     assert listed.exit_code == 0
     assert re.search(r"^tilting/quick +Quick tilt", listed.stdout, re.MULTILINE)
     assert re.search(r"^funnel/fixed\[-quick\] +Heap", listed.stdout, re.MULTILINE)
-    assert "funnel/fixed-quick" not in listed.stdout and "[-quick]: also by that longer name" in listed.output
+    assert "funnel/fixed-quick" not in listed.stdout
+    assert "[-quick]: also available under that longer name" in listed.output
 
 
 def test_without_a_command_the_help_is_shown():
@@ -173,7 +174,7 @@ def test_bad_sweeps_and_folders_are_one_sentence_too(arguments):
         (LabError("no\nsuch thing."), 2, "no such thing."),
         (Unavailable("no such device."), 2, "no such device."),
         (BadState(0, "grain 3 left the tank at 0.2 s."), 1, "world 0: grain 3 left the tank at 0.2 s."),
-        (KeyboardInterrupt(), 130, "interrupted; what was written until then is kept."),
+        (KeyboardInterrupt(), 130, "interrupted; everything written so far is kept."),
         (KeyboardInterrupt("interrupted at 1 s; go on"), 130, "interrupted at 1 s; go on"),
         (OSError(errno.ENOSPC, "No space left on device", "/full/recording.h5"), 2,
          "/full/recording.h5: no space left on device; free some space or choose another folder "
