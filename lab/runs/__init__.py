@@ -1,1 +1,1 @@
-"""Runs: settle beds, advance worlds together, keep checkpoints, and continue interrupted runs."""
+"""Runs: settle the beds, simulate all worlds together, write checkpoints, and continue interrupted runs."""

@@ -88,12 +88,12 @@ def settled(scene: Scene, position: np.ndarray, how: Settling, start: Start, pro
     """
     simulation = start(scene, position)
     if not how.settle:
-        progress.note("The grains start as they were put, without settling (run.settle = false).")
+        progress.note("The grains start where they were placed, without settling (run.settle = false).")
         return simulation
     store = BedStore() if how.reuse else None
     keys = [bed_key(simulation, w, position[w], how) for w in range(len(position))] if store else []
     if store and lay(simulation, [store.load(key) for key in keys]):
-        progress.note(f"The settled bed was reused from {store.folder}; grains.reuse_bed = false settles it anew.")
+        progress.note(f"The settled bed was reused from {store.folder}; grains.reuse_bed = false settles it again.")
         return simulation
     if how.disc_step:
         simulation.close()
@@ -136,7 +136,7 @@ def _settle(simulation: Simulation, how: Settling, stage: str, progress: Progres
         progress.watch(simulation)
 
     progress.start(stage, how.limit)
-    progress.watch(simulation)  # before kernels are compiled, which takes a while
+    progress.watch(simulation)  # show the grains before the kernels are compiled, which takes some seconds
     rests = simulation.settle(how.rest, how.limit, tell)
     progress.finish()
     return rests
@@ -243,7 +243,7 @@ def made(
 
 
 def lay(simulation: Simulation, beds: list[Bed | None]) -> bool:
-    """Put beds into the worlds of a new simulation; returns False if one is missing or does not fit."""
+    """Copy beds into the worlds of a new simulation; returns False if one is missing or has other shapes."""
     if any(bed is None for bed in beds):
         return False
     state = {name: np.array(values) for name, values in simulation.state().items()}

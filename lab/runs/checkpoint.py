@@ -1,7 +1,7 @@
-"""The checkpoint of a running run: the solver's whole state, from which the run continues bit for bit.
+"""Checkpoints: the complete state of the solver, from which an interrupted run continues bit for bit.
 
-It is written under another name and renamed once it is on the disk, so a kill at any time leaves a complete one. It is
-deleted when the run completes.
+A checkpoint is written under another name and renamed once it is on the disk, so a process killed at any time leaves a
+complete one. It is deleted when the run is complete.
 """
 
 import hashlib
@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from lab.base.errors import LabError, Useless
+from lab.base.errors import LabError, Unusable
 from lab.base.trust import check_archive, check_progress
 
 FORMAT = "cargo-shift-lab checkpoint 2"
@@ -23,10 +23,10 @@ FILE_NAME = "checkpoint.npz"
 
 @dataclass(frozen=True)
 class Checkpoint:
-    """The state of a launch.
+    """The state of a batch of runs.
 
-    state: that of the simulation (`Simulation.state`); runs: folders of the recordings whose worlds it advances, in
-    order, relative to the checkpoint's folder; rows: how many rows of series and frames each of them has; warnings,
+    state: of the simulation (`Simulation.state`); runs: folders of the runs whose worlds it holds, in order, relative
+    to the checkpoint's folder; rows: numbers of rows of the series and of the frames in each recording; warnings,
     notes: those given so far.
     """
 
@@ -37,7 +37,7 @@ class Checkpoint:
     notes: tuple[str, ...] = ()
 
     def write(self, folder: Path) -> None:
-        """Write it to disk in place of an earlier one, which stays if writing fails. Raises LabError."""
+        """Write the checkpoint; an earlier one is replaced only if that succeeds. Raises LabError."""
         path, unfinished = folder / FILE_NAME, folder / f"{FILE_NAME}.new"
         about = {"format": FORMAT, "runs": self.runs, "rows": self.rows}
         about |= {"warnings": self.warnings, "notes": self.notes, "digest": _digest(self.state)}
@@ -64,17 +64,17 @@ def read_checkpoint(folder: Path) -> Checkpoint | None:
             about = json.loads(str(file["about"]))
             state = {name.removeprefix("state/"): file[name] for name in file.files if name != "about"}
             if about["format"] != FORMAT:
-                raise Useless(f"{path} was made by another version of the lab: start the run anew.")
+                raise Unusable(f"{path} was made by another version of the lab: start the run again.")
             if about["digest"] != _digest(state):
-                raise ValueError("not what was written")
+                raise ValueError("its digest does not match")
             series, frames = about["rows"]
             check_progress(about["runs"], (series, frames), (about["warnings"], about["notes"]))
-            said = tuple(about["warnings"]), tuple(about["notes"])
-            return Checkpoint(state, tuple(about["runs"]), (series, frames), *said)
-    except Useless:
+            messages = tuple(about["warnings"]), tuple(about["notes"])
+            return Checkpoint(state, tuple(about["runs"]), (series, frames), *messages)
+    except Unusable:
         raise
-    except Exception as error:  # zip files can be wrong in many ways
-        raise Useless(f"{path} is damaged: start the run anew.") from error
+    except Exception as error:  # a damaged zip file raises many kinds of errors
+        raise Unusable(f"{path} is damaged: start the run again.") from error
 
 
 def _digest(state: Mapping[str, np.ndarray]) -> str:
@@ -88,6 +88,6 @@ def _digest(state: Mapping[str, np.ndarray]) -> str:
 
 
 def remove_checkpoint(folder: Path) -> None:
-    """Remove the checkpoint, if there is one, and any unfinished file that a killed run has left."""
+    """Remove the checkpoint and the unfinished one of a killed run, if there are any."""
     (folder / FILE_NAME).unlink(missing_ok=True)
     (folder / f"{FILE_NAME}.new").unlink(missing_ok=True)

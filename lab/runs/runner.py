@@ -1,4 +1,4 @@
-"""Run an experiment to its end (settle, move, record, measure, plot, film, summarise), or continue one."""
+"""Run an experiment to its end (settle, simulate, record, measure, plot, film, summarise), or continue one."""
 
 import json
 import shlex
@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 
-from lab.base.errors import LabError, Useless
+from lab.base.errors import LabError, Unusable
 from lab.base.lock import only_one
 from lab.base.progress import Progress
 from lab.measures import measure_all
@@ -19,10 +19,10 @@ from lab.recording import FILE_NAME, Recording, open_recording, versions
 from lab.recording.xdmf import write_xdmf
 from lab.report.plots import write_plots
 from lab.report.summary import terminal_summary, write_summary
+from lab.runs.batch import Run, prepare, run_batch
 from lab.runs.belongs import check_belongs
 from lab.runs.checkpoint import FILE_NAME as CHECKPOINT
 from lab.runs.checkpoint import Checkpoint, read_checkpoint, remove_checkpoint
-from lab.runs.launch import Run, launch, prepare
 
 RENDERS = Path("renders")
 
@@ -52,8 +52,8 @@ def run_preset(
 ) -> Result:
     """Run a preset and write recording, plots, video and summary to a folder (default: renders/NAME).
 
-    Raises LabError for what a user can correct, BadState if the watch stopped the run, and KeyboardInterrupt; what was
-    recorded so far stays, with its summary and what `resume_run` needs.
+    Raises LabError for errors that the user can correct, BadState if the watch stopped the run, and KeyboardInterrupt;
+    the recording so far is kept, with its summary and the checkpoint for `resume_run`.
     """
     loaded = load(name, overrides)
     folder = Path(out) if out is not None else free_folder(RENDERS / loaded.name)
@@ -82,20 +82,20 @@ def resume_run(folder: Path | str, *, video: bool = True, plots: bool = True, qu
             return report(folder, progress, video=video, plots=plots)
         kept = read_checkpoint(folder)
         if kept is None and rows:
-            raise LabError(f"{folder} has no checkpoint to resume from: start the run anew, in another folder.")
+            raise LabError(f"{folder} has no checkpoint to resume from: start the run again, in another folder.")
         if changed:
-            progress.warn("The run was begun with other versions of the lab or its libraries than it goes on with.")
+            progress.warn("The run was begun with other versions of the lab or its libraries than it continues with.")
         run = prepare(loaded, folder)
         check_belongs(run)
         return _complete(run, kept, progress, video, plots)
 
 
 def recorded_preset(recording: Recording) -> LoadedPreset:
-    """The preset of a recording, ready to run again. Raises Useless if it is not a valid one."""
+    """The preset of a recording, ready to run again. Raises Unusable if it is not a valid one."""
     try:
         resolved = resolved_from(recording.preset)
     except ValueError as error:
-        raise Useless(f"{recording.path} holds no preset that this version can run: start the run anew.") from error
+        raise Unusable(f"{recording.path} has no preset that this version can run: start the run again.") from error
     return LoadedPreset(recording.name, recording.given, resolved)
 
 
@@ -131,17 +131,17 @@ def hint(folder: Path, begun: str = FILE_NAME) -> Iterator[None]:
     except KeyboardInterrupt as error:
         if not (folder / begun).exists():
             raise KeyboardInterrupt("interrupted before the run began") from None
-        raise KeyboardInterrupt(f"{str(error) or 'interrupted'}; go on with: {resume}") from None
+        raise KeyboardInterrupt(f"{str(error) or 'interrupted'}; continue with: {resume}") from None
     except LabError as error:
-        if isinstance(error, Useless) or not (folder / CHECKPOINT).exists():
+        if isinstance(error, Unusable) or not (folder / CHECKPOINT).exists():
             raise
-        raise LabError(f"{str(error).removesuffix('.')}; go on with: {resume}") from error
+        raise LabError(f"{str(error).removesuffix('.')}; continue with: {resume}") from error
 
 
 def _complete(run: Run, kept: Checkpoint | None, progress: Progress, video: bool, plots: bool) -> Result:
     """Run, or continue, to the end and report."""
     try:
-        stopped = launch([run], run.folder, progress, kept)
+        stopped = run_batch([run], run.folder, progress, kept)
     except KeyboardInterrupt:
         report(run.folder, progress, video=False, plots=plots)
         raise

@@ -1,1 +1,1 @@
-"""Sweeps (grids of runs), calibration, and runs on other machines."""
+"""Sweeps (grids of runs), calibration, and runs on a cluster."""

@@ -15,7 +15,7 @@ MOST = 10_000  # values of a range
 
 
 def values(key: str, text: str) -> list[object]:
-    """The values that `text` stands for: a range (`:log`: evenly spaced in the logarithm), a list, or one value.
+    """The values that `text` describes: a range (`:log`: evenly spaced in the logarithm), a list, or one value.
 
     A unit after a range or a list applies to all numbers in it without a unit. Each value is as in a preset: a number,
     a text, a TOML value. Raises LabError on an impossible range.

@@ -22,25 +22,26 @@ from lab.preset.reader import dotted_key, taken_by
 from lab.preset.schema import Given
 from lab.preset.units import NUMBER, in_unit, quoted
 from lab.runs.runner import RENDERS
-from lab.sweeps.asked import Asked, check_folder, read_asked, write_asked
 from lab.sweeps.axes import values
-from lab.sweeps.calibration_report import Calibration, Tried, write_report
+from lab.sweeps.calibration_report import Calibration, Trial, write_report
+from lab.sweeps.dry_run import available_measures
+from lab.sweeps.grid import define_sweep
 from lab.sweeps.inverse import LEAST_BEDS, Response, beds_for, crossings, fitted, misfit, solved
-from lab.sweeps.rehearsal import rehearsed
 from lab.sweeps.report import Point, numeric
-from lab.sweeps.sweep import SweepResult, ask, run_sweep
+from lab.sweeps.request import Request, check_folder, read_request, write_request
+from lab.sweeps.sweep import SweepResult, run_sweep
 
 POINTS = 5  # values of the key in a round
-CLOSER = 0.25  # half the width of the second round's range, over the first one's range
-WITHIN = 0.05  # half the width of an interval that counts as narrow, over the range
+CLOSER = 0.25  # half width of the second round's range, relative to the width of the first one's
+WITHIN = 0.05  # half width of an interval that counts as narrow, relative to the width of the range
 ALIASES = {"repose": ("critical_angle", "heap_angle")}
 
 
 @dataclass(frozen=True)
 class Plan:
-    """The parsed request: the values of the first round, the target (with its standard error), its unit."""
+    """The parsed request: the values of the first round (`listed`), the target with its standard error and unit."""
 
-    asked: Asked
+    request: Request
     key: str
     unit: str
     listed: list
@@ -75,46 +76,46 @@ def calibrate(
 ) -> Calibration:
     """Find the value of the key in `vary`, "friction=0.2:0.7", at which a measure is as in `target`, "repose=41.3 deg".
 
-    A target may have a standard error, "repose=41.3 ± 0.8 deg". Unless `overrides` say otherwise, at least LEAST_BEDS
-    beds are run. Writes summary.md, calibration.json, calibration.png and both rounds' sweeps to a folder (default:
+    A target may have a standard error, "repose=41.3 ± 0.8 deg". At least LEAST_BEDS beds are run unless `overrides` set
+    the number. Writes summary.md, calibration.json, calibration.png and both rounds' sweeps to a folder (default:
     renders/NAME-calibration); called again with the same request, it continues. cluster: as for `run_sweep`. Raises
     LabError, one sentence, if something cannot be read, run or measured, or if no value in the range gives the target;
     and as `run_sweep`.
     """
     preset = os.path.abspath(name) if os.path.isfile(name) else str(name)
-    asked = Asked(preset, target, vary, json.loads(json.dumps(nested(overrides or {}), default=str)))
+    request = Request(preset, target, vary, json.loads(json.dumps(nested(overrides or {}), default=str)))
     folder = Path(out) if out is not None else RENDERS / f"{Path(preset).stem}-calibration"
-    check_folder(asked, folder)
-    plan = understood(asked)
-    write_asked(asked, folder)
+    check_folder(request, folder)
+    plan = parse_request(request)
+    write_request(request, folder)
     try:
-        return _carried_out(plan, folder, quiet, cluster)
+        return _run_rounds(plan, folder, quiet, cluster)
     except KeyboardInterrupt:
-        raise KeyboardInterrupt(f"interrupted; go on with: cargolab resume {shlex.quote(str(folder))}") from None
+        raise KeyboardInterrupt(f"interrupted; continue with: cargolab resume {shlex.quote(str(folder))}") from None
 
 
 def resume_calibration(folder: Path | str, *, quiet: bool = False) -> Calibration:
     """Continue the calibration in a folder as it was requested. Raises as `calibrate`."""
-    asked = read_asked(Path(folder))
-    return calibrate(asked.preset, asked.target, asked.vary, asked.overrides, folder, quiet=quiet)
+    request = read_request(Path(folder))
+    return calibrate(request.preset, request.target, request.vary, request.overrides, folder, quiet=quiet)
 
 
-def understood(asked: Asked) -> Plan:
+def parse_request(request: Request) -> Plan:
     """Parse and check a request as far as is possible before a run. Raises LabError."""
-    said, wanted = _pair("--target", asked.target, 'repose="41.3 deg"')
-    given, span = _pair("--vary", asked.vary, "friction=0.2:0.7")
+    name, wanted = _pair("--target", request.target, 'repose="41.3 deg"')
+    given, span = _pair("--vary", request.vary, "friction=0.2:0.7")
     key = dotted_key(Given, given)
     listed = _listed(key, span)
     scale = numeric(listed)
-    overrides = _with_beds(asked)
-    points = ask(asked.preset, {key: listed}, overrides).points
-    measures = rehearsed(points[len(points) // 2])
-    measure = next((name for name in ALIASES.get(said, (said,)) if name in measures), None)
+    overrides = _with_beds(request)
+    points = define_sweep(request.preset, {key: listed}, overrides).points
+    measures = available_measures(points[len(points) // 2])
+    measure = next((known for known in ALIASES.get(name, (name,)) if known in measures), None)
     if measure is None:
-        raise LabError(f"--target: runs of this preset have no {said}; they have {', '.join(measures)}.")
+        raise LabError(f"--target: runs of this preset have no {name}; they have {', '.join(measures)}.")
     measure_unit = measures[measure].unit
     goal = _target(wanted, measure_unit)
-    return Plan(asked, key, scale[1], listed, overrides, measure, measure_unit, *goal)
+    return Plan(request, key, scale[1], listed, overrides, measure, measure_unit, *goal)
 
 
 def _target(text: str, unit: str) -> tuple[float, float]:
@@ -125,7 +126,7 @@ def _target(text: str, unit: str) -> tuple[float, float]:
     number = NUMBER.match(error)
     spread = in_unit(error, unit, "--target")
     if spread < 0.0:
-        raise LabError(f"--target: a standard error is not negative (got {quoted(text)[1:-1]}).")
+        raise LabError(f"--target: a standard error cannot be negative (got {quoted(text)[1:-1]}).")
     if NUMBER.fullmatch(value):  # one unit for both
         value = f"{value} {error[number.end() :].strip()}".strip()
     return in_unit(value, unit, "--target"), spread
@@ -142,7 +143,7 @@ def _listed(key: str, span: str) -> list:
     """POINTS values of a range "0.2:0.7" or "1 mm:2 mm" in ascending order, whole numbers if the key takes these."""
     taken = taken_by(Given, key)
     if taken and taken.kind not in (float, int):
-        raise LabError(f"{key}: takes no single number, so no range of it can be varied.")
+        raise LabError(f"{key}: its value is not a single number, so it cannot be varied over a range.")
     ends = [end.strip() for end in span.split(":")]
     listed = values(key, ":".join([*ends, str(POINTS)])) if len(ends) == 2 and all(ends) else []
     if len(listed) < 2 or numeric(listed) is None:
@@ -152,31 +153,31 @@ def _listed(key: str, span: str) -> list:
     return sorted(listed, key=lambda value: numeric([value])[0][0])
 
 
-def _with_beds(asked: Asked) -> dict:
-    """The overrides, with as many beds as an interval needs unless they set the number of beds."""
-    run = asked.overrides.get("run")
+def _with_beds(request: Request) -> dict:
+    """The overrides, with at least LEAST_BEDS beds unless they set the number of beds."""
+    run = request.overrides.get("run")
     if isinstance(run, Mapping) and "repeats" in run:
-        return asked.overrides
-    own = load(asked.preset, asked.overrides).resolved.run.repeats
-    return nested({**asked.overrides, "run": {**(run or {}), "repeats": max(own, LEAST_BEDS)}})
+        return request.overrides
+    own = load(request.preset, request.overrides).resolved.run.repeats
+    return nested({**request.overrides, "run": {**(run or {}), "repeats": max(own, LEAST_BEDS)}})
 
 
-def _carried_out(plan: Plan, folder: Path, quiet: bool, cluster: str | None) -> Calibration:
-    run = partial(run_sweep, plan.asked.preset, video=False, quiet=quiet, cluster=cluster)
-    tried = _tried(plan, run({plan.key: plan.listed}, plan.overrides, folder / "round-1"), 1)
-    made = _empty(plan, folder, tried)
+def _run_rounds(plan: Plan, folder: Path, quiet: bool, cluster: str | None) -> Calibration:
+    run = partial(run_sweep, plan.request.preset, video=False, quiet=quiet, cluster=cluster)
+    trials = _trials(plan, run({plan.key: plan.listed}, plan.overrides, folder / "round-1"), 1)
+    made = _without_result(plan, folder, trials)
     near = _met(made, plan.range)
     around = _around(plan, near)
     if len(around) > 1:
-        second = _tried(plan, run({plan.key: around}, plan.overrides, folder / "round-2"), 2)
-        known = {point.x for point in tried}
-        tried = sorted([*tried, *(point for point in second if point.x not in known)], key=lambda point: point.x)
+        second = _trials(plan, run({plan.key: around}, plan.overrides, folder / "round-2"), 2)
+        known = {point.x for point in trials}
+        trials = sorted([*trials, *(point for point in second if point.x not in known)], key=lambda point: point.x)
     half = CLOSER * (plan.range[1] - plan.range[0])
-    made = replace(_empty(plan, folder, tried), window=(near - half, near + half))
+    made = replace(_without_result(plan, folder, trials), window=(near - half, near + half))
     return write_report(_solved(made))
 
 
-def _tried(plan: Plan, result: SweepResult, number: int) -> list[Tried]:
+def _trials(plan: Plan, result: SweepResult, number: int) -> list[Trial]:
     """The results of each value of a round."""
     column = next(name for name in result.rows[0] if name.partition(" (")[0] == plan.key)
     found = []
@@ -186,15 +187,15 @@ def _tried(plan: Plan, result: SweepResult, number: int) -> list[Tried]:
         stopped = "" if point.status == "complete" else point.status
         beds = tuple(value.worlds) if value and not stopped else ()
         note = stopped or (value.note if value else f"no {plan.measure}")
-        found.append(Tried(float(row[column]), f"round-{number}", beds, note))
+        found.append(Trial(float(row[column]), f"round-{number}", beds, note))
     return found
 
 
-def _empty(plan: Plan, folder: Path, tried: list[Tried]) -> Calibration:
+def _without_result(plan: Plan, folder: Path, trials: list[Trial]) -> Calibration:
     """A calibration with the values tried, and no result yet."""
     return Calibration(
         folder=folder,
-        preset=plan.asked.preset,
+        preset=plan.request.preset,
         key=plan.key,
         unit=plan.unit,
         measure=plan.measure,
@@ -202,13 +203,13 @@ def _empty(plan: Plan, folder: Path, tried: list[Tried]) -> Calibration:
         target=plan.target,
         target_error=plan.target_error,
         range=plan.range,
-        asked_beds=_beds(plan),
-        tried=tuple(tried),
+        requested_beds=_beds(plan),
+        trials=tuple(trials),
     )
 
 
 def _beds(plan: Plan) -> int:
-    return load(plan.asked.preset, plan.overrides).resolved.run.repeats
+    return load(plan.request.preset, plan.overrides).resolved.run.repeats
 
 
 def _met(made: Calibration, span: tuple[float, float]) -> float:
@@ -222,8 +223,8 @@ def _met(made: Calibration, span: tuple[float, float]) -> float:
         _give_up(made, made.nowhere())
     roots = crossings(response, made.target)
     if len(roots) > 1:
-        told = " and ".join(f"{root:.3g}" for root in roots)
-        _give_up(made, f"--vary: about {told} of {made.key} give the target alike; narrow the range to one of them")
+        listed = " and ".join(f"{root:.3g}" for root in roots)
+        _give_up(made, f"--vary: several values of {made.key} give the target, about {listed}; narrow the range")
     if roots:
         return roots[0]
     k = int(np.flatnonzero(off[:-1] * off[1:] <= 0.0)[0])
@@ -256,10 +257,10 @@ def _solved(made: Calibration) -> Calibration:
     return made
 
 
-def _with_solution(made: Calibration, response: Response, root: float, beside: list) -> Calibration:
+def _with_solution(made: Calibration, response: Response, root: float, misfits: list) -> Calibration:
     found = solved(response, made.target, root, made.target_error)
     wanted = WITHIN * (made.range[1] - made.range[0])
-    enough = None if found.std is None else beds_for(wanted, found.std)
+    beds_needed = None if found.std is None else beds_for(wanted, found.std)
     return replace(
         made,
         response=response,
@@ -269,9 +270,9 @@ def _with_solution(made: Calibration, response: Response, root: float, beside: l
         interval=found.interval,
         beds=found.beds,
         wanted=wanted,
-        enough=None if enough is None else max(enough, LEAST_BEDS),
-        beside=tuple(beside),
-        worthless=found.beds < LEAST_BEDS,
+        beds_needed=None if beds_needed is None else max(beds_needed, LEAST_BEDS),
+        misfits=tuple(misfits),
+        too_few_beds=found.beds < LEAST_BEDS,
     )
 
 

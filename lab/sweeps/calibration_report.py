@@ -22,14 +22,14 @@ HALF = 0.5  # a value of the key is left out if a smaller fraction of its beds h
 METHOD = """\
 The same beds are run at every value of the key. To each bed's numbers a parabola is fitted; their mean is the \
 response, and the value is where it meets the target. The interval holds every value at which Student's test does not \
-refuse that the beds' mean is the target (Fieller 1954; Seber 1977, section 7.2); the standard error is that of the \
+reject that the beds' mean is the target (Fieller 1954; Seber 1977, section 7.2); the standard error is that of the \
 mean over the slope. Where the shaded band of the figure, the interval of the mean, meets the target, the interval of \
 the key ends."""
 
 
 @dataclass(frozen=True)
-class Tried:
-    """One value of the key that was run: the measure in each bed, None if not found; `note` says what went wrong."""
+class Trial:
+    """One value of the key that was run: the measure in each bed, None if not found; `note`: what went wrong."""
 
     x: float
     round: str
@@ -47,9 +47,9 @@ class Calibration:
     """The value of `key` that gives `measure` its `target`, with its standard error and 95 % interval.
 
     std: standard deviation over beds of the value that each bed alone would give; `beds`: the number of beds used; an
-    end of the interval is infinite if it is beyond the range. None: not known; `refused` says why there is no value.
-    `window`: the range of values in which the curve is fitted (None: all); `enough`: the number of beds that would give
-    an interval of half width `wanted`. Units as in the texts.
+    end of the interval is infinite if it is beyond the range. None: not known; `refused`: why there is no value.
+    `window`: the range of values in which the curve is fitted (None: all); `beds_needed`: the number of beds for an
+    interval of half width `wanted`; `misfits`: values where the measures deviate from the curve, with the deviation.
     """
 
     folder: Path = field(repr=False)
@@ -61,8 +61,8 @@ class Calibration:
     target: float
     target_error: float
     range: tuple[float, float]
-    asked_beds: int
-    tried: tuple[Tried, ...] = field(repr=False)
+    requested_beds: int
+    trials: tuple[Trial, ...] = field(repr=False)
     window: tuple[float, float] | None = None
     value: float | None = None
     standard_error: float | None = None
@@ -70,25 +70,25 @@ class Calibration:
     interval: tuple[float, float] | None = None
     beds: int = 0
     wanted: float = 0.0
-    enough: int | None = None
-    beside: tuple[tuple[float, float], ...] = ()
-    worthless: bool = False
+    beds_needed: int | None = None
+    misfits: tuple[tuple[float, float], ...] = ()
+    too_few_beds: bool = False
     refused: str = ""
     response: Response | None = field(default=None, repr=False, compare=False)
 
     @property
-    def usable(self) -> list[Tried]:
+    def usable(self) -> list[Trial]:
         """The values in the window at which at least half of the beds have the measure."""
         low, high = self.window or (-np.inf, np.inf)
         slack = 1e-4 * (self.range[1] - self.range[0])
-        least = max(1.0, HALF * self.asked_beds)
-        return [p for p in self.tried if len(p.found) >= least and low - slack <= p.x <= high + slack]
+        least = max(1.0, HALF * self.requested_beds)
+        return [p for p in self.trials if len(p.found) >= least and low - slack <= p.x <= high + slack]
 
     def measures(self) -> tuple[np.ndarray, np.ndarray]:
         """The usable values (N,) and the measure in every bed (N, B), NaN if not found."""
         rows = [[np.nan if bed is None else bed for bed in point.beds] for point in self.usable]
         values = np.array([point.x for point in self.usable])
-        return values, np.array(rows, dtype=float).reshape(len(rows), self.asked_beds)
+        return values, np.array(rows, dtype=float).reshape(len(rows), self.requested_beds)
 
     def means(self) -> tuple[np.ndarray, np.ndarray]:
         """The usable values (N,) and the mean over the beds at each."""
@@ -97,12 +97,12 @@ class Calibration:
     @property
     def lost(self) -> int:
         """Number of beds, counted at each value, in which the measure was not found."""
-        return sum(self.asked_beds - len(point.found) for point in self.tried)
+        return sum(self.requested_beds - len(point.found) for point in self.trials)
 
     def nowhere(self) -> str:
         """The sentence that no value in the range gives the target."""
         x, means = self.means()
-        beds = f"the means of {self.asked_beds} beds are" if self.asked_beds > 1 else "one bed's are"
+        beds = f"the means of {self.requested_beds} beds are" if self.requested_beds > 1 else "one bed's are"
         return (
             f"--vary: no value of {self.key} in the range {x.min():g} to {x.max():g}{_unit(self.unit)} gives "
             f"{_words(self.measure)} {self.target:g}{_unit(self.measure_unit)}: {beds} {means.min():.3g} to "
@@ -116,9 +116,7 @@ class Calibration:
         if n < 2 or abs(near.found.mean() - self.target) > half_of(n, near.found.std(ddof=1)):
             return "; vary it further, or another key"
         where = f"{near.x:g}{_unit(self.unit)}"
-        return (
-            f", of which that at {where} differs from the target by no more than chance; run more beds or vary further"
-        )
+        return f"; at {where} the difference from the target is not significant; run more beds or vary it further"
 
     def text(self) -> str:
         """The result in one line, and a line for each warning."""
@@ -129,7 +127,7 @@ class Calibration:
 
     @property
     def summary_text(self) -> str:
-        """The text to print, as runs and sweeps have it."""
+        """The text to print, under the same name as in the results of runs and sweeps."""
         return self.text()
 
     def _target(self) -> str:
@@ -144,33 +142,35 @@ class Calibration:
         return f"{self.key} = {known}, {interval(*self.interval, self.unit)}"
 
     def warnings(self) -> list[str]:
-        """The warnings that a reader must know, one sentence each."""
-        said = []
-        if self.value is not None and self.worthless:
-            said.append(self._worthless())
+        """Warnings on the result, one sentence each."""
+        found = []
+        if self.value is not None and self.too_few_beds:
+            found.append(self._too_few_beds())
         if self.interval and any(isinf(end) for end in self.interval):
-            said.append("The interval reaches beyond the range that was tried: vary the key further, or run more beds.")
+            found.append(
+                "The interval reaches beyond the range that was tried: vary the key further, or run more beds."
+            )
         if self.std == 0.0:
-            said.append("All beds are alike: their scatter, and the interval that follows from it, mean nothing.")
+            found.append("All beds are equal: their scatter, and the interval that follows from it, mean nothing.")
         if self.lost:
-            said.append(
-                f"In {self.lost} of {self.asked_beds * len(self.tried)} runs the measure was not found; the value is "
-                "that of the others, which need not be like them."
+            found.append(
+                f"In {self.lost} of {self.requested_beds * len(self.trials)} runs the measure was not found; the "
+                "value is that of the others, which may differ from them."
             )
-        for x, off in self.beside:
-            said.append(
-                f"At {x:g}{_unit(self.unit)} the measures lie {off:+.2g}{_unit(self.measure_unit)} beside the curve, "
-                "by more than chance: the value may be off; narrow the range."
+        for x, off in self.misfits:
+            found.append(
+                f"At {x:g}{_unit(self.unit)} the measures lie {off:+.2g}{_unit(self.measure_unit)} off the curve, "
+                "which is significant: the value may be wrong; narrow the range."
             )
-        return said
+        return found
 
-    def _worthless(self) -> str:
-        what = "There is no interval from one bed" if self.interval is None else "The interval is worthless"
-        said = f"{what}: it takes {LEAST_BEDS} beds at the least, and this is of {self.beds}"
-        if self.enough is None:
-            return f"{said}."
+    def _too_few_beds(self) -> str:
+        what = "One bed gives no interval" if self.interval is None else "The interval is not reliable"
+        text = f"{what}: it takes at least {LEAST_BEDS} beds, not {self.beds}"
+        if self.beds_needed is None:
+            return f"{text}."
         half = f"{self.wanted:.2g}{_unit(self.unit)}"
-        return f"{said}; at this scatter {self.enough} would give one of half the width {half}."
+        return f"{text}; with this scatter, {self.beds_needed} beds would give a half width of {half}."
 
 
 def write_report(made: Calibration) -> Calibration:
@@ -196,7 +196,7 @@ def _data(made: Calibration) -> dict:
         "n": made.beds,
         "refused": made.refused,
         "warnings": made.warnings(),
-        "tried": [{"x": p.x, "round": p.round, "worlds": list(p.beds), "note": p.note} for p in made.tried],
+        "tried": [{"x": p.x, "round": p.round, "worlds": list(p.beds), "note": p.note} for p in made.trials],
     }
 
 
@@ -207,30 +207,30 @@ def _page(made: Calibration) -> Iterator[str]:
     yield from (f"\n**Warning:** {warning}" for warning in made.warnings())
     yield "\n![calibration](calibration.png)\n"
     yield f"- preset {code(made.preset)}, {made.key} from {made.range[0]:g} to {made.range[1]:g}{_unit(made.unit)}"
-    yield f"- {made.asked_beds} beds at each of {len(made.tried)} values"
-    yield "\n## What was tried\n"
+    yield f"- {made.requested_beds} beds at each of {len(made.trials)} values"
+    yield "\n## Values that were run\n"
     yield f"| {made.key}{_unit(made.unit)} | {_words(made.measure)}{_unit(made.measure_unit)} | beds | without | note |"
     yield "|---|---|---|---|---|"
-    for point in made.tried:
-        lost = made.asked_beds - len(point.found)
+    for point in made.trials:
+        lost = made.requested_beds - len(point.found)
         cells = [f"{point.x:g}", _mean(point.found), str(len(point.found)), str(lost), inline(point.note)]
         yield f"| {' | '.join(cells)} |"
-    yield "\n± is the standard deviation over beds. `without` counts the runs in which the measure was not found, or"
-    yield "that stopped; they are left out, and so is a value of the key at which more than half of them are such."
+    yield "\n± is the standard deviation over beds. `without` counts the runs that stopped, or in which the measure was"
+    yield "not found; they are left out. A value of the key is left out if that is more than half of its runs."
     if made.std is not None and made.std > 0.0:
         yield from _more_beds(made)
-    yield f"\n## How\n\n{METHOD}"
+    yield f"\n## Method\n\n{METHOD}"
     yield "\n## Files\n"
     yield "- [calibration](calibration.json)"
-    for name in dict.fromkeys(point.round for point in made.tried):
+    for name in dict.fromkeys(point.round for point in made.trials):
         yield f"- [{name}]({name}/summary.md)"
 
 
 def _more_beds(made: Calibration) -> Iterator[str]:
-    yield "\n## What more beds would give\n"
-    yield f"Of single beds the value would be {plus_minus(made.value, made.std)}{_unit(made.unit)} (std over beds).\n"
-    yield "| beds | half the interval |\n|---|---|"
-    counts = {LEAST_BEDS, 16, 32, 64, made.beds, made.enough or made.beds}
+    yield "\n## Interval with more beds\n"
+    yield f"A single bed would give {plus_minus(made.value, made.std)}{_unit(made.unit)} (std over beds).\n"
+    yield "| beds | half width of the interval |\n|---|---|"
+    counts = {LEAST_BEDS, 16, 32, 64, made.beds, made.beds_needed or made.beds}
     yield from (f"| {n} | {half_of(n, made.std):.2g}{_unit(made.unit)} |" for n in sorted(counts) if n > 1)
 
 
@@ -238,13 +238,13 @@ def figure(made: Calibration) -> Figure:
     """Every bed, the means ± std over beds, the response with its interval, the target, the value with its interval."""
     drawn = Figure(figsize=(6.4, 4.4), layout="constrained")
     axes = drawn.add_subplot()
-    for point in made.tried:
+    for point in made.trials:
         axes.plot(np.full(len(point.found), point.x), point.found, ".", color=GREY, ms=3, alpha=0.6, zorder=1)
     axes.plot([], [], ".", color=GREY, label="each bed")
-    filled = [point for point in made.tried if len(point.found)]
+    filled = [point for point in made.trials if len(point.found)]
     stds = [point.found.std(ddof=1) if len(point.found) > 1 else 0.0 for point in filled]
     means = [point.found.mean() for point in filled]
-    label = f"mean ± std over beds (n = {made.asked_beds})"
+    label = f"mean ± std over beds (n = {made.requested_beds})"
     axes.errorbar([p.x for p in filled], means, stds, fmt="o", ms=4, capsize=2.5, color=BLUE, label=label)
     if made.response:
         _draw_response(axes, made)

@@ -1,13 +1,13 @@
-"""Run launches on the workers of a Dask scheduler, and fetch the files of their runs.
+"""Run batches on the workers of a Dask scheduler, and fetch the files of their runs.
 
-A launch is one task. A worker runs it in a folder of its own, with the number of threads and the kind of device that
-this machine would have used, so that its recordings have the same bits as here. Recordings are sent as bytes, one run
-at a time: a worker holds all runs of its last launches in memory until they are fetched, this machine only one. If a
-worker is lost, Dask repeats its launch.
+A batch is one task. A worker runs it in a temporary folder, with the number of threads and the kind of device that this
+machine would have used, so that its recordings have the same bits as here. Recordings are sent as bytes, one run at a
+time: a worker keeps all runs of its last batches in memory until they are fetched, this machine only one. If a worker
+is lost, Dask repeats its batch.
 
-Dask sends Python pickles, which run code when they are read: whoever can reach a scheduler can run code on its workers
-and on its clients. Use only schedulers of your own; those that other machines can reach need TLS (distributed.dask.org,
-"TLS/SSL").
+Dask sends Python pickles, which run code when they are read: anybody who can reach a scheduler can run code on its
+workers and on its clients. Use only your own schedulers; those that other machines can reach need TLS
+(distributed.dask.org, "TLS/SSL").
 """
 
 import asyncio
@@ -33,7 +33,7 @@ from lab.preset.find import LoadedPreset
 from lab.preset.schema import Resolved
 from lab.preset.units import quoted
 from lab.recording import versions
-from lab.runs.launch import Run, launch, prepare
+from lab.runs.batch import Run, prepare, run_batch
 from lab.runs.runner import report
 from solvers.machine.runtime import available_cores, choose_arch
 
@@ -41,23 +41,23 @@ if TYPE_CHECKING:
     from distributed import Client
 
 PATIENCE = 10.0  # s to wait for an answer from the scheduler
-LAST = "summary.json"  # the last file of a run to arrive: with it the run counts as done
-PLAIN = re.compile(r"\w[\w.-]*")  # the name of a file of a run
-ALIKE = ("cargo-shift-lab", "taichi")  # packages of which a worker needs the same version, for the same bits
+LAST = "summary.json"  # the last file of a run to be written here: with it the run counts as done
+PLAIN = re.compile(r"\w[\w.-]*")  # permitted names of a run's files
+SAME_VERSION = ("cargo-shift-lab", "taichi")  # packages of which a worker needs the same version, for the same bits
 
 Files = dict[str, bytes]
 
 
 @dataclass(frozen=True)
 class Errand:
-    """A launch for a worker: the presets of its runs by their folders on this machine."""
+    """A batch for a worker: the presets of its runs by their folders on this machine."""
 
     runs: Mapping[Path, LoadedPreset]
 
 
 @dataclass(frozen=True)
-class Terms:
-    """The settings with which a worker runs a launch: those of this machine, for the same bits."""
+class WorkerSettings:
+    """The settings with which a worker runs a batch: those of this machine, for the same bits."""
 
     threads: int
     arch: str
@@ -66,17 +66,17 @@ class Terms:
 
 
 def fetch(errands: Sequence[Errand], address: str, progress: Progress) -> None:
-    """Let the workers of the scheduler at `address` run all launches, and put each run's files into its folder.
+    """Run all batches on the workers of the scheduler at `address`, and put each run's files into its folder.
 
-    Runs that have arrived stay, whatever happens to the others; launches that are still running when this ends are
-    cancelled. Raises LabError, Unavailable if a worker lacks the device, and KeyboardInterrupt.
+    Runs that were fetched are kept in any case; batches that are still running when this ends are cancelled. Raises
+    LabError, Unavailable if a worker lacks the device, and KeyboardInterrupt.
     """
     if not errands:
         return
     _warn_of(address, progress)
     with _connected(address) as client:
-        if (heard := client.scheduler_info()["address"]) != address:
-            _warn_of(heard, progress)
+        if (actual := client.scheduler_info()["address"]) != address:
+            _warn_of(actual, progress)
         if not client.nthreads():
             progress.say(f"The scheduler at {address} has no worker yet: waiting for one.")
         _fetch(client, errands, progress)
@@ -85,8 +85,8 @@ def fetch(errands: Sequence[Errand], address: str, progress: Progress) -> None:
 def _warn_of(address: str, progress: Progress) -> None:
     if is_open(address):
         progress.say(
-            f"note: the scheduler at {address} listens beyond this machine without TLS, so whoever reaches it can run "
-            "programs here and on its workers: start it with --host 127.0.0.1, or with TLS."
+            f"note: other machines can reach the scheduler at {address} without TLS, so anybody there can run programs "
+            "here and on its workers: start it with --host 127.0.0.1, or with TLS."
         )
 
 
@@ -109,9 +109,9 @@ def _fetch(client: "Client", errands: Sequence[Errand], progress: Progress) -> N
     for errand in errands:
         presets = list(errand.runs.values())
         texts = [(one.name, one.given_text, one.resolved.model_dump_json()) for one in presets]
-        work = pickle.dumps(partial(run_launch, texts, _terms(presets[0])))
-        done = client.submit(_unpacked({name: versions().get(name, "") for name in ALIKE}), work, pure=False)
-        # One more task per run, before any further launch, so that runs are sent and freed on the worker one by one.
+        work = pickle.dumps(partial(run_on_worker, texts, _worker_settings(presets[0])))
+        done = client.submit(_unpacked({name: versions().get(name, "") for name in SAME_VERSION}), work, pure=False)
+        # One more task per run, before any further batch, so that runs are sent and freed on the worker one by one.
         folders |= {client.submit(getitem, done, k, pure=False, priority=1): at for k, at in enumerate(errand.runs)}
     del done
     total = len(folders)
@@ -121,18 +121,18 @@ def _fetch(client: "Client", errands: Sequence[Errand], progress: Progress) -> N
         future.release()
         progress.reach(count)
         if not progress.live:
-            progress.say(f"{count} of {total} runs are back")
+            progress.say(f"{count} of {total} runs are done")
     progress.finish()
 
 
-def _terms(preset: LoadedPreset) -> Terms:
+def _worker_settings(preset: LoadedPreset) -> WorkerSettings:
     run = preset.resolved.run
-    return Terms(run.threads or available_cores(), choose_arch(run.arch, run.precision), versions(), sources())
+    return WorkerSettings(run.threads or available_cores(), choose_arch(run.arch, run.precision), versions(), sources())
 
 
 @cache
 def sources() -> str:
-    """A hash of the source of lab and solvers: it tells edited copies of one version apart."""
+    """A hash of the source of lab and solvers, which differs between edited copies of one version."""
     digest = hashlib.blake2b(digest_size=16)
     for package in ("lab", "solvers"):
         home = Path(str(files(package)))
@@ -166,35 +166,35 @@ def _unpacked(wanted: Mapping[str, str]) -> Callable[[bytes], list[Files]]:
     return task
 
 
-def run_launch(texts: Sequence[tuple[str, str, str]], terms: Terms) -> list[Files]:
-    """Run presets side by side in a task of a worker; returns the files of each run, the summary last.
+def run_on_worker(texts: Sequence[tuple[str, str, str]], settings: WorkerSettings) -> list[Files]:
+    """Run presets as a batch in a task of a worker; returns the files of each run, the summary last.
 
     texts: for each preset its name, its TOML text and its resolved values as JSON. Raises LabError if the worker has
-    several threads, and as `launch` does.
+    several threads, and as `run_batch` does.
     """
     from distributed import get_worker
 
     worker = get_worker()
     if worker.state.nthreads > 1:
         raise LabError(
-            f"--cluster: a worker has {worker.state.nthreads} threads, but a process can run one launch at a time: "
+            f"--cluster: a worker has {worker.state.nthreads} threads, but a process can run one batch at a time: "
             "start workers with --nthreads 1."
         )
     presets = [LoadedPreset(name, given, Resolved.model_validate_json(resolved)) for name, given, resolved in texts]
-    progress = _Dutiful()
-    if sources() != terms.sources:
+    progress = _TaskProgress()
+    if sources() != settings.sources:
         raise LabError(
-            "--cluster: the lab of a worker has other source files than the one here, though the same version: install "
-            "the lab there as here."
+            "--cluster: the lab of a worker has the same version but other source files than the one here: install "
+            "the same lab there."
         )
-    if versions() != terms.versions:
-        progress.warn("The run was made with other versions of the lab or its libraries than it was asked for with.")
+    if versions() != settings.versions:
+        progress.warn("The run was made on a worker with other versions of the lab or its libraries.")
     with _in_a_folder(worker.local_directory) as home:
         runs = [prepare(preset, home / f"{k:03}") for k, preset in enumerate(presets)]
-        settled, worlds = [_on_terms(run, terms) for run in runs], sum(len(run.scene.radius) for run in runs)
-        for run, on_terms in zip(runs, settled, strict=True):
-            run.make_recording(engaged=on_terms.engaged(worlds))
-        launch(settled, home, progress)
+        local, worlds = [_with_settings(run, settings) for run in runs], sum(len(run.scene.radius) for run in runs)
+        for run, here in zip(runs, local, strict=True):
+            run.make_recording(device=here.device(worlds))
+        run_batch(local, home, progress)
         for run in runs:
             report(run.folder, progress, video=False, plots=False)
         return [_taken(run.folder) for run in runs]
@@ -202,7 +202,7 @@ def run_launch(texts: Sequence[tuple[str, str, str]], terms: Terms) -> list[File
 
 @contextmanager
 def _in_a_folder(place: str | Path) -> Iterator[Path]:
-    """A temporary folder for a launch on a worker; write errors name the worker as their place."""
+    """A temporary folder for a batch on a worker; messages of write errors say that they come from a worker."""
     try:
         with TemporaryDirectory(prefix="cargolab-", dir=place) as home:
             yield Path(home)
@@ -216,8 +216,8 @@ def _in_a_folder(place: str | Path) -> Iterator[Path]:
         raise LabError(f"--cluster: on a worker, {error}") from error
 
 
-class _Dutiful(Progress):
-    """Silent progress in a task; it ends the task once that has been cancelled."""
+class _TaskProgress(Progress):
+    """Silent progress in a task, which ends the task if it has been cancelled."""
 
     def __init__(self) -> None:
         from distributed import get_worker
@@ -235,11 +235,11 @@ class _Dutiful(Progress):
             raise Reschedule
 
 
-def _on_terms(run: Run, terms: Terms) -> Run:
-    """The run with the threads and device of `terms`; its recording, made before, has the requested ones."""
+def _with_settings(run: Run, settings: WorkerSettings) -> Run:
+    """The run with the threads and device of `settings`; its recording keeps the requested ones."""
     resolved = run.loaded.resolved
-    settled = replace(resolved.run, threads=terms.threads, arch=terms.arch)
-    return replace(run, loaded=replace(run.loaded, resolved=resolved.model_copy(update={"run": settled})))
+    changed = replace(resolved.run, threads=settings.threads, arch=settings.arch)
+    return replace(run, loaded=replace(run.loaded, resolved=resolved.model_copy(update={"run": changed})))
 
 
 def _taken(folder: Path) -> Files:
@@ -252,7 +252,7 @@ def _put(sent: Files, folder: Path) -> None:
         folder.mkdir(parents=True, exist_ok=True)
         for name, content in sent.items():
             if not PLAIN.fullmatch(name):
-                raise LabError(f"--cluster: a worker sent a file for another folder ({quoted(name)}): ask another one.")
+                raise LabError(f"--cluster: a worker sent a file for another folder ({quoted(name)}): do not use it.")
             unfinished = folder / f"{name}.new"
             unfinished.write_bytes(content)
             unfinished.replace(folder / name)
@@ -270,13 +270,13 @@ def _connected(address: str) -> Iterator["Client"]:
         raise LabError("--cluster: the package distributed is missing here: pip install distributed.") from error
     logging.getLogger("distributed").setLevel(logging.CRITICAL)  # it logs every lost connection at length
 
-    async def knock() -> None:
+    async def try_connection() -> None:
         """Try the address first: a client without a scheduler waits once more when it closes, and logs errors."""
         found = await connect(address, timeout=PATIENCE, **Security().get_connection_args("client"))
         await found.close()
 
     try:
-        asyncio.run(knock())
+        asyncio.run(try_connection())
         client = Client(address, timeout=PATIENCE, set_as_default=False)
     except (OSError, ValueError) as error:
         raise LabError(
@@ -288,12 +288,12 @@ def _connected(address: str) -> Iterator["Client"]:
             yield client
         except KilledWorker as error:
             raise LabError(
-                f"--cluster: {error.allowed_failures + 1} workers died with the same launch: "
+                f"--cluster: {error.allowed_failures + 1} workers died with the same batch: "
                 "look at their logs, and give them more memory or fewer worlds (--repeats)."
             ) from error
         except ImportError as error:
-            raise LabError(f"--cluster: a worker lacks {error.name}: install the lab there as here.") from error
+            raise LabError(f"--cluster: a worker lacks {error.name}: install the same lab there.") from error
         except (CancelledError, OSError) as error:
             raise LabError(
-                f"--cluster: the scheduler at {address} is gone: start it again and ask again; what came back is kept."
+                f"--cluster: the scheduler at {address} is gone: start both again; fetched runs are kept."
             ) from error

@@ -1,4 +1,4 @@
-"""The request of a sweep, a preset at every point of a grid of values of its keys, and the file that keeps it."""
+"""The definition of a sweep, a preset at every point of a grid of values of its keys, and the file that stores it."""
 
 import json
 import math
@@ -22,7 +22,7 @@ MOST_POINTS = 100_000
 
 @dataclass(frozen=True)
 class Sweep:
-    """The request: the preset's name, the values of each swept key, the preset at each point of the grid.
+    """A sweep: the preset's name, the values of each swept key, the preset at each point of the grid.
 
     The last key changes fastest.
     """
@@ -36,18 +36,18 @@ class Sweep:
         """The values of the swept keys at each point."""
         return [dict(zip(self.axes, chosen, strict=True)) for chosen in product(*self.axes.values())]
 
-    def worth(self, number: int) -> float:
+    def cost(self, number: int) -> float:
         """Relative cost of a point: model time (s) times number of grains."""
         preset = self.points[number].resolved
         return preset.run.duration * preset.run.repeats * grain_count(preset)
 
     def same_as(self, other: "Sweep") -> bool:
         """Whether the other sweep has the same points."""
-        asked = [(sweep.name, sweep.axes, [point.resolved for point in sweep.points]) for sweep in (self, other)]
-        return asked[0] == asked[1]
+        mine, others = ((s.name, s.axes, [point.resolved for point in s.points]) for s in (self, other))
+        return mine == others
 
     def write(self, folder: Path) -> None:
-        """Write the request to the sweep's folder. Raises LabError."""
+        """Write the definition to the sweep's folder. Raises LabError."""
         points = [
             {"given": point.given_text, "resolved": json.loads(point.resolved.model_dump_json())}
             for point in self.points
@@ -63,12 +63,12 @@ class Sweep:
             raise LabError(f"{folder} cannot be written ({error.strerror}): choose another folder.") from error
 
 
-def ask(name: str | Path, axes: Mapping[str, str | Sequence], overrides: Mapping | None = None) -> Sweep:
+def define_sweep(name: str | Path, axes: Mapping[str, str | Sequence], overrides: Mapping | None = None) -> Sweep:
     """The sweep of a preset over `axes`: for each key a text (see `lab.sweeps.axes`) or a sequence of values.
 
     Raises LabError if a point is not a valid preset.
     """
-    listed = {key: values(key, said) if isinstance(said, str) else _plain(said) for key, said in axes.items()}
+    listed = {key: values(key, given) if isinstance(given, str) else _plain(given) for key, given in axes.items()}
     fixed = {key: found[0] for key, found in listed.items() if len(found) == 1}
     swept = {key: found for key, found in listed.items() if len(found) != 1}
     if not swept or not all(swept.values()):
@@ -82,8 +82,8 @@ def ask(name: str | Path, axes: Mapping[str, str | Sequence], overrides: Mapping
         try:
             points.append(load(name, {**(overrides or {}), **fixed, **setting}))
         except LabError as error:
-            said = ", ".join(f"{key} = {value}" for key, value in setting.items())
-            raise LabError(f"point {said}: {error}") from None
+            where = ", ".join(f"{key} = {value}" for key, value in setting.items())
+            raise LabError(f"point {where}: {error}") from None
     return Sweep(points[0].name, swept, points)
 
 
@@ -98,12 +98,12 @@ def read_sweep(folder: Path) -> Sweep:
     try:
         content = json.loads(path.read_text(encoding="utf-8"))
         if content["format"] != FORMAT:
-            raise LabError(f"{path} was written by another version: sweep anew in another folder.")
+            raise LabError(f"{path} was written by another version: sweep again in another folder.")
         name, axes = content["preset"], dict(content["axes"])
         if not isinstance(name, str) or not axes or not all(isinstance(found, list) for found in axes.values()):
             raise ValueError("no preset, or no values of its keys")
         if not 1 < math.prod(map(len, axes.values())) == len(content["points"]) <= MOST_POINTS:
-            raise ValueError("values and points do not belong together")
+            raise ValueError("the number of points does not match the values")
         points = [
             LoadedPreset(name, str(point["given"]), resolved_from(point["resolved"])) for point in content["points"]
         ]
@@ -111,4 +111,4 @@ def read_sweep(folder: Path) -> Sweep:
     except OSError as error:
         raise LabError(f"{path} cannot be read ({error.strerror}): name the folder of a sweep.") from error
     except (ValueError, KeyError, TypeError, RecursionError) as error:
-        raise LabError(f"{path} is damaged: sweep anew in another folder.") from error
+        raise LabError(f"{path} is damaged: sweep again in another folder.") from error

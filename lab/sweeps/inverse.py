@@ -53,7 +53,7 @@ class Response:
         return self.at(x).mean(axis=0)
 
     def error(self, x: np.ndarray) -> np.ndarray:
-        """Standard error of the mean (k,); NaN of a single bed."""
+        """Standard error of the mean (k,); NaN for a single bed."""
         if self.beds < 2:
             return np.full(np.shape(x), np.nan)
         return self.at(x).std(axis=0, ddof=1) / sqrt(self.beds)

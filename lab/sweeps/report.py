@@ -1,4 +1,4 @@
-"""The results of a sweep: a table for programs, figures, a film of the points side by side, and a page for people."""
+"""The results of a sweep: a table for programs, figures, a video of the points side by side, and a page for readers."""
 
 import csv
 import json
@@ -39,20 +39,20 @@ def write_report(
 ) -> tuple[list[Row], str]:
     """Write results.csv, figures, sweep.mp4 and summary.md of a sweep; returns the table's rows and a short text.
 
-    settings: the values of the swept keys at each point; folders: of the points' runs, which may not be there yet.
-    Raises LabError when the folder cannot be written.
+    settings: the values of the swept keys at each point; folders: of the points' runs, which may not exist yet. Raises
+    LabError if the folder cannot be written.
     """
     points = [Point(setting, where) for setting, where in zip(settings, folders, strict=True)]
     rows = _table(axes, points, folder)
-    told = headlines({key: value for point in points for key, value in point.measures.items()}, FIGURES)
+    shown = headlines({key: value for point in points for key, value in point.measures.items()}, FIGURES)
     files = {"results": folder / "results.csv"}
     try:
         _write_table(rows, files["results"])
-        files |= _figures(name, axes, points, told, folder)
+        files |= _figures(name, axes, points, shown, folder)
         if video and (film := _film(name, points, folder, progress)):
             files["video"] = film
         page = folder / "summary.md"
-        page.write_text("\n".join(_page(name, axes, points, list(told), files, folder)), encoding="utf-8")
+        page.write_text("\n".join(_page(name, axes, points, list(shown), files, folder)), encoding="utf-8")
     except OSError as error:
         raise LabError(f"{folder} cannot be written ({error.strerror or error}): make room there.") from error
     files["summary"] = page
@@ -60,7 +60,7 @@ def write_report(
 
 
 class Point:
-    """One point of a sweep: its setting and, as far as it was run, its status, measures by name and warnings."""
+    """One point of a sweep: its setting and, if it was run, its status, measures by name and warnings."""
 
     def __init__(self, setting: Mapping[str, object], folder: Path) -> None:
         self.setting, self.folder = setting, folder
@@ -76,7 +76,7 @@ class Point:
             self.measures = read_values(data["measures"])
             self.status, self.warnings = data["status"], list(data["warnings"])
             if not all(isinstance(text, str) for text in (self.status, *self.warnings)):
-                raise ValueError("its status or a warning is no text")
+                raise ValueError("its status or a warning is not a text")
         except (ValueError, KeyError, TypeError, AttributeError) as error:
             raise _damaged(path) from error
 
@@ -138,11 +138,11 @@ def _plain(value: object) -> object:
 
 
 def _figures(
-    name: str, axes: Mapping[str, Sequence], points: Sequence[Point], told: Mapping[str, Value], folder: Path
+    name: str, axes: Mapping[str, Sequence], points: Sequence[Point], shown: Mapping[str, Value], folder: Path
 ) -> dict[str, Path]:
     drawn = {}
     with matplotlib.rc_context(STYLE):
-        for key, value in told.items():
+        for key, value in shown.items():
             means = np.array([point.measures[key].value if key in point.measures else None for point in points], float)
             if not np.isfinite(means).any():
                 continue
@@ -161,7 +161,7 @@ def _draw(
 ) -> None:
     """Draw a measure over the first key: one curve per setting of the other keys, or a map for one key of many values.
 
-    `bars` says what the bars of a curve are, "" if it has none.
+    bars: label of the error bars, "" if there are none.
     """
     (key, values), *others = axes.items()
     shape = tuple(map(len, axes.values()))
@@ -201,8 +201,8 @@ def _bars(points: Sequence[Point], key: str) -> str:
     counts = {point.measures[key].n for point in points if key in point.measures and point.measures[key].n > 1}
     if not counts:
         return ""
-    said = f"{min(counts)}" if len(counts) == 1 else f"{min(counts)} to {max(counts)}"
-    return f"{BARS} (n = {said})"
+    beds = f"{min(counts)}" if len(counts) == 1 else f"{min(counts)} to {max(counts)}"
+    return f"{BARS} (n = {beds})"
 
 
 def _family_names(others: Sequence[tuple[str, Sequence]]) -> list[str]:
@@ -251,7 +251,7 @@ def _page(
     name: str,
     axes: Mapping[str, Sequence],
     points: Sequence[Point],
-    told: Sequence[str],
+    shown: Sequence[str],
     files: Mapping[str, Path],
     folder: Path,
 ):
@@ -261,19 +261,19 @@ def _page(
     yield f"\n{_progress(points)}"
     yield from (f"\n![{key}]({path.name})" for key, path in files.items() if path.suffix == ".png")
     yield "\n## Points\n"
-    heads = ["point", *axes, *(key.replace("_", " ") for key in told), "status"]
+    heads = ["point", *axes, *(key.replace("_", " ") for key in shown), "status"]
     yield f"| {' | '.join(map(inline, heads))} |\n|{'---|' * len(heads)}"
     for k, point in enumerate(points):
         where = point.folder.relative_to(folder).as_posix()
         cells = [f"[{k}]({where}/summary.md)", *map(inline, point.setting.values())]
-        cells += [inline(number(point.measures[key])) if key in point.measures else "" for key in told]
+        cells += [inline(number(point.measures[key])) if key in point.measures else "" for key in shown]
         yield f"| {' | '.join([*cells, inline(point.status)])} |"
     yield f"\n{RULE}"
-    said = {warning: [] for point in points for warning in point.warnings}
+    warned = {warning: [] for point in points for warning in point.warnings}
     for k, point in enumerate(points):
         for warning in point.warnings:
-            said[warning].append(str(k))
-    yield from (f"\n**Warning** (points {', '.join(where)}): {inline(warning)}" for warning, where in said.items())
+            warned[warning].append(str(k))
+    yield from (f"\n**Warning** (points {', '.join(where)}): {inline(warning)}" for warning, where in warned.items())
     yield "\n## Files\n"
     yield from (f"- [{key.replace('_', ' ')}]({path.name})" for key, path in files.items())
     yield ""
@@ -290,8 +290,8 @@ def _text(name: str, points: Sequence[Point], files: Mapping[str, Path]) -> str:
     lines = [f"Sweep of {one_line(name)}: {_progress(points)}"]
     width = max(len(point.caption) for point in points)
     for point in points:
-        said = [f"{key.replace('_', ' ')} {number(value)}" for key, value in headlines(point.measures, 2).items()]
-        lines.append(f"  {point.caption:<{width}}  {', '.join(said) or one_line(point.status)}")
+        values = [f"{key.replace('_', ' ')} {number(value)}" for key, value in headlines(point.measures, 2).items()]
+        lines.append(f"  {point.caption:<{width}}  {', '.join(values) or one_line(point.status)}")
     width = max(map(len, files))
     made = [f"  {key.replace('_', ' '):<{width}}  {path}" for key, path in files.items()]
     return printable("\n".join([*lines, "", *made]))

@@ -1,17 +1,17 @@
-"""Continue whatever was cut short in a folder: a run, a sweep or a calibration."""
+"""Continue an interrupted run, sweep or calibration."""
 
 from pathlib import Path
 
 from lab.runs.runner import Result, resume_run
-from lab.sweeps.asked import FILE_NAME as CALIBRATION
 from lab.sweeps.calibrate import resume_calibration
 from lab.sweeps.calibration_report import Calibration
 from lab.sweeps.grid import FILE_NAME as SWEEP
+from lab.sweeps.request import FILE_NAME as CALIBRATION
 from lab.sweeps.sweep import SweepResult, resume_sweep
 
 
 def resume_any(folder: Path | str, *, video: bool = True, quiet: bool = False) -> Result | SweepResult | Calibration:
-    """Finish the run, the sweep or the calibration that was cut short in a folder; returns its result.
+    """Continue the run, sweep or calibration in a folder to its end; returns its result.
 
     Raises as `resume_run`, `resume_sweep` and `calibrate`.
     """

@@ -1,7 +1,7 @@
-"""A sweep: one preset run over a grid of values of its keys, every point an ordinary run in a folder of its own.
+"""A sweep: one preset run over a grid of values of its keys; every point is an ordinary run in its own folder.
 
-Points whose scenes can share a launch run side by side; their recordings do not depend on that. A sweep that was cut
-short continues when it is requested again.
+Points whose scenes can share a batch are simulated together; their recordings do not depend on that. An interrupted
+sweep continues when it is requested again.
 """
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -9,21 +9,21 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 
-from lab.base.errors import LabError, Useless
+from lab.base.errors import LabError, Unusable
 from lab.base.lock import only_one
 from lab.base.progress import Progress
 from lab.recording import FILE_NAME as RECORDING
 from lab.recording import open_recording
+from lab.runs.batch import Run, prepare, run_batch
 from lab.runs.belongs import check_belongs
 from lab.runs.checkpoint import Checkpoint, read_checkpoint, remove_checkpoint
-from lab.runs.launch import Run, launch, prepare
 from lab.runs.runner import RENDERS, hint, report, reported
 from lab.sweeps.cluster import Errand, fetch
-from lab.sweeps.grid import FILE_NAME, Sweep, ask, read_sweep
+from lab.sweeps.grid import FILE_NAME, Sweep, define_sweep, read_sweep
 from lab.sweeps.report import write_report
 from solvers.machine.runtime import available_cores, choose_arch
 
-# Limits of a launch: enough worlds per core that none idles long at the end, and bounded numbers of grains and files.
+# Limits of a batch: enough worlds per core that none idles long at the end, and bounded numbers of grains and files.
 WORLDS_A_CORE, MOST_GRAINS, MOST_RUNS = 8, 1_000_000, 100
 
 
@@ -51,13 +51,13 @@ def run_sweep(
     quiet: bool = False,
     cluster: str | None = None,
 ) -> SweepResult:
-    """Run a preset at every point of a grid (see `ask`) and sum up in a folder (default: renders/NAME-sweep).
+    """Run a preset at every point of a grid (see `define_sweep`); write to a folder (default: renders/NAME-sweep).
 
     video: film the points side by side at the end; cluster: the address of a scheduler whose workers run the points
     (see `lab.sweeps.cluster`). If the folder holds the same sweep, it is continued. Raises LabError, one sentence, and
-    KeyboardInterrupt; points that are done stay.
+    KeyboardInterrupt; finished points are kept.
     """
-    sweep = ask(name, axes, overrides)
+    sweep = define_sweep(name, axes, overrides)
     folder = Path(out) if out is not None else RENDERS / f"{sweep.name}-sweep"
     _check_folder(sweep, folder)
     return _complete(sweep, folder, video, quiet, cluster)
@@ -66,8 +66,8 @@ def run_sweep(
 def errands(
     name: str | Path, axes: Mapping[str, str | Sequence], overrides: Mapping | None, folder: Path
 ) -> list[Errand]:
-    """Begin a sweep (arguments as of `run_sweep`) and return what is left for a cluster to run. Raises LabError."""
-    sweep = ask(name, axes, overrides)
+    """Begin a sweep (arguments as for `run_sweep`); returns the batches left for a cluster to run. Raises LabError."""
+    sweep = define_sweep(name, axes, overrides)
     _check_folder(sweep, folder)
     plan = list(_plan(sweep))
     sweep.write(folder)
@@ -85,16 +85,16 @@ def point_folder(folder: Path, number: int) -> Path:
 
 
 def _check_folder(sweep: Sweep, folder: Path) -> None:
-    """Raise LabError if the folder holds something other than this sweep."""
+    """Raise LabError if the folder holds another sweep or a run."""
     if (folder / FILE_NAME).exists():
         if not read_sweep(folder).same_as(sweep):
-            raise LabError(f"{folder} holds another sweep than is asked for: choose another folder.")
+            raise LabError(f"{folder} holds another sweep than the requested one: choose another folder.")
     elif (folder / RECORDING).exists():
         raise LabError(f"{folder} holds a recording: choose another folder.")
 
 
 def _errands(sweep: Sweep, folder: Path, plan: Sequence[Sequence[int]]) -> list[Errand]:
-    """The launches of points that have not been run; a launch that was cut short here is finished here."""
+    """The batches of points that have not been run, except an interrupted batch, which is finished on this machine."""
     kept = read_checkpoint(folder)
     begun = {folder / run for run in kept.runs} if kept else set()
     found = []
@@ -106,7 +106,7 @@ def _errands(sweep: Sweep, folder: Path, plan: Sequence[Sequence[int]]) -> list[
 
 
 def _complete(sweep: Sweep, folder: Path, video: bool, quiet: bool, cluster: str | None = None) -> SweepResult:
-    """Run what has not been run yet, on the cluster as far as possible, and summarise all points."""
+    """Run the points that are not done, on the cluster as far as possible, and summarise all points."""
     plan = list(_plan(sweep))  # reports an impossible point early
     sweep.write(folder)
     folders = [point_folder(folder, number) for number in range(len(sweep.points))]
@@ -114,7 +114,7 @@ def _complete(sweep: Sweep, folder: Path, video: bool, quiet: bool, cluster: str
         try:
             if cluster:
                 fetch(_errands(sweep, folder, plan), cluster, progress)
-            _Tour(sweep, folder, folders, progress).go(plan)
+            _SweepRunner(sweep, folder, folders, progress).go(plan)
         except KeyboardInterrupt:
             write_report(sweep.name, sweep.axes, sweep.settings, folder, folders, progress, video=False)
             raise
@@ -122,21 +122,19 @@ def _complete(sweep: Sweep, folder: Path, video: bool, quiet: bool, cluster: str
     return SweepResult(folder, rows, text)
 
 
-class _Tour:
-    """Runs the points of a sweep launch by launch."""
+class _SweepRunner:
+    """Runs the points of a sweep batch by batch."""
 
     def __init__(self, sweep: Sweep, folder: Path, folders: Sequence[Path], progress: Progress) -> None:
         self.sweep, self.folder, self.folders, self.progress = sweep, folder, folders, progress
 
     def go(self, plan: Sequence[Sequence[int]]) -> None:
-        """Run and report every point that is not done, first a launch that was cut short."""
+        """Run and report every point that is not done, an interrupted batch first."""
         kept = self._kept()
-        worth = [self.sweep.worth(number) for number in range(len(self.folders))]
+        cost = [self.sweep.cost(number) for number in range(len(self.folders))]
         self._report(number for number, folder in enumerate(self.folders) if state_of(folder) == "recorded")
         done = {number for number, folder in enumerate(self.folders) if state_of(folder) == "done"}
-        self.progress.begin_whole("sweep", sum(worth), sum(worth[number] for number in done))
-        if kept and not {self.folder / run for run in kept.runs} <= set(self.folders):
-            raise Useless(f"{self.folder}: its checkpoint is of another sweep: remove it, and its launch is run anew.")
+        self.progress.begin_whole("sweep", sum(cost), sum(cost[number] for number in done))
         if kept and not all(state_of(self.folder / run) == "done" for run in kept.runs):
             numbers = [self.folders.index(self.folder / run) for run in kept.runs]
             self._launch(numbers, kept)
@@ -147,10 +145,10 @@ class _Tour:
         remove_checkpoint(self.folder)
 
     def _kept(self) -> Checkpoint | None:
-        """The checkpoint of the launch that was cut short. Raises Useless if it is of other runs."""
+        """The checkpoint of the interrupted batch, None if there is none. Raises Unusable if it is of other runs."""
         kept = read_checkpoint(self.folder)
         if kept and not {self.folder / run for run in kept.runs} <= set(self.folders):
-            raise Useless(f"{self.folder}: its checkpoint is of other runs: sweep anew in another folder.")
+            raise Unusable(f"{self.folder}: its checkpoint is of other runs: sweep again in another folder.")
         return kept
 
     def _launch(self, numbers: Sequence[int], kept: Checkpoint | None) -> None:
@@ -164,8 +162,8 @@ class _Tour:
             if (run.folder / RECORDING).exists():
                 check_belongs(run)
             else:
-                run.make_recording(engaged=run.engaged(worlds))
-        launch(runs, self.folder, self.progress, kept)
+                run.make_recording(device=run.device(worlds))
+        run_batch(runs, self.folder, self.progress, kept)
         self._report(numbers)
 
     def _report(self, numbers: Iterable[int]) -> None:
@@ -196,11 +194,11 @@ def state_of(folder: Path) -> str:
 
 
 def _plan(sweep: Sweep) -> Iterator[list[int]]:
-    """Group the numbers of the points into launches that they can share. Raises LabError as `prepare`."""
-    begun: dict[tuple, dict[int, int]] = {}  # launches that are not full yet: worlds by number of the point
+    """Group the numbers of the points into batches that they can share. Raises LabError as `prepare`."""
+    begun: dict[tuple, dict[int, int]] = {}  # batches that are not full yet: worlds by number of the point
     for number, point in enumerate(sweep.points):
         run = prepare(point, Path())
-        if not run.sociable:
+        if not run.can_share:
             yield [number]
             continue
         worlds, count = run.scene.radius.shape
@@ -213,7 +211,7 @@ def _plan(sweep: Sweep) -> Iterator[list[int]]:
 
 
 def _most_worlds(run: Run, count: int) -> int:
-    """How many worlds of `count` grains a launch may have."""
+    """How many worlds of `count` grains a batch may have."""
     settings = run.loaded.resolved.run
     bound = MOST_GRAINS // count
     if choose_arch(settings.arch, settings.precision) != "cpu":

@@ -15,7 +15,7 @@ from multiprocessing.connection import wait as wait_for
 from pathlib import Path
 
 from lab.base.errors import LabError
-from lab.base.interrupt import heed
+from lab.base.interrupt import handle_signals
 from lab.base.progress import Progress
 from lab.studies.reproduce.runs import Batch, carry_out, outcomes
 from solvers.machine import runtime
@@ -86,7 +86,7 @@ def _begin() -> None:
     """Set up a worker: use one core, leave Ctrl-C to the parent process, and end with the parent."""
     runtime.use_cores(1)
     signal.signal(signal.SIGINT, signal.default_int_handler)  # what runs in the background may be deaf to it
-    heed(patient=True)  # who ends all processes asks this one twice
+    handle_signals(patient=True)  # who ends all processes asks this one twice
     if hasattr(os, "setpgrp"):
         os.setpgrp()
     threading.Thread(target=_end_with_parent, daemon=True).start()

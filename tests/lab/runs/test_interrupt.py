@@ -30,9 +30,9 @@ ENDLESS = {
 }
 STUBBORN = """
 import time
-from lab.base.interrupt import heeding
+from lab.base.interrupt import handling_signals
 
-with heeding():
+with handling_signals():
     try:
         print("ready", flush=True)
         time.sleep(60)
@@ -45,14 +45,14 @@ WORKERS = """
 import sys
 from pathlib import Path
 from lab.base.errors import LabError
-from lab.base.interrupt import exit_code, heeding
+from lab.base.interrupt import exit_code, handling_signals
 from lab.base.progress import Progress
 from lab.studies.reproduce.runs import Batch
 from lab.studies.reproduce.workers import carry_out_all
 
 batches = {Path(sys.argv[1]) / name: Batch("tilting/quick", %r) for name in ("a", "b")}
 try:
-    with heeding():
+    with handling_signals():
         list(carry_out_all(batches, Progress(quiet=True)))
 except KeyboardInterrupt:
     sys.exit(exit_code())
@@ -109,7 +109,7 @@ def test_sigterm_ends_a_run_as_ctrl_c_does_and_nohup_lets_it_go_on(tmp_path):
     run.send_signal(signal.SIGTERM)
     _, said = run.communicate(timeout=60)
     assert run.returncode == 143, said
-    assert said.splitlines()[-1].endswith(f"go on with: cargolab resume {tmp_path / 'run'}")
+    assert said.splitlines()[-1].endswith(f"continue with: cargolab resume {tmp_path / 'run'}")
     assert_summed_up(tmp_path / "run")
 
 

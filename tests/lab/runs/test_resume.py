@@ -22,8 +22,8 @@ from lab.base.progress import Progress
 from lab.cli import main
 from lab.preset.find import load
 from lab.recording import Recorder, open_recording
+from lab.runs.batch import Batch, prepare
 from lab.runs.checkpoint import Checkpoint, read_checkpoint
-from lab.runs.launch import Launch, prepare
 from lab.runs.runner import hint, resume_run, run_preset
 from tests.oracles.synthetic import frame, recorder, sample
 from tests.oracles.tampering import flipped
@@ -105,7 +105,7 @@ def test_a_run_cut_short_again_and_again_equals_the_undisturbed_one(whole, tmp_p
         done = CliRunner().invoke(main, ["resume", str(folder), "--no-video", "--quiet"])
     assert done.exit_code == 130
     said = done.stderr.strip()
-    assert said == f"cargolab: interrupted at 210 ms of 933.3 ms; go on with: cargolab resume {folder}"
+    assert said == f"cargolab: interrupted at 210 ms of 933.3 ms; continue with: cargolab resume {folder}"
     with open_recording(folder) as recording:
         assert recording.status == "stopped: interrupted by the user"
     assert (folder / "summary.json").exists() and (folder / "checkpoint.npz").exists()
@@ -245,7 +245,7 @@ def test_a_damaged_checkpoint_is_refused_in_a_sentence_and_never_taken_for_anoth
         try:
             kept = read_checkpoint(tmp_path)
         except LabError as error:
-            assert "checkpoint.npz" in str(error) and "start the run anew" in str(error)
+            assert "checkpoint.npz" in str(error) and "start the run again" in str(error)
             refused += 1
             continue
         assert (kept.runs, kept.rows, kept.state.keys()) == (whole.runs, whole.rows, whole.state.keys())
@@ -259,15 +259,15 @@ def test_a_run_with_damage_behind_its_checkpoint_goes_on_with_the_same_bits(whol
     folder = tmp_path / "run"
     kept = []
 
-    def interrupt(launch, *_):
-        save(launch)
-        kept.append(launch._recorders[0].rows)
+    def interrupt(batch, *_):
+        save(batch)
+        kept.append(batch._recorders[0].rows)
         if kept[-1][0] > 20:
             raise KeyboardInterrupt
 
-    save = Launch.save
+    save = Batch.save
     with pytest.MonkeyPatch.context() as patch, pytest.raises(KeyboardInterrupt):
-        patch.setattr(Launch, "save", interrupt)
+        patch.setattr(Batch, "save", interrupt)
         run_preset("tilting/quick", SMALL, folder, video=False, quiet=True)
     before, (rows, _) = (folder / "recording.h5").read_bytes(), kept[-1]
     flip(folder, "series/kinetic", rows - 1)
@@ -309,7 +309,7 @@ def test_what_cannot_be_resumed_is_said(tmp_path):
         assert recording.complete
     with h5py.File(folder / "recording.h5", "r+") as file:
         file.attrs["status"] = "running"
-    with pytest.raises(LabError, match="has no checkpoint to resume from: start the run anew"):
+    with pytest.raises(LabError, match="has no checkpoint to resume from: start the run again"):
         resume_run(folder, quiet=True)
     (folder / "checkpoint.npz").write_text("hello")
     with pytest.raises(LabError, match=r"checkpoint\.npz is damaged"):
@@ -326,7 +326,7 @@ def test_who_is_stopped_underway_is_told_how_to_go_on(tmp_path):
     folder = tmp_path / "my run"
     recorder(folder).close()
     Checkpoint({}, (), (0, 0)).write(folder)
-    how = f"go on with: cargolab resume '{folder}'$"
+    how = f"continue with: cargolab resume '{folder}'$"
     with pytest.raises(LabError, match=f"^the disk is full; {how}"), hint(folder):
         raise LabError("the disk is full.")
     with pytest.raises(KeyboardInterrupt, match=f"^interrupted; {how}"), hint(folder):

@@ -11,7 +11,7 @@ from lab.base.errors import LabError
 from lab.preset.find import load
 from lab.recording import open_recording
 from lab.report.explain import explain
-from lab.runs.launch import prepare
+from lab.runs.batch import prepare
 from lab.runs.runner import run_preset
 from solvers.machine.errors import BadState
 from solvers.machine.runtime import available_cores
@@ -88,7 +88,7 @@ def test_a_world_settles_alone_as_it_does_in_company():
 )
 def test_a_run_knows_how_many_threads_compute_it(run, company, threads, tmp_path):
     ready = prepare(load("tilting/quick", SMALL | {"run": run | {"arch": "cpu"}}), tmp_path)
-    assert ready.engaged(company)["threads"] == threads
+    assert ready.device(company)["threads"] == threads
 
 
 def test_the_recording_says_what_computes_it(result):

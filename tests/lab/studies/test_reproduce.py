@@ -29,7 +29,7 @@ from lab.studies.reproduce.findings import Finding, asked, read_findings
 from lab.studies.reproduce.report import write_report
 from lab.studies.reproduce.runs import Batch, Outcome
 from lab.studies.reproduce.shaking import FREQUENCY, onset
-from lab.sweeps.grid import ask
+from lab.sweeps.grid import define_sweep
 from solvers.machine import runtime
 
 ROOT = Path(lab.__file__).parents[1]
@@ -57,7 +57,7 @@ def test_every_batch_of_every_experiment_can_be_built(name):
     for quick in (True, False):
         for batch in EXPERIMENTS[name].batches(quick).values():
             points = (
-                ask(batch.preset, batch.axes, batch.changes).points
+                define_sweep(batch.preset, batch.axes, batch.changes).points
                 if batch.axes
                 else [load(batch.preset, {**batch.changes, "run.repeats": 1})]
             )

@@ -11,7 +11,7 @@ from lab.measures.value import Value
 from lab.preset.units import in_unit
 from lab.sweeps import calibrate as module
 from lab.sweeps.axes import values
-from lab.sweeps.calibrate import calibrate, understood
+from lab.sweeps.calibrate import calibrate, parse_request
 from lab.sweeps.resume import resume_any
 
 BEDS, SCATTER = 8, 3.0  # deg
@@ -32,7 +32,7 @@ class Sweeps:
     def __call__(self, name, axes, overrides, folder, *, video, quiet, cluster):
         ((key, listed),) = axes.items()
         if folder.name in self.cut:
-            raise KeyboardInterrupt("interrupted; go on with: cargolab resume a-round")
+            raise KeyboardInterrupt("interrupted; continue with: cargolab resume a-round")
         self.asked.append(listed)
         self.overrides.append(overrides)
         points = [self._point(folder / str(number), float(x), overrides) for number, x in enumerate(listed)]
@@ -56,7 +56,9 @@ def sweeps(monkeypatch):
     """Sweeps that are not run, of a preset that has MEASURES."""
     found = Sweeps()
     monkeypatch.setattr(module, "run_sweep", found)
-    monkeypatch.setattr(module, "rehearsed", lambda loaded: {k: Value(None, unit) for k, unit in MEASURES.items()})
+    monkeypatch.setattr(
+        module, "available_measures", lambda loaded: {k: Value(None, unit) for k, unit in MEASURES.items()}
+    )
     return found
 
 
@@ -84,7 +86,7 @@ def test_the_page_shows_figure_values_and_what_more_beds_would_give(sweeps, tmp_
     assert (tmp_path / "calibration.png").stat().st_size > 10_000
     for words in ("# Calibration of material.friction", "![calibration]", "| 0.1 | 22.9 ± ", "Fieller 1954", "| 16 | "):
         assert words in page
-    assert page.count("| 8 | 0 |") == len(made.tried) == 10
+    assert page.count("| 8 | 0 |") == len(made.trials) == 10
     for name in ("round-1", "round-2"):
         assert f"[{name}]({name}/summary.md)" in page
 
@@ -95,7 +97,7 @@ def test_the_page_shows_figure_values_and_what_more_beds_would_give(sweeps, tmp_
         ("repose", "friction=0.1:0.9", "--target: 'repose' cannot be read"),
         ("repose=30 mm", "friction=0.1:0.9", "--target: .*angle"),
         ("repose=30 ± 2 mm", "friction=0.1:0.9", "--target: .*angle"),
-        ("repose=30 ± -2 deg", "friction=0.1:0.9", "--target: a standard error is not negative"),
+        ("repose=30 ± -2 deg", "friction=0.1:0.9", "--target: a standard error cannot be negative"),
         (
             "shine=30 deg",
             "friction=0.1:0.9",
@@ -106,8 +108,8 @@ def test_the_page_shows_figure_values_and_what_more_beds_would_give(sweeps, tmp_
         ("repose=30 deg", "friction=0.1:much", r'material\.friction: a range FROM:TO is needed.*"0\.1:much"'),
         ("repose=30 deg", "friction=-1:1", r"material\.friction: must be at least 0 \(got -1"),
         ("repose=30 deg", "friction=0.1 mm:0.9 mm", r"material\.friction: .* is a length"),
-        ("repose=30 deg", "contact.normal=0:1", r"contact\.normal: takes no single number"),
-        ("repose=30 deg", "run.settle=0:1", r"run\.settle: takes no single number"),
+        ("repose=30 deg", "contact.normal=0:1", r"contact\.normal: its value is not a single number"),
+        ("repose=30 deg", "run.settle=0:1", r"run\.settle: its value is not a single number"),
         ("repose=30 deg", "motion.sway.amplitude=1 mm:2 mm", r"motion\.sway\.frequency: missing"),
         ("repose=30 deg", "slipperiness=0.1:0.9", "slipperiness: no preset has such a key"),
         ("repose=30 deg", "amplitude=1 mm:2 mm", "amplitude: it could be motion.sway.amplitude or "),
@@ -133,14 +135,12 @@ def test_fewer_beds_are_said_to_be_worth_nothing_and_how_many_would_be(sweeps, t
     made = calibrated(tmp_path, overrides={"run.repeats": 3})
     warning, beyond = made.warnings()
     assert "reaches beyond the range" in beyond and "[−∞, " in made.text()
-    assert warning.startswith(
-        "The interval is worthless: it takes 8 beds at the least, and this is of 3; at this scatter "
-    )
-    assert f"{made.enough} would give one of half the width 0.04." in warning
+    assert warning.startswith("The interval is not reliable: it takes at least 8 beds, not 3; with this scatter, ")
+    assert f"{made.beds_needed} beds would give a half width of 0.04." in warning
     assert warning in (tmp_path / "summary.md").read_text() and warning in made.text()
     one = calibrated(tmp_path / "one", "repose=35 deg", overrides={"run.repeats": 1})
     assert one.interval is None and one.text().startswith("material.friction = 0.")
-    assert one.warnings() == ["There is no interval from one bed: it takes 8 beds at the least, and this is of 1."]
+    assert one.warnings() == ["One bed gives no interval: it takes at least 8 beds, not 1."]
 
 
 def test_what_was_not_found_or_stopped_is_shown_and_said(sweeps, tmp_path):
@@ -170,12 +170,12 @@ def test_no_value_in_the_range_is_said_with_what_there_is(sweeps, tmp_path):
 
 
 def test_a_target_just_beyond_what_was_found_is_said_to_be_open(sweeps, tmp_path):
-    with pytest.raises(LabError, match=r"39 deg: .* 38\.9, of which that at 0\.9 differs from the target by"):
+    with pytest.raises(LabError, match=r"39 deg: .* 38\.9; at 0\.9 the difference from the target is not significant"):
         calibrated(tmp_path, "repose=39 deg")
 
 
 def test_two_values_that_give_the_target_alike_are_both_named(sweeps, tmp_path):
-    with pytest.raises(LabError, match=r"about 1 and 2 of material\.friction give the target alike"):
+    with pytest.raises(LabError, match=r"several values of material\.friction give the target, about 1 and 2"):
         calibrated(tmp_path, "repose=40 deg", "friction=0.5:2.6")
 
 
@@ -191,12 +191,12 @@ def test_a_calibration_cut_short_goes_on_as_it_was_asked_for(sweeps, tmp_path):
     sweeps.cut = {"round-2"}
     with pytest.raises(KeyboardInterrupt) as cut:
         calibrated(folder)
-    assert str(cut.value) == f"interrupted; go on with: cargolab resume {folder}"
+    assert str(cut.value) == f"interrupted; continue with: cargolab resume {folder}"
     sweeps.cut = set()
     made = resume_any(folder, quiet=True)
     assert (made.value, made.interval) == (whole.value, whole.interval)
     assert (folder / "summary.md").read_text() == (tmp_path / "whole" / "summary.md").read_text()
-    with pytest.raises(LabError, match="holds another calibration than is asked for"):
+    with pytest.raises(LabError, match="holds another calibration than the requested one"):
         calibrated(folder, "repose=31 deg")
     (folder / "asked.json").write_text("{}")
     with pytest.raises(LabError, match="is damaged"):
@@ -220,7 +220,7 @@ def test_whole_numbers_are_tried_where_the_ends_are_such(sweeps, tmp_path):
     ],
 )
 def test_a_target_may_have_a_standard_error(sweeps, target, value, error):
-    plan = understood(module.Asked("tilting/quick", target, "friction=0.1:0.9"))
+    plan = parse_request(module.Request("tilting/quick", target, "friction=0.1:0.9"))
     assert (plan.target, plan.target_error) == pytest.approx((value, error))
 
 

@@ -21,8 +21,8 @@ import pytest
 from lab.base.errors import LabError
 from lab.preset.find import load
 from lab.recording import versions
+from lab.runs.batch import prepare
 from lab.runs.checkpoint import Checkpoint
-from lab.runs.launch import prepare
 from lab.studies import reproduce as package
 from lab.studies.reproduce import runs, workers
 from lab.studies.reproduce.experiment import Experiment
@@ -69,9 +69,9 @@ def in_this_thread(tmp_path, monkeypatch):
     def run(texts, terms):
         with monkeypatch.context() as patch:
             patch.setattr(distributed, "get_worker", lambda: worker)
-            return partial(list, run_launch(texts, terms))
+            return partial(list, run_on_worker(texts, terms))
 
-    run_launch = cluster.run_launch
+    run_on_worker = cluster.run_on_worker
     monkeypatch.setattr(cluster, "partial", lambda _, *arguments: run(*arguments))
 
 
@@ -96,7 +96,7 @@ def test_a_sweep_on_a_worker_equals_the_local_one_and_what_is_done_is_not_sent(
     here, scheduler, in_this_thread, tmp_path, monkeypatch
 ):
     folder = tmp_path / "there"
-    monkeypatch.setattr("lab.sweeps.sweep.launch", None)  # nothing is to be launched here
+    monkeypatch.setattr("lab.sweeps.sweep.run_batch", None)  # nothing is to be launched here
     options = {"video": False, "quiet": True, "cluster": scheduler}
     assert_equal(run_sweep("tilting/quick", AXES, SMALL, folder, **options), here)
     assert errands("tilting/quick", AXES, SMALL, folder) == []
@@ -116,7 +116,7 @@ def test_threads_and_device_are_those_of_the_asking_machine(monkeypatch):
     """A large world would be cut into other bands on a machine with other cores."""
     monkeypatch.setattr("lab.sweeps.cluster.available_cores", lambda: 7)
     preset = load("tilting/quick", {**SMALL, "motion.sway.frequency": "1 Hz", "run.threads": 0, "run.arch": "cpu"})
-    run = cluster._on_terms(prepare(preset, Path()), cluster._terms(preset))
+    run = cluster._with_settings(prepare(preset, Path()), cluster._worker_settings(preset))
     assert (run.loaded.resolved.run.threads, run.loaded.resolved.run.arch) == (7, "cpu")
     assert preset.resolved.run.threads == 0
 
@@ -144,7 +144,7 @@ def test_all_experiments_are_sent_at_once_before_anything_runs_here(tmp_path, mo
 
 def test_a_task_that_nobody_waits_for_ends(scheduler):
     def work():
-        progress = cluster._Dutiful()
+        progress = cluster._TaskProgress()
         progress.start("work", 1.0)
         while True:
             progress.reach(0.5)
@@ -162,7 +162,7 @@ def test_a_task_that_nobody_waits_for_ends(scheduler):
     ("error", "said"),
     [
         (LabError("grains: the bed is too high for the tank."), r"^grains: the bed is too high for the tank\.$"),
-        (ModuleNotFoundError("No module named 'lab'", name="lab"), "a worker lacks lab: install the lab there as here"),
+        (ModuleNotFoundError("No module named 'lab'", name="lab"), "a worker lacks lab: install the same lab there"),
     ],
 )
 def test_what_a_worker_cannot_do_is_one_sentence(scheduler, tmp_path, monkeypatch, error, said):
@@ -177,8 +177,8 @@ def test_what_a_worker_cannot_do_is_one_sentence(scheduler, tmp_path, monkeypatc
 @pytest.mark.parametrize(
     ("error", "said"),
     [
-        (distributed.KilledWorker("task", None, 3), "4 workers died with the same launch: look at their logs"),
-        (distributed.CancelledError("task"), "is gone: start it again and ask again; what came back is kept"),
+        (distributed.KilledWorker("task", None, 3), "4 workers died with the same batch: look at their logs"),
+        (distributed.CancelledError("task"), "is gone: start both again; fetched runs are kept"),
     ],
 )
 def test_lost_workers_and_schedulers_are_one_sentence(scheduler, error, said):
@@ -202,7 +202,7 @@ def test_an_address_where_nobody_answers_is_named(address, monkeypatch, tmp_path
 def test_a_worker_with_several_threads_is_refused(monkeypatch):
     monkeypatch.setattr(distributed, "get_worker", lambda: SimpleNamespace(state=SimpleNamespace(nthreads=4)))
     with pytest.raises(LabError, match=r"a worker has 4 threads.* start workers with --nthreads 1"):
-        cluster.run_launch([], cluster.Terms(1, "cpu", {}, ""))
+        cluster.run_on_worker([], cluster.WorkerSettings(1, "cpu", {}, ""))
 
 
 @pytest.mark.parametrize(
@@ -234,10 +234,10 @@ def test_a_worker_of_another_version_is_refused_before_it_reads_its_work(
     scheduler, tmp_path, monkeypatch, package, version
 ):
     monkeypatch.setattr(cluster, "versions", lambda: versions() | {package: version})
-    monkeypatch.setattr(cluster, "run_launch", None)  # reading the work would fail
+    monkeypatch.setattr(cluster, "run_on_worker", None)  # reading the work would fail
     monkeypatch.setattr(cluster, "partial", lambda *_: Unreadable())
     with pytest.raises(
-        LabError, match=rf"a worker lacks {package} {version} \(it has .*\): install the lab there as here"
+        LabError, match=rf"a worker lacks {package} {version} \(it has .*\): install the same lab there"
     ):
         run_sweep("tilting/quick", AXES, SMALL, tmp_path / "there", video=False, quiet=True, cluster=scheduler)
 
@@ -250,8 +250,8 @@ class Unreadable:
 
 
 def test_a_worker_with_other_sources_of_the_same_version_is_refused(scheduler, tmp_path, monkeypatch):
-    terms = cluster._terms
-    monkeypatch.setattr(cluster, "_terms", lambda preset: replace(terms(preset), sources="others"))
+    terms = cluster._worker_settings
+    monkeypatch.setattr(cluster, "_worker_settings", lambda preset: replace(terms(preset), sources="others"))
     with pytest.raises(LabError, match="the lab of a worker has other source files than the one here"):
         run_sweep("tilting/quick", AXES, SMALL, tmp_path / "there", video=False, quiet=True, cluster=scheduler)
 
@@ -333,7 +333,7 @@ def test_a_scheduler_that_is_killed_is_one_sentence(dask, tmp_path):
     assert "no worker yet: waiting for one" in command.stderr.readline()
     scheduler.kill()
     _, said = command.communicate(timeout=120)
-    assert command.returncode == 2 and "is gone: start it again and ask again" in said and "Traceback" not in said
+    assert command.returncode == 2 and "is gone: start both again" in said and "Traceback" not in said
 
 
 @pytest.mark.slow
@@ -347,7 +347,7 @@ def test_a_client_that_is_interrupted_leaves_the_worker_free(dask, tmp_path):
             time.sleep(0.1)
         command.send_signal(signal.SIGINT)
         _, said = command.communicate(timeout=120)
-        assert command.returncode == 130 and "go on with: cargolab resume" in said and "Traceback" not in said
+        assert command.returncode == 130 and "continue with: cargolab resume" in said and "Traceback" not in said
         assert client.submit(int, "5", pure=False).result(timeout=60) == 5  # the one thread is free again
     assert not list((tmp_path / "worker").rglob("recording.h5"))
 
@@ -385,7 +385,7 @@ def test_a_scheduler_that_listens_beyond_this_machine_is_told(dask, tmp_path):
     dask("scheduler", "--host", "0.0.0.0", "--port", 0, "--scheduler-file", tmp_path / "scheduler.json")
     address = address_in(tmp_path / "scheduler.json")
     command = asking(tmp_path / "there", f"tcp://127.0.0.1:{address.rpartition(':')[2]}")
-    assert "listens beyond this machine without TLS" in command.stderr.readline()
+    assert "other machines can reach the scheduler at" in command.stderr.readline()
     command.send_signal(signal.SIGINT)
     command.communicate(timeout=120)
 

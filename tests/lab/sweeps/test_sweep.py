@@ -26,7 +26,7 @@ from lab.runs.checkpoint import Checkpoint
 from lab.runs.runner import run_preset
 from lab.sweeps import report as sweep_report
 from lab.sweeps.axes import plain, values
-from lab.sweeps.grid import ask, read_sweep
+from lab.sweeps.grid import define_sweep, read_sweep
 from lab.sweeps.report import numeric, write_report
 from lab.sweeps.resume import resume_any
 from lab.sweeps.sweep import _plan, run_sweep
@@ -135,7 +135,7 @@ def test_a_range_runs_from_end_to_end(first, last, count, log):
 
 
 def test_the_grid_has_every_combination_and_the_last_key_changes_fastest():
-    sweep = ask("tilting/quick", {"run.seed": "1:3:3", "material.friction": [0.1, 0.2], "run.repeats": "2"})
+    sweep = define_sweep("tilting/quick", {"run.seed": "1:3:3", "material.friction": [0.1, 0.2], "run.repeats": "2"})
     asked = [(point.resolved.run.seed, point.resolved.material.friction) for point in sweep.points]
     assert asked == [(1, 0.1), (1, 0.2), (2, 0.1), (2, 0.2), (3, 0.1), (3, 0.2)]
     assert all(point.resolved.run.repeats == 2 for point in sweep.points)
@@ -144,10 +144,10 @@ def test_the_grid_has_every_combination_and_the_last_key_changes_fastest():
 
 def test_points_share_launches_as_far_as_their_scenes_and_the_machine_allow(monkeypatch):
     monkeypatch.setattr("lab.sweeps.sweep.available_cores", lambda: 2)
-    monkeypatch.setattr("lab.runs.launch.available_cores", lambda: 2)
+    monkeypatch.setattr("lab.runs.batch.available_cores", lambda: 2)
 
     def plan(axes, **settings):
-        return list(_plan(ask("tilting/quick", axes, {"run.repeats": 2, "run.arch": "cpu", **settings})))
+        return list(_plan(define_sweep("tilting/quick", axes, {"run.repeats": 2, "run.arch": "cpu", **settings})))
 
     assert plan({"run.seed": "1:10:10"}) == [list(range(8)), [8, 9]]  # eight worlds a core
     assert plan({"run.seed": "1:3:3"}, **{"run.repeats": 40}) == [[0], [1], [2]]
@@ -215,11 +215,11 @@ def test_a_sweep_leaves_figures_a_film_and_ordinary_runs(swept, films):
 
 def test_what_is_done_is_not_done_again_and_another_request_is_refused(swept, tmp_path, monkeypatch):
     shutil.copytree(swept.folder, tmp_path / "s")
-    monkeypatch.setattr("lab.sweeps.sweep.launch", None)  # nothing is to be launched
+    monkeypatch.setattr("lab.sweeps.sweep.run_batch", None)  # nothing is to be launched
     again = run_sweep("tilting/quick", AXES, SMALL, tmp_path / "s", video=False, quiet=True)
     assert again.rows == swept.rows
     assert resume_any(tmp_path / "s", video=False, quiet=True).rows == swept.rows
-    with pytest.raises(LabError, match="holds another sweep than is asked for"):
+    with pytest.raises(LabError, match="holds another sweep than the requested one"):
         run_sweep("tilting/quick", {"motion.sway.frequency": "1, 4, 600 Hz"}, SMALL, tmp_path / "s", quiet=True)
     with pytest.raises(LabError, match="holds a recording"):
         run_sweep("tilting/quick", AXES, SMALL, swept.points[0], quiet=True)
@@ -235,13 +235,13 @@ def test_a_sweep_cut_short_goes_on_with_the_points_that_are_left(swept, tmp_path
     Checkpoint({}, ("points/001",), (0, 0)).write(folder)
     launched = []
 
-    def launch(runs, home, progress, kept):
+    def run_batch(runs, home, progress, kept):
         launched.append(([run.folder.name for run in runs], kept is not None))
         for run in runs:
             shutil.rmtree(run.folder)
             shutil.copytree(swept.folder / "points" / run.folder.name, run.folder)
 
-    monkeypatch.setattr("lab.sweeps.sweep.launch", launch)
+    monkeypatch.setattr("lab.sweeps.sweep.run_batch", run_batch)
     assert resume_any(folder, video=False, quiet=True).rows == swept.rows
     assert launched == [(["001"], True), (["002"], False)]
     assert not (folder / "checkpoint.npz").exists()
@@ -296,7 +296,7 @@ def test_a_sweep_interrupted_and_killed_equals_the_undisturbed_one(tmp_path):
         sweep.send_signal(blow)
         said = sweep.communicate()[1]
         assert sweep.returncode == code
-        assert "Traceback" not in said and (code < 0 or f"go on with: cargolab resume {folder}" in said)
+        assert "Traceback" not in said and (code < 0 or f"continue with: cargolab resume {folder}" in said)
     resume_any(folder, video=False, quiet=True)
     assert (folder / "results.csv").read_text() == (whole / "results.csv").read_text()
     for number in range(4):

@@ -1,7 +1,7 @@
-"""Which measures a preset's runs have, found out before any is run.
+"""Find the measures that a preset's runs will have, without running it.
 
-All measures are applied to a rehearsal: a recording with the preset's own times and motions, in which the grains do not
-move. Their values mean nothing; which of them exist, and in which unit, is the same as in a run.
+All measures are applied to the recording of a dry run, which has the preset's times and motions but grains that do not
+move. The values mean nothing; the names and units of the measures are the same as in a run.
 """
 
 import json
@@ -24,12 +24,12 @@ from solvers.machine.quantity import parted
 from solvers.scene import Scene
 from solvers.simulation import Simulation
 
-GRAINS = 50  # that are recorded, at most
-ROLL = 0.1  # rad, of ships
+GRAINS = 50  # largest number that is recorded
+ROLL = 0.1  # amplitude (rad) of a ship's roll
 
 
-def rehearsed(loaded: LoadedPreset) -> dict[str, Value]:
-    """The measures of a preset by name, with their units; their numbers mean nothing. Raises LabError (`build`)."""
+def available_measures(loaded: LoadedPreset) -> dict[str, Value]:
+    """The measures of a preset by name, with their units; their values mean nothing. Raises LabError (`build`)."""
     preset = loaded.resolved
     preset = preset.model_copy(update={"run": replace(preset.run, repeats=1)})
     scene, position = build(preset)
@@ -41,7 +41,7 @@ def rehearsed(loaded: LoadedPreset) -> dict[str, Value]:
 
 
 def _record(folder: Path, loaded: LoadedPreset, preset: Resolved, scene: Scene, position: np.ndarray) -> None:
-    """Write the recording of the rehearsal."""
+    """Write the recording of the dry run."""
     count, parts = min(GRAINS, scene.radius.shape[1]), {name: part.points for name, part in preset.parts.items()}
     new_recording(
         folder,
@@ -71,7 +71,7 @@ def _record(folder: Path, loaded: LoadedPreset, preset: Resolved, scene: Scene, 
 
 
 def _poses(preset: Resolved, scene: Scene, position: np.ndarray, times: np.ndarray) -> Iterator[np.ndarray]:
-    """Pose (1, 3) of the tank at each time (s); a ship, whose motion is not known yet, rolls slowly."""
+    """Pose (1, 3) of the tank at each time (s); a ship, whose motion is not known in advance, rolls slowly."""
     if scene.vessels or not scene.motions[0]:
         yield from (np.array([[0.0, 0.0, ROLL * np.sin(time)]]) * bool(scene.vessels) for time in times)
         return

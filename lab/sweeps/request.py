@@ -1,4 +1,4 @@
-"""The request of a calibration, and the file that keeps it."""
+"""The request for a calibration, and the file that stores it."""
 
 import json
 from dataclasses import asdict, dataclass, field
@@ -11,8 +11,8 @@ FILE_NAME = "asked.json"  # marks a folder as that of a calibration
 
 
 @dataclass(frozen=True)
-class Asked:
-    """The request, as texts; the overrides as nested tables."""
+class Request:
+    """A request: preset, target and range as texts as the user gave them; the overrides as nested tables."""
 
     preset: str
     target: str
@@ -20,7 +20,7 @@ class Asked:
     overrides: dict = field(default_factory=dict)
 
 
-def read_asked(folder: Path) -> Asked:
+def read_request(folder: Path) -> Request:
     """Read the request of the calibration in a folder. Raises LabError."""
     path = folder / FILE_NAME
     try:
@@ -28,25 +28,25 @@ def read_asked(folder: Path) -> Asked:
         if content.pop("format") != FORMAT or not all(
             isinstance(content[k], str) for k in ("preset", "target", "vary")
         ):
-            raise ValueError("another form")
-        return Asked(**{**content, "overrides": dict(content["overrides"])})
+            raise ValueError("another format")
+        return Request(**{**content, "overrides": dict(content["overrides"])})
     except OSError as error:
         raise LabError(f"{path} cannot be read ({error.strerror}): name the folder of a calibration.") from error
     except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
-        raise LabError(f"{path} is damaged: calibrate anew in another folder.") from error
+        raise LabError(f"{path} is damaged: calibrate again in another folder.") from error
 
 
-def check_folder(asked: Asked, folder: Path) -> None:
+def check_folder(request: Request, folder: Path) -> None:
     """Raise LabError if the folder holds another calibration."""
-    if (folder / FILE_NAME).exists() and read_asked(folder) != asked:
-        raise LabError(f"{folder} holds another calibration than is asked for: choose another folder with --out.")
+    if (folder / FILE_NAME).exists() and read_request(folder) != request:
+        raise LabError(f"{folder} holds another calibration than the requested one: choose another folder with --out.")
 
 
-def write_asked(asked: Asked, folder: Path) -> None:
+def write_request(request: Request, folder: Path) -> None:
     """Write the request to the calibration's folder. Raises LabError."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        content = json.dumps({"format": FORMAT, **asdict(asked)}, indent=1)
+        content = json.dumps({"format": FORMAT, **asdict(request)}, indent=1)
         (folder / FILE_NAME).write_text(content + "\n", encoding="utf-8")
     except OSError as error:
         raise LabError(f"{folder} cannot be written ({error.strerror or error}): make room there.") from error

@@ -1,6 +1,6 @@
-"""A launch: runs whose worlds advance together in one simulation, each written to a recording of its own.
+"""Batches: runs whose worlds are simulated together, each with its own recording.
 
-A run's recording does not depend on the other runs of the launch: it has the same bits as that of the run alone.
+A run's recording does not depend on the other runs of its batch: it has the same bits as that of the run alone.
 """
 
 import json
@@ -15,7 +15,7 @@ import numpy as np
 
 from lab.assembly.drawn import classes
 from lab.assembly.scene import build
-from lab.base.errors import Useless
+from lab.base.errors import Unusable
 from lab.base.interrupt import Interrupt
 from lab.base.progress import Progress
 from lab.base.trust import check_state
@@ -32,9 +32,9 @@ from solvers.scene import Scene
 from solvers.simulation import Simulation
 from solvers.time.schedules import choose_schedule, units_a_world
 
-# Steps per call of the solver times grains per world. It sets how long Ctrl-C waits: some tenths of a second for each
-# world on a core. It must not depend on other runs or on the clock, since grains may be renumbered between calls.
-A_CALL = 2_000_000
+# Steps per call of the solver times grains per world. It limits the delay after Ctrl-C to some tenths of a second for
+# each world on a core. It must not depend on other runs or on the clock: grains may be renumbered between calls.
+GRAIN_STEPS_A_CALL = 2_000_000
 
 
 def outlines_of(preset: Resolved, scene: Scene) -> Outlines | None:
@@ -45,7 +45,7 @@ def outlines_of(preset: Resolved, scene: Scene) -> Outlines | None:
 
 @dataclass(frozen=True)
 class Run:
-    """A run ready to start: its preset, the folder of its recording, its scene, the grains' positions (W, n, 2) m."""
+    """A run ready to start: its preset, the folder of its recording, its scene, initial positions (W, n, 2) m."""
 
     loaded: LoadedPreset
     folder: Path
@@ -54,22 +54,22 @@ class Run:
 
     @property
     def shared(self) -> tuple:
-        """The values that must be equal for two runs to share a launch."""
+        """The values that must be equal for two runs to share a batch."""
         preset = self.loaded.resolved
         run, record = preset.run, preset.record
         times = run.duration, record.series_rate, record.picture_rate, record.checkpoint_every
         return self.scene.shared(), settling(preset), times, run.threads, run.arch
 
     @property
-    def sociable(self) -> bool:
-        """Whether it may share a launch; not in schedule per-band, which divides a world by the number of threads."""
+    def can_share(self) -> bool:
+        """Whether it may share a batch; not in schedule per-band, which divides a world by the number of threads."""
         settings, (worlds, count) = self.loaded.resolved.run, self.scene.radius.shape
         arch, threads = choose_arch(settings.arch, settings.precision), settings.threads or available_cores()
         afloat = bool(self.scene.vessels)
         return choose_schedule(settings.schedule, arch, worlds, count, threads, afloat) != "per-band"
 
-    def engaged(self, worlds: int = 0) -> dict[str, object]:
-        """The device for a launch of `worlds` worlds (0: the run's own): `arch`, `schedule`, on the CPU `threads`."""
+    def device(self, worlds: int = 0) -> dict[str, object]:
+        """The device for a batch of `worlds` worlds (0: the run's own): `arch`, `schedule`, on the CPU `threads`."""
         settings, (own, count) = self.loaded.resolved.run, self.scene.radius.shape
         afloat, worlds = bool(self.scene.vessels), worlds or own
         arch = "cpu" if afloat and settings.arch == "auto" else choose_arch(settings.arch, settings.precision)
@@ -80,11 +80,8 @@ class Run:
         units = worlds * units_a_world(schedule, worlds, count, threads)
         return {"arch": arch, "schedule": schedule, "threads": min(threads, units)}
 
-    def make_recording(self, steered: bool = False, engaged: Mapping[str, object] | None = None) -> None:
-        """Create the recording, without rows yet; `steered`: of a run that a user steers.
-
-        engaged: the device of the whole launch, as from `engaged`. Raises LabError (`new_recording`).
-        """
+    def make_recording(self, steered: bool = False, device: Mapping[str, object] | None = None) -> None:
+        """Create the recording without rows; device: of the batch, None: of this run. Raises LabError."""
         preset, scene = self.loaded.resolved, self.scene
         new_recording(
             self.folder,
@@ -99,7 +96,7 @@ class Run:
             open_edges=scene.open_edges,
             parts={name: part.points for name, part in preset.parts.items()},
             shapes=outlines_of(preset, scene),
-            machine=self.engaged() if engaged is None else engaged,
+            machine=self.device() if device is None else device,
             steered=steered,
         )
 
@@ -113,15 +110,16 @@ def prepare(loaded: LoadedPreset, folder: Path) -> Run:
     return Run(loaded, folder, *build(loaded.resolved))
 
 
-def launch(runs: Sequence[Run], home: Path, progress: Progress, kept: Checkpoint | None = None) -> dict[Path, BadState]:
-    """Settle the beds of all runs, advance them to the end, and append to their recordings, which must exist.
+def run_batch(
+    runs: Sequence[Run], home: Path, progress: Progress, kept: Checkpoint | None = None
+) -> dict[Path, BadState]:
+    """Settle the beds of all runs, simulate them to the end, and append to their recordings, which must exist.
 
-    home: the folder of the checkpoint, which is updated until all is done; kept: a checkpoint to continue from. If the
-    watch stops a run, the others go on; returns the reasons by folder. Raises LabError if something cannot be written,
-    and KeyboardInterrupt; once the beds have settled, both leave a checkpoint.
+    home: the folder of the checkpoint; kept: a checkpoint to continue from. If the watch stops a run, the others
+    continue; returns the reasons by folder. Raises LabError if writing fails, KeyboardInterrupt; both keep a checkpoint.
     """
     with ExitStack() as stack:
-        together = Launch(runs, home, progress, stack)
+        together = Batch(runs, home, progress, stack)
         together.start(kept)
         with Interrupt() as interrupt:
             together.run(interrupt)
@@ -129,23 +127,23 @@ def launch(runs: Sequence[Run], home: Path, progress: Progress, kept: Checkpoint
     return together.stopped
 
 
-class Launch:
-    """The runs that still go on, their recorders, and the simulation that holds their worlds one after the other."""
+class Batch:
+    """The runs that have not ended, their recorders, and the simulation with their worlds, in the same order."""
 
     def __init__(self, runs: Sequence[Run], home: Path, progress: Progress, stack: ExitStack) -> None:
         self.runs, self.home, self.progress, self._stack = list(runs), home, progress, stack
         self.stopped: dict[Path, BadState] = {}
-        preset = runs[0].loaded.resolved  # the runs agree in all that is read from it here
+        preset = runs[0].loaded.resolved  # the runs agree in all values that are read here
         self._duration, self._record = preset.run.duration, preset.record
         self._simulate = partial(Simulation, threads=preset.run.threads, arch=preset.run.arch)
         self._settling = settling(preset)
-        self._a_call = max(1, A_CALL // runs[0].scene.radius.shape[1])
+        self._a_call = max(1, GRAIN_STEPS_A_CALL // runs[0].scene.radius.shape[1])
         self._saved = time.monotonic()
 
     def start(self, kept: Checkpoint | None) -> None:
         """Settle the beds, or restore a checkpoint, and open the recordings."""
         rows = kept.rows if kept else (0, 0)
-        count = len(self.runs)  # each of several recordings writes larger pieces, so that writes stay as rare
+        count = len(self.runs)  # with several recordings each flushes more rarely, so that writes stay as rare
         opened = {"flush_every": count * FLUSH_EVERY, "buffer": BUFFER_BYTES // count}
         self._recorders = [
             self._stack.enter_context(Recorder(run.folder, samples=rows[0], frames=rows[1], **opened))
@@ -161,7 +159,7 @@ class Launch:
                 check_state(kept.state, *self._simulation.scene.radius.shape)
                 self._simulation.restore(kept.state)
             except (KeyError, ValueError, TypeError, IndexError) as error:
-                raise Useless(f"{self.home}: its checkpoint is of another scene: start the run anew.") from error
+                raise Unusable(f"{self.home}: its checkpoint is of another scene: start the run again.") from error
             return
         while self.runs and self._simulation is None:
             try:
@@ -181,8 +179,8 @@ class Launch:
         steps = round(1.0 / (rate * self._simulation.dt))
         samples = max(1, round(self._duration * rate))
         a_frame = max(1, round(rate / self._record.picture_rate))
-        worth = self._duration * sum(run.scene.radius.size for run in self.runs)
-        self.progress.start("running", self._duration, worth)
+        cost = self._duration * sum(run.scene.radius.size for run in self.runs)
+        self.progress.start("running", self._duration, cost)
         self._counted = time.perf_counter()
         for k in range(self._recorders[0].rows[0], samples + 1):
             rows = self._reach(k * steps, partial(self._pause, interrupt))
@@ -215,7 +213,7 @@ class Launch:
             self.save()
 
     def _reach(self, step: int, pause: Callable[[], None]) -> Mapping[str, np.ndarray]:
-        """Advance to a step and observe; drops runs that the watch stops, possibly all of them."""
+        """Advance to a step and observe; removes runs that the watch stops, possibly all of them."""
         while self.runs:
             try:
                 self._simulation.advance(0)  # raises again if the watch has stopped another run, too
@@ -238,11 +236,11 @@ class Launch:
                 recorder.frame({"time": now, **{name: values[worlds] for name, values in frame.items()}})
 
     def _frame(self, rows: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
-        """What is pictured of all worlds now."""
+        """The present values of all quantities of a picture frame, for all worlds."""
         return {"pose": rows["pose"], "part": self._simulation.part_places(), **self._simulation.snapshot()}
 
     def _end_lost(self, rows: Mapping[str, np.ndarray], pictured: bool) -> None:
-        """End the runs whose ships have all capsized or flooded, with a last frame; the others go on."""
+        """End the runs whose ships have all capsized or flooded, with a last frame; the others continue."""
         if "capsized" not in rows:
             return
         lost = np.maximum(rows["capsized"], rows["flooded"]) >= 0.0
@@ -279,7 +277,7 @@ class Launch:
         return np.concatenate([run.position for run in self.runs])
 
     def _leave_out(self, error: BadState) -> None:
-        """Close the recording of the run that the watch has stopped, and go on with the other runs."""
+        """Close the recording of the run that the watch has stopped, and continue with the other runs."""
         slices = list(self._worlds())
         out = next(k for k, worlds in enumerate(slices) if worlds.start <= error.world < worlds.stop)
         own = BadState(error.world - slices[out].start, error.what)
@@ -287,7 +285,7 @@ class Launch:
         self._close(out, f"stopped: {own}")
 
     def _close(self, out: int, status: str) -> None:
-        """Close the recording of a run, and go on with the other runs."""
+        """Close the recording of run number `out`, and continue with the other runs."""
         slices = list(self._worlds())
         self.runs.pop(out)
         self._recorders.pop(out).close(status)

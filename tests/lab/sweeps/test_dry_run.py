@@ -1,10 +1,10 @@
-"""A rehearsal tells which measures a run will have, and in which units."""
+"""A dry run finds the measures and units that a run will have."""
 
 import pytest
 
 from lab.preset.find import load, names
 from lab.runs.runner import run_preset
-from lab.sweeps.rehearsal import rehearsed
+from lab.sweeps.dry_run import available_measures
 
 SMALL = {"tank": {"width": "30 mm", "height": "30 mm"}, "grains": {"count": 25, "depth": False}}
 RUNS = {
@@ -19,14 +19,14 @@ RUNS = {
 
 
 @pytest.mark.parametrize("case", RUNS)
-def test_a_run_has_the_measures_of_its_rehearsal(case, tmp_path):
+def test_a_run_has_the_measures_of_its_dry_run(case, tmp_path):
     overrides = {**SMALL, **RUNS[case]}
-    expected = rehearsed(load("tilting/quick", overrides))
+    expected = available_measures(load("tilting/quick", overrides))
     found = run_preset("tilting/quick", overrides, tmp_path / "run", video=False, plots=False, quiet=True).measures
     assert {name: value.unit for name, value in expected.items()} == {name: v.unit for name, v in found.items()}
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", [name for name in names() if name.endswith("-quick")])
-def test_every_preset_can_be_rehearsed(name):
-    assert {"final_shift", "largest_kinetic_energy", "mean_force_z"} <= rehearsed(load(name)).keys()
+def test_every_preset_has_a_dry_run(name):
+    assert {"final_shift", "largest_kinetic_energy", "mean_force_z"} <= available_measures(load(name)).keys()
