@@ -15,20 +15,20 @@ from lab.paint.sea import Sea
 from lab.preset.find import LoadedPreset
 from lab.preset.schema import Resolved
 from lab.recording import Outlines
-from lab.runs.launch import outlines_of
-from lab.view.live import Seen
+from lab.runs.batch import outlines_of
+from lab.view.live import LiveFrame
 from solvers.grains.pressing import Pressing
 from solvers.ship.hydrostatics import righting_levers
 from solvers.simulation import Simulation
 
-HEELS = 91
-MOST_BYTES = 2**29  # of frames kept in memory; the recording has all
-DROPPED = 0.1  # share of the frames dropped at once if they take too much memory
+HEELS = 91  # points of the righting-arm curve
+MOST_BYTES = 2**29  # largest size of the frames kept in memory; the recording has all
+DROPPED = 0.1  # share of the frames that is dropped at once when they exceed it
 
 
 @dataclass(frozen=True)
 class Scenery:
-    """The data that stay the same in a live experiment; fields as in a `Footage`, for one world."""
+    """The constant data of a live experiment; fields as in a `Footage`, for one world."""
 
     preset: dict
     name: str
@@ -49,8 +49,8 @@ class Scenery:
         kind = np.zeros(scene.radius.shape, dtype=int) if scene.kind is None else scene.kind
         lines = {name: np.array(part.points) for name, part in preset.parts.items()}
         bounds = scene.outline, tuple(scene.open_edges), scene.fixed
-        said, shapes = json.loads(preset.model_dump_json()), outlines_of(preset, scene)
-        return cls(said, loaded.name, folder, scene.radius, kind, *bounds, lines, shapes, simulation.dt)
+        resolved, shapes = json.loads(preset.model_dump_json()), outlines_of(preset, scene)
+        return cls(resolved, loaded.name, folder, scene.radius, kind, *bounds, lines, shapes, simulation.dt)
 
     def for_filling(self, top: float) -> "Scenery":
         """The scenery while the bed settles: no ship, and the tank cut off at the height `top` (m)."""
@@ -73,67 +73,67 @@ class LiveFootage:
         self.shape_names = list(scenery.preset.get("shapes") or {}) if self.shapes else ["disc"]
         self.sea = Sea(scenery.preset) if scenery.preset.get("ship") else None
         self.settings, self.title = scenery.preset["video"], scenery.preset["title"]
-        self._seen: list[Seen] = []
+        self._frames: list[LiveFrame] = []
         self._bytes = 0
 
-    def add(self, seen: Seen) -> int:
+    def add(self, frame: LiveFrame) -> int:
         """Add a frame; returns how many of the oldest were dropped for it."""
-        self._seen.append(seen)
-        self._bytes += seen.bytes
-        if self._bytes <= MOST_BYTES or len(self._seen) < 2:
+        self._frames.append(frame)
+        self._bytes += frame.bytes
+        if self._bytes <= MOST_BYTES or len(self._frames) < 2:
             return 0
-        dropped = max(1, round(DROPPED * len(self._seen)))
-        self._bytes -= sum(old.bytes for old in self._seen[:dropped])
-        del self._seen[:dropped]
+        dropped = max(1, round(DROPPED * len(self._frames)))
+        self._bytes -= sum(old.bytes for old in self._frames[:dropped])
+        del self._frames[:dropped]
         return dropped
 
     def __len__(self) -> int:
-        return len(self._seen)
+        return len(self._frames)
 
     @property
     def time(self) -> np.ndarray:
         """(F,) s."""
-        return np.array([seen.time for seen in self._seen])
+        return np.array([frame.time for frame in self._frames])
 
     @property
     def pose(self) -> np.ndarray:
         """(F, 1, 3) m, m, rad."""
-        return np.stack([seen.rows["pose"] for seen in self._seen])
+        return np.stack([frame.rows["pose"] for frame in self._frames])
 
     @property
     def part(self) -> np.ndarray:
         """(F, 1, P, 2) m."""
-        return np.stack([seen.rows["part"] for seen in self._seen])
+        return np.stack([frame.rows["part"] for frame in self._frames])
 
     def pressing(self, frame: int) -> Pressing:
         """The contacts with their forces in a frame."""
-        return self._seen[frame].pressing
+        return self._frames[frame].pressing
 
     def row(self, frame: int, name: str) -> np.ndarray:
         """A quantity of a frame: its components, or the one number."""
-        return self._seen[frame].rows[name][0]
+        return self._frames[frame].rows[name][0]
 
     def sea_of(self, frame: int) -> Sea | None:
         """The sea as it is in a frame."""
         if self.sea:
-            self.sea.waves = self._seen[frame].rows.get("waves")
+            self.sea.waves = self._frames[frame].rows.get("waves")
         return self.sea
 
     def row_time(self, frame: int) -> float:
         """The time of a frame (s)."""
-        return self._seen[frame].time
+        return self._frames[frame].time
 
     def moved_parts(self, frame: int) -> np.ndarray:
         """Displacements (P, 2) m of the parts in a frame."""
-        return self._seen[frame].rows["part"][0]
+        return self._frames[frame].rows["part"][0]
 
     def curve(self, name: str, frames: np.ndarray) -> np.ndarray:
         """A quantity of some frames (k, *shape)."""
-        return np.array([self._seen[frame].rows[name][0] for frame in frames])
+        return np.array([self._frames[frame].rows[name][0] for frame in frames])
 
     def grains(self, name: str, frame: int, world: int = 0) -> np.ndarray:
         """The value `name` of each grain in a frame."""
-        return self._seen[frame].grains[name][world]
+        return self._frames[frame].grains[name][world]
 
     @cached_property
     def extent(self) -> tuple[np.ndarray, np.ndarray]:
@@ -144,7 +144,7 @@ class LiveFootage:
     @cached_property
     def sea_ground(self) -> tuple[np.ndarray, np.ndarray]:
         """Lower and upper corner (m) of the sea that is shown around a ship, with room to roll and to drift."""
-        y, z, roll = self._seen[0].rows["pose"][0]
+        y, z, roll = self._frames[0].rows["pose"][0]
         places = complex(y, z) + np.exp(1j * roll) * (self.sea.hull @ [1.0, 1j])
         radius = 0.5 * float(np.hypot(*np.ptp(self.sea.hull, axis=0)))
         middle = np.array([places.real.mean(), places.imag.mean()])

@@ -1,4 +1,4 @@
-"""Make video, figures and summary of a kept live experiment, in a process of its own."""
+"""Make video, figures and summary of a kept live experiment, in a separate process."""
 
 import sys
 from pathlib import Path

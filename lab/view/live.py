@@ -1,7 +1,7 @@
-"""The live experiment: it runs piece by piece, and records its course and all that the user changes.
+"""The live experiment: it runs in pieces, and records its course and all changes made by the user.
 
-A piece is a sampling interval of the series. A change takes effect with the next piece, so that the same changes at the
-same pieces give the same bits in every replay (`lab.view.replay`).
+A piece is one sampling interval of the series. A change takes effect at the start of the next piece, so that a replay
+with the same changes at the same pieces has the same bits (`lab.view.replay`).
 """
 
 import time
@@ -19,8 +19,8 @@ from lab.preset.find import LoadedPreset
 from lab.preset.schema import Resolved
 from lab.preset.sections.motion import Motion
 from lab.recording import WAVES, Recorder
+from lab.runs.batch import Run
 from lab.runs.beds import settled, settling
-from lab.runs.launch import Run
 from lab.view.panel.controls import ALTERS, CONTROLS, MOVES, offered
 from lab.view.panel.helm import Helm
 from lab.view.panel.swell import swell_of
@@ -28,14 +28,14 @@ from solvers.grains.pressing import Pressing
 from solvers.machine.errors import Unavailable
 from solvers.simulation import Simulation
 
-PICTURES = 25.0  # Hz, least rate of the frames
+PICTURES = 25.0  # Hz; lowest rate of the frames
 
 
 @dataclass(frozen=True)
-class Seen:
+class LiveFrame:
     """The state at the end of a piece: time (s), observed rows (W,), grains (W, n) by name, contacts with forces.
 
-    The grains are in 32 bits, as in recordings, since many of these are kept for rewinding.
+    The grains are in 32 bits, as in recordings, since many frames are kept for rewinding.
     """
 
     time: float
@@ -44,7 +44,7 @@ class Seen:
     pressing: Pressing
 
     @classmethod
-    def of(cls, simulation: Simulation, rows: Mapping[str, np.ndarray], pressing: Pressing) -> "Seen":
+    def of(cls, simulation: Simulation, rows: Mapping[str, np.ndarray], pressing: Pressing) -> "LiveFrame":
         """The present state of a simulation, with the rows just observed of it."""
         grains = {name: values.astype(np.float32) for name, values in simulation.snapshot().items()}
         return cls(simulation.time, {**rows, "part": simulation.part_places()}, grains, pressing)
@@ -57,8 +57,8 @@ class Seen:
         return sum(array.nbytes for array in arrays)
 
 
-def under_a_hand(loaded: LoadedPreset) -> LoadedPreset:
-    """The preset prepared for steering: one bed, no motions of its own, and a high enough picture rate."""
+def steerable(loaded: LoadedPreset) -> LoadedPreset:
+    """The preset prepared for steering: one bed, none of its own motions, and a picture rate of at least PICTURES."""
     preset = loaded.resolved
     record = replace(preset.record, picture_rate=max(preset.record.picture_rate, PICTURES))
     changes = {"motion": Motion(), "run": replace(preset.run, repeats=1), "record": record}
@@ -68,7 +68,7 @@ def under_a_hand(loaded: LoadedPreset) -> LoadedPreset:
 class Live:
     """The experiment; a context manager. It starts with the tank at rest.
 
-    loaded: a preset as `under_a_hand` returns it. Raises LabError and Unavailable if it cannot be run, BadState if its
+    loaded: a preset as `steerable` returns it. Raises LabError and Unavailable if it cannot be run, BadState if its
     bed cannot settle.
     """
 
@@ -77,7 +77,7 @@ class Live:
         self.preset, self.folder, self.pieces = preset, folder, 0
         self.helm = None if preset.ship else Helm(offered(preset))
         self.swell = swell_of(preset)
-        self.run = Run(loaded, folder, *build(preset, Helm.hands() if self.helm else None))
+        self.run = Run(loaded, folder, *build(preset, Helm.motions() if self.helm else None))
         self._end = ExitStack()
         with ExitStack() as otherwise:
             self.simulation = settled(self.run.scene, self.run.position, settling(preset), self._start, progress)
@@ -110,7 +110,7 @@ class Live:
             except Unavailable as error:
                 raise LabError(f"{control.label}: {error}.") from None
         else:
-            raise LabError(f"{control.label}: start the experiment anew with it.")
+            raise LabError(f"{control.label}: start the experiment again with it.")
         self.recorder.steer(self.time, name, value)
 
     def advance(self, pause: Callable[[], None] = lambda: None, most: int | None = None) -> None:
@@ -128,9 +128,9 @@ class Live:
         self.recorder.wall_s += time.perf_counter() - begun
         self.rows = self._record()
 
-    def look(self) -> Seen:
+    def frame(self) -> LiveFrame:
         """The present state."""
-        return Seen.of(self.simulation, {**self.rows, **self._waves()}, self.simulation.pressing())
+        return LiveFrame.of(self.simulation, {**self.rows, **self._waves()}, self.simulation.pressing())
 
     def _record(self) -> dict[str, np.ndarray]:
         """Observe, add a row to the series and, if one is due, a frame; returns the observation."""

@@ -1,4 +1,4 @@
-"""Messages from the experiment to the window, sent by a thread of its own, so that the solver need not wait."""
+"""Messages from the experiment to the window, sent by a separate thread, so that the solver does not wait."""
 
 import threading
 from collections import deque

@@ -1,4 +1,4 @@
-"""The picture of a live experiment: the tank on its stage, and a column of readings and sliders.
+"""The picture of a live experiment: the tank, and a column of readings and sliders beside it.
 
 Lengths are in units u, 1/36 of the height of a 16:9 picture, as in `lab.paint.film`.
 """
@@ -24,10 +24,10 @@ from lab.view.shown import Shown
 
 MARGIN, COLUMN, GAP, WALL, PLATE = 1.2, 17.0, 1.5, 0.36, 0.3  # in u
 TEXT, READING, TITLE, ROW, BAND = 1.0, 1.2, 1.4, 1.5, 2.4  # heights in u
-LINES = 5  # of readings below the clock
+LINES = 5  # lines of readings below the clock
 PLOT = 14.0, 8.5  # width and height in u
-SENTENCE = 0.8, 3  # height of its letters in u, lines at most
-ANEW, CURVE_ANEW, WORDS_ANEW = 2.0, 0.25, 0.1  # s after which scale, curve and readings are updated
+SENTENCE = 0.8, 3  # a message: height of its letters in u, largest number of lines
+SCALE_UPDATE, CURVE_UPDATE, TEXT_UPDATE = 2.0, 0.25, 0.1  # s after which colour scale, curve and readings are updated
 HANDLE = 0.42  # u, half the height of a slider's handle
 GRIP = 0.8  # u around the centre of roll
 THICKEST = 0.3  # half thickness of the line of the largest force, over the mean radius
@@ -63,7 +63,7 @@ class Page:
             return np.array(image)
         return picture
 
-    # Places
+    # Layout
 
     def u(self, units: float) -> int:
         """A length in units u as pixels."""
@@ -98,12 +98,12 @@ class Page:
         width, height = (self.u(side) for side in PLOT)
         if shown.curve == "nothing":
             return [self.stage]
-        if shown.look.frame == "earth":  # which has room beside the tank
+        if shown.look.frame == "earth":  # this view has room beside the tank
             return [(left + width // 2, top, right, bottom)]
         return [(left + width, top, right, bottom), (left, top + height, right, bottom)]
 
     def _fit(self, room: tuple[int, int, int, int], extent: np.ndarray) -> float:
-        """Pixels a metre at which so much (m) fits in a room."""
+        """Pixels per metre at which an extent (2,) m fits into a part of the stage."""
         left, top, right, bottom = room
         spare = np.array([right - left, bottom - top]) - 2.0 * self.u(WALL + 0.4)
         return float((spare / extent).min())
@@ -175,7 +175,7 @@ class Page:
     def _scale(self, shown: Shown) -> Colouring:
         """The colouring; its scale is updated from time to time."""
         key, now = (shown.look.colour, shown.footage), time.monotonic()
-        if self._colouring is None or self._colouring[0] != key or now - self._colouring[1] > ANEW:
+        if self._colouring is None or self._colouring[0] != key or now - self._colouring[1] > SCALE_UPDATE:
             self._colouring = key, now, colouring(shown.look.colour, [shown.footage.bed])
         return self._colouring[2]
 
@@ -208,7 +208,7 @@ class Page:
         return stage
 
     def _lost(self, end: End) -> Image.Image:
-        """The band that says how a ship was lost, across the foot of the stage."""
+        """The band across the foot of the stage with the text on how the ship was lost."""
         left, _, right, _ = self.stage
         image = Image.new("RGB", (right - left, self.u(BAND)))
         deco.draw_band(ImageDraw.Draw(image), (0, 0, *image.size), f"She {end.words}", 1.4 * TEXT * self.unit)
@@ -328,14 +328,14 @@ class Page:
             plot = deco.LivePlot(size, drawing.curves, colours, labels, 0.9 * TEXT * self.unit)
             return ImageOps.expand(plot.picture(drawing.counts), edge, palette.PAPER)
 
-        return self._still("plot", (shown.curve, shown.footage, shown.playhead), drawn, CURVE_ANEW)
+        return self._still("plot", (shown.curve, shown.footage, shown.playhead), drawn, CURVE_UPDATE)
 
     # The column
 
     def _put_column(self, picture: np.ndarray, shown: Shown, scale: Colouring) -> None:
         left, look = self.width - self.u(MARGIN + COLUMN), shown.look
         key = shown.playhead, shown.going, shown.pace, look.picked, shown.footage
-        lines = self._still("readings", key, lambda: self._lines(shown), WORDS_ANEW)
+        lines = self._still("readings", key, lambda: self._lines(shown), TEXT_UPDATE)
         _put(picture, lines, left, self.u(MARGIN))
         key = id(scale), look.typing, *shown.values.items()
         rest = self._still("column", key, lambda: self._still_column(shown, scale))

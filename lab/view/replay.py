@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from lab.base.errors import LabError, Useless
+from lab.base.errors import LabError, Unusable
 from lab.base.lock import only_one
 from lab.base.progress import Progress
 from lab.base.trust import BEYOND
@@ -27,9 +27,9 @@ def replay(path: Path | str, out: Path | str | None = None, *, video: bool = Tru
         series = recording.series["time"]
         pieces = max(0, len(series) - 1)
     if done is None:
-        raise LabError(f"{path} was not steered by hand: run its preset, {loaded.name}, again.")
+        raise LabError(f"{path} was not steered by a user: run its preset, {loaded.name}, again.")
     if not _possible(done, series, offered(loaded.resolved)):
-        raise Useless(f"{path}: its steering is none that a hand can have done: replay another recording.")
+        raise Unusable(f"{path}: its steering is not possible with the controls: replay another recording.")
     home = Path(path) if Path(path).is_dir() else Path(path).parent
     folder = Path(out) if out is not None else free_folder(home.with_name(f"{home.name}-replay"))
     begun = [float(series[k]) for k in range(pieces)]

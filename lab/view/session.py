@@ -57,7 +57,7 @@ class Session(Shown):
     def _restart(self, overrides: Mapping) -> None:
         """Start again with these overrides and the changes that needed a restart."""
         self.overrides = dict(overrides)
-        self.footage, self.values, self._own, self.making = None, {}, {}, True
+        self.footage, self.values, self._own, self.settling = None, {}, {}, True
         self.going, self.playhead, self.factor, self.over = False, None, 0.0, ""
         self.status = "starting …"
         folder = self.out or RENDERS / "view" / self.name.removesuffix(".toml")
@@ -76,26 +76,26 @@ class Session(Shown):
             self._miss()
 
     def _miss(self) -> None:
-        """Handle that the experiment's process is gone."""
+        """End the session: the experiment's process is gone."""
         self.over, self.going = self.over or f"the experiment broke off; {self.left}.", False
 
     @property
     def left(self) -> str:
         """A sentence on what an experiment that did not end by itself has left behind."""
-        return "nothing was recorded yet" if self.making else f"{self.folder} has what was recorded"
+        return "nothing was recorded yet" if self.settling else f"{self.folder} has what was recorded"
 
-    def _on_told(self, sentence: str) -> None:
-        if self.making:
+    def _on_message(self, sentence: str) -> None:
+        if self.settling:
             self.status = sentence
         else:
             self.say(sentence)
 
-    def _on_makes(self, scenery: Scenery) -> None:
+    def _on_settling(self, scenery: Scenery) -> None:
         self.footage, self.playhead = LiveFootage(scenery), None
 
     def _on_ready(self, what: tuple[Scenery, dict]) -> None:
         scenery, own = what
-        self.making = False
+        self.settling = False
         self.footage = LiveFootage(scenery)
         if self.footage.sea:
             self.look.inset = "turn"
@@ -106,9 +106,9 @@ class Session(Shown):
         self._send("pace", self.pace)
         self.go(True)
 
-    def _on_seen(self, what: tuple) -> None:
-        seen, self.factor = what
-        dropped = self.footage.add(seen)
+    def _on_frame(self, what: tuple) -> None:
+        frame, self.factor = what
+        dropped = self.footage.add(frame)
         if self.playhead is not None:
             self.playhead = max(0, self.playhead - dropped)
 
@@ -145,7 +145,7 @@ class Session(Shown):
         value = float(np.clip(value, control.low, control.high))
         self.values[name] = value
         if control.kind == RESTARTS:
-            self.say(f"{control.label}: {control.shown(value)} from the next start on; press R to start anew")
+            self.say(f"{control.label}: {control.shown(value)} from the next start; press R to start again")
         else:
             self._send("set", (name, value))
 
@@ -273,11 +273,11 @@ class Session(Shown):
 
     def _end_experiment(self) -> None:
         self._send("end")
-        if self.making:  # nothing is recorded yet, and it does not listen before its bed is ready
+        if self.settling:  # nothing is recorded yet, and it does not listen before its bed is ready
             self._process.terminate()
         until = time.monotonic() + PATIENCE
         while self._process.is_alive() and time.monotonic() < until:
-            try:  # what it still has to say must not hold it up
+            try:  # it cannot end before its last messages are received
                 while self._pipe.poll(0.02):
                     self._pipe.recv()
             except (EOFError, ConnectionResetError):
@@ -339,9 +339,9 @@ def _whole(session: Session) -> None:
 # What each key does, and how the help says it, in its order.
 KEYS: dict[str, tuple[str, Callable[[Session], None]]] = {
     "space": ("run or pause", lambda session: session.go(not session.going)),
-    "n": ("one sampling interval further", _one_piece),
-    "left": ("back in what was seen", lambda session: session.rewind(-1)),
-    "right": ("forth", lambda session: session.rewind(1)),
+    "n": ("run one sampling interval", _one_piece),
+    "left": ("one picture back", lambda session: session.rewind(-1)),
+    "right": ("one picture forward", lambda session: session.rewind(1)),
     "g": ("go to the newest picture", lambda session: setattr(session, "playhead", None)),
     "up": ("faster", _faster(1)),
     "down": ("slower", _faster(-1)),
@@ -353,12 +353,12 @@ KEYS: dict[str, tuple[str, Callable[[Session], None]]] = {
     "f": ("frame of the tank or the earth", _look("frame", lambda _: ("tank", "earth"))),
     "o": ("overlay of forces or velocities", _look("overlay", lambda _: OVERLAYS)),
     "i": ("another curve", _look("inset", lambda session: offered_curves(session.footage))),
-    "z": ("see the whole", _whole),
-    "e": ("nearer", lambda session: session.zoom(1.0)),
-    "q": ("farther", lambda session: session.zoom(-1.0)),
-    "k": ("keep: video and data of what was seen", lambda session: session.keep()),
-    "r": ("start anew", lambda session: session.restart()),
-    "s": ("start anew with the grains of another cargo", lambda session: session.reshape()),
+    "z": ("show everything", _whole),
+    "e": ("zoom in", lambda session: session.zoom(1.0)),
+    "q": ("zoom out", lambda session: session.zoom(-1.0)),
+    "k": ("keep: video and data of this experiment", lambda session: session.keep()),
+    "r": ("start again", lambda session: session.restart()),
+    "s": ("start again with the grains of another cargo", lambda session: session.reshape()),
     "p": ("a panel to type values in: Ctrl and a click on one", lambda session: session.toggle_typing()),
     "h": ("this help", lambda session: setattr(session.look, "help", not session.look.help)),
     "escape": ("close", lambda session: session.close()),

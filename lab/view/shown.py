@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from lab.recording.ship_end import VERBS, End, end_of
 from lab.view.footage import LiveFootage
 
-SAID_FOR = 6.0  # s
+SHOWN_FOR = 6.0  # s; how long a message is shown
 
 
 @dataclass
@@ -21,14 +21,14 @@ class Look:
     inset: str = "shift"
     picked: int | None = None
     help: bool = False
-    typing: bool = False  # a panel of the window's own instead of the sliders
+    typing: bool = False  # the window's own panel is shown instead of the sliders
 
 
 class Shown:
     """An experiment as it is shown.
 
     values: its controls as the user has set them (SI); playhead: the frame shown, None for the newest; pace: the
-    requested speed over real time, factor: the speed reached; making: whether its bed is still settling, status: how
+    requested speed over real time, factor: the speed reached; settling: whether its bed is still settling, status: how
     far that is; over: how it ended; keys: names and actions of the keys.
     """
 
@@ -38,7 +38,7 @@ class Shown:
     keys: list[tuple[str, str]]
     footage: LiveFootage | None = None
     going: bool = False
-    making: bool = True
+    settling: bool = True
     playhead: int | None = None
     pace: float = 1.0
     factor: float = 0.0
@@ -48,23 +48,23 @@ class Shown:
 
     @property
     def curve(self) -> str:
-        """The name of the curve that is drawn; while a bed settles, that of its coming to rest."""
-        return "energy" if self.making else self.look.inset
+        """The name of the curve that is drawn; while a bed settles, its kinetic energy."""
+        return "energy" if self.settling else self.look.inset
 
     def say(self, sentence: str) -> None:
-        """Show a sentence for a while."""
+        """Show a sentence for some seconds."""
         self._said = sentence, time.monotonic()
 
     @property
     def said(self) -> str:
         """The sentence to show now."""
         sentence, when = self._said
-        return self.over or (sentence if time.monotonic() - when < SAID_FOR else "")
+        return self.over or (sentence if time.monotonic() - when < SHOWN_FOR else "")
 
     @property
     def lost(self) -> End | None:
         """How the ship was lost, if she is lost in the frame shown."""
-        if self.making or not self.footage or not self.footage.sea:
+        if self.settling or not self.footage or not self.footage.sea:
             return None
         return end_of(*(self.footage.row(self.frame, name) for name in VERBS), self.footage.row(self.frame, "pose")[2])
 

@@ -1,8 +1,8 @@
-"""The live experiment in a process of its own, so that pictures and grains do not wait for each other.
+"""The live experiment in a separate process, so that drawing and simulation do not wait for each other.
 
 The processes exchange messages, pairs of a word and its data. To the experiment: `set` (name, value), `go`, `pace`,
-`piece`, `keep` (folder), `end`. From it: `told`, `makes` (Scenery of a bed that is not ready yet), `ready` (Scenery,
-own motion), `seen` (Seen, pace), `kept` (folder), `over` (sentence).
+`piece`, `keep` (folder), `end`. From it: `message` (sentence), `settling` (Scenery of a bed that is not ready yet),
+`ready` (Scenery, the preset's own motion), `frame` (LiveFrame, speed reached), `kept` (folder), `over` (sentence).
 """
 
 import math
@@ -15,25 +15,25 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 
 from lab.base.errors import LabError
-from lab.base.interrupt import SIGNALS, heed
+from lab.base.interrupt import SIGNALS, handle_signals
 from lab.base.progress import Progress
 from lab.preset.find import LoadedPreset, load
 from lab.recording import FILE_NAME, Recorder
 from lab.recording.ship_end import VERBS
 from lab.view.footage import Scenery
-from lab.view.live import Live, Seen, own_motion, under_a_hand
+from lab.view.live import Live, LiveFrame, own_motion, steerable
 from lab.view.outbox import Outbox
 from solvers.grains.pressing import UNTOUCHED
 from solvers.machine import runtime
 from solvers.machine.errors import BadState, Unavailable
 from solvers.simulation import Simulation
 
-A_LOOK = 0.03  # s, the shortest time between two pictures sent
+PICTURE_INTERVAL = 0.03  # s; shortest time between two frames sent
 IDLE = 0.01  # s between checks for messages while paused
-A_CALL = 100_000  # grain-steps between checks for messages, some milliseconds
+GRAIN_STEPS_A_CALL = 100_000  # between checks for messages, some milliseconds
 
 
-class Told(Progress):
+class SentProgress(Progress):
     """Progress sent to the window, with pictures of the bed as it settles."""
 
     def __init__(self, outbox: Outbox, loaded: LoadedPreset, folder: Path) -> None:
@@ -42,27 +42,27 @@ class Told(Progress):
         self._loaded, self._folder = loaded, folder
         self._watched, self._sent = None, -math.inf
 
-    def start(self, stage: str, total: float | None, worth: float = 0.0) -> None:
+    def start(self, stage: str, total: float | None, cost: float = 0.0) -> None:
         """Begin a stage."""
-        super().start(stage, total, worth)
+        super().start(stage, total, cost)
         self._stage = stage
-        self._outbox.send("told", f"{stage} …")
+        self._outbox.send("message", f"{stage} …")
 
     def reach(self, done: float) -> None:
-        """Say how far it is."""
+        """Send the time reached in the stage."""
         super().reach(done)
-        self._outbox.send("told", f"{self._stage}: {done:.2f} s", newest=True)
+        self._outbox.send("message", f"{self._stage}: {done:.2f} s", newest=True)
 
     def watch(self, simulation: Simulation) -> None:
         """Show the grains, without their contacts."""
-        if time.monotonic() - self._sent < A_LOOK:
+        if time.monotonic() - self._sent < PICTURE_INTERVAL:
             return
-        seen = Seen.of(simulation, simulation.observe(), UNTOUCHED)
+        frame = LiveFrame.of(simulation, simulation.observe(), UNTOUCHED)
         if simulation is not self._watched:
             self._watched = simulation
-            top = float(seen.grains["position"][..., 1].max() + 2.0 * simulation.scene.radius.max())
-            self._outbox.send("makes", Scenery.of(self._loaded, self._folder, simulation).for_filling(top))
-        self._outbox.send("seen", (seen, 0.0), newest=True)
+            top = float(frame.grains["position"][..., 1].max() + 2.0 * simulation.scene.radius.max())
+            self._outbox.send("settling", Scenery.of(self._loaded, self._folder, simulation).for_filling(top))
+        self._outbox.send("frame", (frame, 0.0), newest=True)
         self._sent = time.monotonic()
 
 
@@ -72,8 +72,8 @@ class Worker:
     def __init__(self, live: Live, pipe: Connection, outbox: Outbox) -> None:
         self._live, self._pipe, self._outbox = live, pipe, outbox
         self._going, self._pieces, self._pace, self._ended = False, 0, 1.0, False
-        self._wishes: list[tuple[str, float]] = []
-        self._most = max(1, A_CALL // live.run.scene.radius.size)
+        self._changes: list[tuple[str, float]] = []
+        self._most = max(1, GRAIN_STEPS_A_CALL // live.run.scene.radius.size)
         self._sent = -math.inf
         self._anchor = (time.monotonic(), live.time)
         self._factor = 0.0
@@ -90,12 +90,12 @@ class Worker:
             self._take_piece()
 
     def _take_piece(self) -> None:
-        for name, value in self._wishes:
+        for name, value in self._changes:
             try:
                 self._live.set(name, value)
             except LabError as error:
-                self._outbox.send("told", str(error))
-        self._wishes.clear()
+                self._outbox.send("message", str(error))
+        self._changes.clear()
         begun = time.monotonic()
         self._live.advance(self._listen, self._most)
         taken = time.monotonic() - begun
@@ -104,7 +104,7 @@ class Worker:
         self._pieces = max(0, self._pieces - 1)
         if max(self._live.rows.get(kind, [-1.0])[0] for kind in VERBS) >= 0.0:
             self._going = False  # the picture shows how the ship was lost
-        if time.monotonic() - self._sent >= A_LOOK or not self._going:
+        if time.monotonic() - self._sent >= PICTURE_INTERVAL or not self._going:
             self._send()
         self._wait()
 
@@ -119,14 +119,14 @@ class Worker:
             self._listen()
 
     def _send(self) -> None:
-        self._outbox.send("seen", (self._live.look(), min(self._factor, self._pace)), newest=True)
+        self._outbox.send("frame", (self._live.frame(), min(self._factor, self._pace)), newest=True)
         self._sent = time.monotonic()
 
     def _listen(self) -> None:
         while self._pipe.poll():
             word, what = self._pipe.recv()
             if word == "set":
-                self._wishes.append(what)
+                self._changes.append(what)
             elif word == "go":
                 self._going = what
             elif word == "pace":
@@ -147,7 +147,7 @@ class Worker:
             rows = self._live.recorder.rows
             Recorder(folder, samples=rows[0], frames=rows[1]).close()
         except (LabError, OSError) as error:
-            self._outbox.send("told", f"nothing was kept: {error}")
+            self._outbox.send("message", f"nothing was kept: {error}")
             return
         self._outbox.send("kept", folder)
 
@@ -162,17 +162,17 @@ def serve(pipe: Connection, name: str, overrides: Mapping, folder: Path, cores: 
         _run(name, overrides, folder, pipe, outbox)
     except (LabError, BadState, Unavailable) as error:
         outbox.send("over", str(error))
-    except (EOFError, BrokenPipeError, ConnectionResetError, KeyboardInterrupt):  # the window is gone, or this is to go
+    except (EOFError, BrokenPipeError, ConnectionResetError, KeyboardInterrupt):  # the window is gone or ends this
         pass
     outbox.finish()
 
 
 def _run(name: str, overrides: Mapping, folder: Path, pipe: Connection, outbox: Outbox) -> None:
     loaded = load(name, overrides)
-    handed = under_a_hand(loaded)
-    with Live(handed, folder, Told(outbox, handed, folder)) as live:
-        heed(patient=True)  # not before: while nothing is recorded, SIGTERM may end it at once
-        outbox.send("ready", (Scenery.of(handed, folder, live.simulation), own_motion(loaded.resolved)))
+    prepared = steerable(loaded)
+    with Live(prepared, folder, SentProgress(outbox, prepared, folder)) as live:
+        handle_signals(patient=True)  # not before: while nothing is recorded, SIGTERM may end it at once
+        outbox.send("ready", (Scenery.of(prepared, folder, live.simulation), own_motion(loaded.resolved)))
         try:
             Worker(live, pipe, outbox).serve()
         except BadState as error:

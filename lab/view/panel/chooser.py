@@ -10,14 +10,14 @@ from lab.paint import palette
 from lab.preset.find import QUICK, load, names
 
 COLUMNS, ROWS = 4, 3
-POSTERS = Path("renders/gallery/presets")  # where `cargolab gallery` leaves them
+POSTERS = Path("renders/gallery/presets")  # where `cargolab gallery` writes them
 GRAIN = (196, 176, 150)
-EDGE = 0.025  # of the window's height: between the cards
-FOOT, TITLE = 3.1, 0.68  # of the letters' height: what is written below a poster, and the letters of its second part
+EDGE = 0.025  # space between the cards, relative to the window's height
+FOOT, TITLE = 3.1, 0.68  # height of the text below a poster and of the title's letters, relative to the name's letters
 
 
 class Chooser:
-    """Cards of all presets; `chosen` is the name of the selected one, "" before."""
+    """Cards of all presets; `chosen` is the name of the selected one, "" before a selection."""
 
     def __init__(self, size: tuple[int, int]) -> None:
         self.size, self.ended, self.chosen = size, False, ""
@@ -46,7 +46,7 @@ class Chooser:
         return np.asarray(image)
 
     def key(self, name: str) -> None:
-        """Arrows go from card to card, Enter takes one."""
+        """Handle a key: arrows move between cards, Enter selects one, Q its quick variant."""
         step = {"left": -1, "right": 1, "up": -COLUMNS, "down": COLUMNS}.get(name, 0)
         self._at = int(np.clip(self._at + step, 0, len(self._names) - 1))
         if name in ("return", "space"):
@@ -107,7 +107,7 @@ class Chooser:
 
 
 def _poster(name: str, size: tuple[int, int]) -> Image.Image:
-    """Its poster of the gallery, or a sketch of its tank."""
+    """The preset's poster from the gallery, or a sketch of its tank."""
     path = POSTERS / f"{name.replace('/', '-')}.png"
     if path.exists():
         return ImageOps.fit(Image.open(path).convert("RGB"), (size[0] - 1, size[1] - 1))
@@ -115,7 +115,7 @@ def _poster(name: str, size: tuple[int, int]) -> Image.Image:
 
 
 def _sketch(name: str, size: tuple[int, int]) -> Image.Image:
-    """The tank, its moving parts and how deep it is filled."""
+    """A sketch of the tank, its filling and its moving parts."""
     preset = load(name).resolved
     outline = np.array(preset.tank.outline)
     image = Image.new("RGB", size, palette.HOLD)

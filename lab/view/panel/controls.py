@@ -9,7 +9,7 @@ from lab.view.panel.swell import RANDOM
 from solvers.scene import Scene
 
 UNITS = {"deg": pi / 180, "deg/s": pi / 180, "mm": 1e-3, "%": 1e-2}  # in SI; all others are SI
-MOVES, ALTERS, RESTARTS = "moves the tank", "at once", "starts anew"
+MOVES, ALTERS, RESTARTS = "moves the tank", "at once", "restarts"
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""Forces between grains as a picture shows them."""
+"""Contact forces as they are drawn: force chains, and the forces on one grain."""
 
 import numpy as np
 

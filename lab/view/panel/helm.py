@@ -1,4 +1,4 @@
-"""The helm: turn the user's settings into a motion of the tank that is smooth however abruptly they change.
+"""The helm: turn the user's settings into a motion of the tank that is smooth even if they change abruptly.
 
 Angles and amplitudes follow the settings like a critically damped oscillator; the tilt is also limited in rate. Pose,
 velocity and acceleration of the tank are continuous from piece to piece, by quintic Hermite interpolation.
@@ -28,7 +28,7 @@ class Follower:
     bend: float = 0.0  # x″
 
     def follow(self, goal: float, time: float) -> None:
-        """Go on for so long (s)."""
+        """Advance by `time` (s)."""
         away, fade = self.value - goal, exp(-time / self.ease)
         slope = self.rate + away / self.ease
         self.value = goal + (away + slope * time) * fade
@@ -48,7 +48,7 @@ class Oscillation:
         self.amplitude, self.omega, self.phase = Follower(0.0, EASE), Follower(2.0 * pi * frequency, EASE), 0.0
 
     def follow(self, amplitude: float, frequency: float, time: float) -> None:
-        """Go on for so long (s) towards an amplitude and a frequency (Hz)."""
+        """Advance by `time` (s) towards an amplitude and a frequency (Hz)."""
         before = self.omega.value
         self.amplitude.follow(amplitude, time)
         self.omega.follow(2.0 * pi * frequency, time)
@@ -73,7 +73,7 @@ class Helm:
         self._pose = np.zeros((3, 3))  # of turn, y and z: value, rate and acceleration now
 
     @staticmethod
-    def hands() -> tuple[Steered, ...]:
+    def motions() -> tuple[Steered, ...]:
         """The motions of a scene that a helm steers."""
         return tuple(Steered(coordinate, fastest) for coordinate, fastest in FASTEST.items())
 

@@ -10,7 +10,7 @@ from lab.view.shown import Shown
 
 def clock(shown: Shown) -> str:
     """The time, and whether it is running; before that, how far the bed has settled."""
-    if shown.making:
+    if shown.settling:
         return shown.status
     if shown.playhead is not None:
         state = "looking back"
@@ -25,7 +25,7 @@ def readings(shown: Shown) -> list[str]:
     limit = "no limit" if np.isinf(shown.pace) else f"limit {shown.pace:g}"
     footage, frame = shown.footage, shown.frame
     count = footage.radius.size
-    if shown.making:
+    if shown.settling:
         return [f"{count} grains"]
     found = [
         f"{shown.factor:.2f} of real time ({limit})",

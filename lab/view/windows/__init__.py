@@ -1,4 +1,4 @@
-"""Front ends: each shows the pictures of a session and turns a window's events into its calls."""
+"""Front ends: each shows the pictures of a session and turns a window's events into calls of the session."""
 
 import os
 import sys
@@ -18,8 +18,8 @@ def open_window(
 ) -> Path | None:
     """Show a preset live until its window is closed; returns the folder of the last recording, None without one.
 
-    Without a name, the user chooses one first, and another one when that is closed. Raises LabError if there is no
-    display; its sentence names the commands that need none.
+    Without a name, the user chooses a preset first, and another one when that is closed. Raises LabError if there is no
+    display; its message names a command that needs none.
     """
     instead = f"`cargolab run {name or 'PRESET'}` runs it and films it."
     if not has_display():
@@ -57,7 +57,7 @@ def _show(window: Window, name: str, overrides: dict, size: tuple[int, int], out
     finally:
         if not session.ended:
             session.close()
-    return None if session.making else session.folder
+    return None if session.settling else session.folder
 
 
 def has_display() -> bool:

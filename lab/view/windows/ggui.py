@@ -21,7 +21,7 @@ NAMES = {
     ti.ui.RETURN: "return",
 }
 BUTTONS = {ti.ui.LMB: "left", ti.ui.RMB: "right"}
-# imgui's letters are 13 pixels high whatever the window's size: pixels of its panel, of a row, above and below.
+# Width of imgui's panel, height of a row, height of its frame (pixels): imgui's font does not scale with the window.
 PANEL, ROW, FRAME = 440, 23, 36
 
 
@@ -110,5 +110,5 @@ def open_window(size: tuple[int, int]) -> VulkanWindow | None:
     """Open the window; None if there is no Vulkan."""
     try:
         return VulkanWindow(size)
-    except Exception:  # Taichi raises what its parts raise: no loader, no device, no surface
+    except Exception:  # Taichi passes on many kinds of errors: no loader, no device, no surface
         return None

@@ -9,11 +9,11 @@ from lab.view.panel.chooser import Chooser
 from lab.view.session import Session
 
 PICTURES = 30.0  # Hz
-LATEST = 0.1  # s: a larger delay of the pictures is not caught up
+LATEST = 0.1  # s; a larger delay of the pictures is not caught up
 
 
 class Window(ABC):
-    """A front end of one toolkit; `types` where it has a panel to type values in."""
+    """The window of one toolkit; `types`: whether it has a panel to type values in."""
 
     types: bool
 
@@ -34,7 +34,7 @@ class Window(ABC):
 
     @abstractmethod
     def close(self) -> None:
-        """Done with it."""
+        """Close the window."""
 
     @abstractmethod
     def _is_open(self) -> bool: ...

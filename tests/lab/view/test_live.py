@@ -13,7 +13,7 @@ from lab.paint.footage import open_footage
 from lab.preset.find import load
 from lab.recording import open_recording
 from lab.view import worker
-from lab.view.live import Live, own_motion, under_a_hand
+from lab.view.live import Live, own_motion, steerable
 from lab.view.replay import replay
 
 SMALL = {"tank.width": "40 mm", "tank.height": "40 mm", "grains.depth": "12 mm", "run.accuracy": "draft"}
@@ -24,14 +24,14 @@ PIECES = 30
 @pytest.fixture(scope="module")
 def steered(tmp_path_factory):
     folder, loaded = tmp_path_factory.mktemp("view") / "hand", load("tilting/quick", SMALL)
-    with Live(under_a_hand(loaded), folder, Progress(quiet=True)) as live:
+    with Live(steerable(loaded), folder, Progress(quiet=True)) as live:
         for name, value in own_motion(loaded.resolved).items():
             live.set(name, value)
         for k in range(PIECES):
             if k in HAND:
                 live.set(*HAND[k])
             live.advance(most=100 + 37 * k)  # how often it is looked at must not matter
-        with pytest.raises(LabError, match="start the experiment anew"):
+        with pytest.raises(LabError, match="start the experiment again"):
             live.set("diameter", 4e-3)
         live.close()
     return folder
@@ -42,15 +42,15 @@ def test_a_bed_can_be_watched_as_it_is_made(tmp_path, monkeypatch):
 
     said = []
     box = SimpleNamespace(send=lambda word, what, newest=False: said.append((word, what)))
-    monkeypatch.setattr(worker, "A_LOOK", 0.0)
-    loaded = under_a_hand(load("tilting/quick", {**SMALL, "grains.reuse_bed": False}))
-    with Live(loaded, tmp_path / "run", worker.Told(box, loaded, tmp_path / "run")) as live:
-        lies = live.look().grains["position"]
-    words = [word for word, _ in said if word != "told"]
-    assert words[0] == "makes" and words.count("makes") in (1, 2) and words.count("seen") > 5
-    scenery = next(what for word, what in said if word == "makes")
+    monkeypatch.setattr(worker, "PICTURE_INTERVAL", 0.0)
+    loaded = steerable(load("tilting/quick", {**SMALL, "grains.reuse_bed": False}))
+    with Live(loaded, tmp_path / "run", worker.SentProgress(box, loaded, tmp_path / "run")) as live:
+        lies = live.frame().grains["position"]
+    words = [word for word, _ in said if word != "message"]
+    assert words[0] == "settling" and words.count("settling") in (1, 2) and words.count("frame") > 5
+    scenery = next(what for word, what in said if word == "settling")
     assert scenery.preset["ship"] is None and scenery.radius.shape == lies.shape[:2]
-    places = [what[0].grains["position"] for word, what in said if word == "seen"]
+    places = [what[0].grains["position"] for word, what in said if word == "frame"]
     heights = [place[..., 1].mean() for place in places]
     assert heights[0] > heights[-1] + 1e-3
     assert np.abs(places[-1] - lies).max() < 1e-5
@@ -101,19 +101,19 @@ def test_a_run_that_no_hand_steered_is_not_replayed(steered, tmp_path):
     (folder / "recording.h5").write_bytes((steered / "recording.h5").read_bytes())
     with h5py.File(folder / "recording.h5", "r+") as file:
         del file["steering"], file["checks/steering"]
-    with pytest.raises(LabError, match="not steered by hand"):
+    with pytest.raises(LabError, match="not steered by a user"):
         replay(folder, quiet=True)
 
 
 @pytest.mark.slow
 def test_a_random_sea_that_a_hand_raised_replays_with_the_same_bits(tmp_path):
     folder, loaded = tmp_path / "sea", load("ship/irregular-sea-quick", {"grains.diameter": "12 mm"})
-    with Live(under_a_hand(loaded), folder, Progress(quiet=True)) as live:
+    with Live(steerable(loaded), folder, Progress(quiet=True)) as live:
         for k in range(60):
             if k in (5, 40):
                 live.set("wave_height", 0.06 if k == 5 else 0.01)
             live.advance(most=50 + 11 * k)
-        waves = live.look().rows["waves"]
+        waves = live.frame().rows["waves"]
         live.close()
     assert 0.01 < waves[0] < 0.06
     with open_footage(folder) as footage:  # what a video of it shows

@@ -12,13 +12,13 @@ LARGE = bytes(10**6)  # more than a pipe holds
 def test_nobody_looks_and_it_goes_on_and_the_newest_is_what_is_seen_then():
     here, there = Pipe()
     outbox = Outbox(there)
-    outbox.send("told", LARGE)
+    outbox.send("message", LARGE)
     for k in range(100):
-        outbox.send("seen", (k, LARGE), newest=True)
-    outbox.send("told", "at last")
+        outbox.send("frame", (k, LARGE), newest=True)
+    outbox.send("message", "at last")
     found = [here.recv() for _ in range(3)]
     outbox.finish()
-    assert [word for word, _ in found] == ["told", "seen", "told"]
+    assert [word for word, _ in found] == ["message", "frame", "message"]
     assert found[1][1][0] == 99
     assert found[2][1] == "at last"
     assert not here.poll()
@@ -27,14 +27,14 @@ def test_nobody_looks_and_it_goes_on_and_the_newest_is_what_is_seen_then():
 def test_the_newest_of_each_that_is_only_looked_at_and_all_of_the_rest():
     here, there = Pipe()
     outbox = Outbox(there)
-    outbox.send("told", LARGE)  # which the pipe is full of
-    outbox.send("told", "kept")
+    outbox.send("message", LARGE)  # which the pipe is full of
+    outbox.send("message", "kept")
     for k in range(50):
-        outbox.send("told", k, newest=True)
-        outbox.send("seen", k, newest=True)
+        outbox.send("message", k, newest=True)
+        outbox.send("frame", k, newest=True)
     found = [here.recv() for _ in range(4) if here.poll(10.0)]
     outbox.finish()
-    assert found[1:] == [("told", "kept"), ("told", 49), ("seen", 49)]
+    assert found[1:] == [("message", "kept"), ("message", 49), ("frame", 49)]
     assert not here.poll()
 
 
@@ -42,8 +42,8 @@ def test_it_ends_with_the_window():
     here, there = Pipe()
     outbox = Outbox(there)
     here.close()
-    outbox.send("told", LARGE)
+    outbox.send("message", LARGE)
     outbox._thread.join()
     with pytest.raises(BrokenPipeError):
-        outbox.send("told", LARGE)
+        outbox.send("message", LARGE)
     outbox.finish()

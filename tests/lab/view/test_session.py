@@ -19,7 +19,7 @@ from lab.preset.find import load
 from lab.view import footage as footages
 from lab.view import session as sessions
 from lab.view.footage import Scenery
-from lab.view.live import Seen, own_motion, under_a_hand
+from lab.view.live import LiveFrame, own_motion, steerable
 from lab.view.page import PLOT
 from lab.view.panel.controls import CONTROLS
 from lab.view.panel.readings import clock, readings
@@ -63,20 +63,20 @@ def opened(monkeypatch, tmp_path):
     monkeypatch.setattr(sessions, "begin", begin)
     session = Session(PRESET, SMALL, SIZE, tmp_path / "out")
     loaded = load(PRESET, SMALL)
-    live = under_a_hand(loaded)
+    live = steerable(loaded)
     scene, place = build(live.resolved)
     preset = json.loads(live.resolved.model_dump_json())
     plain = np.zeros(scene.radius.shape, dtype=int), scene.outline, (), scene.fixed, {}, None, 1e-5
     scenery = Scenery(preset, PRESET, tmp_path, scene.radius, *plain)
     pipes[-1].send(("ready", (scenery, own_motion(loaded.resolved))))
     for k in range(5):
-        pipes[-1].send(("seen", (seen(place, 0.1 * k), 0.5)))
+        pipes[-1].send(("frame", (seen(place, 0.1 * k), 0.5)))
     session.tick()
     yield session, pipes, place
     session.close()
 
 
-def seen(place: np.ndarray, time: float) -> Seen:
+def seen(place: np.ndarray, time: float) -> LiveFrame:
     """Grains that move to starboard, spinning, in a tank that stands still."""
     still = np.zeros(place.shape[:2])
     grains = {
@@ -87,7 +87,7 @@ def seen(place: np.ndarray, time: float) -> Seen:
     }
     rows = {"pose": np.zeros((1, 3)), "centre_of_mass": np.full((1, 2), time)}
     rows |= {name: np.zeros(1) for name in ("kinetic", "contacts")}
-    return Seen(time, {**rows, "part": np.zeros((1, 0, 2))}, grains, PRESSING)
+    return LiveFrame(time, {**rows, "part": np.zeros((1, 0, 2))}, grains, PRESSING)
 
 
 def asked(pipe) -> list:
@@ -183,7 +183,7 @@ def test_the_centre_of_roll_is_an_earth_point_in_the_frame_of_a_tilted_tank_too(
     session, pipes, place = opened
     tilted = seen(place, 0.5)
     tilted.rows["pose"] = np.array([[0.01, 0.0, 0.4]])
-    pipes[-1].send(("seen", (tilted, 1.0)))
+    pipes[-1].send(("frame", (tilted, 1.0)))
     session.tick()
     session.look.frame = "tank"
     session.picture()
@@ -235,7 +235,9 @@ def test_a_row_of_grains_between_walls_has_two_contacts_each(opened):
     row = np.column_stack([order, np.append(order[1:], NOBODY)])
     grains = np.vstack([row, [[0, NOBODY]]])
     last = seen(place, 0.5)
-    pipes[-1].send(("seen", (Seen(0.5, last.rows, last.grains, Pressing(grains, grains * 0.0, grains * 0.1)), 1.0)))
+    pipes[-1].send(
+        ("frame", (LiveFrame(0.5, last.rows, last.grains, Pressing(grains, grains * 0.0, grains * 0.1)), 1.0))
+    )
     session.tick()
     assert f"{count} grains, 2.00 contacts each" in readings(session)
 
@@ -245,7 +247,7 @@ def test_what_needs_a_restart_waits_for_it(opened):
     asked(pipes[-1])
     session.set("diameter", 4e-3)
     assert asked(pipes[-1]) == []
-    assert "start anew" in session.said
+    assert "start again" in session.said
     session.key("r")
     assert asked(pipes[0])[-1] == ("end", None)
     assert session.overrides["grains.diameter"] == "4 mm"
@@ -304,11 +306,11 @@ def test_what_is_kept_in_memory_is_bounded_and_what_is_looked_at_stays(opened, m
     looked_at, limit = session.footage.row_time(session.frame), 8 * seen(place, 0.0).bytes
     monkeypatch.setattr(footages, "MOST_BYTES", limit)
     for k in range(5, 9):
-        pipes[-1].send(("seen", (seen(place, 0.1 * k), 0.5)))
+        pipes[-1].send(("frame", (seen(place, 0.1 * k), 0.5)))
     session.tick()
     assert session.footage.row_time(session.frame) == looked_at
     for k in range(9, 200):
-        pipes[-1].send(("seen", (seen(place, 0.1 * k), 0.5)))
+        pipes[-1].send(("frame", (seen(place, 0.1 * k), 0.5)))
         session.tick()
     frames = session.footage._seen
     assert 7 <= len(frames) <= 8
@@ -358,15 +360,19 @@ def test_a_bed_is_seen_while_it_is_made_and_keys_do_no_harm(opened):
     scenery = session.footage.scenery
     session.look.inset = "levers"  # which a ship had
     session.restart()
-    assert session.making and session.footage is None
+    assert session.settling and session.footage is None
     made = replace(scenery, outline=scenery.outline * [1.0, 30.0]).for_filling(0.12)
     assert made.outline[:, 1].max() == 0.12 and len(made.open_edges) == 1  # no lid so high up that grains are specks
-    for message in ("told", "pouring …"), ("makes", made), ("seen", (seen(place + np.array([0.0, 0.05]), 0.0), 0.0)):
+    for message in (
+        ("message", "pouring …"),
+        ("settling", made),
+        ("frame", (seen(place + np.array([0.0, 0.05]), 0.0), 0.0)),
+    ):
         pipes[-1].send(message)
     session.tick()
     high = session.picture()
-    pipes[-1].send(("seen", (seen(place, 0.2), 0.0)))
-    pipes[-1].send(("told", "pouring: 0.20 s"))
+    pipes[-1].send(("frame", (seen(place, 0.2), 0.0)))
+    pipes[-1].send(("message", "pouring: 0.20 s"))
     session.tick()
     assert clock(session) == "pouring: 0.20 s" and readings(session) == [f"{place.shape[1]} grains"]
     low = session.picture()
@@ -380,9 +386,9 @@ def test_a_bed_is_seen_while_it_is_made_and_keys_do_no_harm(opened):
     session.release(*at[0])
     session.wheel(1.0, 600, 400)
     pipes[-1].send(("ready", (scenery, {"tilt": 0.3})))
-    pipes[-1].send(("seen", (seen(place, 0.0), 0.5)))
+    pipes[-1].send(("frame", (seen(place, 0.0), 0.5)))
     session.tick()
-    assert session.going and not session.making and len(session.footage) == 1
+    assert session.going and not session.settling and len(session.footage) == 1
     assert clock(session) == "t = 0.00 s, running"
 
 
@@ -391,7 +397,7 @@ def test_keys_do_no_harm_before_anything_is_known_of_the_experiment(opened, tmp_
     for name in KEYS.keys() - {"escape", "r", "s"}:
         session.key(name)
         session.picture()
-    assert session.making and session.left == "nothing was recorded yet"
+    assert session.settling and session.left == "nothing was recorded yet"
     session.close()
 
 

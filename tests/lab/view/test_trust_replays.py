@@ -11,8 +11,8 @@ import pytest
 from lab.preset.find import load
 from lab.recording import Recorder, open_recording
 from lab.recording.xdmf import write_xdmf
-from lab.runs.launch import prepare
-from lab.view.live import under_a_hand
+from lab.runs.batch import prepare
+from lab.view.live import steerable
 from tests.lab.preset.test_malformed import SMALL, call, copied, refused
 from tests.lab.recording.test_trust_recordings import sound  # noqa: F401 (a fixture)
 from tests.oracles.synthetic import frame, recorder, sample
@@ -23,7 +23,7 @@ from tests.oracles.tampering import sealed
 def steered(tmp_path_factory):
     """A recording that a hand has steered."""
     folder = tmp_path_factory.mktemp("steered") / "run"
-    preset = under_a_hand(load("tilting/quick", {**SMALL, "run.settle": False, "run.threads": 1}))
+    preset = steerable(load("tilting/quick", {**SMALL, "run.settle": False, "run.threads": 1}))
     prepare(preset, folder).make_recording(steered=True)
     with Recorder(folder) as run:
         for k in range(4):
@@ -101,7 +101,7 @@ def test_a_recording_of_another_preset_than_it_holds_is_not_gone_on_with(sound, 
         del file["preset/resolved"]
         file["preset/resolved"] = json.dumps(table)
     before = (folder / "recording.h5").read_bytes()
-    assert "is not of the preset that it holds" in refused(call("resume", folder, "--quiet", "--no-video"))
+    assert "does not belong to the preset in it" in refused(call("resume", folder, "--quiet", "--no-video"))
     assert (folder / "recording.h5").read_bytes() == before
 
 
