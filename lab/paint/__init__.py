@@ -1,1 +1,1 @@
-"""Pictures and videos of a recording, painted without a display."""
+"""Pictures and videos of recordings, painted without a display."""

@@ -25,13 +25,13 @@ COLOURS = {
 }
 PLAIN = (150, 160, 172)  # of any other cargo
 SHADES = 0.12  # variation of brightness among the grains of one cargo
-COLUMNS, CELL, EDGE, TEXT = 2, (640, 292), 24, 22  # pixels
-ABOVE = 1.25  # of the bed's height: how much of the tank is shown
+COLUMNS, CELL, EDGE, TEXT = 2, (640, 292), 24, 22  # number; the others in pixels
+ABOVE = 1.25  # height of the part of the tank that is shown, relative to the bed's height
 WALL = 5.0  # pixels
 
 
 def paint_cargoes(folders: Mapping[str, Path], out: Path) -> Path:
-    """A picture (PNG) of the first frames of recordings, by the names of their cargoes; raises LabError."""
+    """Paint the first frames of recordings into one PNG file; folders: by cargo name. Raises LabError."""
     initialise()
     rows = -(-len(folders) // COLUMNS)
     image = Image.new("RGB", (COLUMNS * (CELL[0] + EDGE) + EDGE, rows * (CELL[1] + EDGE) + EDGE), palette.PAPER)
@@ -44,7 +44,7 @@ def paint_cargoes(folders: Mapping[str, Path], out: Path) -> Path:
 
 
 def _cell(name: str, bed: Bed) -> Image.Image:
-    """The lower part of a tank, its cargo's name and a scale above it."""
+    """The lower part of a tank with its cargo's name and a scale bar above it."""
     wide, high, head = *CELL, round(1.7 * TEXT)
     place, low, size = bed.position(0), bed.footage.outline.min(axis=0), np.ptp(bed.footage.outline, axis=0)
     height = min(size[1], ABOVE * (np.nanmax(place[:, 1]) - low[1]))

@@ -17,15 +17,15 @@ from lab.base.errors import LabError
 if TYPE_CHECKING:
     from lab.paint.footage import Bed
 
-LOOKED_AT = 100  # frames of a bed sampled to fix a scale
-LIVELIEST = 98.0  # a scale ends at this percentile of the values of the frame where it is largest
+SAMPLED_FRAMES = 100  # frames of a bed sampled to set the ends of a scale
+PERCENTILE = 98.0  # a scale ends at this percentile of the values in the frame where it is largest
 LIGHT, DARK = (255.0, 255.0, 255.0), (25.0, 30.0, 40.0)  # spin marks
 MOST_LAYERS = 8
 
 
 @dataclass(frozen=True)
 class Colouring:
-    """A colour scale that stays the same through the film, and the value of each grain on it.
+    """A colour scale that is fixed through the film, and the value of each grain on it.
 
     label: with its unit; low, high: ends of the scale; table: its colours (k, 3) in 0..255;
     values: function from bed and frame to numbers (n,); ticks: positions and texts (None: round numbers).
@@ -47,7 +47,7 @@ class Colouring:
 
 def speed(beds: Sequence[Bed]) -> Colouring:
     """|v| relative to the tank."""
-    top = _round_up(max(_liveliest(beds, lambda bed, frame: bed.speed(frame)), beds[0].diameter))
+    top = _round_up(max(_largest(beds, lambda bed, frame: bed.speed(frame)), beds[0].diameter))
     factor, unit = (1.0, "m/s") if top >= 1.0 else (1000.0, "mm/s")
 
     def values(bed: Bed, frame: int) -> np.ndarray:
@@ -62,19 +62,19 @@ def spin(beds: Sequence[Bed]) -> Colouring:
     def values(bed: Bed, frame: int) -> np.ndarray:
         return np.abs(bed.spin(frame)) / (2 * np.pi)
 
-    top = _round_up(max(_liveliest(beds, values), 0.1))
+    top = _round_up(max(_largest(beds, values), 0.1))
     return Colouring("spin in the tank (turns a second)", 0.0, top, _table("magma", low=0.3), values)
 
 
 def displacement(beds: Sequence[Bed]) -> Colouring:
-    """Distance from the place in the first frame, in mean grain diameters."""
+    """Distance from the position in the first frame, in mean grain diameters."""
     starts = {bed: bed.position(0) for bed in beds}
 
     def values(bed: Bed, frame: int) -> np.ndarray:
         moved = bed.position(frame) - starts[bed]
         return np.hypot(*moved.T) / bed.diameter
 
-    top = _round_up(max(_liveliest(beds, values), 1.0))
+    top = _round_up(max(_largest(beds, values), 1.0))
     return Colouring("displacement (diameters)", 0.0, top, _table("plasma"), values)
 
 
@@ -98,7 +98,7 @@ def size(beds: Sequence[Bed]) -> Colouring:
     """Diameter, from the smallest grain to the largest."""
     radius = np.concatenate([bed.radius for bed in beds])
     low, high = 2e3 * radius.min(), 2e3 * radius.max()
-    if high - low < 1e-3 * high:  # all equal: any scale around them will do
+    if high - low < 1e-3 * high:  # all equal: use any scale around the value
         low, high = 0.9 * high, 1.1 * high
 
     def values(bed: Bed, frame: int) -> np.ndarray:
@@ -108,12 +108,12 @@ def size(beds: Sequence[Bed]) -> Colouring:
 
 
 def kind(beds: Sequence[Bed]) -> Colouring:
-    """The kinds of grains that the preset mixes."""
+    """The kinds of grains in the preset."""
     return _named("kind of grain", beds[0].footage.kinds, lambda bed: bed.footage.kind[bed.world])
 
 
 def shape(beds: Sequence[Bed]) -> Colouring:
-    """The classes of outlines that the preset mixes."""
+    """The classes of outlines in the preset."""
     return _named("shape", beds[0].footage.shape_names, lambda bed: bed.shape)
 
 
@@ -150,7 +150,7 @@ def bed_colours(count: int) -> list[tuple[int, int, int]]:
 
 
 def _named(label: str, names: Sequence[str], number: Callable[[Bed], np.ndarray]) -> Colouring:
-    """A colour for each of these names, the grains numbered in their order."""
+    """A colour for each of these names; `number` gives the index of each grain's name."""
 
     def values(bed: Bed, frame: int) -> np.ndarray:
         return number(bed) + 0.5
@@ -159,27 +159,27 @@ def _named(label: str, names: Sequence[str], number: Callable[[Bed], np.ndarray]
     return Colouring(label, 0.0, len(names), _table("viridis", len(names)), values, ticks)
 
 
-def _liveliest(beds: Sequence[Bed], values: Callable[[Bed, int], np.ndarray]) -> float:
-    """The largest of the percentiles LIVELIEST over all frames sampled; 0 if no grain is left."""
-    looks = [values(bed, frame) for bed, frame in spread(beds)]
-    seen = [look[np.isfinite(look)] for look in looks]
-    return max((float(np.percentile(look, LIVELIEST)) for look in seen if len(look)), default=0.0)
+def _largest(beds: Sequence[Bed], values: Callable[[Bed, int], np.ndarray]) -> float:
+    """The largest value of PERCENTILE over all sampled frames; 0 if no grain is left."""
+    samples = [values(bed, frame) for bed, frame in spread(beds)]
+    finite = [sample[np.isfinite(sample)] for sample in samples]
+    return max((float(np.percentile(sample, PERCENTILE)) for sample in finite if len(sample)), default=0.0)
 
 
 def spread(beds: Sequence[Bed]) -> Iterator[tuple[Bed, int]]:
-    """Frames spread evenly over each bed's film, ordered by time across the beds, as they are stored."""
-    for share in np.linspace(0, 1, LOOKED_AT):
+    """Frames spread evenly over each bed's film, ordered by time across the beds, which suits the file's layout."""
+    for share in np.linspace(0, 1, SAMPLED_FRAMES):
         yield from ((bed, round(share * (bed.frames - 1))) for bed in beds)
 
 
 def _table(name: str, size: int = 256, low: float = 0.06) -> np.ndarray:
-    """One of matplotlib's perceptually uniform maps from `low` of its length on, (size, 3) in 0..255."""
+    """One of matplotlib's perceptually uniform colour maps without its first part `low`, (size, 3) in 0..255."""
     from matplotlib import colormaps
 
     return 255.0 * colormaps[name](np.linspace(low, 0.98, size))[:, :3]
 
 
 def _round_up(value: float) -> float:
-    """The next round number."""
+    """The smallest round number that is not below `value`."""
     power = 10.0 ** np.floor(np.log10(value))
     return float(power * next(step for step in (1, 1.5, 2, 3, 4, 5, 6, 8, 10) if step >= value / power - 1e-9))

@@ -1,4 +1,4 @@
-"""The parts of a picture other than grains and walls: scale bar, colour bar, gravity dial, live plot."""
+"""Parts of a picture other than grains and walls: scale bar, colour bar, gravity dial, growing plot."""
 
 from collections.abc import Sequence
 from functools import cache
@@ -12,8 +12,8 @@ from PIL import Image, ImageDraw, ImageFont
 from lab.paint.colours import Colouring
 from lab.paint.palette import GRID, HOLD, INK, LINE, LOST, PAPER, QUIET
 
-SMALLER = 0.65  # smallest size of a text, over its normal size, before it is cut
-FINER = 3  # the plot and the dial are drawn this many times larger, then shrunk to smooth their lines
+SMALLER = 0.65  # smallest size of a text relative to its normal size; a longer text is cut
+FINER = 3  # the plot and the dial are drawn this many times larger and then reduced, for smooth lines
 
 
 @cache
@@ -67,7 +67,7 @@ def ticks(low: float, high: float, most: int) -> list[float]:
 
 
 def clear_ticks(low: float, high: float, width: float, face: ImageFont.FreeTypeFont) -> list[float]:
-    """Round numbers between low and high, so few that they stand well apart on `width` pixels."""
+    """Round numbers between low and high, few enough for their labels to be well separated on `width` pixels."""
     for most in (5, 4, 3, 2, 1):
         places = ticks(low, high, most)
         widest = max((face.getlength(plain(place)) for place in places), default=0.0)

@@ -26,15 +26,15 @@ from lab.preset.units import quoted
 FALLBACK = asdict(Video())
 FRAMES = get_args(get_type_hints(Video)["frame"])
 SMALLEST, LARGEST = (320, 180), (7680, 4320)  # pixels
-MOST_BEDS = 6  # of one recording shown side by side
-MOST_SAMPLES = 800  # per curve of the plot
+MOST_BEDS = 6  # beds of one recording shown side by side
+MOST_SAMPLES = 800  # points per curve of the plot
 
 MARGIN, COLUMN, GAP, WALL, PLATE = 2.0, 17.0, 2.5, 0.36, 0.3  # in u
 TEXT, READING, TITLE = 1.1, 1.35, 1.45  # heights of letters in u
-BAND = 2.6  # height in u of the band across a ship that is lost
-THICKEST = 0.04  # largest wall thickness over the tank's smaller side
-ROOM = 0.3  # largest margin shown beside and below an open tank, over its larger side; less for many tanks
-ALIKE = 1e-9  # poses that differ by less (m, rad) are the same
+BAND = 2.6  # height in u of the band across the picture of a lost ship
+THICKEST = 0.04  # largest wall thickness relative to the tank's smaller side
+ROOM = 0.3  # largest margin around an open tank relative to its larger side; smaller for many tanks
+TOLERANCE = 1e-9  # poses that differ by less (m, rad) count as equal
 
 
 @dataclass(frozen=True)
@@ -48,9 +48,9 @@ class Look:
     speed: float
 
 
-def choose_look(footage: Footage, **wishes: object) -> Look:
-    """The look from the `wishes` that are not None, else the preset's [video], else FALLBACK; raises LabError."""
-    wanted = {key: value for key, value in wishes.items() if value is not None}
+def choose_look(footage: Footage, **options: object) -> Look:
+    """The look from the `options` that are not None, else the preset's [video], else FALLBACK; raises LabError."""
+    wanted = {key: value for key, value in options.items() if value is not None}
     settings = {**FALLBACK, **footage.settings, **wanted}
     look = Look(**{key: settings[key] for key in FALLBACK})
     pairs = zip((look.width, look.height), SMALLEST, LARGEST, strict=True)
@@ -69,7 +69,7 @@ def choose_look(footage: Footage, **wishes: object) -> Look:
 
 
 def choose_beds(footage: Footage, world: int | None = None) -> list[Bed]:
-    """The beds of a recording, or the one of that number from 0; raises LabError."""
+    """The beds of a recording, or only number `world`, counted from 0; raises LabError."""
     if world is not None and not 0 <= world < footage.worlds:
         last = footage.worlds - 1
         raise LabError(f"There is no world {world} in this recording: choose 0 to {last}.")
@@ -80,9 +80,8 @@ def choose_beds(footage: Footage, world: int | None = None) -> list[Bed]:
 class Film:
     """The pictures of some beds in one look; Taichi must be running (`solvers.machine.runtime`).
 
-    beds: of one or several recordings, all drawn to one scale and on the clock of the longest recording; the others
-    hold their last frame. most: how many are shown; the plot has all.
-    time (F,): of the pictures, s.
+    beds: of one or several recordings, all drawn to one scale and with the times of the longest recording; the others
+    keep their last frame. most: how many are shown; the plot has all. time (F,): of the pictures, s.
     """
 
     def __init__(self, beds: Sequence[Bed], look: Look, title: str | None = None, most: int = MOST_BEDS) -> None:
@@ -93,7 +92,7 @@ class Film:
         self._rows = [_nearest(bed.footage.time, self.time) for bed in self._beds]
         self._pose = np.stack([bed.pose[rows] for bed, rows in zip(self._beds, self._rows, strict=True)], axis=1)
         self._moved = np.stack([_motion(bed, self._pose[:, k]) for k, bed in enumerate(self._beds)], axis=1)
-        self._together = bool(np.ptp(self._pose, axis=1).max() < ALIKE)
+        self._together = bool(np.ptp(self._pose, axis=1).max() < TOLERANCE)
         self._named = any(bed.name for bed in self._beds)
         self._hues = palette.SERIES if len(self._beds) <= len(palette.SERIES) else bed_colours(len(self._beds))
         self._colouring = colouring(look.colour, self._beds)
@@ -117,15 +116,15 @@ class Film:
 
     @property
     def lost(self) -> bool:
-        """Whether a ship that is shown capsizes or floods in the end."""
+        """Whether a ship that is shown capsizes or floods."""
         return any(bed.footage.ends[bed.world] for bed in self._beds)
 
     def _draw_ends(self, image: Image.Image, frame: int) -> None:
-        """Write how each ship lost so far was lost, across the foot of her picture."""
+        """Draw a band with the text on the loss of each ship lost so far, across the foot of her picture."""
         draw = ImageDraw.Draw(image)
         for bed, camera, ground in zip(self._beds, self._cameras, self._grounds, strict=True):
             end = bed.footage.ends[bed.world]
-            if end and end.time <= self.time[frame] + ALIKE:
+            if end and end.time <= self.time[frame] + TOLERANCE:
                 (left, bottom), (right, _) = camera.pixels(np.array(ground))
                 height = min(BAND * self._unit, 0.25 * (right - left))
                 box = left, bottom - height, right, bottom
@@ -145,7 +144,7 @@ class Film:
         return left, self._u(12.0), right, min(lowest, self._u(12.0 + 16.0))
 
     def _stage(self) -> tuple[int, int, int, int]:
-        """The part of the page where the tanks stand."""
+        """Left, top, right, bottom of the part of the page with the tanks."""
         right, bottom = self._column()[0] - self._u(GAP), self._look.height - self._u(MARGIN + 2.8)
         return self._u(MARGIN), self._u(MARGIN + TITLE + 1.5), right, bottom
 
@@ -171,7 +170,7 @@ class Film:
         return grounds
 
     def _seen(self, points: np.ndarray, pose: np.ndarray) -> np.ndarray:
-        """Tank points in the frame that is drawn."""
+        """Points of the tank in the frame of reference that is drawn."""
         return _carried(points, pose) if self._look.frame == "earth" else np.asarray(points)
 
     def _place_beds(self) -> tuple[list[Camera], list[tuple[float, float]], float]:
@@ -205,7 +204,7 @@ class Film:
         return cameras, names, float(pitch[0] - 0.5 * gap)
 
     def _prepare_plot(self) -> tuple[deco.LivePlot, list[np.ndarray]]:
-        """The plot of what the beds do, and the times of the samples of each curve."""
+        """The plot of the beds' main quantity, and the times of the points of each curve."""
         afloat = any(bed.footage.sea for bed in self._all)
         steady = not afloat and all(_monotonic(bed.footage.series_pose[:, bed.world, 2]) for bed in self._all)
         label, measured = _quantity(self._all)
@@ -249,7 +248,7 @@ class Film:
         return page
 
     def _note(self) -> str:
-        """The note that is needed to read the film correctly."""
+        """A note on playback speed and number of beds shown, if they need one."""
         notes = []
         if self._look.speed != 1:
             notes.append(f"played at {self._look.speed:g} times real time")
@@ -284,7 +283,7 @@ class Film:
         sea.paint_hull(picture, camera.carried(self._pose[frame, k]), thick)
 
     def _on_ground(self, k: int, position: np.ndarray, pose: np.ndarray) -> np.ndarray:
-        """Grain positions (n, 2), NaN for those outside the box that is shown of bed k."""
+        """Grain positions (n, 2), NaN for those outside the box that is shown for bed k."""
         low, high = self._grounds[k]
         radius = self._beds[k].radius[:, None]
         seen = self._seen(position, pose)
@@ -317,16 +316,16 @@ class Film:
 
     def _draw_names(self, draw: ImageDraw.ImageDraw, frame: int) -> None:
         """The beds' names and, for a few beds, the readings in which their poses differ."""
-        telling = not self._together and len(self._beds) <= MOST_BEDS
+        with_readings = not self._together and len(self._beds) <= MOST_BEDS
         for k, bed in enumerate(self._beds):
-            aside = f" ({self._pose_readings(frame, k)[0][1]})" if telling else ""
+            aside = f" ({self._pose_readings(frame, k)[0][1]})" if with_readings else ""
             text, face = deco.fitted(bed.name + aside, self._name_width, TEXT * self._unit)
             draw.text(self._names_at[k], text, self._hues[k], face, anchor="ls")
 
     def _pose_readings(self, frame: int, k: int) -> list[tuple[str, str]]:
-        """Names and values of those of tilt, sway and heave of a shown bed that ever change."""
+        """Names and values of tilt, sway and heave of a shown bed, without those that never change."""
         sway, heave, tilt = self._moved[frame, k].tolist()
-        moves = (np.abs(self._moved) > ALIKE).any(axis=(0, 1))[[2, 0, 1]]
+        moves = (np.abs(self._moved) > TOLERANCE).any(axis=(0, 1))[[2, 0, 1]]
         readings = [
             ("φ =", f"{deco.number(np.degrees(tilt), 1)}°"),
             ("sway", f"{deco.number(1000 * sway, 1)} mm"),
@@ -361,7 +360,7 @@ def _quantity(beds: Sequence[Bed]) -> tuple[str, Callable[[Bed], np.ndarray]]:
 
 
 def _sort_by_shape(beds: Sequence[Bed]) -> list[tuple[list[int], Edges | None]]:
-    """Numbers of the beds of discs, and of those of irregular grains with all their edges; empty groups left out."""
+    """Indices of the beds of discs, and of the beds of irregular grains with their edges; without empty groups."""
     round_ones = [k for k, bed in enumerate(beds) if bed.edges is None]
     others = [k for k, bed in enumerate(beds) if bed.edges is not None]
     groups = [(round_ones, None)] if round_ones else []
@@ -393,7 +392,7 @@ def _carried(points: np.ndarray, pose: np.ndarray) -> np.ndarray:
 
 
 def _monotonic(tilt: np.ndarray) -> bool:
-    """Whether tilt (T,) in rad moves by half a degree at least and never back."""
+    """Whether tilt (T,) in rad is monotonic and changes by more than half a degree."""
     steps = np.diff(tilt)
-    one_way = bool((steps >= -ALIKE).all() or (steps <= ALIKE).all())
+    one_way = bool((steps >= -TOLERANCE).all() or (steps <= TOLERANCE).all())
     return one_way and bool(np.ptp(tilt) > np.radians(0.5))

@@ -1,4 +1,4 @@
-"""A recording as the painter reads it: frame by frame, bed by bed."""
+"""A recording for painting: read frame by frame, bed by bed."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from lab.base.errors import LabError, Useless
+from lab.base.errors import LabError, Unusable
 from lab.base.trust import BEYOND
 from lab.paint.painter import Edges
 from lab.paint.sea import Sea
@@ -23,19 +23,19 @@ class Footage:
     spilled (T, W) grains; radius (W, n) m; kind (W, n); kinds: their names; shapes: the outlines of irregular grains,
     None if all are discs; shape_names: of their classes; outline (m, 2) m; open_edges: those without a wall;
     fixed (k, 3) y, z, radius m; parts: polylines at rest (m, 2) m by name; part (F, W, P, 2): their displacements, m;
-    sea: the ship whose hold the tank is, and her waves, or None; ends: how each ship was lost, None if she was not;
+    sea: the ship and her waves if the tank is a ship's hold, else None; ends: the loss of each ship, None if not lost;
     settings: the preset's [video]; title. Raises LabError when there is no frame or no sample.
     """
 
     def __init__(self, recording: Recording) -> None:
         series, frames = recording.series, recording.frames
         if not len(frames["time"]) or not len(series["time"]):
-            raise LabError(f"{recording.path} holds no picture frames yet: let the run get further.")
+            raise LabError(f"{recording.path} has no picture frames yet: let the run continue.")
         self.time, self.pose, self.part = frames["time"][:], frames["pose"][:], frames["part"][:]
         self.series_time, self.series_pose = series["time"], series["pose"]
         for values in (self.time, self.pose, self.part, self.series_time, self.series_pose):
             if not (np.abs(values) < BEYOND).all():
-                raise Useless(f"{recording.path} is damaged (times or poses are no numbers): record the run again.")
+                raise Unusable(f"{recording.path} is damaged (invalid times or poses): record the run again.")
         self.centre_of_mass, self.spilled = series["centre_of_mass"], series["spilled"]
         self.radius, self.outline, self.kind = recording.radius, recording.outline, recording.kind
         self.kinds = ["the rest", *(recording.preset.get("kinds") or {})]
@@ -51,7 +51,7 @@ class Footage:
 
     @property
     def worlds(self) -> int:
-        """W, the beds recorded side by side."""
+        """W, the number of worlds."""
         return len(self.radius)
 
     def sea_of(self, frame: int) -> Sea | None:
@@ -61,7 +61,7 @@ class Footage:
         return self.sea
 
     def grains(self, name: str, frame: int, world: int) -> np.ndarray:
-        """What each grain has in a frame: (n,) or (n, 2) of a quantity."""
+        """The values (n,) or (n, 2) of a quantity for each grain in a frame."""
         if self._read.get(name, (None,))[0] != frame:
             self._read[name] = frame, self._frames[name][frame].astype(float)
         return self._read[name][1][world]
@@ -106,7 +106,7 @@ class Bed:
 
     @property
     def shape(self) -> np.ndarray:
-        """The class of each grain's outline (n,), a number in the order of the footage's names of shapes."""
+        """The class of each grain's outline (n,), an index into the footage's `shape_names`."""
         shapes = self.footage.shapes
         return shapes.kind[shapes.which[self.world]] if shapes else np.zeros(len(self.radius), dtype=int)
 
@@ -127,13 +127,13 @@ class Bed:
         return self.footage.grains("spin", frame, self.world)
 
     def plates(self, frame: int) -> list[np.ndarray]:
-        """The moving parts (m, 2) where they are in a frame, tank frame, m."""
+        """The moving parts as polylines (m, 2) m in the tank frame, at their positions in a frame."""
         moved = self.footage.part[frame, self.world]
         return [line + shift for line, shift in zip(self.footage.parts.values(), moved, strict=True)]
 
 
 @contextmanager
 def open_footage(path: Path | str, sound: bool = False) -> Iterator[Footage]:
-    """Open a recording, its file or its run's folder, or what is `sound` of it; raises LabError (see Recording)."""
+    """Open a recording by its file or folder; `sound`: only the part before any damage. Raises LabError."""
     with open_recording(path, sound=sound) as recording:
         yield Footage(recording)

@@ -2,8 +2,8 @@
 
 A picture is cut into horizontal bands. Each band is one task that paints its own grains in the
 order of their numbers, so no two tasks touch the same pixel and the picture does not depend on the
-number of threads. Edges are antialiased: the share of a pixel that is covered follows from its
-distance from the edge. The edge of an irregular grain is looked up in a table of its polar radius.
+number of threads. Edges are antialiased: the covered share of a pixel follows from its distance
+from the edge. The edge of an irregular grain is interpolated from a table of its polar radius.
 
 Loops over pixels are nested, by row and column, since `ti.ndrange` would need a division per pixel.
 
@@ -21,15 +21,15 @@ import taichi as ti
 from solvers.grains.shapes.contour import Contour
 
 BAND = 16  # rows of a band
-PER_TASK = 512  # least number of iterations of a parallel loop that Taichi gives to a thread
+PER_TASK = 512  # smallest number of iterations of a parallel loop that Taichi gives to a thread
 
 SHADE = 0.10  # how much lighter the top and darker the bottom of a grain is
 RIM = 0.32  # how much darker the rim is
-RIM_SHARE, RIM_MOST = 0.14, 3.0  # width of the rim: of the radius; in pixels
-MARK_PLACE = 0.52  # of the radius from the centre
-MARK_SIZE = 0.21  # of the radius
-MARK_STRENGTH = 0.55
-DIRECTIONS = 512  # of a table of polar radii: straight lines between them err by up to 6e-4 of a radius for rice
+RIM_SHARE, RIM_MOST = 0.14, 3.0  # width of the rim relative to the radius; its maximum in pixels
+MARK_PLACE = 0.52  # distance of the spin mark from the centre, relative to the radius
+MARK_SIZE = 0.21  # radius of the spin mark, relative to the radius
+MARK_STRENGTH = 0.55  # opacity of the spin mark
+DIRECTIONS = 512  # entries of a table of polar radii; linear interpolation errs by up to 6e-4 of a radius for rice
 
 Picture = ti.types.ndarray(dtype=ti.u8, ndim=3)
 Table = ti.types.ndarray(dtype=ti.f64, ndim=2)
@@ -149,7 +149,7 @@ def paint_plate(picture: np.ndarray, camera: Camera, line: np.ndarray, thickness
 def paint_strokes(picture: np.ndarray, strokes: np.ndarray, colour: tuple) -> None:
     """Paint straight lines (n, 6) in pixels in one colour, in place: x, y and half the thickness at either end.
 
-    Where lines meet or cross nothing is painted twice. Lines without finite ends are left out.
+    Pixels where lines meet or cross are painted once. Lines without finite ends are left out.
     """
     strokes = strokes[np.isfinite(strokes).all(axis=1)].astype(float)
     if not len(strokes):
@@ -222,10 +222,10 @@ def _colour_of(picture: ti.template(), row, column):
 
 @ti.func
 def _depth(offset, radius, towards, radii: ti.template(), row):
-    """How deep (pixels) a place lies within an outline, negative outside: (R - rho)/sqrt(1 + (R'/R)^2).
+    """Depth (pixels) of a point inside an outline, negative outside: (R - rho)/sqrt(1 + (R'/R)^2).
 
-    That is the distance from the edge where it is short. Like that of a disc the edge is drawn in by 1/(24 r), so that
-    the ramp around it covers the right area (along any closed curve it adds pi/12: own derivation).
+    Near the edge this is the distance from it. As for a disc, the edge is moved inwards by 1/(24 r), so that the ramp
+    around it covers the right area (along any closed curve the ramp adds pi/12: own derivation).
     """
     along, across = offset.dot(towards), offset.x * towards.y - offset.y * towards.x
     turn = ti.atan2(across, along) / (2.0 * ti.math.pi)
@@ -276,7 +276,7 @@ def _grain_paint(offset, radius, inner, towards, colour, mark):
 
 @ti.func
 def _whole(place, low, high):
-    """The pixel at a place, kept between low and high."""
+    """The pixel at a coordinate, clamped between low and high."""
     return ti.cast(ti.math.clamp(ti.floor(place), low, high), ti.i32)
 
 
@@ -329,7 +329,7 @@ def _paint_bands(
 
 @ti.func
 def _past(x, y, corners: ti.template(), k, after):
-    """Distance to an edge of a chain of corners, and the place along it, in 0..1 between its ends."""
+    """Distance to the edge from corner k to corner `after`, and the position along it, in 0..1 between its ends."""
     ex, ey = corners[after, 0] - corners[k, 0], corners[after, 1] - corners[k, 1]
     px, py = x - corners[k, 0], y - corners[k, 1]
     along = (px * ex + py * ey) / ti.max(ex * ex + ey * ey, 1e-30)
@@ -353,9 +353,9 @@ def _outside(x, y, corners: ti.template()):
 
 @ti.func
 def _off_walls(x, y, corners: ti.template(), walled: ti.template(), wall):
-    """Distance to the nearest edge with a wall, made more than `wall` past an end at an open edge.
+    """Distance to the nearest edge with a wall, larger than `wall` beyond an end next to an open edge.
 
-    So a wall ends in a straight cut where its neighbour is open.
+    A wall thus ends in a straight cut where the neighbouring edge is open.
     """
     nearest, count = 1e30, corners.shape[0]
     for k in range(count):
@@ -382,7 +382,7 @@ def _paint_walls(
     wall_colour: Colour,
     inner_colour: Colour,
 ):
-    # The distances change by at most one a pixel: far from the edges a whole run of pixels is alike.
+    # The distances change by at most one per pixel, so far from the edges many pixels in a row are equal.
     for row in range(box[1], box[3]):
         column = box[0]
         while column < box[2]:
@@ -412,7 +412,7 @@ def _paint_line(picture: Picture, corners: Table, box: ti.types.vector(4, ti.i32
 
 @ti.func
 def _paint_stroke(covered: ti.template(), first, along, half, growth, top, bottom):
-    """Cover the pixels of some rows as far as a line does that starts at `first`; one thinner than a pixel is faint."""
+    """Add the coverage of a line from `first` in rows top to bottom; a line thinner than a pixel is faint."""
     inverse, reach = 1.0 / ti.max(along.dot(along), 1e-30), ti.max(half, half + growth, 0.5) + 0.5
     left = _whole(first.x + ti.min(along.x, 0.0) - reach + 0.5, 0, covered.shape[1])
     right = _whole(first.x + ti.max(along.x, 0.0) + reach + 0.5, 0, covered.shape[1])

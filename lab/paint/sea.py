@@ -1,4 +1,4 @@
-"""The ship and the sea in a picture: the hull around the tank, and the water up to the wave surface."""
+"""The ship and the sea in a picture: the hull around the tank, and the water up to the free surface."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -16,11 +16,11 @@ from solvers.ship.waves import Waves, soft_start
 WATER, SURFACE = (214, 230, 243), (70, 130, 180)
 LINE = 0.12  # thickness of the surface's line, in the units of a page
 HATCH = 4  # the edge of a box's outline that its hatch leaves open: see `ShipGiven.corners`
-AROUND = np.array([0.45, 0.2])  # of the hull's size: how much of the sea is shown beside her and above and below
+AROUND = np.array([0.45, 0.2])  # width of the sea shown beside, and above and below the hull, relative to her size
 
 
 class Sea:
-    """What the recording of a ship (its preset in full) says of hull and waves.
+    """The hull and the waves of a ship's recording; preset: with all its values.
 
     `waves`: the waves of a frame (`recording.WAVES`) if a user has changed those of the preset, or None.
     """
@@ -47,7 +47,7 @@ class Sea:
 
     @property
     def soft_start(self) -> float:
-        """How long the waves take to come up (s)."""
+        """Time (s) in which the waves reach their full height."""
         return self._sea.soft_start if self._sea else 0.0
 
     @cached_property
@@ -59,7 +59,7 @@ class Sea:
         return make_waves(replace(self._sea, height=1.0), make_water(self._water, self._gravity))
 
     def elevation(self, y: np.ndarray, time: float) -> np.ndarray:
-        """Height (k,) m of the surface over the calm one at places y (k,) m, earth's axes."""
+        """Elevation (k,) m of the free surface at positions y (k,) m, in the earth frame."""
         if self.waves is None or np.isnan(self.waves[0]):
             return np.zeros(len(y)) if self._waves is None else self._waves.elevation(y, time)
         height, frequency, number = self.waves
@@ -68,7 +68,7 @@ class Sea:
         return height * soft_start(time, self.soft_start) * np.cos(number * y - frequency * time)
 
     def ground(self, hulls: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Lower and upper corner (m) of what is shown, from all places (k, 2) m of the hull's corners."""
+        """Lower and upper corner (m) of the part that is shown, from all positions (k, 2) m of the hull's corners."""
         room = AROUND * np.ptp(self.hull, axis=0).max()
         return hulls.min(axis=0) - room, hulls.max(axis=0) + room * (1.0, 0.5)
 
@@ -82,7 +82,7 @@ class Sea:
         surface = camera.offset[1] - camera.scale * self.elevation(y, time)
         if not len(rows) or not len(columns):
             return
-        # Above the highest and below the lowest of the surface all pixels of a row are alike.
+        # Above the highest and below the lowest point of the surface all pixels of a row are equal.
         first = int(np.clip(np.floor(surface.min() - thick - 2.0), rows[0], rows[-1] + 1))
         last = int(np.clip(np.ceil(surface.max() + thick + 2.0), first, rows[-1] + 1))
         picture[last : rows[-1] + 1, columns[0] : columns[-1] + 1] = WATER

@@ -1,4 +1,4 @@
-"""From a recording to a video, a folder of pictures, or a poster."""
+"""Paint a recording as a video, a folder of pictures, or a poster."""
 
 import math
 from collections.abc import Callable, Iterator, Sequence
@@ -16,9 +16,9 @@ from lab.paint.footage import open_footage
 from solvers.machine.runtime import initialise
 
 MOST_IN_GRID = 24
-SLOWEST, FASTEST = 0.01, 60.0  # pictures a second of a video
-USUAL = 0.04  # s between pictures if their times do not give it
-HELD = 3.0  # s that the last picture stays if a ship is lost
+SLOWEST, FASTEST = 0.01, 60.0  # pictures per second of a video
+USUAL = 0.04  # s between pictures if the frames' times do not define it
+HELD = 3.0  # s for which the last picture is held if a ship is lost
 BT709 = "scale=out_color_matrix=bt709:out_range=tv"
 ENCODING = (
     *("-crf", "20", "-preset", "veryfast", "-movflags", "+faststart", "-vf", BT709),
@@ -42,12 +42,12 @@ def render_recording(
     sound: bool = False,
     progress: Progress | None = None,
 ) -> Path:
-    """Film a recording (its file or its run's folder) and return what was written.
+    """Paint a recording (its file or its run's folder); returns the path of the video or folder.
 
-    out: an .mp4 file (default: video.mp4 beside the recording), or with png a folder of PNG files
-    (pictures). What is not given comes from the preset's [video]. world: one bed, from 0; None: up
-    to six side by side. sound: only what lies before the first damaged row.
-    progress(done, of) is called after each picture. Raises LabError.
+    out: an .mp4 file (default: video.mp4 beside the recording), or with png a folder for PNG files (default: pictures).
+    Options that are None are taken from the preset's [video]. world: one bed, counted from 0; None: up to six side by
+    side. sound: only the rows before the first damaged one. progress(done, total) is called after each picture. Raises
+    LabError.
     """
     initialise()
     with open_footage(path, sound) as footage:
@@ -70,12 +70,12 @@ def render_grid(
     speed: float | None = None,
     progress: Progress | None = None,
 ) -> Path:
-    """Film up to 24 beds of one or several recordings in one grid, such as the points of a sweep, and return `out`.
+    """Paint up to 24 beds of one or several recordings in one grid, such as the points of a sweep; returns `out`.
 
-    beds: recordings (file or folder), or pairs of a recording and one of its worlds (else its first);
-    captions: one each; out: an .mp4 file, or a .png file for the last picture alone. All are drawn to one scale,
-    on one clock and with one scale of colours; a recording that ends sooner stands still at its end. What is not
-    given, the title too, comes from the first recording. Raises LabError.
+    beds: recordings (file or folder), or pairs of a recording and one of its worlds (else its first); captions: one
+    each; out: an .mp4 file, or a .png file for the last picture alone. All are drawn to one scale, at the same times
+    and with one colour scale; a recording that ends sooner keeps its last frame. Title and options that are None are
+    taken from the first recording. Raises LabError.
     """
     if not 1 <= len(beds) <= MOST_IN_GRID:
         raise LabError(f"A grid has room for 1 to {MOST_IN_GRID} beds (got {len(beds)}): choose some of them.")
@@ -111,9 +111,9 @@ def poster(
     height: int | None = None,
     world: int | None = None,
 ) -> Path:
-    """One picture of a recording as a PNG file (default: poster.png beside it).
+    """Paint one picture of a recording as a PNG file (default: poster.png beside it).
 
-    The frame nearest to `time` (s), or else at this fraction of the film. Raises LabError.
+    It shows the frame nearest to `time` (s), or to this fraction of the duration. Raises LabError.
     """
     initialise()
     with open_footage(path) as footage:
@@ -130,9 +130,9 @@ def poster(
 
 
 def playback(time: np.ndarray, speed: float) -> tuple[float, int]:
-    """The video's pictures per second, and k if only every k-th frame is shown; time (F,) in s."""
+    """The video's rate (pictures per second), and k if only every k-th frame is shown; time (F,) in s."""
     interval = float(np.median(np.diff(time))) if len(time) > 1 else 0.0
-    with np.errstate(over="ignore"):  # absurd times and speeds
+    with np.errstate(over="ignore"):  # extreme times and speeds
         wanted = float(np.float64(speed) / interval) if 0.0 < interval < math.inf else speed / USUAL
     wanted = min(max(wanted, SLOWEST), FASTEST * len(time))
     stride = max(1, math.ceil(wanted / FASTEST - 1e-9))
@@ -148,7 +148,7 @@ def _write(out: Path, film: Film, speed: float, png: bool, progress: Progress | 
 
 
 def _held(pictures: Iterator[np.ndarray], times: int) -> Iterator[np.ndarray]:
-    """The pictures, then the last one `times` more times."""
+    """The pictures, then the last one repeated `times` times."""
     for picture in pictures:
         yield picture
     for _ in range(times):

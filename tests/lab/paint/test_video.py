@@ -204,7 +204,7 @@ def test_beds_that_move_apart_share_no_reading_but_the_clock(four_beds, tmp_path
 
 def test_a_run_without_frames_or_a_file_cut_short_is_refused_in_one_sentence(tmp_path):
     empty = make_recording(tmp_path / "empty", frames=0)
-    refused(empty, "holds no picture frames yet")
+    refused(empty, "has no picture frames yet")
     whole = make_recording(tmp_path / "cut")
     whole.write_bytes(whole.read_bytes()[:4000])
     refused(whole, "cannot be read as a recording")
