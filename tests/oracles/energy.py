@@ -1,4 +1,4 @@
-"""Where the energy of a floating hull goes: what it has, what waves give, what it radiates and rubs away (J/m, W/m)."""
+"""The energy balance of a floating hull: its energy, the waves' work, radiation and viscous losses (J/m, W/m)."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""A motion that is none: a tank that stands at an angle."""
+"""A motion without movement: a tank held at an angle."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""What contacts lose, counted contact by contact from forces and speeds alone: laws that keep books on themselves."""
+"""Energy losses of contacts, computed contact by contact from forces and speeds alone."""
 
 import taichi as ti
 

@@ -1,4 +1,4 @@
-"""How deep two outlines overlap by the rule of the discrete function representation, as the nodes become ever more."""
+"""The overlap of two outlines by the discrete function representation, in the limit of infinitely many nodes."""
 
 from dataclasses import dataclass
 

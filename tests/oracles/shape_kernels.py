@@ -1,4 +1,4 @@
-"""Random pairs of grains, and kernels that ask the contact rules about all of them at once."""
+"""Random pairs of grains, and kernels that evaluate the contact rules for all of them at once."""
 
 from dataclasses import dataclass
 
@@ -68,7 +68,7 @@ def random_pairs(outlines: list[Contour], count: int, seed: int, gap: tuple[floa
 
 @ti.data_oriented
 class Asked:
-    """The contact rules for these outlines, asked about `count` pairs a launch."""
+    """The contact rules for these outlines, evaluated for `count` pairs per kernel call."""
 
     def __init__(self, outlines: list[Contour], count: int, nodes: int = 100, precision: str = "f64"):
         runtime.initialise(1, precision=precision)
@@ -99,7 +99,7 @@ class Asked:
         return self.by_nodes_beside(pairs, True)
 
     def by_nodes_beside(self, pairs: Pairs, all_nodes: bool = False) -> np.ndarray:
-        """The same of those of the last time and their neighbours."""
+        """The same for the nodes of the previous call and their neighbours."""
         self.load(pairs)
         self._by_nodes(int(all_nodes))
         return self.found.to_numpy()[:, 0, :5]

@@ -1,6 +1,6 @@
 """The barge and the equations of motion of Spandonidis (2016), chapter 7 and appendix E, for comparison.
 
-They are printed with slips. What is taken here instead:
+The printed equations have errors. These corrections are used here:
 - eq. 7.1: B₂ φ|φ| is B₂ φ̇|φ̇|.
 - eq. 7.2 to 7.4: distances from P stand for levers, of the grains even the mean of their distances. Moments are taken
   with signed levers here, each weight at its own centre.

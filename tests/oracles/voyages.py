@@ -1,4 +1,4 @@
-"""What a ship and her cargo have, read off a simulation: in the earth's axes, for the tests of the two together."""
+"""Energies and velocities of a ship and her cargo in the earth frame, computed from a simulation."""
 
 import numpy as np
 

@@ -75,7 +75,7 @@ def compare(base: Path, out: Path, build: str, wanted: list[str]) -> int:
 
 
 def main() -> None:
-    """Compare, and exit with 1 where anything differs."""
+    """Compare the two trees; exits with 1 if anything differs."""
     parser = argparse.ArgumentParser(prog="make same", description=__doc__)
     parser.add_argument("base", help="a revision of this repository")
     parser.add_argument("scenes", nargs="*", metavar="SCENE", help=f"some of {', '.join(SCENES)}; default: all")

@@ -13,8 +13,9 @@ from lab.preset.find import load
 from lab.preset.schema import Resolved
 from lab.preset.sections import history
 from lab.runs.runner import run_preset
+from tests.oracles.presets import MATERIAL, error_of
 
-TANK = """
+TANK = f"""
 title = "a record"
 [tank]
 width = "40 mm"
@@ -22,12 +23,7 @@ height = "40 mm"
 [grains]
 diameter = "4 mm"
 count = 20
-[material]
-density = "1319 kg/m^3"
-young = "3.2e9 Pa"
-poisson = 0.28
-friction = 0.25
-restitution = 0.6
+{MATERIAL}
 [contact]
 stiffness_scale = 1e-3
 """
@@ -60,11 +56,7 @@ def preset(tmp_path):
 
 
 def fault(preset, **overrides) -> str:
-    with pytest.raises(LabError) as caught:
-        load(preset, {key.replace("__", "."): value for key, value in overrides.items()})
-    sentence = str(caught.value)
-    assert sentence[-1] in ".?" and "\n" not in sentence
-    return sentence
+    return error_of(load, preset, {key.replace("__", "."): value for key, value in overrides.items()})
 
 
 def test_record_is_kept_in_si_with_the_preset(preset):

@@ -61,12 +61,12 @@ def test_a_recording_whose_preset_is_beyond_the_limits_is_refused(sound, tmp_pat
         del file["preset/resolved"]
         file["preset/resolved"] = json.dumps(table)
     said = refused(call("resume", folder, "--quiet"))
-    assert "holds no preset that this version can run" in said
+    assert "has no preset that this version can run" in said
 
 
 @pytest.mark.parametrize("name", EXCESS)
 def test_a_sweep_whose_presets_are_beyond_the_limits_is_refused(tmp_path, name, little_memory):  # noqa: F811
-    grid.ask("tilting/quick", {"run.seed": "1, 2"}, SMALL).write(tmp_path)
+    grid.define_sweep("tilting/quick", {"run.seed": "1, 2"}, SMALL).write(tmp_path)
     content = json.loads((tmp_path / "sweep.json").read_text())
     for key, value in EXCESS[name].items():
         put(content["points"][1]["resolved"], key, value)
@@ -86,7 +86,7 @@ SWEEPS = {
 
 @pytest.mark.parametrize("name", [*SWEEPS, "deep"])
 def test_a_sweep_that_is_up_to_mischief_is_refused(tmp_path, name, little_memory):  # noqa: F811
-    grid.ask("tilting/quick", {"run.seed": "1, 2"}, SMALL).write(tmp_path)
+    grid.define_sweep("tilting/quick", {"run.seed": "1, 2"}, SMALL).write(tmp_path)
     content = json.loads((tmp_path / "sweep.json").read_text()) | SWEEPS.get(name, {})
     text = "[" * 10**5 if name == "deep" else json.dumps(content)
     (tmp_path / "sweep.json").write_text(text)
@@ -94,7 +94,7 @@ def test_a_sweep_that_is_up_to_mischief_is_refused(tmp_path, name, little_memory
 
 
 def test_a_sweep_whose_checkpoint_is_of_other_runs_is_refused(tmp_path):
-    grid.ask("tilting/quick", {"run.seed": "1, 2"}, SMALL).write(tmp_path)
+    grid.define_sweep("tilting/quick", {"run.seed": "1, 2"}, SMALL).write(tmp_path)
     Checkpoint({}, ("points/777",), (0, 0)).write(tmp_path)
     assert "its checkpoint is of other runs" in refused(call("resume", tmp_path, "--quiet"))
 

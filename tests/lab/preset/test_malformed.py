@@ -24,10 +24,11 @@ from lab.preset.reader import _dotted
 from lab.preset.schema import Given
 from lab.preset.units import NUMBER
 from lab.recording import Recorder
+from lab.runs.batch import prepare
 from lab.runs.checkpoint import Checkpoint, read_checkpoint
-from lab.runs.launch import prepare
 from lab.sweeps import grid
 from lab.sweeps import sweep as sweeps
+from tests.oracles.presets import MATERIAL
 from tests.oracles.synthetic import frame, sample
 
 RICH = """
@@ -79,19 +80,14 @@ width = 640
 height = 360
 """
 
-LISTED = """
+LISTED = f"""
 title = "Three grains"
 [tank]
 width = "40 mm"
 height = "40 mm"
 [grains]
 bed = "grains.csv"
-[material]
-density = "1319 kg/m^3"
-young = "3.2e9 Pa"
-poisson = 0.28
-friction = 0.25
-restitution = 0.6
+{MATERIAL}
 [run]
 duration = "1 s"
 settle = false
@@ -555,14 +551,16 @@ def test_a_checkpoint_that_does_not_say_what_it_is_is_refused(idle, recorded, tm
 
 
 def test_a_sweep_over_numbers_of_numpy_is_read_again(tmp_path):
-    asked = grid.ask("tilting/quick", {"run.seed": np.arange(1, 3), "grains.spread": [np.float64(0.1), 0.2]}, SMALL)
+    asked = grid.define_sweep(
+        "tilting/quick", {"run.seed": np.arange(1, 3), "grains.spread": [np.float64(0.1), 0.2]}, SMALL
+    )
     asked.write(tmp_path)
     assert grid.read_sweep(tmp_path).same_as(asked)
 
 
 @often
 def test_damaged_sweeps_are_refused(idle, tmp_path, times):
-    sweep = grid.ask("tilting/quick", {"run.seed": "1, 2"}, SMALL)
+    sweep = grid.define_sweep("tilting/quick", {"run.seed": "1, 2"}, SMALL)
     sweep.write(tmp_path)
     content = (tmp_path / "sweep.json").read_bytes()
 

@@ -17,10 +17,11 @@ from lab.preset.schema import Resolved
 from lab.preset.sections.shapes import Shape
 from lab.recording import Recorder, open_recording
 from lab.report.explain import explain
+from lab.runs.batch import prepare
 from lab.runs.beds import bed_key, settling
-from lab.runs.launch import prepare
 from lab.runs.runner import run_preset
 from solvers.grains.shapes.contour import Contour
+from tests.oracles.presets import error_of
 from tests.oracles.synthetic import frame, sample
 
 SMALL = {
@@ -46,10 +47,7 @@ def resolved(shapes: dict, **sections) -> Resolved:
 
 
 def fault(shapes: dict, **sections) -> str:
-    with pytest.raises(LabError) as caught:
-        build(resolved(shapes, **sections))
-    assert "\n" not in str(caught.value) and str(caught.value)[-1] in ".?"
-    return str(caught.value)
+    return error_of(lambda: build(resolved(shapes, **sections)))
 
 
 @pytest.mark.parametrize(

@@ -20,8 +20,9 @@ from lab.preset.outline import area, simple_polygon
 from lab.preset.schema import Given, Resolved, resolve
 from solvers.machine.marks import Interval, Unit
 from solvers.motion import MOTIONS, Tilt
+from tests.oracles.presets import MATERIAL, error_of
 
-MINIMAL = """
+MINIMAL = f"""
 title = "a tank"
 [tank]
 width = "100 mm"
@@ -29,12 +30,7 @@ height = "100 mm"
 [grains]
 diameter = "3 mm"
 depth = "30 mm"
-[material]
-density = "1319 kg/m^3"
-young = "3.2e9 Pa"
-poisson = 0.28
-friction = 0.25
-restitution = 0.6
+{MATERIAL}
 [run]
 duration = "1 s"
 """
@@ -47,11 +43,7 @@ def minimal(**overrides) -> Resolved:
 
 
 def fault(**overrides) -> str:
-    with pytest.raises(LabError) as caught:
-        minimal(**overrides)
-    sentence = str(caught.value)
-    assert sentence[-1] in ".?" and "\n" not in sentence
-    return sentence
+    return error_of(lambda: minimal(**overrides))
 
 
 def write(folder, name: str, text: str) -> str:

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from lab.base.errors import LabError
 from lab.preset import tables
 from lab.preset.tables import read_table
+from tests.oracles.presets import error_of
 
 PLAIN = "time,sway\n0,0\n0.5,-1.25e-3\n1,.5\n"
 quickly = settings(max_examples=150, deadline=None)
@@ -22,11 +23,7 @@ def table(folder, content: str | bytes, needed=("time",), optional=("sway", "rol
 
 
 def fault(path, needed=("time",), optional=("sway", "roll"), key="motion.history.file") -> str:
-    with pytest.raises(LabError) as caught:
-        read_table(str(path), needed, optional, key)
-    sentence = str(caught.value)
-    assert "\n" not in sentence and sentence[-1] in ".?" and len(sentence) < 400
-    return sentence
+    return error_of(read_table, str(path), needed, optional, key)
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""Taichi runs without a home, and with one that cannot be written; what a killed process left is cleared away."""
+"""Taichi runs without a writable home folder; a stale lock of a killed process is removed."""
 
 import os
 import subprocess
@@ -24,7 +24,7 @@ print(kernel_cache.lacking())
 
 
 def simulate(**environment: str | None) -> list[str]:
-    """What a process says that uses Taichi; it must end well."""
+    """The output of a process that uses Taichi; it must exit with code 0."""
     bare = {name: value for name, value in os.environ.items() if name not in ("HOME", "XDG_CACHE_HOME")}
     given = {name: value for name, value in environment.items() if value is not None}
     done = subprocess.run(

@@ -1,4 +1,4 @@
-"""Fields that are read and written where they lie."""
+"""Fields that are read and written in place, without a copy."""
 
 import numpy as np
 import pytest
@@ -10,7 +10,7 @@ from tests.oracles.axes import axes
 
 @pytest.fixture
 def arrays():
-    """Fields of all kinds and layouts, of sizes that are no powers of two."""
+    """Fields of all types and layouts; their sizes are not powers of two."""
     runtime.initialise()
     arrays = State("mixed")
     arrays.reals(axes(3, 37), "places", kind=arrays.place)

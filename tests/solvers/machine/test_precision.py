@@ -1,4 +1,4 @@
-"""Precisions: what f32, mixed and f64 make of overlaps of 1e-7 m in a tank far from its origin; and other devices."""
+"""Precisions: errors of f32, mixed and f64 for overlaps of 1e-7 m far from the tank's origin; and other devices."""
 
 from dataclasses import dataclass
 
@@ -30,7 +30,7 @@ PRECISIONS = ("f64", "mixed", "f32")
 
 @dataclass
 class Told:
-    """What came of the scene in one precision: Δt (s), displacements of the lift (T,) m, states (T, 2, …)."""
+    """Results of the scene in one precision: Δt (s), displacements of the lift (T,) m, states (T, 2, …)."""
 
     dt: float
     lifted: np.ndarray
@@ -100,7 +100,7 @@ def told() -> dict[str, Told]:
 
 
 def restitution_errors(told: Told, world: int) -> np.ndarray:
-    """Of each speed, as a share of what an integration of the law says."""
+    """Relative error of the restitution at each speed, compared with an integration of the law."""
     pair = scene("f64").interfaces_of[world][0]
     found = []
     for k, speed in enumerate(SPEEDS):
@@ -111,7 +111,7 @@ def restitution_errors(told: Told, world: int) -> np.ndarray:
 
 
 def column_errors(told: Told, world: int) -> np.ndarray:
-    """Largest errors in time of the column's overlaps, as shares of them."""
+    """Largest relative errors over time of the column's overlaps."""
     z = told.position[:, world, :COLUMN, 1]
     found = np.column_stack([AWAY + R - z[:, 0], 2.0 * R - np.diff(z, axis=1)])
     return np.abs(found / resting(world) - 1.0).max(axis=0)
@@ -151,7 +151,7 @@ def test_a_column_rests_on_its_overlaps(told):
 
 @pytest.mark.slow
 def test_a_lift_carries_a_grain_on_its_overlap(told):
-    """A plate under way is where it is to the digits of a place, and so its force is smooth."""
+    """The position of a moving plate is exact to rounding, so its force is smooth."""
     for world, allowed in ((SOFT, 0.01), (FULL, 0.03)):
         overlap = (MASS * G / stiffness(world)[1]) ** (2 / 3)
         for name, limit in (("f64", 2e-3), ("mixed", allowed)):
@@ -162,7 +162,7 @@ def test_a_lift_carries_a_grain_on_its_overlap(told):
 
 @pytest.mark.slow
 def test_slow_grains_meet_in_all_precisions(told):
-    """Below 5 mm/s the speeds' 16th powers vanish in 32 bits; the lists must know of them still."""
+    """Below 5 mm/s the speeds' 16th powers vanish in 32 bits; the neighbour lists must still find the contacts."""
     usual = told["f64"].velocity[-1, :, CRAWLER:, 0]
     assert np.all(usual[:, 0] < 0.2 * SLOW)
     for name in ("mixed", "f32"):
@@ -170,7 +170,7 @@ def test_slow_grains_meet_in_all_precisions(told):
 
 
 def shaken(arch: str) -> tuple[np.ndarray, dict[str, np.ndarray]]:
-    """Positions of a small swayed bed in 32 bits on some device, and what was observed."""
+    """Positions and observed rows of a small swayed bed in 32 bits on a device."""
     rng = np.random.default_rng(2)
     column, row = (axis.ravel() for axis in np.meshgrid(np.arange(5), np.arange(6), indexing="ij"))
     place = R * (2.02 * np.stack([column - 2.0, row + 0.5], axis=1) + rng.uniform(-0.01, 0.01, (30, 2)))

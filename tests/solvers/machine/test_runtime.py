@@ -79,7 +79,7 @@ KERNELS = {
 
 
 def fresh(folder: Path, code: str) -> str:
-    """The last line that the code prints in a new process; Taichi needs a kernel's source in a file."""
+    """The last line printed by code in a new process; the code is in a file because Taichi reads a kernel's source."""
     script = folder / "script.py"
     script.write_text(code)
     environment = os.environ | {"PYTHONPATH": str(REPOSITORY)}
@@ -89,7 +89,7 @@ def fresh(folder: Path, code: str) -> str:
 
 
 def answers(folder: Path, start: str) -> dict[str, float]:
-    """What each of the kernels answers in a process that starts Taichi as told."""
+    """The result of each kernel in a process that starts Taichi with these options."""
     lines = ["import json", "import taichi as ti", start, "answers = {}"]
     for name, (code, _) in KERNELS.items():
         lines += [dedent(code), f"answers[{name!r}] = answer"]
@@ -103,7 +103,7 @@ def unguarded(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def guarded(tmp_path_factory, unguarded):
-    """After the unguarded ones, whose kernels must not come back from Taichi's cache."""
+    """Run after the unguarded ones, whose kernels must not be loaded from Taichi's cache."""
     return answers(tmp_path_factory.mktemp("guarded"), GUARDED)
 
 
@@ -138,7 +138,7 @@ for k in range(600):
 
 @pytest.mark.slow
 def test_released_arrays_leave_room_for_others(tmp_path):
-    """Taichi crashes where there are more than 512 trees."""
+    """Taichi crashes with more than 512 field trees."""
     assert fresh(tmp_path, MANY_ARRAYS) == "42.0"
 
 
@@ -164,7 +164,7 @@ print(field.to_numpy().sum())
 
 
 def test_starting_twice_keeps_the_fields(tmp_path):
-    """Alone in a process, since Taichi aborts where a field outlived its start."""
+    """In a separate process, since Taichi aborts if a field outlives its initialisation."""
     assert fresh(tmp_path, START_TWICE) == "7.0"
 
 
@@ -221,7 +221,7 @@ def test_available_cores():
 
 
 def test_what_is_in_use_stays_and_what_comes_after_all_is_released_has_the_same_numbers():
-    """Taichi knows compiled kernels by the numbers of their fields, which go on counting until it starts anew."""
+    """Taichi identifies compiled kernels by the numbers of their fields, which grow until it is initialised again."""
 
     def begun() -> tuple[State, ti.Field]:
         runtime.initialise(1)
@@ -256,7 +256,7 @@ def _work(tasks: ti.i32, turns: ti.i32) -> ti.f64:
 
 @pytest.mark.skipif(sys.platform != "linux" or runtime.available_cores() < 2, reason="two cores on Linux are needed")
 def test_threads_that_are_spread_work_on_cores_of_their_own():
-    """Those that a kernel has kept busy, by their times."""
+    """The threads that a kernel has kept busy, found by their CPU times."""
 
     def busy():
         times = {}

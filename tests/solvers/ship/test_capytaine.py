@@ -35,7 +35,7 @@ def of_barge(capytaine, length: float, across: int) -> tuple[np.ndarray, ...]:
 
 @pytest.fixture(scope="module")
 def quotients():
-    """A metre of barge over our section: added masses, dampings, forces, by the number of panels across."""
+    """Ratios of the barge's values per metre to our section's: added mass, damping, force, by panels across."""
     capytaine = pytest.importorskip("capytaine", reason="needs Capytaine: pip install -e '.[check]'")
     section = hydrodynamics(box(BREADTH, 0.3), WATER, -DRAUGHT, [FREQUENCY], about=(0.0, DRAUGHT), count=120)
     ours = section.added_mass[0], section.damping[0], np.abs(section.excitation[0])
@@ -55,7 +55,7 @@ def test_sway_and_heave_are_those_of_a_long_barge(quotients):
 
 
 def test_roll_comes_nearer_as_its_panels_become_smaller(quotients):
-    """About the waterline a box's roll makes hardly any waves: the little is a difference of large numbers."""
+    """A box rolling about its waterline makes hardly any waves: the result is a small difference of large numbers."""
     for of_roll in (lambda q: q[1][2, 2], lambda q: q[2][2], lambda q: q[0][0, 2]):
         coarse, fine = (abs(of_roll(quotients[across]) - 1.0) for across in (6, 12))
         assert fine < 0.5 * coarse

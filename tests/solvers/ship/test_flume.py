@@ -1,4 +1,4 @@
-"""A train of waves from a flap: its height, when it comes, what the flap makes of its stroke."""
+"""A wave train from a flap: its height, its arrival, and the ratio of wave height to stroke."""
 
 import numpy as np
 import pytest
@@ -15,7 +15,7 @@ TRAVEL = FLAP.distance / float(WATER.group_speed(FREQUENCY))
 
 @pytest.fixture(scope="module")
 def heights():
-    """Times (s) and amplitudes (m) of a period each, at the model."""
+    """Times (s) and amplitudes (m) at the model, one per period."""
     waves = FLAP.train(AMPLITUDE, FREQUENCY, WATER, 40.0)
     middle = np.arange(PERIOD, 30.0, 0.5 * PERIOD)
     found = []
@@ -26,7 +26,7 @@ def heights():
 
 
 def test_the_train_comes_with_the_group_speed(heights):
-    """Calm before, half as high when the middle of the ramp arrives, as high as asked for when it has passed."""
+    """Calm before, half the height when the middle of the ramp arrives, the full height after the ramp."""
     time, found = heights
     assert found[time < 0.5 * TRAVEL].max() < 0.03 * AMPLITUDE
     half = time[np.flatnonzero(found > 0.5 * AMPLITUDE)[0]]
@@ -43,7 +43,7 @@ def test_a_flap_in_shallow_and_in_deep_water():
 
 
 def test_fundamental_over_any_window():
-    """No whole number of periods, on a mean: amplitude and phase of Re c e^(−iωt)."""
+    """Amplitude and phase of Re c e^(−iωt) plus a mean, from a window that is not a whole number of periods."""
     time = np.linspace(1.0, 1.0 + 2.3 * PERIOD, 400)
     wave = 0.3 + np.column_stack([2.0 * np.cos(FREQUENCY * time), 3.0 * np.sin(FREQUENCY * time)])
     assert fundamental(time, wave, FREQUENCY) == pytest.approx(np.array([2.0, 3.0j]))

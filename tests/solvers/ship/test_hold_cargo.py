@@ -32,7 +32,7 @@ def test_a_filling_leans_only_beyond_its_repose():
 
 
 def test_a_wedge_shifts_as_in_closed_form():
-    """As long as the surface cuts both walls; beyond it the shift is less."""
+    """As long as the surface cuts both walls; beyond that the shift is smaller."""
     until = atan(2.0 * DEEP / WIDE)
     for angle in np.linspace(-0.99, 0.99, 9) * until:
         assert filling_centre(HOLD, AREA, angle) == pytest.approx(wedge(angle), abs=1e-9)
@@ -59,7 +59,7 @@ def levers(heels, repose):
 
 
 def test_levers_with_relaxed_cargo():
-    """As frozen up to the repose; beyond it the ship's centre of gravity has gone with the wedge's, to the low side."""
+    """As for frozen cargo up to the repose; beyond it the wedge moves the centre of gravity to the low side."""
     repose, heels = radians(25.0), np.radians([-40.0, -24.0, 10.0, 25.0, 35.0, 50.0])
     found, frozen = levers(heels, repose), righting_levers(BARGE, LOADED, WATER, heels)
     for heel, ours, without in zip(heels, found, frozen, strict=True):
@@ -70,7 +70,7 @@ def test_levers_with_relaxed_cargo():
 
 
 def test_a_cargo_without_repose_has_the_free_surface_of_a_fluid():
-    """GM is less by i ρ/M, i = b³/12 of its surface; and cargo that holds any slope is frozen."""
+    """The free surface reduces GM by i ρ/M, i = b³/12; cargo that holds any slope is frozen."""
     small = 1e-4
     loss = CARGO / AREA * WIDE**3 / 12.0 / LOADED.mass
     found = levers(np.array([small]), 0.0)[0] / small

@@ -58,7 +58,7 @@ def period(voyage, mode):
 
 @pytest.mark.parametrize("free", [LOCKED, pytest.param((True, True, True), marks=pytest.mark.slow)])
 def test_free_roll_has_the_frequency_its_inertia_was_chosen_for(table, memory, free):
-    """Chosen from the frequency domain, seen in time by Cummins' equation and by coefficients of that frequency."""
+    """The inertia is chosen in the frequency domain; the period is that of Cummins' equation and fixed coefficients."""
     wanted = 4.8
     ship = floating(table, memory, free=free)
     body = inertia_for_roll(ship, BARGE, WATER, -DRAUGHT, table.at([wanted]))
@@ -80,7 +80,7 @@ def test_heave_period(table, memory):
 
 
 def test_small_waves_have_the_response_of_the_frequency_domain(table, memory):
-    """2 to 8 rad/s at once: waves so small that their motions add up, told apart over their common period."""
+    """Waves of 2 to 8 rad/s at once, small enough for linear motions, separated over their common period."""
     omega = np.arange(2.0, 8.1, 0.5)
     waves = Waves(np.full(len(omega), 2e-7 + 0j), omega, WATER.wave_number(omega), 10.0)
     load = floating_in_waves(BARGE, WATER, AXIS, waves, table, (-DRAUGHT, 0.0))
@@ -101,7 +101,7 @@ def test_small_waves_have_the_response_of_the_frequency_domain(table, memory):
 
 @pytest.mark.parametrize("diffraction", [True, False])
 def test_small_waves_push_as_the_table_says(table, diffraction):
-    """The slope's buoyancy and what is added make the whole excitation, or its Froude–Krylov part; counted once."""
+    """The buoyancy on the wave slope and the rest add up to the excitation, or its Froude–Krylov part."""
     omega, amplitude, rest = 6.0, 1e-6, np.array([0.3, 0.0, 0.0])
     load = floating_in_waves(BARGE, WATER, AXIS, regular(amplitude, omega, WATER), table, (-DRAUGHT, 0.0), diffraction)
     one = table.at([omega])
@@ -124,7 +124,7 @@ def test_frozen_coefficients_are_exact_at_their_frequency(table):
 
 
 def test_energy(table, memory):
-    """Waves' work is what the hull gains, radiates and rubs away; a steady motion radiates ½ Bᵢⱼ ẋᵢ ẋⱼ of the table."""
+    """The waves' work is the hull's energy gain, radiation and viscous loss; steady motion radiates ½ Bᵢⱼ ẋᵢ ẋⱼ."""
     omega = 4.5
     load = floating_in_waves(BARGE, WATER, AXIS, regular(0.03, omega, WATER, 2.0), table, (-DRAUGHT, 0.0))
     rig = Rig(damping=np.array([5.0, 0.0, 0.0]), spring=np.array([40.0, 0.0, 0.0]))
@@ -189,7 +189,7 @@ def test_pendulum_on_a_fixed_axis():
 
 
 def test_roll_through_180_degrees():
-    """Thrown over and over: smooth, and what it has is kept, for nothing is lost."""
+    """A hull that turns over again and again: the motion is smooth and its energy is conserved without losses."""
     ship = Ship(BODY, Floating(BARGE, WATER, AXIS), Radiation(np.diag([40.0, 50.0, 0.2]), np.zeros((3, 3))), AXIS)
     heave = balanced_heave(BARGE, BODY.loading, WATER, 2.5)
     voyage = sail(ship, start(ship, heave, 2.5, np.array([0.1, 0.0, 5.0])), 0.004, 1.5)
@@ -206,7 +206,7 @@ def test_run_with_too_long_an_interval_is_stopped(table, memory):
 
 
 def test_a_voyage_may_begin_later(table, memory):
-    """A period of the waves later all is as before; half a period later the first push is the other way."""
+    """A start one wave period later gives the same motion; half a period later the first force has the other sign."""
     omega = 4.5
     load = floating_in_waves(BARGE, WATER, AXIS, regular(1e-3, omega, WATER), table, (-DRAUGHT, 0.0))
     ship = replace(floating(table, memory), load=load)
@@ -221,7 +221,7 @@ def test_a_voyage_may_begin_later(table, memory):
 
 
 def test_ships_that_roll_together_roll_as_each_by_herself(table):
-    """Two waves, two dampings, about the axis; the third, undamped in high waves, is lost and the rest go on."""
+    """Two waves, two dampings, about the axis; the third ship, undamped in high waves, is lost, the others continue."""
     ships = []
     for omega, amplitude, damping in ((4.5, 0.01, (0.1, 0.2)), (4.7, 0.01, (0.3, 0.0)), (5.4, 0.06, (0.0, 0.0))):
         load = floating_in_waves(BARGE, WATER, AXIS, regular(amplitude, omega, WATER, 2.0), table, (-DRAUGHT, 0.0))
@@ -237,7 +237,7 @@ def test_ships_that_roll_together_roll_as_each_by_herself(table):
 
 
 def test_memory_that_drives_the_hull_is_refused(table, memory):
-    """As fitted it passes; one that gives energy back at the roll's frequency does not, nor without the roll's own."""
+    """The fitted memory passes; one that adds energy at the roll's frequency does not, nor one without roll terms."""
     ship = floating(table, memory, free=LOCKED)
     require_damped(ship, start(ship, -DRAUGHT))
     driving = replace(memory, exit=memory.exit - np.outer([0.0, 0.0, 0.05], memory.entry[:, 2]))
@@ -248,7 +248,7 @@ def test_memory_that_drives_the_hull_is_refused(table, memory):
 
 
 def test_frozen_cargo_is_a_body_bolted_on(table, memory):
-    """As one, or as a load: its weight and the forces of its own acceleration."""
+    """As part of the body, or as a load with its weight and inertial forces."""
     hull, cargo = Body(14.0, (0.01, 0.13), 0.3), Body(MASS - 14.0, (-0.01, 0.06), 0.2)
     whole = bolted(hull, cargo)
     assert whole.mass == pytest.approx(MASS)
@@ -259,7 +259,7 @@ def test_frozen_cargo_is_a_body_bolted_on(table, memory):
 
 
 def test_limits_of_roll():
-    """To both sides alike where righting ends, or at the given largest; a heeled one is nearer its own side."""
+    """Symmetric, at the angle of vanishing stability or the given limit; for a heeled hull its own side is nearer."""
     loading = Loading(MASS, (0.0, 0.11))
     low, high = roll_limits(LOW, loading, WATER)
     assert low == pytest.approx(-high, rel=1e-6) and 0.5 < high < 0.5 * pi
@@ -271,7 +271,7 @@ def test_limits_of_roll():
 
 
 def test_limits_of_a_hull_with_a_loll():
-    """From its loll on either side outwards; upright, where its lever is none, it does not capsize."""
+    """Outwards from the angle of loll on either side; upright, where the lever is zero, the hull does not capsize."""
     tender = Loading(MASS, (0.0, 0.146))
     loll = equilibrium(LOW, tender, WATER, 0.02)[1]
     low, high = roll_limits(LOW, tender, WATER)

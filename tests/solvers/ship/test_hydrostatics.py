@@ -138,7 +138,7 @@ def test_restoring_is_minus_the_slope_of_the_energy(name):
 
 @pytest.mark.parametrize("name", SECTIONS)
 def test_linear_hydrostatics_are_the_slopes_at_rest(name):
-    """Stiffness and force of the surface against differences, at a heeled rest."""
+    """Stiffness and wave force against finite differences, at a heeled equilibrium."""
     section, step = SECTIONS[name], 1e-6
     loading = Loading(0.4 * section.area * WATER.density, (0.01, 0.08))
     heave, roll = equilibrium(section, loading, WATER, roll=0.1)
@@ -162,7 +162,7 @@ def test_linear_hydrostatics_are_the_slopes_at_rest(name):
 
 
 def test_sloping_surface_is_a_turned_one_under_turned_gravity():
-    """A uniform pressure gradient (−s, 1) ρ g is gravity √(1 + s²) g turned by α = atan s: turn all back by α."""
+    """A uniform pressure gradient (−s, 1) ρ g is gravity √(1 + s²) g turned by α = atan s; turn all back by α."""
     section, heave, roll, alpha = lopsided(), -0.08, 0.5, 0.2
     sloped = buoyancy(section, WATER, heave, roll, slope=np.tan(alpha), about=(0.03, 0.1))
     stronger = Water(WATER.density, gravity=WATER.gravity / np.cos(alpha))

@@ -1,4 +1,4 @@
-"""Decay tests give their damping back, rolls are told apart."""
+"""Damping recovered from decay tests, and the classification of rolls."""
 
 from math import pi
 

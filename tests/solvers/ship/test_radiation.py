@@ -1,4 +1,4 @@
-"""Radiation and diffraction against published limits, multipoles, and what energy and reciprocity ask of a section."""
+"""Radiation and diffraction against published limits, multipoles, and the relations of energy and reciprocity."""
 
 from math import inf, pi, tanh
 
@@ -238,7 +238,7 @@ def irregular_frequency():
 
 
 def roughness(table):
-    """How far the middle of five evenly spaced values is from the cubic through the others, relative to it."""
+    """Relative distance of the middle of five evenly spaced values from the cubic through the other four."""
     a, b, middle, c, d = table
     return abs((-a + 4.0 * b + 4.0 * c - d) / 6.0 - middle) / abs(middle)
 

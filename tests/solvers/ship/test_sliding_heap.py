@@ -1,4 +1,4 @@
-"""A barge whose cargo slides as one heap: statics, what sliding costs, small rolls, and a cargo that counts twice."""
+"""A barge whose cargo slides as one heap: statics, friction work, small rolls, and the source's double counting."""
 
 from dataclasses import replace
 from math import atan, cos, pi, radians, sin, tan
@@ -59,7 +59,7 @@ def test_a_cycle_of_sliding_takes_the_work_of_friction():
 
 
 def test_closed_forms_of_a_wedge():
-    """Within where the surface cuts both walls; height and inertia of the level cargo about the axis."""
+    """While the surface cuts both walls; also height and inertia of the level cargo about the axis."""
     assert HEAP.height == pytest.approx(CENTRE, abs=1e-9)
     assert HEAP.inertia == pytest.approx(CARGO * ((WIDE**2 + DEEP**2) / 12.0 + CENTRE**2))
     lean = 0.8 * atan(2.0 * DEEP / WIDE)

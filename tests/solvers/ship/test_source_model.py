@@ -1,4 +1,4 @@
-"""The source's barge and its equations: levers, frequencies, small waves against closed forms, its slips."""
+"""The source's barge and its equations: levers, frequencies, small waves against closed forms, corrected errors."""
 
 from dataclasses import replace
 from math import atan, cos, pi, sin
@@ -42,7 +42,7 @@ def free_body():
 
 
 def test_the_barges_body(fixed_body, free_body):
-    """GM of 50 mm, gyradii that ships have; and what makes a free roll slow makes the other hull's inertia greater."""
+    """GM of 50 mm and radii of gyration usual for ships; the slower free roll requires the larger inertia."""
     assert pytest.approx(0.05, abs=1e-3) == HEIGHT
     for body in (fixed_body, free_body):
         assert body.mass == pytest.approx(1000.0 * BREADTH * DRAUGHT)
@@ -101,7 +101,7 @@ def test_waves_of_the_first_model(fixed_body):
 
 
 def test_quadratic_damping_is_of_the_rate_not_of_the_angle(fixed_body):
-    """Slip of eq. 7.1: at no rate there is none, at twice the rate four times."""
+    """Corrects eq. 7.1: zero at zero rate, four times as large at twice the rate."""
     bare = source_roll(fixed_body, CALM, 4.5, RollDamping())
     damped = replace(bare, damping=RollDamping(0.0, 0.3))
 
@@ -131,7 +131,7 @@ def test_forces_of_the_second_model_are_the_long_waves(free_body):
 
 
 def test_resonance_without_damping_ends_in_capsize(fixed_body):
-    """No wave damping either: roll grows to beyond a right angle, the run ends there, nothing overflows."""
+    """Without wave damping roll grows beyond 90 deg; the run ends there without overflow."""
     ship = source_roll(fixed_body, 0.03, 5.4, RollDamping())
     ship = replace(ship, radiation=replace(ship.radiation, damping=np.zeros((3, 3))))
     voyage = sail(ship, start(ship, -DRAUGHT), 0.025, 40.0, (-1.0, 1.0))

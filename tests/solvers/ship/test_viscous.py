@@ -1,4 +1,4 @@
-"""Viscous roll damping: its estimate from a section's shape, and the range that is usual of bare hulls."""
+"""Viscous roll damping: its estimate from a section's shape, and the usual range for bare hulls."""
 
 import numpy as np
 import pytest
@@ -18,20 +18,20 @@ def test_eddies_of_a_sharp_box_are_those_measured():
 
 
 def test_round_bilges_shed_less():
-    """Less and less with the radius."""
+    """The eddy damping decreases with the bilge radius."""
     found = [eddy_coefficient(0.4, 0.2, radius, 0.106) for radius in (0.01, 0.03, 0.051, 0.08)]
     assert np.all(np.diff(found) < 0.0) and found[-1] > 0.0
 
 
 def test_friction_grows_with_the_root_of_the_frequency():
-    """As a laminar layer's does; of a model it is a fraction of a per cent of the critical damping."""
+    """As for a laminar boundary layer; for a model it is a fraction of a per cent of the critical damping."""
     slow, fast = (friction_damping(0.4, 0.2, 0.051, 0.106, omega) for omega in (2.0, 8.0))
     assert fast / slow == pytest.approx(2.0)
     assert 0.001 < friction_damping(0.4, 0.2, 0.051, 0.106, 5.0) / (2.0 * 5.0 * 2.0) < 0.005
 
 
 def test_usual_damping_takes_the_energy_it_names():
-    """In a swing of 15 deg the stronger takes 5 % of the critical's energy: π B ω a², by its own sum over a period."""
+    """In a swing of 15 deg the stronger one takes 5 % of critical damping's energy, π B ω a², summed over a period."""
     frequency, inertia = 5.0, 2.0
     low, high = common_damping(frequency, inertia)
     assert low.linear == pytest.approx(0.02 * 2.0 * frequency * inertia) and low.quadratic == 0.0

@@ -40,7 +40,7 @@ def test_retardation_of_a_known_function():
 
 
 def test_ogilvies_relations_both_ways(barge):
-    """From K, made of B alone: B again, and A(ω) with the A_∞ that was found without a frequency."""
+    """K, computed from B alone, gives B again, and A(ω) with the independently computed A_∞."""
     time = np.linspace(0.0, 40.0, 6001)
     memory = retardation(barge.frequency, barge.damping, time)
     every = slice(7, 70, 8)
@@ -56,7 +56,7 @@ def test_ogilvies_relations_both_ways(barge):
 
 
 def synthetic():
-    """A table of a known, passive memory: two resonances shared by sway and roll, one of heave's own; and its K̂."""
+    """A table of a known, passive memory and its K̂: two resonances shared by sway and roll, one of heave alone."""
     frequency = np.linspace(0.1, 20.0, 80)
     s = 1j * frequency
     first, second = s / (s**2 + 4.0 * s + 25.0), s / (s**2 + 6.0 * s + 64.0)
@@ -92,7 +92,7 @@ def test_system_of_the_barge(barge, order):
 
 
 def test_system_has_the_barges_retardation(barge):
-    """In time, too: two ways from the table to K, past the first moments, for which the table does not reach far."""
+    """In the time domain: two routes from the table to K, except at the shortest times the table cannot resolve."""
     time = np.linspace(0.1, 4.0, 79)
     wanted, found = retardation(barge.frequency, barge.damping, time), fit_memory(barge, 8).retardation(time)
     error = np.abs(wanted - found).max(axis=0)
@@ -155,7 +155,7 @@ def steady_motion(inertia, viscous, spring, system, omega, force):
 
 
 def test_memory_in_water_of_finite_depth():
-    """A slow heave pushes long waves away, K̂(0) = ρ b² √(g h)/2h: the wall of a piston in shallow water, two sides."""
+    """Slow heave radiates long waves, K̂(0) = ρ b² √(g h)/2h: a piston in shallow water on each of two sides."""
     depth, water = 1.0, Water(depth=1.0)
     table = hydrodynamics(box(0.4, 0.3), water, -0.2, np.linspace(0.4, 24.0, 40), about=(0.0, 0.1), count=40)
     memory = fit_memory(table, 8, deep=False)

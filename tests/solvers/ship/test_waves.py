@@ -35,7 +35,7 @@ def test_long_waves_travel_with_the_root_of_depth():
 
 
 def test_regular_wave():
-    """A crest at y = 0 at t = 0 that runs to starboard with ω/k; the slope is the surface's."""
+    """A crest at y = 0 at t = 0 that travels to starboard at ω/k; the slope is that of the surface."""
     wave = regular(0.02, 4.5, WATER)
     k = 4.5**2 / 9.81
     y, time = np.linspace(-1.0, 1.0, 21)[:, None], np.linspace(0.0, 5.0, 17)
@@ -47,7 +47,7 @@ def test_regular_wave():
 
 
 def test_soft_start():
-    """Eq. F.1 at its ends and in its middle; flat at both ends, so that nothing is struck."""
+    """Eq. F.1 at its ends and in its middle; zero slope at both ends, so that there is no impulse."""
     time = np.array([-1.0, 0.0, 1.0, 2.0, 3.0])
     assert soft_start(time, 2.0) == pytest.approx([0.0, 0.0, np.exp(1.0 - 4.0 / 3.0), 1.0, 1.0])
     assert np.all(soft_start(time, 0.0) == 1.0)
@@ -132,7 +132,7 @@ def test_a_seed_is_a_sea():
 
 
 def test_froude_scaling():
-    """The dimensions hang together, and the source's own example: 1:100, 0.4 to 1 Hz and 3 cm (appendix C)."""
+    """The scaled quantities are consistent and give the source's example: 1:100, 0.4 to 1 Hz and 3 cm (appendix C)."""
     f = froude_factors(100.0)
     assert np.array([0.4, 1.0]) * f["frequency"] == pytest.approx([0.04, 0.1])
     assert 0.03 * f["length"] == pytest.approx(3.0)

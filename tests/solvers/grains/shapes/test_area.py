@@ -1,4 +1,4 @@
-"""The rule of shared areas: exact for the polygons that stand for outlines, of which it keeps the energy."""
+"""The contact rule of overlap areas: exact for polygons that approximate outlines, and energy-conserving."""
 
 from functools import cache
 
@@ -35,7 +35,7 @@ ELLIPSE, DISC = 5, 6
 
 @ti.data_oriented
 class Shared:
-    """What polygons with so many corners share, in the frame of the second grain, and the contacts there."""
+    """Overlaps of polygons with so many corners, in the frame of the second grain, and their contacts."""
 
     def __init__(self, nodes):
         runtime.initialise(1)
@@ -141,14 +141,14 @@ def pairs():
 
 
 def in_the_world(total, angle):
-    """Area, the push (n, 2) and its moment about the first grain's centre, from a frame that is turned so far."""
+    """Area, force (n, 2) and moment about the first grain's centre, computed in a turned frame."""
     push, turn = total[:, PUSH_X] + 1j * total[:, PUSH_Y], np.exp(1j * angle)
     push = push * turn
     return total[:, AREA], np.stack([push.real, push.imag], axis=1), total[:, XY] - total[:, YX]
 
 
 def test_whichever_is_asked_area_force_and_torque_are_the_same(polygons, pairs):
-    """However often two outlines cross: a polygon's corners that stick into the other's edges count, too."""
+    """For any number of crossings, including corners of one polygon that lie inside the other."""
     (there, contacts), (back, others) = polygons.of(pairs), polygons.of(pairs.swapped())
     area, push, moment = in_the_world(there, pairs.angle[:, 1])
     again, pull, turn = in_the_world(back, pairs.angle[:, 0])
@@ -163,7 +163,7 @@ def test_whichever_is_asked_area_force_and_torque_are_the_same(polygons, pairs):
 
 
 def test_where_nothing_is_shared_no_gap_is_smaller_than_what_is_said(polygons):
-    """Between points that lie closely on the polygons' edges; all edges that are near are looked at."""
+    """Compared with closely spaced points on the polygons' edges; all near edges are examined."""
     open_pairs = random_pairs(OUTLINES, COUNT, 6, (0.0, 0.1))
     area, said = polygons.of(open_pairs)[0][:, AREA], polygons.gaps(open_pairs, MARGIN)
     shut = np.flatnonzero(area == 0.0)[:SOME]
@@ -178,7 +178,7 @@ def test_where_nothing_is_shared_no_gap_is_smaller_than_what_is_said(polygons):
 
 @pytest.mark.parametrize("wall", [False, True], ids=["grain", "wall"])
 def test_force_and_torque_are_the_gradient_of_the_area(polygons, pairs, wall):
-    """As the first grain is shifted and turned; and so normal and lever are that of the overlap."""
+    """With respect to shifts and turns of the first grain, so normal and lever are those of the overlap."""
     if wall:
         way = np.random.default_rng(3).uniform(-np.pi, np.pi, COUNT)
         reach = [

@@ -1,4 +1,4 @@
-"""Named cargoes: each is an outline of its literature's proportions, about its centroid, with its source."""
+"""Named cargoes: outlines with published proportions, about their centroids, with their sources."""
 
 import numpy as np
 import pytest
@@ -54,7 +54,7 @@ def test_chickpeas_have_the_sizes_of_the_source():
 
 def test_beans_and_corn_are_hollow_on_one_side_and_rice_is_not():
     def hollow(name):
-        """Whether the tangent somewhere turns back."""
+        """Whether the outline is concave somewhere."""
         contour = cargo(name).outline(np.random.default_rng(1))
         tangent = contour.tangents(ANGLE)
         way = np.unwrap(np.arctan2(tangent[:, 1], tangent[:, 0]))

@@ -1,4 +1,4 @@
-"""Descriptors from points: outlines that are known are found again, and what is no outline is refused."""
+"""Descriptors from points: known outlines are recovered, and points that do not form an outline are refused."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Hard cases of irregular grains: needles, triangles, strong lobes, rough discs; fast, stiff, and for a long time."""
+"""Hard cases of irregular grains: needles, triangles, strong lobes, rough discs; fast, stiff, long runs."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Contacts carried along on osculating circles: exact between discs, of third order in the slide between others."""
+"""Contacts updated on osculating circles: exact between discs, of third order in the slide for other outlines."""
 
 from dataclasses import replace
 
@@ -102,7 +102,7 @@ def test_between_discs_nothing_but_rounding_is_lost():
 
 @pytest.mark.parametrize("outline", OUTLINES[1:], ids=["ellipse", "three lobes"])
 def test_overlaps_are_off_by_the_third_power_of_the_moves(outline):
-    """And normals and points by the second."""
+    """Normals and points have errors of second order."""
     errors = [np.abs(np.subtract(*carried(outline, size)[:2])) for size in (8e-3, 4e-3)]
     orders = [np.log2(np.median(a) / np.median(b)) for a, b in zip(*(error.T for error in errors), strict=True)]
     assert 2.7 < orders[0] < 3.3
@@ -110,7 +110,7 @@ def test_overlaps_are_off_by_the_third_power_of_the_moves(outline):
 
 
 def test_a_slide_that_is_allowed_costs_so_much_of_an_overlap():
-    """Both outlines add their share; the smallest grains are half as large as EGG."""
+    """Both outlines contribute; the smallest grains are half as large as EGG."""
     now, expected, slid = carried(EGG, 2e-3)
     allowed = slid < 0.5 * slide_of(EGG)
     assert allowed.sum() > 100

@@ -63,7 +63,7 @@ def falling(given, places, radius):
 
 
 def going_on(now, given, radius, threads=1, units=None, **changes):
-    """A simulation of grains that are, and move, as they do now: chaos has not parted it from others like it yet."""
+    """A simulation started from the present state, so that equal runs have not diverged by chaos yet."""
     turned = given and replace(given, angle=now["angle"])
     simulation = Simulation(scene(turned, radius, **changes), now["position"], threads, units=units)
     simulation.launch(now["velocity"], now["spin"])
@@ -135,7 +135,7 @@ def energy(simulation):
 
 @pytest.mark.slow
 def test_energy_of_a_smooth_collision_is_kept_with_the_square_of_the_step():
-    """Two rice grains, convex, without friction or losses."""
+    """Two convex rice grains without friction or losses."""
     errors = []
     for step in (1e-5, 5e-6):
         simulation = collision("continuous", [rice()], LOSSLESS, step)

@@ -21,7 +21,7 @@ def moved(placed, y, z):
 
 
 def random_pair(seed):
-    """Two irregular outlines, mostly a little into each other."""
+    """Two irregular outlines, most of which overlap slightly."""
     random = np.random.default_rng(seed)
     direction = random.uniform(0.0, 2.0 * np.pi)
     apart = random.uniform(1.7, 2.1)
