@@ -116,7 +116,7 @@ def run_batch(
     """Settle the beds of all runs, simulate them to the end, and append to their recordings, which must exist.
 
     home: the folder of the checkpoint; kept: a checkpoint to continue from. If the watch stops a run, the others
-    continue; returns the reasons by folder. Raises LabError if writing fails, KeyboardInterrupt; both keep a checkpoint.
+    continue; returns the reasons by folder. Raises LabError if writing fails, KeyboardInterrupt; a checkpoint stays.
     """
     with ExitStack() as stack:
         together = Batch(runs, home, progress, stack)

@@ -68,7 +68,7 @@ def launch(run: Simulation, gap: np.ndarray, speed: float, step: float) -> None:
 
 
 @pytest.mark.parametrize("share", [0.3, 1.0, 2.5])
-def test_a_touch_and_a_break_cost_the_work_of_the_bridge(elastic, share):
+def test_contact_and_rupture_cost_the_work_of_the_bridge(elastic, share):
     """Of the derived step; wherever in it the touch. In one step grains in humid air go past the whole range."""
     run, step = elastic
     law = run.scene.cohesion
@@ -84,7 +84,7 @@ def test_a_touch_and_a_break_cost_the_work_of_the_bridge(elastic, share):
         assert lost == pytest.approx(work(law, effective), rel=1e-2 if share <= 1.0 else 5e-2)
 
 
-def test_energy_is_kept_while_a_bridge_lives(elastic):
+def test_energy_is_conserved_while_a_bridge_exists(elastic):
     """Grains too slow to part swing about each other; what is told as stored counts the bridges."""
     run, step = elastic
     law = run.scene.cohesion
@@ -101,7 +101,7 @@ def test_energy_is_kept_while_a_bridge_lives(elastic):
 
 
 @pytest.mark.parametrize("law", SLOW)
-def test_a_bridge_carries_its_pull_and_what_it_presses_rubs(law):
+def test_a_bridge_carries_its_pull_off_force_and_increases_friction(law):
     """A grain hangs under a fixed one up to the pull-off force; one that slides is slowed by μ (g + f₀/m)."""
     force, scale = pull(law, 0.0, RADIUS / 2), 1e-3
     stiffness = hertz_stiffness(scale * 3.2e9 / (1 - 0.28**2) / 2, RADIUS / 2)
@@ -137,7 +137,7 @@ def coefficients(**changes) -> list[float]:
     return scene.laws[3].coefficients(scene.interfaces[0])
 
 
-def test_asperities_let_go_of_what_water_does_not_reach():
+def test_asperities_prevent_bridges_in_dry_air():
     """Touching grains are at s = h on the line of smooth ones; drier than r_K = h they are dry."""
     smooth, reach = coefficients()
     assert coefficients(asperities=0.6 * KELVIN) == pytest.approx([0.4 * smooth, 0.4 * reach])
@@ -187,7 +187,7 @@ def test_bridges_are_the_same_in_every_schedule_and_list(other, near):
 
 
 @pytest.mark.slow
-def test_bridges_hold_across_gaps_where_lists_are_made_anew():
+def test_bridges_across_gaps_survive_list_rebuilds():
     """Many pairs that do not touch are bridged, or the test above would show little."""
     found = clump(skin=2e-5)
     apart = [pdist(place) - 2 * RADIUS for place in found["position"]]
@@ -196,7 +196,7 @@ def test_bridges_hold_across_gaps_where_lists_are_made_anew():
 
 
 @pytest.mark.slow
-def test_nothing_is_kept_for_cohesion_where_there_is_none():
+def test_without_cohesion_no_arrays_are_allocated_for_it():
     place, kept = np.array([[[0.0, RADIUS], [0.0, 3.0 * RADIUS]]]), []
     for grain, law in ((material(), "none"), (wet(asperities=1e-9), "none"), (wet(), "bridge")):
         run = simulation(place, RADIUS, box(0.1, 0.1), grain, cohesion=law)
@@ -207,7 +207,7 @@ def test_nothing_is_kept_for_cohesion_where_there_is_none():
 
 
 @pytest.mark.parametrize("law", SLOW)
-def test_the_swing_under_the_pull_bounds_the_step_of_tiny_grains(law):
+def test_the_oscillation_on_a_bridge_bounds_the_step_of_tiny_grains(law):
     """Δt = T/36 with m ω² = (3/2) f₀/ξ where k ξ^(3/2) = f₀, which collisions of grains of millimetres are below."""
 
     def scene(radius: float, cohesion: str) -> Scene:

@@ -32,7 +32,7 @@ OUTLINE = box(0.2, 0.2)
 PLACE = np.array([0.0, 0.1])
 
 
-def test_every_law_is_tried():
+def test_every_law_is_tested():
     for kind, registry in zip(zip(*LAWS, strict=True), (NORMAL, TANGENTIAL, ROLLING), strict=True):
         assert set(kind) == set(registry)
 

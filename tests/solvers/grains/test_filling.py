@@ -78,7 +78,7 @@ def test_grains_start_in_their_region_or_do_not_fit():
         start_positions(np.full(400, 4e-3), room, np.random.default_rng(1), region=region)
 
 
-def test_thrown_grains_come_down_uniformly_over_the_width_in_uneven_heaps():
+def test_thrown_grains_are_uniform_over_the_width_in_uneven_heaps():
     """Columns get the same number of grains on average, but differ far more than those of a lattice."""
     outline, width = box(0.1, 1.0), 0.1
     columns = []
@@ -100,7 +100,7 @@ def test_headroom_is_enough_and_starts_at_the_floor(thrown):
             assert position[:, 1].min() < 3.0 * 2.2e-3
 
 
-def test_levelling_takes_what_stands_out_into_the_hollows():
+def test_levelling_moves_protruding_grains_into_gaps():
     """A row of grains on the floor with a gap in it, and a grain on top that fits the gap."""
     row = [-7.0, -5.0, -3.0, -1.0, 1.0, 5.5, 7.5]
     position = np.array([[y, 1.0] for y in row] + [[-4.0, 1.0 + 3.0**0.5]]) * 3e-3
@@ -114,7 +114,7 @@ def test_levelling_takes_what_stands_out_into_the_hollows():
     np.testing.assert_array_equal(levelled(level, radius, outline), level)
 
 
-def test_one_seed_one_bed():
+def test_a_seed_defines_a_bed():
     def bed(seed):
         random = np.random.default_rng(seed)
         radius = radii(100, 6e-3, 0.1, random)
@@ -134,7 +134,7 @@ def test_one_seed_one_bed():
     [(2000, box(0.2, 0.2)), (1, box(7.9e-3, 1.0)), (1, box(1.0, 7.9e-3)), (300, OUTLINES["hopper"] * [1.0, 0.3])],
     ids=["too many", "too narrow", "too low", "half a hopper"],
 )
-def test_too_many_do_not_fit(count, outline):
+def test_too_many_grains_do_not_fit(count, outline):
     with pytest.raises(DoesNotFit, match=rf"^{count} grains of up to 8 mm do not fit .*\.$"):
         start_positions(np.full(count, 4e-3), outline, np.random.default_rng(1))
 
@@ -165,7 +165,7 @@ def test_count_is_area_over_the_mean_area_of_a_grain(name):
     assert count_for_depth(1e-4, box(1e-3, 0.9), sizes) == 1
 
 
-def test_a_lining_takes_its_room_from_the_bed():
+def test_a_lining_reduces_the_bed():
     outline, sizes = box(1.0, 0.9), SIZES["equal"]
     fixed = lining(outline, 2e-2, np.random.default_rng(1))
     wet = fixed[fixed[:, 1] < 0.5]
@@ -188,7 +188,7 @@ def surface(position: np.ndarray, radius: np.ndarray, width: float) -> np.ndarra
 
 
 @pytest.mark.slow
-def test_a_bed_settles_to_the_depth_asked_for():
+def test_a_bed_settles_to_the_requested_depth():
     """Softened grains in a tank that will sway, but stands still until they rest."""
     width, depth, diameter, spread, rest = 0.12, 0.05, 6e-3, 0.1, 1e-5
     count = count_for_depth(depth, box(width, 0.12), Sizes(((diameter, 1.0),), spread))

@@ -86,12 +86,12 @@ def test_a_sliding_impact_gives_friction_and_spin(struck):
         assert abs(after["spin"][w, 1]) == pytest.approx(2.5 * lost / RADIUS, rel=2e-2), f"{speed} m/s"
 
 
-def test_they_never_move(struck):
+def test_fixed_grains_never_move(struck):
     *_, kept = struck
     assert np.array_equal(kept, np.tile(FIXED[:, :2], (len(SPEEDS), 1, 1)))
 
 
-def test_they_count_for_nothing(struck):
+def test_fixed_grains_do_not_count_in_observations(struck):
     """Centre of mass, energy and contacts are of the grains that move; the overlap of two fixed ones is nobody's."""
     _, mass, _, after, rows, _ = struck
     centre = after["position"].mean(axis=1)
@@ -103,7 +103,7 @@ def test_they_count_for_nothing(struck):
     assert after["position"].shape == (len(SPEEDS), 3, 2)
 
 
-def test_load_takes_what_they_give(struck):
+def test_the_tanks_load_includes_forces_on_fixed_grains(struck):
     """The impulse on the tank is what the grains have lost of momentum."""
     _, mass, before, after, rows, _ = struck
     given = mass * (before["velocity"] - after["velocity"]).sum(axis=1)

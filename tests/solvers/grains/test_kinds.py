@@ -55,7 +55,7 @@ def test_each_pair_of_kinds_has_its_own_collision(normal, tangential, schedule):
     assert after[:, 1] - after[:, 0] == pytest.approx([EXPECTED[tuple(sorted(pair))] for pair in pairs], rel=3e-3)
 
 
-def test_moduli_are_of_both_and_the_rest_is_the_pairs_own():
+def test_moduli_follow_from_both_kinds_and_the_rest_from_the_pair():
     rows = scene([[0, 1]], box(0.1, 0.1)).interfaces_of[0]
     assert len(rows) == 9 + 3
     assert rows[1] == rows[3] and rows[5] == rows[7]  # symmetric
@@ -67,7 +67,7 @@ def test_moduli_are_of_both_and_the_rest_is_the_pairs_own():
 
 
 @pytest.mark.slow
-def test_kinds_that_are_alike_are_as_one_kind():
+def test_equal_kinds_behave_as_one_kind():
     """The gathered coefficients of several kinds against the plain ones of one, with history, to rounding."""
     rng, outline = np.random.default_rng(2), box(0.03, 0.06)
     radius = 1.5e-3 * (1.0 + 0.1 * rng.uniform(-1.0, 1.0, 40))

@@ -97,7 +97,7 @@ def test_grains_only_push(law):
 
 
 @pytest.mark.parametrize("law", NORMAL)
-def test_slow_loading_stores_what_unloading_returns(law):
+def test_slow_unloading_returns_the_stored_energy(law):
     """Work done on the contact is elastic energy or lost; nothing is made, and an elastic law returns all of it."""
     contact = Driven(law, between=interface(material(restitution=0.5), material(restitution=0.5), MASS, RADIUS, 1.0))
     overlap = slowly(0.0, DEEP, 0.3 * DEEP, 0.8 * DEEP, 0.0)
@@ -111,7 +111,7 @@ def test_slow_loading_stores_what_unloading_returns(law):
         assert work[-1] == pytest.approx(0.0, abs=tolerance)
 
 
-def test_hysteretic_loading_unloading_and_again():
+def test_hysteretic_loading_unloading_and_reloading():
     """k₁ ξ, then k₂ (ξ − ξ₀) with k₂ = k₁/e² both ways, k₁ ξ again past the old depth; forgotten once apart."""
     contact = Driven("hysteretic")
     k = hertz_stiffness(BETWEEN.young_modulus, RADIUS)
@@ -143,7 +143,7 @@ def test_shear_without_a_cap_and_without_a_force():
 
 
 @pytest.mark.parametrize("law", ["mindlin", "cundall-strack"])
-def test_no_closed_path_makes_energy(law):
+def test_no_closed_path_creates_energy(law):
     """Elata and Berryman (1996): load, shear, unload, shear back and reload, in any order, costs work or nothing.
 
     At fixed shear a cycle of the load alone leaves no more force than there was.
@@ -181,7 +181,7 @@ def test_rolling_torque_is_friction_times_radius(law, dt):
     assert force[[19999, 39999], 2] == pytest.approx([-cap[0], cap[0]], rel=1e-9)
 
 
-def test_rolling_memory_turns_its_sign_where_grains_change_places():
+def test_rolling_memory_changes_its_sign_when_grains_are_swapped():
     """The one that remembers ω_i − ω_j, and no other; the slip of two grains is the same from either."""
     contact = Driven(normal="hysteretic", tangential="mindlin", rolling="elastic-plastic")
     kept = []
@@ -221,7 +221,7 @@ def test_restitution_of_a_linear_contact():
 
 
 @pytest.mark.parametrize("power", [VISCOELASTIC, CONSTANT])
-def test_damping_and_restitution_are_inverse(power):
+def test_damping_and_restitution_are_inverse_functions(power):
     for e in (0.05, 0.5, 0.95):
         assert restitution(damping_for(e, power), power) == pytest.approx(e, abs=1e-7)
     q = 0.4 * (power + 1)

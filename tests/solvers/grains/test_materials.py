@@ -36,14 +36,14 @@ def test_equal_materials_have_closed_forms(substance):
 
 
 @given(ANY, ANY)
-def test_two_materials_yield_like_springs_in_series(a, b):
+def test_two_materials_act_as_springs_in_series(a, b):
     """Compliances add, so order does not matter and twice the compliance is the sum of those of equal pairs."""
     for effective in (effective_young, effective_shear):
         assert effective(a, b) == effective(b, a)
         assert 2.0 / effective(a, b) == pytest.approx(1.0 / effective(a, a) + 1.0 / effective(b, b))
 
 
-def test_a_rigid_partner_leaves_the_grain_alone():
+def test_with_a_rigid_partner_only_the_grain_deforms():
     grain = material()
     rigid = material(young=1e25)
     assert effective_young(grain, rigid) == pytest.approx(grain.young / (1.0 - grain.poisson**2))
@@ -73,7 +73,7 @@ def test_softening_keeps_restitution(scale, loss):
         assert hard.dissipative_time == 3e-6
 
 
-def test_a_contact_rubs_and_loses_as_its_wall_does():
+def test_a_wall_contact_has_the_walls_friction_and_restitution():
     grain, wall = material(), material(friction=0.7, dissipative_time=5e-6, shear_damping=3.0)
     between = interface(grain, wall, MASS, RADIUS, 1.0)
     assert (between.friction, between.dissipative_time, between.shear_damping) == (0.7, 5e-6, 3.0)
@@ -127,7 +127,7 @@ def test_restitution_limits():
 
 @pytest.mark.parametrize("e", [0.02, 0.1, 0.394, 0.6, 0.9, 0.99, 0.9999])
 @pytest.mark.parametrize("speed", [0.01, 5.0])
-def test_dissipative_time_gives_the_restitution_asked_for(e, speed):
+def test_dissipative_time_gives_the_requested_restitution(e, speed):
     k = 3e6
     time = dissipative_time_for(e, speed, k, MASS)
     assert restitution(1.5 * time * (k / MASS) ** 0.4 * speed**0.2) == pytest.approx(e, abs=1e-7)

@@ -174,7 +174,7 @@ def test_history_survives_rebuilds(usual):
 
 
 @pytest.mark.slow
-def test_room_grows_while_running_and_nothing_changes(usual):
+def test_lists_grow_during_a_run_without_changing_it(usual):
     """The heap outgrows its list of pairs while grains already press and rub. The run that had the room from the start
     must agree to the last bit, in that world and in the one beside it, and no step may be lost or doubled."""
     run = shaken(WIDE_SKIN)

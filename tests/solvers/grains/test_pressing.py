@@ -47,7 +47,7 @@ def weights_borne(made: Simulation) -> np.ndarray:
 @pytest.mark.parametrize(
     "schedule, units", [("per-world", 1), ("per-band", 3), pytest.param("per-grain", None, marks=pytest.mark.slow)]
 )
-def test_discs_bear_their_weights_whatever_the_lists_are_like(schedule, units):
+def test_discs_bear_their_weights_with_any_lists(schedule, units):
     made = bed(None, schedule, units=units)
     assert weights_borne(made) == pytest.approx(np.tile([0.0, 1.0], (COLUMNS * ROWS, 1)), abs=0.02)
     made.close()
@@ -56,7 +56,7 @@ def test_discs_bear_their_weights_whatever_the_lists_are_like(schedule, units):
 @pytest.mark.parametrize(  # nodes never let a bed rest
     "contact", ["continuous", pytest.param("area", marks=pytest.mark.slow)]
 )
-def test_irregular_grains_bear_their_weights_and_looking_at_that_changes_nothing(contact):
+def test_irregular_grains_bear_their_weights_and_observing_changes_nothing(contact):
     made = bed(outlines(contact))
     before = made.state()
     assert weights_borne(made) == pytest.approx(np.tile([0.0, 1.0], (COLUMNS * ROWS, 1)), abs=0.1)

@@ -13,7 +13,7 @@ def scene(count: int, width: float = 0.1) -> Scene:
     return Scene(np.full(count, RADIUS), box(width, 0.1), material(), material())
 
 
-def test_a_pair_parts_evenly_and_one_in_a_wall_leaves_it():
+def test_a_pair_separates_evenly_and_a_grain_leaves_a_wall():
     overlap = 0.01 * RADIUS
     place = np.array([[0.0, 0.05], [2.0 * RADIUS - overlap, 0.05], [0.05 - RADIUS + overlap, 0.02]])
     moved = scene(3).relaxed(place)
@@ -24,7 +24,7 @@ def test_a_pair_parts_evenly_and_one_in_a_wall_leaves_it():
     np.testing.assert_array_equal(moved[:, 1], place[:, 1])
 
 
-def test_a_pressed_lattice_comes_apart_within_its_tank():
+def test_a_compressed_lattice_separates_within_its_tank():
     pitch = 1.99 * RADIUS
     y, z = np.meshgrid(np.arange(8), np.arange(8))
     place = pitch * np.column_stack([y.ravel() - 3.5, z.ravel()]) + [0.0, RADIUS]

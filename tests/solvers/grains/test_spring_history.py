@@ -63,12 +63,12 @@ def given_back(request):
     run.close()
 
 
-def test_an_undamped_spring_gives_back_its_slip_at_the_derived_step(given_back):
+def test_an_undamped_spring_returns_its_slip_at_the_derived_step(given_back):
     """Within (ω_t Δt)²/2, 1 % at 36 steps a collision, wherever in a step the contact begins."""
     assert given_back[0] == pytest.approx(kept(), abs=1e-2)
 
 
-def test_history_is_better_than_of_first_order(given_back):
+def test_errors_of_history_fall_faster_than_first_order(given_back):
     """A quarter of the step, a seventh of the error at most: of second order but for the last step, where k_t ends.
 
     Without friction's cap that step errs as Δt^(3/2), a factor of 8, for k_t ~ √ξ; of first order it would be 4.

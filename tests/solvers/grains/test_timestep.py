@@ -105,7 +105,7 @@ def test_damping_and_slow_waves_shorten_the_step():
     assert len(order) == 4
 
 
-def test_a_soft_wall_is_no_excuse_and_a_hard_one_counts():
+def test_the_harder_of_grain_and_wall_bounds_the_step():
     """The step follows the harder of grain–grain and grain–wall contacts."""
     radius = np.full((1, 4), 1.5e-3)
     grain = material()
@@ -114,7 +114,7 @@ def test_a_soft_wall_is_no_excuse_and_a_hard_one_counts():
     assert both[1] < 0.9 * both[0]
 
 
-def test_damping_is_the_x_of_the_law():
+def test_damping_gives_the_x_of_the_law():
     """x = β v^(1/5) gives back the restitution's own x at its own speed, and grows as v^(1/5) elsewhere."""
     from solvers.grains.restitution import restitution
 
@@ -137,13 +137,13 @@ def test_damping_is_the_x_of_the_law():
     ],
     ids=["sway", "heave", "roll", "roll far off", "tilt", "gentle sway"],
 )
-def test_credible_speed_takes_motion_and_its_lever(motion, speed):
+def test_credible_speed_includes_the_motion_and_its_lever_arm(motion, speed):
     made = Scene(np.full((2, 4), 1.5e-3), TANK, material(), material(), motions=[(), (motion,)])
     assert made.credible_speed() == pytest.approx(speed, rel=1e-12)
     assert Scene(made.radius, TANK, material(), material(), start_speed=50.0).credible_speed() == 50.0
 
 
-def test_a_given_step_is_taken():
+def test_a_given_step_is_used():
     assert scene(step=1.5e-7).time_step() == 1.5e-7
 
 
@@ -185,7 +185,7 @@ def test_springs_bound_the_step_only_where_they_are_stiff(tangential, rolling):
 
 @pytest.mark.parametrize("count", [1, 2, 3, 50])
 @pytest.mark.parametrize("flat", [False, True])
-def test_closing_speed_is_the_farthest_pair_of_velocities(count, flat):
+def test_closing_speed_is_the_largest_difference_of_velocities(count, flat):
     """Against all pairs: in the plane, and where all move along one line or two alike."""
     velocity = np.random.default_rng(count).normal(0.3, 1.0, (count, 2)) * ([1.0, 0.0] if flat else [1.0, 2.0])
     velocity = np.concatenate([velocity, velocity[:1]])
@@ -194,7 +194,7 @@ def test_closing_speed_is_the_farthest_pair_of_velocities(count, flat):
     assert closing_speed(np.zeros((count, 2))) == 0.0
 
 
-def test_what_the_watch_lets_pass_is_a_bound_that_nothing_stretches():
+def test_the_speed_limit_of_the_watch_is_never_exceeded():
     """So soft that a collision lasts long: a tenth of the radius a step, at 1.5 times the speed, of all 16 grains."""
     made = Scene(np.full((1, 16), 1.5e-3), TANK, material(young=1e4), material(young=1e4), start_speed=20.0)
     longest = 0.1 * 1.5e-3 / (1.5 * 16 ** (1 / 16) * 20.0)

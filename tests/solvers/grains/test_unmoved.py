@@ -35,7 +35,7 @@ def pressed(request):
     return scene, mass, seen, later, rest
 
 
-def test_contacts_are_those_of_the_state_by_hertz(pressed):
+def test_contacts_before_the_first_step_follow_hertz(pressed):
     """Hertz (1882; Johnson 1985, eq. 4.22): F = (4/3) E* √R δ^(3/2), of energy (2/5) F δ."""
     scene, mass, seen, _, _ = pressed
     pair, wall = scene.interfaces
@@ -50,7 +50,7 @@ def test_contacts_are_those_of_the_state_by_hertz(pressed):
     assert seen["centre_of_mass"][..., 1] == pytest.approx([(7.0 * RADIUS - 2.0 * OVERLAP) / 3.0])
 
 
-def test_a_look_changes_nothing(pressed):
+def test_observing_changes_nothing(pressed):
     *_, later, rest = pressed
     for name in rest.keys() - {"wall_force"}:  # a mean since the last look
         assert later[name].tobytes() == rest[name].tobytes(), name

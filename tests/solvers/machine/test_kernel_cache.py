@@ -43,7 +43,7 @@ def simulate(**environment: str | None) -> list[str]:
 
 @pytest.mark.skipif(os.name != "posix", reason="homes as POSIX has them")
 @pytest.mark.parametrize("home", [None, "", "/proc/nobody", "file"])
-def test_without_a_home_that_can_be_written_it_runs_and_says_what_is_slower(tmp_path, home):
+def test_without_a_writable_home_it_runs_and_says_what_is_slower(tmp_path, home):
     if home == "file":
         home = str(tmp_path / "file")
         (tmp_path / "file").touch()
@@ -61,7 +61,7 @@ def test_with_a_home_kernels_are_kept_there(tmp_path):
 
 
 @pytest.mark.skipif(os.name != "posix", reason="homes as POSIX has them")
-def test_a_lock_that_a_killed_process_left_does_not_keep_kernels_from_being_kept(tmp_path):
+def test_a_stale_lock_of_a_killed_process_does_not_disable_the_kernel_cache(tmp_path):
     lock = tmp_path / "taichi" / "ticache" / "ticache.lock"
     lock.parent.mkdir(parents=True)
     lock.touch()

@@ -39,7 +39,7 @@ def numbers(field):
     return np.arange(np.prod(shape)).reshape(shape).astype(field.to_numpy().dtype)
 
 
-def test_what_is_written_is_what_taichi_reads(arrays):
+def test_taichi_reads_the_written_values(arrays):
     for field in arrays.fields:
         values = numbers(field)
         field.from_numpy(values)
@@ -47,7 +47,7 @@ def test_what_is_written_is_what_taichi_reads(arrays):
     assert all(np.array_equal(field.to_numpy(), numbers(field)) for field in arrays.fields)  # nor have others been hit
 
 
-def test_what_taichi_writes_is_what_is_read(arrays):
+def test_values_written_by_taichi_are_read(arrays):
     for field in arrays.fields:
         type(field).from_numpy(field, numbers(field))
     for field in arrays.fields:
@@ -55,7 +55,7 @@ def test_what_taichi_writes_is_what_is_read(arrays):
         assert field.to_numpy().dtype == type(field).to_numpy(field).dtype
 
 
-def test_a_field_is_filled_and_what_was_read_stays(arrays):
+def test_filling_a_field_leaves_earlier_copies_unchanged(arrays):
     field = arrays.fields[2]
     before = field.to_numpy()
     field.fill(3)
@@ -67,7 +67,7 @@ def test_a_wrong_shape_is_refused(arrays):
         arrays.fields[0].from_numpy(np.zeros((1, 37)))
 
 
-def test_fields_that_are_gone_are_left_to_taichi():
+def test_released_fields_are_accessed_by_taichi_itself():
     runtime.initialise()
     both = made(), made()
     both[0].release()

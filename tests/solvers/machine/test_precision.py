@@ -150,7 +150,7 @@ def test_a_column_rests_on_its_overlaps(told):
 
 
 @pytest.mark.slow
-def test_a_lift_carries_a_grain_on_its_overlap(told):
+def test_a_moving_plate_carries_a_grain_on_its_overlap(told):
     """The position of a moving plate is exact to rounding, so its force is smooth."""
     for world, allowed in ((SOFT, 0.01), (FULL, 0.03)):
         overlap = (MASS * G / stiffness(world)[1]) ** (2 / 3)
@@ -210,7 +210,7 @@ def test_a_software_vulkan_agrees_with_the_processor():
 
 
 @pytest.mark.parametrize(("arch", "precision"), [("cuda", "f64"), ("vulkan", "f64"), ("vulkan", "mixed")])
-def test_what_is_not_here_is_said_in_one_sentence(monkeypatch, arch, precision):
+def test_missing_devices_are_reported_in_one_sentence(monkeypatch, arch, precision):
     monkeypatch.setattr(runtime, "_cuda", lambda: False)
     with pytest.raises(Unavailable, match=rf"^run\.arch: [^.]*{'CUDA' if arch == 'cuda' else '32 bits'}.*\.$") as error:
         Simulation(scene(precision), start()[0], 1, arch=arch)

@@ -181,7 +181,7 @@ def test_arrays_may_be_released_twice_and_after_another_start():
     runtime.initialise(1)
 
 
-def test_declared_fields_start_at_zero_or_with_what_they_hold():
+def test_declared_fields_start_at_zero_or_with_their_initial_values():
     runtime.initialise(1)
     arrays = State()
     reals, integers = arrays.reals(axes(2, 3), "a", "b"), arrays.integers(axes(4), "c")
@@ -197,7 +197,7 @@ def test_declared_fields_start_at_zero_or_with_what_they_hold():
     arrays.release()
 
 
-def test_larger_arrays_take_over_what_smaller_ones_hold():
+def test_larger_arrays_keep_the_values_of_smaller_ones():
     runtime.initialise(1)
     small = State()
     (little,), (words,) = small.reals(axes(2, 3), "a"), small.vectors(axes(2, 2, 2), "b")
@@ -220,7 +220,7 @@ def test_available_cores():
     assert 1 <= runtime.available_cores() <= os.cpu_count()
 
 
-def test_what_is_in_use_stays_and_what_comes_after_all_is_released_has_the_same_numbers():
+def test_fields_in_use_stay_and_field_numbers_restart_after_all_are_released():
     """Taichi identifies compiled kernels by the numbers of their fields, which grow until it is initialised again."""
 
     def begun() -> tuple[State, ti.Field]:
@@ -255,7 +255,7 @@ def _work(tasks: ti.i32, turns: ti.i32) -> ti.f64:
 
 
 @pytest.mark.skipif(sys.platform != "linux" or runtime.available_cores() < 2, reason="two cores on Linux are needed")
-def test_threads_that_are_spread_work_on_cores_of_their_own():
+def test_pinned_threads_run_on_separate_cores():
     """The threads that a kernel has kept busy, found by their CPU times."""
 
     def busy():
@@ -281,7 +281,7 @@ def test_threads_that_are_spread_work_on_cores_of_their_own():
 
 @pytest.mark.skipif(sys.platform != "linux", reason="limits on memory as Linux has them")
 @pytest.mark.parametrize("limit", [500_000_000, 1_000_000_000])
-def test_too_little_memory_to_start_is_told_in_a_sentence(limit):
+def test_too_little_memory_to_start_is_reported_in_one_sentence(limit):
     code = f"""
 import resource
 resource.setrlimit(resource.RLIMIT_AS, ({limit}, {limit}))

@@ -18,7 +18,7 @@ def arrays():
     state.release()
 
 
-def test_no_two_arrays_have_one_name(arrays):
+def test_array_names_are_unique(arrays):
     arrays.under("pairs").reals(axes(3), "mate")
     arrays.under("contacts").reals(axes(3), "mate")
     with pytest.raises(ValueError, match=r"two arrays are named pairs\.mate"):
@@ -26,7 +26,7 @@ def test_no_two_arrays_have_one_name(arrays):
     arrays.finish()
 
 
-def test_what_is_kept_is_read_and_written_by_name(arrays):
+def test_arrays_are_read_and_written_by_name(arrays):
     (places,) = arrays.under("list").integers(axes(3), "places", below=5)
     arrays.reals(axes(2), "scratch", kept=False)
     arrays.finish()
@@ -41,7 +41,7 @@ def test_what_is_kept_is_read_and_written_by_name(arrays):
     assert places.to_numpy().tolist() == [4, 0, 1]
 
 
-def test_all_that_lies_along_an_axis_is_reordered_in_the_worlds_that_are_named(arrays):
+def test_arrays_along_an_axis_are_reordered_in_the_given_worlds(arrays):
     world, grain = Axis("world", 2), Axis("grain", 4)
     (number,) = arrays.under("grains").reals((world, grain), "number")
     (vector,) = arrays.under("of another owner").vectors((world, grain, Axis("lane", 2)), "vector")
@@ -87,7 +87,7 @@ class Both:
 
 
 @pytest.mark.parametrize("fails", [False, True])
-def test_kernels_on_real_vectors_live_beside_others(arrays, fails):
+def test_kernels_on_real_vectors_work_beside_others(arrays, fails):
     both = Both(arrays)
     arrays.finish()
     values = np.random.default_rng(1).uniform(0.5, 2.0, (both.BLOCKS, both.LANES))

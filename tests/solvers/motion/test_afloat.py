@@ -214,7 +214,7 @@ def twin(run):
     return run.sail(run.every, 3.0, 30, nudged=True)
 
 
-def test_a_ship_without_cargo_sails_as_by_herself(run, voyage):
+def test_a_ship_without_cargo_moves_as_the_ship_alone(run, voyage):
     """Waves, memory, springs, viscous damping: the method of Runge and Kutta to rounding."""
     vessel = run.simulation.scene.vessels[ALONE]
     interval = run.every * run.simulation.dt
@@ -225,7 +225,7 @@ def test_a_ship_without_cargo_sails_as_by_herself(run, voyage):
     assert voyage["pose"][1:, ALONE] == pytest.approx(alone.state[at[1:], :3], abs=1e-10)
 
 
-def test_cargo_that_does_not_move_is_a_body_bolted_on(run, voyage):
+def test_cargo_that_does_not_move_is_part_of_the_rigid_body(run, voyage):
     """Twice as heavy as the hull, at a roll of a third of a degree: as one body, to the give of the bed."""
     vessel = run.simulation.scene.vessels[TINY]
     cargo = run.cargo[TINY]
@@ -240,7 +240,7 @@ def test_cargo_that_does_not_move_is_a_body_bolted_on(run, voyage):
 
 
 @pytest.mark.parametrize(("world", "until"), [(ALONE, 3.0), (TINY, 3.0), (LOSSY, 1.55)])
-def test_half_the_interval_is_the_same_motion(voyage, finer, twin, world, until):
+def test_half_the_interval_gives_the_same_motion(voyage, finer, twin, world, until):
     """To 1e-5 of the roll: without cargo, with cargo that lies and with cargo that has shifted.
 
     Only while cargo that is nudged by a last digit takes the same way to far less than that, as on another processor.
@@ -295,7 +295,7 @@ def counted(voyage, world):
 
 
 @pytest.mark.parametrize("world", [LIVELY, LOSSY, ROLLING])
-def test_what_grains_lose(voyage, world):
+def test_losses_of_grains_are_counted(voyage, world):
     """Less of their own energy and the work they do on the hull is ever more heat, contact by contact; or nothing."""
     later = voyage["time"] > RELEASE + 0.05  # before it the hull is held, or turned by hand
     missing = -voyage["cargo"][later, world] / SHEET - voyage["given"][later, world]
@@ -315,7 +315,7 @@ def test_a_hull_lighter_than_her_cargo_rolls_over(run, voyage):
     assert voyage["capsized"][-1, ROLLING] < 0.0
 
 
-def test_capsize_ends_a_world_and_no_other(run, voyage):
+def test_a_capsize_ends_only_its_world(run, voyage):
     """Resonance without damping: when roll leaves its limits, at the step, and the rest sail on."""
     for world, limit in ((RESONANT, 0.5), (OVER, 0.3)):
         when = voyage["capsized"][-1, world]
@@ -335,7 +335,7 @@ def test_a_ship_held_by_her_axis_is_heeled_about_it(voyage):
     assert tank[:, :2] - arm == pytest.approx(np.tile([0.0, height], (len(tank), 1)), abs=1e-9)
 
 
-def test_water_over_the_edge_of_a_hatch_ends_a_world_and_no_other(run, voyage):
+def test_flooding_through_a_hatch_ends_only_its_world(run, voyage):
     """At the interval at which the edge is under the waves' surface, as of the ship by herself; the rest sail on."""
     when, interval = voyage["flooded"][-1, HATCH], run.every * run.simulation.dt
     vessel = run.simulation.scene.vessels[HATCH]
@@ -353,7 +353,7 @@ def test_water_over_the_edge_of_a_hatch_ends_a_world_and_no_other(run, voyage):
     assert (voyage["flooded"][-1, :HATCH] == -1.0).all() and voyage["capsized"][-1, HATCH] == -1.0
 
 
-def test_a_ship_is_heeled_softly(run, voyage):
+def test_a_ship_is_heeled_smoothly(run, voyage):
     """Until she is let go her tank's speed and acceleration are those of its path (eq. F.1); the grains feel them."""
     frame, held = run.simulation.carrier, slice(1, 5)
     upright, heeled = (field.to_numpy()[ROLLING] for field in (frame.upright, frame.heeled))
@@ -374,12 +374,12 @@ def test_a_ship_is_heeled_softly(run, voyage):
     assert felt[:, :4] == pytest.approx(np.column_stack([pull, speed[:, 2], gain[:, 2]]), abs=1e-3)
 
 
-def test_grains_settle_before_she_is_let_go(run):
+def test_grains_settle_before_the_ship_is_released(run):
     """They have fallen the tenth of a radius that they were put too high."""
     assert run.height == pytest.approx(SITES[:, 1].mean(), abs=0.02 * RADIUS)
 
 
-def test_a_laden_ship_is_what_was_said(run, voyage):
+def test_a_laden_ship_has_the_given_mass_and_inertia(run, voyage):
     """Hull and cargo together have the body that was given for both."""
     cargo = run.cargo[OVER]
     aboard = Body(cargo.mass, tuple(np.add(cargo.centre, HOLD)), cargo.inertia)
@@ -400,7 +400,7 @@ def later(run, steps=1500):
     return run.state()
 
 
-def test_a_state_goes_on_bit_for_bit(run):
+def test_a_state_continues_bit_for_bit(run):
     """From the middle of an interval, as after an interruption."""
     simulation = run.simulation
     simulation.restore(run.settled)
@@ -415,7 +415,7 @@ def test_a_state_goes_on_bit_for_bit(run):
 
 
 @pytest.mark.slow
-def test_more_room_for_contacts_alters_nothing():
+def test_growing_contact_arrays_changes_nothing():
     """The arrays are made anew in the middle of a voyage; the ship does not notice."""
     found = []
     for grow in (False, True):
@@ -459,7 +459,7 @@ def test_ships_do_not_run_per_grain():
 
 @pytest.mark.slow
 @pytest.mark.parametrize("together", [True, False])
-def test_bands_steer_the_same_ship(together):
+def test_bands_move_the_ship_as_one_unit_does(together):
     """Two bands in step, or one after the other, against the whole: to rounding, until grains make the most of it."""
     found = []
     for schedule in ("per-world", "per-band"):
@@ -497,7 +497,7 @@ def test_intervals():
     assert vessel.limits == (-inf, inf)
 
 
-def test_other_waves_are_met_from_then_on(run):
+def test_changed_waves_act_from_then_on(run):
     """Twice as high and shorter, after the first second: as by the method of Runge and Kutta, waves changed then."""
     simulation, every = run.simulation, run.every
     simulation.restore(run.settled)

@@ -20,7 +20,7 @@ def rotation(angle: float) -> np.ndarray:
 
 
 @pytest.mark.slow
-def test_tank_held_at_an_angle_is_a_turned_tank():
+def test_a_tank_held_at_an_angle_equals_a_turned_tank():
     outline, angle = box(0.03, 0.06), -1.1
     turn = rotation(angle)
     beds = [np.random.default_rng(seed) for seed in (3, 4, 5)]
@@ -161,7 +161,7 @@ class Inertial:
 
 
 @pytest.mark.slow
-def test_tank_in_motion_is_a_box_of_moving_walls():
+def test_a_moving_tank_equals_a_box_of_moving_walls():
     random, outline, deck = np.random.default_rng(8), box(0.02, 0.03), Deck()
     radius = radii(20, 3e-3, 0.1, random)
     start = start_positions(radius, outline, random)

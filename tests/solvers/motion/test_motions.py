@@ -235,7 +235,7 @@ def test_short_tilt_keeps_the_acceleration_and_never_reaches_its_rate(tilting):
     assert np.allclose(acceleration[[0, 2]], [2.0, -2.0], rtol=1e-12)
 
 
-def test_tilt_by_nothing_stays_upright(tilting):
+def test_a_zero_tilt_stays_upright(tilting):
     assert TILTS["none"].duration() == 0.0
     assert all(np.all(state == 0.0) for state in tilting("none", np.linspace(-1, 3, 20)))
 
@@ -439,7 +439,7 @@ def test_record_is_at_rest_before_its_first_sample_and_stays_where_it_ends(probe
     assert np.abs(velocity).max() < 1e-13 and np.all(acceleration[0, 1:] == 0.0)
 
 
-def test_record_that_ends_in_motion_goes_on_without_a_jump(probe):
+def test_a_record_that_ends_in_motion_continues_without_a_jump(probe):
     time = np.linspace(0.0, 4.0, 200)
     motion = record("y", time, 0.1 * np.sin(3.0 * time))
     assert motion.rests == (False, False)
@@ -451,7 +451,7 @@ def test_record_that_ends_in_motion_goes_on_without_a_jump(probe):
     assert np.all(acceleration[0, 1:] == 0.0)
 
 
-def test_soft_start_brings_up_a_record_that_starts_anywhere(probe):
+def test_soft_start_eases_into_a_record_that_starts_anywhere(probe):
     time = np.linspace(0.0, 4.0, 200)
     values = 0.1 * np.cos(3.0 * time)
     early, after = np.linspace(0.0, SOFT_START, 200), np.linspace(SOFT_START, 4.0, 200)
@@ -493,6 +493,6 @@ def test_tank_rolls_about_a_centre_that_sways_and_heaves(probe):
     assert np.allclose(carried, centre + np.column_stack([sway, heave]), rtol=0, atol=1e-14)
 
 
-def test_what_was_not_recorded_does_not_move():
+def test_unrecorded_coordinates_do_not_move():
     history = History((0.0, 1.0, 2.0, 3.0), heave=(0.0, 0.1, 0.1, 0.0))
     assert [motion.coordinate for motion in history.motions.values()] == ["z"]

@@ -58,7 +58,7 @@ def model():
     return replace(ship, body=body), heave, table.at(FREQUENCY)
 
 
-def test_what_is_given_of_the_model_agrees(model):
+def test_the_given_data_of_the_model_agree(model):
     """GM of 62.9 mm; the measured roll period asks for the gyradius of 0.36 breadths that was weighed."""
     ship, heave, _ = model
     assert heave == pytest.approx(-0.20, abs=0.004)
@@ -80,7 +80,7 @@ def test_response_is_near_the_measured_one(model):
     assert more[1, 2] < 0.9 * np.abs(response(ship, SECTION, WATER, heave, table))[1, 2]
 
 
-def test_depth_matters_where_waves_feel_the_bottom(model):
+def test_depth_matters_for_long_waves(model):
     """Waves of 3.6 m over 1 m: sway is 5 % more than in deep water; water of 20 m is deep to 0.1 %."""
     ship, heave, table = model
     found = []
@@ -122,7 +122,7 @@ def test_roll_near_its_resonance_was_not_steady():
 
 
 @recorded
-def test_the_train_comes_as_it_was_recorded():
+def test_the_wave_train_agrees_with_the_recorded_one():
     """Heights of single periods at the probe 5.5 m from the flap, until what the model throws back gets there."""
     for name, omega in (("3041_2", 5.194), ("3101_3", 7.004)):
         rows, period = record(name), 2.0 * pi / omega

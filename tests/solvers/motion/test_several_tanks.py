@@ -83,7 +83,7 @@ def frozen(run: Simulation) -> Body:
     return Body(float(mass.sum()), tuple(centre), float((mass * (apart + 0.4 * RADIUS**2)).sum()))
 
 
-def test_a_ship_feels_each_tank_by_its_share(laden):
+def test_a_ship_bears_the_load_of_each_tank(laden):
     """As one body of hull and both tanks' lying grains, each counted by its tank's length and thickness."""
     run, vessel, cargo = laden, laden.scene.vessels[0], frozen(laden)
     assert run.cargo()[0].mass == pytest.approx(cargo.mass)

@@ -23,7 +23,7 @@ def swayed(time: float) -> np.ndarray:
     )
 
 
-def test_a_piece_has_the_motion_of_both_its_ends():
+def test_a_piece_has_the_motion_given_at_both_ends():
     begin, end = np.array([0.3, -1.0, 4.0]), np.array([0.1, 2.0, -7.0])
     curve = np.polynomial.Polynomial(hermite(0.02, begin, end))
     ends = [[curve.deriv(n)(time) if n else curve(time) for n in range(3)] for time in (0.0, 0.02)]
@@ -44,7 +44,7 @@ STILL = np.zeros(6)
 
 
 @pytest.mark.slow
-def test_steered_along_a_sway_grains_move_as_in_that_sway(run):
+def test_grains_in_a_tank_steered_along_a_sway_move_as_in_the_sway(run):
     start = run.state()
     steps = round(PIECE / run.dt)
     length = steps * run.dt
@@ -68,7 +68,7 @@ def start_places() -> np.ndarray:
     return np.array([[[-0.2, 3e-3], [0.0, 3e-3], [0.2, 3e-3]]])
 
 
-def test_a_change_of_friction_is_felt_by_grains_that_already_touch(run):
+def test_a_change_of_friction_acts_on_existing_contacts(run):
     """Sliding in a tank that is pulled away: μ g, before and after (Coulomb)."""
     start = run.state()
     grain = run.scene.grain[0]
@@ -86,7 +86,7 @@ def test_a_change_of_friction_is_felt_by_grains_that_already_touch(run):
     assert gained == [pytest.approx(0.3 * 9.81, rel=0.1), pytest.approx(0.1 * 9.81, rel=0.1)]
 
 
-def test_a_change_of_gravity_is_felt(run):
+def test_a_change_of_gravity_acts(run):
     start = run.state()
     run.alter(gravity=1.62)
     run.launch(velocity=np.tile([0.0, 0.5], (1, 3, 1)))
@@ -98,7 +98,7 @@ def test_a_change_of_gravity_is_felt(run):
     assert speed == pytest.approx(0.5 - 1.62 * elapsed, abs=0.02)
 
 
-def test_what_would_need_shorter_steps_is_refused(run):
+def test_changes_that_need_shorter_steps_are_refused(run):
     with pytest.raises(Unavailable, match="shorter time steps"):
         run.alter(gravity=1e4)
     assert run.scene.gravity == 9.81

@@ -54,7 +54,7 @@ def test_sway_and_heave_are_those_of_a_long_barge(quotients):
     assert force[:2] == pytest.approx([1.0, 1.0], abs=0.01)
 
 
-def test_roll_comes_nearer_as_its_panels_become_smaller(quotients):
+def test_roll_converges_with_smaller_panels(quotients):
     """A box rolling about its waterline makes hardly any waves: the result is a small difference of large numbers."""
     for of_roll in (lambda q: q[1][2, 2], lambda q: q[2][2], lambda q: q[0][0, 2]):
         coarse, fine = (abs(of_roll(quotients[across]) - 1.0) for across in (6, 12))

@@ -25,7 +25,7 @@ def heights():
     return middle, np.array(found)
 
 
-def test_the_train_comes_with_the_group_speed(heights):
+def test_the_wave_train_arrives_with_the_group_speed(heights):
     """Calm before, half the height when the middle of the ramp arrives, the full height after the ramp."""
     time, found = heights
     assert found[time < 0.5 * TRAVEL].max() < 0.03 * AMPLITUDE

@@ -25,13 +25,13 @@ def wedge(angle: float) -> tuple[float, float]:
     return -(WIDE**2) * slope / (12.0 * DEEP), 0.5 * DEEP + WIDE**2 * slope**2 / (24.0 * DEEP)
 
 
-def test_a_filling_leans_only_beyond_its_repose():
+def test_cargo_shifts_only_beyond_its_angle_of_repose():
     assert lean(np.radians([0.0, 20.0, 40.0, -20.0, -40.0]), radians(25.0)) == pytest.approx(
         np.radians([0.0, 0.0, 15.0, 0.0, -15.0])
     )
 
 
-def test_a_wedge_shifts_as_in_closed_form():
+def test_the_shift_of_a_wedge_has_its_closed_form():
     """As long as the surface cuts both walls; beyond that the shift is smaller."""
     until = atan(2.0 * DEEP / WIDE)
     for angle in np.linspace(-0.99, 0.99, 9) * until:
@@ -58,7 +58,7 @@ def levers(heels, repose):
     return relaxed_levers(BARGE, LOADED, WATER, heels, HOLD, AREA, CARGO, repose)
 
 
-def test_levers_with_relaxed_cargo():
+def test_righting_levers_with_relaxed_cargo():
     """As for frozen cargo up to the repose; beyond it the wedge moves the centre of gravity to the low side."""
     repose, heels = radians(25.0), np.radians([-40.0, -24.0, 10.0, 25.0, 35.0, 50.0])
     found, frozen = levers(heels, repose), righting_levers(BARGE, LOADED, WATER, heels)

@@ -100,7 +100,7 @@ def test_small_waves_have_the_response_of_the_frequency_domain(table, memory):
 
 
 @pytest.mark.parametrize("diffraction", [True, False])
-def test_small_waves_push_as_the_table_says(table, diffraction):
+def test_small_waves_exert_the_tabulated_forces(table, diffraction):
     """The buoyancy on the wave slope and the rest add up to the excitation, or its Froude–Krylov part."""
     omega, amplitude, rest = 6.0, 1e-6, np.array([0.3, 0.0, 0.0])
     load = floating_in_waves(BARGE, WATER, AXIS, regular(amplitude, omega, WATER), table, (-DRAUGHT, 0.0), diffraction)
@@ -140,7 +140,7 @@ def test_energy(table, memory):
 
 
 @pytest.mark.slow
-def test_radiated_power_of_a_steady_motion_is_the_tables(table, memory):
+def test_radiated_power_of_a_steady_motion_follows_from_the_table(table, memory):
     """In small waves, over a period: ½ Re v* B v, B from the boundary elements."""
     omega = 4.5
     load = floating_in_waves(BARGE, WATER, AXIS, regular(1e-5, omega, WATER, 5.0), table, (-DRAUGHT, 0.0))
@@ -205,7 +205,7 @@ def test_run_with_too_long_an_interval_is_stopped(table, memory):
         sail(floating(table, memory), start(floating(table, memory), -DRAUGHT, 0.1), 0.8, 400.0)
 
 
-def test_a_voyage_may_begin_later(table, memory):
+def test_a_run_may_begin_at_a_later_time(table, memory):
     """A start one wave period later gives the same motion; half a period later the first force has the other sign."""
     omega = 4.5
     load = floating_in_waves(BARGE, WATER, AXIS, regular(1e-3, omega, WATER), table, (-DRAUGHT, 0.0))
@@ -220,7 +220,7 @@ def test_a_voyage_may_begin_later(table, memory):
     assert ends[1] == pytest.approx(ends[0] + begins[1])
 
 
-def test_ships_that_roll_together_roll_as_each_by_herself(table):
+def test_ships_rolling_together_move_as_each_one_alone(table):
     """Two waves, two dampings, about the axis; the third ship, undamped in high waves, is lost, the others continue."""
     ships = []
     for omega, amplitude, damping in ((4.5, 0.01, (0.1, 0.2)), (4.7, 0.01, (0.3, 0.0)), (5.4, 0.06, (0.0, 0.0))):
@@ -236,7 +236,7 @@ def test_ships_that_roll_together_roll_as_each_by_herself(table):
     assert np.abs(rolls[-1, :2]).min() > 0.01 and np.isnan(rolls[-1, 2])
 
 
-def test_memory_that_drives_the_hull_is_refused(table, memory):
+def test_a_memory_that_adds_energy_is_refused(table, memory):
     """The fitted memory passes; one that adds energy at the roll's frequency does not, nor one without roll terms."""
     ship = floating(table, memory, free=LOCKED)
     require_damped(ship, start(ship, -DRAUGHT))
@@ -247,7 +247,7 @@ def test_memory_that_drives_the_hull_is_refused(table, memory):
     require_damped(replace(worse, damping=RollDamping(1.0)), start(ship, -DRAUGHT))
 
 
-def test_frozen_cargo_is_a_body_bolted_on(table, memory):
+def test_frozen_cargo_is_part_of_the_rigid_body(table, memory):
     """As part of the body, or as a load with its weight and inertial forces."""
     hull, cargo = Body(14.0, (0.01, 0.13), 0.3), Body(MASS - 14.0, (-0.01, 0.06), 0.2)
     whole = bolted(hull, cargo)

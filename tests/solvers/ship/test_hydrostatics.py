@@ -64,7 +64,7 @@ def test_immersed_part_is_that_of_strips(name, elevation, slope):
         assert wet.area * wet.centroid == pytest.approx(np.array([moment_y, moment_z]), abs=3e-7)
 
 
-def test_poses_are_taken_together_or_one_by_one():
+def test_several_poses_give_the_same_as_one_by_one():
     heave, roll = np.array(POSES).T
     together = BARGE.immersion(heave, roll, 0.01, 0.1)
     for k, pose in enumerate(POSES):
@@ -120,7 +120,7 @@ def test_righting_levers_by_strips_to_180_degrees(name):
 
 
 @pytest.mark.parametrize("name", SECTIONS)
-def test_restoring_is_minus_the_slope_of_the_energy(name):
+def test_restoring_forces_are_minus_the_gradient_of_the_energy(name):
     """About the centre of gravity, whose height follows from heave and roll: F_z = −∂U/∂z_G, M = −∂U/∂φ."""
     section, step = SECTIONS[name], 1e-5
     loading = Loading(20.0, (0.02, 0.12))
@@ -137,7 +137,7 @@ def test_restoring_is_minus_the_slope_of_the_energy(name):
 
 
 @pytest.mark.parametrize("name", SECTIONS)
-def test_linear_hydrostatics_are_the_slopes_at_rest(name):
+def test_linear_hydrostatics_are_the_derivatives_at_equilibrium(name):
     """Stiffness and wave force against finite differences, at a heeled equilibrium."""
     section, step = SECTIONS[name], 1e-6
     loading = Loading(0.4 * section.area * WATER.density, (0.01, 0.08))
@@ -161,7 +161,7 @@ def test_linear_hydrostatics_are_the_slopes_at_rest(name):
         assert row == pytest.approx((slope[0] - slope[1]) / (2.0 * step), abs=1e-3)
 
 
-def test_sloping_surface_is_a_turned_one_under_turned_gravity():
+def test_a_sloping_surface_equals_turned_gravity():
     """A uniform pressure gradient (−s, 1) ρ g is gravity √(1 + s²) g turned by α = atan s; turn all back by α."""
     section, heave, roll, alpha = lopsided(), -0.08, 0.5, 0.2
     sloped = buoyancy(section, WATER, heave, roll, slope=np.tan(alpha), about=(0.03, 0.1))

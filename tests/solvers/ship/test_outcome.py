@@ -30,7 +30,7 @@ def decaying(linear, quadratic, roll=0.3, frequency=4.9, interval=0.01, count=30
 
 
 @pytest.mark.parametrize(("linear", "quadratic"), [(0.2, 0.0), (0.05, 0.4), (0.3, 0.2)])
-def test_decay_gives_its_damping_back(linear, quadratic):
+def test_damping_is_recovered_from_a_decay(linear, quadratic):
     found = fit_decay(*decaying(linear, quadratic, count=1500, heel=0.04))
     assert found.frequency == pytest.approx(np.sqrt(4.9**2 - 0.25 * linear**2), rel=2e-3)
     assert found.linear == pytest.approx(linear, abs=0.01)
@@ -38,7 +38,7 @@ def test_decay_gives_its_damping_back(linear, quadratic):
 
 
 @pytest.mark.slow
-def test_decay_of_a_hull_gives_its_damping_back():
+def test_damping_is_recovered_from_the_decay_of_a_hull():
     """B₁ and B₂ of the equations of motion, by the inertia with added mass; from 6°, where a box is still linear."""
     added, damping = np.diag([40.0, 50.0, 0.2]), RollDamping(0.08, 0.3)
     load = Floating(box(0.34, 0.30), Water(), (0.0, 0.11))
@@ -71,7 +71,7 @@ ROLL = 0.3 * np.cos(OMEGA * TIME)
         (ROLL + 0.3 * np.exp(-TIME) * np.cos(3.1 * TIME), "upright", False),
     ],
 )
-def test_kinds_of_outcome(roll, kind, several):
+def test_outcomes_are_classified(roll, kind, several):
     found = outcome(TIME, roll, OMEGA)
     assert (found.kind, found.several) == (kind, several)
     last = slice(np.searchsorted(TIME, TIME[-1] - CYCLES * 2.0 * pi / OMEGA), None)

@@ -29,7 +29,7 @@ def wave_power(frequency, water):
     return 0.5 * water.density * water.gravity * water.group_speed(frequency)
 
 
-def test_numbers_of_another_solver():
+def test_values_of_another_solver():
     """Spandonidis' barge at 4 rad/s, coefficients of a close-fit source method, about the waterline's middle."""
     found = barge([4.0])
     added, damping, force = found.added_mass[0], found.damping[0], np.abs(found.excitation[0])
@@ -104,7 +104,7 @@ def multipoles(number, mode, orders=12):
 
 
 @pytest.mark.parametrize("number", [0.2, 0.6, 1.0, 1.8, 3.0])
-def test_circle_is_that_of_ursells_multipoles(number):
+def test_a_circle_agrees_with_ursells_multipoles(number):
     a = 0.2
     omega = np.sqrt(number * WATER.gravity / a)
     found = hydrodynamics(circle(a, 256), WATER, 0.0, [omega], count=128)
@@ -115,7 +115,7 @@ def test_circle_is_that_of_ursells_multipoles(number):
         assert found.damping[0, k, k] / (scale * omega) == pytest.approx(damping, abs=4e-3)
 
 
-def test_a_circle_that_turns_about_its_centre_does_nothing():
+def test_a_circle_turning_about_its_centre_radiates_nothing():
     found = hydrodynamics(circle(0.2, 256), WATER, 0.0, [3.0, 8.0], count=128)
     for table in (found.added_mass, found.damping):
         assert np.abs(table[:, 2]).max() < 1e-8 * np.abs(table).max()
@@ -162,7 +162,7 @@ def scale_of(table):
     return np.sqrt(np.outer(diagonal, diagonal))
 
 
-def test_sway_and_roll_of_a_symmetric_hull_send_one_wave():
+def test_sway_and_roll_of_a_symmetric_hull_radiate_proportional_waves():
     """One unknown wave shape: B24² = B22 B44."""
     damping = barge([3.0, 6.0, 9.0]).damping
     assert damping[:, 0, 2] ** 2 == pytest.approx(damping[:, 0, 0] * damping[:, 2, 2], rel=0.02, abs=1e-3)
@@ -202,7 +202,7 @@ def test_long_waves_in_shallow_water():
     assert damping == pytest.approx(0.5 * water.density * BREADTH**2 * np.sqrt(water.gravity / water.depth), rel=5e-3)
 
 
-def test_deep_is_the_limit_of_depth():
+def test_deep_water_is_the_limit_of_finite_depth():
     frequency = [2.0, 4.0, 8.0]
     deep, far, near = barge(frequency), barge(frequency, Water(depth=100.0)), barge(frequency, Water(depth=0.5))
     assert far.damping == pytest.approx(deep.damping, rel=1e-4, abs=1e-6)
@@ -243,7 +243,7 @@ def roughness(table):
     return abs((-a + 4.0 * b + 4.0 * c - d) / 6.0 - middle) / abs(middle)
 
 
-def test_nothing_happens_at_an_irregular_frequency(monkeypatch):
+def test_irregular_frequencies_are_removed(monkeypatch):
     """Sway and heave run smoothly through the first one; without the points inside, heave does not."""
     frequency = irregular_frequency() + np.array([-0.02, -0.01, 0.0, 0.01, 0.02])
     with_points = barge(frequency)
@@ -272,6 +272,6 @@ def test_second_order_in_the_panels():
         (-0.11, [4.0], Water(depth=0.11), "deeper than the draught"),
     ],
 )
-def test_what_has_no_answer_is_refused(heave, frequency, water, says):
+def test_unsolvable_requests_are_refused(heave, frequency, water, says):
     with pytest.raises(Unavailable, match=says):
         hydrodynamics(BARGE, water, heave, frequency)

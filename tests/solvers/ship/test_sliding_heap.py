@@ -23,7 +23,7 @@ SHIP = HeapShip(MASS * GRAVITY, HEIGHT, softening_lever(HEIGHT, radians(70.0)), 
 CENTRE = FLOOR + 0.5 * DEEP  # m, of the level cargo above the axis
 
 
-def test_a_heap_that_has_slid_takes_the_lever_of_relaxed_cargo():
+def test_a_heap_that_slid_has_the_lever_of_relaxed_cargo():
     """Heeled slowly from upright: the frozen cargo's lever less the heap's moment is that of the clipped fillings."""
     section, water = box(0.34, 0.30), Water()
     loading = Body(MASS, (0.0, 0.0926), 0.0).loading
@@ -37,7 +37,7 @@ def test_a_heap_that_has_slid_takes_the_lever_of_relaxed_cargo():
     assert np.all(moment[:2] == 0.0) and np.all(moment[2:5] > 0.0) and moment[5] < 0.0
 
 
-def test_a_cycle_of_sliding_takes_the_work_of_friction():
+def test_a_cycle_of_sliding_loses_the_work_of_friction():
     """Swung slowly to ± 30 deg with a repose of 25, the surface goes to ± 5 deg and back: a loop of play.
 
     What is lost is what the centre falls by while it slides there and back: by b² tan θ/12h along the deck and
@@ -96,7 +96,7 @@ def test_small_rolls_are_those_of_a_linear_ship(twice):
     assert steady(ship, amplitude, omega) == pytest.approx(wanted, rel=2e-3)
 
 
-def test_a_lever_that_softens_leans_the_resonance_to_lower_frequencies():
+def test_a_softening_lever_moves_the_resonance_to_lower_frequencies():
     """Free from 36 deg: ω² = ω₀² (1 − ¾ (a/φ_v)²) to first order, 4.4 rad/s of 4.9 where it vanishes at 70 deg."""
     largest = radians(36.0)
     ship = replace(SHIP, heap=None)
@@ -111,7 +111,7 @@ def test_a_lever_that_softens_leans_the_resonance_to_lower_frequencies():
     assert found == pytest.approx(4.9 * np.sqrt(1.0 - 0.75 * (36.0 / 70.0) ** 2), rel=0.01)
 
 
-def test_a_lost_ship_is_not_a_number_and_the_others_roll_on():
+def test_a_lost_ship_is_nan_and_the_others_continue():
     waves = np.array([0.005, 0.2]), np.array([4.6, 4.6])
     _, rolls = roll_with_heap(SHIP, *waves, 0.02, 30.0, 0.5 * pi)
     assert np.isfinite(rolls[:, 0]).all() and np.isnan(rolls[-1, 1])

@@ -41,7 +41,7 @@ def free_body():
     return barge_body(axis_is_fixed=False)
 
 
-def test_the_barges_body(fixed_body, free_body):
+def test_mass_and_inertia_of_the_barge(fixed_body, free_body):
     """GM of 50 mm and radii of gyration usual for ships; the slower free roll requires the larger inertia."""
     assert pytest.approx(0.05, abs=1e-3) == HEIGHT
     for body in (fixed_body, free_body):
@@ -100,7 +100,7 @@ def test_waves_of_the_first_model(fixed_body):
             assert moved == pytest.approx([0.0, 0.0, grown * push * cos(omega * time)], abs=1e-9)
 
 
-def test_quadratic_damping_is_of_the_rate_not_of_the_angle(fixed_body):
+def test_quadratic_damping_depends_on_the_rate_not_the_angle(fixed_body):
     """Corrects eq. 7.1: zero at zero rate, four times as large at twice the rate."""
     bare = source_roll(fixed_body, CALM, 4.5, RollDamping())
     damped = replace(bare, damping=RollDamping(0.0, 0.3))
@@ -113,7 +113,7 @@ def test_quadratic_damping_is_of_the_rate_not_of_the_angle(fixed_body):
     assert drag(1.0) == pytest.approx(0.25 * drag(2.0)) and drag(1.0) < 0.0 < drag(-1.0)
 
 
-def test_forces_of_the_second_model_are_the_long_waves(free_body):
+def test_forces_of_the_second_model_are_those_of_long_waves(free_body):
     """Sway and heave: Froude–Krylov of the boundary elements. Roll: buoyancy's share; the rest has the ship's I."""
     omega, amplitude = 1.0, 1e-4
     ship = source_free(free_body, amplitude, omega, RollDamping())

@@ -7,7 +7,7 @@ from solvers.machine.errors import Unavailable
 from solvers.ship.viscous import COMMON_ANGLE, common_damping, eddy_coefficient, estimated_damping, friction_damping
 
 
-def test_eddies_of_a_sharp_box_are_those_measured():
+def test_eddy_damping_of_a_sharp_box_agrees_with_measurements():
     """Ikeda (1978): a box of 280 by 112 mm about its waterline, B_E (3π/8) √(B/2g)/(ρ ∇ B²) is 0.042 at 0.175 rad."""
     breadth, draught, roll = 0.28, 0.112, 0.175
     quadratic = estimated_damping(breadth, draught, 0.0, draught, 1.0).quadratic
@@ -17,7 +17,7 @@ def test_eddies_of_a_sharp_box_are_those_measured():
     assert found == pytest.approx(0.042, rel=0.1)
 
 
-def test_round_bilges_shed_less():
+def test_round_bilges_have_less_eddy_damping():
     """The eddy damping decreases with the bilge radius."""
     found = [eddy_coefficient(0.4, 0.2, radius, 0.106) for radius in (0.01, 0.03, 0.051, 0.08)]
     assert np.all(np.diff(found) < 0.0) and found[-1] > 0.0
@@ -30,7 +30,7 @@ def test_friction_grows_with_the_root_of_the_frequency():
     assert 0.001 < friction_damping(0.4, 0.2, 0.051, 0.106, 5.0) / (2.0 * 5.0 * 2.0) < 0.005
 
 
-def test_usual_damping_takes_the_energy_it_names():
+def test_usual_damping_dissipates_its_stated_energy():
     """In a swing of 15 deg the stronger one takes 5 % of critical damping's energy, π B ω a², summed over a period."""
     frequency, inertia = 5.0, 2.0
     low, high = common_damping(frequency, inertia)

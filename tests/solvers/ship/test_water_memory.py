@@ -100,7 +100,7 @@ def test_system_has_the_barges_retardation(barge):
 
 
 @pytest.mark.slow
-def test_modes_of_a_lopsided_hull_share_their_poles():
+def test_modes_of_an_asymmetric_hull_share_their_poles():
     table = hydrodynamics(lopsided(), WATER, -0.1, np.linspace(0.2, 20.0, 50), about=(0.01, 0.12), count=50)
     system = fit_memory(table, 8)
     assert np.all(system.transfer(np.array([5.0]))[0] != 0.0)

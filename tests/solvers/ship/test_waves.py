@@ -85,7 +85,7 @@ def test_packet_focuses_and_travels_with_the_group(depth):
 
 
 @pytest.mark.parametrize("spectrum", [pierson_moskowitz(0.08, 5.0), jonswap(0.08, 5.0), jonswap(0.08, 5.0, 7.0)])
-def test_spectra_have_their_height_and_peak(spectrum):
+def test_spectra_have_the_given_height_and_peak(spectrum):
     energy = sum(
         quad(lambda w: float(spectrum(w)), a, b)[0] for a, b in [(0.5, 4.0), (4.0, 5.0), (5.0, 8.0), (8.0, 500.0)]
     )
@@ -123,7 +123,7 @@ def test_random_sea():
     assert abs(np.corrcoef(height[:half], height[half:])[0, 1]) < 0.1
 
 
-def test_a_seed_is_a_sea():
+def test_a_seed_defines_a_sea():
     spectrum = pierson_moskowitz(0.05, 4.0)
     one, same, other = (random_sea(spectrum, 4.0, WATER, seed) for seed in (1, 1, 2))
     assert np.array_equal(one.amplitude, same.amplitude) and np.array_equal(one.frequency, same.frequency)

@@ -48,7 +48,7 @@ def pressing(run) -> tuple[np.ndarray, np.ndarray]:
 @pytest.mark.parametrize(
     "integrator", ["verlet", *(pytest.param(name, marks=pytest.mark.slow) for name in ("symplectic-euler", "gear"))]
 )
-def test_a_scene_turned_by_a_quarter_goes_on_as_before(integrator):
+def test_a_scene_turned_by_90_degrees_moves_as_before(integrator):
     runs = scenes(integrator)
     for run in runs:
         run.advance(round(TIME / run.dt))

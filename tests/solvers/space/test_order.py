@@ -63,7 +63,7 @@ def usual(bed):
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("schedule", "units"), [("per-world", None), ("per-band", 3), ("per-grain", None)])
-def test_new_numbers_change_rounding_alone(bed, usual, monkeypatch, schedule, units):
+def test_renumbering_changes_only_rounding(bed, usual, monkeypatch, schedule, units):
     """With history and all: contacts that rub keep their springs when their grains change numbers."""
     monkeypatch.setattr(renumber, "FEWEST", 10)
     monkeypatch.setattr(renumber, "MIXED", -1.0)
@@ -75,7 +75,7 @@ def test_new_numbers_change_rounding_alone(bed, usual, monkeypatch, schedule, un
 
 
 @pytest.mark.slow
-def test_small_and_unmixed_beds_keep_their_numbers(bed):
+def test_small_and_unmixed_beds_are_not_renumbered(bed):
     """Order is worth its price only in large worlds that have mixed."""
     assert np.all(shaken(bed)[1] == np.arange(COUNT))
     place = np.random.default_rng(0).uniform(0.0, 1.0, (renumber.FEWEST, 2))
@@ -84,7 +84,7 @@ def test_small_and_unmixed_beds_keep_their_numbers(bed):
     assert not renumber.has_mixed(place[1:] + 6e-3, place[1:], 1e-3)
 
 
-def test_order_follows_space():
+def test_new_numbers_follow_the_positions():
     """Column by column, each from the floor up, whatever the grains' numbers were."""
     y, z = (axis.ravel() for axis in np.meshgrid(np.arange(6) * 2.0 + 0.5, np.arange(9.0), indexing="ij"))
     mixed = np.random.default_rng(1).permutation(len(y))

@@ -9,7 +9,7 @@ from tests.oracles.scenes import box, material
 
 
 @pytest.mark.slow
-def test_neighbours_that_leave_together_are_let_go_of():
+def test_neighbours_that_leave_together_are_removed():
     """Grain 0, which stands in for missing pairs too, and two that touch it fall beside the tank until out of sight."""
     radius = np.full((1, 4), 2e-3)
     place = np.array([[[0.03, 0.0], [0.0339, 0.0], [0.03, 0.0039], [0.0, 2e-3]]])

@@ -101,7 +101,7 @@ def test_impulse_is_the_change_of_momentum(looks, box_run):
     assert max(np.abs(load[STIRRED, 0]) for _, load, _ in looks) > 5e-4
 
 
-def test_a_bounce_gives_twice_the_momentum(looks, box_run):
+def test_an_elastic_bounce_transfers_twice_the_momentum(looks, box_run):
     """Elastic grains that fall h meet the floor at v = √(2 g h), each once in 65 ms, for a Hertz collision's time.
 
     The impulse is 2 m v and the weight's in that time, 2.87 (m²/(R E*² v))^(1/5) (Johnson 1985, eq. 11.24).
@@ -115,7 +115,7 @@ def test_a_bounce_gives_twice_the_momentum(looks, box_run):
     assert load[BOUNCING, 1:] * time == pytest.approx([-impulse.sum(), -(impulse * y).sum()], rel=2e-4)
 
 
-def test_a_heap_at_rest_loads_its_weight_where_it_lies(looks, box_run):
+def test_the_load_of_a_heap_at_rest_is_its_weight_at_its_centre(looks, box_run):
     """On floor, wall, shelf and fixed grains together; the moment is that of the weight at the centre of mass.
 
     (One or two that roll on slowly matter little.)
@@ -130,7 +130,7 @@ def test_a_heap_at_rest_loads_its_weight_where_it_lies(looks, box_run):
     assert near.any(), "some grains are to lie on the fixed ones"
 
 
-def test_a_second_look_at_the_same_time_tells_the_same(box_run):
+def test_a_second_observation_at_the_same_time_is_equal(box_run):
     assert np.array_equal(load(box_run.observe()), load(box_run.observe()))
 
 
@@ -195,7 +195,7 @@ def block():
     run.close()
 
 
-def test_worlds_that_wait_keep_their_load(block):
+def test_worlds_at_rest_keep_their_load(block):
     """World 0 rests at once; world 1 is thrown up and comes down again."""
     weight = block.grains.mass[0].sum() * G
     velocity = np.zeros((*block.scene.radius.shape, 2))
@@ -205,7 +205,7 @@ def test_worlds_that_wait_keep_their_load(block):
     assert load(block.observe())[:, 1] == pytest.approx([-weight] * 2, rel=1e-2)
 
 
-def test_a_launch_begins_a_new_mean(block):
+def test_a_launch_starts_a_new_average(block):
     """What the grains did before is no part of it, nor is the time they took."""
     weight = block.grains.mass[0].sum() * G
     block.settle(1e-7, 1.0)

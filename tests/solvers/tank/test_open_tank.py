@@ -90,7 +90,7 @@ def test_walls_push_from_outside(watched):
         assert (out * velocity).max() > 0.2, "it is to rebound"
 
 
-def test_spilled_grains_are_counted_once_and_for_ever(watched):
+def test_spilled_grains_are_counted_once(watched):
     """Those outside at the start at once, one thrown back in too, and those above the mouth never."""
     looks, _ = watched
     spilled = dict(zip(NAMES, looks["spilled"].T, strict=True))
@@ -114,7 +114,7 @@ def test_spilled_grains_are_counted_once_and_for_ever(watched):
     }
 
 
-def test_far_grains_are_let_go_of_and_stay_away(watched):
+def test_distant_grains_are_removed_for_good(watched):
     looks, _ = watched
     gone = np.isnan(looks["position"]).any(axis=-1)
     assert gone[-1].sum(axis=1).tolist() == [1, 0, 0, 1, 1, 2, 0]
@@ -130,7 +130,7 @@ def test_far_grains_are_let_go_of_and_stay_away(watched):
         assert np.any((later < lower - margin) | (later > upper + margin))
 
 
-def test_nobody_inside_feels_who_is_gone(watched):
+def test_removed_grains_do_not_affect_those_inside(watched):
     """The same bouncing grain, with two others that go and with two that stay."""
     looks, _ = watched
     one, other = (looks["position"][:, NAMES.index(name), 2] for name in ("two gone", "none gone"))
@@ -142,7 +142,7 @@ def test_nobody_inside_feels_who_is_gone(watched):
     assert np.isfinite(looks["velocity"]).all()
 
 
-def test_centre_and_energy_are_of_those_inside(watched):
+def test_centre_and_energy_count_grains_inside_only(watched):
     looks, mass = watched
     place, velocity, spin = looks["position"], looks["velocity"], looks["spin"]
     never_out = np.cumsum(~(np.abs(place[..., 0]) < HALF) | ~(place[..., 1] > 0.0), axis=0) == 0
@@ -205,7 +205,7 @@ def stepped():
 
 
 @pytest.mark.slow
-def test_plates_of_an_open_tank_push_as_geometry_says(stepped):
+def test_walls_of_an_open_tank_push_along_the_distance(stepped):
     """A rim pushes as a point, a wall square to itself from either side, with the force of Hertz; nothing pushes twice.
 
     (The first step gives half a kick and a velocity predicted by another half: the whole acceleration.)
@@ -237,7 +237,7 @@ BIN = np.array([[-HALF, 0.0], [0.0, 0.0], [HALF, 0.0], [HALF, HIGH], [-HALF, HIG
 
 
 @pytest.mark.slow
-def test_what_jumps_above_the_mouth_stays_and_what_leaves_by_the_outlet_does_not(monkeypatch):
+def test_grains_that_jump_above_the_mouth_stay_and_those_through_the_outlet_leave(monkeypatch):
     """A grain that leaps higher than others are followed comes back; one that falls through the floor is spilled there.
 
     Then all are placed anew, with numbers the solver has changed meanwhile.

@@ -28,7 +28,7 @@ def test_lids_are_the_edges_along_the_top(outline, lids):
 
 
 @pytest.mark.parametrize(("outline", "mouth"), [(box(0.2, 0.1), 0.2), (TRAPEZIUM, 0.4), (U, 0.2), (SPLIT, 0.3)])
-def test_raised_walls_stand_on_the_mouth(outline, mouth):
+def test_raised_walls_continue_the_mouth(outline, mouth):
     higher = raised(outline, 0.5)
     assert np.ptp(higher[:, 1]) == pytest.approx(np.ptp(outline[:, 1]) + 0.5)
     assert area(higher) == pytest.approx(area(outline) + 0.5 * mouth)
@@ -58,7 +58,7 @@ def wall_distance(outline: np.ndarray, points: np.ndarray) -> np.ndarray:
 
 
 @pytest.mark.parametrize("outline", [box(0.2, 0.1), TRAPEZIUM, U, GABLE], ids=["box", "trapezium", "U", "gable"])
-def test_a_lining_covers_floor_and_sides_half_sunk_with_small_gaps(outline):
+def test_a_lining_covers_floor_and_sides_with_half_embedded_grains(outline):
     d = 3e-3
     fixed = lining(outline, d, np.random.default_rng(1))
     assert np.all(wall_distance(outline, fixed[:, :2]) < 1e-12)
@@ -80,7 +80,7 @@ def test_a_lining_covers_floor_and_sides_half_sunk_with_small_gaps(outline):
     assert len(np.unique(fixed[:, :2].round(9), axis=0)) == len(fixed)
 
 
-def test_a_lining_follows_its_seed_alone():
+def test_a_lining_depends_only_on_its_seed():
     first, again, other = (lining(TRAPEZIUM, 4e-3, np.random.default_rng(seed)) for seed in (1, 1, 2))
     np.testing.assert_array_equal(first, again)
     assert len(first) != len(other) or not np.allclose(first, other)

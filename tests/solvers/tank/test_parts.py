@@ -80,7 +80,7 @@ PARTS = st.builds(
 
 @settings(max_examples=60, deadline=None)
 @given(st.lists(PARTS, min_size=1, max_size=ROWS))
-def test_way_and_speed_at_any_time(probe, parts):
+def test_displacement_and_speed_at_any_time(probe, parts):
     for part in parts:
         end = part.duration()
         times = np.concatenate(
@@ -117,7 +117,7 @@ def test_part_rests_before_its_start_and_exactly_at_its_end(probe):
         assert pace[0, [0, 1, 2, 4, 5]].tolist() == [0.0] * 5
 
 
-def test_short_way_has_a_lower_top_speed(probe):
+def test_a_short_move_has_a_lower_top_speed(probe):
     assert SHORT.way == pytest.approx(0.05) and SHORT.fastest() == pytest.approx(1.0)
     assert SHORT.duration() == pytest.approx(0.1)
     way, pace = probe.at([SHORT], [0.025, 0.05, 0.075])
@@ -137,7 +137,7 @@ def test_floor_that_drops_at_three_g_leaves_a_falling_grain_behind(probe):
     assert np.allclose(-50.0 * way[0], -1.5 * 9.81 * (times - 0.2) ** 2, rtol=1e-12, atol=1e-15)
 
 
-def test_still_part_never_moves(probe):
+def test_a_part_without_a_move_stays_at_rest(probe):
     assert STILL.duration() == STILL.fastest() == 0.0
     move = STILL.parameters()[4:]
     assert move == [0.0, 0.0]
@@ -145,7 +145,7 @@ def test_still_part_never_moves(probe):
     assert np.all(np.isfinite(way)) and np.all(pace[0] == 0.0)
 
 
-def test_parts_have_rows_of_their_own(probe):
+def test_parts_have_separate_rows(probe):
     together = probe.at([GATE, SHORT, ABRUPT], np.linspace(0, 1, 50))
     for p, part in enumerate((GATE, SHORT, ABRUPT)):
         alone = probe.at([part], np.linspace(0, 1, 50))

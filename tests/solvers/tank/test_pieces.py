@@ -23,7 +23,7 @@ HOW = {
 @pytest.mark.parametrize(
     "how", ["discs", *(pytest.param(how, marks=pytest.mark.slow) for how in HOW if how != "discs")]
 )
-def test_each_piece_bears_what_lies_on_it(how):
+def test_each_piece_bears_the_grains_on_it(how):
     """A grain on the floor, one on a shelf, one on a fixed grain in a pocket, one that a paddle carries: its weight.
 
     Under rules for discs and for outlines, in one unit and in several: booked once each.

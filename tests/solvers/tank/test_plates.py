@@ -125,14 +125,14 @@ def test_no_grain_passes_a_plate(flight):
     assert flight.nearest[-1].min() > RADIUS
 
 
-def test_lists_know_all_that_touch_plates(flight):
+def test_lists_contain_all_contacts_with_plates(flight):
     """No contact is missed because the plate moves and the grain does not."""
     touching = flight.nearest < RADIUS
     assert touching.sum() > 100
     np.testing.assert_array_equal(touching.any(axis=-1), flight.contacts > 0)
 
 
-def test_impacts_on_plates_make_no_energy(flight):
+def test_impacts_on_plates_create_no_energy(flight):
     """In the frame of the roof: kept by elastic smooth ones, head-on and grazing, and lost by the rest."""
     frame = np.stack([np.zeros(2), V])
     energy = 0.5 * ((flight.velocity - frame) ** 2).sum(axis=-1) + 0.2 * RADIUS**2 * flight.spin**2
@@ -179,7 +179,7 @@ def machine():
 
 
 @pytest.mark.slow
-def test_a_gate_holds_a_bed_and_lets_it_go(machine):
+def test_a_gate_holds_a_bed_and_releases_it(machine):
     looks, *_ = machine
     for time, position, moved, _ in looks:
         if time < GATE.start:

@@ -66,7 +66,7 @@ def feet(points: np.ndarray, outline: np.ndarray, reflex: list[int]) -> tuple[np
 
 
 @pytest.mark.parametrize("name", OUTLINES)
-def test_walls_are_where_geometry_says(name):
+def test_walls_have_correct_distances_and_normals(name):
     """Random points in and around an outline: which are inside, what they face, how far away and in what direction."""
     outline, reflex = OUTLINES[name]
     rng, reach, segments = np.random.default_rng(1), 0.02, len(outline)
@@ -148,7 +148,7 @@ def room():
     return felt / run.dt, counted, place, velocity, run.grains.mass[:, 0], looks
 
 
-def test_corners_push_as_often_as_they_touch(room):
+def test_each_touching_corner_pushes_once(room):
     """Before it moves, a grain feels its force for one step: half of it in the kick, half in the predicted velocity.
 
     A wall pushes with the force of Hertz, (4/3) E* √R ξ^(3/2).
@@ -161,7 +161,7 @@ def test_corners_push_as_often_as_they_touch(room):
         assert counted[k] == contacts, name
 
 
-def test_energy_is_kept_in_an_elastic_room_with_a_reflex_corner(room):
+def test_energy_is_conserved_in_an_elastic_tank_with_a_reflex_corner(room):
     """Frictionless elastic grains under gravity that hit walls and the corner many times."""
     _, _, place, velocity, mass, looks = room
     thrown = slice(len(TOUCHING), None)

@@ -76,13 +76,13 @@ def test_another_process_on_two_threads_gives_the_same_bits(batch, tmp_path):
 
 
 @pytest.mark.slow
-def test_a_world_alone_does_what_it_does_among_others(batch):
+def test_a_world_alone_moves_as_among_others(batch):
     (alone,) = run(worlds=range(1))
     assert_same_bits(alone, {name: values[:1] for name, values in batch[-1].items()})
 
 
 @pytest.mark.slow
-def test_the_skin_of_the_lists_changes_rounding_alone(batch):
+def test_the_lists_skin_changes_only_rounding(batch):
     (state,) = run(looks=(EARLY,), skin=1e-4)
     for name, values in batch[0].items():
         assert np.abs(state[name] - values).max() <= 1e-12 * np.abs(values).max(), name

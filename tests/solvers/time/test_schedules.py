@@ -113,7 +113,7 @@ def run(used) -> Simulation:
 
 
 @pytest.mark.parametrize("schedule", SCHEDULES[1:])
-def test_all_schedules_tell_the_same_story(told, schedule):
+def test_all_schedules_give_the_same_motion(told, schedule):
     """To rounding while it is young, and as a whole later on: what differs grows tenfold in some hundredths of a
     second."""
     usual, found = (told(name, TRIED[schedule]) for name in ("per-world", schedule))
@@ -203,7 +203,7 @@ def test_lists_equal_brute_force(run):
 
 
 @pytest.mark.slow
-def test_single_grains_know_how_hard_the_tank_is_shaken():
+def test_per_grain_lists_follow_the_tanks_acceleration():
     """A grain that hangs in a tank in free space as that sets off with 20 g: it meets one at the wall just beyond the
     lists' skin. The schedule of single grains looks at speeds now and then, and there are none to begin with.
     """
@@ -229,7 +229,7 @@ def momenta(run: Simulation) -> np.ndarray:
     return np.concatenate([(mass[..., None] * v).sum(axis=1), angular.sum(axis=1)[:, None]], axis=1)
 
 
-def test_momentum_is_kept_without_walls(run):
+def test_momentum_is_conserved_without_walls(run):
     """A cloud that collapses in free space; the tank stands still before its motion begins."""
     run.carrier.gravity.fill(0.0)
     run.origin = AT_REST
@@ -249,7 +249,7 @@ def test_momentum_is_kept_without_walls(run):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("schedule", ["two bands", "per-grain"])
-def test_lists_that_outgrow_their_room_change_nothing(told, schedule):
+def test_growing_lists_change_nothing(told, schedule):
     """A heap that rubs is asked to list far more than touches: its springs, contacts and steps stay.
 
     To the last bit where pairs are taken one by one; in a band a pair comes to stand in another lane of its block, and
@@ -277,7 +277,7 @@ def test_lists_that_outgrow_their_room_change_nothing(told, schedule):
             np.testing.assert_allclose(ends[0][name], ends[1][name], rtol=1e-9, atol=1e-12, err_msg=name)
 
 
-def test_worlds_at_rest_wait_for_the_others(run):
+def test_worlds_at_rest_stop_until_the_others_rest(run):
     """A drift too slow to count goes on for the two looks that tell rest, stops, and goes on when the clock starts."""
     run.carrier.gravity.fill(0.0)
     rest, slow = 1e-4, 1e-3

@@ -108,7 +108,7 @@ def ends(case: str, folder: Path) -> tuple[dict, dict]:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("case", CASES)
-def test_another_process_goes_on_bit_for_bit(tmp_path, monkeypatch, case):
+def test_another_process_continues_bit_for_bit(tmp_path, monkeypatch, case):
     monkeypatch.setattr(schedules, "WORTH_BANDS", COUNT)
     here, elsewhere = ends(case, tmp_path)
     assert here["contacts"].min() > 1
@@ -119,7 +119,7 @@ def test_another_process_goes_on_bit_for_bit(tmp_path, monkeypatch, case):
 
 
 @pytest.mark.slow
-def test_bands_go_on_in_bands_on_any_number_of_threads(monkeypatch):
+def test_bands_continue_in_bands_on_any_number_of_threads(monkeypatch):
     """`auto` stands for bands on two threads, and for the whole world on one. What differs is rounding."""
     case, ends = "bands that grew", []
     monkeypatch.setattr(schedules, "WORTH_BANDS", COUNT)
@@ -140,7 +140,7 @@ def test_bands_go_on_in_bands_on_any_number_of_threads(monkeypatch):
         np.testing.assert_allclose(ends[1][name], ends[0][name], rtol=1e-9, atol=1e-12, err_msg=name)
 
 
-def test_bands_do_not_wait_for_cores_that_are_not_there():
+def test_bands_do_not_wait_for_missing_cores():
     """Taichi starts no more threads than there are cores; a band at the barrier would wait for ever for its mates."""
     clock, cores = MagicMock(), available_cores()
     for bands in (cores, cores + 1):

@@ -41,7 +41,7 @@ def forged(run, kind: str, which: str, value: int) -> tuple[str, dict[str, np.nd
 @pytest.mark.parametrize("value", [2_000_000_000, -1_000_000, 10_000])
 @pytest.mark.parametrize("which", ["length", "first"])
 @pytest.mark.parametrize("kind", ["pairs", "contacts"])
-def test_a_list_that_is_longer_than_its_room_is_refused_and_nothing_changes(run, kind, which, value):
+def test_a_list_longer_than_its_array_is_refused_without_changes(run, kind, which, value):
     name, state = forged(run, kind, which, value)
     before = run.state()
     with pytest.raises(ValueError, match=f"array {name}"):
@@ -53,7 +53,7 @@ def test_a_list_that_is_longer_than_its_room_is_refused_and_nothing_changes(run,
 @pytest.mark.parametrize("value", [2_000_000_000, -1_000_000, 10_000])
 @pytest.mark.parametrize("which", ["grain", "mate"])
 @pytest.mark.parametrize("kind", ["pairs", "contacts"])
-def test_no_contact_is_left_of_what_is_nowhere(run, kind, which, value):
+def test_contacts_with_invalid_indices_are_removed(run, kind, which, value):
     _, state = forged(run, kind, which, value)
     before, listed = run.state(), getattr(run.grains.lists, kind)
     run.restore(state)
@@ -66,7 +66,7 @@ def test_no_contact_is_left_of_what_is_nowhere(run, kind, which, value):
     run.restore(before)
 
 
-def test_a_state_of_ones_own_is_taken(run):
+def test_an_unchanged_state_is_accepted(run):
     state = run.state()
     assert run.grains.lists.pairs.length.to_numpy().min() > 0
     run.advance(30)

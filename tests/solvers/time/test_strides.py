@@ -66,7 +66,7 @@ def test_free_fall_is_exact_where_the_step_changes(schedule):
     run.close()
 
 
-def test_a_state_goes_on_bit_for_bit_between_steps_of_unlike_length():
+def test_a_state_continues_bit_for_bit_between_steps_of_different_length():
     whole, cut = [], []
     for looks, stops in ((whole, [5009, 4991]), (cut, [5009, None, 4991])):
         run = started(BASE, 4, "per-world")

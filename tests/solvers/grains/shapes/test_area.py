@@ -147,7 +147,7 @@ def in_the_world(total, angle):
     return total[:, AREA], np.stack([push.real, push.imag], axis=1), total[:, XY] - total[:, YX]
 
 
-def test_whichever_is_asked_area_force_and_torque_are_the_same(polygons, pairs):
+def test_area_force_and_torque_do_not_depend_on_the_order_of_the_grains(polygons, pairs):
     """For any number of crossings, including corners of one polygon that lie inside the other."""
     (there, contacts), (back, others) = polygons.of(pairs), polygons.of(pairs.swapped())
     area, push, moment = in_the_world(there, pairs.angle[:, 1])
@@ -162,7 +162,7 @@ def test_whichever_is_asked_area_force_and_torque_are_the_same(polygons, pairs):
     assert np.abs(places[touching]).max() < 1e-10
 
 
-def test_where_nothing_is_shared_no_gap_is_smaller_than_what_is_said(polygons):
+def test_no_gap_is_smaller_than_the_reported_bound(polygons):
     """Compared with closely spaced points on the polygons' edges; all near edges are examined."""
     open_pairs = random_pairs(OUTLINES, COUNT, 6, (0.0, 0.1))
     area, said = polygons.of(open_pairs)[0][:, AREA], polygons.gaps(open_pairs, MARGIN)
@@ -212,7 +212,7 @@ def test_force_and_torque_are_the_gradient_of_the_area(polygons, pairs, wall):
     assert np.abs(overlaps + np.column_stack([contact[:, 1:3], turning]))[deep].max() < 1e-5
 
 
-def test_areas_come_to_those_of_the_outlines_with_the_square_of_the_nodes(pairs):
+def test_overlap_areas_converge_with_the_square_of_the_nodes(pairs):
     smooth = np.array([sum(one.area for one in area_contacts(*pairs.placed(OUTLINES, k))) for k in range(SOME)])
     error = [np.abs(shared(nodes).of(pairs)[0][:SOME, AREA] - smooth) for nodes in (200, 400)]
     # Of the mean, since an outline with 50 lobes is not seen by so few nodes; and of most that is 2.

@@ -25,7 +25,7 @@ def test_the_cargoes_are_those_of_the_source():
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_an_outline_is_about_its_centroid_and_of_the_size_asked_for(name):
+def test_an_outline_is_about_its_centroid_and_has_the_requested_size(name):
     outline = cargo(name).outline(np.random.default_rng(1), 4e-3)
     assert outline.equivalent_radius == pytest.approx(2e-3, rel=1e-14)
     assert np.hypot(*outline.centroid) < 1e-9 * outline.radius
@@ -41,7 +41,7 @@ def test_lengths_and_widths_are_those_measured(name):
 
 
 @pytest.mark.parametrize("name", ["sand", "chickpeas-6mm", "chickpeas-8mm"])
-def test_what_comes_from_a_spectrum_is_drawn_anew_each_time(name):
+def test_outlines_from_a_spectrum_are_drawn_independently(name):
     random = np.random.default_rng(5)
     one, other = (cargo(name).outline(random) for _ in range(2))
     assert np.abs(one.polar(ANGLE) / one.radius - other.polar(ANGLE) / other.radius).max() > 0.02
@@ -52,7 +52,7 @@ def test_chickpeas_have_the_sizes_of_the_source():
     assert [cargo(f"chickpeas-{size}mm").diameter for size in (6, 8)] == pytest.approx([6e-3, 8e-3])
 
 
-def test_beans_and_corn_are_hollow_on_one_side_and_rice_is_not():
+def test_beans_and_corn_are_concave_on_one_side_and_rice_is_not():
     def hollow(name):
         """Whether the outline is concave somewhere."""
         contour = cargo(name).outline(np.random.default_rng(1))
@@ -64,6 +64,6 @@ def test_beans_and_corn_are_hollow_on_one_side_and_rice_is_not():
     assert not hollow("rice")
 
 
-def test_an_unknown_cargo_is_refused_with_those_there_are():
+def test_an_unknown_cargo_is_refused_with_a_list_of_the_known_ones():
     with pytest.raises(Unavailable, match="wheat, rice"):
         cargo("wheet")

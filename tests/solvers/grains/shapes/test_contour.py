@@ -143,7 +143,7 @@ def test_centred_is_the_same_outline_about_its_centroid(contour, error):
     assert centred.inertia(DENSITY) == pytest.approx(contour.inertia(DENSITY), rel=4.0 * error)
 
 
-def test_an_outline_that_hides_from_its_centroid_cannot_be_centred():
+def test_an_outline_not_visible_from_its_centroid_cannot_be_centred():
     angle = 2.0 * np.pi / 400 * np.arange(400)
     arms = np.exp(-((angle - 1.0) ** 2) / 0.02) + np.exp(-((angle - 2.5) ** 2) / 0.02)
     with pytest.raises(BadOutline, match="star-shaped"):
@@ -161,13 +161,13 @@ def test_an_outline_that_hides_from_its_centroid_cannot_be_centred():
         ((float("inf"), (), ()), "finite"),
     ],
 )
-def test_what_is_no_outline_is_refused_in_a_sentence(given, says):
+def test_invalid_outlines_are_refused_in_one_sentence(given, says):
     with pytest.raises(BadOutline, match=says) as refused:
         Contour(*given)
     assert str(refused.value).endswith(".")
 
 
-def test_a_radius_that_only_just_stays_positive_is_an_outline():
+def test_a_barely_positive_radius_is_a_valid_outline():
     lowest = irregular(10, 20)
     depth = lowest.radius - lowest.smallest_radius
     assert Contour(depth * (1.0 + 1e-9), lowest.descriptors, lowest.phases).smallest_radius > 0.0
@@ -179,7 +179,7 @@ def test_equal_outlines_are_equal_and_can_be_keys():
     assert len({Contour(1.0, np.array([0.1]), np.array([0.2])), Contour(1.0, (0.1,), (0.2,)), Contour(1.0)}) == 2
 
 
-def test_an_ellipse_resists_a_push_least_where_its_normal_passes_farthest_from_its_middle():
+def test_the_largest_lever_of_an_ellipses_normal():
     """By a − b, the largest distance of a normal of an ellipse from its centre."""
     a, b = 2.0, 0.5
     spread = (a**2 + b**2) / (2.0 * a * b)
@@ -197,7 +197,7 @@ def test_a_star_is_convex_up_to_a_height_of_its_lobes(lobes):
 
 
 @pytest.mark.parametrize(("n", "depth"), [(5, 0.2), (50, 0.0133)])
-def test_the_sharpest_dent_of_a_wave_is_at_its_deepest(n, depth):
+def test_the_sharpest_concavity_of_a_wave_is_at_its_deepest_point(n, depth):
     wave = Contour(3e-3, [0.0] * (n - 1) + [3e-3 * depth], [0.0] * n)
     assert wave.sharpest_dent == pytest.approx(3e-3 * (1.0 - depth) ** 2 / ((n * n + 1) * depth - 1.0), rel=1e-6)
 

@@ -14,7 +14,7 @@ def scattered(contour, count, random):
     return contour.points(2.0 * np.pi * np.cumsum(step) / step.sum())
 
 
-def test_a_known_outline_is_found_again_and_better_with_more_points():
+def test_a_known_outline_is_recovered_better_with_more_points():
     contour = irregular(11, radius=2e-3).centred(1e-12)
     angle, random, errors = np.linspace(0.0, 2.0 * np.pi, 500), np.random.default_rng(1), []
     for count in (200, 800, 3200):
@@ -24,7 +24,7 @@ def test_a_known_outline_is_found_again_and_better_with_more_points():
     assert errors[0] / errors[1] > 8.0 and errors[1] / errors[2] > 8.0  # second order at least
 
 
-def test_place_sense_and_a_repeated_last_point_do_not_matter():
+def test_position_direction_and_a_repeated_last_point_do_not_matter():
     contour = irregular(12).centred()
     points = scattered(contour, 400, np.random.default_rng(2))
     plain = fit(points, 30)
@@ -50,7 +50,7 @@ def test_the_errors_are_those_at_the_points():
     assert found.largest == pytest.approx(0.003, rel=0.1)
 
 
-def test_a_noisy_outline_is_given_as_many_descriptors_as_a_thousandth_asks_for():
+def test_a_noisy_outline_gets_the_descriptors_for_an_error_of_a_thousandth():
     contour = irregular(15, 12).centred()
     points = scattered(contour, 2000, np.random.default_rng(4))
     found = fit(points)
@@ -90,7 +90,7 @@ EIGHT = np.stack([np.sin(np.linspace(0.0, 6.28, 100)), 0.6 + 0.5 * np.sin(np.lin
         (np.ones((9, 3)), "shape"),
     ],
 )
-def test_what_is_no_outline_is_refused(points, says):
+def test_points_that_form_no_outline_are_refused(points, says):
     with pytest.raises(BadOutline, match=says) as refused:
         fit(points)
     assert str(refused.value).endswith(".")
@@ -113,7 +113,7 @@ def test_points_of_a_file(tmp_path, text):
 @pytest.mark.parametrize(
     "content", [b"", b"y,z\n", b"1,2,3\n4,5,6\n", b"1,2\n3\n", b"1,2\nx,3\n", b"\xff\xfe\x00", b"1;2\n3;4\n"]
 )
-def test_a_file_that_is_none_of_points_is_refused(tmp_path, content):
+def test_a_file_without_points_is_refused(tmp_path, content):
     path = tmp_path / "outline.csv"
     path.write_bytes(content)
     with pytest.raises(BadOutline, match=r"outline\.csv: two numbers"):

@@ -94,14 +94,14 @@ def between_discs(pairs: Pairs) -> tuple[np.ndarray, np.ndarray]:
     return np.concatenate([overlap[:, None], normal, point, unused, pairs.scale], axis=1), apart
 
 
-def test_between_discs_nothing_but_rounding_is_lost():
+def test_contacts_between_discs_are_exact_to_rounding():
     pairs, moved, moves = moved_pairs(3e-3)
     now, _ = Carrying(COUNT).carry(*between_discs(pairs), moves)
     assert now == pytest.approx(between_discs(moved)[0][:, : len(SAID)], abs=1e-12)
 
 
 @pytest.mark.parametrize("outline", OUTLINES[1:], ids=["ellipse", "three lobes"])
-def test_overlaps_are_off_by_the_third_power_of_the_moves(outline):
+def test_errors_of_overlaps_are_of_third_order_in_the_moves(outline):
     """Normals and points have errors of second order."""
     errors = [np.abs(np.subtract(*carried(outline, size)[:2])) for size in (8e-3, 4e-3)]
     orders = [np.log2(np.median(a) / np.median(b)) for a, b in zip(*(error.T for error in errors), strict=True)]
@@ -109,7 +109,7 @@ def test_overlaps_are_off_by_the_third_power_of_the_moves(outline):
     assert all(1.7 < order < 2.3 for order in orders[1:])
 
 
-def test_a_slide_that_is_allowed_costs_so_much_of_an_overlap():
+def test_the_allowed_slide_bounds_the_error_of_the_overlap():
     """Both outlines contribute; the smallest grains are half as large as EGG."""
     now, expected, slid = carried(EGG, 2e-3)
     allowed = slid < 0.5 * slide_of(EGG)

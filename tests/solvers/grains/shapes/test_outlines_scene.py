@@ -115,7 +115,7 @@ def momenta(simulation):
 @pytest.mark.parametrize(
     ("contact", "other"), [("area", rice), ("continuous", rice), *((rule, corn) for rule in CONTACTS)]
 )
-def test_momenta_are_kept_with_friction_and_losses(contact, other):
+def test_momenta_are_conserved_with_friction_and_losses(contact, other):
     simulation = collision(contact, [rice(), other()])
     before, turning = momenta(simulation)
     simulation.advance(1500)
@@ -134,7 +134,7 @@ def energy(simulation):
 
 
 @pytest.mark.slow
-def test_energy_of_a_smooth_collision_is_kept_with_the_square_of_the_step():
+def test_energy_of_a_smooth_collision_converges_with_the_square_of_the_step():
     """Two convex rice grains without friction or losses."""
     errors = []
     for step in (1e-5, 5e-6):
@@ -153,7 +153,7 @@ def test_energy_of_a_smooth_collision_is_kept_with_the_square_of_the_step():
 
 
 @pytest.mark.slow
-def test_a_tip_may_be_pressed_in_farther_than_it_is_round():
+def test_a_tip_may_overlap_by_more_than_its_radius_of_curvature():
     """The tip of one rice grain meets the side of another at 5 m/s each, without friction or losses."""
     outline = rice()
     theta = np.linspace(0.0, 2.0 * np.pi, 2000)
@@ -174,7 +174,7 @@ def test_a_tip_may_be_pressed_in_farther_than_it_is_round():
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["corn", "sunflower"])
 @pytest.mark.parametrize(("contact", "within"), [("continuous", 2e-2), ("area", 2e-3)])
-def test_energy_of_a_bed_of_bent_grains_that_loses_none(contact, within, name):
+def test_energy_of_a_bed_of_concave_grains_without_losses(contact, within, name):
     """It falls 10 diameters and is stirred by that for 0.2 s; contacts of bends come and go all the time.
 
     Mean of four beds: by the continuous rule beds that differ by a last digit gain 0.7 to 1.3 %, such means 0.8 to 1.2.
@@ -224,7 +224,7 @@ def nearest(place, angle):
     ("contact", "floor", "corner"),
     [("continuous", 1e-4, 1e-3), ("nodes", 2e-3, 3e-2)],
 )
-def test_ellipses_on_a_floor_and_on_a_corner_that_juts_in(contact, floor, corner):
+def test_ellipses_on_a_floor_and_on_a_reflex_corner(contact, floor, corner):
     """One reaches √(a² sin² + b² cos²) down from its middle; a corner is as deep in one as its nearest point is far.
 
     The rule of nodes takes the polar depth, which is longer by the outline's slope there, to the second order.
@@ -273,7 +273,7 @@ def test_schedules_agree():
         ("area", 0.0, 1e-4),
     ],
 )
-def test_contacts_that_are_carried_along_are_as_if_looked_at_each_step(contact, speed, within, monkeypatch):
+def test_updated_contacts_agree_with_contacts_found_at_each_step(contact, speed, within, monkeypatch):
     """In a bed at rest and one that is thrown; of nodes the next may come late, and a grain then tips elsewhere.
 
     By so much as 1e-2 of its way, by the bed.
@@ -297,7 +297,7 @@ def test_contacts_that_are_carried_along_are_as_if_looked_at_each_step(contact, 
 
 
 @pytest.mark.slow
-def test_a_state_is_gone_on_with_bit_for_bit():
+def test_a_state_continues_bit_for_bit():
     radius, places = loose(4, 3, 4.2 * RADIUS)
     given = shapes([unit(rice()), unit(star(3, 0.1))], radius.shape[1])
     first, second = (falling(given, places, radius) for _ in range(2))
@@ -327,7 +327,7 @@ def test_a_grain_comes_to_rest_on_two_of_its_lobes():
 
 @pytest.mark.slow
 @pytest.mark.parametrize("nodes", [36, 120])
-def test_a_disc_by_nodes_rolls_as_a_polygon_does_on_slopes_over_pi_by_nodes_alone(nodes):
+def test_a_disc_of_nodes_rolls_only_on_slopes_above_pi_over_the_nodes(nodes):
     """Two discs lie on an edge, on floors that fall from either side, a tenth steeper and flatter than that."""
     steep, flat = 1.1 * np.pi / nodes, 0.9 * np.pi / nodes
     floor = [[-0.2, 0.2 * np.tan(steep)], [0.0, 0.0], [0.2, 0.2 * np.tan(flat)]]
@@ -346,7 +346,7 @@ def test_a_disc_by_nodes_rolls_as_a_polygon_does_on_slopes_over_pi_by_nodes_alon
 
 
 @pytest.mark.slow
-def test_worlds_that_run_together_are_as_alone():
+def test_worlds_run_together_as_they_do_alone():
     radius, places = loose(3, 2, 4.2 * RADIUS, worlds=2)
     given = shapes([unit(rice()), unit(star(3, 0.1))], radius.shape[1], worlds=2)
     sizes = 0.8 * RADIUS, RADIUS

@@ -147,7 +147,7 @@ def deepest_node(inner, outer, count):
     return depth[k] * radius / np.hypot(radius, slope)
 
 
-def test_the_deepest_of_many_nodes_comes_ever_closer():
+def test_the_deepest_node_converges_with_the_number_of_nodes():
     """Within half a step h of the deepest point the depth is less by some h², and the tangent turned by some h."""
     touching = [(pair, contacts[0].overlap) for pair in PAIRS if (contacts := penetrations(*pair))]
     assert len(touching) > 4
@@ -236,7 +236,7 @@ def test_two_stars_that_touch_with_two_lobes_have_two_contacts():
     assert len(penetrations(first, moved(second, 0.02 - 1e-9, 0.0))) == 2
 
 
-def test_a_lobe_in_a_hollow_has_a_contact_on_either_side():
+def test_a_lobe_in_a_concavity_has_a_contact_on_either_side():
     """A disc, a little too wide for the hollow between two lobes, hangs on both."""
     first, second = Placed(star(5, 0.25), 0.0, 0.0, np.pi / 5.0), Placed(Contour(0.75), 1.55, 0.0, 0.0)
     low, high = sorted(penetrations(first, second), key=lambda contact: contact.point[1])
@@ -245,7 +245,7 @@ def test_a_lobe_in_a_hollow_has_a_contact_on_either_side():
     assert high.normal[1] > 0.1 and low.overlap == pytest.approx(high.overlap, abs=1e-13)
 
 
-def test_overlaps_vanish_in_proportion_as_the_outlines_part():
+def test_overlaps_vanish_linearly_as_the_outlines_separate():
     first, second = Placed(ellipse(1.0, 0.5), 0.0, 0.0, 0.7), Placed(ellipse(1.4, 0.6), 1.2, 0.9, -0.3)
 
     def contact_at(shift, rule):
@@ -291,7 +291,7 @@ def test_width_normal_and_point_are_the_gradient_of_the_area(pair):
     assert gradient == pytest.approx(expected, abs=1e-6)
 
 
-def test_needles_across_each_other_share_one_region_that_pushes_nowhere():
+def test_crossed_needles_overlap_in_one_region_without_a_force():
     first, second = Placed(ellipse(2.0, 0.5), 0.0, 0.0, 0.0), Placed(ellipse(2.0, 0.5), 0.0, 0.0, 0.5 * np.pi)
     (shared,) = area_contacts(first, second)
     given = [(2.0, 0.5, np.zeros(2), 0.0), (2.0, 0.5, np.zeros(2), 0.5 * np.pi)]

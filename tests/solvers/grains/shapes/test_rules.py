@@ -68,7 +68,7 @@ def test_tables_follow_the_outline_of_every_cargo(name):
     assert np.abs((radii * powers).sum(axis=1) - outline.polar(angle_of(place, count))).max() < 1.05 * ERROR
 
 
-def test_an_outline_that_no_table_can_follow_is_refused():
+def test_an_outline_that_no_table_can_resolve_is_refused():
     with pytest.raises(BadOutline, match="sharply"):
         cells_for([Contour(1.0, [0.0] * 199 + [0.5], [0.0] * 200)])
 
@@ -93,7 +93,7 @@ def by_all_nodes(first, second):
     return np.array([overlap, normal.real, normal.imag, point.real, point.imag])
 
 
-def test_few_nodes_are_looked_at_but_the_deepest_is_found(asked, pairs):
+def test_few_nodes_are_evaluated_but_the_deepest_is_found(asked, pairs):
     expected = np.array([by_all_nodes(*pairs.placed(OUTLINES, k)) for k in range(SOME)])
     found = asked.by_nodes(pairs)[:SOME]
     assert 100 < (expected[:, 0] > 0.0).sum() < SOME
@@ -110,7 +110,7 @@ def least_gap(inner, outer):
     return np.abs(node[:, None] - outer.place(2.0 * np.pi / 2000 * np.arange(2000))).min()
 
 
-def test_where_no_node_lies_inside_no_gap_is_smaller_than_what_is_said(asked):
+def test_without_overlap_no_gap_is_smaller_than_the_reported_bound(asked):
     open_pairs = random_pairs(OUTLINES, COUNT, 6, (0.0, 0.03))
     said = -asked.by_nodes(open_pairs)[:SOME, 0]
     shut = np.flatnonzero(said > 0.0)
@@ -121,7 +121,7 @@ def test_where_no_node_lies_inside_no_gap_is_smaller_than_what_is_said(asked):
     assert np.median(said[shut] / gaps) > 0.3  # else it would be of no use
 
 
-def test_the_deepest_nodes_are_followed_as_grains_slide_and_turn(asked):
+def test_the_deepest_nodes_are_tracked_as_grains_slide_and_turn(asked):
     """Of convex grains, for as long as the rule does before it looks at all nodes; then few have been lost."""
     convex = [k for k, outline in enumerate(OUTLINES) if outline.convex]
     pairs = random_pairs([OUTLINES[k] for k in convex], COUNT, 1, (-0.01, 0.0))
@@ -301,7 +301,7 @@ def test_the_smooth_rule_and_the_discrete_one_differ_by_the_overlap_squared(aske
 PATHS = 20
 
 
-def test_energy_less_that_of_saddles_has_no_jumps(asked):
+def test_energy_minus_that_of_saddles_is_continuous(asked):
     """Grains that overlap turn past each other: bends make contacts come and go, Hertz's energy U = ξ^(5/2)."""
     random = np.random.default_rng(8)
     angle = np.linspace(0.0, 0.5, COUNT // PATHS)
