@@ -64,7 +64,7 @@ def test_without_a_command_the_help_is_shown():
     assert shown.exit_code == 2 and "Commands:" in shown.output and "Traceback" not in shown.output
 
 
-def test_run_passes_everything_on(runner):
+def test_run_passes_on_all_options(runner):
     done = call("run", "tilting/quick", "--set", "grains.diameter=4 mm", "--set", "run.repeats=12",
                 "--set", 'motion.tilt.centre=["0 mm", "5 mm"]', "--set", "motion.tilt.reverse=true",
                 "--set", "title=4 = four", "--out", "there", "--no-video")  # fmt: skip
@@ -81,12 +81,12 @@ def test_run_passes_everything_on(runner):
     assert runner == [expected]
 
 
-def test_repeats_and_arch_are_short_for_keys_and_go_over_them(runner):
+def test_repeats_and_arch_override_their_keys(runner):
     assert call("run", "tilting/quick", "--set", "run.repeats=3", "--repeats", "12", "--arch", "cpu").exit_code == 0
     assert runner[0][0][1] == {"run.repeats": 12, "run.arch": "cpu"}
 
 
-def test_sweep_passes_the_texts_of_the_values_on(monkeypatch):
+def test_sweep_passes_on_the_texts_of_the_values(monkeypatch):
     result = SimpleNamespace(summary_text="4 points", folder=Path("there"))
     calls = stand_in(monkeypatch, "lab.sweeps.sweep", "run_sweep", result)
     done = call("sweep", "shaking/sway", "--set", "motion.sway.frequency=0.2:1.5:14 Hz", "--set", "run.seed=1,2",
@@ -97,14 +97,14 @@ def test_sweep_passes_the_texts_of_the_values_on(monkeypatch):
     assert calls == [(("shaking/sway", axes, {"run.repeats": 4}, Path("there")), options)]
 
 
-def test_resume_passes_the_folder_on(monkeypatch):
+def test_resume_passes_on_the_folder(monkeypatch):
     result = SimpleNamespace(summary_text="12.3 deg", folder=Path("there"))
     calls = stand_in(monkeypatch, "lab.sweeps.resume", "resume_any", result)
     assert call("resume", "there", "--no-video", "--quiet").stdout == "there\n"
     assert calls == [((Path("there"),), {"video": False, "quiet": True})]
 
 
-def test_quiet_says_only_where(runner):
+def test_quiet_prints_only_the_folder(runner):
     assert call("run", "tilting/quick", "--quiet").stdout == "renders/tilting/quick\n"
     assert runner == [(("tilting/quick", {}, None), {"video": True, "quiet": True})]
 
@@ -142,7 +142,7 @@ def test_values_are_toml_or_text(value, read):
         ["render", "x", "--width", "wide"],
     ],
 )
-def test_bad_input_is_one_sentence_and_exit_code_2(arguments, monkeypatch):
+def test_bad_input_gives_one_sentence_and_exit_code_2(arguments, monkeypatch):
     runs = stand_in(monkeypatch, "lab.runs.runner", "run_preset", None)
     stand_in(monkeypatch, "lab.report.explain", "explain", "")
     result = call(*arguments)
@@ -162,7 +162,7 @@ def test_bad_input_is_one_sentence_and_exit_code_2(arguments, monkeypatch):
         ["resume", "nowhere"],
     ],
 )
-def test_bad_sweeps_and_folders_are_one_sentence_too(arguments):
+def test_bad_sweeps_and_folders_give_one_sentence(arguments):
     result = call(*arguments)
     assert result.exit_code == 2 and isinstance(result.exception, SystemExit)
     assert result.stderr.startswith("cargolab: ") and result.stderr.count("\n") == 1
@@ -185,7 +185,7 @@ def test_bad_sweeps_and_folders_are_one_sentence_too(arguments):
         (MemoryError(), 2, "there is not enough memory for this: ask for fewer grains or repeats, or free some."),
     ],
 )  # fmt: skip
-def test_what_goes_wrong_underway(error, code, sentence, monkeypatch):
+def test_errors_during_a_run_have_their_exit_codes(error, code, sentence, monkeypatch):
     stand_in(monkeypatch, "lab.runs.runner", "run_preset", error)
     result = call("run", "tilting/quick")
     assert result.exit_code == code
@@ -197,7 +197,7 @@ def test_a_bug_is_not_hidden(monkeypatch):
     assert isinstance(call("run", "tilting/quick").exception, ZeroDivisionError)
 
 
-def test_render_passes_what_is_asked(monkeypatch):
+def test_render_passes_on_all_options(monkeypatch):
     calls = stand_in(monkeypatch, "lab.paint.video", "render_recording", Path("out.mp4"))
     done = call("render", "there", "--out", "out.mp4", "--colour", "layer", "--frame", "earth",
                 "--width", "640", "--height", "360", "--world", "2")  # fmt: skip

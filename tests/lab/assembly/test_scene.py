@@ -52,7 +52,7 @@ def csv(folder, *rows: str, header: str = "y,z,radius,vy,vz,omega") -> dict:
     ],
     ids=["uniform", "normal", "wide normal", "table", "spread table"],
 )
-def test_the_scene_knows_the_range_of_its_sizes(keys, diameter, low, high):
+def test_the_scene_has_the_range_of_its_sizes(keys, diameter, low, high):
     preset = resolved(grains=keys)
     scene, position = build(preset)
     assert preset.grains.diameter == pytest.approx(diameter)
@@ -62,7 +62,7 @@ def test_the_scene_knows_the_range_of_its_sizes(keys, diameter, low, high):
     assert not np.array_equal(scene.radius[0], scene.radius[1])
 
 
-def test_a_level_of_accuracy_sets_stiffness_and_step_where_the_preset_does_not():
+def test_the_accuracy_sets_stiffness_and_step_unless_the_preset_does():
     found = {
         (level, scale): build(resolved(run={"accuracy": level}, contact={"stiffness_scale": scale} if scale else {}))[0]
         for level in LEVELS
@@ -87,7 +87,7 @@ def test_the_shares_of_a_table_add_up_to_one_and_may_be_any_numbers():
 
 
 @pytest.mark.parametrize("surface", ["undisturbed", "slightly-disturbed", "disturbed"])
-def test_a_surface_leaves_count_and_sizes_as_they_are(surface):
+def test_the_surface_does_not_change_count_and_sizes(surface):
     plain, _ = build(resolved())
     scene, position = build(resolved(grains={"surface": surface}))
     np.testing.assert_array_equal(scene.radius, plain.radius)
@@ -96,7 +96,7 @@ def test_a_surface_leaves_count_and_sizes_as_they_are(surface):
     assert not np.array_equal(position[0], position[1])
 
 
-def test_a_tank_without_lid_is_open_at_its_top_and_may_be_full():
+def test_a_tank_without_lid_is_open_at_its_top_and_may_be_filled_to_it():
     preset = resolved(tank={"lid": False}, grains={"depth": "30 mm"})
     assert preset.tank.open_edges == (2,)
     scene, position = build(preset)
@@ -108,7 +108,7 @@ def test_a_tank_without_lid_is_open_at_its_top_and_may_be_full():
     assert np.abs(position[..., 0]).max() < 0.015
 
 
-def test_a_closed_tank_is_filled_as_it_is_if_there_is_room():
+def test_a_closed_tank_is_filled_directly_if_there_is_room():
     preset = resolved()
     np.testing.assert_array_equal(filling_outline(preset), np.array(preset.tank.outline))
     nearly_full = resolved(grains={"depth": "27 mm"})
@@ -132,7 +132,7 @@ def test_a_rough_tank_is_lined_with_the_same_grains_in_all_repeats():
     assert not np.array_equal(other[: len(scene.fixed)], scene.fixed[: len(other)])
 
 
-def test_listed_grains_start_where_and_as_the_file_says(tmp_path):
+def test_listed_grains_start_as_given_in_the_file(tmp_path):
     rows = ["-0.005,0.01,0.0015,0.3,0,2", "0.005,0.01,0.001,0,-0.4,0"]
     preset = resolved(grains=csv(tmp_path, *rows), run={"settle": False, "repeats": 3})
     (tmp_path / "bed.csv").unlink()
@@ -170,12 +170,12 @@ def test_listed_grains_may_settle_and_lie_against_each_other_and_the_walls(tmp_p
         (["0,0.01,0.001", "0,0.011,0.0001"], "grains.bed: the grains in rows 1 and 2 overlap."),
     ],
 )
-def test_what_a_file_of_grains_must_not_say(rows, sentence, tmp_path):
+def test_invalid_files_of_grains_are_refused(rows, sentence, tmp_path):
     header = "y,z,radius,vy,vz,omega" if rows[0].count(",") > 2 else "y,z,radius"
     assert fault(grains=csv(tmp_path, *rows, header=header)).startswith(sentence)
 
 
-def test_a_region_is_filled_and_the_walls_stay_as_they_are():
+def test_a_region_is_filled_without_changing_the_walls():
     preset = load(
         "tilting/quick", {**REGION, "grains.count": 3, "grains.diameter": "1.5 mm", "tank.lid": False}
     ).resolved
@@ -195,13 +195,13 @@ def test_a_region_is_filled_and_the_walls_stay_as_they_are():
         ({"count": 5}, "grains.count: 5 grains of up to 3.2"),
     ],
 )
-def test_faults_of_a_region(keys, sentence):
+def test_errors_of_a_region(keys, sentence):
     with pytest.raises(LabError) as caught:
         build(load("tilting/quick", {**REGION, "grains": keys}).resolved)
     assert str(caught.value).startswith(sentence) and "\n" not in str(caught.value)
 
 
-def test_files_of_grains_that_cannot_be_used(tmp_path, monkeypatch):
+def test_unusable_files_of_grains_are_refused(tmp_path, monkeypatch):
     assert fault(grains={"bed": str(tmp_path / "absent.csv")}).startswith("grains.bed: ")
     monkeypatch.setattr(bed_file, "MOST", 10)
     many = (f"{x},0.01,1e-9" for x in np.linspace(-0.01, 0.01, 11))
@@ -231,7 +231,7 @@ def test_files_of_grains_that_cannot_be_used(tmp_path, monkeypatch):
         ({"tank": {"roughness": "1 um"}}, "tank.roughness: more than 20000 grains of 1 µm go around."),
     ],
 )  # fmt: skip
-def test_faults_name_the_key(sections, sentence):
+def test_errors_name_the_key(sections, sentence):
     if "outline" in sections.get("tank", {}):
         with pytest.raises(LabError) as caught:
             load("tilting/quick", {**sections, "grains": {"depth": "12 mm"}})
@@ -244,7 +244,7 @@ SPEEDS, YOUNGS = (0.1, 1.0, 10.0, 30.0, 100.0), (100.0, 1e3, 1e5, 1e7, 1e9, 1e11
 
 
 @pytest.mark.parametrize("level", LEVELS)
-def test_what_is_built_the_watch_lets_run(level):
+def test_the_watch_accepts_every_scene_that_is_built(level):
     """Two grains that meet, of any speed and stiffness: refused in one sentence, or run through their impact."""
     built, refused = [], {}
     for case in product(SPEEDS, YOUNGS):

@@ -138,7 +138,7 @@ def test_a_bed_that_flows_from_the_start_has_no_onset():
     assert find_steps(tilt, np.minimum(tilt, 15.0)) == []
 
 
-def test_steps_close_together_are_one_and_apart_are_two():
+def test_close_steps_are_merged_and_distant_ones_are_not():
     tilt = np.linspace(0, 40, 4001)
     assert len(find_steps(tilt, give_of(tilt, [(20.0, 3.0), (20.5, 3.0)]))) == 1
     assert len(find_steps(tilt, give_of(tilt, [(20.0, 3.0), (22.0, 3.0)]))) == 2
@@ -172,7 +172,7 @@ def test_a_tilt_to_starboard_gives_the_same_angles(tmp_path):
     assert port["final_shift_y"].value < 0 < starboard["final_shift_y"].value
 
 
-def test_only_the_way_out_counts(tmp_path):
+def test_only_the_increasing_tilt_counts(tmp_path):
     out = np.linspace(0, 30, 1501)
     tilt = np.concatenate([out, np.full(200, 30.0), out[::-1]])
     still = give_of(out, [])
@@ -185,7 +185,7 @@ def test_only_the_way_out_counts(tmp_path):
     assert values["main_steps"].value == 1
 
 
-def test_worlds_are_averaged_and_one_that_does_not_flow_is_named(tmp_path):
+def test_worlds_are_averaged_and_one_without_flow_is_named(tmp_path):
     tilt = np.linspace(0, 40, 2001)
     gives = [give_of(tilt, [(20.0, 5.0)]), give_of(tilt, []), give_of(tilt, [(24.0, 5.0)])]
     angle = tilted(tmp_path, gives)["critical_angle"]
@@ -234,7 +234,7 @@ def test_the_slope_of_a_strewn_bed_is_found_within_its_error(slope):
     assert angle == pytest.approx(np.radians(slope), abs=3 * error)
 
 
-def test_a_bare_floor_and_the_walls_are_no_surface():
+def test_a_bare_floor_and_the_walls_do_not_count_as_surface():
     radius = np.full(2000, DIAMETER / 2)
     outline = np.array([(-WIDTH / 2, 0), (WIDTH / 2, 0), (WIDTH / 2, 0.2), (-WIDTH / 2, 0.2)])
     y, z = free_surface(bed(-45.0), radius, outline)
@@ -279,7 +279,7 @@ def waves(time, frequency, amplitude, phase):
     return amplitude * np.sin(2 * np.pi * frequency * time + np.radians(phase))
 
 
-def test_amplitude_and_phase_of_a_steady_answer(tmp_path):
+def test_amplitude_and_phase_of_a_steady_response(tmp_path):
     time = np.linspace(0, 12, 1201)
     transient = 0.02 * np.exp(-time)
     y = waves(time, 1.5, 0.003, 170.0) + 0.0005 * time + transient
@@ -302,7 +302,7 @@ def test_phases_on_both_sides_of_zero_are_averaged_on_the_circle(tmp_path):
     assert phase.std == pytest.approx(12.17, abs=0.1)
 
 
-def test_an_unsteady_answer_shows_in_the_error(tmp_path):
+def test_an_unsteady_response_increases_the_error(tmp_path):
     time = np.linspace(0, 8, 801)
     y = (waves(time, 1.5, 0.003, 180.0) * (1 + 0.1 * time))[:, None]
     steady = shaken(tmp_path, y, np.zeros_like(y), SWAY, time)["response_amplitude"]
@@ -329,7 +329,7 @@ def test_a_bed_that_follows_the_tank_has_no_phase(tmp_path):
     assert values["response_phase"].note == "the bed follows the tank"
 
 
-def test_a_run_too_short_has_no_steady_answer(tmp_path):
+def test_a_run_too_short_has_no_steady_response(tmp_path):
     time = np.linspace(0, 2, 201)
     y = waves(time, 1.5, 0.003, 180.0)[:, None]
     values = shaken(tmp_path, y, np.zeros_like(y), SWAY, time, soft_start=1.0)
@@ -340,7 +340,7 @@ def test_a_run_too_short_has_no_steady_answer(tmp_path):
 @pytest.mark.parametrize(
     ("duration", "begin", "periods"), [(10.0, 0.0, 4), (10.0, 5.0, 2), (2.0, 0.0, 2), (40.0, 0.0, 20)]
 )
-def test_the_steady_window_has_whole_periods_in_even_number(duration, begin, periods):
+def test_the_steady_window_has_an_even_number_of_periods(duration, begin, periods):
     time = np.arange(0, duration + 1e-9, 0.01)
     window = steady_window(time, begin, 1.0)
     assert len(time[window]) == pytest.approx(100 * periods, abs=1)
@@ -367,7 +367,7 @@ def test_shift_and_energy(tmp_path):
     assert values["final_kinetic_energy"].worlds == pytest.approx((1.0, 3.0))
 
 
-def test_what_does_not_apply_is_not_measured(tmp_path):
+def test_measures_that_do_not_apply_are_absent(tmp_path):
     time = np.linspace(0, 8, 801)
     still = np.zeros((801, 1))
     names = shaken(tmp_path / "a", still, still, SWAY, time).keys()
@@ -471,7 +471,7 @@ WEIGHED = {"material": {"density": 1000.0}, "run": {"gravity": 9.81}}
 
 
 @pytest.mark.parametrize("angle", [0.0, 0.4])
-def test_a_bed_at_rest_weighs_its_weight_in_any_tank(tmp_path, angle):
+def test_the_load_of_a_bed_at_rest_is_its_weight_in_any_tank(tmp_path, angle):
     pose = np.tile([0.0, 0.0, angle], (101, 1, 1))
     weight = MASS * 9.81
     force = np.tile([-weight * np.sin(angle), -weight * np.cos(angle), 1e-6], (101, 1, 1))
@@ -484,7 +484,7 @@ def test_a_bed_at_rest_weighs_its_weight_in_any_tank(tmp_path, angle):
 
 
 @pytest.mark.parametrize(("name", "along", "axis"), [("sway", 0, 0), ("heave", 1, 1), ("roll", 2, 2)])
-def test_what_a_ship_feels_is_parted_into_mass_and_damping(tmp_path, name, along, axis):
+def test_the_load_on_a_ship_is_separated_into_mass_and_damping(tmp_path, name, along, axis):
     frequency, amplitude, share, damping = 1.5, 0.04, 0.7, 0.02
     inertia = share * MASS
     time, omega = np.linspace(0, 12, 241), 2 * np.pi * frequency  # 13 samples a period
@@ -622,7 +622,7 @@ def test_the_top_is_that_of_the_highest_grain(tmp_path):
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
-def test_what_remains_of_the_shift_when_the_tank_is_upright_again(tmp_path, sign):
+def test_the_remaining_shift_is_measured_when_the_tank_is_upright_again(tmp_path, sign):
     out = np.linspace(0, 40, 801)
     tilt = np.concatenate([out, np.full(50, 40.0), out[::-1], -out[:401]])  # and on to the other side
     give = np.concatenate([0.5 * out, np.full(50, 20.0), 15.0 + 5 * out[::-1] / 40, 15.0 - out[:401] / 2])
@@ -640,7 +640,7 @@ def test_a_tilt_that_does_not_come_back_has_no_hysteresis(tmp_path):
     assert "kept_shift" not in tilted(tmp_path, [0.5 * tilt], tilt)
 
 
-def test_grains_beside_an_open_tank_are_no_surface():
+def test_grains_beside_an_open_tank_do_not_count_as_surface():
     radius = np.full(2000, DIAMETER / 2)
     outline = box(height=0.2)
     grains = bed(10.0)

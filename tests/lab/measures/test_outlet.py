@@ -56,14 +56,14 @@ def test_the_angles_of_a_heap_are_found_within_their_errors(tmp_path, port, star
     assert values["heap_height"].value == pytest.approx(0.93 * 0.12 / D, abs=1.0)
 
 
-def test_what_is_still_in_a_funnel_that_rises_is_no_heap(tmp_path):
+def test_grains_in_a_rising_funnel_do_not_count_as_heap(tmp_path):
     heap = heaped(21.0, 21.0)
     full = np.concatenate([heap, np.random.default_rng(2).uniform((-0.01, 0.21), (0.01, 0.4), (500, 2))])
     found = [measured(tmp_path / name, [0.0], [bed], rise=0.005) for name, bed in (("a", heap), ("b", full))]
     assert found[0]["heap_angle"].value == found[1]["heap_angle"].value
 
 
-def test_a_few_grains_on_the_base_are_no_heap(tmp_path):
+def test_a_few_grains_on_the_base_do_not_count_as_heap(tmp_path):
     values = measured(tmp_path, [0.0], [heaped(20.0, 20.0, height=4 * D)])
     assert values["heap_angle"].value is None and values["heap_angle"].note == "no heap"
 

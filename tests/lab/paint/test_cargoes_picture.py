@@ -27,7 +27,7 @@ def cells(path):
     return [whole[top : top + high, left : left + wide] for top, left in corners]
 
 
-def test_each_is_in_its_own_colour_and_as_large_whatever_its_size(tmp_path):
+def test_each_bed_has_its_colour_and_the_same_size_in_the_picture(tmp_path):
     beds = {"corn": bed(tmp_path / "a", 1.0), "beans": bed(tmp_path / "b", 0.05), "husks": bed(tmp_path / "c", 1.0)}
     found = cells(paint_cargoes(beds, tmp_path / "picture.png"))
     assert len(found) == 2 * COLUMNS
@@ -39,7 +39,7 @@ def test_each_is_in_its_own_colour_and_as_large_whatever_its_size(tmp_path):
     assert np.all(found[3] == found[3][0, 0])  # nothing where there is no fourth
 
 
-def test_the_gallery_has_it_of_the_cargoes_that_were_run(tmp_path, monkeypatch):
+def test_the_gallery_shows_the_cargoes_that_were_run(tmp_path, monkeypatch):
     monkeypatch.setattr(gallery, "_show", lambda name, out, beds: bed(out / "runs" / name, 1.0))
     text = make_gallery(["shapes/wheat"], tmp_path, quiet=True).read_text()
     assert 'src="cargoes.png"' in text

@@ -55,7 +55,7 @@ def test_touching_discs_do_not_hide_each_other():
     assert area(pair) == pytest.approx(2 * np.pi * 64, rel=5e-3)
 
 
-def test_where_discs_overlap_the_first_is_seen():
+def test_where_discs_overlap_the_first_is_visible():
     first, second = [40.0, 30.0, 20.0, 1, 0], [44.0, 30.0, 12.0, 0, 1]
     once, both = painted([first], 90.0, 250.0), painted([first, second], 90.0, 250.0)
     np.testing.assert_array_equal(both, once)
@@ -70,7 +70,7 @@ def test_an_outline_covers_its_area_however_it_is_turned(name):
         assert area(painted(disc, edges=edges)) == pytest.approx(np.pi * radius**2, abs=1.0)
 
 
-def test_an_outline_lies_where_its_points_do():
+def test_an_outline_is_painted_at_its_points():
     contour = outline("beans")
     camera, angle, radius = Camera(1000.0, (46.3, 31.1), 0.4), 1.9, 0.016
     disc = to_discs(camera, np.zeros((1, 2)), np.array([radius]), np.array([angle]))
@@ -133,7 +133,7 @@ def test_the_spin_mark_points_where_the_grain_and_the_camera_have_turned():
         assert np.exp(1j * np.arctan2(up, right)) == pytest.approx(np.exp(1j * (angle + turn)), abs=0.02)
 
 
-def test_a_carried_camera_sees_tank_points_where_they_are_in_the_earth_frame():
+def test_a_camera_moved_with_the_tank_shows_its_points_in_the_earth_frame():
     camera, pose = Camera(300.0, (10.0, 20.0)), np.array([0.1, -0.05, 0.7])
     point = np.array([0.03, 0.08])
     cosine, sine = np.cos(0.7), np.sin(0.7)
@@ -203,13 +203,13 @@ def test_a_slanted_hold_has_its_area():
     assert area(picture) == pytest.approx(exact, rel=5e-3)
 
 
-def test_grains_at_no_finite_place_or_off_the_page_are_left_out():
+def test_grains_without_a_finite_position_or_off_the_page_are_left_out():
     discs = [[np.nan, 3, 2, 1, 0], [1e12, 3, 2, 1, 0], [3, -1e12, 2, 1, 0], [np.inf, 3, 2, 1, 0]]
     assert area(painted(discs)) == 0
     assert area(painted(np.empty((0, 5)))) == 0
 
 
-def test_the_bytes_do_not_depend_on_the_threads():
+def test_the_picture_does_not_depend_on_the_number_of_threads():
     random = np.random.default_rng(4)
     count = 3000
     place = random.uniform(-20, 420, (count, 2))

@@ -41,19 +41,19 @@ def changed(folder, key, value):
 
 
 @pytest.mark.parametrize("video", VIDEOS)
-def test_a_video_that_cannot_be_is_refused(sound, unpainted, tmp_path, video, little_memory):  # noqa: F811
+def test_an_impossible_video_is_refused(sound, unpainted, tmp_path, video, little_memory):  # noqa: F811
     folder = changed(copied(sound, tmp_path / "run"), "video", {"width": 320, "height": 180} | video)
     refused(call("render", folder))
 
 
 @pytest.mark.parametrize("value", [3, "x", [1], None])
 @pytest.mark.parametrize("key", ["video", "title", "kinds", "shapes", "ship", "waves", "run", "contact", "motion"])
-def test_odd_parts_of_a_preset_end_in_a_sentence(sound, unpainted, tmp_path, key, value):  # noqa: F811
+def test_invalid_parts_of_a_preset_are_refused_in_one_sentence(sound, unpainted, tmp_path, key, value):  # noqa: F811
     ends_well(call("render", changed(copied(sound, tmp_path / "run"), key, value)))
 
 
 @pytest.mark.parametrize("size", [["--width", "1000000", "--height", "1000000"], ["--width", "9000"]])
-def test_pictures_larger_than_a_preset_may_ask_for_are_refused(sound, tmp_path, size, little_memory):  # noqa: F811
+def test_pictures_larger_than_the_limit_are_refused(sound, tmp_path, size, little_memory):  # noqa: F811
     said = refused(call("render", sound, "--out", tmp_path / "x.mp4", *size))
     assert "7680 x 4320 at most" in said
 
@@ -83,7 +83,7 @@ NUMBERS = {
 
 @pytest.mark.parametrize("name", NUMBERS)
 @pytest.mark.filterwarnings("ignore::RuntimeWarning")
-def test_odd_numbers_of_a_recording_end_in_a_sentence_or_a_picture(sound, unpainted, tmp_path, name, little_memory):  # noqa: F811
+def test_odd_numbers_of_a_recording_give_one_sentence_or_a_picture(sound, unpainted, tmp_path, name, little_memory):  # noqa: F811
     folder = copied(sound, tmp_path / "run")
     where, value = NUMBERS[name]
     with h5py.File(folder / "recording.h5", "r+") as file:

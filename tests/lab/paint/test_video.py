@@ -113,7 +113,7 @@ def test_a_run_folder_gets_its_pictures_and_its_poster(recording):
     np.testing.assert_array_equal(imageio.imread(middle), imageio.imread(made / names[2]))
 
 
-def test_playback_keeps_time():
+def test_playback_keeps_the_requested_speed():
     time = np.arange(0, 4, 0.04)
     assert playback(time, 1.0) == (25.0, 1)
     assert playback(time, 0.5) == (12.5, 1)
@@ -122,7 +122,7 @@ def test_playback_keeps_time():
 
 
 @pytest.mark.parametrize("frame", ["tank", "earth"])
-def test_nothing_moves_outside_the_stage_and_the_column(four_beds, frame):
+def test_only_the_tanks_and_the_readings_change(four_beds, frame):
     first, *others = pictures_of(four_beds, range(6), frame=frame, width=640, height=360)
     changed = np.any([(other != first).any(axis=2) for other in others], axis=0)
     assert changed[:, 20:425].any() and changed[:, 450:620].any()
@@ -191,7 +191,7 @@ def test_the_curves_grow_with_the_film(four_beds):
     assert 0 < drawn[0] < drawn[1] < drawn[2]
 
 
-def test_beds_that_move_apart_share_no_reading_but_the_clock(four_beds, tmp_path):
+def test_beds_with_different_motions_share_only_the_clock(four_beds, tmp_path):
     apart = shutil.copy(four_beds, tmp_path)
     with h5py.File(apart, "r+") as file:
         file["frames/pose"][:, 1] *= 0.5
@@ -211,7 +211,7 @@ def test_a_run_without_frames_or_a_file_cut_short_is_refused_in_one_sentence(tmp
     refused(tmp_path / "nothing", "does not exist")
 
 
-def test_a_run_that_still_goes_on_can_be_filmed(tmp_path):
+def test_a_run_in_progress_can_be_filmed(tmp_path):
     with recorder(tmp_path) as run:
         run.sample(sample(0.0))
         run.frame(frame(0.0, position=np.full((1, 4, 2), 0.02)))
@@ -235,7 +235,7 @@ def test_a_run_that_still_goes_on_can_be_filmed(tmp_path):
         ({"out": "film.gif"}, "a video is an .mp4 file"),
     ],
 )
-def test_an_impossible_wish_is_refused_in_one_sentence(recording, wishes, said):
+def test_impossible_options_are_refused_in_one_sentence(recording, wishes, said):
     refused(recording, said, **wishes)
 
 
@@ -296,7 +296,7 @@ def test_a_spilled_grain_is_painted_below_and_beside_the_tank_until_it_is_gone(t
     assert not (np.ptp(picture, axis=2) > 60)[:, :430].any()
 
 
-def test_a_grain_that_fell_off_the_ground_shown_is_on_no_other_part_of_the_page(tmp_path):
+def test_a_grain_outside_the_shown_part_is_not_painted_elsewhere(tmp_path):
     (picture,) = pictures_of(low_tank(tmp_path, place=(-0.152, 0.05)), [1])
     assert not (np.ptp(picture, axis=2) > 60)[:, :430].any()
     assert (coloured(picture, WALL, 3)[1].max() - coloured(picture, WALL, 3)[1].min()) > 150  # not shrunk to nothing
@@ -337,7 +337,7 @@ def test_a_grid_shows_every_bed_with_its_caption_on_one_scale(four_beds, recordi
         render_grid([*beds, recording], [""] * 25, out)
 
 
-def test_a_bed_of_a_grid_that_ends_sooner_stands_still(recording, tmp_path):
+def test_a_bed_of_a_grid_that_ends_sooner_keeps_its_last_frame(recording, tmp_path):
     longer = make_recording(tmp_path / "longer", frames=11, duration=16.0)
     film = render_grid([recording, longer], ["short", "long"], tmp_path / "grid.mp4")
     frames = [frame.astype(int) for frame in imageio.get_reader(film)]

@@ -59,7 +59,7 @@ def fault(preset, **overrides) -> str:
     return error_of(load, preset, {key.replace("__", "."): value for key, value in overrides.items()})
 
 
-def test_record_is_kept_in_si_with_the_preset(preset):
+def test_the_record_is_stored_in_si_with_the_preset(preset):
     loaded = load(preset)
     kept = loaded.resolved.motion.history
     assert kept.time == pytest.approx(TIME + 7.0, abs=1e-15)
@@ -83,7 +83,7 @@ def test_run_lasts_as_long_as_the_record_unless_given(preset):
     assert load(preset, {"run.duration": "2 s"}).resolved.run.duration == 2.0
 
 
-def test_history_can_be_dropped_and_joined_by_other_motions(preset):
+def test_history_can_be_removed_and_combined_with_other_motions(preset):
     sway = {"amplitude": "1 mm", "frequency": "2 Hz"}
     assert load(preset, {"motion.history": False, "run.duration": "1 s"}).resolved.motion.parts == {}
     both = load(preset, {"motion.sway": sway}).resolved.motion.parts
@@ -111,7 +111,7 @@ def test_a_run_moves_as_recorded_and_its_recording_needs_no_csv(preset, tmp_path
     assert result.measures and (result.folder / "shift.png").exists() and (result.folder / "summary.md").exists()
 
 
-def test_paths_start_where_they_are_written(preset, tmp_path, monkeypatch):
+def test_paths_are_relative_to_their_preset(preset, tmp_path, monkeypatch):
     (tmp_path / "heirs").mkdir()
     heir = tmp_path / "heirs" / "heir.toml"
     heir.write_text('based_on = "../mine.toml"\n[run]\nseed = 2\n')
@@ -145,7 +145,7 @@ def test_paths_start_where_they_are_written(preset, tmp_path, monkeypatch):
         ({"time": TIME, "pitch": SWAY}, 'record.csv, line 1: unknown column "pitch"; known here: time, sway, heave,'),
     ],
 )
-def test_records_that_no_tank_follows(preset, tmp_path, columns, words):
+def test_invalid_records_are_refused(preset, tmp_path, columns, words):
     csv(tmp_path, **columns)
     sentence = fault(preset)
     assert sentence.startswith("motion.history.file: ") and words in sentence
@@ -163,11 +163,11 @@ def test_records_that_no_tank_follows(preset, tmp_path, columns, words):
         ({"fil": "x.csv"}, "motion.history.fil: unknown key; did you mean 'file'?"),
     ],
 )
-def test_faults_of_the_section_name_the_key(preset, overrides, sentence):
+def test_errors_of_the_section_name_the_key(preset, overrides, sentence):
     assert fault(preset, **{f"motion__history__{key}": value for key, value in overrides.items()}).startswith(sentence)
 
 
-def test_soft_start_takes_a_record_that_starts_in_motion(preset, tmp_path):
+def test_soft_start_permits_a_record_that_starts_in_motion(preset, tmp_path):
     csv(tmp_path, time=TIME, sway=5 + np.sin(9 * TIME))
     motion = load(preset, {"motion.soft_start": "0.2 s"}).resolved.motion.parts["history.sway"]
     assert motion.rests == (False, False)
@@ -179,7 +179,7 @@ def test_soft_start_takes_a_record_that_starts_in_motion(preset, tmp_path):
     assert load(preset, {"motion.soft_start": "0.2 s", "run.duration": "0.6 s"}).resolved.run.duration == 0.6
 
 
-def test_most_samples(preset, tmp_path, monkeypatch):
+def test_too_many_samples_are_refused(preset, tmp_path, monkeypatch):
     monkeypatch.setattr(history, "MOST_SAMPLES", 60)
     assert "more than 60 rows" in fault(preset)
 
@@ -189,7 +189,7 @@ NUMBERS = st.floats() | st.floats(-1, 1) | st.just(0.0)
 
 @settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
 @given(st.lists(st.tuples(NUMBERS, NUMBERS), min_size=1, max_size=8), st.booleans(), st.sampled_from(["0 s", "1 s"]))
-def test_any_record_gives_a_preset_or_a_sentence(preset, rows, rising, soft):
+def test_any_record_gives_a_preset_or_one_sentence(preset, rows, rising, soft):
     columns = np.array(sorted(rows) if rising else rows).T
     csv(preset.parent, time=columns[0], sway=columns[1])
     try:

@@ -85,7 +85,7 @@ SWEEPS = {
 
 
 @pytest.mark.parametrize("name", [*SWEEPS, "deep"])
-def test_a_sweep_that_is_up_to_mischief_is_refused(tmp_path, name, little_memory):  # noqa: F811
+def test_a_manipulated_sweep_is_refused(tmp_path, name, little_memory):  # noqa: F811
     grid.define_sweep("tilting/quick", {"run.seed": "1, 2"}, SMALL).write(tmp_path)
     content = json.loads((tmp_path / "sweep.json").read_text()) | SWEEPS.get(name, {})
     text = "[" * 10**5 if name == "deep" else json.dumps(content)

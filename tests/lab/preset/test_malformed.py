@@ -274,14 +274,14 @@ def write(folder: Path, table: dict) -> Path:
     return path
 
 
-def test_the_presets_to_be_mangled_are_in_order(folder, sound):
+def test_the_presets_to_be_mangled_are_valid(folder, sound):
     for text in dict.fromkeys(sound):
         load(write(folder, tomllib.loads(text)))
     assert tried(write(folder, tomllib.loads(RICH))) and tried(write(folder, tomllib.loads(LISTED)))
 
 
 @often
-def test_a_mangled_preset_is_refused_in_a_sentence_or_can_be_built(folder, sound, times):
+def test_a_mangled_preset_is_refused_in_one_sentence_or_can_be_built(folder, sound, times):
     passed = []
 
     @examples(300 * times)
@@ -294,7 +294,7 @@ def test_a_mangled_preset_is_refused_in_a_sentence_or_can_be_built(folder, sound
 
 
 @often
-def test_mangled_overrides_are_refused_in_a_sentence_or_can_be_built(folder, times):
+def test_mangled_overrides_are_refused_in_one_sentence_or_can_be_built(folder, times):
     (folder / "rich.toml").write_text(RICH)
 
     @examples(300 * times)
@@ -306,7 +306,7 @@ def test_mangled_overrides_are_refused_in_a_sentence_or_can_be_built(folder, tim
 
 
 @often
-def test_damaged_bytes_of_a_preset_are_refused_in_a_sentence_or_can_be_built(folder, sound, times):
+def test_damaged_bytes_of_a_preset_are_refused_in_one_sentence_or_can_be_built(folder, sound, times):
     @examples(300 * times)
     @given(st.sampled_from(sound), st.data())
     def check(text, data):
@@ -326,7 +326,7 @@ def damaged(draw, content: bytes) -> bytes:
 
 @often
 @pytest.mark.parametrize(("name", "text"), [("grains.csv", LISTED), ("record.csv", RICH)])
-def test_damaged_tables_are_refused_in_a_sentence_or_can_be_built(folder, name, text, times, tmp_path):
+def test_damaged_tables_are_refused_in_one_sentence_or_can_be_built(folder, name, text, times, tmp_path):
     (tmp_path / "preset.toml").write_text(text)
 
     @examples(250 * times)
@@ -510,7 +510,7 @@ VALUES = st.sampled_from(["", "{}", "[]", "null", "nan", "é", 0, -1, 1e300, flo
 
 
 @often
-def test_recordings_of_other_contents_are_refused(idle, unpainted, recorded, tmp_path, times):
+def test_recordings_with_other_contents_are_refused(idle, unpainted, recorded, tmp_path, times):
     @examples(60 * times)
     @given(st.sampled_from(members(recorded / "recording.h5")), st.none() | VALUES)
     def check(name, value):
@@ -544,7 +544,7 @@ def test_damaged_checkpoints_are_refused(recorded, tmp_path, times):
 
 @pytest.mark.parametrize("about", ["", "[]", "null", "{}", "7", '{"format": "cargo-shift-lab checkpoint 1"}',
     '{"format": "cargo-shift-lab checkpoint 1", "runs": 3, "rows": [1], "warnings": null}'])  # fmt: skip
-def test_a_checkpoint_that_does_not_say_what_it_is_is_refused(idle, recorded, tmp_path, about):
+def test_a_checkpoint_without_its_format_is_refused(idle, recorded, tmp_path, about):
     folder = copied(recorded, tmp_path / "run")
     np.savez(folder / "checkpoint.npz", about=np.array(about))
     assert "checkpoint.npz" in refused(call("resume", folder))
@@ -608,7 +608,7 @@ def test_damaged_sweeps_are_refused(idle, tmp_path, times):
         (b"based_on = 'heir.toml'", "the preset ends up based on itself"),
     ],
 )
-def test_presets_that_are_none(tmp_path, content, words):
+def test_invalid_presets_are_refused(tmp_path, content, words):
     (tmp_path / "cyclic.toml").write_bytes(content)
     (tmp_path / "heir.toml").write_text("based_on = 'cyclic.toml'")
     (tmp_path / "record.csv").write_text(TABLES["record.csv"])
@@ -617,12 +617,12 @@ def test_presets_that_are_none(tmp_path, content, words):
 
 @pytest.mark.parametrize("mark", [b"", b"\xef\xbb\xbf"])
 @pytest.mark.parametrize("end", [b"\n", b"\r\n"])
-def test_a_preset_may_have_a_byte_order_mark_and_either_end_of_line(folder, mark, end):
+def test_a_preset_may_have_a_byte_order_mark_and_any_line_ends(folder, mark, end):
     (folder / "ends.toml").write_bytes(mark + RICH.replace("\n", end.decode()).encode())
     assert tried(folder / "ends.toml")
 
 
-def test_a_folder_a_pipe_and_a_file_that_may_not_be_read_are_no_presets(tmp_path, monkeypatch):
+def test_a_folder_a_pipe_and_an_unreadable_file_are_refused_as_presets(tmp_path, monkeypatch):
     (tmp_path / "folder.toml").mkdir()
     assert "folder.toml: is not a file." in refused(call("run", tmp_path / "folder.toml"))
     if hasattr(os, "mkfifo"):  # nobody ever writes into it
@@ -666,7 +666,7 @@ def denied(path, *_, **__):
         (".".join("a" * 3000) + "=1", "a: unknown key"),
     ],
 )
-def test_settings_that_cannot_be(folder, setting, words):
+def test_invalid_settings_are_refused(folder, setting, words):
     (folder / "rich.toml").write_text(RICH)
     assert words in refused(call("run", folder / "rich.toml", "--set", setting))
 
@@ -684,5 +684,5 @@ def test_settings_that_cannot_be(folder, setting, words):
         ("nul\0.toml", "nul?.toml: is not a file name"),
     ],
 )
-def test_names_of_no_preset(name, words):
+def test_unknown_preset_names_are_refused(name, words):
     assert words in refused(call("run", "--", name))

@@ -105,13 +105,13 @@ def put(table: dict, key: str, value: object) -> dict:
 
 @pytest.mark.parametrize("count", [FEW, pytest.param(MANY, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("key", NUMERIC)
-def test_any_magnitude_is_refused_in_a_sentence_or_can_be_built(bases, key, count):
+def test_any_magnitude_is_refused_in_one_sentence_or_can_be_built(bases, key, count):
     base, random = bases.get(key.partition(".")[0], bases[""]), np.random.default_rng([count, *key.encode()])
     for value in magnitudes(NUMERIC[key], random, count):
         tried(write(bases["folder"], put(base, key, value)))
 
 
-def test_the_bases_are_in_order(bases):
+def test_the_bases_are_valid(bases):
     for part in {*(key.partition(".")[0] for key in NUMERIC)} & bases.keys():
         assert tried(write(bases["folder"], bases[part])), part
 
@@ -130,7 +130,7 @@ def test_the_bases_are_in_order(bases):
         ({"water.depth": "1e9 m"}, r"water\.depth: must be at most 20 km"),
     ],
 )
-def test_what_no_ship_has_names_the_key_that_says_it(overrides, said):
+def test_impossible_values_of_a_ship_name_their_key(overrides, said):
     with pytest.raises(LabError, match=said) as refused:
         build(load("ship/barge-roll-quick", overrides).resolved)
     assert_sentence(str(refused.value))
@@ -158,14 +158,14 @@ def small_machine(monkeypatch):
     ],
 )
 @pytest.mark.parametrize("ask", [lambda loaded: build(loaded.resolved), explain])
-def test_more_beds_than_the_memory_holds_are_refused_at_once(small_machine, ask, overrides, said):
+def test_more_beds_than_fit_into_memory_are_refused_at_once(small_machine, ask, overrides, said):
     loaded = load("tilting/quick", {"grains.depth": False, "grains.count": 990, "tank.width": "300 mm"} | overrides)
     with pytest.raises(LabError) as refused:
         ask(loaded)
     assert str(refused.value) == said
 
 
-def test_as_many_beds_as_are_said_to_fit_are_explained_without_being_made(small_machine, monkeypatch):
+def test_the_number_of_beds_that_fit_is_accepted(small_machine, monkeypatch):
     overrides = {"grains.depth": False, "grains.count": 90, "run.repeats": 2500, "run.arch": "cpu"}
     made = []
     monkeypatch.setattr("lab.report.explain.build", lambda preset: made.append(preset.run.repeats) or build(preset))
@@ -174,7 +174,7 @@ def test_as_many_beds_as_are_said_to_fit_are_explained_without_being_made(small_
     assert "2500, seeds 1 to 2500" in text and "90 in each" in text and "in the first" in text
 
 
-def test_memory_is_that_of_the_machine_or_what_it_is_allowed(tmp_path, monkeypatch):
+def test_memory_is_that_of_the_machine_or_its_limit(tmp_path, monkeypatch):
     whole = memory.machine_memory()
     assert 2**28 < whole < 2**50
     monkeypatch.setattr(memory, "GROUP", tmp_path / "memory.max")

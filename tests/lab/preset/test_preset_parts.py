@@ -44,7 +44,7 @@ def fault(preset, key, value) -> str:
     return error_of(load, preset, {key: value})
 
 
-def test_parts_come_in_their_order_in_si(preset):
+def test_parts_are_in_order_and_in_si(preset):
     parts = load(preset).resolved.parts
     assert list(parts) == ["gate", "funnel-1"]
     assert parts["gate"].parameters() == pytest.approx(GATE.parameters(), rel=1e-14)
@@ -66,7 +66,7 @@ def test_given_text_is_the_same_preset(preset, tmp_path):
     assert again == loaded.resolved and list(again.parts) == ["funnel-1", "step"]
 
 
-def test_parts_are_inherited_changed_and_dropped(preset, tmp_path):
+def test_parts_are_inherited_changed_and_removed(preset, tmp_path):
     heir = tmp_path / "heir.toml"
     heir.write_text('based_on = "mine.toml"\n[parts]\nfunnel-1 = false\n[parts.gate]\nspeed = "2 m/s"\n')
     parts = load(heir, {"parts.gate.start": "0.1 s"}).resolved.parts
@@ -107,7 +107,7 @@ def test_a_preset_without_parts_has_none():
         ("parts", {f"p{k}": {"points": [["0 mm", "0 mm"], ["0 mm", "1 mm"]]} for k in range(60)}, "parts: at most 50"),
     ],
 )
-def test_faults_name_the_part_and_its_key(preset, key, value, sentence):
+def test_errors_name_the_part_and_its_key(preset, key, value, sentence):
     assert fault(preset, key, value).startswith(sentence)
 
 
@@ -125,7 +125,7 @@ TABLES = st.fixed_dictionaries(
 
 @settings(max_examples=80, deadline=None, suppress_health_check=list(HealthCheck))
 @given(st.dictionaries(st.text(max_size=3) | st.just("gate"), TABLES | st.booleans() | st.text(), max_size=2))
-def test_any_parts_give_a_preset_or_a_sentence(preset, parts):
+def test_any_parts_give_a_preset_or_one_sentence(preset, parts):
     try:
         resolved = load(preset, {"parts": parts}).resolved
     except LabError as error:

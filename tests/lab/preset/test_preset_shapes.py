@@ -72,7 +72,7 @@ def fault(shapes: dict, **sections) -> str:
         ({"disc": True, "diameter": "70 mm"}, "shapes.a.diameter", "do not fit into the tank"),
     ],
 )
-def test_a_shape_that_cannot_be_is_refused_by_its_key(shape, key, said):
+def test_an_invalid_shape_is_refused_with_its_key(shape, key, said):
     sentence = fault({"a": shape})
     assert sentence.startswith(f"{key}: ") and said in sentence
 
@@ -91,7 +91,7 @@ def test_a_shape_that_cannot_be_is_refused_by_its_key(shape, key, said):
         ({"run": {"repeats": 3000}}, "run.repeats"),
     ],
 )
-def test_what_does_not_go_with_shapes_is_refused_by_its_key(sections, key):
+def test_settings_incompatible_with_shapes_are_refused_with_their_key(sections, key):
     assert fault(TWO, **sections).startswith(f"{key}: ")
 
 
@@ -99,13 +99,13 @@ def test_what_does_not_go_with_shapes_is_refused_by_its_key(sections, key):
     ("section", "key", "value"),
     [("grains", "orientation", "30 deg"), ("contact", "outlines", "nodes"), ("contact", "nodes", 60)],
 )
-def test_what_goes_with_shapes_alone_is_refused_without(section, key, value):
+def test_settings_for_shapes_are_refused_without_shapes(section, key, value):
     assert fault({}, **{section: {key: value}}).startswith(f"{section}.{key}: goes with irregular grains")
     assert fault({}, grains={"shares": "mass"}).startswith("grains.shares: goes with shapes")
     assert fault({"a": {**OVAL, "share": 1}, "b": {**OVAL}}).startswith("shapes.b.share: missing")
 
 
-def test_a_shape_is_as_large_as_it_says_or_all_grains_or_its_cargo():
+def test_the_size_of_a_shape_is_its_own_the_grains_or_its_cargos():
     shapes = {"own": {"cargo": "rice", "diameter": "2 mm"}, "all": {"cargo": "rice"}}
     found = resolved(shapes).shapes
     assert found["own"].diameter == pytest.approx(2e-3) and found["all"].diameter == pytest.approx(3e-3)
@@ -164,7 +164,7 @@ def test_the_outlines_are_centred_and_as_large_as_a_disc_of_radius_one():
         np.testing.assert_allclose(outline.centroid, 0.0, atol=1e-8)
 
 
-def test_each_repeat_is_drawn_by_its_own_seed_whatever_the_company():
+def test_each_repeat_is_drawn_from_its_own_seed():
     both, later = build(resolved(TWO)), build(resolved(TWO, run={"seed": 2, "repeats": 1}))
     (two, places), (one, place) = both, later
     np.testing.assert_array_equal(two.radius[1], one.radius[0])
@@ -187,7 +187,7 @@ def test_the_same_outlines_come_from_the_preset_as_it_is_recorded():
     np.testing.assert_allclose(there.angle, np.pi / 6)
 
 
-def test_no_outline_reaches_farther_than_its_class():
+def test_no_outline_exceeds_the_largest_radius_of_its_class():
     random = np.random.default_rng(1)
     for descriptors in [(0.3,), (0.1, 0.4), (0.05, 0.2, 0.1, 0.0, 0.05), tuple(np.full(12, 0.06))]:
         shape = Shape(1.0, 2e-3, descriptors, None, 40)
@@ -201,7 +201,7 @@ def test_no_outline_reaches_farther_than_its_class():
     [{}, {"grains": {"surface": "disturbed"}}, {"tank": {"lid": False}}, {"grains": {"count": 90}}],
     ids=["level", "thrown", "no lid", "too many for the closed tank"],
 )
-def test_grains_start_so_far_apart_that_they_may_turn(sections):
+def test_grains_start_far_enough_apart_to_turn(sections):
     preset = resolved({"rice": {"cargo": "rice", "diameter": "4 mm"}, "disc": {"disc": True}}, **sections)
     scene, position = build(preset)
     reach = scene.radius * np.array([outline.bounding_radius for outline in scene.shapes.outlines])[scene.shapes.which]
@@ -259,7 +259,7 @@ def test_a_recording_of_discs_holds_no_outlines_and_damaged_ones_are_refused(tmp
 
 
 @pytest.mark.slow
-def test_a_run_of_shapes_goes_to_its_end_and_says_what_it_was(tmp_path):
+def test_a_run_of_shapes_completes_and_its_summary_describes_them(tmp_path):
     preset = {"shapes": TWO, **SMALL, "motion": {"tilt": {"angle": "1 deg", "rate": "20 deg/s", "hold": "0 s"}}}
     run_preset("tilting/quick", preset | {"video": {"colour": "shape"}}, tmp_path, quiet=True)
     summary = (tmp_path / "summary.md").read_text()
@@ -304,7 +304,7 @@ def test_discs_and_outlines_are_filmed_side_by_side(tmp_path):
     assert np.asarray(Image.open(both)).std() > 10
 
 
-def test_explain_tells_the_shapes():
+def test_explain_describes_the_shapes():
     text = explain(loaded(TWO))
     assert "25 % oval, the area of a disc of 3 mm: 3 descriptors" in text
     assert "75 % rough, the area of a disc of 5 mm: 12 descriptors, phases at random, 25 outlines a repeat" in text
@@ -316,7 +316,7 @@ def test_a_disc_among_shapes_is_a_disc():
     assert outline == Contour(1.0)
 
 
-def test_sharp_dents_are_warned_of_where_they_may_gain_energy():
+def test_a_warning_names_sharp_concavities_that_may_gain_energy():
     lobed = {"lobed": {"descriptors": [0.0] * 49 + [0.0133]}}
     assert 'contact.outlines = "area"' in explain(loaded(lobed))
     assert "dents" not in explain(loaded(lobed, contact={"outlines": "area"}))

@@ -76,7 +76,7 @@ OUTLINED = {
         ({"ship.draft": "1 m"}, "ship.draft: unknown key; did you mean 'draught'?"),
     ],
 )
-def test_faults_name_the_key(changes, words):
+def test_errors_name_the_key(changes, words):
     assert fault(changes).startswith(words)
 
 
@@ -86,7 +86,7 @@ def barge():
     return said, make_vessel(said.ship, said.water, said.waves, said.run.gravity)
 
 
-def test_barge_is_as_given(barge):
+def test_the_barge_has_the_given_properties(barge):
     """Displacement by the draught, GM by closed form, natural roll of the given period, alone about the axis."""
     said, vessel = barge
     ship = vessel.ship
@@ -116,7 +116,7 @@ def test_damping_is_a_share_of_the_critical(barge):
     assert ship.damping.quadratic == pytest.approx(said.ship.quadratic_damping * inertia, rel=2e-3)
 
 
-def test_the_waves_slope_drives_the_roll(barge):
+def test_the_wave_slope_drives_the_roll(barge):
     """W GM ∂ζ/∂y at the first crossing of the crest by a quarter period, beyond the soft start."""
     _, vessel = barge
     load, k = vessel.ship.load, OMEGA**2 / 9.81
@@ -141,7 +141,7 @@ def test_tables_are_stored(barge, monkeypatch):
     assert radiation.hydrodynamics is not None
 
 
-def test_seas_are_what_they_are_called():
+def test_seas_have_their_given_heights_and_crests():
     """Significant height of random seas; a packet's crest where and when it was asked for."""
     water = make_water(WaterGiven(), 9.81)
     for kind in ("jonswap", "pierson-moskowitz"):
@@ -190,7 +190,7 @@ def test_a_ship_held_by_her_axis_is_heeled_about_it(about):
     assert moved[:, :2] == pytest.approx(0.0, abs=1e-12)
 
 
-def test_words_on_a_ship(barge):
+def test_texts_on_a_ship(barge):
     said, vessel = barge
     given = ShipGiven(**{**vars(said.ship), "scale": 100.0})
     rows = dict(describe(given, vessel, said.waves, 0.003, 1e-3))
@@ -319,7 +319,7 @@ def test_measures_of_frozen_cargo(rolling, monkeypatch):
     assert lost["frozen_largest_roll"].value == pytest.approx(72.0, rel=1e-3)
 
 
-def test_frozen_cargo_sails_on_when_the_loose_has_capsized_the_ship(monkeypatch):
+def test_the_run_with_frozen_cargo_continues_after_the_ship_has_capsized(monkeypatch):
     """To the end that the run was to have; beside a run that was broken off, no longer than that."""
     said = load(BARGE).resolved
     vessel = make_vessel(said.ship, said.water, said.waves, said.run.gravity)
@@ -396,7 +396,7 @@ def test_a_recorded_ship_floats_and_rolls(lost):
 
 
 @pytest.mark.slow
-def test_others_go_on_when_a_ship_has_capsized(tmp_path):
+def test_other_runs_continue_after_a_ship_has_capsized(tmp_path):
     """Two in one launch."""
     run_sweep(BARGE, {"waves.amplitude": ["1 mm", "40 mm"]}, FEW, tmp_path, video=False, quiet=True)
     with open_recording(point_folder(tmp_path, 0)) as calm, open_recording(point_folder(tmp_path, 1)) as rough:

@@ -53,7 +53,7 @@ def write(folder, name: str, text: str) -> str:
 
 
 @pytest.mark.parametrize("name", names())
-def test_every_shipped_preset_resolves_and_says_what_it_is_about(name):
+def test_every_preset_of_the_lab_resolves_and_has_a_title_and_source(name):
     preset = load(name)
     assert preset.name == name
     said = preset.resolved
@@ -79,7 +79,7 @@ def test_given_text_is_the_same_preset(name, tmp_path):
 
 
 @pytest.mark.parametrize("name", [name for name in names() if name.endswith(QUICK)])
-def test_a_quick_variant_says_how_it_differs_and_differs_in_what_it_costs_alone(name):
+def test_a_quick_variant_states_its_differences_and_differs_only_in_cost(name):
     whole, quick = load(name.removesuffix(QUICK)).resolved, load(name).resolved
     assert quick.quick.strip() and not whole.quick
     contact = replace(quick.contact, stiffness_scale=whole.contact.stiffness_scale)
@@ -141,7 +141,7 @@ def test_overrides_may_be_numbers_and_arrays_of_numpy(tmp_path):
     assert load(write(tmp_path, "again.toml", preset.given_text)).resolved == on_its_own(preset.resolved)
 
 
-def test_alternatives_replace_what_is_inherited():
+def test_alternatives_replace_inherited_keys():
     counted = load("tilting/quick", {"grains.count": 100}).resolved.grains
     assert (counted.count, counted.depth) == (100, None)
     damped = load("tilting/quick", {"material.dissipative_time": "1e-6 s"}).resolved.material
@@ -151,7 +151,7 @@ def test_alternatives_replace_what_is_inherited():
     assert len(outlined.outline) == 3
 
 
-def test_false_leaves_an_inherited_motion_out():
+def test_false_removes_an_inherited_motion():
     assert list(load("shaking/sway").resolved.motion.parts) == ["sway"]
 
 
@@ -163,7 +163,7 @@ def test_own_file_is_based_on_another_own_file(tmp_path):
     assert heir.title == "heir" and heir.grains.depth == pytest.approx(0.03)
 
 
-def test_what_a_source_reports_is_not_handed_down(tmp_path):
+def test_title_source_and_reports_are_not_inherited(tmp_path):
     """Title, source and reports are of one experiment; a file that is based on it names it, and has its own or none."""
     heir = load(write(tmp_path, "mine.toml", 'based_on = "tilting/acetate"\n[tank]\nwidth = "90 mm"'))
     said, base = heir.resolved, load("tilting/acetate").resolved
@@ -190,7 +190,7 @@ def test_duration_is_derived_from_the_tilt_unless_given(monkeypatch):
     assert load("tilting/quick", {"run.duration": "3 s"}).resolved.run.duration == 3.0
 
 
-def test_wall_is_the_grains_but_for_its_own_keys():
+def test_the_wall_has_the_grains_material_except_for_its_own_keys():
     assert minimal().wall == minimal().material
     wall = minimal(wall__friction=0.5).wall
     assert wall == replace(minimal().material, friction=0.5)
@@ -221,7 +221,7 @@ def test_outline_is_turned_counter_clockwise():
         ([], "3 to"),
     ],
 )
-def test_outlines_that_bound_nothing(corners, words):
+def test_invalid_outlines_are_refused(corners, words):
     with pytest.raises(LabError, match=words):
         simple_polygon(corners)
 
@@ -270,7 +270,7 @@ def test_outlines_that_bound_nothing(corners, words):
         ({"material.humidity": "100 %"}, "material.humidity: must be less than 1"),
     ],
 )  # fmt: skip
-def test_faults_name_the_key(overrides, sentence):
+def test_errors_name_the_key(overrides, sentence):
     assert fault(**overrides).startswith(sentence)
 
 
@@ -284,14 +284,14 @@ def test_faults_name_the_key(overrides, sentence):
         ("run", "run.duration: missing, and no motion has an end"),
     ],
 )
-def test_what_is_missing_is_named(key, words):
+def test_missing_keys_are_named(key, words):
     table = tomllib.loads(MINIMAL)
     del table[key]
     with pytest.raises(LabError, match=words):
         resolve(table)
 
 
-def test_neither_alternative_is_a_fault():
+def test_a_missing_alternative_is_an_error():
     table = tomllib.loads(MINIMAL)
     del table["grains"]["depth"]
     with pytest.raises(LabError, match=r"grains\.depth: give exactly one .*neither"):
@@ -317,7 +317,7 @@ def test_neither_alternative_is_a_fault():
         ("x" * 5000 + ".toml", "cannot be read"),
     ],
 )
-def test_presets_that_cannot_be_found(name, words):
+def test_presets_that_cannot_be_found_are_reported(name, words):
     with pytest.raises(LabError) as caught:
         load(name)
     assert words in str(caught.value) and "\n" not in str(caught.value)
@@ -338,7 +338,7 @@ def test_presets_that_cannot_be_found(name, words):
         (b"a." * 2000 + b"a = 1", "^a: unknown key"),
     ],
 )
-def test_files_that_cannot_be_used(content, words, tmp_path):
+def test_files_that_cannot_be_used_are_reported(content, words, tmp_path):
     (tmp_path / "files").mkdir()
     path = tmp_path / "files" / "mine.toml"
     path.write_bytes(content)
@@ -346,13 +346,13 @@ def test_files_that_cannot_be_used(content, words, tmp_path):
         load(path)
 
 
-def test_a_folder_is_no_preset(tmp_path):
+def test_a_folder_is_refused_as_a_preset(tmp_path):
     (tmp_path / "folder.toml").mkdir()
     with pytest.raises(LabError, match=r"folder\.toml: is not a file"):
         load(tmp_path / "folder.toml")
 
 
-def test_a_circle_of_presets(tmp_path):
+def test_presets_based_on_each_other_are_refused(tmp_path):
     write(tmp_path, "a.toml", 'based_on = "b.toml"')
     write(tmp_path, "b.toml", 'based_on = "a.toml"')
     with pytest.raises(LabError, match="based on itself"):
@@ -404,7 +404,7 @@ quickly = settings(
 @example({"motion.tilt": {"rate": "1e-300 deg/s", "angle": "1e-300 deg"}})
 @example({"grains.diameter": "1e-200 mm", "grains.count": 1_000_000})
 @example({"tank.width": "1e300 m", "tank.height": "1e300 m"})
-def test_any_value_gives_a_preset_or_a_sentence(overrides):
+def test_any_value_gives_a_preset_or_one_sentence(overrides):
     try:
         load("tilting/quick", overrides)
     except LabError as error:
@@ -413,7 +413,7 @@ def test_any_value_gives_a_preset_or_a_sentence(overrides):
 
 @quickly
 @given(st.dictionaries(st.sampled_from(KEYS) | st.text(), TREES, max_size=3))
-def test_any_tree_gives_a_preset_or_a_sentence(overrides):
+def test_any_tree_gives_a_preset_or_one_sentence(overrides):
     try:
         load("tilting/quick", overrides)
     except LabError as error:
@@ -422,7 +422,7 @@ def test_any_tree_gives_a_preset_or_a_sentence(overrides):
 
 @quickly
 @given(st.binary(max_size=60), st.integers(0, len(MINIMAL)))
-def test_any_bytes_give_a_preset_or_a_sentence(tmp_path_factory, noise, place):
+def test_any_bytes_give_a_preset_or_one_sentence(tmp_path_factory, noise, place):
     path = tmp_path_factory.getbasetemp() / "noise.toml"
     text = MINIMAL.encode()
     path.write_bytes(text[:place] + noise + text[place:])

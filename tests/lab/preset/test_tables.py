@@ -48,7 +48,7 @@ def test_every_spelling_is_the_same_table(tmp_path, spelling):
     assert all(column.dtype == np.float64 and column.flags.c_contiguous for column in columns.values())
 
 
-def test_columns_may_stand_in_any_order(tmp_path):
+def test_columns_may_be_in_any_order(tmp_path):
     columns = table(tmp_path, "roll,time\n3,0\n4,1\n")
     assert columns["time"].tolist() == [0.0, 1.0] and columns["roll"].tolist() == [3.0, 4.0]
 
@@ -95,14 +95,14 @@ def test_numbers_come_back_to_the_last_bit(tmp_path_factory, rows):
         ("time,sway\n0,0\n".encode("utf-16"), ", line 1: not UTF-8 text."),
     ],
 )  # fmt: skip
-def test_faults_name_key_file_and_line(tmp_path, content, words):
+def test_errors_name_key_file_and_line(tmp_path, content, words):
     path = tmp_path / "record.csv"
     path.write_bytes(content.encode() if isinstance(content, str) else content)
     path = os.path.relpath(path) if len(str(path)) > 90 else str(path)
     assert fault(path).startswith(f"motion.history.file: {path}{words}"[:200])
 
 
-def test_files_that_are_none(tmp_path):
+def test_paths_that_are_not_files_are_refused(tmp_path):
     missing = tmp_path / "no.csv"
     assert fault(missing).endswith("no.csv: cannot be read: No such file or directory.")
     assert fault(tmp_path).endswith(": is not a file.")
@@ -118,14 +118,14 @@ def test_a_pipe_does_not_hang(tmp_path):
 
 
 @pytest.mark.skipif(os.geteuid() == 0, reason="root reads everything")
-def test_a_file_that_may_not_be_read(tmp_path):
+def test_an_unreadable_file_is_refused(tmp_path):
     path = tmp_path / "secret.csv"
     path.write_text(PLAIN)
     path.chmod(0)
     assert fault(path).endswith("secret.csv: cannot be read: Permission denied.")
 
 
-def test_a_file_beyond_all_measure(tmp_path, monkeypatch):
+def test_a_file_that_is_too_large_is_refused(tmp_path, monkeypatch):
     monkeypatch.setattr(tables, "LARGEST_FILE", 1_000_000)
     path = tmp_path / "large.csv"
     path.write_bytes(b"time\n" + b"1\n" * 500_000)
@@ -137,7 +137,7 @@ def test_a_file_beyond_all_measure(tmp_path, monkeypatch):
 @example("\u2028\u0664".encode(), 16)
 @example(b'""', 10)
 @quickly
-def test_any_bytes_give_numbers_or_a_sentence(tmp_path_factory, noise, place):
+def test_any_bytes_give_numbers_or_one_sentence(tmp_path_factory, noise, place):
     path = tmp_path_factory.getbasetemp() / "noise.csv"
     path.write_bytes(PLAIN.encode()[:place] + noise + PLAIN.encode()[place:])
     try:
@@ -150,7 +150,7 @@ def test_any_bytes_give_numbers_or_a_sentence(tmp_path_factory, noise, place):
 
 @given(st.text(alphabet='time,sway;0.5e-+"#\n\r\t naif', max_size=60))
 @quickly
-def test_any_text_gives_numbers_or_a_sentence(tmp_path_factory, text):
+def test_any_text_gives_numbers_or_one_sentence(tmp_path_factory, text):
     path = tmp_path_factory.getbasetemp() / "text.csv"
     path.write_bytes(text.encode())
     try:

@@ -26,14 +26,14 @@ BOMBS = {
 
 
 @pytest.mark.parametrize("name", BOMBS)
-def test_a_preset_that_swells_is_refused_before_it_does(tmp_path, name, little_memory):  # noqa: F811
+def test_a_preset_that_expands_exponentially_is_refused(tmp_path, name, little_memory):  # noqa: F811
     (tmp_path / "bomb.toml").write_text(BOMBS[name])
     assert len(refused(call("explain", tmp_path / "bomb.toml"))) < 400
     (tmp_path / "heir.toml").write_text("based_on = 'bomb.toml'")
     assert len(refused(call("explain", tmp_path / "heir.toml"))) < 400
 
 
-def test_a_long_line_of_numbers_is_no_bomb(tmp_path):
+def test_a_long_line_of_numbers_is_accepted(tmp_path):
     corners = ", ".join(f"[{0.1 * k:.1f}, {0.1 * (k * k % 7):.1f}]" for k in range(190))
     (tmp_path / "long.toml").write_text(f"x = [{corners}]")
     assert "x: unknown key" in refused(call("explain", tmp_path / "long.toml"))
@@ -66,7 +66,7 @@ PATHS = ["../secret.txt", "secret-link", "/{at}/secret.txt", "./x/../../secret.t
 
 @pytest.mark.parametrize("path", PATHS)
 @pytest.mark.parametrize("key", ["based_on", "grains.bed", "motion.history.file", "shapes.x.contour"])
-def test_little_of_another_file_is_shown(tmp_path, key, path):
+def test_messages_show_little_of_another_file(tmp_path, key, path):
     home = tmp_path / "presets"
     (home / "x").mkdir(parents=True)
     (tmp_path / "secret.txt").write_text(SECRET)
@@ -79,7 +79,7 @@ def test_little_of_another_file_is_shown(tmp_path, key, path):
 
 
 @pytest.mark.parametrize("device", ["/dev/zero", "/dev/urandom", "/proc/self/mem", "/proc/kmsg", "/dev/stdin"])
-def test_devices_are_no_files(tmp_path, device):
+def test_devices_are_refused_as_files(tmp_path, device):
     (tmp_path / "preset.toml").write_text(f'based_on = "{device}"')
     refused(call("explain", tmp_path / "preset.toml"))
     (tmp_path / "bed.toml").write_text(LISTED.replace("grains.csv", device))
@@ -90,7 +90,7 @@ NAMES = ["..toml", "...toml", ".toml", "....toml"]
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_a_preset_s_own_name_leads_out_of_no_folder(tmp_path, name, monkeypatch):
+def test_the_name_of_a_preset_cannot_lead_out_of_a_folder(tmp_path, name, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / name).write_text('based_on = "tilting/quick"')
     loaded = load(str(tmp_path / name))

@@ -111,7 +111,7 @@ def test_show(value, symbol, text):
 
 
 @given(st.floats(min_value=-1e290, max_value=1e290), st.sampled_from(list(KINDS)))  # 1e300 m³ are too many mm³
-def test_shown_is_understood_again(value, symbol):
+def test_shown_quantities_can_be_parsed_again(value, symbol):
     assert parse(show(value, symbol), symbol) == pytest.approx(value, rel=1e-3, abs=1e-300)
 
 

@@ -21,7 +21,7 @@ def path(tmp_path) -> Path:
     return Path(shutil.copy(KEPT, tmp_path / "recording.h5"))
 
 
-def test_it_opens_with_its_quantities(path):
+def test_a_recording_of_format_2_opens_with_its_quantities(path):
     with open_recording(path) as found:
         assert found.complete and found.name == "tilting/quick" and found.worlds == 2
         assert found.radius.shape == (2, 18) and "title = " in found.given
@@ -36,7 +36,7 @@ def test_it_opens_with_its_quantities(path):
         assert found.labelled()["pose"].sel(freedom="roll").max() == pytest.approx(np.radians(40.0))
 
 
-def test_it_is_measured_and_drawn(path, tmp_path):
+def test_a_recording_of_format_2_is_measured_and_drawn(path, tmp_path):
     with open_recording(path) as found:
         measures = measure_all(found)
         assert measures["final_shift"].value < -1.0
@@ -46,12 +46,12 @@ def test_it_is_measured_and_drawn(path, tmp_path):
     assert len(list(pictures.glob("*.png"))) >= 9
 
 
-def test_it_is_not_gone_on_with(path):
+def test_a_recording_of_format_2_cannot_be_continued(path):
     with pytest.raises(LabError, match="begun by another version: start the run again"):
         Recorder(path.parent, samples=33, frames=9)
 
 
-def test_the_thickness_of_a_ships_cargo_is_the_tanks_now():
+def test_the_thickness_of_a_ships_cargo_becomes_the_tanks():
     ship = {"ship": {"sheet": 0.004, "draught": 0.1}, "tank": {"roughness": None}}
     assert older.renamed(ship) == {"ship": {"draught": 0.1}, "tank": {"roughness": None, "thickness": 0.004}}
     assert older.renamed({"ship": None, "tank": {}}) == {"ship": None, "tank": {}}

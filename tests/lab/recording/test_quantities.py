@@ -77,7 +77,7 @@ def test_every_quantity_has_a_unit_and_a_label_for_each_component():
     assert all(len({q.name for q in listed}) == len(listed) for listed in lists)
 
 
-def test_a_row_is_parted_as_it_was_laid_out():
+def test_a_row_is_split_as_it_was_laid_out():
     listed = Quantity("a", "m", PLANE), Quantity("b", "J"), Quantity("c", "N, N, N m", FREEDOMS)
     assert places(listed) == {"a": 0, "b": 2, "c": 3}
     found = parted(np.arange(12.0).reshape(2, 6), listed)
@@ -97,7 +97,7 @@ def recorded(tmp_path_factory) -> Path:
     return folder
 
 
-def test_every_data_set_says_what_it_is_to_whoever_opens_the_file_alone(recorded):
+def test_every_data_set_is_described_by_its_attributes(recorded):
     with h5py.File(recorded / "recording.h5") as file:
         force, spin = file["series/wall_force"], file["frames/spin"]
         assert force.attrs["units"] == b"N, N, N m" and force.attrs["mean_over_sample"]
@@ -111,7 +111,7 @@ def test_every_data_set_says_what_it_is_to_whoever_opens_the_file_alone(recorded
                 assert len(data.attrs["axes"]) == data.ndim and data.attrs["units"].decode() == EVERY[name].unit
 
 
-def test_labelled_arrays_are_the_arrays_with_names(recorded):
+def test_labelled_arrays_equal_the_plain_ones(recorded):
     with open_recording(recorded) as found:
         series, frames = found.labelled(), found.labelled(frames=slice(1, 3))
         assert series["wall_force"].sel(freedom="roll", world=1).values.tolist() == [0, 1, 2, 3, 4, 5]

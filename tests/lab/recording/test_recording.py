@@ -41,7 +41,7 @@ while True:
 """
 
 
-def test_what_is_written_is_read(tmp_path):
+def test_written_data_are_read_back(tmp_path):
     radius = np.array([[0.001, 0.002, 0.003], [0.002, 0.002, 0.005]])
     resolved = {"title": "Füllung", "motion": {"tilt": {"rate": 0.1}}}
     with recorder(tmp_path / "new", 2, 3, radius=radius, resolved=resolved) as run:
@@ -115,7 +115,7 @@ def assert_whole(folder) -> int:
         (lambda r: r.series["ship_works"][:, 0], "a preset with a table [ship] records it."),
     ],
 )
-def test_what_was_not_recorded_is_said_in_a_sentence(tmp_path, ask, said):
+def test_missing_data_are_reported_in_one_sentence(tmp_path, ask, said):
     with recorder(tmp_path, 2) as run:
         for k in range(3):
             run.sample(sample(float(k), 2))
@@ -152,7 +152,7 @@ def test_a_killed_run_is_read_up_to_its_last_flush(tmp_path):
         assert 1500 * 1000 < recording.grain_steps < 1000 * count
 
 
-def test_whoever_reads_what_was_killed_clears_the_mark_of_its_writer(tmp_path):
+def test_reading_the_file_of_a_killed_writer_clears_its_flag(tmp_path):
     writer, path = start_writer(tmp_path), tmp_path / "recording.h5"
     assert writer.stdout.readline() == b"under way\n"
     open_recording(tmp_path).close()
@@ -169,7 +169,7 @@ def test_whoever_reads_what_was_killed_clears_the_mark_of_its_writer(tmp_path):
     assert path.stat().st_size < used + 2**21  # what was reserved is given back
 
 
-def test_what_cannot_be_written_is_read_even_if_its_writer_was_killed(tmp_path):
+def test_a_read_only_file_of_a_killed_writer_is_read(tmp_path):
     writer, path = start_writer(tmp_path), tmp_path / "recording.h5"
     assert writer.stdout.readline() == b"under way\n"
     writer.kill()
@@ -185,7 +185,7 @@ def fail_to_write():
     raise OSError(errno.EROFS, "Read-only file system")
 
 
-def test_what_lies_behind_the_end_that_a_killed_file_says_is_not_written_over(tmp_path):
+def test_data_beyond_the_recorded_end_of_a_killed_file_are_not_overwritten(tmp_path):
     writer, path = start_writer(tmp_path), tmp_path / "recording.h5"
     assert writer.stdout.readline() == b"under way\n"
     writer.kill()
@@ -227,7 +227,7 @@ def changed(path) -> int:
     return path.stat().st_mtime_ns if path.exists() else 0
 
 
-def test_a_recording_survives_kills_of_who_goes_on_with_it(tmp_path):
+def test_a_recording_survives_kills_of_processes_that_continue_it(tmp_path):
     kill_and_go_on(tmp_path / "run", 6, random.Random(1))
 
 
@@ -257,7 +257,7 @@ def test_a_full_buffer_is_written_at_once(tmp_path):
             assert len(recording.frames["time"]) == 3
 
 
-def test_a_failed_run_says_why_it_stopped(tmp_path):
+def test_a_failed_run_records_why_it_stopped(tmp_path):
     with pytest.raises(ZeroDivisionError), recorder(tmp_path) as run:
         run.sample(sample(0.0))
         raise ZeroDivisionError("Grain 7 left the hold at 1.2 s.\nmore")
@@ -275,14 +275,14 @@ def test_a_long_status_is_cut_and_a_reader_sees_it_change(tmp_path):
         assert recording.status == "stopped: " + "ä" * 245
 
 
-def test_an_interrupted_run_says_so(tmp_path):
+def test_an_interrupted_run_records_that(tmp_path):
     with pytest.raises(KeyboardInterrupt), recorder(tmp_path):
         raise KeyboardInterrupt
     with open_recording(tmp_path) as recording:
         assert recording.status == "stopped: interrupted by the user"
 
 
-def test_series_end_with_their_shortest(tmp_path):
+def test_tables_end_with_their_shortest_array(tmp_path):
     with recorder(tmp_path) as run:
         for k in range(5):
             run.sample(sample(float(k)))
@@ -333,7 +333,7 @@ def test_a_full_disk_stops_the_run_and_keeps_what_was_written(tmp_path, monkeypa
         assert "No space left on device" in recording.status
 
 
-def test_a_closed_recording_takes_no_more_room_than_it_needs(tmp_path):
+def test_a_closed_recording_has_no_unused_reserved_space(tmp_path):
     with recorder(tmp_path) as run:
         run.sample(sample(0.0))
     size = (tmp_path / "recording.h5").stat().st_size
@@ -394,7 +394,7 @@ def make_bad_preset(path):
         (make_short, "cut short"),
     ],
 )
-def test_what_is_no_recording_is_refused_in_one_sentence(tmp_path, make, complaint):
+def test_other_files_are_refused_in_one_sentence(tmp_path, make, complaint):
     make(tmp_path / "recording.h5")
     with pytest.raises(LabError, match=complaint) as caught:
         open_recording(tmp_path)

@@ -47,7 +47,7 @@ def flooded(tmp_path_factory):
     return folder
 
 
-def test_an_end_in_words():
+def test_the_text_on_a_loss():
     assert end_of(-1.0, -1.0, 0.3) is None
     assert end_of(4.5156, -1.0, 0.5 * pi).words == "capsizes at 4.516 s, 90 deg to port"
     assert end_of(5.0, 4.0, -0.5) == End("flooded", 4.0, -0.5)
@@ -56,7 +56,7 @@ def test_an_end_in_words():
     assert losses_sentence(found) == "With 1 of 4 beds she capsizes at 3 s; with 2 of 4 beds she floods after 4 to 5 s."
 
 
-def test_she_lies_since_then_as_the_next_sample_has_her():
+def test_the_roll_of_a_lost_ship_is_that_of_the_next_sample():
     """Her world stands still from the step at which she was lost, which is between two samples."""
     pose = np.zeros((4, 1, 3))
     pose[:, 0, 2] = [0.0, 0.5, 0.6, 0.6]
@@ -89,7 +89,7 @@ def test_a_recording_names_the_point_of_reference(flooded):
     assert said["sway_and_heave_are_of"] == b"the ship's axis, 110 mm above her origin, in the waterline"
 
 
-def test_the_summary_begins_with_it(flooded, tmp_path):
+def test_the_summary_begins_with_the_loss(flooded, tmp_path):
     with open_recording(flooded) as recording:
         write_summary(recording, {}, {}, tmp_path)
         assert SENTENCE in terminal_summary(recording, {}, {}).splitlines()[0]
@@ -98,7 +98,7 @@ def test_the_summary_begins_with_it(flooded, tmp_path):
     assert any("those of her axis, 110 mm above her origin, in the waterline" in line for line in page)
 
 
-def test_figures_mark_it(flooded):
+def test_figures_mark_the_loss(flooded):
     """The time in that of the roll; in the curve of levers where deck and hatch meet the water."""
     with open_recording(flooded) as recording:
         values = measure_all(recording)
@@ -111,7 +111,7 @@ def test_figures_mark_it(flooded):
     assert upright["downflooding angle 39.4 deg"] == pytest.approx(values["downflooding_angle"].value)
 
 
-def test_the_last_seconds_of_the_video_say_it(flooded, tmp_path):
+def test_the_last_seconds_of_the_video_show_the_loss(flooded, tmp_path):
     """Across the foot of the picture from then on, and the last one stays."""
     initialise()
     with open_footage(flooded) as footage:
@@ -128,7 +128,7 @@ def test_the_last_seconds_of_the_video_say_it(flooded, tmp_path):
     assert np.abs(pictures[-1].astype(int) - pictures[len(film.time)]).mean() < 1.0
 
 
-def test_the_window_says_it_for_as_long_as_it_is_so():
+def test_the_window_shows_the_loss_as_long_as_the_ship_is_lost():
     rows = [
         {"capsized": -1.0, "flooded": -1.0, "pose": [0.0, 0.0, 0.2]},
         {"capsized": -1.0, "flooded": 3.0, "pose": [0.0, 0.0, 0.7]},
@@ -143,7 +143,7 @@ def test_the_window_says_it_for_as_long_as_it_is_so():
     assert shown.lost is None
 
 
-def test_a_recording_without_the_column_is_of_ships_that_did_not_flood(tmp_path):
+def test_in_a_recording_without_the_column_no_ship_floods(tmp_path):
     """As earlier versions left them; such a run is not gone on with."""
     import h5py
 
@@ -180,7 +180,7 @@ def test_angles_of_deck_and_opening():
     }
 
 
-def test_at_the_angle_of_downflooding_the_hull_carries_her_weight_and_the_edge_is_at_the_surface():
+def test_at_the_downflooding_angle_the_hull_floats_with_the_edge_at_the_surface():
     """Of the barge with a hatch, her deck long in the water."""
     resolved = load(MAP).resolved
     (vessel,) = vessels(resolved)
@@ -194,7 +194,7 @@ def test_at_the_angle_of_downflooding_the_hull_carries_her_weight_and_the_edge_i
     assert resolved.ship.deck_edges == ((0.17, 0.14), (-0.17, 0.14))
 
 
-def test_the_deck_of_an_outline_is_where_the_hull_is_that_high():
+def test_the_deck_of_an_outline_is_at_its_height():
     outline = [
         [f"{y} mm", f"{z} mm"] for y, z in ((-150, 0), (150, 0), (170, 200), (170, 300), (-170, 300), (-170, 200))
     ]
@@ -205,7 +205,7 @@ def test_the_deck_of_an_outline_is_where_the_hull_is_that_high():
     assert np.array(replace(given, deck=0.3).deck_edges) == pytest.approx(np.array([[0.17, 0.3], [-0.17, 0.3]]))
 
 
-def test_a_ship_heeled_far_floods_by_herself():
+def test_a_ship_with_a_large_heel_floods():
     """Rolling freely in calm water: at once where the heel puts the edge under, never where it does not."""
     resolved = load(MAP, {"waves.amplitude": "0 mm", "ship.heel": "50 deg", "ship.release": "1 s"}).resolved
     (vessel,) = vessels(resolved)

@@ -9,7 +9,7 @@ def head_of(path) -> bytes:
     return path.read_bytes()[: superblock.SIZE]
 
 
-def test_heads_of_hdf5_are_sound_and_torn_ones_are_not(tmp_path):
+def test_superblocks_of_hdf5_are_valid_and_damaged_ones_are_not(tmp_path):
     with h5py.File(tmp_path / "a.h5", "w", libver="latest") as file:
         file["x"] = range(10)
     head = head_of(tmp_path / "a.h5")
@@ -20,7 +20,7 @@ def test_heads_of_hdf5_are_sound_and_torn_ones_are_not(tmp_path):
         assert not superblock.is_sound(head[:place] + bytes([head[place] ^ 4]) + head[place + 1 :])
 
 
-def test_hdf5_takes_an_amended_head(tmp_path):
+def test_hdf5_accepts_a_changed_superblock(tmp_path):
     path = tmp_path / "a.h5"
     with h5py.File(path, "w", libver="latest") as file:
         file["x"] = range(10)

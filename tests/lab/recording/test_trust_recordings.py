@@ -210,7 +210,7 @@ def little_memory():
 
 
 @pytest.mark.parametrize("name", MISCHIEF)
-def test_a_recording_that_is_up_to_mischief_is_refused(sound, tmp_path, name, little_memory):
+def test_a_manipulated_recording_is_refused(sound, tmp_path, name, little_memory):
     folder = copied(sound, tmp_path / "run")
     with h5py.File(folder / "recording.h5", "r+") as file:
         MISCHIEF[name](file)
@@ -288,7 +288,7 @@ CHECKPOINTS = {
 
 
 @pytest.mark.parametrize("name", CHECKPOINTS)
-def test_a_checkpoint_that_is_up_to_mischief_is_refused(sound, tmp_path, name, little_memory):
+def test_a_manipulated_checkpoint_is_refused(sound, tmp_path, name, little_memory):
     folder = copied(sound, tmp_path / "run")
     CHECKPOINTS[name](folder / "checkpoint.npz")
     refused(call("resume", folder, "--quiet"))

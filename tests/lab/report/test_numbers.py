@@ -30,7 +30,7 @@ ROOT = Path(lab.__file__).parents[1]
         (Value(None, "deg"), "none"),
     ],
 )
-def test_a_number_has_the_digits_its_error_allows(value, text):
+def test_a_number_has_the_digits_that_its_error_allows(value, text):
     assert number(value) == text
 
 
@@ -54,7 +54,7 @@ def test_a_mean_knows_its_error_and_its_interval():
     assert (alone.n, alone.standard_error, alone.interval) == (1, None, None)
 
 
-def test_an_uncertainty_has_a_name_that_the_page_on_numbers_explains():
+def test_every_kind_of_uncertainty_is_explained_on_the_page_on_numbers():
     with pytest.raises(ValueError, match="needs its kind, one of detector, "):
         over_worlds([20.0], "deg", uncertainties=[0.3])
     page = (ROOT / "docs" / "numbers.md").read_text(encoding="utf-8")

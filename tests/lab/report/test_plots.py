@@ -80,16 +80,16 @@ def drawn(folder):
         (preset(), {"parts": {"gate": np.zeros((2, 2))}}, ["shift", "altitude", "force", "contacts", "energy"]),
     ],
 )
-def test_each_experiment_has_the_figures_that_say_something(tmp_path, resolved, scene, figures):
+def test_each_experiment_has_the_relevant_figures(tmp_path, resolved, scene, figures):
     assert drawn(run(tmp_path, resolved, **scene)) == figures
 
 
 @pytest.mark.parametrize("resolved", [TILT, SWAY])
-def test_a_world_that_loses_every_grain_is_left_out_and_the_rest_drawn(tmp_path, resolved):
+def test_a_world_that_loses_every_grain_is_left_out_of_figures(tmp_path, resolved):
     assert "shift" in drawn(run(tmp_path, resolved, open_edges=(2,), lost=1))
 
 
-def test_a_bed_alone_that_loses_every_grain_is_drawn(tmp_path):
+def test_a_single_bed_that_loses_every_grain_is_drawn(tmp_path):
     assert "spilled" in drawn(run(tmp_path, SWAY, worlds=1, open_edges=(2,), lost=0))
 
 
@@ -105,7 +105,7 @@ def words(figure):
 
 
 @pytest.mark.parametrize(("worlds", "bars"), [(1, False), (2, True)])
-def test_plus_minus_is_of_several_beds_and_says_so(tmp_path, worlds, bars):
+def test_plus_minus_appears_only_for_several_beds_with_their_number(tmp_path, worlds, bars):
     with open_recording(run(tmp_path, TILT, worlds=worlds)) as recording:
         values = measure_all(recording)
         said = [words(FIGURES[name](recording, values)) for name in ("shift", "slope", "contacts")]

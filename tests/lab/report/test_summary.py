@@ -73,7 +73,7 @@ def test_the_data_have_the_promised_form(tmp_path):
     assert data["files"] == {"recording": "recording.h5", "shift": "pictures/shift.png"}
 
 
-def test_the_page_says_the_number_first_then_the_rest(tmp_path):
+def test_the_page_begins_with_the_main_number(tmp_path):
     page, _, _ = summed_up(tilt_run(tmp_path, worlds=1))
     lines = page.splitlines()
     assert lines[0] == "# Acetate grains in a tank"
@@ -104,7 +104,7 @@ def test_one_bed_has_no_plus_minus_anywhere(tmp_path):
     assert angle["n"] == 1 and (angle["std"], angle["standard_error"], angle["interval_95"]) == (None, None, None)
 
 
-def test_warnings_are_said_everywhere(tmp_path):
+def test_warnings_appear_in_all_outputs(tmp_path):
     resolved = preset(tilt={"rate": 0.07, "angle": 0.7})
     resolved["contact"]["stiffness_scale"] = 1e-3
     folder = tilt_run(tmp_path, resolved=resolved, status="stopped: Grain 7 left the hold.")
@@ -115,7 +115,7 @@ def test_warnings_are_said_everywhere(tmp_path):
         assert "stopped: Grain 7 left the hold; the numbers cover what was recorded" in text
 
 
-def test_the_softness_of_a_quick_variant_is_said_once_and_as_it_is(tmp_path):
+def test_the_softness_of_a_quick_variant_is_reported_once(tmp_path):
     """The variants' own words on what differs leave it to the warning, which says what the run was made with."""
     loaded = load("tilting/acetate-quick")
     page, _, _ = summed_up(tilt_run(tmp_path, resolved=json.loads(loaded.resolved.model_dump_json())))
@@ -136,12 +136,12 @@ def test_the_softness_of_a_quick_variant_is_said_once_and_as_it_is(tmp_path):
         ({"cores": 2}, ", on a machine of 2 cores, "),
     ],
 )
-def test_the_page_says_what_computed(tmp_path, machine, said):
+def test_the_page_names_the_device(tmp_path, machine, said):
     page, _, _ = summed_up(tilt_run(tmp_path, machine=machine))
     assert said in page
 
 
-def test_the_page_says_what_a_preset_is_based_on(tmp_path):
+def test_the_page_names_the_base_of_a_preset(tmp_path):
     page, data, _ = summed_up(
         tilt_run(tmp_path, resolved=preset(tilt={"rate": 0.07}) | {"based_on": "tilting/acetate"})
     )
@@ -149,7 +149,7 @@ def test_the_page_says_what_a_preset_is_based_on(tmp_path):
     assert data["based_on"] == "tilting/acetate"
 
 
-def test_a_missing_number_is_said_in_words(tmp_path):
+def test_a_missing_number_is_explained_in_words(tmp_path):
     tilt = np.linspace(0, 30, 301)
     pose = np.zeros((301, 3))
     pose[:, 2] = np.radians(tilt)
@@ -161,7 +161,7 @@ def test_a_missing_number_is_said_in_words(tmp_path):
         assert "the bed does not flow up to 30 deg" in shown
 
 
-def test_the_terminal_is_told_numbers_cost_and_files(tmp_path):
+def test_the_terminal_shows_numbers_cost_and_files(tmp_path):
     _, _, text = summed_up(sway_run(tmp_path))
     assert text.splitlines()[0] == "Acetate grains in a tank (tilting/acetate): complete"
     assert "response amplitude" in text
@@ -179,7 +179,7 @@ def test_a_run_stopped_before_its_first_sample_has_a_summary(tmp_path):
     assert "interrupted by the user" in text
 
 
-def test_the_telling_numbers_come_first_and_the_terminal_is_spared_the_rest(tmp_path):
+def test_headline_numbers_come_first_and_the_terminal_shows_no_others(tmp_path):
     rest = {f"number_{k}": Value(float(k), "mm") for k in range(20)}
     told = headlines({**rest, "response_amplitude": Value(1.0, "mm"), "spilled_fraction": Value(2.0, "%")}, 3)
     assert list(told) == ["spilled_fraction", "response_amplitude", "number_0"]
@@ -190,7 +190,7 @@ def test_the_telling_numbers_come_first_and_the_terminal_is_spared_the_rest(tmp_
     assert f"and {len(data['measures']) - 6} more numbers in the summary" in text
 
 
-def test_the_page_says_what_is_special_about_the_tank(tmp_path):
+def test_the_page_describes_special_features_of_the_tank(tmp_path):
     scene = {"open_edges": (2,), "fixed": np.array([(0.0, 0.0, 1e-3)]), "parts": {"gate": np.zeros((2, 2))}}
     writer = recorder(tmp_path, **scene)
     writer.sample(sample(0.0))

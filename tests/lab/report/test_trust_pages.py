@@ -77,7 +77,7 @@ def nasty_run(folder: Path, text: str) -> Path:
 
 
 @pytest.mark.parametrize("text", NASTY)
-def test_a_summary_shows_what_a_recording_says_as_it_stands(text, tmp_path):
+def test_a_summary_shows_texts_of_a_recording_escaped(text, tmp_path):
     page, data, said = summed_up(nasty_run(tmp_path, text), warnings=[text])
     assert_tame(page)
     assert_printable(said)
@@ -88,7 +88,7 @@ def test_a_summary_shows_what_a_recording_says_as_it_stands(text, tmp_path):
 
 
 @pytest.mark.parametrize("text", NASTY)
-def test_a_title_of_any_kind_is_drawn(text, tmp_path):
+def test_any_title_is_drawn(text, tmp_path):
     with open_recording(nasty_run(tmp_path, text)) as recording:
         assert write_plots(recording, {}, tmp_path)
 
@@ -114,7 +114,7 @@ def reported(folder: Path, name="preset", axes=None) -> tuple[list, str, str]:
 
 
 @pytest.mark.parametrize("text", NASTY)
-def test_the_page_of_a_sweep_shows_what_its_points_say_as_it_stands(text, tmp_path):
+def test_the_page_of_a_sweep_shows_texts_of_its_points_escaped(text, tmp_path):
     foreign(tmp_path / "points" / "000", status=text, warnings=[text])
     foreign(tmp_path / "points" / "001")
     _, page, said = reported(tmp_path, name=text, axes={"run.seed": [text, "2"]})
@@ -126,7 +126,7 @@ def test_the_page_of_a_sweep_shows_what_its_points_say_as_it_stands(text, tmp_pa
 
 
 @pytest.mark.parametrize("key", ["../../outside", "/tmp/outside", "a/b", "x\0", "x" * 500, "..", "<b>"])
-def test_no_measure_of_a_point_names_a_file_elsewhere(key, tmp_path):
+def test_no_measure_of_a_point_can_name_another_file(key, tmp_path):
     folder = tmp_path / "deep" / "er" / "sweep"
     measure = {"value": 1.0, "unit": "deg", "std": None, "uncertainty": None, "worlds": [1.0], "note": ""}
     for number in ("000", "001"):
@@ -171,7 +171,7 @@ def test_no_cell_of_a_table_is_a_formula(formula, tmp_path):
 
 
 @pytest.mark.parametrize("text", NASTY)
-def test_the_table_of_a_page_holds_any_text(text, tmp_path):
+def test_the_table_of_a_page_can_hold_any_text(text, tmp_path):
     page = Page(tmp_path, "page", "A page")
     page.table(["one", "two"], [[text, 1.0], ["x", 2.0]])
     kinds = [token.type for token in tokens(page.write().read_text())]
@@ -183,7 +183,7 @@ def test_the_table_of_a_page_holds_any_text(text, tmp_path):
 
 
 @pytest.mark.parametrize("text", NASTY)
-def test_the_gallery_shows_titles_and_numbers_as_they_stand(text, tmp_path, monkeypatch):
+def test_the_gallery_shows_titles_and_numbers_escaped(text, tmp_path, monkeypatch):
     monkeypatch.setattr(gallery, "names", lambda: {"tilting/quick": text, f"a/{text}": text})
     told = {"status": text, "numbers": {text: text}, "accuracy": text, "beds": 1, "version": text, "date": text}
     (tmp_path / "tilting-quick.json").write_text(json.dumps(told))
@@ -208,7 +208,7 @@ def test_numbers_of_the_gallery_that_cannot_be_read_are_named(content, tmp_path,
 
 
 @pytest.mark.parametrize("text", NASTY)
-def test_what_is_said_while_a_run_goes_on_is_no_markup(text, capsys):
+def test_progress_messages_contain_no_markup(text, capsys):
     with Progress(quiet=False) as progress:
         progress.say(text)
         progress.warn(text)
@@ -219,7 +219,7 @@ def test_what_is_said_while_a_run_goes_on_is_no_markup(text, capsys):
     assert progress.warnings == [text]
 
 
-def test_a_sentence_on_the_screen_holds_no_command_for_the_terminal(tmp_path):
+def test_messages_contain_no_terminal_control_codes(tmp_path):
     writer = recorder(tmp_path / "run")
     writer.sample(sample(0.0))
     writer.close("stopped: \x1b[31m\x9b\u202e")

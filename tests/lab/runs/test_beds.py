@@ -59,7 +59,7 @@ def surfaces():
 
 
 @pytest.mark.slow
-def test_surfaces_are_as_rough_as_their_names_say(surfaces):
+def test_surfaces_have_the_roughness_of_their_names(surfaces):
     """Standard deviation of the surface's height about its level, in diameters, mean of six beds."""
     rough = {
         name: np.mean([top(p, r, 0.072).std() / 3e-3 for p, r in zip(state["position"], scene.radius, strict=True)])
@@ -76,7 +76,7 @@ def test_an_undisturbed_bed_has_the_least_void(surfaces):
 
 
 @pytest.mark.slow
-def test_beds_of_all_surfaces_rest_in_their_tank_with_the_grains_they_were_given(surfaces):
+def test_beds_of_all_surfaces_rest_in_their_tank_with_all_grains(surfaces):
     given = surfaces["slightly-disturbed"][0].radius
     for scene, state, rows, progress in surfaces.values():
         np.testing.assert_array_equal(scene.radius, given)
@@ -94,7 +94,7 @@ def alike(first, second):
 
 
 @pytest.mark.slow
-def test_a_reused_bed_goes_on_bit_for_bit_as_the_one_that_was_stored():
+def test_a_reused_bed_continues_bit_for_bit_as_the_stored_one():
     """The tangential law remembers, and the tank begins to tilt."""
     (stored, _), (reused, said) = (make(resolved(run={"repeats": 2})) for _ in range(2))
     assert any("was reused" in sentence for sentence in said.notes)
@@ -107,7 +107,7 @@ def test_a_reused_bed_goes_on_bit_for_bit_as_the_one_that_was_stored():
 
 
 @pytest.mark.slow
-def test_where_parts_stand_does_not_belong_to_a_bed():
+def test_positions_of_parts_are_not_stored_with_a_bed():
     gate = {"points": [["0 mm", "0 mm"], ["0 mm", "30 mm"]], "move": ["0 mm", "-30 mm"], "start": "1 s"}
     parts = {"gate": {**gate, "speed": "1 m/s", "acceleration": "10 m/s^2"}}
     simulation = Simulation(*build(resolved(run={"repeats": 2}, parts=parts)))
@@ -119,7 +119,7 @@ def test_where_parts_stand_does_not_belong_to_a_bed():
 
 
 @pytest.mark.slow
-def test_a_reused_bed_goes_on_bit_for_bit_in_other_company_and_motion():
+def test_a_reused_bed_continues_bit_for_bit_with_other_worlds_and_motion():
     make(resolved(run={"repeats": 3}))[0].close()
     preset = resolved(run={"repeats": 2, "seed": 2}, motion={"tilt": {"angle": "5 deg"}})
     reused, said = make(preset)
@@ -187,7 +187,7 @@ def store(tmp_path, monkeypatch):
     return BedStore()
 
 
-def test_a_bed_is_stored_a_world_and_found_in_any_company(store):
+def test_beds_are_stored_per_world_and_found_with_any_other_worlds(store):
     four, reused = fake(run={"repeats": 4})
     assert not reused and four.settles == 1 and len(list(store.folder.iterdir())) == 4
     two, reused = fake(run={"repeats": 2, "seed": 3}, motion={"tilt": {"angle": "7 deg"}})
@@ -219,7 +219,7 @@ OTHERS = [
 ]
 
 
-def test_a_bed_is_taken_for_no_other(monkeypatch):
+def test_the_key_of_a_bed_depends_on_all_that_determines_it(monkeypatch):
     """Whatever a bed follows from changes its key, whatever it does not follow from leaves it."""
 
     def key(**sections):
@@ -240,7 +240,7 @@ def test_a_bed_is_taken_for_no_other(monkeypatch):
 
 
 @pytest.mark.parametrize("content", [b"", b"PK\x03\x04 not a zip", b"\x93NUMPY", None])
-def test_a_file_that_is_no_bed_is_passed_over_and_replaced(store, content):
+def test_an_invalid_bed_file_is_ignored_and_replaced(store, content):
     first, _ = fake(run={"repeats": 1})
     (path,) = store.folder.iterdir()
     whole = path.read_bytes()
@@ -252,7 +252,7 @@ def test_a_file_that_is_no_bed_is_passed_over_and_replaced(store, content):
     assert fake(run={"repeats": 1})[1]
 
 
-def test_a_bit_that_flipped_or_a_bed_of_another_name_is_noticed(store):
+def test_a_flipped_bit_or_another_beds_file_is_detected(store):
     fake(run={"repeats": 1})
     (path,) = store.folder.iterdir()
     content = bytearray(path.read_bytes())
@@ -264,7 +264,7 @@ def test_a_bit_that_flipped_or_a_bed_of_another_name_is_noticed(store):
     assert store.load(path.stem) is None
 
 
-def test_a_bed_of_another_shape_is_settled_anew(store):
+def test_a_bed_of_another_shape_is_settled_again(store):
     fake(run={"repeats": 1})
     (path,) = store.folder.iterdir()
     store.save(path.stem, {"grains.y": np.zeros((1, 3, 2)), "numbers": np.zeros(3)})
@@ -274,7 +274,7 @@ def test_a_bed_of_another_shape_is_settled_anew(store):
     assert not fake(run={"repeats": 1})[1]
 
 
-def test_reuse_may_be_switched_off_and_a_folder_may_be_closed(store, tmp_path, monkeypatch):
+def test_reuse_may_be_disabled_and_the_folder_may_be_unwritable(store, tmp_path, monkeypatch):
     assert not fake(grains={"reuse_bed": False})[1]
     assert not store.folder.exists()
     (tmp_path / "file").write_text("in the way")
@@ -305,7 +305,7 @@ def test_a_simulation_that_fails_is_closed(store, monkeypatch):
     assert all(simulation.closed for simulation in opened)
 
 
-def test_without_settling_the_grains_start_as_they_are_put(store):
+def test_without_settling_the_grains_start_where_they_are_placed(store):
     preset = resolved(run={"settle": False})
     simulation, progress = make(preset, Fake)
     np.testing.assert_array_equal(simulation.position, build(preset)[1])
@@ -332,7 +332,7 @@ def vars_of(simulation: Fake) -> dict:
     }
 
 
-def test_what_settling_leaves_alone_is_not_the_beds():
+def test_values_unchanged_by_settling_are_not_stored():
     before = {
         "numbers": np.zeros(2),
         "origin": np.zeros(()),
@@ -353,7 +353,7 @@ def test_what_settling_leaves_alone_is_not_the_beds():
     assert not lay(simulation, [first, None]) and not lay(simulation, [first])
 
 
-def test_the_store_stays_small_and_forgets_what_was_used_longest_ago(store, monkeypatch):
+def test_the_store_stays_small_and_deletes_the_least_recently_used(store, monkeypatch):
     bed = {"grains.y": np.random.default_rng(1).random(1000)}  # does not compress
     for k, key in enumerate(("a", "b", "c")):
         store.save(key, bed)
@@ -371,7 +371,7 @@ def test_the_store_stays_small_and_forgets_what_was_used_longest_ago(store, monk
     assert not left.exists() and store.load("d") is not None
 
 
-def test_a_bed_is_replaced_whole(store, monkeypatch):
+def test_a_bed_is_replaced_atomically(store, monkeypatch):
     """A reader that has the old file open goes on with it; a writer that fails leaves nothing behind."""
     store.save("a", {"grains.y": np.zeros(9)})
     with np.load(store.folder / "a.npz") as old:
@@ -388,7 +388,7 @@ def test_a_bed_is_replaced_whole(store, monkeypatch):
     assert [path.name for path in store.folder.iterdir()] == ["a.npz"]
 
 
-def test_the_cache_is_the_users_own_unless_named(monkeypatch, tmp_path):
+def test_the_cache_is_in_the_users_folder_unless_set(monkeypatch, tmp_path):
     monkeypatch.delenv("CARGOLAB_CACHE")
     assert "cargo-shift-lab" in str(BedStore().folder)
     monkeypatch.setenv("CARGOLAB_CACHE", str(tmp_path))
@@ -396,7 +396,7 @@ def test_the_cache_is_the_users_own_unless_named(monkeypatch, tmp_path):
 
 
 @pytest.mark.slow
-def test_round_outlines_lie_in_the_bed_of_discs(store):
+def test_round_outlines_settle_in_the_bed_of_discs(store):
     small = {"tank.width": "40 mm", "tank.height": "60 mm", "tank.roughness": False, "grains.depth": "20 mm"}
     small |= {"run.accuracy": "draft", "run.repeats": 2}
     discs, _ = make(load("shapes/box", {**small, "shapes.grain": False}).resolved)
@@ -409,7 +409,7 @@ def test_round_outlines_lie_in_the_bed_of_discs(store):
     assert len(list(store.folder.iterdir())) == 4  # the discs' own were used, and not settled anew
 
 
-def test_no_others_settle_as_discs():
+def test_other_outlines_do_not_settle_as_discs():
     with pytest.raises(LabError, match="round outlines only"):
         load("shapes/box", {"grains.settled_as": "discs"})
     with pytest.raises(LabError, match="goes with irregular grains"):

@@ -101,7 +101,7 @@ def assert_summed_up(folder: Path) -> None:
     assert (folder / "checkpoint.npz").exists()
 
 
-def test_sigterm_ends_a_run_as_ctrl_c_does_and_nohup_lets_it_go_on(tmp_path):
+def test_sigterm_ends_a_run_as_ctrl_c_does_and_nohup_lets_it_continue(tmp_path):
     run = endless_run(tmp_path / "run", preexec_fn=ignore_hangups)
     run.send_signal(signal.SIGHUP)
     rows = wait_for_rows(tmp_path / "run", 1, run)
@@ -113,7 +113,7 @@ def test_sigterm_ends_a_run_as_ctrl_c_does_and_nohup_lets_it_go_on(tmp_path):
     assert_summed_up(tmp_path / "run")
 
 
-def test_a_run_whose_terminal_is_closed_ends_in_order(tmp_path):
+def test_a_run_whose_terminal_is_closed_ends_cleanly(tmp_path):
     import pty
 
     master, terminal = pty.openpty()
@@ -149,7 +149,7 @@ def workers(tmp_path):
 
 
 @pytest.mark.parametrize("at_once", [False, True])
-def test_sigterm_to_a_process_with_workers_ends_them_all_in_order(workers, tmp_path, at_once):
+def test_sigterm_to_a_process_with_workers_ends_them_all_cleanly(workers, tmp_path, at_once):
     """Sent to the process alone, or to all of them, as a batch system does."""
     for one in [*(workers_of(workers) if at_once else []), workers.pid]:
         os.kill(one, signal.SIGTERM)
@@ -159,7 +159,7 @@ def test_sigterm_to_a_process_with_workers_ends_them_all_in_order(workers, tmp_p
         assert_summed_up(tmp_path / name)
 
 
-def test_a_worker_that_is_killed_is_told_in_a_sentence(workers, tmp_path):
+def test_a_killed_worker_is_reported_in_one_sentence(workers, tmp_path):
     os.kill(workers_of(workers)[0], signal.SIGKILL)
     _, said = workers.communicate(timeout=60)
     assert workers.returncode == 1

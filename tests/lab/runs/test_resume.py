@@ -95,7 +95,7 @@ def rows(folder: Path) -> tuple[int, int]:
 
 
 @pytest.mark.slow
-def test_a_run_cut_short_again_and_again_equals_the_undisturbed_one(whole, tmp_path, monkeypatch):
+def test_a_repeatedly_interrupted_run_equals_the_uninterrupted_one(whole, tmp_path, monkeypatch):
     folder = tmp_path / "run"
     prepare(load("tilting/quick", SMALL), folder).make_recording()  # as if killed before its beds had settled
     assert rows(folder) == (0, 0)
@@ -130,7 +130,7 @@ def test_a_run_cut_short_again_and_again_equals_the_undisturbed_one(whole, tmp_p
 
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", range(24))
-def test_a_run_killed_at_any_time_equals_the_undisturbed_one(whole, tmp_path, seed):
+def test_a_run_killed_at_any_time_equals_the_uninterrupted_one(whole, tmp_path, seed):
     folder, chance = tmp_path / "run", random.Random(seed)
     run = command("run", "tilting/quick", "--no-video", "--out", folder, *as_options(SMALL))
     while not (folder / "recording.h5").exists():
@@ -154,7 +154,7 @@ def as_options(table: dict) -> list[str]:
     return [word for key, value in [*flat, *tilt] if key != "motion.tilt" for word in ("--set", f"{key}={value}")]
 
 
-def test_nothing_recorded_is_lost_where_resuming_fails(tmp_path, monkeypatch):
+def test_nothing_recorded_is_lost_if_resuming_fails(tmp_path, monkeypatch):
     with recorder(tmp_path) as run:
         for k in range(5):
             run.sample(sample(float(k)))
@@ -167,7 +167,7 @@ def test_nothing_recorded_is_lost_where_resuming_fails(tmp_path, monkeypatch):
         np.testing.assert_array_equal(recording.series["time"], range(5))
 
 
-def test_a_recording_gone_on_with_has_all_whole_rows_and_is_written_over_as_they_come_again(tmp_path):
+def test_a_continued_recording_has_all_complete_rows_and_overwrites_repeated_ones(tmp_path):
     with recorder(tmp_path, parts={"b": [(0, 0), (1, 1)], "a": [(0, 0), (2, 2)]}, fixed=[(0, 0, 1)]) as run:
         for k in range(6):
             run.sample(sample(float(k), kinetic=[7.0]))
@@ -188,13 +188,13 @@ def test_a_recording_gone_on_with_has_all_whole_rows_and_is_written_over_as_they
             np.testing.assert_array_equal(recording.frames["part"][:][:, 0, 1, 0], range(6))
 
 
-def test_a_recording_behind_its_checkpoint_is_not_gone_on_with(tmp_path):
+def test_a_recording_shorter_than_its_checkpoint_is_not_continued(tmp_path):
     recorder(tmp_path).close()
     with pytest.raises(LabError, match="holds less than its checkpoint"):
         Recorder(tmp_path, samples=1)
 
 
-def test_resuming_needs_no_room_for_a_copy_of_the_recording(tmp_path, monkeypatch):
+def test_resuming_does_not_copy_the_recording(tmp_path, monkeypatch):
     prepare(load("tilting/quick", SMALL), tmp_path).make_recording()
     before = (tmp_path / "recording.h5").stat().st_ino
     found = []
@@ -208,7 +208,7 @@ def test_resuming_needs_no_room_for_a_copy_of_the_recording(tmp_path, monkeypatc
     assert found == [("recording.h5", before)]
 
 
-def test_a_checkpoint_is_whole_or_the_one_before(tmp_path, monkeypatch):
+def test_a_checkpoint_is_complete_or_the_previous_one(tmp_path, monkeypatch):
     first = Checkpoint({"a": np.arange(3.0), "n": np.array(4)}, ("points/001",), (3, 1), ("Beware.",), ("So be it.",))
     first.write(tmp_path)
     with monkeypatch.context() as patch, pytest.raises(LabError, match=r"checkpoint\.npz cannot be written"):
@@ -235,7 +235,7 @@ def damages(content: bytes, chance: random.Random):
         yield bytes(changed)
 
 
-def test_a_damaged_checkpoint_is_refused_in_a_sentence_and_never_taken_for_another(tmp_path):
+def test_a_damaged_checkpoint_is_refused_in_one_sentence(tmp_path):
     whole = Checkpoint({"a": np.arange(30.0), "b": np.ones((3, 2), "i4")}, ("points/001",), (3, 1))
     whole.write(tmp_path)
     path = tmp_path / "checkpoint.npz"
@@ -254,7 +254,7 @@ def test_a_damaged_checkpoint_is_refused_in_a_sentence_and_never_taken_for_anoth
     assert refused > 1500
 
 
-def test_a_run_with_damage_behind_its_checkpoint_goes_on_with_the_same_bits(whole, tmp_path):
+def test_a_run_with_damage_after_its_checkpoint_continues_with_the_same_bits(whole, tmp_path):
     """A flipped bit is written over where its row comes again; before the checkpoint it is said."""
     folder = tmp_path / "run"
     kept = []
@@ -297,7 +297,7 @@ def flip(folder: Path, name: str, row: int) -> None:
     path.write_bytes(flipped(path.read_bytes(), 8 * at + 3))
 
 
-def test_what_cannot_be_resumed_is_said(tmp_path):
+def test_runs_that_cannot_be_resumed_are_reported(tmp_path):
     with pytest.raises(LabError, match="does not exist"):
         resume_run(tmp_path, quiet=True)
     folder = tmp_path / "run"
@@ -318,7 +318,7 @@ def test_what_cannot_be_resumed_is_said(tmp_path):
         resume_run(folder, quiet=True)
 
 
-def test_who_is_stopped_underway_is_told_how_to_go_on(tmp_path):
+def test_an_interrupted_user_is_told_how_to_continue(tmp_path):
     with pytest.raises(LabError, match=r"^the disk is full\.$"), hint(tmp_path):
         raise LabError("the disk is full.")
     with pytest.raises(KeyboardInterrupt, match=r"^interrupted before the run began$"), hint(tmp_path):
@@ -378,7 +378,7 @@ def assert_kept(folder: Path, count: int, reason: str) -> None:
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="needs a limit on the size of files")
-def test_a_quota_ends_in_one_sentence_and_a_sound_recording(tmp_path):
+def test_an_exceeded_quota_gives_one_sentence_and_a_valid_recording(tmp_path):
     count, sentence = fill(tmp_path / "run", "quota")
     assert sentence == f"{tmp_path / 'run'} cannot be written (File too large): make room there."
     assert_kept(tmp_path / "run", count, "File too large")
@@ -396,7 +396,7 @@ def small_disk(tmp_path):
     subprocess.run(["umount", folder], check=True)
 
 
-def test_a_full_disk_ends_in_one_sentence_and_a_sound_recording(small_disk):
+def test_a_full_disk_gives_one_sentence_and_a_valid_recording(small_disk):
     count, sentence = fill(small_disk / "run", "disk")
     assert sentence == f"{small_disk / 'run'} cannot be written (No space left on device): make room there."
     assert_kept(small_disk / "run", count, "No space left")

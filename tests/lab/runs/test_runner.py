@@ -41,7 +41,7 @@ def test_a_run_leaves_recording_plots_video_and_summary(result):
     assert data["measures"]["final_shift_y"]["value"] == pytest.approx(result.measures["final_shift_y"].value)
 
 
-def test_samples_and_frames_stand_at_their_times(result):
+def test_samples_and_frames_have_their_times(result):
     series, frames = result.recording.series, result.recording.frames
     assert np.allclose(np.diff(series["time"]), 0.01, rtol=1e-9)
     assert np.allclose(np.diff(frames["time"][:]), 0.04, rtol=1e-9)
@@ -60,13 +60,13 @@ def test_the_walls_carry_the_grains(result):
     assert recording.frames["part"].shape == (len(recording.frames["time"]), 2, 0, 2)
 
 
-def test_steps_counted_are_steps_taken(result):
+def test_the_counted_steps_are_the_computed_ones(result):
     recording = result.recording
     taken = recording.series["time"][-1] / recording.step
     assert recording.grain_steps == pytest.approx(taken * recording.radius.size, rel=1e-9)
 
 
-def test_a_world_settles_alone_as_it_does_in_company():
+def test_a_world_settles_alone_as_with_other_worlds():
     """Repeat 0 starts from the same grains and the same step whatever the number of repeats."""
     (alone, start), (among, starts) = (
         build(load("tilting/quick", SMALL | {"run": {"repeats": n, "step": "auto"}}).resolved) for n in (1, 3)
@@ -86,18 +86,18 @@ def test_a_world_settles_alone_as_it_does_in_company():
         ({"repeats": 1, "threads": 2, "schedule": "per-band"}, 0, 2),
     ],
 )
-def test_a_run_knows_how_many_threads_compute_it(run, company, threads, tmp_path):
+def test_a_run_reports_its_number_of_threads(run, company, threads, tmp_path):
     ready = prepare(load("tilting/quick", SMALL | {"run": run | {"arch": "cpu"}}), tmp_path)
     assert ready.device(company)["threads"] == threads
 
 
-def test_the_recording_says_what_computes_it(result):
+def test_the_recording_names_the_device(result):
     used = result.recording.machine["threads"]
     assert used == min(2, available_cores())
     assert f", on {used} of " in (result.folder / "summary.md").read_text()
 
 
-def test_a_step_past_the_limit_is_refused_unless_forced_and_far_past_it_in_any_case():
+def test_a_step_above_the_limit_needs_force_and_one_far_above_is_refused():
     with pytest.raises(LabError, match=r"run\.step: .*past the limit.*force_step"):
         build(load("tilting/quick", SMALL | {"run": {"step": "20 us"}}).resolved)
     forced = SMALL | {"run": {"step": "20 us", "force_step": True}}
@@ -107,13 +107,13 @@ def test_a_step_past_the_limit_is_refused_unless_forced_and_far_past_it_in_any_c
 
 
 @pytest.mark.slow
-def test_a_forced_step_is_said_in_the_summary(tmp_path):
+def test_the_summary_reports_a_forced_step(tmp_path):
     forced = SMALL | {"run": {"repeats": 1, "step": "20 us", "force_step": True, "duration": "0.02 s"}}
     folder = run_preset("tilting/quick", forced, tmp_path / "forced", video=False, quiet=True).folder
     assert "The step is forced past the derived one" in (folder / "summary.md").read_text()
 
 
-def test_a_run_the_watch_stops_keeps_its_recording_and_says_why(tmp_path):
+def test_a_run_stopped_by_the_watch_keeps_its_recording_and_the_reason(tmp_path):
     thrown = {"tilt": False, "sway": {"amplitude": "4 mm", "frequency": "600 Hz"}}
     changes = SMALL | {"run": {"repeats": 1, "duration": "0.3 s"}, "motion": thrown}
     with pytest.raises(BadState, match=r"world 0: (a grain moves at .* too fast|grains overlap by .* too soft)"):
@@ -128,14 +128,14 @@ def test_explain_names_step_limit_parts_and_cost():
         assert words in text
 
 
-def test_explain_says_how_wet_grains_pull():
+def test_explain_reports_the_force_of_liquid_bridges():
     """2π γ R_eff over (4/3) π R³ ρ g of grains of 3 mm, and the Kelvin radius at 70 %."""
     text = explain(load("tilting/wet", SMALL))
     assert "humid: 339.3 µN, 1.9 times a mean grain's weight, across gaps of up to 1.472 nm" in text
 
 
 @pytest.mark.slow
-def test_a_bed_that_has_not_settled_is_said_in_the_summary(tmp_path):
+def test_the_summary_reports_a_bed_that_has_not_settled(tmp_path):
     restless = SMALL | {"run": {"repeats": 1, "settle_limit": "0.01 s", "duration": "0.05 s"}}
     result = run_preset("tilting/quick", restless, tmp_path / "restless", video=False, quiet=True)
     assert "still moved after 0.01 s" in (result.folder / "summary.md").read_text()

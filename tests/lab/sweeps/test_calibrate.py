@@ -116,7 +116,7 @@ def test_the_page_shows_figure_values_and_what_more_beds_would_give(sweeps, tmp_
         ("repose=30 deg", "grains.diameter=0.3 m:0.5 m", r"grains\.diameter: grains of up to .* do not fit"),
     ],
 )
-def test_what_cannot_be_is_said_before_anything_is_run(sweeps, tmp_path, target, vary, said):
+def test_impossible_requests_are_refused_before_any_run(sweeps, tmp_path, target, vary, said):
     with pytest.raises(LabError, match=said):
         calibrated(tmp_path / "new", target, vary)
     assert not sweeps.asked and not (tmp_path / "new").exists()
@@ -126,12 +126,12 @@ def test_what_cannot_be_is_said_before_anything_is_run(sweeps, tmp_path, target,
     ("overrides", "beds"),
     [({}, 8), ({"run.repeats": 12}, 12), ({"run": {"repeats": 3}}, 3), ({"run.seed": 5}, 8)],
 )
-def test_eight_beds_are_run_unless_more_or_fewer_are_asked_for(sweeps, tmp_path, overrides, beds):
+def test_eight_beds_are_run_unless_another_number_is_requested(sweeps, tmp_path, overrides, beds):
     assert calibrated(tmp_path, overrides=overrides).beds == beds
     assert {run["run"]["repeats"] for run in sweeps.overrides} == {beds}
 
 
-def test_fewer_beds_are_said_to_be_worth_nothing_and_how_many_would_be(sweeps, tmp_path):
+def test_a_warning_on_too_few_beds_names_the_number_needed(sweeps, tmp_path):
     made = calibrated(tmp_path, overrides={"run.repeats": 3})
     warning, beyond = made.warnings()
     assert "reaches beyond the range" in beyond and "[−∞, " in made.text()
@@ -143,7 +143,7 @@ def test_fewer_beds_are_said_to_be_worth_nothing_and_how_many_would_be(sweeps, t
     assert one.warnings() == ["One bed gives no interval: it takes at least 8 beds, not 1."]
 
 
-def test_what_was_not_found_or_stopped_is_shown_and_said(sweeps, tmp_path):
+def test_missing_measures_and_stopped_runs_are_reported(sweeps, tmp_path):
     sweeps.lose = {0.1: (2, 5), 0.9: "stopped: world 3: a grain moves at 12 m/s", 0.7: (0, 1, 2, 3, 4)}
     made = calibrated(tmp_path)
     page = (tmp_path / "summary.md").read_text()
@@ -155,7 +155,7 @@ def test_what_was_not_found_or_stopped_is_shown_and_said(sweeps, tmp_path):
     assert made.value == pytest.approx(EXACT, abs=1e-6)
 
 
-def test_no_value_in_the_range_is_said_with_what_there_is(sweeps, tmp_path):
+def test_if_no_value_gives_the_target_the_measured_range_is_reported(sweeps, tmp_path):
     with pytest.raises(LabError) as refused:
         calibrated(tmp_path, "repose=80 deg")
     said = (
@@ -169,24 +169,24 @@ def test_no_value_in_the_range_is_said_with_what_there_is(sweeps, tmp_path):
     assert json.loads((tmp_path / "calibration.json").read_text())["value"] is None
 
 
-def test_a_target_just_beyond_what_was_found_is_said_to_be_open(sweeps, tmp_path):
+def test_a_target_just_beyond_the_measured_range_is_called_undecided(sweeps, tmp_path):
     with pytest.raises(LabError, match=r"39 deg: .* 38\.9; at 0\.9 the difference from the target is not significant"):
         calibrated(tmp_path, "repose=39 deg")
 
 
-def test_two_values_that_give_the_target_alike_are_both_named(sweeps, tmp_path):
+def test_two_values_that_give_the_target_are_both_named(sweeps, tmp_path):
     with pytest.raises(LabError, match=r"several values of material\.friction give the target, about 1 and 2"):
         calibrated(tmp_path, "repose=40 deg", "friction=0.5:2.6")
 
 
-def test_nothing_found_at_all_is_said(sweeps, tmp_path):
+def test_a_calibration_without_any_result_is_reported(sweeps, tmp_path):
     sweeps.lose = {x: "stopped: world 0: a grain left the tank" for x in (0.1, 0.3, 0.5, 0.7, 0.9)}
     with pytest.raises(LabError, match="too few of the runs have this measure"):
         calibrated(tmp_path)
     assert (tmp_path / "summary.md").read_text().count("a grain left the tank") == 5
 
 
-def test_a_calibration_cut_short_goes_on_as_it_was_asked_for(sweeps, tmp_path):
+def test_an_interrupted_calibration_continues_as_requested(sweeps, tmp_path):
     whole, folder = calibrated(tmp_path / "whole"), tmp_path / "cut"
     sweeps.cut = {"round-2"}
     with pytest.raises(KeyboardInterrupt) as cut:
@@ -203,7 +203,7 @@ def test_a_calibration_cut_short_goes_on_as_it_was_asked_for(sweeps, tmp_path):
         resume_any(folder, quiet=True)
 
 
-def test_whole_numbers_are_tried_where_the_ends_are_such(sweeps, tmp_path):
+def test_whole_numbers_are_used_if_the_key_takes_them(sweeps, tmp_path):
     calibrated(tmp_path, "repose=-20 deg", "grains.count=1:7", {"grains.depth": False, "grains.count": 3})
     assert sweeps.asked[0] == [1, 2, 4, 6, 7]  # rounded to even where they are halves
     assert all(isinstance(value, int) for value in sweeps.asked[1])
@@ -230,7 +230,7 @@ def test_the_targets_own_error_widens_the_interval(sweeps, tmp_path):
     assert "30.0 ± 2.0 deg (s.e.)" in (tmp_path / "b" / "summary.md").read_text()
 
 
-def test_targets_may_come_in_any_unit_of_their_kind():
+def test_targets_may_have_any_compatible_unit():
     assert in_unit("0.5 rad", "deg", "x") == pytest.approx(np.degrees(0.5))
     assert in_unit("3 cm", "mm", "x") == pytest.approx(30.0)
     assert in_unit("5 d", "d", "x") == 5.0

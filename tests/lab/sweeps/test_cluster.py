@@ -92,7 +92,7 @@ def assert_equal(there, here):
         assert {path.name for path in mine.iterdir()} == {path.name for path in reference.iterdir()}
 
 
-def test_a_sweep_on_a_worker_equals_the_local_one_and_what_is_done_is_not_sent(
+def test_a_sweep_on_a_worker_equals_the_local_one_and_finished_points_are_not_sent(
     here, scheduler, in_this_thread, tmp_path, monkeypatch
 ):
     folder = tmp_path / "there"
@@ -105,14 +105,14 @@ def test_a_sweep_on_a_worker_equals_the_local_one_and_what_is_done_is_not_sent(
     assert [at.name for at in errand.runs] == ["001"]
 
 
-def test_launches_are_planned_as_they_are_here_but_for_one_that_was_begun_here(tmp_path):
+def test_batches_are_those_of_a_local_sweep_except_one_begun_locally(tmp_path):
     sent = errands("tilting/quick", FOUR, SMALL, tmp_path)
     assert [[at.name for at in errand.runs] for errand in sent] == [["000", "002"], ["001", "003"]]
     Checkpoint({}, ("points/000", "points/002"), (0, 0)).write(tmp_path)
     assert errands("tilting/quick", FOUR, SMALL, tmp_path) == sent[1:]
 
 
-def test_threads_and_device_are_those_of_the_asking_machine(monkeypatch):
+def test_threads_and_device_are_those_of_the_client(monkeypatch):
     """A large world would be cut into other bands on a machine with other cores."""
     monkeypatch.setattr("lab.sweeps.cluster.available_cores", lambda: 7)
     preset = load("tilting/quick", {**SMALL, "motion.sway.frequency": "1 Hz", "run.threads": 0, "run.arch": "cpu"})
@@ -142,7 +142,7 @@ def test_all_experiments_are_sent_at_once_before_anything_runs_here(tmp_path, mo
     assert done == [(2, "tcp://node1:8786"), *batches.values()]
 
 
-def test_a_task_that_nobody_waits_for_ends(scheduler):
+def test_a_cancelled_task_ends(scheduler):
     def work():
         progress = cluster._TaskProgress()
         progress.start("work", 1.0)
@@ -165,7 +165,7 @@ def test_a_task_that_nobody_waits_for_ends(scheduler):
         (ModuleNotFoundError("No module named 'lab'", name="lab"), "a worker lacks lab: install the same lab there"),
     ],
 )
-def test_what_a_worker_cannot_do_is_one_sentence(scheduler, tmp_path, monkeypatch, error, said):
+def test_errors_of_a_worker_are_one_sentence(scheduler, tmp_path, monkeypatch, error, said):
     def fail(work):
         raise error
 
@@ -193,7 +193,7 @@ def test_without_the_extra_the_package_is_named(monkeypatch, tmp_path):
 
 
 @pytest.mark.parametrize("address", ["tcp://127.0.0.1:1", "nonsense://x"])
-def test_an_address_where_nobody_answers_is_named(address, monkeypatch, tmp_path):
+def test_an_address_without_a_scheduler_is_named(address, monkeypatch, tmp_path):
     monkeypatch.setattr(cluster, "PATIENCE", 0.5)
     with pytest.raises(LabError, match=f"no scheduler answers at {address}: start one with"):
         run_sweep("tilting/quick", AXES, SMALL, tmp_path / "s", quiet=True, cluster=address)
@@ -224,13 +224,13 @@ def test_a_worker_with_several_threads_is_refused(monkeypatch):
         ("tcp://127.0.0.1.elsewhere.net:8786", True),
     ],
 )
-def test_schedulers_that_others_reach_are_told(address, opened):
+def test_schedulers_open_to_other_machines_are_recognised(address, opened):
     assert cluster.is_open(address) == opened
 
 
 @pytest.mark.parametrize("version", ["0.0.1", "99.0"])
 @pytest.mark.parametrize("package", ["cargo-shift-lab", "taichi"])
-def test_a_worker_of_another_version_is_refused_before_it_reads_its_work(
+def test_a_worker_of_another_version_is_refused_before_it_unpickles_work(
     scheduler, tmp_path, monkeypatch, package, version
 ):
     monkeypatch.setattr(cluster, "versions", lambda: versions() | {package: version})
@@ -327,7 +327,7 @@ def asking(folder, address, *words):
 
 
 @pytest.mark.slow
-def test_a_scheduler_that_is_killed_is_one_sentence(dask, tmp_path):
+def test_a_killed_scheduler_gives_one_sentence(dask, tmp_path):
     scheduler = dask("scheduler", "--host", "127.0.0.1", "--port", 0, "--scheduler-file", tmp_path / "scheduler.json")
     command = asking(tmp_path / "there", address_in(tmp_path / "scheduler.json"))
     assert "no worker yet: waiting for one" in command.stderr.readline()
@@ -353,7 +353,7 @@ def test_a_client_that_is_interrupted_leaves_the_worker_free(dask, tmp_path):
 
 
 @pytest.mark.slow
-def test_a_worker_without_room_is_one_sentence(dask, tmp_path):
+def test_a_worker_with_a_full_disk_gives_one_sentence(dask, tmp_path):
     dask("scheduler", "--host", "127.0.0.1", "--port", 0, "--scheduler-file", tmp_path / "scheduler.json")
     address = address_in(tmp_path / "scheduler.json")
     worker = worker_of(dask, tmp_path)
@@ -368,7 +368,7 @@ def test_a_worker_without_room_is_one_sentence(dask, tmp_path):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("said", ['__version__ = "0.0.1"\n', ""])
-def test_a_worker_with_another_lab_is_one_sentence(dask, tmp_path, said):
+def test_a_worker_with_another_lab_gives_one_sentence(dask, tmp_path, said):
     (tmp_path / "other" / "lab").mkdir(parents=True)
     (tmp_path / "other" / "lab" / "__init__.py").write_text(said)
     dask("scheduler", "--host", "127.0.0.1", "--port", 0, "--scheduler-file", tmp_path / "scheduler.json")
@@ -381,7 +381,7 @@ def test_a_worker_with_another_lab_is_one_sentence(dask, tmp_path, said):
 
 
 @pytest.mark.slow
-def test_a_scheduler_that_listens_beyond_this_machine_is_told(dask, tmp_path):
+def test_a_scheduler_open_to_other_machines_gives_a_warning(dask, tmp_path):
     dask("scheduler", "--host", "0.0.0.0", "--port", 0, "--scheduler-file", tmp_path / "scheduler.json")
     address = address_in(tmp_path / "scheduler.json")
     command = asking(tmp_path / "there", f"tcp://127.0.0.1:{address.rpartition(':')[2]}")

@@ -93,7 +93,7 @@ def data_sets(folder):
         ("rest: 3", ["rest: 3"]),
     ],
 )
-def test_values_are_read_as_they_are_written(text, expected):
+def test_values_are_parsed(text, expected):
     read = values("key", text)
     assert read == expected and list(map(type, read)) == list(map(type, expected))
 
@@ -109,13 +109,13 @@ def test_values_are_read_as_they_are_written(text, expected):
         ("-1:2:3:log mm", "cannot reach or cross zero"),
     ],
 )
-def test_a_range_that_cannot_be_is_refused_by_its_key(text, complaint):
+def test_an_impossible_range_is_refused_with_its_key(text, complaint):
     with pytest.raises(LabError, match=rf"grains\.diameter: .*{complaint}"):
         values("grains.diameter", text)
 
 
 @given(st.text())
-def test_any_text_is_some_value_or_a_sentence(text):
+def test_any_text_is_a_value_or_gives_one_sentence(text):
     try:
         assert len(values("key", text)) >= 1
     except LabError as error:
@@ -142,7 +142,7 @@ def test_the_grid_has_every_combination_and_the_last_key_changes_fastest():
     assert sweep.settings[1] == {"run.seed": 1, "material.friction": 0.2}
 
 
-def test_points_share_launches_as_far_as_their_scenes_and_the_machine_allow(monkeypatch):
+def test_points_share_batches_as_far_as_scenes_and_machine_allow(monkeypatch):
     monkeypatch.setattr("lab.sweeps.sweep.available_cores", lambda: 2)
     monkeypatch.setattr("lab.runs.batch.available_cores", lambda: 2)
 
@@ -168,13 +168,13 @@ def test_points_share_launches_as_far_as_their_scenes_and_the_machine_allow(monk
         ({"run.seed": "1:1000:1000", "grains.spread": "0:0.1:1000"}, "1000000 points, more than"),
     ],
 )
-def test_what_cannot_be_swept_is_said_before_anything_runs(axes, complaint, tmp_path):
+def test_impossible_sweeps_are_refused_before_any_run(axes, complaint, tmp_path):
     with pytest.raises(LabError, match=complaint):
         run_sweep("tilting/quick", axes, None, tmp_path / "s", quiet=True)
     assert not (tmp_path / "s").exists()
 
 
-def test_a_point_in_company_has_the_bits_of_the_run_alone(swept, tmp_path):
+def test_a_point_in_a_batch_has_the_bits_of_the_run_alone(swept, tmp_path):
     """Point 1 shares its launch with one that is stopped on the way."""
     alone = SMALL | {"motion": {"tilt": False, "sway": {"amplitude": "4 mm", "frequency": "3 Hz"}}}
     run_preset("tilting/quick", alone, tmp_path / "alone", video=False, quiet=True)
@@ -186,7 +186,7 @@ def test_a_point_in_company_has_the_bits_of_the_run_alone(swept, tmp_path):
             assert np.array_equal(mine[name], reference[name]), name
 
 
-def test_a_point_that_the_watch_stops_is_recorded_as_such_and_ends_nothing(swept):
+def test_a_point_stopped_by_the_watch_is_recorded_and_the_others_continue(swept):
     statuses = [row["status"] for row in swept.rows]
     assert statuses[:2] == ["complete"] * 2
     assert statuses[2].startswith("stopped: world 0: a grain moves at")
@@ -213,7 +213,7 @@ def test_a_sweep_leaves_figures_a_film_and_ordinary_runs(swept, films):
         assert recording.complete and recording.preset["motion"]["sway"]["frequency"] == 1.0
 
 
-def test_what_is_done_is_not_done_again_and_another_request_is_refused(swept, tmp_path, monkeypatch):
+def test_finished_points_are_not_run_again_and_another_sweep_is_refused(swept, tmp_path, monkeypatch):
     shutil.copytree(swept.folder, tmp_path / "s")
     monkeypatch.setattr("lab.sweeps.sweep.run_batch", None)  # nothing is to be launched
     again = run_sweep("tilting/quick", AXES, SMALL, tmp_path / "s", video=False, quiet=True)
@@ -225,7 +225,7 @@ def test_what_is_done_is_not_done_again_and_another_request_is_refused(swept, tm
         run_sweep("tilting/quick", AXES, SMALL, swept.points[0], quiet=True)
 
 
-def test_a_sweep_cut_short_goes_on_with_the_points_that_are_left(swept, tmp_path, monkeypatch):
+def test_an_interrupted_sweep_continues_with_the_remaining_points(swept, tmp_path, monkeypatch):
     folder = tmp_path / "s"
     shutil.copytree(swept.folder, folder)
     shutil.rmtree(folder / "points" / "002")  # never begun
@@ -270,7 +270,7 @@ def test_every_grid_has_its_figure(tmp_path, others):
 
 
 @pytest.mark.slow
-def test_a_sweep_interrupted_and_killed_equals_the_undisturbed_one(tmp_path):
+def test_a_sweep_interrupted_and_killed_equals_the_uninterrupted_one(tmp_path):
     options = [("motion.sway.frequency", "1, 3 Hz"), ("material.friction", "0.1:0.3:2"), ("motion.tilt", "false")]
     options += [("tank.width", "24 mm"), ("tank.height", "24 mm"), ("grains.depth", "12 mm"), ("run.duration", "3 s")]
     options += [("motion.sway.amplitude", "4 mm"), ("record.checkpoint_every", "0 s")]
@@ -313,7 +313,7 @@ def test_a_damaged_request_is_refused(swept, tmp_path):
         read_sweep(tmp_path / "nowhere")
 
 
-def test_a_state_without_some_worlds_has_the_others_blocks():
+def test_a_state_without_some_worlds_keeps_the_others():
     """3 worlds of 2 units each; the second world leaves."""
     state = {"clock": np.array([7, 1, 0]), "origin": np.array(0.5), "y": np.arange(12).reshape(6, 2)}
     axes = {"clock": (Axis("number", 3),), "origin": (), "y": (Axis("unit", 6), Axis("place", 2))}
@@ -323,7 +323,7 @@ def test_a_state_without_some_worlds_has_the_others_blocks():
     np.testing.assert_array_equal(left["y"], [[0, 1], [2, 3], [8, 9], [10, 11]])
 
 
-def test_values_are_numbers_only_where_they_have_one_unit():
+def test_values_are_numbers_only_with_a_common_unit():
     numbers, unit = numeric(["1 mm", "2.5 mm"])
     assert list(numbers) == [1.0, 2.5] and unit == "mm"
     assert numeric([1, 2])[1] == ""
@@ -341,7 +341,7 @@ def test_the_python_call_takes_tables_and_keys(monkeypatch):
     assert callable(lab.sweep) and callable(lab.resume)  # no module of the same name has taken their place
 
 
-def test_xdmf_points_at_what_the_recording_holds(tmp_path):
+def test_xdmf_refers_to_the_recorded_data(tmp_path):
     radius = np.array([[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]])
     rows = [frame(0.1 * k, 2, 3, position=np.random.default_rng(k).random((2, 3, 2))) for k in range(4)]
     centre = np.zeros((1, 2, 2))

@@ -24,7 +24,7 @@ def ends(pieces: list[np.ndarray], time: float) -> np.ndarray:
 
 
 @pytest.mark.parametrize("seed", range(5))
-def test_pieces_go_on_without_a_jump_and_within_bounds(seed):
+def test_the_motion_is_smooth_between_pieces_and_within_bounds(seed):
     random, steered = np.random.default_rng(seed), helm()
     moves = [name for name in steered.wanted if CONTROLS[name].kind == MOVES]
     last = np.zeros((3, 3))
@@ -63,6 +63,6 @@ def test_the_centre_of_roll_stays_where_it_is():
         assert y + 1j * z + np.exp(1j * turn) * centre == pytest.approx(centre, abs=1e-6)
 
 
-def test_nothing_wanted_nothing_moved():
+def test_without_settings_the_tank_does_not_move():
     steered = helm()
     assert all(not np.any(piece) for _ in range(5) for piece in steered.follow(PIECE))

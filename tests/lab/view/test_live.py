@@ -37,7 +37,7 @@ def steered(tmp_path_factory):
     return folder
 
 
-def test_a_bed_can_be_watched_as_it_is_made(tmp_path, monkeypatch):
+def test_a_bed_can_be_watched_while_it_settles(tmp_path, monkeypatch):
     """Its grains fall, and stand still at the end, a centre of mass ever lower."""
 
     said = []
@@ -56,7 +56,7 @@ def test_a_bed_can_be_watched_as_it_is_made(tmp_path, monkeypatch):
     assert np.abs(places[-1] - lies).max() < 1e-5
 
 
-def test_the_recording_tells_what_was_done(steered):
+def test_the_recording_has_the_users_actions(steered):
     with open_recording(steered) as recording:
         done = [(name, value) for _, name, value in recording.steering]
         times = [time for time, name, _ in recording.steering if name == "friction"]
@@ -81,7 +81,7 @@ def test_a_replay_has_the_same_bits(steered, tmp_path):
     assert json.loads((again.folder / "summary.json").read_text())["status"] == "complete"
 
 
-def test_what_was_killed_replays_as_far_as_it_was_recorded(steered, tmp_path):
+def test_a_killed_run_replays_as_far_as_it_was_recorded(steered, tmp_path):
     """The last rows cut off, as a killed process leaves them."""
     folder = tmp_path / "killed"
     folder.mkdir()
@@ -95,7 +95,7 @@ def test_what_was_killed_replays_as_far_as_it_was_recorded(steered, tmp_path):
         assert second.series["kinetic"].tobytes() == first.series["kinetic"][:11].tobytes()
 
 
-def test_a_run_that_no_hand_steered_is_not_replayed(steered, tmp_path):
+def test_a_run_that_was_not_steered_is_not_replayed(steered, tmp_path):
     folder = tmp_path / "plain"
     folder.mkdir()
     (folder / "recording.h5").write_bytes((steered / "recording.h5").read_bytes())
@@ -106,7 +106,7 @@ def test_a_run_that_no_hand_steered_is_not_replayed(steered, tmp_path):
 
 
 @pytest.mark.slow
-def test_a_random_sea_that_a_hand_raised_replays_with_the_same_bits(tmp_path):
+def test_a_steered_random_sea_replays_with_the_same_bits(tmp_path):
     folder, loaded = tmp_path / "sea", load("ship/irregular-sea-quick", {"grains.diameter": "12 mm"})
     with Live(steerable(loaded), folder, Progress(quiet=True)) as live:
         for k in range(60):

@@ -9,7 +9,7 @@ from lab.view.outbox import Outbox
 LARGE = bytes(10**6)  # more than a pipe holds
 
 
-def test_nobody_looks_and_it_goes_on_and_the_newest_is_what_is_seen_then():
+def test_the_experiment_continues_while_nobody_reads_and_the_newest_frame_arrives():
     here, there = Pipe()
     outbox = Outbox(there)
     outbox.send("message", LARGE)
@@ -24,7 +24,7 @@ def test_nobody_looks_and_it_goes_on_and_the_newest_is_what_is_seen_then():
     assert not here.poll()
 
 
-def test_the_newest_of_each_that_is_only_looked_at_and_all_of_the_rest():
+def test_replaceable_messages_arrive_once_and_all_others_always():
     here, there = Pipe()
     outbox = Outbox(there)
     outbox.send("message", LARGE)  # which the pipe is full of
@@ -38,7 +38,7 @@ def test_the_newest_of_each_that_is_only_looked_at_and_all_of_the_rest():
     assert not here.poll()
 
 
-def test_it_ends_with_the_window():
+def test_the_outbox_ends_with_the_window():
     here, there = Pipe()
     outbox = Outbox(there)
     here.close()

@@ -101,7 +101,7 @@ def asked(pipe) -> list:
     return found
 
 
-def test_it_starts_as_the_preset_moves_and_runs(opened):
+def test_a_session_starts_running_with_the_presets_motion(opened):
     session, pipes, _ = opened
     said = asked(pipes[-1])
     assert ("set", ("tilt", pytest.approx(np.radians(40.0)))) in said
@@ -109,7 +109,7 @@ def test_it_starts_as_the_preset_moves_and_runs(opened):
     assert session.going
 
 
-def test_the_picture_has_the_grains_and_says_how_it_runs(opened):
+def test_the_picture_shows_the_grains_and_the_state(opened):
     session, _, place = opened
     picture = session.picture()
     assert picture.shape == (SIZE[1], SIZE[0], 3)
@@ -119,7 +119,7 @@ def test_the_picture_has_the_grains_and_says_how_it_runs(opened):
     assert np.mean(np.abs(painted - [246, 247, 249]).max(axis=1) > 20) > 0.95
 
 
-def test_keys_pause_go_back_and_come_forth(opened):
+def test_keys_pause_and_move_back_and_forward(opened):
     session, pipes, _ = opened
     newest = session.picture()
     asked(pipes[-1])
@@ -159,7 +159,7 @@ def test_a_slider_goes_from_the_lowest_to_the_highest_value(opened):
     assert CONTROLS["tilt"].low < 0.0
 
 
-def test_no_hand_gets_a_control_out_of_its_range(opened):
+def test_no_control_can_leave_its_range(opened):
     session, _, _ = opened
     session.set("friction", 17.0)
     assert session.values["friction"] == CONTROLS["friction"].high
@@ -219,7 +219,7 @@ def test_a_click_near_the_edge_picks_the_grain_that_is_there(opened):
                 assert session.page.grain_at(session, *camera.pixels(point[None])[0]) == i
 
 
-def test_forces_are_drawn_as_thick_as_they_are_large(opened):
+def test_the_thickness_of_forces_is_proportional_to_them(opened):
     session, _, _ = opened
     session.look.overlay = "forces"
     session.picture()
@@ -242,7 +242,7 @@ def test_a_row_of_grains_between_walls_has_two_contacts_each(opened):
     assert f"{count} grains, 2.00 contacts each" in readings(session)
 
 
-def test_what_needs_a_restart_waits_for_it(opened):
+def test_changes_that_need_a_restart_wait_for_it(opened):
     session, pipes, _ = opened
     asked(pipes[-1])
     session.set("diameter", 4e-3)
@@ -253,7 +253,7 @@ def test_what_needs_a_restart_waits_for_it(opened):
     assert session.overrides["grains.diameter"] == "4 mm"
 
 
-def test_s_starts_anew_with_the_grains_of_another_cargo(opened):
+def test_s_starts_again_with_the_grains_of_another_cargo(opened):
     session, pipes, _ = opened
     session.key("s")
     assert asked(pipes[0])[-1] == ("end", None)
@@ -264,7 +264,7 @@ def test_s_starts_anew_with_the_grains_of_another_cargo(opened):
     assert list(load(PRESET, session.overrides).resolved.shapes) == ["disc"]
 
 
-def test_s_says_where_grains_cannot_have_outlines_and_goes_on(opened):
+def test_s_reports_if_grains_cannot_have_outlines(opened):
     session, pipes, _ = opened
     wet = {
         "contact.cohesion": "bridge",
@@ -277,7 +277,7 @@ def test_s_says_where_grains_cannot_have_outlines_and_goes_on(opened):
     assert session.going and "end" not in [word for word, _ in asked(pipes[-1])]
 
 
-def test_what_ends_the_experiment_is_said_and_can_be_looked_back_from(opened):
+def test_the_reason_of_the_end_is_shown_and_rewinding_works(opened):
     session, pipes, _ = opened
     pipes[-1].send(("over", "world 0: a grain is too fast"))
     session.tick()
@@ -286,7 +286,7 @@ def test_what_ends_the_experiment_is_said_and_can_be_looked_back_from(opened):
     assert session.frame == 3
 
 
-def test_an_experiment_that_broke_off_is_told_once_with_where_its_recording_is(opened):
+def test_an_aborted_experiment_is_reported_once_with_its_recording(opened):
     session, pipes, _ = opened
     pipes[-1].close()
     session.tick()
@@ -299,7 +299,7 @@ def test_an_experiment_that_broke_off_is_told_once_with_where_its_recording_is(o
     assert session.picture().shape == (SIZE[1], SIZE[0], 3)
 
 
-def test_what_is_kept_in_memory_is_bounded_and_what_is_looked_at_stays(opened, monkeypatch):
+def test_memory_is_bounded_and_the_shown_frame_stays(opened, monkeypatch):
     session, pipes, place = opened
     session.key("left")
     session.key("left")
@@ -318,7 +318,7 @@ def test_what_is_kept_in_memory_is_bounded_and_what_is_looked_at_stays(opened, m
     assert frames[-1].time == pytest.approx(19.9)
 
 
-def test_the_wheel_zooms_where_the_mouse_is(opened):
+def test_the_wheel_zooms_about_the_mouse(opened):
     session, _, _ = opened
     camera = session.page.camera(session)
     place = (300.0 - camera.offset[0]) / camera.scale, (camera.offset[1] - 400.0) / camera.scale
@@ -336,7 +336,7 @@ def test_the_plot_does_not_hide_the_tank(opened):
     assert corners[:, 0].min() > left + width or corners[:, 1].min() > top + height
 
 
-def test_long_sentences_keep_to_their_place(opened):
+def test_long_sentences_stay_in_their_area(opened):
     session, _, _ = opened
     quiet = session.picture()
     session.say("world 0: a grain moved farther in a step than it may; " * 9)
@@ -354,7 +354,7 @@ def test_keys_change_the_picture(opened, overlay):
     assert np.any(session.picture() != before)
 
 
-def test_a_bed_is_seen_while_it_is_made_and_keys_do_no_harm(opened):
+def test_a_settling_bed_is_shown_and_keys_do_no_harm(opened):
     """The session starts anew; grains fall into a tank that is higher than its own, and the hand has no hold yet."""
     session, pipes, place = opened
     scenery = session.footage.scenery
@@ -392,7 +392,7 @@ def test_a_bed_is_seen_while_it_is_made_and_keys_do_no_harm(opened):
     assert clock(session) == "t = 0.00 s, running"
 
 
-def test_keys_do_no_harm_before_anything_is_known_of_the_experiment(opened, tmp_path):
+def test_keys_do_no_harm_before_the_first_message(opened, tmp_path):
     session = Session(PRESET, SMALL, SIZE, tmp_path / "another")
     for name in KEYS.keys() - {"escape", "r", "s"}:
         session.key(name)
@@ -401,11 +401,11 @@ def test_keys_do_no_harm_before_anything_is_known_of_the_experiment(opened, tmp_
     session.close()
 
 
-def test_help_tells_every_key():
+def test_the_help_lists_every_key():
     assert all(says and callable(action) for says, action in KEYS.values())
 
 
-def test_without_a_display_one_sentence_names_what_does_without(monkeypatch):
+def test_without_a_display_one_sentence_names_the_command_without_window(monkeypatch):
     from lab.cli import main
 
     for name in ("DISPLAY", "WAYLAND_DISPLAY"):

@@ -37,11 +37,11 @@ def test_a_ship_offers_her_waves_and_no_motion_of_the_tank(preset):
     assert not {"tilt", "sway", "gravity"} & offered(preset).keys()
 
 
-def test_nothing_wanted_the_waves_stay_as_they_are(preset):
+def test_without_settings_the_waves_stay_unchanged(preset):
     assert RegularSwell(preset).follow(PIECE) is None
 
 
-def test_waves_grow_softly_to_what_is_wanted(preset):
+def test_waves_grow_smoothly_to_the_setting(preset):
     swell = RegularSwell(preset)
     swell.wanted["wave_amplitude"] = 0.035
     height = follow(swell, 8.0)[:, 0]
@@ -51,7 +51,7 @@ def test_waves_grow_softly_to_what_is_wanted(preset):
     assert height[-1] == pytest.approx(0.035, abs=1e-6)
 
 
-def test_another_frequency_comes_where_the_old_waves_have_died_away(preset):
+def test_a_new_frequency_acts_after_the_old_waves_have_decayed(preset):
     swell = RegularSwell(preset)
     swell.wanted["wave_frequency"] = 6.0
     height, frequency, number = follow(swell, 14.0).T
@@ -67,13 +67,13 @@ def at_sea():
     return load("ship/irregular-sea").resolved
 
 
-def test_of_a_random_sea_the_height_is_offered_and_of_calm_water_nothing(at_sea):
+def test_a_random_sea_offers_its_height_and_calm_water_nothing(at_sea):
     waves = {name for name in offered(at_sea) if name.startswith("wave_")}
     assert waves == {"wave_height"}
     assert swell_of(at_sea.model_copy(update={"waves": None})) is None
 
 
-def test_a_random_sea_grows_softly_all_components_alike(at_sea):
+def test_all_components_of_a_random_sea_grow_smoothly_in_proportion(at_sea):
     swell, given = RandomSwell(at_sea), make_waves(at_sea.waves, make_water(at_sea.water, 9.81))
     assert swell.follow(PIECE) is None
     swell.wanted["wave_height"] = 2.0 * at_sea.waves.height

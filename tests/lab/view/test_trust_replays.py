@@ -54,7 +54,7 @@ STEPS = [
 
 
 @pytest.mark.parametrize("step", STEPS)
-def test_a_replay_that_no_hand_could_have_steered_is_refused(steered, tmp_path, step):
+def test_a_replay_with_impossible_actions_is_refused(steered, tmp_path, step):
     folder = copied(steered, tmp_path / "run")
     with h5py.File(folder / "recording.h5", "r+") as file:
         for name, value in zip(("time", "name", "value"), step, strict=True):
@@ -67,7 +67,7 @@ def test_a_replay_that_no_hand_could_have_steered_is_refused(steered, tmp_path, 
 @pytest.mark.parametrize(
     "times", [[0.0, 0.0, 0.0, 0.0], [np.nan] * 4, [0.0, 1e300, 2e300, 3e300], [3.0, 2.0, 1.0, 0.0]]
 )
-def test_a_replay_whose_times_are_none_is_refused(steered, tmp_path, times):
+def test_a_replay_with_invalid_times_is_refused(steered, tmp_path, times):
     folder = copied(steered, tmp_path / "run")
     with h5py.File(folder / "recording.h5", "r+") as file:
         file["series/time"][...] = times
@@ -84,7 +84,7 @@ OTHERS = [
 
 
 @pytest.mark.parametrize("changes", OTHERS)
-def test_a_recording_of_another_preset_than_it_holds_is_not_gone_on_with(sound, tmp_path, changes):  # noqa: F811
+def test_a_recording_that_does_not_match_its_preset_is_not_continued(sound, tmp_path, changes):  # noqa: F811
     folder = copied(sound, tmp_path / "run")
     (folder / "checkpoint.npz").unlink()
     with h5py.File(folder / "recording.h5", "r+") as file:
@@ -105,7 +105,7 @@ def test_a_recording_of_another_preset_than_it_holds_is_not_gone_on_with(sound, 
     assert (folder / "recording.h5").read_bytes() == before
 
 
-def test_a_description_takes_no_more_memory_for_more_frames(tmp_path):
+def test_an_xdmf_file_takes_no_more_memory_for_more_frames(tmp_path):
     with recorder(tmp_path, count=1) as run:
         for k in range(500):
             run.frame(frame(0.01 * k, count=1))
