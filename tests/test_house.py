@@ -1,4 +1,4 @@
-"""The house itself: rooms import those below them only, no files in a circle, no room and no file too full.
+"""The structure of the code: packages import only those below them, without cycles, in small folders and files.
 
 `docs/developing.md` says what each room is for. A new room gets its place in the lists here.
 """

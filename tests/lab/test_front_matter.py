@@ -1,4 +1,4 @@
-"""What a package tells of itself: one version everywhere, a licence that its libraries allow, how to cite it."""
+"""The package's metadata: one version everywhere, a licence compatible with its libraries, the citation."""
 
 import re
 import tomllib

@@ -1,4 +1,4 @@
-"""Videos, pictures and posters of a recording, and what is said when there can be none."""
+"""Videos, pictures and posters of a recording, and the messages if there can be none."""
 
 import shutil
 from typing import get_args, get_type_hints

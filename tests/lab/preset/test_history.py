@@ -1,4 +1,4 @@
-"""Motion from a file: what the record says is what the tank does; what it could not follow is refused."""
+"""Motion from a file: the tank follows the record; records that it cannot follow are refused."""
 
 import json
 

@@ -1,4 +1,4 @@
-"""Presets in full that files bring along: what no preset could come to is refused before it takes memory."""
+"""Resolved presets stored in files: values beyond the limits are refused before they take memory."""
 
 import json
 

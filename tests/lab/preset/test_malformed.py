@@ -1,4 +1,4 @@
-"""What is malformed ends in one sentence and exit code 2, never in a traceback; what passes can be built."""
+"""Malformed input ends in one sentence and exit code 2, never in a traceback; accepted presets can be built."""
 
 import json
 import os
@@ -157,7 +157,7 @@ def call(*arguments: str):
 
 
 def refused(done) -> str:
-    """What a command that ended in one sentence and exit code 2 said."""
+    """The message of a command, which must have ended with one sentence and exit code 2."""
     assert isinstance(done.exception, SystemExit), repr(done.exception)
     said = done.stderr
     assert done.exit_code == 2 and said.startswith("cargolab: ") and said.count("\n") == 1, said
@@ -259,7 +259,7 @@ def flatten(draw, table):
 
 
 def double(draw, table):
-    """Say a key of the lab where it may not have been said."""
+    """Insert one of the lab's keys where it may not belong."""
     parts = draw(st.sampled_from(KEYS)).replace("NAME", "gate").split(".")
     for part in parts[:-1]:
         inner = table.get(part)
@@ -342,7 +342,7 @@ def test_damaged_tables_are_refused_in_one_sentence_or_can_be_built(folder, name
 
 @st.composite
 def mangled_table(draw, text: str) -> bytes:
-    """A CSV file with some cells that are none."""
+    """A CSV file with some invalid cells."""
     rows = [line.split(",") for line in text.splitlines()]
     for _ in range(draw(st.integers(1, 4))):
         row = draw(st.sampled_from(rows))

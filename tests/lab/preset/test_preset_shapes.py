@@ -1,4 +1,4 @@
-"""Irregular grains in a preset: what it may say, what is drawn from it, and where the grains start."""
+"""Irregular grains in a preset: valid settings, the outlines drawn from it, and the initial positions."""
 
 from types import SimpleNamespace
 

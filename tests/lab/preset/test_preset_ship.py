@@ -1,4 +1,4 @@
-"""Ships in presets: what is refused and in which words, the vessel that comes of them, her sea, her measures."""
+"""Ships in presets: error messages, the resulting vessel, her waves and her measures."""
 
 import json
 import warnings

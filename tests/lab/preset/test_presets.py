@@ -1,4 +1,4 @@
-"""Presets: what ships resolves; inheritance and overrides; every fault is one sentence with its key."""
+"""Presets: all of the lab's presets resolve; inheritance and overrides; every error is one sentence with its key."""
 
 import tomllib
 from dataclasses import dataclass, replace

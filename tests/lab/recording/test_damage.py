@@ -1,4 +1,4 @@
-"""Flipped bits and torn writes: what is damaged is named and never taken for data, what was flushed stays."""
+"""Flipped bits and incomplete writes: damage is reported and never read as data, flushed rows are kept."""
 
 import random
 from itertools import count

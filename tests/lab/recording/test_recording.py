@@ -83,7 +83,7 @@ def start_writer(folder, standing=0):
 
 
 def assert_whole(folder) -> int:
-    """Every row is what was recorded; returns their number."""
+    """Check that every row is as recorded; returns the number of rows."""
     with open_recording(folder) as recording:
         count = len(recording.series["time"])
         frames = recording.frames["time"][:]
@@ -204,7 +204,7 @@ def test_data_beyond_the_recorded_end_of_a_killed_file_are_not_overwritten(tmp_p
 
 
 def kill_and_go_on(folder, kills: int, chance: random.Random) -> int:
-    """Kill a writer, and those that go on with its file, at random times; the rows that are there in the end."""
+    """Kill a writer, and others that continue its file, at random times; returns the rows at the end."""
     count, path = 0, folder / "recording.h5"
     for _ in range(kills):
         before = changed(path)

@@ -1,4 +1,4 @@
-"""A ship that is lost says so: in words, measures, summary, figures, video and window, and for as long as they last."""
+"""The loss of a ship is reported in texts, measures, summary, figures, video and window."""
 
 import json
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""The head of HDF5 files is read and written as HDF5 does it."""
+"""The superblock of HDF5 files is read and written as HDF5 does it."""
 
 import h5py
 

@@ -35,7 +35,7 @@ def sound(tmp_path_factory) -> Path:
 
 
 def again(file: h5py.File, name: str, **made: object) -> None:
-    """Make a data set of a recording anew, otherwise than the lab does."""
+    """Replace a data set of a recording with one made differently from the lab's."""
     old = file[name]
     settings = {"shape": old.shape, "dtype": old.dtype} | made
     del file[name]

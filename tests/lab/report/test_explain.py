@@ -1,4 +1,4 @@
-"""What a preset is said to cost: every part of a run counts."""
+"""The estimated cost of a preset: every part of a run counts."""
 
 import re
 

@@ -1,4 +1,4 @@
-"""Settled beds: what surface they get, that a stored bed is the bed settled anew, and that the store is harmless."""
+"""Settled beds: their surfaces, stored beds that equal newly settled ones, and the safety of the store."""
 
 import os
 from dataclasses import replace

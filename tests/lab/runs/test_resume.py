@@ -1,4 +1,4 @@
-"""A run that is cut short in whatever way goes on bit for bit: interrupted, killed, stopped by a full disk."""
+"""Interrupted runs continue bit for bit, whether interrupted by the user, killed or stopped by a full disk."""
 
 import errno
 import os
@@ -48,7 +48,7 @@ def no_plots():
 
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory):
-    """The run that nobody disturbed."""
+    """The uninterrupted run."""
     folder = tmp_path_factory.mktemp("whole") / "run"
     run_preset("tilting/quick", SMALL, folder, video=False, quiet=True)
     return contents(folder)

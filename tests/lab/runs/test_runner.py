@@ -1,4 +1,4 @@
-"""A whole run, small: what a person gets from one call."""
+"""A small complete run: the results of one call."""
 
 import json
 

@@ -10,7 +10,7 @@ from lab.studies.bench.accuracy.collisions import worst_error
 from lab.studies.bench.accuracy.repeats import beds_for
 
 
-def test_half_intervals_are_those_of_students_t():
+def test_half_widths_of_intervals_follow_students_t():
     """t of 2 degrees of freedom is 4.3027 at 97.5 %; an interval is told as one, and a single bed has none."""
     three, one = (Point({}, {"angle": np.array(beds)}, 1.0, None) for beds in ([1.0, 2.0, 3.0], [1.0]))
     assert three.half_interval("angle") == pytest.approx(4.3027 / np.sqrt(3.0), rel=1e-4)
@@ -18,7 +18,7 @@ def test_half_intervals_are_those_of_students_t():
     assert mean_and_interval(three, "angle") == "2.00 [-0.48, 4.48]" and mean_and_interval(one, "angle") == "1.00"
 
 
-def test_so_many_beds_and_no_fewer_give_the_confidence_that_is_wanted():
+def test_the_computed_number_of_beds_is_the_smallest_for_the_confidence():
     """With a spread of 1: 2.571/√6 = 1.05 and 2.447/√7 = 0.925."""
     assert beds_for(1.0, 1.0) == 7
     assert beds_for(2.0, 2.0) == 7
@@ -36,13 +36,13 @@ def test_the_restitution_of_verlet_is_of_second_order():
 
 
 @pytest.mark.slow
-def test_a_hasty_study_leaves_a_page(tmp_path):
+def test_a_fast_study_writes_a_page(tmp_path):
     path = run_page(["rate"], tmp_path, fast=True)
     text = path.read_text()
     assert "| 10 |" in text and "| 30 |" in text and "accuracy-rate.png" in text
     assert (tmp_path / "accuracy-rate.png").stat().st_size > 5000
 
 
-def test_an_unknown_study_is_said():
+def test_an_unknown_study_is_reported():
     with pytest.raises(LabError, match=r"there is no study colour: take .*stiffness.*\.$"):
         run_page(["colour"], ".", fast=True)

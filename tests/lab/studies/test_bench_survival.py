@@ -36,7 +36,7 @@ filters = pytest.mark.skipif(
 
 
 @filters
-def test_recordings_are_written_read_and_gone_on_with_where_files_cannot_be_locked(tmp_path):
+def test_recordings_work_where_files_cannot_be_locked(tmp_path):
     line = [sys.executable, "-c", NO_LOCKS + RECORD, tmp_path / "run"]
     paths = os.environ | {"PYTHONPATH": str(Path(__file__).parents[3])}
     done = subprocess.run(line, env=paths, capture_output=True, text=True, check=False)
@@ -44,17 +44,17 @@ def test_recordings_are_written_read_and_gone_on_with_where_files_cannot_be_lock
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="kills as POSIX has them")
-def test_runs_killed_at_random_times_come_out_the_same(tmp_path):
+def test_runs_killed_at_random_times_give_the_same_results(tmp_path):
     tally = kills.run(tmp_path, 2)
     assert tally.tried >= 1 and tally.failed == [], list(tally.lines())
 
 
 @pytest.mark.slow
-def test_all_that_is_tried_quickly_holds(tmp_path):
+def test_all_fast_cases_pass(tmp_path):
     assert survival.run_cases([], tmp_path, fast=True)
 
 
-def test_failures_are_counted_and_told(tmp_path, monkeypatch):
+def test_failures_are_counted_and_reported(tmp_path, monkeypatch):
     def odd(_: Path, blows: int) -> Tally:
         tally = Tally("odd numbers")
         for number in range(blows):
@@ -80,5 +80,5 @@ def test_failures_are_counted_and_told(tmp_path, monkeypatch):
         (2, "", False),
     ],
 )
-def test_what_counts_as_a_sentence(code, said, fine):
+def test_sentences_are_recognised(code, said, fine):
     assert Ended(code, said).in_a_sentence == fine

@@ -13,7 +13,7 @@ from lab.studies.gallery import make_gallery
 
 
 @pytest.mark.parametrize("clip", ["tilting-quick.mp4", None])
-def test_the_page_has_every_preset_and_what_there_is_of_those_that_ran(clip, tmp_path, monkeypatch):
+def test_the_page_has_every_preset_and_the_results_of_those_that_ran(clip, tmp_path, monkeypatch):
     made = {"accuracy": "draft", "beds": 3, "version": "0.2.0", "date": "2026-01-02"}
 
     def show(name, out, beds):
@@ -33,7 +33,7 @@ def test_the_page_has_every_preset_and_what_there_is_of_those_that_ran(clip, tmp
     assert re.findall(r'(?:src|poster)="([^"]*)"', text) == ["tilting-quick.png", *filter(None, [clip])]
 
 
-def test_numbers_are_told_as_people_read_them():
+def test_numbers_are_written_for_readers():
     found = {"std": None, "uncertainty": 0.03, "uncertainty_kind": "fit", "worlds": [0.0], "note": ""}
     angle, shift = {"value": 28.5, "unit": "deg", **found}, {"value": -2.47, "unit": "d", **found}
     told = gallery._telling({"status": "complete", "measures": {"critical_angle": angle, "final_shift": shift}})
@@ -43,7 +43,7 @@ def test_numbers_are_told_as_people_read_them():
     }
 
 
-def test_a_name_that_begins_no_preset_is_refused(tmp_path):
+def test_a_name_that_matches_no_preset_is_refused(tmp_path):
     with pytest.raises(LabError, match="no preset nonsense"):
         make_gallery(["nonsense"], tmp_path, quiet=True)
 

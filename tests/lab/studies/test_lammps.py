@@ -55,7 +55,7 @@ def test_a_dropped_grain_bounces_with_the_given_restitution_at_its_speed(restitu
 
 
 @installed
-def test_a_faster_impact_loses_more_as_viscoelastic_spheres_do():
+def test_a_faster_impact_loses_more_energy():
     drop = 0.08
     stiffness = 4 / 3 * STIFF.young / (1 - STIFF.poisson**2) / 2 * sqrt(RADIUS)
     time = dissipative_time_for(STIFF.restitution, STIFF.restitution_speed, stiffness, MASS)
@@ -80,7 +80,7 @@ def test_two_grains_part_with_equal_and_opposite_momentum():
 
 
 @installed
-def test_a_flying_grain_falls_along_the_turning_gravity():
+def test_a_flying_grain_falls_along_the_rotating_gravity():
     rate, middle = 5.0, [0.0, HEIGHT / 2]
     flight = run(middle, steps=10_000, tilt_rate=rate)
     swept = rate * flight.time
@@ -122,13 +122,13 @@ def test_a_stacked_bed_settles_to_the_height_that_liggghts_finds():
 
 
 @installed
-def test_a_run_that_lammps_stops_is_told():
+def test_a_run_stopped_by_lammps_is_reported():
     with pytest.raises(LabError, match="LAMMPS stopped: ERROR"):
         run([0.0, 0.01], dt=0.0, steps=-1)
 
 
 @installed
-def test_a_grain_that_leaves_the_tank_is_told():
+def test_a_grain_that_leaves_the_tank_is_reported():
     with pytest.raises(LabError, match="LAMMPS stopped: ERROR"):
         run([[0.0, 0.1], [0.1 * RADIUS, 0.1]], dt=1e-2)
 

@@ -61,7 +61,7 @@ def test_two_grains_part_with_equal_and_opposite_momentum():
 
 
 @installed
-def test_a_flying_grain_falls_along_the_turning_gravity():
+def test_a_flying_grain_falls_along_the_rotating_gravity():
     rate, middle = 5.0, [0.0, HEIGHT / 2]
     flight = run(middle, steps=10_000, tilt_rate=rate)
     swept = rate * flight.time
@@ -82,13 +82,13 @@ def test_a_stacked_bed_of_500_stays_and_keeps_its_order(tmp_path):
 
 
 @installed
-def test_a_run_that_liggghts_stops_is_told():
+def test_a_run_stopped_by_liggghts_is_reported():
     with pytest.raises(LabError, match="LIGGGHTS stopped: ERROR"):
         run([0.0, 0.01], material=replace(ACETATE, poisson=0.9))
 
 
 @installed
-def test_a_grain_that_leaves_the_tank_is_told():
+def test_a_grain_that_leaves_the_tank_is_reported():
     with pytest.raises(LabError, match="LIGGGHTS stopped: ERROR"):
         run([[0.0, 0.1], [0.1 * RADIUS, 0.1]], dt=1e-2)
 

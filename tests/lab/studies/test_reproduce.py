@@ -133,7 +133,7 @@ def test_batches_run_side_by_side_stop_and_go_on(tmp_path):
     assert "## Guided fall" in text and "## Swelling" in text and "Not complete" not in text
 
 
-def test_what_two_experiments_share_is_run_once(tmp_path, monkeypatch):
+def test_shared_runs_of_two_experiments_are_run_once(tmp_path, monkeypatch):
     ran = []
     monkeypatch.setattr(workers, "carry_out", lambda batch, folder, quiet: ran.append(folder.relative_to(tmp_path)))
     monkeypatch.setattr(runtime, "available_cores", lambda: 1)
@@ -143,7 +143,7 @@ def test_what_two_experiments_share_is_run_once(tmp_path, monkeypatch):
     assert package.places(experiments("granular"), tmp_path / "full", False)["tilt-low-walls"]["high walls"] == shared
 
 
-def test_what_is_not_run_yet_is_said(tmp_path, monkeypatch):
+def test_missing_runs_are_reported(tmp_path, monkeypatch):
     monkeypatch.setattr(workers, "carry_out", lambda *_: None)
     monkeypatch.setattr(runtime, "available_cores", lambda: 1)
     text = reproduce("granular", ["stack"], tmp_path, quick=False, quiet=True).read_text()
@@ -165,7 +165,7 @@ def test_a_number_agrees_where_its_interval_lies_within_the_tolerance():
     assert stated("angle", 18.5, value, BY_EYE).verdict is Verdict.CANNOT_TELL
 
 
-def test_a_mean_that_fits_is_left_open_where_beds_scatter_widely_or_there_is_one():
+def test_an_agreeing_mean_is_undecided_if_beds_scatter_widely_or_there_is_one():
     """Right by chance: 21 beside 21, from beds of 10 to 32 deg, or from one bed with however small an own error."""
     wide = over_worlds([10.0, 32.0, 15.0, 27.0], "deg")
     one = over_worlds([21.0], "deg", uncertainties=[0.01], kind="detector")
@@ -174,14 +174,14 @@ def test_a_mean_that_fits_is_left_open_where_beds_scatter_widely_or_there_is_one
     assert "±" not in stated("angle", 21.0, one, BY_EYE).ours
 
 
-def test_what_does_not_vary_from_bed_to_bed_is_judged_as_it_is():
+def test_values_without_scatter_are_judged_directly():
     """36 beside 5.9 deg is a difference, whatever else agrees."""
     row = stated("frozen", 36.0, over_worlds([5.9], "deg"), BY_EYE, exact=True)
     assert row.verdict is Verdict.DIFFERS and row.ours == "5.9 deg" and row.apart == "-30.1 deg"
     assert stated("frozen", 6.0, over_worlds([5.9], "deg"), BY_EYE, exact=True).verdict is Verdict.AGREES
 
 
-def test_the_head_of_a_report_counts_its_verdicts_and_each_stands_beside_its_tolerance(tmp_path):
+def test_a_report_counts_its_verdicts_and_shows_each_with_its_tolerance(tmp_path):
     beds = {"near": [20.0, 22.0, 21.0, 21.0], "far": [30.0, 31.0, 30.0, 31.0], "wide": [10.0, 32.0, 15.0, 27.0]}
     rows = [stated(name, 20.0, over_worlds(angles, "deg"), BY_EYE) for name, angles in beds.items()]
     finding = Finding("asked", [*rows, observed("seen", "", "this", None)], (), 1.0, 1.0, "", "")
@@ -200,7 +200,7 @@ def test_the_head_of_a_report_counts_its_verdicts_and_each_stands_beside_its_tol
 
 
 @pytest.mark.parametrize("report_name", REPORTS)
-def test_every_verdict_of_the_reports_that_come_with_the_lab_says_its_tolerance(report_name):
+def test_every_verdict_of_the_shipped_reports_has_its_tolerance(report_name):
     """And no number of one bed has a ±."""
     kept = ROOT / "renders" / "gallery" / report_name / f"{report_name}.json"
     rows = [Row(**row) for finding in json.loads(kept.read_text()).values() for row in finding["rows"]]
@@ -248,7 +248,7 @@ def test_round_outlines_are_judged_bed_by_bed_before_they_slide(monkeypatch):
         ((22.0,), Verdict.CANNOT_TELL),
     ],
 )
-def test_heaps_are_judged_by_what_their_scatter_allows(heaps, verdict):
+def test_heaps_are_judged_within_their_scatter(heaps, verdict):
     discs, outlined = (over_worlds(angles, "deg") for angles in ((19.1, 19.4, 18.2, 20.1), heaps))
     found = {"discs": [outcome(heap_angle=discs)], "outlines": [outcome(heap_angle=outlined)]}
     assert outlines.heaps(found).rows[-1].verdict is verdict
@@ -260,7 +260,7 @@ def test_a_verdict_can_be_kept():
     assert kept["verdict"] == "agrees" and TypeAdapter(Row).validate_python(kept) == row
 
 
-def test_what_was_kept_under_another_rule_is_not_taken_for_a_verdict(tmp_path):
+def test_results_stored_under_another_rule_are_not_verdicts(tmp_path):
     """A file of rows that say true or false: it is to be made anew."""
     old = {"quantity": "angle", "source": "20", "ours": "21", "difference": "+1", "agrees": True}
     finding = {"asked": "", "rows": [old], "stopped": [], "grain_steps": 1, "wall_s": 1, "figure": "", "picture": ""}
@@ -269,7 +269,7 @@ def test_what_was_kept_under_another_rule_is_not_taken_for_a_verdict(tmp_path):
         read_findings(tmp_path / "granular.json", experiments("granular"), False)
 
 
-def test_the_tolerance_of_one_bed_is_what_beds_scatter_by():
+def test_the_tolerance_of_one_bed_is_the_scatter_of_beds():
     """The root of the mean squared standard deviations over all beds that were tilted for the report."""
     kept = json.loads((ROOT / "renders" / "gallery" / "granular" / "granular.json").read_text())
     tilted = [row for name, finding in kept.items() if name.startswith("tilt-") for row in finding["rows"]]
@@ -279,7 +279,7 @@ def test_the_tolerance_of_one_bed_is_what_beds_scatter_by():
     assert ONE_BED.within == pytest.approx(np.sqrt(np.average(std**2, weights=count - 1)), abs=0.1)
 
 
-def test_words_of_a_preset_make_no_run_anew_and_its_physics_does():
+def test_only_changes_of_a_presets_physics_require_a_new_run():
     plain = Batch("tilting/quick", {})
     reworded = Batch("tilting/quick", {"title": "Another title", "video.colour": "speed"})
     rougher = Batch("tilting/quick", {"material.friction": 0.3})

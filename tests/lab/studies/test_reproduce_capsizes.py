@@ -27,7 +27,7 @@ def test_every_reading_has_the_sources_free_roll(reading):
     assert frozen.natural_frequency == pytest.approx(wanted, rel=1e-6)
 
 
-def test_only_both_together_capsize_in_the_sources_waves():
+def test_only_both_effects_together_capsize_in_the_sources_waves():
     """Loose cargo in 19 mm at 4.6 rad/s: not by the softening lever alone, nor by counting twice alone, nor frozen."""
     waves = np.array([19.0]), np.array([4.6])
     lost = {reading.words: scan(reading.ship, *waves).capsized[0, 0] for reading in READINGS}
@@ -41,7 +41,7 @@ def test_a_softening_lever_peaks_below_the_natural_frequency_and_a_box_above():
     assert soft < NATURAL - 0.1 and box > NATURAL + 0.1
 
 
-def test_what_is_read_off_scans():
+def test_values_derived_from_scans():
     """Lost where half the reposes or more are; the lowest such waves; frozen ones are judged by 17 and 19 mm."""
     sizes, frequencies = np.array([15.0, 17.0, 19.0, 30.0]), np.array([4.4, 4.6, 4.7])
     shares = np.array([[0.0, 0.4, 0.0], [0.0, 0.6, 0.0], [0.0, 1.0, 0.5], [1.0, 1.0, 1.0]])
@@ -58,14 +58,14 @@ def test_what_is_read_off_scans():
     assert [_rows("so", early, early)[k].verdict for k in (2, 4)] == [Verdict.DIFFERS] * 2
 
 
-def test_a_peak_where_the_sources_is_does_not_hide_another_roll():
+def test_an_agreeing_peak_does_not_hide_another_roll_angle():
     """26 deg at 4.4 rad/s, where the source has 36."""
     one = Scan(np.array([10.0, 19.0]), np.array([4.4, 4.6]), np.array([[26.0, 9.0]] * 2), np.zeros((2, 2)))
     peak, roll, *_ = _rows("so", one, one)
     assert peak.verdict is Verdict.AGREES and roll.verdict is Verdict.DIFFERS
 
 
-def test_the_heap_is_held_against_the_grains_of_the_same_waves():
+def test_the_heap_is_compared_with_the_grains_in_the_same_waves():
     """At 4.5 rad/s, well below the resonance, both roll as the linear ship and the row says how far they are apart."""
     batches = capsize_batches(True)
     assert {key for batch in batches.values() for key in batch.axes} == {FREQUENCY}  # what a run's setting tells

@@ -30,7 +30,7 @@ def test_the_damping_of_a_small_peak_is_that_of_the_balance_of_power():
     assert found.quadratic == pytest.approx(wanted, rel=0.08)
 
 
-def test_what_is_read_off_scans():
+def test_values_derived_from_scans():
     """Between the last peak above and the next; the weakest from which on none capsizes, not the first that stands."""
     tried = [Damping(share) for share in (0.01, 0.02, 0.03, 0.04)]
     scan = [Response(np.array([4.0, 5.0]), np.array(pair)) for pair in ([30, 40], [np.nan, 38], [10, 34], [9, 20])]
@@ -41,6 +41,6 @@ def test_what_is_read_off_scans():
     assert scan[1].capsized.tolist() == [4.0] and scan[1].peak == (38.0, 5.0)
 
 
-def test_dampings_in_words():
+def test_texts_on_dampings():
     assert Damping(0.01, 0.05).words == "1 % of the critical and 0.05 per rad"
     assert Damping(0.0, 0.016).words == "0.016 per rad"

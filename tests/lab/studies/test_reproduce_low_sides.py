@@ -20,7 +20,7 @@ BREADTH, DRAUGHT, SIDE, HATCH = 0.34, 0.11, 0.03, 0.06  # m, SIDE above the wate
 HEIGHT = 0.5 * DRAUGHT + BREADTH**2 / (12.0 * DRAUGHT) - 0.0926  # m, GM
 
 
-def test_her_lever_is_the_boxs_until_her_deck_is_wet_and_less_beyond():
+def test_the_lever_is_that_of_a_box_until_the_deck_is_wet():
     """Beyond, the box's less the triangle of side above the deck that holds no water out; none near 85 deg.
 
     At 25 deg the water on deck has not come to the hatch yet.
@@ -44,7 +44,7 @@ def test_her_lever_is_the_boxs_until_her_deck_is_wet_and_less_beyond():
     assert ship.lever(radians(82.0)) > 0.0 > ship.lever(radians(88.0))
 
 
-def test_her_heap_is_as_heavy_as_the_bed():
+def test_the_heap_has_the_mass_of_the_bed():
     """Grains of 6 mm, equally spread by a tenth about it: their mean cube is d³ (1 + 0.1²); a sheet of 6 mm."""
     resolved = load(low_sides.PRESET).resolved
     (grains, _) = build(resolved)
@@ -52,7 +52,7 @@ def test_her_heap_is_as_heavy_as_the_bed():
     assert low_ship().heap.mass == pytest.approx(mass, rel=0.02)
 
 
-def test_she_floods_with_loose_cargo_where_she_stands_with_frozen():
+def test_the_barge_floods_with_loose_cargo_and_not_with_frozen():
     """A heap that slides puts her hatch under in waves of 24 mm; high waves do so with any cargo."""
     ship, waves = low_ship(), (np.array([15.0, 24.0, 35.0]), np.full(3, 4.4))
     assert swung(ship, *waves)[1].tolist() == [0.0, 1.0, 1.0]
@@ -78,7 +78,7 @@ def test_beds_are_counted():
     assert told.rows[1].ours.endswith("frozen stands")
 
 
-def test_the_map_tells_the_lowest_waves_that_capsize_her_and_where_frozen_cargo_does(monkeypatch):
+def test_the_map_has_the_lowest_capsizing_waves_with_loose_and_frozen_cargo(monkeypatch):
     monkeypatch.setattr(low_sides, "FINE", (np.array([15.0, 25.0]), np.array([4.0, 4.4])))  # of heaps, behind the beds
 
     def run(size, omega, when, alone):
@@ -108,7 +108,7 @@ def test_the_map_tells_the_lowest_waves_that_capsize_her_and_where_frozen_cargo_
     ]
 
 
-def test_waves_that_she_stands_above_others_that_she_does_not_are_named():
+def test_survived_waves_above_capsizing_ones_are_named():
     assert low_sides._from([20.0, 30.0], [15.0, 25.0]) == "from 20 mm on, but for 25 mm"
     assert low_sides._from([20.0, 30.0], [15.0]) == "from 20 mm on"
     assert low_sides._from([], [15.0]) == "in none of these waves"

@@ -30,13 +30,13 @@ def test_the_lead_has_the_error_of_both_means():
 @pytest.mark.parametrize(
     ("slide", "said"), [(14.0, Verdict.DIFFERS), (22.0, Verdict.AGREES), (20.0, Verdict.CANNOT_TELL)]
 )
-def test_a_lead_agrees_where_all_of_its_interval_does(slide, said):
+def test_a_lead_agrees_if_its_whole_interval_does(slide, said):
     """Of 1.7 to 6.8 deg, with eight beds that scatter by a degree."""
     beds = np.tile([-1.0, 1.0], 4)
     assert told(18.0 + beds, 18.0 + beds, slide + beds)[3].verdict is said
 
 
-def test_a_bed_lags_behind_its_own_slide_however_beds_differ():
+def test_lags_are_taken_bed_by_bed():
     """Beds that slide at 15 to 30 deg and lose 2 deg later; one that never loses is left out."""
     lag = told([17.0, 22.0, np.nan, 32.0], [15.0, 20.0, 25.0, 30.0], [20.0, 21.0])[1]
     assert lag.ours == "2 ± 0 deg (3 of 4 beds)"

@@ -47,7 +47,7 @@ def responses():
     ]
 
 
-def test_both_panels_tell_loose_from_frozen_cargo(responses):
+def test_both_panels_distinguish_loose_and_frozen_cargo(responses):
     """Mean amplitude above and largest roll below, each its own; of capsized ships a cross, over no other's beds."""
     figure = rolls_against(FREQUENCY, "frequency", {"10 mm": responses}, ["10 mm"])
     upper, lower = figure.axes
@@ -60,7 +60,7 @@ def test_both_panels_tell_loose_from_frozen_cargo(responses):
         assert crosses(axes) == [[5.0, 6.5], [5.0]]
 
 
-def test_the_response_is_judged_by_loose_cargo_where_beds_allow_it(responses):
+def test_the_response_is_judged_by_loose_cargo_if_beds_allow_it(responses):
     """Less than 30 deg and less than frozen; and off the resonance by no more than 5: two beds cannot tell by far."""
     rows = {row.quantity: row for row in response_tell({"10 mm": responses}).rows}
     assert rows["3.5 rad/s, loose and frozen"].verdict is Verdict.CANNOT_TELL
@@ -85,7 +85,7 @@ def test_a_frozen_ship_far_below_the_sources_peak_differs_from_it():
     assert rows["4.4 rad/s, frozen"].source == "36 deg" and rows["4.4 rad/s, frozen"].ours == "5.9 deg"
 
 
-def test_capsizes_are_told_of_the_cargo_they_are_of(responses):
+def test_capsizes_are_reported_with_their_cargo(responses):
     row = capsize_tell({"19 mm": responses[2:3]}).rows[0]
     assert row.ours == "capsizes at 11.50 ± 0.71 s (2 beds); frozen capsizes at 9 s"
     row = capsize_tell({"19 mm": responses[1:2]}).rows[0]

@@ -40,7 +40,7 @@ def swayed():
 
 
 @pytest.mark.slow
-def test_the_fast_part_passes_and_leaves_a_page(page):
+def test_the_fast_part_passes_and_writes_a_page(page):
     folder, passed = page
     text, data = (folder / "stability.md").read_text(), json.loads((folder / "stability.json").read_text())
     assert passed, text
@@ -56,7 +56,7 @@ def test_the_fast_part_passes_and_leaves_a_page(page):
 
 
 @pytest.mark.slow
-def test_what_is_there_is_not_run_again(page, capsys, monkeypatch):
+def test_finished_cases_are_not_run_again(page, capsys, monkeypatch):
     folder, _ = page
     monkeypatch.setattr(stability, "Simulation", None)
     monkeypatch.setattr(stability.limit_map, "Simulation", None)
@@ -73,14 +73,14 @@ def test_what_is_there_is_not_run_again(page, capsys, monkeypatch):
 
 
 @pytest.mark.slow
-def test_a_case_passes_and_leaves_a_page(tmp_path):
+def test_a_case_passes_and_writes_a_page(tmp_path):
     assert stability.run_cases(("wedged",), tmp_path, True)
     text, data = (tmp_path / "stability.md").read_text(), json.loads((tmp_path / "stability.json").read_text())
     assert "**wedged**" in text and "FAIL" not in text
     assert [row["outcome"] for row in data["wedged"]["pushed"]] == [RIGHT, REFUSED + RIGHT]
 
 
-def test_a_name_that_is_none_is_one_sentence(tmp_path):
+def test_an_unknown_name_gives_one_sentence(tmp_path):
     with pytest.raises(LabError, match=r"^there is no case wedge-shaped; there are one-grain, corner, .*map-gear\.$"):
         stability.run_cases(("wedge-shaped",), tmp_path, True)
     assert not list(tmp_path.iterdir())
@@ -89,7 +89,7 @@ def test_a_name_that_is_none_is_one_sentence(tmp_path):
         stability.run_cases((), tmp_path, True)
 
 
-def test_a_case_that_breaks_off_fails_alone_and_is_not_kept(tmp_path, capsys, monkeypatch):
+def test_an_aborted_case_fails_alone_and_is_not_stored(tmp_path, capsys, monkeypatch):
     def broken(fast):
         raise ZeroDivisionError("of its own")
 
@@ -106,7 +106,7 @@ def failed(checks: list[Check]) -> list[str]:
 
 
 @pytest.mark.slow
-def test_energy_is_what_the_tank_has_done(swayed):
+def test_energy_equals_the_work_of_the_tank(swayed):
     """The bed is thrown against the walls, and its energy follows the tank's work but for what collisions take."""
     trial, course = swayed
     assert failed(judge(SWAYED, trial, course)) == []
@@ -115,7 +115,7 @@ def test_energy_is_what_the_tank_has_done(swayed):
 
 
 @pytest.mark.slow
-def test_energy_from_nowhere_is_caught(swayed):
+def test_energy_without_a_source_is_detected(swayed):
     """Without the tank's work, or with a little more than there is, the energy has no source."""
     trial, course = swayed
     no_work = replace(course, work=np.zeros_like(course.work))
@@ -126,7 +126,7 @@ def test_energy_from_nowhere_is_caught(swayed):
 
 
 @pytest.mark.slow
-def test_other_faults_are_caught(swayed):
+def test_other_errors_are_detected(swayed):
     trial, course = swayed
     assert failed(judge(SWAYED, trial, replace(course, stopped="it exploded."))) == ["the run"]
     assert failed(judge(replace(SWAYED, may_stop=True), trial, replace(course, stopped="it exploded."))) == []
@@ -137,7 +137,7 @@ def test_other_faults_are_caught(swayed):
 
 
 @pytest.mark.slow
-def test_longer_steps_are_right_or_stopped_or_quietly_wrong(swayed):
+def test_longer_steps_are_classified(swayed):
     trial, course = swayed
     found = height(trial, course)
     assert verdict(SWAYED, trial, course, 4, 0.92 * found).outcome == RIGHT

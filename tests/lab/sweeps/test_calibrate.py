@@ -1,4 +1,4 @@
-"""Calibration: a known response is inverted, all that can be wrong is said before a run, and nothing lost is hidden."""
+"""Calibration: a known response is inverted, errors are reported before any run, and losses are reported."""
 
 import json
 from types import SimpleNamespace

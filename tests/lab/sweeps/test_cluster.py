@@ -1,4 +1,4 @@
-"""Sweeps on a cluster: what comes back is what would have been made here, whatever becomes of the workers."""
+"""Sweeps on a cluster: the results equal those of this machine, whatever happens to the workers."""
 
 import json
 import os

@@ -1,4 +1,4 @@
-"""Inverse regression: exact on what it models, and its intervals hold as often as they say."""
+"""Inverse regression: exact for its own model, with intervals of the stated confidence."""
 
 from math import inf, sqrt
 

@@ -1,4 +1,4 @@
-"""Sweeps: the values asked for, points that run in company as they do alone, and what is left of a sweep cut short."""
+"""Sweeps: their values, points that run in a batch as they do alone, and interrupted sweeps."""
 
 import csv
 import json
@@ -175,7 +175,7 @@ def test_impossible_sweeps_are_refused_before_any_run(axes, complaint, tmp_path)
 
 
 def test_a_point_in_a_batch_has_the_bits_of_the_run_alone(swept, tmp_path):
-    """Point 1 shares its launch with one that is stopped on the way."""
+    """Point 1 shares its batch with a point that is stopped."""
     alone = SMALL | {"motion": {"tilt": False, "sway": {"amplitude": "4 mm", "frequency": "3 Hz"}}}
     run_preset("tilting/quick", alone, tmp_path / "alone", video=False, quiet=True)
     mine, status = data_sets(swept.points[1])

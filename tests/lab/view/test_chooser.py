@@ -1,4 +1,4 @@
-"""The window's first page: every preset can be found and taken."""
+"""The window's first page: every preset can be found and selected."""
 
 import numpy as np
 

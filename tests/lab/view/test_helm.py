@@ -1,4 +1,4 @@
-"""The helm: whatever a hand does, the tank's motion is smooth, bounded, and gets where it was sent."""
+"""The helm: for any user input, the tank's motion is smooth, bounded, and reaches the settings."""
 
 import numpy as np
 import pytest

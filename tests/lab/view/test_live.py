@@ -1,4 +1,4 @@
-"""An experiment under a hand: recorded, and the same again, bit for bit."""
+"""A steered experiment: recorded, and repeated bit for bit."""
 
 import json
 from types import SimpleNamespace

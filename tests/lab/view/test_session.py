@@ -1,4 +1,4 @@
-"""What a person sees and does in a window, driven by events without one."""
+"""The user's side of a live experiment: pictures and actions, driven by events without a window."""
 
 import json
 import os
@@ -355,7 +355,7 @@ def test_keys_change_the_picture(opened, overlay):
 
 
 def test_a_settling_bed_is_shown_and_keys_do_no_harm(opened):
-    """The session starts anew; grains fall into a tank that is higher than its own, and the hand has no hold yet."""
+    """After a restart the grains fall into a tank with raised walls, and the controls do not act yet."""
     session, pipes, place = opened
     scenery = session.footage.scenery
     session.look.inset = "levers"  # which a ship had

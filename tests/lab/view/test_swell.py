@@ -1,4 +1,4 @@
-"""Waves under a hand: they grow and die away softly, and change their length only where there are none."""
+"""Steered waves: they grow and decay smoothly, and change their frequency only in calm water."""
 
 import json
 

@@ -21,7 +21,7 @@ from tests.oracles.tampering import sealed
 
 @pytest.fixture(scope="module")
 def steered(tmp_path_factory):
-    """A recording that a hand has steered."""
+    """A recording of a steered run."""
     folder = tmp_path_factory.mktemp("steered") / "run"
     preset = steerable(load("tilting/quick", {**SMALL, "run.settle": False, "run.threads": 1}))
     prepare(preset, folder).make_recording(steered=True)

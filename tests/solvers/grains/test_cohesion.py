@@ -1,4 +1,4 @@
-"""Liquid bridges: what a touch and a break cost, what they carry, and that every schedule and list does the same."""
+"""Liquid bridges: work of contact and rupture, forces, and equal results with every schedule and list."""
 
 from functools import cache
 from math import cos, log, pi, sqrt
@@ -35,7 +35,7 @@ def pull(law: str, gap: float, effective: float) -> float:
 
 
 def work(law: str, effective: float) -> float:
-    """What tearing a bridge costs (J)."""
+    """The work (J) of the rupture of a bridge."""
     return quad(lambda gap: pull(law, gap, effective), 0.0, RANGE[law])[0]
 
 

@@ -1,4 +1,4 @@
-"""Filling a tank: how many grains, their sizes, where they start, and the bed they settle to."""
+"""Filling a tank: number and sizes of grains, their initial positions, and the settled bed."""
 
 from math import pi
 
@@ -15,7 +15,7 @@ from tests.oracles.scenes import box, material
 
 
 def hopper(*side: list[float]) -> np.ndarray:
-    """An outline from its starboard side, told from the floor up."""
+    """A symmetric outline from the points of its starboard side, from the floor up."""
     return np.array([*side, *([-y, z] for y, z in reversed(side))])
 
 

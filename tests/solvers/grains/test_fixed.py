@@ -1,4 +1,4 @@
-"""Fixed grains of rough walls: they push as grains of infinite mass, never move, and count for nothing else."""
+"""Fixed grains of rough walls: they act as grains of infinite mass, never move, and are not observed."""
 
 import numpy as np
 import pytest
@@ -92,7 +92,7 @@ def test_fixed_grains_never_move(struck):
 
 
 def test_fixed_grains_do_not_count_in_observations(struck):
-    """Centre of mass, energy and contacts are of the grains that move; the overlap of two fixed ones is nobody's."""
+    """Centre of mass, energy and contacts are of the moving grains; the overlap of two fixed ones does not count."""
     _, mass, _, after, rows, _ = struck
     centre = after["position"].mean(axis=1)
     np.testing.assert_allclose(rows["centre_of_mass"], centre, rtol=1e-12)
@@ -104,7 +104,7 @@ def test_fixed_grains_do_not_count_in_observations(struck):
 
 
 def test_the_tanks_load_includes_forces_on_fixed_grains(struck):
-    """The impulse on the tank is what the grains have lost of momentum."""
+    """The impulse on the tank is the momentum that the grains have lost."""
     _, mass, before, after, rows, _ = struck
     given = mass * (before["velocity"] - after["velocity"]).sum(axis=1)
     time = rows["wall_force"][..., 1] / given[:, 1]

@@ -1,4 +1,4 @@
-"""Contact laws driven by hand: prescribed overlaps, slips and turnings, and what force and work come of them."""
+"""Contact laws under prescribed overlaps, slips and rotations: the resulting forces and work."""
 
 from itertools import pairwise
 from math import pi

@@ -1,4 +1,4 @@
-"""The contact lists against brute force, their history across rebuilds, and what happens when their room runs out."""
+"""Neighbour lists against brute force, contact history across rebuilds, and lists that outgrow their arrays."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""What presses on what: in a bed at rest without friction the forces on each grain bear its weight."""
+"""Contact forces: in a bed at rest without friction the forces on each grain bear its weight."""
 
 import numpy as np
 import pytest

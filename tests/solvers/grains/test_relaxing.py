@@ -1,4 +1,4 @@
-"""Grains put on top of each other: moved apart by no more than it takes, or left as they are."""
+"""Overlapping grains: moved apart by no more than necessary, or left unchanged."""
 
 import numpy as np
 import pytest

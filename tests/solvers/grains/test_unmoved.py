@@ -1,4 +1,4 @@
-"""What is told of grains before their first step: the state they are in, and nothing of it changed by the look."""
+"""Observations before the first step: they give the present state and do not change it."""
 
 import numpy as np
 import pytest

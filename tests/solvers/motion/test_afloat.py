@@ -1,4 +1,4 @@
-"""Ships and their cargo in one time loop: against the ship alone, frozen cargo, and what must be conserved."""
+"""Ships and their cargo in one time loop: against the ship alone, frozen cargo, and conservation laws."""
 
 from dataclasses import replace
 from math import inf, pi
@@ -48,7 +48,7 @@ EDGES = ((0.15, 0.17), (-0.15, 0.17))  # m, of a hatch
 
 
 def memory() -> Memory:
-    """A memory of two states a mode that couples sway and roll, as made-up as any."""
+    """An arbitrary memory with two states per mode that couples sway and roll."""
     block = np.array([[-3.0, 4.0], [-4.0, -3.0]])
     matrix, entry = np.kron(np.eye(3), block), np.kron(np.eye(3), [[2.0], [0.0]])
     leave = np.array([[60.0, 20.0, 0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 90.0, 30.0, 0.0, 0.0], [1.0, 0, 0, 0, 0.4, 0.1]])
@@ -62,7 +62,7 @@ def floating(amplitude: float, frequency: float, water: Water = WATER) -> Floati
 
 
 def fleet() -> list[Vessel]:
-    """One ship a world."""
+    """One ship per world."""
     hull = Body(0.5 * CARGO, (0.004, 0.10), 0.35)
     rig = Rig(np.full(3, 0.5), np.array([3.0, 0.0, 0.1]), np.array([30.0, 0.0, 0.0]))
     tiny = Ship(replace(hull, centre=(0.0, 0.10)), floating(0.0, 4.0), ADDED, AXIS)
@@ -226,7 +226,7 @@ def test_a_ship_without_cargo_moves_as_the_ship_alone(run, voyage):
 
 
 def test_cargo_that_does_not_move_is_part_of_the_rigid_body(run, voyage):
-    """Twice as heavy as the hull, at a roll of a third of a degree: as one body, to the give of the bed."""
+    """Twice as heavy as the hull, at a roll of a third of a degree: as one rigid body, within the bed's compliance."""
     vessel = run.simulation.scene.vessels[TINY]
     cargo = run.cargo[TINY]
     aboard = Body(cargo.mass, tuple(np.add(cargo.centre, HOLD)), cargo.inertia)
@@ -257,7 +257,7 @@ def test_half_the_interval_gives_the_same_motion(voyage, finer, twin, world, unt
 
 
 def test_momentum_of_ship_and_cargo_without_water(run, voyage):
-    """Nothing but weight: m (v_G + g t) stays, however the grains knock against the hull."""
+    """With weight alone m (v_G + g t) is constant, whatever the impacts of the grains on the hull."""
     ship = run.hull(voyage, VACUUM)
     motion = voyage["tank"][:, VACUUM]
     arm = np.array([ship.lever(roll) for roll in motion[:, 2]])
@@ -290,7 +290,7 @@ def test_energy(run, voyage, world):
 
 
 def counted(voyage, world):
-    """What the contacts have lost since the start (J/m)."""
+    """The energy lost in the contacts since the start (J/m)."""
     return (voyage["lost"][:, world] - voyage["lost"][0, world]) / SHEET
 
 
@@ -316,7 +316,7 @@ def test_a_hull_lighter_than_her_cargo_rolls_over(run, voyage):
 
 
 def test_a_capsize_ends_only_its_world(run, voyage):
-    """Resonance without damping: when roll leaves its limits, at the step, and the rest sail on."""
+    """Resonance without damping: the world ends at the step at which roll leaves its limits; the others continue."""
     for world, limit in ((RESONANT, 0.5), (OVER, 0.3)):
         when = voyage["capsized"][-1, world]
         assert 0.0 < when < LASTS
@@ -375,12 +375,12 @@ def test_a_ship_is_heeled_smoothly(run, voyage):
 
 
 def test_grains_settle_before_the_ship_is_released(run):
-    """They have fallen the tenth of a radius that they were put too high."""
+    """They have fallen by the tenth of a radius by which they were placed too high."""
     assert run.height == pytest.approx(SITES[:, 1].mean(), abs=0.02 * RADIUS)
 
 
 def test_a_laden_ship_has_the_given_mass_and_inertia(run, voyage):
-    """Hull and cargo together have the body that was given for both."""
+    """Hull and cargo together have the mass and inertia given for both."""
     cargo = run.cargo[OVER]
     aboard = Body(cargo.mass, tuple(np.add(cargo.centre, HOLD)), cargo.inertia)
     vessel = run.simulation.scene.vessels[OVER]
@@ -394,7 +394,7 @@ def test_a_laden_ship_has_the_given_mass_and_inertia(run, voyage):
 
 
 def later(run, steps=1500):
-    """All that a simulation holds some steps on."""
+    """The complete state of a simulation some steps later."""
     run.advance(steps)
     run.observe()
     return run.state()
@@ -416,7 +416,7 @@ def test_a_state_continues_bit_for_bit(run):
 
 @pytest.mark.slow
 def test_growing_contact_arrays_changes_nothing():
-    """The arrays are made anew in the middle of a voyage; the ship does not notice."""
+    """The arrays are enlarged during a run without any effect on the ship."""
     found = []
     for grow in (False, True):
         run = Run().simulation

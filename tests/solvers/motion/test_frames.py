@@ -1,4 +1,4 @@
-"""The tank's frame tells the same physics as the earth's: held at an angle, in motion, around a grain in flight."""
+"""The tank's frame gives the same physics as the earth's: held at an angle, in motion, for a grain in flight."""
 
 from dataclasses import dataclass
 from math import pi
@@ -45,7 +45,7 @@ def test_a_tank_held_at_an_angle_equals_a_turned_tank():
 
 @dataclass(frozen=True)
 class Deck:
-    """Roll about a far centre, then sway and heave; written anew, apart from the solver's motions."""
+    """Roll about a distant centre, then sway and heave; independent of the solver's motions."""
 
     roll: tuple[float, float, float] = (0.2, 2.0, 0.5)  # amplitude (rad, m), frequency (Hz), phase
     sway: tuple[float, float, float] = (0.01, 4.0, -0.8)

@@ -1,4 +1,4 @@
-"""The tank's motions: pose, velocity and acceleration belong together, and the frame makes the right forces of them."""
+"""The tank's motions: pose, velocity and acceleration are consistent, and the frame's inertial forces are right."""
 
 from math import hypot, pi
 

@@ -1,4 +1,4 @@
-"""Several tanks in one hull: unlike in width, depth, thickness and length along the ship; one is empty."""
+"""Several tanks in one hull, of different width, depth, thickness and length along the ship; one is empty."""
 
 from dataclasses import replace
 from math import pi
@@ -104,7 +104,7 @@ def test_a_ship_bears_the_load_of_each_tank(laden):
 
 
 def test_each_tank_bears_its_own_grains(laden):
-    """The weight on each tank's walls, and none on the empty one's."""
+    """The walls of each tank bear the weight of its grains, those of the empty one none."""
     run = laden
     run.observe()
     run.advance(200)

@@ -1,4 +1,4 @@
-"""A tank under a hand, and a scene whose materials and gravity change while its grains move."""
+"""A steered tank, and a scene whose materials and gravity change while its grains move."""
 
 from dataclasses import replace
 

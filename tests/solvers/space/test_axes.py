@@ -1,4 +1,4 @@
-"""One axis is like the other: a scene turned by a quarter, its gravity and motion too, goes on as before, turned."""
+"""Both axes are equivalent: a scene turned by 90 degrees, with its gravity and motion, gives the turned result."""
 
 from math import pi
 

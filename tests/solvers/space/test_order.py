@@ -1,4 +1,4 @@
-"""Grains that have mixed are numbered anew: nothing changes but the order of sums, and it is done when it pays."""
+"""Renumbering of mixed grains: it changes only the order of sums, and happens only where it saves time."""
 
 import numpy as np
 import pytest
@@ -76,7 +76,7 @@ def test_renumbering_changes_only_rounding(bed, usual, monkeypatch, schedule, un
 
 @pytest.mark.slow
 def test_small_and_unmixed_beds_are_not_renumbered(bed):
-    """Order is worth its price only in large worlds that have mixed."""
+    """Renumbering saves time only in large worlds whose grains have mixed."""
     assert np.all(shaken(bed)[1] == np.arange(COUNT))
     place = np.random.default_rng(0).uniform(0.0, 1.0, (renumber.FEWEST, 2))
     assert not renumber.has_mixed(place + 4e-3, place, 1e-3 * 2.0**0.5)

@@ -1,4 +1,4 @@
-"""Neighbours that leave an open tank together are let go of without a trace."""
+"""Neighbours that leave an open tank together are removed without side effects."""
 
 import numpy as np
 import pytest
@@ -10,7 +10,7 @@ from tests.oracles.scenes import box, material
 
 @pytest.mark.slow
 def test_neighbours_that_leave_together_are_removed():
-    """Grain 0, which stands in for missing pairs too, and two that touch it fall beside the tank until out of sight."""
+    """Grain 0, whose number also marks missing pairs, and two that touch it fall beside the tank until removed."""
     radius = np.full((1, 4), 2e-3)
     place = np.array([[[0.03, 0.0], [0.0339, 0.0], [0.03, 0.0039], [0.0, 2e-3]]])
     made = Scene(radius, box(0.04, 0.03), material(), material(), stiffness_scale=1e-3, open_edges=(2,))

@@ -66,13 +66,13 @@ def momenta(run: Simulation) -> np.ndarray:
 
 
 def load(rows: dict[str, np.ndarray]) -> np.ndarray:
-    """The load (W, 3) of one look."""
+    """The load (W, 3) of one observation."""
     return rows["wall_force"]
 
 
 @pytest.fixture(scope="module")
 def looks(box_run):
-    """Of each look: the time (s) before it, the load, and how far momenta have changed but for weight, (W, 3)."""
+    """For each observation: the time (s) since the last, the load, and the momentum change without weight, (W, 3)."""
     run, found = box_run, []
     run.advance(1)  # the first kick is half a step
     run.observe()
@@ -196,7 +196,7 @@ def block():
 
 
 def test_worlds_at_rest_keep_their_load(block):
-    """World 0 rests at once; world 1 is thrown up and comes down again."""
+    """World 0 is at rest from the start; world 1 is thrown up and falls down again."""
     weight = block.grains.mass[0].sum() * G
     velocity = np.zeros((*block.scene.radius.shape, 2))
     velocity[1, :, 1] = 0.3
@@ -206,7 +206,7 @@ def test_worlds_at_rest_keep_their_load(block):
 
 
 def test_a_launch_starts_a_new_average(block):
-    """What the grains did before is no part of it, nor is the time they took."""
+    """The average includes neither the forces nor the time before the launch."""
     weight = block.grains.mass[0].sum() * G
     block.settle(1e-7, 1.0)
     block.advance(300)

@@ -1,4 +1,4 @@
-"""Open tanks: who leaves is counted once, falls along the outside, and goes without a trace."""
+"""Open tanks: grains that leave are counted once, fall along the outside, and are removed without side effects."""
 
 import numpy as np
 import pytest
@@ -91,7 +91,7 @@ def test_walls_push_from_outside(watched):
 
 
 def test_spilled_grains_are_counted_once(watched):
-    """Those outside at the start at once, one thrown back in too, and those above the mouth never."""
+    """Grains outside at the start count at once, one thrown back in stays counted, those above the mouth do not."""
     looks, _ = watched
     spilled = dict(zip(NAMES, looks["spilled"].T, strict=True))
     for name, (places, _) in WORLDS.items():
@@ -131,7 +131,7 @@ def test_distant_grains_are_removed_for_good(watched):
 
 
 def test_removed_grains_do_not_affect_those_inside(watched):
-    """The same bouncing grain, with two others that go and with two that stay."""
+    """The same bouncing grain, with two others that leave and with two that stay."""
     looks, _ = watched
     one, other = (looks["position"][:, NAMES.index(name), 2] for name in ("two gone", "none gone"))
     # As long as it has not met those that stay.

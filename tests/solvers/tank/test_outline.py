@@ -1,4 +1,4 @@
-"""The tank's outline as a filler sees it."""
+"""The tank's outline for filling: lids, raised walls, areas, linings."""
 
 from math import pi
 
@@ -47,7 +47,7 @@ def test_area_below_a_level():
 
 
 def wall_distance(outline: np.ndarray, points: np.ndarray) -> np.ndarray:
-    """Distance of points from the outline's nearest edge that is no lid."""
+    """Distance of points from the nearest edge of the outline, without lids."""
     found = []
     for k, a in enumerate(outline):
         edge = outline[(k + 1) % len(outline)] - a

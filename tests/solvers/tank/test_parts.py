@@ -1,4 +1,4 @@
-"""Parts: a gate or a floor goes where it is told, no faster than it may, and stops there."""
+"""Moving parts: a gate or a floor reaches its end position within its speed and acceleration, and stops there."""
 
 from math import pi
 
@@ -35,7 +35,7 @@ class Probe:
                 rows[p, k, 0], rows[p, k, 1] = state[0], state[1]
 
     def at(self, parts, times) -> tuple[np.ndarray, np.ndarray]:
-        """Share of the way done and its rate (1/s), (P, T), at `times` (T,) s."""
+        """Share of the distance covered and its rate (1/s), (P, T), at `times` (T,) s."""
         table = np.full((ROWS, AHEAD + 6), np.nan)
         table[: len(parts), AHEAD:] = [part.parameters() for part in parts]
         self.table.from_numpy(table)
@@ -53,7 +53,7 @@ def probe():
 
 
 def programme(part: Part, times) -> tuple[np.ndarray, np.ndarray]:
-    """Distance (m) and speed (m/s) at `times`: an even rise of the speed, an even run, an even fall, one after another.
+    """Distance (m) and speed (m/s) at `times`: constant acceleration, constant speed, constant deceleration.
 
     In extended precision, each phase going on from where the one before ended.
     """

@@ -1,4 +1,4 @@
-"""What each piece of the tank bears: its walls, a shelf, a part that moves, fixed grains."""
+"""The load on each piece of the tank: its walls, a shelf, a moving part, fixed grains."""
 
 import numpy as np
 import pytest

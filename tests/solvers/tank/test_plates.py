@@ -119,7 +119,7 @@ def test_a_moving_plate_is_a_still_one_seen_from_a_moving_frame(flight):
 
 
 def test_no_grain_passes_a_plate(flight):
-    """Speeds here are the highest that the scene holds for credible."""
+    """The speeds are the highest credible ones of the scene."""
     assert flight.fastest == pytest.approx(STAND)
     assert flight.nearest.min() > 0.8 * RADIUS
     assert flight.nearest[-1].min() > RADIUS
@@ -133,7 +133,7 @@ def test_lists_contain_all_contacts_with_plates(flight):
 
 
 def test_impacts_on_plates_create_no_energy(flight):
-    """In the frame of the roof: kept by elastic smooth ones, head-on and grazing, and lost by the rest."""
+    """In the frame of the roof: conserved by elastic smooth impacts, head-on and grazing, and reduced by all others."""
     frame = np.stack([np.zeros(2), V])
     energy = 0.5 * ((flight.velocity - frame) ** 2).sum(axis=-1) + 0.2 * RADIUS**2 * flight.spin**2
     kept = energy[-1] / energy[0]

@@ -1,4 +1,4 @@
-"""Distances and normals of the walls against geometry by other means, and what corners do to grains."""
+"""Distances and normals of the walls against independent geometry, and the forces of corners on grains."""
 
 import numpy as np
 import pytest
@@ -67,7 +67,7 @@ def feet(points: np.ndarray, outline: np.ndarray, reflex: list[int]) -> tuple[np
 
 @pytest.mark.parametrize("name", OUTLINES)
 def test_walls_have_correct_distances_and_normals(name):
-    """Random points in and around an outline: which are inside, what they face, how far away and in what direction."""
+    """Random points in and around an outline: inside or outside, nearest feature, distance and normal."""
     outline, reflex = OUTLINES[name]
     rng, reach, segments = np.random.default_rng(1), 0.02, len(outline)
     points = rng.uniform(outline.min(axis=0) - 0.02, outline.max(axis=0) + 0.02, (2000, 2))
@@ -162,7 +162,7 @@ def test_each_touching_corner_pushes_once(room):
 
 
 def test_energy_is_conserved_in_an_elastic_tank_with_a_reflex_corner(room):
-    """Frictionless elastic grains under gravity that hit walls and the corner many times."""
+    """Frictionless elastic grains under gravity hit walls and the corner many times."""
     _, _, place, velocity, mass, looks = room
     thrown = slice(len(TOUCHING), None)
     given = 0.5 * mass * (velocity**2).sum(axis=1) + 9.81 * mass * place[:, 1]

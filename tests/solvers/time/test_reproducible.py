@@ -1,4 +1,4 @@
-"""One preset, one result: on any number of threads, in any company of worlds, whatever the lists' skin."""
+"""One preset, one result: on any number of threads, with any other worlds, with any skin of the lists."""
 
 import os
 import subprocess

@@ -77,13 +77,13 @@ def lead_up(run: Simulation, case: str) -> None:
 
 
 def end(run: Simulation) -> dict[str, np.ndarray]:
-    """Where a simulation gets to."""
+    """The final state of a simulation."""
     run.advance(LATER)
     return run.observe() | run.snapshot() | {"part": run.part_places(), "time": np.array(run.time)}
 
 
 def go_on(folder: Path, case: str) -> None:
-    """Put back the state of a case and go on."""
+    """Restore the state of a case and continue."""
     run = made(case, THREADS[case][1])
     with np.load(folder / "state.npz") as state:
         run.restore(dict(state))

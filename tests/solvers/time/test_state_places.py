@@ -1,4 +1,4 @@
-"""A state that was made to harm: no kernel follows a number that is no place in an array."""
+"""Manipulated states: no kernel uses an index outside an array."""
 
 import numpy as np
 import pytest

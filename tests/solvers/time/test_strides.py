@@ -35,7 +35,7 @@ def started(base: float, stretch: int, schedule: str) -> Simulation:
 
 @pytest.mark.parametrize("schedule", ["per-world", pytest.param("per-band", marks=pytest.mark.slow)])
 def test_steps_of_two_base_steps_are_steps_of_twice_the_length(schedule):
-    """Bit for bit, through falls, knocks and lists made anew."""
+    """Bit for bit, through falls, collisions and neighbour-list rebuilds."""
     found = []
     for base, stretch in ((BASE, 2), (2.0 * BASE, 1)):
         run = started(base, stretch, schedule)
