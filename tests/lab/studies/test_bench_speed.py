@@ -37,7 +37,7 @@ def resting(bed):
     run.close()
 
 
-def test_ratios_are_of_the_runs_of_a_turn_and_the_first_turn_warms_up():
+def test_ratios_are_within_a_round_and_the_first_round_is_a_warm_up():
     told = {"fast": iter([1.0, 8e6, 6e6, 9e6]), "slow": iter([9e9, 2e6, 3e6, 3e6])}
     found = in_turn({name: lambda n=name: next(told[n]) for name in told}, 3)
     assert millions(found["fast"]) == "8.0"
@@ -53,7 +53,7 @@ def test_a_bed_is_settled_once(tmp_path, monkeypatch):
 
 
 @pytest.mark.slow
-def test_copies_stand_side_by_side_without_touching_deeper_than_a_wall(bed):
+def test_copies_of_a_bed_touch_no_deeper_than_a_wall(bed):
     three = bed.times(3)
     assert (three.count, three.width) == (3 * COUNT, pytest.approx(3 * WIDTH))
     np.testing.assert_allclose(three.position[COUNT : 2 * COUNT], bed.position, atol=1e-15)
@@ -68,7 +68,7 @@ def test_copies_stand_side_by_side_without_touching_deeper_than_a_wall(bed):
 
 
 @pytest.mark.slow
-def test_a_worker_times_steps_and_says_what_it_cannot_do(bed):
+def test_a_worker_times_steps_and_reports_what_it_cannot_do(bed):
     worker = Worker(bed, worlds=2, schedule="per-world")
     assert worker.dt == bed.scene().time_step()
     assert worker.speed(0.01) > 0.0
@@ -92,7 +92,7 @@ def test_the_walls_carry_the_bed_in_the_parts_that_are_timed(resting):
 
 
 @pytest.mark.slow
-def test_parts_done_often_leave_the_bed_as_it_is(resting):
+def test_repeated_parts_leave_the_bed_unchanged(resting):
     run, kernels = resting, Parts(resting)
     kernels.move(1, 0.0)
     before, lists = run.snapshot(), run.grains.lists.pairs
@@ -116,7 +116,7 @@ def test_parts_done_often_leave_the_bed_as_it_is(resting):
 
 
 @pytest.mark.slow
-def test_bytes_are_counted_as_the_lists_and_the_grains_hold_them(resting):
+def test_bytes_are_counted_from_the_sizes_of_lists_and_grains(resting):
     lists = resting.grains.lists.pairs
     reals = 3 + len(lists.constants) + 2 * len(lists.memory)  # stiffness, reach, share; memory is read and written
     assert total(PAIR, "").bytes == 2 * INTEGER + reals * REAL
@@ -140,7 +140,7 @@ def test_the_kernels_that_find_the_limits_do_what_they_count():
     kernels.close()
 
 
-def test_the_parts_are_told_with_their_shares_and_limits(tmp_path):
+def test_the_parts_are_reported_with_their_shares_and_limits(tmp_path):
     seconds = {"whole step": 4e-6, "pair_forces": 2e-6, "wall_forces": 1e-6, "move": 0.5e-6}
     rest = parts.AtRest(100, 200, 150, {**seconds, "gather": 1e-6, "laws": 0.5e-6, "scatter": 0.5e-6})
     simple, slow, size = parts.per_grain(rest)
@@ -168,12 +168,12 @@ def test_without_the_other_codes_the_page_says_so(tmp_path, monkeypatch):
     assert "times as fast" not in text
 
 
-def test_an_unknown_study_is_said(tmp_path):
+def test_an_unknown_study_is_reported(tmp_path):
     with pytest.raises(LabError, match=r"there is no study colour: take grains, .*peers, curves\.$"):
         run_page(["colour"], tmp_path, fast=True)
 
 
-def test_curves_tell_the_first_diameter_and_where_they_part():
+def test_curves_report_the_first_diameter_and_where_they_diverge():
     tilt = np.linspace(0.0, 10.0, 101)
     one, other = Curve(tilt, 0.2 * tilt), Curve(tilt, np.where(tilt > 6.0, 0.5, 0.2) * tilt)
     assert one.first_diameter() == pytest.approx(5.0, abs=0.11)
@@ -210,7 +210,7 @@ def told_to_lammps(monkeypatch, bed, **how) -> str:
 
 
 @pytest.mark.slow
-def test_lammps_is_told_the_viscoelastic_law_that_loses_as_much(bed, monkeypatch):
+def test_the_lammps_input_has_the_equivalent_viscoelastic_law(bed, monkeypatch):
     """γ_n m_eff √R_eff = (3/2) A k of the lab's law, for two mean grains and for one and a wall."""
     deck = told_to_lammps(monkeypatch, bed)
     scene = replace(bed.scene(), stiffness_scale=1.0)
@@ -230,14 +230,14 @@ def test_lammps_is_told_the_viscoelastic_law_that_loses_as_much(bed, monkeypatch
         assert told[2] * m_eff == pytest.approx(1.5 * between.dissipative_time * told[0], rel=0.02)
 
 
-def test_lammps_without_history_is_told_a_spring_and_a_stable_dashpot(bed, monkeypatch):
+def test_the_lammps_input_without_history_has_a_spring_and_a_stable_dashpot(bed, monkeypatch):
     deck = told_to_lammps(monkeypatch, bed, tangential="no_history", processes=2)
     spring, _, _, damping, friction = (float(x) for x in deck.split("pair_style gran/hooke")[1].split()[:5])
     assert spring > 0.0 and friction == ACETATE.friction
     assert damping * 1e-6 < 2.0 / 7.0
 
 
-def test_gpu_pages_say_what_is_unmeasured(tmp_path, monkeypatch):
+def test_gpu_pages_name_what_was_not_measured(tmp_path, monkeypatch):
     def none(arch, precision):
         raise Unavailable(f"run.arch: there is no {arch} here.")
 
@@ -247,7 +247,7 @@ def test_gpu_pages_say_what_is_unmeasured(tmp_path, monkeypatch):
         assert f"Unmeasured: run.arch: there is no {arch} here." in text
 
 
-def test_software_is_named_and_only_tried_on_small_beds(tmp_path, monkeypatch):
+def test_software_devices_are_named_and_run_only_small_beds(tmp_path, monkeypatch):
     monkeypatch.setattr(runtime, "choose_arch", lambda arch, precision: arch)
     monkeypatch.setattr(gpu, "device", lambda arch: Device("a painter", software=True))
     text = gpu.run_page(tmp_path, fast=False).read_text()
@@ -255,6 +255,6 @@ def test_software_is_named_and_only_tried_on_small_beds(tmp_path, monkeypatch):
     assert text.count("Unmeasured: software is no graphics processor") == 2
 
 
-def test_a_grain_that_is_off_is_told_in_diameters():
+def test_a_deviating_grain_is_reported_in_diameters():
     found = np.array([[0.0, 0.0], [4.0, 3.0]])
     assert gpu.farthest(found, np.zeros((2, 2))) == pytest.approx(5.0 / DIAMETER)

@@ -1,4 +1,4 @@
-"""The watch: what stops a simulation, what it says, and that the other worlds and the state stay as they are."""
+"""The watch: what stops a simulation, its message, and that the other worlds and the state are unchanged."""
 
 import re
 
@@ -43,7 +43,7 @@ def start(run, **places) -> None:
 
 
 def caught(action, *arguments) -> str:
-    """What BadState says: one sentence that begins with its world and tells the time."""
+    """The message of BadState: one sentence that begins with the world and has the time."""
     with pytest.raises(BadState) as error:
         action(*arguments)
     said = str(error.value)
@@ -86,7 +86,7 @@ def test_the_limit_of_speed_is_a_tenth_of_a_radius_a_step(run):
 
 
 @pytest.mark.parametrize("place", [[0.0, -0.02], [0.0, 0.08], [-0.05, 0.02], [0.05, 0.07]])
-def test_an_escape_is_seen(run, place):
+def test_an_escaped_grain_is_detected(run, place):
     run.advance(1)
     run.observe()
     start(run, grain=place)
@@ -98,8 +98,8 @@ def test_an_escape_is_seen(run, place):
 
 
 @pytest.mark.parametrize("against", ["grain", "wall"])
-def test_deep_overlap_is_seen(run, against):
-    """The limit is 0.3 radii, with a step so short that nobody moves."""
+def test_deep_overlap_is_detected(run, against):
+    """The limit is 0.3 radii; the step is so short that no grain moves."""
     run.dt = 1e-12
     for overlap in (0.29, 0.31):
         gap = np.array([0.0, 2.0 - overlap]) if against == "grain" else np.array([0.0, 1.0 - overlap])
@@ -113,6 +113,6 @@ def test_deep_overlap_is_seen(run, against):
             assert told_time(said) == pytest.approx(1e-12)
 
 
-def test_settling_tells_the_time_since_it_began(run):
+def test_during_settling_the_message_has_the_settling_time(run):
     run.grains.grains.velocity[0][0, 2] = np.nan
     assert told_time(caught(run.settle, 1e-6, 1.0)) == pytest.approx(run.dt, rel=1e-3)
