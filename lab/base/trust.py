@@ -170,7 +170,7 @@ def _checked_bytes(file: h5py.File, data: h5py.Dataset) -> int:
     """Size of a data set in bytes. Raises Unusable unless it is plain numbers or one text, stored in this file."""
     where, settings = f"{file.filename}: {data.name[1:]}", data.id.get_create_plist()
     if data.is_virtual or data.external:
-        raise Unusable(f"{where} lies in another file: do not use this file.")
+        raise Unusable(f"{where} is stored in another file: do not use this file.")
     filters = {settings.get_filter(k)[0] for k in range(settings.get_nfilters())}
     if not filters <= set(SAME_SIZE):
         raise Unusable(f"{where} is compressed, unlike the lab's own files: unpack it with h5repack -f NONE.")

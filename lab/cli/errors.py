@@ -1,6 +1,6 @@
 """Turn errors of the commands into one sentence on stderr and an exit code.
 
-Exit codes: 0 done; 1 the simulation could not go on; 2 the request cannot be carried out; 130 interrupted by Ctrl-C,
+Exit codes: 0 done; 1 the simulation could not continue; 2 the request cannot be carried out; 130 interrupted by Ctrl-C,
 143 by SIGTERM, 129 by SIGHUP.
 """
 

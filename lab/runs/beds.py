@@ -131,13 +131,13 @@ def _settled_as_discs(
 
 
 def _settle(simulation: Simulation, how: Settling, stage: str, progress: Progress) -> bool:
-    def tell(time: float) -> None:
+    def report(time: float) -> None:
         progress.reach(time)
         progress.watch(simulation)
 
     progress.start(stage, how.limit)
     progress.watch(simulation)  # show the grains before the kernels are compiled, which takes some seconds
-    rests = simulation.settle(how.rest, how.limit, tell)
+    rests = simulation.settle(how.rest, how.limit, report)
     progress.finish()
     return rests
 

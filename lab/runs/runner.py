@@ -124,7 +124,7 @@ def reported(folder: Path, status: str) -> bool:
 
 @contextmanager
 def hint(folder: Path, begun: str = FILE_NAME) -> Iterator[None]:
-    """If the run is cut short, tell the user how to continue it; the file `begun` shows that it had started."""
+    """If the run is interrupted, add to the message how to continue it; the file `begun` shows that it had started."""
     resume = f"cargolab resume {shlex.quote(str(folder))}"
     try:
         yield

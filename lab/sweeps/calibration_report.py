@@ -159,7 +159,7 @@ class Calibration:
             )
         for x, off in self.misfits:
             found.append(
-                f"At {x:g}{_unit(self.unit)} the measures lie {off:+.2g}{_unit(self.measure_unit)} off the curve, "
+                f"At {x:g}{_unit(self.unit)} the measures are {off:+.2g}{_unit(self.measure_unit)} off the curve, "
                 "which is significant: the value may be wrong; narrow the range."
             )
         return found

@@ -20,7 +20,7 @@ LARGEST = 1e3  # SI: upper bound on the value of any control
 def replay(path: Path | str, out: Path | str | None = None, *, video: bool = True, quiet: bool = False) -> Result:
     """Run a recording of `cargolab view` again (default: in a folder beside it), and report it as a run.
 
-    Raises LabError if it is not such a recording.
+    Raises LabError if it is not a recording of `cargolab view`.
     """
     with open_recording(path) as recording:
         done, loaded = recording.steering, recorded_preset(recording)
