@@ -312,7 +312,7 @@ def test_memory_is_bounded_and_the_shown_frame_stays(opened, monkeypatch):
     for k in range(9, 200):
         pipes[-1].send(("frame", (seen(place, 0.1 * k), 0.5)))
         session.tick()
-    frames = session.footage._seen
+    frames = session.footage._frames
     assert 7 <= len(frames) <= 8
     assert sum(frame.bytes for frame in frames) == session.footage._bytes <= limit
     assert frames[-1].time == pytest.approx(19.9)
