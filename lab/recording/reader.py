@@ -214,7 +214,7 @@ def _open(path: Path) -> tuple[h5py.File, str]:
     except PermissionError as error:
         raise LabError(f"{path} may not be read: change its permissions.") from error
     except OSError as error:
-        raise LabError(f"{path} cannot be read as a recording: it is truncated or of another kind.") from error
+        raise LabError(f"{path} cannot be read as a recording: it is truncated or another kind of file.") from error
     try:
         with reading(path):
             form = format_of(file)

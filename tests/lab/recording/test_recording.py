@@ -391,7 +391,7 @@ def make_bad_preset(path):
         (make_older, "another version"),
         (make_incomplete, "damaged"),
         (make_bad_preset, "damaged"),
-        (make_short, "cut short"),
+        (make_short, "truncated"),
     ],
 )
 def test_other_files_are_refused_in_one_sentence(tmp_path, make, complaint):
