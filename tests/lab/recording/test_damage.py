@@ -71,7 +71,7 @@ def bit_of(path: Path, name: str, row: int) -> int:
 
 
 @pytest.mark.parametrize("times", [1, pytest.param(4, marks=pytest.mark.slow)])
-def test_a_flipped_bit_is_named_and_never_read(whole, tmp_path, times):
+def test_a_flipped_bit_is_reported_and_never_read(whole, tmp_path, times):
     """So many times 50 of all bits that hold numbers or texts, and 10 of the rest of the file."""
     expected, chance = contents(whole), random.Random(11)
     places = used(whole).tolist()
@@ -92,7 +92,7 @@ def test_a_flipped_bit_is_named_and_never_read(whole, tmp_path, times):
     assert len(set(bits) & set(caught)) == len(set(bits))
 
 
-def test_what_lies_before_the_damage_can_be_read_and_painted(whole, tmp_path):
+def test_rows_before_the_damage_can_be_read_and_painted(whole, tmp_path):
     path = damaged(whole, tmp_path, [bit_of(whole, "frames/position", 6)])
     said = f"{path}: frames/position is damaged from row 6 of 10 (2.4 s): the rows before can be painted"
     with open_recording(path) as found, open_recording(whole) as before:
@@ -110,14 +110,14 @@ def test_what_lies_before_the_damage_can_be_read_and_painted(whole, tmp_path):
     assert len(list(pictures.glob("*.png"))) > 1
 
 
-def test_damage_of_the_first_row_leaves_nothing_to_paint(whole, tmp_path):
+def test_with_a_damaged_first_row_nothing_can_be_painted(whole, tmp_path):
     path = damaged(whole, tmp_path, [bit_of(whole, "series/pose", 0)])
     said = r"series/pose is damaged from row 0 of 40 \(0 s\): record"
     with open_recording(path) as found, pytest.raises(LabError, match=said):
         found.series["pose"]
 
 
-def test_a_run_goes_on_over_damage_behind_its_checkpoint_only(whole, tmp_path):
+def test_a_run_continues_only_if_the_damage_is_after_its_checkpoint(whole, tmp_path):
     path = damaged(whole, tmp_path, [bit_of(whole, "series/pose", 30), bit_of(whole, "frames/spin", 8)])
     with pytest.raises(LabError, match="series/pose is damaged from row 30 of 31, before its checkpoint: start"):
         Recorder(tmp_path, samples=31, frames=8)
@@ -132,7 +132,7 @@ def test_a_run_goes_on_over_damage_behind_its_checkpoint_only(whole, tmp_path):
     assert {name for name in expected if found[name] != expected[name]} <= {"status"}
 
 
-def test_a_torn_write_costs_no_row_that_was_flushed(tmp_path):
+def test_an_incomplete_write_loses_no_flushed_row(tmp_path):
     """Chunks are written again as rows are added: whatever part of that reached the file, the rows before stand."""
     path, chance = tmp_path / "run" / "recording.h5", random.Random(3)
     with record(tmp_path / "run", 20, flush_every=3600.0) as run:
@@ -169,7 +169,7 @@ def test_a_torn_write_costs_no_row_that_was_flushed(tmp_path):
             assert "metadata" in str(error) or "damaged" in str(error)
 
 
-def test_rows_behind_the_last_flush_that_are_not_whole_were_never_there(tmp_path):
+def test_incomplete_rows_after_the_last_flush_are_ignored(tmp_path):
     path = tmp_path / "recording.h5"
     record(tmp_path).close()
     with h5py.File(path, "r+") as file:
@@ -197,7 +197,7 @@ def test_a_reader_waits_for_a_writer_that_is_at_these_rows(tmp_path, monkeypatch
     assert next(asked) < before + 100
 
 
-def test_a_stored_array_and_a_text_are_named(whole, tmp_path):
+def test_damaged_arrays_and_texts_are_named(whole, tmp_path):
     for name in ("grains/radius", "preset/resolved", "tank/outline", "grains/kind"):
         path = damaged(whole, tmp_path, [bit_of(whole, name, 0)])
         with pytest.raises(LabError, match=f"{name} is damaged, and without it"):

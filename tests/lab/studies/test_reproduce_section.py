@@ -28,7 +28,7 @@ def test_damping_estimated_from_the_shape_brackets_the_measured_peak(peak):
             assert 0.95 * eddies[k] < reading < 1.05 * friction[k]
 
 
-def test_damping_usual_of_ships_is_too_much_for_it(peak):
+def test_damping_usual_for_ships_is_too_large_for_the_section(peak):
     """Told as it is: 2 % of the critical damping leaves less roll than either instrument reads."""
     tests, (_, _, rolls) = peak
     for k, test in enumerate(tests):
@@ -41,7 +41,7 @@ def test_the_peak_is_not_steady_when_measured():
     assert base.steady(np.array([test.frequency]))[0, 2] > 1.5 * base.small(test)[2]
 
 
-def test_a_train_long_past_is_a_steady_wave():
+def test_after_the_transient_a_train_is_a_steady_wave():
     """Off the resonance, where transients are gone, the train's window gives the steady response, to 1 %."""
     test = MEASUREMENTS[4]
     assert potential_flow().small(test) == pytest.approx(potential_flow().steady(np.array([7.004]))[0], rel=0.01)
@@ -59,7 +59,7 @@ def test_windows_lie_between_the_ramp_and_the_returning_waves():
         assert window(test.frequency)[0] == pytest.approx(test.window[0], abs=1.0)
 
 
-def test_verdicts_and_shares_of_what_is_known():
+def test_verdicts_and_explained_shares():
     """An amplitude that was read agrees, one 11 % below both does not; a term that takes all the excess is 100 %."""
     camera = np.array([test.camera for test in MEASUREMENTS])
     assert all(row.verdict is Verdict.AGREES for row in compared(camera))

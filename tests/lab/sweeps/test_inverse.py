@@ -44,7 +44,7 @@ def test_beds_of_one_slope_have_students_interval():
 
 
 @pytest.mark.parametrize("beds", [4, 8, pytest.param(30, marks=pytest.mark.slow)])
-def test_the_interval_holds_the_value_as_often_as_it_says(beds):
+def test_the_interval_contains_the_value_at_its_confidence_level(beds):
     random, held, trials = np.random.default_rng(beds), 0, 1000
     for _ in range(trials):
         response = fitted(X, measured(X, beds, random))
@@ -64,7 +64,7 @@ def test_an_uncertain_target_widens_the_interval():
     assert loose.std == exact.std
 
 
-def test_so_many_beds_as_are_said_give_the_width():
+def test_the_computed_number_of_beds_gives_the_width():
     for half in (0.02, 0.1, 1.0):
         n = beds_for(half, 0.2)
         assert half_of(n, 0.2) <= half
@@ -72,7 +72,7 @@ def test_so_many_beds_as_are_said_give_the_width():
     assert beds_for(1e-6, 1.0) is None and beds_for(0.1, inf) is None
 
 
-def test_beds_without_some_values_count_as_far_as_they_go():
+def test_beds_with_missing_values_are_used_partly():
     measures = measured(X, 6, np.random.default_rng(1), own=0.0)
     whole = fitted(X, measures)
     measures[4, 0] = np.nan  # a parabola is determined by the other four
@@ -90,12 +90,12 @@ def test_one_bed_has_a_value_and_no_error():
     assert (found.standard_error, found.std, found.interval) == (None, None, None)
 
 
-def test_a_response_that_is_no_parabola_is_seen():
+def test_a_response_that_is_not_a_parabola_is_detected():
     step = np.where(X > 0.6, 10.0, 0.0)[:, None] + measured(X, 8, np.random.default_rng(4), own=0.3)
     assert misfit(fitted(X, step), X, step)
 
 
-def test_a_parabola_is_not_refused_more_often_than_by_chance():
+def test_a_parabola_is_rejected_only_by_chance():
     random, refused = np.random.default_rng(5), 0
     for _ in range(400):
         measures = measured(X, 8, random)
