@@ -33,7 +33,6 @@ LONG = {  # too long, and not to become longer
     "lab/paint/film.py": 399,
     "lab/paint/painter.py": 445,
     "lab/recording/writer.py": 380,
-    "lab/report/plots.py": 634,
     "lab/runs/beds.py": 316,
     "lab/studies/reproduce/outlines.py": 375,
     "lab/studies/reproduce/shaking.py": 353,

@@ -1,7 +1,13 @@
-"""What is measured on a recording, one file a measure; a new one is a file and a line in MEASURES.
+"""What is measured on a recording: one file for each measure, with its numbers, their errors and its figures.
 
-A measure is a module with `applies(recording) -> bool` and `measure(recording) -> dict[str, Value]`;
-its docstring defines each number and says where its error comes from.
+A measure is a module with
+- a docstring that defines each number and says where its error comes from;
+- `applies(recording) -> bool`: whether it can be measured on this recording;
+- `measure(recording) -> dict[str, Value]`: its numbers by name;
+- `FIGURES`, if it has any: functions by the name of the figure's file, each called as
+  `draw(sheet, recording, values)` (`lab.measures.drawing.Draw`).
+A new measure is such a file and a line in MEASURES: its numbers and figures appear in the report of every run on which
+it can be measured.
 """
 
 from lab.measures import (
@@ -12,7 +18,10 @@ from lab.measures import (
     flow_rate,
     heap_angle,
     hysteresis,
+    ship_frozen,
+    ship_power,
     ship_roll,
+    ship_stability,
     spectrum,
     spilled,
     steady_amplitude,
@@ -25,9 +34,12 @@ from lab.measures import (
 from lab.measures.value import Value
 from lab.recording import Recording
 
-# In the order in which a summary shows them.
+# In the order in which a report shows their numbers and figures.
 MEASURES = (
     ship_roll,
+    ship_frozen,
+    ship_stability,
+    ship_power,
     heap_angle,
     flow_rate,
     spilled,

@@ -8,10 +8,18 @@ Error: the positions are those of the simulation, without noise; what repeats do
 std over the worlds. The last sample of a shaken bed catches it at one phase of its motion.
 """
 
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
 import numpy as np
 
+from lab.measures.drawing import BLUE, VERMILION, Sheet, band
+from lab.measures.motion import driving, is_tilt
 from lab.measures.value import Value, over_worlds
 from lab.recording import Recording
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 
 def applies(recording: Recording) -> bool:
@@ -34,3 +42,30 @@ def measure(recording: Recording) -> dict[str, Value]:
         "final_shift": over_worlds(final[:, 0] / recording.mean_diameter, "d", **notes),
         "largest_shift": over_worlds(1e3 * largest, "mm", **notes),
     }
+
+
+def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> None:
+    """The shift against time, where no measure of tilting or shaking draws it against the motion of the tank."""
+    if is_tilt(recording) or driving(recording) is not None:
+        return
+    ((axes,),) = sheet.panels()
+    time = recording.series["time"]
+    draw_shift(axes, time, shift(recording))
+    axes.set_xlim(time[0], time[-1])
+
+
+def shift(recording: Recording) -> np.ndarray:
+    """Displacement (T, W, 2), mm, of the centre of mass from the settled bed."""
+    centre = recording.series["centre_of_mass"]
+    return 1e3 * (centre - centre[0])
+
+
+def draw_shift(axes: "Axes", time: np.ndarray, moved: np.ndarray) -> None:
+    """Shift (T, W, 2), mm, against time (T,), s."""
+    band(axes, time, moved[:, :, 0], BLUE, "y, to starboard")
+    band(axes, time, moved[:, :, 1], VERMILION, "z, up")
+    axes.set_ylabel("shift of the centre of mass\nin the tank (mm)")
+    axes.set_xlabel("time (s)")
+
+
+FIGURES = {"shift": draw}

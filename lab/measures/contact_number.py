@@ -9,8 +9,11 @@ contact_number: mean over the steady part (`steady_part`; a tilt has none). Erro
 means of blocks, a driving period each where there is one.
 """
 
+from collections.abc import Mapping
+
 import numpy as np
 
+from lab.measures.drawing import BLUE, Sheet, band, mean_label
 from lab.measures.steady import averaged, steady_part
 from lab.measures.value import Value, over_worlds
 from lab.recording import Recording
@@ -37,3 +40,16 @@ def contact_number(recording: Recording) -> np.ndarray:
     """Mean coordination number (T, W); NaN for an empty tank."""
     grains = recording.radius.shape[1] - recording.series["spilled"]
     return 2 * recording.series["contacts"] / np.where(grains > 0, grains, np.nan)
+
+
+def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> None:
+    """The mean coordination number in time."""
+    ((axes,),) = sheet.panels()
+    time, worlds = recording.series["time"], recording.worlds
+    band(axes, time, contact_number(recording), BLUE, mean_label(worlds) if worlds > 1 else None)
+    axes.set_xlabel("time (s)")
+    axes.set_xlim(time[0], time[-1])
+    axes.set_ylabel("contacts of a grain")
+
+
+FIGURES = {"contacts": draw}

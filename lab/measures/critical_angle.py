@@ -33,11 +33,13 @@ the onset by DECISION: sharp for an avalanche, wide where the bed begins to flow
 differ by more: see the std.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.special import ndtri
 
+from lab.measures.drawing import BLUE, GREEN, POINTS, VERMILION, Sheet, band, mean_label, millimetres, thinned
 from lab.measures.motion import is_tilt, outward_leg
 from lab.measures.value import Value, over_worlds
 from lab.recording import Recording
@@ -190,3 +192,31 @@ def _first_beyond(tilt: np.ndarray, shift: np.ndarray, limit: float) -> float:
     k = beyond[0]
     part = (limit - shift[k - 1]) / (shift[k] - shift[k - 1])
     return float(tilt[k - 1] + part * (tilt[k] - tilt[k - 1]))
+
+
+def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> None:
+    """The shift of the centre of mass against the tilt, with the onsets found in it."""
+    ((axes,),) = sheet.panels()
+    worlds, diameters = recording.worlds, recording.mean_diameter
+    curves = [shift_curve(recording, world) for world in range(worlds)]
+    curves = [(tilt, shift / d) for (tilt, shift), d in zip(curves, diameters, strict=True)]
+    if worlds > 1:
+        for world, curve in enumerate(curves):
+            label = None if world else f"each of {worlds} beds"
+            axes.plot(*thinned(*curve), color=BLUE, alpha=0.4, lw=0.7, label=label)
+    common = np.linspace(0, min(tilt[-1] for tilt, _ in curves), POINTS)
+    together = np.stack([np.interp(common, *curve) for curve in curves], axis=1)
+    band(axes, common, together, BLUE, mean_label(worlds))
+    sheet.mark(axes, values.get("first_slip_angle"), "first slip", GREEN, ":")
+    sheet.mark(axes, values.get("critical_angle"), "critical angle", VERMILION)
+    found = values["critical_angle"].worlds if "critical_angle" in values else ()
+    for onset, curve in zip(found, curves, strict=False):
+        if onset is not None:
+            axes.plot(onset, np.interp(onset, *curve), "o", color=VERMILION, ms=3.5)
+    axes.set_xlabel("tilt (deg)")
+    axes.set_xlim(0, max(tilt[-1] for tilt, _ in curves))
+    axes.set_ylabel("shift of the centre of mass\ndownhill (mean diameters)")
+    millimetres(axes, 1e3 * diameters.mean())
+
+
+FIGURES = {"shift": draw}

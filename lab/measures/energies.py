@@ -4,6 +4,9 @@ largest_kinetic_energy: the largest at any sample; final_kinetic_energy: at the 
 Error: a peak shorter than the sampling interval may be missed; repeats differ by the std.
 """
 
+from collections.abc import Mapping
+
+from lab.measures.drawing import BLUE, GREY, VERMILION, Sheet, band, median_band
 from lab.measures.value import Value, over_worlds
 from lab.recording import Recording
 
@@ -20,3 +23,24 @@ def measure(recording: Recording) -> dict[str, Value]:
         "largest_kinetic_energy": over_worlds(kinetic.max(axis=0), "µJ"),
         "final_kinetic_energy": over_worlds(kinetic[-1], "µJ"),
     }
+
+
+def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> None:
+    """Energies in time: kinetic and elastic on a logarithmic scale, below the change of the potential one."""
+    time, series = recording.series["time"], recording.series
+    kinetic = 1e6 * (series["kinetic"] + series["rotational"])
+    if not kinetic.any():
+        return
+    (upper,), (lower,) = sheet.panels(heights=(2, 1))
+    median_band(upper, time, kinetic, BLUE, "kinetic, relative to the tank")
+    median_band(upper, time, 1e6 * series["elastic"], VERMILION, "elastic")
+    upper.set_yscale("log")
+    upper.set_ylabel("energy (µJ)")
+    potential = 1e6 * (series["potential"] - series["potential"][0])
+    band(lower, time, potential, GREY)
+    lower.set_ylabel("potential,\nchange (µJ)")
+    lower.set_xlabel("time (s)")
+    lower.set_xlim(time[0], time[-1])
+
+
+FIGURES = {"energy": draw}

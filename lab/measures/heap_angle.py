@@ -14,9 +14,12 @@ heap_angle: the mean of both. Error: half the 68 % confidence interval of the sl
 heap_height: of the apex above the base. Error: none of its own, but a grain more or less is a diameter.
 """
 
+from collections.abc import Mapping
+
 import numpy as np
 
-from lab.measures.outlet import Outlet, find_outlet
+from lab.measures.drawing import BLUE, VERMILION, Sheet, band
+from lab.measures.outlet import Outlet, find_outlet, passed
 from lab.measures.surface_slope import inclination
 from lab.measures.value import Value, over_worlds
 from lab.measures.wave import column_tops
@@ -87,3 +90,22 @@ def base_below(outline: np.ndarray, y: float, z: float) -> float:
 
 def _angle(angles: np.ndarray, errors: np.ndarray) -> Value:
     return over_worlds(angles, "deg", uncertainties=errors, kind="fit", missing=MISSING)
+
+
+def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> None:
+    """The heap under an outlet in time: how steep it is, and how many of the grains have passed."""
+    outlet, time = find_outlet(recording), recording.frames["time"][:]
+    if len(time) < 2:
+        return
+    flanks = [heap(recording, outlet, frame)[0][:, :, 0] for frame in range(len(time))]
+    (upper,), (lower,) = sheet.panels(heights=(2, 1))
+    band(upper, time, np.degrees(np.mean(flanks, axis=2)), BLUE)
+    upper.set_ylabel("angle of the heap (deg)")
+    upper.set_ylim(bottom=0)
+    band(lower, time, 100 * passed(recording, outlet).mean(axis=2), VERMILION)
+    lower.set_ylabel("below the\noutlet (%)")
+    lower.set_xlabel("time (s)")
+    lower.set_xlim(time[0], time[-1])
+
+
+FIGURES = {"heap": draw}

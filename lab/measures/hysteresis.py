@@ -7,8 +7,11 @@ liquid.
 Error: half the change of the shift over the last LAST of tilt before that, which is how far the bed still moved.
 """
 
+from collections.abc import Mapping
+
 import numpy as np
 
+from lab.measures.drawing import BLUE, GREY, VERMILION, Sheet, millimetres, thinned
 from lab.measures.motion import is_tilt, outward_leg
 from lab.measures.value import Value, over_worlds
 from lab.recording import Recording
@@ -61,3 +64,26 @@ def _kept(tilt: np.ndarray, shift: np.ndarray, end: int) -> tuple[float, float, 
     back = slice(end - 1, row + 1)
     remains, before = np.interp([0.0, LAST], tilt[back][::-1], shift[back][::-1])
     return float(remains), float(abs(remains - before) / 2), float(np.fmax.reduce(shift[: row + 1]))
+
+
+def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> None:
+    """The shift against the tilt, out and back: what the bed keeps where the tank is upright again."""
+    ((axes,),) = sheet.panels()
+    for world, diameter in enumerate(recording.mean_diameter):
+        tilt, shift, end = loop(recording, world)
+        out, back = slice(end), slice(end - 1, None)
+        names = (None, None) if world else ("way out", "way back")
+        axes.plot(*thinned(tilt[out], shift[out] / diameter), color=BLUE, lw=1.2, alpha=0.8, label=names[0])
+        axes.plot(*thinned(tilt[back], shift[back] / diameter), color=VERMILION, lw=1.2, alpha=0.8, label=names[1])
+    remains, kept = values.get("remaining_shift"), values.get("kept_shift")
+    for world, left in enumerate(remains.worlds if remains else ()):
+        if left is not None:
+            label = None if world or kept is None or kept.value is None else f"kept: {kept.value:.0f} % of the largest"
+            axes.plot(0, left, "o", color=VERMILION, ms=4, label=label, clip_on=False, zorder=3)
+    axes.axhline(0, color=GREY, lw=0.8)
+    axes.set_xlabel("tilt (deg)")
+    axes.set_ylabel("shift of the centre of mass\ndownhill (mean diameters)")
+    millimetres(axes, 1e3 * recording.mean_diameter.mean())
+
+
+FIGURES = {"hysteresis": draw}

@@ -11,17 +11,26 @@ Error: half the difference between the two halves of the window. Noise has some 
 see the spectrum's figure for its level.
 """
 
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
 import numpy as np
 
+from lab.measures.drawing import BLUE, GREY, VERMILION, Sheet, median_band
 from lab.measures.motion import driving, soft_start
-from lab.measures.steady import STILL, Steady, amplitude_value, harmonics, steady_window
+from lab.measures.steady import STILL, Steady, amplitude_value, harmonics, steady_part, steady_window
 from lab.measures.value import Value, over_worlds
 from lab.recording import Recording
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 ORDERS = (0.5, 1.0, 2.0, 3.0, 4.0, 5.0)
 PERIODS = 4  # the window is a multiple of them
 LEAST_SAMPLES = 12  # a period: the fifth harmonic must not be an alias
 PADDING = 4
+QUIETEST = 1e-4  # of the largest amplitude: where the scale of a drawn spectrum begins
+HIGHEST = 5.6  # driving frequencies: where it ends
 SHORT = "the run has less than four steady periods"
 
 
@@ -75,3 +84,40 @@ def amplitude_spectrum(time: np.ndarray, signal: np.ndarray) -> tuple[np.ndarray
     window = np.hanning(count + 1)[:-1, None]
     amplitude = 2 * np.abs(np.fft.rfft(window * rest, PADDING * count, axis=0)) / window.sum()
     return np.fft.rfftfreq(PADDING * count, (time[-1] - time[0]) / (count - 1)), amplitude
+
+
+def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> None:
+    """Amplitude spectrum of the centre of mass of a driven bed over its steady part."""
+    time = recording.series["time"]
+    steady, frequency = steady_part(recording, time), driving(recording)[1]["frequency"]
+    if steady is None:
+        return
+    centre = 1e3 * recording.series["centre_of_mass"][steady.rows]
+    centre = centre[:, np.isfinite(centre).all(axis=(0, 2))]
+    if not centre.any():
+        return
+    ((axes,),) = sheet.panels()
+    highest = 0.0
+    for axis, colour, name in ((0, BLUE, "y, to starboard"), (1, VERMILION, "z, up")):
+        frequencies, amplitudes = amplitude_spectrum(time[steady.rows], centre[..., axis])
+        kept = (frequencies > 0) & (frequencies < HIGHEST * frequency)
+        median_band(axes, frequencies[kept], amplitudes[kept], colour, name)
+        highest = max(highest, amplitudes[kept].max(initial=0.0))
+    axes.set_yscale("log")
+    axes.set_ylim(QUIETEST * highest, 2 * highest)
+    axes.set_xlim(0, HIGHEST * frequency)
+    _name_orders(axes, frequency)
+    axes.set_xlabel(f"frequency (Hz), driven at f = {frequency:.3g} Hz")
+    axes.set_ylabel("amplitude of the centre of mass\nin the tank (mm)")
+
+
+def _name_orders(axes: "Axes", frequency: float) -> None:
+    """Upright lines at the multiples of the driving frequency (Hz) that are fitted."""
+    place = {"xycoords": axes.get_xaxis_transform(), "textcoords": "offset points", "va": "top"}
+    for order in ORDERS:
+        axes.axvline(order * frequency, color=GREY, ls=":", lw=0.8)
+        name = {0.5: "f/2", 1.0: "f"}.get(order, f"{order:g}f")
+        axes.annotate(name, (order * frequency, 1), (2, -2), color=GREY, fontsize=8, **place)
+
+
+FIGURES = {"spectrum": draw}

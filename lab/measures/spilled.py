@@ -14,9 +14,12 @@ three times as wide as deep 5 %, where the source saw 2 % creep. Error: as there
 Both angles are of the way out, in a tilting tank only.
 """
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from lab.measures.critical_angle import MAIN, find_steps
+from lab.measures.drawing import BLUE, GREEN, VERMILION, Sheet
 from lab.measures.motion import is_tilt, outward_leg
 from lab.measures.value import Value, over_worlds
 from lab.recording import Recording
@@ -82,3 +85,25 @@ def _upturn(recording: Recording, world: int) -> tuple[float, float]:
     depth = 2 * (recording.series["centre_of_mass"][0, world, 1] - floor)
     steps = find_steps(tilt, np.degrees(share * 2 * depth / width))
     return next(((step.onset, step.error) for step in steps if step.give >= MAIN), (np.nan, np.nan))
+
+
+def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> None:
+    """Share of the grains that an open tank has lost: against the tilt, or against time."""
+    if not recording.series["spilled"].any():
+        return
+    ((axes,),) = sheet.panels()
+    tilts = is_tilt(recording)
+    time, share = recording.series["time"], spilled_share(recording)
+    for world in range(recording.worlds):
+        curve = spill_curve(recording, world) if tilts else (time, share[:, world])
+        label = None if world else f"each of {recording.worlds} beds" if recording.worlds > 1 else "bed"
+        axes.plot(curve[0], 100 * curve[1], color=BLUE, lw=1.0, alpha=0.8, drawstyle="steps-post", label=label)
+    sheet.mark(axes, values.get("spill_start_angle"), f"first {100 * START:g} %", GREEN, ":")
+    sheet.mark(axes, values.get("spill_upturn_angle"), "sharp upturn", VERMILION)
+    axes.set_xlabel("tilt (deg)" if tilts else "time (s)")
+    axes.set_xlim(left=0)
+    axes.set_ylim(bottom=0)
+    axes.set_ylabel("spilled grains (% of all movable)")
+
+
+FIGURES = {"spilled": draw}

@@ -15,9 +15,13 @@ side (Spandonidis 2016, 5.2.2: z at twice the frequency of y, phase close to 180
 Error: half the difference between the two halves of the window, which is the bed's unsteadiness.
 """
 
+from collections.abc import Mapping
+
 import numpy as np
 
-from lab.measures.motion import HARMONIC, driving
+from lab.measures.centre_of_mass import draw_shift, shift
+from lab.measures.drawing import DRIVE, GREY, PERIODS, Sheet, band, close_up
+from lab.measures.motion import HARMONIC, driving, is_tilt
 from lab.measures.steady import SHORT, STILL, amplitude_value, harmonics, phase_value, steady_part
 from lab.measures.value import Value
 from lab.recording import Recording
@@ -54,3 +58,25 @@ def _answer(recording: Recording, part: slice) -> np.ndarray:
     along = harmonics(time, centre[:, :, 1 if name == "heave" else 0], frequency, (1, 2))[0]
     height = harmonics(time, centre[:, :, 1], frequency, (1, 2))[1]
     return np.stack([along * np.exp(-1j * np.angle(drive)), height])
+
+
+def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> None:
+    """The shift of the centre of mass below the motion of the tank; on the right the last periods, to see the phase."""
+    if is_tilt(recording):
+        return
+    name, settings = driving(recording)
+    time, moved = recording.series["time"], shift(recording)
+    panels = sheet.panels(heights=(1, 2), widths=(3, 2))
+    label, scale = DRIVE[name]
+    pose = scale * recording.series["pose"][:, :, HARMONIC[name]]
+    for column, begin in ((0, time[0]), (1, close_up(time, settings["frequency"]))):
+        shown = time >= begin
+        band(panels[0][column], time[shown], pose[shown], GREY)
+        draw_shift(panels[1][column], time[shown], moved[shown])
+        panels[1][column].set_xlim(begin, time[-1])
+    panels[0][0].set_ylabel(label)
+    panels[0][1].set_title(f"last {PERIODS} periods")
+    panels[1][1].set_ylabel("")
+
+
+FIGURES = {"shift": draw}

@@ -14,11 +14,18 @@ Error: half the 68 % confidence interval of the slope (Sen), as an angle. The la
 numbers lies above the true largest by about that error.
 """
 
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
 import numpy as np
 
+from lab.measures.drawing import BLUE, GREY, VERMILION, Sheet
 from lab.measures.motion import is_tilt, outward_leg
 from lab.measures.value import Value, over_worlds
 from lab.recording import Recording
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 COLUMN = 2.0  # mean diameters
 MARGIN = 0.1  # of the tank's width
@@ -93,3 +100,34 @@ def inclination(y: np.ndarray, z: np.ndarray) -> tuple[float, float]:
 
     slope, _, low, high = theilslopes(z, y, alpha=CONFIDENCE)
     return float(np.arctan(slope)), float(np.arctan(high) - np.arctan(low)) / 2
+
+
+def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> None:
+    """Inclination of the free surface against the tilt, both counted in the direction of the tilt."""
+    frames, slope, error = surface_course(recording)
+    if not np.isfinite(slope).any():
+        return
+    ((axes,),) = sheet.panels()
+    pose = recording.frames["pose"][:][frames, :, 2]
+    for world in range(recording.worlds):
+        leg = outward_leg(pose[:, world])
+        tilt = np.degrees(leg.direction * pose[:, world])
+        _draw_surface(axes, tilt, slope[:, world], error[:, world], leg.end, named=not world)
+    reach = [0, np.degrees(np.abs(pose).max())]
+    axes.plot(reach, reach, color=GREY, ls=":", lw=1.0, label="bed fixed to the tank")
+    sheet.mark(axes, values.get("critical_angle"), "critical angle", VERMILION)
+    axes.set_xlabel("tilt (deg)")
+    axes.set_ylabel("inclination of the surface\nagainst the horizontal (deg)")
+
+
+def _draw_surface(axes: "Axes", tilt: np.ndarray, slope: np.ndarray, error: np.ndarray, end: int, named: bool) -> None:
+    """Inclination (K,) with its error over the tilt of one world; dashed from row `end` on."""
+    line = {"color": BLUE, "lw": 0.9, "alpha": 0.8}
+    axes.plot(tilt[:end], slope[:end], label="surface, band: uncertainty of the fit" if named else None, **line)
+    axes.fill_between(tilt[:end], (slope - error)[:end], (slope + error)[:end], color=BLUE, alpha=0.12, lw=0)
+    back = slice(end - 1, None)
+    label = "way back" if named and np.ptp(tilt[back]) > 1 else None
+    axes.plot(tilt[back], slope[back], ls="--", label=label, **line)
+
+
+FIGURES = {"slope": draw}

@@ -8,8 +8,11 @@ Grains that have left the scene do not count. Error: none of the simulation's ow
 the picture frames.
 """
 
+from collections.abc import Mapping
+
 import numpy as np
 
+from lab.measures.drawing import BLUE, VERMILION, Sheet, band
 from lab.measures.value import Value, over_worlds
 from lab.recording import Recording
 
@@ -44,3 +47,20 @@ def altitudes(recording: Recording, frame: int) -> np.ndarray:
         if len(seen):
             found[world] = seen.max(), np.percentile(seen, BULK)
     return found
+
+
+def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> None:
+    """The top of the cargo in time: its highest grain, and the height most grains stay below."""
+    time = recording.frames["time"][:]
+    if len(time) < 2:
+        return
+    tops = 1e3 * np.array([altitudes(recording, frame) for frame in range(len(time))])
+    ((axes,),) = sheet.panels()
+    band(axes, time, tops[..., 0], BLUE, "highest grain")
+    band(axes, time, tops[..., 1], VERMILION, f"{BULK:g} % of the grains lie lower")
+    axes.set_xlabel("time (s)")
+    axes.set_xlim(time[0], time[-1])
+    axes.set_ylabel("altitude of the top\nin the tank (mm)")
+
+
+FIGURES = {"altitude": draw}

@@ -24,8 +24,11 @@ gravity's part as well and is not split.
 Error of these: half the difference between the two halves of the steady part.
 """
 
+from collections.abc import Mapping
+
 import numpy as np
 
+from lab.measures.drawing import BLUE, DRIVE, GREEN, GREY, PERIODS, VERMILION, Sheet, band, close_up
 from lab.measures.motion import HARMONIC, driving
 from lab.measures.steady import BLOCKS, SHORT, Steady, amplitude_value, averaged, harmonics, phase_value, steady_part
 from lab.measures.value import Value, over_worlds
@@ -139,3 +142,33 @@ def _with_halves(numbers: np.ndarray, unit: str, missing: str, note: str = "") -
     """Numbers (3, W) of the whole part and its halves."""
     errors = np.abs(numbers[1] - numbers[2]) / 2
     return over_worlds(numbers[0], unit, uncertainties=errors, kind="halves", note=note, missing=missing)
+
+
+def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> None:
+    """Force and moment of the cargo on the tank; of a driven tank the last periods beside its motion."""
+    drive, time = driving(recording), recording.series["time"][1:]
+    force = 1e3 * recording.series["wall_force"][1:]
+    heights, begin = ((2, 1), time[0]) if drive is None else ((1, 2, 1), close_up(time, drive[1]["frequency"]))
+    panels = sheet.panels(heights=heights)
+    shown = time >= begin
+    if drive is not None:
+        label, scale = DRIVE[drive[0]]
+        moved = scale * recording.series["pose"][1:][shown][:, :, HARMONIC[drive[0]]]
+        band(panels[0][0], time[shown], moved, GREY)
+        panels[0][0].set_ylabel(label)
+        panels[0][0].set_title(f"last {PERIODS} periods")
+    upper, lower = panels[-2][0], panels[-1][0]
+    band(upper, time[shown], force[shown, :, 0], BLUE, "y, to starboard")
+    band(upper, time[shown], force[shown, :, 1], VERMILION, "z, up")
+    weight = cargo_weight(recording)
+    if weight is not None:
+        settled = -1e3 * weight[0].mean()
+        upper.axhline(settled, color=GREY, ls=":", lw=1.0, label="weight of the cargo at the start")
+    upper.set_ylabel("force on the tank\n(mN, a sheet of\none grain's thickness)")
+    band(lower, time[shown], force[shown, :, 2], GREEN, "moment about the middle of the floor")
+    lower.set_ylabel("moment\n(mN m)")
+    lower.set_xlabel("time (s)")
+    lower.set_xlim(begin, time[-1])
+
+
+FIGURES = {"force": draw}

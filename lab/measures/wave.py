@@ -16,9 +16,12 @@ A surface of grains is rough: a bed at rest in the tank has none of these, one t
 of a diameter.
 """
 
+from collections.abc import Mapping
+
 import numpy as np
 
-from lab.measures.motion import is_shaken, is_tilt
+from lab.measures.drawing import BLUE, GREEN, GREY, PERIODS, VERMILION, Sheet, band, close_up
+from lab.measures.motion import driving, is_shaken, is_tilt
 from lab.measures.spectrum import PADDING, amplitude_spectrum
 from lab.measures.steady import SHORT, Steady, steady_part
 from lab.measures.value import Value, over_worlds
@@ -125,3 +128,25 @@ def _amplitude(course: np.ndarray, steady: Steady) -> Value:
     return over_worlds(
         whole, "mm", uncertainties=np.abs(first - second) / 2, kind="halves", missing="a wall stood bare"
     )
+
+
+def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> None:
+    """Elevation of the free surface at both walls and in the middle, and the first sloshing mode."""
+    places, mode = wave_course(recording)
+    time, drive = recording.frames["time"][:], driving(recording)
+    begin = time[0] if drive is None else close_up(time, drive[1]["frequency"])
+    (upper,), (lower,) = sheet.panels(heights=(3, 2), columns=4)
+    shown = time >= begin
+    for k, colour in enumerate((BLUE, GREY, VERMILION)):
+        name = f"{PLACES[k]} wall" if k != 1 else PLACES[k]
+        band(upper, time[shown], 1e3 * places[shown][:, :, k], colour, name)
+    upper.set_ylabel("elevation of\nthe surface (mm)")
+    if drive is not None:
+        upper.set_title(f"last {PERIODS} periods")
+    band(lower, time[shown], 1e3 * mode[shown], GREEN, "first mode cos(πy/L), higher at port")
+    lower.set_ylabel("mode (mm)")
+    lower.set_xlabel("time (s)")
+    lower.set_xlim(begin, time[-1])
+
+
+FIGURES = {"wave": draw}

@@ -7,7 +7,7 @@ import numpy as np
 
 from lab.assembly.room import check_room
 from lab.assembly.scene import build, grain_count
-from lab.measures.ship_roll import FROZEN_INTERVAL
+from lab.measures.ship_frozen import INTERVAL
 from lab.preset.accuracy import LEVELS
 from lab.preset.find import LoadedPreset
 from lab.preset.schema import Resolved
@@ -261,7 +261,7 @@ def _floating(preset, simulation: Simulation) -> float:
     rounds = -(-len(simulation.scene.vessels) // simulation.threads)
     look = LOOK + LOOK_PAIR * states**2 + LOOK_WAVE * waves
     looks = preset.run.duration / (float(simulation.carrier.every[0]) * simulation.dt)
-    return rounds * looks * look + preset.run.duration / FROZEN_INTERVAL * FROZEN
+    return rounds * looks * look + preset.run.duration / INTERVAL * FROZEN
 
 
 def _span(seconds: float) -> str:

@@ -12,14 +12,14 @@ import pytest
 from lab.assembly.ship import make_vessel, make_water, make_waves, natural_roll
 from lab.assembly.ship_tables import stored_table
 from lab.base.errors import LabError
-from lab.measures import ship_roll
+from lab.measures import measure_all, ship_frozen, ship_stability
 from lab.paint.painter import Camera
 from lab.paint.sea import SURFACE, WATER, Sea
 from lab.preset.find import load
 from lab.preset.ship import ShipGiven, WaterGiven, WavesGiven, axis_motion
 from lab.recording import open_recording
 from lab.recording.ship_end import End
-from lab.report import plots
+from lab.report.plots import figures
 from lab.report.ship import describe
 from lab.runs.runner import run_preset
 from lab.sweeps.sweep import point_folder, run_sweep
@@ -256,7 +256,7 @@ def test_the_curve_of_righting_levers(tmp_path):
             writer.sample(sample(now, centre_of_mass=np.array([[0.0, 0.055]]), **of_a_ship()))
         writer.frame(frame(0.0, 1, 3000))
     with open_recording(tmp_path) as recording:
-        axes = plots.lever_figure(recording, {}).axes[0]
+        axes = dict(figures(recording, {}))["lever"].axes[0]
     frozen, relaxed = (line.get_xydata() for line in axes.lines[:2])
     assert axes.lines[1].get_label() == "cargo slid to a repose of 20 deg"
     assert relaxed[:11] == pytest.approx(frozen[:11])  # to 20 deg
@@ -269,7 +269,7 @@ def test_the_curve_of_righting_levers(tmp_path):
 
 
 def test_measures_of_roll(rolling):
-    found = ship_roll.measure(rolling)
+    found = measure_all(rolling)
     assert found["roll_amplitude"].worlds == (pytest.approx(10.0, rel=2e-3), None)
     assert found["roll_bias"].worlds == (pytest.approx(2.0, rel=0.01), None)
     assert found["largest_roll"].worlds == (pytest.approx(12.0, rel=1e-3), pytest.approx(80.0))
@@ -292,12 +292,12 @@ def test_the_significant_roll_is_that_of_the_highest_third_of_swings(tmp_path, m
             pose = np.array([[0.0, 0.0, turned]] * 2)
             writer.sample(sample(now, 2, pose=pose, **of_a_ship(2, capsized=capsized)))
         writer.frame(frame(0.0, 2))
-    monkeypatch.setattr(ship_roll, "frozen", lambda _: (time, 0.5 * roll, None))
+    monkeypatch.setattr(ship_frozen, "frozen", lambda _: (time, 0.5 * roll, None))
     with open_recording(tmp_path) as recording, warnings.catch_warnings():
         warnings.simplefilter("error")
-        found = ship_roll.measure(recording)
+        found = measure_all(recording)
         recording.preset["waves"]["soft_start"] = 100.0  # longer than the run
-        assert ship_roll.measure(recording)["significant_roll"].value is None
+        assert measure_all(recording)["significant_roll"].value is None
     assert found["significant_roll"].worlds == (pytest.approx(8.0, rel=2e-3), None)
     assert 0.0 < found["significant_roll"].uncertainty < 2.0
     assert found["frozen_significant_roll"].value == pytest.approx(4.0, rel=2e-3)
@@ -308,13 +308,13 @@ def test_measures_of_frozen_cargo(rolling, monkeypatch):
     """By herself: 7° about a bias of 1°; capsized, she has a time of it and no amplitude."""
     time = np.arange(0.0, 40.0, 0.02)
     roll = radians(1.0) + radians(7.0) * np.cos(OMEGA * time)
-    monkeypatch.setattr(ship_roll, "frozen", lambda _: (time, roll, None))
-    found = ship_roll.measure(rolling)
+    monkeypatch.setattr(ship_frozen, "frozen", lambda _: (time, roll, None))
+    found = measure_all(rolling)
     assert found["frozen_amplitude"].value == pytest.approx(7.0, rel=2e-3)
     assert found["frozen_largest_roll"].value == pytest.approx(8.0, rel=1e-3)
     assert found["frozen_capsized_at"].value is None
-    monkeypatch.setattr(ship_roll, "frozen", lambda _: (time[:500], 9.0 * roll[:500], End("capsized", 10.0, 1.3)))
-    lost = ship_roll.measure(rolling)
+    monkeypatch.setattr(ship_frozen, "frozen", lambda _: (time[:500], 9.0 * roll[:500], End("capsized", 10.0, 1.3)))
+    lost = measure_all(rolling)
     assert (lost["frozen_amplitude"].value, lost["frozen_capsized_at"].value) == (None, 10.0)
     assert lost["frozen_largest_roll"].value == pytest.approx(72.0, rel=1e-3)
 
@@ -323,16 +323,16 @@ def test_the_run_with_frozen_cargo_continues_after_the_ship_has_capsized(monkeyp
     """To the end that the run was to have; beside a run that was broken off, no longer than that."""
     said = load(BARGE).resolved
     vessel = make_vessel(said.ship, said.water, said.waves, said.run.gravity)
-    monkeypatch.setattr(ship_roll, "_vessel", lambda _: vessel)
+    monkeypatch.setattr(ship_frozen, "vessel_of", lambda _: vessel)
 
     def sailed(name: str, capsized: float) -> float:
         series = {"time": np.array([0.0, 0.5]), "pose": np.zeros((2, 1, 3)), "flooded": np.full((2, 1), -1.0)}
         series["capsized"] = np.array([[-1.0], [capsized]])
-        found = ship_roll.frozen(SimpleNamespace(path=name, series=series, preset={"run": {"duration": 2.0}}))
+        found = ship_frozen.frozen(SimpleNamespace(path=name, series=series, preset={"run": {"duration": 2.0}}))
         return found[0][-1]
 
-    assert sailed("lost", 0.5) == pytest.approx(2.0, abs=ship_roll.FROZEN_INTERVAL)
-    assert sailed("broken off", -1.0) == pytest.approx(0.5, abs=ship_roll.FROZEN_INTERVAL)
+    assert sailed("lost", 0.5) == pytest.approx(2.0, abs=ship_frozen.INTERVAL)
+    assert sailed("broken off", -1.0) == pytest.approx(0.5, abs=ship_frozen.INTERVAL)
 
 
 def test_vessels_without_a_limit():
@@ -381,12 +381,12 @@ def test_a_run_ends_when_its_ship_has_capsized(lost):
 def test_a_recorded_ship_floats_and_rolls(lost):
     """Her tank stands 20 mm above the keel; frozen by herself she rolls as with grains that hardly move."""
     assert lost.series["pose"][0, 0] == pytest.approx([0.0, -0.09, 0.0], abs=2e-4)
-    time, roll, _ = ship_roll.frozen(lost)
+    time, roll, _ = ship_frozen.frozen(lost)
     loose = np.interp(time, lost.series["time"], lost.series["pose"][:, 0, 2])
     assert np.abs(roll).max() > radians(0.5)
     assert np.abs(loose - roll).max() < 0.2 * np.abs(roll).max()
     assert lost.series["ship_works"][-1, 0, 0] > 0.0
-    heel, lever, relaxed = ship_roll.levers(lost)
+    heel, lever, relaxed = ship_stability.levers(lost)
     height = 0.055 + 0.34**2 / (12.0 * 0.11) - 0.0926
     small = slice(1, 12)  # until the bilge emerges: sin φ (GM + ½ BM tan² φ)
     wall = np.sin(heel) * (height + 0.5 * 0.34**2 / (12.0 * 0.11) * np.tan(heel) ** 2)

@@ -11,7 +11,7 @@ import pytest
 from lab.assembly.scene import vessels
 from lab.assembly.ship import flooding_angles
 from lab.base.errors import LabError
-from lab.measures import measure_all, ship_roll
+from lab.measures import measure_all
 from lab.paint import palette
 from lab.paint.film import Film, choose_beds, choose_look
 from lab.paint.footage import open_footage
@@ -19,7 +19,7 @@ from lab.paint.video import HELD, render_recording
 from lab.preset.find import load
 from lab.recording import Recorder, open_recording
 from lab.recording.ship_end import End, end_of, ends, losses_sentence
-from lab.report import plots
+from lab.report.plots import figures
 from lab.report.summary import terminal_summary, write_summary
 from lab.view.shown import Look, Shown
 from solvers.machine.runtime import initialise
@@ -72,7 +72,7 @@ def test_the_roll_of_a_lost_ship_is_that_of_the_next_sample():
 
 def test_measures_of_a_flooded_ship(flooded):
     with open_recording(flooded) as recording:
-        found = ship_roll.measure(recording)
+        found = measure_all(recording)
     assert found["flooded_at"].worlds == (WHEN,) and found["capsized_at"].worlds == (None,)
     assert found["roll_amplitude"].value is None and found["roll_amplitude"].note.startswith("flooded")
     assert found["frozen_flooded_at"].value is not None or found["frozen_largest_roll"].value < 90.0
@@ -102,8 +102,8 @@ def test_figures_mark_the_loss(flooded):
     """The time in that of the roll; in the curve of levers where deck and hatch meet the water."""
     with open_recording(flooded) as recording:
         values = measure_all(recording)
-        roll = plots.roll_figure(recording, values).axes[0]
-        levers = plots.lever_figure(recording, values).axes[0]
+        drawn = dict(figures(recording, values))
+    roll, levers = (drawn[name].axes[0] for name in ("roll", "lever"))
     assert WHEN in [line.get_xdata()[0] for line in roll.lines if len(line.get_xdata()) == 2]
     assert [text.get_text() for text in roll.texts] == ["floods at 1.2 s, 40 deg to starboard"]
     upright = {line.get_label(): line.get_xdata()[0] for line in levers.lines}

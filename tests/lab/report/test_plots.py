@@ -1,15 +1,20 @@
 """Figures: which are drawn of what, and that hard cases are drawn too."""
 
+import json
 import warnings
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from PIL import Image
 
+from lab import measures
 from lab.base.errors import LabError
-from lab.measures import measure_all
+from lab.measures import energies, measure_all
+from lab.measures.value import over_worlds
 from lab.recording import open_recording
-from lab.report.plots import FIGURES, STYLE, write_plots
+from lab.report.plots import STYLE, figures, write_plots
+from lab.report.summary import write_summary
 from tests.oracles.synthetic import DEPTH, DIAMETER, WIDTH, box, frame, preset, recorder, sample
 
 TILT = preset(tilt={"rate": 0.07, "angle": 0.7})
@@ -76,8 +81,8 @@ def drawn(folder):
     [
         (TILT, {}, ["shift", "slope", "hysteresis", "force", "contacts", "energy"]),
         (TILT, {"open_edges": (2,)}, ["spilled", "shift", "slope", "hysteresis", "force", "contacts", "energy"]),
-        (SWAY, {}, ["shift", "wave", "spectrum", "force", "contacts", "energy"]),
-        (preset(), {"parts": {"gate": np.zeros((2, 2))}}, ["shift", "altitude", "force", "contacts", "energy"]),
+        (SWAY, {}, ["shift", "spectrum", "wave", "force", "contacts", "energy"]),
+        (preset(), {"parts": {"gate": np.zeros((2, 2))}}, ["altitude", "shift", "force", "contacts", "energy"]),
     ],
 )
 def test_each_experiment_has_the_relevant_figures(tmp_path, resolved, scene, figures):
@@ -107,15 +112,44 @@ def words(figure):
 @pytest.mark.parametrize(("worlds", "bars"), [(1, False), (2, True)])
 def test_plus_minus_appears_only_for_several_beds_with_their_number(tmp_path, worlds, bars):
     with open_recording(run(tmp_path, TILT, worlds=worlds)) as recording:
-        values = measure_all(recording)
-        said = [words(FIGURES[name](recording, values)) for name in ("shift", "slope", "contacts")]
+        drawn = dict(figures(recording, measure_all(recording)))
+        said = [words(drawn[name]) for name in ("shift", "slope", "contacts")]
     assert all(("±" in text) is bars for text in said)
     assert ("mean ± std of 2 beds" in said[0]) is bars
     assert "band: uncertainty of the fit" in said[1]
 
 
+def draw_drift(sheet, recording, values):
+    """The made-up measure below, as a mark on an axis."""
+    ((axes,),) = sheet.panels()
+    sheet.mark(axes, values["drift"], "drift", "black")
+    axes.set_xlabel("drift (mm)")
+
+
+def test_a_new_measure_brings_its_number_its_error_and_its_figure(tmp_path, monkeypatch):
+    """A file with `applies`, `measure` and `FIGURES`, and a line in MEASURES: the report shows it all."""
+    drift = over_worlds([3.0, 5.0], "mm", uncertainties=[0.1, 0.1], kind="fit")
+    made_up = SimpleNamespace(
+        applies=lambda recording: recording.worlds == 2,
+        measure=lambda recording: {"drift": drift},
+        FIGURES={"drift-figure": draw_drift},
+    )
+    monkeypatch.setattr(measures, "MEASURES", (*measures.MEASURES, made_up))
+    with open_recording(run(tmp_path, TILT, worlds=2)) as recording:
+        values = measure_all(recording)
+        drawn = dict(figures(recording, values))["drift-figure"]
+        page = write_summary(recording, values, write_plots(recording, values, tmp_path), tmp_path)["summary"]
+    assert "drift 4.0 ± 1.4 mm (2 beds)" in words(drawn)
+    assert (tmp_path / "drift-figure.png").exists()
+    assert "![drift-figure](drift-figure.png)" in page.read_text()
+    assert "| drift | 4 | 1.414 | 2 | fit 0.1 mm | mm |  |" in page.read_text()
+    assert json.loads((tmp_path / "summary.json").read_text())["measures"]["drift"]["std"] == pytest.approx(2**0.5)
+    with open_recording(run(tmp_path / "alone", TILT, worlds=1)) as recording:
+        assert "drift-figure" not in write_plots(recording, measure_all(recording), tmp_path / "alone")
+
+
 def test_a_long_title_takes_more_lines_and_stays_on_the_page(tmp_path, monkeypatch):
-    monkeypatch.delitem(FIGURES, "energy")
+    monkeypatch.setattr(energies, "FIGURES", {})
     long = "A tank of many grains that are shaken for a long time, " * 4
     writer = recorder(tmp_path, resolved={**SWAY, "title": long})
     for now in (0.0, 1.0, 2.0):

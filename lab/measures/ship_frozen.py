@@ -1,0 +1,81 @@
+"""How the same ship rolls with her cargo frozen as it lay at the start, which shows what the loose cargo changes.
+
+She is computed by herself, without grains (`solvers.ship.motion.sail`), for as long as the run was to last.
+frozen_largest_roll, frozen_capsized_at, frozen_flooded_at, frozen_amplitude, frozen_significant_roll: as largest_roll,
+capsized_at, flooded_at, roll_amplitude and significant_roll of `ship_roll`. Error: as there.
+Her roll is drawn in the figures of `ship_roll`.
+"""
+
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+
+from lab.measures.ship import (
+    has_ship,
+    in_random_sea,
+    in_words,
+    losses,
+    regular_outcome,
+    significant_roll,
+    vessel_of,
+    wave_frequency,
+)
+from lab.measures.value import Value, over_worlds
+from lab.recording import Recording
+from lab.recording.ship_end import End, end_of, ends
+from solvers.machine.errors import BadState, Unavailable
+from solvers.ship.motion import sail, start
+
+INTERVAL = 0.01  # s, between the samples of her roll
+
+
+def applies(recording: Recording) -> bool:
+    """There is a ship that can be computed by herself."""
+    return has_ship(recording) and frozen(recording) is not None
+
+
+def measure(recording: Recording) -> dict[str, Value]:
+    """frozen_largest_roll, frozen_amplitude, frozen_significant_roll (deg), frozen_capsized_at and so on (s)."""
+    time, roll, end = frozen(recording)
+    found = {
+        "frozen_largest_roll": over_worlds([np.degrees(np.abs(roll).max())], "deg"),
+        **losses("frozen_", recording, [end]),
+    }
+    if in_random_sea(recording):
+        lost = np.array([end is not None])
+        found["frozen_significant_roll"] = significant_roll(recording, time, roll[:, None], lost)
+    if wave_frequency(recording) is None:
+        return found
+    one = regular_outcome(time, roll, wave_frequency(recording), end)
+    size = [np.degrees(one.amplitude) if one and end is None else np.nan]
+    note = in_words(one) if one else ""
+    return found | {"frozen_amplitude": over_worlds(size, "deg", note=note, missing="no steady roll")}
+
+
+def frozen(recording: Recording) -> tuple[np.ndarray, np.ndarray, End | None] | None:
+    """Times (T',), s, roll (T',), rad, and end of the ship with her cargo frozen; None where she cannot be computed.
+
+    She sails for as long as the run was to last, even if a ship of the run was lost long before.
+    """
+    lasted, series = float(recording.series["time"][-1]), recording.series
+    if any(ends(series)):
+        lasted = max(lasted, recording.preset["run"]["duration"])
+    return _frozen(recording.path, lasted)
+
+
+@lru_cache(maxsize=4)
+def _frozen(path: Path, duration: float) -> tuple[np.ndarray, np.ndarray, End | None] | None:
+    """As `frozen`, of the recording at `path`, for so long (s)."""
+    vessel = vessel_of(path)
+    if vessel is None:
+        return None
+    ship = vessel.ship
+    try:
+        state = start(ship, vessel.heave(ship.body, vessel.heel), vessel.heel)
+        lasts, begin = duration - vessel.release, vessel.release
+        voyage = sail(ship, state, INTERVAL, lasts, vessel.limits, begin, vessel.openings)
+    except (Unavailable, BadState):
+        return None
+    lost = [-1.0 if when is None else when for when in (voyage.capsized, voyage.flooded)]
+    return voyage.time, voyage.roll, end_of(*lost, voyage.roll[-1])

@@ -1,0 +1,30 @@
+"""Where the power goes that regular waves put into a ship: means over the last ten periods, for a metre of her length.
+
+wave_power: what the waves put into her. radiated_power, viscous_power: what goes into radiated waves and into friction
+of the water. granular_power: what her loose cargo takes, and loses in its contacts once the motion is steady.
+In a steady motion the first is the sum of the others. Error: none of their own; none for a ship that was lost.
+"""
+
+import numpy as np
+
+from lab.measures.ship import has_ship, wave_frequency
+from lab.measures.value import Value, over_worlds
+from lab.recording import Recording
+from lab.recording.ship_end import ends
+from solvers.ship.outcome import CYCLES
+
+NAMES = "wave_power", "radiated_power", "viscous_power", "granular_power"
+
+
+def applies(recording: Recording) -> bool:
+    """There is a ship in regular waves."""
+    return has_ship(recording) and wave_frequency(recording) is not None
+
+
+def measure(recording: Recording) -> dict[str, Value]:
+    """wave_power, radiated_power, viscous_power and granular_power (mW/m)."""
+    time, works = recording.series["time"], recording.series["ship_works"]
+    begin = np.searchsorted(time, time[-1] - CYCLES * 2.0 * np.pi / wave_frequency(recording))
+    power = 1e3 * (works[-1] - works[begin]) / max(time[-1] - time[begin], 1e-9) * (1.0, 1.0, 1.0, -1.0)
+    power[[end is not None for end in ends(recording.series)]] = np.nan
+    return {name: over_worlds(power[:, k], "mW/m", missing="no steady motion") for k, name in enumerate(NAMES)}

@@ -1,0 +1,94 @@
+"""How stable a ship is in calm water: her righting levers, and the heels at which her deck and openings go under.
+
+deck_immersion_angle, downflooding_angle: the heel at which the edge of her deck, and an opening, meet the still
+waterline at constant displacement (`solvers.ship.openings`), her cargo as it lay at the start. They follow from the
+preset, so they are without error.
+"""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from lab.assembly.ship import flooding_angles
+from lab.measures.drawing import BLUE, GREEN, GREY, VERMILION, Sheet
+from lab.measures.ship import has_ship, vessel_of
+from lab.measures.value import Value, over_worlds
+from lab.measures.wall_force import grain_mass
+from lab.preset.ship import recorded_ship
+from lab.recording import Recording
+from solvers.machine.errors import Unavailable
+from solvers.ship.cargo import level_area, relaxed_levers
+from solvers.ship.hydrostatics import righting_levers
+from solvers.ship.section import Section
+
+HEELS = 91  # of the curve of righting levers
+ANGLES = {  # how they are drawn
+    "deck_immersion_angle": {"color": GREEN, "ls": "--"},
+    "downflooding_angle": {"color": VERMILION, "ls": "-"},
+}
+
+
+def applies(recording: Recording) -> bool:
+    """There is a ship that can be built from the preset."""
+    return has_ship(recording) and vessel_of(recording.path) is not None
+
+
+def measure(recording: Recording) -> dict[str, Value]:
+    """deck_immersion_angle and downflooding_angle (deg), of a ship that has a deck or openings."""
+    angles = flooding_angles(recorded_ship(recording.preset), vessel_of(recording.path))
+    return {name: over_worlds([np.degrees(angle)], "deg") for name, angle in angles.items() if angle is not None}
+
+
+def levers(recording: Recording) -> tuple[np.ndarray, np.ndarray, np.ndarray | None]:
+    """Heels (n,) rad and righting levers (n,) m, with the cargo frozen and with the cargo slid to its repose.
+
+    The cargo that slides lies at its angle of repose at each heel (`solvers.ship.cargo`). It is a level filling whose
+    centre is as high as that of the bed at the start; None where that is not known.
+    """
+    vessel = vessel_of(recording.path)
+    load, loading = vessel.ship.load, vessel.ship.body.loading
+    heel = np.radians(np.linspace(0.0, 180.0, HEELS))
+    frozen = righting_levers(load.section, loading, load.water, heel)
+    mass = grain_mass(recording)
+    if mass is None:
+        return heel, frozen, None
+    cargo = float(mass.sum(axis=1).mean()) / _thickness(recording)
+    repose = recorded_ship(recording.preset).repose
+    try:
+        hold = Section(recording.outline)
+        area = level_area(hold, float(recording.series["centre_of_mass"][0, :, 1].mean()))
+        relaxed = relaxed_levers(load.section, loading, load.water, heel, hold, area, cargo, repose)
+    except Unavailable:
+        return heel, frozen, None
+    return heel, frozen, relaxed
+
+
+def _thickness(recording: Recording) -> float:
+    """Thickness (m) of the slab that the cargo is."""
+    tank, grains = recording.preset["tank"], recording.preset["grains"]
+    return tank.get("thickness") or grains["diameter"]
+
+
+def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> None:
+    """Righting lever of a ship against her heel, her cargo frozen as it lay at the start, or slid to its repose.
+
+    Upright lines: where the edge of her deck, and an opening, meet the still waterline at constant displacement.
+    """
+    ((axes,),) = sheet.panels()
+    heel, lever, relaxed = levers(recording)
+    axes.plot(np.degrees(heel), 1e3 * lever, color=GREY, label="cargo frozen")
+    if relaxed is not None:
+        steep = np.degrees(recorded_ship(recording.preset).repose)
+        axes.plot(np.degrees(heel), 1e3 * relaxed, color=BLUE, label=f"cargo slid to a repose of {steep:.3g} deg")
+    axes.axhline(0, color=GREY, lw=0.8)
+    largest = np.degrees(np.abs(recording.series["pose"][..., 2]).max())
+    axes.axvline(largest, color=VERMILION, ls=":", lw=1.0, label="largest roll of the run")
+    for name, style in ANGLES.items():
+        value = values.get(name)
+        if value is not None:
+            axes.axvline(value.value, lw=1.0, label=f"{name.replace('_', ' ')} {value.value:.1f} deg", **style)
+    axes.set_xlabel("heel (deg)")
+    axes.set_ylabel("righting lever GZ (mm)")
+
+
+FIGURES = {"lever": draw}
