@@ -3,9 +3,9 @@
 final_shift_y, final_shift_z: displacement from the settled bed at t = 0 to the last sample;
 final_shift: the same length in y, counted in the world's mean grain diameter d;
 largest_shift: the largest distance from the settled centre of mass at any time.
-In an open tank they are of the grains that have not spilled.
-Error: the positions are those of the simulation, without noise; what repeats do not share is the
-std over the worlds. The last sample of a shaken bed catches it at one phase of its motion.
+In an open tank they are those of the grains that have not spilled.
+Error: none of their own, since positions are computed without noise. The last sample of a shaken bed
+shows it at one phase of its motion.
 """
 
 from collections.abc import Mapping

@@ -1,19 +1,19 @@
 """How many contacts a grain has: the mean coordination number Z = 2 contacts / grains of the grains in the tank.
 
-A contact with a wall, a fixed grain or a moving part counts like one between two grains, twice, although
-only one of its ends is a movable grain: Z lies above the mean number of neighbours by the wall contacts over the
-grains, a few per cent in a bed some twenty grains wide and deep.
+A contact with a wall, a fixed grain or a moving part counts twice, as one between two grains does, although only one of
+its ends is a movable grain. So Z is larger than the mean number of neighbours by the number of wall contacts divided by
+the number of grains: a few per cent in a bed some twenty grains wide and deep.
 
 contact_number_start: of the settled bed, at the first sample; no error of its own.
 contact_number: mean over the steady part (`steady_part`; a tilt has none). Error: standard error of the
-means of blocks, a driving period each where there is one.
+means of blocks, each a driving period if the tank is driven.
 """
 
 from collections.abc import Mapping
 
 import numpy as np
 
-from lab.measures.drawing import BLUE, Sheet, band, mean_label
+from lab.measures.drawing import BLUE, VERMILION, Sheet, band, level, mean_label
 from lab.measures.steady import averaged, steady_part
 from lab.measures.value import Value, over_worlds
 from lab.recording import Recording
@@ -50,6 +50,10 @@ def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> Non
     axes.set_xlabel("time (s)")
     axes.set_xlim(time[0], time[-1])
     axes.set_ylabel("contacts of a grain")
+    steady = steady_part(recording, time)
+    if steady is not None:
+        span = time[steady.rows.start], time[-1]
+        level(sheet, axes, values.get("contact_number"), "mean of the steady part", VERMILION, span)
 
 
 FIGURES = {"contacts": draw}

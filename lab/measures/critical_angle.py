@@ -1,36 +1,37 @@
 """The tilt at which the bed gives way, read from the shift of its centre of mass.
 
-**Scale.** Were the cargo a liquid, a tilt by d(phi) would shift its centre of mass by (I/A) d(phi),
-as a ship's centre of buoyancy moves by BM: I = L^3/12 of the free surface of width L, A = L h, so
-I/A = L^2/(12 h), h twice the height of the settled centre of mass. The shift s downhill over I/A is
-therefore the angle by which the free surface has turned in the tank, the *give* b(phi): a bed at
-rest has db/dphi = 0, a surface that stays at its angle of repose while the tank turns on has 1.
-On this scale one set of thresholds serves every grain, tank and depth.
+**Scale.** In a liquid cargo, a tilt by d(phi) shifts the centre of mass by (I/A) d(phi), as a ship's
+centre of buoyancy moves by BM. Here I = L^3/12 is that of the free surface of width L and A = L h is
+the area of the cargo, so I/A = L^2/(12 h); h is twice the height of the settled centre of mass. The
+shift s downhill, divided by I/A, is therefore the angle by which the free surface has turned in the
+tank. It is called the *give* b(phi). A bed at rest has db/dphi = 0. A surface that stays at its angle
+of repose while the tank turns on has db/dphi = 1. On this scale the same thresholds hold for every
+grain, tank and depth.
 
-**Steps.** On the way out only (up to where the tilt is first largest), with the curve averaged over
-BIN of tilt, a step is where b rises faster than `creep + max(FLOW, 5 sigma)`. Creep and sigma are
-the median and 1.4826 MAD of the rates db/dphi over WINDOW that lie below the mean rate, those of
-the resting bed. The rise is detected by Page's cumulative sum (Page 1954): the running sum of
-(db - limit dphi) rises by DECISION from its lowest point. That point is the onset; the highest
-point before a fall by DECISION is the end. Nothing is differentiated sample by sample, so neither
-noise nor the sampling rate matters. A step that begins in the first WINDOW has no rest before it,
-hence no onset, and is left out.
+**Steps.** Steps are looked for on the way out only, up to where the tilt is first largest, in the
+curve averaged over BIN of tilt. A step is where b rises faster than `creep + max(FLOW, 5 sigma)`.
+Creep and sigma are those of the resting bed: the median and 1.4826 MAD of the rates db/dphi over
+WINDOW that lie below the mean rate. The rise is detected by Page's cumulative sum (Page 1954): the
+running sum of (db - limit dphi) rises by DECISION from its lowest point. That point is the onset; the
+highest point before a fall by DECISION is the end. No sample is differentiated by itself, so the
+result depends neither on noise nor on the sampling rate. A step that begins in the first WINDOW has
+no rest before it, hence no onset, and is left out.
 
-critical_angle: onset of the first main step, one with a give of at least MAIN and of at least SHARE of
-the largest step's. It is the angle of repose of Spandonidis (2016, 5.2.1 and 5.3.1): where the
-surface flows on, initial reordering and heaps excluded. A give of two degrees alone parts avalanches
-from reordering in wide tanks (trial beds: 0.2 to 1.1 deg for one, 2.3 to 16 for the other); in small
-tanks partial slides of the surface come before the avalanche, so a main step is also one of the
-run's large ones. Tilt well past the avalanche for SHARE to have it to compare with. A number of
-diameters would change with the size of the tank.
+critical_angle: onset of the first main step. A main step has a give of at least MAIN and of at least
+SHARE of the largest step's give. It is the angle of repose of Spandonidis (2016, 5.2.1 and 5.3.1):
+where the surface flows on, initial reordering and heaps excluded. In wide tanks MAIN alone separates
+avalanches from reordering (trial beds: a give of 2.3 to 16 deg against 0.2 to 1.1 deg). In small tanks
+parts of the surface slide before the avalanche, hence SHARE; the tank must tilt well past the
+avalanche, so that the largest step is recorded. A threshold in diameters would depend on the size of
+the tank.
 critical_step: the shift in that step (d, the mean grain diameter), creep left out.
 first_slip_angle: onset of the first step at all, a give of DECISION: the first reordering or heap.
-one_diameter_angle: where the shift first exceeds one d, creep and all; needs no detector.
+one_diameter_angle: where the shift first exceeds one d, creep included; it needs no detector.
 main_steps: number of main steps.
 
 Error of an onset: the spacing of the averaged samples, plus the tilt in which the sum rises from
-the onset by DECISION: sharp for an avalanche, wide where the bed begins to flow gently. Repeats
-differ by more: see the std.
+the onset by DECISION. It is small for an avalanche and large where the bed begins to flow gently. The
+scatter of beds is larger: see the standard deviation.
 """
 
 from collections.abc import Mapping
@@ -39,7 +40,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import ndtri
 
-from lab.measures.drawing import BLUE, GREEN, POINTS, VERMILION, Sheet, band, mean_label, millimetres, thinned
+from lab.measures.drawing import BLUE, GREEN, POINTS, VERMILION, Sheet, band, mark, mean_label, millimetres, thinned
 from lab.measures.motion import is_tilt, outward_leg
 from lab.measures.value import Value, over_worlds
 from lab.recording import Recording
@@ -207,8 +208,8 @@ def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> Non
     common = np.linspace(0, min(tilt[-1] for tilt, _ in curves), POINTS)
     together = np.stack([np.interp(common, *curve) for curve in curves], axis=1)
     band(axes, common, together, BLUE, mean_label(worlds))
-    sheet.mark(axes, values.get("first_slip_angle"), "first slip", GREEN, ":")
-    sheet.mark(axes, values.get("critical_angle"), "critical angle", VERMILION)
+    mark(sheet, axes, values.get("first_slip_angle"), "first slip", GREEN, ":")
+    mark(sheet, axes, values.get("critical_angle"), "critical angle", VERMILION)
     found = values["critical_angle"].worlds if "critical_angle" in values else ()
     for onset, curve in zip(found, curves, strict=False):
         if onset is not None:

@@ -26,14 +26,14 @@ DRIVE = {  # how the driving motion is written on an axis, and the factor to tha
 
 
 class Sheet(Protocol):
-    """An empty figure that the report lends to a measure; it brings the title, and the legend when it is saved."""
+    """An empty figure that the report lends to a measure; it brings title, legend and the wording of numbers."""
 
     def panels(self, heights: tuple = (1,), widths: tuple = (1,), columns: int = 2) -> np.ndarray:
         """Axes by row and column; those of a column share x, those of a row share y. `columns`: of the legend."""
         ...
 
-    def mark(self, axes: "Axes", value: Value | None, name: str, colour: str, style: str = "-") -> None:
-        """An upright line at a measured value, which the legend gives as a number; nothing for a value not found."""
+    def words(self, value: Value) -> str:
+        """A measured value with its scatter or its error, as the summary writes it: "25.0 ± 1.3 deg (4 beds)"."""
         ...
 
 
@@ -65,6 +65,57 @@ def median_band(axes: "Axes", x: np.ndarray, curves: np.ndarray, colour: str, la
     if curves.shape[1] > 1:
         low, high = np.fmin.reduce(curves, axis=1), np.fmax.reduce(curves, axis=1)
         axes.fill_between(x, low, high, color=colour, alpha=0.2, lw=0)
+
+
+def mark(sheet: Sheet, axes: "Axes", value: Value | None, name: str, colour: str, style: str = "-") -> None:
+    """An upright line at a measured value, its number in the legend; nothing for a value that was not found.
+
+    A solid line has a band: ± the standard deviation over beds, of a single bed ± the measure's own uncertainty.
+    """
+    if value is None or value.value is None:
+        return
+    axes.axvline(value.value, color=colour, lw=1.0, ls=style, label=f"{name} {sheet.words(value)}")
+    if style == "-" and error_of(value):
+        axes.axvspan(value.value - error_of(value), value.value + error_of(value), color=colour, alpha=0.12, lw=0)
+
+
+def level(
+    sheet: Sheet, axes: "Axes", value: Value | None, name: str, colour: str, span: tuple[float, float] | None = None
+) -> None:
+    """A level line at a measured value with a band as `mark` has it, between two x or over the whole width."""
+    if value is None or value.value is None:
+        return
+    begin, end = axes.get_xlim() if span is None else span
+    _level(axes, value.value, error_of(value), colour, (begin, end), f"{name} {sheet.words(value)}")
+
+
+def swing(
+    sheet: Sheet, axes: "Axes", middle: float, value: Value | None, name: str, colour: str, span: tuple[float, float]
+) -> None:
+    """Two level lines a measured amplitude above and below a middle, between two x; bands as `mark` has them."""
+    if value is None or value.value is None:
+        return
+    _level(axes, middle + value.value, error_of(value), colour, span, f"{name} {sheet.words(value)}")
+    _level(axes, middle - value.value, error_of(value), colour, span, None)
+
+
+def _level(
+    axes: "Axes", height: float, error: float, colour: str, span: tuple[float, float], label: str | None
+) -> None:
+    """One level line with its band."""
+    axes.plot(span, (height, height), color=colour, lw=1.0, ls="--", label=label)
+    axes.fill_between(span, height - error, height + error, color=colour, alpha=0.12, lw=0)
+
+
+def note(sheet: Sheet, axes: "Axes", value: Value | None, name: str) -> None:
+    """A measured value in the legend alone."""
+    if value is not None and value.value is not None:
+        axes.plot([], [], " ", label=f"{name} {sheet.words(value)}")
+
+
+def error_of(value: Value) -> float:
+    """Standard deviation over beds, of a single bed the measure's own uncertainty; 0 where neither is known."""
+    return value.std if value.std is not None else value.uncertainty or 0.0
 
 
 def mean_label(worlds: int) -> str:

@@ -1,12 +1,12 @@
-"""How lively the bed was: its kinetic energy relative to the tank, spin included.
+"""How much the grains moved: the kinetic energy of the bed relative to the tank, spin included.
 
 largest_kinetic_energy: the largest at any sample; final_kinetic_energy: at the last sample.
-Error: a peak shorter than the sampling interval may be missed; repeats differ by the std.
+Error: none of their own. A peak shorter than the sampling interval may be missed.
 """
 
 from collections.abc import Mapping
 
-from lab.measures.drawing import BLUE, GREY, VERMILION, Sheet, band, median_band
+from lab.measures.drawing import BLUE, GREY, VERMILION, Sheet, band, median_band, note
 from lab.measures.value import Value, over_worlds
 from lab.recording import Recording
 
@@ -36,6 +36,7 @@ def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> Non
     median_band(upper, time, 1e6 * series["elastic"], VERMILION, "elastic")
     upper.set_yscale("log")
     upper.set_ylabel("energy (µJ)")
+    note(sheet, upper, values.get("largest_kinetic_energy"), "largest kinetic energy")
     potential = 1e6 * (series["potential"] - series["potential"][0])
     band(lower, time, potential, GREY)
     lower.set_ylabel("potential,\nchange (µJ)")

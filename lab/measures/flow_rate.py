@@ -1,21 +1,24 @@
 """How fast the grains run out of an outlet, and whether they arch over it.
 
-A grain has passed when its centre is below the outlet's lips. The rate is the slope of the straight line through
-the number passed against time, between the frames at which SHARES of all that pass in the run have done so: the flow
-has set in by then, and neither the heap below nor the end of the supply holds it back yet.
+A grain has passed when its centre is below the outlet's lips. The rate is the slope of a straight line through the
+number of grains passed against time. The line is fitted between the two frames at which SHARES of all grains that pass
+in the run have passed. By then the flow has set in, and neither the heap below nor the end of the supply slows it yet.
 
-flow_rate: grains a second; mass_flow_rate: with the mass of each grain, of a sheet one grain thick. Error: standard
+flow_rate: grains in a second. mass_flow_rate: their mass in a second, of a sheet one grain thick. Error: standard
 error of the slopes of BLOCKS parts of that time. In a plane Beverloo's law (Beverloo, Leniger & van de Velde 1961)
 reads W = C rho sqrt(g) (D - k d)^(3/2).
 outlet_width: D, in mean diameters d.
-passed_fraction: grains that have passed by the last frame over all.
-clogged: 1 where the flow has stopped by itself, 0 where not; its mean over the repeats is the share that clogs. It has
-where the last QUIET of the run sees no grain pass, at least LEFT of the grains are still above, and no grain lies
-below the outlet from one to four diameters down: else the heap has stopped it.
+passed_fraction: share of the grains that have passed by the last frame.
+clogged: 1 where the flow has stopped by itself, 0 where not; its mean over the beds is the share of beds that clog.
+The flow has stopped by itself if no grain passes in the last QUIET of the run, at least LEFT of the grains are still
+above, and no grain lies one to four diameters below the outlet. Otherwise the heap has stopped it.
 """
+
+from collections.abc import Mapping
 
 import numpy as np
 
+from lab.measures.drawing import BLUE, VERMILION, Sheet, band
 from lab.measures.outlet import Outlet, find_outlet, passed
 from lab.measures.value import Value, over_worlds
 from lab.measures.wall_force import SHEET, grain_mass
@@ -77,3 +80,24 @@ def _slope(time: np.ndarray, amount: np.ndarray) -> tuple[float, float]:
     blocks = np.array_split(np.arange(begin, end), BLOCKS)
     parts = [np.polyfit(time[rows], amount[rows], 1)[0] for rows in blocks]
     return float(np.polyfit(time[begin:end], amount[begin:end], 1)[0]), float(np.std(parts, ddof=1) / np.sqrt(BLOCKS))
+
+
+def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> None:
+    """The grains that have passed in time, and a line as steep as the flow rate through the part it was fitted to."""
+    time = recording.frames["time"][:]
+    out = passed(recording, find_outlet(recording)).sum(axis=2)
+    ((axes,),) = sheet.panels()
+    band(axes, time, out, BLUE, "passed")
+    rate, mean = values.get("flow_rate"), out.mean(axis=1)
+    share = mean / max(mean.max(), 1.0)
+    fitted = (share >= SHARES[0]) & (share <= SHARES[1])
+    if rate is not None and rate.value is not None and fitted.any():
+        line = mean[fitted].mean() + rate.value * (time[fitted] - time[fitted].mean())
+        axes.plot(time[fitted], line, color=VERMILION, ls="--", label=f"flow rate {sheet.words(rate)}")
+    axes.set_xlabel("time (s)")
+    axes.set_xlim(time[0], time[-1])
+    axes.set_ylim(bottom=0)
+    axes.set_ylabel("grains below the outlet")
+
+
+FIGURES = {"flow": draw}

@@ -1,13 +1,13 @@
 """How steep the heap under an outlet lies: its angle of repose as in the shipboard test (IMSBC Code; Spandonidis 2016,
 appendix D), at the last picture frame.
 
-The heap is what lies above the base, the outline's edge straight below the outlet, and below the outlet's lips.
-The tank's width is cut into columns about two mean diameters wide; the surface of a column is the top of its highest
+The heap is everything between the outlet's lips and the base, the edge of the outline straight below the outlet.
+The tank's width is cut into columns about two mean diameters wide. The surface of a column is the top of the highest
 grain that is reached from below without a gap (`column_tops`), so that grains in the air do not count. The highest
-column is the apex; the flank on either side of it is made up of the columns between LOW and HIGH of the apex's height
-above the base, around the half height at which the Code measures: the foot of stray grains and the top, blunt from
-the jet or from the funnel's tip, are left out. The Theil-Sen line (Sen 1968) through a flank of five columns or more
-gives its angle. A heap of up to LEAST has none.
+column is the apex. The flank on either side consists of the columns between LOW and HIGH of the apex's height above the
+base, around the half height at which the Code measures. This leaves out the foot with its stray grains and the top,
+which the jet or the funnel's tip makes blunt. The angle is that of the Theil-Sen line (Sen 1968) through a flank of at
+least five columns. A heap lower than LEAST has no angle.
 
 heap_angle_port, heap_angle_starboard: of the flanks, positive where the surface falls away from the apex.
 heap_angle: the mean of both. Error: half the 68 % confidence interval of the slope (Sen), as an angle.
@@ -18,7 +18,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from lab.measures.drawing import BLUE, VERMILION, Sheet, band
+from lab.measures.drawing import BLUE, GREY, VERMILION, Sheet, band, level
 from lab.measures.outlet import Outlet, find_outlet, passed
 from lab.measures.surface_slope import inclination
 from lab.measures.value import Value, over_worlds
@@ -26,7 +26,7 @@ from lab.measures.wave import column_tops
 from lab.recording import Recording
 
 LOW, HIGH = 0.2, 0.8  # of the apex's height
-LEAST = 5.0  # mean diameters high: a lower heap is too few grains to have a slope
+LEAST = 5.0  # mean diameters high: a lower heap has too few grains for a slope
 MISSING = "no heap"
 
 
@@ -106,6 +106,7 @@ def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> Non
     lower.set_ylabel("below the\noutlet (%)")
     lower.set_xlabel("time (s)")
     lower.set_xlim(time[0], time[-1])
+    level(sheet, upper, values.get("heap_angle"), "heap at the end", GREY)
 
 
 FIGURES = {"heap": draw}

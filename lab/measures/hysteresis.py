@@ -1,17 +1,17 @@
 """What remains of the shift when a tilted tank has come back upright (Spandonidis 2016, 5.3.4).
 
-remaining_shift: shift of the centre of mass downhill, from the settled bed, where the tank on its way back first
-stands at the angle it began with (d, the mean grain diameter); interpolated between samples.
-kept_shift: the same over the largest shift until then: 100 % for a bed that stays where it slid to, 0 for a
-liquid.
-Error: half the change of the shift over the last LAST of tilt before that, which is how far the bed still moved.
+remaining_shift: shift of the centre of mass downhill from the settled bed, at the moment when the tank comes back to
+the angle it began with, in mean grain diameters d; interpolated between samples.
+kept_shift: the same divided by the largest shift until then. It is 100 % for a bed that stays where it slid to and 0
+for a liquid.
+Error: half the change of the shift over the last LAST of tilt before that moment: how far the bed still moved.
 """
 
 from collections.abc import Mapping
 
 import numpy as np
 
-from lab.measures.drawing import BLUE, GREY, VERMILION, Sheet, millimetres, thinned
+from lab.measures.drawing import BLUE, GREEN, GREY, VERMILION, Sheet, level, millimetres, note, thinned
 from lab.measures.motion import is_tilt, outward_leg
 from lab.measures.value import Value, over_worlds
 from lab.recording import Recording
@@ -75,11 +75,13 @@ def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> Non
         names = (None, None) if world else ("way out", "way back")
         axes.plot(*thinned(tilt[out], shift[out] / diameter), color=BLUE, lw=1.2, alpha=0.8, label=names[0])
         axes.plot(*thinned(tilt[back], shift[back] / diameter), color=VERMILION, lw=1.2, alpha=0.8, label=names[1])
-    remains, kept = values.get("remaining_shift"), values.get("kept_shift")
-    for world, left in enumerate(remains.worlds if remains else ()):
+    remains = values.get("remaining_shift")
+    for left in remains.worlds if remains else ():
         if left is not None:
-            label = None if world or kept is None or kept.value is None else f"kept: {kept.value:.0f} % of the largest"
-            axes.plot(0, left, "o", color=VERMILION, ms=4, label=label, clip_on=False, zorder=3)
+            axes.plot(0, left, "o", color=VERMILION, ms=4, clip_on=False, zorder=3)
+    axes.set_xlim(left=0)
+    level(sheet, axes, remains, "remaining shift", GREEN)
+    note(sheet, axes, values.get("kept_shift"), "kept of the largest shift")
     axes.axhline(0, color=GREY, lw=0.8)
     axes.set_xlabel("tilt (deg)")
     axes.set_ylabel("shift of the centre of mass\ndownhill (mean diameters)")

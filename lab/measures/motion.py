@@ -1,4 +1,4 @@
-"""What the tank did, as measures need to know it."""
+"""How the tank moved, for the measures that depend on it."""
 
 from dataclasses import dataclass
 
@@ -8,12 +8,12 @@ from lab.recording import Recording
 
 # Harmonic motions and the coordinate of the pose (Y, Z, phi) that each moves.
 HARMONIC = {"sway": 0, "roll": 2, "heave": 1}
-LEAST_TILT = np.radians(2.0)  # a smaller turn is no tilting test
+LEAST_TILT = np.radians(2.0)  # a run that turns the tank by less is not a tilting test
 
 
 @dataclass(frozen=True)
 class Leg:
-    """The way out of a tilt: rows `[:end]` of the series, and +1 (to port) or -1 as its direction."""
+    """The way out of a tilt: rows `[:end]` of the series; its direction is +1 (to port) or -1."""
 
     end: int
     direction: float
@@ -45,13 +45,13 @@ def driving(recording: Recording) -> tuple[str, dict] | None:
 
 
 def is_shaken(recording: Recording) -> bool:
-    """Whether the tank goes to and fro: a harmonic motion, or one from a file that moves it."""
+    """Whether the tank moves to and fro: by a harmonic motion, or by one from a file."""
     moved = np.ptp(recording.series["pose"], axis=0).any()
     return driving(recording) is not None or bool(_motions(recording).get("history") and moved)
 
 
 def soft_start(recording: Recording) -> float:
-    """Time in which the motion comes up, s."""
+    """Time in which the motion grows to its full size, s."""
     return float(_motions(recording).get("soft_start") or 0.0)
 
 

@@ -1,4 +1,4 @@
-"""The outlet of a funnel or silo, as measures need to know it: the gap that a gate leaves between ends of plates."""
+"""The outlet of a funnel or silo: the gap between the ends of two plates that a gate closes at the start."""
 
 from dataclasses import dataclass
 

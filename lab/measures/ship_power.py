@@ -5,8 +5,11 @@ of the water. granular_power: what her loose cargo takes, and loses in its conta
 In a steady motion the first is the sum of the others. Error: none of their own; none for a ship that was lost.
 """
 
+from collections.abc import Mapping
+
 import numpy as np
 
+from lab.measures.drawing import BLUE, GREEN, GREY, VERMILION, Sheet, band
 from lab.measures.ship import has_ship, wave_frequency
 from lab.measures.value import Value, over_worlds
 from lab.recording import Recording
@@ -14,6 +17,7 @@ from lab.recording.ship_end import ends
 from solvers.ship.outcome import CYCLES
 
 NAMES = "wave_power", "radiated_power", "viscous_power", "granular_power"
+SIGNS = 1.0, 1.0, 1.0, -1.0  # the cargo's work on her is recorded, its power is what it takes
 
 
 def applies(recording: Recording) -> bool:
@@ -25,6 +29,22 @@ def measure(recording: Recording) -> dict[str, Value]:
     """wave_power, radiated_power, viscous_power and granular_power (mW/m)."""
     time, works = recording.series["time"], recording.series["ship_works"]
     begin = np.searchsorted(time, time[-1] - CYCLES * 2.0 * np.pi / wave_frequency(recording))
-    power = 1e3 * (works[-1] - works[begin]) / max(time[-1] - time[begin], 1e-9) * (1.0, 1.0, 1.0, -1.0)
+    power = 1e3 * (works[-1] - works[begin]) / max(time[-1] - time[begin], 1e-9) * SIGNS
     power[[end is not None for end in ends(recording.series)]] = np.nan
     return {name: over_worlds(power[:, k], "mW/m", missing="no steady motion") for k, name in enumerate(NAMES)}
+
+
+def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> None:
+    """The work that the waves have done on a ship, and where it went, in time; the mean powers are in the legend."""
+    ((axes,),) = sheet.panels(columns=1)
+    time, works = recording.series["time"], 1e3 * recording.series["ship_works"] * SIGNS
+    for k, (name, colour) in enumerate(zip(NAMES, (BLUE, GREEN, GREY, VERMILION), strict=True)):
+        value = values.get(name)
+        found = f" {sheet.words(value)}" if value is not None and value.value is not None else ""
+        band(axes, time, works[..., k], colour, f"{name.replace('_', ' ')}{found}")
+    axes.set_xlabel("time (s)")
+    axes.set_xlim(time[0], time[-1])
+    axes.set_ylabel("work since the start (mJ/m)")
+
+
+FIGURES = {"power": draw}

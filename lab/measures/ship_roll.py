@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lab.measures.drawing import BLUE, GREEN, GREY, VERMILION, Sheet, band, median_band, thinned
+from lab.measures.drawing import BLUE, GREEN, GREY, VERMILION, Sheet, band, error_of, median_band, swing, thinned
 from lab.measures.ship import (
     LEAST_CROSSINGS,
     has_ship,
@@ -128,7 +128,7 @@ def draw_roll(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -
     """Roll of a ship in time, with loose and with frozen cargo; below her sway and heave and the shift of the cargo."""
     time, moved = recording.series["time"], moved_axis(recording)
     moves = recorded_ship(recording.preset).freedom != "roll"
-    panels = sheet.panels(heights=(2, 1, 1) if moves else (2, 1), columns=4)
+    panels = sheet.panels(heights=(2, 1, 1) if moves else (2, 1), columns=3)
     upper, lower = panels[0, 0], panels[-1, 0]
     alone = frozen(recording)
     if alone is not None:
@@ -138,7 +138,8 @@ def draw_roll(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -
         upper.plot(*thinned(time, turned), color=BLUE, lw=1.0, label=None if world else "cargo loose")
         if end:
             _mark_end(upper, end, recording.worlds)
-    upper.set_ylabel("roll about the axis\n(deg), positive to port")
+    _draw_answer(sheet, upper, recording, values)
+    upper.set_ylabel("roll (deg),\npositive to port")
     if moves:
         band(panels[1, 0], time, 1e3 * moved[..., 0], BLUE, "sway of the axis")
         band(panels[1, 0], time, 1e3 * moved[..., 1], GREEN, "heave of the axis")
@@ -148,6 +149,18 @@ def draw_roll(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -
     lower.set_ylabel("shift of the\ncargo (mm)")
     lower.set_xlabel(f"time (s); axis: {axis_place(recorded_ship(recording.preset))}")
     lower.set_xlim(time[0], time[-1] + (MARGIN * np.ptp(time) if any(ends(recording.series)) else 0.0))
+
+
+def _draw_answer(sheet: Sheet, axes: "Axes", recording: Recording, values: Mapping[str, Value]) -> None:
+    """The amplitude about the mean roll, over the time that it was measured in."""
+    time, frequency = recording.series["time"], wave_frequency(recording)
+    middle = values["roll_bias"].value if "roll_bias" in values else 0.0
+    if frequency is not None and middle is not None:
+        span = max(time[0], time[-1] - CYCLES * 2.0 * np.pi / frequency), time[-1]
+        swing(sheet, axes, middle, values.get("roll_amplitude"), "roll amplitude", VERMILION, span)
+    elif "significant_roll" in values:
+        span = recording.preset["waves"]["soft_start"], time[-1]
+        swing(sheet, axes, 0.0, values["significant_roll"], "significant roll", VERMILION, span)
 
 
 def _mark_end(axes: "Axes", end: End, worlds: int) -> None:
@@ -193,7 +206,12 @@ def draw_spectrum(sheet: Sheet, recording: Recording, values: Mapping[str, Value
     axes.set_ylim(QUIETEST * amplitudes.max(), 2.0 * amplitudes.max())
     driven = wave_frequency(recording)
     if driven is not None:
-        axes.axvline(driven, color=GREY, ls=":", lw=0.8, label="waves")
+        axes.axvline(driven, color=GREY, ls=":", lw=0.8, label=f"waves of {driven:.3g} rad/s")
+    fitted = values.get("roll_fundamental")
+    if driven is not None and fitted is not None and fitted.value is not None:
+        label = f"fitted amplitude {sheet.words(fitted)}"
+        axes.errorbar([driven], [fitted.value], [error_of(fitted)], fmt="ko", ms=3.5, capsize=2.5, label=label)
+    axes.set_xlim(0.0, 2.0 * np.pi * HIGHEST_ROLL)
     axes.set_xlabel("frequency (rad/s)")
     axes.set_ylabel("amplitude of roll (deg)")
 

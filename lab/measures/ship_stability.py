@@ -10,7 +10,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from lab.assembly.ship import flooding_angles
-from lab.measures.drawing import BLUE, GREEN, GREY, VERMILION, Sheet
+from lab.measures.drawing import BLUE, GREEN, GREY, VERMILION, Sheet, mark
 from lab.measures.ship import has_ship, vessel_of
 from lab.measures.value import Value, over_worlds
 from lab.measures.wall_force import grain_mass
@@ -81,12 +81,14 @@ def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> Non
         steep = np.degrees(recorded_ship(recording.preset).repose)
         axes.plot(np.degrees(heel), 1e3 * relaxed, color=BLUE, label=f"cargo slid to a repose of {steep:.3g} deg")
     axes.axhline(0, color=GREY, lw=0.8)
-    largest = np.degrees(np.abs(recording.series["pose"][..., 2]).max())
-    axes.axvline(largest, color=VERMILION, ls=":", lw=1.0, label="largest roll of the run")
+    mark(sheet, axes, values.get("largest_roll"), "largest roll of the run", GREY, ":")
     for name, style in ANGLES.items():
-        value = values.get(name)
-        if value is not None:
-            axes.axvline(value.value, lw=1.0, label=f"{name.replace('_', ' ')} {value.value:.1f} deg", **style)
+        if name in values:
+            axes.axvline(
+                values[name].value, lw=1.0, label=f"{name.replace('_', ' ')} {values[name].value:.1f} deg", **style
+            )
+    axes.set_xlim(0, 180)
+    axes.set_xticks(range(0, 181, 30))
     axes.set_xlabel("heel (deg)")
     axes.set_ylabel("righting lever GZ (mm)")
 

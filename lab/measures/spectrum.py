@@ -1,14 +1,14 @@
-"""How far the bed's answer is from a pure oscillation: the harmonics of its centre of mass in the tank.
+"""How far the motion of the bed is from a pure oscillation: the harmonics of its centre of mass in the tank.
 
-Least-squares fit, over the last half of what follows the soft start, cut to a multiple of four whole driving
-periods, of the coordinate that the motion drives (y of sway and roll, z of heave) to a constant, a drift and
-oscillations at f/2, f, 2f, ... 5f. The terms do not disturb each other over such a window.
+A constant, a drift and oscillations at f/2, f, 2f, ... 5f are fitted by least squares to the coordinate that the
+motion drives (y of sway and roll, z of heave). The fit covers the last half of the time after the soft start, cut to a
+multiple of four whole driving periods; over such a window the terms do not disturb each other.
 
 subharmonic, second_harmonic, third_harmonic: amplitudes at f/2, 2f, 3f (the first is `response_amplitude`). A
 subharmonic is a bed that repeats itself only every other period.
 distortion: sqrt(sum of the squared amplitudes at 2f ... 5f) over that at f, the total harmonic distortion.
-Error: half the difference between the two halves of the window. Noise has some amplitude at any frequency:
-see the spectrum's figure for its level.
+Error: half the difference between the two halves of the window. Noise has an amplitude at every frequency; the
+figure shows its level.
 """
 
 from collections.abc import Mapping
@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lab.measures.drawing import BLUE, GREY, VERMILION, Sheet, median_band
+from lab.measures.drawing import BLUE, GREY, VERMILION, Sheet, error_of, median_band
 from lab.measures.motion import driving, soft_start
 from lab.measures.steady import STILL, Steady, amplitude_value, harmonics, steady_part, steady_window
 from lab.measures.value import Value, over_worlds
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 ORDERS = (0.5, 1.0, 2.0, 3.0, 4.0, 5.0)
+FITTED = {0.5: "subharmonic", 1.0: "response_amplitude", 2.0: "second_harmonic", 3.0: "third_harmonic"}
 PERIODS = 4  # the window is a multiple of them
 LEAST_SAMPLES = 12  # a period: the fifth harmonic must not be an alias
 PADDING = 4
@@ -107,8 +108,20 @@ def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> Non
     axes.set_ylim(QUIETEST * highest, 2 * highest)
     axes.set_xlim(0, HIGHEST * frequency)
     _name_orders(axes, frequency)
+    _draw_fitted(axes, values, frequency)
     axes.set_xlabel(f"frequency (Hz), driven at f = {frequency:.3g} Hz")
     axes.set_ylabel("amplitude of the centre of mass\nin the tank (mm)")
+
+
+def _draw_fitted(axes: "Axes", values: Mapping[str, Value], frequency: float) -> None:
+    """The fitted amplitudes of the driven coordinate with their errors, over their frequencies; the drive's in Hz."""
+    fitted = [(order, values[name]) for order, name in FITTED.items() if name in values]
+    fitted = [(order * frequency, value) for order, value in fitted if value.value is not None]
+    if fitted:
+        places, found = zip(*fitted, strict=True)
+        errors = [error_of(value) for value in found]
+        sizes = [value.value for value in found]
+        axes.errorbar(places, sizes, errors, fmt="ko", ms=3.5, capsize=2.5, lw=1.0, label="fitted amplitudes")
 
 
 def _name_orders(axes: "Axes", frequency: float) -> None:

@@ -1,15 +1,15 @@
-"""How much of the cargo an open tank has lost, and at what tilt it begins to and does so in earnest.
+"""How much of the cargo an open tank has lost, and the tilts at which the losses begin and turn sharply upwards.
 
-spilled_fraction: grains that have left the tank over all movable ones, at the last sample (Spandonidis
-2016, 5.3.2, figure 5.16 right; grains of rough walls are fixed and do not count). A count, exact for its bed.
-spill_start_angle: the tilt at which the fraction first reaches START. Error: the tilt within which it grows
-by one grain to either side of that.
-spill_upturn_angle: the tilt at which creeping losses give way to the sharp upturn, which the source takes
-for the angle of repose. A liquid that fills a tank of width L to the depth h loses, as it tilts by
-d(phi), the wedge L^2/2 d(phi) of its area L h, so the fraction times 2h/L is the angle by which the surface
-has turned in the tank; h is twice the height of the settled centre of mass. On this scale the upturn is
-the onset of the first step found by the detector of `critical_angle` that sheds at least MAIN: for a tank
-three times as wide as deep 5 %, where the source saw 2 % creep. Error: as there.
+spilled_fraction: share of the movable grains that have left the tank at the last sample (Spandonidis
+2016, 5.3.2, figure 5.16 right); the fixed grains of rough walls do not count. It is exact for its bed.
+spill_start_angle: the tilt at which this share first reaches START. Error: half the tilt between one
+grain less and one grain more.
+spill_upturn_angle: the tilt at which slow losses turn into fast ones, which the source takes for the
+angle of repose. A liquid that fills a tank of width L to the depth h loses the wedge L^2/2 d(phi) of its
+area L h when the tank tilts by d(phi). So the share times 2h/L is the angle by which the surface has turned
+in the tank; h is twice the height of the settled centre of mass. On this scale the upturn is the onset of
+the first step of at least MAIN that the detector of `critical_angle` finds. In a tank three times as wide
+as deep that is a loss of 5 %; the source saw slow losses of 2 %. Error: that of the detector.
 
 Both angles are of the way out, in a tilting tank only.
 """
@@ -19,7 +19,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from lab.measures.critical_angle import MAIN, find_steps
-from lab.measures.drawing import BLUE, GREEN, VERMILION, Sheet
+from lab.measures.drawing import BLUE, GREEN, GREY, VERMILION, Sheet, level, mark
 from lab.measures.motion import is_tilt, outward_leg
 from lab.measures.value import Value, over_worlds
 from lab.recording import Recording
@@ -98,11 +98,12 @@ def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> Non
         curve = spill_curve(recording, world) if tilts else (time, share[:, world])
         label = None if world else f"each of {recording.worlds} beds" if recording.worlds > 1 else "bed"
         axes.plot(curve[0], 100 * curve[1], color=BLUE, lw=1.0, alpha=0.8, drawstyle="steps-post", label=label)
-    sheet.mark(axes, values.get("spill_start_angle"), f"first {100 * START:g} %", GREEN, ":")
-    sheet.mark(axes, values.get("spill_upturn_angle"), "sharp upturn", VERMILION)
+    mark(sheet, axes, values.get("spill_start_angle"), f"first {100 * START:g} %", GREEN, ":")
+    mark(sheet, axes, values.get("spill_upturn_angle"), "sharp upturn", VERMILION)
     axes.set_xlabel("tilt (deg)" if tilts else "time (s)")
     axes.set_xlim(left=0)
     axes.set_ylim(bottom=0)
+    level(sheet, axes, values.get("spilled_fraction"), "at the end", GREY)
     axes.set_ylabel("spilled grains (% of all movable)")
 
 

@@ -1,4 +1,4 @@
-"""The part of a run that no longer knows how it began, and what is fitted to it and averaged over it."""
+"""The steady part of a run, when the effects of its start are gone, and what is fitted to it or averaged over it."""
 
 from dataclasses import dataclass
 
@@ -8,15 +8,15 @@ from lab.measures.motion import driving, is_tilt, soft_start
 from lab.measures.value import Value, over_worlds
 from lab.recording import Recording
 
-STILL = 1e-3  # of a grain diameter: an amplitude below it has no phase
-BLOCKS = 8  # of a steady part without a period
+STILL = 1e-3  # of a grain diameter: a smaller amplitude has no phase
+BLOCKS = 8  # of a steady part without periods
 LEAST_SAMPLES = 16
 SHORT = "the run has less than two steady periods"
 
 
 @dataclass(frozen=True)
 class Steady:
-    """Rows of a steady part, and the number of blocks, whole periods where there are any, it is cut into."""
+    """Rows of a steady part, and the number of blocks it is cut into: whole periods, if the run has periods."""
 
     rows: slice
     blocks: int
@@ -29,8 +29,10 @@ class Steady:
 
 
 def steady_part(recording: Recording, time: np.ndarray) -> Steady | None:
-    """The steady part of samples at time (T,), s: of a run driven at one frequency its `steady_window`, of a tilt
-    none, of any other the last half after the soft start. None where it is too short.
+    """The steady part of samples at time (T,), s; None where it is too short.
+
+    A run driven at one frequency has its `steady_window`, a tilt has none, any other run has its last half after the
+    soft start.
     """
     begin, drive = soft_start(recording), driving(recording)
     if drive is not None:
@@ -46,7 +48,7 @@ def steady_part(recording: Recording, time: np.ndarray) -> Steady | None:
 
 
 def steady_window(time: np.ndarray, begin: float, frequency: float, least: int = 2) -> slice | None:
-    """Samples of the last half of time (T,) after `begin`: a multiple of `least` whole periods, or None."""
+    """Rows of the last half of time (T,), s, after `begin`, a multiple of `least` whole periods; None if too short."""
     periods = (time[-1] - begin) * frequency + 1e-9
     if periods < least:
         return None
@@ -89,7 +91,7 @@ def amplitude_value(answers: np.ndarray, unit: str, **notes: str) -> Value:
 
 
 def phase_value(answers: np.ndarray, still: np.ndarray, missing: str) -> Value:
-    """Phase of complex answers (3, W), averaged on the circle; none for those below `still` (W,)."""
+    """Phase (deg) of complex answers (3, W), averaged on the circle; none for an amplitude below `still` (W,)."""
     moving = np.abs(answers[0]) > still
     whole, first, second = np.where(moving, np.angle(answers), np.nan)
     centre = np.angle(np.exp(1j * whole[moving]).sum()) % (2 * np.pi)

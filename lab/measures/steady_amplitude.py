@@ -3,16 +3,16 @@
 Least-squares fit, in the tank's frame, of the coordinate that the motion drives (y for sway and
 roll, z for heave) and of z to
     c + e t + a cos(wt) + b sin(wt) + a2 cos(2wt) + b2 sin(2wt),    w = 2 pi f,
-with f the driving frequency; the drift e keeps a bed that still creeps from leaking into the
-oscillation. The fit covers the last half of what follows the soft start, cut to an even number of
-whole periods, at least two, so that the terms do not disturb each other.
+with f the driving frequency. The drift e takes up the creep of the bed, which would otherwise disturb
+the oscillation. The fit covers the last half of the time after the soft start, cut to an even number
+of whole periods, at least two, so that the terms do not disturb each other.
 
 response_amplitude: sqrt(a^2 + b^2) of the driven coordinate;
-response_phase: its phase less that of the tank's own recorded motion, 0 to 360 deg (180: the bed
-moves against the tank, as one that stays behind does);
+response_phase: its phase minus the phase of the recorded motion of the tank, 0 to 360 deg. At 180 deg
+the bed moves against the tank: a bed that stays where it is in space does so;
 response_amplitude_z: sqrt(a2^2 + b2^2) of z, which rises twice a period as the bed heaps on either
 side (Spandonidis 2016, 5.2.2: z at twice the frequency of y, phase close to 180 deg).
-Error: half the difference between the two halves of the window, which is the bed's unsteadiness.
+Error: half the difference between the two halves of the window, which tells how unsteady the bed is.
 """
 
 from collections.abc import Mapping
@@ -20,7 +20,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from lab.measures.centre_of_mass import draw_shift, shift
-from lab.measures.drawing import DRIVE, GREY, PERIODS, Sheet, band, close_up
+from lab.measures.drawing import DRIVE, GREEN, GREY, PERIODS, Sheet, band, close_up, note, swing
 from lab.measures.motion import HARMONIC, driving, is_tilt
 from lab.measures.steady import SHORT, STILL, amplitude_value, harmonics, phase_value, steady_part
 from lab.measures.value import Value
@@ -74,6 +74,12 @@ def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> Non
         band(panels[0][column], time[shown], pose[shown], GREY)
         draw_shift(panels[1][column], time[shown], moved[shown])
         panels[1][column].set_xlim(begin, time[-1])
+    steady = steady_part(recording, time)
+    if steady is not None:
+        axis, right = 1 if name == "heave" else 0, panels[1][1]
+        middle, begin = float(np.nanmean(moved[steady.rows, :, axis])), max(begin, time[steady.rows.start])
+        swing(sheet, right, middle, values.get("response_amplitude"), "amplitude", GREEN, (begin, time[-1]))
+        note(sheet, right, values.get("response_phase"), "phase")
     panels[0][0].set_ylabel(label)
     panels[0][1].set_title(f"last {PERIODS} periods")
     panels[1][1].set_ylabel("")

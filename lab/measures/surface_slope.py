@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lab.measures.drawing import BLUE, GREY, VERMILION, Sheet
+from lab.measures.drawing import BLUE, GREEN, GREY, VERMILION, Sheet, level, mark
 from lab.measures.motion import is_tilt, outward_leg
 from lab.measures.value import Value, over_worlds
 from lab.recording import Recording
@@ -115,7 +115,9 @@ def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> Non
         _draw_surface(axes, tilt, slope[:, world], error[:, world], leg.end, named=not world)
     reach = [0, np.degrees(np.abs(pose).max())]
     axes.plot(reach, reach, color=GREY, ls=":", lw=1.0, label="bed fixed to the tank")
-    sheet.mark(axes, values.get("critical_angle"), "critical angle", VERMILION)
+    mark(sheet, axes, values.get("critical_angle"), "critical angle", VERMILION)
+    axes.set_xlim(0, reach[1])
+    level(sheet, axes, values.get("largest_surface_slope"), "largest inclination", GREEN)
     axes.set_xlabel("tilt (deg)")
     axes.set_ylabel("inclination of the surface\nagainst the horizontal (deg)")
 

@@ -4,16 +4,18 @@ section 4.5).
 The height is that of the free surface over the floor, the mean over the columns in the middle tenth of the width
 (`wave`), in the picture frames of the steady part (`steady_part`).
 
-fill_height: its mean; error: standard error of the means of blocks, a driving period each.
-swelling_frequency: where the spectrum of its course is highest, from two swings in the steady part up to half the
-picture rate; swelling_amplitude: the height of the spectrum there. Error of the frequency: half the resolution,
-1/(2 T) of a part T long; of the amplitude: half the difference between the two halves.
-swelling_ratio: that frequency over the drive's: 1 or 2 where the surface follows the sway, anything else where it does
-not.
+fill_height: its mean. Error: standard error of the means of blocks, each a driving period.
+swelling_frequency: the frequency at which its spectrum is highest, between two swings in the steady part and half the
+picture rate. Error: half the resolution, 1/(2 T) of a part T long.
+swelling_amplitude: the height of the spectrum there. Error: half the difference between the two halves.
+swelling_ratio: that frequency divided by the driving frequency. It is 1 or 2 where the surface follows the sway.
 """
+
+from collections.abc import Mapping
 
 import numpy as np
 
+from lab.measures.drawing import BLUE, GREY, VERMILION, Sheet, band, level, note, swing
 from lab.measures.motion import driving
 from lab.measures.spectrum import PADDING, amplitude_spectrum
 from lab.measures.steady import SHORT, Steady, averaged, steady_part
@@ -26,7 +28,7 @@ SWINGS = 2  # in the steady part, at least
 
 
 def applies(recording: Recording) -> bool:
-    """Sway drives the tank, and there are pictures enough of its periods."""
+    """Sway drives the tank, and there are enough pictures in a period."""
     drive, time = driving(recording), recording.frames["time"][:]
     if drive is None or drive[0] != "sway" or len(time) <= LEAST_FRAMES:
         return False
@@ -72,3 +74,22 @@ def _dominant(time: np.ndarray, height: np.ndarray) -> tuple[np.ndarray, np.ndar
     highest = amplitudes[SWINGS * PADDING :].argmax(axis=0) + SWINGS * PADDING
     size = amplitudes[highest, range(len(known))]
     return np.where(known, frequencies[highest], np.nan), np.where(known, size, np.nan)
+
+
+def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> None:
+    """The height of the surface in the middle of the tank in time, with its mean and its swelling."""
+    ((axes,),) = sheet.panels()
+    time = recording.frames["time"][:]
+    band(axes, time, 1e3 * middle_height(recording), BLUE, "surface in the middle")
+    steady, filled = steady_part(recording, time), values.get("fill_height")
+    if steady is not None and filled is not None and filled.value is not None:
+        span = time[steady.rows.start], time[-1]
+        level(sheet, axes, filled, "mean", GREY, span)
+        swing(sheet, axes, filled.value, values.get("swelling_amplitude"), "swelling", VERMILION, span)
+        note(sheet, axes, values.get("swelling_frequency"), "at")
+    axes.set_xlabel("time (s)")
+    axes.set_xlim(time[0], time[-1])
+    axes.set_ylabel("height over the floor (mm)")
+
+
+FIGURES = {"swelling": draw}

@@ -1,18 +1,17 @@
 """How high the cargo reaches: the top of its highest grain, in the tank's frame (Spandonidis 2016, 4.5).
 
 top_altitude_start, top_altitude_end: the highest point of any grain at the first and the last picture frame.
-top_fall: the way between them.
-bulk_altitude_end: the height that BULK of the grains' tops do not exceed at the last frame; a single grain
-in the air does not move it.
-Grains that have left the scene do not count. Error: none of the simulation's own; a fall is known only at
-the picture frames.
+top_fall: the difference between them.
+bulk_altitude_end: the height below which BULK of the grains' tops lie at the last frame; a single grain in the air
+does not change it.
+Grains that have left the scene do not count. Error: none of its own; the top is known only at picture frames.
 """
 
 from collections.abc import Mapping
 
 import numpy as np
 
-from lab.measures.drawing import BLUE, VERMILION, Sheet, band
+from lab.measures.drawing import BLUE, GREY, VERMILION, Sheet, band, level, note
 from lab.measures.value import Value, over_worlds
 from lab.recording import Recording
 
@@ -21,7 +20,7 @@ EMPTY = "no grain is left in the scene"
 
 
 def applies(recording: Recording) -> bool:
-    """Parts move in the tank, or nothing else moves the cargo than gravity."""
+    """Parts move in the tank, or the tank stands still and only gravity moves the cargo."""
     still = not np.ptp(recording.series["pose"], axis=0).any()
     return len(recording.frames["time"]) > 0 and (bool(recording.parts) or still)
 
@@ -60,6 +59,8 @@ def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> Non
     band(axes, time, tops[..., 1], VERMILION, f"{BULK:g} % of the grains lie lower")
     axes.set_xlabel("time (s)")
     axes.set_xlim(time[0], time[-1])
+    level(sheet, axes, values.get("top_altitude_end"), "top at the end", GREY)
+    note(sheet, axes, values.get("top_fall"), "fall of the top")
     axes.set_ylabel("altitude of the top\nin the tank (mm)")
 
 

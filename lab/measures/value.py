@@ -14,13 +14,12 @@ NAME = re.compile(r"[A-Za-z0-9_]{1,60}")
 
 @dataclass(frozen=True)
 class Value:
-    """A number a person can use, measured in every world, a bed each.
+    """A measured number. Every world of a run is one bed, and the number is measured in each of them.
 
     value: mean over the worlds in which it was found, None if in none; std: their sample standard
-    deviation, None if found in fewer than two; uncertainty: of the measurement in one world, as far as
-    the measure knows it, and `kind` its name, one of KINDS (see docs/numbers.md); it says nothing of how
-    beds differ. worlds: one number a world, None where not found; note: what a reader must know about
-    this run's number.
+    deviation, None if found in fewer than two; uncertainty: of the measurement in one world, if the measure
+    knows it, and `kind` its name, one of KINDS (see docs/numbers.md). It does not tell how far beds differ.
+    worlds: one number for each world, None where not found; note: what a reader must know about this number.
     """
 
     value: float | None
@@ -33,7 +32,7 @@ class Value:
 
     @property
     def n(self) -> int:
-        """Beds in which it was found."""
+        """Number of beds in which it was found."""
         return sum(world is not None for world in self.worlds)
 
     @property
@@ -43,7 +42,7 @@ class Value:
 
     @property
     def interval(self) -> tuple[float, float] | None:
-        """That holds the mean over beds with a confidence of LEVEL (Student 1908); None with fewer than two."""
+        """Confidence interval of the mean over beds, at LEVEL (Student 1908); None with fewer than two beds."""
         if self.standard_error is None or self.value is None:
             return None
         half = half_width(self.standard_error, self.n - 1)
@@ -66,7 +65,7 @@ class Value:
 
     @classmethod
     def from_json(cls, data: Mapping) -> "Value":
-        """Of what `as_json` gave. Raises ValueError, KeyError or TypeError for what is no such thing."""
+        """The inverse of `as_json`. Raises ValueError, KeyError or TypeError for data of another form."""
         worlds, kind, note = tuple(data["worlds"]), data.get("uncertainty_kind") or "", data.get("note", "")
         numbers = data["value"], data["std"], data["uncertainty"], *worlds
         if not all(isinstance(x, int | float | None) for x in numbers):
@@ -76,7 +75,7 @@ class Value:
         return cls(data["value"], data["unit"], data["std"], data["uncertainty"], worlds, note, kind)
 
 
-# What a measure's own uncertainty may be of.
+# Kinds of a measure's own uncertainty, and what each is.
 KINDS = {
     "detector": "how far from the onset of a step its detector may have found it",
     "fit": "half the 68 % confidence interval of a line fitted to one bed",
@@ -88,13 +87,13 @@ KINDS = {
 
 
 def half_width(error: float, freedom: float) -> float:
-    """Half the interval of a standard error of so many degrees of freedom that has a confidence of LEVEL (Student)."""
+    """Half the confidence interval at LEVEL, from a standard error and its degrees of freedom (Student)."""
     return float(stdtrit(freedom, 0.5 + 0.5 * LEVEL)) * error
 
 
 def read_values(table: Mapping) -> dict[str, Value]:
-    """The measures by name that a summary.json holds. Raises ValueError, KeyError or TypeError for what is none."""
-    if not all(NAME.fullmatch(name) for name in table):  # files are called by them
+    """The measures of a summary.json by name. Raises ValueError, KeyError or TypeError for data of another form."""
+    if not all(NAME.fullmatch(name) for name in table):  # files are named after them
         raise ValueError("a measure has a name that none has")
     return {name: Value.from_json(data) for name, data in table.items()}
 
@@ -108,9 +107,10 @@ def over_worlds(
     note: str = "",
     missing: str = "not found",
 ) -> Value:
-    """The Value of one number a world (W,), NaN where there is none, which `missing` explains.
+    """The Value of one number for each world (W,); NaN where it was not found, for which `missing` gives the reason.
 
-    uncertainties (W,): of each world's number, of a `kind`; their root mean square is reported.
+    uncertainties (W,): of each world's number, all of one `kind`; their root mean square is reported.
+    Raises ValueError for uncertainties without a kind.
     """
     if len(uncertainties) and kind not in KINDS:
         raise ValueError(f"the uncertainty of a measure needs its kind, one of {', '.join(KINDS)} (got {kind!r})")

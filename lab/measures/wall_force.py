@@ -1,26 +1,26 @@
-"""What the ship feels: force and moment of the cargo on the tank, its walls, fixed grains and parts together.
+"""Force and moment of the cargo on the tank: on its walls, fixed grains and parts together.
 
-The cargo is a sheet one grain thick: newtons are those of the sheet, and a hull of length l carries
-l over the grains' diameter of them. Axes y, z of the tank, moment about the middle of its floor,
-positive as roll is (port side down). Each sample is the mean since the one before.
+The cargo is a sheet one grain thick, and the forces are those of this sheet. A hull of length l holds l/d such
+sheets, d the grains' diameter. Axes are y and z of the tank. The moment is about the middle of the floor, positive
+as roll is (port side down). Each sample is the mean over the time since the sample before.
 
 mean_force_y, mean_force_z, mean_moment: means over the steady part (`steady_part`; of a tilt over the whole run).
 Error: standard error of the means of blocks, a driving period each where there is one.
-largest_force, largest_moment: the largest at any sample of the same rows. A peak shorter than the sampling
-interval is averaged.
-carried_weight: the mean vertical force in the earth frame over the weight of the grains in the tank. It is
-1 wherever the cargo's momentum at the end is that at the beginning, so it checks the run: a bed at rest, and
-whole periods of a steady answer. Masses are those of spheres of the preset's density; spilled ones count as mean ones.
+largest_force, largest_moment: the largest of the same samples. A peak shorter than the sampling interval is
+averaged.
+carried_weight: the mean vertical force in the earth frame, divided by the weight of the grains in the tank. It is 1
+if the momentum of the cargo is the same at the beginning and at the end, as in a bed at rest or over whole periods of
+a steady motion; so it checks the run. Grains are spheres of the preset's density; a spilled grain counts as a mean one.
 
-Of a tank driven at one frequency w = 2 pi f further, by the fit of `harmonics` to the force along the
-motion (y of sway, z of heave, of roll the moment about the roll's centre c, M + c_z F_y - c_y F_z, which alone works
-on the cargo), with F, Y the complex amplitudes of force and motion:
-force_amplitude (moment_amplitude of roll): |F|; force_phase (moment_phase): that of F less that of Y.
-effective_mass: Re(F/Y)/w^2 over the cargo's mass, of sway and heave: 1 if it moves as one with the tank,
-as the added mass of a liquid cargo is counted (F = -A Y'' - B Y'; Faltinsen & Timokha 2009, "Sloshing").
-cargo_damping: B = -Im(F/Y)/w, the resistance in phase with the velocity: the work done on the cargo in a
-period is pi w B |Y|^2, none for a frozen cargo. Of roll per radian of angle; the in-phase moment of roll holds
-gravity's part as well and is not split.
+For a tank driven at one frequency w = 2 pi f, `harmonics` is fitted to the force along the motion: F_y of sway, F_z
+of heave. For roll it is the moment about the centre c of the roll, M + c_z F_y - c_y F_z, which does all the work on
+the cargo. With F and Y the complex amplitudes of force and motion:
+force_amplitude (roll: moment_amplitude): |F|. force_phase (roll: moment_phase): the phase of F minus that of Y.
+effective_mass (sway and heave): Re(F/Y)/w^2 divided by the mass of the cargo. It is 1 if the cargo moves as one with
+the tank, as the added mass of a liquid cargo is counted (F = -A Y'' - B Y'; Faltinsen & Timokha 2009, "Sloshing").
+cargo_damping: B = -Im(F/Y)/w, the resistance in phase with the velocity. The work done on the cargo in a period is
+pi w B |Y|^2; it is zero for a frozen cargo. For roll it is per radian. The moment of roll in phase with the angle
+contains a part of gravity, so roll has no effective mass.
 Error of these: half the difference between the two halves of the steady part.
 """
 
@@ -28,7 +28,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from lab.measures.drawing import BLUE, DRIVE, GREEN, GREY, PERIODS, VERMILION, Sheet, band, close_up
+from lab.measures.drawing import BLUE, DRIVE, GREEN, GREY, PERIODS, VERMILION, Sheet, band, close_up, level
 from lab.measures.motion import HARMONIC, driving
 from lab.measures.steady import BLOCKS, SHORT, Steady, amplitude_value, averaged, harmonics, phase_value, steady_part
 from lab.measures.value import Value, over_worlds
@@ -93,12 +93,12 @@ def _vertical(recording: Recording) -> np.ndarray:
 
 
 def _between(values: np.ndarray) -> np.ndarray:
-    """Values (T, W) in the middle of the interval that a mean since the sample before is of."""
+    """Values (T, W) in the middle of each sampling interval, where the mean over that interval belongs."""
     return np.concatenate([values[:1], 0.5 * (values[1:] + values[:-1])])
 
 
 def _driven(recording: Recording, steady: Steady | None, weight: np.ndarray | None) -> dict[str, Value]:
-    """What depends on the driving frequency."""
+    """The values that belong to the driving frequency."""
     name, settings = driving(recording)
     kind, unit, per = ("moment", "mN m", "N m s") if name == "roll" else ("force", "mN", "N s/m")
     omega = 2 * np.pi * settings["frequency"]
@@ -129,7 +129,7 @@ def _transfer(recording: Recording, part: slice) -> np.ndarray:
 
 
 def _along_motion(recording: Recording) -> np.ndarray:
-    """The force (T, W), N, or of roll the moment about its centre, N m, that does the motion's work."""
+    """The force (T, W), N, along the motion; for roll the moment about its centre, N m."""
     name, settings = driving(recording)
     force = recording.series["wall_force"]
     if name != "roll":
@@ -164,8 +164,11 @@ def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> Non
     if weight is not None:
         settled = -1e3 * weight[0].mean()
         upper.axhline(settled, color=GREY, ls=":", lw=1.0, label="weight of the cargo at the start")
-    upper.set_ylabel("force on the tank\n(mN, a sheet of\none grain's thickness)")
+    level(sheet, upper, values.get("mean_force_z"), "mean of z", VERMILION, (begin, time[-1]))
+    upper.set_ylabel("force on the\ntank (mN)")
+    panels[0][0].set_title(SHEET, loc="right", fontsize=8, color=GREY)
     band(lower, time[shown], force[shown, :, 2], GREEN, "moment about the middle of the floor")
+    level(sheet, lower, values.get("mean_moment"), "mean moment", GREEN, (begin, time[-1]))
     lower.set_ylabel("moment\n(mN m)")
     lower.set_xlabel("time (s)")
     lower.set_xlim(begin, time[-1])

@@ -1,8 +1,8 @@
 """The wave on the free surface of a shaken cargo, from the picture frames, in the tank's frame.
 
-The tank's width is cut into columns about two mean diameters wide. The surface of a column is the top of its
-highest grain that is reached from below without a gap of more than GAP diameters between the tops, so grains in the air
-do not count. Elevations are those of the first frame, the settled bed, subtracted.
+The tank's width is cut into columns about two mean diameters wide. The surface of a column is the top of the highest
+grain that is reached from below without a gap of more than GAP diameters between tops, so that grains in the air do
+not count. An elevation is the height of the surface minus its height in the first frame, that of the settled bed.
 
 wave_port, wave_middle, wave_starboard: sqrt(2) times the standard deviation in time of the elevation, averaged over
 the tenth of the width at the port wall, in the middle, and at the starboard wall: the amplitude of a sinusoid of the
@@ -20,7 +20,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from lab.measures.drawing import BLUE, GREEN, GREY, PERIODS, VERMILION, Sheet, band, close_up
+from lab.measures.drawing import BLUE, GREEN, GREY, PERIODS, VERMILION, Sheet, band, close_up, swing
 from lab.measures.motion import driving, is_shaken, is_tilt
 from lab.measures.spectrum import PADDING, amplitude_spectrum
 from lab.measures.steady import SHORT, Steady, steady_part
@@ -135,7 +135,7 @@ def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> Non
     places, mode = wave_course(recording)
     time, drive = recording.frames["time"][:], driving(recording)
     begin = time[0] if drive is None else close_up(time, drive[1]["frequency"])
-    (upper,), (lower,) = sheet.panels(heights=(3, 2), columns=4)
+    (upper,), (lower,) = sheet.panels(heights=(3, 2), columns=3)
     shown = time >= begin
     for k, colour in enumerate((BLUE, GREY, VERMILION)):
         name = f"{PLACES[k]} wall" if k != 1 else PLACES[k]
@@ -144,6 +144,10 @@ def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> Non
     if drive is not None:
         upper.set_title(f"last {PERIODS} periods")
     band(lower, time[shown], 1e3 * mode[shown], GREEN, "first mode cos(πy/L), higher at port")
+    steady = steady_part(recording, time)
+    if steady is not None:
+        middle, span = 1e3 * float(np.nanmean(mode[steady.rows])), (max(begin, time[steady.rows.start]), time[-1])
+        swing(sheet, lower, middle, values.get("wave_mode"), "amplitude of the mode", GREY, span)
     lower.set_ylabel("mode (mm)")
     lower.set_xlabel("time (s)")
     lower.set_xlim(begin, time[-1])

@@ -1,4 +1,4 @@
-"""What a preset is, what it switches on and what it will cost, before it runs."""
+"""What a preset simulates, which models it uses and what its run will cost, without running it."""
 
 from dataclasses import replace
 from math import pi
@@ -21,19 +21,19 @@ from solvers.simulation import Simulation
 from solvers.time.schedules import choose_schedule, units_a_world
 
 # Grain-steps a second of one core on settled beds: between a Xeon of 2.5 GHz (15e6) and newer ones (37e6 and more;
-# README, "Speed"); only the estimate of the run time rests on it.
+# README, "Speed"). It is used for the estimate of the run time only.
 GRAIN_STEPS_PER_CORE = 20e6
 OUTLINES_PER_CORE = {"continuous": 3e6, "nodes": 3e6, "area": 3e6}  # of irregular grains
-# What else a run takes, in seconds of one core (AMD EPYC, Zen 5; CPU time, which other programs do not lengthen): to
-# start Python, its libraries and Taichi, to compile the kernels when they are new, and with them those of a ship
+# Other parts of a run, in seconds of CPU time of one core (AMD EPYC, Zen 5): to start Python, its libraries and Taichi,
+# to compile the kernels when they are new, and in addition those of a ship
 STARTING = 2.0
 COMPILING = {"discs": 2.0, "continuous": 8.0, "nodes": 6.0, "area": 4.5}
 COMPILING_SHIP = 3.0
-STEP = 0.07e-6  # of a world, whatever its grains
+STEP = 0.07e-6  # of a world, without its grains
 SAMPLE = 0.25e-3  # to stop and observe all worlds
-# Of a ship each look ahead of the water's forces: at best, and for each pair of states of its memory, and each wave
+# For each computation of the water's forces on a ship: at least, for each pair of states of its memory, for each wave
 LOOK, LOOK_PAIR, LOOK_WAVE = 0.4e-6, 1.6e-9, 0.07e-6
-FROZEN = 0.37e-3  # each interval of the ship with her cargo frozen
+FROZEN = 0.37e-3  # for each interval of the ship with her cargo frozen
 REPORTING, PICTURE = 2.5, 0.026  # measures and figures; a picture and its place in the video
 
 PRECISIONS = {
@@ -69,7 +69,7 @@ def explain(loaded: LoadedPreset) -> str:
 
 
 def _one_bed(preset: Resolved) -> Simulation:
-    """A simulation of the first bed alone, cut into units as each of all is: the others have the same parts."""
+    """A simulation of the first bed alone, with the units of work it has among all beds; the others are alike."""
     run = preset.run
     scene, position = build(preset.model_copy(update={"run": replace(run, repeats=1)}))
     arch = "cpu" if scene.vessels and run.arch == "auto" else choose_arch(run.arch, run.precision)
@@ -107,7 +107,7 @@ def _scene(preset, scene) -> list[tuple[str, str]]:
 
 
 def _ship(preset, simulation: Simulation) -> list[str]:
-    """The ship, if there is one."""
+    """The section on the ship; none without a ship."""
     if not simulation.carrier.answers:
         return []
     every = int(simulation.carrier.every[0]) * simulation.dt
@@ -116,7 +116,7 @@ def _ship(preset, simulation: Simulation) -> list[str]:
 
 
 def _shape(name: str, shape: Shape) -> str:
-    """What is known of a class of outlines."""
+    """One class of irregular outlines."""
     outlines = f"{len(shape.descriptors)} descriptors" if np.any(shape.descriptors) else "a disc"
     if shape.random:
         outlines += f", phases at random, {shape.draws} outlines a repeat"
@@ -154,7 +154,7 @@ def _motion(name: str, motion, soft_start: float) -> str:
 
 
 def _accuracy(preset) -> list[tuple[str, str]]:
-    """The level, and what it sets where the preset does not."""
+    """The level of accuracy, and the settings that follow from it unless the preset has its own."""
     level, scale = LEVELS[preset.run.accuracy], preset.contact.stiffness_scale
     own = "; the preset's own" if scale != level.stiffness_scale else ""
     step = f"{level.longer_steps:g} times the derived one" if level.longer_steps != 1.0 else "the derived one"
@@ -207,7 +207,7 @@ def _outlines(preset: Resolved, shapes: Shapes) -> str:
 
 
 def _cohesion(scene) -> str:
-    """The law, and what it does to two mean grains."""
+    """The law of cohesion, and its force between two mean grains."""
     law, between, radius = COHESION[scene.cohesion](), scene.interfaces[0], scene.mean_radius
     pull = law.coefficients(between)[0] * 0.5 * radius
     weight = 4.0 / 3.0 * pi * radius**3 * scene.grain[0].density * scene.gravity
@@ -235,7 +235,7 @@ def _cost(preset, scene, simulation: Simulation) -> list[tuple[str, str]]:
 
 
 def cost_in_seconds(preset, scene, simulation: Simulation) -> dict[str, float]:
-    """What a run takes by its parts, settling apart: kernels that are new are compiled, all pictures painted."""
+    """Seconds that a run takes, by its parts, without settling; kernels are compiled anew and all pictures painted."""
     rule = scene.shapes.contact if scene.shapes else "discs"
     duration, record = preset.run.duration, preset.record
     found = {
@@ -248,7 +248,7 @@ def cost_in_seconds(preset, scene, simulation: Simulation) -> dict[str, float]:
 
 
 def _stepping(duration: float, preset, scene) -> float:
-    """Of the grains' steps for so long (s)."""
+    """Seconds of computation for the grains' steps over a duration (s)."""
     worlds, count = scene.radius.shape
     rounds = -(-worlds // min(worlds, preset.run.threads or available_cores()))
     speed = OUTLINES_PER_CORE[scene.shapes.contact] if scene.shapes else GRAIN_STEPS_PER_CORE
@@ -256,7 +256,7 @@ def _stepping(duration: float, preset, scene) -> float:
 
 
 def _floating(preset, simulation: Simulation) -> float:
-    """Of the water's forces, and of the ship with her cargo frozen."""
+    """Seconds of computation for the water's forces and for the ship with her cargo frozen."""
     states, _, waves = simulation.carrier.sizes
     rounds = -(-len(simulation.scene.vessels) // simulation.threads)
     look = LOOK + LOOK_PAIR * states**2 + LOOK_WAVE * waves

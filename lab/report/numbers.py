@@ -1,7 +1,6 @@
 """How numbers are written: ± is the standard deviation over beds and nothing else (docs/numbers.md).
 
-What summaries, reports, figures and the terminal say of a number with its scatter, its error or its interval is
-written here.
+Summaries, reports, figures and the terminal take the text of a number with its scatter, error or interval from here.
 """
 
 from collections.abc import Sequence
@@ -9,19 +8,19 @@ from math import floor, isfinite, isinf, log10
 
 from lab.measures.value import LEVEL, Value
 
-SMALL = 1e-3  # numbers below are told with a power of ten
+SMALL = 1e-3  # smaller numbers are written with a power of ten
 MOST_DIGITS = 6  # after the point
-ROUNDING = 1e-9  # a scatter so small beside its value is that of the arithmetic
+ROUNDING = 1e-9  # of the value: a smaller scatter is rounding error
 RULE = (
-    "± is the standard deviation over beds, the number of which is in brackets; of a single bed there is none. What a "
-    "measure knows of its own uncertainty has a name: see `docs/numbers.md`."
+    "± is the standard deviation over beds, whose number is in brackets; a single bed has none. A measure's own "
+    "uncertainty is given with its name: see `docs/numbers.md`."
 )
 # For the axis of a figure whose bars are standard deviations
 BARS = "mean ± std over beds"
 
 
 def number(value: Value) -> str:
-    """A value as the rule has it: "25.0 ± 1.3 deg (4 beds)", "24.96 deg (1 bed; detector 0.25 deg)"."""
+    """A value, written as RULE says: "25.0 ± 1.3 deg (4 beds)", "24.96 deg (1 bed; detector 0.25 deg)"."""
     if value.value is None:
         return "none"
     unit = _unit(value.unit)
@@ -31,14 +30,14 @@ def number(value: Value) -> str:
 
 
 def own(value: Value) -> str:
-    """The measure's own uncertainty under its name, "detector 0.25 deg"; "" where it has none."""
+    """The measure's own uncertainty with its name, "detector 0.25 deg"; "" where there is none."""
     if value.uncertainty is None:
         return ""
     return f"{value.kind or 'own uncertainty'} {value.uncertainty:.2g}{_unit(value.unit)}"
 
 
 def plus_minus(value: float, std: float) -> str:
-    """A mean and its standard deviation over beds, with as many digits as that allows: "25.0 ± 1.3"."""
+    """A mean and its standard deviation over beds, to two digits of the latter: "25.0 ± 1.3"."""
     if not std or std < ROUNDING * abs(value):
         return f"{value:.4g} ± 0"
     digits, power = _digits(std), 0
@@ -66,14 +65,14 @@ def interval(low: float, high: float, unit: str = "", level: float = LEVEL) -> s
 
 
 def mean_within(mean: float, ends: Sequence[float] | None, digits: int) -> str:
-    """A mean and the interval it lies in, for tables that name the level: "31.10 [27.37, 34.83]"."""
+    """A mean and its interval, for tables whose heading gives the level: "31.10 [27.37, 34.83]"."""
     if ends is None:
         return f"{mean:.{digits}f}"
     return f"{mean:.{digits}f} [{', '.join(f'{end:.{digits}f}' for end in ends)}]"
 
 
 def _digits(error: float) -> int:
-    """Decimals that show two digits of an error."""
+    """Number of decimals that show two digits of an error."""
     return max(0, 1 - floor(log10(error)))
 
 
@@ -96,7 +95,7 @@ def _unit(unit: str) -> str:
 
 
 def _beds(value: Value, more: str = "") -> str:
-    """In brackets: in how many beds it was found, and what else there is to say."""
+    """In brackets: the number of beds in which it was found, then `more`."""
     count, all_beds = value.n, len(value.worlds)
     said = f"{count} of {all_beds} beds" if count < all_beds else f"{count} bed{'s' if count != 1 else ''}"
     parts = [said] * bool(all_beds) + [more] * bool(more)

@@ -12,7 +12,6 @@ from pathlib import Path
 
 import matplotlib
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from lab import measures
@@ -27,7 +26,6 @@ __all__ = ["BELOW", "BLUE", "GREEN", "GREY", "STYLE", "VERMILION", "figures", "w
 
 STYLE = {
     "font.size": 9,
-    "text.parse_math": False,  # a title is text that somebody wrote, and may hold a $
     "axes.titlesize": 9.5,
     "axes.titlelocation": "left",
     "axes.spines.top": False,
@@ -43,7 +41,8 @@ STYLE = {
     "lines.linewidth": 1.5,
     "savefig.dpi": 180,
 }
-SIZE = (6.4, 4.2)  # inches
+SIZE = (6.4, 4.2)  # inches, of a figure with one or two rows of panels
+TALLER = 0.9  # inches for each further row
 BELOW = "outside lower center"  # where a legend covers no curve
 TITLE = 88  # letters in a line
 AXIS = 36  # letters in a line beside an axis
@@ -57,13 +56,15 @@ class Sheet:
         self._columns = 2
         count = f"{recording.radius.shape[1]} grains"
         if recording.worlds > 1:
-            count = f"{recording.worlds} beds of {count} (bands: ± std over beds)"
-        title = textwrap.fill(f"{recording.preset['title']}: {count}", TITLE)
-        self.figure.suptitle(title, x=0.02, ha="left", fontsize=9.5)
+            count = f"{recording.worlds} beds of {count}; bands: ± std over beds, unless the legend says otherwise"
+        title = f"{textwrap.fill(recording.preset['title'], TITLE)}\n{count}"
+        # The title is text that somebody wrote, and may hold a $.
+        self.figure.suptitle(title, x=0.02, ha="left", fontsize=9.5, parse_math=False)
 
     def panels(self, heights: tuple = (1,), widths: tuple = (1,), columns: int = 2) -> np.ndarray:
         """Axes by row and column; those of a column share x, those of a row share y. `columns`: of the legend."""
         self._columns = columns
+        self.figure.set_figheight(SIZE[1] + TALLER * max(0, len(heights) - 2))
         return self.figure.subplots(
             len(heights),
             len(widths),
@@ -74,16 +75,9 @@ class Sheet:
             width_ratios=widths,
         )
 
-    def mark(self, axes: Axes, value: Value | None, name: str, colour: str, style: str = "-") -> None:
-        """An upright line at a measured value, its number in the legend; a solid one with a band, ± the std over beds.
-
-        Draws nothing for a value that was not found.
-        """
-        if value is None or value.value is None:
-            return
-        axes.axvline(value.value, color=colour, lw=1.0, ls=style, label=f"{name} {number(value)}")
-        if style == "-" and value.std is not None:
-            axes.axvspan(value.value - value.std, value.value + value.std, color=colour, alpha=0.12, lw=0)
+    def words(self, value: Value) -> str:
+        """A measured value with its scatter or its error, as the summary writes it."""
+        return number(value)
 
     def finished(self) -> Figure | None:
         """The figure with a legend of all labelled curves; None if nothing is drawn on it."""

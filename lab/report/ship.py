@@ -1,4 +1,4 @@
-"""What `cargolab explain` says of a ship: rows of words on her balance, her roll, and what the water does."""
+"""The section of `cargolab explain` on a ship: her balance, her roll and the forces of the water."""
 
 from math import pi
 
@@ -14,9 +14,9 @@ from solvers.ship.waves import froude_factors
 def describe(
     given: ShipGiven, vessel: Vessel, waves: WavesGiven | None, thickness: float, every: float
 ) -> list[tuple[str, str]]:
-    """Rows of words on a ship: balance, roll, what the water does; `every` (s) its forces are stepped.
+    """Rows on a ship, each a name and a text: balance, roll, forces of the water.
 
-    Her cargo is a slab of that thickness (m).
+    thickness: of the slab that her cargo is (m); every: the step of the forces of the water (s).
     """
     ship, body = vessel.ship, vessel.ship.body
     water, memory = ship.load.water, ship.radiation.memory
@@ -62,7 +62,7 @@ def _sea(waves: WavesGiven, water: Water) -> str:
 
 
 def _full_scale(given: ShipGiven, waves: WavesGiven | None) -> str:
-    """What the run means for a ship so many times as long (Froude's law)."""
+    """The same run for a ship `scale` times as long, by Froude's law."""
     factor = froude_factors(given.scale)
     words = [f"draught {show(given.draught * factor['length'], 'm')}", f"times {factor['time']:.3g} as long"]
     if waves is not None:

@@ -1,4 +1,4 @@
-"""What a run found, on one page: summary.md for people, summary.json for programs, a short text."""
+"""The results of a run: summary.md for people, summary.json for programs, and a short text for the terminal."""
 
 import json
 import os
@@ -20,7 +20,7 @@ from lab.report.numbers import RULE, number, own
 from solvers.machine.marks import Unit
 from solvers.motion import MOTIONS
 
-# What answers the question of an experiment, the most telling first; a recording has only what applies to it.
+# The measures that answer the question of an experiment, the most important first; a run has only some of them.
 TELLING = (
     "capsized_at",
     "flooded_at",
@@ -49,7 +49,7 @@ TELLING = (
     "moment_amplitude",
     "contact_number",
 )
-HEADLINES, TOLD = 3, 6  # measures that the page says first, and that the terminal is told
+HEADLINES, TOLD = 3, 6  # numbers at the head of the page, and in the terminal
 LARGE_OVERLAP = 0.05  # of a radius
 
 
@@ -63,8 +63,8 @@ def write_summary(
 ) -> dict[str, Path]:
     """Write summary.md and summary.json into `folder`; returns both by name.
 
-    files: what else the run made, by name; pictures among them are shown. warnings: sentences that a
-    reader must know, beside those that follow from the recording; notes: ones that may interest.
+    files: the other files of the run, by name; the page shows the pictures among them. warnings: sentences that a
+    reader must know, besides those that follow from the recording. notes: sentences of less weight.
     Raises LabError when the folder cannot be written.
     """
     folder = Path(folder)
@@ -105,7 +105,7 @@ def terminal_summary(
 
 
 def headlines(values: Mapping[str, Value], most: int) -> dict[str, Value]:
-    """The most telling of the measured values, then others in their order, `most` in all."""
+    """The most important of the measured values, then others in their order, `most` in all."""
     order = {name: place for place, name in enumerate(TELLING)}
     names = sorted(values, key=lambda name: order.get(name, len(order)))
     return {name: values[name] for name in names[:most]}
@@ -204,7 +204,7 @@ def _scene(recording: Recording) -> Iterator[str]:
 
 
 def _settings(name: str, settings: Mapping) -> str:
-    """Settings of a motion in the units people use, those that are zero left out."""
+    """Settings of a motion in units for people; settings of zero are left out."""
     hints = get_type_hints(MOTIONS[name], include_extras=True)
     units = {key: _unit(hint) for key, hint in hints.items()}
     shown = [
@@ -222,12 +222,12 @@ def _unit(hint: object) -> str | None:
 
 def _status(recording: Recording) -> str:
     if recording.status == "running":
-        return "unfinished: it still goes on or was killed"
+        return "unfinished: it is still running or was killed"
     return recording.status.rstrip(".")
 
 
 def _cautions(recording: Recording) -> Iterator[str]:
-    """What a reader must know of the run that the numbers do not say."""
+    """What a reader must know about the run and cannot see from the numbers."""
     if recording.preset.get("quick"):
         yield f"A quick variant: {recording.preset['quick']}."
     if not recording.complete:
@@ -246,11 +246,11 @@ def _cautions(recording: Recording) -> Iterator[str]:
 
 
 def _softened(recording: Recording) -> str:
-    """Which key has made the grains softer."""
+    """Which key of the preset makes the grains softer."""
     accuracy = (recording.preset.get("run") or {}).get("accuracy")
     if accuracy in LEVELS and LEVELS[accuracy].stiffness_scale == recording.preset["contact"]["stiffness_scale"]:
-        return f'as run.accuracy = "{accuracy}" has it'
-    return "by contact.stiffness_scale"
+        return f'set by run.accuracy = "{accuracy}"'
+    return "set by contact.stiffness_scale"
 
 
 def _cost(recording: Recording) -> str:
@@ -267,7 +267,7 @@ def _duration(seconds: float) -> str:
 
 
 def _machine(recording: Recording) -> str:
-    """What computed, as far as the recording says it."""
+    """The computer that ran it, as far as the recording knows it."""
     machine = recording.machine
     cores, arch = _count(machine.get("cores") or 0, "core"), machine.get("arch", "cpu")
     if arch != "cpu":

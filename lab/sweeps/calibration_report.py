@@ -177,7 +177,7 @@ def write_report(made: Calibration) -> Calibration:
     """Write summary.md, calibration.json and calibration.png into the calibration's folder. Raises LabError."""
     try:
         (made.folder / "calibration.json").write_text(json.dumps(_data(made), indent=1) + "\n", encoding="utf-8")
-        with matplotlib.rc_context(STYLE):
+        with matplotlib.rc_context(STYLE | {"text.parse_math": False}):  # labels are texts of users, and may hold a $
             figure(made).savefig(made.folder / "calibration.png")
         (made.folder / "summary.md").write_text("\n".join(_page(made)) + "\n", encoding="utf-8")
     except OSError as error:

@@ -141,7 +141,7 @@ def _figures(
     name: str, axes: Mapping[str, Sequence], points: Sequence[Point], shown: Mapping[str, Value], folder: Path
 ) -> dict[str, Path]:
     drawn = {}
-    with matplotlib.rc_context(STYLE):
+    with matplotlib.rc_context(STYLE | {"text.parse_math": False}):  # labels are texts of users, and may hold a $
         for key, value in shown.items():
             means = np.array([point.measures[key].value if key in point.measures else None for point in points], float)
             if not np.isfinite(means).any():
@@ -191,6 +191,7 @@ def _draw(
         panel.set_xticks(across, [str(value) for value in values])
     elif _even_in_logarithm(scale[0]):
         panel.set_xscale("log")
+        panel.xaxis.set_major_formatter("{x:g}")
     panel.set_ylabel(f"{label}\n{bars}" if bars else label)
     if 1 < means.shape[1] <= 2 * FAMILIES:
         figure.legend(loc="outside lower center", ncols=3)

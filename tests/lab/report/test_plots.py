@@ -11,6 +11,7 @@ from PIL import Image
 from lab import measures
 from lab.base.errors import LabError
 from lab.measures import energies, measure_all
+from lab.measures.drawing import mark
 from lab.measures.value import over_worlds
 from lab.recording import open_recording
 from lab.report.plots import STYLE, figures, write_plots
@@ -122,7 +123,7 @@ def test_plus_minus_appears_only_for_several_beds_with_their_number(tmp_path, wo
 def draw_drift(sheet, recording, values):
     """The made-up measure below, as a mark on an axis."""
     ((axes,),) = sheet.panels()
-    sheet.mark(axes, values["drift"], "drift", "black")
+    mark(sheet, axes, values["drift"], "drift", "black")
     axes.set_xlabel("drift (mm)")
 
 

@@ -111,7 +111,7 @@ def test_warnings_appear_in_all_outputs(tmp_path):
     said = ["The grains still moved."]
     for text in summed_up(folder, warnings=said)[::2]:
         assert "The grains still moved." in text
-        assert "Young's moduli times 0.001, by contact.stiffness_scale." in text
+        assert "Young's moduli times 0.001, set by contact.stiffness_scale." in text
         assert "stopped: Grain 7 left the hold; the numbers cover what was recorded" in text
 
 
@@ -122,7 +122,7 @@ def test_the_softness_of_a_quick_variant_is_reported_once(tmp_path):
     said = [line for line in page.splitlines() if "stiff" in line or "softer" in line]
     assert said == [
         "**Warning:** The grains are softer than their material: Young's moduli times 0.001, "
-        'as run.accuracy = "draft" has it.'
+        'set by run.accuracy = "draft".'
     ]
     assert not [name for name in names() if "stiffness" in load(name).resolved.quick]
 
