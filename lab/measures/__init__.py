@@ -4,8 +4,9 @@ A measure is a module with
 - a docstring that defines each number and says where its error comes from;
 - `applies(recording) -> bool`: whether it can be measured on this recording;
 - `measure(recording) -> dict[str, Value]`: its numbers by name;
-- `FIGURES`, if it has any: functions by the name of the figure's file, each called as
-  `draw(sheet, recording, values)` (`lab.measures.drawing.Draw`).
+- `FIGURES`, if it has any: by the name of the figure's file a function `draw(sheet, recording, values)`. It draws on
+  panels that it asks of the sheet (`lab.measures.drawing`), and asks for none where there is nothing to show. `values`
+  is everything that was measured on the recording, by name.
 A new measure is such a file and a line in MEASURES: its numbers and figures appear in the report of every run on which
 it can be measured.
 """

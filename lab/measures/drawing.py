@@ -3,13 +3,11 @@
 This module does not load Matplotlib: it calls methods of the axes it is given.
 """
 
-from collections.abc import Mapping
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
 from lab.measures.value import Value
-from lab.recording import Recording
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -34,14 +32,6 @@ class Sheet(Protocol):
 
     def words(self, value: Value) -> str:
         """A measured value with its scatter or its error, as the summary writes it: "25.0 ± 1.3 deg (4 beds)"."""
-        ...
-
-
-class Draw(Protocol):
-    """Draws one figure of a measure; a sheet on which no panels were asked for is left out of the report."""
-
-    def __call__(self, sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> None:
-        """`values`: everything that was measured on the recording, by name."""
         ...
 
 

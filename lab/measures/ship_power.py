@@ -37,14 +37,14 @@ def measure(recording: Recording) -> dict[str, Value]:
 def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> None:
     """The work that the waves have done on a ship, and where it went, in time; the mean powers are in the legend."""
     ((axes,),) = sheet.panels(columns=1)
-    time, works = recording.series["time"], 1e3 * recording.series["ship_works"] * SIGNS
+    time, works = recording.series["time"], recording.series["ship_works"] * SIGNS
     for k, (name, colour) in enumerate(zip(NAMES, (BLUE, GREEN, GREY, VERMILION), strict=True)):
         value = values.get(name)
         found = f" {sheet.words(value)}" if value is not None and value.value is not None else ""
         band(axes, time, works[..., k], colour, f"{name.replace('_', ' ')}{found}")
     axes.set_xlabel("time (s)")
     axes.set_xlim(time[0], time[-1])
-    axes.set_ylabel("work since the start (mJ/m)")
+    axes.set_ylabel("work since the start (J/m)")
 
 
 FIGURES = {"power": draw}

@@ -102,8 +102,8 @@ def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> Non
     mark(sheet, axes, values.get("spill_upturn_angle"), "sharp upturn", VERMILION)
     axes.set_xlabel("tilt (deg)" if tilts else "time (s)")
     axes.set_xlim(left=0)
-    axes.set_ylim(bottom=0)
     level(sheet, axes, values.get("spilled_fraction"), "at the end", GREY)
+    axes.set_ylim(bottom=0)
     axes.set_ylabel("spilled grains (% of all movable)")
 
 

@@ -86,7 +86,7 @@ def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> Non
         span = time[steady.rows.start], time[-1]
         level(sheet, axes, filled, "mean", GREY, span)
         swing(sheet, axes, filled.value, values.get("swelling_amplitude"), "swelling", VERMILION, span)
-        note(sheet, axes, values.get("swelling_frequency"), "at")
+        note(sheet, axes, values.get("swelling_frequency"), "swelling frequency")
     axes.set_xlabel("time (s)")
     axes.set_xlim(time[0], time[-1])
     axes.set_ylabel("height over the floor (mm)")

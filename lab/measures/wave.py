@@ -135,7 +135,7 @@ def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> Non
     places, mode = wave_course(recording)
     time, drive = recording.frames["time"][:], driving(recording)
     begin = time[0] if drive is None else close_up(time, drive[1]["frequency"])
-    (upper,), (lower,) = sheet.panels(heights=(3, 2), columns=3)
+    (upper,), (lower,) = sheet.panels(heights=(3, 2))
     shown = time >= begin
     for k, colour in enumerate((BLUE, GREY, VERMILION)):
         name = f"{PLACES[k]} wall" if k != 1 else PLACES[k]

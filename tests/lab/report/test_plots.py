@@ -4,6 +4,7 @@ import json
 import warnings
 from types import SimpleNamespace
 
+import matplotlib
 import numpy as np
 import pytest
 from PIL import Image
@@ -118,6 +119,15 @@ def test_plus_minus_appears_only_for_several_beds_with_their_number(tmp_path, wo
     assert all(("±" in text) is bars for text in said)
     assert ("mean ± std of 2 beds" in said[0]) is bars
     assert "band: uncertainty of the fit" in said[1]
+
+
+def test_axes_in_powers_of_ten_have_readable_numbers(tmp_path):
+    """With STYLE a number in a power of ten is set as one, not printed as its source."""
+    with open_recording(run(tmp_path, SWAY, worlds=1)) as recording, matplotlib.rc_context(STYLE):
+        figure = dict(figures(recording, {}))["energy"]
+        figure.savefig(tmp_path / "energy.png")
+        labels = figure.axes[0].get_yticklabels()
+    assert labels and all(label.get_parse_math() for label in labels)
 
 
 def draw_drift(sheet, recording, values):
