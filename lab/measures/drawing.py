@@ -108,6 +108,12 @@ def error_of(value: Value) -> float:
     return value.std if value.std is not None else value.uncertainty or 0.0
 
 
+def middle_of(curves: np.ndarray) -> float:
+    """Mean of all finite numbers of curves (T, W); NaN if there are none."""
+    known = curves[np.isfinite(curves)]
+    return float(known.mean()) if len(known) else np.nan
+
+
 def mean_label(worlds: int) -> str:
     """What the legend calls the curve of `band`."""
     return f"mean ± std of {worlds} beds" if worlds > 1 else "bed"

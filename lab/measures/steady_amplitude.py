@@ -20,7 +20,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from lab.measures.centre_of_mass import draw_shift, shift
-from lab.measures.drawing import DRIVE, GREEN, GREY, PERIODS, Sheet, band, close_up, note, swing
+from lab.measures.drawing import DRIVE, GREEN, GREY, PERIODS, Sheet, band, close_up, middle_of, note, swing
 from lab.measures.motion import HARMONIC, driving, is_tilt
 from lab.measures.steady import SHORT, STILL, amplitude_value, harmonics, phase_value, steady_part
 from lab.measures.value import Value
@@ -77,7 +77,7 @@ def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> Non
     steady = steady_part(recording, time)
     if steady is not None:
         axis, right = 1 if name == "heave" else 0, panels[1][1]
-        middle, begin = float(np.nanmean(moved[steady.rows, :, axis])), max(begin, time[steady.rows.start])
+        middle, begin = middle_of(moved[steady.rows, :, axis]), max(begin, time[steady.rows.start])
         swing(sheet, right, middle, values.get("response_amplitude"), "amplitude", GREEN, (begin, time[-1]))
         note(sheet, right, values.get("response_phase"), "phase")
     panels[0][0].set_ylabel(label)

@@ -116,7 +116,7 @@ def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> Non
     reach = [0, np.degrees(np.abs(pose).max())]
     axes.plot(reach, reach, color=GREY, ls=":", lw=1.0, label="bed fixed to the tank")
     mark(sheet, axes, values.get("critical_angle"), "critical angle", VERMILION)
-    axes.set_xlim(0, reach[1])
+    axes.set_xlim(left=0)
     level(sheet, axes, values.get("largest_surface_slope"), "largest inclination", GREEN)
     axes.set_xlabel("tilt (deg)")
     axes.set_ylabel("inclination of the surface\nagainst the horizontal (deg)")

@@ -20,7 +20,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from lab.measures.drawing import BLUE, GREEN, GREY, PERIODS, VERMILION, Sheet, band, close_up, swing
+from lab.measures.drawing import BLUE, GREEN, GREY, PERIODS, VERMILION, Sheet, band, close_up, middle_of, swing
 from lab.measures.motion import driving, is_shaken, is_tilt
 from lab.measures.spectrum import PADDING, amplitude_spectrum
 from lab.measures.steady import SHORT, Steady, steady_part
@@ -146,7 +146,7 @@ def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> Non
     band(lower, time[shown], 1e3 * mode[shown], GREEN, "first mode cos(πy/L), higher at port")
     steady = steady_part(recording, time)
     if steady is not None:
-        middle, span = 1e3 * float(np.nanmean(mode[steady.rows])), (max(begin, time[steady.rows.start]), time[-1])
+        middle, span = 1e3 * middle_of(mode[steady.rows]), (max(begin, time[steady.rows.start]), time[-1])
         swing(sheet, lower, middle, values.get("wave_mode"), "amplitude of the mode", GREY, span)
     lower.set_ylabel("mode (mm)")
     lower.set_xlabel("time (s)")
