@@ -144,7 +144,7 @@ def test_the_summary_reports_a_bed_that_has_not_settled(tmp_path):
 SHIP = {"draught": "60 mm", "gravity_height": "35 mm", "breadth": "120 mm", "height": "100 mm", "gyradius": "40 mm"}
 
 
-@pytest.mark.parametrize("ship", [{}, SHIP], ids=["fixed", "afloat"])
+@pytest.mark.parametrize("ship", [pytest.param({}, marks=pytest.mark.slow), SHIP], ids=["fixed", "afloat"])
 def test_the_first_sample_is_the_state_of_grains_that_do_not_settle(tmp_path, ship):
     """Two grains of a file that move: one 2 µm deep in the floor, along which it slides, the other in flight."""
     (tmp_path / "bed.csv").write_text("y,z,radius,vy,vz,omega\n0,0.002998,0.003,0.05,0,5\n0.01,0.02,0.003,0,-0.1,0\n")
