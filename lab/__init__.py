@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from lab.base.caches import provide_for_matplotlib
+from lab.base.costs import importing
 
 if TYPE_CHECKING:
     from lab.runs.runner import Result
@@ -24,7 +25,8 @@ def run(
 
     `overrides` are tables of the preset, or single keys with `__` for the dot: `run__repeats=12`.
     """
-    from lab.runs.runner import run_preset
+    with importing():
+        from lab.runs.runner import run_preset
 
     return run_preset(preset, _dotted(overrides), out, video=video, quiet=quiet)
 
@@ -51,7 +53,8 @@ def sweep(
 
 def resume(folder: Path | str, *, video: bool = True, quiet: bool = False) -> Result | SweepResult:
     """Continue the run or sweep in a folder that was killed, interrupted or stopped; the result has the same bits."""
-    from lab.sweeps.resume import resume_any
+    with importing():
+        from lab.sweeps.resume import resume_any
 
     return resume_any(folder, video=video, quiet=quiet)
 

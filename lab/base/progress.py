@@ -9,6 +9,7 @@ from rich.progress import BarColumn, TaskProgressColumn, TextColumn, TimeElapsed
 from rich.progress import Progress as Bar
 
 from lab.base.caches import lacking
+from lab.base.costs import Costs
 from lab.base.text import one_line
 
 if TYPE_CHECKING:
@@ -34,6 +35,7 @@ class Progress:
         self.whole, self.done = None, 0.0
         self.warnings: list[str] = []
         self.notes: list[str] = []
+        self.costs = Costs()
 
     def __enter__(self) -> "Progress":
         self.bar.start()

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import click
 
+from lab.base.costs import importing
 from lab.base.errors import LabError
 from lab.cli.options import (
     arch_option,
@@ -60,10 +61,11 @@ def run(
         return
     if preset is None:
         raise LabError("run: which preset? `cargolab list` shows all.")
-    from lab.preset.find import load
+    with importing():
+        from lab.preset.find import load
 
-    load(preset, overrides)  # before the slow imports, so that a typing error is reported at once
-    from lab.runs.runner import run_preset
+        load(preset, overrides)  # before the slow imports, so that a typing error is reported at once
+        from lab.runs.runner import run_preset
 
     show(run_preset(preset, overrides, out, video=not no_video, quiet=quiet), quiet)
 
@@ -78,7 +80,8 @@ def resume(folder: Path, no_video: bool, quiet: bool) -> None:
     \b
     cargolab resume renders/tilting/quick
     """
-    from lab.sweeps.resume import resume_any
+    with importing():
+        from lab.sweeps.resume import resume_any
 
     show(resume_any(folder, video=not no_video, quiet=quiet), quiet)
 

@@ -8,6 +8,7 @@ from typing import get_type_hints
 
 import numpy as np
 
+from lab.base.costs import in_words
 from lab.base.errors import LabError
 from lab.base.text import code, fenced, inline, one_line, paragraphs, printable
 from lab.measures.value import Value
@@ -60,8 +61,9 @@ def write_summary(
     folder: Path | str,
     warnings: Sequence[str] = (),
     notes: Sequence[str] = (),
+    costs: Mapping[str, float] | None = None,
 ) -> dict[str, Path]:
-    """Write summary.md and summary.json into `folder`; returns both by name.
+    """Write summary.md and summary.json into `folder`, with `costs` (`lab.base.costs`) if told; returns both by name.
 
     files: the other files of the run, by name; the page shows the pictures among them. warnings: sentences that a
     reader must know, besides those that follow from the recording. notes: sentences of less weight.
@@ -70,8 +72,9 @@ def write_summary(
     folder = Path(folder)
     warnings = [*warnings, *_cautions(recording)]
     links = {name: Path(os.path.relpath(path, folder)).as_posix() for name, path in files.items()}
-    page = "\n".join(_page(recording, values, links, warnings, notes))
+    page = "\n".join(_page(recording, values, links, warnings, notes, costs))
     data = _data(recording, values, links, warnings) | {"notes": list(notes)}
+    data["cost"] |= {"seconds": dict(costs)} if costs else {}
     data = json.dumps(data, indent=2, allow_nan=False)
     written = {"summary": folder / "summary.md", "summary_json": folder / "summary.json"}
     try:
@@ -87,6 +90,7 @@ def terminal_summary(
     values: Mapping[str, Value],
     files: Mapping[str, Path],
     warnings: Sequence[str] = (),
+    costs: Mapping[str, float] | None = None,
 ) -> str:
     """The summary as plain text of a few lines: the telling numbers, cost, files, warnings."""
     told = headlines(values, TOLD)
@@ -98,7 +102,7 @@ def terminal_summary(
     lines += _aligned(rows)
     if len(told) < len(values):
         lines.append(f"  and {_count(len(values) - len(told), 'more number')} in the summary")
-    lines += ["", f"  {_cost(recording)}"]
+    lines += ["", f"  {_cost(recording)}", *([f"  {in_words(costs)}"] if costs else [])]
     lines += _aligned(made)
     lines += [f"  warning: {one_line(text)}" for text in (*warnings, *_cautions(recording))]
     return printable("\n".join(lines))
@@ -117,6 +121,7 @@ def _page(
     links: Mapping[str, str],
     warnings: Sequence[str],
     notes: Sequence[str],
+    costs: Mapping[str, float] | None,
 ) -> Iterator[str]:
     """The lines of summary.md."""
     preset = recording.preset
@@ -140,6 +145,7 @@ def _page(
     yield from (_row(name, value) for name, value in values.items())
     yield f"\n{RULE} d is the mean grain diameter. `lab/measures` defines each measure."
     yield f"\n## What it cost\n\n{_cost(recording)}, on {inline(_machine(recording))}."
+    yield f"\n{in_words(costs)}." if costs else ""
     yield "\n## Files\n"
     yield from (f"- [{name.replace('_', ' ')}]({link})" for name, link in links.items())
     yield f"\n## The preset\n\n{fenced(recording.given, 'toml')}\n"

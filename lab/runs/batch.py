@@ -120,8 +120,9 @@ def run_batch(
     """
     with ExitStack() as stack:
         together = Batch(runs, home, progress, stack)
-        together.start(kept)
-        with Interrupt() as interrupt:
+        with progress.costs.of("settle"):
+            together.start(kept)
+        with Interrupt() as interrupt, progress.costs.of("run"):
             together.run(interrupt)
     remove_checkpoint(home)
     return together.stopped

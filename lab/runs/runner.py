@@ -58,7 +58,8 @@ def run_preset(
     loaded = load(name, overrides)
     folder = Path(out) if out is not None else free_folder(RENDERS / loaded.name)
     with Progress(quiet) as progress, hint(folder):
-        run = prepare(loaded, folder)
+        with progress.costs.of("settle"):
+            run = prepare(loaded, folder)
         with only_one(folder):
             run.make_recording()
             return _complete(run, None, progress, video, plots)
@@ -79,13 +80,14 @@ def resume_run(folder: Path | str, *, video: bool = True, plots: bool = True, qu
     with Progress(quiet) as progress, hint(folder), only_one(folder):
         if complete:
             remove_checkpoint(folder)
-            return report(folder, progress, video=video, plots=plots)
+            return report(folder, progress, video=video, plots=plots, costs=True)
         kept = read_checkpoint(folder)
         if kept is None and rows:
             raise LabError(f"{folder} has no checkpoint to resume from: start the run again, in another folder.")
         if changed:
             progress.warn("The run was begun with other versions of the lab or its libraries than it continues with.")
-        run = prepare(loaded, folder)
+        with progress.costs.of("settle"):
+            run = prepare(loaded, folder)
         check_belongs(run)
         return _complete(run, kept, progress, video, plots)
 
@@ -99,19 +101,22 @@ def recorded_preset(recording: Recording) -> LoadedPreset:
     return LoadedPreset(recording.name, recording.given, resolved)
 
 
-def report(folder: Path, progress: Progress, *, video: bool, plots: bool = True) -> Result:
-    """Measure, plot and film the recording, and write the summary."""
+def report(folder: Path, progress: Progress, *, video: bool, plots: bool = True, costs: bool = False) -> Result:
+    """Measure, plot and film the recording, and write the summary; with the `costs` if all were of this run."""
     with open_recording(folder) as recording:
-        measures = measure_all(recording)
         files = {"recording": recording.path}
-        if plots:
-            files |= write_plots(recording, measures, folder)
+        with progress.costs.of("plots"):
+            measures = measure_all(recording)
+            if plots:
+                files |= write_plots(recording, measures, folder)
         if video:
-            files["video"] = _film(folder, progress)
+            with progress.costs.of("video"):
+                files["video"] = _film(folder, progress)
         if recording.preset["record"]["xdmf"]:
             files["xdmf"] = write_xdmf(recording)
-        write_summary(recording, measures, files, folder, progress.warnings, progress.notes)
-        return Result(folder, measures, terminal_summary(recording, measures, files, progress.warnings))
+        spent = progress.costs.told() if costs else None
+        write_summary(recording, measures, files, folder, progress.warnings, progress.notes, spent)
+        return Result(folder, measures, terminal_summary(recording, measures, files, progress.warnings, spent))
 
 
 def reported(folder: Path, status: str) -> bool:
@@ -143,9 +148,9 @@ def _complete(run: Run, kept: Checkpoint | None, progress: Progress, video: bool
     try:
         stopped = run_batch([run], run.folder, progress, kept)
     except KeyboardInterrupt:
-        report(run.folder, progress, video=False, plots=plots)
+        report(run.folder, progress, video=False, plots=plots, costs=True)
         raise
-    result = report(run.folder, progress, video=video and not stopped, plots=plots)
+    result = report(run.folder, progress, video=video and not stopped, plots=plots, costs=True)
     for error in stopped.values():
         raise error
     return result

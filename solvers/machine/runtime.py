@@ -15,7 +15,7 @@ from weakref import WeakSet
 
 import taichi as ti
 
-from solvers.machine import address_space, kernel_cache, memory, sources
+from solvers.machine import address_space, compiling, kernel_cache, memory, sources
 from solvers.machine.errors import Unavailable
 
 ARCHES = ("auto", "cpu", "cuda", "vulkan")
@@ -37,6 +37,7 @@ PRECISIONS = {
 
 
 sources.remember()
+compiling.watch()
 
 _most_cores = 2**31
 _running: tuple | None = None

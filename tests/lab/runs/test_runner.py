@@ -41,6 +41,17 @@ def test_a_run_leaves_recording_plots_video_and_summary(result):
     assert data["measures"]["final_shift_y"]["value"] == pytest.approx(result.measures["final_shift_y"].value)
 
 
+def test_the_summary_says_what_the_time_went_into(result):
+    """Compiling happens within settling and running, but is told on its own; the recording times the run by itself."""
+    data = json.loads((result.folder / "summary.json").read_text())
+    seconds = data["cost"]["seconds"]
+    parts = [seconds[part] for part in ("import", "compile", "settle", "run", "plots", "video")]
+    assert all(part >= 0.0 for part in parts) and seconds["rest"] >= 0.0
+    assert sum(parts) + seconds["rest"] == pytest.approx(seconds["whole"], abs=0.01)
+    assert seconds["compile"] > 0.0 and data["cost"]["wall_s"] <= seconds["run"] + seconds["compile"]
+    assert f"import {seconds['import']:.1f} s, compile" in (result.folder / "summary.md").read_text()
+
+
 def test_samples_and_frames_have_their_times(result):
     series, frames = result.recording.series, result.recording.frames
     assert np.allclose(np.diff(series["time"]), 0.01, rtol=1e-9)
