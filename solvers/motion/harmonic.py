@@ -67,7 +67,14 @@ class Harmonic:
 
 @dataclass(frozen=True)
 class Sway(Harmonic):
-    """Harmonic sideways motion of the tank."""
+    """y = D(t/T) A sin(2π f t + ε) (Spandonidis 2016, appendix F): harmonic sideways motion of the tank.
+
+    D is the soft start (`soft_start`) of the length T, A the `amplitude`, f the `frequency`, ε the `phase`.
+
+    Limits: none; the motion is prescribed, and the cargo does not act back on it.
+
+    Units: y and A m, f Hz, ε rad, t and T s.
+    """
 
     amplitude: Annotated[float, Unit("m"), Interval(gt=0)]
     frequency: Annotated[float, Unit("Hz"), Interval(gt=0)]
@@ -78,7 +85,14 @@ class Sway(Harmonic):
 
 @dataclass(frozen=True)
 class Heave(Harmonic):
-    """Harmonic vertical motion of the tank."""
+    """z = D(t/T) A sin(2π f t + ε) (Spandonidis 2016, appendix F): harmonic vertical motion of the tank.
+
+    D is the soft start (`soft_start`) of the length T, A the `amplitude`, f the `frequency`, ε the `phase`.
+
+    Limits: none; the motion is prescribed, and the cargo does not act back on it.
+
+    Units: z and A m, f Hz, ε rad, t and T s.
+    """
 
     amplitude: Annotated[float, Unit("m"), Interval(gt=0)]
     frequency: Annotated[float, Unit("Hz"), Interval(gt=0)]
@@ -89,7 +103,14 @@ class Heave(Harmonic):
 
 @dataclass(frozen=True)
 class Roll(Harmonic):
-    """Harmonic turning of the tank about a fixed point."""
+    """φ = D(t/T) A sin(2π f t + ε) (Spandonidis 2016, appendix F): harmonic turning of the tank about a fixed point.
+
+    D is the soft start (`soft_start`) of the length T, A the `amplitude`, f the `frequency`, ε the `phase`.
+
+    Limits: none; the motion is prescribed, and the cargo does not act back on it.
+
+    Units: φ and A rad, f Hz, ε rad, t and T s.
+    """
 
     amplitude: Annotated[float, Unit("rad"), Interval(gt=0)]
     frequency: Annotated[float, Unit("Hz"), Interval(gt=0)]

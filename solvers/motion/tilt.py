@@ -33,10 +33,15 @@ def rate_programme(table: ti.template(), w, first, t):
 
 @dataclass(frozen=True)
 class Tilt:
-    """Slow turning of the tank about a fixed point.
+    """φ = ∫ rate dt: slow turning of the tank about a fixed point.
 
-    The rate rises and falls linearly over the time `ease`, so that the angular acceleration stays finite. A negative
-    angle tilts to starboard. With `reverse` the tank turns back to upright after the hold, at the same rate.
+    Source: none is needed, the programme of the rate is the user's. The rate rises and falls linearly over the time
+    `ease`, so that the angular acceleration stays finite. A negative angle tilts to starboard. With `reverse` the tank
+    turns back to upright after the hold, at the same rate.
+
+    Limits: a tilt too short to reach its rate turns at a lower one; at angles at which a bed slides the rate matters.
+
+    Units: φ rad, rate rad/s, t s.
     """
 
     rate: Annotated[float, Unit("rad/s"), Interval(gt=0)]

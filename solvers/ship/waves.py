@@ -91,7 +91,7 @@ def pierson_moskowitz(height: float, frequency: float) -> Callable[[np.ndarray],
 def jonswap(height: float, frequency: float, peakedness: float = 3.3) -> Callable[[np.ndarray], np.ndarray]:
     """Spectrum S(ω) (m² s) of a growing sea (Hasselmann et al. 1973), ∫S dω = H_s²/16.
 
-    The Pierson–Moskowitz spectrum times γ^exp(−(ω/ω_p − 1)²/2σ²), σ = 0.07 below the peak and 0.09 above, normalised.
+    The Pierson–Moskowitz spectrum times γ^(exp(−(ω/ω_p − 1)²/2σ²)), σ = 0.07 below the peak and 0.09 above, normalised.
     """
     from scipy.integrate import quad
 

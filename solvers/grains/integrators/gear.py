@@ -12,12 +12,17 @@ DERIVATIVES = 4  # kept beyond position and velocity
 
 @ti.data_oriented
 class Gear:
-    """Gear's scheme. Between steps the arrays hold the prediction, at which forces are computed for the correction.
+    """q_k ← q_k + C_k (r̈ Δt²/2 − q_2), q_k = (Δt^k/k!) d^k r/dt^k (Gear 1971; Spandonidis 2016, appendix B).
 
-    The source writes Δr̈ Δt²/2 for the correction (its eq. B.4), which is Δq_2 here. The first step only sets the
-    acceleration; higher derivatives start at zero. Fifth order for smooth forces, which a contact that begins or ends
-    within a step is not. Stable for ω Δt < 0.47 with a spring and γ Δt/m < 0.164 with a damper (spectral radius of
-    the step), where Verlet with predicted velocities reaches 2 and 1.
+    Between steps the arrays hold the prediction, at which forces are computed for the correction. The source writes Δr̈
+    Δt²/2 for the correction (its eq. B.4), which is Δq_2 here. The first step only sets the acceleration; higher
+    derivatives start at zero.
+
+    Limits: fifth order for smooth forces, which a contact that begins or ends within a step is not. Stable for
+    ω Δt < 0.47 with a spring and γ Δt/m < 0.164 with a damper (spectral radius of the step), where Verlet with
+    predicted velocities reaches 2 and 1.
+
+    Units: r and all q_k m or rad, r̈ m/s² or rad/s², Δt s, C_k pure numbers.
     """
 
     extra, reach, damping = DERIVATIVES, 0.25, 0.15

@@ -7,10 +7,14 @@ from solvers.space.axes import dot
 
 @ti.data_oriented
 class SymplecticEuler:
-    """Kick by a whole step, drift with the new velocity (Hairer, Lubich and Wanner 2006, I.1.9). First order.
+    """v_(n+1) = v_n + Δt a_n, r_(n+1) = r_n + Δt v_(n+1) (Hairer, Lubich and Wanner 2006, I.1.9).
 
-    The losses of a contact are of first order in the step, too: at the derived step a restitution of 0.02 is off by
-    1.4 %, one of 0.4 by 0.5 %, and one of 0.8 or more by at most 0.1 %.
+    Kick by a whole step, drift with the new velocity.
+
+    Limits: first order. The losses of a contact are of first order in the step, too: at the derived step a restitution
+    of 0.02 is off by 1.4 %, one of 0.4 by 0.5 %, and one of 0.8 or more by at most 0.1 %.
+
+    Units: r m, v m/s, a m/s², Δt s.
     """
 
     extra, reach, damping = 0, 1.0, 1.0

@@ -7,10 +7,15 @@ from solvers.space.axes import dot
 
 @ti.data_oriented
 class Verlet:
-    """Kick, then drift, with velocities half a step behind the positions (Hairer, Lubich and Wanner 2003, eq. 1.5).
+    """v_(n+½) = v_(n−½) + Δt a_n, r_(n+1) = r_n + Δt v_(n+½) (Hairer, Lubich and Wanner 2003, eq. 1.5).
 
-    The first kick is half a step; where the step changes, the kick is the mean of both steps. Second order. The forces
-    use a velocity at the time of the positions, predicted with the last acceleration.
+    Kick, then drift, with velocities half a step behind the positions. The first kick is half a step; where the step
+    changes, the kick is the mean of both steps. Second order. The forces use a velocity at the time of the positions,
+    predicted with the last acceleration.
+
+    Limits: stable for ω Δt < 2 with a spring and γ Δt/m < 1 with a damper.
+
+    Units: r m, v m/s, a m/s², Δt s.
     """
 
     extra, reach, damping = 0, 1.0, 1.0

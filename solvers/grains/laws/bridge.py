@@ -25,6 +25,10 @@ class Bridge(Capillary):
     radius on a wall. Their eq. 12 holds for small bridges, V < 1e-3 R³ within some per cent. The bridge forms on
     contact with its full volume and breaks at s = (1 + θ/2) V^(1/3) (Lian, Thornton and Adams 1993). Viscous forces are
     left out.
+
+    Limits: small bridges that do not touch each other, slow rupture; the volume does not move from bridge to bridge.
+
+    Units: f₀ N, γ N/m, θ rad, R, s m, V m³, x a pure number.
     """
 
     constants = ("bridge_pull", "bridge_range", "bridge_scale")

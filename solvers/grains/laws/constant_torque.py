@@ -17,6 +17,10 @@ class ConstantTorque:
     At a wall R_eff is the grain's radius, so a sphere rolls down slopes steeper than μ_r. The ramp is a damper
     c = μ_r R_eff F_n/(1e-3 rad/s), too stiff for any step, so it is split as in `splitting.lagging`. Under a torque M
     below the cap the grain creeps: it turns at M/c.
+
+    Limits: a grain at rest is held by creep alone: on a slope below μ_r it turns slowly.
+
+    Units: M N m, R_eff m, F_n N, ω rad/s, c N m s, μ_r a pure number.
     """
 
     constants = ("rolling_radius", "rolling_limit")

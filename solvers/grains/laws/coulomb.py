@@ -16,6 +16,10 @@ class Coulomb:
 
     The ramp is a damper γ = μ F_n/(1e-6 m/s), too stiff for any step, so it is split as in `splitting.lagging`. Under a
     load F below the Coulomb cap the contact creeps at F/γ.
+
+    Limits: friction without a spring: in a bed at rest the shear forces are those that the ramp happens to give.
+
+    Units: F_t and F_n N, u_s m/s, γ N s/m, μ a pure number.
     """
 
     constants = ("limit",)

@@ -18,6 +18,11 @@ class CundallStrack:
     on the overlap, the spring's energy is S²/(2 k_t) and a changing overlap creates none; at the Coulomb cap S is cut
     to the cap and the contact slides. γ_t = A k_t, with the dissipative time A of the material. S is of second order in
     the step (`solvers.grains.laws.history`); in the first step of a contact it counts from first touch.
+
+    Limits: a spring that does not depend on the load; under light loads it is stiffer than Mindlin's, under heavy ones
+    softer. No micro-slip.
+
+    Units: F_t, F_n and S N, u_s m/s, k_t and k_l N/m, γ_t N s/m, A s, μ a pure number.
     """
 
     constants = ("shear_spring", "shear_dashpot")

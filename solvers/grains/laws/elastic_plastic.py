@@ -20,6 +20,10 @@ class ElasticPlastic:
     material's `rolling_damping` and I_r = (7/5) m_eff R_eff², the inertia about the contact of a sphere on a wall; for
     equal grains the actual one is four times that. S is summed by whole steps and leads by half a step, which acts as a
     damper k_r Δt/2 (`solvers.grains.laws.history`); the dashpot is reduced by as much.
+
+    Limits: k_r is one of many in use; it sets how far a held grain rocks, hardly where a bed slides.
+
+    Units: M and S N m, ω rad/s, k_r N m, C_r N m s, I_r kg m², R_eff m, F_n N, μ_r and η_r pure numbers.
     """
 
     constants = ("rolling_radius", "rolling_spring", "rolling_dashpot")

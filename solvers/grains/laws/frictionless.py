@@ -7,7 +7,14 @@ from solvers.grains.materials import Interface
 
 @ti.data_oriented
 class Frictionless:
-    """F_t = 0: perfectly smooth grains, whose spins never change."""
+    """F_t = 0: perfectly smooth grains, whose spins never change.
+
+    Source: none is needed, nothing is modelled.
+
+    Limits: for comparison with closed forms; a bed without friction flows as a fluid.
+
+    Units: F_t N.
+    """
 
     constants = ()
     memory = ()

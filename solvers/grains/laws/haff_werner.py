@@ -14,6 +14,10 @@ class HaffWerner:
     γ_s = 20 N s/m stops the slip of a 3 mm grain within 1e-7 s, far below any practical step. So the damper is split as
     in `splitting.lagging`, with the mass m_t = (2/7) m_eff. Under a lasting load the slip is F_t/γ_s, the creep of the
     law itself, whatever the step.
+
+    Limits: a bed at rest on a slope creeps, since only slip makes a shear force; the history laws hold it still.
+
+    Units: F_t and F_n N, u_s m/s, γ_s N s/m, m_eff kg, μ a pure number.
     """
 
     constants = ("limit",)

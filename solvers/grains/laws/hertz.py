@@ -17,6 +17,11 @@ class Hertz:
     """F_n = k ξ^(3/2), k = (4/3) E* √R_eff (Spandonidis 2016, table 4.1, second row).
 
     The material's restitution and dissipative time are ignored: every collision keeps its energy.
+
+    Limits: small overlaps, ξ ≪ R, of smooth spheres that do not yield, and impacts slow beside waves in the grains
+    (Johnson 1985, chapter 11). Only friction takes energy from a bed.
+
+    Units: F_n N, ξ m, k N/m^(3/2), E* Pa, R_eff m.
     """
 
     constants = ()

@@ -20,6 +20,10 @@ class HertzDashpot(Hertz):
     grains of any size. In units of the elastic collision the motion is ξ̈ = −ξ^(3/2) − g ξ̇, and g falls as v^(−1/5).
     So slower collisions lose more, contrary to experiment (Schäfer, Dippel and Wolf 1996), and the restitution is right
     at that one speed only.
+
+    Limits: those of Hertz's law, and impacts near the restitution speed.
+
+    Units: F_n N, ξ m, ξ̇ m/s, k N/m^(3/2), γ_n N s/m, m_eff kg, v m/s, g a pure number.
     """
 
     constants = ("dashpot",)

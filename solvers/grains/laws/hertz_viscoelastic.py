@@ -27,6 +27,11 @@ class HertzViscoelastic(Hertz):
     For equal materials k = 2Y√R_eff / (3(1 − ν²)), as Spandonidis (2016), eq. 4.4–4.5, writes it. A is the dissipative
     time of the material (Brilliantov et al. 1996). Dry grains do not attract: the force is cut at zero, so a contact
     ends when the force vanishes, not when the overlap does (Schwager and Pöschel 2008).
+
+    Limits: small overlaps, ξ ≪ R, of spheres that do not yield, and impacts slow beside waves in the grains (Johnson
+    1985, chapter 11). The restitution falls with speed, as that of elastic grains with internal friction does.
+
+    Units: F_n N, ξ m, ξ̇ m/s, k N/m^(3/2), γ_n N s/m^(3/2), A s, Y and E* Pa, R_eff m.
     """
 
     def coefficients(self, between: Interface) -> list[float]:

@@ -32,6 +32,11 @@ class Humid(Capillary):
     So the humidity changes only the range, which is a few nanometres at most. As an extension of the source,
     `asperities` of height h (m) keep the surfaces apart: touching grains are then at s = h on the line, with a force
     f₀ (1 − h/r_K) and a range of r_K − h; there is none in air so dry that r_K < h.
+
+    Limits: air below saturation, grains of mm with surfaces as smooth as the asperities say; no water between them but
+    the condensed rings. The pull does not depend on the humidity.
+
+    Units: f₀ N, γ_s N/m, θ rad, R_eff, s, h and r_K m, V_m m³/mol, T K, H a pure number.
     """
 
     constants = ("bridge_pull", "bridge_range")

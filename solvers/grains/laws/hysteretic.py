@@ -13,12 +13,17 @@ STEPS = 36.0  # per half period of the stiffer, unloading spring; restitution 0.
 
 @ti.data_oriented
 class Hysteretic:
-    """F_n = k₁ ξ in first loading, k₂ (ξ − ξ₀) in unloading and reloading, never less than zero.
+    """F_n = k₁ ξ in first loading, k₂ (ξ − ξ₀) in unloading and reloading (Walton and Braun 1986).
 
-    Walton and Braun (1986); Spandonidis (2016), table 4.1, fifth row. k₁/k₂ = e², so the restitution is e at every
-    speed and size; k₁ is such that at the restitution speed the largest overlap equals that of elastic Hertz contact.
-    The memory is the plastic overlap ξ₀ = (1 − e²) ξ_max, so that F_n = k₂ (ξ − ξ₀) in loading and unloading; it is
-    reset when the grains separate. A small vibration about a load stays on the k₂ line without loss.
+    Spandonidis (2016), table 4.1, fifth row. The force is never less than zero. k₁/k₂ = e², so the restitution is e at
+    every speed and size; k₁ is such that at the restitution speed the largest overlap equals that of elastic Hertz
+    contact. The memory is the plastic overlap ξ₀ = (1 − e²) ξ_max, so that F_n = k₂ (ξ − ξ₀) in loading and unloading;
+    it is reset when the grains separate. A small vibration about a load stays on the k₂ line without loss.
+
+    Limits: grains that yield at every impact, by a share that does not depend on its speed; the plastic overlap is
+    forgotten as soon as two grains part, so no flat spot stays.
+
+    Units: F_n N, ξ and ξ₀ m, k₁ and k₂ N/m, e a pure number.
     """
 
     constants = ("unloading",)

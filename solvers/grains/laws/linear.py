@@ -21,6 +21,11 @@ class Linear:
     k_l is such that at the restitution speed the largest overlap equals that of elastic Hertz contact. γ_n =
     2 ζ √(k_l m_eff), with ζ from the restitution of a contact that ends when its force vanishes (Schwager and Pöschel
     2007). The restitution is the same at every speed and size, the duration at every speed.
+
+    Limits: real grains stiffen as they are pressed; a bed under a load other than that of an impact at the restitution
+    speed is too soft or too stiff. The restitution does not depend on the speed, unlike that of real grains.
+
+    Units: F_n N, ξ m, ξ̇ m/s, k_l N/m, γ_n N s/m, m_eff kg, ζ a pure number.
     """
 
     constants = ("spring", "dashpot")

@@ -21,6 +21,11 @@ class Mindlin:
 
     S is of second order in the step (`solvers.grains.laws.history`). To keep this order at first touch, where k_t ~ √ξ
     begins, a step uses the mean of √ξ over its length, or since first touch.
+
+    Limits: no micro-slip: the contact sticks as a whole until all of it slides (Mindlin and Deresiewicz 1953 have rings
+    that slide before). The direction of slip is that of one tangent, in a plane.
+
+    Units: F_t, F_n and S N, u_s m/s, k_t N/m, G* Pa, R_eff and ξ m, A s, μ a pure number.
     """
 
     constants = ("shear_limit", "shear_stiffer")

@@ -7,7 +7,14 @@ from solvers.grains.materials import Interface
 
 @ti.data_oriented
 class NoCohesion:
-    """No cohesion: nothing of it is compiled or stored."""
+    """f = 0: dry grains without cohesion; nothing of it is compiled or stored.
+
+    Source: none is needed, nothing is modelled.
+
+    Limits: dry grains of a tenth of a millimetre and more; finer ones stick by van der Waals' forces.
+
+    Units: f N.
+    """
 
     constants = ()
     memory = ()

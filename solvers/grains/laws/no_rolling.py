@@ -7,7 +7,14 @@ from solvers.grains.materials import Interface
 
 @ti.data_oriented
 class NoRolling:
-    """M = 0: spheres roll freely."""
+    """M = 0: spheres roll freely.
+
+    Source: none is needed, nothing is modelled.
+
+    Limits: a single sphere on a plane rolls on for ever; real grains stop.
+
+    Units: M N m.
+    """
 
     constants = ()
     memory = ()

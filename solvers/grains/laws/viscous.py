@@ -13,6 +13,10 @@ class Viscous(HaffWerner):
     """F_t = −γ_s u_s (Spandonidis 2016, table 4.2, second row): Haff and Werner's law without the Coulomb cap.
 
     Without the cap even a grazing contact stops all slip if γ_s is high, unlike real grains.
+
+    Limits: for comparison with other codes and with closed forms; no real friction is without a cap.
+
+    Units: F_t N, u_s m/s, γ_s N s/m.
     """
 
     def coefficients(self, between: Interface) -> list[float]:

@@ -12,7 +12,7 @@ from solvers.time.schedules.per_world import PerWorld
 
 SCHEDULES = {"per-world": PerWorld, "per-band": PerBand, "per-grain": PerGrain}
 
-# Grains per world from which bands on two threads are faster than one thread (measured, README "Speed").
+# Grains per world from which bands on two threads are faster than one thread (measured).
 WORTH_BANDS = 2000
 
 
