@@ -1,5 +1,5 @@
 # Two commands do everything on a fresh machine: `make demo` and `make test`.
-.PHONY: demo test same clean
+.PHONY: demo test same docs docs-links clean
 
 VENV := .venv
 BIN := $(VENV)/bin
@@ -23,6 +23,14 @@ BASE ?= HEAD
 same: $(VENV)/installed-test
 	$(BIN)/python -m tests.same $(BASE) $(SCENES)
 
+# The manual: open docs/_build/html/index.html. Any warning ends it; `make test` builds it, too, where Sphinx is installed.
+docs: $(VENV)/installed-docs
+	$(BIN)/sphinx-build --fail-on-warning --keep-going --quiet --builder html docs docs/_build/html
+
+# Whether the addresses that the manual names elsewhere are there; this one asks the network
+docs-links: $(VENV)/installed-docs
+	$(BIN)/sphinx-build --quiet --builder linkcheck docs docs/_build/links
+
 $(VENV)/bin/pip:
 	@test -n "$(PYTHON)" || { echo "Python 3.11, 3.12 or 3.13 is needed (Taichi has no wheels for others): install one, or name it: make demo PYTHON=/path/to/python3.12"; exit 1; }
 	@$(PYTHON) -m venv $(VENV) || { rm -rf $(VENV); echo "Python cannot make a virtual environment: sudo apt install python3-venv"; exit 1; }
@@ -35,5 +43,9 @@ $(VENV)/installed-test: pyproject.toml | $(VENV)/bin/pip
 	$(BIN)/pip install --quiet --disable-pip-version-check --editable '.[test]'
 	@touch $@ $(VENV)/installed
 
+$(VENV)/installed-docs: pyproject.toml | $(VENV)/bin/pip
+	$(BIN)/pip install --quiet --disable-pip-version-check --editable '.[docs]'
+	@touch $@ $(VENV)/installed
+
 clean:
-	rm -rf $(VENV)
+	rm -rf $(VENV) docs/_build

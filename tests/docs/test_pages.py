@@ -1,0 +1,69 @@
+"""The pages: built without a warning and without a network, and a README that says what the kept pages say."""
+
+import importlib.util
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from lab.preset.find import load
+
+ROOT = Path(__file__).parents[2]
+TOOLS = "sphinx", "furo", "myst_parser"
+MISSING = [name for name in TOOLS if importlib.util.find_spec(name) is None]
+ELSEWHERE = re.compile(r"""<(?:script|link|img)[^>]*(?:src|href)="((?:https?:)?//[^"]+)""")
+MOST_LINES = 150
+
+
+@pytest.fixture(scope="module")
+def built(tmp_path_factory):
+    """The manual as HTML, made anew."""
+    if MISSING:
+        pytest.skip(f"{', '.join(MISSING)} not installed: pip install -e '.[docs]'")
+    out = tmp_path_factory.mktemp("html")
+    command = sys.executable, "-m", "sphinx", "-W", "--keep-going", "-q", "-b", "html", ROOT / "docs", out
+    made = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert made.returncode == 0, made.stderr
+    return out
+
+
+def test_the_manual_builds_without_a_warning_and_needs_no_network(built):
+    pages = {path: path.read_text(encoding="utf-8") for path in built.rglob("*.html")}
+    assert len(pages) > 20
+    assert [found for text in pages.values() for found in ELSEWHERE.findall(text)] == []
+    assert [name for name, text in pages.items() if re.search(r"\{\{ \w+ ", text)] == []  # all was put in
+
+
+def test_kept_results_are_shown_with_their_pictures(built):
+    page = (built / "results" / "verify.html").read_text(encoding="utf-8")
+    shown = re.findall(r'<img[^>]*src="([^"]+)"', page)
+    assert len(shown) > 5 and all((built / "results" / one).resolve().exists() for one in shown)
+    assert "<math" in (built / "physics" / "contacts.html").read_text(encoding="utf-8")
+
+
+def test_the_first_preset_is_one_and_its_result_has_what_is_read(tmp_path):
+    """Of getting started: the preset resolves, and the lines of Python name a measure that there is."""
+    text = (ROOT / "docs" / "getting-started.md").read_text(encoding="utf-8")
+    (tmp_path / "peas.toml").write_text(re.search(r"```toml\n(.*?)```", text, re.DOTALL)[1], encoding="utf-8")
+    preset = load(tmp_path / "peas.toml").resolved
+    assert preset.motion.sway.amplitude == 0.01 and preset.run.repeats == 2
+    asked = re.findall(r'result\.measures\["(\w+)"\]', text)
+    sources = "\n".join(path.read_text(encoding="utf-8") for path in (ROOT / "lab" / "measures").glob("*.py"))
+    assert asked and all(f'"{name}"' in sources for name in asked)
+
+
+def test_readme_is_short():
+    assert len((ROOT / "README.md").read_text(encoding="utf-8").splitlines()) <= MOST_LINES
+
+
+def test_a_number_in_bold_on_readme_is_on_the_page_that_its_row_links_to():
+    """Results are made anew from time to time; README must not lag behind."""
+    rows = [row for row in (ROOT / "README.md").read_text(encoding="utf-8").splitlines() if row.startswith("| **")]
+    assert len(rows) >= 5
+    for row in rows:
+        linked = [ROOT / link for link in re.findall(r"\]\((renders/[^)]+\.md)\)", row)]
+        text = "\n".join(page.read_text(encoding="utf-8") for page in linked)
+        missing = [bold for bold in re.findall(r"\*\*(.+?)\*\*", row) if bold not in text]
+        assert linked and missing == [], f"{missing} not in {linked}"
