@@ -74,6 +74,7 @@ def test_a_law_a_motion_a_quantity_a_measure_and_a_preset(tree):
     assert found["overlap at rest"] == pytest.approx(overlap_at_rest(), rel=0.02)
     assert found["mass"] == pytest.approx(MASS, rel=1e-9)
     assert found["mass left"] == pytest.approx(1e3 * MASS, rel=1e-9)
+    assert found["figures"] == 1
 
 
 def test_a_matter(tree):
