@@ -190,7 +190,7 @@ def test_a_continued_recording_has_all_complete_rows_and_overwrites_repeated_one
 
 def test_a_recording_shorter_than_its_checkpoint_is_not_continued(tmp_path):
     recorder(tmp_path).close()
-    with pytest.raises(LabError, match="holds less than its checkpoint"):
+    with pytest.raises(LabError, match="has fewer rows than its checkpoint"):
         Recorder(tmp_path, samples=1)
 
 
@@ -314,7 +314,7 @@ def test_runs_that_cannot_be_resumed_are_reported(tmp_path):
     (folder / "checkpoint.npz").write_text("hello")
     with pytest.raises(LabError, match=r"checkpoint\.npz is damaged"):
         resume_run(folder, quiet=True)
-    with only_one(folder), pytest.raises(LabError, match="in use by a run that still goes on"):
+    with only_one(folder), pytest.raises(LabError, match="in use by another run"):
         resume_run(folder, quiet=True)
 
 

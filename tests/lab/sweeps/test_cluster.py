@@ -252,7 +252,7 @@ class Unreadable:
 def test_a_worker_with_other_sources_of_the_same_version_is_refused(scheduler, tmp_path, monkeypatch):
     terms = cluster._worker_settings
     monkeypatch.setattr(cluster, "_worker_settings", lambda preset: replace(terms(preset), sources="others"))
-    with pytest.raises(LabError, match="the lab of a worker has other source files than the one here"):
+    with pytest.raises(LabError, match="the same version but other source files"):
         run_sweep("tilting/quick", AXES, SMALL, tmp_path / "there", video=False, quiet=True, cluster=scheduler)
 
 
