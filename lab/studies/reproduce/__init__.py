@@ -1,7 +1,7 @@
 """cargolab reproduce: run the experiments of the source and compare them with what the source states.
 
-An experiment is an entry of the EXPERIMENTS list of a module of this package; REPORTS lists the modules. Its runs are
-kept in a folder of their own and are not repeated; a run that was cut short is continued.
+What the source claims is in the folder `claims`. The runs of an experiment are kept in a folder of their own and are
+not repeated; a run that was cut short is continued.
 """
 
 from collections.abc import Mapping, Sequence
@@ -11,37 +11,13 @@ from pathlib import Path
 from lab.base.errors import LabError
 from lab.base.lock import only_one
 from lab.base.progress import Progress
-from lab.studies.reproduce import (
-    capsizes,
-    damping,
-    heaps,
-    humidity,
-    laws,
-    low_sides,
-    outlines,
-    section,
-    shaking,
-    ship,
-    tilting,
-    validation,
-)
+from lab.studies.reproduce.claims import experiments
 from lab.studies.reproduce.experiment import Experiment
 from lab.studies.reproduce.findings import read_findings
 from lab.studies.reproduce.report import kept_file, write_report
 from lab.studies.reproduce.runs import Batch, errands
 from lab.studies.reproduce.workers import carry_out_all
 from lab.sweeps.cluster import fetch
-
-REPORTS = {
-    "granular": (validation, tilting, humidity, laws, shaking, heaps),
-    "shapes": (outlines,),
-    "ship": (ship, section, damping, capsizes, low_sides),
-}
-
-
-def experiments(report: str) -> dict[str, Experiment]:
-    """The experiments of a report by name."""
-    return {one.name: one for module in REPORTS[report] for one in module.EXPERIMENTS}
 
 
 def reproduce(

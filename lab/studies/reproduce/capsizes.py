@@ -16,12 +16,11 @@ from matplotlib.figure import Figure
 from lab.assembly.scene import vessels
 from lab.preset.find import load
 from lab.report.plots import BELOW
-from lab.studies.reproduce.curves import leading_number
 from lab.studies.reproduce.estimates import surely
-from lab.studies.reproduce.experiment import EXACT, Experiment, Row, Told, observed
-from lab.studies.reproduce.rolls import SIZE
+from lab.studies.reproduce.experiment import EXACT, Row, Told, observed
+from lab.studies.reproduce.figures import leading_number
+from lab.studies.reproduce.rolls import DIGITS, FREQUENCY, PEAK, SIZE
 from lab.studies.reproduce.runs import Outcome
-from lab.studies.reproduce.ship import DIGITS, FREQUENCY, LOST, PEAK, capsize_batches
 from lab.studies.reproduce.sliding_heap import HeapShip, box_heap, roll_with_heap, softening_lever
 from solvers.ship.hydrostatics import metacentric_height, righting_levers
 from solvers.ship.motion import RollDamping
@@ -236,26 +235,3 @@ def _figure(maps: Mapping[str, Scan]) -> Figure:
 
 
 READINGS = [Reading(softens, twice) for softens in (False, True) for twice in (False, True)]
-
-EXPERIMENTS = [
-    Experiment(
-        "barge-readings",
-        "What would capsize the barge as the source's",
-        "7.2, equations 7.1 to 7.5",
-        "frozen cargo lets the barge roll most at 4.4 rad/s, under her natural 4.9; loose cargo capsizes her in waves "
-        "of 17 mm at 4.5 rad/s and of 19 mm at 4.4 to 4.7, not in those of 15 mm.",
-        capsize_batches,
-        tell,
-        LOST,
-        ("17 mm", 0.5),
-        "Scans of eq. 7.1 without grains: the cargo is one heap that slides at once where it is steeper than 17 to 25 "
-        "deg, and she has capsized where half of these reposes or more lose her; 60 s from rest, waves at once, our "
-        "damping, and the source's 0.78 Hz with the cargo loose but still. The picture is of a run of another "
-        "experiment. A box's lever stiffens, and with it nothing capsizes. The softening lever, the cubic "
-        "GM φ (1 − (φ/φ_v)²) with φ_v = 70 deg, is a guess, not a barge's: no figure of the source's came with its "
-        "text. Cargo counts twice where its weight (eq. 7.2) and the contact forces that carry it (eq. 7.5) are both "
-        "added, as they are printed; below the axis it then rights her the more while it lies still, and heels her "
-        "twice once it has slid. Both together, and neither alone, capsize her from the waves on that the source "
-        "reports, though not at all its frequencies, nor with its roll. That is no proof that it computed so.",
-    )
-]

@@ -11,12 +11,12 @@ from matplotlib.figure import Figure
 from lab.assembly.scene import vessels
 from lab.preset.find import load
 from lab.report.plots import BELOW
-from lab.studies.reproduce.curves import SIZE
 from lab.studies.reproduce.estimates import surely
-from lab.studies.reproduce.experiment import EXACT, Experiment, Told, observed
+from lab.studies.reproduce.experiment import EXACT, Told, observed
+from lab.studies.reproduce.figures import SIZE
 from lab.studies.reproduce.fixed_axis import roll_together
+from lab.studies.reproduce.rolls import DIGITS
 from lab.studies.reproduce.runs import Outcome
-from lab.studies.reproduce.ship import DIGITS, LOST, response_batches
 from solvers.ship.motion import RollDamping, Ship
 from solvers.ship.outcome import outcome
 
@@ -163,20 +163,3 @@ def _figure(curves: Mapping[Damping, Response]) -> Figure:
     axes.set_ylim(bottom=0.0)
     figure.legend(loc=BELOW, ncols=2)
     return figure
-
-
-EXPERIMENTS = [
-    Experiment(
-        "barge-damping",
-        "Damping that the roll with frozen cargo asks for",
-        "7.2.2",
-        "no damping is named; in waves of 10 mm frozen cargo rolls by 36 deg, and in 17 and 19 mm it does not capsize.",
-        response_batches,
-        tell,
-        LOST,
-        ("10 mm", 0.5),
-        "The frozen barge by herself, from rest, 4.2 to 6.1 rad/s, for 80 s; the picture is of a run of the experiment "
-        "above. Her lever stiffens, so that her resonance leans to higher frequencies, and she falls off it before she "
-        "has come to its top: the peak hardly depends on the damping, and 36 deg are no measure of it.",
-    )
-]

@@ -10,6 +10,8 @@ from lab.report.numbers import number
 from lab.studies.reproduce.estimates import Estimate, Verdict, mean
 from lab.studies.reproduce.runs import Batch, Outcome
 
+Found = Mapping[str, Sequence[Outcome]]  # outcomes of runs by name, one for each point of a grid
+
 
 @dataclass(frozen=True)
 class Row:
@@ -42,7 +44,8 @@ class Experiment:
 
     `tell` compares the outcomes of the batches, each a list by the points of its grid. `lost` says what the quick runs
     leave out; `shown` is the batch of which a `point`, mostly the last, is pictured, at this fraction of its time;
-    `remark` explains how to read the rows, and why they differ from the source where they do.
+    `why` explains how to read the rows, and why they differ from the source where they do; `question` says what is not
+    known of that.
     """
 
     name: str
@@ -50,10 +53,11 @@ class Experiment:
     section: str
     states: str
     batches: Callable[[bool], Mapping[str, Batch]]
-    tell: Callable[[Mapping[str, Sequence[Outcome]]], Told]
+    tell: Callable[[Found], Told]
     lost: str
     shown: tuple[str, float]
-    remark: str = ""
+    why: str = ""
+    question: str = ""
     point: int = -1
 
 
@@ -67,11 +71,6 @@ class Tolerance:
     def words(self, unit: str = "") -> str:
         """For a reader."""
         return f"{self.within:.3g}{f' {unit}' if unit not in ('', '1') else ''}: {self.origin}"
-
-
-# The root of the mean squared standard deviations of 68 sets of tilted beds of the granular report, 279 degrees of
-# freedom. The source mostly shows one bed, or gives no scatter.
-ONE_BED = Tolerance(3.5, "std of one bed here, as the source gives no scatter")
 
 
 ANY = "none: any difference counts"

@@ -15,12 +15,12 @@ from lab.preset.find import load
 from lab.report.plots import BELOW, BLUE
 from lab.studies.reproduce.capsizes import CARGO, NATURAL, REPOSES, scan, swung
 from lab.studies.reproduce.capsizes import PRESET as BARGE
-from lab.studies.reproduce.curves import SIZE, leading_number
 from lab.studies.reproduce.estimates import chance, surely
-from lab.studies.reproduce.experiment import EXACT, Experiment, Told, counted, observed
-from lab.studies.reproduce.runs import Batch, Outcome
-from lab.studies.reproduce.ship import AMPLITUDE, LOST, afloat
-from lab.studies.reproduce.ship import FREQUENCY as WAVES
+from lab.studies.reproduce.experiment import EXACT, Told, counted, observed
+from lab.studies.reproduce.figures import SIZE, leading_number
+from lab.studies.reproduce.rolls import AMPLITUDE
+from lab.studies.reproduce.rolls import FREQUENCY as WAVES
+from lab.studies.reproduce.runs import Outcome
 from lab.studies.reproduce.sliding_heap import HeapShip, box_heap
 from solvers.ship.hydrostatics import buoyancy, metacentric_height, turned
 from solvers.ship.motion import RollDamping
@@ -29,16 +29,8 @@ PRESET = "ship/capsize-map"
 FREQUENCY = 4.4  # rad/s, the source's and the preset's
 SAYS = {"19 mm": "capsizes", "17 mm": "capsizes at 4.5 rad/s", "15 mm": "does not"}  # the source of its barge, loose
 CURVE = np.arange(10.0, 31.0, 1.0)  # mm
-# Of the map: waves that beds of grains meet (mm, rad/s), in the quick report fewer, and those that a heap does.
-GRID = {False: ((15, 20, 25, 30), (4.0, 4.4, 4.8, 5.2)), True: ((15, 25, 35), (4.0, 4.4, 4.8))}
+# Of the map: waves (mm, rad/s) that a heap meets.
 FINE = np.linspace(10.0, 35.0, 26), np.linspace(3.8, 5.4, 17)
-
-
-def batches(quick: bool) -> dict[str, Batch]:
-    """Several beds in waves on either side of the edge."""
-    sizes = [f"{size} mm" for size in ((19, 15) if quick else (19, 17, 15))]
-    changes = afloat(quick, **{"run.repeats": 2 if quick else 4})
-    return {"low sides": Batch(PRESET, changes, {AMPLITUDE: sizes})}
 
 
 def tell(found: Mapping[str, Sequence[Outcome]]) -> Told:
@@ -93,14 +85,6 @@ def _frozen(one: Outcome) -> str:
     """What becomes of her with her cargo frozen."""
     found = {one["frozen_flooded_at"].value: "floods", one["frozen_capsized_at"].value: "capsizes"}
     return next((f"{verb} at {when:.3g} s" for when, verb in found.items() if when is not None), "stands")
-
-
-def map_batches(quick: bool) -> dict[str, Batch]:
-    """A bed of coarse grains in each of many waves."""
-    sizes, frequencies = GRID[quick]
-    changes = afloat(True)
-    axes = {AMPLITUDE: [f"{size} mm" for size in sizes], WAVES: [f"{omega} rad/s" for omega in frequencies]}
-    return {"low sides": Batch(PRESET, changes, axes)}
 
 
 def tell_map(found: Mapping[str, Sequence[Outcome]]) -> Told:
@@ -166,38 +150,3 @@ def _figure(sizes: np.ndarray, lost: Sequence[tuple[int, int]], heap: np.ndarray
     axes.set_ylim(-0.05, 1.05)
     figure.legend(loc=BELOW, ncols=2)
     return figure
-
-
-EXPERIMENTS = [
-    Experiment(
-        "barge-low-sides",
-        "A barge with a low deck, a hatch and loose cargo",
-        "ours",
-        "its barge, with sides of 300 mm, capsizes with loose cargo in waves of 17 and 19 mm, not of 15 mm.",
-        batches,
-        tell,
-        LOST,
-        ("low sides", 1.0),
-        "The barge of ship/capsize-map, waves at once. Her deck is 30 mm above the water; a hatch of 120 mm in it "
-        "has a coaming of 50 mm, and she is lost when its edge goes under the waves; afloat in calm water it does "
-        "at a heel of 39 deg. Half the cargo of the barge above lies in a hold under the deck, where its surface "
-        "has room to lean; GM, roll period and draught are hers. Held by the axis her lever is largest near 40 deg "
-        "and vanishes near 85; every part of it is known. Frozen cargo stays and she stands, loose cargo slides and "
-        "she floods, in the waves in which the source saw its barge capsize: after one large swing the cargo stays "
-        "where it has slid, and one of the next swings puts the hatch under. Grains do so in lower waves than a "
-        "heap, which needs no time to slide and never goes past its repose.",
-        point=0,
-    ),
-    Experiment(
-        "barge-map",
-        "Which waves flood the barge with a low deck",
-        "ours, as figures 7.8 and 7.16 to 7.19",
-        "loose cargo capsizes its barge from 17 mm on, at 19 mm from 4.4 to 4.7 rad/s; frozen cargo does not.",
-        map_batches,
-        tell_map,
-        "3 by 3 waves for 4 by 4",
-        ("low sides", 1.0),
-        "One bed of grains of 10 mm in each wave, so that many waves can be had; an edge of the map is as uncertain as "
-        "one bed. Shaded is where she is lost with a heap, which is at its angle of repose at once.",
-    ),
-]

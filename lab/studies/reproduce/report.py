@@ -11,29 +11,13 @@ from lab.preset.accuracy import LEVELS
 from lab.recording import open_recording
 from lab.report.page import Page
 from lab.report.plots import STYLE
+from lab.studies.reproduce.claims import reports
 from lab.studies.reproduce.estimates import Verdict
 from lab.studies.reproduce.experiment import Experiment, Row
 from lab.studies.reproduce.findings import Finding, asked, read_findings, write_findings
 from lab.studies.reproduce.runs import Outcome, outcomes
 
 PICTURE = (640, 360)  # pixels
-TITLES = {
-    "granular": "The granular experiments of the source, reproduced",
-    "shapes": "The source's experiments with irregular grains, reproduced",
-    "ship": "The source's ships with loose cargo, reproduced",
-}
-# Limits of the full report compared with the source's own runs.
-LESS = {
-    "granular": f"""Beds are run at draft accuracy ({LEVELS["draft"].error}) and tilted at 3 or 5 deg/s where the source
-        has 0.15 to 3, often four where it has 12: within the scatter of beds neither shows (`cargolab bench
-        accuracy`).""",
-    "shapes": f"""Beds are run at draft accuracy ({LEVELS["draft"].error}); those of the tilting box are 80 mm deep for
-        110, 6 where the source has 12, and 12 of random phases for 25, tilted at 20 deg/s, at 10 if of round grains (at
-        0.3 three beds, 40 mm deep, to 12 deg) or of chickpeas (four for 24 at 0.5); heaps have 800 grains for 2500.
-        Ratios come with their standard error (s.e.) and interval.""",
-    "ship": f"""Grains are of 6 mm for the source's 3 (of 10 in the map), one bed for each wave but at the edge of
-        loss; ships are run at draft accuracy ({LEVELS["draft"].error}) for 30 s.""",
-}
 LOUD = {Verdict.AGREES: "agrees", Verdict.DIFFERS: "**differs**", Verdict.CANNOT_TELL: "cannot tell", None: ""}
 RUNS = "Each section says by which version of the lab its runs were made; times are of the machines that ran them."
 RULE = f"""A verdict is of the {100.0 * LEVEL:g} % interval of the difference: *agrees* where all of it lies within the
@@ -49,7 +33,7 @@ def write_report(
     ended: the folders of the batches of each. Beside the page are its pictures, and NAME.json with the findings.
     """
     command = f"reproduce {name}{' --quick' if quick else ''}"
-    page = Page(out, page_name(name, quick), TITLES[name], command, RUNS)
+    page = Page(out, page_name(name, quick), reports()[name].title, command, RUNS)
     kept = read_findings(kept_file(name, out, quick), experiments, quick)
     for one, folders in ended.items():
         found = {key: outcomes(folder) for key, folder in folders.items()}
@@ -110,7 +94,7 @@ def _overview(
             "The quick report: fewer and smaller beds, faster tilts, draft accuracy; each section says what is lost."
         )
     else:
-        page.say(LESS[name])
+        page.say(reports()[name].less.replace("{draft}", LEVELS["draft"].error))
     rows = []
     for one, experiment in experiments.items():
         if one not in findings:
@@ -139,8 +123,10 @@ def _section(page: Page, experiment: Experiment, finding: Finding, quick: bool) 
         ["quantity", "source", "here", "difference, interval", "tolerance, and where from", "verdict"],
         [[r.quantity, r.source, r.ours, r.apart, r.tolerance, LOUD[r.verdict]] for r in finding.rows],
     )
-    if experiment.remark:
-        page.say(experiment.remark)
+    if experiment.why:
+        page.say(experiment.why)
+    if experiment.question:
+        page.say(f"**Open question:** {experiment.question}")
     if finding.table:
         page.table(finding.table[0], finding.table[1:])
     for name, status in finding.stopped:

@@ -1,6 +1,6 @@
 """Figures of the roll of ships with loose and frozen cargo, laid out as figures 7.6 to 7.19 of Spandonidis (2016)."""
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Sequence
 
 import numpy as np
 from matplotlib import colormaps
@@ -11,9 +11,13 @@ from matplotlib.lines import Line2D
 from lab.measures.value import Value, over_worlds
 from lab.report.numbers import BARS
 from lab.report.plots import BELOW
-from lab.studies.reproduce.curves import leading_number
+from lab.studies.reproduce.experiment import Found, Tolerance
+from lab.studies.reproduce.figures import leading_number
 from lab.studies.reproduce.runs import Outcome
 
+FREQUENCY, AMPLITUDE = "waves.frequency", "waves.amplitude"
+DIGITS = Tolerance(1.0, "the source's 'approximately', to whole degrees")
+PEAK = 36.0, 4.4  # deg, rad/s: of frozen cargo in the source, in waves of 10 mm
 SIZE = (6.4, 5.2)
 # Of loose and of frozen cargo: mean amplitude, absolute maximum, when she capsized; and how they are drawn
 LOOSE = ("roll_amplitude", "largest_roll", "capsized_at")
@@ -24,24 +28,26 @@ PANELS = "amplitude of the roll\n(deg), " + BARS, "largest roll of the run\n(deg
 TOP, APART = 0.96, 0.06  # of a panel's height: where the first crosses are, and the next family's below
 
 
-def rolls_against(key: str, label: str, families: Mapping[str, Sequence[Outcome]], frozen: Collection[str]) -> Figure:
+def rolls_figure(found: Found, key: str, label: str, frozen: Collection[str]) -> Figure:
     """Mean amplitude and absolute maximum of the roll against the number in a key of the grid, ± standard deviation.
 
-    Curves of every family with loose cargo, and of those named in `frozen` with frozen cargo. Ships that capsized are
+    Curves of every run with loose cargo, and of those named in `frozen` with frozen cargo. Ships that capsized are
     crosses at the top and in no curve.
     """
     figure = Figure(figsize=SIZE, layout="constrained")
     panels = figure.subplots(2, sharex=True)
-    colours = colormaps["viridis"](np.linspace(0.0, 0.75, len(families)))
-    kinds = {LOOSE: ("loose", families), FROZEN: ("frozen", frozen)}
-    drawn = [(names, f"{name}, {word}", name) for names, (word, chosen) in kinds.items() for name in chosen]
-    hue = dict(zip(families, colours, strict=True))
+    colours = colormaps["viridis"](np.linspace(0.0, 0.75, len(found)))
+    kinds = {LOOSE: ("loose", found), FROZEN: ("frozen", frozen)}
+    drawn = [
+        (names, f"{name}, {word}", name) for names, (word, chosen) in kinds.items() for name in found if name in chosen
+    ]
+    hue = dict(zip(found, colours, strict=True))
     for level, (names, legend, family) in enumerate(drawn):
-        found = families[family]
-        at = [leading_number(one.setting[key]) for one in found]
+        outcomes = found[family]
+        at = [leading_number(one.setting[key]) for one in outcomes]
         for axes, measure in zip(panels, names[:2], strict=True):
-            _curve(axes, at, [_upright(one, measure, names[2]) for one in found], hue[family], legend, STYLES[names])
-            lost = [x for x, one in zip(at, found, strict=True) if _capsized(one, names[2])]
+            _curve(axes, at, [_upright(one, measure, names[2]) for one in outcomes], hue[family], legend, STYLES[names])
+            lost = [x for x, one in zip(at, outcomes, strict=True) if _capsized(one, names[2])]
             height = np.full(len(lost), TOP - APART * level)
             axes.plot(lost, height, ls="", color=hue[family], transform=axes.get_xaxis_transform(), **CROSSES[names])
     for axes, quantity in zip(panels, PANELS, strict=True):

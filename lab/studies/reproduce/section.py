@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from lab.report.plots import BELOW, BLUE, GREY
 from lab.studies.reproduce.estimates import Verdict
-from lab.studies.reproduce.experiment import Experiment, Row, Told, observed
+from lab.studies.reproduce.experiment import Row, Told, observed
 from lab.studies.reproduce.runs import Outcome
 from lab.studies.reproduce.section_terms import (
     COMMON,
@@ -26,7 +26,6 @@ from lab.studies.reproduce.section_terms import (
     terms,
     usual,
 )
-from lab.studies.reproduce.ship import model_batches
 
 WITHIN = 10.0  # %, tolerance beyond the readings of the two instruments
 TOLERANCE = f"{WITHIN:g} % beyond what both instruments read: our choice, they differ by up to 28 %"
@@ -172,31 +171,3 @@ def _dense() -> dict[str, np.ndarray]:
     models = {"none": potential_flow(), "least": low, "most": high, "rub": rubbed(), "eddy": estimated()}
     tests = [Measurement(float(w), 0.012, window(float(w)), (), (), 1.0) for w in DENSE]
     return {name: np.array([model.sailed(test) for test in tests]) for name, model in models.items()}
-
-
-EXPERIMENTS = [
-    Experiment(
-        "section-terms",
-        "The measured section in its own waves",
-        "Sundsdal et al. (2025)",
-        "amplitudes of sway and heave over the waves' and of roll over their slope's, by a camera; the same runs have "
-        "accelerometers aboard (read here from the authors' data, CC0).",
-        model_batches,
-        tell,
-        "nothing: no grains, all terms",
-        ("section", 0.9),
-        "The flume had to stop measuring 15 to 25 s after its flap began, when the waves that the model throws back "
-        "return from the flap. Near its natural roll the model still gains then, so that steady waves are the wrong "
-        "thing to compute. Amplitudes here are of the same window, in the train of a flap as the authors describe it; "
-        "where they measured the waves without the model that train is within 2 % (rms of the heights of single "
-        "periods). Ours has skin friction and eddies as estimated from the shape; nothing is fitted. A row agrees "
-        "within 10 % of the interval between both readings. At the peak of roll, potential flow in the train is above "
-        "both; the estimated friction and eddies take some more than that away, and the 2 to 5 % of the critical "
-        "damping that is usual of bare hulls takes far too much. The two instruments agree to 1 % at 4.143 rad/s in "
-        "heave and roll, and differ by up to 28 % above; why is not known to us. Ours is as the accelerometers say in "
-        "heave at its resonance and in sway and roll from 7 rad/s on, and as the camera says in heave at 7 rad/s. The "
-        "smallest heave, at 9.905 rad/s, is 0.4 mm, half a pixel of the camera; the heave force on the section held "
-        "still, by the authors' data, is there 17 % below ours, but all forces are within 5 % up to 8.6 rad/s. In "
-        "brackets, the change in per cent of the camera's reading; terms that change no test by 2 % are left out.",
-    )
-]

@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 import time
+import tomllib
 from dataclasses import asdict
 from pathlib import Path
 from types import SimpleNamespace
@@ -13,23 +14,24 @@ from types import SimpleNamespace
 import h5py
 import numpy as np
 import pytest
-from pydantic import TypeAdapter
+from pydantic import TypeAdapter, ValidationError
 
 import lab
 from lab.assembly.scene import build
 from lab.base.errors import LabError
+from lab.measures import critical_angle
 from lab.measures.value import over_worlds
 from lab.preset.find import load
 from lab.report.page import Page
 from lab.studies import reproduce as package
-from lab.studies.reproduce import REPORTS, experiments, outlines, report, reproduce, runs, workers
+from lab.studies.reproduce import experiments, named, report, reproduce, runs, workers
+from lab.studies.reproduce.claims import FOLDER, read, reports
 from lab.studies.reproduce.estimates import Verdict, surely
-from lab.studies.reproduce.experiment import EXACT, ONE_BED, Experiment, Row, Told, Tolerance, counted, observed, stated
+from lab.studies.reproduce.experiment import EXACT, Experiment, Row, Told, Tolerance, counted, observed, stated
 from lab.studies.reproduce.findings import Finding, asked, read_findings
 from lab.studies.reproduce.report import write_report
 from lab.studies.reproduce.runs import Batch, Outcome
-from lab.studies.reproduce.shaking import FREQUENCY, onset
-from lab.sweeps.grid import define_sweep
+from lab.sweeps.grid import ask
 from solvers.machine import runtime
 
 ROOT = Path(lab.__file__).parents[1]
@@ -49,7 +51,7 @@ def outcome(setting=None, **measures) -> Outcome:
     return Outcome(setting or {}, None, "complete", measures, {"wall_s": 1.0, "grain_steps": 1e6})
 
 
-EXPERIMENTS = {name: one for part in REPORTS for name, one in experiments(part).items()}
+EXPERIMENTS = {name: one for part in reports() for name, one in experiments(part).items()}
 
 
 @pytest.mark.parametrize("name", EXPERIMENTS)
@@ -199,8 +201,77 @@ def test_a_report_counts_its_verdicts_and_shows_each_with_its_tolerance(tmp_path
         assert line.endswith(f"| 3 deg: read off a picture | {verdict} |") and "(95 %)" in line
 
 
-@pytest.mark.parametrize("report_name", REPORTS)
-def test_every_verdict_of_the_shipped_reports_has_its_tolerance(report_name):
+@pytest.mark.parametrize("report_name", reports())
+def test_what_differs_has_its_explanation_or_an_open_question_beside_it(report_name):
+    kept = json.loads((ROOT / "renders" / "gallery" / report_name / f"{report_name}.json").read_text())
+    differs = [name for name, one in kept.items() if any(row["verdict"] == "differs" for row in one["rows"])]
+    assert differs
+    for name in differs:
+        assert EXPERIMENTS[name].why or EXPERIMENTS[name].question, name
+
+
+CLAIMS = """
+tolerance.bed = { within = 2.0, origin = "by eye" }
+
+[[experiment]]
+name = "trial"
+title = "A trial"
+section = "1"
+states = "A at 20 and B at 30 deg, later than A."
+lost = "nothing"
+shown = { run = "A", at = 0.5 }
+
+[experiment.runs]
+A = { preset = "tilting/quick", full = { "run.repeats" = 4 }, quick = { "run.repeats" = 2 } }
+B = { preset = "tilting/quick", only = "full", axes = { "material.friction" = [0.3, 0.5] } }
+
+[[experiment.rows]]
+says = "{each} slides"
+each = ["A", "B"]
+of = "critical_angle"
+runs = "{each}"
+at = { B = "0.5" }
+compare = "value"
+value = { A = 20.0, B = 30.0 }
+within = "bed"
+
+[[experiment.rows]]
+says = "later"
+of = "critical_angle"
+runs = ["B", "A"]
+at = ["0.3", ""]
+compare = "fall"
+tolerance = "each step above zero"
+"""
+
+
+def test_a_claim_in_a_file_is_run_and_judged_by_its_number_and_tolerance():
+    """Two runs, one of the full report alone, on a grid of which each row takes its point."""
+    trial = read(CLAIMS)["trial"]
+    assert trial.batches(True) == {"A": Batch("tilting/quick", {"run.repeats": 2})}
+    assert trial.batches(False)["B"] == Batch("tilting/quick", {}, {"material.friction": [0.3, 0.5]})
+    slides = {"A": [[20.0, 20.1, 19.9, 20.0]], "B": [[25.0, 25.1, 24.9, 25.0], [20.0, 20.2, 20.1, 20.1]]}
+    found = {
+        run: [
+            outcome({"material.friction": mu} if run == "B" else {}, critical_angle=over_worlds(angles, "deg"))
+            for mu, angles in zip((0.3, 0.5), beds, strict=False)
+        ]
+        for run, beds in slides.items()
+    }
+    rows = {row.quantity: row for row in trial.tell(found).rows}
+    assert [rows[name].verdict for name in ("A slides", "B slides", "later")] == ["agrees", "differs", "agrees"]
+    assert rows["B slides"].source == "30 deg" and rows["B slides"].tolerance == "2 deg: by eye"
+    assert [row.quantity for row in trial.tell({"A": found["A"]}).rows] == ["A slides"]  # a report may lack B
+
+
+@pytest.mark.parametrize("wrong", ['compare = "equal"', "vaule = 3.0", "between = [1.0]"])
+def test_a_claim_with_a_word_that_is_not_known_is_refused(wrong):
+    with pytest.raises(ValidationError):
+        read(CLAIMS.replace('compare = "fall"', wrong))
+
+
+@pytest.mark.parametrize("report_name", reports())
+def test_every_verdict_of_the_reports_that_come_with_the_lab_says_its_tolerance(report_name):
     """And no number of one bed has a ±."""
     kept = ROOT / "renders" / "gallery" / report_name / f"{report_name}.json"
     rows = [Row(**row) for finding in json.loads(kept.read_text()).values() for row in finding["rows"]]
@@ -213,25 +284,27 @@ def test_every_verdict_of_the_shipped_reports_has_its_tolerance(report_name):
 
 def test_the_onset_is_each_beds_own_and_lies_between_two_frequencies():
     def at(frequency, *responses):
-        return outcome({FREQUENCY: f"{frequency} Hz"}, response_amplitude=over_worlds(responses, "mm"))
+        return outcome({"motion.sway.frequency": f"{frequency} Hz"}, response_amplitude=over_worlds(responses, "mm"))
 
-    found = onset([at(1, 0.0, 0.0), at(2, 0.0, 4.0), at(3, 1.6, 8.0)], 40.0)
+    found = named.onset([at(1, 0.0, 0.0), at(2, 0.0, 4.0), at(3, 1.6, 8.0)], 40.0)
     assert found.worlds == pytest.approx((2.5, 1.2))  # 2 % of 40 mm is 0.8 mm
-    assert onset([at(1, 0.1), at(2, 0.2)], 40.0).value is None
+    assert named.onset([at(1, 0.1), at(2, 0.2)], 40.0).value is None
 
 
 def test_round_outlines_are_judged_bed_by_bed_before_they_slide(monkeypatch):
     """Six beds of which some shift half as far again: 36 nodes lag by 5 %, 120 by 2 %, as the source does not say."""
     tilt = np.linspace(0.0, 30.0, 61)
-    monkeypatch.setattr(outlines, "shift_curve", lambda recording, world: (tilt, 1e-4 * tilt * recording.slopes[world]))
+    curve = lambda recording, world: (tilt, 1e-4 * tilt * recording.slopes[world])  # noqa: E731
+    monkeypatch.setattr(named, "shift_curve", curve)
+    monkeypatch.setattr(critical_angle, "shift_curve", curve)
 
     def ran(stretch, **setting):
         one = outcome(setting, critical_angle=over_worlds(np.full(6, 25.0), "deg"))
         one.__dict__["recording"] = SimpleNamespace(worlds=6, slopes=stretch * np.tile((1.0, 1.5), 3))
         return one
 
-    nodes = [ran(0.95, **{outlines.NODES: 36}), ran(0.98, **{outlines.NODES: 120})]
-    told = outlines.round_ones({"discs": [ran(1.0)], "smooth": [ran(1.0)], "nodes": nodes})
+    nodes = [ran(0.95, **{"contact.nodes": 36}), ran(0.98, **{"contact.nodes": 120})]
+    told = EXPERIMENTS["outline-discs"].tell({"discs": [ran(1.0)], "smooth": [ran(1.0)], "nodes": nodes})
     discs, *ratios = told.rows[:4]
     assert (discs.ours, discs.verdict) == ("1.25 ± 0.27 mm (6 beds)", None)
     assert [row.ours.partition(" ±")[0] for row in ratios] == ["1", "0.9500", "0.9800"]
@@ -251,7 +324,7 @@ def test_round_outlines_are_judged_bed_by_bed_before_they_slide(monkeypatch):
 def test_heaps_are_judged_within_their_scatter(heaps, verdict):
     discs, outlined = (over_worlds(angles, "deg") for angles in ((19.1, 19.4, 18.2, 20.1), heaps))
     found = {"discs": [outcome(heap_angle=discs)], "outlines": [outcome(heap_angle=outlined)]}
-    assert outlines.heaps(found).rows[-1].verdict is verdict
+    assert EXPERIMENTS["outline-heaps"].tell(found).rows[-1].verdict is verdict
 
 
 def test_a_verdict_can_be_kept():
@@ -276,7 +349,10 @@ def test_the_tolerance_of_one_bed_is_the_scatter_of_beds():
     said = [row["ours"] for row in tilted if "after" not in row["quantity"]]
     found = [pair for text in said for pair in re.findall(r"± ([\d.]+) deg \((\d+) (?:of \d+ )?beds", text)]
     std, count = np.array(found, float).T
-    assert ONE_BED.within == pytest.approx(np.sqrt(np.average(std**2, weights=count - 1)), abs=0.1)
+    scatter = np.sqrt(np.average(std**2, weights=count - 1))
+    files = [tomllib.loads(path.read_text()) for path in FOLDER.glob("*.toml")]
+    said = {one["tolerance"]["one bed"]["within"] for one in files if "one bed" in one.get("tolerance", {})}
+    assert [*said] == [pytest.approx(scatter, abs=0.1)]
 
 
 def test_only_changes_of_a_presets_physics_require_a_new_run():

@@ -7,9 +7,10 @@ import pytest
 
 from lab.measures.value import over_worlds
 from lab.studies.reproduce.capsizes import NATURAL, READINGS, Scan, _heap_beside_grains, _rows, scan
+from lab.studies.reproduce.claims import experiments
 from lab.studies.reproduce.estimates import Verdict
+from lab.studies.reproduce.rolls import AMPLITUDE, FREQUENCY
 from lab.studies.reproduce.runs import Outcome
-from lab.studies.reproduce.ship import AMPLITUDE, FREQUENCY, capsize_batches
 
 BOX_ONCE, BOX_TWICE, SOFT_ONCE, SOFT_TWICE = READINGS
 HEIGHT = 0.055 + 0.34**2 / (12.0 * 0.11) - 0.0926  # m, GM
@@ -67,7 +68,7 @@ def test_an_agreeing_peak_does_not_hide_another_roll_angle():
 
 def test_the_heap_is_compared_with_the_grains_in_the_same_waves():
     """At 4.5 rad/s, well below the resonance, both roll as the linear ship and the row says how far they are apart."""
-    batches = capsize_batches(True)
+    batches = experiments("ship")["barge-capsize"].batches(True)
     assert {key for batch in batches.values() for key in batch.axes} == {FREQUENCY}  # what a run's setting tells
     assert [batch.changes[AMPLITUDE] for batch in batches.values()] == list(batches)  # and what its batch's name does
     setting = {FREQUENCY: "4.5 rad/s"}

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from lab.measures.value import over_worlds
+from lab.studies.reproduce.claims import experiments
 from lab.studies.reproduce.estimates import Verdict
 from lab.studies.reproduce.runs import Outcome
-from lab.studies.reproduce.tilting import SMOOTH, rims
 
 
 def run(**angles):
@@ -15,7 +15,8 @@ def run(**angles):
 
 def told(upturns, slides, others):
     low = run(spill_upturn_angle=upturns, critical_angle=slides)
-    return rims({f"{SMOOTH}, low walls": low, f"{SMOOTH}, high walls": run(critical_angle=others)}).rows
+    found = {"smooth tank, low walls": low, "smooth tank, high walls": run(critical_angle=others)}
+    return experiments("granular")["tilt-rim"].tell(found).rows
 
 
 def test_the_lead_has_the_error_of_both_means():

@@ -4,12 +4,15 @@ import numpy as np
 import pytest
 
 from lab.measures.value import over_worlds
+from lab.studies.reproduce.claims import experiments
 from lab.studies.reproduce.estimates import Verdict
-from lab.studies.reproduce.rolls import rolls_against
+from lab.studies.reproduce.rolls import AMPLITUDE, FREQUENCY, rolls_figure
 from lab.studies.reproduce.runs import Outcome
-from lab.studies.reproduce.ship import AMPLITUDE, FREQUENCY, capsize_tell, freedom_tell, response_tell
 
 STAYS = np.nan
+response_tell, capsize_tell, freedom_tell = (
+    experiments("ship")[name].tell for name in ("barge-roll", "barge-capsize", "barge-3dof")
+)
 
 
 def ended(key, said, loose, frozen, *, capsized=(STAYS, STAYS), frozen_capsized=STAYS, apart=1.0) -> Outcome:
@@ -49,7 +52,7 @@ def responses():
 
 def test_both_panels_distinguish_loose_and_frozen_cargo(responses):
     """Mean amplitude above and largest roll below, each its own; of capsized ships a cross, over no other's beds."""
-    figure = rolls_against(FREQUENCY, "frequency", {"10 mm": responses}, ["10 mm"])
+    figure = rolls_figure({"10 mm": responses}, FREQUENCY, "frequency", ["10 mm"])
     upper, lower = figure.axes
     nan = np.nan
     assert curves(upper)["10 mm, loose"] == pytest.approx([4.0, 20.0, nan, 1.0], nan_ok=True)

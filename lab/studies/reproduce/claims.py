@@ -1,0 +1,174 @@
+"""The claims of a source as data: TOML files in the folder `claims`, one `[[experiment]]` after the other.
+
+An experiment names its runs, each a preset with changes and perhaps a grid, in full and quick, and its rows, each a
+number that is told or held against what the source states (see `lab.studies.reproduce.compare`). What needs code has a
+name in `lab.studies.reproduce.named`. `docs/extending.md` has a recipe.
+"""
+
+import tomllib
+from collections.abc import Iterator, Mapping
+from functools import cache
+from pathlib import Path
+from typing import Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from lab.studies.reproduce import named
+from lab.studies.reproduce.compare import Claim, rows
+from lab.studies.reproduce.experiment import Experiment, Found, Told, Tolerance
+from lab.studies.reproduce.runs import Batch
+
+FOLDER = Path(__file__).with_name("claims")
+Setting = dict[str, object]
+
+
+class Strict(BaseModel):
+    """A table in which a word that is not known is an error."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class Settings(Strict):
+    """Changes that runs share by `like`: of all, of the full report and of the quick one."""
+
+    all: Setting = {}
+    full: Setting = {}
+    quick: Setting = {}
+
+
+class Run(Strict):
+    """Runs of a preset with changes by dotted keys, one for each point of the grid `axes`.
+
+    `full` and `quick` are changes of one report, `quick_axes` and `quick_preset` the grid and preset of the quick one
+    where they differ, `only` the report that has these runs.
+    """
+
+    preset: str
+    quick_preset: str = ""
+    like: str = ""
+    changes: Setting = {}
+    full: Setting = {}
+    quick: Setting = {}
+    axes: dict[str, list] = {}
+    quick_axes: dict[str, list] | None = None
+    only: Literal["", "full", "quick"] = ""
+
+    def batch(self, shared: Settings, quick: bool) -> Batch:
+        """The batch of the quick or of the full report."""
+        less, own = (shared.quick, self.quick) if quick else (shared.full, self.full)
+        axes = self.quick_axes if quick and self.quick_axes is not None else self.axes
+        preset = (quick and self.quick_preset) or self.preset
+        return Batch(preset, {**shared.all, **less, **self.changes, **own}, axes)
+
+
+class Shown(Strict):
+    """The run that is pictured, at a share of its duration, and the point of its grid."""
+
+    run: str
+    at: float
+    point: int = -1
+
+
+class Stated(Strict):
+    """An experiment of the source as a file tells it; `Experiment` says what its words are.
+
+    `runs_of` names the experiment whose runs it looks at, too. `figure` names a function of `named.FIGURES` by `by`,
+    with its arguments; `tell` one of `named.TELLS`, which gives rows, figure and table.
+    """
+
+    name: str
+    title: str
+    section: str
+    states: str
+    lost: str
+    shown: Shown
+    why: str = ""
+    question: str = ""
+    runs: dict[str, Run] = {}
+    runs_of: str = ""
+    rows: list[dict] = []
+    figure: dict[str, object] = {}
+    tell: str = ""
+
+
+class Source(Strict):
+    """A file of claims: what runs share, the tolerances by name, the experiments."""
+
+    settings: dict[str, Settings] = {}
+    tolerance: dict[str, Tolerance] = {}
+    experiment: list[Stated] = Field(min_length=1)
+
+
+class Report(Strict):
+    """A report: its title, its files of claims in their order, and how its full runs differ from the source's own."""
+
+    title: str
+    files: list[str]
+    less: str
+
+
+@cache
+def reports() -> dict[str, Report]:
+    """The reports by name."""
+    table = tomllib.loads((FOLDER / "reports.toml").read_text(encoding="utf-8"))
+    return {name: Report.model_validate(one) for name, one in table.items()}
+
+
+@cache
+def experiments(report: str) -> dict[str, Experiment]:
+    """The experiments of a report by name, in the order of its files."""
+    found: dict[str, Experiment] = {}
+    for name in reports()[report].files:
+        found |= read((FOLDER / f"{name}.toml").read_text(encoding="utf-8"))
+    return found
+
+
+def read(text: str) -> dict[str, Experiment]:
+    """The experiments of a file of claims by name. Raises pydantic's ValidationError and KeyError for a bad one."""
+    source = Source.model_validate(tomllib.loads(text))
+    runs = {one.name: one.runs for one in source.experiment}
+    return {one.name: _experiment(one, runs[one.runs_of or one.name], source) for one in source.experiment}
+
+
+def _experiment(stated: Stated, runs: Mapping[str, Run], source: Source) -> Experiment:
+    claims = [Claim.model_validate(one) for raw in stated.rows for one in spread(raw)]
+
+    def batches(quick: bool) -> dict[str, Batch]:
+        other = "full" if quick else "quick"
+        return {
+            name: one.batch(source.settings[one.like] if one.like else Settings(), quick)
+            for name, one in runs.items()
+            if one.only != other
+        }
+
+    def tell(found: Found) -> Told:
+        if stated.tell:
+            return named.TELLS[stated.tell](found)
+        draw = {key: value for key, value in stated.figure.items() if key != "by"}
+        figure = named.FIGURES[stated.figure["by"]](found, **draw) if stated.figure else None
+        return Told(rows(claims, found, source.tolerance), figure)
+
+    words = {name: getattr(stated, name) for name in ("name", "title", "section", "states", "lost", "why", "question")}
+    shown = stated.shown.run, stated.shown.at
+    return Experiment(batches=batches, tell=tell, shown=shown, point=stated.shown.point, **words)
+
+
+def spread(raw: Mapping[str, object]) -> Iterator[dict]:
+    """A row, or one for each word of its list `each`, in place of "{each}"; `rows` within it are repeated together.
+
+    A table among the fields gives each word a value of its own, and none to those it leaves out.
+    """
+    rest = {key: value for key, value in raw.items() if key not in ("each", "rows")}
+    for item in raw.get("each", [None]):
+        for row in raw.get("rows", [rest]):
+            found = row if item is None else {key: _said(value, item, row) for key, value in row.items()}
+            found = {key: value for key, value in found.items() if value is not None}
+            yield from spread(found) if "rows" in raw else [found]
+
+
+def _said(value: object, item: str, row: Mapping[str, object]) -> object:
+    if isinstance(value, str):
+        return value.replace("{each}", item)
+    if isinstance(value, list):
+        return [_said(one, item, row) for one in value]
+    return value.get(item) if isinstance(value, dict) and "each" not in row else value
