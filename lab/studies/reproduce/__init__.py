@@ -8,9 +8,9 @@ from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
 from pathlib import Path
 
-from lab.base.errors import LabError
 from lab.base.lock import only_one
 from lab.base.progress import Progress
+from lab.studies.engine import choose
 from lab.studies.reproduce.claims import experiments
 from lab.studies.reproduce.experiment import Experiment
 from lab.studies.reproduce.findings import read_findings
@@ -30,14 +30,13 @@ def reproduce(
     after each experiment. Returns its file. Raises LabError, one sentence, and KeyboardInterrupt; finished runs stay.
     """
     known = experiments(report)
-    for name in names:
-        if not any(one.startswith(name) for one in known):
-            raise LabError(f"there is no experiment {name}; there are {', '.join(known)}.")
+    chosen = choose(names, known, "experiment")
     out, work = Path(out), Path(out) / ("quick" if quick else "full")
     folders = places(known, work, quick)
     told = read_findings(kept_file(report, out, quick), known, quick)
     removed = [name for name in told if not any(folder.exists() for folder in folders[name].values())]
-    chosen = [name for name in known if (name.startswith(tuple(names)) if names else name not in removed)]
+    if not names:
+        chosen = [name for name in chosen if name not in removed]
     batches = {folders[name][key]: batch for name in chosen for key, batch in known[name].batches(quick).items()}
     if cluster:
         _run_there(batches, cluster, quiet)

@@ -131,7 +131,7 @@ def descriptors(found: Found) -> Figure:
     axes = figure.add_subplot()
     discs = found["discs"][0]["critical_angle"]
     for name, outcomes in found.items():
-        points = [(list(one.setting.values())[0][-1], one["critical_angle"]) for one in outcomes if one.setting]
+        points = [(next(iter(one.setting.values()))[-1], one["critical_angle"]) for one in outcomes if one.setting]
         known = [(x, v.value / discs.value, (v.std or 0.0) / discs.value) for x, v in points if v and v.value]
         if known:
             axes.errorbar(*zip(*known, strict=True), fmt="o-", ms=3.5, capsize=2, label=name)

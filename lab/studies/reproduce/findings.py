@@ -11,6 +11,7 @@ from pydantic import TypeAdapter, ValidationError
 
 from lab.base.errors import LabError
 from lab.preset.find import load
+from lab.studies.engine import Made, write
 from lab.studies.reproduce.experiment import Experiment, Row
 from lab.studies.reproduce.runs import Batch
 
@@ -20,8 +21,8 @@ class Finding:
     """An experiment as the page tells it.
 
     `asked` is a hash of its runs (see `asked`); `stopped` names runs that did not reach their end, and why; `figure`
-    and `picture` are files beside the page, "" for none; `table` is a further one, its header first; `made` gives the
-    version and date of the runs.
+    and `picture` are files beside the page, "" for none; `table` is a further one, its header first; `made` says what
+    made the runs.
     """
 
     asked: str
@@ -31,8 +32,8 @@ class Finding:
     wall_s: float
     figure: str
     picture: str
+    made: Made
     table: Sequence[Sequence[str]] = ()
-    made: str = "version 0.1.0"
 
 
 WORDS = ("title", "source", "reports", "based_on", "quick", "video")  # keys of a preset that do not affect a run
@@ -56,10 +57,7 @@ def read_findings(path: Path, experiments: Mapping[str, Experiment], quick: bool
 
 def write_findings(path: Path, findings: Mapping[str, Finding]) -> None:
     """Write the findings, atomically."""
-    text = json.dumps({name: asdict(finding) for name, finding in findings.items()}, indent=1, ensure_ascii=False)
-    part = path.with_suffix(".part")
-    part.write_text(text + "\n", encoding="utf-8")
-    part.replace(path)
+    write(path, {name: asdict(finding) for name, finding in findings.items()})
 
 
 def asked(batches: Mapping[str, Batch]) -> str:

@@ -1,6 +1,7 @@
 """The report: an overview, and for each experiment the source's statement, our result, a figure and a picture."""
 
 from collections.abc import Mapping, Sequence
+from datetime import date
 from pathlib import Path
 
 import matplotlib
@@ -9,8 +10,9 @@ from lab.base.errors import LabError
 from lab.measures.value import LEVEL
 from lab.preset.accuracy import LEVELS
 from lab.recording import open_recording
-from lab.report.page import Page
+from lab.report.page import processor, render, save_figure
 from lab.report.plots import STYLE
+from lab.studies.engine import Made
 from lab.studies.reproduce.claims import reports
 from lab.studies.reproduce.estimates import Verdict
 from lab.studies.reproduce.experiment import Experiment, Row
@@ -19,10 +21,7 @@ from lab.studies.reproduce.runs import Outcome, outcomes
 
 PICTURE = (640, 360)  # pixels
 LOUD = {Verdict.AGREES: "agrees", Verdict.DIFFERS: "**differs**", Verdict.CANNOT_TELL: "cannot tell", None: ""}
-RUNS = "Each section says by which version of the lab its runs were made; times are of the machines that ran them."
-RULE = f"""A verdict is of the {100.0 * LEVEL:g} % interval of the difference: *agrees* where all of it lies within the
-    tolerance, *differs* where all of it lies outside, else *cannot tell*: more beds could (two one-sided tests,
-    Schuirmann 1987; see `docs/numbers.md`)."""
+QUICK = "The quick report: fewer and smaller beds, faster tilts, draft accuracy; each section says what is lost."
 
 
 def write_report(
@@ -32,19 +31,38 @@ def write_report(
 
     ended: the folders of the batches of each. Beside the page are its pictures, and NAME.json with the findings.
     """
-    command = f"reproduce {name}{' --quick' if quick else ''}"
-    page = Page(out, page_name(name, quick), reports()[name].title, command, RUNS)
+    out.mkdir(parents=True, exist_ok=True)
     kept = read_findings(kept_file(name, out, quick), experiments, quick)
     for one, folders in ended.items():
         found = {key: outcomes(folder) for key, folder in folders.items()}
         if all(found.values()):
-            kept[one] = _finding(page, experiments[one], found, quick)
+            files = out / f"{page_name(name, quick)}-{one}"
+            kept[one] = _finding(files, experiments[one], found, command_of(name, quick), quick)
     findings = {one: kept[one] for one in experiments if one in kept}
-    _overview(page, name, experiments, findings, quick)
-    for one, finding in findings.items():
-        _section(page, experiments[one], finding, quick)
     write_findings(kept_file(name, out, quick), findings)
-    return page.write()
+    return write_page(name, experiments, findings, out, quick)
+
+
+def write_page(
+    name: str, experiments: Mapping[str, Experiment], findings: Mapping[str, Finding], out: Path, quick: bool
+) -> Path:
+    """Write the page from findings, those that differ most first; returns its file."""
+    told = sorted(findings, key=lambda one: _badness(findings[one].rows), reverse=True)
+    missing = [one for one in experiments if one not in findings]
+    less = reports()[name].less.replace("{draft}", LEVELS["draft"].error)
+    return render(
+        out / f"{page_name(name, quick)}.md",
+        "reproduce.md.j2",
+        title=reports()[name].title,
+        command=command_of(name, quick),
+        date=date.today(),
+        counts=_counts([row for finding in findings.values() for row in finding.rows]),
+        level=f"{100.0 * LEVEL:g}",
+        limits=QUICK if quick else less,
+        quick=quick,
+        overview=[_overview(experiments[one], findings.get(one)) for one in (*told, *missing)],
+        sections=[(experiments[one], findings[one], _cells(findings[one].rows)) for one in told],
+    )
 
 
 def page_name(report: str, quick: bool) -> str:
@@ -57,96 +75,70 @@ def kept_file(report: str, out: Path, quick: bool) -> Path:
     return out / f"{page_name(report, quick)}.json"
 
 
-def _finding(page: Page, experiment: Experiment, found: Mapping[str, list[Outcome]], quick: bool) -> Finding:
+def command_of(report: str, quick: bool) -> str:
+    """The command that makes a report."""
+    return f"reproduce {report}{' --quick' if quick else ''}"
+
+
+def _finding(
+    files: Path, experiment: Experiment, found: Mapping[str, list[Outcome]], command: str, quick: bool
+) -> Finding:
+    """What the outcomes tell; its figure and picture are saved by names that begin with `files`."""
     with matplotlib.rc_context(STYLE):
         told = experiment.tell(found)
     runs = [one for batch in found.values() for one in batch]
-    figure = "" if told.figure is None else page.save(experiment.name, told.figure).name
     return Finding(
-        asked(experiment.batches(quick)),
-        tuple(told.rows),
-        tuple((one.folder.name, one.status) for one in runs if one.status != "complete"),
-        sum(one.cost["grain_steps"] for one in runs),
-        sum(one.cost["wall_s"] for one in runs),
-        figure,
-        _picture(page, experiment, found),
-        told.table,
-        _made(runs),
+        asked=asked(experiment.batches(quick)),
+        rows=tuple(told.rows),
+        stopped=tuple((one.folder.name, one.status) for one in runs if one.status != "complete"),
+        grain_steps=sum(one.cost["grain_steps"] for one in runs),
+        wall_s=sum(one.cost["wall_s"] for one in runs),
+        figure="" if told.figure is None else save_figure(files.with_name(f"{files.name}.png"), told.figure).name,
+        picture=_picture(files.with_name(f"{files.name}-picture.png"), experiment, found),
+        table=told.table,
+        made=_made(runs, command),
     )
 
 
-def _made(runs: Sequence[Outcome]) -> str:
-    """Version and date of the latest of the runs."""
+def _made(runs: Sequence[Outcome], command: str) -> Made:
+    """What made the latest of the runs; the processor is the one that tells of them."""
     with open_recording(runs[-1].folder) as recording:
-        return f"version {recording.versions.get('cargo-shift-lab', '?')}, {recording.created[:10]}"
+        version = recording.versions.get("cargo-shift-lab", "?")
+        return Made(version, recording.created[:10], processor(), f"cargolab {command}")
 
 
-def _overview(
-    page: Page, name: str, experiments: Mapping[str, Experiment], findings: Mapping[str, Finding], quick: bool
-) -> None:
-    page.say(_counted([row for finding in findings.values() for row in finding.rows]))
-    page.say(RULE)
-    page.say("""The source is Spandonidis (2016), doctoral thesis, NTUA. Our numbers are means ± the standard
-        deviation over beds, which differ in nothing but their seed; of one bed there is no ±. What the source gives in
-        words or curves is compared as a trend.""")
-    if quick:
-        page.say(
-            "The quick report: fewer and smaller beds, faster tilts, draft accuracy; each section says what is lost."
-        )
-    else:
-        page.say(reports()[name].less.replace("{draft}", LEVELS["draft"].error))
-    rows = []
-    for one, experiment in experiments.items():
-        if one not in findings:
-            rows.append([experiment.title, experiment.section, "not run", *[""] * (len(Verdict) + 1)])
-            continue
-        finding = findings[one]
-        counts = [sum(row.verdict is verdict for row in finding.rows) for verdict in Verdict]
-        cost = f"{finding.grain_steps:.2g}", f"{finding.wall_s:.0f} s"
-        rows.append([experiment.title, experiment.section, *(counts if any(counts) else ["–"] * len(counts)), *cost])
-    page.table(["experiment", "section", *Verdict, "grain-steps", "time"], rows)
+def _counts(rows: Sequence[Row]) -> list[int]:
+    """How many verdicts there are of each kind."""
+    return [sum(row.verdict is verdict for row in rows) for verdict in Verdict]
 
 
-def _counted(rows: Sequence[Row]) -> str:
-    """Text with the number of verdicts of each kind."""
-    counts = {verdict: sum(row.verdict is verdict for row in rows) for verdict in Verdict}
-    agree, differ, open_ones = (counts[verdict] for verdict in Verdict)
-    return f"""**Of {sum(counts.values())} statements held against the source {agree} agree, {differ} differ, and of
-        {open_ones} these beds cannot tell.**"""
+def _badness(rows: Sequence[Row]) -> tuple[int, int]:
+    """How many statements differ, and of how many the beds cannot tell."""
+    _, differ, open_ones = _counts(rows)
+    return differ, open_ones
 
 
-def _section(page: Page, experiment: Experiment, finding: Finding, quick: bool) -> None:
-    page.section(experiment.title)
-    page.say(f"Source ({experiment.section}): {experiment.states}")
-    page.say(f"Runs: {finding.made}.{f' Quick: {experiment.lost}' if quick else ''}")
-    page.table(
-        ["quantity", "source", "here", "difference, interval", "tolerance, and where from", "verdict"],
-        [[r.quantity, r.source, r.ours, r.apart, r.tolerance, LOUD[r.verdict]] for r in finding.rows],
-    )
-    if experiment.why:
-        page.say(experiment.why)
-    if experiment.question:
-        page.say(f"**Open question:** {experiment.question}")
-    if finding.table:
-        page.table(finding.table[0], finding.table[1:])
-    for name, status in finding.stopped:
-        page.say(f"**Not complete** ({name}): {status}")
-    if finding.figure:
-        page.show(page.folder / finding.figure, experiment.title)
-    if finding.picture:
-        page.show(page.folder / finding.picture, f"{experiment.title}: a picture")
+def _overview(experiment: Experiment, finding: Finding | None) -> list[object]:
+    """The line of an experiment."""
+    if finding is None:
+        return [experiment.title, experiment.section, "not run", *[""] * (len(Verdict) + 1)]
+    counts = _counts(finding.rows)
+    cost = f"{finding.grain_steps:.2g}", f"{finding.wall_s:.0f} s"
+    return [experiment.title, experiment.section, *(counts if any(counts) else ["–"] * len(counts)), *cost]
 
 
-def _picture(page: Page, experiment: Experiment, found: Mapping[str, list[Outcome]]) -> str:
-    """The file of the picture; "" where a run was stopped before its first."""
+def _cells(rows: Sequence[Row]) -> list[list[str]]:
+    return [[row.quantity, row.source, row.ours, row.apart, row.tolerance, LOUD[row.verdict]] for row in rows]
+
+
+def _picture(path: Path, experiment: Experiment, found: Mapping[str, list[Outcome]]) -> str:
+    """The name of the picture's file; "" where a run was stopped before its first."""
     from lab.paint.video import poster  # slow to load
 
     batch, fraction = experiment.shown
-    path = page.folder / f"{page.name}-{experiment.name}-picture.png"
+    folder = found[batch][experiment.point].folder
     try:
-        poster(
-            found[batch][experiment.point].folder, path, fraction=fraction, width=PICTURE[0], height=PICTURE[1], world=0
-        )
+        poster(folder, path, fraction=fraction, width=PICTURE[0], height=PICTURE[1], world=0)
     except LabError:
         return ""
     return path.name

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from rich.console import Console
 
-from lab.base.errors import LabError
+from lab.studies.engine import choose
 from lab.studies.verify import (
     chung_ooi,
     cohesion,
@@ -65,12 +65,8 @@ def select(names: Sequence[str], fast: bool) -> list[Case]:
 
     Raises LabError for a name that no such case begins with.
     """
-    possible = [case for case in CASES if case.quick or not fast]
-    for name in names:
-        if not any(case.name.startswith(name) for case in possible):
-            known = ", ".join(case.name for case in possible)
-            raise LabError(f"there is no case {name!r}{' that is fast' if fast else ''}; there are: {known}.")
-    return [case for case in possible if not names or case.name.startswith(tuple(names))]
+    possible = {case.name: case for case in CASES if case.quick or not fast}
+    return [possible[name] for name in choose(names, possible, "fast case" if fast else "case")]
 
 
 def carried_out(case: Case, fast: bool) -> Outcome:

@@ -1,8 +1,7 @@
-"""The page of a verification: tables by section, figures, and the same lines as JSON for machines."""
+"""The results of a verification as JSON, and the page from them: tables by section, and figures."""
 
-import json
-from collections.abc import Sequence
-from itertools import groupby
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
 from pathlib import Path
 
 import matplotlib
@@ -11,9 +10,9 @@ from matplotlib.figure import Figure
 from rich.console import Console
 from rich.table import Table
 
-from lab.recording import versions
-from lab.report.page import Page, machine
+from lab.report.page import machine, render, save_figure
 from lab.report.plots import BLUE, GREY, STYLE, VERMILION
+from lab.studies.engine import Made, write
 from lab.studies.verify.case import Line, Outcome
 
 NAME = "verify"
@@ -36,36 +35,61 @@ def show(outcome: Outcome, console: Console) -> None:
 
 
 def write_report(outcomes: Sequence[Outcome], folder: Path | str) -> Path:
-    """Write verify.md with its figures and verify.json; returns the page's file."""
-    page = Page(
-        folder, NAME, "The physics against closed forms, independent integrations and published numbers", "verify"
-    )
-    lines = [line for outcome in outcomes for line in outcome.found.lines]
-    page.say(_verdict(outcomes, lines))
-    if lines:
+    """Write verify.json, and from it verify.md with its figures; returns the page's file."""
+    folder = Path(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    errors = ""
+    if any(outcome.found.lines for outcome in outcomes):
         with matplotlib.rc_context(STYLE):
-            page.figure("errors", errors_figure(outcomes), "Errors in units of what is allowed, by case")
-    for section, group in groupby(outcomes, lambda outcome: outcome.case.section):
-        page.section(section)
-        for outcome in group:
-            _write_case(page, outcome)
-    text = json.dumps(_as_json(outcomes), indent=1, ensure_ascii=False, allow_nan=False)
-    (Path(folder) / f"{NAME}.json").write_text(text + "\n", encoding="utf-8")
-    return page.write()
+            errors = save_figure(folder / f"{NAME}-errors.png", errors_figure(outcomes)).name
+    data = _as_json(outcomes, [_case(outcome, folder) for outcome in outcomes])
+    write(folder / f"{NAME}.json", data)
+    return write_page(data, folder, errors)
 
 
-def _write_case(page: Page, outcome: Outcome) -> None:
-    page.say(f"**{outcome.case.title}** (`{outcome.case.name}`)")
-    for note in outcome.found.notes:
-        page.say(note)
-    if outcome.fault:
-        page.say(f"**Stopped:** {outcome.fault}")
-    for table in outcome.found.tables:
-        page.table(table.header, table.rows)
-    if outcome.found.lines:
-        page.table(HEADER, [cells(line) for line in outcome.found.lines])
-    for picture in outcome.found.pictures:
-        page.figure(picture.name, picture.figure, picture.caption)
+def write_page(data: Mapping, folder: Path, errors: str) -> Path:
+    """Write the page from what verify.json holds, in a section the cases that fail first; `errors`: their figure."""
+    lines = {case["name"]: [row for row in data["lines"] if row["case"] == case["name"]] for case in data["cases"]}
+    cases = [case | {"lines": [cells(_line(row)) for row in lines[case["name"]]]} for case in data["cases"]]
+    sections: dict[str, list] = {}
+    for case in cases:
+        sections.setdefault(case["section"], []).append(case)
+    bad = [case["name"] for case in cases if not case["passed"]]
+    return render(
+        folder / f"{NAME}.md",
+        "verify.md.j2",
+        said=f"Made by `{data['made']['command']}` on {data['made']['date']}, on {data['machine']}.",
+        within=sum(row["passed"] for row in data["lines"]),
+        lines=len(data["lines"]),
+        cases=cases,
+        bad=bad,
+        errors=errors,
+        header=HEADER,
+        sections=[(name, sorted(group, key=lambda case: case["passed"])) for name, group in sections.items()],
+    )
+
+
+def _case(outcome: Outcome, folder: Path) -> dict:
+    """A case and what it found besides its lines; its figures are saved."""
+    case, found = outcome.case, outcome.found
+    pictures = [(save_figure(folder / f"{NAME}-{one.name}.png", one.figure), one.caption) for one in found.pictures]
+    return {
+        "name": case.name,
+        "section": case.section,
+        "title": case.title,
+        "passed": outcome.passed,
+        "fault": outcome.fault,
+        "notes": list(found.notes),
+        "tables": [{"header": list(one.header), "rows": [list(row) for row in one.rows]} for one in found.tables],
+        "pictures": [{"file": path.name, "caption": caption} for path, caption in pictures],
+    }
+
+
+def _line(row: Mapping) -> Line:
+    """The line that a row of verify.json tells of."""
+    words = {name: row[name] for name in ("quantity", "source", "tolerance", "reason", "unit", "relative")}
+    value, reference = (float("nan") if row[name] is None else row[name] for name in ("value", "reference"))
+    return Line(value=value, reference=reference, **words)
 
 
 def cells(line: Line) -> tuple[str, ...]:
@@ -81,18 +105,6 @@ def cells(line: Line) -> tuple[str, ...]:
 def _share(value: float) -> str:
     """A relative error: in per cent where that reads well."""
     return f"{100.0 * value:.2g} %" if abs(value) >= 1e-5 or value == 0.0 else f"{value:.1e}"
-
-
-def _verdict(outcomes: Sequence[Outcome], lines: Sequence[Line]) -> str:
-    bad = [outcome.case.name for outcome in outcomes if not outcome.passed]
-    within = sum(line.passed for line in lines)
-    text = f"{within} of {len(lines)} lines in {len(outcomes)} cases are within their tolerances."
-    if bad:
-        text += f" **Failed: {', '.join(bad)}.**"
-    return text + (
-        " The references do not use the solver. A tolerance, to either side, is what the physics and the scheme at its"
-        " step allow, not what came out."
-    )
 
 
 def errors_figure(outcomes: Sequence[Outcome]) -> Figure:
@@ -113,23 +125,26 @@ def errors_figure(outcomes: Sequence[Outcome]) -> Figure:
     return figure
 
 
-def _as_json(outcomes: Sequence[Outcome]) -> dict:
-    rows = [_row(outcome, line) for outcome in outcomes for line in outcome.found.lines]
-    faults = {outcome.case.name: outcome.fault for outcome in outcomes if outcome.fault}
-    passed = all(outcome.passed for outcome in outcomes)
-    return {"passed": passed, "machine": machine(), "versions": versions(), "faults": faults, "lines": rows}
+def _as_json(outcomes: Sequence[Outcome], cases: Sequence[Mapping]) -> dict:
+    return {
+        "passed": all(outcome.passed for outcome in outcomes),
+        "machine": machine(),
+        "made": asdict(Made.now("cargolab verify")),
+        "faults": {outcome.case.name: outcome.fault for outcome in outcomes if outcome.fault},
+        "cases": cases,
+        "lines": [_row(outcome, line) for outcome in outcomes for line in outcome.found.lines],
+    }
 
 
 def _row(outcome: Outcome, line: Line) -> dict:
-    """A line with plain numbers; what is not finite is null, as JSON has no word for it."""
-    numbers = {name: getattr(line, name) for name in ("value", "reference", "error", "tolerance")}
+    """A line as verify.json has it."""
     return {
         "case": outcome.case.name,
         "section": outcome.case.section,
         "quantity": line.quantity,
         "unit": line.unit,
         "source": line.source,
-        **{name: float(number) if np.isfinite(number) else None for name, number in numbers.items()},
+        **{name: getattr(line, name) for name in ("value", "reference", "error", "tolerance")},
         "relative": line.relative,
         "reason": line.reason,
         "passed": bool(line.passed),

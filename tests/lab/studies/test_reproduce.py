@@ -22,8 +22,8 @@ from lab.base.errors import LabError
 from lab.measures import critical_angle
 from lab.measures.value import over_worlds
 from lab.preset.find import load
-from lab.report.page import Page
 from lab.studies import reproduce as package
+from lab.studies.engine import Made
 from lab.studies.reproduce import experiments, named, report, reproduce, runs, workers
 from lab.studies.reproduce.claims import FOLDER, read, reports
 from lab.studies.reproduce.estimates import Verdict, surely
@@ -186,19 +186,34 @@ def test_values_without_scatter_are_judged_directly():
 def test_a_report_counts_its_verdicts_and_shows_each_with_its_tolerance(tmp_path):
     beds = {"near": [20.0, 22.0, 21.0, 21.0], "far": [30.0, 31.0, 30.0, 31.0], "wide": [10.0, 32.0, 15.0, 27.0]}
     rows = [stated(name, 20.0, over_worlds(angles, "deg"), BY_EYE) for name, angles in beds.items()]
-    finding = Finding("asked", [*rows, observed("seen", "", "this", None)], (), 1.0, 1.0, "", "")
+    finding = Finding("asked", [*rows, observed("seen", "", "this", None)], (), 1.0, 1.0, "", "", Made("0.1.0"))
     tried = Experiment(
         "tried", "A trial", "0.0", "20 deg.", lambda quick: {}, lambda found: Told([]), "much", ("", 1.0)
     )
-    page = Page(tmp_path, "granular", "Title")
-    report._overview(page, "granular", {"tried": tried}, {"tried": finding}, quick=False)
-    report._section(page, tried, finding, quick=False)
-    text = page.write().read_text()
+    text = report.write_page("granular", {"tried": tried}, {"tried": finding}, tmp_path, quick=False).read_text()
     assert "Of 3 statements held against the source 1 agree, 1 differ, and of 1 these beds cannot tell." in text
     assert "| A trial | 0.0 | 1 | 1 | 1 |" in text
     for name, verdict in (("near", "agrees"), ("far", "**differs**"), ("wide", "cannot tell")):
         line = next(line for line in text.splitlines() if line.startswith(f"| {name} |"))
         assert line.endswith(f"| 3 deg: read off a picture | {verdict} |") and "(95 %)" in line
+
+
+def test_the_page_begins_with_what_differs_most_and_its_explanation_follows_it(tmp_path):
+    beds = {"good": [20.0, 20.1, 19.9, 20.0], "bad": [30.0, 31.0, 30.0, 31.0]}
+    tried, findings = {}, {}
+    for name, angles in beds.items():
+        row = stated("angle", 20.0, over_worlds(angles, "deg"), BY_EYE)
+        findings[name] = Finding("asked", [row], (), 1.0, 1.0, "", "", Made("0.1.0"))
+        words = f"Title of {name}", "0.0", "20 deg."
+        tried[name] = Experiment(
+            name, *words, lambda quick: {}, lambda found: Told([]), "much", ("", 1.0), "Softer.", "How soft?"
+        )
+    text = report.write_page("granular", tried, findings, tmp_path, quick=False).read_text()
+    assert text.index("| Title of bad |") < text.index("| Title of good |")
+    differs = text.index("**differs**")
+    assert text.index("## Title of bad") < differs < text.index("Softer.") < text.index("**Open question:** How soft?")
+    assert text.index("How soft?") < text.index("## Title of good")
+    assert "version 0.1.0" in text
 
 
 @pytest.mark.parametrize("report_name", reports())
@@ -336,7 +351,16 @@ def test_a_verdict_can_be_kept():
 def test_results_stored_under_another_rule_are_not_verdicts(tmp_path):
     """A file of rows that say true or false: it is to be made anew."""
     old = {"quantity": "angle", "source": "20", "ours": "21", "difference": "+1", "agrees": True}
-    finding = {"asked": "", "rows": [old], "stopped": [], "grain_steps": 1, "wall_s": 1, "figure": "", "picture": ""}
+    finding = {
+        "asked": "",
+        "rows": [old],
+        "stopped": [],
+        "grain_steps": 1,
+        "wall_s": 1,
+        "figure": "",
+        "picture": "",
+        "made": {"version": "0"},
+    }
     (tmp_path / "granular.json").write_text(json.dumps({"tilt-fill": finding}))
     with pytest.raises(LabError, match="remove it"):
         read_findings(tmp_path / "granular.json", experiments("granular"), False)

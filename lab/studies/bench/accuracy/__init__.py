@@ -9,7 +9,6 @@ from pathlib import Path
 
 import matplotlib
 
-from lab.base.errors import LabError
 from lab.report.page import Page
 from lab.report.plots import STYLE
 from lab.studies.bench.accuracy import (
@@ -24,6 +23,7 @@ from lab.studies.bench.accuracy import (
     skin,
     stiffness,
 )
+from lab.studies.engine import choose
 
 # In the order of the page, which is also that of time.
 STUDIES = {
@@ -42,9 +42,7 @@ STUDIES = {
 
 def run_page(names: Sequence[str], out: Path, fast: bool) -> Path:
     """Do the studies whose names begin like one of `names`, or all, and write the page; returns its file."""
-    chosen = [name for name in STUDIES if not names or name.startswith(tuple(names))]
-    if not chosen:
-        raise LabError(f"there is no study {', '.join(names)}: take {', '.join(STUDIES)}.")
+    chosen = choose(names, STUDIES, "study")
     page = Page(out, "accuracy", "Speed against error")
     with matplotlib.rc_context(STYLE):
         for name in chosen:

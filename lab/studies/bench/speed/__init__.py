@@ -9,10 +9,10 @@ from pathlib import Path
 
 import matplotlib
 
-from lab.base.errors import LabError
 from lab.report.page import Page
 from lab.report.plots import STYLE
 from lab.studies.bench.speed import choices, curves, grains, parts, peers, worlds
+from lab.studies.engine import choose
 
 # In the order of the page, which is also that of time.
 STUDIES = {
@@ -27,9 +27,7 @@ STUDIES = {
 
 def run_page(names: Sequence[str], out: Path, fast: bool) -> Path:
     """Do the studies whose names begin like one of `names`, or all, and write the page; returns its file."""
-    chosen = [name for name in STUDIES if not names or name.startswith(tuple(names))]
-    if not chosen:
-        raise LabError(f"there is no study {', '.join(names)}: take {', '.join(STUDIES)}.")
+    chosen = choose(names, STUDIES, "study")
     page = Page(out, "speed", "Speed")
     page.say("""All times are of runs taken in turn, so that a machine whose speed drifts slows all alike: medians, and
         of the ratios of runs of the same turn the median, with the smallest and the largest in brackets. M stands for

@@ -8,14 +8,13 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 
-from lab.base.errors import LabError
-from lab.report.page import Page
+from lab.report.page import machine
 from lab.studies.bench.stability import hard_beds, hard_few, hard_moving, hard_starts, limit_map
 from lab.studies.bench.stability.case import ENERGY, OVERLAP, Case, Check, judge
 from lab.studies.bench.stability.pushed import push
-from lab.studies.bench.stability.records import Records
 from lab.studies.bench.stability.report import word, write_page
 from lab.studies.bench.stability.trial import follow
+from lab.studies.engine import Kept, choose
 from solvers.grains.integrators import INTEGRATORS
 from solvers.simulation import Simulation
 
@@ -29,45 +28,34 @@ def run_cases(names: Sequence[str], out: Path, fast: bool) -> bool:
 
     A case that breaks off fails, and the others go on. Raises LabError for a name that is none.
     """
-    chosen = _chosen(names, fast)
-    records = Records(Path(out) / "stability.json", fast)
+    quick = {name for name, case in CASES.items() if case.fast} | {FAST_MAP}
+    chosen = choose(names, [*CASES, *MAPS], "case", quick if fast else None)
+    kept = Kept(Path(out) / "stability.json", "bench stability", {"fast": fast})
     sound = True
     for name in chosen:
-        if name in records:
-            print(f"{name}: {word(records[name]['passed'])}, kept from an earlier run", flush=True)
-        else:
-            record = _attempt(name, fast)
-            if record:
-                records.keep(name, record)
-        sound &= name in records and records[name]["passed"]
-    cases = {name: records[name] for name in CASES if name in records}
-    maps = [row for name in MAPS if name in records for row in records[name]["rows"]]
-    write_page(Page(out, "stability", "Stability"), cases, maps)
+        if name in kept:
+            print(f"{name}: {word(kept[name]['passed'])}, kept from an earlier run", flush=True)
+        elif record := _attempt(name, fast):
+            kept.keep(name, record)
+        sound &= name in kept and kept[name]["passed"]
+    cases = {name: kept[name] for name in CASES if name in kept}
+    maps = [row for name in MAPS if name in kept for row in kept[name]["rows"]]
+    Path(out).mkdir(parents=True, exist_ok=True)
+    made = f"Made by `cargolab bench stability` on {kept.made.date}, on {machine()}."
+    write_page(Path(out), made, cases, maps)
     return sound
-
-
-def _chosen(names: Sequence[str], fast: bool) -> list[str]:
-    """All names in the order of the page, or those that begin like one that is asked for."""
-    known = [*CASES, *MAPS]
-    for name in names:
-        if not any(other.startswith(name) for other in known):
-            raise LabError(f"there is no case {name}; there are {', '.join(known)}.")
-    if names:
-        return [name for name in known if name.startswith(tuple(names))]
-    quick = [name for name, case in CASES.items() if case.fast] + [FAST_MAP]
-    return quick if fast else known
 
 
 def _attempt(name: str, fast: bool) -> dict[str, object] | None:
     """The record of a case or a part of the map; None, and a line, where it breaks off."""
     try:
-        return _run_map(MAPS[name], fast) if name in MAPS else _run_case(CASES[name], fast)
+        return _run_map(MAPS[name], fast) if name in MAPS else run_case(CASES[name], fast)
     except Exception as error:  # whatever it is, the other cases are worth running
         print(f"{name}: FAIL, broke off: {type(error).__name__}: {error}", flush=True)
         return None
 
 
-def _run_case(case: Case, fast: bool) -> dict[str, object]:
+def run_case(case: Case, fast: bool) -> dict[str, object]:
     """The record of a case at the automatic step and, if it has a measure and ran to its end, at longer ones."""
     trial = case.make(fast)
     run = Simulation(trial.scene, trial.position[None], 1, arch="cpu")

@@ -8,9 +8,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from lab.base.errors import LabError
 from lab.report.page import Page
 from lab.studies.bench.survival import kills, straits
+from lab.studies.engine import choose
 
 CASES = {f"kill-{one.__name__}": one for one in (kills.run, kills.sweep, kills.reproduce, kills.gallery)}
 CASES |= straits.CASES
@@ -23,10 +23,7 @@ def run_cases(names: Sequence[str], out: Path, fast: bool = False, blows: int | 
 
     blows: how often each kind of command is killed. Raises LabError for a name that is none.
     """
-    for name in names:
-        if not any(one.startswith(name) for one in CASES):
-            raise LabError(f"there is no case {name}; there are {', '.join(CASES)}.")
-    chosen = [name for name in CASES if (name.startswith(tuple(names)) if names else name in FAST or not fast)]
+    chosen = choose(names, CASES, "case", FAST if fast else None)
     blows = blows or (FEW if fast else KILLS)
     page, rows = Page(out, "survival", "Survival"), []
     with TemporaryDirectory(prefix="survival-", dir=out) as work:
