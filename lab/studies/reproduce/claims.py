@@ -2,7 +2,7 @@
 
 An experiment names its runs, each a preset with changes and perhaps a grid, in full and quick, and its rows, each a
 number that is told or held against what the source states (see `lab.studies.reproduce.compare`). What needs code has a
-name in `lab.studies.reproduce.named`. `docs/extending.md` has a recipe.
+name in `lab.studies.reproduce.named`.
 """
 
 import tomllib

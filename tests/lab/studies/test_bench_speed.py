@@ -1,5 +1,6 @@
 """The bench of speed: its pages, the kernels it times, and what it tells other codes. Nothing here is about time."""
 
+import re
 from dataclasses import replace
 from math import pi, sqrt
 
@@ -11,7 +12,7 @@ from lab.base.errors import LabError
 from lab.studies.bench import gpu
 from lab.studies.bench.devices import Device
 from lab.studies.bench.peers import lammps, liggghts
-from lab.studies.bench.speed import beds, curves, grains, parts, run_page, worlds
+from lab.studies.bench.speed import beds, curves, grains, parts, processors, run_page, worlds
 from lab.studies.bench.speed.beds import ACETATE, DIAMETER, Bed, settled_bed
 from lab.studies.bench.speed.counts import GRAIN, INTEGER, PAIR, REAL, total
 from lab.studies.bench.speed.curves import Curve, Tilting
@@ -258,3 +259,19 @@ def test_software_devices_are_named_and_run_only_small_beds(tmp_path, monkeypatc
 def test_a_deviating_grain_is_reported_in_diameters():
     found = np.array([[0.0, 0.0], [4.0, 3.0]])
     assert gpu.farthest(found, np.zeros((2, 2))) == pytest.approx(5.0 / DIAMETER)
+
+
+def test_ratios_to_other_codes_stand_by_processor_the_smallest_first(tmp_path, monkeypatch):
+    """Twice and 2.5 times as fast in two turns, on a processor of its own beside those that come with the lab."""
+    monkeypatch.setattr(processors, "processor", lambda: "a trial processor")
+    found = {"LAMMPS, history": np.array([2e6, 2e6]), "the lab, history (Mindlin)": np.array([4e6, 5e6])}
+    ours = processors.ratios_of(found, ["LAMMPS, history"], ["the lab, history (Mindlin)"])
+    processors.keep(tmp_path, ours)
+    lines = processors.write_page(tmp_path).read_text().splitlines()
+    rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in lines if line.startswith("| L")]
+    assert rows[0][:7] == [
+        "LAMMPS", "history", "history (Mindlin)", "at rest", "grain-steps", "2.25 (2 to 2.5)", "a trial processor"
+    ]  # fmt: skip
+    least = [float(re.search(r"\(?([\d.]+) to", row[5])[1]) for row in rows]
+    assert least == sorted(least) and len(rows) > 2
+    assert all(row[6] and row[7] for row in rows)

@@ -8,6 +8,7 @@ from pathlib import Path
 from lab.base.errors import LabError
 from lab.report.page import Page
 from lab.studies.bench.peers import lammps, liggghts
+from lab.studies.bench.speed import processors
 from lab.studies.bench.speed.beds import ACETATE, HEIGHT, SCALE, Bed, usual_bed
 from lab.studies.bench.speed.workers import Speeds, Worker, in_turn, millions, ratio, workers
 
@@ -27,6 +28,8 @@ def study(page: Page, work: Path, fast: bool) -> None:
     """Add the section to the page."""
     count, turns, seconds, work_of_one = (500, 3, 0.1, 1e6) if fast else (2000, 9, 0.4, GRAIN_STEPS)
     page.section("Beside other codes")
+    page.say("By processor, also of earlier measurements and of others: [speed-peers.md](speed-peers.md).")
+    processors.write_page(page.folder)
     missing = [peer.NAME for peer in RUNS if peer.available() is None]
     for name in missing:
         page.say(f"{name} is not installed here: the comparison with it is left out.")
@@ -47,6 +50,9 @@ def study(page: Page, work: Path, fast: bool) -> None:
         [[name, millions(found[name]), *(ratio(found[own], found[name]) for own in ours)] for name in theirs]
         + [[name, millions(found[name]), *("" for _ in ours)] for name in ours],
     )
+    if not fast:  # too few turns to be kept
+        processors.keep(page.folder, processors.ratios_of(found, theirs, ours))
+        processors.write_page(page.folder)
     if lammps.available() is not None:
         _on_two_cores(page, bed.times(10 if fast else COPIES), turns, seconds, work_of_one)
 

@@ -1,0 +1,97 @@
+"""The ratios to other codes for each processor measured: kept records, and the page made from them.
+
+Records that come with the lab are in `measured.json`; a run of the bench adds that of its own processor in its folder,
+in place of an older one.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
+from datetime import date
+from pathlib import Path
+
+import numpy as np
+from pydantic import TypeAdapter
+
+from lab.report.page import processor, render
+from lab.studies import engine
+from lab.studies.engine import Made
+
+MEASURED = Path(__file__).with_name("measured.json")
+HEADER = ("code", "law", "the lab's law", "bed", "counted in", "the lab: times as fast", "processor", "measured by")
+
+
+@dataclass(frozen=True)
+class Ratio:
+    """How many times as fast as a code the lab is: the median of turns, None where only the range is known.
+
+    `law` is the other code's, `ours` the lab's; `bed` says whether the grains rest or flow, `unit` what is counted.
+    """
+
+    code: str
+    law: str
+    ours: str
+    bed: str
+    unit: str
+    least: float
+    most: float
+    median: float | None = None
+
+    @property
+    def words(self) -> str:
+        """For a reader: "5.32 (4.82 to 6.04)"."""
+        low, high = f"{self.least:g}", f"{self.most:g}"
+        return f"{low} to {high}" if self.median is None else f"{self.median:g} ({low} to {high})"
+
+
+@dataclass(frozen=True)
+class Record:
+    """The ratios on a processor and what made them; `independent` if by others, with decks of their own."""
+
+    made: Made
+    ratios: Sequence[Ratio]
+    independent: bool = False
+
+
+RECORDS = TypeAdapter(dict[str, Record])
+
+
+def ratio(code: str, law: str, ours: str, speeds: np.ndarray, others: np.ndarray) -> Ratio:
+    """The ratio of grain-steps a second (turns,) on a bed at rest."""
+    found = speeds / others
+    least, most, median = (float(f"{pick(found):.3g}") for pick in (np.min, np.max, np.median))
+    return Ratio(code, law, ours, "at rest", "grain-steps", least, most, median)
+
+
+def keep(folder: Path, ratios: Sequence[Ratio]) -> None:
+    """Put the ratios on this processor into the folder's records."""
+    path = folder / "speed-peers.json"
+    record = Record(Made.now("cargolab bench speed peers"), ratios)
+    engine.write(path, {**engine.read(path), processor(): asdict(record)})
+
+
+def known(folder: Path) -> dict[str, Record]:
+    """The records by processor: those that come with the lab, and the folder's own in their place."""
+    return RECORDS.validate_python({**engine.read(MEASURED), **engine.read(folder / "speed-peers.json")})
+
+
+def write_page(folder: Path) -> Path:
+    """Write the page from the records; returns its file."""
+    rows = [(one, name, record) for name, record in known(folder).items() for one in record.ratios]
+    rows.sort(key=lambda row: row[0].least)
+    cells = [_row(*row) for row in rows]
+    return render(folder / "speed-peers.md", "speed_peers.md.j2", date=date.today(), header=HEADER, rows=cells)
+
+
+def _row(one: Ratio, name: str, record: Record) -> Sequence[str]:
+    who = (
+        "others, with decks of their own"
+        if record.independent
+        else f"the lab, {replace(record.made, processor='').words}"
+    )
+    return one.code, one.law, one.ours, one.bed, one.unit, one.words, name, who
+
+
+def ratios_of(found: Mapping[str, np.ndarray], theirs: Sequence[str], ours: Sequence[str]) -> list[Ratio]:
+    """The ratios of each of our timings to each of theirs, whose names are "CODE, LAW"."""
+    laws = {own: own.split(", ", 1)[1] for own in ours}
+    return [ratio(*name.split(", ", 1), laws[own], found[own], found[name]) for name in theirs for own in ours]
