@@ -1,13 +1,12 @@
 """Pages of results: Markdown made by Jinja2 templates, with tables and figures beside it.
 
-The templates are in the folder `templates`. A page is made from results and never typed: verify, reproduce and the
-hard cases have a template of their own and keep their results as JSON; other benches add block by block to a `Page`.
+The templates are in the folder `templates`. A page is made from results that are kept as JSON, and never typed:
+verify, reproduce and the hard cases have a template of their own; other benches add block by block to a `Page`.
 """
 
-import platform
 import re
 from collections.abc import Sequence
-from datetime import date
+from dataclasses import asdict
 from functools import cache
 from pathlib import Path
 
@@ -15,25 +14,23 @@ import matplotlib
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from matplotlib.figure import Figure
 
-from lab import __version__
 from lab.base.text import one_line
-from lab.recording import versions
+from lab.report.kept import Made, machine, plain, write
 from lab.report.plots import STYLE
-from solvers.machine.runtime import available_cores
 
 TEMPLATES = Path(__file__).with_name("templates")
 
 
 class Page:
-    """NAME.md in a folder, made if missing, and its figures NAME-FIGURE.png; `write` leaves it on the disk.
+    """The page of a bench: its results in NAME.json of a folder, made if missing, NAME.md and figures NAME-FIGURE.png.
 
-    `command` is what makes it; by default the bench of that name.
+    `write` leaves them on the disk.
     """
 
-    def __init__(self, folder: Path | str, name: str, title: str, command: str | None = None) -> None:
+    def __init__(self, folder: Path | str, name: str, title: str) -> None:
         self.folder, self.name, self.title = Path(folder), name, title
         self.folder.mkdir(parents=True, exist_ok=True)
-        self.made = f"Made by `cargolab {command or f'bench {name}'}` on {date.today()}, on {machine()}."
+        self.made, self.machine = Made.now(f"bench {name}"), machine()
         self._blocks: list[dict[str, object]] = []
 
     def section(self, title: str) -> None:
@@ -55,9 +52,11 @@ class Page:
         return path
 
     def write(self) -> Path:
-        """Write the page; returns its file."""
-        path = self.folder / f"{self.name}.md"
-        return render(path, "page.md.j2", title=self.title, made=self.made, blocks=self._blocks)
+        """Write the results and the page from them; returns its file."""
+        words = {"title": self.title, "machine": self.machine}
+        data = plain({**words, "made": asdict(self.made), "blocks": self._blocks})
+        write(self.folder / f"{self.name}.json", data)
+        return render(self.folder / f"{self.name}.md", "page.md.j2", **data)
 
 
 def render(path: Path, template: str, **data: object) -> Path:
@@ -74,24 +73,6 @@ def save_figure(path: Path, figure: Figure) -> Path:
     return path
 
 
-def machine() -> str:
-    """What computes, in words."""
-    found = versions()
-    cores = available_cores()
-    system = f"Cargo Shift Lab {__version__}, Python {found['python']}, Taichi {found.get('taichi', '?')}"
-    return f"{cores} core{'s' if cores > 1 else ''} of {processor()} ({system})"
-
-
-def processor() -> str:
-    """The processor by its maker's name."""
-    try:
-        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
-    except OSError:
-        return platform.processor() or platform.machine()
-    names = [line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")]
-    return names[0] if names else platform.machine()
-
-
 @cache
 def _environment() -> Environment:
     found = Environment(
@@ -103,6 +84,8 @@ def _environment() -> Environment:
 
 
 def _cell(value: object) -> str:
+    if value is None:
+        return "none"
     if isinstance(value, float):
         return f"{value:.3g}"
     return one_line(value).replace("|", "\\|").replace("<", "&lt;")

@@ -11,7 +11,7 @@ from pydantic import TypeAdapter, ValidationError
 
 from lab.base.errors import LabError
 from lab.preset.find import load
-from lab.studies.engine import Made, write
+from lab.report.kept import Made, write
 from lab.studies.reproduce.experiment import Experiment, Row
 from lab.studies.reproduce.runs import Batch
 

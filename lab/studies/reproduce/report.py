@@ -10,9 +10,9 @@ from lab.base.errors import LabError
 from lab.measures.value import LEVEL
 from lab.preset.accuracy import LEVELS
 from lab.recording import open_recording
-from lab.report.page import processor, render, save_figure
+from lab.report.kept import Made, processor
+from lab.report.page import render, save_figure
 from lab.report.plots import STYLE
-from lab.studies.engine import Made
 from lab.studies.reproduce.claims import reports
 from lab.studies.reproduce.estimates import Verdict
 from lab.studies.reproduce.experiment import Experiment, Row

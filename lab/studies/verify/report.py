@@ -10,9 +10,9 @@ from matplotlib.figure import Figure
 from rich.console import Console
 from rich.table import Table
 
-from lab.report.page import machine, render, save_figure
+from lab.report.kept import Made, machine, write
+from lab.report.page import render, save_figure
 from lab.report.plots import BLUE, GREY, STYLE, VERMILION
-from lab.studies.engine import Made, write
 from lab.studies.verify.case import Line, Outcome
 
 NAME = "verify"
@@ -129,7 +129,7 @@ def _as_json(outcomes: Sequence[Outcome], cases: Sequence[Mapping]) -> dict:
     return {
         "passed": all(outcome.passed for outcome in outcomes),
         "machine": machine(),
-        "made": asdict(Made.now("cargolab verify")),
+        "made": asdict(Made.now("verify")),
         "faults": {outcome.case.name: outcome.fault for outcome in outcomes if outcome.fault},
         "cases": cases,
         "lines": [_row(outcome, line) for outcome in outcomes for line in outcome.found.lines],

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from lab.base.errors import LabError
-from lab.studies.engine import Kept, Made, choose, plain
+from lab.report.kept import Made, plain
+from lab.studies.engine import Kept, choose
 
 
 def test_names_are_beginnings_and_without_names_the_usual_ones_are_taken():
@@ -24,7 +25,7 @@ def test_a_result_is_kept_with_what_made_it_and_is_none_of_another_version_or_ch
     kept = Kept(path, "bench trial", {"fast": True})
     assert "one" in kept and kept["one"]["value"] == 2.0 and kept["one"]["none"] is None
     made = kept["one"]["made"]
-    assert made["command"] == "bench trial" and all(made[name] for name in ("version", "date", "processor"))
+    assert made["command"] == "cargolab bench trial" and all(made[name] for name in ("version", "date", "processor"))
     assert "one" not in Kept(path, "bench trial", {"fast": False})
     data = json.loads(path.read_text())
     data["one"]["made"]["packages"]["numpy"] = "0"

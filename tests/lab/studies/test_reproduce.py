@@ -22,8 +22,8 @@ from lab.base.errors import LabError
 from lab.measures import critical_angle
 from lab.measures.value import over_worlds
 from lab.preset.find import load
+from lab.report.kept import Made
 from lab.studies import reproduce as package
-from lab.studies.engine import Made
 from lab.studies.reproduce import experiments, named, report, reproduce, runs, workers
 from lab.studies.reproduce.claims import FOLDER, read, reports
 from lab.studies.reproduce.estimates import Verdict, surely

@@ -12,9 +12,8 @@ from pathlib import Path
 import numpy as np
 from pydantic import TypeAdapter
 
-from lab.report.page import processor, render
-from lab.studies import engine
-from lab.studies.engine import Made
+from lab.report.kept import Made, processor, read, write
+from lab.report.page import render
 
 MEASURED = Path(__file__).with_name("measured.json")
 HEADER = ("code", "law", "the lab's law", "bed", "counted in", "the lab: times as fast", "processor", "measured by")
@@ -65,13 +64,13 @@ def ratio(code: str, law: str, ours: str, speeds: np.ndarray, others: np.ndarray
 def keep(folder: Path, ratios: Sequence[Ratio]) -> None:
     """Put the ratios on this processor into the folder's records."""
     path = folder / "speed-peers.json"
-    record = Record(Made.now("cargolab bench speed peers"), ratios)
-    engine.write(path, {**engine.read(path), processor(): asdict(record)})
+    record = Record(Made.now("bench speed peers"), ratios)
+    write(path, {**read(path), processor(): asdict(record)})
 
 
 def known(folder: Path) -> dict[str, Record]:
     """The records by processor: those that come with the lab, and the folder's own in their place."""
-    return RECORDS.validate_python({**engine.read(MEASURED), **engine.read(folder / "speed-peers.json")})
+    return RECORDS.validate_python({**read(MEASURED), **read(folder / "speed-peers.json")})
 
 
 def write_page(folder: Path) -> Path:

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 
-from lab.report.page import machine
+from lab.report.kept import machine
 from lab.studies.bench.stability import hard_beds, hard_few, hard_moving, hard_starts, limit_map
 from lab.studies.bench.stability.case import ENERGY, OVERLAP, Case, Check, judge
 from lab.studies.bench.stability.pushed import push
@@ -41,7 +41,7 @@ def run_cases(names: Sequence[str], out: Path, fast: bool) -> bool:
     cases = {name: kept[name] for name in CASES if name in kept}
     maps = [row for name in MAPS if name in kept for row in kept[name]["rows"]]
     Path(out).mkdir(parents=True, exist_ok=True)
-    made = f"Made by `cargolab bench stability` on {kept.made.date}, on {machine()}."
+    made = f"Made by `{kept.made.command}` on {kept.made.date}, on {machine()}."
     write_page(Path(out), made, cases, maps)
     return sound
 

@@ -1,0 +1,86 @@
+"""Results kept as JSON beside what made them: version, date, processor, command."""
+
+import json
+import math
+import platform
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from datetime import date
+from pathlib import Path
+
+from lab import __version__
+from lab.base.errors import LabError
+from lab.recording import versions
+from solvers.machine.runtime import available_cores
+
+
+@dataclass(frozen=True)
+class Made:
+    """What made a result: version of the lab, date, processor, command and packages; "" for what is not known."""
+
+    version: str
+    date: str = ""
+    processor: str = ""
+    command: str = ""
+    packages: Mapping[str, str] = field(default_factory=dict)
+
+    @classmethod
+    def now(cls, command: str) -> "Made":
+        """Of what this process makes by a command of the lab, such as "bench speed"."""
+        return cls(__version__, str(date.today()), processor(), f"cargolab {command}", versions())
+
+    @property
+    def words(self) -> str:
+        """For a reader: "version 0.2.0, 2026-11-23, AMD EPYC"."""
+        return ", ".join([f"version {self.version}", *filter(None, (self.date, self.processor))])
+
+
+def machine() -> str:
+    """What computes, in words."""
+    found = versions()
+    cores = available_cores()
+    system = f"Cargo Shift Lab {__version__}, Python {found['python']}, Taichi {found.get('taichi', '?')}"
+    return f"{cores} core{'s' if cores > 1 else ''} of {processor()} ({system})"
+
+
+def processor() -> str:
+    """The processor by its maker's name."""
+    try:
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
+    except OSError:
+        return platform.processor() or platform.machine()
+    names = [line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")]
+    return names[0] if names else platform.machine()
+
+
+def read(path: Path) -> dict[str, dict]:
+    """The results in a file, none if there is no file. Raises LabError."""
+    try:
+        found = json.loads(path.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        return {}
+    except (OSError, ValueError):
+        found = None
+    if not isinstance(found, dict) or not all(isinstance(one, dict) for one in found.values()):
+        raise LabError(f"{path} holds no results: remove it, or choose another folder with --out.")
+    return found
+
+
+def write(path: Path, results: Mapping[str, object]) -> None:
+    """Write results, atomically; a number that JSON lacks becomes null."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    part = path.with_suffix(".part")
+    text = json.dumps(plain(results), indent=1, ensure_ascii=False, allow_nan=False)
+    part.write_text(text + "\n", encoding="utf-8")
+    part.replace(path)
+
+
+def plain(value: object) -> object:
+    """The value with None for numbers that JSON lacks, NaN and infinities, and plain numbers for numpy's."""
+    if isinstance(value, Mapping):
+        return {key: plain(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [plain(item) for item in value]
+    if hasattr(value, "item"):
+        value = value.item()
+    return None if isinstance(value, float) and not math.isfinite(value) else value
