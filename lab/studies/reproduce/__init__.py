@@ -1,7 +1,7 @@
 """cargolab reproduce: run the experiments of the source and compare them with what the source states.
 
-What the source claims is in the folder `claims`. The runs of an experiment are kept in a folder of their own and are
-not repeated; a run that was cut short is continued.
+What the source claims is in the folder `lab/studies/claims`. The runs of an experiment are kept in a folder of their
+own and are not repeated; a run that was cut short is continued.
 """
 
 from collections.abc import Mapping, Sequence

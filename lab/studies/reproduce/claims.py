@@ -1,4 +1,4 @@
-"""The claims of a source as data: TOML files in the folder `claims`, one `[[experiment]]` after the other.
+"""The claims of a source as data: TOML files in the folder `lab/studies/claims`, one `[[experiment]]` after the other.
 
 An experiment names its runs, each a preset with changes and perhaps a grid, in full and quick, and its rows, each a
 number that is told or held against what the source states (see `lab.studies.reproduce.compare`). What needs code has a
@@ -18,7 +18,7 @@ from lab.studies.reproduce.compare import Claim, rows
 from lab.studies.reproduce.experiment import Experiment, Found, Told, Tolerance
 from lab.studies.reproduce.runs import Batch
 
-FOLDER = Path(__file__).with_name("claims")
+FOLDER = Path(__file__).parents[1] / "claims"
 Setting = dict[str, object]
 
 

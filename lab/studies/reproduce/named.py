@@ -9,12 +9,13 @@ from lab.measures.critical_angle import shift_curve
 from lab.measures.value import Value, over_worlds
 from lab.preset.ship import WaterGiven
 from lab.report.numbers import with_error
-from lab.studies.reproduce import capsizes, damping, figures, low_sides, memory, section
+from lab.studies.reproduce import figures, memory
 from lab.studies.reproduce.estimates import Verdict, mean, ratio, together
 from lab.studies.reproduce.experiment import ANY, Found, Row, Told, Tolerance, alone, counted, observed, stated
 from lab.studies.reproduce.figures import DROP, THEN, leading_number
-from lab.studies.reproduce.rolls import DIGITS, FREQUENCY, FROZEN, LOOSE, PEAK, rolls_figure
 from lab.studies.reproduce.runs import Outcome
+from lab.studies.reproduce.ships import capsizes, damping, low_sides, section
+from lab.studies.reproduce.ships.rolls import DIGITS, FREQUENCY, FROZEN, LOOSE, PEAK, rolls_figure
 
 ONSET = 0.02  # of the tank's amplitude: a larger response is distinguished from noise
 STEP = Tolerance(0.3, "the step of our frequencies")

@@ -5,7 +5,7 @@ import pytest
 
 from lab.base.errors import LabError
 from lab.studies.bench.accuracy import run_page
-from lab.studies.bench.accuracy.beds import Point, mean_and_interval, settings
+from lab.studies.bench.accuracy.beds import Point, mean_and_interval
 from lab.studies.bench.accuracy.collisions import worst_error
 from lab.studies.bench.accuracy.repeats import beds_for
 
@@ -23,11 +23,6 @@ def test_the_computed_number_of_beds_is_the_smallest_for_the_confidence():
     assert beds_for(1.0, 1.0) == 7
     assert beds_for(2.0, 2.0) == 7
     assert beds_for(1.0, 0.1) == pytest.approx((1.96 / 0.1) ** 2, rel=0.02)
-
-
-def test_points_come_in_the_order_of_a_sweep():
-    rows = settings({"a": [1, 2], "b": ["x", "y"]})
-    assert [tuple(row.values()) for row in rows] == [(1, "x"), (1, "y"), (2, "x"), (2, "y")]
 
 
 @pytest.mark.slow

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from lab.measures.value import over_worlds
-from lab.studies.reproduce.capsizes import NATURAL, READINGS, Scan, _heap_beside_grains, _rows, scan
 from lab.studies.reproduce.claims import experiments
 from lab.studies.reproduce.estimates import Verdict
-from lab.studies.reproduce.rolls import AMPLITUDE, FREQUENCY
 from lab.studies.reproduce.runs import Outcome
+from lab.studies.reproduce.ships.capsizes import NATURAL, READINGS, Scan, _heap_beside_grains, _rows, scan
+from lab.studies.reproduce.ships.rolls import AMPLITUDE, FREQUENCY
 
 BOX_ONCE, BOX_TWICE, SOFT_ONCE, SOFT_TWICE = READINGS
 HEIGHT = 0.055 + 0.34**2 / (12.0 * 0.11) - 0.0926  # m, GM

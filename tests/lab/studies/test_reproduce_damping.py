@@ -5,7 +5,7 @@ from math import pi, radians
 import numpy as np
 import pytest
 
-from lab.studies.reproduce.damping import Barge, Damping, Response, implied, safe
+from lab.studies.reproduce.ships.damping import Barge, Damping, Response, implied, safe
 
 NATURAL = 2.0 * pi / 1.282  # rad/s, the preset's
 HEIGHT = 0.055 + 0.34**2 / (12.0 * 0.11) - 0.0926  # m, GM

@@ -9,12 +9,12 @@ import pytest
 from lab.assembly.scene import build
 from lab.measures.value import over_worlds
 from lab.preset.find import load
-from lab.studies.reproduce import low_sides
-from lab.studies.reproduce.capsizes import swung
 from lab.studies.reproduce.estimates import Verdict
-from lab.studies.reproduce.low_sides import low_ship, tell, tell_map
-from lab.studies.reproduce.rolls import AMPLITUDE, FREQUENCY
 from lab.studies.reproduce.runs import Outcome
+from lab.studies.reproduce.ships import low_sides
+from lab.studies.reproduce.ships.capsizes import swung
+from lab.studies.reproduce.ships.low_sides import low_ship, tell, tell_map
+from lab.studies.reproduce.ships.rolls import AMPLITUDE, FREQUENCY
 
 BREADTH, DRAUGHT, SIDE, HATCH = 0.34, 0.11, 0.03, 0.06  # m, SIDE above the water, half of the hatch
 HEIGHT = 0.5 * DRAUGHT + BREADTH**2 / (12.0 * DRAUGHT) - 0.0926  # m, GM

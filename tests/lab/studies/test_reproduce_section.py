@@ -6,8 +6,16 @@ import pytest
 from lab.assembly.scene import vessels
 from lab.preset.find import load
 from lab.studies.reproduce.estimates import Verdict
-from lab.studies.reproduce.section import compared, counted_within, explained, window
-from lab.studies.reproduce.section_terms import MEASUREMENTS, PRESET, Term, estimated, potential_flow, rubbed, usual
+from lab.studies.reproduce.ships.section import compared, counted_within, explained, window
+from lab.studies.reproduce.ships.section_terms import (
+    MEASUREMENTS,
+    PRESET,
+    Term,
+    estimated,
+    potential_flow,
+    rubbed,
+    usual,
+)
 
 PEAK = [test for test in MEASUREMENTS if 5.0 < test.frequency < 5.5]
 

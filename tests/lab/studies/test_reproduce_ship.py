@@ -6,8 +6,8 @@ import pytest
 from lab.measures.value import over_worlds
 from lab.studies.reproduce.claims import experiments
 from lab.studies.reproduce.estimates import Verdict
-from lab.studies.reproduce.rolls import AMPLITUDE, FREQUENCY, rolls_figure
 from lab.studies.reproduce.runs import Outcome
+from lab.studies.reproduce.ships.rolls import AMPLITUDE, FREQUENCY, rolls_figure
 
 STAYS = np.nan
 response_tell, capsize_tell, freedom_tell = (

@@ -7,7 +7,7 @@ from math import pi
 import numpy as np
 import pytest
 
-from lab.studies.reproduce.fixed_axis import roll_together
+from lab.studies.reproduce.ships.fixed_axis import roll_together
 from solvers.machine.errors import BadState, Unavailable
 from solvers.ship.body import Body, bolted
 from solvers.ship.hydrostatics import Loading, balanced_heave, equilibrium, righting_lever

@@ -6,7 +6,7 @@ from math import atan, cos, pi, radians, sin, tan
 import numpy as np
 import pytest
 
-from lab.studies.reproduce.sliding_heap import HeapShip, box_heap, roll_with_heap, softening_lever
+from lab.studies.reproduce.ships.sliding_heap import HeapShip, box_heap, roll_with_heap, softening_lever
 from solvers.ship.body import Body
 from solvers.ship.cargo import relaxed_levers
 from solvers.ship.hydrostatics import righting_levers

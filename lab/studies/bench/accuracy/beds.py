@@ -1,6 +1,5 @@
 """The beds that the studies tilt and sway, small so that many can be run, and the results of a sweep over them."""
 
-import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -9,7 +8,7 @@ import numpy as np
 
 from lab.measures.value import over_worlds
 from lab.report.numbers import mean_within
-from lab.sweeps.sweep import run_sweep
+from lab.studies.reproduce.runs import Batch, Outcome, carry_out, outcomes
 
 TANK = {"tank.width": "60 mm", "tank.height": "50 mm", "grains.depth": "30 mm"}  # some 200 grains of 3 mm
 STIFF = {"contact.stiffness_scale": 1e-3, "run.accuracy": "standard"}
@@ -53,25 +52,14 @@ def sweep(
         hasty = {"run.repeats": 2, "grains.depth": "9 mm", "run.accuracy": "draft"}
         overrides = {**overrides, **hasty}
     print(f"{folder.name}: {name} over {', '.join(axes)}", flush=True)
-    swept = run_sweep(name, axes, overrides, folder, video=False, quiet=True)
-    points = []
-    for point, row in zip(swept.points, settings(axes), strict=True):
-        data = json.loads((point / "summary.json").read_text(encoding="utf-8"))
-        worlds = {
-            key: np.array([value for value in measure["worlds"] if value is not None], dtype=float)
-            for key, measure in data["measures"].items()
-        }
-        beds = len(next(iter(data["measures"].values()))["worlds"])
-        points.append(Point(row, worlds, data["cost"]["grain_steps"] / beds, point))
-    return points
+    carry_out(Batch(name, overrides, axes), folder, quiet=True)
+    return [_point(one) for one in outcomes(folder)]
 
 
-def settings(axes: Mapping[str, Sequence]) -> list[dict[str, object]]:
-    """The values of the swept keys at each point; the last key changes fastest."""
-    rows: list[dict[str, object]] = [{}]
-    for key, values in axes.items():
-        rows = [{**row, key: value} for row in rows for value in values]
-    return rows
+def _point(one: Outcome) -> Point:
+    found = {name: value.worlds for name, value in one.measures.items()}
+    worlds = {name: np.array([x for x in numbers if x is not None], dtype=float) for name, numbers in found.items()}
+    return Point(one.setting, worlds, one.cost["grain_steps"] / len(next(iter(found.values()))), one.folder)
 
 
 def mean_and_interval(point: Point, name: str, digits: int = 2) -> str:

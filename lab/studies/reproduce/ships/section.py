@@ -10,7 +10,7 @@ from lab.report.plots import BELOW, BLUE, GREY
 from lab.studies.reproduce.estimates import Verdict
 from lab.studies.reproduce.experiment import Row, Told, observed
 from lab.studies.reproduce.runs import Outcome
-from lab.studies.reproduce.section_terms import (
+from lab.studies.reproduce.ships.section_terms import (
     COMMON,
     FLAP,
     FLUME,

@@ -19,9 +19,9 @@ from lab.report.plots import BELOW
 from lab.studies.reproduce.estimates import surely
 from lab.studies.reproduce.experiment import EXACT, Row, Told, observed
 from lab.studies.reproduce.figures import leading_number
-from lab.studies.reproduce.rolls import DIGITS, FREQUENCY, PEAK, SIZE
 from lab.studies.reproduce.runs import Outcome
-from lab.studies.reproduce.sliding_heap import HeapShip, box_heap, roll_with_heap, softening_lever
+from lab.studies.reproduce.ships.rolls import DIGITS, FREQUENCY, PEAK, SIZE
+from lab.studies.reproduce.ships.sliding_heap import HeapShip, box_heap, roll_with_heap, softening_lever
 from solvers.ship.hydrostatics import metacentric_height, righting_levers
 from solvers.ship.motion import RollDamping
 from solvers.ship.outcome import CYCLES

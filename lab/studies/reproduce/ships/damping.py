@@ -14,9 +14,9 @@ from lab.report.plots import BELOW
 from lab.studies.reproduce.estimates import surely
 from lab.studies.reproduce.experiment import EXACT, Told, observed
 from lab.studies.reproduce.figures import SIZE
-from lab.studies.reproduce.fixed_axis import roll_together
-from lab.studies.reproduce.rolls import DIGITS
 from lab.studies.reproduce.runs import Outcome
+from lab.studies.reproduce.ships.fixed_axis import roll_together
+from lab.studies.reproduce.ships.rolls import DIGITS
 from solvers.ship.motion import RollDamping, Ship
 from solvers.ship.outcome import outcome
 

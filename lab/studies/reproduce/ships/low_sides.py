@@ -1,7 +1,7 @@
 """A barge that loose cargo does capsize: it has little freeboard and floods through its hatch.
 
-With correct hydrostatics and cargo counted once: grains compared with the heap of `lab.studies.reproduce.sliding_heap`
-near the limit of loss.
+With correct hydrostatics and cargo counted once: grains compared with the heap of the module `sliding_heap` near the
+limit of loss.
 """
 
 from collections.abc import Mapping, Sequence
@@ -13,15 +13,15 @@ from matplotlib.figure import Figure
 from lab.assembly.scene import vessels
 from lab.preset.find import load
 from lab.report.plots import BELOW, BLUE
-from lab.studies.reproduce.capsizes import CARGO, NATURAL, REPOSES, scan, swung
-from lab.studies.reproduce.capsizes import PRESET as BARGE
 from lab.studies.reproduce.estimates import chance, surely
 from lab.studies.reproduce.experiment import EXACT, Told, counted, observed
 from lab.studies.reproduce.figures import SIZE, leading_number
-from lab.studies.reproduce.rolls import AMPLITUDE
-from lab.studies.reproduce.rolls import FREQUENCY as WAVES
 from lab.studies.reproduce.runs import Outcome
-from lab.studies.reproduce.sliding_heap import HeapShip, box_heap
+from lab.studies.reproduce.ships.capsizes import CARGO, NATURAL, REPOSES, scan, swung
+from lab.studies.reproduce.ships.capsizes import PRESET as BARGE
+from lab.studies.reproduce.ships.rolls import AMPLITUDE
+from lab.studies.reproduce.ships.rolls import FREQUENCY as WAVES
+from lab.studies.reproduce.ships.sliding_heap import HeapShip, box_heap
 from solvers.ship.hydrostatics import buoyancy, metacentric_height, turned
 from solvers.ship.motion import RollDamping
 
