@@ -22,14 +22,13 @@ TEMPLATES = Path(__file__).with_name("templates")
 
 
 class Page:
-    """The page of a bench: its results in NAME.json of a folder, made if missing, NAME.md and figures NAME-FIGURE.png.
+    """The page of a bench: its results in NAME.json, NAME.md and figures NAME-FIGURE.png, in a folder made if missing.
 
     `write` leaves them on the disk.
     """
 
     def __init__(self, folder: Path | str, name: str, title: str) -> None:
         self.folder, self.name, self.title = Path(folder), name, title
-        self.folder.mkdir(parents=True, exist_ok=True)
         self.made, self.machine = Made.now(f"bench {name}"), machine()
         self._blocks: list[dict[str, object]] = []
 
@@ -61,6 +60,7 @@ class Page:
 
 def render(path: Path, template: str, **data: object) -> Path:
     """Write a page by one of the templates; returns its file. Raises jinja2's UndefinedError for data it lacks."""
+    path.parent.mkdir(parents=True, exist_ok=True)
     text = _environment().get_template(template).render(data)
     path.write_text(re.sub(r"\n{3,}", "\n\n", text).strip() + "\n", encoding="utf-8")
     return path
@@ -68,6 +68,7 @@ def render(path: Path, template: str, **data: object) -> Path:
 
 def save_figure(path: Path, figure: Figure) -> Path:
     """Save a figure in the style of the lab; returns its file."""
+    path.parent.mkdir(parents=True, exist_ok=True)
     with matplotlib.rc_context(STYLE):
         figure.savefig(path, dpi=130)
     return path

@@ -1,11 +1,17 @@
-"""What reproduce, verify and bench share: cases chosen by name, and results of cases that are not run again."""
+"""What reproduce, verify and bench share: cases and studies chosen by name, results of cases that are not run again."""
 
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import asdict
 from pathlib import Path
 
+import matplotlib
+
 from lab.base.errors import LabError
 from lab.report.kept import Made, read, write
+from lab.report.page import Page
+from lab.report.plots import STYLE
+
+Study = Callable[[Page, Path, bool], None]  # adds a section to a page; with a folder to work in, and whether in haste
 
 
 def choose(names: Collection[str], known: Iterable[str], what: str, usual: Collection[str] | None = None) -> list[str]:
@@ -20,6 +26,18 @@ def choose(names: Collection[str], known: Iterable[str], what: str, usual: Colle
     if names:
         return [one for one in known if one.startswith(tuple(names))]
     return [one for one in known if usual is None or one in usual]
+
+
+def add_studies(page: Page, studies: Mapping[str, Study], names: Collection[str], fast: bool) -> Path:
+    """Let the studies that begin like one of `names`, or all, add to a page; it is written after each.
+
+    What they keep is in a folder beside the page, by its name. Returns the page's file. Raises LabError.
+    """
+    with matplotlib.rc_context(STYLE):
+        for name in choose(names, studies, "study"):
+            studies[name](page, page.folder / page.name, fast)
+            path = page.write()
+    return path
 
 
 class Kept:

@@ -37,7 +37,6 @@ def show(outcome: Outcome, console: Console) -> None:
 def write_report(outcomes: Sequence[Outcome], folder: Path | str) -> Path:
     """Write verify.json, and from it verify.md with its figures; returns the page's file."""
     folder = Path(folder)
-    folder.mkdir(parents=True, exist_ok=True)
     errors = ""
     if any(outcome.found.lines for outcome in outcomes):
         with matplotlib.rc_context(STYLE):

@@ -7,10 +7,7 @@ are kept in the folder `work` and not run again, so an interrupted page can be c
 from collections.abc import Sequence
 from pathlib import Path
 
-import matplotlib
-
 from lab.report.page import Page
-from lab.report.plots import STYLE
 from lab.studies.bench.accuracy import (
     collisions,
     creep,
@@ -23,7 +20,7 @@ from lab.studies.bench.accuracy import (
     skin,
     stiffness,
 )
-from lab.studies.engine import choose
+from lab.studies.engine import add_studies
 
 # In the order of the page, which is also that of time.
 STUDIES = {
@@ -42,10 +39,4 @@ STUDIES = {
 
 def run_page(names: Sequence[str], out: Path, fast: bool) -> Path:
     """Do the studies whose names begin like one of `names`, or all, and write the page; returns its file."""
-    chosen = choose(names, STUDIES, "study")
-    page = Page(out, "accuracy", "Speed against error")
-    with matplotlib.rc_context(STYLE):
-        for name in chosen:
-            STUDIES[name](page, out / "accuracy", fast)
-            path = page.write()
-    return path
+    return add_studies(Page(out, "accuracy", "Speed against error"), STUDIES, names, fast)

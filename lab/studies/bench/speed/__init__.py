@@ -7,12 +7,9 @@ settled beds and the curves of the slow study are kept in the folder `work`; tim
 from collections.abc import Sequence
 from pathlib import Path
 
-import matplotlib
-
 from lab.report.page import Page
-from lab.report.plots import STYLE
 from lab.studies.bench.speed import choices, curves, grains, parts, peers, worlds
-from lab.studies.engine import choose
+from lab.studies.engine import add_studies
 
 # In the order of the page, which is also that of time.
 STUDIES = {
@@ -27,13 +24,8 @@ STUDIES = {
 
 def run_page(names: Sequence[str], out: Path, fast: bool) -> Path:
     """Do the studies whose names begin like one of `names`, or all, and write the page; returns its file."""
-    chosen = choose(names, STUDIES, "study")
     page = Page(out, "speed", "Speed")
     page.say("""All times are of runs taken in turn, so that a machine whose speed drifts slows all alike: medians, and
         of the ratios of runs of the same turn the median, with the smallest and the largest in brackets. M stands for
         a million grain-steps a second.""")
-    with matplotlib.rc_context(STYLE):
-        for name in chosen:
-            STUDIES[name](page, out / "speed", fast)
-            path = page.write()
-    return path
+    return add_studies(page, STUDIES, names, fast)

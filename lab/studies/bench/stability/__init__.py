@@ -40,7 +40,6 @@ def run_cases(names: Sequence[str], out: Path, fast: bool) -> bool:
         sound &= name in kept and kept[name]["passed"]
     cases = {name: kept[name] for name in CASES if name in kept}
     maps = [row for name in MAPS if name in kept for row in kept[name]["rows"]]
-    Path(out).mkdir(parents=True, exist_ok=True)
     made = f"Made by `{kept.made.command}` on {kept.made.date}, on {machine()}."
     write_page(Path(out), made, cases, maps)
     return sound

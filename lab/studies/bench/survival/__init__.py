@@ -26,6 +26,7 @@ def run_cases(names: Sequence[str], out: Path, fast: bool = False, blows: int | 
     chosen = choose(names, CASES, "case", FAST if fast else None)
     blows = blows or (FEW if fast else KILLS)
     page, rows = Page(out, "survival", "Survival"), []
+    Path(out).mkdir(parents=True, exist_ok=True)
     with TemporaryDirectory(prefix="survival-", dir=out) as work:
         for name in chosen:
             folder = Path(work) / name
