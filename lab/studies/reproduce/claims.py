@@ -6,7 +6,7 @@ name in `lab.studies.reproduce.named`.
 """
 
 import tomllib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
 from pathlib import Path
 from typing import Literal
@@ -14,7 +14,7 @@ from typing import Literal
 from pydantic import BaseModel, ConfigDict, Field
 
 from lab.studies.reproduce import named
-from lab.studies.reproduce.compare import Claim, rows
+from lab.studies.reproduce.compare import ALL, Claim, rows
 from lab.studies.reproduce.experiment import Experiment, Found, Told, Tolerance
 from lab.studies.reproduce.runs import Batch
 
@@ -124,14 +124,15 @@ def experiments(report: str) -> dict[str, Experiment]:
 
 
 def read(text: str) -> dict[str, Experiment]:
-    """The experiments of a file of claims by name. Raises pydantic's ValidationError and KeyError for a bad one."""
+    """The experiments of a file of claims by name. Raises ValueError for a bad one, before anything is run."""
     source = Source.model_validate(tomllib.loads(text))
     runs = {one.name: one.runs for one in source.experiment}
-    return {one.name: _experiment(one, runs[one.runs_of or one.name], source) for one in source.experiment}
+    return {one.name: _experiment(one, runs.get(one.runs_of or one.name, {}), source) for one in source.experiment}
 
 
 def _experiment(stated: Stated, runs: Mapping[str, Run], source: Source) -> Experiment:
     claims = [Claim.model_validate(one) for raw in stated.rows for one in spread(raw)]
+    _check(stated, claims, runs, source)
 
     def batches(quick: bool) -> dict[str, Batch]:
         other = "full" if quick else "quick"
@@ -151,6 +152,22 @@ def _experiment(stated: Stated, runs: Mapping[str, Run], source: Source) -> Expe
     words = {name: getattr(stated, name) for name in ("name", "title", "section", "states", "lost", "why", "question")}
     shown = stated.shown.run, stated.shown.at
     return Experiment(batches=batches, tell=tell, shown=shown, point=stated.shown.point, **words)
+
+
+def _check(stated: Stated, claims: Sequence[Claim], runs: Mapping[str, Run], source: Source) -> None:
+    """Raise ValueError where a name is of nothing: a run, a setting, a tolerance, a function."""
+    asked = [one for claim in claims for one in ([claim.runs] if isinstance(claim.runs, str) else claim.runs)]
+    names = {
+        "run": ([*asked, stated.shown.run], {*runs, ALL}),
+        "setting": ([run.like for run in runs.values()], source.settings),
+        "tolerance": ([claim.within for claim in claims], source.tolerance),
+        "function of rows": ([claim.by for claim in claims], named.ROWS),
+        "figure": ([stated.figure.get("by", "")], named.FIGURES),
+        "function": ([stated.tell], named.TELLS),
+    }
+    for kind, (used, known) in names.items():
+        if missing := {*filter(None, used)} - {*known}:
+            raise ValueError(f"{stated.name}: there is no {kind} {', '.join(sorted(missing))}")
 
 
 def spread(raw: Mapping[str, object]) -> Iterator[dict]:

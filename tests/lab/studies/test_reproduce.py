@@ -14,7 +14,7 @@ from types import SimpleNamespace
 import h5py
 import numpy as np
 import pytest
-from pydantic import TypeAdapter, ValidationError
+from pydantic import TypeAdapter
 
 import lab
 from lab.assembly.scene import build
@@ -279,10 +279,17 @@ def test_a_claim_in_a_file_is_run_and_judged_by_its_number_and_tolerance():
     assert [row.quantity for row in trial.tell({"A": found["A"]}).rows] == ["A slides"]  # a report may lack B
 
 
-@pytest.mark.parametrize("wrong", ['compare = "equal"', "vaule = 3.0", "between = [1.0]"])
-def test_a_claim_with_a_word_that_is_not_known_is_refused(wrong):
-    with pytest.raises(ValidationError):
+@pytest.mark.parametrize(
+    "wrong", ['compare = "equal"', "vaule = 3.0", "between = [1.0]", 'within = "beds"', 'by = "no such function"']
+)
+def test_a_claim_with_a_word_or_a_name_that_is_not_known_is_refused(wrong):
+    with pytest.raises(ValueError):
         read(CLAIMS.replace('compare = "fall"', wrong))
+
+
+def test_a_claim_on_a_run_that_there_is_not_is_refused():
+    with pytest.raises(ValueError, match="trial: there is no run C"):
+        read(CLAIMS.replace('["B", "A"]', '["C", "A"]'))
 
 
 @pytest.mark.parametrize("report_name", reports())
