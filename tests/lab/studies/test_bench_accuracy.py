@@ -38,6 +38,6 @@ def test_a_fast_study_writes_a_page(tmp_path):
     assert (tmp_path / "accuracy-rate.png").stat().st_size > 5000
 
 
-def test_an_unknown_study_is_said():
+def test_an_unknown_study_is_reported():
     with pytest.raises(LabError, match=r"there is no study colour; there are .*stiffness.*\.$"):
         run_page(["colour"], ".", fast=True)

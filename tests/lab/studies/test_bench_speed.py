@@ -169,7 +169,7 @@ def test_without_the_other_codes_the_page_says_so(tmp_path, monkeypatch):
     assert "times as fast" not in text
 
 
-def test_an_unknown_study_is_said(tmp_path):
+def test_an_unknown_study_is_reported(tmp_path):
     with pytest.raises(LabError, match=r"there is no study colour; there are grains, .*peers, curves\.$"):
         run_page(["colour"], tmp_path, fast=True)
 

@@ -31,7 +31,7 @@ from lab.studies.reproduce.experiment import EXACT, Experiment, Row, Told, Toler
 from lab.studies.reproduce.findings import Finding, asked, read_findings
 from lab.studies.reproduce.report import write_report
 from lab.studies.reproduce.runs import Batch, Outcome
-from lab.sweeps.grid import ask
+from lab.sweeps.grid import define_sweep
 from solvers.machine import runtime
 
 ROOT = Path(lab.__file__).parents[1]
@@ -293,7 +293,7 @@ def test_a_claim_on_a_run_that_there_is_not_is_refused():
 
 
 @pytest.mark.parametrize("report_name", reports())
-def test_every_verdict_of_the_reports_that_come_with_the_lab_says_its_tolerance(report_name):
+def test_every_verdict_of_the_shipped_reports_has_its_tolerance(report_name):
     """And no number of one bed has a ±."""
     kept = ROOT / "renders" / "gallery" / report_name / f"{report_name}.json"
     rows = [Row(**row) for finding in json.loads(kept.read_text()).values() for row in finding["rows"]]
