@@ -7,7 +7,7 @@ from pathlib import Path
 import matplotlib
 
 from lab.base.errors import LabError
-from lab.report.kept import Made, read, write
+from lab.report.kept import Made, plain, read, write
 from lab.report.page import Page
 from lab.report.plots import STYLE
 
@@ -59,6 +59,6 @@ class Kept:
         return found.get("asked") == self.asked and found.get("made", {}).get("packages") == self.made.packages
 
     def keep(self, name: str, result: Mapping[str, object]) -> None:
-        """Put a result on the disk, in place of an older one."""
-        self.results[name] = {"asked": self.asked, "made": asdict(self.made), **result}
+        """Put a result on the disk, in place of an older one; a number that JSON lacks becomes None."""
+        self.results[name] = plain({"asked": self.asked, "made": asdict(self.made), **result})
         write(self.path, self.results)

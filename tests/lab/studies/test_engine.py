@@ -21,7 +21,9 @@ def test_names_are_beginnings_and_without_names_the_usual_ones_are_taken():
 
 def test_a_result_is_kept_with_what_made_it_and_is_none_of_another_version_or_choice(tmp_path):
     path = tmp_path / "new" / "kept.json"
-    Kept(path, "bench trial", {"fast": True}).keep("one", {"value": np.float64(2.0), "none": float("nan")})
+    first = Kept(path, "bench trial", {"fast": True})
+    first.keep("one", {"value": np.float64(2.0), "none": float("nan")})
+    assert first["one"]["none"] is None, "the page is the same before and after it was read again"
     kept = Kept(path, "bench trial", {"fast": True})
     assert "one" in kept and kept["one"]["value"] == 2.0 and kept["one"]["none"] is None
     made = kept["one"]["made"]
