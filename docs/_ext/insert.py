@@ -29,6 +29,7 @@ SHOWN = {  # pages that lie elsewhere, and the pages here that show them
     "renders/gallery/bench/accuracy": "results/accuracy",
     "renders/gallery/bench/outlines": "results/outlines",
     "renders/gallery/bench/speed": "results/speed",
+    "renders/gallery/bench/speed-peers": "results/speed-peers",
     "renders/gallery/bench/stability": "results/stability",
     "renders/gallery/bench/verify": "results/verify",
     "renders/gallery/granular/granular": "results/granular",
