@@ -1,8 +1,9 @@
 """The scene: everything the solver needs to know about an experiment, in SI units."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Hashable, Sequence
+from dataclasses import dataclass, field, fields, is_dataclass, replace
 from itertools import product
+from typing import Annotated
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from solvers.grains.laws import COHESION, NORMAL, ROLLING, TANGENTIAL
 from solvers.grains.materials import Interface, Material, interface, touching
 from solvers.grains.shapes.given import Shapes
 from solvers.grains.timestep import Limit, limits, watched
+from solvers.machine.marks import EachWorld, LargestOfWorlds, NotOfBed, marked
 from solvers.ship.vessel import Vessel
 from solvers.tank.parts import Part
 from solvers.tank.tank import Tank
@@ -34,34 +36,36 @@ class Scene:
     - `step` Δt in s, None: derived; `start_speed` (m/s): the highest closing speed of two grains, or of one and a wall,
       at the start; `velocity` (W, n, 2) m/s and `spin` (W, n) rad/s at the start, None: at rest.
     - `shapes` of irregular grains, whose `radius` and `sizes` are those of discs of equal area; None for discs.
+
+    The fields' marks say which may differ between the worlds of a launch, and from which a settled bed follows.
     """
 
-    radius: np.ndarray
+    radius: Annotated[np.ndarray, EachWorld(lambda scene: scene.radius.shape[1])]
     outline: np.ndarray
-    grain: Material | Sequence[Material]
-    wall: Material | Sequence[Material]
+    grain: Annotated[Material | Sequence[Material], EachWorld(lambda scene: scene.longest_bridge)]
+    wall: Annotated[Material | Sequence[Material], EachWorld()]
     normal: str = "hertz-viscoelastic"
     tangential: str = "haff-werner"
     rolling: str = "none"
     cohesion: str = "none"
     stiffness_scale: float = 1.0
     gravity: float = 9.81
-    motions: Sequence[Sequence] = ()
-    soft_start: float = 0.0
-    step: float | None = None
-    start_speed: float = 0.0
+    motions: Annotated[Sequence[Sequence], EachWorld(lambda scene: scene.kinds_of_motions), NotOfBed()] = ()
+    soft_start: Annotated[float, NotOfBed()] = 0.0
+    step: Annotated[float | None, NotOfBed()] = None
+    start_speed: Annotated[float, LargestOfWorlds(), NotOfBed()] = 0.0
     sizes: tuple[float, float] | None = None
-    velocity: np.ndarray | None = None
-    spin: np.ndarray | None = None
-    kind: np.ndarray | None = None
+    velocity: Annotated[np.ndarray | None, EachWorld(lambda scene: scene.velocity is None)] = None
+    spin: Annotated[np.ndarray | None, EachWorld(lambda scene: scene.spin is None)] = None
+    kind: Annotated[np.ndarray | None, EachWorld(lambda scene: scene.kind is None)] = None
     others: tuple[Material, ...] = ()
     unlike: tuple[tuple[tuple[int, int], Material], ...] = ()
     fixed: np.ndarray = field(default_factory=lambda: np.zeros((0, 3)))
     open_edges: tuple[int, ...] = ()
     parts: tuple[Part, ...] = ()
-    shapes: Shapes | None = None
-    vessels: Sequence[Vessel] = ()
-    interval: float | None = None
+    shapes: Annotated[Shapes | None, EachWorld(lambda scene: scene.shapes and scene.shapes.alike)] = None
+    vessels: Annotated[Sequence[Vessel], EachWorld(lambda scene: bool(scene.vessels)), NotOfBed()] = ()
+    interval: Annotated[float | None, NotOfBed()] = None
     thickness: float | None = None
     length: float | None = None
     more_tanks: tuple[Tank, ...] = ()
@@ -233,40 +237,50 @@ class Scene:
         """The step Δt (s) in use."""
         return self.step or self.step_limits()[0].step
 
-    def shared(self) -> tuple:
-        """Everything that must be equal for worlds of two scenes to run in one launch; the steps must be set."""
-        tanks = [(tank.outline.tobytes(), tank.thickness, tank.open_edges, tank.length) for tank in self.tanks]
-        kinds = tuple(
+    @property
+    def kinds_of_motions(self) -> tuple:
+        """What selects the compiled motion of the tank: kind, number of parameters and coordinate of each."""
+        return tuple(
             (type(motion), len(motion.parameters(self.soft_start)), motion.coordinate) for motion in self.motions[0]
         )
-        laws = self.normal, self.tangential, self.rolling, self.cohesion, self.longest_bridge
-        words = self.integrator, self.precision, self.schedule
-        numbers = self.radius.shape[1], self.gravity, self.soft_start, self.step, self.sizes, self.stiffness_scale
-        shapes = (self.shapes.outlines, self.shapes.contact, self.shapes.nodes) if self.shapes else None
-        carried = bool(self.vessels), self.interval
-        rest = carried, self.others, self.unlike, self.parts, self.velocity is None, shapes
-        return (*tanks, self.fixed.tobytes(), kinds, *laws, *words, *numbers, *rest)
+
+    def shared(self) -> tuple:
+        """Everything that must be equal for worlds of two scenes to run in one launch; the steps must be set.
+
+        It follows from the marks of the fields: all of each that has none, and what those of `EachWorld` agree in.
+        """
+        each, largest = marked(Scene, EachWorld), marked(Scene, LargestOfWorlds)
+        names = [field.name for field in fields(self) if field.init and field.name not in largest]
+        return tuple(each[name].alike(self) if name in each else comparable(getattr(self, name)) for name in names)
 
     @classmethod
     def joined(cls, scenes: "Sequence[Scene]") -> "Scene":
         """One scene with the worlds of all `scenes`; raises ValueError unless their `shared()` are equal."""
-        first = scenes[0]
-        if any(scene.shared() != first.shared() for scene in scenes):
+        if any(scene.shared() != scenes[0].shared() for scene in scenes):
             raise ValueError("these scenes cannot run in one launch")
-        started, shapes = first.velocity is not None, first.shapes
-        if shapes:
-            which, angle = ([getattr(scene.shapes, name) for scene in scenes] for name in ("which", "angle"))
-            shapes = replace(shapes, which=np.concatenate(which), angle=np.concatenate(angle))
-        return replace(
-            first,
-            radius=np.concatenate([scene.radius for scene in scenes]),
-            grain=[material for scene in scenes for material in scene.grain],
-            wall=[material for scene in scenes for material in scene.wall],
-            motions=[motions for scene in scenes for motions in scene.motions],
-            vessels=[vessel for scene in scenes for vessel in scene.vessels],
-            start_speed=max(scene.start_speed for scene in scenes),
-            velocity=np.concatenate([scene.velocity for scene in scenes]) if started else None,
-            spin=np.concatenate([scene.spin for scene in scenes]) if started else None,
-            kind=np.concatenate([scene.kind for scene in scenes]) if first.kinds > 1 else None,
-            shapes=shapes,
-        )
+        each = {name: _joined([getattr(scene, name) for scene in scenes]) for name in marked(Scene, EachWorld)}
+        largest = {name: max(getattr(scene, name) for scene in scenes) for name in marked(Scene, LargestOfWorlds)}
+        return replace(scenes[0], **each, **largest)
+
+
+def comparable(value: object) -> Hashable:
+    """A value with arrays in it, in a form that can be compared and hashed."""
+    if isinstance(value, np.ndarray):
+        return value.shape, value.tobytes()
+    if isinstance(value, tuple | list):
+        return tuple(map(comparable, value))
+    if is_dataclass(value):
+        return tuple(comparable(getattr(value, field.name)) for field in fields(value))
+    return value
+
+
+def _joined(values: list) -> object:
+    """The entries of all worlds, from those of each scene; None where there are none."""
+    first = values[0]
+    if first is None:
+        return None
+    if isinstance(first, np.ndarray):
+        return np.concatenate(values)
+    if isinstance(first, Shapes):
+        return replace(first, **{name: _joined([getattr(one, name) for one in values]) for name in ("which", "angle")})
+    return [one for value in values for one in value]

@@ -5,7 +5,7 @@ from itertools import accumulate
 import numpy as np
 
 from lab.base.errors import LabError
-from lab.preset.schema import Resolved
+from lab.preset.schema import Preset
 from solvers.grains.bed.sizes import apportion
 from solvers.grains.shapes.given import Shapes
 from solvers.machine.errors import BadOutline
@@ -14,7 +14,7 @@ STREAM = 2  # of the random numbers of a repeat, beside those of sizes and place
 MOST_OUTLINES = 20_000
 
 
-def draw_shapes(preset: Resolved, count: int) -> Shapes | None:
+def draw_shapes(preset: Preset, count: int) -> Shapes | None:
     """The outlines of `count` grains in each repeat, and their angles at the start; None if all are discs.
 
     The outlines are in the order of `classes`. Those of a repeat do not depend on the other repeats. Raises LabError
@@ -33,12 +33,12 @@ def draw_shapes(preset: Resolved, count: int) -> Shapes | None:
         angle=np.stack([_angles(preset, count, r) for r in random]),
         contact=preset.contact.outlines,
         nodes=preset.contact.nodes,
-        reach=max(shape.reach for shape in preset.shapes.values()),
-        least_mass=min(shape.least_mass for shape in preset.shapes.values()),
+        reach=max(shape.reach for shape in preset.shape_classes.values()),
+        least_mass=min(shape.least_mass for shape in preset.shape_classes.values()),
     )
 
 
-def classes(preset: Resolved) -> np.ndarray:
+def classes(preset: Preset) -> np.ndarray:
     """The class (K,) of each outline of the scene, a number in the order of the preset's shapes.
 
     Class by class; within one whose phases are random, repeat by repeat.
@@ -46,22 +46,22 @@ def classes(preset: Resolved) -> np.ndarray:
     return np.repeat(np.arange(len(preset.shapes)), _numbers(preset))
 
 
-def _numbers(preset: Resolved) -> list[int]:
+def _numbers(preset: Preset) -> list[int]:
     """How many outlines each class has, in all repeats."""
-    return [shape.draws * preset.run.repeats if shape.random else 1 for shape in preset.shapes.values()]
+    return [shape.draws * preset.run.repeats if shape.random else 1 for shape in preset.shape_classes.values()]
 
 
-def _outlines(preset: Resolved, name: str, random: list[np.random.Generator]) -> list:
-    shape = preset.shapes[name]
+def _outlines(preset: Preset, name: str, random: list[np.random.Generator]) -> list:
+    shape = preset.shape_classes[name]
     try:
         return [outline for r in (random if shape.random else random[:1]) for outline in shape.outlines(r)]
     except BadOutline as error:
         raise LabError(f"shapes.{name}: among its random phases are some that cannot be: {error}") from None
 
 
-def _ordered(preset: Resolved, count: int, repeat: int) -> np.ndarray:
+def _ordered(preset: Preset, count: int, repeat: int) -> np.ndarray:
     """The outline (n,) of each grain of a repeat, class by class: each class has its share, divided equally."""
-    shapes = preset.shapes.values()
+    shapes = preset.shape_classes.values()
     each = apportion([shape.share * count for shape in shapes])
     first = accumulate(_numbers(preset)[:-1], initial=0)
     own = [start + repeat * shape.draws * shape.random for start, shape in zip(first, shapes, strict=True)]
@@ -69,7 +69,7 @@ def _ordered(preset: Resolved, count: int, repeat: int) -> np.ndarray:
     return np.concatenate([start + np.arange(number) % shape.draws for start, number, shape in parts])
 
 
-def _angles(preset: Resolved, count: int, random: np.random.Generator) -> np.ndarray:
+def _angles(preset: Preset, count: int, random: np.random.Generator) -> np.ndarray:
     if preset.grains.orientation == "random":
         return random.uniform(0.0, 2.0 * np.pi, count)
     return np.full(count, preset.grains.orientation)

@@ -2,7 +2,7 @@
 
 from lab.base.errors import LabError
 from lab.base.memory import SHARE, machine_memory
-from lab.preset.schema import Resolved
+from lab.preset.schema import Preset
 
 # Bytes per grain at the peak of a run, with its contacts and its share of the checkpoint and of the stored bed.
 # Measured as the difference between 60 beds and one: 1.7 kB for discs, 7 kB for grains of rice that are not settled.
@@ -10,7 +10,7 @@ A_DISC, AN_OUTLINE = 2_000, 20_000
 A_BED = 10  # fixed cost of a bed, as a number of grains
 
 
-def check_room(preset: Resolved, count: int) -> None:
+def check_room(preset: Preset, count: int) -> None:
     """Raise LabError if the beds of `count` grains do not fit into this machine's memory."""
     a_grain, beds = AN_OUTLINE if preset.shapes else A_DISC, preset.run.repeats
     room, a_bed = SHARE * machine_memory(), (count + A_BED) * a_grain
@@ -24,7 +24,7 @@ def check_room(preset: Resolved, count: int) -> None:
     raise LabError(f"run.repeats: {needed}, and {bound}: take at most {int(room // a_bed)} beds.")
 
 
-def _count_key(preset: Resolved) -> str:
+def _count_key(preset: Preset) -> str:
     """The key that sets the number of grains."""
     grains = preset.grains
     if grains.listed:

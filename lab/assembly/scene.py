@@ -11,7 +11,7 @@ from lab.assembly.room import check_room
 from lab.assembly.ship import make_vessel
 from lab.base.errors import LabError
 from lab.preset.accuracy import LEVELS, check_forced
-from lab.preset.schema import Resolved
+from lab.preset.schema import Preset
 from lab.preset.units import show
 from solvers.grains.bed.filling import NONE_FIXED, DoesNotFit, count_for_depth, headroom, lattice, start_positions
 from solvers.grains.bed.sizes import Sizes
@@ -26,47 +26,51 @@ from solvers.tank.outline import lining, raised
 THROUGH = 1.0  # radii: at this overlap grains pass through each other and the walls
 
 
-def grain_count(preset: Resolved) -> int:
+def grain_count(preset: Preset) -> int:
     """Number of grains in one tank, fixed ones not counted."""
     grains = preset.grains
+    if grains.listed:
+        return len(grains.listed)
     if grains.count is not None:
         return grains.count
-    return count_for_depth(grains.depth, np.array(preset.tank.outline), grains.sizes, fixed_grains(preset))
+    return count_for_depth(grains.depth, np.array(preset.tank.corners), preset.sizes, fixed_grains(preset))
 
 
-def fixed_grains(preset: Resolved) -> np.ndarray:
+def fixed_grains(preset: Preset) -> np.ndarray:
     """The fixed grains (k, 3) y, z, radius in m that line a rough tank, the same in all repeats (seed run.seed)."""
     tank = preset.tank
     if tank.roughness is None:
         return NONE_FIXED
-    return lining(np.array(tank.outline), tank.roughness, np.random.default_rng(preset.run.seed))
+    return lining(np.array(tank.corners), tank.roughness, np.random.default_rng(preset.run.seed))
 
 
-def filling_outline(preset: Resolved) -> np.ndarray:
+def filling_outline(preset: Preset) -> np.ndarray:
     """The outline (m, 2) m of the tank in which the grains settle.
 
     Grains start higher than they come to rest. If they are thrown, fill an open tank to its rim, or have no room to
     start in a closed one, the walls are extended upwards until the bed has settled.
     """
-    outline, grains = np.array(preset.tank.outline), preset.grains
+    outline, grains = np.array(preset.tank.corners), preset.grains
     if grains.listed or grains.region or not preset.run.settle:
         return outline
     count, largest = grain_count(preset), _farthest(preset)
     low = not (grains.surface == "disturbed" or preset.tank.open_edges)
     if low and len(lattice(largest, outline, fixed_grains(preset), _plates(preset))) >= count:
         return outline
-    return raised(outline, headroom(count, largest, preset.tank.width))
+    return raised(outline, headroom(count, largest, preset.tank.extent[0]))
 
 
-def _farthest(preset: Resolved) -> float:
+def _farthest(preset: Preset) -> float:
     """Upper bound (m) on the distance of a grain's outline from its centroid."""
     if not preset.shapes:
-        return 0.5 * preset.grains.range[1]
-    alone = [(replace(preset.grains, table=((shape.diameter, 1.0),)), shape) for shape in preset.shapes.values()]
-    return max(0.5 * grains.range[1] * shape.reach for grains, shape in alone)
+        return 0.5 * preset.diameters[1]
+    alone = [
+        (replace(preset.sizes, classes=((shape.diameter, 1.0),)), shape) for shape in preset.shape_classes.values()
+    ]
+    return max(0.5 * sizes.range[1] * shape.reach for sizes, shape in alone)
 
 
-def build(preset: Resolved, hands: Sequence[Steered] | None = None) -> tuple[Scene, np.ndarray]:
+def build(preset: Preset, hands: Sequence[Steered] | None = None) -> tuple[Scene, np.ndarray]:
     """The scene of all repeats and the starting positions (W, n, 2) m; repeat w has the seed run.seed + w.
 
     hands: steered motions of the tanks, which replace those of the preset.
@@ -77,18 +81,18 @@ def build(preset: Resolved, hands: Sequence[Steered] | None = None) -> tuple[Sce
     """
     check_room(preset, grain_count(preset))
     radius, position, more = _listed(preset) if preset.grains.listed else _filled(preset)
-    low, high = preset.grains.range
+    low, high = preset.diameters
     scene = Scene(
         radius=radius,
-        outline=np.array(preset.tank.outline),
+        outline=np.array(preset.tank.corners),
         grain=preset.material,
-        wall=preset.wall,
+        wall=preset.wall_material,
         **_kinds(preset, radius.shape),
         normal=preset.contact.normal,
         tangential=preset.contact.tangential,
         rolling=preset.contact.rolling,
         cohesion=preset.contact.cohesion,
-        stiffness_scale=preset.contact.stiffness_scale,
+        stiffness_scale=preset.stiffness_scale,
         gravity=preset.run.gravity,
         motions=[tuple(preset.motion.parts.values() if hands is None else hands)] * len(radius),
         soft_start=preset.motion.soft_start,
@@ -97,7 +101,7 @@ def build(preset: Resolved, hands: Sequence[Steered] | None = None) -> tuple[Sce
         open_edges=preset.tank.open_edges,
         parts=tuple(preset.parts.values()),
         vessels=vessels(preset) * len(radius),
-        thickness=slab(preset),
+        thickness=preset.thickness,
         integrator=preset.run.integrator,
         precision=preset.run.precision,
         schedule=preset.run.schedule,
@@ -110,19 +114,14 @@ def build(preset: Resolved, hands: Sequence[Steered] | None = None) -> tuple[Sce
     return scene, position
 
 
-def vessels(preset: Resolved) -> list[Vessel]:
+def vessels(preset: Preset) -> list[Vessel]:
     """The ship whose hold is the tank, if there is one. Raises LabError if she does not float."""
     if preset.ship is None:
         return []
-    return [make_vessel(preset.ship, preset.water, preset.waves, preset.run.gravity)]
+    return [make_vessel(preset.ship, preset.sea, preset.waves, preset.run.gravity)]
 
 
-def slab(preset: Resolved) -> float:
-    """Thickness (m) of the slab: the tank's, else the grains' mean diameter."""
-    return preset.tank.thickness or preset.grains.diameter
-
-
-def _filled(preset: Resolved) -> tuple[np.ndarray, np.ndarray, dict]:
+def _filled(preset: Preset) -> tuple[np.ndarray, np.ndarray, dict]:
     """Radii (W, n), positions (W, n, 2) and shapes of the grains that fill a tank, each repeat from its own seed.
 
     The grains are at rest, and so far apart that irregular ones can turn freely.
@@ -131,13 +130,13 @@ def _filled(preset: Resolved) -> tuple[np.ndarray, np.ndarray, dict]:
     shapes = draw_shapes(preset, count)
     random = [np.random.default_rng(preset.run.seed + w) for w in range(preset.run.repeats)]
     if shapes is None:
-        radius = reach = np.stack([grains.sizes.draw(count, r) for r in random])
+        radius = reach = np.stack([preset.sizes.draw(count, r) for r in random])
     else:
         radius = _sized(preset, shapes, random)
         reach = radius * np.array([outline.bounding_radius for outline in shapes.outlines])[shapes.which]
     outline, fixed = filling_outline(preset), fixed_grains(preset)
     plates, thrown = _plates(preset), grains.surface == "disturbed"
-    region = np.array(grains.region) if grains.region else None
+    region = np.array(grains.place) if grains.place else None
     try:
         position = [
             start_positions(size, outline, r, fixed, plates, thrown, region)
@@ -148,20 +147,20 @@ def _filled(preset: Resolved) -> tuple[np.ndarray, np.ndarray, dict]:
     return radius, np.stack(position), {"shapes": shapes} if shapes else {}
 
 
-def _sized(preset: Resolved, shapes: Shapes, random: list[np.random.Generator]) -> np.ndarray:
+def _sized(preset: Preset, shapes: Shapes, random: list[np.random.Generator]) -> np.ndarray:
     """Radii (W, n) of discs of equal area, spread about that of each grain's class."""
     grains = preset.grains
-    diameter = np.array([shape.diameter for shape in preset.shapes.values()])[classes(preset)][shapes.which]
-    relative = Sizes(((2.0, 1.0),), grains.spread, grains.distribution == "normal")
+    diameter = np.array([shape.diameter for shape in preset.shape_classes.values()])[classes(preset)][shapes.which]
+    relative = Sizes(((2.0, 1.0),), grains.spread, grains.normal)
     return 0.5 * diameter * np.stack([relative.draw(shapes.which.shape[1], r) for r in random])
 
 
-def _plates(preset: Resolved) -> list[np.ndarray]:
+def _plates(preset: Preset) -> list[np.ndarray]:
     """The tank's parts as polylines (m, 2) in m, in their rest position."""
     return [np.array(part.points) for part in preset.parts.values()]
 
 
-def _kinds(preset: Resolved, shape: tuple[int, int]) -> dict:
+def _kinds(preset: Preset, shape: tuple[int, int]) -> dict:
     """The kinds of grains, mixed at random, each repeat from its own seed; empty if there is only one kind."""
     if not preset.kinds:
         return {}
@@ -169,15 +168,15 @@ def _kinds(preset: Resolved, shape: tuple[int, int]) -> dict:
     bounds = np.round(np.cumsum([kind.share for kind in preset.kinds.values()]) * count)
     ordered = (np.searchsorted(bounds, np.arange(count), side="right") + 1) % (len(preset.kinds) + 1)
     random = [np.random.default_rng([preset.run.seed + w, 1]) for w in range(worlds)]
-    against = [((0, k), kind.against) for k, kind in enumerate(preset.kinds.values(), start=1) if kind.against]
+    against = [((0, k), other.against) for k, other in enumerate(preset.others.values(), start=1) if other.against]
     return {
         "kind": np.stack([r.permutation(ordered) for r in random]),
-        "others": tuple(kind.material for kind in preset.kinds.values()),
+        "others": tuple(other.material for other in preset.others.values()),
         "unlike": tuple(against),
     }
 
 
-def _listed(preset: Resolved) -> tuple[np.ndarray, np.ndarray, dict]:
+def _listed(preset: Preset) -> tuple[np.ndarray, np.ndarray, dict]:
     """Radii and positions of the listed grains, the same in all repeats, and their velocities if any."""
     listed = np.array([preset.grains.listed] * preset.run.repeats)
     velocity, spin = listed[..., 3:5], listed[..., 5]
@@ -208,7 +207,7 @@ def _check_softness(scene: Scene) -> None:
             )
 
 
-def _step(preset: Resolved, scene: Scene) -> float:
+def _step(preset: Preset, scene: Scene) -> float:
     limit, run = scene.step_limits()[0], preset.run
     if run.step == "auto":
         wanted = scene.longest_step(LEVELS[run.accuracy].longer_steps)

@@ -1,4 +1,4 @@
-"""Build the solver's vessel from the ship, water and waves of a preset."""
+"""Build the solver's vessel from the ship, sea and waves of a preset."""
 
 from dataclasses import replace
 from functools import lru_cache
@@ -8,7 +8,8 @@ import numpy as np
 
 from lab.assembly.ship_tables import stored_table
 from lab.base.errors import LabError
-from lab.preset.ship import FREEDOM, RigGiven, ShipGiven, WaterGiven, WavesGiven
+from lab.preset.sections import sea as seas
+from lab.preset.sections import ship as ships
 from solvers.machine.errors import Unavailable
 from solvers.ship.body import Body
 from solvers.ship.hydrostatics import metacentric_height
@@ -26,7 +27,7 @@ SLOWEST, FASTEST, FREQUENCIES = 0.08, 3.5, 48  # range of the hydrodynamic table
 MEMORY_ORDER = 8  # states per mode
 
 
-def make_waves(given: WavesGiven | None, water: Water) -> Waves | None:
+def make_waves(given: seas.Waves | None, water: Water) -> Waves | None:
     """The waves' components."""
     if given is None:
         return None
@@ -42,13 +43,13 @@ def make_waves(given: WavesGiven | None, water: Water) -> Waves | None:
     return random_sea(density, frequency, water, given.seed, start)
 
 
-def make_water(given: WaterGiven, gravity: float) -> Water:
-    """The water of a preset."""
+def make_water(given: seas.Sea, gravity: float) -> Water:
+    """The water of a preset's sea."""
     return Water(given.density, given.depth or inf, gravity)
 
 
 @lru_cache(maxsize=8)
-def make_vessel(given: ShipGiven, water: WaterGiven, waves: WavesGiven | None, gravity: float) -> Vessel:
+def make_vessel(given: ships.Ship, water: seas.Sea, waves: seas.Waves | None, gravity: float) -> Vessel:
     """The ship as she floats with her cargo at the start. Raises LabError if she cannot float so."""
     try:
         return _vessel(given, make_water(water, gravity), waves)
@@ -56,7 +57,7 @@ def make_vessel(given: ShipGiven, water: WaterGiven, waves: WavesGiven | None, g
         raise LabError(f"ship: {error}") from None
 
 
-def _vessel(given: ShipGiven, water: Water, sea: WavesGiven | None) -> Vessel:
+def _vessel(given: ships.Ship, water: Water, sea: seas.Waves | None) -> Vessel:
     section, about = Section(given.corners), given.about
     mass = water.density * float(section.immersion(given.heave, 0.0).area)
     body = Body(mass, (0.0, given.gravity_height), mass * (given.gyradius or 0.3 * section.size) ** 2)
@@ -75,7 +76,7 @@ def _vessel(given: ShipGiven, water: Water, sea: WavesGiven | None) -> Vessel:
         load,
         _radiation(given, table, sea, water.depth == inf),
         about,
-        free=FREEDOM[given.freedom],
+        free=ships.FREEDOM[given.freedom],
         gravity=water.gravity,
     )
     ship = _with_rig(ship, given.rig)
@@ -106,7 +107,7 @@ def _by_slope(load: Floating, table, body: Body) -> Floating:
     return replace(load, excess=load.excess + change)
 
 
-def _with_rig(ship: Ship, given: RigGiven) -> Ship:
+def _with_rig(ship: Ship, given: ships.Rig) -> Ship:
     rig = Rig(
         np.array([given.sway_mass, given.heave_mass, 0.0]),
         np.array([given.sway_damping, given.heave_damping, 0.0]),
@@ -116,7 +117,7 @@ def _with_rig(ship: Ship, given: RigGiven) -> Ship:
     return replace(ship, rig=rig)
 
 
-def _frequencies(given: ShipGiven, water: Water, waves: Waves | None) -> np.ndarray:
+def _frequencies(given: ships.Ship, water: Water, waves: Waves | None) -> np.ndarray:
     """Frequencies (rad/s) of the table: the range that the memory needs, and that of the waves."""
     unit = sqrt(water.gravity / given.draught)
     low, high = SLOWEST * unit, FASTEST * unit
@@ -125,7 +126,7 @@ def _frequencies(given: ShipGiven, water: Water, waves: Waves | None) -> np.ndar
     return np.linspace(low, high, FREQUENCIES)
 
 
-def _radiation(given: ShipGiven, table, sea: WavesGiven | None, deep: bool) -> Radiation:
+def _radiation(given: ships.Ship, table, sea: seas.Waves | None, deep: bool) -> Radiation:
     if given.radiation == "none":
         return Radiation(table.infinite_added_mass, np.zeros((3, 3)))
     if given.radiation == "at-frequency":
@@ -147,12 +148,12 @@ def natural_roll(ship: Ship, heave: float, table) -> tuple[float, float]:
     return frequency, float(own)
 
 
-def _damping(given: ShipGiven, ship: Ship, water: Water, table) -> RollDamping:
+def _damping(given: ships.Ship, ship: Ship, water: Water, table) -> RollDamping:
     frequency, inertia = natural_roll(ship, given.heave, table)
     return RollDamping(2.0 * given.damping * frequency * inertia, given.quadratic_damping * inertia)
 
 
-def flooding_angles(given: ShipGiven, vessel: Vessel) -> dict[str, float | None]:
+def flooding_angles(given: ships.Ship, vessel: Vessel) -> dict[str, float | None]:
     """Heels (rad) of deck immersion and of downflooding in calm water at constant displacement, None if never."""
     load, loading = vessel.ship.load, vessel.ship.body.loading
     points = {"deck_immersion_angle": given.deck_edges, "downflooding_angle": given.flooding_points}

@@ -19,8 +19,6 @@ from lab.base.memory import SHARE, machine_memory
 GROUPS = ("preset", "grains", "tank", "shapes", "series", "frames", "steering", "checks")
 DEEPER = ("tank/parts",)
 ATTRIBUTES = ("format", "preset", "status", "created", "versions", "machine", "step", "wall_s", "grain_steps")
-TABLES = ("video", "kinds", "shapes", "ship", "water", "waves", "run", "contact", "motion", "record", "parts")
-TEXTS = ("title", "source", "reports", "quick")
 BEYOND = 1e15  # larger than any SI number in a recording
 MOST_MEMBERS = 1000  # of a group
 UNWRITTEN = 2**26  # bytes that data sets may have beyond what the file holds: rows that a killed run did not write
@@ -76,14 +74,6 @@ def text(data: h5py.Dataset) -> str:
     if len(found) > LONGEST_TEXT:
         raise Unusable(f"{data.file.filename}: {data.name[1:]} is longer than any preset: do not use this file.")
     return found
-
-
-def is_preset(table: object) -> bool:
-    """Whether a resolved preset has tables and texts where the code that displays it expects them."""
-    if not isinstance(table, dict):
-        return False
-    kinds = dict.fromkeys(TABLES, dict) | dict.fromkeys(TEXTS, str)
-    return all(isinstance(table.get(name), kind | None) for name, kind in kinds.items())
 
 
 def check_room(data: h5py.Dataset, rows: int) -> None:

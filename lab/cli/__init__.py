@@ -6,6 +6,7 @@ from lab import __version__
 from lab.cli.benches import bench
 from lab.cli.errors import Commands
 from lab.cli.pictures import render, view
+from lab.cli.presets import schema
 from lab.cli.runs import explain, resume, run
 from lab.cli.studies import gallery, list_presets, reproduce, verify
 from lab.cli.sweeps import calibrate, sweep
@@ -36,6 +37,7 @@ for command in (
     reproduce,
     resume,
     run,
+    schema,
     sweep,
     verify,
     view,

@@ -7,12 +7,14 @@ Exit codes: 0 done; 1 the simulation could not continue; 2 the request cannot be
 import errno
 import os
 import sys
+import warnings
 
 import click
 
 from lab.base.errors import LabError
 from lab.base.interrupt import exit_code, handling_signals
 from lab.base.text import one_line
+from lab.preset.formats import OldFormat
 from solvers.machine.errors import BadState, Unavailable
 
 REMEDIES = {
@@ -32,7 +34,8 @@ class Commands(click.Group):
         # Matrices are small here, and numpy's threads, which spin while they wait, would take cores from the solver.
         os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
         try:
-            with handling_signals():
+            with handling_signals(), warnings.catch_warnings():
+                warnings.showwarning = _warn
                 code = super().main(*args, **{**kwargs, "standalone_mode": False})
         except click.exceptions.NoArgsIsHelpError as error:
             error.show()
@@ -51,6 +54,14 @@ class Commands(click.Group):
         except MemoryError:
             code = _say("there is not enough memory for this: ask for fewer grains or repeats, or free some.", 2)
         sys.exit(code if isinstance(code, int) else 0)
+
+
+def _warn(message: Warning, category: type[Warning], *where: object) -> None:
+    """Say in a sentence what a preset of an earlier format means; any other warning as Python does."""
+    if issubclass(category, OldFormat):
+        click.echo(f"cargolab: {one_line(str(message))}", err=True)
+    else:
+        sys.stderr.write(warnings.formatwarning(message, category, *where[:2]))
 
 
 def _say(sentence: str, code: int) -> int:

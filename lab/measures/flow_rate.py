@@ -42,9 +42,7 @@ def measure(recording: Recording) -> dict[str, Value]:
     outlet, time = find_outlet(recording), recording.frames["time"][:]
     out = passed(recording, outlet)
     found = {"flow_rate": _rate(time, out.sum(axis=2), "1/s")}
-    mass = grain_mass(recording)
-    if mass is not None:
-        found["mass_flow_rate"] = _rate(time, 1e3 * (out * mass).sum(axis=2), "g/s", note=SHEET)
+    found["mass_flow_rate"] = _rate(time, 1e3 * (out * grain_mass(recording)).sum(axis=2), "g/s", note=SHEET)
     width = np.hypot(*np.diff(outlet.lips, axis=0)[0])
     return found | {
         "outlet_width": over_worlds(width / recording.mean_diameter, "d"),

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from lab.recording import Recording
+from solvers.motion.harmonic import Harmonic
 
 # Harmonic motions and the coordinate of the pose (Y, Z, phi) that each moves.
 HARMONIC = {"sway": 0, "roll": 2, "heave": 1}
@@ -22,7 +23,7 @@ class Leg:
 def is_tilt(recording: Recording) -> bool:
     """Whether the preset tilts the tank and the tank has turned far enough to tell."""
     turned = np.abs(recording.series["pose"][:, :, 2]).max(initial=0.0) > LEAST_TILT
-    return bool(_motions(recording).get("tilt")) and bool(turned)
+    return recording.preset.motion.tilt is not None and bool(turned)
 
 
 def outward_leg(tilt: np.ndarray) -> Leg:
@@ -33,27 +34,23 @@ def outward_leg(tilt: np.ndarray) -> Leg:
     return Leg(end, float(np.sign(turned[end - 1])))
 
 
-def driving(recording: Recording) -> tuple[str, dict] | None:
+def driving(recording: Recording) -> tuple[str, Harmonic] | None:
     """Name and settings of the harmonic motion that drives the tank, None without one.
 
     With several, the first of sway, roll and heave. A motion from a file has no single frequency: None.
     """
-    motions = _motions(recording)
-    if motions.get("history"):
+    motion = recording.preset.motion
+    if motion.history:
         return None
-    return next(((name, motions[name]) for name in HARMONIC if motions.get(name)), None)
+    return next(((name, getattr(motion, name)) for name in HARMONIC if getattr(motion, name)), None)
 
 
 def is_shaken(recording: Recording) -> bool:
     """Whether the tank moves to and fro: by a harmonic motion, or by one from a file."""
     moved = np.ptp(recording.series["pose"], axis=0).any()
-    return driving(recording) is not None or bool(_motions(recording).get("history") and moved)
+    return driving(recording) is not None or bool(recording.preset.motion.history and moved)
 
 
 def soft_start(recording: Recording) -> float:
     """Time in which the motion grows to its full size, s."""
-    return float(_motions(recording).get("soft_start") or 0.0)
-
-
-def _motions(recording: Recording) -> dict:
-    return recording.preset.get("motion") or {}
+    return recording.preset.motion.soft_start

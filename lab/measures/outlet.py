@@ -25,9 +25,9 @@ class Outlet:
 def find_outlet(recording: Recording) -> Outlet | None:
     """The gap that a moving plate closes at the start, between the ends of two other parts; None without one."""
     lines = list(recording.parts.values())
-    moving = recording.preset.get("parts") or {}
+    moving = recording.preset.parts
     for number, (name, line) in enumerate(recording.parts.items()):
-        if not np.any((moving.get(name) or {}).get("move") or 0.0):
+        if name not in moving or not any(moving[name].move):
             continue
         lips = np.array(sorted(map(tuple, line[[0, -1]])))
         carriers = [_carrier(lip, number, lines, NEAR * recording.mean_diameter.min()) for lip in lips]

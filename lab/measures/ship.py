@@ -9,7 +9,7 @@ import numpy as np
 
 from lab.base.errors import LabError
 from lab.measures.value import Value, over_worlds
-from lab.preset.ship import axis_motion, recorded_ship
+from lab.preset.sections.ship_axis import axis_motion
 from lab.recording import Recording
 from lab.recording.ship_end import VERBS, End
 from solvers.machine.errors import Unavailable
@@ -22,43 +22,42 @@ LEAST_CROSSINGS = 3
 
 def has_ship(recording: Recording) -> bool:
     """Whether the tank is in a ship, and something of her motion is recorded."""
-    return bool(recording.preset.get("ship")) and len(recording.series["time"]) >= LEAST_SAMPLES
+    return bool(recording.preset.ship) and len(recording.series["time"]) >= LEAST_SAMPLES
 
 
 @lru_cache(maxsize=4)
 def vessel_of(path: Path) -> Vessel | None:
     """The ship of the recording at `path` with her cargo as it lay at the start; None where she cannot be built."""
     from lab.assembly.scene import vessels
-    from lab.preset.schema import Resolved
     from lab.recording import open_recording
 
     try:
         with open_recording(path) as recording:
-            return vessels(Resolved.model_validate(recording.preset))[0]
+            return vessels(recording.preset)[0]
     except (LabError, ValueError):
         return None
 
 
 def wave_frequency(recording: Recording) -> float | None:
     """Angular frequency (rad/s) of regular waves; None without regular waves."""
-    waves = recording.preset.get("waves") or {}
-    return waves["frequency"] if waves.get("kind") == "regular" and waves.get("amplitude") else None
+    waves = recording.preset.waves
+    return waves.frequency if waves and waves.kind == "regular" and waves.amplitude else None
 
 
 def in_random_sea(recording: Recording) -> bool:
     """Whether the waves are those of a spectrum."""
-    return bool((recording.preset.get("waves") or {}).get("height"))
+    return bool(recording.preset.waves and recording.preset.waves.height)
 
 
 def moved_axis(recording: Recording, rows: slice | np.ndarray = slice(None)) -> np.ndarray:
     """Sway and heave (m) of the ship's axis and roll (rad), (T', W, 3), in some rows of the series."""
-    return axis_motion(recorded_ship(recording.preset), recording.series["pose"][rows])
+    return axis_motion(recording.preset.ship, recording.series["pose"][rows])
 
 
 def losses(prefix: str, recording: Recording, found: Sequence[End | None]) -> dict[str, Value]:
     """When ships (W,) capsized, and when those with openings flooded (s); the names begin with `prefix`."""
     kinds = {"capsized": "did not capsize"}
-    if recorded_ship(recording.preset).flooding_points:
+    if recording.preset.ship.flooding_points:
         kinds["flooded"] = "did not flood"
     times = {kind: [end.time if end and end.kind == kind else np.nan for end in found] for kind in kinds}
     return {f"{prefix}{kind}_at": over_worlds(times[kind], "s", missing=never) for kind, never in kinds.items()}
@@ -66,7 +65,7 @@ def losses(prefix: str, recording: Recording, found: Sequence[End | None]) -> di
 
 def significant_roll(recording: Recording, time: np.ndarray, roll: np.ndarray, lost: np.ndarray) -> Value:
     """Significant roll (deg) of rolls (T, W), rad, at time (T,), s; none for a ship that was lost (W,)."""
-    begin = int(np.searchsorted(time, recording.preset["waves"]["soft_start"]))
+    begin = int(np.searchsorted(time, recording.preset.waves.soft_start))
     middle = (begin + len(time)) // 2
     parts = slice(begin, None), slice(begin, middle), slice(middle, None)
     whole, *halves = ([np.degrees(_highest_third(r[part])) for r in roll.T] for part in parts)

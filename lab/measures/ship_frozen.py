@@ -60,7 +60,7 @@ def frozen(recording: Recording) -> tuple[np.ndarray, np.ndarray, End | None] | 
     """
     lasted, series = float(recording.series["time"][-1]), recording.series
     if any(ends(series)):
-        lasted = max(lasted, recording.preset["run"]["duration"])
+        lasted = max(lasted, recording.preset.duration)
     return _frozen(recording.path, lasted)
 
 

@@ -38,7 +38,7 @@ from lab.measures.ship import (
 from lab.measures.ship_frozen import frozen
 from lab.measures.spectrum import QUIETEST, amplitude_spectrum
 from lab.measures.value import Value, over_worlds
-from lab.preset.ship import axis_place, recorded_ship
+from lab.preset.sections.ship_axis import axis_place
 from lab.recording import Recording
 from lab.recording.ship_end import VERBS, End, ends
 from solvers.ship.outcome import CYCLES, Outcome
@@ -127,7 +127,7 @@ def _period(time: np.ndarray, roll: np.ndarray) -> float:
 def draw_roll(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> None:
     """Roll of a ship in time, with loose and with frozen cargo; below her sway and heave and the shift of the cargo."""
     time, moved = recording.series["time"], moved_axis(recording)
-    moves = recorded_ship(recording.preset).freedom != "roll"
+    moves = recording.preset.ship.freedom != "roll"
     panels = sheet.panels(heights=(2, 1, 1) if moves else (2, 1), columns=3)
     upper, lower = panels[0, 0], panels[-1, 0]
     alone = frozen(recording)
@@ -147,7 +147,7 @@ def draw_roll(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -
     centre = 1e3 * recording.series["centre_of_mass"][..., 0]
     band(lower, time, centre - centre[0], VERMILION)
     lower.set_ylabel("shift of the\ncargo (mm)")
-    lower.set_xlabel(f"time (s); axis: {axis_place(recorded_ship(recording.preset))}")
+    lower.set_xlabel(f"time (s); axis: {axis_place(recording.preset.ship)}")
     lower.set_xlim(time[0], time[-1] + (MARGIN * np.ptp(time) if any(ends(recording.series)) else 0.0))
 
 
@@ -159,7 +159,7 @@ def _draw_answer(sheet: Sheet, axes: "Axes", recording: Recording, values: Mappi
         span = max(time[0], time[-1] - CYCLES * 2.0 * np.pi / frequency), time[-1]
         swing(sheet, axes, middle, values.get("roll_amplitude"), "roll amplitude", VERMILION, span)
     elif "significant_roll" in values:
-        span = recording.preset["waves"]["soft_start"], time[-1]
+        span = recording.preset.waves.soft_start, time[-1]
         swing(sheet, axes, 0.0, values["significant_roll"], "significant roll", VERMILION, span)
 
 

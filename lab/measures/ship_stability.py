@@ -14,7 +14,6 @@ from lab.measures.drawing import BLUE, GREEN, GREY, VERMILION, Sheet, mark
 from lab.measures.ship import has_ship, vessel_of
 from lab.measures.value import Value, over_worlds
 from lab.measures.wall_force import grain_mass
-from lab.preset.ship import recorded_ship
 from lab.recording import Recording
 from solvers.machine.errors import Unavailable
 from solvers.ship.cargo import level_area, relaxed_levers
@@ -35,7 +34,7 @@ def applies(recording: Recording) -> bool:
 
 def measure(recording: Recording) -> dict[str, Value]:
     """deck_immersion_angle and downflooding_angle (deg), of a ship that has a deck or openings."""
-    angles = flooding_angles(recorded_ship(recording.preset), vessel_of(recording.path))
+    angles = flooding_angles(recording.preset.ship, vessel_of(recording.path))
     return {name: over_worlds([np.degrees(angle)], "deg") for name, angle in angles.items() if angle is not None}
 
 
@@ -49,11 +48,8 @@ def levers(recording: Recording) -> tuple[np.ndarray, np.ndarray, np.ndarray | N
     load, loading = vessel.ship.load, vessel.ship.body.loading
     heel = np.radians(np.linspace(0.0, 180.0, HEELS))
     frozen = righting_levers(load.section, loading, load.water, heel)
-    mass = grain_mass(recording)
-    if mass is None:
-        return heel, frozen, None
-    cargo = float(mass.sum(axis=1).mean()) / _thickness(recording)
-    repose = recorded_ship(recording.preset).repose
+    cargo = float(grain_mass(recording).sum(axis=1).mean()) / recording.preset.thickness
+    repose = recording.preset.ship.repose
     try:
         hold = Section(recording.outline)
         area = level_area(hold, float(recording.series["centre_of_mass"][0, :, 1].mean()))
@@ -61,12 +57,6 @@ def levers(recording: Recording) -> tuple[np.ndarray, np.ndarray, np.ndarray | N
     except Unavailable:
         return heel, frozen, None
     return heel, frozen, relaxed
-
-
-def _thickness(recording: Recording) -> float:
-    """Thickness (m) of the slab that the cargo is."""
-    tank, grains = recording.preset["tank"], recording.preset["grains"]
-    return tank.get("thickness") or grains["diameter"]
 
 
 def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> None:
@@ -78,7 +68,7 @@ def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> Non
     heel, lever, relaxed = levers(recording)
     axes.plot(np.degrees(heel), 1e3 * lever, color=GREY, label="cargo frozen")
     if relaxed is not None:
-        steep = np.degrees(recorded_ship(recording.preset).repose)
+        steep = np.degrees(recording.preset.ship.repose)
         axes.plot(np.degrees(heel), 1e3 * relaxed, color=BLUE, label=f"cargo slid to a repose of {steep:.3g} deg")
     axes.axhline(0, color=GREY, lw=0.8)
     mark(sheet, axes, values.get("largest_roll"), "largest roll of the run", GREY, ":")

@@ -40,12 +40,12 @@ def applies(recording: Recording) -> bool:
     drive, time = driving(recording), recording.series["time"]
     if drive is None or len(time) < 2:
         return False
-    return float(np.median(np.diff(time))) * drive[1]["frequency"] * LEAST_SAMPLES <= 1
+    return float(np.median(np.diff(time))) * drive[1].frequency * LEAST_SAMPLES <= 1
 
 
 def measure(recording: Recording) -> dict[str, Value]:
     """subharmonic, second_harmonic, third_harmonic (mm) and distortion."""
-    frequency = driving(recording)[1]["frequency"]
+    frequency = driving(recording)[1].frequency
     time, signal = recording.series["time"], driven_coordinate(recording)
     rows = steady_window(time, soft_start(recording), frequency, PERIODS)
     if rows is None:
@@ -90,7 +90,7 @@ def amplitude_spectrum(time: np.ndarray, signal: np.ndarray) -> tuple[np.ndarray
 def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> None:
     """Amplitude spectrum of the centre of mass of a driven bed over its steady part."""
     time = recording.series["time"]
-    steady, frequency = steady_part(recording, time), driving(recording)[1]["frequency"]
+    steady, frequency = steady_part(recording, time), driving(recording)[1].frequency
     if steady is None:
         return
     centre = 1e3 * recording.series["centre_of_mass"][steady.rows]

@@ -36,7 +36,7 @@ def steady_part(recording: Recording, time: np.ndarray) -> Steady | None:
     """
     begin, drive = soft_start(recording), driving(recording)
     if drive is not None:
-        frequency = drive[1]["frequency"]
+        frequency = drive[1].frequency
         rows = steady_window(time, begin, frequency)
         if rows is None or rows.stop - rows.start < LEAST_SAMPLES:
             return None

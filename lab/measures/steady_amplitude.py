@@ -52,7 +52,7 @@ def measure(recording: Recording) -> dict[str, Value]:
 def _answer(recording: Recording, part: slice) -> np.ndarray:
     """Complex amplitudes (2, W), m: of the driven coordinate against the drive, and of z at 2f."""
     name, settings = driving(recording)
-    time, frequency = recording.series["time"][part], settings["frequency"]
+    time, frequency = recording.series["time"][part], settings.frequency
     centre = recording.series["centre_of_mass"][part]
     drive = harmonics(time, recording.series["pose"][part][:, :, HARMONIC[name]], frequency, (1, 2))[0]
     along = harmonics(time, centre[:, :, 1 if name == "heave" else 0], frequency, (1, 2))[0]
@@ -69,7 +69,7 @@ def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> Non
     panels = sheet.panels(heights=(1, 2), widths=(3, 2))
     label, scale = DRIVE[name]
     pose = scale * recording.series["pose"][:, :, HARMONIC[name]]
-    for column, begin in ((0, time[0]), (1, close_up(time, settings["frequency"]))):
+    for column, begin in ((0, time[0]), (1, close_up(time, settings.frequency))):
         shown = time >= begin
         band(panels[0][column], time[shown], pose[shown], GREY)
         draw_shift(panels[1][column], time[shown], moved[shown])

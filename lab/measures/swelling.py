@@ -32,12 +32,12 @@ def applies(recording: Recording) -> bool:
     drive, time = driving(recording), recording.frames["time"][:]
     if drive is None or drive[0] != "sway" or len(time) <= LEAST_FRAMES:
         return False
-    return LEAST_RATE * drive[1]["frequency"] * float(np.median(np.diff(time))) <= 1
+    return LEAST_RATE * drive[1].frequency * float(np.median(np.diff(time))) <= 1
 
 
 def measure(recording: Recording) -> dict[str, Value]:
     """fill_height (mm), swelling_frequency (Hz), swelling_amplitude (mm) and swelling_ratio."""
-    time, frequency = recording.frames["time"][:], driving(recording)[1]["frequency"]
+    time, frequency = recording.frames["time"][:], driving(recording)[1].frequency
     steady = steady_part(recording, time)
     if steady is None or steady.rows.stop - steady.rows.start < LEAST_FRAMES:
         return {"fill_height": over_worlds(np.full(recording.worlds, np.nan), "mm", missing=SHORT)}

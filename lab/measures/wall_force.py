@@ -60,29 +60,24 @@ def measure(recording: Recording) -> dict[str, Value]:
         "largest_moment": over_worlds(np.abs(force[rows.rows, :, 2]).max(axis=0), "mN m", note=SHEET),
     }
     weight = cargo_weight(recording)
-    if weight is not None:
-        with np.errstate(divide="ignore", invalid="ignore"):
-            carried = -_vertical(recording) / np.where(weight > 0, weight, np.nan)
-        found["carried_weight"] = averaged(carried, rows, "1", missing=EMPTY)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        carried = -_vertical(recording) / np.where(weight > 0, weight, np.nan)
+    found["carried_weight"] = averaged(carried, rows, "1", missing=EMPTY)
     if driving(recording) is not None:
         found |= _driven(recording, steady, weight)
     return found
 
 
-def cargo_weight(recording: Recording) -> np.ndarray | None:
-    """Weight (T, W) of the grains in the tank, N; None where the preset does not say density and gravity."""
-    mass, gravity = grain_mass(recording), (recording.preset.get("run") or {}).get("gravity")
-    if mass is None or gravity is None:
-        return None
+def cargo_weight(recording: Recording) -> np.ndarray:
+    """Weight (T, W) of the grains in the tank, N."""
+    mass, gravity = grain_mass(recording), recording.preset.run.gravity
     return gravity * mass.sum(axis=1) * (1 - recording.series["spilled"] / recording.radius.shape[1])
 
 
-def grain_mass(recording: Recording) -> np.ndarray | None:
-    """Mass (W, n) of each grain, a sphere, kg; None where the preset does not say the density."""
-    density = (recording.preset.get("material") or {}).get("density")
-    if density is None:
-        return None
-    kinds = [density, *(kind["material"]["density"] for kind in (recording.preset.get("kinds") or {}).values())]
+def grain_mass(recording: Recording) -> np.ndarray:
+    """Mass (W, n) of each grain, a sphere, kg."""
+    preset = recording.preset
+    kinds = [preset.material.density, *(other.material.density for other in preset.others.values())]
     return 4 / 3 * np.pi * np.array(kinds)[recording.kind] * recording.radius**3
 
 
@@ -97,11 +92,11 @@ def _between(values: np.ndarray) -> np.ndarray:
     return np.concatenate([values[:1], 0.5 * (values[1:] + values[:-1])])
 
 
-def _driven(recording: Recording, steady: Steady | None, weight: np.ndarray | None) -> dict[str, Value]:
+def _driven(recording: Recording, steady: Steady | None, weight: np.ndarray) -> dict[str, Value]:
     """The values that belong to the driving frequency."""
     name, settings = driving(recording)
     kind, unit, per = ("moment", "mN m", "N m s") if name == "roll" else ("force", "mN", "N s/m")
-    omega = 2 * np.pi * settings["frequency"]
+    omega = 2 * np.pi * settings.frequency
     shape = 3, recording.worlds
     force, ratio = np.full(shape, np.nan, dtype=complex), np.full(shape, np.nan, dtype=complex)
     if steady is not None:
@@ -111,8 +106,8 @@ def _driven(recording: Recording, steady: Steady | None, weight: np.ndarray | No
         f"{kind}_amplitude": amplitude_value(1e3 * answer, unit, note=SHEET, missing=SHORT),
         f"{kind}_phase": phase_value(answer, np.zeros(recording.worlds), SHORT),
     }
-    if name != "roll" and weight is not None:
-        mass = weight[-1] / recording.preset["run"]["gravity"]
+    if name != "roll":
+        mass = weight[-1] / recording.preset.run.gravity
         found["effective_mass"] = _with_halves(ratio.real / omega**2 / mass, "1", SHORT)
     found["cargo_damping"] = _with_halves(-ratio.imag / omega, per, SHORT, SHEET)
     return found
@@ -121,7 +116,7 @@ def _driven(recording: Recording, steady: Steady | None, weight: np.ndarray | No
 def _transfer(recording: Recording, part: slice) -> np.ndarray:
     """Complex amplitudes (2, W) of the force along the motion, and of it over the motion's."""
     name, settings = driving(recording)
-    time, frequency = recording.series["time"], settings["frequency"]
+    time, frequency = recording.series["time"], settings.frequency
     middles = _between(time[:, None])[part, 0]
     force = harmonics(middles, _along_motion(recording)[part], frequency, (1, 2))[0]
     moved = harmonics(time[part], recording.series["pose"][part, :, HARMONIC[name]], frequency, (1, 2))[0]
@@ -134,7 +129,7 @@ def _along_motion(recording: Recording) -> np.ndarray:
     force = recording.series["wall_force"]
     if name != "roll":
         return force[..., ALONG[name]]
-    across, up = settings.get("centre") or (0.0, 0.0)
+    across, up = settings.centre
     return force[..., 2] + up * force[..., 0] - across * force[..., 1]
 
 
@@ -148,7 +143,7 @@ def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> Non
     """Force and moment of the cargo on the tank; of a driven tank the last periods beside its motion."""
     drive, time = driving(recording), recording.series["time"][1:]
     force = 1e3 * recording.series["wall_force"][1:]
-    heights, begin = ((2, 1), time[0]) if drive is None else ((1, 2, 1), close_up(time, drive[1]["frequency"]))
+    heights, begin = ((2, 1), time[0]) if drive is None else ((1, 2, 1), close_up(time, drive[1].frequency))
     panels = sheet.panels(heights=heights)
     shown = time >= begin
     if drive is not None:
@@ -160,10 +155,8 @@ def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> Non
     upper, lower = panels[-2][0], panels[-1][0]
     band(upper, time[shown], force[shown, :, 0], BLUE, "y, to starboard")
     band(upper, time[shown], force[shown, :, 1], VERMILION, "z, up")
-    weight = cargo_weight(recording)
-    if weight is not None:
-        settled = -1e3 * weight[0].mean()
-        upper.axhline(settled, color=GREY, ls=":", lw=1.0, label="weight of the cargo at the start")
+    settled = -1e3 * cargo_weight(recording)[0].mean()
+    upper.axhline(settled, color=GREY, ls=":", lw=1.0, label="weight of the cargo at the start")
     level(sheet, upper, values.get("mean_force_z"), "mean of z", VERMILION, (begin, time[-1]))
     upper.set_ylabel("force on the\ntank (mN)")
     panels[0][0].set_title(SHEET, loc="right", fontsize=8, color=GREY)

@@ -134,7 +134,7 @@ def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> Non
     """Elevation of the free surface at both walls and in the middle, and the first sloshing mode."""
     places, mode = wave_course(recording)
     time, drive = recording.frames["time"][:], driving(recording)
-    begin = time[0] if drive is None else close_up(time, drive[1]["frequency"])
+    begin = time[0] if drive is None else close_up(time, drive[1].frequency)
     (upper,), (lower,) = sheet.panels(heights=(3, 2))
     shown = time >= begin
     for k, colour in enumerate((BLUE, GREY, VERMILION)):

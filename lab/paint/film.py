@@ -7,7 +7,6 @@ tanks on the left, a column of readings, plot and colour bar on the right.
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
-from typing import get_args, get_type_hints
 
 import numpy as np
 from PIL import Image, ImageDraw
@@ -19,12 +18,12 @@ from lab.paint.colours import MODES, bed_colours, colouring, mark_colours, sprea
 from lab.paint.footage import Bed, Footage
 from lab.paint.painter import Camera, Edges, paint_grains, paint_plate, paint_tank, to_discs
 from lab.paint.sea import LINE
+from lab.preset.fields import taken_of
+from lab.preset.sections.ship_axis import axis_motion
 from lab.preset.sections.video import Video
-from lab.preset.ship import axis_motion
 from lab.preset.units import quoted
 
-FALLBACK = asdict(Video())
-FRAMES = get_args(get_type_hints(Video)["frame"])
+FRAMES = taken_of(Video)["frame"].words
 SMALLEST, LARGEST = (320, 180), (7680, 4320)  # pixels
 MOST_BEDS = 6  # beds of one recording shown side by side
 MOST_SAMPLES = 800  # points per curve of the plot
@@ -49,10 +48,9 @@ class Look:
 
 
 def choose_look(footage: Footage, **options: object) -> Look:
-    """The look from the `options` that are not None, else the preset's [video], else FALLBACK; raises LabError."""
+    """The look from the `options` that are not None, else the preset's [video]; raises LabError."""
     wanted = {key: value for key, value in options.items() if value is not None}
-    settings = {**FALLBACK, **footage.settings, **wanted}
-    look = Look(**{key: settings[key] for key in FALLBACK})
+    look = Look(**{**asdict(footage.settings), **wanted})
     pairs = zip((look.width, look.height), SMALLEST, LARGEST, strict=True)
     if not all(isinstance(size, int) and size % 2 == 0 and low <= size <= high for size, low, high in pairs):
         raise LabError(

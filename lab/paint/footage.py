@@ -38,14 +38,14 @@ class Footage:
                 raise Unusable(f"{recording.path} is damaged (invalid times or poses): record the run again.")
         self.centre_of_mass, self.spilled = series["centre_of_mass"], series["spilled"]
         self.radius, self.outline, self.kind = recording.radius, recording.outline, recording.kind
-        self.kinds = ["the rest", *(recording.preset.get("kinds") or {})]
+        self.kinds = ["the rest", *recording.preset.kinds]
         self.shapes = recording.shapes
-        self.shape_names = list(recording.preset.get("shapes") or {}) if self.shapes else ["disc"]
+        self.shape_names = list(recording.preset.shapes) if self.shapes else ["disc"]
         self.open_edges, self.fixed, self.parts = recording.open_edges, recording.fixed, recording.parts
-        self.sea = Sea(recording.preset) if recording.preset.get("ship") else None
+        self.sea = Sea(recording.preset) if recording.preset.ship else None
         self.ends = ends(series)
-        self.settings = recording.preset.get("video") or {}
-        self.title = recording.preset.get("title") or recording.name
+        self.settings = recording.preset.video
+        self.title = recording.preset.title or recording.name
         self._frames, self._waves = frames, frames["waves"][:] if "waves" in frames else None
         self._read: dict[str, tuple[int, np.ndarray]] = {}  # the frame last read of each quantity
 

@@ -1,37 +1,33 @@
 """The ship and the sea in a picture: the hull around the tank, and the water up to the free surface."""
 
-from collections.abc import Mapping
 from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
-from pydantic import TypeAdapter
 
 from lab.assembly.ship import make_water, make_waves
 from lab.paint import palette
 from lab.paint.painter import Camera, paint_tank
-from lab.preset.ship import WaterGiven, WavesGiven, recorded_ship
+from lab.preset.schema import Preset
 from solvers.ship.waves import Waves, soft_start
 
 WATER, SURFACE = (214, 230, 243), (70, 130, 180)
 LINE = 0.12  # thickness of the surface's line, in the units of a page
-HATCH = 4  # the edge of a box's outline that its hatch leaves open: see `ShipGiven.corners`
+HATCH = 4  # the edge of a box's outline that its hatch leaves open: see `Ship.corners`
 AROUND = np.array([0.45, 0.2])  # width of the sea shown beside, and above and below the hull, relative to her size
 
 
 class Sea:
-    """The hull and the waves of a ship's recording; preset: with all its values.
+    """The hull and the waves of a ship's recording; preset: of the ship.
 
     `waves`: the waves of a frame (`recording.WAVES`) if a user has changed those of the preset, or None.
     """
 
     waves: np.ndarray | None = None
 
-    def __init__(self, preset: Mapping) -> None:
-        self.ship = recorded_ship(preset)
-        self._water = TypeAdapter(WaterGiven).validate_python(preset.get("water") or {})
-        self._sea = preset.get("waves") and TypeAdapter(WavesGiven).validate_python(preset["waves"])
-        self._gravity = preset["run"]["gravity"]
+    def __init__(self, preset: Preset) -> None:
+        self.ship, self._sea = preset.ship, preset.waves
+        self._water = make_water(preset.sea, preset.run.gravity)
 
     @property
     def hull(self) -> np.ndarray:
@@ -52,11 +48,11 @@ class Sea:
 
     @cached_property
     def _waves(self):
-        return make_waves(self._sea or None, make_water(self._water, self._gravity))
+        return make_waves(self._sea, self._water)
 
     @cached_property
     def _of_height_one(self) -> Waves:
-        return make_waves(replace(self._sea, height=1.0), make_water(self._water, self._gravity))
+        return make_waves(replace(self._sea, height=1.0), self._water)
 
     def elevation(self, y: np.ndarray, time: float) -> np.ndarray:
         """Elevation (k,) m of the free surface at positions y (k,) m, in the earth frame."""

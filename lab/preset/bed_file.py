@@ -5,8 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from lab.base.errors import LabError
+from lab.preset.fields import Table
 from lab.preset.outline import Point
-from lab.preset.tables import read_table
 from lab.preset.units import show
 from solvers.grains.bed.filling import clear_of_walls
 
@@ -20,22 +20,24 @@ DEEPEST = 0.01  # overlap of two grains, or of a grain and a wall, in radii of t
 Grain = tuple[float, float, float, float, float, float]
 
 
-def read_bed(path: str, outline: Sequence[Point], moving: bool) -> tuple[Grain, ...]:
-    """Read the grains of a CSV file: columns y, z, radius and, if they start in motion, any of vy, vz, omega; SI.
+def listed(table: Table) -> tuple[Grain, ...]:
+    """y, z, radius (m), v_y, v_z (m/s), ω (rad/s) of each grain of a file, in SI."""
+    zero = (0.0,) * len(table.columns["y"])
+    return tuple(zip(*(table.columns.get(name, zero) for name in (*NEEDED, *MOTION)), strict=True))
 
-    Returns y, z, radius (m), v_y, v_z (m/s), ω (rad/s) of each. Raises LabError for a file that cannot be used, for
-    grains that are outside the tank (`outline`, m), overlap by more than 1 % of a radius or are too many, and for
-    velocities if the grains are to settle first (`moving` false).
+
+def check_listed(grains: Sequence[Grain], outline: Sequence[Point], moving: bool) -> None:
+    """Raise LabError for grains that no bed can have.
+
+    They are outside the tank (`outline`, m), overlap by more than 1 % of a radius, or have velocities though they are
+    to settle first (`moving` false).
     """
-    columns = read_table(path, NEEDED, MOTION, "grains.bed", MOST)
-    zero = np.zeros(len(columns["y"]))
-    grains = np.column_stack([columns.get(name, zero) for name in (*NEEDED, *MOTION)])
-    _check(grains, np.array(outline))
-    if not moving and np.any(grains[:, 3:]):
+    rows = np.array(grains)
+    _check(rows, np.array(outline))
+    if not moving and np.any(rows[:, 3:]):
         raise LabError(
             "grains.bed: its grains move, but settle first; say run.settle = false or leave vy, vz and omega out."
         )
-    return tuple(map(tuple, grains.tolist()))
 
 
 def _check(grains: np.ndarray, outline: np.ndarray) -> None:

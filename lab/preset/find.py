@@ -18,14 +18,15 @@ from importlib.resources.abc import Traversable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from lab.base import toml
 from lab.base.errors import LabError
 from lab.base.files import read_bytes
-from lab.preset import toml
+from lab.preset import formats
 from lab.preset.merge import merged, nested
 from lab.preset.units import quoted, shown_path
 
 if TYPE_CHECKING:
-    from lab.preset.schema import Resolved
+    from lab.preset.schema import Preset
 
 LARGEST_FILE = 1_000_000  # bytes
 # Limit on the sum over the lines of (number of dots)²: the standard library's memory and time for a key of many parts,
@@ -33,13 +34,8 @@ LARGEST_FILE = 1_000_000  # bytes
 MOST_DOTS = 10_000_000
 
 QUICK = "-quick"  # suffix of a preset's name: its quick variant
-# The keys that a quick variant may change: those of cost and accuracy, not those of the experiment itself.
-QUICK_KEYS = ("run", "record", "grains.diameter", "grains.count", "contact.stiffness_scale", "motion.tilt.rate")
-
 # Keys that describe one experiment and are not inherited by presets based on it.
 OWN_KEYS = ("title", "source", "reports", "based_on")
-
-PATH_KEYS = ("grains.bed", "motion.history.file", "shapes.*.contour")  # keys whose values are paths; *: any name
 
 
 @dataclass(frozen=True)
@@ -51,7 +47,7 @@ class LoadedPreset:
 
     name: str
     given_text: str
-    resolved: "Resolved"
+    resolved: "Preset"
 
 
 @dataclass(frozen=True)
@@ -86,13 +82,13 @@ class Layer:
         """The layer without some of its top-level keys."""
         return Layer({key: value for key, value in self.table.items() if key not in keys}, self.folder)
 
-    def located(self) -> dict:
-        """The table with the paths under PATH_KEYS made absolute."""
-        return reduce(self._with_full_path, PATH_KEYS, dict(self.table))
+    def located(self, keys: Collection[str]) -> dict:
+        """The table with the paths under the dotted `keys` made absolute; NAME stands for any name."""
+        return reduce(self._with_full_path, keys, dict(self.table))
 
     def _with_full_path(self, table: dict, dotted: str) -> dict:
         key, _, rest = dotted.partition(".")
-        if key == "*":
+        if key == "NAME":
             names = [name for name in table if toml.BARE_KEY.fullmatch(str(name))]
             return reduce(self._with_full_path, (f"{name}.{rest}" for name in names), table)
         value = table.get(key)
@@ -120,16 +116,17 @@ def load(name_or_path: str | Path, overrides: Mapping | None = None) -> LoadedPr
 
     Raises LabError: no such preset, a file that cannot be read, or a key that is unknown or wrong.
     """
-    from lab.preset.schema import resolve  # imports the solvers, which the list of presets does not need
+    from lab.preset.schema import marked, resolve  # imports the solvers, which the list of presets does not need
 
     source, quick = _find_variant(str(name_or_path))
     try:
         layers = _layers(source)
-        variant = _quick_variant(source, layers)
+        formats.upgrade([layer.table for layer in layers], source.shown)
+        variant = _quick_variant(source, layers, marked("cheap"))
         if quick and not variant:
             raise LabError(f"{source.shown}: has no quick variant; run {source.shown} itself.")
         layers = [*layers, Layer(variant if quick else {}, Path()), Layer(nested(overrides or {}), Path())]
-        resolved = resolve(reduce(merged, (layer.located() for layer in layers)))
+        resolved = resolve(reduce(merged, (layer.located(marked("columns")) for layer in layers)))
     except RecursionError:
         raise LabError(f"{source.shown}: nested too deeply.") from None
     based = f"{quoted(resolved.based_on)}, on which it is based, and " if resolved.based_on else ""
@@ -138,8 +135,8 @@ def load(name_or_path: str | Path, overrides: Mapping | None = None) -> LoadedPr
     return LoadedPreset(name, heading + toml.dumps(_written(layers)), resolved)
 
 
-def _quick_variant(source: Source, layers: list[Layer]) -> dict:
-    """The keys that make a preset its quick variant; empty if it has none."""
+def _quick_variant(source: Source, layers: list[Layer], cheap: Collection[str]) -> dict:
+    """The keys that make a preset its quick variant, all of them `cheap`; empty if it has none."""
     tables = _quick_tables(layers)
     if not all(isinstance(table, Mapping) for table in tables):
         raise LabError(f"{source.shown}: quick: a table of keys is needed.")
@@ -150,9 +147,9 @@ def _quick_variant(source: Source, layers: list[Layer]) -> dict:
     if not isinstance(differs, str) or not differs.strip():
         raise LabError(f"{source.shown}: quick.differs: missing; say in a text how the quick variant differs.")
     for dotted in _leaves(variant):
-        if not any(dotted == key or dotted.startswith(f"{key}.") for key in QUICK_KEYS):
+        if not any(dotted == key or dotted.startswith(f"{key}.") for key in cheap):
             raise LabError(
-                f"{source.shown}: quick.{quoted(dotted)[1:-1]}: may not differ; only {', '.join(QUICK_KEYS)} may."
+                f"{source.shown}: quick.{quoted(dotted)[1:-1]}: may not differ; only {', '.join(cheap)} may."
             )
     return {"quick": differs, **variant}
 

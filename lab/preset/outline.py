@@ -1,7 +1,9 @@
-"""The tank's outline: a simple polygon, counter-clockwise in the picture."""
+"""Outlines of tanks and hulls: simple polygons, counter-clockwise in the picture."""
 
 from collections.abc import Sequence
 from itertools import combinations
+
+import numpy as np
 
 from lab.base.errors import LabError
 
@@ -14,6 +16,24 @@ def rectangle(width: float, height: float) -> tuple[Point, ...]:
     """A rectangle (m) with the origin in the middle of its floor."""
     half = width / 2
     return ((-half, 0.0), (half, 0.0), (half, height), (-half, height))
+
+
+def box_hull(breadth: float, height: float, coaming: Sequence[Sequence[float]]) -> np.ndarray:
+    """The outline (m, 2) m of a box with its origin in the middle of the keel; `coaming`: its hatch's to starboard."""
+    half, port = 0.5 * breadth, [[-y, z] for y, z in reversed(coaming)]
+    sides = [[-half, 0.0], [half, 0.0], [half, height]], [[-half, height]]
+    return np.array([*sides[0], *coaming, *port, *sides[1]])
+
+
+def at_height(corners: np.ndarray, level: float) -> tuple[tuple[float, float], ...]:
+    """The outermost points of an outline (m, 2) at a height, starboard and port (m)."""
+    begin, end = corners, np.roll(corners, -1, axis=0)
+    low, high = np.minimum(begin[:, 1], end[:, 1]), np.maximum(begin[:, 1], end[:, 1])
+    meets = (low <= level) & (level <= high)
+    share = np.divide(level - begin[:, 1], end[:, 1] - begin[:, 1], where=high > low, out=np.zeros(len(begin)))
+    across = (begin[:, 0] + share * (end[:, 0] - begin[:, 0]))[meets]
+    across = np.concatenate([across, end[meets & (high == low), 0]])
+    return (float(across.max()), level), (float(across.min()), level)
 
 
 def area(outline: Sequence[Point]) -> float:

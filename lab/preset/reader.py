@@ -1,22 +1,20 @@
-"""Read TOML tables into dataclasses: a field's annotation says what it takes; an error is one sentence.
+"""Read TOML tables into the dataclasses of a preset: a field's annotation says what it takes; an error is one sentence.
 
-A field is `bool`, `int`, `str`, a `Literal` of words, a number or a tuple of numbers with the markers of
-`solvers.machine.marks`, another dataclass (a table), or a `dict[str, dataclass]` (tables that users name). `X | None`
-may be left out. A value of `false` removes an inherited optional value or a named table.
+A value of `false` removes an inherited optional value or a named table.
 """
 
-import types
-from collections.abc import Iterator, Mapping
-from dataclasses import MISSING, dataclass, fields, is_dataclass
+from collections.abc import Mapping
+from dataclasses import replace
 from difflib import get_close_matches
-from functools import cache
-from typing import Annotated, Any, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
+from pathlib import Path
+from typing import Any, TypeVar, get_args, get_origin
 from unicodedata import category
 
 from lab.base.errors import LabError
-from lab.preset.toml import BARE_KEY
+from lab.base.toml import BARE_KEY
+from lab.preset.fields import Table, Taken, defaults_of, join, taken_of, walk
+from lab.preset.tables import read_table
 from lab.preset.units import needed, parse, quoted, show
-from solvers.machine.marks import Interval, Unit
 
 T = TypeVar("T")
 
@@ -24,47 +22,13 @@ LIKELY = 0.7  # similarity above which a key here is suggested before a key of t
 LONGEST_NAME = 40  # characters of a table's name that a user chooses
 BOUND = 1e15  # SI numbers must be within 1/BOUND and BOUND; their squares and cubes stay finite
 
-
-@dataclass
-class Taken:
-    """What a field takes: a type, words, or both; the unit and range of its numbers."""
-
-    kind: Any = None
-    words: tuple[str, ...] = ()
-    symbol: str = "1"
-    interval: Interval = Interval()  # noqa: RUF009 (frozen)
-    optional: bool = False
+RENAMED = {"ship.sheet": "tank.thickness"}  # keys of earlier versions
+RESERVED = {"water": "is water in a tank, which cannot be filled with it yet; the sea outside the ship is [sea]."}
 
 
 def check_keys(kind: type, table: object) -> None:
     """Raise LabError on the first key that the dataclass `kind` lacks, suggesting a similar one."""
-    _check_keys(kind, table, "", list(_dotted(kind)))
-
-
-def dotted_key(kind: type, given: str) -> str:
-    """The full dotted key for one given by its last part alone. Raises LabError if none or several match."""
-    known = list(_dotted(kind))
-    if given in known or "." in given:
-        return given
-    found = [key for key in known if key.split(".")[-1] == given and ".NAME" not in key]
-    if len(found) != 1 and f"material.{given}" not in found:
-        said = f"it could be {' or '.join(found)}" if found else "no preset has such a key"
-        raise LabError(f"{given}: {said}; give the whole key, e.g. material.friction.")
-    return found[0] if len(found) == 1 else f"material.{given}"
-
-
-def taken_by(kind: type, dotted: str) -> Taken | None:
-    """What a dotted key below the dataclass `kind` takes, with any names that users choose; None: no such key."""
-    taken, parts = Taken(kind), dotted.split(".")
-    while parts:
-        if inner := _named_kind(taken.kind):
-            taken = Taken(inner)
-        elif is_dataclass(taken.kind) and parts[0] in {field.name for field in fields(taken.kind)}:
-            taken = _taken_by(taken.kind, parts[0])
-        else:
-            return None
-        parts = parts[1:]
-    return taken
+    _check_keys(kind, table, "", [key for key, _ in walk(kind)])
 
 
 def read(kind: type[T], table: object, path: str = "") -> T:
@@ -74,85 +38,47 @@ def read(kind: type[T], table: object, path: str = "") -> T:
     """
     if not isinstance(table, Mapping):
         raise LabError(f"{path or 'the preset'}: a table of keys is needed (got {quoted(table)}).")
-    values = {}
-    for field in fields(kind):
-        key, taken = _join(path, field.name), _taken_by(kind, field.name)
-        if field.name in table:
-            values[field.name] = _value(taken, table[field.name], key)
-        elif field.default is MISSING and field.default_factory is MISSING:
-            if not is_dataclass(taken.kind):
+    values, defaults = {}, defaults_of(kind)
+    for name, taken in taken_of(kind).items():
+        key = join(path, name)
+        if name in table:
+            values[name] = _value(taken, table[name], key)
+        elif name not in defaults:
+            if not taken.table:
                 raise LabError(f"{key}: missing; {_needed(taken)}.")
-            values[field.name] = read(taken.kind, {}, key)
+            values[name] = read(taken.table, {}, key)
     return kind(**values)
-
-
-RENAMED = {"ship.sheet": "tank.thickness"}  # keys of earlier versions
 
 
 def _check_keys(kind: type, table: object, path: str, everywhere: list[str]) -> None:
     if not isinstance(table, Mapping):
         return
-    known = {field.name: _taken_by(kind, field.name).kind for field in fields(kind)}
+    known = taken_of(kind)
     for key, value in table.items():
         if key not in known:
-            wrong = _join(path, quoted(str(key))[1:-1])
-            if wrong in RENAMED:
-                raise LabError(f"{wrong}: this key is {RENAMED[wrong]} now.")
-            raise LabError(f"{wrong}: unknown key; {_hint(key, known, everywhere)}")
-        if is_dataclass(known[key]):
-            _check_keys(known[key], value, _join(path, key), everywhere)
-        elif inner := _named_kind(known[key]):
-            for name, table in value.items() if isinstance(value, Mapping) else ():
-                _check_keys(inner, table, _join(_join(path, key), quoted(str(name))[1:-1]), everywhere)
+            _refuse(key, join(path, quoted(str(key))[1:-1]), list(known), everywhere)
+        if known[key].table:
+            _check_keys(known[key].table, value, join(path, key), everywhere)
+        elif known[key].named:
+            for name, inner in value.items() if isinstance(value, Mapping) else ():
+                below = join(join(path, key), quoted(str(name))[1:-1])
+                _check_keys(known[key].named, inner, below, everywhere)
 
 
-def _hint(key: object, known: Mapping, everywhere: list[str]) -> str:
+def _refuse(key: object, wrong: str, known: list[str], everywhere: list[str]) -> None:
+    """Raise LabError for a key that is unknown here; `wrong` is the whole of it."""
+    if wrong in RENAMED:
+        raise LabError(f"{wrong}: this key is {RENAMED[wrong]} now.")
+    if wrong in RESERVED:
+        raise LabError(f"{wrong}: {RESERVED[wrong]}")
+    raise LabError(f"{wrong}: unknown key; {_hint(key, known, everywhere)}")
+
+
+def _hint(key: object, known: list[str], everywhere: list[str]) -> str:
     near = get_close_matches(str(key)[:100], known, n=1, cutoff=LIKELY)
     near = near or [dotted for dotted in everywhere if dotted.endswith(f".{key}")][:1]
     near = near or get_close_matches(str(key)[:100], known, n=1)
     return f"did you mean '{near[0]}'?" if near else f"known here: {', '.join(known)}."
-
-
-def _dotted(kind: type, path: str = "") -> Iterator[str]:
-    for field in fields(kind):
-        inner = _taken_by(kind, field.name).kind
-        yield _join(path, field.name)
-        if is_dataclass(inner):
-            yield from _dotted(inner, _join(path, field.name))
-        elif named := _named_kind(inner):
-            yield from _dotted(named, _join(path, f"{field.name}.NAME"))
-
-
-def _named_kind(kind: Any) -> type | None:
-    """The dataclass of the tables that users name, if the kind is a `dict` of such."""
-    return get_args(kind)[1] if get_origin(kind) is dict else None
-
-
-@cache
-def _taken_by(kind: type, name: str) -> Taken:
-    return _taken(get_type_hints(kind, include_extras=True)[name])
-
-
-def _taken(hint: Any) -> Taken:
-    """Flatten an annotation: Annotated, unions and Literals may be nested in any order."""
-    origin, arguments = get_origin(hint), get_args(hint)
-    if origin is Annotated:
-        taken = _taken(arguments[0])
-        for mark in hint.__metadata__:
-            if isinstance(mark, Unit):
-                taken.symbol = mark.symbol
-            elif isinstance(mark, Interval):
-                taken.interval = mark
-        return taken
-    if origin in (Union, types.UnionType):
-        parts = [_taken(part) for part in arguments if part is not types.NoneType]
-        taken = next((part for part in parts if part.kind is not None), parts[0])
-        taken.words = tuple(word for part in parts for word in part.words)
-        taken.optional = types.NoneType in arguments
-        return taken
-    if origin is Literal:
-        return Taken(words=arguments)
-    return Taken(kind=hint)
 
 
 def _value(taken: Taken, raw: object, key: str) -> Any:
@@ -162,15 +88,24 @@ def _value(taken: Taken, raw: object, key: str) -> Any:
         return None
     if taken.kind is None:
         raise LabError(f"{key}: {quoted(raw)} is unknown; {_word_hint(taken, raw)}")
-    if is_dataclass(taken.kind):
-        return read(taken.kind, raw, key)
+    if taken.table:
+        return read(taken.table, raw, key)
     if get_origin(taken.kind) is tuple:
         return _tuple(taken, raw, key)
-    if inner := _named_kind(taken.kind):
-        return _named(inner, raw, key)
+    if taken.named:
+        return _named(taken.named, raw, key)
+    if taken.kind is Table:
+        return _file(taken, raw, key)
     value = _scalar(taken, raw, key)
-    _check_interval(taken, value, raw, key)
+    check_interval(taken, value, raw, key)
     return value
+
+
+def _file(taken: Taken, raw: object, key: str) -> Table:
+    """The columns of a file."""
+    path = _scalar(replace(taken, kind=str), raw, key)
+    columns = read_table(path, taken.columns.needed, taken.columns.optional, key, taken.columns.most)
+    return Table(Path(path).name, {name: tuple(values.tolist()) for name, values in columns.items()})
 
 
 def _scalar(taken: Taken, raw: object, key: str) -> Any:
@@ -199,7 +134,7 @@ def _named(kind: type, raw: object, key: str) -> dict[str, Any]:
             raise LabError(
                 f"{key}: {quoted(str(name))} is no name; up to {LONGEST_NAME} letters A-Z, digits, - and _ make one."
             )
-    return {name: read(kind, table, _join(key, name)) for name, table in raw.items() if table is not False}
+    return {name: read(kind, table, join(key, name)) for name, table in raw.items() if table is not False}
 
 
 def _tuple(taken: Taken, raw: object, key: str) -> tuple:
@@ -208,14 +143,7 @@ def _tuple(taken: Taken, raw: object, key: str) -> tuple:
     if not isinstance(raw, list | tuple) or length not in (None, len(raw)):
         raise LabError(f"{key}: {_needed(taken)} (got {quoted(raw)}).")
     kinds = parts[:1] * len(raw) if length is None else parts
-    return tuple(_value(_item(taken, kind), raw[i], f"{key}[{i}]") for i, kind in enumerate(kinds))
-
-
-def _item(taken: Taken, kind: Any) -> Taken:
-    """What an item of a list takes: by its own annotation, else the unit and range of the whole list."""
-    if get_origin(kind) is Annotated:
-        return _taken(kind)
-    return Taken(kind, symbol=taken.symbol, interval=taken.interval)
+    return tuple(_value(taken.item(kind), raw[i], f"{key}[{i}]") for i, kind in enumerate(kinds))
 
 
 def _needed(taken: Taken) -> str:
@@ -226,7 +154,7 @@ def _needed(taken: Taken) -> str:
         parts = get_args(taken.kind)
         size = "a list" if parts[-1] is Ellipsis else f"a list of {len(parts)}"
         return f"{size} is needed"
-    asked = {int: "a whole number", bool: "true or false", str: "a text in quotes"}
+    asked = {int: "a whole number", bool: "true or false", str: "a text in quotes", Table: "a text in quotes"}
     return f"{asked.get(taken.kind, 'a table of keys')} is needed"
 
 
@@ -235,13 +163,8 @@ def _word_hint(taken: Taken, raw: object) -> str:
     return f"did you mean '{near[0]}'?" if near else f"choose one of {', '.join(taken.words)}."
 
 
-def check_interval(kind: type, name: str, value: Any, key: str) -> None:
-    """Raise LabError for a number outside the range that a field of a dataclass may take."""
-    taken = _taken_by(kind, name)
-    _check_interval(taken, value, value, key)
-
-
-def _check_interval(taken: Taken, value: Any, raw: object, key: str) -> None:
+def check_interval(taken: Taken, value: Any, raw: object, key: str) -> None:
+    """Raise LabError for a number outside the range that a field may take; `raw` is how it was given."""
     limits = taken.interval
     rules = (
         ("greater than", limits.gt, lambda v, bound: v > bound),
@@ -253,7 +176,3 @@ def _check_interval(taken: Taken, value: Any, raw: object, key: str) -> None:
         if bound is not None and not holds(value, bound):
             limit = show(bound, taken.symbol) if bound and taken.kind is float else bound
             raise LabError(f"{key}: must be {words} {limit} (got {quoted(raw).strip(chr(34))}).")
-
-
-def _join(path: str, key: str) -> str:
-    return f"{path}.{key}" if path else key

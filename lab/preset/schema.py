@@ -1,174 +1,211 @@
-"""The schema of a preset, and its resolution into complete SI values.
+"""The schema of a preset: one model, a section a file of `lab.preset.sections`, in SI.
 
 The keys of `material` and of the motions, and the names of the contact laws, come from `solvers`: a new motion or law
-in its registry is a new key or word here. Each section is a dataclass in a file of `lab.preset.sections`;
-`lab.preset.reader` fills it, in SI.
+in its registry is a new key or word here. `lab.preset.reader` fills the model from tables, `lab.preset.recorded` writes
+it to files and reads it back. What follows from the keys is a property; of what needs several sections, of the preset.
 """
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-
-from pydantic import BaseModel, ConfigDict, model_validator
+from functools import cached_property
+from typing import Annotated
 
 from lab.base.errors import LabError
+from lab.preset.accuracy import LEVELS
+from lab.preset.fields import defaults_of, join, walk
 from lab.preset.reader import check_keys, read
-from lab.preset.sections.contact import Contact, ContactGiven, full_contact
-from lab.preset.sections.grains import Grains, GrainsGiven, full_grains
-from lab.preset.sections.materials import (
-    Kind,
-    KindGiven,
-    WallGiven,
-    check_cohesion,
-    check_dissipation,
-    full_kinds,
-    over,
-)
-from lab.preset.sections.motion import Motion, MotionGiven, full_motion
+from lab.preset.sections import materials, shapes
+from lab.preset.sections.contact import Contact
+from lab.preset.sections.grains import Grains, check_grains, check_room
+from lab.preset.sections.materials import Kind, Wall, check_cohesion, check_dissipation, check_kinds
+from lab.preset.sections.motion import Motion, check_motion
 from lab.preset.sections.parts import check_parts
-from lab.preset.sections.run import Run, RunGiven, duration_of
-from lab.preset.sections.shapes import Shape, ShapeGiven, read_shapes
+from lab.preset.sections.run import Run, duration_of
+from lab.preset.sections.sea import Sea, Waves
+from lab.preset.sections.shapes import Shape, ShapeClass, by_number
+from lab.preset.sections.ship import Ship
 from lab.preset.sections.ship_checks import check_ship
-from lab.preset.sections.tank import Tank, TankGiven, full_tank
+from lab.preset.sections.tank import Tank, check_tank
 from lab.preset.sections.video import Record, Video, check_video
-from lab.preset.ship import ShipGiven, WaterGiven, WavesGiven
+from solvers.grains.bed.sizes import Sizes
 from solvers.grains.materials import Material
+from solvers.machine.marks import Cheap, Doc, Interval
 from solvers.tank.parts import Part
+
+FORMAT = 3
 
 
 @dataclass(frozen=True)
-class Given:
-    """A whole preset as read, after its base has been merged in; `based_on` only names the base."""
+class Preset:
+    """A preset: all that may be said of an experiment, with its base and overrides merged in."""
 
-    title: str
-    tank: TankGiven
-    grains: GrainsGiven
-    material: Material
-    source: str = ""
-    reports: str = ""
-    based_on: str = ""
-    quick: str = ""  # how a quick variant differs from its preset
-    wall: WallGiven = field(default_factory=WallGiven)
-    kinds: dict[str, KindGiven] = field(default_factory=dict)
-    shapes: dict[str, ShapeGiven] = field(default_factory=dict)
-    contact: ContactGiven = field(default_factory=ContactGiven)
-    motion: MotionGiven = field(default_factory=MotionGiven)
-    parts: dict[str, Part] = field(default_factory=dict)
-    ship: ShipGiven | None = None
-    water: WaterGiven = field(default_factory=WaterGiven)
-    waves: WavesGiven | None = None
-    run: RunGiven = field(default_factory=RunGiven)
-    record: Record = field(default_factory=Record)
-    video: Video = field(default_factory=Video)
+    title: Annotated[str, Doc("What the experiment is, in a line.")]
+    tank: Annotated[Tank, Doc("The tank that holds the cargo.")]
+    material: Annotated[Material, Doc("The material of the grains, and of the walls as far as [wall] does not differ.")]
+    grains: Annotated[Grains | None, Doc("The grains in the tank.")] = None
+    format: Annotated[
+        int, Interval(ge=FORMAT, le=FORMAT), Doc("Format of this file; in format 3 the sea outside is [sea].")
+    ] = FORMAT
+    source: Annotated[str, Doc("Where the experiment comes from.")] = ""
+    reports: Annotated[str, Doc("What the source reports of it.")] = ""
+    based_on: Annotated[str, Doc("Name or path of the preset whose keys this one changes.")] = ""
+    quick: Annotated[str, Doc("How a quick variant differs from its preset.")] = ""
+    wall: Annotated[Wall, Doc("What of the walls' material is not as that of the grains.")] = field(
+        default_factory=Wall
+    )
+    kinds: Annotated[
+        dict[str, Kind], Doc("Shares of the grains, each of another material; a key not given is as in [material].")
+    ] = field(default_factory=dict)
+    shapes: Annotated[dict[str, Shape], Doc("Classes of irregular grains.")] = field(default_factory=dict)
+    contact: Annotated[Contact, Doc("The contact laws.")] = field(default_factory=Contact)
+    motion: Annotated[Motion, Doc("How the tank moves.")] = field(default_factory=Motion)
+    parts: Annotated[dict[str, Part], Doc("Plates in the tank, such as gates and funnels, which may move.")] = field(
+        default_factory=dict
+    )
+    ship: Annotated[Ship | None, Doc("The ship whose hold the tank is.")] = None
+    sea: Annotated[Sea, Doc("The sea outside the ship.")] = field(default_factory=Sea)
+    waves: Annotated[Waves | None, Doc("The waves of the sea, which travel to starboard.")] = None
+    run: Annotated[Run, Cheap(), Doc("How the experiment is run.")] = field(default_factory=Run)
+    record: Annotated[Record, Cheap(), Doc("What is written down, and how often.")] = field(default_factory=Record)
+    video: Annotated[Video, Doc("How the run is filmed.")] = field(default_factory=Video)
+
+    @cached_property
+    def shape_classes(self) -> dict[str, ShapeClass]:
+        """The grains of each shape; empty if all are discs. Raises LabError."""
+        return shapes.shape_classes(self.shapes, self.grains.diameter, self.grains.shares)
+
+    @cached_property
+    def classes(self) -> tuple[tuple[float, float], ...]:
+        """The classes of sizes (diameter m, share by number); empty if one diameter is given."""
+        if self.shapes:
+            return tuple((shape.diameter, shape.share) for shape in self.shape_classes.values())
+        return by_number(self.grains.table, self.grains.shares) if self.grains.table else ()
+
+    @cached_property
+    def mean_diameter(self) -> float:
+        """Mean diameter of the grains (m)."""
+        if self.grains.listed:
+            return 2.0 * sum(grain[2] for grain in self.grains.listed) / len(self.grains.listed)
+        return Sizes(self.classes).mean if self.classes else self.grains.diameter
+
+    @cached_property
+    def sizes(self) -> Sizes:
+        """The distribution that the diameters are drawn from, unless they are listed."""
+        classes = self.classes or ((self.grains.diameter, 1.0),)
+        return Sizes(classes, self.grains.spread, self.grains.normal)
+
+    @property
+    def diameters(self) -> tuple[float, float]:
+        """Smallest and largest possible diameter (m)."""
+        if self.grains.listed:
+            radius = [grain[2] for grain in self.grains.listed]
+            return 2.0 * min(radius), 2.0 * max(radius)
+        return self.sizes.range
+
+    @cached_property
+    def wall_material(self) -> Material:
+        """The material of the walls."""
+        return self.wall.over(self.material)
+
+    @cached_property
+    def others(self) -> dict[str, materials.Other]:
+        """The materials of the kinds of grains."""
+        return materials.others(self.kinds, self.material)
+
+    @property
+    def stiffness_scale(self) -> float:
+        """The factor on Young's moduli: as given, else that of the level of accuracy."""
+        return self.contact.stiffness_scale or LEVELS[self.run.accuracy].stiffness_scale
+
+    @cached_property
+    def duration(self) -> float:
+        """How long the tank moves (s): as given, else until the last motion ends. Raises LabError."""
+        return duration_of(self.run, self.motion)
+
+    @property
+    def thickness(self) -> float:
+        """Thickness (m) of the slab: the tank's, else the grains' mean diameter."""
+        return self.tank.thickness or self.mean_diameter
 
 
-class Resolved(BaseModel):
-    """A preset with all values filled in, in SI. To JSON and back: `model_dump_json`, `model_validate_json`."""
-
-    model_config = ConfigDict(frozen=True)
-
-    title: str
-    source: str
-    reports: str
-    quick: str
-    based_on: str = ""  # recordings of earlier versions do not say it
-    tank: Tank
-    grains: Grains
-    material: Material
-    wall: Material
-    kinds: dict[str, Kind]
-    shapes: dict[str, Shape] = {}  # recordings of earlier versions have none
-    contact: Contact
-    motion: Motion
-    parts: dict[str, Part]
-    ship: ShipGiven | None = None
-    water: WaterGiven = WaterGiven()
-    waves: WavesGiven | None = None
-    run: Run
-    record: Record
-    video: Video
-
-    @model_validator(mode="after")
-    def _rebounds(self) -> "Resolved":
-        """Raise ValueError for a material without its rebound values, as a damaged or edited file may have."""
-        given = [self.material, self.wall, *(kind.material for kind in self.kinds.values())]
-        if any(material.restitution is None and material.dissipative_time is None for material in given):
-            raise ValueError("a material has neither restitution nor dissipative_time")
-        if any(not material.restitution_speed > 0.0 for material in given):
-            raise ValueError("a material's restitution is that of no speed")
-        return self
-
-
-def resolve(table: Mapping) -> Resolved:
-    """Resolve a preset's table, with its base and overrides already merged in.
+def resolve(table: Mapping) -> Preset:
+    """The preset of a table, with its base and overrides already merged in.
 
     Raises LabError, one sentence with the dotted key.
     """
-    check_keys(Given, table)
-    given = read(Given, table)
-    tank = full_tank(given.tank)
-    (_check_shapely if given.shapes else _check_shapeless)(given)
-    shapes = read_shapes(given.shapes, given.grains.diameter, given.grains.shares)
-    grains = full_grains(given.grains, shapes, tank, given.run.settle)
-    check_dissipation(given.material, "material", needed=True)
-    check_dissipation(given.wall, "wall", needed=False)
-    check_cohesion(given.contact.cohesion, given.material)
-    motion = full_motion(given.motion)
-    run = Run(**{**vars(given.run), "duration": duration_of(given.run, motion)})
-    check_parts(given.parts, tank.outline)
-    check_ship(given.ship, given.waves, bool(motion.parts), tank.outline)
-    check_video(given.video)
-    return Resolved(
-        title=given.title,
-        source=given.source,
-        reports=given.reports,
-        quick=given.quick,
-        based_on=given.based_on,
-        tank=tank,
-        grains=grains,
-        material=given.material,
-        wall=over(given.material, given.wall),
-        kinds=full_kinds(given.kinds, given.material),
-        shapes=shapes,
-        contact=full_contact(given.contact, run.accuracy),
-        motion=motion,
-        parts=given.parts,
-        ship=given.ship,
-        water=given.water,
-        waves=given.waves,
-        run=run,
-        record=given.record,
-        video=given.video,
-    )
+    check_keys(Preset, table)
+    preset = read(Preset, table)
+    check(preset)
+    return preset
 
 
-def _check_shapeless(given: Given) -> None:
+def check(preset: Preset) -> None:
+    """Raise LabError, one sentence, for keys that contradict each other, and for what cannot be built."""
+    check_tank(preset.tank)
+    if preset.grains is None:
+        raise LabError("grains: missing; the tank has nothing in it, and grains are all that it can hold so far.")
+    (_check_shapely if preset.shapes else _check_shapeless)(preset)
+    settle, tank = preset.run.settle, preset.tank
+    check_grains(preset.grains, bool(preset.shape_classes), settle)
+    check_room(preset.grains, preset.sizes, preset.mean_diameter, tank, _size_key(preset), settle)
+    check_dissipation(preset.material, "material", needed=True)
+    check_dissipation(preset.wall, "wall", needed=False)
+    check_cohesion(preset.contact.cohesion, preset.material)
+    check_motion(preset.motion)
+    duration_of(preset.run, preset.motion)
+    check_parts(preset.parts, tank.corners)
+    check_kinds(preset.kinds, preset.material)
+    check_ship(preset.ship, preset.waves, bool(preset.motion.parts), tank.corners)
+    check_video(preset.video)
+
+
+def marked(mark: str) -> list[str]:
+    """The dotted keys whose fields have a mark: columns, cheap or alike."""
+    return [key for key, taken in walk(Preset) if getattr(taken, mark)]
+
+
+def value_at(preset: Preset, dotted: str) -> object:
+    """The value of a dotted key of a preset, without names that users choose."""
+    value = preset
+    for name in dotted.split("."):
+        value = getattr(value, name)
+    return value
+
+
+def _size_key(preset: Preset) -> str:
+    """The key that sets the size of the largest grains."""
+    if preset.shapes:
+        sizes = preset.shape_classes
+        return f"shapes.{max(sizes, key=lambda name: sizes[name].diameter)}.diameter"
+    return "grains.diameter" if preset.grains.table is None else "grains.table"
+
+
+def _check_shapeless(preset: Preset) -> None:
     """Raise LabError for settings that need irregular grains if there are none."""
-    said = (
-        ("grains.orientation", given.grains.orientation, GrainsGiven.orientation),
-        ("grains.settled_as", given.grains.settled_as, GrainsGiven.settled_as),
-        ("contact.outlines", given.contact.outlines, ContactGiven.outlines),
-        ("contact.nodes", given.contact.nodes, ContactGiven.nodes),
-    )
-    for key, value, default in said:
-        if value != default:
-            raise LabError(f"{key}: goes with irregular grains; add a table [shapes.NAME], or leave this out.")
+    for section, keys in (("grains", ("orientation", "settled_as")), ("contact", ("outlines", "nodes"))):
+        given = getattr(preset, section)
+        for name in keys:
+            if getattr(given, name) != defaults_of(type(given))[name]:
+                key = join(section, name)
+                raise LabError(f"{key}: goes with irregular grains; add a table [shapes.NAME], or leave this out.")
 
 
-def _check_shapely(given: Given) -> None:
+def _check_shapely(preset: Preset) -> None:
     """Raise LabError for settings that need discs if the grains are irregular."""
-    if given.kinds:
+    grains = preset.grains
+    if preset.kinds:
         raise LabError("kinds: irregular grains are of one material; leave out the kinds, or the shapes.")
-    if given.contact.cohesion != "none":
+    if preset.contact.cohesion != "none":
         raise LabError("contact.cohesion: no liquid between irregular grains yet; leave it out, or the shapes.")
-    if given.grains.bed is not None:
+    if grains.bed is not None:
         raise LabError("grains.bed: lists round grains; leave out the file, or the shapes.")
-    if given.grains.table is not None:
+    if grains.table is not None:
         raise LabError("grains.table: shapes have diameters of their own; give these as shapes.NAME.diameter.")
-    if given.grains.settled_as == "discs" and not all(shape.round for shape in given.shapes.values()):
+    if grains.settled_as == "discs" and not all(shape.round for shape in preset.shapes.values()):
         raise LabError("grains.settled_as: discs stand for round outlines only; leave it out, or the descriptors.")
-    if given.grains.settled_as == "discs" and not given.run.settle:
+    if grains.settled_as == "discs" and not preset.run.settle:
         raise LabError("grains.settled_as: without run.settle no bed is settled; leave out either.")
-    if given.grains.surface == "undisturbed":
+    if grains.surface == "undisturbed":
         raise LabError(
             "grains.surface: an undisturbed surface is levelled with round grains; take slightly-disturbed or "
             "disturbed, or leave out the shapes."

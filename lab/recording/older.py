@@ -19,12 +19,6 @@ def is_older(form: str) -> bool:
     return form == FORMAT
 
 
-def renamed(preset: dict) -> dict:
-    """A recorded preset with its keys renamed to the present ones: `ship.sheet` is now `tank.thickness`."""
-    sheet = (preset.get("ship") or {}).pop("sheet", None)
-    return preset | {"tank": preset["tank"] | {"thickness": sheet}} if sheet else preset
-
-
 def quantities(group: h5py.Group, known: Iterable[Quantity]) -> dict[str, Quantity]:
     """The quantities of a table by name. Raises KeyError if one without a value for `never` is missing."""
     found = {quantity.name: quantity for quantity in known if quantity != WAVES or WAVES.name in group}

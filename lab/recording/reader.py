@@ -9,7 +9,8 @@ import h5py
 import numpy as np
 
 from lab.base.errors import LabError, Unusable
-from lab.base.trust import BEYOND, attributes, check_recording, format_of, is_preset, text
+from lab.base.trust import BEYOND, attributes, check_recording, format_of, text
+from lab.preset.recorded import from_table
 from lab.recording import older
 from lab.recording.checks import Checks
 from lab.recording.layout import CHECKS, FILE_NAME, FORMAT, described, rows_of, tables_of
@@ -28,7 +29,7 @@ TABLE_KINDS = {"series": Series, "frames": Frames, "steering": Series}
 class Recording:
     """A recording opened for reading, a context manager; arrays are read on demand.
 
-    path, folder; name: of the preset; given: its TOML text; preset: all its values in SI, nested as in the TOML;
+    path, folder; name: of the preset; given: its TOML text; preset: the Preset itself, in SI;
     status, created, versions, machine, step (s), wall_s, grain_steps;
     radius (W, n) m; kind (W, n): 0 for the preset's material, then the preset's kinds in order;
     outline (m, 2) m; fixed (k, 3): y, z, radius m; open_edges; parts: polylines (m, 2) m by name;
@@ -58,8 +59,7 @@ class Recording:
             self.step, self.wall_s = float(stored["step"]), float(stored["wall_s"])
             self.grain_steps = int(stored["grain_steps"])
             self.given = self._stored("preset/given", text)
-            preset = json.loads(self._stored("preset/resolved", text))
-            self.preset = older.renamed(preset) if older.is_older(self.form) and is_preset(preset) else preset
+            self.preset = from_table(json.loads(self._stored("preset/resolved", text)))
             self.radius, self.kind = self._stored("grains/radius"), self._stored("grains/kind")
             self.outline, self.fixed = self._stored("tank/outline"), self._stored("tank/fixed")
             self.open_edges = tuple(int(edge) for edge in self._stored("tank/open_edges"))
@@ -88,7 +88,7 @@ class Recording:
         """The tables by name. Raises ValueError or KeyError if one is not as the lab writes it."""
         (worlds, grains), is_older = self.radius.shape, older.is_older(self.form)
         sizes = {"world": worlds, "grain": grains, "part": len(self.parts)}
-        wanted = tables_of(bool(self.preset.get("ship")), "steering" in self._file)
+        wanted = tables_of(bool(self.preset.ship), "steering" in self._file)
         found = {}
         for name, known in wanted.items():
             group, checks = self._file[name], None
@@ -107,7 +107,6 @@ class Recording:
             "a number of its attributes": all(np.isfinite([self.step, self.wall_s])) and self.step > 0.0,
             "attribute versions": isinstance(self.versions, dict),
             "attribute machine": isinstance(self.machine, dict),
-            "preset/resolved": is_preset(self.preset),
             "grains/radius": _finite(self.radius, 2) and self.radius.size > 0 and self.radius.min() > 0.0,
             "grains/kind": self.kind.shape == worlds_and_grains and self.kind.dtype == np.uint8,
             "shapes/which": self.shapes is None or self.shapes.which.shape == worlds_and_grains,

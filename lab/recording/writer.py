@@ -18,7 +18,9 @@ import numpy as np
 from lab import __version__
 from lab.base.errors import LabError, Unusable
 from lab.base.trust import attribute_words, format_of
-from lab.preset.ship import axis_place, recorded_ship
+from lab.preset.recorded import to_table
+from lab.preset.schema import Preset
+from lab.preset.sections.ship_axis import axis_place
 from lab.recording.checks import Checks, row_checks
 from lab.recording.layout import (
     CHECKS,
@@ -49,7 +51,7 @@ def new_recording(
     *,
     preset: str,
     given: str,
-    resolved: Mapping,
+    resolved: Preset,
     radius: np.ndarray,
     outline: np.ndarray,
     step: float,
@@ -63,8 +65,8 @@ def new_recording(
 ) -> Path:
     """Create the recording of a run, without rows yet; returns its file.
 
-    folder: of the new recording.h5, created if missing; preset: its name; given: its TOML text; resolved: all its
-    values in SI; radius (W, n) m; outline (m, 2) m; step: the time step, s; kind (W, n): numbers of the kinds of
+    folder: of the new recording.h5, created if missing; preset: its name; given: its TOML text; resolved: the
+    preset itself; radius (W, n) m; outline (m, 2) m; step: the time step, s; kind (W, n): numbers of the kinds of
     grains, 0 for the preset's material, None if all are 0; fixed (k, 3): y, z, radius m of the fixed grains;
     open_edges: outline edges without a wall; parts: moving parts by name, polylines at rest (m, 2) m; shapes: outlines
     of irregular grains, None if all are discs; machine: the device and threads, added to the data found here; steered:
@@ -97,7 +99,7 @@ def new_recording(
             _reserve(file, radius.nbytes + tables_bytes + len(given) + SPARE_BYTES)
             file.attrs.update(attributes)
             store(file, "preset/given", fixed_text(given)[None])
-            store(file, "preset/resolved", fixed_text(json.dumps(resolved))[None])
+            store(file, "preset/resolved", fixed_text(json.dumps(to_table(resolved)))[None])
             store(file, "grains/radius", radius)
             store(file, "grains/kind", np.zeros(radius.shape, "u1") if kind is None else np.asarray(kind, dtype="u1"))
             store(file, "tank/outline", np.asarray(outline, dtype=float))
@@ -109,7 +111,7 @@ def new_recording(
             for name, table in tables.items():
                 store(file, f"{GROUP}/{name}", table)
             sizes = dict(zip(("world", "grain"), radius.shape, strict=True)) | {"part": len(parts)}
-            create_tables(file, tables_of(bool(resolved.get("ship")), steered), sizes)
+            create_tables(file, tables_of(bool(resolved.ship), steered), sizes)
         _publish(path)
     return path
 
@@ -361,11 +363,10 @@ def versions() -> dict[str, str]:
     return found
 
 
-def _reference(resolved: Mapping) -> dict[str, object]:
-    """Attributes on the reference point of the poses and, for a ship, of sway and heave (see `lab.preset.ship`)."""
+def _reference(preset: Preset) -> dict[str, object]:
+    """Attributes on the reference point of the poses and, for a ship, of sway and heave (see `axis_motion`)."""
     found = {"pose_is_of": fixed_text("the origin of the tank's axes")}
-    if resolved.get("ship"):
-        ship = recorded_ship(resolved)
+    if ship := preset.ship:
         found["ship_axis"] = np.array(ship.about)
         found["ship_axis_in_tank"] = np.subtract(ship.about, ship.hold)
         found["sway_and_heave_are_of"] = fixed_text(f"the ship's axis, {axis_place(ship)}")
@@ -373,8 +374,5 @@ def _reference(resolved: Mapping) -> dict[str, object]:
 
 
 def _machine() -> dict[str, object]:
-    return {
-        "system": platform.platform(),
-        "processor": platform.processor() or platform.machine(),
-        "cores": os.cpu_count(),
-    }
+    processor = platform.processor() or platform.machine()
+    return {"system": platform.platform(), "processor": processor, "cores": os.cpu_count()}

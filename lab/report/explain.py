@@ -1,5 +1,6 @@
 """What a preset simulates, which models it uses and what its run will cost, without running it."""
 
+from collections.abc import Iterator
 from dataclasses import replace
 from math import pi
 
@@ -9,9 +10,10 @@ from lab.assembly.room import check_room
 from lab.assembly.scene import build, grain_count
 from lab.measures.ship_frozen import INTERVAL
 from lab.preset.accuracy import LEVELS
+from lab.preset.fields import join, taken_by
 from lab.preset.find import LoadedPreset
-from lab.preset.schema import Resolved
-from lab.preset.sections.shapes import Shape, caution
+from lab.preset.schema import Preset
+from lab.preset.sections.shapes import ShapeClass, caution
 from lab.preset.units import show
 from lab.report.ship import describe
 from solvers.grains.laws import COHESION
@@ -48,6 +50,9 @@ SCHEDULES = {
 }
 
 
+KEYS_WIDTH = 34  # characters of a key and its value, before its sentence
+
+
 def explain(loaded: LoadedPreset) -> str:
     """A page of text on a preset: scene, step and what limits it, what is compiled in, memory, expected run time."""
     preset = loaded.resolved
@@ -62,16 +67,26 @@ def explain(loaded: LoadedPreset) -> str:
         _section("Step", _step(scene)),
         _section("Compiled in", _parts(preset, simulation)),
         _section("Cost", _cost(preset, scene, simulation)),
-        "Preset in full\n" + "".join(f"    {line}\n" for line in loaded.given_text.strip().splitlines()),
+        "Preset in full\n" + "".join(f"    {line}\n" for line in _with_sentences(loaded.given_text)),
     ]
     simulation.close()
     return "\n".join(blocks)
 
 
-def _one_bed(preset: Resolved) -> Simulation:
+def _with_sentences(given: str) -> Iterator[str]:
+    """The lines of a preset's text, each key of a section with its sentence from the schema."""
+    section = ""
+    for line in given.strip().splitlines():
+        if line.startswith("["):
+            section = line.strip("[]")
+        taken = taken_by(Preset, join(section, line.partition(" = ")[0])) if section else None
+        yield f"{line:<{KEYS_WIDTH}} # {taken.doc}" if taken and taken.doc else line
+
+
+def _one_bed(preset: Preset) -> Simulation:
     """A simulation of the first bed alone, with the units of work it has among all beds; the others are alike."""
     run = preset.run
-    scene, position = build(preset.model_copy(update={"run": replace(run, repeats=1)}))
+    scene, position = build(replace(preset, run=replace(run, repeats=1)))
     arch = "cpu" if scene.vessels and run.arch == "auto" else choose_arch(run.arch, run.precision)
     sizes = run.repeats, scene.radius.shape[1], run.threads or available_cores()
     schedule = choose_schedule(run.schedule, arch, *sizes, bool(scene.vessels))
@@ -93,7 +108,7 @@ def _scene(preset, scene) -> list[tuple[str, str]]:
     rows += [
         ("repeats", f"{worlds}, seeds {preset.run.seed} to {preset.run.seed + worlds - 1}"),
         ("grains", f"{count} in each, {show(small, 'm')} to {show(large, 'm')}{' in the first' * (worlds > 1)}"),
-        *(("shape", _shape(name, shape)) for name, shape in preset.shapes.items()),
+        *(("shape", _shape(name, shape)) for name, shape in preset.shape_classes.items()),
         ("bed", _bed(preset)),
         ("tank", _tank(preset, scene)),
         ("friction", f"{pair.friction:g} between grains, {wall.friction:g} on walls"),
@@ -102,7 +117,7 @@ def _scene(preset, scene) -> list[tuple[str, str]]:
     motions = preset.motion.parts
     parts = [_motion(name, motion, scene.soft_start) for name, motion in motions.items()]
     rows.append(("motion", ", then ".join(parts) or "none"))
-    rows.append(("duration", show(preset.run.duration, "s") + " after settling"))
+    rows.append(("duration", show(preset.duration, "s") + " after settling"))
     return rows
 
 
@@ -115,7 +130,7 @@ def _ship(preset, simulation: Simulation) -> list[str]:
     return [_section("Ship", describe(preset.ship, vessels[0], preset.waves, tanks[0].thickness, every))]
 
 
-def _shape(name: str, shape: Shape) -> str:
+def _shape(name: str, shape: ShapeClass) -> str:
     """One class of irregular outlines."""
     outlines = f"{len(shape.descriptors)} descriptors" if np.any(shape.descriptors) else "a disc"
     if shape.random:
@@ -126,7 +141,7 @@ def _shape(name: str, shape: Shape) -> str:
 def _bed(preset) -> str:
     grains, what = preset.grains, []
     what.append(
-        f"listed in {grains.bed}" if grains.listed else f"poured, its surface {grains.surface.replace('-', ' ')}"
+        f"listed in {grains.bed.name}" if grains.listed else f"poured, its surface {grains.surface.replace('-', ' ')}"
     )
     what.append("settled first" if preset.run.settle else "not settled")
     if preset.shapes:
@@ -137,7 +152,8 @@ def _bed(preset) -> str:
 
 
 def _tank(preset, scene) -> str:
-    what = [f"{show(preset.tank.width, 'm')} wide, {show(preset.tank.height, 'm')} high"]
+    width, height = (show(extent, "m") for extent in preset.tank.extent)
+    what = [f"{width} wide, {height} high"]
     if preset.tank.open_edges:
         what.append("open at the top")
     if len(scene.fixed):
@@ -155,7 +171,7 @@ def _motion(name: str, motion, soft_start: float) -> str:
 
 def _accuracy(preset) -> list[tuple[str, str]]:
     """The level of accuracy, and the settings that follow from it unless the preset has its own."""
-    level, scale = LEVELS[preset.run.accuracy], preset.contact.stiffness_scale
+    level, scale = LEVELS[preset.run.accuracy], preset.stiffness_scale
     own = "; the preset's own" if scale != level.stiffness_scale else ""
     step = f"{level.longer_steps:g} times the derived one" if level.longer_steps != 1.0 else "the derived one"
     return [
@@ -172,7 +188,7 @@ def _step(scene) -> list[tuple[str, str]]:
     ]
 
 
-def _parts(preset: Resolved, simulation: Simulation) -> list[tuple[str, str]]:
+def _parts(preset: Preset, simulation: Simulation) -> list[tuple[str, str]]:
     scene, carrier, walls = simulation.scene, simulation.carrier, simulation.walls
     remembered = len(simulation.grains.lists.laws.memory)
     terms = "gravity"
@@ -199,10 +215,10 @@ def _parts(preset: Resolved, simulation: Simulation) -> list[tuple[str, str]]:
     ]
 
 
-def _outlines(preset: Resolved, shapes: Shapes) -> str:
+def _outlines(preset: Preset, shapes: Shapes) -> str:
     rule = shapes.contact if shapes.contact == "continuous" else f"{shapes.contact}, {shapes.nodes} nodes on each"
     rough = caution(shapes.outlines, shapes.contact)
-    drawn = sum(shape.draws * preset.run.repeats if shape.random else 1 for shape in preset.shapes.values())
+    drawn = sum(shape.draws * preset.run.repeats if shape.random else 1 for shape in preset.shape_classes.values())
     return f"{drawn} different ones, {rule}" + (f". {rough}" if rough else "")
 
 
@@ -219,8 +235,8 @@ def _cohesion(scene) -> str:
 
 def _cost(preset, scene, simulation: Simulation) -> list[tuple[str, str]]:
     worlds, count = preset.run.repeats, scene.radius.shape[1]
-    steps = preset.run.duration / scene.step
-    frames = preset.run.duration * preset.record.picture_rate
+    steps = preset.duration / scene.step
+    frames = preset.duration * preset.record.picture_rate
     seconds = cost_in_seconds(preset, scene, simulation)
     parts = ", ".join(f"{_span(spent)} {what}" for what, spent in seconds.items() if spent >= 0.5)
     cores = min(worlds, preset.run.threads or available_cores())
@@ -237,7 +253,7 @@ def _cost(preset, scene, simulation: Simulation) -> list[tuple[str, str]]:
 def cost_in_seconds(preset, scene, simulation: Simulation) -> dict[str, float]:
     """Seconds that a run takes, by its parts, without settling; kernels are compiled anew and all pictures painted."""
     rule = scene.shapes.contact if scene.shapes else "discs"
-    duration, record = preset.run.duration, preset.record
+    duration, record = preset.duration, preset.record
     found = {
         "to start and compile": STARTING + COMPILING[rule] + (COMPILING_SHIP if simulation.carrier.answers else 0.0),
         "of steps": _stepping(duration, preset, scene) + duration * record.series_rate * SAMPLE,
@@ -260,8 +276,8 @@ def _floating(preset, simulation: Simulation) -> float:
     states, _, waves = simulation.carrier.sizes
     rounds = -(-len(simulation.scene.vessels) // simulation.threads)
     look = LOOK + LOOK_PAIR * states**2 + LOOK_WAVE * waves
-    looks = preset.run.duration / (float(simulation.carrier.every[0]) * simulation.dt)
-    return rounds * looks * look + preset.run.duration / INTERVAL * FROZEN
+    looks = preset.duration / (float(simulation.carrier.every[0]) * simulation.dt)
+    return rounds * looks * look + preset.duration / INTERVAL * FROZEN
 
 
 def _span(seconds: float) -> str:

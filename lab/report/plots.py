@@ -57,7 +57,7 @@ class Sheet:
         count = f"{recording.radius.shape[1]} grains"
         if recording.worlds > 1:
             count = f"{recording.worlds} beds of {count}; bands: ± std over beds, unless the legend says otherwise"
-        title = f"{textwrap.fill(recording.preset['title'], TITLE)}\n{count}"
+        title = f"{textwrap.fill(recording.preset.title, TITLE)}\n{count}"
         # The title is text that somebody wrote, and may hold a $.
         self.figure.suptitle(title, x=0.02, ha="left", fontsize=9.5, parse_math=False)
 

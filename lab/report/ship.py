@@ -3,7 +3,9 @@
 from math import pi
 
 from lab.assembly.ship import flooding_angles
-from lab.preset.ship import ShipGiven, WavesGiven, axis_place
+from lab.preset.sections import ship as ships
+from lab.preset.sections.sea import Waves
+from lab.preset.sections.ship_axis import axis_place
 from lab.preset.units import show
 from solvers.ship.hydrostatics import metacentric_height
 from solvers.ship.vessel import Vessel
@@ -12,7 +14,7 @@ from solvers.ship.waves import froude_factors
 
 
 def describe(
-    given: ShipGiven, vessel: Vessel, waves: WavesGiven | None, thickness: float, every: float
+    given: ships.Ship, vessel: Vessel, waves: Waves | None, thickness: float, every: float
 ) -> list[tuple[str, str]]:
     """Rows on a ship, each a name and a text: balance, roll, forces of the water.
 
@@ -47,21 +49,21 @@ def describe(
     return rows
 
 
-def _radiated(given: ShipGiven, memory) -> str:
+def _radiated(given: ships.Ship, memory) -> str:
     if memory is None:
         return {"none": "none, added mass alone", "at-frequency": "that of the waves' frequency"}[given.radiation]
     worst = 100.0 * float(memory.error.max())
     return f"memory of {len(memory.matrix)} states, off the tables by {worst:.2g} % at most (rms)"
 
 
-def _sea(waves: WavesGiven, water: Water) -> str:
+def _sea(waves: Waves, water: Water) -> str:
     period, number = 2.0 * pi / waves.frequency, float(water.wave_number(waves.frequency))
     size = waves.height if waves.amplitude is None else waves.amplitude
     steep = f", {show(2.0 * pi / number, 'm')} long" if number else ""
     return f"{waves.kind}, {show(size, 'm')}, {show(period, 's')}{steep}"
 
 
-def _full_scale(given: ShipGiven, waves: WavesGiven | None) -> str:
+def _full_scale(given: ships.Ship, waves: Waves | None) -> str:
     """The same run for a ship `scale` times as long, by Froude's law."""
     factor = froude_factors(given.scale)
     words = [f"draught {show(given.draught * factor['length'], 'm')}", f"times {factor['time']:.3g} as long"]

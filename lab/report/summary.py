@@ -4,7 +4,6 @@ import json
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import get_type_hints
 
 import numpy as np
 
@@ -13,12 +12,12 @@ from lab.base.errors import LabError
 from lab.base.text import code, fenced, inline, one_line, paragraphs, printable
 from lab.measures.value import Value
 from lab.preset.accuracy import LEVELS
+from lab.preset.fields import taken_of
 from lab.preset.sections.shapes import caution
-from lab.preset.ship import axis_place, recorded_ship
+from lab.preset.sections.ship_axis import axis_place
 from lab.preset.units import show
 from lab.recording import Recording, ship_end
 from lab.report.numbers import RULE, number, own
-from solvers.machine.marks import Unit
 from solvers.motion import MOTIONS
 
 # The measures that answer the question of an experiment, the most important first; a run has only some of them.
@@ -97,7 +96,7 @@ def terminal_summary(
     rows = {name.replace("_", " "): f"{number(value)}{_remark(value)}" for name, value in told.items()}
     made = {name.replace("_", " "): os.path.relpath(path) for name, path in files.items()}
     lost = ship_end.losses_sentence(ship_end.ends(recording.series))
-    title = f"{recording.preset['title']} ({recording.name}): {_status(recording)}{f'. {lost}' if lost else ''}"
+    title = f"{recording.preset.title} ({recording.name}): {_status(recording)}{f'. {lost}' if lost else ''}"
     lines = [one_line(title)]
     lines += _aligned(rows)
     if len(told) < len(values):
@@ -125,7 +124,7 @@ def _page(
 ) -> Iterator[str]:
     """The lines of summary.md."""
     preset = recording.preset
-    yield f"# {inline(preset['title'])}\n"
+    yield f"# {inline(preset.title)}\n"
     if lost := ship_end.losses_sentence(ship_end.ends(recording.series)):
         yield f"**{lost}**\n"
     for name, value in headlines(values, HEADLINES).items():
@@ -137,9 +136,9 @@ def _page(
     yield from (f"\n![{name}]({link})" for name, link in pictures.items())
     yield "\n## What was run\n"
     yield from (f"- {line}" for line in _scene(recording))
-    if preset.get("source"):
+    if preset.source:
         yield "\n## What the source reports\n"
-        yield f"{paragraphs(preset['source'])}\n\n{paragraphs(preset.get('reports', ''))}"
+        yield f"{paragraphs(preset.source)}\n\n{paragraphs(preset.reports)}"
     yield "\n## What was measured\n"
     yield "| measure | mean | std over beds | beds | own uncertainty | unit | note |\n|---|---|---|---|---|---|---|"
     yield from (_row(name, value) for name, value in values.items())
@@ -168,7 +167,7 @@ def _data(
     wall = recording.wall_s
     return {
         "preset": recording.name,
-        "based_on": recording.preset.get("based_on", ""),
+        "based_on": recording.preset.based_on,
         "status": recording.status,
         "measures": {name: value.as_json() for name, value in values.items()},
         "cost": {
@@ -183,15 +182,15 @@ def _data(
 
 
 def _scene(recording: Recording) -> Iterator[str]:
-    if base := recording.preset.get("based_on"):
+    if base := recording.preset.based_on:
         yield f"based on the preset {code(base)}, whose source and reports are its own"
     worlds, count = recording.radius.shape
     low, high = show(2 * recording.radius.min(), "m"), show(2 * recording.radius.max(), "m")
     size = low if low == high else f"{low} to {high}"
     yield f"{_count(worlds, 'bed')} of {_count(count, 'grain')}, {size} in diameter"
-    shapes = recording.preset.get("shapes") or {}
+    shapes = recording.preset.shape_classes
     if shapes:
-        parts = [f"{100 * shape['share']:.3g} % {inline(name)}" for name, shape in shapes.items()]
+        parts = [f"{100 * shape.share:.3g} % {inline(name)}" for name, shape in shapes.items()]
         yield f"irregular grains, diameters those of discs of equal area: {', '.join(parts)}"
     width, height = (show(extent, "m") for extent in np.ptp(recording.outline, axis=0))
     lidless = ", open at the top" if recording.open_edges else ""
@@ -199,31 +198,24 @@ def _scene(recording: Recording) -> Iterator[str]:
     yield f"tank {width} wide and {height} high{lidless}{rough}"
     if recording.parts:
         yield f"moving parts: {inline(', '.join(recording.parts))}"
-    for name, settings in (recording.preset.get("motion") or {}).items():
-        if name in MOTIONS and settings:
-            yield inline(f"{name}: {_settings(name, settings)}")
-    if recording.preset.get("ship"):
-        yield f"sway, heave and roll of the ship are those of her axis, {axis_place(recorded_ship(recording.preset))}"
+    for name in MOTIONS:
+        if motion := getattr(recording.preset.motion, name):
+            yield f"{name}: {_settings(motion)}"
+    if recording.preset.ship:
+        yield f"sway, heave and roll of the ship are those of her axis, {axis_place(recording.preset.ship)}"
     time = recording.series["time"]
     if len(time):
         yield f"{show(time[-1], 's')} of motion recorded, after the grains had settled"
 
 
-def _settings(name: str, settings: Mapping) -> str:
+def _settings(motion: object) -> str:
     """Settings of a motion in units for people; settings of zero are left out."""
-    hints = get_type_hints(MOTIONS[name], include_extras=True)
-    units = {key: _unit(hint) for key, hint in hints.items()}
     shown = [
-        f"{key} {show(value, units[key]) if units.get(key) else ''}".strip()
-        for key, value in settings.items()
-        if value and not isinstance(value, list | tuple)
+        f"{name} {show(getattr(motion, name), taken.symbol) if taken.kind is float else ''}".strip()
+        for name, taken in taken_of(type(motion)).items()
+        if taken.kind in (float, bool) and getattr(motion, name)
     ]
     return ", ".join(shown)
-
-
-def _unit(hint: object) -> str | None:
-    marks = getattr(hint, "__metadata__", ())
-    return next((mark.symbol for mark in marks if isinstance(mark, Unit)), None)
 
 
 def _status(recording: Recording) -> str:
@@ -234,17 +226,17 @@ def _status(recording: Recording) -> str:
 
 def _cautions(recording: Recording) -> Iterator[str]:
     """What a reader must know about the run and cannot see from the numbers."""
-    if recording.preset.get("quick"):
-        yield f"A quick variant: {recording.preset['quick']}."
+    if recording.preset.quick:
+        yield f"A quick variant: {recording.preset.quick}."
     if not recording.complete:
         yield f"The run is {_status(recording)}; the numbers cover what was recorded until then."
-    scale = (recording.preset.get("contact") or {}).get("stiffness_scale", 1.0)
+    scale = recording.preset.stiffness_scale
     if scale < 1:
         yield f"The grains are softer than their material: Young's moduli times {scale:g}, {_softened(recording)}."
-    rule = (recording.preset.get("contact") or {}).get("outlines", "continuous")
+    rule = recording.preset.contact.outlines
     if recording.shapes and (rough := caution(recording.shapes.contours, rule)):
         yield rough
-    if (recording.preset.get("run") or {}).get("force_step"):
+    if recording.preset.run.force_step:
         yield "The step is forced past the derived one: restitution errs by some 2 % at five times that."
     overlap = recording.series["overlap"].max(initial=0.0)
     if overlap > LARGE_OVERLAP:
@@ -253,8 +245,8 @@ def _cautions(recording: Recording) -> Iterator[str]:
 
 def _softened(recording: Recording) -> str:
     """Which key of the preset makes the grains softer."""
-    accuracy = (recording.preset.get("run") or {}).get("accuracy")
-    if accuracy in LEVELS and LEVELS[accuracy].stiffness_scale == recording.preset["contact"]["stiffness_scale"]:
+    accuracy = recording.preset.run.accuracy
+    if LEVELS[accuracy].stiffness_scale == recording.preset.stiffness_scale:
         return f'set by run.accuracy = "{accuracy}"'
     return "set by contact.stiffness_scale"
 

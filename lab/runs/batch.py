@@ -3,7 +3,6 @@
 A run's recording does not depend on the other runs of its batch: it has the same bits as that of the run alone.
 """
 
-import json
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack
@@ -20,7 +19,7 @@ from lab.base.interrupt import Interrupt
 from lab.base.progress import Progress
 from lab.base.trust import check_state
 from lab.preset.find import LoadedPreset
-from lab.preset.schema import Resolved
+from lab.preset.schema import Preset, marked, value_at
 from lab.preset.units import show
 from lab.recording import BUFFER_BYTES, FLUSH_EVERY, Outlines, Recorder, new_recording
 from lab.runs.beds import settled, settling
@@ -37,7 +36,7 @@ from solvers.time.schedules import choose_schedule, units_a_world
 GRAIN_STEPS_A_CALL = 2_000_000
 
 
-def outlines_of(preset: Resolved, scene: Scene) -> Outlines | None:
+def outlines_of(preset: Preset, scene: Scene) -> Outlines | None:
     """The outlines of a preset's irregular grains, None if all are discs."""
     shapes = scene.shapes
     return Outlines(shapes.outlines, classes(preset), shapes.which) if shapes else None
@@ -56,9 +55,8 @@ class Run:
     def shared(self) -> tuple:
         """The values that must be equal for two runs to share a batch."""
         preset = self.loaded.resolved
-        run, record = preset.run, preset.record
-        times = run.duration, record.series_rate, record.picture_rate, record.checkpoint_every
-        return self.scene.shared(), settling(preset), times, run.threads, run.arch
+        alike = tuple(value_at(preset, key) for key in marked("alike"))
+        return self.scene.shared(), settling(preset), preset.duration, alike
 
     @property
     def can_share(self) -> bool:
@@ -87,7 +85,7 @@ class Run:
             self.folder,
             preset=self.loaded.name,
             given=self.loaded.given_text,
-            resolved=json.loads(preset.model_dump_json()),
+            resolved=preset,
             radius=scene.radius,
             outline=scene.outline,
             step=scene.step,
@@ -135,7 +133,7 @@ class Batch:
         self.runs, self.home, self.progress, self._stack = list(runs), home, progress, stack
         self.stopped: dict[Path, BadState] = {}
         preset = runs[0].loaded.resolved  # the runs agree in all values that are read here
-        self._duration, self._record = preset.run.duration, preset.record
+        self._duration, self._record = preset.duration, preset.record
         self._simulate = partial(Simulation, threads=preset.run.threads, arch=preset.run.arch)
         self._settling = settling(preset)
         self._a_call = max(1, GRAIN_STEPS_A_CALL // runs[0].scene.radius.shape[1])

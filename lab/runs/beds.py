@@ -25,11 +25,12 @@ from lab.assembly.scene import build, filling_outline
 from lab.base.caches import cache_folder
 from lab.base.errors import LabError
 from lab.base.progress import Progress
-from lab.preset.schema import Resolved
+from lab.preset.schema import Preset
 from lab.preset.units import show
 from solvers.grains.bed.filling import clear_of_walls, levelled
 from solvers.grains.materials import Material
 from solvers.grains.shapes.given import Shapes
+from solvers.machine.marks import EachWorld, NotOfBed, marked
 from solvers.machine.state import Axes, of_world
 from solvers.scene import Scene
 from solvers.simulation import Simulation
@@ -40,11 +41,6 @@ ABANDONED = 3600.0  # s after which a half-written file is deleted
 
 Start = Callable[[Scene, np.ndarray], Simulation]
 Bed = dict[str, np.ndarray]
-
-# Fields of a scene that do not affect its beds: no tank moves while its bed settles. A motion matters only through the
-# step that it asks for, and through its kind, which selects the compiled kernel.
-UNRELATED = ("motions", "soft_start", "start_speed", "step", "vessels", "interval")
-PER_WORLD = ("radius", "grain", "wall", "velocity", "spin")
 
 FREE = 0.9  # least distance of a grain of a settled bed from a wall, in its radius
 
@@ -66,7 +62,7 @@ class Settling:
     disc_step: float | None = None
 
 
-def settling(preset: Resolved) -> Settling:
+def settling(preset: Preset) -> Settling:
     """The settling of a preset's beds. Worlds that settle in one batch must agree in it."""
     run, grains = preset.run, preset.grains
     outline = tuple(map(tuple, filling_outline(preset).tolist()))
@@ -74,10 +70,10 @@ def settling(preset: Resolved) -> Settling:
     return Settling(outline, grains.surface, run.rest, run.settle_limit, run.settle, grains.reuse_bed, disc_step)
 
 
-def _of_discs(preset: Resolved) -> Resolved:
+def _of_discs(preset: Preset) -> Preset:
     """The preset with discs in place of its round outlines."""
-    grains = replace(preset.grains, table=None, settled_as="outlines")
-    return preset.model_copy(update={"shapes": {}, "grains": grains})
+    grains = replace(preset.grains, diameter=preset.mean_diameter, shares="number", settled_as="outlines")
+    return replace(preset, shapes={}, grains=grains)
 
 
 def settled(scene: Scene, position: np.ndarray, how: Settling, start: Start, progress: Progress) -> Simulation:
@@ -190,12 +186,15 @@ def bed_key(simulation: Simulation, world: int, position: np.ndarray, how: Settl
     parts += [(type(motion).__name__, motion.coordinate) for motion in scene.motions[world]]
     if scene.vessels:
         parts.append(simulation.carrier.sizes)  # of its arrays, and with them of the bed's
+    each, unrelated = marked(Scene, EachWorld), marked(Scene, NotOfBed)
     for field in fields(scene):
-        if field.init and field.name not in UNRELATED:  # the rest is derived from these
+        if field.init and field.name not in unrelated:  # the rest is derived from these
             value = getattr(scene, field.name)
             if isinstance(value, Shapes):
                 value = _shapes_of(value, world)
-            parts.append((field.name, value[world] if field.name in PER_WORLD and value is not None else value))
+            elif field.name in each and value is not None:
+                value = value[world]
+            parts.append((field.name, value))
     digest = hashlib.blake2b(digest_size=16)
     for part in parts:
         _feed(digest, part)

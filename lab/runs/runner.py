@@ -14,7 +14,7 @@ from lab.base.progress import Progress
 from lab.measures import measure_all
 from lab.measures.value import Value
 from lab.preset.find import LoadedPreset, load
-from lab.preset.limits import resolved_from
+from lab.preset.recorded import checked
 from lab.recording import FILE_NAME, Recording, open_recording, versions
 from lab.recording.xdmf import write_xdmf
 from lab.report.plots import write_plots
@@ -95,7 +95,7 @@ def resume_run(folder: Path | str, *, video: bool = True, plots: bool = True, qu
 def recorded_preset(recording: Recording) -> LoadedPreset:
     """The preset of a recording, ready to run again. Raises Unusable if it is not a valid one."""
     try:
-        resolved = resolved_from(recording.preset)
+        resolved = checked(recording.preset)
     except ValueError as error:
         raise Unusable(f"{recording.path} has no preset that this version can run: start the run again.") from error
     return LoadedPreset(recording.name, recording.given, resolved)
@@ -112,7 +112,7 @@ def report(folder: Path, progress: Progress, *, video: bool, plots: bool = True,
         if video:
             with progress.costs.of("video"):
                 files["video"] = _film(folder, progress)
-        if recording.preset["record"]["xdmf"]:
+        if recording.preset.record.xdmf:
             files["xdmf"] = write_xdmf(recording)
         spent = progress.costs.told() if costs else None
         write_summary(recording, measures, files, folder, progress.warnings, progress.notes, spent)

@@ -98,7 +98,7 @@ def _show(name: str, out: Path, beds: int) -> None:
     except BadState:  # its page says so
         pass
     with open_recording(folder) as recording:
-        lasts, speed = float(recording.series["time"][-1]), recording.preset["video"]["speed"]
+        lasts, speed = float(recording.series["time"][-1]), recording.preset.video.speed
         made, lost = _made(recording), any(ends(recording.series))
     poster(folder, out / f"{_plain(name)}.png", fraction=1.0 if lost else MOMENT, width=WIDTH, height=HEIGHT)
     summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
@@ -126,7 +126,7 @@ def _plain(name: str) -> str:
 def _made(recording: Recording) -> dict[str, object]:
     """The accuracy, number of beds, version and date of a recording."""
     return {
-        "accuracy": recording.preset["run"]["accuracy"],
+        "accuracy": recording.preset.run.accuracy,
         "beds": recording.worlds,
         "version": recording.versions["cargo-shift-lab"],
         "date": recording.created[:10],

@@ -16,10 +16,10 @@ from pathlib import Path
 import numpy as np
 
 from lab.base.errors import LabError
+from lab.preset.fields import dotted_key, taken_by
 from lab.preset.find import load
 from lab.preset.merge import nested
-from lab.preset.reader import dotted_key, taken_by
-from lab.preset.schema import Given
+from lab.preset.schema import Preset
 from lab.preset.units import NUMBER, in_unit, quoted
 from lab.runs.runner import RENDERS
 from lab.sweeps.axes import values
@@ -54,7 +54,7 @@ class Plan:
     @property
     def whole(self) -> bool:
         """Whether the key takes whole numbers."""
-        taken = taken_by(Given, self.key)
+        taken = taken_by(Preset, self.key)
         return bool(taken) and taken.kind is int
 
     @property
@@ -104,7 +104,7 @@ def parse_request(request: Request) -> Plan:
     """Parse and check a request as far as is possible before a run. Raises LabError."""
     name, wanted = _pair("--target", request.target, 'repose="41.3 deg"')
     given, span = _pair("--vary", request.vary, "friction=0.2:0.7")
-    key = dotted_key(Given, given)
+    key = dotted_key(Preset, given)
     listed = _listed(key, span)
     scale = numeric(listed)
     overrides = _with_beds(request)
@@ -141,7 +141,7 @@ def _pair(option: str, text: str, example: str) -> tuple[str, str]:
 
 def _listed(key: str, span: str) -> list:
     """POINTS values of a range "0.2:0.7" or "1 mm:2 mm" in ascending order, whole numbers if the key takes these."""
-    taken = taken_by(Given, key)
+    taken = taken_by(Preset, key)
     if taken and taken.kind not in (float, int):
         raise LabError(f"{key}: its value is not a single number, so it cannot be varied over a range.")
     ends = [end.strip() for end in span.split(":")]

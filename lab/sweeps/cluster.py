@@ -30,7 +30,7 @@ from typing import TYPE_CHECKING
 from lab.base.errors import LabError
 from lab.base.progress import Progress
 from lab.preset.find import LoadedPreset
-from lab.preset.schema import Resolved
+from lab.preset.recorded import from_table, to_table
 from lab.preset.units import quoted
 from lab.recording import versions
 from lab.runs.batch import Run, prepare, run_batch
@@ -108,7 +108,7 @@ def _fetch(client: "Client", errands: Sequence[Errand], progress: Progress) -> N
     folders = {}
     for errand in errands:
         presets = list(errand.runs.values())
-        texts = [(one.name, one.given_text, one.resolved.model_dump_json()) for one in presets]
+        texts = [(one.name, one.given_text, to_table(one.resolved)) for one in presets]
         work = pickle.dumps(partial(run_on_worker, texts, _worker_settings(presets[0])))
         done = client.submit(_unpacked({name: versions().get(name, "") for name in SAME_VERSION}), work, pure=False)
         # One more task per run, before any further batch, so that runs are sent and freed on the worker one by one.
@@ -169,7 +169,7 @@ def _unpacked(wanted: Mapping[str, str]) -> Callable[[bytes], list[Files]]:
 def run_on_worker(texts: Sequence[tuple[str, str, str]], settings: WorkerSettings) -> list[Files]:
     """Run presets as a batch in a task of a worker; returns the files of each run, the summary last.
 
-    texts: for each preset its name, its TOML text and its resolved values as JSON. Raises LabError if the worker has
+    texts: for each preset its name, its TOML text and its table in SI. Raises LabError if the worker has
     several threads, and as `run_batch` does.
     """
     from distributed import get_worker
@@ -180,7 +180,7 @@ def run_on_worker(texts: Sequence[tuple[str, str, str]], settings: WorkerSetting
             f"--cluster: a worker has {worker.state.nthreads} threads, but a process can run one batch at a time: "
             "start workers with --nthreads 1."
         )
-    presets = [LoadedPreset(name, given, Resolved.model_validate_json(resolved)) for name, given, resolved in texts]
+    presets = [LoadedPreset(name, given, from_table(resolved)) for name, given, resolved in texts]
     progress = _TaskProgress()
     if sources() != settings.sources:
         raise LabError(
@@ -239,7 +239,7 @@ def _with_settings(run: Run, settings: WorkerSettings) -> Run:
     """The run with the threads and device of `settings`; its recording keeps the requested ones."""
     resolved = run.loaded.resolved
     changed = replace(resolved.run, threads=settings.threads, arch=settings.arch)
-    return replace(run, loaded=replace(run.loaded, resolved=resolved.model_copy(update={"run": changed})))
+    return replace(run, loaded=replace(run.loaded, resolved=replace(resolved, run=changed)))
 
 
 def _taken(folder: Path) -> Files:

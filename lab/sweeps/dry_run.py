@@ -4,7 +4,6 @@ All measures are applied to the recording of a dry run, which has the preset's t
 move. The values mean nothing; the names and units of the measures are the same as in a run.
 """
 
-import json
 import warnings
 from collections.abc import Iterator
 from dataclasses import replace
@@ -17,7 +16,7 @@ from lab.assembly.scene import build
 from lab.measures import measure_all
 from lab.measures.value import Value
 from lab.preset.find import LoadedPreset
-from lab.preset.schema import Resolved
+from lab.preset.schema import Preset
 from lab.recording import Recorder, new_recording, open_recording
 from lab.recording.layout import frames_of, rows_of, series_of
 from solvers.machine.quantity import parted
@@ -31,7 +30,7 @@ ROLL = 0.1  # amplitude (rad) of a ship's roll
 def available_measures(loaded: LoadedPreset) -> dict[str, Value]:
     """The measures of a preset by name, with their units; their values mean nothing. Raises LabError (`build`)."""
     preset = loaded.resolved
-    preset = preset.model_copy(update={"run": replace(preset.run, repeats=1)})
+    preset = replace(preset, run=replace(preset.run, repeats=1))
     scene, position = build(preset)
     with TemporaryDirectory(prefix="cargolab-") as folder:
         _record(Path(folder), loaded, preset, scene, position)
@@ -40,14 +39,14 @@ def available_measures(loaded: LoadedPreset) -> dict[str, Value]:
             return measure_all(recording)
 
 
-def _record(folder: Path, loaded: LoadedPreset, preset: Resolved, scene: Scene, position: np.ndarray) -> None:
+def _record(folder: Path, loaded: LoadedPreset, preset: Preset, scene: Scene, position: np.ndarray) -> None:
     """Write the recording of the dry run."""
     count, parts = min(GRAINS, scene.radius.shape[1]), {name: part.points for name, part in preset.parts.items()}
     new_recording(
         folder,
         preset=loaded.name,
         given=loaded.given_text,
-        resolved=json.loads(preset.model_dump_json()),
+        resolved=preset,
         radius=scene.radius[:, :count],
         outline=scene.outline,
         step=scene.step,
@@ -62,7 +61,7 @@ def _record(folder: Path, loaded: LoadedPreset, preset: Resolved, scene: Scene, 
     row = {name: np.full(shape, never.get(name, 1.0)) for name, (shape, _) in rows_of(series, sizes).items()}
     frame = {name: np.zeros(shape) for name, (shape, _) in rows_of(frames, sizes).items()}
     frame["position"] = position[:, :count]
-    times = np.arange(max(1, round(preset.run.duration * rate)) + 1) / rate
+    times = np.arange(max(1, round(preset.duration * rate)) + 1) / rate
     with Recorder(folder) as recorder:
         for k, (time, pose) in enumerate(zip(times, _poses(preset, scene, position, times), strict=True)):
             recorder.sample(row | {"time": time, "pose": pose})
@@ -70,7 +69,7 @@ def _record(folder: Path, loaded: LoadedPreset, preset: Resolved, scene: Scene, 
                 recorder.frame(frame | {"time": time, "pose": pose})
 
 
-def _poses(preset: Resolved, scene: Scene, position: np.ndarray, times: np.ndarray) -> Iterator[np.ndarray]:
+def _poses(preset: Preset, scene: Scene, position: np.ndarray, times: np.ndarray) -> Iterator[np.ndarray]:
     """Pose (1, 3) of the tank at each time (s); a ship, whose motion is not known in advance, rolls slowly."""
     if scene.vessels or not scene.motions[0]:
         yield from (np.array([[0.0, 0.0, ROLL * np.sin(time)]]) * bool(scene.vessels) for time in times)

@@ -12,7 +12,7 @@ import numpy as np
 from lab.assembly.scene import grain_count
 from lab.base.errors import LabError
 from lab.preset.find import LoadedPreset, load
-from lab.preset.limits import resolved_from
+from lab.preset.recorded import resolved_from, to_table
 from lab.sweeps.axes import values
 
 FORMAT = "cargo-shift-lab sweep 1"
@@ -39,7 +39,7 @@ class Sweep:
     def cost(self, number: int) -> float:
         """Relative cost of a point: model time (s) times number of grains."""
         preset = self.points[number].resolved
-        return preset.run.duration * preset.run.repeats * grain_count(preset)
+        return preset.duration * preset.run.repeats * grain_count(preset)
 
     def same_as(self, other: "Sweep") -> bool:
         """Whether the other sweep has the same points."""
@@ -48,10 +48,7 @@ class Sweep:
 
     def write(self, folder: Path) -> None:
         """Write the definition to the sweep's folder. Raises LabError."""
-        points = [
-            {"given": point.given_text, "resolved": json.loads(point.resolved.model_dump_json())}
-            for point in self.points
-        ]
+        points = [{"given": point.given_text, "resolved": to_table(point.resolved)} for point in self.points]
         content = {"format": FORMAT, "preset": self.name, "axes": self.axes, "points": points}
         path = folder / FILE_NAME
         try:

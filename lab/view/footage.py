@@ -1,6 +1,5 @@
 """The frames of a live experiment so far, with the interface of `lab.paint.footage.Footage`."""
 
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -13,7 +12,7 @@ from lab.paint.footage import Bed
 from lab.paint.painter import Edges
 from lab.paint.sea import Sea
 from lab.preset.find import LoadedPreset
-from lab.preset.schema import Resolved
+from lab.preset.schema import Preset
 from lab.recording import Outlines
 from lab.runs.batch import outlines_of
 from lab.view.live import LiveFrame
@@ -30,7 +29,7 @@ DROPPED = 0.1  # share of the frames that is dropped at once when they exceed it
 class Scenery:
     """The constant data of a live experiment; fields as in a `Footage`, for one world."""
 
-    preset: dict
+    preset: Preset
     name: str
     folder: Path
     radius: np.ndarray
@@ -49,15 +48,15 @@ class Scenery:
         kind = np.zeros(scene.radius.shape, dtype=int) if scene.kind is None else scene.kind
         lines = {name: np.array(part.points) for name, part in preset.parts.items()}
         bounds = scene.outline, tuple(scene.open_edges), scene.fixed
-        resolved, shapes = json.loads(preset.model_dump_json()), outlines_of(preset, scene)
-        return cls(resolved, loaded.name, folder, scene.radius, kind, *bounds, lines, shapes, simulation.dt)
+        shapes = outlines_of(preset, scene)
+        return cls(preset, loaded.name, folder, scene.radius, kind, *bounds, lines, shapes, simulation.dt)
 
     def for_filling(self, top: float) -> "Scenery":
         """The scenery while the bed settles: no ship, and the tank cut off at the height `top` (m)."""
         above = self.outline[:, 1] > top
         cut = np.column_stack([self.outline[:, 0], np.minimum(self.outline[:, 1], top)])
         lid = tuple(int(k) for k in np.nonzero(above & np.roll(above, -1))[0])
-        return replace(self, preset={**self.preset, "ship": None}, outline=cut, open_edges=(*self.open_edges, *lid))
+        return replace(self, preset=replace(self.preset, ship=None), outline=cut, open_edges=(*self.open_edges, *lid))
 
 
 class LiveFootage:
@@ -69,10 +68,10 @@ class LiveFootage:
         self.scenery = scenery
         for name in ("radius", "kind", "outline", "open_edges", "fixed", "parts", "shapes"):
             setattr(self, name, getattr(scenery, name))
-        self.kinds = ["the rest", *(scenery.preset.get("kinds") or {})]
-        self.shape_names = list(scenery.preset.get("shapes") or {}) if self.shapes else ["disc"]
-        self.sea = Sea(scenery.preset) if scenery.preset.get("ship") else None
-        self.settings, self.title = scenery.preset["video"], scenery.preset["title"]
+        self.kinds = ["the rest", *scenery.preset.kinds]
+        self.shape_names = list(scenery.preset.shapes) if self.shapes else ["disc"]
+        self.sea = Sea(scenery.preset) if scenery.preset.ship else None
+        self.settings, self.title = scenery.preset.video, scenery.preset.title
         self._frames: list[LiveFrame] = []
         self._bytes = 0
 
@@ -153,7 +152,7 @@ class LiveFootage:
     @cached_property
     def levers(self) -> tuple[np.ndarray, np.ndarray]:
         """Heels (k,) rad and righting levers (k,) m of the ship, with her cargo frozen as it lay at the start."""
-        (vessel,) = vessels(Resolved.model_validate(self.scenery.preset))
+        (vessel,) = vessels(self.scenery.preset)
         heel = np.radians(np.linspace(0.0, 180.0, HEELS))
         ship = vessel.ship
         return heel, righting_levers(ship.load.section, ship.body.loading, ship.load.water, heel)

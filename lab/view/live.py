@@ -16,7 +16,7 @@ from lab.assembly.scene import build
 from lab.base.errors import LabError
 from lab.base.progress import Progress
 from lab.preset.find import LoadedPreset
-from lab.preset.schema import Resolved
+from lab.preset.schema import Preset
 from lab.preset.sections.motion import Motion
 from lab.recording import WAVES, Recorder
 from lab.runs.batch import Run
@@ -62,7 +62,7 @@ def steerable(loaded: LoadedPreset) -> LoadedPreset:
     preset = loaded.resolved
     record = replace(preset.record, picture_rate=max(preset.record.picture_rate, PICTURES))
     changes = {"motion": Motion(), "run": replace(preset.run, repeats=1), "record": record}
-    return LoadedPreset(loaded.name, loaded.given_text, preset.model_copy(update=changes))
+    return LoadedPreset(loaded.name, loaded.given_text, replace(preset, **changes))
 
 
 class Live:
@@ -161,6 +161,6 @@ class Live:
         self._end.__exit__(*error)
 
 
-def own_motion(preset: Resolved) -> dict[str, float]:
+def own_motion(preset: Preset) -> dict[str, float]:
     """The control values that give the preset's own motion."""
     return {name: value for name, value in offered(preset).items() if CONTROLS[name].kind == MOVES}

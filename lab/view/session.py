@@ -99,7 +99,7 @@ class Session(Shown):
         self.footage = LiveFootage(scenery)
         if self.footage.sea:
             self.look.inset = "turn"
-        self.values = offered(_resolved(scenery.preset)) | own
+        self.values = offered(scenery.preset) | own
         self._own = own
         for name, value in own.items():
             self._send("set", (name, value))
@@ -180,7 +180,7 @@ class Session(Shown):
         self._restart(overrides)
 
     def _changed(self, name: str) -> bool:
-        given = offered(_resolved(self.footage.scenery.preset)).get(name) if self.footage else None
+        given = offered(self.footage.scenery.preset).get(name) if self.footage else None
         return given is not None and abs(given - self.values[name]) > 1e-9 * abs(given)
 
     def keep(self) -> None:
@@ -286,12 +286,6 @@ class Session(Shown):
         if self._process.is_alive():
             self._process.terminate()
         self._pipe.close()
-
-
-def _resolved(preset: Mapping):
-    from lab.preset.schema import Resolved
-
-    return Resolved.model_validate(preset)
 
 
 def _next(words: tuple, now: str) -> str:

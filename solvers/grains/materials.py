@@ -5,7 +5,7 @@ from math import pi
 from typing import Annotated
 
 from solvers.grains.restitution import dissipative_time_for, restitution_from
-from solvers.machine.marks import Interval, Unit
+from solvers.machine.marks import Doc, Interval, Unit, Usual
 
 # Properties that are averaged for the contact of two kinds of grains; the moduli have their own rule.
 MEANT = (
@@ -35,21 +35,79 @@ class Material:
     keep surfaces apart, the relative humidity of the air and the volume of a liquid bridge.
     """
 
-    density: Annotated[float, Unit("kg/m^3"), Interval(gt=0)]
-    young: Annotated[float, Unit("Pa"), Interval(gt=0)]
-    poisson: Annotated[float, Unit("1"), Interval(ge=0, lt=0.5)]
-    friction: Annotated[float, Unit("1"), Interval(ge=0)]
-    restitution: Annotated[float | None, Unit("1"), Interval(gt=0, le=1)] = None
-    restitution_speed: Annotated[float, Unit("m/s"), Interval(gt=0)] = 1.0
-    dissipative_time: Annotated[float | None, Unit("s"), Interval(ge=0)] = None
-    shear_damping: Annotated[float, Unit("N s/m"), Interval(ge=0)] = 20.0
-    rolling_friction: Annotated[float, Unit("1"), Interval(ge=0)] = 0.0
-    rolling_damping: Annotated[float, Unit("1"), Interval(ge=0)] = 0.3
-    surface_tension: Annotated[float, Unit("N/m"), Interval(gt=0)] = 0.072
-    contact_angle: Annotated[float, Unit("rad"), Interval(ge=0, lt=pi / 2)] = 0.0
-    asperities: Annotated[float, Unit("m"), Interval(ge=0)] = 0.0
-    humidity: Annotated[float | None, Unit("1"), Interval(gt=0, lt=1)] = None
-    bridge_volume: Annotated[float | None, Unit("m^3"), Interval(gt=0)] = None
+    density: Annotated[float, Unit("kg/m^3"), Interval(gt=0), Doc("Density of the solid.")]
+    young: Annotated[float, Unit("Pa"), Interval(gt=0), Doc("Young's modulus.")]
+    poisson: Annotated[float, Unit("1"), Interval(ge=0, lt=0.5), Doc("Poisson's ratio.")]
+    friction: Annotated[
+        float, Unit("1"), Interval(ge=0), Usual(0.0, 1.0, "1"), Doc("Coefficient of friction between two surfaces.")
+    ]
+    restitution: Annotated[
+        float | None,
+        Unit("1"),
+        Interval(gt=0, le=1),
+        Doc("Restitution of two equal grains of mean diameter that meet head-on; give it or `dissipative_time`."),
+    ] = None
+    restitution_speed: Annotated[
+        float,
+        Unit("m/s"),
+        Interval(gt=0),
+        Doc("Closing speed at which `restitution` is given."),
+    ] = 1.0
+    dissipative_time: Annotated[
+        float | None,
+        Unit("s"),
+        Interval(ge=0),
+        Doc("Dissipative time A of Brilliantov et al. (1996), in place of `restitution`."),
+    ] = None
+    shear_damping: Annotated[
+        float,
+        Unit("N s/m"),
+        Interval(ge=0),
+        Doc("Tangential damping γ_s of the Haff-Werner law."),
+    ] = 20.0
+    rolling_friction: Annotated[
+        float,
+        Unit("1"),
+        Interval(ge=0),
+        Doc("Tangent of the steepest slope that holds a sphere; for rolling laws."),
+    ] = 0.0
+    rolling_damping: Annotated[
+        float,
+        Unit("1"),
+        Interval(ge=0),
+        Doc("Share of critical damping in rolling; for rolling laws."),
+    ] = 0.3
+    surface_tension: Annotated[
+        float,
+        Unit("N/m"),
+        Interval(gt=0),
+        Doc("Surface tension of the liquid between grains; for cohesion laws."),
+    ] = 0.072
+    contact_angle: Annotated[
+        float,
+        Unit("rad"),
+        Interval(ge=0, lt=pi / 2),
+        Doc("Contact angle of the liquid; for cohesion laws."),
+    ] = 0.0
+    asperities: Annotated[
+        float,
+        Unit("m"),
+        Interval(ge=0),
+        Doc("Height of the asperities that keep surfaces apart; for cohesion laws."),
+    ] = 0.0
+    humidity: Annotated[
+        float | None,
+        Unit("1"),
+        Interval(gt=0, lt=1),
+        Usual(0.3, 0.99, "%"),
+        Doc("Relative humidity of the air; for the law humid."),
+    ] = None
+    bridge_volume: Annotated[
+        float | None,
+        Unit("m^3"),
+        Interval(gt=0),
+        Doc("Volume of a liquid bridge; for the law of given bridges."),
+    ] = None
 
 
 @dataclass(frozen=True)

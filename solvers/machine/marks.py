@@ -1,10 +1,20 @@
-"""Markers of a parameter's SI unit and of the range it may take.
+"""Annotations for fields of dataclasses: what a field says, its SI unit, its range, and how it is treated.
 
-They annotate the fields of the solvers' parameter classes, `Annotated[float, Unit("Pa"), Interval(gt=0)]`, so that code
-that reads user input (the presets of `lab`) can check it without a second list of keys.
+They annotate the fields of the solvers' parameter classes, `Annotated[float, Unit("Pa"), Interval(gt=0), Doc("…")]`, so
+that code that reads user input (the presets of `lab`) can check and describe it without a second list of keys.
 """
 
+from collections.abc import Callable, Hashable
 from dataclasses import dataclass
+from functools import cache
+from typing import Any, get_type_hints
+
+
+@dataclass(frozen=True)
+class Doc:
+    """What a field says, in one sentence for a person who writes presets."""
+
+    text: str
 
 
 @dataclass(frozen=True)
@@ -22,3 +32,48 @@ class Interval:
     ge: float | None = None
     lt: float | None = None
     le: float | None = None
+
+
+@dataclass(frozen=True)
+class Usual:
+    """The values (SI) between which a person who tries things out moves a number, and the unit to show them in."""
+
+    low: float
+    high: float
+    unit: str
+
+
+@dataclass(frozen=True)
+class Cheap:
+    """Marks what a cheaper variant of an experiment may change: cost and accuracy, not the experiment itself."""
+
+
+@dataclass(frozen=True)
+class EachWorld:
+    """Marks a field with an entry a world, in which the worlds of one launch may differ.
+
+    `alike`: what they must agree in all the same, a function of the whole.
+    """
+
+    alike: Callable[[Any], Hashable] = lambda _: None
+
+
+@dataclass(frozen=True)
+class LargestOfWorlds:
+    """Marks a number in which the worlds of one launch may differ: the largest counts for all."""
+
+
+@dataclass(frozen=True)
+class NotOfBed:
+    """Marks a field from which a settled bed does not follow."""
+
+
+@cache
+def marked(kind: type, mark: type) -> dict[str, Any]:
+    """The fields of a dataclass that have a mark of that type, each with its mark."""
+    hints = get_type_hints(kind, include_extras=True)
+    found = {
+        name: [one for one in getattr(hint, "__metadata__", ()) if isinstance(one, mark)]
+        for name, hint in hints.items()
+    }
+    return {name: marks[0] for name, marks in found.items() if marks}

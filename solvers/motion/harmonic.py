@@ -6,7 +6,7 @@ from typing import Annotated
 
 import taichi as ti
 
-from solvers.machine.marks import Interval, Unit
+from solvers.machine.marks import Doc, Interval, Unit, Usual
 
 STEEPEST = 2.171  # largest slope of the transition function D(τ)
 
@@ -76,9 +76,9 @@ class Sway(Harmonic):
     Units: y and A m, f Hz, ε rad, t and T s.
     """
 
-    amplitude: Annotated[float, Unit("m"), Interval(gt=0)]
-    frequency: Annotated[float, Unit("Hz"), Interval(gt=0)]
-    phase: Annotated[float, Unit("rad")] = 0.0
+    amplitude: Annotated[float, Unit("m"), Interval(gt=0), Usual(0.0, 0.1, "mm"), Doc("Half the way to and fro.")]
+    frequency: Annotated[float, Unit("Hz"), Interval(gt=0), Usual(0.1, 4.0, "Hz"), Doc("Periods a second.")]
+    phase: Annotated[float, Unit("rad"), Doc("Phase at the start; 0 starts from the middle.")] = 0.0
 
     coordinate = "y"
 
@@ -94,9 +94,9 @@ class Heave(Harmonic):
     Units: z and A m, f Hz, ε rad, t and T s.
     """
 
-    amplitude: Annotated[float, Unit("m"), Interval(gt=0)]
-    frequency: Annotated[float, Unit("Hz"), Interval(gt=0)]
-    phase: Annotated[float, Unit("rad")] = 0.0
+    amplitude: Annotated[float, Unit("m"), Interval(gt=0), Usual(0.0, 0.1, "mm"), Doc("Half the way to and fro.")]
+    frequency: Annotated[float, Unit("Hz"), Interval(gt=0), Usual(0.1, 4.0, "Hz"), Doc("Periods a second.")]
+    phase: Annotated[float, Unit("rad"), Doc("Phase at the start; 0 starts from the middle.")] = 0.0
 
     coordinate = "z"
 
@@ -112,9 +112,12 @@ class Roll(Harmonic):
     Units: φ and A rad, f Hz, ε rad, t and T s.
     """
 
-    amplitude: Annotated[float, Unit("rad"), Interval(gt=0)]
-    frequency: Annotated[float, Unit("Hz"), Interval(gt=0)]
-    phase: Annotated[float, Unit("rad")] = 0.0
-    centre: Annotated[tuple[float, float], Unit("m")] = (0.0, 0.0)
+    amplitude: Annotated[float, Unit("rad"), Interval(gt=0), Usual(0.0, pi / 4, "deg"), Doc("Largest angle.")]
+    frequency: Annotated[float, Unit("Hz"), Interval(gt=0), Usual(0.1, 3.0, "Hz"), Doc("Periods a second.")]
+    phase: Annotated[float, Unit("rad"), Doc("Phase at the start; 0 starts from the middle.")] = 0.0
+    centre: Annotated[tuple[float, float], Unit("m"), Doc("The fixed point, y and z, about which the tank turns.")] = (
+        0.0,
+        0.0,
+    )
 
     coordinate = "turn"

@@ -1,12 +1,12 @@
 """Slow tilting: at a constant rate to an angle, a hold, and optionally back."""
 
 from dataclasses import dataclass
-from math import sqrt
+from math import pi, sqrt
 from typing import Annotated
 
 import taichi as ti
 
-from solvers.machine.marks import Interval, Unit
+from solvers.machine.marks import Cheap, Doc, Interval, Unit, Usual
 
 KNOTS = 8
 
@@ -44,12 +44,19 @@ class Tilt:
     Units: φ rad, rate rad/s, t s.
     """
 
-    rate: Annotated[float, Unit("rad/s"), Interval(gt=0)]
-    angle: Annotated[float, Unit("rad")]
-    centre: Annotated[tuple[float, float], Unit("m")] = (0.0, 0.0)
-    hold: Annotated[float, Unit("s"), Interval(ge=0)] = 0.0
-    reverse: bool = False
-    ease: Annotated[float, Unit("s"), Interval(gt=0)] = 0.1
+    rate: Annotated[
+        float, Unit("rad/s"), Interval(gt=0), Cheap(), Usual(pi / 1800, pi / 3, "deg/s"), Doc("Speed of turning.")
+    ]
+    angle: Annotated[
+        float, Unit("rad"), Usual(-pi / 2, pi / 2, "deg"), Doc("Angle to turn to; a negative one is to starboard.")
+    ]
+    centre: Annotated[tuple[float, float], Unit("m"), Doc("The fixed point, y and z, about which the tank turns.")] = (
+        0.0,
+        0.0,
+    )
+    hold: Annotated[float, Unit("s"), Interval(ge=0), Doc("How long the tank stays at the angle.")] = 0.0
+    reverse: Annotated[bool, Doc("Turn back to upright after the hold, at the same rate.")] = False
+    ease: Annotated[float, Unit("s"), Interval(gt=0), Doc("Time in which the rate rises and falls.")] = 0.1
 
     coordinate = "turn"
     state = staticmethod(rate_programme)

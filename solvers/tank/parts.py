@@ -6,7 +6,7 @@ from typing import Annotated
 
 import taichi as ti
 
-from solvers.machine.marks import Interval, Unit
+from solvers.machine.marks import Doc, Interval, Unit
 
 SHORTEST = 1e-12  # s, the least time in which a part speeds up; far below any step
 
@@ -39,11 +39,11 @@ class Part:
     `speed`, the top speed is lower. A part whose `move` is zero stands still.
     """
 
-    points: Annotated[tuple[tuple[float, float], ...], Unit("m")]
-    move: Annotated[tuple[float, float], Unit("m")] = (0.0, 0.0)
-    start: Annotated[float, Unit("s"), Interval(ge=0)] = 0.0
-    speed: Annotated[float, Unit("m/s"), Interval(ge=0)] = 0.0
-    acceleration: Annotated[float, Unit("m/s^2"), Interval(ge=0)] = 0.0
+    points: Annotated[tuple[tuple[float, float], ...], Unit("m"), Doc("Corners of the thin plates, y and z each.")]
+    move: Annotated[tuple[float, float], Unit("m"), Doc("How far the part moves, in y and z.")] = (0.0, 0.0)
+    start: Annotated[float, Unit("s"), Interval(ge=0), Doc("When it begins to move.")] = 0.0
+    speed: Annotated[float, Unit("m/s"), Interval(ge=0), Doc("Its top speed.")] = 0.0
+    acceleration: Annotated[float, Unit("m/s^2"), Interval(ge=0), Doc("How fast it speeds up, and brakes.")] = 0.0
 
     @property
     def way(self) -> float:

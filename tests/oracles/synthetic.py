@@ -4,6 +4,9 @@ from pathlib import Path
 
 import numpy as np
 
+from lab.preset.find import load
+from lab.preset.merge import merged
+from lab.preset.recorded import from_table, to_table
 from lab.recording import Recorder, new_recording
 from lab.recording.layout import frames_of, rows_of, series_of
 
@@ -17,19 +20,17 @@ def box(width: float = WIDTH, height: float = 0.15) -> np.ndarray:
 
 
 def preset(**motion: dict) -> dict:
-    """A resolved preset with such motions."""
-    return {
-        "title": "Acetate grains in a tank",
-        "source": "Spandonidis 2016, 5.4",
-        "reports": "24 deg",
-        "motion": {"soft_start": 0.0, **motion},
-        "contact": {"stiffness_scale": 1.0},
-        "run": {"repeats": 1, "seed": 1, "duration": 1.0},
-    }
+    """A preset with such motions, as the lab writes it down."""
+    plain = to_table(load("tilting/acetate", {"contact.stiffness_scale": 1, "run.duration": "1 s"}).resolved)
+    said = {"title": "Acetate grains in a tank", "source": "Spandonidis 2016, 5.4", "reports": "24 deg"}
+    return plain | said | {"motion": {"soft_start": 0.0, **motion}, "based_on": ""}
 
 
 def recorder(folder: Path, worlds: int = 1, count: int = 4, **options: object) -> Recorder:
-    """An open recorder of a small scene; options of `new_recording` and of `Recorder`."""
+    """An open recorder of a small scene; options of `new_recording` and of `Recorder`.
+
+    `resolved` is a preset as the lab writes it down; what it does not say is as in `preset`.
+    """
     writing = {name: options.pop(name) for name in ("flush_every", "buffer") if name in options}
     settings = {
         "preset": "tilting/acetate",
@@ -39,7 +40,8 @@ def recorder(folder: Path, worlds: int = 1, count: int = 4, **options: object) -
         "outline": box(),
         "step": 1e-5,
     }
-    new_recording(folder, **{**settings, **options})
+    asked = {**settings, **options}
+    new_recording(folder, **asked | {"resolved": from_table(merged(preset(), asked["resolved"], alternatives={}))})
     return Recorder(folder, **writing)
 
 

@@ -1,14 +1,15 @@
-"""A tank's motion from a file: read the record, convert it to SI, and refuse what the tank could not follow."""
+"""A tank's motion from a file: convert its record to SI, and refuse what the tank could not follow."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Annotated
 
 import numpy as np
 
 from lab.base.errors import LabError
-from lab.preset.tables import read_table
+from lab.preset.fields import Columns, Table
 from lab.preset.units import parse, show
-from solvers.machine.marks import Unit
+from solvers.machine.marks import Doc, Unit
 from solvers.motion.history import LEAST_SAMPLES, History, Recorded
 
 KEY = "motion.history.file"
@@ -18,30 +19,34 @@ AT_ZERO = 1e-3  # of the largest displacement: a record that starts closer to ze
 
 
 @dataclass(frozen=True)
-class HistoryGiven:
-    """A record as a preset gives it: a CSV file with the column time (s) and any of sway, heave and roll."""
+class Record:
+    """A recorded motion: a CSV file with the column time (s) and any of sway, heave and roll."""
 
-    file: str
-    length_unit: str = "m"
-    angle_unit: str = "rad"
-    centre: Annotated[tuple[float, float], Unit("m")] = (0.0, 0.0)
+    file: Annotated[
+        Table,
+        Columns(("time",), ("sway", "heave", "roll"), MOST_SAMPLES),
+        Doc("CSV file with the column time (s) and any of sway, heave and roll."),
+    ]
+    length_unit: Annotated[str, Doc("Unit of sway and heave in the file.")] = "m"
+    angle_unit: Annotated[str, Doc("Unit of roll in the file.")] = "rad"
+    centre: Annotated[tuple[float, float], Unit("m"), Doc("The fixed point, y and z, about which the tank rolls.")] = (
+        0.0,
+        0.0,
+    )
 
-
-def read_history(given: HistoryGiven) -> History:
-    """The record in SI. Raises LabError: a file that cannot be used, or samples that no smooth curve fits."""
-    units = {
-        "sway": _in_si(given.length_unit, "length_unit", "m"),
-        "heave": _in_si(given.length_unit, "length_unit", "m"),
-        "roll": _in_si(given.angle_unit, "angle_unit", "rad"),
-    }
-    columns = read_table(given.file, ["time"], list(units), KEY, MOST_SAMPLES)
-    time = columns.pop("time")
-    if not columns:
-        raise LabError(f"{KEY}: nothing but times; a column sway, heave or roll is needed.")
-    moved = {name: tuple((units[name] * values).tolist()) for name, values in columns.items()}
-    history = History(tuple(time.tolist()), centre=given.centre, **moved)
-    check_history(history)
-    return history
+    @cached_property
+    def history(self) -> History:
+        """The motion in SI. Raises LabError for a unit of another kind, or where nothing moves."""
+        units = {
+            "sway": _in_si(self.length_unit, "length_unit", "m"),
+            "heave": _in_si(self.length_unit, "length_unit", "m"),
+            "roll": _in_si(self.angle_unit, "angle_unit", "rad"),
+        }
+        columns = {name: np.array(values) for name, values in self.file.columns.items() if name != "time"}
+        if not columns:
+            raise LabError(f"{KEY}: nothing but times; a column sway, heave or roll is needed.")
+        moved = {name: tuple((units[name] * values).tolist()) for name, values in columns.items()}
+        return History(self.file.columns["time"], centre=self.centre, **moved)
 
 
 def check_history(history: History) -> None:

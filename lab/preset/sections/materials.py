@@ -1,52 +1,73 @@
 """The materials of a preset: those of grains, walls and kinds of grains, and what each inherits."""
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, make_dataclass, replace
+from dataclasses import dataclass, fields, make_dataclass, replace
 from typing import Annotated, get_type_hints
 
 from lab.base.errors import LabError
 from lab.preset.units import show
 from solvers.grains.laws import COHESION
 from solvers.grains.materials import Material
-from solvers.machine.marks import Interval
+from solvers.machine.marks import Doc, Interval
 
 LEAST_RESTITUTION, LONGEST_DISSIPATION = 1e-6, 0.1  # 1 and s: beyond these no rebound is visible
 
-WallGiven = make_dataclass(
-    "WallGiven",
-    [
-        (name, hint | None, None)
-        for name, hint in get_type_hints(Material, include_extras=True).items()
-        if name != "density"
-    ],
-    frozen=True,
-)
+
+class Over:
+    """Properties of a material, any of which may be left out."""
+
+    def over(self, material: Material) -> Material:
+        """The material with the properties given here in place of its own."""
+        names = {field.name for field in fields(material)}
+        own = {name: value for name, value in vars(self).items() if name in names and value is not None}
+        if "restitution" in own:
+            own["dissipative_time"] = None
+        elif "dissipative_time" in own:
+            own["restitution"] = None
+        return replace(material, **own)
 
 
-KindGiven = make_dataclass(
-    "KindGiven",
-    [
-        ("share", Annotated[float, Interval(gt=0, lt=1)]),
-        *((name, hint | None, None) for name, hint in get_type_hints(Material, include_extras=True).items()),
-        ("against", WallGiven | None, None),
-    ],
-    frozen=True,
+def _properties(*left_out: str) -> list[tuple]:
+    """The fields of a material, each of which may be left out."""
+    hints = get_type_hints(Material, include_extras=True)
+    return [(name, _optional(hint), None) for name, hint in hints.items() if name not in left_out]
+
+
+def _optional(hint: object) -> object:
+    """The annotation with None allowed, and its marks around it."""
+    return Annotated[hint.__origin__ | None, *hint.__metadata__]
+
+
+Wall = make_dataclass("Wall", _properties("density"), bases=(Over,), frozen=True)
+"""What of a wall's material is not as that of the grains."""
+
+Share = Annotated[float, Interval(gt=0, lt=1), Doc("Share of these grains by number.")]
+Against = Annotated[Wall | None, Doc("How these grains touch the rest; by the mean of the two materials without it.")]
+Kind = make_dataclass(
+    "Kind", [("share", Share), *_properties(), ("against", Against, None)], bases=(Over,), frozen=True
 )
+"""A share of the grains, of another material than the rest."""
+Wall.__module__ = Kind.__module__ = __name__  # so that they can be sent to another process
 
 
 @dataclass(frozen=True)
-class Kind:
-    """A fraction of the grains, by number, of another material than the rest.
+class Other:
+    """The materials of a kind of grains: its own, and that of its contacts with the rest, None for the mean of both."""
 
-    `against`: the material for contacts of this kind with the rest; None: the mean of the two materials.
-    """
-
-    share: float
     material: Material
-    against: Material | None = None
+    against: Material | None
 
 
-def check_dissipation(material: Material | WallGiven, section: str, needed: bool) -> None:
+def others(kinds: Mapping[str, Kind], material: Material) -> dict[str, Other]:
+    """The materials of the kinds of grains other than those of `material`."""
+    found = {}
+    for name, kind in kinds.items():
+        own = kind.over(material)
+        found[name] = Other(own, kind.against.over(own) if kind.against is not None else None)
+    return found
+
+
+def check_dissipation(material: Material | Wall | Kind, section: str, needed: bool) -> None:
     """Raise LabError if the rebound is given twice, is out of range or, if `needed`, is missing."""
     given = [material.restitution, material.dissipative_time]
     if None not in given:
@@ -68,37 +89,22 @@ def check_cohesion(law: str, material: Material) -> None:
             raise LabError(f'material.{name}: missing; contact.cohesion = "{law}" needs it, e.g. "{example}".')
 
 
-def full_kinds(given: Mapping[str, KindGiven], material: Material) -> dict[str, Kind]:
-    """The resolved kinds of grains, other than those of `material`."""
-    kinds = {}
-    for name, kind in given.items():
+def check_kinds(kinds: Mapping[str, Kind], material: Material) -> None:
+    """Raise LabError for kinds of grains whose rebounds have no mean, or whose shares are too large."""
+    made = others(kinds, material)
+    for name, kind in kinds.items():
         check_dissipation(kind, f"kinds.{name}", needed=False)
-        own, against = over(material, kind), None
         if kind.against is not None:
             check_dissipation(kind.against, f"kinds.{name}.against", needed=False)
-            against = over(own, kind.against)
-        elif (own.restitution is None) != (material.restitution is None):
+        elif (made[name].material.restitution is None) != (material.restitution is None):
             raise LabError(
                 f"kinds.{name}.against: missing; a restitution and a dissipative time have no mean, so say how this "
                 "kind touches the rest."
             )
-        kinds[name] = Kind(kind.share, own, against)
     total = sum(kind.share for kind in kinds.values())
     if total >= 1.0:
         raise LabError(
             f"kinds.{next(iter(kinds))}.share: the shares add up to {total:.3g}; keep them below 1 together."
         )
-    if len({own.material.restitution is None for own in kinds.values()}) > 1:
+    if len({other.material.restitution is None for other in made.values()}) > 1:
         raise LabError("kinds: give all of them a restitution, or all a dissipative time.")
-    return kinds
-
-
-def over(material: Material, given: object) -> Material:
-    """The material with the given values in place of its own."""
-    names = {name for name in asdict(material)}
-    own = {name: value for name, value in asdict(given).items() if name in names and value is not None}
-    if "restitution" in own:
-        own["dissipative_time"] = None
-    elif "dissipative_time" in own:
-        own["restitution"] = None
-    return replace(material, **own)

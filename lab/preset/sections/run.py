@@ -1,48 +1,53 @@
 """The run of a preset: duration, repeats, step, accuracy and device."""
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Annotated, Literal
 
 from lab.base.errors import LabError
 from lab.preset.accuracy import DEFAULT, LEVELS
+from lab.preset.fields import Alike
 from lab.preset.sections.history import check_end
 from lab.preset.sections.motion import Motion
-from solvers.machine.marks import Interval, Unit
+from solvers.machine.marks import Doc, Interval, Unit, Usual
 
 Time = Annotated[float, Unit("s"), Interval(gt=0)]
 
 
 @dataclass(frozen=True)
-class RunGiven:
-    """Duration, repeats, step, accuracy and device; by default `duration` lasts until the last motion ends."""
+class Run:
+    """Duration, repeats, step, accuracy and device."""
 
-    duration: Time | None = None
-    repeats: Annotated[int, Interval(ge=1, le=100_000)] = 1
-    seed: Annotated[int, Interval(ge=0, le=2**31 - 1)] = 1
-    settle: bool = True
-    step: Annotated[float, Unit("s"), Interval(gt=0, le=1.0)] | Literal["auto"] = "auto"
-    force_step: bool = False
-    accuracy: Literal[*LEVELS] = DEFAULT
-    gravity: Annotated[float, Unit("m/s^2"), Interval(gt=0)] = 9.81
-    settle_limit: Time = 5.0
-    rest: Annotated[float, Interval(gt=0)] = 1e-6
-    threads: Annotated[int, Interval(ge=0, le=1024)] = 0
-    arch: Literal["auto", "cpu", "cuda", "vulkan"] = "auto"
-    schedule: Literal["auto", "per-world", "per-band", "per-grain"] = "auto"
-    precision: Literal["f64", "f32", "mixed"] = "f64"
-    integrator: Literal["verlet", "symplectic-euler", "gear"] = "verlet"
+    duration: Annotated[
+        Time | None, Doc("How long the tank moves after settling; until the last motion ends without it.")
+    ] = None
+    repeats: Annotated[int, Interval(ge=1, le=100_000), Doc("Number of beds, each with a seed of its own.")] = 1
+    seed: Annotated[int, Interval(ge=0, le=2**31 - 1), Doc("Seed of the first bed; the others count on from it.")] = 1
+    settle: Annotated[bool, Doc("Whether the grains settle before the tank moves.")] = True
+    step: Annotated[
+        Annotated[float, Unit("s"), Interval(gt=0, le=1.0)] | Literal["auto"],
+        Doc("Time step; derived from the material and the speeds without it."),
+    ] = "auto"
+    force_step: Annotated[bool, Doc("Allow a step past the derived one.")] = False
+    accuracy: Annotated[Literal[*LEVELS], Doc("Level of accuracy, which sets stiffness and step.")] = DEFAULT
+    gravity: Annotated[
+        float, Unit("m/s^2"), Interval(gt=0), Usual(0.1, 9.81, "m/s^2"), Doc("Acceleration of gravity.")
+    ] = 9.81
+    settle_limit: Annotated[Time, Doc("Longest time for settling.")] = 5.0
+    rest: Annotated[float, Interval(gt=0), Doc("Mean kinetic energy of grains at rest, in m g d of a grain.")] = 1e-6
+    threads: Annotated[int, Alike(), Interval(ge=0, le=1024), Doc("Threads on the CPU; 0: one a core.")] = 0
+    arch: Annotated[Literal["auto", "cpu", "cuda", "vulkan"], Alike(), Doc("Device that computes.")] = "auto"
+    schedule: Annotated[
+        Literal["auto", "per-world", "per-band", "per-grain"], Doc("How the work is divided among threads.")
+    ] = "auto"
+    precision: Annotated[Literal["f64", "f32", "mixed"], Doc("Digits of the numbers.")] = "f64"
+    integrator: Annotated[
+        Literal["verlet", "symplectic-euler", "gear"], Doc("Scheme that advances the grains in time.")
+    ] = "verlet"
 
 
-@dataclass(frozen=True)
-class Run(RunGiven):
-    """The run with its duration."""
-
-    duration: Time = field(kw_only=True)
-
-
-def duration_of(run: RunGiven, motion: Motion) -> float:
-    """The run's duration (s): as given, else until the last motion that has an end is over."""
+def duration_of(run: Run, motion: Motion) -> float:
+    """The run's duration (s): as given, else until the last motion that has an end is over. Raises LabError."""
     try:
         derived = run.duration or max((part.duration() for part in motion.parts.values()), default=0.0)
     except ArithmeticError:
@@ -50,5 +55,5 @@ def duration_of(run: RunGiven, motion: Motion) -> float:
     if not 0.0 < derived < math.inf:
         raise LabError('run.duration: missing, and no motion has an end of its own; give e.g. "8 s".')
     if motion.history:
-        check_end(motion.history, derived)
+        check_end(motion.history.history, derived)
     return derived

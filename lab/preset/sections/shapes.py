@@ -2,19 +2,20 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
+from functools import cached_property
 from typing import Annotated, Literal
 
 import numpy as np
 
 from lab.base.errors import LabError
-from lab.preset.tables import read_table
+from lab.preset.fields import Columns, Table
 from lab.preset.units import needed
 from solvers.grains.shapes.cargo import cargo, cargoes
 from solvers.grains.shapes.contour import Contour
 from solvers.grains.shapes.fitting import fit
 from solvers.grains.shapes.spectrum import draw, spectrum
 from solvers.machine.errors import BadOutline
-from solvers.machine.marks import Interval, Unit
+from solvers.machine.marks import Doc, Interval, Unit
 
 MOST_DESCRIPTORS, MOST_DRAWS = 100, 1000
 TRIED, BELOW = 6, 0.75  # outlines drawn to estimate `least_mass`; factor on their least, as a safe lower value
@@ -28,44 +29,67 @@ Slope = Annotated[float, Interval(ge=-10, le=10)]
 
 
 @dataclass(frozen=True)
-class SpectrumGiven:
+class Spectrum:
     """Descriptors D_1 … D_count relative to R0, by the law of `solvers.grains.shapes.spectrum`."""
 
-    count: Annotated[int, Interval(ge=2, le=MOST_DESCRIPTORS)]
-    D2: Descriptor = 0.0
-    D3: Descriptor = 0.0
-    D8: Descriptor = 0.0
-    alpha: Slope = -2.0
-    beta: Slope = -2.0
+    count: Annotated[int, Interval(ge=2, le=MOST_DESCRIPTORS), Doc("Number of descriptors.")]
+    D2: Annotated[Descriptor, Doc("Second descriptor, the elongation.")] = 0.0
+    D3: Annotated[Descriptor, Doc("Third descriptor, from which those up to D7 follow.")] = 0.0
+    D8: Annotated[Descriptor, Doc("Eighth descriptor, from which those beyond follow.")] = 0.0
+    alpha: Annotated[Slope, Doc("Exponent of the descriptors between D3 and D8.")] = -2.0
+    beta: Annotated[Slope, Doc("Exponent of the descriptors beyond D8.")] = -2.0
 
 
 @dataclass(frozen=True)
-class ShapeGiven:
-    """A class of outlines as a preset gives it: exactly one of DESCRIBED, its share, its size.
+class Shape:
+    """A class of outlines: exactly one of DESCRIBED, its share, its size."""
 
-    `descriptors` are relative to R0. Their `phases` are random if left out, as those of a spectrum always are; then
-    `draws` outlines are drawn for each repeat. `diameter` is that of the disc of equal area.
-    """
-
-    cargo: Literal[*cargoes()] | None = None
-    descriptors: tuple[Descriptor, ...] | None = None
-    phases: Annotated[tuple[float, ...], Unit("rad")] | None = None
-    contour: str | None = None
-    spectrum: SpectrumGiven | None = None
-    disc: bool = False
-    share: Annotated[float, Interval(gt=0)] | None = None
-    diameter: Annotated[float, Unit("m"), Interval(gt=0)] | None = None
-    draws: Annotated[int, Interval(ge=1, le=MOST_DRAWS)] = 25
+    cargo: Annotated[Literal[*cargoes()] | None, Doc("Grains of a cargo, with its outline and size.")] = None
+    descriptors: Annotated[
+        tuple[Descriptor, ...] | None, Doc("Fourier descriptors D_1, D_2 … of the outline, relative to R0.")
+    ] = None
+    phases: Annotated[
+        tuple[float, ...] | None, Unit("rad"), Doc("Phases of the descriptors; drawn at random without them.")
+    ] = None
+    contour: Annotated[
+        Table | None,
+        Columns(("y", "z"), most=MOST_POINTS),
+        Doc("CSV file with the outline's points y and z, in any unit."),
+    ] = None
+    spectrum: Annotated[Spectrum | None, Doc("Descriptors by a law, with phases at random.")] = None
+    disc: Annotated[bool, Doc("Whether the outline is a circle.")] = False
+    share: Annotated[
+        Annotated[float, Interval(gt=0)] | None, Doc("Share of the grains, by number or as grains.shares says.")
+    ] = None
+    diameter: Annotated[
+        Annotated[float, Unit("m"), Interval(gt=0)] | None,
+        Doc("Diameter of the disc of equal area; grains.diameter without it, or the cargo's own."),
+    ] = None
+    draws: Annotated[
+        int, Interval(ge=1, le=MOST_DRAWS), Doc("Outlines drawn for each repeat where phases are random.")
+    ] = 25
 
     @property
     def round(self) -> bool:
         """Whether its outline is a circle."""
         return self.disc or (self.descriptors is not None and not any(self.descriptors))
 
+    @cached_property
+    def described(self) -> tuple[tuple[float, ...], tuple[float, ...] | None]:
+        """Descriptors relative to R0 and phases (rad), None if they are random. Raises BadOutline."""
+        if self.cargo is not None:
+            return cargo(self.cargo).descriptors, cargo(self.cargo).phases
+        if self.contour is not None:
+            return _fitted(self.contour)
+        if self.spectrum is not None:
+            law = {field.name.lower(): getattr(self.spectrum, field.name) for field in fields(self.spectrum)}
+            return tuple(spectrum(**law).tolist()), None
+        return self.descriptors or (), () if self.disc else self.phases
+
 
 @dataclass(frozen=True)
-class Shape:
-    """A resolved class of outlines: its share of the grains by number, the diameter (m) of the disc of equal area.
+class ShapeClass:
+    """The grains of one shape: their share by number, the diameter (m) of the disc of equal area.
 
     `descriptors` D_1, D_2, … are relative to R0; `phases` in rad, None: drawn at random, `draws` times per repeat.
     """
@@ -117,19 +141,17 @@ class Shape:
         return [contour.centred().with_diameter(2.0) for contour in drawn]
 
 
-def read_shapes(given: Mapping[str, ShapeGiven], diameter: float | None, shares: str) -> dict[str, Shape]:
-    """The resolved classes; `diameter` (m) is for those without their own; `shares`: by number or by mass.
+def shape_classes(shapes: Mapping[str, Shape], diameter: float | None, shares: str) -> dict[str, ShapeClass]:
+    """The grains of each shape; `diameter` (m) is for those without their own; `shares`: by number or by mass.
 
     Raises LabError, one sentence with the key.
     """
-    shapes = {name: _shape(f"shapes.{name}", one, diameter) for name, one in given.items()}
-    lacking = [name for name, one in given.items() if one.share is None]
-    if lacking and len(lacking) < len(given):
+    found = {name: _shape_class(f"shapes.{name}", shape, diameter) for name, shape in shapes.items()}
+    lacking = [name for name, shape in shapes.items() if shape.share is None]
+    if lacking and len(lacking) < len(shapes):
         raise LabError(f"shapes.{lacking[0]}.share: missing; give all shapes a share, or none and they are equal.")
-    classes = by_number([(shape.diameter, shape.share) for shape in shapes.values()], shares)
-    return {
-        name: replace(shape, share=share) for (name, shape), (_, share) in zip(shapes.items(), classes, strict=True)
-    }
+    classes = by_number([(shape.diameter, shape.share) for shape in found.values()], shares)
+    return {name: replace(shape, share=share) for (name, shape), (_, share) in zip(found.items(), classes, strict=True)}
 
 
 def by_number(classes, shares: str) -> tuple[tuple[float, float], ...]:
@@ -143,46 +165,33 @@ def by_number(classes, shares: str) -> tuple[tuple[float, float], ...]:
     return tuple((diameter, number / total) for (diameter, _), number in zip(classes, numbers, strict=True))
 
 
-def _shape(key: str, given: ShapeGiven, diameter: float | None) -> Shape:
-    used = [name for name in DESCRIBED if getattr(given, name) not in (None, False)]
+def _shape_class(key: str, shape: Shape, diameter: float | None) -> ShapeClass:
+    used = [name for name in DESCRIBED if getattr(shape, name) not in (None, False)]
     if len(used) != 1:
         got = f"got {' and '.join(used)}" if used else "got none"
         raise LabError(f"{key}: give exactly one of {', '.join(DESCRIBED)} ({got}).")
-    if given.phases is not None and used != ["descriptors"]:
+    if shape.phases is not None and used != ["descriptors"]:
         raise LabError(f"{key}.phases: go with descriptors.")
-    own = cargo(given.cargo).diameter if given.cargo else None
-    size = given.diameter or diameter or own
+    if len(shape.descriptors or ()) > MOST_DESCRIPTORS:
+        most = f"at most {MOST_DESCRIPTORS} are possible"
+        raise LabError(f"{key}.descriptors: {most} (got {len(shape.descriptors)}).")
+    own = cargo(shape.cargo).diameter if shape.cargo else None
+    size = shape.diameter or diameter or own
     if size is None:
         raise LabError(f"{key}.diameter: missing; {needed('m')}, here or as grains.diameter.")
     try:
-        descriptors, phases = _described(f"{key}.{used[0]}", given)
-        shape = Shape(given.share or 1.0, size, descriptors, phases, given.draws if phases is None else 1)
-        if not shape.random:
-            shape.outlines()
+        descriptors, phases = shape.described
+        made = ShapeClass(shape.share or 1.0, size, descriptors, phases, shape.draws if phases is None else 1)
+        if not made.random:
+            made.outlines()
     except BadOutline as error:
         raise LabError(f"{key}.{used[0]}: {error}") from None
-    return shape
+    return made
 
 
-def _described(key: str, given: ShapeGiven) -> tuple[tuple[float, ...], tuple[float, ...] | None]:
-    """Descriptors relative to R0 and phases (rad), None if they are random. Raises BadOutline, LabError."""
-    if given.cargo is not None:
-        return cargo(given.cargo).descriptors, cargo(given.cargo).phases
-    if given.contour is not None:
-        return _fitted(key, given.contour)
-    if given.spectrum is not None:
-        law = {field.name.lower(): getattr(given.spectrum, field.name) for field in fields(given.spectrum)}
-        return tuple(spectrum(**law).tolist()), None
-    descriptors = given.descriptors or ()
-    if len(descriptors) > MOST_DESCRIPTORS:
-        raise LabError(f"{key}: at most {MOST_DESCRIPTORS} are possible (got {len(descriptors)}).")
-    return descriptors, () if given.disc else given.phases
-
-
-def _fitted(key: str, path: str) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """Descriptors and phases of an outline from a CSV file with the columns y and z, in any unit of length."""
-    columns = read_table(path, ("y", "z"), key=key, most=MOST_POINTS)
-    points = np.column_stack([columns["y"], columns["z"]])
+def _fitted(contour: Table) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """Descriptors and phases of an outline with the columns y and z, in any unit of length. Raises BadOutline."""
+    points = np.column_stack([contour.columns["y"], contour.columns["z"]])
     points = points / (np.abs(points).max() or 1.0)
     found = fit(points).contour
     if len(found.descriptors) > MOST_DESCRIPTORS:

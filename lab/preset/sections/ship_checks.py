@@ -3,7 +3,8 @@
 import numpy as np
 
 from lab.base.errors import LabError
-from lab.preset.ship import ShipGiven, WavesGiven
+from lab.preset.sections.sea import Waves
+from lab.preset.sections.ship import Ship
 from lab.preset.units import show
 from solvers.machine.errors import Unavailable
 from solvers.ship.section import Section
@@ -20,7 +21,7 @@ NEEDS = {
 }
 
 
-def check_ship(ship: ShipGiven | None, waves: WavesGiven | None, moves: bool, hold: np.ndarray) -> None:
+def check_ship(ship: Ship | None, waves: Waves | None, moves: bool, hold: np.ndarray) -> None:
     """Raise LabError for settings that contradict each other; `hold` is the tank's outline (m, 2), m."""
     if ship is None:
         if waves is not None:
@@ -55,7 +56,7 @@ def check_ship(ship: ShipGiven | None, waves: WavesGiven | None, moves: bool, ho
             raise LabError(f'waves.{name}: missing; waves.kind = "{waves.kind}" needs it.')
 
 
-def _check_lengths(ship: ShipGiven, box: bool) -> None:
+def _check_lengths(ship: Ship, box: bool) -> None:
     """Raise LabError for lengths so different that the hull's coefficients cannot be computed."""
     breadth, draught = float(np.ptp(ship.corners[:, 0])), ship.draught
     if not 1.0 / MOST_FLAT <= breadth / draught <= MOST_FLAT:
@@ -72,7 +73,7 @@ def _check_lengths(ship: ShipGiven, box: bool) -> None:
             raise LabError(f"ship.{key}: {show(length, 'm')} is more than {FARTHEST:g} times the hull's size.")
 
 
-def _check_hatch(ship: ShipGiven, box: bool) -> None:
+def _check_hatch(ship: Ship, box: bool) -> None:
     """Raise LabError if the hull cannot have this hatch."""
     if ship.hatch is None:
         return
@@ -84,7 +85,7 @@ def _check_hatch(ship: ShipGiven, box: bool) -> None:
         raise LabError(f"ship.hatch.breadth: must be less than the hull's breadth, {show(ship.breadth, 'm')}.")
 
 
-def _check_openings(ship: ShipGiven, box: bool) -> None:
+def _check_openings(ship: Ship, box: bool) -> None:
     """Raise LabError if an opening is under water at rest, or the deck is not above the waterline."""
     keel, top = (float(end(ship.corners[:, 1])) for end in (np.min, np.max))
     waterline = keel + ship.draught
@@ -101,7 +102,7 @@ def _check_openings(ship: ShipGiven, box: bool) -> None:
         raise LabError(f"ship.deck: must be between the waterline and the hull's top, {between}.")
 
 
-def _check_hold(ship: ShipGiven, hold: np.ndarray) -> None:
+def _check_hold(ship: Ship, hold: np.ndarray) -> None:
     """Raise LabError if the hold sticks out of the hull: a corner of it outside, or one of the hull inside it."""
     hull, placed = ship.corners, hold + np.array(ship.hold)
     slack = TOUCHING * float(np.ptp(hull, axis=0).max())

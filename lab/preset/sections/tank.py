@@ -1,6 +1,7 @@
-"""The tank of a preset: as given, as resolved, and its checks."""
+"""The tank of a preset."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Annotated
 
 import numpy as np
@@ -8,91 +9,73 @@ import numpy as np
 from lab.base.errors import LabError
 from lab.preset.outline import Point, rectangle, simple_polygon
 from lab.preset.units import show
-from solvers.machine.marks import Interval, Unit
+from solvers.machine.marks import Doc, Interval, Unit
 from solvers.tank.outline import top_edges
 
 MOST_LINING = 20_000  # grains that line a tank
 
 Length = Annotated[float, Unit("m"), Interval(gt=0)]
 Thickness = Annotated[float, Unit("m"), Interval(gt=0, le=1e3)]
-
-
-@dataclass(frozen=True)
-class TankGiven:
-    """A tank as a preset gives it: width and height, or an outline; whether it has a lid and a lining of grains.
-
-    The plane stands for a slab of this `thickness`, by default the grains' mean diameter: forces are those on the slab,
-    and a ship carries as many slabs as fit into a metre.
-    """
-
-    width: Length | None = None
-    height: Length | None = None
-    outline: Annotated[tuple[tuple[float, float], ...], Unit("m")] | None = None
-    lid: bool = True
-    roughness: Length | None = None
-    thickness: Thickness | None = None
+Outline = Annotated[tuple[tuple[float, float], ...], Unit("m")]
 
 
 @dataclass(frozen=True)
 class Tank:
-    """The tank's outline (m) in its own frame, a simple polygon, counter-clockwise.
+    """A tank: width and height, or an outline; whether it has a lid and a lining of fixed grains.
 
-    `open_edges` have no wall; edge k runs from corner k to corner k + 1. `roughness` is the diameter (m) of the fixed
-    grains that line floor and sides, None if these are smooth; `thickness` (m) is the slab's, None for the grains'
-    mean diameter.
+    The plane stands for a slab of this `thickness`: forces are those on the slab, and a ship carries as many slabs as
+    fit into a metre.
     """
 
-    outline: tuple[tuple[float, float], ...]
-    open_edges: tuple[int, ...] = ()
-    roughness: float | None = None
-    thickness: float | None = None
+    width: Annotated[Length | None, Doc("Width of a rectangular tank, its origin in the middle of its floor.")] = None
+    height: Annotated[Length | None, Doc("Height of a rectangular tank.")] = None
+    outline: Annotated[Outline | None, Doc("Corners of the tank, y and z each, in place of width and height.")] = None
+    lid: Annotated[bool, Doc("Whether the tank is closed at the top.")] = True
+    roughness: Annotated[
+        Length | None, Doc("Diameter of fixed grains that line floor and sides; they are smooth without it.")
+    ] = None
+    thickness: Annotated[
+        Thickness | None, Doc("Thickness of the slab that the plane stands for; the grains' mean diameter without it.")
+    ] = None
+
+    @cached_property
+    def corners(self) -> tuple[Point, ...]:
+        """The outline (m) in the tank's own frame, a simple polygon, counter-clockwise. Raises LabError."""
+        sides = {"width": self.width, "height": self.height}
+        if self.outline is not None:
+            if any(sides.values()):
+                raise LabError("tank.outline: give either an outline or a width and a height, not both.")
+            try:
+                return tuple(map(tuple, np.array(simple_polygon(self.outline)).tolist()))
+            except LabError as error:
+                raise LabError(f"tank.outline: {error}") from None
+        for name, side in sides.items():
+            if side is None:
+                raise LabError(f"tank.{name}: missing; give width and height, or an outline.")
+        return rectangle(self.width, self.height)
 
     @property
-    def width(self) -> float:
-        """Largest extent sideways (m)."""
-        across = [y for y, _ in self.outline]
-        return max(across) - min(across)
+    def open_edges(self) -> tuple[int, ...]:
+        """The edges without a wall; edge k runs from corner k to corner k + 1."""
+        return () if self.lid else top_edges(np.array(self.corners))
 
     @property
-    def height(self) -> float:
-        """Largest extent upwards (m)."""
-        upwards = [z for _, z in self.outline]
-        return max(upwards) - min(upwards)
+    def extent(self) -> tuple[float, float]:
+        """Largest extents (m) sideways and upwards."""
+        y, z = zip(*self.corners, strict=True)
+        return max(y) - min(y), max(z) - min(z)
 
 
-def full_tank(given: TankGiven) -> Tank:
-    """The resolved tank. Raises LabError for an invalid outline, and for a lining that does not fit."""
-    outline = np.array(_outline(given))
-    open_edges = () if given.lid else top_edges(outline)
-    if not given.lid and not open_edges:
+def check_tank(tank: Tank) -> None:
+    """Raise LabError for an invalid outline, a lid that cannot be left out, or a lining that does not fit."""
+    if not tank.lid and not tank.open_edges:
         raise LabError("tank.lid: this outline has no edge along its top to leave open; leave lid out.")
-    tank = Tank(tuple(map(tuple, outline.tolist())), open_edges, given.roughness, given.thickness)
-    check_lining(tank)
-    return tank
-
-
-def check_lining(tank: Tank) -> None:
-    """Raise LabError for grains that are too large or too many to line a tank."""
+    outline = np.array(tank.corners)
     if tank.roughness is None:
         return
-    outline, size = np.array(tank.outline), show(tank.roughness, "m")
+    size = show(tank.roughness, "m")
     around = float(np.hypot(*(outline - np.roll(outline, 1, axis=0)).T).sum())
-    if tank.roughness > 0.25 * min(tank.height, tank.width):
+    if tank.roughness > 0.25 * min(tank.extent):
         raise LabError(f"tank.roughness: grains of {size} are too large to line the tank.")
     if around > MOST_LINING * tank.roughness:
         raise LabError(f"tank.roughness: more than {MOST_LINING} grains of {size} go around.")
-
-
-def _outline(given: TankGiven) -> tuple[Point, ...]:
-    sides = {"width": given.width, "height": given.height}
-    if given.outline is not None:
-        if any(sides.values()):
-            raise LabError("tank.outline: give either an outline or a width and a height, not both.")
-        try:
-            return simple_polygon(given.outline)
-        except LabError as error:
-            raise LabError(f"tank.outline: {error}") from None
-    for name, side in sides.items():
-        if side is None:
-            raise LabError(f"tank.{name}: missing; give width and height, or an outline.")
-    return rectangle(given.width, given.height)

@@ -4,7 +4,8 @@ from dataclasses import dataclass
 from typing import Annotated, Literal
 
 from lab.base.errors import LabError
-from solvers.machine.marks import Interval, Unit
+from lab.preset.fields import Alike
+from solvers.machine.marks import Doc, Interval, Unit
 
 COLOURS = ("speed", "displacement", "layer", "size", "kind", "shape", "spin")  # what `lab.paint.colours` paints
 
@@ -13,23 +14,25 @@ Rate = Annotated[float, Unit("Hz"), Interval(gt=0, le=1e6)]
 
 @dataclass(frozen=True)
 class Record:
-    """Sampling rates of series and frames, wall-clock time between checkpoints, and whether XDMF is written."""
+    """What a run writes down, and how often."""
 
-    series_rate: Rate = 100.0
-    picture_rate: Rate = 25.0
-    checkpoint_every: Annotated[float, Unit("s"), Interval(ge=0)] = 60.0
-    xdmf: bool = False
+    series_rate: Annotated[Rate, Alike(), Doc("Samples of forces, energies and the like a second.")] = 100.0
+    picture_rate: Annotated[Rate, Alike(), Doc("Frames with all grains a second.")] = 25.0
+    checkpoint_every: Annotated[
+        float, Unit("s"), Alike(), Interval(ge=0), Doc("Wall-clock time between checkpoints.")
+    ] = 60.0
+    xdmf: Annotated[bool, Doc("Write a file beside the recording with which ParaView opens it.")] = False
 
 
 @dataclass(frozen=True)
 class Video:
-    """The picture's size in pixels, colouring of the grains, frame of reference, playback speed."""
+    """How the run is filmed."""
 
-    width: Annotated[int, Interval(ge=320, le=7680)] = 1280
-    height: Annotated[int, Interval(ge=180, le=4320)] = 720
-    colour: Literal[*COLOURS] = "speed"
-    frame: Literal["tank", "earth"] = "tank"
-    speed: Annotated[float, Interval(gt=0)] = 1.0
+    width: Annotated[int, Interval(ge=320, le=7680), Doc("Width of the picture in pixels, an even number.")] = 1280
+    height: Annotated[int, Interval(ge=180, le=4320), Doc("Height of the picture in pixels, an even number.")] = 720
+    colour: Annotated[Literal[*COLOURS], Doc("What the colour of a grain shows.")] = "speed"
+    frame: Annotated[Literal["tank", "earth"], Doc("Whether the camera moves with the tank or stands still.")] = "tank"
+    speed: Annotated[float, Interval(gt=0), Doc("Playback speed; 1 is as in nature.")] = 1.0
 
 
 def check_video(video: Video) -> None:

@@ -7,7 +7,7 @@ import numpy as np
 from lab.assembly.ship import make_water
 from lab.measures.critical_angle import shift_curve
 from lab.measures.value import Value, over_worlds
-from lab.preset.ship import WaterGiven
+from lab.preset.sections.sea import Sea
 from lab.report.numbers import with_error
 from lab.studies.reproduce import figures, memory
 from lab.studies.reproduce.estimates import Verdict, mean, ratio, together
@@ -146,7 +146,7 @@ def section_amplitudes(found: Found) -> list[Row]:
     rows = []
     for one in found["section"]:
         at = str(one.setting[FREQUENCY])
-        omega, water = leading_number(at), make_water(WaterGiven(depth=1.0), 9.81)
+        omega, water = leading_number(at), make_water(Sea(depth=1.0), 9.81)
         slope = np.degrees(1e-3 * HEIGHT * float(water.wave_number(omega)))
         units = {"sway_amplitude": HEIGHT, "heave_amplitude": HEIGHT, "roll_fundamental": slope}
         for (name, per), measured in zip(units.items(), MEASURED[at], strict=True):

@@ -9,7 +9,7 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 from lab.assembly.scene import build
-from lab.preset import toml
+from lab.base import toml
 from lab.preset.find import load
 from solvers.scene import Scene
 from solvers.simulation import Simulation

@@ -117,7 +117,7 @@ def _poster(name: str, size: tuple[int, int]) -> Image.Image:
 def _sketch(name: str, size: tuple[int, int]) -> Image.Image:
     """A sketch of the tank, its filling and its moving parts."""
     preset = load(name).resolved
-    outline = np.array(preset.tank.outline)
+    outline = np.array(preset.tank.corners)
     image = Image.new("RGB", size, palette.HOLD)
     draw, middle = ImageDraw.Draw(image), 0.5 * (outline.min(axis=0) + outline.max(axis=0))
     scale = 0.8 * float((np.array(size) / np.ptp(outline, axis=0)).min())
@@ -126,11 +126,11 @@ def _sketch(name: str, size: tuple[int, int]) -> Image.Image:
         away = (np.asarray(points) - middle) * scale
         return [(0.5 * size[0] + x, 0.5 * size[1] - y) for x, y in away]
 
-    depth = preset.grains.depth or 0.4 * preset.tank.height
+    depth = preset.grains.depth or 0.4 * preset.tank.extent[1]
     low, high = outline.min(axis=0), outline.max(axis=0)
     draw.polygon(placed(outline), fill=palette.PAPER)
-    if preset.grains.region:
-        draw.polygon(placed(preset.grains.region), fill=GRAIN)
+    if preset.grains.place:
+        draw.polygon(placed(preset.grains.place), fill=GRAIN)
     else:
         draw.polygon(placed([low, (high[0], low[1]), (high[0], low[1] + depth), (low[0], low[1] + depth)]), fill=GRAIN)
     draw.line([*placed(outline), placed(outline)[0]], fill=palette.WALL, width=3)

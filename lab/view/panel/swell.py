@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from lab.assembly.ship import make_vessel
-from lab.preset.schema import Resolved
+from lab.preset.schema import Preset
 from lab.view.panel.helm import Follower
 from solvers.ship.vessel import Vessel
 
@@ -21,7 +21,7 @@ class RegularSwell:
     `wanted`: the user's amplitude (m) and frequency (rad/s).
     """
 
-    def __init__(self, preset: Resolved) -> None:
+    def __init__(self, preset: Preset) -> None:
         self._preset = preset
         self.wanted = {"wave_amplitude": preset.waves.amplitude, "wave_frequency": preset.waves.frequency}
         self._frequency = preset.waves.frequency
@@ -50,7 +50,7 @@ class RegularSwell:
 class RandomSwell:
     """A random sea; `wanted` is the user's significant height (m), to which all components are proportional."""
 
-    def __init__(self, preset: Resolved) -> None:
+    def __init__(self, preset: Preset) -> None:
         self.wanted = {"wave_height": preset.waves.height}
         self._vessel = _afloat(preset, height=1.0)
         self._height = Follower(preset.waves.height, EASE)
@@ -68,15 +68,15 @@ class RandomSwell:
         return _raised(self._vessel, self._height)
 
 
-def swell_of(preset: Resolved) -> RegularSwell | RandomSwell | None:
+def swell_of(preset: Preset) -> RegularSwell | RandomSwell | None:
     """The steerable waves of a preset, None if it has none."""
     kind = preset.waves.kind if preset.ship and preset.waves else ""
     return RegularSwell(preset) if kind == "regular" else RandomSwell(preset) if kind in RANDOM else None
 
 
-def _afloat(preset: Resolved, **changes: float) -> Vessel:
+def _afloat(preset: Preset, **changes: float) -> Vessel:
     """The ship in other waves."""
-    return make_vessel(preset.ship, preset.water, replace(preset.waves, **changes), preset.run.gravity)
+    return make_vessel(preset.ship, preset.sea, replace(preset.waves, **changes), preset.run.gravity)
 
 
 def _raised(vessel: Vessel, height: Follower) -> Vessel:

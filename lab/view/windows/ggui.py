@@ -7,7 +7,7 @@ import numpy as np
 import taichi as ti
 
 from lab.view.panel.chooser import Chooser
-from lab.view.panel.controls import CONTROLS, RESTARTS, UNITS
+from lab.view.panel.controls import CONTROLS, RESTARTS
 from lab.view.session import Session
 from lab.view.windows.window import Window
 
@@ -67,7 +67,7 @@ class VulkanWindow(Window):
         with self._gui.sub_window("values", 1.0 - PANEL / width, top / height, PANEL / width, tall):
             for name in list(session.values):
                 control, value = CONTROLS[name], session.values[name]
-                scale = UNITS.get(control.unit, 1.0)
+                scale = control.scale
                 unit = "" if control.unit == "1" else f" ({control.unit})"
                 label = f"{control.label}{unit}" + ("*" if control.kind == RESTARTS else "")
                 shown = self._gui.slider_float(

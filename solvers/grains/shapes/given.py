@@ -32,6 +32,11 @@ class Shapes:
             object.__setattr__(self, "least_mass", min(outline.least_mass for outline in self.outlines))
 
     @property
+    def alike(self) -> tuple:
+        """What worlds that share a launch must agree in."""
+        return self.outlines, self.contact, self.nodes
+
+    @property
     def convex(self) -> bool:
         """Whether all outlines are convex."""
         return all(outline.convex for outline in self.outlines)

@@ -1,6 +1,5 @@
 """From a preset to the scene: sizes, surfaces, tanks and grains from a file, and the sentences where it cannot be."""
 
-import json
 from itertools import product
 
 import numpy as np
@@ -11,7 +10,8 @@ from lab.base.errors import LabError
 from lab.preset import bed_file
 from lab.preset.accuracy import LEVELS
 from lab.preset.find import load
-from lab.preset.schema import Resolved
+from lab.preset.recorded import from_table, to_table
+from lab.preset.schema import Preset
 from lab.studies.verify.scenes import ACETATE, WEIGHTLESS, Setup, again, grain, simulated
 from solvers.grains.checks import DEEPEST_OVERLAP
 from tests.oracles.presets import error_of
@@ -22,7 +22,7 @@ REGION = {"grains.region": [["0 mm", "2 mm"], ["10 mm", "2 mm"], ["10 mm", "12 m
 TRIANGLE = [["0 mm", "0 mm"], ["40 mm", "0 mm"], ["20 mm", "40 mm"]]
 
 
-def resolved(**sections) -> Resolved:
+def resolved(**sections) -> Preset:
     """The small preset with keys of its sections over it."""
     table = {name: dict(keys) for name, keys in SMALL.items()}
     for name, keys in sections.items():
@@ -55,7 +55,7 @@ def csv(folder, *rows: str, header: str = "y,z,radius,vy,vz,omega") -> dict:
 def test_the_scene_has_the_range_of_its_sizes(keys, diameter, low, high):
     preset = resolved(grains=keys)
     scene, position = build(preset)
-    assert preset.grains.diameter == pytest.approx(diameter)
+    assert preset.mean_diameter == pytest.approx(diameter)
     assert scene.sizes == (pytest.approx(0.5 * low), pytest.approx(0.5 * high))
     assert scene.sizes[0] <= scene.radius.min() and scene.radius.max() <= scene.sizes[1]
     assert position.shape == (*scene.radius.shape, 2)
@@ -80,10 +80,10 @@ def test_the_accuracy_sets_stiffness_and_step_unless_the_preset_does():
 
 
 def test_the_shares_of_a_table_add_up_to_one_and_may_be_any_numbers():
-    grains = resolved(grains=PEAS).grains
-    assert grains.table == ((3e-3, pytest.approx(0.352)), (4e-3, pytest.approx(0.648)))
-    again = Resolved.model_validate_json(resolved(grains=PEAS).model_dump_json()).grains
-    assert again == grains and again.sizes == grains.sizes
+    preset = resolved(grains=PEAS)
+    assert preset.classes == ((3e-3, pytest.approx(0.352)), (4e-3, pytest.approx(0.648)))
+    again = from_table(to_table(preset))
+    assert again == preset and again.sizes == preset.sizes
 
 
 @pytest.mark.parametrize("surface", ["undisturbed", "slightly-disturbed", "disturbed"])
@@ -110,7 +110,7 @@ def test_a_tank_without_lid_is_open_at_its_top_and_may_be_filled_to_it():
 
 def test_a_closed_tank_is_filled_directly_if_there_is_room():
     preset = resolved()
-    np.testing.assert_array_equal(filling_outline(preset), np.array(preset.tank.outline))
+    np.testing.assert_array_equal(filling_outline(preset), np.array(preset.tank.corners))
     nearly_full = resolved(grains={"depth": "27 mm"})
     raised = filling_outline(nearly_full)
     assert raised[:, 1].max() > 0.03
@@ -136,14 +136,14 @@ def test_listed_grains_start_as_given_in_the_file(tmp_path):
     rows = ["-0.005,0.01,0.0015,0.3,0,2", "0.005,0.01,0.001,0,-0.4,0"]
     preset = resolved(grains=csv(tmp_path, *rows), run={"settle": False, "repeats": 3})
     (tmp_path / "bed.csv").unlink()
-    preset = Resolved.model_validate(json.loads(preset.model_dump_json()))  # complete without the file
+    preset = from_table(to_table(preset))  # complete without the file
     scene, position = build(preset)
     np.testing.assert_array_equal(position, [[[-0.005, 0.01], [0.005, 0.01]]] * 3)
     np.testing.assert_array_equal(scene.radius, [[0.0015, 0.001]] * 3)
     np.testing.assert_array_equal(scene.velocity, [[[0.3, 0.0], [0.0, -0.4]]] * 3)
     np.testing.assert_array_equal(scene.spin, [[2.0, 0.0]] * 3)
     assert scene.start_speed == pytest.approx(0.5) and scene.sizes == (0.001, 0.0015)
-    assert (preset.grains.count, preset.grains.depth, preset.grains.bed) == (2, None, "bed.csv")
+    assert (grain_count(preset), preset.grains.bed.name) == (2, "bed.csv")
 
 
 def test_listed_grains_may_settle_and_lie_against_each_other_and_the_walls(tmp_path):
@@ -182,7 +182,7 @@ def test_a_region_is_filled_without_changing_the_walls():
     _, position = build(preset)
     y, z = position[..., 0], position[..., 1]
     assert np.all((y > 0) & (y < 0.01) & (z > 0.002) & (z < 0.002 + y))
-    np.testing.assert_array_equal(filling_outline(preset), preset.tank.outline)
+    np.testing.assert_array_equal(filling_outline(preset), preset.tank.corners)
 
 
 @pytest.mark.parametrize(

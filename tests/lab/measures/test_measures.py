@@ -602,7 +602,8 @@ def test_a_motion_from_a_file_has_no_frequency_but_a_wave(tmp_path):
     pose = np.zeros((801, 1, 3))
     pose[:, 0, 2] = 0.3 * np.sin(time)
     frames = [frame(now, pose=pose[0]) for now in np.linspace(0, 8, 101)]
-    resolved = preset(history={"file": "x.csv"}, roll={"amplitude": 0.3, "frequency": 1.0})
+    record = {"name": "x.csv", "columns": {"time": [0.0], "roll": [0.0]}}
+    resolved = preset(history={"file": record}, roll={"amplitude": 0.3, "frequency": 1.0})
     values = written(tmp_path, time, frames, pose=pose, resolved=resolved)
     assert "wave_mode" in values
     assert not {"response_amplitude", "distortion", "force_amplitude"} & set(values)

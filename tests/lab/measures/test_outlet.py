@@ -14,7 +14,10 @@ PARTS = {
     "gate": np.array([(HALF, TIP), (-HALF, TIP)]),
     "left": np.array([(-0.2, 0.5), (-HALF, TIP)]),
 }
-MOVES = {"gate": {"move": [0.0, -0.2]}, "left": {"move": [0.0, 0.1]}, "right": {"move": [0.0, 0.1]}}
+MOVES = {
+    name: {"points": PARTS[name].tolist(), "move": [0.0, move]}
+    for name, move in (("gate", -0.2), ("left", 0.1), ("right", 0.1))
+}
 FUNNEL = {**preset(), "parts": MOVES, "material": {"density": 1000.0}, "run": {"gravity": 9.81}}
 MASS = 1000.0 * np.pi / 6 * D**3
 
@@ -68,7 +71,11 @@ def test_a_few_grains_on_the_base_do_not_count_as_heap(tmp_path):
     assert values["heap_angle"].value is None and values["heap_angle"].note == "no heap"
 
 
-@pytest.mark.parametrize("moves", [{}, {"gate": {"move": [0.0, 0.0]}}, {"left": {"move": [0.0, 0.1]}}])
+@pytest.mark.parametrize(
+    "moves",
+    [{}, {"gate": MOVES["gate"] | {"move": [0.0, 0.0]}}, {"left": MOVES["left"]}],
+    ids=["none", "still", "other"],
+)
 def test_without_a_gate_that_opens_there_is_no_outlet(tmp_path, moves):
     values = measured(tmp_path, [0.0, 1.0], [heaped(20.0, 20.0)] * 2, resolved={**FUNNEL, "parts": moves})
     assert not {"heap_angle", "flow_rate", "clogged"} & set(values)

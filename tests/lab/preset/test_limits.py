@@ -6,7 +6,7 @@ import h5py
 import pytest
 
 from lab.preset.find import load, names
-from lab.preset.limits import resolved_from
+from lab.preset.recorded import resolved_from, to_table
 from lab.runs.checkpoint import Checkpoint
 from lab.sweeps import grid
 from tests.lab.preset.test_malformed import LISTED, RICH, SMALL, TABLES, call, copied, refused
@@ -20,6 +20,11 @@ def put(table: dict, dotted: str, value: object) -> None:
     table[last] = value
 
 
+def record(times: int, rolls: int) -> dict:
+    """A recorded motion of so many times and angles."""
+    return {"name": "", "columns": {"time": [0.001 * k for k in range(times)], "roll": [0.0] * rolls}}
+
+
 MANY = [[k * 1e-7, (k * k % 7) * 1e-7] for k in range(2_000)]
 EXCESS = {
     "repeats": {"run.repeats": 10**12},
@@ -29,7 +34,6 @@ EXCESS = {
     "tiny": {"grains.diameter": 1e-12, "grains.count": None, "grains.depth": 0.01},
     "huge-tank": {"tank.outline": [[-1e9, 0.0], [1e9, 0.0], [1e9, 1e9], [-1e9, 1e9]]},
     "corners": {"tank.outline": MANY},
-    "edges": {"tank.open_edges": [10**9]},
     "lining": {"tank.roughness": 1e-12},
     "spread": {"grains.spread": 100.0},
     "nan": {"material.density": float("nan")},
@@ -41,12 +45,14 @@ EXCESS = {
     "descriptors": {"shapes": {"x": {"share": 1.0, "diameter": 0.003, "descriptors": [0.0] * 10**5, "phases": None}}},
     "parts": {"parts": {f"p{k}": {"points": [[0.0, 0.01], [0.001, 0.01]]} for k in range(10_000)}},
     "part-names": {"parts": {"<b>": {"points": [[0.0, 0.01], [0.001, 0.01]]}}},
-    "history": {"motion.history": {"time": [0.001 * k for k in range(100_001)], "roll": [0.0] * 100_001}},
-    "history-short": {"motion.history": {"time": [0.001 * k for k in range(100)], "roll": [0.0] * 50}},
+    "history": {"motion.history": {"file": record(100_001, 100_001)}},
+    "history-short": {"motion.history": {"file": record(100, 50)}},
+    "history-column": {"motion.history": {"file": {"name": "", "columns": {"time": [0.0], "x": [0.0]}}}},
     "pixels": {"video.width": 10**6, "video.height": 10**6},
     "odd-pixels": {"video.width": 641},
     "region": {"grains.region": MANY},
-    "grains-listed": {"grains.listed": [[0.0, 0.01, 1e-6, 0.0, 0.0, 0.0]] * 100_001},
+    "grains-listed": {"grains.bed": {"name": "", "columns": dict.fromkeys(("y", "z", "radius"), [0.01] * 100_001)}},
+    "grains-outside": {"grains.bed": {"name": "", "columns": {"y": [9.0], "z": [9.0], "radius": [0.003]}}},
 }
 
 
@@ -106,4 +112,4 @@ def test_every_preset_of_the_lab_is_within_the_limits(tmp_path):
     (tmp_path / "listed.toml").write_text(LISTED)
     for name in [*names(), tmp_path / "rich.toml", tmp_path / "listed.toml"]:
         preset = load(name).resolved
-        assert resolved_from(json.loads(preset.model_dump_json())) == preset
+        assert resolved_from(to_table(preset)) == preset

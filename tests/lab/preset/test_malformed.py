@@ -16,12 +16,12 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from lab.assembly.scene import build, grain_count
+from lab.base import toml
 from lab.base.errors import LabError
 from lab.cli import main
-from lab.preset import toml
+from lab.preset.fields import walk
 from lab.preset.find import load, names
-from lab.preset.reader import _dotted
-from lab.preset.schema import Given
+from lab.preset.schema import Preset
 from lab.preset.units import NUMBER
 from lab.recording import Recorder
 from lab.runs.batch import prepare
@@ -121,7 +121,7 @@ ODD_TREES = st.recursive(
 )
 
 MOST_GRAINS = 600  # of a mangled preset that is built
-KEYS = sorted(_dotted(Given))
+KEYS = sorted(key for key, _ in walk(Preset))
 
 often = pytest.mark.parametrize("times", [1, pytest.param(10, marks=pytest.mark.slow)])
 

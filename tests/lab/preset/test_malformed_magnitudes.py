@@ -2,7 +2,6 @@
 
 import tomllib
 from collections.abc import Iterator
-from dataclasses import fields, is_dataclass
 from typing import Annotated, Any, get_args, get_origin
 
 import numpy as np
@@ -12,9 +11,9 @@ from lab.assembly import room, ship, ship_tables
 from lab.assembly.scene import build
 from lab.base import memory
 from lab.base.errors import LabError
+from lab.preset.fields import Taken, taken_from, walk
 from lab.preset.find import load
-from lab.preset.reader import _named_kind, _taken, _taken_by
-from lab.preset.schema import Given
+from lab.preset.schema import Preset
 from lab.report.explain import explain
 from tests.lab.preset.test_malformed import RICH, TABLES, assert_sentence, tried, write
 
@@ -35,19 +34,14 @@ disc = true
 """
 
 
-def numeric(kind: type, path: str = "") -> Iterator[tuple[str, Any]]:
+def numeric(kind: type) -> Iterator[tuple[str, Taken]]:
     """Every key below a dataclass that takes numbers, and what it takes."""
-    for field in fields(kind):
-        taken, key = _taken_by(kind, field.name), f"{path}.{field.name}" if path else field.name
-        if is_dataclass(taken.kind):
-            yield from numeric(taken.kind, key)
-        elif inner := _named_kind(taken.kind):
-            yield from numeric(inner, f"{key}.NAME")
-        elif taken.kind in (int, float) or get_origin(taken.kind) is tuple:
+    for key, taken in walk(kind):
+        if taken.kind in (int, float) or get_origin(taken.kind) is tuple:
             yield key, taken
 
 
-NUMERIC = dict(numeric(Given))
+NUMERIC = dict(numeric(Preset))
 
 
 @pytest.fixture(scope="module")
@@ -59,7 +53,7 @@ def bases(tmp_path_factory) -> dict[str, dict]:
     rich = tomllib.loads(RICH)
     barge = tomllib.loads(load("ship/barge-3dof-quick", {"grains.diameter": "12 mm"}).given_text)
     outlines = rich | {"grains": {"diameter": "6 mm", "count": 20}} | tomllib.loads(SHAPES)
-    found = dict.fromkeys(("ship", "water", "waves"), barge)
+    found = dict.fromkeys(("ship", "sea", "waves"), barge)
     found |= {"kinds": rich | tomllib.loads(KINDS), "shapes": outlines}
     return {"": rich, "folder": folder} | found
 
@@ -81,7 +75,7 @@ def magnitudes(taken: Any, random: np.random.Generator, count: int) -> Iterator[
 
 def filled(kind: Any, taken: Any, number: float, random: np.random.Generator) -> object:
     if get_origin(kind) is Annotated:
-        inner = _taken(kind)
+        inner = taken_from(kind)
         return filled(inner.kind, inner, number, random)
     if get_origin(kind) is tuple:
         parts = get_args(kind)
@@ -124,10 +118,10 @@ def test_the_bases_are_valid(bases):
         ({"ship.axis": '["1 km", "0 m"]'}, r"ship\.axis: a list of 2 is needed"),
         ({"ship.axis": ["1 km", "0 m"]}, r"ship\.axis: 1 km is more than 10 times the hull's size"),
         ({"ship.gyradius": "1 km", "ship.roll_period": False}, r"ship\.gyradius: 1 km is more than 10 times"),
-        ({"water.density": "1.025 kg/m^3"}, r"water\.density: must be at least 500 kg/m\^3 \(got 1\.025 kg/m\^3\)"),
-        ({"water.density": "1e-12 kg/m^3"}, r"water\.density: must be at least 500 kg/m\^3"),
-        ({"water.density": "1e6 kg/m^3"}, r"water\.density: must be at most 2000 kg/m\^3"),
-        ({"water.depth": "1e9 m"}, r"water\.depth: must be at most 20 km"),
+        ({"sea.density": "1.025 kg/m^3"}, r"sea\.density: must be at least 500 kg/m\^3 \(got 1\.025 kg/m\^3\)"),
+        ({"sea.density": "1e-12 kg/m^3"}, r"sea\.density: must be at least 500 kg/m\^3"),
+        ({"sea.density": "1e6 kg/m^3"}, r"sea\.density: must be at most 2000 kg/m\^3"),
+        ({"sea.depth": "1e9 m"}, r"sea\.depth: must be at most 20 km"),
     ],
 )
 def test_impossible_values_of_a_ship_name_their_key(overrides, said):

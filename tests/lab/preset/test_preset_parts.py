@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 
 from lab.base.errors import LabError
 from lab.preset.find import load
-from lab.preset.schema import Resolved
+from lab.preset.recorded import from_table, to_table
 from solvers.tank.parts import Part
 from tests.oracles.presets import MATERIAL, error_of
 
@@ -54,7 +54,7 @@ def test_parts_are_in_order_and_in_si(preset):
 
 def test_resolved_goes_to_json_and_back(preset):
     resolved = load(preset).resolved
-    again = Resolved.model_validate_json(resolved.model_dump_json())
+    again = from_table(to_table(resolved))
     assert again == resolved and list(again.parts) == ["gate", "funnel-1"]
     assert isinstance(again.parts["gate"], Part)
 

@@ -1,5 +1,6 @@
 """Irregular grains in a preset: valid settings, the outlines drawn from it, and the initial positions."""
 
+import json
 from types import SimpleNamespace
 
 import h5py
@@ -13,8 +14,9 @@ from lab.assembly.scene import build, filling_outline, grain_count
 from lab.base.errors import LabError
 from lab.paint.video import poster, render_grid
 from lab.preset.find import load
-from lab.preset.schema import Resolved
-from lab.preset.sections.shapes import Shape
+from lab.preset.recorded import from_table, to_table
+from lab.preset.schema import Preset
+from lab.preset.sections.shapes import ShapeClass
 from lab.recording import Recorder, open_recording
 from lab.report.explain import explain
 from lab.runs.batch import prepare
@@ -42,7 +44,7 @@ def loaded(shapes: dict, **sections):
     return load("tilting/quick", table | {"shapes": shapes})
 
 
-def resolved(shapes: dict, **sections) -> Resolved:
+def resolved(shapes: dict, **sections) -> Preset:
     return loaded(shapes, **sections).resolved
 
 
@@ -107,9 +109,9 @@ def test_settings_for_shapes_are_refused_without_shapes(section, key, value):
 
 def test_the_size_of_a_shape_is_its_own_the_grains_or_its_cargos():
     shapes = {"own": {"cargo": "rice", "diameter": "2 mm"}, "all": {"cargo": "rice"}}
-    found = resolved(shapes).shapes
+    found = resolved(shapes).shape_classes
     assert found["own"].diameter == pytest.approx(2e-3) and found["all"].diameter == pytest.approx(3e-3)
-    assert resolved(shapes, grains={"diameter": False}).shapes["all"].diameter == pytest.approx(5.09e-3)
+    assert resolved(shapes, grains={"diameter": False}).shape_classes["all"].diameter == pytest.approx(5.09e-3)
     assert "shapes.a.diameter: missing" in fault({"a": {"disc": True}}, grains={"diameter": False})
 
 
@@ -121,7 +123,7 @@ def test_an_outline_from_a_file_is_found_beside_its_preset(tmp_path):
     (tmp_path / "tables" / "pebble.csv").write_text(f"y,z\n{rows}\n")
     path = tmp_path / "mine.toml"
     path.write_text('title = "pebbles"\nbased_on = "tilting/quick"\n[shapes.pebble]\ncontour = "tables/pebble.csv"\n')
-    (outline,) = load(path).resolved.shapes["pebble"].outlines()
+    (outline,) = load(path).resolved.shape_classes["pebble"].outlines()
     exact = 6.0 / np.hypot(2.0 * np.cos(angle), 3.0 * np.sin(angle)) / np.sqrt(6.0)
     np.testing.assert_allclose(outline.polar(angle), exact, rtol=5e-3)
     (tmp_path / "tables" / "pebble.csv").write_text("y,z\n0,0\n1,0\nx,1\n")
@@ -136,9 +138,9 @@ def test_shares_by_mass_are_those_of_the_masses():
     mass = scene.radius**3
     rough = classes(preset)[scene.shapes.which] == 1
     np.testing.assert_allclose((mass * rough).sum(axis=1) / mass.sum(axis=1), 0.75, atol=0.01)
-    numbers = [shape.share for shape in preset.shapes.values()]
+    numbers = [shape.share for shape in preset.shape_classes.values()]
     np.testing.assert_allclose(numbers, np.array([1 / 27, 3 / 125]) / (1 / 27 + 3 / 125))
-    assert preset.grains.diameter == pytest.approx(3e-3 * numbers[0] + 5e-3 * numbers[1])
+    assert preset.mean_diameter == pytest.approx(3e-3 * numbers[0] + 5e-3 * numbers[1])
 
 
 def test_shares_by_number_are_those_of_the_numbers():
@@ -179,9 +181,9 @@ def test_each_repeat_is_drawn_from_its_own_seed():
 
 def test_the_same_outlines_come_from_the_preset_as_it_is_recorded():
     preset = resolved(TWO, grains={"orientation": "30 deg"}, contact={"outlines": "nodes", "nodes": 60})
-    text = preset.model_dump_json()
-    here, there = build(preset)[0].shapes, build(Resolved.model_validate_json(text))[0].shapes
-    assert len(text) < 10_000
+    table = to_table(preset)
+    here, there = build(preset)[0].shapes, build(from_table(table))[0].shapes
+    assert len(json.dumps(table)) < 10_000
     assert here.outlines == there.outlines and (here.contact, here.nodes) == ("nodes", 60)
     np.testing.assert_array_equal(here.which, there.which)
     np.testing.assert_allclose(there.angle, np.pi / 6)
@@ -190,9 +192,9 @@ def test_the_same_outlines_come_from_the_preset_as_it_is_recorded():
 def test_no_outline_exceeds_the_largest_radius_of_its_class():
     random = np.random.default_rng(1)
     for descriptors in [(0.3,), (0.1, 0.4), (0.05, 0.2, 0.1, 0.0, 0.05), tuple(np.full(12, 0.06))]:
-        shape = Shape(1.0, 2e-3, descriptors, None, 40)
+        shape = ShapeClass(1.0, 2e-3, descriptors, None, 40)
         assert max(outline.bounding_radius for outline in shape.outlines(random)) <= shape.reach
-    exact = Shape(1.0, 2e-3, (0.0, 0.4), (0.0, 0.0))
+    exact = ShapeClass(1.0, 2e-3, (0.0, 0.4), (0.0, 0.0))
     assert exact.reach == pytest.approx(1.4 / np.sqrt(1.08))
 
 
@@ -312,7 +314,7 @@ def test_explain_describes_the_shapes():
 
 
 def test_a_disc_among_shapes_is_a_disc():
-    (outline,) = resolved({"a": {"disc": True}}).shapes["a"].outlines()
+    (outline,) = resolved({"a": {"disc": True}}).shape_classes["a"].outlines()
     assert outline == Contour(1.0)
 
 

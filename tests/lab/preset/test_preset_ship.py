@@ -1,6 +1,5 @@
 """Ships in presets: error messages, the resulting vessel, her waves and her measures."""
 
-import json
 import warnings
 from dataclasses import replace
 from math import inf, pi, radians
@@ -16,7 +15,11 @@ from lab.measures import measure_all, ship_frozen, ship_stability
 from lab.paint.painter import Camera
 from lab.paint.sea import SURFACE, WATER, Sea
 from lab.preset.find import load
-from lab.preset.ship import ShipGiven, WaterGiven, WavesGiven, axis_motion
+from lab.preset.recorded import from_table, to_table
+from lab.preset.sections.sea import Sea as Seas
+from lab.preset.sections.sea import Waves
+from lab.preset.sections.ship import Ship
+from lab.preset.sections.ship_axis import axis_motion
 from lab.recording import open_recording
 from lab.recording.ship_end import End
 from lab.report.plots import figures
@@ -83,7 +86,7 @@ def test_errors_name_the_key(changes, words):
 @pytest.fixture(scope="module")
 def barge():
     said = load(BARGE).resolved
-    return said, make_vessel(said.ship, said.water, said.waves, said.run.gravity)
+    return said, make_vessel(said.ship, said.sea, said.waves, said.run.gravity)
 
 
 def test_the_barge_has_the_given_properties(barge):
@@ -96,8 +99,8 @@ def test_the_barge_has_the_given_properties(barge):
     assert (vessel.laden, vessel.hold) == (True, (0.0, 0.02))
     assert vessel.limits == (-0.5 * pi, 0.5 * pi)
     memory = make_vessel(
-        ShipGiven(**{**vars(said.ship), "radiation": "memory", "damping": 0.0, "quadratic_damping": 0.0}),
-        said.water,
+        Ship(**{**vars(said.ship), "radiation": "memory", "damping": 0.0, "quadratic_damping": 0.0}),
+        said.sea,
         None,
         9.81,
     )
@@ -143,11 +146,11 @@ def test_tables_are_stored(barge, monkeypatch):
 
 def test_seas_have_their_given_heights_and_crests():
     """Significant height of random seas; a packet's crest where and when it was asked for."""
-    water = make_water(WaterGiven(), 9.81)
+    water = make_water(Seas(), 9.81)
     for kind in ("jonswap", "pierson-moskowitz"):
-        sea = make_waves(WavesGiven(4.5, kind, height=0.03, seed=3), water)
+        sea = make_waves(Waves(4.5, kind, height=0.03, seed=3), water)
         assert 4.0 * np.sqrt((np.abs(sea.amplitude) ** 2).sum() / 2.0) == pytest.approx(0.03, rel=0.01)
-    crest = make_waves(WavesGiven(4.5, "packet", amplitude=0.02, spread=0.5, time=7.0), water)
+    crest = make_waves(Waves(4.5, "packet", amplitude=0.02, spread=0.5, time=7.0), water)
     assert crest.elevation(0.0, 7.0) == pytest.approx(0.02, rel=1e-6)
 
 
@@ -155,7 +158,7 @@ def test_a_peaked_sea_has_more_of_its_energy_about_the_peak():
     """Within a tenth of it a sea without a peak has e^(−(5/4) 1.1⁻⁴) − e^(−(5/4) 0.9⁻⁴), the spectrum's integral."""
 
     def near(peakedness):
-        sea = make_waves(WavesGiven(4.5, "jonswap", height=0.03, peakedness=peakedness), make_water(WaterGiven(), 9.81))
+        sea = make_waves(Waves(4.5, "jonswap", height=0.03, peakedness=peakedness), make_water(Seas(), 9.81))
         energy = np.abs(sea.amplitude) ** 2
         return energy[np.abs(sea.frequency / 4.5 - 1.0) < 0.1].sum() / energy.sum()
 
@@ -176,7 +179,7 @@ def test_a_ship_held_by_her_axis_is_heeled_about_it(about):
     """Let go from 8 deg she rolls, and her axis neither sways nor heaves, wherever it is in her."""
     said = load("ship/free-decay").resolved
     given = replace(said.ship, axis=about, radiation="none")
-    vessel = make_vessel(given, said.water, None, 9.81)
+    vessel = make_vessel(given, said.sea, None, 9.81)
     ship = vessel.ship
     state = start(ship, vessel.heave(ship.body, vessel.heel), vessel.heel)
     voyage = sail(ship, state, 0.01, 2.0)
@@ -192,7 +195,7 @@ def test_a_ship_held_by_her_axis_is_heeled_about_it(about):
 
 def test_texts_on_a_ship(barge):
     said, vessel = barge
-    given = ShipGiven(**{**vars(said.ship), "scale": 100.0})
+    given = Ship(**{**vars(said.ship), "scale": 100.0})
     rows = dict(describe(given, vessel, said.waves, 0.003, 1e-3))
     assert "GM 49.98 mm" in rows["with her cargo"] and rows["capsized"] == "beyond 90 deg"
     assert "333.3 times a metre" in rows["cargo"]
@@ -215,7 +218,7 @@ SHIP = {
 def test_the_sea_in_a_picture():
     """Water below the wave that passes, its line on it, paper above; the hull stands about the tank."""
     waves = {"frequency": OMEGA, "amplitude": 0.02, "kind": "regular"}
-    sea = Sea({"ship": SHIP, "waves": waves, "run": {"gravity": 9.81}})
+    sea = Sea(from_table({**preset(), "ship": SHIP, "waves": waves}))
     assert sea.hull.min(axis=0) == pytest.approx([-0.17, -0.02])
     picture = np.full((200, 300, 3), 255, dtype=np.uint8)
     camera = Camera(500.0, (150.0, 100.0))
@@ -225,7 +228,7 @@ def test_the_sea_in_a_picture():
         top = 100.0 - 500.0 * 0.02 * np.cos(k * (column + 0.5 - 150.0) / 500.0)
         assert tuple(picture[int(top) + 4, column]) == WATER and tuple(picture[int(top) - 4, column]) == (255,) * 3
         assert np.abs(picture[int(top), column].astype(int) - SURFACE).max() < 60
-    calm = Sea({"ship": SHIP, "run": {"gravity": 9.81}})
+    calm = Sea(from_table({**preset(), "ship": SHIP}))
     assert np.array_equal(calm.elevation(np.zeros(3), 1.0), np.zeros(3))
 
 
@@ -248,7 +251,7 @@ def rolling(tmp_path):
 
 def test_the_curve_of_righting_levers(tmp_path):
     """The barge with a level bed of 3000 grains: as frozen up to its repose, then less, by the shift of its wedge."""
-    said = json.loads(load(BARGE, {"ship.repose": "20 deg"}).resolved.model_dump_json())
+    said = to_table(load(BARGE, {"ship.repose": "20 deg"}).resolved)
     with recorder(
         tmp_path, 1, 3000, resolved=said, radius=np.full((1, 3000), 0.0015), outline=box(0.3, 0.26)
     ) as writer:
@@ -296,7 +299,8 @@ def test_the_significant_roll_is_that_of_the_highest_third_of_swings(tmp_path, m
     with open_recording(tmp_path) as recording, warnings.catch_warnings():
         warnings.simplefilter("error")
         found = measure_all(recording)
-        recording.preset["waves"]["soft_start"] = 100.0  # longer than the run
+        waves = replace(recording.preset.waves, soft_start=100.0)  # longer than the run
+        recording.preset = replace(recording.preset, waves=waves)
         assert measure_all(recording)["significant_roll"].value is None
     assert found["significant_roll"].worlds == (pytest.approx(8.0, rel=2e-3), None)
     assert 0.0 < found["significant_roll"].uncertainty < 2.0
@@ -322,7 +326,7 @@ def test_measures_of_frozen_cargo(rolling, monkeypatch):
 def test_the_run_with_frozen_cargo_continues_after_the_ship_has_capsized(monkeypatch):
     """To the end that the run was to have; beside a run that was broken off, no longer than that."""
     said = load(BARGE).resolved
-    vessel = make_vessel(said.ship, said.water, said.waves, said.run.gravity)
+    vessel = make_vessel(said.ship, said.sea, said.waves, said.run.gravity)
     monkeypatch.setattr(ship_frozen, "vessel_of", lambda _: vessel)
 
     def sailed(name: str, capsized: float) -> float:
@@ -338,9 +342,9 @@ def test_the_run_with_frozen_cargo_continues_after_the_ship_has_capsized(monkeyp
 def test_vessels_without_a_limit():
     said = load("ship/model-test").resolved
     assert said.ship.capsize is None
-    vessel = make_vessel(said.ship, said.water, said.waves, said.run.gravity)
+    vessel = make_vessel(said.ship, said.sea, said.waves, said.run.gravity)
     assert vessel.limits == (-inf, inf)
-    assert vessel.ship.load.water.depth == 1.0
+    assert vessel.ship.load.sea.depth == 1.0
     assert vessel.ship.body.mass == pytest.approx(46.8 / 0.586, rel=0.02)
 
 

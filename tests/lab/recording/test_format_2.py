@@ -9,7 +9,7 @@ import pytest
 from lab.base.errors import LabError
 from lab.measures import measure_all
 from lab.paint.video import render_recording
-from lab.recording import Recorder, older, open_recording
+from lab.recording import Recorder, open_recording
 from lab.recording.xdmf import write_xdmf
 from lab.report.plots import write_plots
 
@@ -49,9 +49,3 @@ def test_a_recording_of_format_2_is_measured_and_drawn(path, tmp_path):
 def test_a_recording_of_format_2_cannot_be_continued(path):
     with pytest.raises(LabError, match="begun by another version: start the run again"):
         Recorder(path.parent, samples=33, frames=9)
-
-
-def test_the_thickness_of_a_ships_cargo_becomes_the_tanks():
-    ship = {"ship": {"sheet": 0.004, "draught": 0.1}, "tank": {"roughness": None}}
-    assert older.renamed(ship) == {"ship": {"draught": 0.1}, "tank": {"roughness": None, "thickness": 0.004}}
-    assert older.renamed({"ship": None, "tank": {}}) == {"ship": None, "tank": {}}

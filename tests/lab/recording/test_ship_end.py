@@ -1,6 +1,5 @@
 """The loss of a ship is reported in texts, measures, summary, figures, video and window."""
 
-import json
 from dataclasses import replace
 from math import atan, atan2, degrees, pi, radians
 
@@ -17,6 +16,7 @@ from lab.paint.film import Film, choose_beds, choose_look
 from lab.paint.footage import open_footage
 from lab.paint.video import HELD, render_recording
 from lab.preset.find import load
+from lab.preset.recorded import to_table
 from lab.recording import Recorder, open_recording
 from lab.recording.ship_end import End, end_of, ends, losses_sentence
 from lab.report.plots import figures
@@ -36,7 +36,7 @@ SENTENCE = "She floods at 1.2 s, 40 deg to starboard."
 def flooded(tmp_path_factory):
     """A recording of the barge with a hatch that rolls over to 40 deg in 1.2 s and floods there."""
     folder = tmp_path_factory.mktemp("flooded")
-    said = json.loads(load(MAP).resolved.model_dump_json())
+    said = to_table(load(MAP).resolved)
     outline = np.array(said["tank"]["outline"])
     with recorder(folder, resolved=said, outline=outline, radius=np.full((1, 4), 0.003)) as writer:
         for now in np.arange(0.0, LASTS + 1e-9, 0.05):
@@ -147,7 +147,7 @@ def test_in_a_recording_without_the_column_no_ship_floods(tmp_path):
     """As earlier versions left them; such a run is not gone on with."""
     import h5py
 
-    said = json.loads(load(MAP).resolved.model_dump_json())
+    said = to_table(load(MAP).resolved)
     with recorder(tmp_path, resolved=said) as writer:
         for now in (0.0, 1.0, 2.0):
             writer.sample(sample(now, **of_a_ship()))

@@ -48,3 +48,9 @@ def test_the_parts_of_the_cost_grow_with_their_quantities():
     for part in ("of steps", "of her hull and water", "of pictures"):
         assert longer[part] == pytest.approx(2.0 * calm[part])
     assert longer["of figures"] == calm["of figures"]
+
+
+def test_each_key_of_the_preset_is_explained():
+    lines = explain(load("tilting/quick", FEW)).splitlines()
+    (rate,) = (line for line in lines if line.strip().startswith("rate = "))
+    assert rate.split(" # ")[1] == "Speed of turning."

@@ -7,6 +7,7 @@ from lab.base.errors import LabError
 from lab.measures import measure_all
 from lab.measures.value import Value
 from lab.preset.find import load, names
+from lab.preset.recorded import to_table
 from lab.recording import open_recording
 from lab.report.summary import headlines, terminal_summary, write_summary
 from tests.oracles.synthetic import DEPTH, preset, record, recorder, sample
@@ -118,7 +119,7 @@ def test_warnings_appear_in_all_outputs(tmp_path):
 def test_the_softness_of_a_quick_variant_is_reported_once(tmp_path):
     """The variants' own words on what differs leave it to the warning, which says what the run was made with."""
     loaded = load("tilting/acetate-quick")
-    page, _, _ = summed_up(tilt_run(tmp_path, resolved=json.loads(loaded.resolved.model_dump_json())))
+    page, _, _ = summed_up(tilt_run(tmp_path, resolved=to_table(loaded.resolved)))
     said = [line for line in page.splitlines() if "stiff" in line or "softer" in line]
     assert said == [
         "**Warning:** The grains are softer than their material: Young's moduli times 0.001, "
@@ -143,7 +144,7 @@ def test_the_page_names_the_device(tmp_path, machine, said):
 
 def test_the_page_names_the_base_of_a_preset(tmp_path):
     page, data, _ = summed_up(
-        tilt_run(tmp_path, resolved=preset(tilt={"rate": 0.07}) | {"based_on": "tilting/acetate"})
+        tilt_run(tmp_path, resolved=preset(tilt={"rate": 0.07, "angle": 0.7}) | {"based_on": "tilting/acetate"})
     )
     assert "- based on the preset `tilting/acetate`, whose source and reports are its own" in page
     assert data["based_on"] == "tilting/acetate"

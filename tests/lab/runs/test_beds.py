@@ -123,7 +123,7 @@ def test_a_reused_bed_continues_bit_for_bit_with_other_worlds_and_motion():
     make(resolved(run={"repeats": 3}))[0].close()
     preset = resolved(run={"repeats": 2, "seed": 2}, motion={"tilt": {"angle": "5 deg"}})
     reused, said = make(preset)
-    anew, silent = make(preset.model_copy(update={"grains": replace(preset.grains, reuse_bed=False)}))
+    anew, silent = make(replace(preset, grains=replace(preset.grains, reuse_bed=False)))
     assert any("was reused" in sentence for sentence in said.notes) and not silent.notes
     for one in (reused, anew):
         one.advance(round(0.4 / one.dt))

@@ -65,7 +65,7 @@ def test_samples_and_frames_have_their_times(result):
 def test_the_walls_carry_the_grains(result):
     recording = result.recording
     volume = (4 / 3 * np.pi * recording.radius**3).sum(axis=1)
-    weight = 9.81 * recording.preset["material"]["density"] * volume
+    weight = 9.81 * recording.preset.material.density * volume
     assert np.allclose(-recording.series["wall_force"][1, :, 1], weight, rtol=0.02)
     assert not recording.series["spilled"].any()
     assert recording.frames["part"].shape == (len(recording.frames["time"]), 2, 0, 2)

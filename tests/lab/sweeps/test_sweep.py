@@ -210,7 +210,7 @@ def test_a_sweep_leaves_figures_a_film_and_ordinary_runs(swept, films):
     assert {"results.csv", "summary.md", "sweep.json", "sweep.mp4"} < made and not made & {"checkpoint.npz"}
     assert any(name.endswith(".png") for name in made)
     with open_recording(swept.points[0]) as recording:
-        assert recording.complete and recording.preset["motion"]["sway"]["frequency"] == 1.0
+        assert recording.complete and recording.preset.motion.sway.frequency == 1.0
 
 
 def test_finished_points_are_not_run_again_and_another_sweep_is_refused(swept, tmp_path, monkeypatch):

@@ -49,7 +49,7 @@ def test_a_bed_can_be_watched_while_it_settles(tmp_path, monkeypatch):
     words = [word for word, _ in said if word != "message"]
     assert words[0] == "settling" and words.count("settling") in (1, 2) and words.count("frame") > 5
     scenery = next(what for word, what in said if word == "settling")
-    assert scenery.preset["ship"] is None and scenery.radius.shape == lies.shape[:2]
+    assert scenery.preset.ship is None and scenery.radius.shape == lies.shape[:2]
     places = [what[0].grains["position"] for word, what in said if word == "frame"]
     heights = [place[..., 1].mean() for place in places]
     assert heights[0] > heights[-1] + 1e-3
@@ -62,7 +62,7 @@ def test_the_recording_has_the_users_actions(steered):
         times = [time for time, name, _ in recording.steering if name == "friction"]
         assert len(recording.series["time"]) == PIECES + 1
         assert np.ptp(recording.series["pose"][:, 0, 0]) > 5e-3
-        assert times == [pytest.approx(8 / recording.preset["record"]["series_rate"])]
+        assert times == [pytest.approx(8 / recording.preset.record.series_rate)]
     assert [entry for entry in done if entry in HAND.values()] == list(HAND.values())
 
 

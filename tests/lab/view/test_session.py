@@ -1,6 +1,5 @@
 """The user's side of a live experiment: pictures and actions, driven by events without a window."""
 
-import json
 import os
 import shutil
 import subprocess
@@ -65,7 +64,7 @@ def opened(monkeypatch, tmp_path):
     loaded = load(PRESET, SMALL)
     live = steerable(loaded)
     scene, place = build(live.resolved)
-    preset = json.loads(live.resolved.model_dump_json())
+    preset = live.resolved
     plain = np.zeros(scene.radius.shape, dtype=int), scene.outline, (), scene.fixed, {}, None, 1e-5
     scenery = Scenery(preset, PRESET, tmp_path, scene.radius, *plain)
     pipes[-1].send(("ready", (scenery, own_motion(loaded.resolved))))

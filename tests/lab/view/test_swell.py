@@ -1,6 +1,6 @@
 """Steered waves: they grow and decay smoothly, and change their frequency only in calm water."""
 
-import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -70,11 +70,11 @@ def at_sea():
 def test_a_random_sea_offers_its_height_and_calm_water_nothing(at_sea):
     waves = {name for name in offered(at_sea) if name.startswith("wave_")}
     assert waves == {"wave_height"}
-    assert swell_of(at_sea.model_copy(update={"waves": None})) is None
+    assert swell_of(replace(at_sea, waves=None)) is None
 
 
 def test_all_components_of_a_random_sea_grow_smoothly_in_proportion(at_sea):
-    swell, given = RandomSwell(at_sea), make_waves(at_sea.waves, make_water(at_sea.water, 9.81))
+    swell, given = RandomSwell(at_sea), make_waves(at_sea.waves, make_water(at_sea.sea, 9.81))
     assert swell.follow(PIECE) is None
     swell.wanted["wave_height"] = 2.0 * at_sea.waves.height
     found = [swell.follow(PIECE) for _ in range(round(12.0 / PIECE))]
@@ -93,6 +93,6 @@ def test_the_sea_that_is_painted_is_the_one_that_the_ship_meets(name, wanted, re
     swell = swell_of(given)
     swell.wanted[wanted] *= 0.5
     vessel = [swell.follow(PIECE) for _ in range(20)][-1]
-    painted, place = Sea(json.loads(given.model_dump_json())), np.linspace(-1.0, 1.0, 7)
+    painted, place = Sea(given), np.linspace(-1.0, 1.0, 7)
     painted.waves = swell.now
     assert painted.elevation(place, 9.0) == pytest.approx(vessel.ship.load.waves.elevation(place, np.full(7, 9.0)))

@@ -72,7 +72,7 @@ def box_barge() -> HeapShip:
     section, loading, water = ship.load.section, ship.body.loading, ship.load.water
     rolls = np.radians(np.linspace(-120.0, 120.0, 481))
     levers = righting_levers(section, loading, water, rolls)
-    hold = np.ptp(resolved.tank.outline, axis=0)
+    hold = np.ptp(resolved.tank.corners, axis=0)
     heap = box_heap(*hold, resolved.grains.depth, given.hold[1] - given.about[1], CARGO, REPOSES[-1])
     return HeapShip(
         loading.mass * water.gravity,

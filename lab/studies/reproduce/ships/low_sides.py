@@ -56,7 +56,7 @@ def low_ship() -> HeapShip:
     heaves = given.heave + ship.about[1] - turned(ship.about, rolls)[:, 1]
     moments = buoyancy(section, water, heaves, rolls, about=ship.about)[:, 2]
     levers = turned(tuple(np.subtract(ship.body.centre, ship.about)), rolls)[:, 0] - moments / weight
-    depth, hold = resolved.grains.depth, np.ptp(resolved.tank.outline, axis=0)
+    depth, hold = resolved.grains.depth, np.ptp(resolved.tank.corners, axis=0)
     mass = CARGO * depth / load(BARGE).resolved.grains.depth
     heap = box_heap(*hold, depth, given.hold[1] - given.about[1], mass, REPOSES[-1])
     height = metacentric_height(section, ship.body.loading, water)

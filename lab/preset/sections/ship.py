@@ -1,0 +1,142 @@
+"""The ship of a preset: her hull's section, and how she floats with her cargo aboard."""
+
+from dataclasses import dataclass, field
+from math import pi, radians
+from typing import Annotated, Literal
+
+import numpy as np
+
+from lab.preset.outline import at_height, box_hull
+from solvers.machine.marks import Doc, Interval, Unit
+
+FREEDOM = {"roll": (False, False, True), "heave-roll": (False, True, True), "sway-heave-roll": (True, True, True)}
+
+Length = Annotated[float, Unit("m"), Interval(ge=1e-3, le=1e3)]  # of a model or a ship
+Points = Annotated[tuple[tuple[float, float], ...], Unit("m")]
+Point = Annotated[tuple[float, float], Unit("m")]
+
+
+@dataclass(frozen=True)
+class Rig:
+    """The rig that holds a model, per metre of length: moving masses and dashpots in sway and heave, a sway spring."""
+
+    sway_mass: Annotated[float, Unit("kg/m"), Interval(ge=0), Doc("Mass that moves with the model in sway.")] = 0.0
+    heave_mass: Annotated[float, Unit("kg/m"), Interval(ge=0), Doc("Mass that moves with the model in heave.")] = 0.0
+    sway_damping: Annotated[float, Unit("N s/m^2"), Interval(ge=0), Doc("Dashpot in sway.")] = 0.0
+    heave_damping: Annotated[float, Unit("N s/m^2"), Interval(ge=0), Doc("Dashpot in heave.")] = 0.0
+    sway_spring: Annotated[float, Unit("Pa"), Interval(ge=0), Doc("Spring in sway.")] = 0.0
+
+
+@dataclass(frozen=True)
+class Hatch:
+    """A hatch in the middle of the deck."""
+
+    breadth: Annotated[Length, Doc("Breadth of the hatch.")]
+    coaming: Annotated[Length, Doc("Height of its coaming above the deck.")]
+
+
+@dataclass(frozen=True)
+class Ship:
+    """The hull's section and how the ship floats with her cargo aboard; the tank of the preset is her hold.
+
+    The hull is a box of `breadth` and `height` with the origin at the middle of its keel, or an `outline` with corners
+    in the hull's own axes. A box may have a `hatch`: its coaming keeps water out as sides do, and its upper edges are
+    openings. Sway and heave are the motions of her axis from its position at rest (`axis_motion`), in equations,
+    recordings, figures and pictures; she is heeled about it. `damping` and `quadratic_damping` are those of
+    φ̈ + 2 ζ ω₀ φ̇ + b φ̇|φ̇| + ω₀² φ. The default of `repose` is that of the source's acetate, the first of the
+    critical angles that it found by tilting (Spandonidis 2016, section 7.1).
+    """
+
+    draught: Annotated[Length, Doc("Draught with her cargo aboard.")]
+    gravity_height: Annotated[
+        float, Unit("m"), Doc("Height of the centre of gravity of ship and cargo above the hull's origin.")
+    ]
+    breadth: Annotated[Length | None, Doc("Breadth of a box.")] = None
+    height: Annotated[Length | None, Doc("Depth of a box, from keel to deck.")] = None
+    outline: Annotated[
+        Points | None, Doc("Corners of the hull in its own axes, y and z each, in place of breadth and height.")
+    ] = None
+    gyradius: Annotated[
+        Length | None, Doc("Gyradius in roll of ship and cargo together; give it or `roll_period`.")
+    ] = None
+    roll_period: Annotated[
+        Annotated[float, Unit("s"), Interval(gt=0)] | None, Doc("Natural period of roll, in place of `gyradius`.")
+    ] = None
+    hold: Annotated[Point, Doc("Where the tank's origin is in the hull's axes, y and z.")] = (0.0, 0.0)
+    axis: Annotated[
+        Point | None, Doc("The ship's point of reference in the hull's axes; the middle of the waterline without it.")
+    ] = None
+    freedom: Annotated[Literal[*FREEDOM], Doc("In which directions she is free to move.")] = "sway-heave-roll"
+    radiation: Annotated[Literal["memory", "at-frequency", "none"], Doc("How the waves that she makes act on her.")] = (
+        "memory"
+    )
+    excitation: Annotated[
+        Literal["diffraction", "froude-krylov", "wave-slope"], Doc("How the waves that meet her act on her.")
+    ] = "diffraction"
+    damping: Annotated[
+        float, Interval(ge=0, le=1), Doc("Viscous roll damping ζ as a fraction of the critical damping.")
+    ] = 0.0
+    quadratic_damping: Annotated[float, Interval(ge=0), Doc("Quadratic roll damping b, per rad.")] = 0.0
+    heel: Annotated[float, Unit("rad"), Interval(ge=-pi, le=pi), Doc("Heel at the start, positive to port.")] = 0.0
+    release: Annotated[float, Unit("s"), Interval(ge=0), Doc("When she is let go, heeled slowly until then.")] = 0.0
+    capsize: Annotated[
+        Annotated[float, Unit("rad"), Interval(gt=0)] | None,
+        Doc("Roll at which she counts as capsized and the run ends; false: never."),
+    ] = 0.5 * pi
+    repose: Annotated[
+        float,
+        Unit("rad"),
+        Interval(ge=0, le=0.5 * pi),
+        Doc("The cargo's angle of repose, used only in the curve of righting levers with relaxed cargo."),
+    ] = radians(25.0)
+    scale: Annotated[
+        Annotated[float, Interval(gt=0)] | None,
+        Doc("Length of the full-scale ship over the model's; it changes only texts."),
+    ] = None
+    rig: Annotated[Rig, Doc("The rig that holds a model.")] = field(default_factory=Rig)
+    hatch: Annotated[Hatch | None, Doc("A hatch in the deck of a box.")] = None
+    openings: Annotated[Points, Doc("Points through which she floods once they are under water.")] = ()
+    deck: Annotated[
+        Annotated[float, Unit("m")] | None, Doc("Height of the deck's edge above the origin, for an `outline`.")
+    ] = None
+
+    @property
+    def corners(self) -> np.ndarray:
+        """The hull's outline (m, 2), m, with the hatch's coaming."""
+        if self.outline is not None:
+            return np.array(self.outline)
+        return box_hull(self.breadth, self.height, self._coaming)
+
+    @property
+    def _coaming(self) -> list[list[float]]:
+        """The corners of the hatch's coaming to starboard, from the deck up."""
+        if self.hatch is None:
+            return []
+        half = 0.5 * self.hatch.breadth
+        return [[half, self.height], [half, self.height + self.hatch.coaming]]
+
+    @property
+    def flooding_points(self) -> tuple[tuple[float, float], ...]:
+        """The edges of the hatch and all other openings (m)."""
+        edge = self._coaming[-1:]
+        return (*((side * y, z) for side in (1.0, -1.0) for y, z in edge), *self.openings)
+
+    @property
+    def deck_height(self) -> float | None:
+        """Height of the deck's edge above the hull's origin (m), None if not given for an outline."""
+        return self.height if self.outline is None else self.deck
+
+    @property
+    def deck_edges(self) -> tuple[tuple[float, float], ...]:
+        """The outermost points of the hull at deck height, starboard and port (m); none if the deck is not known."""
+        return () if self.deck_height is None else at_height(self.corners, self.deck_height)
+
+    @property
+    def about(self) -> tuple[float, float]:
+        """The ship's axis in the hull's axes (m)."""
+        return self.axis or (0.0, float(self.corners[:, 1].min()) + self.draught)
+
+    @property
+    def heave(self) -> float:
+        """Heave of the hull's origin at rest (m)."""
+        return -self.draught - float(self.corners[:, 1].min())
