@@ -107,7 +107,7 @@ def _driven(recording: Recording, steady: Steady | None, weight: np.ndarray) -> 
         f"{kind}_phase": phase_value(answer, np.zeros(recording.worlds), SHORT),
     }
     if name != "roll":
-        mass = weight[-1] / recording.preset.run.gravity
+        mass = np.where(weight[-1] > 0, weight[-1], np.nan) / recording.preset.run.gravity
         found["effective_mass"] = _with_halves(ratio.real / omega**2 / mass, "1", SHORT)
     found["cargo_damping"] = _with_halves(-ratio.imag / omega, per, SHORT, SHEET)
     return found
