@@ -52,7 +52,7 @@ class Control:
     @cached_property
     def scale(self) -> float:
         """The unit in SI."""
-        return parse(f"1 {self.unit}", taken_by(Preset, self.key).symbol)
+        return 1.0 if self.unit == "1" else parse(f"1 {self.unit}", taken_by(Preset, self.key).symbol)
 
     def shown(self, value: float) -> str:
         """A value (SI) with its unit."""
