@@ -15,10 +15,7 @@ import docstrings
 from sphinx.application import Sphinx
 from sphinx.errors import ExtensionError
 
-try:
-    from lab.preset.reference import reference as preset_reference
-except ImportError:
-    from plain_reference import preset_reference
+from lab.preset.reference import reference
 
 ROOT = Path(__file__).parents[2]
 ASKED = re.compile(r"^\{\{ (\w+)((?: [^ }]+)*) \}\}$", re.MULTILINE)
@@ -45,7 +42,7 @@ def filled_in(text: str, folder: Path) -> str:
         "registry": docstrings.registry,
         "things": docstrings.things,
         "page": lambda name: page(ROOT / name, folder),
-        "presets": preset_reference,
+        "presets": reference,
     }
     return ASKED.sub(lambda found: made[found[1]](*found[2].split()), text)
 

@@ -31,7 +31,7 @@ def from_table(table: object) -> Preset:
     """The preset of such a table, also of one from an earlier version. Raises ValueError where it is none."""
     try:
         kept = formats.recorded(table) if isinstance(table, Mapping) else table
-        return _model().validate_json(json.dumps(kept))
+        return _model().validate_json(json.dumps(kept), strict=True)
     except ValidationError as error:
         first = error.errors()[0]
         raise ValueError(f"{'.'.join(map(str, first['loc']))}: {first['msg']}") from None

@@ -37,7 +37,7 @@ def flooded(tmp_path_factory):
     """A recording of the barge with a hatch that rolls over to 40 deg in 1.2 s and floods there."""
     folder = tmp_path_factory.mktemp("flooded")
     said = to_table(load(MAP).resolved)
-    outline = np.array(said["tank"]["outline"])
+    outline = np.array(load(MAP).resolved.tank.corners)
     with recorder(folder, resolved=said, outline=outline, radius=np.full((1, 4), 0.003)) as writer:
         for now in np.arange(0.0, LASTS + 1e-9, 0.05):
             pose = np.array([[0.0, 0.0, OVER * min(1.0, now / WHEN)]])
