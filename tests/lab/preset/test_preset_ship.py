@@ -344,7 +344,7 @@ def test_vessels_without_a_limit():
     assert said.ship.capsize is None
     vessel = make_vessel(said.ship, said.sea, said.waves, said.run.gravity)
     assert vessel.limits == (-inf, inf)
-    assert vessel.ship.load.sea.depth == 1.0
+    assert vessel.ship.load.water.depth == 1.0
     assert vessel.ship.body.mass == pytest.approx(46.8 / 0.586, rel=0.02)
 
 
