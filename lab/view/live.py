@@ -61,7 +61,7 @@ def steerable(loaded: LoadedPreset) -> LoadedPreset:
     """The preset prepared for steering: one bed, none of its own motions, and a picture rate of at least PICTURES."""
     preset = loaded.resolved
     record = replace(preset.record, picture_rate=max(preset.record.picture_rate, PICTURES))
-    changes = {"motion": Motion(), "run": replace(preset.run, repeats=1), "record": record}
+    changes = {"motion": Motion(), "run": replace(preset.run, repeats=1, duration=preset.duration), "record": record}
     return LoadedPreset(loaded.name, loaded.given_text, replace(preset, **changes))
 
 
