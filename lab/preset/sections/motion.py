@@ -1,7 +1,6 @@
 """The motion of the tank in a preset: every registered motion, and a recorded one."""
 
 from dataclasses import dataclass, make_dataclass
-from inspect import getdoc
 from typing import Annotated
 
 from lab.preset.sections.history import Record, check_history, check_start
@@ -26,17 +25,11 @@ class MotionGroup:
         return used | {f"history.{name}": part for name, part in recorded.items()}
 
 
-def _sentence(kind: type) -> str:
-    """The first sentence of a class's docstring."""
-    return getdoc(kind).partition("\n")[0]
-
-
+KINDS = [(name, kind, f"The tank's {name}.") for name, kind in MOTIONS.items()]
+KINDS.append(("history", Record, "The tank's motion from a file."))
 Motion = make_dataclass(
     "Motion",
-    [
-        (name, Annotated[kind | None, Doc(_sentence(kind))], None)
-        for name, kind in {**MOTIONS, "history": Record}.items()
-    ],
+    [(name, Annotated[kind | None, Doc(says)], None) for name, kind, says in KINDS],
     bases=(MotionGroup,),
     frozen=True,
 )
