@@ -79,7 +79,7 @@ OTHERS = [
     {"grains.count": 5},
     {"run.repeats": 2},
     {"parts": {"gate": {"points": [[0.0, 0.01], [0.001, 0.01]]}}},
-    {"tank.outline": [[-0.02, 0.0], [0.02, 0.0], [0.02, 0.03], [-0.02, 0.03]]},
+    {"tank.width": 0.04, "tank.height": 0.03},
 ]
 
 
