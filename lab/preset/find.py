@@ -88,15 +88,13 @@ class Layer:
 
     def _with_full_path(self, table: dict, dotted: str) -> dict:
         key, _, rest = dotted.partition(".")
-        if key == "NAME":
-            names = [name for name in table if toml.BARE_KEY.fullmatch(str(name))]
-            return reduce(self._with_full_path, (f"{name}.{rest}" for name in names), table)
-        value = table.get(key)
+        named = list(table) if key == "NAME" else [key] if key in table else []
+        return table | {name: self._located_value(table[name], rest) for name in named}
+
+    def _located_value(self, value: object, rest: str) -> object:
         if rest and isinstance(value, Mapping):
-            return table | {key: self._with_full_path(dict(value), rest)}
-        if not rest and isinstance(value, str):
-            return table | {key: os.path.abspath(self.folder / value)}
-        return table
+            return self._with_full_path(dict(value), rest)
+        return os.path.abspath(self.folder / value) if not rest and isinstance(value, str) else value
 
 
 def names() -> dict[str, str]:

@@ -655,7 +655,7 @@ def denied(path, *_, **__):
         ("quick=much", "quick: cannot be overridden"),
         ("based_on=tilting/quick", "based_on: cannot be overridden"),
         ("motion.history.file=no.csv", "no.csv: cannot be read: No such file or directory"),
-        ("grains.bed=no.csv", "grains.surface: says how a bed is poured, but grains.bed lists its grains"),
+        ("grains.bed=no.csv", "no.csv: cannot be read: No such file or directory"),
         ("motion.history.file=.", "is not a file"),
         ("tank.outline=[]", "tank.outline: from 3 to"),
         ("grains.table=[]", "grains.table: at least one class"),
