@@ -147,13 +147,13 @@ def test_other_errors_are_detected(swayed):
 def test_longer_steps_are_classified(swayed):
     trial, course = swayed
     found = height(trial, course)
-    assert verdict(SWAYED, trial, course, 4, 0.92 * found).outcome == RIGHT
-    assert verdict(SWAYED, trial, course, 4, 0.9 * found).outcome == WRONG
-    assert not verdict(SWAYED, trial, course, 4, 1.2 * found).passed
+    assert verdict(SWAYED, trial, course, 4, found, 0.92 * found).outcome == RIGHT
+    assert verdict(SWAYED, trial, course, 4, found, 0.9 * found).outcome == WRONG
+    assert not verdict(SWAYED, trial, course, 4, found, 1.2 * found).passed
     hot = replace(course, energy=course.energy + np.linspace(0.0, 0.05, len(course.time)) * course.energy.max())
-    assert verdict(SWAYED, trial, hot, 4, found).outcome == WRONG
-    assert verdict(SWAYED, trial, course, 10, 0.9 * found).passed, "no number comes out of the app"
-    stopped = verdict(SWAYED, trial, replace(course, stopped="too fast."), 4, found)
+    assert verdict(SWAYED, trial, hot, 4, found, found).outcome == WRONG
+    assert verdict(SWAYED, trial, course, 10, found, 0.9 * found).passed, "no number comes out of the app"
+    stopped = verdict(SWAYED, trial, replace(course, stopped="too fast."), 4, found, found)
     assert stopped.outcome == STOPPED and stopped.said == "too fast." and stopped.passed
 
 

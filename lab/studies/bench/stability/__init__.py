@@ -65,7 +65,7 @@ def run_case(case: Case, fast: bool) -> dict[str, object]:
             print(_line(case.name, check), flush=True)
         pushed = []
         if case.measure and not course.stopped:
-            for row in push(run, case, trial, case.measure.of(trial, course), fast):
+            for row in push(run, case, trial, course, fast):
                 said = f"{row.outcome}: {row.said}"
                 print(f"{case.name}, {row.factor:g} times the limit: {word(row.passed)}, {said}", flush=True)
                 pushed.append({**asdict(row), "passed": row.passed})

@@ -32,12 +32,16 @@ class Check:
 
 @dataclass(frozen=True)
 class Measure:
-    """The number that a longer step must not change by more than the share `tolerance` of it, and why so much."""
+    """The number that a longer step must not change by more than the share `tolerance` of it, and why so much.
+
+    In a chaotic case it is the mean over `starts`, which differ by a nanometre: a single course is as good as a draw.
+    """
 
     what: str
     of: Callable[[Trial, Course], float]
     tolerance: float
     why: str
+    starts: int = 1
 
 
 @dataclass(frozen=True)

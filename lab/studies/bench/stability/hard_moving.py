@@ -66,7 +66,9 @@ CASES = (
         "sway",
         "60 grains of 3 mm ± 10 % in a tank that sways by 100 mm at 2 Hz, 1 s (reduced: few grains).",
         swayed,
-        measure=Measure("energy dissipated (J)", dissipated, 0.1, "chaos of a small bed that is thrown"),
+        measure=Measure(
+            "energy dissipated (J)", dissipated, 0.1, "single courses scatter by 8 %: 2.6 s.e. of two means", 8
+        ),
     ),
     Case(
         "turned-over",
