@@ -1,6 +1,6 @@
 """Compare what presets resolve to at another revision and in the working tree, number by number.
 
-`python -m tests.same.presets BASE` resolves every shipped preset, every quick variant and the cases below with the
+`python -m tests.same.resolved BASE` resolves every shipped preset, every quick variant and the cases below with the
 code of the revision BASE and with the working tree's, and prints each key that differs. `--dump FILE` only writes the
 numbers of whatever lab is imported.
 """
@@ -156,7 +156,7 @@ CASES = {  # overrides of shipped presets
 
 def main() -> int:
     """Compare, or only write the numbers; the exit status."""
-    parser = argparse.ArgumentParser(prog="python -m tests.same.presets", description=__doc__)
+    parser = argparse.ArgumentParser(prog="python -m tests.same.resolved", description=__doc__)
     parser.add_argument("base", nargs="?", help="a revision of the repository")
     parser.add_argument("--dump", type=Path, metavar="FILE", help="write the numbers of the imported lab as JSON")
     asked = parser.parse_args()
