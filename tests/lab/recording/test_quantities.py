@@ -45,6 +45,7 @@ class WithHighest(Census):
         return highest
 
 
+@pytest.mark.slow  # the recipe in docs/extending.md is run on every change
 def test_a_new_quantity_is_one_declaration_and_one_line_that_fills_it(tmp_path, monkeypatch):
     monkeypatch.setattr(grains, "SERIES", (*grains.SERIES, HIGHEST))
     monkeypatch.setattr("solvers.grains.matter.Census", WithHighest)

@@ -18,7 +18,7 @@ RUNS = {
 }
 
 
-@pytest.mark.parametrize("case", RUNS)
+@pytest.mark.parametrize("case", ["there and back", "swayed", pytest.param("open", marks=pytest.mark.slow)])
 def test_a_run_has_the_measures_of_its_dry_run(case, tmp_path):
     overrides = {**SMALL, **RUNS[case]}
     expected = available_measures(load("tilting/quick", overrides))

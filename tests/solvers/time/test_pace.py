@@ -83,6 +83,7 @@ def hull() -> Vessel:
     return Vessel(Ship(Body(37.0, (0.004, 0.09), 0.6), load, radiation, AXIS), (0.0, 0.02), 2.0)
 
 
+@SLOW
 def test_the_load_of_a_matter_stands_between_its_beats(monkeypatch):
     """A ship pushed by a constant force moves the same, whether that is computed at each step or at every seventh.
 
