@@ -70,7 +70,7 @@ class Contacts:
             lever_j = distance - lever_i
             rate = -dot(velocity, normal)
             slip = tangent.slip(velocity, normal, lever_i * spin_i + lever_j * spin_j)
-            fn, ft, roll = self.laws.forces(PAIR, pairs, u, block, overlap, rate, slip, spin_i - spin_j, dt)
+            fn, ft, roll = self.laws.forces(PAIR, pairs, u, block, approach, rate, slip, spin_i - spin_j, dt)
             if ti.static(self.laws.cohesive):
                 fn = fn - self.laws.pull(pairs, u, block, approach, rate, dt)
             force = tangent.force(normal, fn, ft)
@@ -164,21 +164,19 @@ class Contacts:
             i, feature = contacts.grain[u, p][0], contacts.mate[u, p][0]
             gap, radius = self.walls.gap(feature, shift, g.place[0][w, i], g.place[1][w, i]), g.radius[w, i]
             normal = [ti.cast(gap[1 + a], g.real) for a in ti.static(range(g.axes))]
-            overlap = ti.cast(0.0, g.real)
-            if 0.0 < gap[0] < radius:
-                overlap = ti.cast(radius - gap[0], g.real)
+            approach = ti.cast(-FAR, g.real)
+            if gap[0] > 0.0:
+                approach = ti.cast(radius - gap[0], g.real)
+            overlap = greater(approach, 0.0)
             moved = self.walls.velocity(feature, shift)
             velocity = [g.now[a][w, i] - moved[a] for a in ti.static(range(g.axes))]
             spin = g.spin_now[w, i]
             lever = radius - 0.5 * overlap
             rate, slip = -dot(velocity, normal), tangent.slip(velocity, normal, lever * spin)
             fn, ft, roll = self.laws.forces(
-                WALL, contacts, u, p, ti.Vector([overlap]), ti.Vector([rate]), ti.Vector([slip]), ti.Vector([spin]), dt
+                WALL, contacts, u, p, ti.Vector([approach]), ti.Vector([rate]), ti.Vector([slip]), ti.Vector([spin]), dt
             )
             if ti.static(self.laws.cohesive):
-                approach = ti.cast(-FAR, g.real)
-                if gap[0] > 0.0:
-                    approach = ti.cast(radius - gap[0], g.real)
                 fn = fn - self.laws.pull(contacts, u, p, ti.Vector([approach]), ti.Vector([rate]), dt)
             force = tangent.force(normal, fn[0], ft[0])
             self.push_off(g, w, i, u, feature, force, tangent.torque(lever, ft[0], roll[0]), load)

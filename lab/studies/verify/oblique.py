@@ -45,7 +45,7 @@ ANGLES = (
     88.0,
     89.0,
 )
-GAP, SPACING = 1e-8, 0.02
+GAP, SPACING = 1e-5, 0.02  # m; more than half a step before first touch
 DAMPER = 20.0  # N s/m
 REFERENCES = {"mindlin": "DOP853 at 1e-11", "haff-werner": "Radau at 1e-10"}
 # Allowed errors of the speed along the wall, as shares of the speed that the sphere comes with, where it sticks.

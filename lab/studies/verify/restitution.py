@@ -58,8 +58,8 @@ def rebounds(law: str, dampings: tuple[float, ...], longer: float = 1.0) -> np.n
         start, step = run.snapshot(), longer * run.dt
         for phase in PHASES:
             place = start["position"].copy()
-            place[:, 0, 0] -= phase * SPEED * step - GAP
-            place[:, 2, 1] += phase * SPEED * step - GAP
+            place[:, 0, 0] -= (0.5 + phase) * SPEED * step - GAP
+            place[:, 2, 1] += (0.5 + phase) * SPEED * step - GAP
             again(run, place, step, start["velocity"], start["spin"])
             # The slowest collisions are those of the strongest damping.
             run.advance(int(SLOWEST * HertzCollision(*WALL, SPEED).duration / step))

@@ -18,7 +18,7 @@ class SymplecticEuler:
     """
 
     extra, reach, damping = 0, 1.0, 1.0
-    ahead, stiffer = 0.0, -1.0 / 12.0
+    ahead, stiffer, late = 0.0, -1.0 / 12.0, 0.0
 
     @ti.func
     def step(self, g: ti.template(), extra: ti.template(), w, i, acceleration: ti.template(), turn, kick, dt):

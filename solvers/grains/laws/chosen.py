@@ -4,6 +4,7 @@ import numpy as np
 import taichi as ti
 
 from solvers.grains.integrators.verlet import Verlet
+from solvers.grains.laws.extremes import greater
 from solvers.machine.state import State
 from solvers.machine.units import Units
 
@@ -133,21 +134,24 @@ class ChosenLaws:
                 contacts.constants[first + k][u, block][lane] = values[k]
 
     @ti.func
-    def forces(self, kind: ti.template(), contacts: ti.template(), u, block, overlap, rate, slip, turning, dt):
+    def forces(self, kind: ti.template(), contacts: ti.template(), u, block, approach, rate, slip, turning, dt):
         """Normal and tangential forces (N) and rolling torques (N m) of a block of contacts; memory is updated.
 
-        `overlap` in m, its `rate` (the closing speed) and the `slip` in m/s, `turning` ω_i − ω_j (ω_i at a wall) in
-        rad/s. The torque acts on the first grain, and its opposite on the second.
+        `approach` is the overlap in m (negative: a gap), its `rate` the closing speed and `slip` the tangential one in
+        m/s, `turning` ω_i − ω_j (ω_i at a wall) in rad/s. The torque acts on the first grain, and its opposite on the
+        second.
         """
-        pressing = self.press(kind, contacts, u, block, overlap, rate, dt)
+        pressing = self.press(kind, contacts, u, block, approach, rate, dt)
+        overlap = greater(approach, 0.0)
         shearing, torque = self.rub(kind, contacts, u, block, overlap, rate, pressing, slip, turning, dt)
         return pressing, shearing, torque
 
     @ti.func
-    def press(self, kind: ti.template(), contacts: ti.template(), u, block, overlap, rate, dt):
+    def press(self, kind: ti.template(), contacts: ti.template(), u, block, approach, rate, dt):
         """Normal forces (N) of a block of contacts; their memory is updated."""
+        overlap = greater(approach, 0.0)
         coefficients = self.coefficients(0, u, kind, contacts, block)
-        return self.normal.force(coefficients, contacts, u, block, overlap, ti.sqrt(overlap), rate, dt)
+        return self.normal.force(coefficients, contacts, u, block, approach, overlap, ti.sqrt(overlap), rate, dt)
 
     @ti.func
     def rub(self, kind: ti.template(), contacts: ti.template(), u, block, overlap, rate, pressing, slip, turning, dt):

@@ -3,7 +3,7 @@
 import taichi as ti
 
 from solvers.grains.laws.extremes import greater, lesser, within
-from solvers.grains.laws.splitting import AT_ONCE, FOLLOWING, lagging
+from solvers.grains.laws.splitting import AT_ONCE, FOLLOWING, lagging, settled
 from solvers.grains.materials import Interface
 
 SLIP = 1e-6  # m/s, where the ramp ends: creep of 4 mm an hour under a load at the Coulomb cap
@@ -45,9 +45,11 @@ class Coulomb:
         share = lesser(FOLLOWING * SLIP * limit / greater(cap, SMALLEST_FORCE), 1.0)
         damping = cap * (1.0 / SLIP)
         at_once = lesser(damping, AT_ONCE * limit)
-        lag = lagging(damping - at_once, share, slip, contacts.followed[w, block], cap)
+        fast, before = at_once * slip, contacts.followed[w, block]
+        room = greater(cap - ti.abs(fast), 0.0)
+        lag = lagging(damping - at_once, share, slip, before, room, settled(root, rate, dt))
         contacts.followed[w, block] = lag
-        return within(-lag - at_once * slip, cap)
+        return within(-lag - fast, cap)
 
     @ti.func
     def energy(self, c: ti.template(), contacts: ti.template(), w, block, lane, root):

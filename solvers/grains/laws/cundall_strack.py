@@ -5,7 +5,7 @@ import taichi as ti
 from solvers.grains.laws.extremes import within
 from solvers.grains.laws.history import M_T, STIFFEST, stiffening
 from solvers.grains.laws.linear_spring import spring_coefficient, spring_stiffness
-from solvers.grains.laws.splitting import AT_ONCE, spring_limit
+from solvers.grains.laws.splitting import AT_ONCE, shear_limit, spring_limit
 from solvers.grains.materials import Interface, hertz_stiffness
 
 
@@ -37,13 +37,17 @@ class CundallStrack:
         """Longest steps (s) and what sets them."""
         stiffness = hertz_stiffness(between.young_modulus, radius)
         spring = spring_stiffness(self.coefficients(between)[1], stiffness, mass)
-        return [(spring_limit(spring, M_T * mass), "the tangential spring")]
+        damped = shear_limit(spring, M_T * mass, between.dissipative_time)
+        return [
+            (spring_limit(spring, M_T * mass), "the tangential spring"),
+            (damped, "the tangential spring and its dashpot"),
+        ]
 
     @ti.func
     def prepare(self, c: ti.template(), stiffness, mass, radius, dt):
         """k_t (N/m), stiffened for the step (`history`), and γ_t (N s/m), at most what the step resolves."""
         spring = spring_stiffness(c[1], stiffness, mass)
-        dashpot = ti.min(c[2] * spring, AT_ONCE * M_T * mass / dt)
+        dashpot = ti.min(c[2] * spring, ti.max(AT_ONCE * M_T * mass / dt - spring * dt, 0.0))
         stiffer = stiffening(self.integrator.stiffer, mass, dt * self.integrator.damping) * spring
         return ti.Vector([spring + spring * within(stiffer, STIFFEST), dashpot])
 

@@ -2,8 +2,8 @@
 
 import taichi as ti
 
-from solvers.grains.laws.extremes import lesser, within
-from solvers.grains.laws.splitting import AT_ONCE, FOLLOWING, lagging
+from solvers.grains.laws.extremes import greater, lesser, within
+from solvers.grains.laws.splitting import AT_ONCE, FOLLOWING, lagging, settled
 from solvers.grains.materials import Interface
 
 
@@ -43,9 +43,11 @@ class HaffWerner:
         cap, limit = c[0] * normal, contacts.limit[w, block]
         share = lesser(c[2] * limit, 1.0)
         at_once = lesser(AT_ONCE * limit, c[1])
-        lag = lagging(c[1] - at_once, share, slip, contacts.followed[w, block], cap)
+        fast, before = at_once * slip, contacts.followed[w, block]
+        room = greater(cap - ti.abs(fast), 0.0)
+        lag = lagging(c[1] - at_once, share, slip, before, room, settled(root, rate, dt))
         contacts.followed[w, block] = lag
-        return within(-lag - at_once * slip, cap)
+        return within(-lag - fast, cap)
 
     @ti.func
     def energy(self, c: ti.template(), contacts: ti.template(), w, block, lane, root):

@@ -52,7 +52,7 @@ class Hysteretic:
         return ti.Vector([spring_stiffness(c[0], stiffness, mass)])
 
     @ti.func
-    def force(self, c: ti.template(), contacts: ti.template(), w, block, overlap, root, rate, dt):
+    def force(self, c: ti.template(), contacts: ti.template(), w, block, approach, overlap, root, rate, dt):
         """F_n (N) of a block of contacts from the overlap ξ (m)."""
         plastic = greater(contacts.plastic[w, block], c[1] * overlap)
         plastic = ti.select(overlap > 0.0, plastic, 0.0 * plastic)

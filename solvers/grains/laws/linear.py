@@ -55,7 +55,7 @@ class Linear:
         return ti.Vector([spring, c[1] * ti.sqrt(spring * mass)])
 
     @ti.func
-    def force(self, c: ti.template(), contacts: ti.template(), w, block, overlap, root, rate, dt):
+    def force(self, c: ti.template(), contacts: ti.template(), w, block, approach, overlap, root, rate, dt):
         """F_n (N) of a block of contacts from the overlap ξ (m) and its rate ξ̇ (m/s)."""
         dashpot = contacts.dashpot[w, block] * felt_rate(overlap, rate, dt)
         return greater(contacts.spring[w, block] * overlap + dashpot, 0.0)

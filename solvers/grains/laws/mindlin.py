@@ -4,8 +4,8 @@ import taichi as ti
 
 from solvers.grains.laws.extremes import greater, lesser, within
 from solvers.grains.laws.history import M_T, STIFFEST, stiffening
-from solvers.grains.laws.splitting import AT_ONCE
-from solvers.grains.materials import Interface
+from solvers.grains.laws.splitting import AT_ONCE, shear_limit
+from solvers.grains.materials import Interface, hertz_stiffness
 
 SMALLEST_ROOT = 1e-12  # √m; keeps ratios finite: an overlap of 1e-24 m counts as none
 
@@ -37,12 +37,15 @@ class Mindlin:
         return [between.friction, ratio, between.dissipative_time]
 
     def limits(self, between: Interface, mass: float, radius: float, speed: float) -> list[tuple[float, str]]:
-        """None: even at the largest overlap a step that resolves the Hertz collision resolves this spring."""
-        return []
+        """Longest steps (s) and what sets them: spring and dashpot at the largest overlap of a collision without losses."""
+        k = hertz_stiffness(between.young_modulus, radius)
+        root = (1.25 * mass * speed**2 / k) ** 0.2
+        spring = self.coefficients(between)[1] * k * root
+        return [(shear_limit(spring, M_T * mass, between.dissipative_time), "the tangential spring and its dashpot")]
 
     @ti.func
     def prepare(self, c: ti.template(), stiffness, mass, radius, dt):
-        """The strongest damper (N s/m) that the step resolves, and the step's stiffening (m/N)."""
+        """The strongest damper, with the spring's Δt k_t (N s/m), that the step resolves, and the step's stiffening (m/N)."""
         stiffer = stiffening(self.integrator.stiffer, mass, dt * self.integrator.damping)
         return ti.Vector([AT_ONCE * M_T * mass / dt, stiffer])
 
@@ -67,7 +70,7 @@ class Mindlin:
         contacts.stretched[w, block] = held + stiff * behind
         contacts.ahead[w, block] = ti.select(root > 0.0, ahead, 0.0 * ahead)
         contacts.root_before[w, block] = root
-        dashpot = lesser(c[2] * spring, contacts.shear_limit[w, block])
+        dashpot = lesser(c[2] * spring, greater(contacts.shear_limit[w, block] - stiff * dt, 0.0))
         return within(-held - dashpot * slip, cap)
 
     @ti.func

@@ -1,32 +1,55 @@
 """Dampers and springs too stiff for the step: how they are split, and how stiff they may be."""
 
+from math import inf, sqrt
+
 import taichi as ti
 
 from solvers.grains.laws.extremes import greater, lesser, within
 
 # Shares of a single contact's m/Δt (damper) and m/Δt² (spring) that stay stable if a grain touches all its neighbours.
 # The contact network's largest eigenvalue is 4.3 for six equal spheres around one in a plane, and the scheme, with
-# velocities predicted by half a step, is stable while 4 × damper + spring in these units is less than 4.
+# velocities predicted by half a step, is stable while 4 × damper + spring in these units is less than 4. A spring with
+# history (`history`) needs damper + spring < 1.
 AT_ONCE = 0.2
 FOLLOWING = 0.02
 SPRING = 0.1
+SETTLED = 100.0  # steps: an overlap that would take longer to vanish is at rest, and one in a collision is not
 
 
 def spring_limit(stiffness: float, inertia: float) -> float:
     """The longest step (s) that keeps a spring (N/m or N m) on an inertia (kg or kg m²) stable."""
-    return (SPRING * inertia / stiffness) ** 0.5 if stiffness > 0.0 else float("inf")
+    return sqrt(SPRING * inertia / stiffness) if stiffness > 0.0 else inf
+
+
+def shear_limit(stiffness: float, inertia: float, time: float) -> float:
+    """The longest step (s) at which a spring k (N/m) with history and its dashpot A k are stable together in a network.
+
+    A k Δt + k Δt² = 0.2 m, with the dissipative time A (s) and the inertia m (kg).
+    """
+    return 0.5 * (sqrt(time * time + 4.0 * AT_ONCE * inertia / stiffness) - time) if stiffness > 0.0 else inf
 
 
 @ti.func
-def lagging(damping, share, velocity, lag, cap):
-    """Force of the part of a damper that the step does not resolve, from its previous value `lag`, within ±`cap`.
+def settled(root, rate, dt):
+    """Whether contacts are at rest along the normal, from √ξ (√m) and ξ̇ (m/s); all but the turning of a collision."""
+    return root * root > SETTLED * dt * ti.abs(rate)
+
+
+@ti.func
+def lagging(damping, share, velocity, lag, room, follows):
+    """Force of the part of a damper that the step does not resolve, from its previous value `lag`, within ±`room`.
 
     A damper γ on `velocity` is split. γ_f = min(γ, 0.2 m/Δt) acts at once; the rest, `damping` = γ − γ_f, acts through
     a first-order low-pass filter, Ṡ = [(γ − γ_f) u − S]/T, with `share` = Δt/T = min(1, 0.02 (m/Δt)/γ) per step, so
     that the step also resolves the filter's stiffness (γ − γ_f)/T. The velocity stops within a few steps, and under a
     lasting load F it is F/γ, the creep of the law itself, whatever the step. A damper with γ < 0.2 m/Δt is not split.
+
+    The filter is for lasting loads. It moves only while the contact `follows`, which is to say at rest along the
+    normal: in a collision of a few tens of steps it would take up the slip before the contact sticks, and then drive it
+    the other way. `room` is what γ_f leaves of the Coulomb cap (conditional integration, as in controllers).
     """
-    return within(lag + share * (damping * velocity - lag), cap)
+    moved = lag + share * (damping * velocity - lag)
+    return within(ti.select(follows, moved, lag), room)
 
 
 @ti.func

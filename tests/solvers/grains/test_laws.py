@@ -22,6 +22,7 @@ RADIUS = 7.5e-4  # m, effective
 MASS = 4 / 3 * pi * (2 * RADIUS) ** 3 * 1319.0 / 2
 DT = 4e-7
 DEEP = 1e-5  # m
+APART = -1e-3  # m, the second lane's overlap
 GRAIN = material(friction=0.4, rolling_friction=0.2)
 BETWEEN = interface(GRAIN, GRAIN, MASS, RADIUS, 1.0)
 
@@ -71,9 +72,9 @@ class Driven:
         for _ in range(1):
             for k in range(path.shape[0]):
                 first = ti.Vector([1.0, 0.0])
-                overlap, rate = path[k, 0] * first, path[k, 1] + 0.0 * first
+                approach, rate = path[k, 0] * first + APART * (1.0 - first), path[k, 1] + 0.0 * first
                 slip, turning = path[k, 2] + 0.0 * first, path[k, 3] + 0.0 * first
-                fn, ft, torque = self.laws.forces(PAIR, self, 0, 0, overlap, rate, slip, turning, dt)
+                fn, ft, torque = self.laws.forces(PAIR, self, 0, 0, approach, rate, slip, turning, dt)
                 result[k, 0], result[k, 1], result[k, 2] = fn[0], ft[0], torque[0]
                 if path[k, 0] > 0.0:
                     result[k, 3] = self.laws.energy(PAIR, self, 0, 0, path[k, 0])
@@ -94,6 +95,20 @@ def test_grains_only_push(law):
     force, energy = contact.move(np.concatenate([[0.0], DEEP * np.abs(np.sin(np.linspace(0.01, 9.0, 400)))]))
     assert np.all(force[:, 0] >= 0.0) and force[:, 0].max() > 0.0
     assert np.all(energy >= 0.0)
+
+
+@pytest.mark.parametrize("begins", [0.0, 0.3, 0.5, 0.8])
+@pytest.mark.parametrize("law, power", [("hertz-viscoelastic", 1.5), ("hertz-dashpot", 1.0)])
+def test_a_damper_gives_its_whole_impulse_wherever_in_a_step_a_contact_begins(law, power, begins):
+    """Sum of F Δt less the spring's is γ ∫ ξ^(power − 1) dξ along a straight path, ∫ from first touch, no error in Δt."""
+    contact, k = Driven(law), hertz_stiffness(BETWEEN.young_modulus, RADIUS)
+    speed, steps, dt = 1e-2, 30, 1e-8  # so small that the lag of Verlet's prediction does not count
+    overlap = speed * dt * (np.arange(-3, steps) - begins)
+    force, _ = contact.move(overlap, dt=dt)
+    found = dt * np.sum(force[:, 0] - k * np.maximum(overlap, 0.0) ** 1.5)
+    damper = contact.laws.tables[0].to_numpy()[0, PAIR, 0]
+    damper *= k if power == 1.5 else k**0.4 * MASS**0.6
+    assert found == pytest.approx(damper / power * (overlap[-1] + 0.5 * speed * dt) ** power, rel=1e-6)
 
 
 @pytest.mark.parametrize("law", NORMAL)

@@ -78,18 +78,18 @@ class ShapedContacts(Contacts):
 
         Arithmetic on short vectors without branches, as in `Contacts.pair_forces`.
         """
-        overlap, ny, nz, py, pz = self.rest.present(self.rest.now, u)
+        approach, ny, nz, py, pz = self.rest.present(self.rest.now, u)
         at = self.rest.place(u)
         apart_y, apart_z = self.rest.ways[0][at], self.rest.ways[1][at]
         # Offset from the middle of the overlap to where the outlines of discs would cross, in overlaps.
         back = 0.5 - pairs.share[u, block]
         if ti.static(not self.units.whole):
             back = ti.select(pairs.grain[u, block] == i, back, -back)
-        overlap = greater(overlap, 0.0)
+        overlap = greater(approach, 0.0)
         ly, lz = py + back * overlap * ny, pz + back * overlap * nz
         uy, uz, turning = self.passing(g, pairs, i, j, ly, lz, apart_y, apart_z)
         rate = -(uy * ny + uz * nz)
-        pressing = self.laws.press(PAIR, pairs, u, block, overlap, rate, dt)
+        pressing = self.laws.press(PAIR, pairs, u, block, approach, rate, dt)
         fy, fz, torque = pressing * ny, pressing * nz, pressing * (ly * nz - lz * ny)
         if ti.static(self.rule.bent):
             shallow, my, mz, qy, qz = self.rest.present(self.rest.saddle_now, u)
@@ -148,8 +148,8 @@ class ShapedContacts(Contacts):
     def pressed(self, kind: ti.template(), contacts: ti.template(), u, p, c, velocity, dt):
         """Closing speed and slip (m/s) and normal force (N) of a contact with a relative velocity (m/s)."""
         n = ti.Vector([c[NORMAL_Y], c[NORMAL_Z]])
-        overlap, rate = ti.Vector([greater(c[OVERLAP], 0.0)]), -velocity.dot(n)
-        return rate, n.cross(velocity), self.laws.press(kind, contacts, u, p, overlap, ti.Vector([rate]), dt)[0]
+        approach, rate = ti.Vector([c[OVERLAP]]), -velocity.dot(n)
+        return rate, n.cross(velocity), self.laws.press(kind, contacts, u, p, approach, ti.Vector([rate]), dt)[0]
 
     @ti.func
     def rubbed(self, kind: ti.template(), contacts: ti.template(), u, p, c, rate, pressing, slip, turning, dt):
