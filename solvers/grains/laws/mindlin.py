@@ -37,7 +37,7 @@ class Mindlin:
         return [between.friction, ratio, between.dissipative_time]
 
     def limits(self, between: Interface, mass: float, radius: float, speed: float) -> list[tuple[float, str]]:
-        """Longest steps (s) and what sets them: spring and dashpot at the largest overlap of a collision without losses."""
+        """Longest steps (s) and what sets them, at the largest overlap of a collision without losses."""
         k = hertz_stiffness(between.young_modulus, radius)
         root = (1.25 * mass * speed**2 / k) ** 0.2
         spring = self.coefficients(between)[1] * k * root
@@ -45,7 +45,7 @@ class Mindlin:
 
     @ti.func
     def prepare(self, c: ti.template(), stiffness, mass, radius, dt):
-        """The strongest damper, with the spring's Δt k_t (N s/m), that the step resolves, and the step's stiffening (m/N)."""
+        """The strongest damper, Δt k_t of the spring included (N s/m), and the step's stiffening (m/N)."""
         stiffer = stiffening(self.integrator.stiffer, mass, dt * self.integrator.damping)
         return ti.Vector([AT_ONCE * M_T * mass / dt, stiffer])
 

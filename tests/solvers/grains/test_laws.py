@@ -100,7 +100,7 @@ def test_grains_only_push(law):
 @pytest.mark.parametrize("begins", [0.0, 0.3, 0.5, 0.8])
 @pytest.mark.parametrize("law, power", [("hertz-viscoelastic", 1.5), ("hertz-dashpot", 1.0)])
 def test_a_damper_gives_its_whole_impulse_wherever_in_a_step_a_contact_begins(law, power, begins):
-    """Sum of F Δt less the spring's is γ ∫ ξ^(power − 1) dξ along a straight path, ∫ from first touch, no error in Δt."""
+    """Sum of F Δt less the spring's is γ ∫ ξ^(power − 1) dξ from first touch, along a straight path; no error in Δt."""
     contact, k = Driven(law), hertz_stiffness(BETWEEN.young_modulus, RADIUS)
     speed, steps, dt = 1e-2, 30, 1e-8  # so small that the lag of Verlet's prediction does not count
     overlap = speed * dt * (np.arange(-3, steps) - begins)
