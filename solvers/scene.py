@@ -18,6 +18,8 @@ from solvers.ship.vessel import Vessel
 from solvers.tank.parts import Part
 from solvers.tank.tank import Tank
 
+SLOWEST = 1e-3  # m/s: steps are derived for closing speeds of at least this
+
 
 @dataclass
 class Scene:
@@ -188,9 +190,22 @@ class Scene:
             speed = max(speed, fastest * lever)
         return speed
 
-    def step_limits(self) -> list[Limit]:
-        """Bounds on the step, the tightest first: those of Verlet's scheme times the integrator's `reach`."""
-        speed = max(self.credible_speed(), 1e-3)
+    def calm_speed(self, times: float) -> float:
+        """The highest closing speed (m/s) at which the derived step is so many `times` as long; 0 if there is none.
+
+        The step lengthens as a collision does, as v^(−1/5), up to those bounds that do not depend on the speed.
+        """
+        wanted = times * self.step_limits()[0].step
+        speeds = np.geomspace(SLOWEST, max(self.credible_speed(), SLOWEST), 60)
+        allowed = [self.step_limits(speed)[0].step >= wanted for speed in speeds]
+        return float(speeds[allowed].max(initial=0.0))
+
+    def step_limits(self, speed: float | None = None) -> list[Limit]:
+        """Bounds on the step, the tightest first: those of Verlet's scheme times the integrator's `reach`.
+
+        For closing speeds up to `speed` (m/s), by default the credible one.
+        """
+        speed = max(self.credible_speed() if speed is None else speed, SLOWEST)
         share = self.shapes.least_mass if self.shapes else 1.0
         found: dict[tuple, list[Limit]] = {}
         for grain, rows in zip(self.grain, self.interfaces_of, strict=True):

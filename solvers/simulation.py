@@ -35,8 +35,8 @@ class Simulation:
     """W worlds of one scene, from `position` (W, n, 2) m, at rest or with the scene's velocities.
 
     `threads` 0 uses all cores; `arch` is one of `runtime.ARCHES`; the `skin` (m) of the Verlet lists affects speed
-    only. `units` is the number of units per world, by default the schedule's choice. Steps are up to `stretch` times
-    the scene's step, which is the base step. Raises Unavailable.
+    only. `units` is the number of units per world, by default the schedule's choice. The scene's step is the base step;
+    while grains are slow, steps are up to `stretch` times as long, a power of two. Raises Unavailable.
     """
 
     def __init__(
@@ -59,7 +59,10 @@ class Simulation:
         self.schedule_name = choose_schedule(scene.schedule, self.arch, worlds, count, self.threads, answers)
         self.units_a_world = units or units_a_world(self.schedule_name, worlds, count, self.threads)
         self.skin = skin or (SKIN_OF_CONVEX if scene.shapes and scene.shapes.convex else SKIN) * 2.0 * scene.mean_radius
-        self.steps, self.room, self.stretch = 0, 1, stretch
+        # Per grain all worlds share a step, and one would depend on the others.
+        alone = self.arch == "cpu" and (self.schedule_name != "per-grain" or worlds == 1)
+        self.stretch = stretch if alone else 1
+        self.steps, self.room = 0, 1
         self.origin = 0.0  # s, time of the tank's motion at step 0
         self.unkicked = 0  # the first step since the launch
         self._build()

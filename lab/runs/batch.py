@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from lab.assembly.drawn import classes
-from lab.assembly.scene import build
+from lab.assembly.scene import build, stretch
 from lab.base.errors import Unusable
 from lab.base.interrupt import Interrupt
 from lab.base.progress import Progress
@@ -134,7 +134,7 @@ class Batch:
         self.stopped: dict[Path, BadState] = {}
         preset = runs[0].loaded.resolved  # the runs agree in all values that are read here
         self._duration, self._record = preset.duration, preset.record
-        self._simulate = partial(Simulation, threads=preset.run.threads, arch=preset.run.arch)
+        self._simulate = partial(Simulation, threads=preset.run.threads, arch=preset.run.arch, stretch=stretch(preset))
         self._settling = settling(preset)
         self._a_call = max(1, GRAIN_STEPS_A_CALL // runs[0].scene.radius.shape[1])
         self._saved = time.monotonic()

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from lab.assembly.scene import build
+from lab.assembly.scene import build, stretch
 from lab.base.errors import LabError
 from lab.base.progress import Progress
 from lab.preset.find import LoadedPreset
@@ -91,7 +91,7 @@ class Live:
 
     def _start(self, scene, position) -> Simulation:
         settings = self.preset.run
-        return Simulation(scene, position, threads=settings.threads, arch=settings.arch)
+        return Simulation(scene, position, threads=settings.threads, arch=settings.arch, stretch=stretch(self.preset))
 
     @property
     def time(self) -> float:

@@ -31,6 +31,7 @@ from solvers.tank.setting import Setting
 
 # A speed (m/s) whose 16th power is no number in 32 bits any more.
 UNSEEN = 5e-3
+HASTE = 1.25  # what grains may gain in speed until the next look, at most half the skin later
 RULES = {"continuous": Continuous, "nodes": Discrete, "area": Area}  # of contact between outlines
 
 
@@ -58,8 +59,11 @@ class GrainMatter(Matter):
         self.unseen = UNSEEN if own.real is ti.f32 else 0.0  # speed (m/s) below which the mover's bound may miss one
         way = np.array([FASTEST_STEP * scene.sizes[0]])
         self.way_a_step = own.holding("way_a_step", way, "one", own.exact)
-        self.paced = setting.stretch > 1
-        self.stretch = own.holding("stretch", np.array([setting.stretch]), "one", ti.i32)
+        self.stretch = 1 if scene.integrator == "gear" else setting.stretch  # Gear's derivatives are of one step
+        self.paced, self.doublings = self.stretch > 1, int(np.log2(self.stretch))
+        if self.paced:
+            speeds = [scene.calm_speed(2.0 ** (k + 1)) for k in range(self.doublings)]
+            self.calm = own.holding("calm", np.array(speeds), "doubling")
         self.before = (Phase(self.push, units),)
         self.after = (Phase(self.move, units),)
 
@@ -117,8 +121,18 @@ class GrainMatter(Matter):
 
     @ti.func
     def pace(self, w):
-        """Base steps that a step may take."""
-        return self.stretch[0]
+        """Base steps that a step may take: a power of two, by how fast any two grains of a world may meet now."""
+        pace = 1
+        if ti.static(self.paced):
+            fastest = ti.cast(0.0, self.grains.real)
+            for i in range(self.grains.mobile):
+                v = [field[w, i] for field in ti.static(self.grains.velocity)]
+                fastest = ti.max(fastest, dot(v, v))
+            meeting = HASTE * (2.0 * ti.sqrt(fastest) + self.lists.walls.fastest)
+            for k in ti.static(range(self.doublings)):
+                if meeting < self.calm[k]:
+                    pace = 2 ** (k + 1)
+        return pace
 
     @ti.func
     def stale(self, u, t):

@@ -16,8 +16,9 @@ class Sequence:
     the tank, and the carrier then responds to that load; the carrier's frame; every phase of `after`, in which matters
     move. A phase with a longer pace (`Phase.every`) is run at every few steps, and its matter's load stands in between.
     A step is `stride` base steps long. The stride changes only when all lists are rebuilt, to the least that any
-    matter or the carrier allows (`pace`), and never overshoots the target. What a matter
-    must offer is in `solvers.tank.matter`.
+    matter or the carrier allows (`pace`), and never overshoots the target. Since a quiet world seldom rebuilds its
+    lists, it also does so for longer steps at the start of an `advance` of a schedule. What a matter must offer is in
+    `solvers.tank.matter`.
     """
 
     def __init__(self, matters: Several, carrier):
@@ -57,6 +58,14 @@ class Sequence:
         for k in ti.static(range(len(self.matters))):
             stride = ti.min(stride, self.matters[k].pace(w))
         return stride
+
+    @ti.func
+    def dawdles(self, w, due, stride):
+        """Whether a world could take longer steps than `stride` for the `due` base steps to go."""
+        found = False
+        if ti.static(self.paced):
+            found = due > 0 and self.stride(w, due) > stride
+        return found
 
     @ti.func
     def stale(self, u, t):

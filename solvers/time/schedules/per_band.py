@@ -56,6 +56,8 @@ class PerBand:
         done, running = self.clock.step[w], self.clock.status[w] == RUNNING
         before, stride = self.clock.before[w], self.stride_of(w)
         says = self.freshness(u, origin + done * base, stride, target - done)
+        if self.sequence.dawdles(w, target - done, stride):
+            says = STALE
         self.clock.says[u] = says
         meetings = self.meet(w, 0)
         worst = self.worst(w)
@@ -100,12 +102,15 @@ class PerBand:
     def advance_world(self, w, target, origin, base):
         """The time loop of a world on one thread, band after band."""
         start, stride = w * self.bands, self.stride_of(w)
+        dawdles = self.sequence.dawdles(w, target - self.clock.step[w], stride)
         while self.clock.step[w] < target and self.clock.status[w] == RUNNING:
             done = self.clock.step[w]
             due = target - done
             t, worst = origin + done * base, FINE
             for u in range(start, start + self.bands):
                 worst = ti.max(worst, self.freshness(u, t, stride, due))
+            if dawdles:
+                worst, dawdles = STALE, False
             if ti.static(self.sequence.paced):  # noqa: SIM102
                 if worst == STALE:
                     stride = self.sequence.stride(w, due)

@@ -31,9 +31,11 @@ class PerWorld:
         The steps are an inner loop of their own, so that the compiler keeps their data in registers, not the lists'.
         """
         w, stride = self.clock.world(world), 1
+        dawdles = self.sequence.dawdles(w, target - self.clock.step[w], self.clock.stride[w])
         while self.clock.step[w] < target and self.clock.status[w] == RUNNING:
             t, fresh = origin + self.clock.step[w] * base, True
-            stale = self.sequence.stale(w, t)
+            stale = self.sequence.stale(w, t) or dawdles
+            dawdles = False
             if ti.static(self.sequence.paced):
                 due = target - self.clock.step[w]
                 if stale or self.clock.stride[w] > due:

@@ -33,6 +33,13 @@ def started(base: float, stretch: int, schedule: str) -> Simulation:
     return Simulation(scene, place, 1, arch="cpu", units=units, stretch=stretch)
 
 
+@pytest.fixture
+def calm(monkeypatch):
+    """A scene whose grains never hurry, so that all steps have their longest length."""
+    monkeypatch.setattr(Scene, "calm_speed", lambda scene, times: 1e9)
+
+
+@pytest.mark.usefixtures("calm")
 @pytest.mark.parametrize("schedule", ["per-world", pytest.param("per-band", marks=pytest.mark.slow)])
 def test_steps_of_two_base_steps_are_steps_of_twice_the_length(schedule):
     """Bit for bit, through falls, collisions and neighbour-list rebuilds."""
@@ -51,6 +58,7 @@ def test_steps_of_two_base_steps_are_steps_of_twice_the_length(schedule):
     assert found[0][-1]["contacts"][0] > 20
 
 
+@pytest.mark.usefixtures("calm")
 @pytest.mark.parametrize("schedule", ["per-world", pytest.param("per-band", marks=pytest.mark.slow), "per-grain"])
 def test_free_fall_is_exact_where_the_step_changes(schedule):
     """Leapfrog of constant acceleration is exact if each kick goes from the middle of a step to that of the next."""
@@ -66,6 +74,32 @@ def test_free_fall_is_exact_where_the_step_changes(schedule):
     run.close()
 
 
+@pytest.mark.parametrize("schedule", ["per-world", pytest.param("per-band", marks=pytest.mark.slow)])
+def test_steps_are_longer_while_grains_are_slow(schedule):
+    """Two grains may meet at twice the speed of the faster one; a quarter more is kept in hand."""
+    place = np.array([[[0.0, RADIUS], [0.02, RADIUS]]])
+    scene = Scene(np.full((1, 2), RADIUS), box(0.1, 0.2), SOFT, SOFT, schedule=schedule, start_speed=2.0)
+    run = Simulation(scene, place, 1, arch="cpu", units=2 if schedule == "per-band" else None, stretch=2)
+    (fastest,) = run.grains.calm.to_numpy()  # closing speed up to which the stride is 2
+
+    def stride(speed: float) -> int:
+        velocity = np.array([[[0.0, 0.0], [speed, 0.0]]])
+        run.launch(velocity)
+        run.advance(64)
+        run.advance(64)
+        return int(run.clock.stride.to_numpy()[0])
+
+    assert 2.0 > fastest > 0.0
+    assert [stride(share * fastest) for share in (0.35, 0.45, 0.0)] == [2, 1, 2]
+    run.place(place + np.array([0.0, 0.1]))
+    run.advance(64)
+    assert run.clock.stride.to_numpy()[0] == 2
+    run.advance(int(2.0 * fastest / G / run.dt))  # a fall in a single call
+    assert run.clock.stride.to_numpy()[0] == 1
+    run.close()
+
+
+@pytest.mark.usefixtures("calm")
 def test_a_state_continues_bit_for_bit_between_steps_of_different_length():
     whole, cut = [], []
     for looks, stops in ((whole, [5009, 4991]), (cut, [5009, None, 4991])):
