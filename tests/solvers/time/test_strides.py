@@ -77,13 +77,14 @@ def test_free_fall_is_exact_where_the_step_changes(schedule):
 @pytest.mark.parametrize("schedule", ["per-world", pytest.param("per-band", marks=pytest.mark.slow)])
 def test_steps_are_longer_while_grains_are_slow(schedule):
     """Two grains may meet at twice the speed of the faster one; a quarter more is kept in hand."""
-    place = np.array([[[0.0, RADIUS], [0.02, RADIUS]]])
-    scene = Scene(np.full((1, 2), RADIUS), box(0.1, 0.2), SOFT, SOFT, schedule=schedule, start_speed=2.0)
+    place = np.array([[[0.02 * k, RADIUS] for k in range(-2, 2)]])
+    scene = Scene(np.full((1, 4), RADIUS), box(0.1, 0.2), SOFT, SOFT, schedule=schedule, start_speed=2.0)
     run = Simulation(scene, place, 1, arch="cpu", units=2 if schedule == "per-band" else None, stretch=2)
     (fastest,) = run.grains.calm.to_numpy()  # closing speed up to which the stride is 2
 
     def stride(speed: float) -> int:
-        velocity = np.array([[[0.0, 0.0], [speed, 0.0]]])
+        velocity = np.zeros((1, 4, 2))
+        velocity[0, 3, 0] = speed
         run.launch(velocity)
         run.advance(64)
         run.advance(64)
