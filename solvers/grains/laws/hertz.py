@@ -6,7 +6,7 @@ from solvers.grains.materials import Interface, hertz_stiffness
 
 # Per collision, with Verlet's scheme and contacts that begin anywhere in a step. An elastic collision then keeps its
 # speed to 0.03 %, and the speed along a wall after an oblique one is right to 0.5 % (with 18: to 0.1 % and 2 %).
-ELASTIC_STEPS = 24.0
+ELASTIC_STEPS = 25.0
 
 
 def hertz_duration(mass: float, radius: float, young: float, speed: float) -> float:
