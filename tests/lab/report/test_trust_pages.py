@@ -89,7 +89,11 @@ def test_a_summary_shows_texts_of_a_recording_escaped(text, tmp_path):
 
 @pytest.mark.parametrize("text", NASTY)
 def test_any_title_is_drawn(text, tmp_path):
-    with open_recording(nasty_run(tmp_path, text)) as recording:
+    with recorder(tmp_path, resolved=preset() | {"title": text}) as writer:
+        for now in (0.0, 1.0, 2.0):
+            writer.sample(sample(now))
+    with open_recording(tmp_path) as recording:
+        assert recording.preset.title == text
         assert write_plots(recording, {}, tmp_path)
 
 
