@@ -27,6 +27,7 @@ ENDLESS = {
     "motion.tilt.hold": "1000 s",
     "run.repeats": 1,
     "run.threads": 1,
+    "contact.tangential": "none",  # kernels of few laws compile fast
 }
 STUBBORN = """
 import time
