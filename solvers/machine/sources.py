@@ -2,18 +2,19 @@
 
 Taichi 1.7.4 looks up and splits the source of a function anew for every place that calls it, and draws, for every
 expression, the source lines with a mark under them, in case that one is wrong: the latter half of the time that a
-simulation took to set up.
+simulation took to set up. For every field it formats the whole stack of calls that declared it.
 """
 
 from functools import cache
 
-from taichi.lang import kernel_impl
+from taichi.lang import impl, kernel_impl
 from taichi.lang.ast.ast_transformer_utils import ASTTransformerContext
 
 
 def remember() -> None:
-    """Have Taichi look up each source once, and tell of an expression its file and line alone."""
+    """Have Taichi look up each source once, and tell of an expression its file and line alone, of a field nothing."""
     ASTTransformerContext.get_pos_info = _place
+    impl.get_traceback = _nowhere
     for name in ("getsourcefile", "getsourcelines"):
         find = getattr(kernel_impl, name)
         if not hasattr(find, "cache_info"):
@@ -23,3 +24,8 @@ def remember() -> None:
 def _place(context: ASTTransformerContext, node) -> str:
     """Where an expression stands, in words."""
     return f'File "{context.file}", line {node.lineno + context.lineno_offset}, in {context.func.func.__name__}:\n'
+
+
+def _nowhere(stacklevel: int = 1) -> str:
+    """Where a field was declared: not said."""
+    return ""

@@ -11,10 +11,19 @@ TINY = 1e-300
 
 def harmonics(angle: np.ndarray, amplitudes: np.ndarray, phases: np.ndarray, derivative: int = 0) -> np.ndarray:
     """The sum at angles (rad, any shape), or its derivative of a given order."""
-    n = np.arange(1, len(amplitudes) + 1)
+    return (_waves(angle, len(amplitudes)) @ _factors(amplitudes, phases, derivative)).real
+
+
+def _waves(angle: np.ndarray, count: int) -> np.ndarray:
+    """e^{inθ} (…, count), by products, which are faster than cosines."""
     turn = np.exp(1j * np.asarray(angle))[..., None]
-    waves = np.cumprod(np.broadcast_to(turn, (*turn.shape[:-1], len(n))), axis=-1)  # e^{inθ}, faster than cosines
-    return (waves @ (amplitudes * np.exp(1j * phases) * (1j * n) ** derivative)).real
+    return np.cumprod(np.broadcast_to(turn, (*turn.shape[:-1], count)), axis=-1)
+
+
+def _factors(amplitudes: np.ndarray, phases: np.ndarray, derivative: int) -> np.ndarray:
+    """What the waves are multiplied by in a derivative of the sum."""
+    n = np.arange(1, len(amplitudes) + 1)
+    return amplitudes * np.exp(1j * phases) * (1j * n) ** derivative
 
 
 def coefficients(values: np.ndarray) -> tuple[float, np.ndarray, np.ndarray]:
@@ -36,7 +45,12 @@ def largest(amplitudes: np.ndarray, phases: np.ndarray) -> float:
     angle = angle[ends + curvature * width**2 / 8.0 >= ends.max()]
     width /= STEPS
     angle = (angle[:, None] + width * np.arange(STEPS)).ravel()
+    first, second = (_factors(amplitudes, phases, order) for order in (1, 2))
     for _ in range(CLIMBS):
-        slope, bend = (harmonics(angle, amplitudes, phases, order) for order in (1, 2))
+        waves = _waves(angle, len(amplitudes))
+        slope, bend = (waves @ first).real, (waves @ second).real
+        before = angle
         angle = angle + slope / np.maximum(np.maximum(-bend, np.abs(slope) / width), TINY)  # uphill, by a step at most
+        if np.array_equal(angle, before):
+            break
     return float(harmonics(angle, amplitudes, phases).max())

@@ -242,7 +242,7 @@ def test_errors_name_the_key(sections, sentence):
 SPEEDS, YOUNGS = (0.1, 1.0, 10.0, 30.0, 100.0), (100.0, 1e3, 1e5, 1e7, 1e9, 1e11)  # m/s, Pa
 
 
-@pytest.mark.parametrize("level", LEVELS)
+@pytest.mark.parametrize("level", [pytest.param(n, marks=() if n == "draft" else pytest.mark.slow) for n in LEVELS])
 def test_the_watch_accepts_every_scene_that_is_built(level):
     """Two grains that meet, of any speed and stiffness: refused in one sentence, or run through their impact."""
     built, refused = [], {}

@@ -123,7 +123,7 @@ ODD_TREES = st.recursive(
 MOST_GRAINS = 600  # of a mangled preset that is built
 KEYS = sorted(key for key, _ in walk(Preset))
 
-often = pytest.mark.parametrize("times", [1, pytest.param(10, marks=pytest.mark.slow)])
+often = pytest.mark.parametrize("times", [1, pytest.param(30, marks=pytest.mark.slow)])
 
 
 SHIPS = [name for name in names() if name.startswith("ship/")][1:]  # one is enough: their tables take a second each
@@ -284,7 +284,7 @@ def test_the_presets_to_be_mangled_are_valid(folder, sound):
 def test_a_mangled_preset_is_refused_in_one_sentence_or_can_be_built(folder, sound, times):
     passed = []
 
-    @examples(300 * times)
+    @examples(100 * times)
     @given(mangled(sound))
     def check(table):
         passed.append(tried(write(folder, table)))
@@ -297,7 +297,7 @@ def test_a_mangled_preset_is_refused_in_one_sentence_or_can_be_built(folder, sou
 def test_mangled_overrides_are_refused_in_one_sentence_or_can_be_built(folder, times):
     (folder / "rich.toml").write_text(RICH)
 
-    @examples(300 * times)
+    @examples(100 * times)
     @given(st.dictionaries(st.sampled_from(KEYS) | st.text(max_size=9), ODD_TREES, min_size=1, max_size=3))
     def check(overrides):
         tried(folder / "rich.toml", overrides)
@@ -307,7 +307,7 @@ def test_mangled_overrides_are_refused_in_one_sentence_or_can_be_built(folder, t
 
 @often
 def test_damaged_bytes_of_a_preset_are_refused_in_one_sentence_or_can_be_built(folder, sound, times):
-    @examples(300 * times)
+    @examples(100 * times)
     @given(st.sampled_from(sound), st.data())
     def check(text, data):
         (folder / "bytes.toml").write_bytes(damaged(data.draw, text.encode()))
@@ -329,7 +329,7 @@ def damaged(draw, content: bytes) -> bytes:
 def test_damaged_tables_are_refused_in_one_sentence_or_can_be_built(folder, name, text, times, tmp_path):
     (tmp_path / "preset.toml").write_text(text)
 
-    @examples(250 * times)
+    @examples(80 * times)
     @given(mangled_table(TABLES[name]) | st.data())
     def check(content):
         if not isinstance(content, bytes):
@@ -389,7 +389,7 @@ def idle(monkeypatch, tmp_path):
 
 @often
 def test_the_command_refuses_mangled_presets(idle, folder, sound, times):
-    @examples(150 * times)
+    @examples(50 * times)
     @given(mangled(sound))
     def check(table):
         ends_well(call("run", write(folder, table), "--no-video"))
@@ -411,7 +411,7 @@ SETTINGS = st.tuples(st.sampled_from(KEYS) | st.text(max_size=9), ODD | st.text(
 def test_the_command_refuses_mangled_settings(idle, folder, times):
     (folder / "rich.toml").write_text(RICH)
 
-    @examples(100 * times)
+    @examples(35 * times)
     @given(st.lists(SETTINGS | st.text(max_size=20), min_size=1, max_size=3))
     def check(texts):
         ends_well(call("run", folder / "rich.toml", *[word for text in texts for word in ("--set", text)]))
@@ -431,7 +431,7 @@ def test_the_command_refuses_mangled_ranges(idle, folder, times, tmp_path):
     (folder / "rich.toml").write_text(RICH)
     axis = st.tuples(st.sampled_from(KEYS), RANGES | LISTS | st.text(max_size=12)).map("=".join)
 
-    @examples(100 * times)
+    @examples(35 * times)
     @given(st.lists(axis, min_size=1, max_size=2))
     def check(texts):
         words = [word for text in texts for word in ("--set", text)]
@@ -487,7 +487,7 @@ def copied(recorded: Path, folder: Path) -> Path:
 def test_damaged_recordings_are_refused(idle, unpainted, recorded, tmp_path, times):
     contents = (recorded / "recording.h5").read_bytes()
 
-    @examples(60 * times)
+    @examples(20 * times)
     @given(st.data())
     def check(data):
         folder = copied(recorded, tmp_path / "run")
@@ -511,7 +511,7 @@ VALUES = st.sampled_from(["", "{}", "[]", "null", "nan", "é", 0, -1, 1e300, flo
 
 @often
 def test_recordings_with_other_contents_are_refused(idle, unpainted, recorded, tmp_path, times):
-    @examples(60 * times)
+    @examples(20 * times)
     @given(st.sampled_from(members(recorded / "recording.h5")), st.none() | VALUES)
     def check(name, value):
         folder = copied(recorded, tmp_path / "run")
@@ -530,7 +530,7 @@ def test_recordings_with_other_contents_are_refused(idle, unpainted, recorded, t
 def test_damaged_checkpoints_are_refused(recorded, tmp_path, times):
     content = (recorded / "checkpoint.npz").read_bytes()
 
-    @examples(100 * times)
+    @examples(35 * times)
     @given(st.data())
     def check(data):
         (tmp_path / "checkpoint.npz").write_bytes(damaged(data.draw, content))
@@ -564,7 +564,7 @@ def test_damaged_sweeps_are_refused(idle, tmp_path, times):
     sweep.write(tmp_path)
     content = (tmp_path / "sweep.json").read_bytes()
 
-    @examples(100 * times)
+    @examples(35 * times)
     @given(st.data())
     def check(data):
         if data.draw(st.booleans()):

@@ -3,9 +3,8 @@ import json
 import os
 import random
 import signal
-import subprocess
-import sys
 import time
+from multiprocessing import get_context
 from pathlib import Path
 
 import h5py
@@ -17,28 +16,8 @@ from lab.recording import BUFFER_BYTES, Recorder, open_recording, superblock
 from tests.oracles.synthetic import frame, recorder, sample
 
 FRAMES = "3 times (record.picture_rate, run.duration) × 2 beds (run.repeats)"
-KILLED_RUN = """
-import sys
-import time
-from pathlib import Path
-from lab.recording import Recorder
-from tests.oracles.synthetic import frame, recorder, sample
-
-folder, k = Path(sys.argv[1]), int(sys.argv[2])
-if (folder / "recording.h5").exists():  # of one that was killed
-    run = Recorder(folder, samples=k, frames=(k + 3) // 4, flush_every=0.01)
-else:
-    run = recorder(folder, count=500, flush_every=0.01)
-begun = k
-while True:
-    run.grain_steps = 1000 * k
-    run.sample(sample(float(k), kinetic=[float(k)], pose=[[float(k)] * 3]))
-    if k % 4 == 0:
-        run.frame(frame(float(k), count=500, angle=[[float(k)] * 500]))
-    if k == begun + 2000:
-        print("under way", flush=True)
-    k += 1
-"""
+FORKS = get_context("forkserver")  # writers that begin at once: what they import has been imported
+FORKS.set_forkserver_preload(["lab.recording", "tests.oracles.synthetic"])
 
 
 def test_written_data_are_read_back(tmp_path):
@@ -72,14 +51,42 @@ def test_written_data_are_read_back(tmp_path):
             recording.frames["spin"][1]
 
 
+def write(folder, standing, under_way) -> None:
+    """Record as fast as can be until the process is killed; tells `under_way` once many rows are written."""
+    k = standing
+    if (folder / "recording.h5").exists():  # of one that was killed
+        run = Recorder(folder, samples=k, frames=(k + 3) // 4, flush_every=0.01)
+    else:
+        run = recorder(folder, count=500, flush_every=0.01)
+    while True:
+        run.grain_steps = 1000 * k
+        run.sample(sample(float(k), kinetic=[float(k)], pose=[[float(k)] * 3]))
+        if k % 4 == 0:
+            run.frame(frame(float(k), count=500, angle=[[float(k)] * 500]))
+        if k == standing + 2000:
+            under_way.set()
+        k += 1
+
+
 def start_writer(folder, standing=0):
-    """A process that records as fast as it can until it is killed, behind so many rows of what is there."""
-    return subprocess.Popen(
-        [sys.executable, "-c", KILLED_RUN, folder, str(standing)],
-        stdout=subprocess.PIPE,
-        cwd=Path(__file__).parents[3],
-        env=os.environ | {"PYTHONPATH": str(Path(__file__).parents[3])},
-    )
+    """A process that records behind so many rows of what is there, and what tells that it is under way."""
+    under_way = FORKS.Event()
+    writer = FORKS.Process(target=write, args=(folder, standing, under_way), daemon=True)
+    writer.start()
+    return writer, under_way
+
+
+def started_writer(folder):
+    """A process that has recorded many rows and goes on."""
+    writer, under_way = start_writer(folder)
+    assert under_way.wait(60)
+    return writer
+
+
+def kill(writer) -> None:
+    """End a process as a power cut would."""
+    writer.kill()
+    writer.join()
 
 
 def assert_whole(folder) -> int:
@@ -139,12 +146,10 @@ def test_frames_are_indexed_as_arrays(tmp_path):
 
 
 def test_a_killed_run_is_read_up_to_its_last_flush(tmp_path):
-    writer = start_writer(tmp_path)
-    assert writer.stdout.readline() == b"under way\n"
+    writer = started_writer(tmp_path)
     with open_recording(tmp_path) as live:
         assert len(live.series["time"]) > 0
-    writer.kill()
-    writer.communicate()
+    kill(writer)
     count = assert_whole(tmp_path)
     assert count > 1500
     with open_recording(tmp_path) as recording:
@@ -153,13 +158,11 @@ def test_a_killed_run_is_read_up_to_its_last_flush(tmp_path):
 
 
 def test_reading_the_file_of_a_killed_writer_clears_its_flag(tmp_path):
-    writer, path = start_writer(tmp_path), tmp_path / "recording.h5"
-    assert writer.stdout.readline() == b"under way\n"
+    writer, path = started_writer(tmp_path), tmp_path / "recording.h5"
     open_recording(tmp_path).close()
     with pytest.raises(OSError, match="already open for write"):  # it lives
         h5py.File(path)
-    writer.kill()
-    writer.communicate()
+    kill(writer)
     with pytest.raises(OSError, match="already open for write"):
         h5py.File(path)
     count = assert_whole(tmp_path)
@@ -170,10 +173,8 @@ def test_reading_the_file_of_a_killed_writer_clears_its_flag(tmp_path):
 
 
 def test_a_read_only_file_of_a_killed_writer_is_read(tmp_path):
-    writer, path = start_writer(tmp_path), tmp_path / "recording.h5"
-    assert writer.stdout.readline() == b"under way\n"
-    writer.kill()
-    writer.communicate()
+    writer, path = started_writer(tmp_path), tmp_path / "recording.h5"
+    kill(writer)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(Path, "open", lambda *_, **__: fail_to_write())
         assert assert_whole(tmp_path) > 1500
@@ -186,10 +187,8 @@ def fail_to_write():
 
 
 def test_data_beyond_the_recorded_end_of_a_killed_file_are_not_overwritten(tmp_path):
-    writer, path = start_writer(tmp_path), tmp_path / "recording.h5"
-    assert writer.stdout.readline() == b"under way\n"
-    writer.kill()
-    writer.communicate()
+    writer, path = started_writer(tmp_path), tmp_path / "recording.h5"
+    kill(writer)
     with path.open("r+b") as file:  # as if the end had been about to be written
         head = file.read(superblock.SIZE)
         file.seek(0)
@@ -208,13 +207,12 @@ def kill_and_go_on(folder, kills: int, chance: random.Random) -> int:
     count, path = 0, folder / "recording.h5"
     for _ in range(kills):
         before = changed(path)
-        writer = start_writer(folder, max(0, count - 50))
-        while writer.poll() is None and changed(path) == before:
+        writer, _ = start_writer(folder, max(0, count - 50))
+        while writer.is_alive() and changed(path) == before:
             time.sleep(0.0002)
         time.sleep(chance.choice([0.0, 0.001, 0.02, 0.3, 1.0]) * chance.random())
-        writer.kill()
-        writer.communicate()
-        assert writer.returncode == -signal.SIGKILL
+        kill(writer)
+        assert writer.exitcode == -signal.SIGKILL
         if chance.random() < 0.7:  # else the next one finds it as it was left
             kept = assert_whole(folder)
             assert kept >= count

@@ -21,6 +21,8 @@ from tests.oracles.synthetic import DEPTH, DIAMETER, WIDTH, box, frame, preset, 
 
 TILT = preset(tilt={"rate": 0.07, "angle": 0.7})
 SWAY = preset(sway={"amplitude": 0.04, "frequency": 1.0})
+SLOW = pytest.mark.slow
+FEW = [(TILT, 2), pytest.param(TILT, 9, marks=SLOW), pytest.param(SWAY, 2, marks=SLOW), (SWAY, 9)]
 
 
 @pytest.fixture(autouse=True)
@@ -81,7 +83,7 @@ def drawn(folder):
 @pytest.mark.parametrize(
     ("resolved", "scene", "figures"),
     [
-        (TILT, {}, ["shift", "slope", "hysteresis", "force", "contacts", "energy"]),
+        pytest.param(TILT, {}, ["shift", "slope", "hysteresis", "force", "contacts", "energy"], marks=SLOW),
         (TILT, {"open_edges": (2,)}, ["spilled", "shift", "slope", "hysteresis", "force", "contacts", "energy"]),
         (SWAY, {}, ["shift", "spectrum", "wave", "force", "contacts", "energy"]),
         (preset(), {"parts": {"gate": np.zeros((2, 2))}}, ["altitude", "shift", "force", "contacts", "energy"]),
@@ -91,7 +93,7 @@ def test_each_experiment_has_the_relevant_figures(tmp_path, resolved, scene, fig
     assert drawn(run(tmp_path, resolved, **scene)) == figures
 
 
-@pytest.mark.parametrize("resolved", [TILT, SWAY])
+@pytest.mark.parametrize("resolved", [TILT, pytest.param(SWAY, marks=SLOW)])
 def test_a_world_that_loses_every_grain_is_left_out_of_figures(tmp_path, resolved):
     assert "shift" in drawn(run(tmp_path, resolved, open_edges=(2,), lost=1))
 
@@ -100,7 +102,7 @@ def test_a_single_bed_that_loses_every_grain_is_drawn(tmp_path):
     assert "spilled" in drawn(run(tmp_path, SWAY, worlds=1, open_edges=(2,), lost=0))
 
 
-@pytest.mark.parametrize(("resolved", "samples"), [(TILT, 2), (TILT, 9), (SWAY, 2), (SWAY, 9)])
+@pytest.mark.parametrize(("resolved", "samples"), FEW)
 def test_a_run_stopped_after_a_few_samples_is_drawn(tmp_path, resolved, samples):
     assert "shift" in drawn(run(tmp_path, resolved, samples=samples, worlds=1))
 

@@ -76,12 +76,17 @@ def nasty_run(folder: Path, text: str) -> Path:
     )
 
 
+@pytest.fixture(scope="module")
+def usual(tmp_path_factory) -> list[str]:
+    """The headings of a summary of plain texts."""
+    return sections(summed_up(nasty_run(tmp_path_factory.mktemp("plain"), "plain"), warnings=["x"])[0])
+
+
 @pytest.mark.parametrize("text", NASTY)
-def test_a_summary_shows_texts_of_a_recording_escaped(text, tmp_path):
+def test_a_summary_shows_texts_of_a_recording_escaped(text, tmp_path, usual):
     page, data, said = summed_up(nasty_run(tmp_path, text), warnings=[text])
     assert_tame(page)
     assert_printable(said)
-    usual = sections(summed_up(nasty_run(tmp_path / "plain", "plain"), warnings=["x"])[0])
     assert len(sections(page)) == len(usual) and sections(page)[1:] == usual[1:]
     assert sum(token.type == "fence" for token in tokens(page)) == 1
     assert data["warnings"][0] == text
@@ -89,7 +94,11 @@ def test_a_summary_shows_texts_of_a_recording_escaped(text, tmp_path):
 
 @pytest.mark.parametrize("text", NASTY)
 def test_any_title_is_drawn(text, tmp_path):
-    with open_recording(nasty_run(tmp_path, text)) as recording:
+    with recorder(tmp_path, resolved=preset() | {"title": text}) as writer:
+        for now in (0.0, 1.0, 2.0):
+            writer.sample(sample(now))
+    with open_recording(tmp_path) as recording:
+        assert recording.preset.title == text
         assert write_plots(recording, {}, tmp_path)
 
 

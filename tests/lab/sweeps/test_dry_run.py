@@ -18,7 +18,10 @@ RUNS = {
 }
 
 
-@pytest.mark.parametrize("case", ["there and back", "swayed", pytest.param("open", marks=pytest.mark.slow)])
+SLOW = ("there and back", "open")
+
+
+@pytest.mark.parametrize("case", [pytest.param(name, marks=pytest.mark.slow if name in SLOW else ()) for name in RUNS])
 def test_a_run_has_the_measures_of_its_dry_run(case, tmp_path):
     overrides = {**SMALL, **RUNS[case]}
     expected = available_measures(load("tilting/quick", overrides))

@@ -100,7 +100,7 @@ def test_energy_is_conserved_while_a_bridge_exists(elastic):
     assert np.array(stored) + moving == pytest.approx(start, abs=6e-2 * start)
 
 
-@pytest.mark.parametrize("law", SLOW)
+@pytest.mark.parametrize("law", [pytest.param("humid", marks=pytest.mark.slow), "bridge"])
 def test_a_bridge_carries_its_pull_off_force_and_increases_friction(law):
     """A grain hangs under a fixed one up to the pull-off force; one that slides is slowed by μ (g + f₀/m)."""
     force, scale = pull(law, 0.0, RADIUS / 2), 1e-3

@@ -28,6 +28,7 @@ LAWS = [
     ("linear", "coulomb", "elastic-plastic"),
     ("hysteretic", "viscous", "none"),
 ]
+QUICK = LAWS[2], LAWS[3], LAWS[5]
 OUTLINE = box(0.2, 0.2)
 PLACE = np.array([0.0, 0.1])
 
@@ -39,7 +40,7 @@ def test_every_law_is_tested():
 
 @pytest.fixture(
     scope="module",
-    params=[pytest.param(laws, marks=pytest.mark.slow if laws[0] in ("hertz", "linear") else ()) for laws in LAWS],
+    params=[pytest.param(laws, marks=() if laws in QUICK else pytest.mark.slow) for laws in LAWS],
     ids="-".join,
 )
 def bench(request):

@@ -45,7 +45,12 @@ def weights_borne(made: Simulation) -> np.ndarray:
 
 
 @pytest.mark.parametrize(
-    "schedule, units", [("per-world", 1), ("per-band", 3), pytest.param("per-grain", None, marks=pytest.mark.slow)]
+    "schedule, units",
+    [
+        ("per-world", 1),
+        pytest.param("per-band", 3, marks=pytest.mark.slow),
+        pytest.param("per-grain", None, marks=pytest.mark.slow),
+    ],
 )
 def test_discs_bear_their_weights_with_any_lists(schedule, units):
     made = bed(None, schedule, units=units)

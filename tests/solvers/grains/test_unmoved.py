@@ -7,7 +7,7 @@ from tests.oracles.scenes import box, material, simulation
 
 RADIUS, OVERLAP, SPEED = 3e-3, 2e-6, 0.05  # m, m, m/s
 APART = 2.0 * RADIUS - OVERLAP
-SCHEDULES = ("per-world", "per-grain")
+SCHEDULES = ("per-world", pytest.param("per-grain", marks=pytest.mark.slow))
 
 
 @pytest.fixture(scope="module", params=SCHEDULES)

@@ -219,10 +219,11 @@ def test_a_ship_without_cargo_moves_as_the_ship_alone(run, voyage):
     vessel = run.simulation.scene.vessels[ALONE]
     interval = run.every * run.simulation.dt
     state = start(vessel.ship, vessel.heave(Body(0.0, (0.0, 0.0), 0.0), 0.0))
-    alone = sail(vessel.ship, state, interval, voyage["time"][-1])
-    at = np.round(voyage["time"] / interval).astype(int)
+    early = voyage["time"] < 3.0
+    alone = sail(vessel.ship, state, interval, voyage["time"][early][-1])
+    at = np.round(voyage["time"][early] / interval).astype(int)
     assert np.abs(alone.roll).max() > 0.1
-    assert voyage["pose"][1:, ALONE] == pytest.approx(alone.state[at[1:], :3], abs=1e-10)
+    assert voyage["pose"][early, ALONE][1:] == pytest.approx(alone.state[at[1:], :3], abs=1e-10)
 
 
 def test_cargo_that_does_not_move_is_part_of_the_rigid_body(run, voyage):

@@ -63,7 +63,8 @@ def test_steps_of_two_base_steps_are_steps_of_twice_the_length(schedule):
 def test_free_fall_is_exact_where_the_step_changes(schedule):
     """Leapfrog of constant acceleration is exact if each kick goes from the middle of a step to that of the next."""
     place = np.array([[[0.0, 0.3], [0.005, 0.3]]])
-    scene = Scene(np.full((1, 2), RADIUS), box(0.1, 0.6), SOFT, SOFT, schedule=schedule, step=1e-5, start_speed=1.0)
+    given = {"schedule": schedule, "step": 1e-5, "start_speed": 1.0, "tangential": "none"}
+    scene = Scene(np.full((1, 2), RADIUS), box(0.1, 0.6), SOFT, SOFT, **given)
     run = Simulation(scene, place, 1, arch="cpu", units=2 if schedule == "per-band" else None, stretch=4)
     done = 0
     for steps in (7, 1, 2, 13, 4, 3, 5000, 9):  # the last steps to each are shorter ones

@@ -17,7 +17,7 @@ from tests.oracles.penetration import penetrations
 from tests.oracles.shape_collisions import Collisions
 from tests.oracles.shape_kernels import Asked, Pairs, orientations, random_pairs
 
-COUNT, SOME = 2000, 500  # pairs; those that are looked at one by one
+COUNT, SOME = 2000, 120  # pairs; those that are looked at one by one
 NODES = 100
 SKIN = 0.1
 SHALLOW = 0.05
@@ -96,11 +96,11 @@ def by_all_nodes(first, second):
 def test_few_nodes_are_evaluated_but_the_deepest_is_found(asked, pairs):
     expected = np.array([by_all_nodes(*pairs.placed(OUTLINES, k)) for k in range(SOME)])
     found = asked.by_nodes(pairs)[:SOME]
-    assert 100 < (expected[:, 0] > 0.0).sum() < SOME
+    assert 25 < (expected[:, 0] > 0.0).sum() < SOME
     # The tables' errors in radii of up to 2, in slopes, and in the choice between nodes equally deep.
     assert np.abs(np.maximum(found[:, 0], 0.0) - expected[:, 0]).max() < 8.0 * ERROR
     same = np.abs(found[:, 3:] - expected[:, 3:]).max(axis=1) < 1e-5
-    assert same.sum() > SOME - 3
+    assert same.sum() > SOME - 2
     assert np.abs(found - expected)[same, 1:].max() < 1e-3
 
 
@@ -116,7 +116,7 @@ def test_without_overlap_no_gap_is_smaller_than_the_reported_bound(asked):
     shut = np.flatnonzero(said > 0.0)
     placed = [open_pairs.placed(OUTLINES, k) for k in shut]
     gaps = np.array([min(least_gap(first, second), least_gap(second, first)) for first, second in placed])
-    assert len(shut) > 100
+    assert len(shut) > 30
     assert (said[shut] < gaps + 8.0 * ERROR).all()
     assert np.median(said[shut] / gaps) > 0.3  # else it would be of no use
 
@@ -233,7 +233,7 @@ def test_a_scan_finds_every_local_minimum_of_the_gap(asked):
     given = random_pairs(OUTLINES, COUNT, 6, (0.0, 0.15))
     number, found = asked.scanned(given, SKIN)
     seen = several = 0
-    for k in range(0, COUNT, 20):
+    for k in range(0, COUNT, 60):
         placed = given.placed(OUTLINES, k)
         if are_apart(*placed):
             expected = local_gaps(*placed, SKIN)
@@ -241,7 +241,7 @@ def test_a_scan_finds_every_local_minimum_of_the_gap(asked):
             assert len(gaps) >= len(np.unique(expected.round(6))) and gaps[:1] == pytest.approx(expected[:1], abs=1e-5)
             assert all(np.abs(gaps - gap).min() < 1e-5 for gap in expected)
             seen, several = seen + len(expected), several + (len(expected) > 1)
-    assert seen > 50 and several > 10
+    assert seen > 20 and several > 3
 
 
 def in_order(number, found):
@@ -284,7 +284,7 @@ def test_contacts_turn_and_mirror_with_their_grains(asked, pairs, shallow, chang
 def test_the_smooth_rule_and_the_discrete_one_differ_by_the_overlap_squared(asked, pairs, shallow):
     """A shift along the normal makes an overlap exactly so much larger; the polar depth has another second order."""
     number, found = asked.scanned(pairs, SKIN)
-    chosen, off = np.flatnonzero((number == 1) & shallow)[:40], []
+    chosen, off = np.flatnonzero((number == 1) & shallow)[:15], []
     for overlap in (1e-2, 1e-3):
         place = pairs.place.copy()
         place[:, 1] += (overlap - found[:, 0, :1]) * found[:, 0, 1:3]
@@ -294,7 +294,7 @@ def test_the_smooth_rule_and_the_discrete_one_differ_by_the_overlap_squared(aske
         assert at[single, 0, 0] == pytest.approx(overlap, abs=1e-6)
         deep = [penetrations(*moved.placed(OUTLINES, k))[0].overlap for k in single]
         off.append(np.median(np.abs(np.array(deep) - overlap)))
-    assert len(single) > 20
+    assert len(single) > 8
     assert off[0] / off[1] == pytest.approx(100.0, rel=0.3)
 
 
