@@ -259,8 +259,9 @@ def make_grains(scene, setting: Setting) -> GrainMatter | None:
     laws = ChosenLaws(arrays, units, *scene.laws, scene.interfaces_of, scene.kinds, integrator)
     moduli = np.array([[between.young_modulus for between in world] for world in scene.interfaces_of])
     bridges = scene.longest_bridge
-    reach = 2.0 * scene.farthest_reach + max(setting.skin, bridges)
-    lists = setting.skin, bridges, reach, laws, moduli, setting.room
+    early = 0.5 * setting.stretch * scene.time_step() * scene.credible_speed()
+    reach = 2.0 * scene.farthest_reach + max(setting.skin, bridges) + early
+    lists = setting.skin, bridges, early, reach, laws, moduli, setting.room
     if scene.shapes is None:
         grains = Grains(arrays, *given)
         neighbours = Neighbours(arrays, units, grains, walls, *lists)

@@ -26,7 +26,12 @@ NEVER = 1e30  # m, a displacement that makes the lists stale
 
 @ti.data_oriented
 class Neighbours:
-    """The two contact lists of every unit, and when they are rebuilt."""
+    """The two contact lists of every unit, and when they are rebuilt.
+
+    Pairs are listed that may touch before the next rebuild, when a grain has moved by half the `skin` (m), or that may
+    have a liquid bridge, of at most `bridges` (m); and those `early` (m) before, since a force begins in the kick in
+    which two grains touch.
+    """
 
     lanes = LANES
     pair_fleeting, wall_fleeting = (), ()  # memories of contacts that last until the next rebuild
@@ -39,6 +44,7 @@ class Neighbours:
         walls: Walls,
         skin: float,
         bridges: float,
+        early: float,
         reach: float,
         laws: ChosenLaws,
         modulus: np.ndarray,
@@ -62,8 +68,8 @@ class Neighbours:
         own, place = arrays.under("lists"), (Axis("world", grains.worlds), Axis("grain", grains.count))
         self.modulus = own.holding("modulus", 4.0 / 3.0 * modulus, "world row")  # k = (4/3) E* √R_eff of each interface
         self.skin = own.holding("skin", np.array([skin]), "one")
-        if laws.cohesive:
-            self.bridges = own.holding("bridges", np.array([bridges]), "one")  # m, longest possible bridge
+        # The gap (m) up to which pairs are listed.
+        self.margin = own.holding("margin", np.array([max(skin, bridges) + early]), "one")
         self.cells = Cells(arrays, grains, *walls.bounds, reach)
         self.built = own.reals(place, *named("built", grains.axes), kind=own.place)
         # `travel` (m) bounds the displacement of all grains since the lists were built, at the time `built_at` (s).
@@ -79,14 +85,6 @@ class Neighbours:
     def expire(self) -> None:
         """Have the lists rebuilt before the next step."""
         self.travel.fill(NEVER)
-
-    @ti.func
-    def margin(self):
-        """The gap (m) up to which pairs are listed: they may touch before the next rebuild, or have a liquid bridge."""
-        wide = self.skin[0]
-        if ti.static(self.laws.cohesive):
-            wide = ti.max(wide, self.bridges[0])
-        return wide
 
     @ti.func
     def worn(self, u):
@@ -139,7 +137,7 @@ class Neighbours:
         start, end = self.units.first(u), self.units.end(u)
         for i in range(start, end):
             self.pairs.first[u, i - start] = found
-            place, reach = [g.place[a][w, i] for a in ti.static(range(g.axes))], g.reach[w, i] + self.margin()
+            place, reach = [g.place[a][w, i] for a in ti.static(range(g.axes))], g.reach[w, i] + self.margin[0]
             lower, upper = c.box(w, i)
             for n in range(c.rows(lower, upper)):
                 # Three adjacent cells of a row are one contiguous range of the sorted grains.
@@ -185,7 +183,7 @@ class Neighbours:
         shift = self.walls.shift(w, t)
         for i in range(start, end):
             self.contacts.first[u, i - start] = found
-            reach = self.grains.reach[w, i] + self.margin()
+            reach = self.grains.reach[w, i] + self.margin[0]
             for feature in range(self.walls.features):
                 # A contact may begin when a grain slides past a segment's end, so grains beyond it are listed too.
                 if self.walls.near(feature, shift, self.grains.place[0][w, i], self.grains.place[1][w, i], reach):

@@ -23,9 +23,10 @@ class CountedLaws(ChosenLaws):
         (self.lost,) = arrays.reals((Axis("unit", APART * units.count),), "lost", kind=arrays.exact)
 
     @ti.func
-    def forces(self, kind: ti.template(), contacts: ti.template(), u, block, overlap, rate, slip, turning, dt):
+    def forces(self, kind: ti.template(), contacts: ti.template(), u, block, approach, rate, slip, turning, dt):
         before = self.sprung(kind, contacts, u, block)
-        pressing = self.press(kind, contacts, u, block, overlap, rate, dt)
+        pressing = self.press(kind, contacts, u, block, approach, rate, dt)
+        overlap = greater(approach, 0.0)
         shearing, torque = self.rub(kind, contacts, u, block, overlap, rate, pressing, slip, turning, dt)
         elastic = contacts.stiffness[u, block] * overlap * ti.sqrt(overlap)
         work = ((pressing - elastic) * rate - shearing * slip).sum() * dt

@@ -9,7 +9,7 @@ from lab.studies.verify.scenes import WEIGHTLESS, Setup, each_at_its_step, grain
 SECTION = "Collisions"
 RIGID = 1e15  # Pa, the most that a preset may say
 CHUNG_OOI = "Chung and Ooi (2011)"
-STEPS_A_COLLISION = "scheme O(Δt²), 36 steps a collision"
+STEPS_A_COLLISION = "scheme O(Δt²), 25 steps a collision"
 BOX = {"width": 1.0, "height": 1.0}
 
 

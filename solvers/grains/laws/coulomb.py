@@ -42,12 +42,12 @@ class Coulomb:
     def force(self, c: ti.template(), contacts: ti.template(), w, block, root, rate, normal, slip, dt):
         """F_t (N) of a block of contacts on their first grains along the tangent; slip u_s in m/s, F_n in N."""
         cap, limit = c[0] * normal, contacts.limit[w, block]
-        share = lesser(FOLLOWING * SLIP * limit / greater(cap, SMALLEST_FORCE), 1.0)
+        share = lesser(FOLLOWING * SLIP * limit / greater(cap, SMALLEST_FORCE), 1.0) * settled(root, rate, dt)
         damping = cap * (1.0 / SLIP)
         at_once = lesser(damping, AT_ONCE * limit)
         fast, before = at_once * slip, contacts.followed[w, block]
         room = greater(cap - ti.abs(fast), 0.0)
-        lag = lagging(damping - at_once, share, slip, before, room, settled(root, rate, dt))
+        lag = lagging(damping - at_once, share, slip, before, room)
         contacts.followed[w, block] = lag
         return within(-lag - fast, cap)
 

@@ -41,11 +41,11 @@ class HaffWerner:
     def force(self, c: ti.template(), contacts: ti.template(), w, block, root, rate, normal, slip, dt):
         """F_t (N) of a block of contacts on their first grains along the tangent; slip u_s in m/s, F_n in N."""
         cap, limit = c[0] * normal, contacts.limit[w, block]
-        share = lesser(c[2] * limit, 1.0)
+        share = lesser(c[2] * limit, 1.0) * settled(root, rate, dt)
         at_once = lesser(AT_ONCE * limit, c[1])
         fast, before = at_once * slip, contacts.followed[w, block]
         room = greater(cap - ti.abs(fast), 0.0)
-        lag = lagging(c[1] - at_once, share, slip, before, room, settled(root, rate, dt))
+        lag = lagging(c[1] - at_once, share, slip, before, room)
         contacts.followed[w, block] = lag
         return within(-lag - fast, cap)
 

@@ -63,8 +63,6 @@ class HertzViscoelastic(Hertz):
         k = contacts.stiffness[w, block]
         end, begin = reached(approach, rate, dt)
         swept = end * ti.sqrt(end) - begin * ti.sqrt(begin)
-        spring, damper = k * root, (c[0] * (2.0 / 3.0) / dt) * k * swept
-        parting = greater(-rate, 0.0)
-        return cut_at_zero(
-            spring * overlap + damper * (1.0 - contacts.lag[w, block] * root), 0.5 * dt * spring * parting
-        )
+        spring, lag = k * root, greater(1.0 - contacts.lag[w, block] * root, 0.0)
+        damper = (c[0] * (2.0 / 3.0) / dt) * k * swept * lag
+        return cut_at_zero(spring * overlap, damper, 0.5 * dt * spring * rate)

@@ -9,7 +9,7 @@ longer matters. The spring keeps its value at the middle, so that it stays a for
 
 import taichi as ti
 
-from solvers.grains.laws.extremes import greater
+from solvers.grains.laws.extremes import greater, lesser
 
 
 @ti.func
@@ -23,11 +23,13 @@ def reached(approach, rate, dt):
 
 
 @ti.func
-def cut_at_zero(force, fall):
-    """Mean over a kick of max(F, 0), for a force (N) that falls in a straight line by 2 `fall` (N), or does not (0).
+def cut_at_zero(spring, damper, rise):
+    """Mean over a kick of max(F, 0), for the force F of spring and damper (N), which changes by 2 `rise` (N) in it.
 
-    Dry grains do not attract, so a contact ends where its force vanishes. Where the line crosses zero within the kick,
-    |F| < δ, the mean above zero is (F + δ)²/(4δ). Here it is max(F, (F + δ)/4), without a division; over all moments at
-    which a contact may end both come to the same impulse, (2/3) δ².
+    Dry grains do not attract, so a contact ends where its force vanishes, with the damper pulling. Where a falling line
+    crosses zero within the kick, |F| < δ, its mean above zero is (F + δ)²/(4δ). Here it is max(F, (F + δ)/4), without a
+    division; over all moments at which a contact may end both come to the same impulse, (2/3) δ². δ is at most what the
+    damper pulls, so that a spring alone keeps its potential.
     """
+    force, fall = spring + damper, lesser(greater(-rise, 0.0), greater(-damper, 0.0))
     return greater(greater(force, 0.25 * (force + fall)), 0.0)

@@ -31,12 +31,12 @@ def shear_limit(stiffness: float, inertia: float, time: float) -> float:
 
 @ti.func
 def settled(root, rate, dt):
-    """Whether contacts are at rest along the normal, from √ξ (√m) and ξ̇ (m/s); all but the turning of a collision."""
-    return root * root > SETTLED * dt * ti.abs(rate)
+    """1 for contacts at rest along the normal, from √ξ (√m) and ξ̇ (m/s), and 0 in collisions but for their turning."""
+    return ti.select(root * root > SETTLED * dt * ti.abs(rate), 1.0 + 0.0 * root, 0.0 * root)
 
 
 @ti.func
-def lagging(damping, share, velocity, lag, room, follows):
+def lagging(damping, share, velocity, lag, room):
     """Force of the part of a damper that the step does not resolve, from its previous value `lag`, within ±`room`.
 
     A damper γ on `velocity` is split. γ_f = min(γ, 0.2 m/Δt) acts at once; the rest, `damping` = γ − γ_f, acts through
@@ -44,12 +44,11 @@ def lagging(damping, share, velocity, lag, room, follows):
     that the step also resolves the filter's stiffness (γ − γ_f)/T. The velocity stops within a few steps, and under a
     lasting load F it is F/γ, the creep of the law itself, whatever the step. A damper with γ < 0.2 m/Δt is not split.
 
-    The filter is for lasting loads. It moves only while the contact `follows`, which is to say at rest along the
-    normal: in a collision of a few tens of steps it would take up the slip before the contact sticks, and then drive it
-    the other way. `room` is what γ_f leaves of the Coulomb cap (conditional integration, as in controllers).
+    The filter is for lasting loads. In a collision of a few tens of steps it would take up the slip before the contact
+    sticks, and then drive it the other way. So friction laws give a `share` of zero until the contact has `settled`,
+    and as `room` what γ_f leaves of the Coulomb cap (conditional integration, as in controllers).
     """
-    moved = lag + share * (damping * velocity - lag)
-    return within(ti.select(follows, moved, lag), room)
+    return within(lag + share * (damping * velocity - lag), room)
 
 
 @ti.func

@@ -16,8 +16,7 @@ HERTZ = 4.0 / 3.0 * YOUNG / (2.0 * (1.0 - POISSON**2)) * np.sqrt(RADIUS)  # k of
 DEEPEST = (1.25 * MASS * SPEED**2 / HERTZ) ** 0.4
 RATIO = 2.0 * (1.0 - POISSON) / (2.0 - POISSON)  # k_t over the normal contact's stiffness (Mindlin 1949)
 PHASES = np.linspace(0.05, 0.95, 7)  # of a step, when contact begins
-SLOW = ("verlet", "symplectic-euler")  # the first is tried by the studies' impacts, too
-INTEGRATORS = [*(pytest.param(name, marks=pytest.mark.slow) for name in SLOW), "gear"]
+INTEGRATORS = ["verlet", *(pytest.param(name, marks=pytest.mark.slow) for name in ("symplectic-euler", "gear"))]
 
 
 @cache
@@ -65,8 +64,8 @@ def given_back(request):
 
 
 def test_an_undamped_spring_returns_its_slip_at_the_derived_step(given_back):
-    """Within (ω_t Δt)²/2, 1 % at 36 steps a collision, wherever in a step the contact begins."""
-    assert given_back[0] == pytest.approx(kept(), abs=1e-2)
+    """Within (ω_t Δt)²/2, 2 % at 25 steps a collision, wherever in a step the contact begins."""
+    assert given_back[0] == pytest.approx(kept(), abs=2e-2)
 
 
 def test_errors_of_history_fall_faster_than_first_order(given_back):

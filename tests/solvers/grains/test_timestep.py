@@ -72,7 +72,7 @@ def test_step_falls_with_stiffness_and_grows_with_size():
     """Δt ∝ Y^(−2/5) at one restitution, since its damping x stays, whether Y or its scale changes; and Δt ∝ d."""
     step = scene().time_step()
     assert "Hertz" in scene().step_limits()[0].reason
-    for factor in (1e-3, 0.1, 10.0):
+    for factor in (1e-3, 0.1, 3.0):  # beyond, waves in the grains bound it
         assert scene(young=3.2e9 * factor).time_step() == pytest.approx(step * factor**-0.4, rel=1e-9)
     assert scene(stiffness_scale=1e-3).time_step() == pytest.approx(step * 1e-3**-0.4, rel=1e-9)
     for factor in (0.1, 5.0):
@@ -175,12 +175,16 @@ def test_every_normal_law_bounds_the_step_and_scales_with_stiffness(law):
 @pytest.mark.parametrize("tangential", TANGENTIAL)
 @pytest.mark.parametrize("rolling", ROLLING)
 def test_springs_bound_the_step_only_where_they_are_stiff(tangential, rolling):
-    """Δt² k/m ≤ 0.1 of every spring, which the collision's own step keeps in ordinary scenes."""
+    """Δt² k/m ≤ 0.1 of every spring, which the collision's own step keeps in ordinary scenes.
+
+    Mindlin's, with its dashpot, is stiff in the hardest impact of lossy grains.
+    """
     laws = {"tangential": tangential, "rolling": rolling}
-    assert scene(**laws).time_step() == scene().time_step()
+    assert (scene(**laws).time_step() < scene().time_step()) == (tangential == "mindlin")
+    assert scene(restitution=1.0, **laws).time_step() == scene(restitution=1.0).time_step()
     rough = material(rolling_friction=30.0)
     stiff = Scene(np.full((1, 4), 1.5e-3), TANK, rough, rough, **laws)
-    assert (stiff.time_step() < scene().time_step()) == (rolling == "elastic-plastic")
+    assert (stiff.time_step() < scene(**laws).time_step()) == (rolling == "elastic-plastic")
 
 
 @pytest.mark.parametrize("count", [1, 2, 3, 50])

@@ -22,11 +22,11 @@ class ShapedNeighbours(Neighbours):
     grains of a pair in the order of their numbers, so that units that share a pair compute identical results.
     """
 
-    def __init__(self, arrays, units, grains, walls, skin, bridges, reach, laws, modulus, room, rule):
+    def __init__(self, arrays, units, grains, walls, skin, bridges, early, reach, laws, modulus, room, rule):
         self.lanes, self.pair_fleeting = rule.rest.lanes, rule.rest.memory
         self.places = min(rule.most, BENT_PLACES * room)
         room *= (BENT_PLACES if rule.bent else 1) * ceil(grains.crowding - 0.01)
-        super().__init__(arrays, units, grains, walls, skin, bridges, reach, laws, modulus, room, rule)
+        super().__init__(arrays, units, grains, walls, skin, bridges, early, reach, laws, modulus, room, rule)
         self.rule = rule
         for contacts in (self.pairs, self.contacts):
             # In a pair's first entry: whether its contacts must be searched for again.
@@ -73,12 +73,12 @@ class ShapedNeighbours(Neighbours):
             if self.pairs.wanted[u, p][0] > 0.0:
                 i, j = self.pairs.first_of(u, p), self.pairs.second_of(u, p)
                 if not (whole and self.goes_on(u, p, i)):
-                    count = self.rule.seek_pair(g, w, ti.min(i, j), ti.max(i, j), self.margin(), u)
+                    count = self.rule.seek_pair(g, w, ti.min(i, j), ti.max(i, j), self.margin[0], u)
                     fits = self.replace(self.pairs, u, p, i, j, count, whole) and fits
         for p in range(self.contacts.length[u]):
             if self.contacts.wanted[u, p][0] > 0.0:
                 i, feature = self.contacts.first_of(u, p), self.contacts.second_of(u, p)
-                count = self.rule.seek_wall(g, w, i, feature, shift, self.margin(), u)
+                count = self.rule.seek_wall(g, w, i, feature, shift, self.margin[0], u)
                 fits = self.replace(self.contacts, u, p, i, feature, count, whole) and fits
         self.asking[u] = 0
         if not fits:
