@@ -16,9 +16,7 @@ from solvers.grains.timestep import Limit, limits, watched
 from solvers.machine.marks import EachWorld, LargestOfWorlds, NotOfBed, marked
 from solvers.ship.vessel import Vessel
 from solvers.tank.parts import Part
-from solvers.tank.tank import Tank
-
-BARE_THICKNESS = 1.0  # m, of a tank without grains unless it is given
+from solvers.tank.tank import BARE_THICKNESS, Tank
 
 
 @dataclass
@@ -149,6 +147,11 @@ class Scene:
     def worlds(self) -> int:
         """Number of worlds, W."""
         return len(self.radius)
+
+    @property
+    def work(self) -> int:
+        """Relative cost of a step: the number of grains in all worlds, where an empty world counts as one grain."""
+        return max(self.worlds, self.radius.size)
 
     @property
     def mean_radius(self) -> float:
