@@ -32,7 +32,7 @@ AT_REST = -1e9  # a time long before any motion starts
 
 
 class Simulation:
-    """W worlds of one scene, its grains at `position` (W, n, 2) m, at rest or with the scene's velocities.
+    """W worlds of one scene, its grains, if any, at `position` (W, n, 2) m, at rest or with the scene's velocities.
 
     `threads` 0 uses all cores; `arch` is one of `runtime.ARCHES`; the `skin` (m) of the Verlet lists affects speed
     only. `units` is the number of units per world, by default the schedule's choice. Steps are up to `stretch` times
@@ -42,7 +42,7 @@ class Simulation:
     def __init__(
         self,
         scene: Scene,
-        position: np.ndarray,
+        position: np.ndarray | None = None,
         threads: int = 0,
         skin: float | None = None,
         arch: str = "auto",
@@ -66,7 +66,8 @@ class Simulation:
         means = [quantity for quantity in self.observer.quantities if quantity.mean]
         # When last, and what the means were
         self.observed, self.means = 0, {mean.name: np.zeros((worlds, *mean.shape)) for mean in means}
-        self.place(np.asarray(position, dtype=np.float64).reshape(worlds, count, 2), scene.velocity, scene.spin)
+        places = np.zeros((worlds, 0, 2)) if position is None else np.asarray(position, dtype=np.float64)
+        self.place(places.reshape(worlds, count, 2), scene.velocity, scene.spin)
 
     def _build(self) -> None:
         """Make the arrays and the objects whose kernels work on them."""

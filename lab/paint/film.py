@@ -204,7 +204,8 @@ class Film:
     def _prepare_plot(self) -> tuple[deco.LivePlot, list[np.ndarray]]:
         """The plot of the beds' main quantity, and the times of the points of each curve."""
         afloat = any(bed.footage.sea for bed in self._all)
-        steady = not afloat and all(_monotonic(bed.footage.series_pose[:, bed.world, 2]) for bed in self._all)
+        still = afloat or any(bed.empty for bed in self._all)
+        steady = not still and all(_monotonic(bed.footage.series_pose[:, bed.world, 2]) for bed in self._all)
         label, measured = _quantity(self._all)
         curves, colours, samples = [], [], []
         for k in reversed(range(len(self._all))):  # the beds that are shown on top

@@ -278,7 +278,7 @@ def test_errors_name_the_key(overrides, sentence):
     [
         ("title", "title: missing; a text"),
         ("tank", "tank.width: missing; give width and height, or an outline"),
-        ("grains", "grains: missing; the tank has nothing in it"),
+        ("grains", "material: goes with grains, and there are none; add a table \\[grains\\], or set material = false"),
         ("material", "material.density: missing; a density is needed"),
         ("run", "run.duration: missing, and no motion has an end"),
     ],

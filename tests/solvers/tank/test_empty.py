@@ -30,7 +30,7 @@ def empty(worlds: int = 1, **scene) -> Scene:
 
 def launched(scene: Scene, schedule: str = "per-world") -> Simulation:
     scene.schedule = schedule
-    return Simulation(scene, np.zeros((scene.worlds, 0, 2)), 1, arch="cpu")
+    return Simulation(scene, threads=1, arch="cpu")
 
 
 def in_waves() -> Vessel:
