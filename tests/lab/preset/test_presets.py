@@ -73,7 +73,8 @@ def on_its_own(preset: Preset) -> Preset:
 
 @pytest.mark.parametrize("name", names())
 def test_given_text_is_the_same_preset(name, tmp_path):
-    preset = load(name, {"grains.spread": "5 %", "material.dissipative_time": "1e-6 s"})
+    changes = {"grains.spread": "5 %", "material.dissipative_time": "1e-6 s"} if load(name).resolved.grains else {}
+    preset = load(name, {"run.seed": 5, **changes})
     for table in (files("presets") / name).parent.glob("*.csv"):  # paths in the text are as written
         copy(table, tmp_path)
     again = load(write(tmp_path, "again.toml", preset.given_text))
