@@ -16,23 +16,23 @@ from solvers.grains.timestep import Limit, limits, watched
 from solvers.machine.marks import EachWorld, LargestOfWorlds, NotOfBed, marked
 from solvers.ship.vessel import Vessel
 from solvers.tank.parts import Part
-from solvers.tank.tank import Tank
+from solvers.tank.tank import BARE_THICKNESS, Tank
 
 SLOWEST = 1e-3  # m/s: steps are derived for closing speeds of at least this
 
 
 @dataclass
 class Scene:
-    """A batch of W worlds of n grains in equal tanks.
+    """A batch of W worlds of n grains in equal tanks; n may be 0, for tanks without grains.
 
     - `radius` (W, n) m; `sizes`: smallest and largest radius (m) a world may hold, by default the range of `radius`.
       What is derived for all worlds follows from `sizes`, so that a world does not depend on the others in its batch.
     - `outline` (m, 2) m of the tank, counter-clockwise; `open_edges`: its edges without a wall, by their first corners;
       `parts`: plates that move in the tank; `fixed` (k, 3): y, z and radius in m of grains that never move.
-    - `thickness` (m) of the tank, by default the mean grain diameter; `length` (m) along a ship, by default the whole
-      ship; `more_tanks` stand beside it. Parts and fixed grains belong to the first tank.
-    - `grain`, `wall`: materials, one or one per world. `kind` (W, n) is 0 for grains of `grain` and counts on through
-      `others`, None if there is one kind; `unlike`: the contact materials of pairs of kinds.
+    - `thickness` (m) of the tank, by default the mean grain diameter, without grains 1 m; `length` (m) along a ship,
+      by default the whole ship; `more_tanks` stand beside it. Parts and fixed grains belong to the first tank.
+    - `grain`, `wall`: materials, one or one per world, none without grains. `kind` (W, n) is 0 for grains of `grain`
+      and counts on through `others`, None if there is one kind; `unlike`: the contact materials of pairs of kinds.
     - `motions[w]`: the tank's motions in world w, of the same kinds in every world; or `vessels` (W,): the ships whose
       holds the tanks are in. `interval` (s) between updates of the water's forces, by default derived.
     - `step` Δt in s, None: derived; `start_speed` (m/s): the highest closing speed of two grains, or of one and a wall,
@@ -44,8 +44,8 @@ class Scene:
 
     radius: Annotated[np.ndarray, EachWorld(lambda scene: scene.radius.shape[1])]
     outline: np.ndarray
-    grain: Annotated[Material | Sequence[Material], EachWorld(lambda scene: scene.longest_bridge)]
-    wall: Annotated[Material | Sequence[Material], EachWorld()]
+    grain: Annotated[Material | Sequence[Material], EachWorld(lambda scene: scene.longest_bridge)] = ()
+    wall: Annotated[Material | Sequence[Material], EachWorld()] = ()
     normal: str = "hertz-viscoelastic"
     tangential: str = "haff-werner"
     rolling: str = "none"
@@ -84,7 +84,7 @@ class Scene:
         if not len(self.motions):
             self.motions = [()] * self.worlds
         if self.sizes is None:
-            self.sizes = float(self.radius.min()), float(self.radius.max())
+            self.sizes = (float(self.radius.min()), float(self.radius.max())) if self.radius.size else (0.0, 0.0)
         self.interfaces_of = [self._interfaces(*materials) for materials in zip(self.grain, self.wall, strict=True)]
 
     def _a_world(self, material: Material | Sequence[Material]) -> tuple[Material, ...]:
@@ -105,7 +105,7 @@ class Scene:
     @property
     def tanks(self) -> tuple[Tank, ...]:
         """All tanks of a world, the first one included."""
-        thickness = self.thickness or 2.0 * self.mean_radius
+        thickness = self.thickness or 2.0 * self.mean_radius or BARE_THICKNESS
         return (Tank(self.outline, thickness, tuple(self.open_edges), self.length), *self.more_tanks)
 
     @property
@@ -151,6 +151,11 @@ class Scene:
         return len(self.radius)
 
     @property
+    def work(self) -> int:
+        """Relative cost of a step: the number of grains in all worlds, where an empty world counts as one grain."""
+        return max(self.worlds, self.radius.size)
+
+    @property
     def mean_radius(self) -> float:
         """Middle of the range of radii (m)."""
         return 0.5 * sum(self.sizes)
@@ -173,7 +178,7 @@ class Scene:
         Worlds whose bridges differ by nanometres then have equal lists and may run in one launch.
         """
         law = COHESION[self.cohesion]()
-        longest = max(law.range(between) for world in self.interfaces_of for between in world)
+        longest = max((law.range(between) for world in self.interfaces_of for between in world), default=0.0)
         return 1e-6 * float(np.ceil(1e6 * longest))
 
     def credible_speed(self) -> float:
@@ -191,7 +196,7 @@ class Scene:
         return speed
 
     def calm_speed(self, times: float) -> float:
-        """The highest closing speed (m/s) at which the derived step is so many `times` as long; 0 if there is none.
+        """The highest closing speed (m/s) at which the grains' derived step is so many `times` as long; 0: never.
 
         The step lengthens as a collision does, as v^(−1/5), up to those bounds that do not depend on the speed.
         """
@@ -201,10 +206,22 @@ class Scene:
         return float(speeds[allowed].max(initial=0.0))
 
     def step_limits(self, speed: float | None = None) -> list[Limit]:
-        """Bounds on the step, the tightest first: those of Verlet's scheme times the integrator's `reach`.
+        """Bounds on the step, the tightest first: those of the grains, without grains those of the ships.
 
-        For closing speeds up to `speed` (m/s), by default the credible one.
+        Grains meet at up to `speed` (m/s), by default the credible one. Without grains and ships there are none:
+        prescribed motions are exact at any time. With grains the ships need none of their own, since the water's forces
+        are updated every few steps.
         """
+        bounds = self._limits_of_grains(speed) if self.radius.size else self._limits_of_ships()
+        return sorted(bounds, key=lambda limit: limit.step)
+
+    def _limits_of_ships(self) -> list[Limit]:
+        """Bounds on the step of ships alone, for each reason that of the ship with the shortest."""
+        bounds = zip(*(vessel.step_limits for vessel in self.vessels), strict=True)
+        return [Limit(*min(of_ships, key=lambda bound: bound[0]), firm=True) for of_ships in bounds]
+
+    def _limits_of_grains(self, speed: float | None) -> list[Limit]:
+        """Bounds on the step of grains that meet at a speed (m/s): those of Verlet's scheme times the `reach`."""
         speed = max(self.credible_speed() if speed is None else speed, SLOWEST)
         share = self.shapes.least_mass if self.shapes else 1.0
         found: dict[tuple, list[Limit]] = {}
@@ -220,11 +237,12 @@ class Scene:
         tightest = min(found.values(), key=lambda bounds: bounds[0].step)
         bounds = [Limit(reach * limit.step, of + limit.reason) for limit in tightest]
         bounds.append(watched(self.sizes[0], speed, self.radius.shape[1], self.shapes is not None))
-        return sorted(bounds, key=lambda limit: limit.step)
+        return bounds
 
     def longest_step(self, longer: float) -> float:
-        """The step (s) `longer` times the derived one, within the bounds that are `firm`."""
-        return min(limit.step if limit.firm else longer * limit.step for limit in self.step_limits())
+        """The step (s) `longer` times the derived one, within the bounds that are `firm`; ∞ without bounds."""
+        steps = (limit.step if limit.firm else longer * limit.step for limit in self.step_limits())
+        return min(steps, default=np.inf)
 
     def deepest_overlap(self, speed: float) -> float:
         """Largest overlap, in radii of the smallest grain, as it hits the largest grain or a wall at a speed (m/s).
@@ -249,8 +267,11 @@ class Scene:
         return relaxed(position, self.radius[0], edges, *overlaps)
 
     def time_step(self) -> float:
-        """The step Δt (s) in use."""
-        return self.step or self.step_limits()[0].step
+        """The step Δt (s) in use. Raises ValueError if none is given and nothing bounds it."""
+        step = self.step or self.longest_step(1.0)
+        if step == np.inf:
+            raise ValueError("nothing in this scene sets the step: give one")
+        return step
 
     @property
     def kinds_of_motions(self) -> tuple:

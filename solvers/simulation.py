@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from solvers.grains.matter import GrainMatter
-from solvers.grains.pressing import Pressing
+from solvers.grains.pressing import UNTOUCHED, Pressing
 from solvers.machine import runtime
 from solvers.machine.errors import Unavailable
 from solvers.machine.state import Axes, Axis, State
@@ -32,7 +32,7 @@ AT_REST = -1e9  # a time long before any motion starts
 
 
 class Simulation:
-    """W worlds of one scene, from `position` (W, n, 2) m, at rest or with the scene's velocities.
+    """W worlds of one scene, its grains, if any, at `position` (W, n, 2) m, at rest or with the scene's velocities.
 
     `threads` 0 uses all cores; `arch` is one of `runtime.ARCHES`; the `skin` (m) of the Verlet lists affects speed
     only. `units` is the number of units per world, by default the schedule's choice. The scene's step is the base step;
@@ -42,7 +42,7 @@ class Simulation:
     def __init__(
         self,
         scene: Scene,
-        position: np.ndarray,
+        position: np.ndarray | None = None,
         threads: int = 0,
         skin: float | None = None,
         arch: str = "auto",
@@ -55,7 +55,7 @@ class Simulation:
         runtime.initialise(self.threads, self.arch, scene.precision)
         worlds, count = scene.radius.shape
         self.scene, self.dt = scene, scene.time_step()
-        self.longest_step = scene.step_limits()[0].step  # s, the limit at set-up
+        self.longest_step = scene.longest_step(1.0)  # s, the limit at set-up
         self.schedule_name = choose_schedule(scene.schedule, self.arch, worlds, count, self.threads, answers)
         self.units_a_world = units or units_a_world(self.schedule_name, worlds, count, self.threads)
         self.skin = skin or (SKIN_OF_CONVEX if scene.shapes and scene.shapes.convex else SKIN) * 2.0 * scene.mean_radius
@@ -69,7 +69,8 @@ class Simulation:
         means = [quantity for quantity in self.observer.quantities if quantity.mean]
         # When last, and what the means were
         self.observed, self.means = 0, {mean.name: np.zeros((worlds, *mean.shape)) for mean in means}
-        self.place(np.asarray(position, dtype=np.float64).reshape(worlds, count, 2), scene.velocity, scene.spin)
+        places = np.zeros((worlds, 0, 2)) if position is None else np.asarray(position, dtype=np.float64)
+        self.place(places.reshape(worlds, count, 2), scene.velocity, scene.spin)
 
     def _build(self) -> None:
         """Make the arrays and the objects whose kernels work on them."""
@@ -86,28 +87,30 @@ class Simulation:
         matters = list(self.matters.values())
         loads = [matter.load for matter in matters]
         self.carrier.bear(loads)
-        self.clock = Clock(arrays, matters[0].units)
+        self.clock = Clock(arrays, setting.units(scene.radius.shape[1]))
         sequence = Sequence(matters, self.carrier)
         self.beat = sequence.beat
         self.schedule = SCHEDULES[self.schedule_name](sequence, self.clock, self.threads)
-        self.observer = Observer(arrays, worlds, self.walls, self.carrier, loads)
+        self.observer = Observer(arrays, worlds, pieces, self.walls, self.carrier, loads)
         arrays.finish()
 
     @property
-    def grains(self) -> GrainMatter:
-        """The scene's grains."""
-        return self.matters["grains"]
+    def grains(self) -> GrainMatter | None:
+        """The scene's grains; None if it has none."""
+        return self.matters.get("grains")
 
     def place(self, position: np.ndarray, velocity: np.ndarray | None = None, spin: np.ndarray | None = None) -> None:
-        """Place the grains at `position` (W, n, 2) m without contact history, and `launch` them."""
-        self.grains.place(position)
+        """Place the grains at `position` (W, n, 2) m without contact history, and `launch` all matters."""
+        if self.grains:
+            self.grains.place(position)
         self.launch(velocity, spin)
 
     def launch(self, velocity: np.ndarray | None = None, spin: np.ndarray | None = None) -> None:
         """Set the grains' velocities (W, n, 2) m/s and spins (W, n) rad/s; None: at rest."""
         velocity = np.zeros((*self.scene.radius.shape, 2)) if velocity is None else velocity
         spin = np.zeros(self.scene.radius.shape) if spin is None else spin
-        self.grains.launch(velocity, spin)
+        if self.grains:
+            self.grains.launch(velocity, spin)
         self.clock.launch()
         self.unkicked = self.observed = self.steps
         self.moored = False
@@ -252,7 +255,7 @@ class Simulation:
         Raises Unavailable if the changes need shorter steps or longer liquid bridges than the arrays were made for.
         """
         altered = replace(self.scene, **changes)
-        if altered.step_limits()[0].step < SHORTER * self.longest_step:
+        if altered.longest_step(1.0) < SHORTER * self.longest_step:
             raise Unavailable("this asks for shorter time steps: start the experiment anew with it")
         if altered.longest_bridge > self.scene.longest_bridge:
             raise Unavailable("this lets the liquid reach farther: start the experiment anew with it")
@@ -279,15 +282,17 @@ class Simulation:
 
     def cargo(self) -> list[Body]:
         """All matters of each world as one rigid body, per metre of the ship's length, in the tank's frame."""
-        bodies = zip(*(matter.bodies() for matter in self.matters.values()), strict=True)
-        return [bolted(*parts) if len(parts) > 1 else parts[0] for parts in bodies]
+        bodies = [matter.bodies() for matter in self.matters.values()]
+        return [bolted(*(of_matter[w] for of_matter in bodies)) for w in range(self.scene.worlds)]
 
     def snapshot(self) -> dict[str, np.ndarray]:
         """What is known of each particle now, in the tank's frame: of grains, positions, velocities (W, n, 2) …"""
         return {name: values for matter in self.matters.values() for name, values in matter.snapshot().items()}
 
     def pressing(self, world: int = 0) -> Pressing:
-        """The present elastic contact forces in a world."""
+        """The present elastic contact forces in a world; none without grains."""
+        if not self.grains:
+            return UNTOUCHED
         runtime.merge_repeats(self.scene.shapes is None)
         return self.grains.pressing(world, self.origin + self.time)
 

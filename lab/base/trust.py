@@ -110,10 +110,11 @@ def check_state(state: Mapping[str, np.ndarray], worlds: int, count: int) -> Non
 
     The simulation itself refuses invalid indices in its contact lists (`State.write`).
     """
-    numbers, order = state["numbers"], state["number"]
+    numbers = state["numbers"]
     room, counts = int(numbers[1]), np.delete(numbers, UNKICKED)
     if numbers.dtype.kind != "i" or counts.min() < 0 or not 1 <= room <= MOST_ROOM or room & (room - 1):
         raise ValueError("its numbers are invalid")
+    order = state["number"] if count else np.zeros((worlds, 0))
     if order.shape != (worlds, count) or not np.array_equal(np.sort(order), np.tile(np.arange(count), (worlds, 1))):
         raise ValueError("its grains are not those of the scene")
 

@@ -2,6 +2,7 @@
 
 A measure is a module with
 - a docstring that defines each number and says where its error comes from;
+- `OF`, if it measures a matter: the matter's key; it is left out of recordings that lack the matter;
 - `applies(recording) -> bool`: whether it can be measured on this recording;
 - `measure(recording) -> dict[str, Value]`: its numbers by name;
 - `FIGURES`, if it has any: by the name of the figure's file a function `draw(sheet, recording, values)`. It draws on
@@ -10,6 +11,8 @@ A measure is a module with
 A new measure is such a file and a line in MEASURES: its numbers and figures appear in the report of every run on which
 it can be measured.
 """
+
+from types import ModuleType
 
 from lab.measures import (
     centre_of_mass,
@@ -64,7 +67,12 @@ def measure_all(recording: Recording) -> dict[str, Value]:
     found: dict[str, Value] = {}
     if not len(recording.series["time"]):
         return found
-    for measure in MEASURES:
-        if measure.applies(recording):
-            found |= measure.measure(recording)
+    for measure in applicable(recording):
+        found |= measure.measure(recording)
     return found
+
+
+def applicable(recording: Recording) -> list[ModuleType]:
+    """The measures that can be made on this recording, in their order."""
+    held = ("", *recording.preset.matters)
+    return [measure for measure in MEASURES if getattr(measure, "OF", "") in held and measure.applies(recording)]

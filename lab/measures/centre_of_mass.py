@@ -18,6 +18,7 @@ from lab.measures.motion import driving, is_tilt
 from lab.measures.value import Value, over_worlds
 from lab.recording import Recording
 
+OF = "grains"
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 

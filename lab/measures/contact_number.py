@@ -18,6 +18,7 @@ from lab.measures.steady import averaged, steady_part
 from lab.measures.value import Value, over_worlds
 from lab.recording import Recording
 
+OF = "grains"
 EMPTY = "no grain is left in the tank"
 
 

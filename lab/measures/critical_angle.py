@@ -45,6 +45,7 @@ from lab.measures.motion import is_tilt, outward_leg
 from lab.measures.value import Value, over_worlds
 from lab.recording import Recording
 
+OF = "grains"
 BIN = 0.05  # deg of tilt
 WINDOW = 0.5  # deg of tilt
 FLOW = 0.25  # of a liquid's rate

@@ -10,6 +10,8 @@ from lab.measures.drawing import BLUE, GREY, VERMILION, Sheet, band, median_band
 from lab.measures.value import Value, over_worlds
 from lab.recording import Recording
 
+OF = "grains"
+
 
 def applies(recording: Recording) -> bool:
     """Every recording has energies."""

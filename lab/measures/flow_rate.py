@@ -24,6 +24,7 @@ from lab.measures.value import Value, over_worlds
 from lab.measures.wall_force import SHEET, grain_mass
 from lab.recording import Recording
 
+OF = "grains"
 SHARES = (0.2, 0.6)  # of all that pass
 BLOCKS = 4
 QUIET = 0.1  # of the run's duration

@@ -25,6 +25,7 @@ from lab.measures.value import Value, over_worlds
 from lab.measures.wave import column_tops
 from lab.recording import Recording
 
+OF = "grains"
 LOW, HIGH = 0.2, 0.8  # of the apex's height
 LEAST = 5.0  # mean diameters high: a lower heap has too few grains for a slope
 MISSING = "no heap"

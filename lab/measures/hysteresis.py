@@ -16,6 +16,7 @@ from lab.measures.motion import is_tilt, outward_leg
 from lab.measures.value import Value, over_worlds
 from lab.recording import Recording
 
+OF = "grains"
 UPRIGHT = 0.005  # of the largest tilt
 LAST = 1.0  # deg
 

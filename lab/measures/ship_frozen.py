@@ -31,7 +31,7 @@ INTERVAL = 0.01  # s, between the samples of her roll
 
 
 def applies(recording: Recording) -> bool:
-    """There is a ship that can be computed by herself."""
+    """There is a ship with cargo, and she can be computed by herself."""
     return has_ship(recording) and frozen(recording) is not None
 
 
@@ -54,10 +54,13 @@ def measure(recording: Recording) -> dict[str, Value]:
 
 
 def frozen(recording: Recording) -> tuple[np.ndarray, np.ndarray, End | None] | None:
-    """Times (T',), s, roll (T',), rad, and end of the ship with her cargo frozen; None where she cannot be computed.
+    """Times (T',), s, roll (T',), rad, and end of the ship with her cargo frozen.
 
+    None without cargo, which leaves nothing to freeze, and where she cannot be computed.
     She sails for as long as the run was to last, even if a ship of the run was lost long before.
     """
+    if not recording.preset.matters:
+        return None
     lasted, series = float(recording.series["time"][-1]), recording.series
     if any(ends(series)):
         lasted = max(lasted, recording.preset.duration)

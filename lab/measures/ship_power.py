@@ -17,6 +17,7 @@ from lab.recording.ship_end import ends
 from solvers.ship.outcome import CYCLES
 
 NAMES = "wave_power", "radiated_power", "viscous_power", "granular_power"
+COLOURS = BLUE, GREEN, GREY, VERMILION
 SIGNS = 1.0, 1.0, 1.0, -1.0  # the cargo's work on her is recorded, its power is what it takes
 
 
@@ -31,14 +32,20 @@ def measure(recording: Recording) -> dict[str, Value]:
     begin = np.searchsorted(time, time[-1] - CYCLES * 2.0 * np.pi / wave_frequency(recording))
     power = 1e3 * (works[-1] - works[begin]) / max(time[-1] - time[begin], 1e-9) * SIGNS
     power[[end is not None for end in ends(recording.series)]] = np.nan
-    return {name: over_worlds(power[:, k], "mW/m", missing="no steady motion") for k, name in enumerate(NAMES)}
+    names = _names(recording)
+    return {name: over_worlds(power[:, k], "mW/m", missing="no steady motion") for k, name in enumerate(names)}
+
+
+def _names(recording: Recording) -> tuple[str, ...]:
+    """The names of the powers, in the order of `ship_works`; without cargo it takes none."""
+    return NAMES if recording.preset.matters else NAMES[:-1]
 
 
 def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> None:
     """The work that the waves have done on a ship, and where it went, in time; the mean powers are in the legend."""
     ((axes,),) = sheet.panels(columns=1)
     time, works = recording.series["time"], recording.series["ship_works"] * SIGNS
-    for k, (name, colour) in enumerate(zip(NAMES, (BLUE, GREEN, GREY, VERMILION), strict=True)):
+    for k, (name, colour) in enumerate(zip(_names(recording), COLOURS, strict=False)):
         value = values.get(name)
         found = f" {sheet.words(value)}" if value is not None and value.value is not None else ""
         band(axes, time, works[..., k], colour, f"{name.replace('_', ' ')}{found}")

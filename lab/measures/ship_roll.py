@@ -125,17 +125,18 @@ def _period(time: np.ndarray, roll: np.ndarray) -> float:
 
 
 def draw_roll(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> None:
-    """Roll of a ship in time, with loose and with frozen cargo; below her sway and heave and the shift of the cargo."""
+    """Roll of a ship in time, with loose and with frozen cargo; below her sway and heave and the shift of her cargo."""
     time, moved = recording.series["time"], moved_axis(recording)
     moves = recording.preset.ship.freedom != "roll"
-    panels = sheet.panels(heights=(2, 1, 1) if moves else (2, 1), columns=3)
+    laden, loose = recording.preset.matters, _loose(recording)
+    panels = sheet.panels(heights=(2, *(1,) * moves, *(1,) * bool(laden)), columns=3)
     upper, lower = panels[0, 0], panels[-1, 0]
     alone = frozen(recording)
     if alone is not None:
         upper.plot(*thinned(alone[0], np.degrees(alone[1])), color=GREY, lw=0.9, label="cargo frozen")
     for world, end in enumerate(ends(recording.series)):
         turned = np.degrees(moved[:, world, 2])
-        upper.plot(*thinned(time, turned), color=BLUE, lw=1.0, label=None if world else "cargo loose")
+        upper.plot(*thinned(time, turned), color=BLUE, lw=1.0, label=None if world else loose)
         if end:
             _mark_end(upper, end, recording.worlds)
     _draw_answer(sheet, upper, recording, values)
@@ -144,11 +145,17 @@ def draw_roll(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -
         band(panels[1, 0], time, 1e3 * moved[..., 0], BLUE, "sway of the axis")
         band(panels[1, 0], time, 1e3 * moved[..., 1], GREEN, "heave of the axis")
         panels[1, 0].set_ylabel("sway, heave\n(mm)")
-    centre = 1e3 * recording.series["centre_of_mass"][..., 0]
-    band(lower, time, centre - centre[0], VERMILION)
-    lower.set_ylabel("shift of the\ncargo (mm)")
+    if laden:
+        centre = 1e3 * recording.series["centre_of_mass"][..., 0]
+        band(lower, time, centre - centre[0], VERMILION)
+        lower.set_ylabel("shift of the\ncargo (mm)")
     lower.set_xlabel(f"time (s); axis: {axis_place(recording.preset.ship)}")
     lower.set_xlim(time[0], time[-1] + (MARGIN * np.ptp(time) if any(ends(recording.series)) else 0.0))
+
+
+def _loose(recording: Recording) -> str:
+    """What the curves of the run itself show."""
+    return "cargo loose" if recording.preset.matters else "empty hold"
 
 
 def _draw_answer(sheet: Sheet, axes: "Axes", recording: Recording, values: Mapping[str, Value]) -> None:
@@ -184,7 +191,7 @@ def draw_portrait(sheet: Sheet, recording: Recording, values: Mapping[str, Value
         axes.plot(turned[later], np.gradient(turned, alone[0])[later], color=GREY, lw=0.8, label="cargo frozen")
     for world in range(recording.worlds):
         axes.plot(*thinned(roll[: half + 1, world], rate[: half + 1, world]), color=BLUE, lw=0.5, alpha=0.3)
-        label = None if world else "cargo loose, last half"
+        label = None if world else f"{_loose(recording)}, last half"
         axes.plot(*thinned(roll[half:, world], rate[half:, world]), color=BLUE, lw=0.9, label=label)
     axes.set_xlabel("roll (deg)")
     axes.set_ylabel("rate of roll (deg/s)")

@@ -42,12 +42,14 @@ def levers(recording: Recording) -> tuple[np.ndarray, np.ndarray, np.ndarray | N
     """Heels (n,) rad and righting levers (n,) m, with the cargo frozen and with the cargo slid to its repose.
 
     The cargo that slides lies at its angle of repose at each heel (`solvers.ship.cargo`). It is a level filling whose
-    centre is as high as that of the bed at the start; None where that is not known.
+    centre is as high as that of the bed at the start; None where that is not known, and without cargo.
     """
     vessel = vessel_of(recording.path)
     load, loading = vessel.ship.load, vessel.ship.body.loading
     heel = np.radians(np.linspace(0.0, 180.0, HEELS))
     frozen = righting_levers(load.section, loading, load.water, heel)
+    if not recording.preset.matters:
+        return heel, frozen, None
     cargo = float(grain_mass(recording).sum(axis=1).mean()) / recording.preset.thickness
     repose = recording.preset.ship.repose
     try:
@@ -66,7 +68,7 @@ def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> Non
     """
     ((axes,),) = sheet.panels()
     heel, lever, relaxed = levers(recording)
-    axes.plot(np.degrees(heel), 1e3 * lever, color=GREY, label="cargo frozen")
+    axes.plot(np.degrees(heel), 1e3 * lever, color=GREY, label="cargo frozen" if recording.preset.matters else "empty")
     if relaxed is not None:
         steep = np.degrees(recording.preset.ship.repose)
         axes.plot(np.degrees(heel), 1e3 * relaxed, color=BLUE, label=f"cargo slid to a repose of {steep:.3g} deg")

@@ -22,6 +22,7 @@ from lab.measures.steady import STILL, Steady, amplitude_value, harmonics, stead
 from lab.measures.value import Value, over_worlds
 from lab.recording import Recording
 
+OF = "grains"
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 

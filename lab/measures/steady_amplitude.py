@@ -26,6 +26,7 @@ from lab.measures.steady import SHORT, STILL, amplitude_value, harmonics, phase_
 from lab.measures.value import Value
 from lab.recording import Recording
 
+OF = "grains"
 FOLLOWS = "the bed follows the tank"
 
 

@@ -24,6 +24,7 @@ from lab.measures.motion import is_tilt, outward_leg
 from lab.measures.value import Value, over_worlds
 from lab.recording import Recording
 
+OF = "grains"
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 

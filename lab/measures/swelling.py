@@ -23,6 +23,7 @@ from lab.measures.value import Value, over_worlds
 from lab.measures.wave import LEAST_FRAMES, PLACES, columns_in_time, finite_mean, stretches
 from lab.recording import Recording
 
+OF = "grains"
 LEAST_RATE = 4.0  # pictures a driving period
 SWINGS = 2  # in the steady part, at least
 

@@ -15,6 +15,7 @@ from lab.measures.drawing import BLUE, GREY, VERMILION, Sheet, band, level, note
 from lab.measures.value import Value, over_worlds
 from lab.recording import Recording
 
+OF = "grains"
 BULK = 95.0  # per cent
 EMPTY = "no grain is left in the scene"
 

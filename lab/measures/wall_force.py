@@ -34,6 +34,7 @@ from lab.measures.steady import BLOCKS, SHORT, Steady, amplitude_value, averaged
 from lab.measures.value import Value, over_worlds
 from lab.recording import Recording
 
+OF = "grains"
 ALONG = {"sway": 0, "heave": 1}  # the column of wall_force that a motion works against
 SHEET = "of a sheet one grain thick"
 EMPTY = "no grain is left in the tank"

@@ -27,6 +27,7 @@ from lab.measures.steady import SHORT, Steady, steady_part
 from lab.measures.value import Value, over_worlds
 from lab.recording import Recording
 
+OF = "grains"
 COLUMN = 2.0  # mean diameters
 GAP = 1.5  # mean diameters
 END = 0.1  # of the tank's width, at either wall

@@ -128,11 +128,12 @@ MODES: dict[str, Callable[[Sequence[Bed]], Colouring]] = {
 }
 
 
-def colouring(name: str, beds: Sequence[Bed]) -> Colouring:
-    """The colouring of that name, one scale for all beds; raises LabError for an unknown one."""
+def colouring(name: str, beds: Sequence[Bed]) -> Colouring | None:
+    """The colouring of that name, one scale for all beds, None without grains; raises LabError for an unknown one."""
     if name not in MODES:
         raise LabError(f"Unknown colour '{name}': choose one of {', '.join(MODES)}.")
-    return MODES[name](beds)
+    filled = [bed for bed in beds if not bed.empty]
+    return MODES[name](filled) if filled else None
 
 
 def mark_colours(colours: np.ndarray) -> np.ndarray:

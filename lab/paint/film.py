@@ -152,7 +152,7 @@ class Film:
         reached = {bed: [tank.min(axis=0), tank.max(axis=0)] for bed, tank in zip(self._beds, tanks, strict=True)}
         for bed, frame in spread([bed for bed in self._beds if bed.footage.open_edges or bed.footage.parts]):
             places = bed.plates(frame)
-            if bed.footage.open_edges:
+            if bed.footage.open_edges and not bed.empty:
                 places.append(bed.position(frame))
             for points in places:
                 seen = self._seen(points, bed.pose[frame])
@@ -204,7 +204,8 @@ class Film:
     def _prepare_plot(self) -> tuple[deco.LivePlot, list[np.ndarray]]:
         """The plot of the beds' main quantity, and the times of the points of each curve."""
         afloat = any(bed.footage.sea for bed in self._all)
-        steady = not afloat and all(_monotonic(bed.footage.series_pose[:, bed.world, 2]) for bed in self._all)
+        still = afloat or any(bed.empty for bed in self._all)
+        steady = not still and all(_monotonic(bed.footage.series_pose[:, bed.world, 2]) for bed in self._all)
         label, measured = _quantity(self._all)
         curves, colours, samples = [], [], []
         for k in reversed(range(len(self._all))):  # the beds that are shown on top
@@ -235,7 +236,8 @@ class Film:
         deco.draw_scale_bar(draw, (left, bottom), longest, self._cameras[0].scale, text)
         draw.text((right, bottom - 0.3 * text), self._note(), palette.QUIET, deco.font(text), anchor="rm")
         bar = column_left, bottom - self._u(4.6), column_right, bottom
-        deco.draw_colour_bar(image, bar, self._colouring, text)
+        if self._colouring:
+            deco.draw_colour_bar(image, bar, self._colouring, text)
         page = np.array(image)
         colours = (palette.WALL, palette.HOLD) if look.frame == "tank" else (palette.GRID, palette.PAPER)
         for bed, camera in zip(self._beds, self._cameras, strict=True):
@@ -255,7 +257,7 @@ class Film:
         return ", ".join(notes)
 
     def _paint_beds(self, picture: np.ndarray, frame: int) -> None:
-        discs, colours = [], []
+        discs, colours = {}, {}
         for k, bed in enumerate(self._beds):
             row, camera = self._rows[k][frame], self._cameras[k]
             if self._look.frame == "earth":
@@ -264,9 +266,10 @@ class Film:
                 camera = camera.carried(self._pose[frame, k])
                 self._paint_tank(picture, bed, camera, palette.WALL, palette.HOLD)
                 _paint_fixed(picture, bed, camera)
-            place = self._on_ground(k, bed.position(row), self._pose[frame, k])
-            discs.append(to_discs(camera, place, bed.radius, bed.angle(row)))
-            colours.append(self._colouring.colours(bed, row))
+            if not bed.empty:
+                place = self._on_ground(k, bed.position(row), self._pose[frame, k])
+                discs[k] = to_discs(camera, place, bed.radius, bed.angle(row))
+                colours[k] = self._colouring.colours(bed, row)
             for line in bed.plates(row):
                 paint_plate(picture, camera, line, PLATE * self._unit, palette.PART)
         for painted, edges in self._sorts:
@@ -340,11 +343,14 @@ def _motion(bed: Bed, pose: np.ndarray) -> np.ndarray:
 def _quantity(beds: Sequence[Bed]) -> tuple[str, Callable[[Bed], np.ndarray]]:
     """The quantity of the plot, the same for all beds: its label and a function to the values (T,) of a bed.
 
-    The roll of ships; the spilled grains if there are any; else the shift of the centre of mass, upwards if only heave
-    or parts can move the grains, sideways otherwise.
+    The roll of ships; of empty tanks what moves; the spilled grains if there are any; else the shift of the centre of
+    mass, upwards if only heave or parts can move the grains, sideways otherwise.
     """
     if any(bed.footage.sea for bed in beds):
-        return "roll φ (°)", lambda bed: np.degrees(bed.footage.series_pose[:, bed.world, 2])
+        return _coordinate(2)
+    if any(bed.empty for bed in beds):
+        ways = [np.ptp(bed.footage.series_pose[:, bed.world], axis=0) for bed in beds]
+        return _coordinate(max((2, 0, 1), key=lambda axis: max(way[axis] for way in ways) > TOLERANCE))
     if any(bed.footage.spilled[:, bed.world].any() for bed in beds):
         return "spilled (%)", lambda bed: 100 * bed.footage.spilled[:, bed.world] / len(bed.radius)
     upright = not any(np.ptp(bed.footage.series_pose[:, bed.world, ::2], axis=0).any() for bed in beds)
@@ -357,9 +363,15 @@ def _quantity(beds: Sequence[Bed]) -> tuple[str, Callable[[Bed], np.ndarray]]:
     return f"shift Δ{'yz'[axis]} (diameters)", shift
 
 
+def _coordinate(axis: int) -> tuple[str, Callable[[Bed], np.ndarray]]:
+    """A coordinate of the pose as the quantity of the plot."""
+    label, scale = (("sway (mm)", 1e3), ("heave (mm)", 1e3), ("roll φ (°)", 180.0 / np.pi))[axis]
+    return label, lambda bed: scale * bed.footage.series_pose[:, bed.world, axis]
+
+
 def _sort_by_shape(beds: Sequence[Bed]) -> list[tuple[list[int], Edges | None]]:
     """Indices of the beds of discs, and of the beds of irregular grains with their edges; without empty groups."""
-    round_ones = [k for k, bed in enumerate(beds) if bed.edges is None]
+    round_ones = [k for k, bed in enumerate(beds) if bed.edges is None and not bed.empty]
     others = [k for k, bed in enumerate(beds) if bed.edges is not None]
     groups = [(round_ones, None)] if round_ones else []
     return [*groups, (others, Edges.joined([beds[k].edges for k in others]))] if others else groups

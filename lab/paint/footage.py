@@ -14,15 +14,19 @@ from lab.paint.painter import Edges
 from lab.paint.sea import Sea
 from lab.recording import Recording, open_recording
 from lab.recording.ship_end import ends
+from solvers.grains.quantities import FRAMES
+
+NO_GRAINS = {quantity.name: np.zeros((0, *quantity.shape)) for quantity in FRAMES}  # of an empty tank
 
 
 class Footage:
     """F frames and T samples of W worlds with n grains each, in a tank with k fixed grains and P moving parts.
 
     time (F,) s, pose (F, W, 3) m, m, rad; series_time (T,), series_pose (T, W, 3), centre_of_mass (T, W, 2) m;
-    spilled (T, W) grains; radius (W, n) m; kind (W, n); kinds: their names; shapes: the outlines of irregular grains,
-    None if all are discs; shape_names: of their classes; outline (m, 2) m; open_edges: those without a wall;
-    fixed (k, 3) y, z, radius m; parts: polylines at rest (m, 2) m by name; part (F, W, P, 2): their displacements, m;
+    spilled (T, W) grains, both None without grains; radius (W, n) m; kind (W, n); kinds: their names; shapes: the
+    outlines of irregular grains, None if all are discs; shape_names: of their classes; outline (m, 2) m; open_edges:
+    those without a wall; fixed (k, 3) y, z, radius m; parts: polylines at rest (m, 2) m by name; part (F, W, P, 2):
+    their displacements, m;
     sea: the ship and her waves if the tank is a ship's hold, else None; ends: the loss of each ship, None if not lost;
     settings: the preset's [video]; title. Raises LabError when there is no frame or no sample.
     """
@@ -36,7 +40,7 @@ class Footage:
         for values in (self.time, self.pose, self.part, self.series_time, self.series_pose):
             if not (np.abs(values) < BEYOND).all():
                 raise Unusable(f"{recording.path} is damaged (invalid times or poses): record the run again.")
-        self.centre_of_mass, self.spilled = series["centre_of_mass"], series["spilled"]
+        self.centre_of_mass, self.spilled = series.get("centre_of_mass"), series.get("spilled")
         self.radius, self.outline, self.kind = recording.radius, recording.outline, recording.kind
         self.kinds = ["the rest", *recording.preset.kinds]
         self.shapes = recording.shapes
@@ -62,6 +66,8 @@ class Footage:
 
     def grains(self, name: str, frame: int, world: int) -> np.ndarray:
         """The values (n,) or (n, 2) of a quantity for each grain in a frame."""
+        if not self.radius.size:
+            return NO_GRAINS[name]
         if self._read.get(name, (None,))[0] != frame:
             self._read[name] = frame, self._frames[name][frame].astype(float)
         return self._read[name][1][world]
@@ -89,6 +95,11 @@ class Bed:
     def radius(self) -> np.ndarray:
         """Radii (n,), m."""
         return self.footage.radius[self.world]
+
+    @property
+    def empty(self) -> bool:
+        """Whether there are no grains."""
+        return not len(self.radius)
 
     @property
     def diameter(self) -> float:

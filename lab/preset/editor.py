@@ -49,7 +49,7 @@ def _table(model: type) -> dict:
 def _field(taken: Taken, default: object) -> dict:
     """The schema of a field, with its sentence and default."""
     found = _values(taken)
-    if taken.optional and not taken.named:
+    if taken.optional or (taken.below and default is not None):
         found = {"anyOf": [*found.get("anyOf", [found]), REMOVES]}
     said = sentence(taken)
     shown = default_of(taken, default)

@@ -23,6 +23,13 @@ class Alike:
 
 
 @dataclass(frozen=True)
+class Of:
+    """Marks a field that says something of a matter, which is named by its key; refused without that matter."""
+
+    matter: str
+
+
+@dataclass(frozen=True)
 class Columns:
     """Marks a field whose value is a CSV file: the columns it needs, those it may have, the most rows."""
 
@@ -53,6 +60,7 @@ class Taken:
     columns: Columns | None = None
     cheap: bool = False
     alike: bool = False
+    of: str = ""
 
     @property
     def table(self) -> type | None:
@@ -118,6 +126,8 @@ def _marked(marks: tuple) -> dict[str, object]:
             found["doc"] = mark.text
         elif isinstance(mark, Unit):
             found["symbol"] = mark.symbol
+        elif isinstance(mark, Of):
+            found["of"] = mark.matter
         elif isinstance(mark, Cheap | Alike):
             found[type(mark).__name__.lower()] = True
         elif isinstance(mark, Interval | Usual | Columns):

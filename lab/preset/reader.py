@@ -1,6 +1,6 @@
 """Read TOML tables into the dataclasses of a preset: a field's annotation says what it takes; an error is one sentence.
 
-A value of `false` removes an inherited optional value or a named table.
+A value of `false` removes an inherited optional value, or a table with all its keys.
 """
 
 from collections.abc import Mapping
@@ -41,7 +41,7 @@ def read(kind: type[T], table: object, path: str = "") -> T:
     values, defaults = {}, defaults_of(kind)
     for name, taken in taken_of(kind).items():
         key = join(path, name)
-        if name in table:
+        if name in table and not (table[name] is False and taken.below and name in defaults):
             values[name] = _value(taken, table[name], key)
         elif name not in defaults:
             if not taken.table:

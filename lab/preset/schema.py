@@ -12,7 +12,7 @@ from typing import Annotated
 
 from lab.base.errors import LabError
 from lab.preset.accuracy import LEVELS
-from lab.preset.fields import defaults_of, join, walk
+from lab.preset.fields import Of, defaults_of, join, walk
 from lab.preset.reader import check_keys, read
 from lab.preset.sections import materials, shapes
 from lab.preset.sections.contact import Contact
@@ -31,8 +31,10 @@ from solvers.grains.bed.sizes import Sizes
 from solvers.grains.materials import Material
 from solvers.machine.marks import Cheap, Doc, Interval
 from solvers.tank.parts import Part
+from solvers.tank.tank import BARE_THICKNESS
 
 FORMAT = 3
+MATTERS = ("grains",)  # the keys of the matters that a tank may hold
 
 
 @dataclass(frozen=True)
@@ -41,8 +43,12 @@ class Preset:
 
     title: Annotated[str, Doc("What the experiment is, in a line.")]
     tank: Annotated[Tank, Doc("The tank that holds the cargo.")]
-    material: Annotated[Material, Doc("The material of the grains, and of the walls as far as [wall] does not differ.")]
-    grains: Annotated[Grains | None, Doc("The grains in the tank.")] = None
+    material: Annotated[
+        Material | None,
+        Of("grains"),
+        Doc("The material of the grains, and of the walls as far as [wall] does not differ."),
+    ] = None
+    grains: Annotated[Grains | None, Doc("The grains in the tank; it is empty without them.")] = None
     format: Annotated[
         int, Interval(ge=FORMAT, le=FORMAT), Doc("Format of this file; in format 3 the sea outside is [sea].")
     ] = FORMAT
@@ -50,14 +56,16 @@ class Preset:
     reports: Annotated[str, Doc("What the source reports of it.")] = ""
     based_on: Annotated[str, Doc("Name or path of the preset whose keys this one changes.")] = ""
     quick: Annotated[str, Doc("How a quick variant differs from its preset.")] = ""
-    wall: Annotated[Wall, Doc("What of the walls' material is not as that of the grains.")] = field(
+    wall: Annotated[Wall, Of("grains"), Doc("What of the walls' material is not as that of the grains.")] = field(
         default_factory=Wall
     )
     kinds: Annotated[
-        dict[str, Kind], Doc("Shares of the grains, each of another material; a key not given is as in [material].")
+        dict[str, Kind],
+        Of("grains"),
+        Doc("Shares of the grains, each of another material; a key not given is as in [material]."),
     ] = field(default_factory=dict)
-    shapes: Annotated[dict[str, Shape], Doc("Classes of irregular grains.")] = field(default_factory=dict)
-    contact: Annotated[Contact, Doc("The contact laws.")] = field(default_factory=Contact)
+    shapes: Annotated[dict[str, Shape], Of("grains"), Doc("Classes of irregular grains.")] = field(default_factory=dict)
+    contact: Annotated[Contact, Of("grains"), Doc("The contact laws.")] = field(default_factory=Contact)
     motion: Annotated[Motion, Doc("How the tank moves.")] = field(default_factory=Motion)
     parts: Annotated[dict[str, Part], Doc("Plates in the tank, such as gates and funnels, which may move.")] = field(
         default_factory=dict
@@ -69,10 +77,15 @@ class Preset:
     record: Annotated[Record, Cheap(), Doc("What is written down, and how often.")] = field(default_factory=Record)
     video: Annotated[Video, Doc("How the run is filmed.")] = field(default_factory=Video)
 
+    @property
+    def matters(self) -> tuple[str, ...]:
+        """The keys of the matters that the tank holds; none if it is empty."""
+        return tuple(name for name in MATTERS if getattr(self, name) is not None)
+
     @cached_property
     def shape_classes(self) -> dict[str, ShapeClass]:
         """The grains of each shape; empty if all are discs. Raises LabError."""
-        return shapes.shape_classes(self.shapes, self.grains.diameter, self.grains.shares)
+        return shapes.shape_classes(self.shapes, self.grains.diameter, self.grains.shares) if self.shapes else {}
 
     @cached_property
     def classes(self) -> tuple[tuple[float, float], ...]:
@@ -124,8 +137,8 @@ class Preset:
 
     @property
     def thickness(self) -> float:
-        """Thickness (m) of the slab: the tank's, else the grains' mean diameter."""
-        return self.tank.thickness or self.mean_diameter
+        """Thickness (m) of the slab: the tank's, else the grains' mean diameter, without grains one metre."""
+        return self.tank.thickness or (self.mean_diameter if self.grains else BARE_THICKNESS)
 
 
 def resolve(table: Mapping) -> Preset:
@@ -142,20 +155,13 @@ def resolve(table: Mapping) -> Preset:
 def check(preset: Preset) -> None:
     """Raise LabError, one sentence, for keys that contradict each other, and for what cannot be built."""
     check_tank(preset.tank)
-    if preset.grains is None:
-        raise LabError("grains: missing; the tank has nothing in it, and grains are all that it can hold so far.")
-    (_check_shapely if preset.shapes else _check_shapeless)(preset)
-    settle, tank = preset.run.settle, preset.tank
-    check_grains(preset.grains, bool(preset.shape_classes), settle)
-    check_room(preset.grains, preset.sizes, preset.mean_diameter, tank, _size_key(preset), settle)
-    check_dissipation(preset.material, "material", needed=True)
-    check_dissipation(preset.wall, "wall", needed=False)
-    check_cohesion(preset.contact.cohesion, preset.material)
+    _check_matters(preset)
+    if preset.grains is not None:
+        _check_of_grains(preset)
     check_motion(preset.motion)
     duration_of(preset.run, preset.motion)
-    check_parts(preset.parts, tank.corners)
-    check_kinds(preset.kinds, preset.material)
-    check_ship(preset.ship, preset.waves, bool(preset.motion.parts), tank.corners)
+    check_parts(preset.parts, preset.tank.corners)
+    check_ship(preset.ship, preset.waves, bool(preset.motion.parts), preset.tank.corners)
     check_video(preset.video)
 
 
@@ -170,6 +176,32 @@ def value_at(preset: Preset, dotted: str) -> object:
     for name in dotted.split("."):
         value = getattr(value, name)
     return value
+
+
+def _check_matters(preset: Preset) -> None:
+    """Raise LabError for a key that says something of a matter that the tank does not hold."""
+    for key, taken in walk(Preset):
+        if not taken.of or taken.of in preset.matters:
+            continue
+        section, _, name = key.rpartition(".")
+        table = value_at(preset, section) if section else preset
+        if getattr(table, name) != defaults_of(type(table))[name]:
+            remedy = f"set {key} = false" if taken.below or taken.optional else "leave this out"
+            raise LabError(f"{key}: goes with {taken.of}, and there are none; add a table [{taken.of}], or {remedy}.")
+
+
+def _check_of_grains(preset: Preset) -> None:
+    """Raise LabError for keys that contradict each other in what is said of the grains."""
+    if preset.material is None:
+        read(Material, {}, "material")  # says which key is missing
+    (_check_shapely if preset.shapes else _check_shapeless)(preset)
+    settle, tank = preset.run.settle, preset.tank
+    check_grains(preset.grains, bool(preset.shape_classes), settle)
+    check_room(preset.grains, preset.sizes, preset.mean_diameter, tank, _size_key(preset), settle)
+    check_dissipation(preset.material, "material", needed=True)
+    check_dissipation(preset.wall, "wall", needed=False)
+    check_cohesion(preset.contact.cohesion, preset.material)
+    check_kinds(preset.kinds, preset.material)
 
 
 def _size_key(preset: Preset) -> str:

@@ -3,12 +3,13 @@
 A table is a group of data sets that grow together, one row at a time. The group `checks` holds a checksum of every row.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 
 import h5py
 import numpy as np
 
 from lab.base.trust import attribute_words
+from lab.preset.schema import MATTERS, Preset
 from solvers.grains import quantities as grains
 from solvers.machine.quantity import OWNERS, Quantity
 from solvers.ship import quantities as ship
@@ -39,24 +40,29 @@ CHECKS = "checks"  # the group of the checksums
 FLUSHED_ROWS = "rows"  # its attribute with the number of rows of the table at the last flush
 COLUMNS = "columns"  # its attribute with the names of the data sets, in the order of the checksums in a row
 
+OF_MATTERS = {"grains": grains}  # what each matter is recorded by
+
 CHUNK_BYTES = 2**19  # approximate size of a chunk
 CHUNK_ROWS = 1024
 ATTEMPTS, RETRY_DELAY = 100, 0.02  # attempts to open a file that another process has open, and the pause (s) between
 
 
-def series_of(afloat: bool) -> tuple[Quantity, ...]:
-    """The quantities in the series of a run; `afloat`: with those of a ship."""
-    return (TIME, *tank.SERIES, *grains.SERIES, *(ship.SERIES if afloat else ()))
+def series_of(afloat: bool, matters: Collection[str] = MATTERS) -> tuple[Quantity, ...]:
+    """The quantities in the series of a run with these matters; `afloat`: with those of a ship."""
+    of_matters = (quantity for name in matters for quantity in OF_MATTERS[name].SERIES)
+    return (TIME, *tank.SERIES, *of_matters, *(ship.SERIES if afloat else ()))
 
 
-def frames_of(swell: bool = False) -> tuple[Quantity, ...]:
+def frames_of(swell: bool = False, matters: Collection[str] = MATTERS) -> tuple[Quantity, ...]:
     """The quantities in the picture frames of a run; `swell`: with the waves, because the user steers them."""
-    return (TIME, *tank.FRAMES, *((WAVES,) if swell else ()), *grains.FRAMES)
+    of_matters = (quantity for name in matters for quantity in OF_MATTERS[name].FRAMES)
+    return (TIME, *tank.FRAMES, *((WAVES,) if swell else ()), *of_matters)
 
 
-def tables_of(afloat: bool, steered: bool) -> dict[str, tuple[Quantity, ...]]:
-    """The quantities of each table of a run; `afloat`: of a ship; `steered`: by the user in `cargolab view`."""
-    tables = {"series": series_of(afloat), "frames": frames_of(afloat and steered)}
+def tables_of(preset: Preset, steered: bool) -> dict[str, tuple[Quantity, ...]]:
+    """The quantities of each table of a preset's run; `steered`: by the user in `cargolab view`."""
+    afloat, matters = bool(preset.ship), preset.matters
+    tables = {"series": series_of(afloat, matters), "frames": frames_of(afloat and steered, matters)}
     return tables | ({"steering": STEERING} if steered else {})
 
 

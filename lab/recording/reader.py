@@ -31,7 +31,7 @@ class Recording:
 
     path, folder; name: of the preset; given: its TOML text; preset: the Preset itself, in SI;
     status, created, versions, machine, step (s), wall_s, grain_steps;
-    radius (W, n) m; kind (W, n): 0 for the preset's material, then the preset's kinds in order;
+    radius (W, n) m, n is 0 without grains; kind (W, n): 0 for the preset's material, then the preset's kinds in order;
     outline (m, 2) m; fixed (k, 3): y, z, radius m; open_edges; parts: polylines (m, 2) m by name;
     shapes: the Outlines of irregular grains, None if all are discs.
     series: "time" (T,) s and the other quantities by name, whole arrays (T, W, ...).
@@ -60,7 +60,7 @@ class Recording:
             self.grain_steps = int(stored["grain_steps"])
             self.given = self._stored("preset/given", text)
             self.preset = from_table(json.loads(self._stored("preset/resolved", text)))
-            self.radius, self.kind = self._stored("grains/radius"), self._stored("grains/kind")
+            self.radius, self.kind = self._grains()
             self.outline, self.fixed = self._stored("tank/outline"), self._stored("tank/fixed")
             self.open_edges = tuple(int(edge) for edge in self._stored("tank/open_edges"))
             self.parts = {name: self._stored(f"tank/parts/{name}") for name in self._file["tank/parts"]}
@@ -84,11 +84,18 @@ class Recording:
                 f"{self.path}: {name} is damaged, and without it the recording cannot be used: record the run again."
             ) from error
 
+    def _grains(self) -> tuple[np.ndarray, np.ndarray]:
+        """Radii (W, n), m, and kinds (W, n) of the grains; n is 0 without grains."""
+        if "grains" in self.preset.matters:
+            return self._stored("grains/radius"), self._stored("grains/kind")
+        none = self.preset.run.repeats, 0
+        return np.zeros(none), np.zeros(none, dtype=np.uint8)
+
     def _tables(self) -> dict[str, Frames]:
         """The tables by name. Raises ValueError or KeyError if one is not as the lab writes it."""
         (worlds, grains), is_older = self.radius.shape, older.is_older(self.form)
         sizes = {"world": worlds, "grain": grains, "part": len(self.parts)}
-        wanted = tables_of(bool(self.preset.ship), "steering" in self._file)
+        wanted = tables_of(self.preset, "steering" in self._file)
         found = {}
         for name, known in wanted.items():
             group, checks = self._file[name], None
@@ -102,12 +109,13 @@ class Recording:
 
     def _check_contents(self) -> None:
         """Raise ValueError if something is not as a Recorder writes it."""
-        worlds_and_grains = self.radius.shape
+        worlds_and_grains, some = self.radius.shape, bool(self.preset.matters)
         sound = {
             "a number of its attributes": all(np.isfinite([self.step, self.wall_s])) and self.step > 0.0,
             "attribute versions": isinstance(self.versions, dict),
             "attribute machine": isinstance(self.machine, dict),
-            "grains/radius": _finite(self.radius, 2) and self.radius.size > 0 and self.radius.min() > 0.0,
+            "preset/resolved": some == (self.preset.material is not None),
+            "grains/radius": _finite(self.radius, 2) and (self.radius.size > 0) == some and (self.radius > 0.0).all(),
             "grains/kind": self.kind.shape == worlds_and_grains and self.kind.dtype == np.uint8,
             "shapes/which": self.shapes is None or self.shapes.which.shape == worlds_and_grains,
             "tank/outline": _finite(self.outline, 2, columns=2) and len(self.outline) > 2 and _wide(self.outline),

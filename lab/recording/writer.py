@@ -66,11 +66,11 @@ def new_recording(
     """Create the recording of a run, without rows yet; returns its file.
 
     folder: of the new recording.h5, created if missing; preset: its name; given: its TOML text; resolved: the
-    preset itself; radius (W, n) m; outline (m, 2) m; step: the time step, s; kind (W, n): numbers of the kinds of
-    grains, 0 for the preset's material, None if all are 0; fixed (k, 3): y, z, radius m of the fixed grains;
-    open_edges: outline edges without a wall; parts: moving parts by name, polylines at rest (m, 2) m; shapes: outlines
-    of irregular grains, None if all are discs; machine: the device and threads, added to the data found here; steered:
-    whether the user steers the run.
+    preset itself; radius (W, n) m, n is 0 without grains; outline (m, 2) m; step: the time step, s; kind (W, n):
+    numbers of the kinds of grains, 0 for the preset's material, None if all are 0; fixed (k, 3): y, z, radius m of the
+    fixed grains; open_edges: outline edges without a wall; parts: moving parts by name, polylines at rest (m, 2) m;
+    shapes: outlines of irregular grains, None if all are discs; machine: the device and threads, added to the data
+    found here; steered: whether the user steers the run.
 
     The file gets its name only when it is complete, so it is readable from then on. Raises LabError if the folder
     cannot be written, is full, or already holds a recording.
@@ -100,8 +100,10 @@ def new_recording(
             file.attrs.update(attributes)
             store(file, "preset/given", fixed_text(given)[None])
             store(file, "preset/resolved", fixed_text(json.dumps(to_table(resolved)))[None])
-            store(file, "grains/radius", radius)
-            store(file, "grains/kind", np.zeros(radius.shape, "u1") if kind is None else np.asarray(kind, dtype="u1"))
+            if radius.size:
+                store(file, "grains/radius", radius)
+                kind = np.zeros(radius.shape) if kind is None else kind
+                store(file, "grains/kind", np.asarray(kind, dtype="u1"))
             store(file, "tank/outline", np.asarray(outline, dtype=float))
             store(file, "tank/fixed", np.asarray(fixed, dtype=float).reshape(-1, 3))
             store(file, "tank/open_edges", np.asarray(open_edges, dtype=int))
@@ -111,7 +113,7 @@ def new_recording(
             for name, table in tables.items():
                 store(file, f"{GROUP}/{name}", table)
             sizes = dict(zip(("world", "grain"), radius.shape, strict=True)) | {"part": len(parts)}
-            create_tables(file, tables_of(bool(resolved.ship), steered), sizes)
+            create_tables(file, tables_of(resolved, steered), sizes)
         _publish(path)
     return path
 

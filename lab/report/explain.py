@@ -2,22 +2,17 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
-from math import pi
 
-import numpy as np
-
+from lab.assembly.grains import grain_count
 from lab.assembly.room import check_room
-from lab.assembly.scene import build, grain_count
+from lab.assembly.scene import build
 from lab.measures.ship_frozen import INTERVAL
-from lab.preset.accuracy import LEVELS
 from lab.preset.fields import join, taken_by
 from lab.preset.find import LoadedPreset
 from lab.preset.schema import Preset
-from lab.preset.sections.shapes import ShapeClass, caution
 from lab.preset.units import show
+from lab.report import grains
 from lab.report.ship import describe
-from solvers.grains.laws import COHESION
-from solvers.grains.shapes.given import Shapes
 from solvers.machine.runtime import available_cores, choose_arch
 from solvers.simulation import Simulation
 from solvers.time.schedules import choose_schedule, units_a_world
@@ -63,7 +58,7 @@ def explain(loaded: LoadedPreset) -> str:
         f"{preset.title}  ({loaded.name})",
         _section("Scene", _scene(preset, scene)),
         *_ship(preset, simulation),
-        _section("Accuracy", _accuracy(preset)),
+        *([_section("Accuracy", grains.accuracy(preset))] if preset.grains else []),
         _section("Step", _step(scene)),
         _section("Compiled in", _parts(preset, simulation)),
         _section("Cost", _cost(preset, scene, simulation)),
@@ -100,24 +95,18 @@ def _section(title: str, rows: list[tuple[str, str]]) -> str:
 
 
 def _scene(preset, scene) -> list[tuple[str, str]]:
-    worlds, count = preset.run.repeats, scene.radius.shape[1]
-    small, large = 2 * scene.radius.min(), 2 * scene.radius.max()
-    pair, wall = scene.interfaces
+    worlds = preset.run.repeats
     rows = [("based on", preset.based_on)] if preset.based_on else []
     rows += [("quick variant", preset.quick)] if preset.quick else []
     rows += [
         ("repeats", f"{worlds}, seeds {preset.run.seed} to {preset.run.seed + worlds - 1}"),
-        ("grains", f"{count} in each, {show(small, 'm')} to {show(large, 'm')}{' in the first' * (worlds > 1)}"),
-        *(("shape", _shape(name, shape)) for name, shape in preset.shape_classes.items()),
-        ("bed", _bed(preset)),
         ("tank", _tank(preset, scene)),
-        ("friction", f"{pair.friction:g} between grains, {wall.friction:g} on walls"),
-        ("dissipative time", f"{show(pair.dissipative_time, 's')} between grains, at this stiffness"),
+        *(grains.described(preset, scene) if preset.grains else []),
     ]
     motions = preset.motion.parts
     parts = [_motion(name, motion, scene.soft_start) for name, motion in motions.items()]
     rows.append(("motion", ", then ".join(parts) or "none"))
-    rows.append(("duration", show(preset.duration, "s") + " after settling"))
+    rows.append(("duration", show(preset.duration, "s") + " after settling" * bool(preset.matters)))
     return rows
 
 
@@ -126,29 +115,8 @@ def _ship(preset, simulation: Simulation) -> list[str]:
     if not simulation.carrier.answers:
         return []
     every = int(simulation.carrier.every[0]) * simulation.dt
-    vessels, tanks = simulation.scene.vessels, simulation.scene.tanks
-    return [_section("Ship", describe(preset.ship, vessels[0], preset.waves, tanks[0].thickness, every))]
-
-
-def _shape(name: str, shape: ShapeClass) -> str:
-    """One class of irregular outlines."""
-    outlines = f"{len(shape.descriptors)} descriptors" if np.any(shape.descriptors) else "a disc"
-    if shape.random:
-        outlines += f", phases at random, {shape.draws} outlines a repeat"
-    return f"{100 * shape.share:.3g} % {name}, the area of a disc of {show(shape.diameter, 'm')}: {outlines}"
-
-
-def _bed(preset) -> str:
-    grains, what = preset.grains, []
-    what.append(
-        f"listed in {grains.bed.name}" if grains.listed else f"poured, its surface {grains.surface.replace('-', ' ')}"
-    )
-    what.append("settled first" if preset.run.settle else "not settled")
-    if preset.shapes:
-        turned = grains.orientation
-        what.append("turned at random" if turned == "random" else f"all turned by {show(turned, 'rad')} at the start")
-    what += [f"{100 * kind.share:g} % {name}" for name, kind in preset.kinds.items()]
-    return ", ".join(what)
+    slab = simulation.scene.tanks[0].thickness if preset.matters else None
+    return [_section("Ship", describe(preset.ship, simulation.scene.vessels[0], preset.waves, slab, every))]
 
 
 def _tank(preset, scene) -> str:
@@ -169,68 +137,26 @@ def _motion(name: str, motion, soft_start: float) -> str:
     return f"{name}, up to {show(speed, 'rad/s' if motion.coordinate == 'turn' else 'm/s')}"
 
 
-def _accuracy(preset) -> list[tuple[str, str]]:
-    """The level of accuracy, and the settings that follow from it unless the preset has its own."""
-    level, scale = LEVELS[preset.run.accuracy], preset.stiffness_scale
-    own = "; the preset's own" if scale != level.stiffness_scale else ""
-    step = f"{level.longer_steps:g} times the derived one" if level.longer_steps != 1.0 else "the derived one"
-    return [
-        ("level", f"{preset.run.accuracy}: {level.error}"),
-        ("Young's moduli", f"times {scale:g} of the material's{own}"),
-        ("step", step if preset.run.step == "auto" else "the preset's own"),
-    ]
-
-
 def _step(scene) -> list[tuple[str, str]]:
-    limits = scene.step_limits()
-    return [("step", show(scene.step, "s"))] + [
-        (f"limit {k + 1}", f"{show(limit.step, 's')}: {limit.reason}") for k, limit in enumerate(limits)
-    ]
+    limits = [f"{show(limit.step, 's')}: {limit.reason}" for limit in scene.step_limits()]
+    limits = limits or ["the interval between samples: the tank's motion is exact at any time"]
+    return [("step", show(scene.step, "s")), *((f"limit {k + 1}", limit) for k, limit in enumerate(limits))]
 
 
 def _parts(preset: Preset, simulation: Simulation) -> list[tuple[str, str]]:
     scene, carrier, walls = simulation.scene, simulation.carrier, simulation.walls
-    remembered = len(simulation.grains.lists.laws.memory)
     terms = "gravity"
     if carrier.moving:
         terms += ", translation"
     if carrier.rotating:
         terms += ", Euler, centrifugal and Coriolis terms"
-    laws = [("normal law", scene.normal), ("tangential law", scene.tangential)]
-    if scene.shapes:
-        laws.insert(0, ("outlines", _outlines(preset, scene.shapes)))
-    if scene.rolling != "none":
-        laws.append(("rolling law", scene.rolling))
-    if scene.cohesion != "none":
-        laws.append(("cohesion", _cohesion(scene)))
     return [
-        *laws,
-        ("memory", f"{remembered} number(s) a contact"),
+        *(grains.laws(preset, simulation) if preset.grains else []),
         ("body forces", terms),
-        ("walls", f"{walls.segments} segments, {walls.corners} corners that grains can touch"),
-        ("integrator", scene.integrator),
+        ("walls", f"{walls.segments} segments, {walls.corners} corners that cargo can touch"),
         ("numbers", PRECISIONS[scene.precision]),
         ("schedule", f"{SCHEDULES[simulation.schedule_name]}, on {simulation.arch}"),
-        ("skin", f"{show(simulation.skin, 'm')} of the neighbour lists"),
     ]
-
-
-def _outlines(preset: Preset, shapes: Shapes) -> str:
-    rule = shapes.contact if shapes.contact == "continuous" else f"{shapes.contact}, {shapes.nodes} nodes on each"
-    rough = caution(shapes.outlines, shapes.contact)
-    drawn = sum(shape.draws * preset.run.repeats if shape.random else 1 for shape in preset.shape_classes.values())
-    return f"{drawn} different ones, {rule}" + (f". {rough}" if rough else "")
-
-
-def _cohesion(scene) -> str:
-    """The law of cohesion, and its force between two mean grains."""
-    law, between, radius = COHESION[scene.cohesion](), scene.interfaces[0], scene.mean_radius
-    pull = law.coefficients(between)[0] * 0.5 * radius
-    weight = 4.0 / 3.0 * pi * radius**3 * scene.grain[0].density * scene.gravity
-    return (
-        f"{scene.cohesion}: {show(pull, 'N')}, {pull / weight:.2g} times a mean grain's weight, "
-        f"across gaps of up to {show(law.range(between), 'm')}"
-    )
 
 
 def _cost(preset, scene, simulation: Simulation) -> list[tuple[str, str]]:
@@ -242,11 +168,11 @@ def _cost(preset, scene, simulation: Simulation) -> list[tuple[str, str]]:
     cores = min(worlds, preset.run.threads or available_cores())
     settling = f"and at most {_span(_stepping(preset.run.settle_limit, preset, scene))} to settle a new bed"
     return [
-        ("grain-steps", f"{worlds * count * steps:.3g}, and those of settling"),
+        ("grain-steps", f"{worlds * count * steps:.3g}, and those of settling") if count else ("steps", f"{steps:.3g}"),
         ("memory", f"{worlds * simulation.arrays.bytes / 2**20:.1f} MiB"),
         ("recording", f"{frames * worlds * count * 24 / 2**20:.0f} MiB"),
         ("run time", f"about {_span(sum(seconds.values()))} on {cores} core(s): {parts}"),
-        *([("", settling)] if preset.run.settle else []),
+        *([("", settling)] if preset.run.settle and count else []),
     ]
 
 

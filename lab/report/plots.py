@@ -54,7 +54,7 @@ class Sheet:
     def __init__(self, recording: Recording) -> None:
         self.figure = Figure(figsize=SIZE, layout="constrained")
         self._columns = 2
-        count = f"{recording.radius.shape[1]} grains"
+        count = f"{recording.radius.shape[1]} grains" if recording.preset.grains else "an empty tank"
         if recording.worlds > 1:
             count = f"{recording.worlds} beds of {count}; bands: ± std over beds, unless the legend says otherwise"
         title = f"{textwrap.fill(recording.preset.title, TITLE)}\n{count}"
@@ -116,8 +116,7 @@ def figures(recording: Recording, values: Mapping[str, Value]) -> Iterator[tuple
     """
     if len(recording.series["time"]) < 2:
         return
-    able = [measure for measure in measures.MEASURES if measure.applies(recording)]
-    draws = [item for measure in able for item in getattr(measure, "FIGURES", {}).items()]
+    draws = [item for measure in measures.applicable(recording) for item in getattr(measure, "FIGURES", {}).items()]
     plotted = [quantity for quantity in recording.series.quantities.values() if quantity.plot]
     draws += [(quantity.name, partial(draw_quantity, quantity)) for quantity in plotted]
     for name, draw in draws:

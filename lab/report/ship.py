@@ -14,25 +14,28 @@ from solvers.ship.waves import froude_factors
 
 
 def describe(
-    given: ships.Ship, vessel: Vessel, waves: Waves | None, thickness: float, every: float
+    given: ships.Ship, vessel: Vessel, waves: Waves | None, thickness: float | None, every: float
 ) -> list[tuple[str, str]]:
     """Rows on a ship, each a name and a text: balance, roll, forces of the water.
 
-    thickness: of the slab that her cargo is (m); every: the step of the forces of the water (s).
+    thickness: of the slab that her cargo is (m), None if her hold is empty; every: the water's forces' step (s).
     """
     ship, body = vessel.ship, vessel.ship.body
     water, memory = ship.load.water, ship.radiation.memory
     height = metacentric_height(ship.load.section, body.loading, water)
-    rows = [
-        ("with her cargo", f"{body.mass:.4g} kg/m, GM {show(height, 'm')}, gyradius {show(body.gyradius, 'm')}"),
-        ("cargo", f"a slab {show(thickness, 'm')} thick: its load counts {1.0 / thickness:.4g} times a metre"),
+    floats = f"{body.mass:.4g} kg/m, GM {show(height, 'm')}, gyradius {show(body.gyradius, 'm')}"
+    rows = [("empty", floats)]
+    if thickness is not None:
+        slab = f"a slab {show(thickness, 'm')} thick: its load counts {1.0 / thickness:.4g} times a metre"
+        rows = [("with her cargo", floats), ("cargo", slab)]
+    rows += [
         ("free in", given.freedom.replace("-", ", ") + f", about her axis, {axis_place(given)}"),
         (
             "viscous roll damping",
             f"{ship.damping.linear:.3g} N s φ̇ and {ship.damping.quadratic:.3g} N s^2 φ̇|φ̇|, a metre",
         ),
         ("radiation", _radiated(given, memory)),
-        ("water's forces", f"every {show(every, 's')}; the cargo's at each step"),
+        ("water's forces", f"every {show(every, 's')}" + "; the cargo's at each step" * (thickness is not None)),
     ]
     if waves is not None:
         rows += [("excitation", given.excitation), ("waves", _sea(waves, water))]
@@ -43,7 +46,8 @@ def describe(
         for name, angle in flooding_angles(given, vessel).items()
         if angle is not None
     ]
-    rows.append(("her cargo's repose", f"{show(given.repose, 'rad')}, in the curve of righting levers alone"))
+    if thickness is not None:
+        rows.append(("her cargo's repose", f"{show(given.repose, 'rad')}, in the curve of righting levers alone"))
     if given.scale:
         rows.append((f"full scale 1:{given.scale:g}", _full_scale(given, waves)))
     return rows

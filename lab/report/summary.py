@@ -142,7 +142,8 @@ def _page(
     yield "\n## What was measured\n"
     yield "| measure | mean | std over beds | beds | own uncertainty | unit | note |\n|---|---|---|---|---|---|---|"
     yield from (_row(name, value) for name, value in values.items())
-    yield f"\n{RULE} d is the mean grain diameter. `lab/measures` defines each measure."
+    unit = " d is the mean grain diameter." * bool(preset.grains)
+    yield f"\n{RULE}{unit} `lab/measures` defines each measure."
     yield f"\n## What it cost\n\n{_cost(recording)}, on {inline(_machine(recording))}."
     yield f"\n{in_words(costs)}." if costs else ""
     yield "\n## Files\n"
@@ -184,14 +185,10 @@ def _data(
 def _scene(recording: Recording) -> Iterator[str]:
     if base := recording.preset.based_on:
         yield f"based on the preset {code(base)}, whose source and reports are its own"
-    worlds, count = recording.radius.shape
-    low, high = show(2 * recording.radius.min(), "m"), show(2 * recording.radius.max(), "m")
-    size = low if low == high else f"{low} to {high}"
-    yield f"{_count(worlds, 'bed')} of {_count(count, 'grain')}, {size} in diameter"
-    shapes = recording.preset.shape_classes
-    if shapes:
-        parts = [f"{100 * shape.share:.3g} % {inline(name)}" for name, shape in shapes.items()]
-        yield f"irregular grains, diameters those of discs of equal area: {', '.join(parts)}"
+    if recording.preset.grains:
+        yield from _grains(recording)
+    else:
+        yield "nothing in the tank"
     width, height = (show(extent, "m") for extent in np.ptp(recording.outline, axis=0))
     lidless = ", open at the top" if recording.open_edges else ""
     rough = ", its walls lined with fixed grains" if len(recording.fixed) else ""
@@ -205,7 +202,19 @@ def _scene(recording: Recording) -> Iterator[str]:
         yield f"sway, heave and roll of the ship are those of her axis, {axis_place(recording.preset.ship)}"
     time = recording.series["time"]
     if len(time):
-        yield f"{show(time[-1], 's')} of motion recorded, after the grains had settled"
+        settled = ", after the cargo had settled" * bool(recording.preset.matters)
+        yield f"{show(time[-1], 's')} of motion recorded{settled}"
+
+
+def _grains(recording: Recording) -> Iterator[str]:
+    worlds, count = recording.radius.shape
+    low, high = show(2 * recording.radius.min(), "m"), show(2 * recording.radius.max(), "m")
+    size = low if low == high else f"{low} to {high}"
+    yield f"{_count(worlds, 'bed')} of {_count(count, 'grain')}, {size} in diameter"
+    shapes = recording.preset.shape_classes
+    if shapes:
+        parts = [f"{100 * shape.share:.3g} % {inline(name)}" for name, shape in shapes.items()]
+        yield f"irregular grains, diameters those of discs of equal area: {', '.join(parts)}"
 
 
 def _settings(motion: object) -> str:
@@ -230,6 +239,12 @@ def _cautions(recording: Recording) -> Iterator[str]:
         yield f"A quick variant: {recording.preset.quick}."
     if not recording.complete:
         yield f"The run is {_status(recording)}; the numbers cover what was recorded until then."
+    if recording.preset.grains:
+        yield from _cautions_on_grains(recording)
+
+
+def _cautions_on_grains(recording: Recording) -> Iterator[str]:
+    """What a reader must know about how the grains were computed."""
     scale = recording.preset.stiffness_scale
     if scale < 1:
         yield f"The grains are softer than their material: Young's moduli times {scale:g}, {_softened(recording)}."
@@ -253,10 +268,9 @@ def _softened(recording: Recording) -> str:
 
 def _cost(recording: Recording) -> str:
     rate = recording.grain_steps / recording.wall_s if recording.wall_s else 0.0
-    return (
-        f"{_duration(recording.wall_s)}: {recording.grain_steps:.3g} grain-steps at "
-        f"{rate / 1e6:.1f} million a second, time step {show(recording.step, 's')}"
-    )
+    steps = f"{recording.grain_steps:.3g} grain-steps at {rate / 1e6:.1f} million a second, "
+    steps *= bool(recording.preset.grains)
+    return f"{_duration(recording.wall_s)}: {steps}time step {show(recording.step, 's')}"
 
 
 def _duration(seconds: float) -> str:

@@ -136,7 +136,7 @@ class Batch:
         self._duration, self._record = preset.duration, preset.record
         self._simulate = partial(Simulation, threads=preset.run.threads, arch=preset.run.arch, stretch=stretch(preset))
         self._settling = settling(preset)
-        self._a_call = max(1, GRAIN_STEPS_A_CALL // runs[0].scene.radius.shape[1])
+        self._a_call = max(1, GRAIN_STEPS_A_CALL * runs[0].scene.worlds // runs[0].scene.work)
         self._saved = time.monotonic()
 
     def start(self, kept: Checkpoint | None) -> None:
@@ -178,7 +178,7 @@ class Batch:
         steps = round(1.0 / (rate * self._simulation.dt))
         samples = max(1, round(self._duration * rate))
         a_frame = max(1, round(rate / self._record.picture_rate))
-        cost = self._duration * sum(run.scene.radius.size for run in self.runs)
+        cost = self._duration * sum(run.scene.work for run in self.runs)
         self.progress.start("running", self._duration, cost)
         self._counted = time.perf_counter()
         for k in range(self._recorders[0].rows[0], samples + 1):
@@ -254,12 +254,11 @@ class Batch:
                 self._close(out, "complete")
 
     def _count_cost(self) -> None:
-        """Share the wall-clock time since the last count among the runs by their numbers of grains."""
-        now = time.perf_counter()
-        grains = [run.scene.radius.size for run in self.runs]
-        for recorder, count in zip(self._recorders, grains, strict=True):
-            recorder.wall_s += (now - self._counted) * count / sum(grains)
-            recorder.grain_steps = self._simulation.steps * count
+        """Share the wall-clock time since the last count among the runs by their work."""
+        now, whole = time.perf_counter(), sum(run.scene.work for run in self.runs)
+        for recorder, run in zip(self._recorders, self.runs, strict=True):
+            recorder.wall_s += (now - self._counted) * run.scene.work / whole
+            recorder.grain_steps = self._simulation.steps * run.scene.radius.size
         self._counted = now
 
     def _worlds(self) -> Iterator[slice]:

@@ -21,7 +21,8 @@ from tempfile import NamedTemporaryFile
 
 import numpy as np
 
-from lab.assembly.scene import build, filling_outline
+from lab.assembly.grains import filling_outline
+from lab.assembly.scene import build
 from lab.base.caches import cache_folder
 from lab.base.errors import LabError
 from lab.base.progress import Progress
@@ -65,6 +66,8 @@ class Settling:
 def settling(preset: Preset) -> Settling:
     """The settling of a preset's beds. Worlds that settle in one batch must agree in it."""
     run, grains = preset.run, preset.grains
+    if grains is None:
+        return Settling(preset.tank.corners, "", run.rest, run.settle_limit, settle=False)
     outline = tuple(map(tuple, filling_outline(preset).tolist()))
     disc_step = build(_of_discs(preset))[0].step if grains.settled_as == "discs" else None
     return Settling(outline, grains.surface, run.rest, run.settle_limit, run.settle, grains.reuse_bed, disc_step)
@@ -80,9 +83,11 @@ def settled(scene: Scene, position: np.ndarray, how: Settling, start: Start, pro
     """A simulation of `scene` with its beds settled, from `position` (W, n, 2) m; the clock stands at zero.
 
     The beds come from the store if it has all of them. `start` makes a simulation from a scene and positions. Raises
-    BadState from the watch, LabError if a bed does not fit under its tank's lid.
+    BadState from the watch, LabError if a bed does not fit under its tank's lid. Without matter nothing settles.
     """
     simulation = start(scene, position)
+    if not simulation.matters:
+        return simulation
     if not how.settle:
         progress.note("The grains start where they were placed, without settling (run.settle = false).")
         return simulation

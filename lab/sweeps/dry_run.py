@@ -18,7 +18,7 @@ from lab.measures.value import Value
 from lab.preset.find import LoadedPreset
 from lab.preset.schema import Preset
 from lab.recording import Recorder, new_recording, open_recording
-from lab.recording.layout import frames_of, rows_of, series_of
+from lab.recording.layout import rows_of, tables_of
 from solvers.machine.quantity import parted
 from solvers.scene import Scene
 from solvers.simulation import Simulation
@@ -56,11 +56,13 @@ def _record(folder: Path, loaded: LoadedPreset, preset: Preset, scene: Scene, po
     )
     rate, sizes = preset.record.series_rate, {"world": 1, "grain": count, "part": len(parts)}
     a_frame = max(1, round(rate / preset.record.picture_rate))
-    series, frames = series_of(bool(scene.vessels)), frames_of()
+    tables = tables_of(preset, steered=False)
+    series, frames = tables["series"], tables["frames"]
     never = {quantity.name: quantity.never for quantity in series if quantity.never is not None}
     row = {name: np.full(shape, never.get(name, 1.0)) for name, (shape, _) in rows_of(series, sizes).items()}
     frame = {name: np.zeros(shape) for name, (shape, _) in rows_of(frames, sizes).items()}
-    frame["position"] = position[:, :count]
+    if preset.grains:
+        frame["position"] = position[:, :count]
     times = np.arange(max(1, round(preset.duration * rate)) + 1) / rate
     with Recorder(folder) as recorder:
         for k, (time, pose) in enumerate(zip(times, _poses(preset, scene, position, times), strict=True)):

@@ -213,7 +213,7 @@ def _plan(sweep: Sweep) -> Iterator[list[int]]:
 def _most_worlds(run: Run, count: int) -> int:
     """How many worlds of `count` grains a batch may have."""
     settings = run.loaded.resolved.run
-    bound = MOST_GRAINS // count
+    bound = MOST_GRAINS // max(1, count)
     if choose_arch(settings.arch, settings.precision) != "cpu":
         return bound
     return min(bound, WORLDS_A_CORE * (settings.threads or available_cores()))

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from lab.assembly.scene import vessels
-from lab.paint.footage import Bed
+from lab.paint.footage import NO_GRAINS, Bed
 from lab.paint.painter import Edges
 from lab.paint.sea import Sea
 from lab.preset.find import LoadedPreset
@@ -132,7 +132,7 @@ class LiveFootage:
 
     def grains(self, name: str, frame: int, world: int = 0) -> np.ndarray:
         """The value `name` of each grain in a frame."""
-        return self._frames[frame].grains[name][world]
+        return self._frames[frame].grains[name][world] if self.radius.size else NO_GRAINS[name]
 
     @cached_property
     def extent(self) -> tuple[np.ndarray, np.ndarray]:

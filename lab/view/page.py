@@ -141,6 +141,8 @@ class Page:
 
     def grain_at(self, shown: Shown, x: float, y: float) -> int | None:
         """The number of the grain at a pixel, None if there is none."""
+        if shown.footage.bed.empty:
+            return None
         places = self.tank_camera(shown).pixels(shown.footage.grains("position", shown.frame))
         away = np.hypot(places[:, 0] - x, places[:, 1] - y) / self.camera(shown).scale
         nearest = int(np.nanargmin(away - shown.footage.radius[0]))
@@ -172,14 +174,14 @@ class Page:
 
     # Paint
 
-    def _scale(self, shown: Shown) -> Colouring:
-        """The colouring; its scale is updated from time to time."""
+    def _scale(self, shown: Shown) -> Colouring | None:
+        """The colouring, None without grains; its scale is updated from time to time."""
         key, now = (shown.look.colour, shown.footage), time.monotonic()
         if self._colouring is None or self._colouring[0] != key or now - self._colouring[1] > SCALE_UPDATE:
             self._colouring = key, now, colouring(shown.look.colour, [shown.footage.bed])
         return self._colouring[2]
 
-    def _stage_picture(self, shown: Shown, scale: Colouring) -> np.ndarray:
+    def _stage_picture(self, shown: Shown, scale: Colouring | None) -> np.ndarray:
         """The tank with its contents, the marks of centre and picked grain, and the plot."""
         footage, frame, (left, top, _, _) = shown.footage, shown.frame, self.stage
         camera, moved = (self._shifted(c, left, top) for c in (self.camera(shown), self.tank_camera(shown)))
@@ -188,17 +190,13 @@ class Page:
             stage = self._still("tank", key, lambda: self._empty_stage(shown, camera, moved)).copy()
         else:
             stage = self._empty_stage(shown, camera, moved)
-        bed = footage.bed
-        colour = scale.colours(bed, frame)
-        if shown.look.overlay == "forces":
-            colour = 0.25 * colour + 0.75 * np.array(palette.PAPER)
-        discs = to_discs(moved, bed.position(frame), bed.radius, bed.angle(frame))
-        paint_grains(stage, discs, colour, mark_colours(colour), footage.edges)
+        if scale:
+            self._paint_grains(stage, shown, moved, scale)
         for line, shift in zip(footage.parts.values(), footage.moved_parts(frame), strict=True):
             paint_plate(stage, moved, line + shift, PLATE * self.unit, palette.PART)
-        if shown.look.overlay == "forces":
+        if scale and shown.look.overlay == "forces":
             paint_strokes(stage, self._force_strokes(shown, moved), FORCE)
-        elif shown.look.overlay == "velocities":
+        elif scale and shown.look.overlay == "velocities":
             paint_strokes(stage, self._velocity_strokes(shown, moved), palette.INK)
         self._mark(stage, shown, moved)
         if shown.curve != "nothing":
@@ -206,6 +204,15 @@ class Page:
         if shown.lost:
             _put(stage, self._still("lost", (shown.lost,), lambda: self._lost(shown.lost)), 0, -self.u(BAND))
         return stage
+
+    def _paint_grains(self, stage: np.ndarray, shown: Shown, camera: Camera, scale: Colouring) -> None:
+        """The grains, paler below force chains."""
+        bed, frame = shown.footage.bed, shown.frame
+        colour = scale.colours(bed, frame)
+        if shown.look.overlay == "forces":
+            colour = 0.25 * colour + 0.75 * np.array(palette.PAPER)
+        discs = to_discs(camera, bed.position(frame), bed.radius, bed.angle(frame))
+        paint_grains(stage, discs, colour, mark_colours(colour), bed.edges)
 
     def _lost(self, end: End) -> Image.Image:
         """The band across the foot of the stage with the text on how the ship was lost."""
@@ -332,7 +339,7 @@ class Page:
 
     # The column
 
-    def _put_column(self, picture: np.ndarray, shown: Shown, scale: Colouring) -> None:
+    def _put_column(self, picture: np.ndarray, shown: Shown, scale: Colouring | None) -> None:
         left, look = self.width - self.u(MARGIN + COLUMN), shown.look
         key = shown.playhead, shown.going, shown.pace, look.picked, shown.footage
         lines = self._still("readings", key, lambda: self._lines(shown), TEXT_UPDATE)
@@ -357,13 +364,14 @@ class Page:
         """Top and bottom of the sliders in the column."""
         return self.u(MARGIN + 1.6 * READING + 1.4 * TEXT * LINES + 0.6), self.height - self.u(MARGIN + 5.2)
 
-    def _still_column(self, shown: Shown, scale: Colouring) -> Image.Image:
+    def _still_column(self, shown: Shown, scale: Colouring | None) -> Image.Image:
         """The part below the readings, which changes only when the user acts: sliders and colour bar."""
         top, bottom = self.controls
         size = self.u(MARGIN + COLUMN), self.height - top
         image = Image.new("RGB", size, palette.PAPER)
         bar = 0, size[1] - self.u(MARGIN + 4.4), self.u(COLUMN), size[1] - self.u(MARGIN)
-        deco.draw_colour_bar(image, bar, scale, TEXT * self.unit)
+        if scale:
+            deco.draw_colour_bar(image, bar, scale, TEXT * self.unit)
         self._sliders = {}
         if not shown.look.typing:
             self._draw_sliders(ImageDraw.Draw(image), shown, (self.width - size[0], top), bottom - top)

@@ -97,7 +97,7 @@ class Session(Shown):
         scenery, own = what
         self.settling = False
         self.footage = LiveFootage(scenery)
-        if self.footage.sea:
+        if self.footage.sea or self.footage.bed.empty:
             self.look.inset = "turn"
         self.values = offered(scenery.preset) | own
         self._own = own

@@ -73,7 +73,7 @@ class Worker:
         self._live, self._pipe, self._outbox = live, pipe, outbox
         self._going, self._pieces, self._pace, self._ended = False, 0, 1.0, False
         self._changes: list[tuple[str, float]] = []
-        self._most = max(1, GRAIN_STEPS_A_CALL // live.run.scene.radius.size)
+        self._most = max(1, GRAIN_STEPS_A_CALL // live.run.scene.work)
         self._sent = -math.inf
         self._anchor = (time.monotonic(), live.time)
         self._factor = 0.0

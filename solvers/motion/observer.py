@@ -18,12 +18,13 @@ class Observer:
     """One row of numbers per world: pose and velocity of the tank, and the mean force on it since the last sample.
 
     The force includes that on fixed grains and parts; its moment is about the tank's origin. `loads` are the loads of
-    all matters. `quantities` are the numbers' declarations, and `at` has the column in which each begins.
+    all matters, each on `pieces`; without any the force is zero. `quantities` are the numbers' declarations, and `at`
+    has the column in which each begins.
     """
 
-    def __init__(self, arrays: State, worlds: int, walls: Walls, carrier, loads: Sequence[Load]):
+    def __init__(self, arrays: State, worlds: int, pieces: int, walls: Walls, carrier, loads: Sequence[Load]):
         self.worlds, self.walls, self.carrier, self.loads = worlds, walls, carrier, tuple(loads)
-        self.exact, self.pieces = arrays.exact, loads[0].pieces
+        self.exact, self.pieces = arrays.exact, pieces
         self.quantities = tank.SERIES
         self.at = SimpleNamespace(**places(self.quantities))
         columns = sum(quantity.width for quantity in self.quantities)

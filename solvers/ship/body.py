@@ -27,8 +27,13 @@ class Body:
         return Loading(self.mass, self.centre)
 
 
+NOTHING = Body(0.0, (0.0, 0.0), 0.0)  # the cargo of an empty hold
+
+
 def bolted(*bodies: Body) -> Body:
-    """Rigidly joined bodies as one, by the parallel-axis theorem (Huygens and Steiner)."""
+    """Rigidly joined bodies as one, by the parallel-axis theorem (Huygens and Steiner); NOTHING without any."""
+    if len(bodies) < 2:
+        return bodies[0] if bodies else NOTHING
     mass = np.array([body.mass for body in bodies])
     centres = np.array([body.centre for body in bodies])
     centre = mass @ centres / mass.sum()

@@ -1,4 +1,4 @@
-"""A ship that carries grains: what the solver must know of it before the cargo is in its hold."""
+"""A ship that may carry cargo: what the solver must know of it before the cargo is in its hold."""
 
 from dataclasses import dataclass, replace
 from math import inf
@@ -6,11 +6,13 @@ from math import inf
 import numpy as np
 
 from solvers.machine.errors import Unavailable
-from solvers.ship.body import Body, bolted
+from solvers.ship.body import NOTHING, Body, bolted
 from solvers.ship.hydrostatics import balanced_heave, turned
-from solvers.ship.motion import HEAVE, Ship
+from solvers.ship.linear import oscillations
+from solvers.ship.motion import HEAVE, Ship, start
 
 LONGEST_INTERVAL = 1e-3  # s
+STEPS_A_PERIOD = 200  # of the ship's fastest oscillation, where no cargo asks for shorter steps
 SHORTEST_MEMORY = 0.02  # of the memory's shortest time scale: the Runge–Kutta error per interval is then below 1e-10
 
 
@@ -42,6 +44,16 @@ class Vessel:
         memory = self.ship.radiation.memory
         fastest = 0.0 if memory is None else np.abs(np.linalg.eigvals(memory.matrix)).max()
         return min(LONGEST_INTERVAL, SHORTEST_MEMORY / max(fastest, 1e-9))
+
+    @property
+    def step_limits(self) -> tuple[tuple[float, str], ...]:
+        """Bounds (s) on the steps of a ship without cargo, each with its reason."""
+        rest = start(self.ship, self.heave(NOTHING, 0.0))
+        fastest = np.abs(oscillations(self.ship, rest)).max(initial=1e-9)
+        return (
+            (2.0 * np.pi / fastest / STEPS_A_PERIOD, f"1/{STEPS_A_PERIOD} of the ship's shortest period"),
+            (0.5 * self.interval, "half the interval between updates of the water's forces"),
+        )
 
     def hull(self, cargo: Body) -> Body:
         """The hull alone. Raises Unavailable if the cargo (hull's frame) leaves it no mass or no inertia."""

@@ -4,6 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+BARE_THICKNESS = 1.0  # m, of a tank without grains unless it is given
+
 
 @dataclass(frozen=True, eq=False)
 class Tank:

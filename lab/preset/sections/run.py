@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from lab.base.errors import LabError
 from lab.preset.accuracy import DEFAULT, LEVELS
-from lab.preset.fields import Alike
+from lab.preset.fields import Alike, Of
 from lab.preset.sections.history import check_end
 from lab.preset.sections.motion import Motion
 from solvers.machine.marks import Doc, Interval, Unit, Usual
@@ -23,18 +23,22 @@ class Run:
     ] = None
     repeats: Annotated[int, Interval(ge=1, le=100_000), Doc("Number of beds, each with a seed of its own.")] = 1
     seed: Annotated[int, Interval(ge=0, le=2**31 - 1), Doc("Seed of the first bed; the others count on from it.")] = 1
-    settle: Annotated[bool, Doc("Whether the grains settle before the tank moves.")] = True
+    settle: Annotated[bool, Doc("Whether the cargo settles before the tank moves.")] = True
     step: Annotated[
         Annotated[float, Unit("s"), Interval(gt=0, le=1.0)] | Literal["auto"],
         Doc("Time step; derived from the material and the speeds without it."),
     ] = "auto"
     force_step: Annotated[bool, Doc("Allow a step past the derived one.")] = False
-    accuracy: Annotated[Literal[*LEVELS], Doc("Level of accuracy, which sets stiffness and step.")] = DEFAULT
+    accuracy: Annotated[Literal[*LEVELS], Of("grains"), Doc("Level of accuracy, which sets stiffness and step.")] = (
+        DEFAULT
+    )
     gravity: Annotated[
         float, Unit("m/s^2"), Interval(gt=0), Usual(0.1, 9.81, "m/s^2"), Doc("Acceleration of gravity.")
     ] = 9.81
     settle_limit: Annotated[Time, Doc("Longest time for settling.")] = 5.0
-    rest: Annotated[float, Interval(gt=0), Doc("Mean kinetic energy of grains at rest, in m g d of a grain.")] = 1e-6
+    rest: Annotated[
+        float, Of("grains"), Interval(gt=0), Doc("Mean kinetic energy of grains at rest, in m g d of a grain.")
+    ] = 1e-6
     threads: Annotated[int, Alike(), Interval(ge=0, le=1024), Doc("Threads on the CPU; 0: one a core.")] = 0
     arch: Annotated[Literal["auto", "cpu", "cuda", "vulkan"], Alike(), Doc("Device that computes.")] = "auto"
     schedule: Annotated[
@@ -42,7 +46,7 @@ class Run:
     ] = "auto"
     precision: Annotated[Literal["f64", "f32", "mixed"], Doc("Digits of the numbers.")] = "f64"
     integrator: Annotated[
-        Literal["verlet", "symplectic-euler", "gear"], Doc("Scheme that advances the grains in time.")
+        Literal["verlet", "symplectic-euler", "gear"], Of("grains"), Doc("Scheme that advances the grains in time.")
     ] = "verlet"
 
 

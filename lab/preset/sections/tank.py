@@ -7,6 +7,7 @@ from typing import Annotated
 import numpy as np
 
 from lab.base.errors import LabError
+from lab.preset.fields import Of
 from lab.preset.outline import Point, rectangle, simple_polygon
 from lab.preset.units import show
 from solvers.machine.marks import Doc, Interval, Unit
@@ -32,10 +33,13 @@ class Tank:
     outline: Annotated[Outline | None, Doc("Corners of the tank, y and z each, in place of width and height.")] = None
     lid: Annotated[bool, Doc("Whether the tank is closed at the top.")] = True
     roughness: Annotated[
-        Length | None, Doc("Diameter of fixed grains that line floor and sides; they are smooth without it.")
+        Length | None,
+        Of("grains"),
+        Doc("Diameter of fixed grains that line floor and sides; they are smooth without it."),
     ] = None
     thickness: Annotated[
-        Thickness | None, Doc("Thickness of the slab that the plane stands for; the grains' mean diameter without it.")
+        Thickness | None,
+        Doc("Thickness of the slab that the plane stands for; the grains' mean diameter without it, 1 m if empty."),
     ] = None
 
     @cached_property

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import Annotated, Literal
 
 from lab.base.errors import LabError
-from lab.preset.fields import Alike
+from lab.preset.fields import Alike, Of
 from solvers.machine.marks import Doc, Interval, Unit
 
 COLOURS = ("speed", "displacement", "layer", "size", "kind", "shape", "spin")  # what `lab.paint.colours` paints
@@ -21,7 +21,7 @@ class Record:
     checkpoint_every: Annotated[
         float, Unit("s"), Alike(), Interval(ge=0), Doc("Wall-clock time between checkpoints.")
     ] = 60.0
-    xdmf: Annotated[bool, Doc("Write a file beside the recording with which ParaView opens it.")] = False
+    xdmf: Annotated[bool, Of("grains"), Doc("Write a file beside the recording with which ParaView opens it.")] = False
 
 
 @dataclass(frozen=True)
@@ -30,7 +30,7 @@ class Video:
 
     width: Annotated[int, Interval(ge=320, le=7680), Doc("Width of the picture in pixels, an even number.")] = 1280
     height: Annotated[int, Interval(ge=180, le=4320), Doc("Height of the picture in pixels, an even number.")] = 720
-    colour: Annotated[Literal[*COLOURS], Doc("What the colour of a grain shows.")] = "speed"
+    colour: Annotated[Literal[*COLOURS], Of("grains"), Doc("What the colour of a grain shows.")] = "speed"
     frame: Annotated[Literal["tank", "earth"], Doc("Whether the camera moves with the tank or stands still.")] = "tank"
     speed: Annotated[float, Interval(gt=0), Doc("Playback speed; 1 is as in nature.")] = 1.0
 

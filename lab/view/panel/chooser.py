@@ -8,6 +8,7 @@ from PIL import Image, ImageDraw, ImageOps
 from lab.paint import decorations as deco
 from lab.paint import palette
 from lab.preset.find import QUICK, load, names
+from lab.preset.schema import Preset
 
 COLUMNS, ROWS = 4, 3
 POSTERS = Path("renders/gallery/presets")  # where `cargolab gallery` writes them
@@ -114,6 +115,13 @@ def _poster(name: str, size: tuple[int, int]) -> Image.Image:
     return _sketch(name, (size[0] - 1, size[1] - 1))
 
 
+def _filling(preset: Preset) -> list[tuple[float, float]]:
+    """Corners (m) of a box as wide as the tank and as high as its grains."""
+    outline, depth = np.array(preset.tank.corners), preset.grains.depth or 0.4 * preset.tank.extent[1]
+    low, high = outline.min(axis=0), outline.max(axis=0)
+    return [low, (high[0], low[1]), (high[0], low[1] + depth), (low[0], low[1] + depth)]
+
+
 def _sketch(name: str, size: tuple[int, int]) -> Image.Image:
     """A sketch of the tank, its filling and its moving parts."""
     preset = load(name).resolved
@@ -126,13 +134,9 @@ def _sketch(name: str, size: tuple[int, int]) -> Image.Image:
         away = (np.asarray(points) - middle) * scale
         return [(0.5 * size[0] + x, 0.5 * size[1] - y) for x, y in away]
 
-    depth = preset.grains.depth or 0.4 * preset.tank.extent[1]
-    low, high = outline.min(axis=0), outline.max(axis=0)
     draw.polygon(placed(outline), fill=palette.PAPER)
-    if preset.grains.place:
-        draw.polygon(placed(preset.grains.place), fill=GRAIN)
-    else:
-        draw.polygon(placed([low, (high[0], low[1]), (high[0], low[1] + depth), (low[0], low[1] + depth)]), fill=GRAIN)
+    if preset.grains:
+        draw.polygon(placed(preset.grains.place or _filling(preset)), fill=GRAIN)
     draw.line([*placed(outline), placed(outline)[0]], fill=palette.WALL, width=3)
     for part in preset.parts.values():
         draw.line(placed(part.points), fill=palette.PART, width=3)

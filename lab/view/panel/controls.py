@@ -95,6 +95,10 @@ def _humidity(preset: Preset) -> float | None:
     return preset.material.humidity if preset.contact.cohesion == "humid" else None
 
 
+def _diameter(preset: Preset) -> float | None:
+    return preset.mean_diameter if preset.grains and not (preset.shapes or preset.grains.table) else None
+
+
 def _waves(name: str) -> Callable[[Preset], float | None]:
     """A quantity of the preset's regular waves; calm water and packets cannot be changed."""
 
@@ -123,7 +127,11 @@ CONTROLS: dict[str, Control] = {
     "centre_y": Control("centre y", "motion.roll.centre", MOVES, _centre(0), span=Usual(-0.5, 0.5, "mm")),
     "centre_z": Control("centre z", "motion.roll.centre", MOVES, _centre(1), span=Usual(-0.5, 1.0, "mm")),
     "friction": Control(
-        "friction", "material.friction", ALTERS, lambda preset: preset.material.friction, _materials("friction")
+        "friction",
+        "material.friction",
+        ALTERS,
+        lambda preset: preset.material.friction if preset.grains else None,
+        _materials("friction"),
     ),
     "humidity": Control("humidity", "material.humidity", ALTERS, _humidity, _materials("humidity")),
     "gravity": Control(
@@ -140,7 +148,7 @@ CONTROLS: dict[str, Control] = {
         "grains",
         "grains.diameter",
         RESTARTS,
-        lambda preset: None if preset.shapes or preset.grains.table else preset.mean_diameter,
+        _diameter,
     ),
 }
 

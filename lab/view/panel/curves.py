@@ -53,9 +53,14 @@ CURVES: dict[str, Callable[[LiveFootage, int], Drawing]] = {
     "energy": _in_time("kinetic energy (mJ)", "kinetic", lambda values, _: 1e3 * values),
     "contacts": _in_time("contacts", "contacts", lambda values, _: values),
 }
+OF_GRAINS, OF_SHIPS = {"shift", "energy", "contacts"}, {"levers"}
 
 
 def offered_curves(footage: LiveFootage | None) -> tuple[str, ...]:
     """The names of the curves of this experiment, and the choice of no curve."""
-    afloat = footage is not None and footage.sea is not None
-    return (*(name for name in CURVES if afloat or name != "levers"), "nothing")
+    left_out = set()
+    if footage is None or footage.sea is None:
+        left_out |= OF_SHIPS
+    if footage is not None and footage.bed.empty:
+        left_out |= OF_GRAINS
+    return (*(name for name in CURVES if name not in left_out), "nothing")

@@ -27,11 +27,9 @@ def readings(shown: Shown) -> list[str]:
     count = footage.radius.size
     if shown.settling:
         return [f"{count} grains"]
-    found = [
-        f"{shown.factor:.2f} of real time ({limit})",
-        _pose(shown),
-        f"{count} grains, {contacts_each(footage.pressing(frame), count):.2f} contacts each",
-    ]
+    found = [f"{shown.factor:.2f} of real time ({limit})", _pose(shown)]
+    if count:
+        found.append(f"{count} grains, {contacts_each(footage.pressing(frame), count):.2f} contacts each")
     return found if shown.look.picked is None else [*found, *_picked(shown)]
 
 

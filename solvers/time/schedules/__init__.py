@@ -36,5 +36,5 @@ def choose_schedule(wanted: str, arch: str, worlds: int, grains: int, threads: i
 def units_a_world(schedule: str, worlds: int, grains: int, threads: int) -> int:
     """Number of units into which a world of `grains` is cut."""
     if schedule == "per-grain":
-        return grains
+        return max(1, grains)
     return max(1, min(threads // worlds, grains // 2)) if schedule == "per-band" else 1

@@ -10,6 +10,7 @@ from solvers.time.watch import NO_ROOM, RUNNING, TOO_FAST
 # Assumed until the next check: speeds of at most HASTE times the highest now, growing with HASTE times the frame's
 # acceleration plus RUSH (m/s²) for contacts.
 HASTE, RUSH = 2.0, 50.0
+ANY = 2**30  # steps, more than are ever taken at once
 GLIMPSES = 4  # samples of the frame's acceleration from one check to the latest time of the next
 
 
@@ -25,8 +26,9 @@ class PerGrain:
         self.sequence, self.carrier, self.clock = sequence, sequence.carrier, clock
         self.matters, self.before, self.after = sequence.matters, sequence.before, sequence.after
         self.real, self.worlds = clock.real, clock.worlds
-        self.extent = max(matter.extent for matter in self.matters)  # m, largest distance from the origin
-        self.nearing = max(matter.nearing for matter in self.matters)  # m/s, what moving parts add to closing speeds
+        # Largest distance (m) from the origin, and what moving parts add to closing speeds (m/s)
+        self.extent = max((matter.extent for matter in self.matters), default=0.0)
+        self.nearing = max((matter.nearing for matter in self.matters), default=0.0)
 
     def advance(self, target: int, origin: float, base: float) -> None:
         """Take every running world to base step `target`; see PerWorld. All worlds have the same step length."""
@@ -34,7 +36,7 @@ class PerGrain:
         if not running.any():
             return
         done = int(self.clock.step.to_numpy()[running].min())
-        half_skin = 0.5 * min(matter.slack() for matter in self.matters)
+        half_skin = 0.5 * min((matter.slack() for matter in self.matters), default=np.inf)
         before, stride = (int(field.to_numpy()[running].min()) for field in (self.clock.before, self.clock.stride))
         while done < target:
             safe = self.safe_steps(half_skin, origin + done * base, stride * base)
@@ -70,6 +72,8 @@ class PerGrain:
 
     def safe_steps(self, half_skin: float, time: float, step: float) -> int:
         """Number of steps in which no two unlisted particles can come within reach of each other."""
+        if half_skin == np.inf:  # nothing has lists
+            return ANY
         self.look(time, np.sqrt(2.0 * half_skin / RUSH), step)
         running = self.clock.running()
         if not running.any():

@@ -5,7 +5,8 @@ from itertools import product
 import numpy as np
 import pytest
 
-from lab.assembly.scene import build, filling_outline, fixed_grains, grain_count
+from lab.assembly.grains import filling_outline, fixed_grains, grain_count
+from lab.assembly.scene import build
 from lab.base.errors import LabError
 from lab.preset import bed_file
 from lab.preset.accuracy import LEVELS

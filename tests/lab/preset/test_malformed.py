@@ -15,7 +15,8 @@ from click.testing import CliRunner
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from lab.assembly.scene import build, grain_count
+from lab.assembly.grains import grain_count
+from lab.assembly.scene import build
 from lab.base import toml
 from lab.base.errors import LabError
 from lab.cli import main

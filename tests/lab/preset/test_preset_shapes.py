@@ -10,7 +10,8 @@ from PIL import Image
 from scipy.spatial import cKDTree
 
 from lab.assembly.drawn import classes
-from lab.assembly.scene import build, filling_outline, grain_count
+from lab.assembly.grains import filling_outline, grain_count
+from lab.assembly.scene import build
 from lab.base.errors import LabError
 from lab.paint.video import poster, render_grid
 from lab.preset.find import load

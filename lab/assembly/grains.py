@@ -1,0 +1,175 @@
+"""The grains of a scene: their sizes, places, materials and laws, from a preset."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from lab.assembly.drawn import classes, draw_shapes
+from lab.base.errors import LabError
+from lab.preset.schema import Preset
+from lab.preset.units import show
+from solvers.grains.bed.filling import NONE_FIXED, DoesNotFit, count_for_depth, headroom, lattice, start_positions
+from solvers.grains.bed.sizes import Sizes
+from solvers.grains.checks import DEEPEST_OVERLAP
+from solvers.grains.shapes.given import Shapes
+from solvers.grains.timestep import closing_speed
+from solvers.scene import Scene
+from solvers.tank.outline import lining, raised
+
+THROUGH = 1.0  # radii: at this overlap grains pass through each other and the walls
+
+
+def grain_count(preset: Preset) -> int:
+    """Number of grains in one tank, fixed ones not counted; 0 without grains."""
+    grains = preset.grains
+    if grains is None:
+        return 0
+    if grains.listed:
+        return len(grains.listed)
+    if grains.count is not None:
+        return grains.count
+    return count_for_depth(grains.depth, np.array(preset.tank.corners), preset.sizes, fixed_grains(preset))
+
+
+def fixed_grains(preset: Preset) -> np.ndarray:
+    """The fixed grains (k, 3) y, z, radius in m that line a rough tank, the same in all repeats (seed run.seed)."""
+    tank = preset.tank
+    if tank.roughness is None:
+        return NONE_FIXED
+    return lining(np.array(tank.corners), tank.roughness, np.random.default_rng(preset.run.seed))
+
+
+def filling_outline(preset: Preset) -> np.ndarray:
+    """The outline (m, 2) m of the tank in which the grains settle.
+
+    Grains start higher than they come to rest. If they are thrown, fill an open tank to its rim, or have no room to
+    start in a closed one, the walls are extended upwards until the bed has settled.
+    """
+    outline, grains = np.array(preset.tank.corners), preset.grains
+    if grains.listed or grains.region or not preset.run.settle:
+        return outline
+    count, largest = grain_count(preset), _farthest(preset)
+    low = not (grains.surface == "disturbed" or preset.tank.open_edges)
+    if low and len(lattice(largest, outline, fixed_grains(preset), _plates(preset))) >= count:
+        return outline
+    return raised(outline, headroom(count, largest, preset.tank.extent[0]))
+
+
+def _farthest(preset: Preset) -> float:
+    """Upper bound (m) on the distance of a grain's outline from its centroid."""
+    if not preset.shapes:
+        return 0.5 * preset.diameters[1]
+    alone = [
+        (replace(preset.sizes, classes=((shape.diameter, 1.0),)), shape) for shape in preset.shape_classes.values()
+    ]
+    return max(0.5 * sizes.range[1] * shape.reach for sizes, shape in alone)
+
+
+def grains_of(preset: Preset) -> tuple[dict, np.ndarray]:
+    """What a scene says of the grains of all repeats, by its fields, and their starting positions (W, n, 2) m.
+
+    Repeat w has the seed run.seed + w. Raises LabError if the grains do not fit into the tank.
+    """
+    radius, position, more = _listed(preset) if preset.grains.listed else _filled(preset)
+    low, high = preset.diameters
+    given = {
+        "radius": radius,
+        "grain": preset.material,
+        "wall": preset.wall_material,
+        **_kinds(preset, radius.shape),
+        "normal": preset.contact.normal,
+        "tangential": preset.contact.tangential,
+        "rolling": preset.contact.rolling,
+        "cohesion": preset.contact.cohesion,
+        "stiffness_scale": preset.stiffness_scale,
+        "sizes": (0.5 * low, 0.5 * high),
+        "fixed": fixed_grains(preset),
+        "integrator": preset.run.integrator,
+    }
+    return given | more, position
+
+
+def _filled(preset: Preset) -> tuple[np.ndarray, np.ndarray, dict]:
+    """Radii (W, n), positions (W, n, 2) and shapes of the grains that fill a tank, each repeat from its own seed.
+
+    The grains are at rest, and so far apart that irregular ones can turn freely.
+    """
+    grains, count = preset.grains, grain_count(preset)
+    shapes = draw_shapes(preset, count)
+    random = [np.random.default_rng(preset.run.seed + w) for w in range(preset.run.repeats)]
+    if shapes is None:
+        radius = reach = np.stack([preset.sizes.draw(count, r) for r in random])
+    else:
+        radius = _sized(preset, shapes, random)
+        reach = radius * np.array([outline.bounding_radius for outline in shapes.outlines])[shapes.which]
+    outline, fixed = filling_outline(preset), fixed_grains(preset)
+    plates, thrown = _plates(preset), grains.surface == "disturbed"
+    region = np.array(grains.place) if grains.place else None
+    try:
+        position = [
+            start_positions(size, outline, r, fixed, plates, thrown, region)
+            for size, r in zip(reach, random, strict=True)
+        ]
+    except DoesNotFit as error:
+        raise LabError(f"grains.{'count' if grains.count else 'depth'}: {error}") from None
+    return radius, np.stack(position), {"shapes": shapes} if shapes else {}
+
+
+def _sized(preset: Preset, shapes: Shapes, random: list[np.random.Generator]) -> np.ndarray:
+    """Radii (W, n) of discs of equal area, spread about that of each grain's class."""
+    grains = preset.grains
+    diameter = np.array([shape.diameter for shape in preset.shape_classes.values()])[classes(preset)][shapes.which]
+    relative = Sizes(((2.0, 1.0),), grains.spread, grains.normal)
+    return 0.5 * diameter * np.stack([relative.draw(shapes.which.shape[1], r) for r in random])
+
+
+def _plates(preset: Preset) -> list[np.ndarray]:
+    """The tank's parts as polylines (m, 2) in m, in their rest position."""
+    return [np.array(part.points) for part in preset.parts.values()]
+
+
+def _kinds(preset: Preset, shape: tuple[int, int]) -> dict:
+    """The kinds of grains, mixed at random, each repeat from its own seed; empty if there is only one kind."""
+    if not preset.kinds:
+        return {}
+    worlds, count = shape
+    bounds = np.round(np.cumsum([kind.share for kind in preset.kinds.values()]) * count)
+    ordered = (np.searchsorted(bounds, np.arange(count), side="right") + 1) % (len(preset.kinds) + 1)
+    random = [np.random.default_rng([preset.run.seed + w, 1]) for w in range(worlds)]
+    against = [((0, k), other.against) for k, other in enumerate(preset.others.values(), start=1) if other.against]
+    return {
+        "kind": np.stack([r.permutation(ordered) for r in random]),
+        "others": tuple(other.material for other in preset.others.values()),
+        "unlike": tuple(against),
+    }
+
+
+def _listed(preset: Preset) -> tuple[np.ndarray, np.ndarray, dict]:
+    """Radii and positions of the listed grains, the same in all repeats, and their velocities if any."""
+    listed = np.array([preset.grains.listed] * preset.run.repeats)
+    velocity, spin = listed[..., 3:5], listed[..., 5]
+    motion = {}
+    if np.any(velocity) or np.any(spin):
+        motion = {"velocity": velocity, "spin": spin, "start_speed": closing_speed(velocity[0])}
+    return listed[..., 2], listed[..., :2], motion
+
+
+def check_softness(scene: Scene) -> None:
+    """Raise LabError if the starting speeds make grains overlap so deeply in a collision that the watch stops the run.
+
+    Speeds from a fall or from the moving tank are not known beforehand; for these only passing through is refused.
+    """
+    for what, speed, most in (
+        ("start", scene.start_speed, DEEPEST_OVERLAP),
+        ("may meet", scene.credible_speed(), THROUGH),
+    ):
+        deep = scene.deepest_overlap(speed)
+        if deep > most:
+            stiffer = scene.stiffness_scale * (deep / most) ** 2.5
+            remedy = f"set it to at least {stiffer:.2g}"
+            if stiffer > 1.0:
+                remedy = "raise material.young or slow them down"
+            raise LabError(
+                f"contact.stiffness_scale: grains {what} at {show(speed, 'm/s')} here and would overlap by "
+                f"{100 * deep:.3g} % of a radius, where {100 * most:g} % is the most; {remedy}."
+            )
