@@ -6,11 +6,11 @@ from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
 
-import imageio.v2 as imageio
 import numpy as np
 from PIL import Image
 
 from lab.base.errors import LabError
+from lab.paint.encoder import write_video
 from lab.paint.film import Film, choose_beds, choose_look
 from lab.paint.footage import open_footage
 from solvers.machine.runtime import initialise
@@ -19,12 +19,6 @@ MOST_IN_GRID = 24
 SLOWEST, FASTEST = 0.01, 60.0  # pictures per second of a video
 USUAL = 0.04  # s between pictures if the frames' times do not define it
 HELD = 3.0  # s for which the last picture is held if a ship is lost
-BT709 = "scale=out_color_matrix=bt709:out_range=tv"
-ENCODING = (
-    *("-crf", "20", "-preset", "veryfast", "-movflags", "+faststart", "-vf", BT709),
-    *("-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709"),
-)
-
 Progress = Callable[[int, int], None]
 
 
@@ -144,7 +138,7 @@ def _write(out: Path, film: Film, speed: float, png: bool, progress: Progress | 
     pictures = _counted(film, range(0, len(film.time), stride), progress)
     if png:
         return _write_folder(out, pictures)
-    return _write_video(out, _held(pictures, round(HELD * rate) if film.lost else 0), rate)
+    return write_video(out, _held(pictures, round(HELD * rate) if film.lost else 0), rate)
 
 
 def _held(pictures: Iterator[np.ndarray], times: int) -> Iterator[np.ndarray]:
@@ -181,29 +175,3 @@ def _write_folder(folder: Path, pictures: Iterator[np.ndarray]) -> Path:
     for k, picture in enumerate(pictures):
         Image.fromarray(picture).save(folder / f"picture_{k:05d}.png")
     return folder
-
-
-def _write_video(out: Path, pictures: Iterator[np.ndarray], rate: float) -> Path:
-    """Write an H.264 video to `out`, atomically."""
-    if out.suffix != ".mp4":
-        raise LabError(f"{out} cannot be written: a video is an .mp4 file.")
-    part = out.with_suffix(".part.mp4")
-    writer = imageio.get_writer(
-        part,
-        fps=rate,
-        codec="libx264",
-        quality=None,
-        pixelformat="yuv420p",
-        macro_block_size=2,
-        ffmpeg_log_level="error",
-        output_params=list(ENCODING),
-    )
-    try:
-        for picture in pictures:
-            writer.append_data(picture)
-        writer.close()
-        part.replace(out)
-    finally:
-        writer.close()
-        part.unlink(missing_ok=True)
-    return out
