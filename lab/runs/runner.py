@@ -17,7 +17,6 @@ from lab.preset.find import LoadedPreset, load
 from lab.preset.recorded import checked
 from lab.recording import FILE_NAME, Recording, open_recording, versions
 from lab.recording.xdmf import write_xdmf
-from lab.report.plots import write_plots
 from lab.report.summary import terminal_summary, write_summary
 from lab.runs.batch import Run, prepare, run_batch
 from lab.runs.belongs import check_belongs
@@ -108,6 +107,8 @@ def report(folder: Path, progress: Progress, *, video: bool, plots: bool = True,
         with progress.costs.of("plots"):
             measures = measure_all(recording)
             if plots:
+                from lab.report.plots import write_plots  # Matplotlib is slow to import
+
                 files |= write_plots(recording, measures, folder)
         if video:
             with progress.costs.of("video"):
