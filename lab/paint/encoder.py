@@ -4,9 +4,10 @@ The video is written under another name and renamed when ffmpeg has ended withou
 name is always a whole video: a full disk, or the end of either process, leaves at most the unfinished one.
 """
 
+import os
 import subprocess
-from collections.abc import Iterable
-from contextlib import suppress
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager, suppress
 from fractions import Fraction
 from pathlib import Path
 
@@ -20,12 +21,13 @@ ENCODING = (
     *("-crf", "20", "-preset", "veryfast", "-movflags", "+faststart", "-vf", BT709),
     *("-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709"),
 )
+LARGEST_INDEX = 2**24  # bytes read of a video's index, which has some 20 a picture
 
 
-def write_video(out: Path, pictures: Iterable[np.ndarray], rate: float) -> Path:
+def write_video(out: Path, pictures: Iterable[np.ndarray], rate: float, comment: str = "") -> Path:
     """Write pictures (height, width, 3), u8, all of one size, as a video of `rate` pictures a second; returns `out`.
 
-    Raises LabError if `out` is no .mp4 file or cannot be written.
+    comment: a text that is kept in the file. Raises LabError if `out` is no .mp4 file or cannot be written.
     """
     if out.suffix != ".mp4":
         raise LabError(f"{out} cannot be written: a video is an .mp4 file.")
@@ -34,12 +36,14 @@ def write_video(out: Path, pictures: Iterable[np.ndarray], rate: float) -> Path:
     try:
         for picture in pictures:
             if process is None:
-                process = _begin(part, picture.shape, rate)
-            process.stdin.write(memoryview(np.ascontiguousarray(picture)))
-        _end(process)
+                process = _begin(part, picture.shape, rate, comment)
+            with _encoding(process, out):
+                process.stdin.write(memoryview(np.ascontiguousarray(picture)))
+        with _encoding(process, out):
+            process.stdin.close()
+            if process.wait():
+                raise BrokenPipeError
         part.replace(out)
-    except BrokenPipeError:
-        raise LabError(f"{out} cannot be written ({_reason(process)}): make room there.") from None
     finally:
         if process and process.poll() is None:
             process.kill()
@@ -53,7 +57,7 @@ def unfinished(out: Path) -> Path:
     return out.with_suffix(".part.mp4")
 
 
-def _begin(part: Path, shape: tuple[int, ...], rate: float) -> subprocess.Popen:
+def _begin(part: Path, shape: tuple[int, ...], rate: float, comment: str) -> subprocess.Popen:
     from imageio_ffmpeg import get_ffmpeg_exe
 
     try:
@@ -65,7 +69,7 @@ def _begin(part: Path, shape: tuple[int, ...], rate: float) -> subprocess.Popen:
     raw = ("-f", "rawvideo", "-vcodec", "rawvideo", "-s", f"{width}x{height}", "-pix_fmt", "rgb24", "-r", rational)
     # Out of reach of a Ctrl-C, which is meant for this process; "file:", since a name may look like an option.
     return subprocess.Popen(
-        [program, "-y", *raw, "-i", "-", *ENCODING, f"file:{part.absolute()}"],
+        [program, "-y", *raw, "-i", "-", *ENCODING, "-metadata", f"comment={comment}", f"file:{part.absolute()}"],
         stdin=subprocess.PIPE,
         stdout=subprocess.DEVNULL,
         stderr=subprocess.PIPE,
@@ -73,19 +77,34 @@ def _begin(part: Path, shape: tuple[int, ...], rate: float) -> subprocess.Popen:
     )
 
 
-def _end(process: subprocess.Popen) -> None:
-    """Let ffmpeg finish the file. Raises BrokenPipeError if it does not succeed."""
-    process.stdin.close()
-    if process.wait():
-        raise BrokenPipeError
+def says(path: Path, comment: str) -> bool:
+    """Whether a video has this comment. It stands in the index of an .mp4 file, which comes first in the lab's own."""
+    with path.open("rb") as file:
+        while len(head := file.read(8)) == 8:
+            size, kind = int.from_bytes(head[:4], "big"), head[4:]
+            if kind == b"moov":
+                return comment.encode() in file.read(min(size, LARGEST_INDEX))
+            if size < 8 or kind == b"mdat":
+                return False
+            file.seek(size - 8, os.SEEK_CUR)
+    return False
+
+
+@contextmanager
+def _encoding(process: subprocess.Popen, out: Path) -> Iterator[None]:
+    """Turn the end of ffmpeg before its time, a broken pipe, into a LabError."""
+    try:
+        yield
+    except BrokenPipeError:
+        raise LabError(f"{out} cannot be written: {_reason(process)}.") from None
 
 
 def _reason(process: subprocess.Popen) -> str:
-    """Why ffmpeg has ended, in words."""
+    """Why ffmpeg has ended, and what to do about it."""
     with suppress(OSError):
         process.stdin.close()
     said = process.stderr.read().decode(errors="replace").strip().splitlines()
     code = process.wait()
     if code < 0:
-        return f"ffmpeg was ended by signal {-code}"
-    return said[-1].rstrip(".") if said else f"ffmpeg ended with code {code}"
+        return f"ffmpeg was ended by signal {-code}, maybe for want of room or memory; paint it again"
+    return f"{said[-1].rstrip('.') if said else f'ffmpeg ended with code {code}'}; make room there"
