@@ -17,6 +17,8 @@ from pathlib import Path
 from queue import SimpleQueue
 from threading import Thread
 
+from lab.paint.palette import INK
+
 PATIENCE = 10.0  # s that a process has to remove an unfinished video
 
 Heard = SimpleQueue  # of pairs of a Painter and its answer, None if it has ended
@@ -84,20 +86,36 @@ def serve(cores: int) -> None:
         print(json.dumps(words), file=answers, flush=True)
 
     try:
+        get_ready(cores)
         for line in sys.stdin:
-            _paint(json.loads(line), cores, answer)
+            _paint(json.loads(line), answer)
     except (KeyboardInterrupt, BrokenPipeError):
         pass
     os._exit(0)  # nothing is left to be written, and nobody hears of a broken pipe
 
 
-def _paint(job: dict[str, object], cores: int, answer) -> None:
+def get_ready(cores: int) -> None:
+    """Do what comes before the first picture: import, start Taichi, and load the kernels that most videos need."""
+    import numpy as np
+
+    from lab.paint.painter import Camera, paint_grains, paint_tank
+    from lab.paint.video import render_recording  # noqa: F401 (imports all that paints)
+    from solvers.machine.errors import Unavailable
+    from solvers.machine.runtime import initialise, use_cores
+
+    use_cores(cores)
+    with suppress(Unavailable):  # the first job says so
+        initialise()
+        picture, disc = np.zeros((32, 32, 3), np.uint8), np.array([[9.0, 9.0, 5.0, 1.0, 0.0]])
+        paint_tank(picture, Camera(1.0, (0.0, 32.0)), np.array([[2.0, 2.0], [20.0, 2.0], [9.0, 20.0]]), 1.0, INK, INK)
+        paint_grains(picture, disc, np.array([INK]), np.array([INK]))
+
+
+def _paint(job: dict[str, object], answer) -> None:
     from lab.base.errors import LabError, os_sentence
     from lab.paint.video import render_recording
     from solvers.machine.errors import Unavailable
-    from solvers.machine.runtime import use_cores
 
-    use_cores(cores)
     try:
         made = render_recording(**job, progress=lambda done, total: answer(done=done, of=total))
     except (LabError, Unavailable) as error:
