@@ -1,4 +1,7 @@
-"""Paint many recordings, one process a core: those of folders, of sweeps and of patterns."""
+"""Paint many recordings, one process a core: those of folders, of sweeps and of patterns.
+
+What paints is imported only when it is clear what is to be painted, so that a typing error is reported at once.
+"""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -9,7 +12,6 @@ from queue import SimpleQueue
 from lab.base.errors import LabError
 from lab.base.progress import Progress
 from lab.paint.process import Heard, Painter
-from lab.paint.video import is_made, made_with, target_of
 from lab.recording import FILE_NAME
 from solvers.machine.runtime import available_cores
 
@@ -63,6 +65,8 @@ def plan(recordings: Sequence[Path], out: Path | None, png: bool) -> list[Job]:
 
     Raises LabError if `out` is a video, or if two recordings would make files of one name.
     """
+    from lab.paint.video import target_of
+
     if len(recordings) == 1 and out and out.suffix == ".mp4":
         return [Job(recordings[0], out)]
     if out is None:
@@ -87,6 +91,8 @@ def paint_all(jobs: Sequence[Job], wishes: Wishes, progress: Progress) -> dict[P
     A video is done if it is newer than its recording and made with the same wishes by the same version. The others go
     on if one fails. Raises KeyboardInterrupt; whole videos stay.
     """
+    from lab.paint.video import is_made, made_with
+
     png, rest = bool(wishes.get("png")), {name: wish for name, wish in wishes.items() if name != "png"}
     comment = made_with(**rest)
     left = [job for job in jobs if not is_made(job.target, _file(job.path), png, comment)]
