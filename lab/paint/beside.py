@@ -13,11 +13,11 @@ from lab.paint.process import Heard, Painter
 
 
 class Beside:
-    """A context manager that holds the second process; cores: of its painting."""
+    """A context manager that holds the second process; cores: of its painting. Raises as `Painter`."""
 
     def __init__(self, cores: int) -> None:
         self._heard: Heard = SimpleQueue()
-        self._painter = Painter(self._heard, cores)
+        self._painter = Painter(self._heard, cores, silent=True)
 
     def __enter__(self) -> "Beside":
         return self

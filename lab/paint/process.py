@@ -25,14 +25,19 @@ Heard = SimpleQueue  # of pairs of a Painter and its answer, None if it has ende
 
 
 class Painter:
-    """A painting process; its answers are put into `heard`. cores: of its painting, besides those of ffmpeg."""
+    """A painting process; its answers are put into `heard`. cores: of its painting, besides those of ffmpeg.
 
-    def __init__(self, heard: Heard, cores: int) -> None:
+    silent: without tracebacks, where another process does what this one fails to do. Raises OSError or RuntimeError if
+    the system has no room for it.
+    """
+
+    def __init__(self, heard: Heard, cores: int, silent: bool = False) -> None:
         self._process = subprocess.Popen(
             [sys.executable, "-m", __name__, str(cores)],
             env=os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path))},
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL if silent else None,
             text=True,
             process_group=0,  # a Ctrl-C is for this process, which then stops the other
         )

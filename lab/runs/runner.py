@@ -183,7 +183,10 @@ def _second_process(run: Run) -> "AbstractContextManager[Beside | None]":
         return nullcontext()
     from lab.paint.beside import Beside
 
-    return Beside(cores)
+    try:
+        return Beside(cores)
+    except (OSError, RuntimeError):  # a limit on processes or threads
+        return nullcontext()
 
 
 def _film(folder: Path, progress: Progress, beside: "Beside | None") -> Path:
