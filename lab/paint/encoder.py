@@ -45,9 +45,8 @@ def write_video(out: Path, pictures: Iterable[np.ndarray], rate: float, comment:
                 raise BrokenPipeError
         part.replace(out)
     finally:
-        if process and process.poll() is None:
-            process.kill()
-            process.communicate()
+        if process:
+            _be_done_with(process)
         part.unlink(missing_ok=True)
     return out
 
@@ -97,6 +96,15 @@ def _encoding(process: subprocess.Popen, out: Path) -> Iterator[None]:
         yield
     except BrokenPipeError:
         raise LabError(f"{out} cannot be written: {_reason(process)}.") from None
+
+
+def _be_done_with(process: subprocess.Popen) -> None:
+    """End ffmpeg if it has not ended, and close the pipes."""
+    process.kill()
+    with suppress(OSError):
+        process.stdin.close()
+    process.wait()
+    process.stderr.close()
 
 
 def _reason(process: subprocess.Popen) -> str:

@@ -1,6 +1,7 @@
 """A file with the name of a video is a whole video, whatever happens to the encoder."""
 
 import os
+import signal
 import sys
 
 import numpy as np
@@ -46,6 +47,15 @@ def test_a_torn_video_never_takes_the_place_of_a_whole_one(script, said, monkeyp
     sentence = str(caught.value)
     assert str(out) in sentence and said in sentence and sentence.endswith(".") and "\n" not in sentence
     assert out.read_bytes() == OLDER and list(out.parent.iterdir()) == [out]
+
+
+def test_an_interrupt_while_ffmpeg_ends_leaves_nothing_behind(monkeypatch, tmp_path):
+    stand_in(monkeypatch, tmp_path, "open(out, 'wb').write(b'torn'); sys.stdin.buffer.read(); signal.pause()")
+    signal.signal(signal.SIGALRM, signal.default_int_handler)
+    signal.setitimer(signal.ITIMER_REAL, 1.0)
+    with pytest.raises(KeyboardInterrupt):
+        write_video(tmp_path / "film.mp4", PICTURES, 25.0)
+    assert [one.name for one in tmp_path.iterdir()] == ["ffmpeg"]
 
 
 def test_a_missing_ffmpeg_is_one_sentence(monkeypatch, tmp_path):
