@@ -4,26 +4,17 @@ Exit codes: 0 done; 1 the simulation could not continue; 2 the request cannot be
 143 by SIGTERM, 129 by SIGHUP.
 """
 
-import errno
 import os
 import sys
 import warnings
 
 import click
 
-from lab.base.errors import LabError
+from lab.base.errors import LabError, os_sentence
 from lab.base.interrupt import exit_code, handling_signals
 from lab.base.text import one_line
 from lab.preset.formats import OldFormat
 from solvers.machine.errors import BadState, Unavailable
-
-REMEDIES = {
-    errno.ENOSPC: "free some space or choose another folder with --out",
-    errno.EDQUOT: "free some space or choose another folder with --out",
-    errno.EACCES: "choose another folder with --out",
-    errno.EPERM: "choose another folder with --out",
-    errno.EROFS: "choose another folder with --out",
-}
 
 
 class Commands(click.Group):
@@ -50,7 +41,7 @@ class Commands(click.Group):
         except BadState as error:
             code = _say(str(error), 1)
         except OSError as error:
-            code = _say(_os_sentence(error), 2)
+            code = _say(os_sentence(error), 2)
         except MemoryError:
             code = _say("there is not enough memory for this: ask for fewer grains or repeats, or free some.", 2)
         sys.exit(code if isinstance(code, int) else 0)
@@ -67,10 +58,3 @@ def _warn(message: Warning, category: type[Warning], *where: object) -> None:
 def _say(sentence: str, code: int) -> int:
     click.echo(f"cargolab: {one_line(sentence)}", err=True)
     return code
-
-
-def _os_sentence(error: OSError) -> str:
-    where = f"{error.filename}: " if error.filename else ""
-    what = error.strerror or str(error) or type(error).__name__
-    remedy = REMEDIES.get(error.errno)
-    return f"{where}{what[0].lower()}{what[1:]}{f'; {remedy}' if remedy else ''}."

@@ -51,12 +51,12 @@ def _pixels(text: str) -> tuple[int, int]:
 
 
 @click.command()
-@click.argument("recording", type=click.Path(path_type=Path))
+@click.argument("recordings", type=click.Path(path_type=Path), nargs=-1, required=True)
 @click.option(
     "--out",
     type=click.Path(path_type=Path),
-    metavar="FILE",
-    help="An .mp4 file, or with --png a folder.  [default: beside the recording]",
+    metavar="PLACE",
+    help="An .mp4 file, or with --png a folder; of several recordings a folder.  [default: beside each recording]",
 )
 @click.option("--colour", cls=ColourOption)
 @click.option("--frame", help="Frame of reference: tank or earth.")
@@ -65,14 +65,28 @@ def _pixels(text: str) -> tuple[int, int]:
 @click.option("--world", type=int, help="One of the repeats, from 0.  [default: side by side]")
 @click.option("--png/--mp4", default=False, help="Single pictures, or a video (the default).")
 @click.option("--sound", is_flag=True, help="Paint a damaged recording up to the damage.")
-def render(recording: Path, out: Path | None, png: bool, **look: object) -> None:
-    """Paint the video of RECORDING (a recording.h5 or the folder of a run) again.
+def render(recordings: tuple[Path, ...], out: Path | None, **wishes: object) -> None:
+    """Paint the videos of RECORDINGS again: recording.h5 files, folders of runs or of sweeps, and patterns of these.
 
     \b
     cargolab render renders/tilting/quick --colour displacement --out shift.mp4
     cargolab render renders/tilting/quick --frame earth --world 2
     cargolab render renders/tilting/quick --png --out pictures
+    cargolab render renders/shaking/sway-sweep --out films          each point of a sweep
+    cargolab render "renders/**/barge*" --width 1920 --height 1080  all that match
+    Several are painted side by side, one process a core. Run again, it leaves out videos that are newer than their
+    recording and were made with the same options. If one cannot be painted, the others are, and it exits with 2.
     """
+    from lab.paint.many import find_recordings
+
+    found, empty = find_recordings(recordings)
+    if len(recordings) == 1 and found in ([recordings[0]], [recordings[0].parent]):
+        _render_one(recordings[0], out, wishes)
+    else:
+        _render_many(found, empty, out, wishes)
+
+
+def _render_one(recording: Path, out: Path | None, wishes: dict) -> None:
     from lab.base.progress import Progress
     from lab.paint.video import render_recording
 
@@ -83,5 +97,23 @@ def render(recording: Path, out: Path | None, png: bool, **look: object) -> None
                 progress.start("painting", total)
             progress.reach(done)
 
-        path = render_recording(recording, out, png=png, progress=count, **look)
+        path = render_recording(recording, out, progress=count, **wishes)
     click.echo(path)
+
+
+def _render_many(found: list[Path], empty: dict[Path, str], out: Path | None, wishes: dict) -> None:
+    from lab.base.progress import Progress
+    from lab.paint.many import paint_all, plan
+
+    if not found:
+        raise LabError(next(iter(empty.values())))
+    jobs = plan(found, out, bool(wishes["png"]))
+    with Progress(quiet=False) as progress:
+        failed = empty | paint_all(jobs, wishes, progress)
+    for job in jobs:
+        if job.path not in failed:
+            click.echo(job.target)
+    for sentence in failed.values():
+        click.echo(sentence, err=True)
+    if failed:
+        raise LabError(f"{len(failed)} of {len(jobs) + len(empty)} were not painted: see above.")

@@ -36,9 +36,9 @@ scatter of beds is larger: see the standard deviation.
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from statistics import NormalDist
 
 import numpy as np
-from scipy.special import ndtri
 
 from lab.measures.drawing import BLUE, GREEN, POINTS, VERMILION, Sheet, band, mark, mean_label, millimetres, thinned
 from lab.measures.motion import is_tilt, outward_leg
@@ -154,7 +154,7 @@ def _noise(give: np.ndarray) -> float:
 
 def _spread(values: np.ndarray) -> float:
     """Standard deviation of normal numbers (n,) by the median of their distances from the median."""
-    return float(np.median(np.abs(values - np.median(values))) / ndtri(0.75))
+    return float(np.median(np.abs(values - np.median(values))) / NormalDist().inv_cdf(0.75))
 
 
 def _rises(total: np.ndarray, least: float) -> list[tuple[int, int, int]]:

@@ -15,7 +15,9 @@ numbers lies above the true largest by about that error.
 """
 
 from collections.abc import Mapping
+from statistics import NormalDist
 from typing import TYPE_CHECKING
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -34,6 +36,9 @@ LEAST_LAYER = 2.0  # mean diameters
 LEAST_COLUMNS = 5
 MOST_FRAMES = 400  # looked at for the course in time
 CONFIDENCE = 0.68
+
+Course = tuple[np.ndarray, np.ndarray, np.ndarray]
+_courses: WeakKeyDictionary[Recording, Course] = WeakKeyDictionary()  # found so far: numbers and figure need the same
 
 
 def applies(recording: Recording) -> bool:
@@ -59,8 +64,14 @@ def measure(recording: Recording) -> dict[str, Value]:
     }
 
 
-def surface_course(recording: Recording) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def surface_course(recording: Recording) -> Course:
     """Frame numbers (K,), inclination and its error (K, W), deg; NaN where there is no surface."""
+    if recording not in _courses:
+        _courses[recording] = _find_course(recording)
+    return _courses[recording]
+
+
+def _find_course(recording: Recording) -> Course:
     count = len(recording.frames["time"])
     frames = np.unique(np.linspace(0, count - 1, min(count, MOST_FRAMES)).astype(int))
     tilt = recording.frames["pose"][:][frames, :, 2]
@@ -97,10 +108,33 @@ def inclination(y: np.ndarray, z: np.ndarray) -> tuple[float, float]:
     """Angle of the line through points (k,) and its error, rad; NaN for too few points."""
     if len(y) < LEAST_COLUMNS:
         return np.nan, np.nan
-    from scipy.stats import theilslopes  # slow to import
-
-    slope, _, low, high = theilslopes(z, y, alpha=CONFIDENCE)
+    slope, low, high = theil_sen(y, z)
     return float(np.arctan(slope)), float(np.arctan(high) - np.arctan(low)) / 2
+
+
+def theil_sen(x: np.ndarray, y: np.ndarray) -> tuple[float, float, float]:
+    """Slope of the Theil-Sen line through points (k,), and the ends of its CONFIDENCE interval (Sen 1968, eq. 2.6).
+
+    It is what `scipy.stats.theilslopes` finds, in a fifth of its time.
+    """
+    apart = x[:, None] - x
+    right = apart > 0.0
+    slopes = np.sort((y[:, None] - y)[right] / apart[right])
+    count = len(x)
+    variance = (_ties_term(np.array([count])) - _ties_term(_repeats(x)) - _ties_term(_repeats(y))) / 18.0
+    reach = -NormalDist().inv_cdf(0.5 * (1.0 - CONFIDENCE)) * np.sqrt(variance)
+    low = max(round((len(slopes) - reach) / 2.0) - 1, 0)
+    high = min(round((len(slopes) + reach) / 2.0), len(slopes) - 1)
+    return float(np.median(slopes)), float(slopes[low]), float(slopes[high])
+
+
+def _repeats(values: np.ndarray) -> np.ndarray:
+    """How often each value occurs."""
+    return np.unique(values, return_counts=True)[1]
+
+
+def _ties_term(counts: np.ndarray) -> float:
+    return float((counts * (counts - 1) * (2 * counts + 5)).sum())
 
 
 def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> None:

@@ -5,7 +5,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import stdtrit
 
 LEVEL = 0.95  # of intervals
 
@@ -88,6 +87,8 @@ KINDS = {
 
 def half_width(error: float, freedom: float) -> float:
     """Half the confidence interval at LEVEL, from a standard error and its degrees of freedom (Student)."""
+    from scipy.special import stdtrit  # slow to import
+
     return float(stdtrit(freedom, 0.5 + 0.5 * LEVEL)) * error
 
 

@@ -146,6 +146,37 @@ def gravity_dial(diameter: int, tilt: float) -> Image.Image:
     return image.reduce(FINER)
 
 
+class _Growing:
+    """A curve that is drawn on as it grows, since a long curve takes more time than all else on a picture.
+
+    points (T, 2): in pixels, not all finite; size: of the picture; thick: of the line, pixels.
+    """
+
+    def __init__(self, points: np.ndarray, colour: tuple, size: tuple[int, int], thick: int) -> None:
+        finite = np.isfinite(points).all(axis=1)
+        self._points = [tuple(point) for point in points[finite].tolist()]
+        self._finite = np.concatenate([[0], np.cumsum(finite)])
+        self._size, self._thick, self.colour = size, thick, colour
+        self._clear()
+
+    def _clear(self) -> None:
+        self._drawn, self._mask = 0, Image.new("1", self._size)
+
+    def draw(self, image: Image.Image, count: int) -> tuple[float, float] | None:
+        """Draw the first `count` samples on an image; returns the last point, None if there is none yet."""
+        shown = int(self._finite[min(count, len(self._finite) - 1)])
+        if shown < self._drawn:
+            self._clear()
+        if shown > max(self._drawn, 1):
+            # Two points back, since the joint at the last point needs the segments on both of its sides.
+            new = self._points[max(0, self._drawn - 2) : shown]
+            ImageDraw.Draw(self._mask).line(new, fill=1, width=self._thick, joint="curve")
+            self._drawn = shown
+        if self._drawn and (box := self._mask.getbbox()):
+            image.paste(self.colour, box, self._mask.crop(box))
+        return self._points[shown - 1] if shown else None
+
+
 class LivePlot:
     """Curves that grow with the film; the axes are drawn once.
 
@@ -164,22 +195,22 @@ class LivePlot:
         widest = max(font(self._text).getlength(plain(level)) for level in self._levels)
         left, right = widest + 0.5 * self._text, width - 0.4 * self._text
         self._box = (left, top, right, bottom)
-        self._curves = [self._place(np.column_stack(curve)) for curve in curves]
-        self._colours = colours
+        placed = [self._place(np.column_stack(curve)) for curve in curves]
+        self._curves = [
+            _Growing(points, colour, self._image.size, round(0.16 * self._text))
+            for points, colour in zip(placed, colours, strict=True)
+        ]
         self._draw_axes(labels)
 
     def picture(self, counts: Sequence[int]) -> Image.Image:
-        """The plot with the first `counts` samples of each curve."""
+        """The plot with the first `counts` samples of each curve; quick if they are those of the last one or more."""
         image = self._image.copy()
-        draw = ImageDraw.Draw(image)
-        thick, dot = round(0.16 * self._text), 0.32 * self._text
-        for curve, colour, count in zip(self._curves, self._colours, counts, strict=True):
-            drawn = curve[:count][np.isfinite(curve[:count]).all(axis=1)]
-            if not len(drawn):
-                continue
-            draw.line([tuple(point) for point in drawn], fill=colour, width=thick, joint="curve")
-            x, y = drawn[-1]
-            draw.ellipse((x - dot, y - dot, x + dot, y + dot), fill=colour, outline=PAPER)
+        draw, dot = ImageDraw.Draw(image), 0.32 * self._text
+        for curve, count in zip(self._curves, counts, strict=True):
+            end = curve.draw(image, count)
+            if end is not None:
+                x, y = end
+                draw.ellipse((x - dot, y - dot, x + dot, y + dot), fill=curve.colour, outline=PAPER)
         return image.reduce(FINER)
 
     def _place(self, points: np.ndarray) -> np.ndarray:

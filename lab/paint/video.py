@@ -1,16 +1,19 @@
 """Paint a recording as a video, a folder of pictures, or a poster."""
 
+import json
 import math
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
 
-import imageio.v2 as imageio
 import numpy as np
 from PIL import Image
+from PIL.PngImagePlugin import PngInfo
 
+from lab import __version__
 from lab.base.errors import LabError
+from lab.paint.encoder import says, write_video
 from lab.paint.film import Film, choose_beds, choose_look
 from lab.paint.footage import open_footage
 from solvers.machine.runtime import initialise
@@ -19,11 +22,6 @@ MOST_IN_GRID = 24
 SLOWEST, FASTEST = 0.01, 60.0  # pictures per second of a video
 USUAL = 0.04  # s between pictures if the frames' times do not define it
 HELD = 3.0  # s for which the last picture is held if a ship is lost
-BT709 = "scale=out_color_matrix=bt709:out_range=tv"
-ENCODING = (
-    *("-crf", "20", "-preset", "veryfast", "-movflags", "+faststart", "-vf", BT709),
-    *("-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709"),
-)
 
 Progress = Callable[[int, int], None]
 
@@ -50,11 +48,37 @@ def render_recording(
     LabError.
     """
     initialise()
+    wishes = {"colour": colour, "frame": frame, "width": width, "height": height, "speed": speed}
     with open_footage(path, sound) as footage:
-        beds = choose_beds(footage, world)
-        look = choose_look(footage, colour=colour, frame=frame, width=width, height=height, speed=speed)
-        target = _target(path, out, "pictures" if png else "video.mp4")
-        return _write(target, Film(beds, look), look.speed, png, progress)
+        beds, look = choose_beds(footage, world), choose_look(footage, **wishes)
+        target, comment = target_of(path, out, png), made_with(**wishes, world=world, sound=sound)
+        return _write(_made(target), Film(beds, look), look.speed, png, progress, comment)
+
+
+def target_of(path: Path | str, out: Path | str | None, png: bool) -> Path:
+    """The video, or with png the folder, that `render_recording` writes."""
+    return _target(path, out, "pictures" if png else "video.mp4")
+
+
+def made_with(**wishes: object) -> str:
+    """The text that a video or its last picture keeps of what it was made with; wishes: of `render_recording`."""
+    asked = {name: wish for name, wish in sorted(wishes.items()) if wish is not None and wish is not False}
+    return f"cargolab {__version__} {json.dumps(asked)}"
+
+
+def is_made(target: Path, recording: Path, png: bool, comment: str) -> bool:
+    """Whether a video, or a folder of pictures, is whole, no older than the recording and made with this comment."""
+    try:
+        if not png:
+            newer = target.stat().st_mtime_ns >= recording.stat().st_mtime_ns
+            return newer and says(target, comment)
+        last = max(target.glob("picture_*.png"), default=None)
+        if last is None or last.stat().st_mtime_ns < recording.stat().st_mtime_ns:
+            return False
+        with Image.open(last) as picture:
+            return picture.info.get("Comment") == comment
+    except (OSError, ValueError, SyntaxError):  # Pillow's, for a file that is damaged
+        return False
 
 
 def render_grid(
@@ -122,7 +146,7 @@ def poster(
         if time is None:
             time = footage.time[0] + fraction * (footage.time[-1] - footage.time[0])
         nearest = int(np.abs(footage.time - time).argmin())
-        out = _target(path, out, "poster.png")
+        out = _made(_target(path, out, "poster.png"))
         if out.suffix != ".png":
             raise LabError(f"{out} cannot be written: a poster is a .png file.")
         Image.fromarray(Film(beds, look).picture(nearest)).save(out)
@@ -139,12 +163,12 @@ def playback(time: np.ndarray, speed: float) -> tuple[float, int]:
     return round(wanted / stride, 3), stride
 
 
-def _write(out: Path, film: Film, speed: float, png: bool, progress: Progress | None) -> Path:
+def _write(out: Path, film: Film, speed: float, png: bool, progress: Progress | None, comment: str = "") -> Path:
     rate, stride = playback(film.time, speed)
     pictures = _counted(film, range(0, len(film.time), stride), progress)
     if png:
-        return _write_folder(out, pictures)
-    return _write_video(out, _held(pictures, round(HELD * rate) if film.lost else 0), rate)
+        return _write_folder(out, pictures, -(-len(film.time) // stride), comment)
+    return write_video(out, _held(pictures, round(HELD * rate) if film.lost else 0), rate, comment)
 
 
 def _held(pictures: Iterator[np.ndarray], times: int) -> Iterator[np.ndarray]:
@@ -163,10 +187,10 @@ def _counted(film: Film, shown: range, progress: Progress | None) -> Iterator[np
 
 
 def _target(path: Path | str, out: Path | str | None, name: str) -> Path:
-    """The file to write to; its folder is created."""
+    """The file to write to."""
     path = Path(path)
     beside = (path if path.is_dir() else path.parent) / name
-    return _made(beside if out is None else Path(out))
+    return beside if out is None else Path(out)
 
 
 def _made(out: Path) -> Path:
@@ -174,36 +198,16 @@ def _made(out: Path) -> Path:
     return out
 
 
-def _write_folder(folder: Path, pictures: Iterator[np.ndarray]) -> Path:
+def _write_folder(folder: Path, pictures: Iterator[np.ndarray], count: int, comment: str) -> Path:
+    """Write `count` pictures into a folder; the last one keeps the comment, so it tells that all are there."""
     folder.mkdir(exist_ok=True)
     for old in folder.glob("picture_*.png"):
         old.unlink()
+    kept = PngInfo()
+    kept.add_text("Comment", comment)
     for k, picture in enumerate(pictures):
-        Image.fromarray(picture).save(folder / f"picture_{k:05d}.png")
+        image, last = Image.fromarray(picture), k == count - 1
+        part = folder / "picture.part"  # renamed when it is whole
+        image.save(part, "PNG", pnginfo=kept if last else None)
+        part.replace(folder / f"picture_{k:05d}.png")
     return folder
-
-
-def _write_video(out: Path, pictures: Iterator[np.ndarray], rate: float) -> Path:
-    """Write an H.264 video to `out`, atomically."""
-    if out.suffix != ".mp4":
-        raise LabError(f"{out} cannot be written: a video is an .mp4 file.")
-    part = out.with_suffix(".part.mp4")
-    writer = imageio.get_writer(
-        part,
-        fps=rate,
-        codec="libx264",
-        quality=None,
-        pixelformat="yuv420p",
-        macro_block_size=2,
-        ffmpeg_log_level="error",
-        output_params=list(ENCODING),
-    )
-    try:
-        for picture in pictures:
-            writer.append_data(picture)
-        writer.close()
-        part.replace(out)
-    finally:
-        writer.close()
-        part.unlink(missing_ok=True)
-    return out

@@ -3,10 +3,11 @@
 import json
 import shlex
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from lab.base.errors import LabError, Unusable
 from lab.base.lock import only_one
@@ -17,12 +18,15 @@ from lab.preset.find import LoadedPreset, load
 from lab.preset.recorded import checked
 from lab.recording import FILE_NAME, Recording, open_recording, versions
 from lab.recording.xdmf import write_xdmf
-from lab.report.plots import write_plots
 from lab.report.summary import terminal_summary, write_summary
 from lab.runs.batch import Run, prepare, run_batch
 from lab.runs.belongs import check_belongs
 from lab.runs.checkpoint import FILE_NAME as CHECKPOINT
 from lab.runs.checkpoint import Checkpoint, read_checkpoint, remove_checkpoint
+from solvers.machine.runtime import available_cores
+
+if TYPE_CHECKING:
+    from lab.paint.beside import Beside
 
 RENDERS = Path("renders")
 
@@ -101,17 +105,32 @@ def recorded_preset(recording: Recording) -> LoadedPreset:
     return LoadedPreset(recording.name, recording.given, resolved)
 
 
-def report(folder: Path, progress: Progress, *, video: bool, plots: bool = True, costs: bool = False) -> Result:
-    """Measure, plot and film the recording, and write the summary; with the `costs` if all were of this run."""
+def report(
+    folder: Path,
+    progress: Progress,
+    *,
+    video: bool,
+    plots: bool = True,
+    costs: bool = False,
+    beside: "Beside | None" = None,
+) -> Result:
+    """Measure, plot and film the recording, and write the summary; with the `costs` if all were of this run.
+
+    beside: a second process that films meanwhile.
+    """
     with open_recording(folder) as recording:
+        if video and beside:
+            beside.begin(folder)
         files = {"recording": recording.path}
         with progress.costs.of("plots"):
             measures = measure_all(recording)
             if plots:
+                from lab.report.plots import write_plots  # Matplotlib is slow to import
+
                 files |= write_plots(recording, measures, folder)
         if video:
             with progress.costs.of("video"):
-                files["video"] = _film(folder, progress)
+                files["video"] = _film(folder, progress, beside)
         if recording.preset.record.xdmf:
             files["xdmf"] = write_xdmf(recording)
         spent = progress.costs.told() if costs else None
@@ -145,22 +164,38 @@ def hint(folder: Path, begun: str = FILE_NAME) -> Iterator[None]:
 
 def _complete(run: Run, kept: Checkpoint | None, progress: Progress, video: bool, plots: bool) -> Result:
     """Run, or continue, to the end and report."""
-    try:
-        stopped = run_batch([run], run.folder, progress, kept)
-    except KeyboardInterrupt:
-        report(run.folder, progress, video=False, plots=plots, costs=True)
-        raise
-    result = report(run.folder, progress, video=video and not stopped, plots=plots, costs=True)
+    with _second_process(run) if video else nullcontext() as beside:
+        try:
+            stopped = run_batch([run], run.folder, progress, kept)
+        except KeyboardInterrupt:
+            report(run.folder, progress, video=False, plots=plots, costs=True)
+            raise
+        result = report(run.folder, progress, video=video and not stopped, plots=plots, costs=True, beside=beside)
     for error in stopped.values():
         raise error
     return result
 
 
-def _film(folder: Path, progress: Progress) -> Path:
-    from lab.paint.video import render_recording
+def _second_process(run: Run) -> "AbstractContextManager[Beside | None]":
+    """A process that films the run, if the run leaves it a core; it would only slow down one that takes them all."""
+    device, cores = run.device(), available_cores()
+    if device.get("threads", 1) >= cores:
+        return nullcontext()
+    from lab.paint.beside import Beside
 
+    try:
+        return Beside(cores)
+    except (OSError, RuntimeError):  # a limit on processes or threads
+        return nullcontext()
+
+
+def _film(folder: Path, progress: Progress, beside: "Beside | None") -> Path:
     progress.start("painting", None)
-    path = render_recording(folder, progress=progress.count)
+    path = beside and beside.finish(progress.count)
+    if path is None:
+        from lab.paint.video import render_recording
+
+        path = render_recording(folder, progress=progress.count)
     progress.finish()
     return path
 

@@ -1,21 +1,28 @@
 """Continue an interrupted run, sweep or calibration."""
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from lab.runs.runner import Result, resume_run
-from lab.sweeps.calibrate import resume_calibration
-from lab.sweeps.calibration_report import Calibration
 from lab.sweeps.grid import FILE_NAME as SWEEP
 from lab.sweeps.request import FILE_NAME as CALIBRATION
-from lab.sweeps.sweep import SweepResult, resume_sweep
+
+if TYPE_CHECKING:
+    from lab.sweeps.calibration_report import Calibration
+    from lab.sweeps.sweep import SweepResult
 
 
-def resume_any(folder: Path | str, *, video: bool = True, quiet: bool = False) -> Result | SweepResult | Calibration:
+def resume_any(folder: Path | str, *, video: bool = True, quiet: bool = False) -> "Result | SweepResult | Calibration":
     """Continue the run, sweep or calibration in a folder to its end; returns its result.
 
     Raises as `resume_run`, `resume_sweep` and `calibrate`.
     """
     if (Path(folder) / CALIBRATION).exists():
+        from lab.sweeps.calibrate import resume_calibration  # Matplotlib is slow to import
+
         return resume_calibration(folder, quiet=quiet)
-    finish = resume_sweep if (Path(folder) / SWEEP).exists() else resume_run
-    return finish(folder, video=video, quiet=quiet)
+    if (Path(folder) / SWEEP).exists():
+        from lab.sweeps.sweep import resume_sweep
+
+        return resume_sweep(folder, video=video, quiet=quiet)
+    return resume_run(folder, video=video, quiet=quiet)

@@ -228,6 +228,33 @@ def test_help_and_list_need_no_slow_imports():
     assert subprocess.run([sys.executable, "-c", code], cwd=root, check=False).returncode == 0
 
 
+def test_a_run_begins_without_imports_that_only_its_figures_need():
+    slow = ("scipy", "matplotlib", "PIL", "imageio_ffmpeg", "xarray", "jinja2")
+    code = f"import sys; from lab.runs.runner import run_preset; sys.exit(str([m for m in {slow} if m in sys.modules]))"
+    root = Path(__file__).parents[2]
+    done = subprocess.run([sys.executable, "-c", code], cwd=root, capture_output=True, text=True, check=False)
+    assert done.stderr.splitlines()[-1] == "[]"
+
+
+def test_render_of_several_exits_with_2_if_one_fails(monkeypatch, tmp_path):
+    for name in ("a", "b"):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "recording.h5").write_bytes(b"")
+    calls = []
+
+    def paint_all(_jobs, wishes, _progress):
+        calls.append(wishes)
+        return {tmp_path / "a": "a is bad."}
+
+    monkeypatch.setattr("lab.paint.many.paint_all", paint_all)
+    done = call("render", str(tmp_path / "*"), "--colour", "layer")
+    assert done.exit_code == 2 and done.stdout == f"{tmp_path / 'b' / 'video.mp4'}\n"
+    said = done.stderr.strip().splitlines()
+    assert said[-2:] == ["a is bad.", "cargolab: 1 of 2 were not painted: see above."]
+    assert calls[0]["colour"] == "layer"
+    assert call("render", str(tmp_path / "c*")).exit_code == 2
+
+
 def test_the_module_is_the_command():
     root = Path(__file__).parents[2]
     command = [sys.executable, "-m", "lab", "frobnicate"]

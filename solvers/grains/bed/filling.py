@@ -13,7 +13,6 @@ from itertools import pairwise
 from math import ceil, pi, sqrt
 
 import numpy as np
-from matplotlib.path import Path
 
 from solvers.grains.bed.sizes import Sizes
 from solvers.tank.outline import free_area
@@ -73,7 +72,7 @@ def start_positions(
     lower, upper = outline.min(axis=0), outline.max(axis=0)
     sites = lattice(reach, outline, fixed, plates)
     if region is not None:
-        sites = sites[Path(region).contains_points(sites)]
+        sites = sites[_inside(sites, region)]
     if len(sites) < len(radius):
         room = "tank" if region is None else "region"
         size = f"{2e3 * reach:.3g} mm"
@@ -161,7 +160,7 @@ def clear_of_walls(
     plates: Sequence[np.ndarray] = (),
 ) -> np.ndarray:
     """Which sites (n, 2) lie inside the outline, at least `reach` (m) from it, from plates and from fixed grains."""
-    clear = Path(outline).contains_points(sites)
+    clear = _inside(sites, outline)
     edges = [(a, b) for line in (np.vstack([outline, outline[:1]]), *plates) for a, b in pairwise(line)]
     for a, b in edges:
         edge = b - a
@@ -171,3 +170,10 @@ def clear_of_walls(
     for y, z, radius in fixed:
         clear &= np.hypot(sites[:, 0] - y, sites[:, 1] - z) >= (reach + radius) * (1.0 - 1e-9)
     return clear
+
+
+def _inside(points: np.ndarray, polygon: np.ndarray) -> np.ndarray:
+    """Which points (n, 2) lie inside a polygon (m, 2)."""
+    from matplotlib.path import Path  # slow to import
+
+    return Path(polygon).contains_points(points)

@@ -3,7 +3,6 @@
 from collections.abc import Iterator
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from solvers.grains.materials import hertz_stiffness
 
@@ -70,6 +69,8 @@ def _pushes(position: np.ndarray, radius: np.ndarray, edges: np.ndarray, kept: f
 
 def _pairs(position: np.ndarray, radius: np.ndarray) -> np.ndarray:
     """Pairs (k, 2) of grains that may overlap."""
+    from scipy.spatial import cKDTree  # slow to import
+
     return cKDTree(position).query_pairs(2.0 * radius.max(), output_type="ndarray")
 
 

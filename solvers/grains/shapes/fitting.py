@@ -5,7 +5,6 @@ from math import pi
 from pathlib import Path
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
 
 from solvers.grains.shapes.contour import ROUNDING, Contour
 from solvers.machine.errors import BadOutline
@@ -113,6 +112,8 @@ def _centroid(points: np.ndarray) -> complex:
 
 def _resampled(points: np.ndarray, centre: complex) -> np.ndarray:
     """Polar radii (m) about a centre at equally spaced angles from 0."""
+    from scipy.interpolate import PchipInterpolator  # slow to import
+
     away = _complex(points) - centre
     advance = np.angle(np.roll(away, -1) / away)
     if not advance.min() > 0.0:

@@ -21,7 +21,6 @@ S(z) = (μ cosh μz + K sinh μz) e^(−μh), along a path below both poles, whi
 from math import inf, pi
 
 import numpy as np
-from scipy.special import exp1
 
 from solvers.ship.potential.panels import Panels
 from solvers.ship.water import Water
@@ -83,6 +82,8 @@ def _surface_functions(c: np.ndarray, number: float):
 
 def _with_cut(argument: np.ndarray, upper: np.ndarray) -> np.ndarray:
     """E₁ of arguments in the upper half-plane, conjugated where `upper` is false."""
+    from scipy.special import exp1  # slow to import
+
     value = exp1(argument)
     return np.where(upper, value, np.conj(value))
 

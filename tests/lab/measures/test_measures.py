@@ -7,7 +7,7 @@ from lab.measures import measure_all
 from lab.measures.critical_angle import find_steps
 from lab.measures.spectrum import amplitude_spectrum
 from lab.measures.steady import steady_window
-from lab.measures.surface_slope import free_surface, inclination
+from lab.measures.surface_slope import CONFIDENCE, free_surface, inclination, theil_sen
 from lab.measures.value import over_worlds
 from lab.measures.wave import column_tops, surface_columns
 from lab.recording import open_recording
@@ -232,6 +232,16 @@ def test_the_slope_of_a_strewn_bed_is_found_within_its_error(slope):
     angle, error = inclination(*free_surface(grains, radius, outline))
     assert 0 < error < np.radians(2)
     assert angle == pytest.approx(np.radians(slope), abs=3 * error)
+
+
+def test_the_line_through_the_surface_is_that_of_scipy():
+    from scipy.stats import theilslopes
+
+    rng = np.random.default_rng(5)
+    for count in (5, 6, 31):
+        x, y = np.sqrt(rng.permutation(count)), rng.integers(0, 4, count) + 0.5  # many heights are equal
+        slope, _, low, high = theilslopes(y, x, alpha=CONFIDENCE)
+        assert theil_sen(x, y) == pytest.approx((slope, low, high), rel=1e-12)
 
 
 def test_a_bare_floor_and_the_walls_do_not_count_as_surface():
