@@ -8,17 +8,14 @@ from typing import Annotated
 import numpy as np
 
 from solvers.grains.bed.relaxing import AT_REST, BURSTING, lifting_overlap, relaxed
-from solvers.grains.integrators import INTEGRATORS
 from solvers.grains.laws import COHESION, NORMAL, ROLLING, TANGENTIAL
 from solvers.grains.materials import Interface, Material, interface, touching
 from solvers.grains.shapes.given import Shapes
-from solvers.grains.timestep import Limit, limits, watched
+from solvers.grains.timestep import SLOWEST, Limit, limits_of_grains
 from solvers.machine.marks import EachWorld, LargestOfWorlds, NotOfBed, marked
 from solvers.ship.vessel import Vessel
 from solvers.tank.parts import Part
 from solvers.tank.tank import BARE_THICKNESS, Tank
-
-SLOWEST = 1e-3  # m/s: steps are derived for closing speeds of at least this
 
 
 @dataclass
@@ -188,8 +185,7 @@ class Scene:
         speed = max(self.start_speed, float(np.sqrt(2.0 * self.gravity * height)))
         speed = max([speed, *(part.fastest() for part in self.parts)])
         for motion in (m for world in self.motions for m in world):
-            fastest = motion.fastest(self.soft_start)
-            lever = 1.0
+            fastest, lever = motion.fastest(self.soft_start), 1.0
             if motion.coordinate == "turn":
                 lever = float(np.linalg.norm(corners - np.asarray(motion.centre), axis=1).max())
             speed = max(speed, fastest * lever)
@@ -212,32 +208,14 @@ class Scene:
         prescribed motions are exact at any time. With grains the ships need none of their own, since the water's forces
         are updated every few steps.
         """
-        bounds = self._limits_of_grains(speed) if self.radius.size else self._limits_of_ships()
+        closing = max(self.credible_speed() if speed is None else speed, SLOWEST)
+        bounds = limits_of_grains(self, closing) if self.radius.size else self._limits_of_ships()
         return sorted(bounds, key=lambda limit: limit.step)
 
     def _limits_of_ships(self) -> list[Limit]:
         """Bounds on the step of ships alone, for each reason that of the ship with the shortest."""
-        bounds = zip(*(vessel.step_limits for vessel in self.vessels), strict=True)
-        return [Limit(*min(of_ships, key=lambda bound: bound[0]), firm=True) for of_ships in bounds]
-
-    def _limits_of_grains(self, speed: float | None) -> list[Limit]:
-        """Bounds on the step of grains that meet at a speed (m/s): those of Verlet's scheme times the `reach`."""
-        speed = max(self.credible_speed() if speed is None else speed, SLOWEST)
-        share = self.shapes.least_mass if self.shapes else 1.0
-        found: dict[tuple, list[Limit]] = {}
-        for grain, rows in zip(self.grain, self.interfaces_of, strict=True):
-            for a, b in product(range(self.kinds), repeat=2):
-                # The lighter of two kinds of grains stands for both, since its collisions are shorter.
-                lighter = min((grain, *self.others)[a], (grain, *self.others)[b], key=lambda kind: kind.density)
-                key = lighter, (rows[a * self.kinds + b], rows[self.kinds**2 + a])
-                if key not in found:
-                    found[key] = limits(self.sizes[0], *key, self.stiffness_scale, speed, self.laws, share)
-        reach = INTEGRATORS[self.integrator].reach
-        of = "" if reach == 1.0 else f"{reach:g} of "
-        tightest = min(found.values(), key=lambda bounds: bounds[0].step)
-        bounds = [Limit(reach * limit.step, of + limit.reason) for limit in tightest]
-        bounds.append(watched(self.sizes[0], speed, self.radius.shape[1], self.shapes is not None))
-        return bounds
+        of_each = zip(*(vessel.step_limits for vessel in self.vessels), strict=True)
+        return [Limit(*min(bounds, key=lambda bound: bound[0]), firm=True) for bounds in of_each]
 
     def longest_step(self, longer: float) -> float:
         """The step (s) `longer` times the derived one, within the bounds that are `firm`; ∞ without bounds."""

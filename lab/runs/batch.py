@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from lab.assembly.drawn import classes
-from lab.assembly.scene import build, stretch
+from lab.assembly.scene import LONGEST_STRIDE, build, stretch
 from lab.base.errors import Unusable
 from lab.base.interrupt import Interrupt
 from lab.base.progress import Progress
@@ -136,7 +136,8 @@ class Batch:
         self._duration, self._record = preset.duration, preset.record
         self._simulate = partial(Simulation, threads=preset.run.threads, arch=preset.run.arch, stretch=stretch(preset))
         self._settling = settling(preset)
-        self._a_call = max(1, GRAIN_STEPS_A_CALL * runs[0].scene.worlds // runs[0].scene.work)
+        a_call = GRAIN_STEPS_A_CALL * runs[0].scene.worlds // runs[0].scene.work
+        self._a_call = LONGEST_STRIDE * max(1, a_call // LONGEST_STRIDE)  # so that calls cut no step
         self._saved = time.monotonic()
 
     def start(self, kept: Checkpoint | None) -> None:

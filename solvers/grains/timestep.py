@@ -2,14 +2,17 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from itertools import product
 from math import pi, sqrt
 
 import numpy as np
 
 from solvers.grains.checks import FASTEST_STEP
+from solvers.grains.integrators import INTEGRATORS
 from solvers.grains.materials import Interface, Material
 
 RAYLEIGH_SHARE = 0.2
+SLOWEST = 1e-3  # m/s: steps are derived for closing speeds of at least this
 FASTER = 1.5  # times the highest credible speed: what the speed check must still accept
 
 
@@ -87,3 +90,24 @@ def limits(
             for step, reason in law.limits(between, m_eff, r_eff, speed):
                 found.append(Limit(step, f"{reason} of {name} at {speed:.3g} m/s"))
     return sorted(found, key=lambda limit: limit.step)
+
+
+def limits_of_grains(scene, speed: float) -> list[Limit]:
+    """Bounds on the step of a scene's grains that meet at a speed (m/s): those of Verlet's scheme times the `reach`.
+
+    `scene` is a `solvers.scene.Scene`; of its worlds the tightest counts.
+    """
+    share = scene.shapes.least_mass if scene.shapes else 1.0
+    found: dict[tuple, list[Limit]] = {}
+    for grain, rows in zip(scene.grain, scene.interfaces_of, strict=True):
+        for a, b in product(range(scene.kinds), repeat=2):
+            # The lighter of two kinds of grains stands for both, since its collisions are shorter.
+            lighter = min((grain, *scene.others)[a], (grain, *scene.others)[b], key=lambda kind: kind.density)
+            key = lighter, (rows[a * scene.kinds + b], rows[scene.kinds**2 + a])
+            if key not in found:
+                found[key] = limits(scene.sizes[0], *key, scene.stiffness_scale, speed, scene.laws, share)
+    reach = INTEGRATORS[scene.integrator].reach
+    of = "" if reach == 1.0 else f"{reach:g} of "
+    tightest = min(found.values(), key=lambda bounds: bounds[0].step)
+    bounds = [Limit(reach * limit.step, of + limit.reason) for limit in tightest]
+    return [*bounds, watched(scene.sizes[0], speed, scene.radius.shape[1], scene.shapes is not None)]

@@ -7,6 +7,8 @@ import taichi as ti
 
 from solvers.machine.phase import Phase
 
+BAR = 64  # base steps between two looks whether steps may be longer
+
 
 @ti.data_oriented
 class Sequence:
@@ -17,7 +19,7 @@ class Sequence:
     move. A phase with a longer pace (`Phase.every`) is run at every few steps, and its matter's load stands in between.
     A step is `stride` base steps long. The stride changes only when all lists are rebuilt, to the least that any
     matter or the carrier allows (`pace`), and never overshoots the target. Since a quiet world seldom rebuilds its
-    lists, it also does so for longer steps at the start of an `advance` of a schedule. What a matter must offer is in
+    lists, it is asked every BAR base steps whether it may take longer ones. What a matter must offer is in
     `solvers.tank.matter`.
     """
 
@@ -52,19 +54,27 @@ class Sequence:
         return sound
 
     @ti.func
-    def stride(self, w, due):
-        """Stride of a world's next steps, in base steps, at most `due`."""
+    def stride(self, w, step, due):
+        """Stride of a world's next steps from base step `step` on, in base steps, at most `due`.
+
+        A short one is a power of two that divides `step`, so that it does not depend on where a run is looked at.
+        """
         stride = ti.min(due, self.carrier.pace(w))
         for k in ti.static(range(len(self.matters))):
             stride = ti.min(stride, self.matters[k].pace(w))
+        if stride < BAR:
+            longest, stride = stride, 1
+            while 2 * stride <= longest and step % (2 * stride) == 0:
+                stride *= 2
         return stride
 
     @ti.func
-    def dawdles(self, w, due, stride):
-        """Whether a world could take longer steps than `stride` for the `due` base steps to go."""
+    def dawdles(self, w, step, due, stride):
+        """Whether a world takes shorter steps than it may; looked at every BAR base steps."""
         found = False
-        if ti.static(self.paced):
-            found = due > 0 and self.stride(w, due) > stride
+        if ti.static(self.paced):  # noqa: SIM102 (compiled only where steps may be longer)
+            if step % BAR == 0 and due > 0:
+                found = self.stride(w, step, due) > stride
         return found
 
     @ti.func

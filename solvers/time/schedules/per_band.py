@@ -55,9 +55,7 @@ class PerBand:
         w = self.clock.world(u)
         done, running = self.clock.step[w], self.clock.status[w] == RUNNING
         before, stride = self.clock.before[w], self.stride_of(w)
-        says = self.freshness(u, origin + done * base, stride, target - done)
-        if self.sequence.dawdles(w, target - done, stride):
-            says = STALE
+        says = self.freshness(u, done, origin + done * base, stride, target - done)
         self.clock.says[u] = says
         meetings = self.meet(w, 0)
         worst = self.worst(w)
@@ -67,7 +65,7 @@ class PerBand:
                     self.sequence.sort(w)
                 if ti.static(self.sequence.paced):  # noqa: SIM102 (compiled only where steps may be longer)
                     if worst == STALE:
-                        stride = self.sequence.stride(w, target - done)
+                        stride = self.sequence.stride(w, done, target - done)
                 meetings = self.meet(w, meetings)
                 dt = ti.cast(stride * base, self.real)
                 says = FINE if self.sequence.make_lists(u, origin + done * base, dt, worst == STALE) else FULL
@@ -88,7 +86,7 @@ class PerBand:
                         meetings = self.meet(w, meetings)
                 done, before = done + stride, stride
                 if says == FINE:
-                    says = self.freshness(u, origin + done * base, stride, target - done)
+                    says = self.freshness(u, done, origin + done * base, stride, target - done)
                 if says <= STALE and not self.carrier.goes_on(w):
                     says = ENDED
                 self.clock.says[u] = says
@@ -102,18 +100,15 @@ class PerBand:
     def advance_world(self, w, target, origin, base):
         """The time loop of a world on one thread, band after band."""
         start, stride = w * self.bands, self.stride_of(w)
-        dawdles = self.sequence.dawdles(w, target - self.clock.step[w], stride)
         while self.clock.step[w] < target and self.clock.status[w] == RUNNING:
             done = self.clock.step[w]
             due = target - done
             t, worst = origin + done * base, FINE
             for u in range(start, start + self.bands):
-                worst = ti.max(worst, self.freshness(u, t, stride, due))
-            if dawdles:
-                worst, dawdles = STALE, False
+                worst = ti.max(worst, self.freshness(u, done, t, stride, due))
             if ti.static(self.sequence.paced):  # noqa: SIM102
                 if worst == STALE:
-                    stride = self.sequence.stride(w, due)
+                    stride = self.sequence.stride(w, done, due)
                     self.clock.stride[w] = stride
             dt = ti.cast(stride * base, self.real)
             if worst != FINE:
@@ -171,8 +166,8 @@ class PerBand:
         return stride
 
     @ti.func
-    def freshness(self, u, t, stride, due):
-        """State of a band's lists for a step at time t (s): FINE, some entries to be sought (ASKED), or STALE.
+    def freshness(self, u, done, t, stride, due):
+        """State of a band's lists at base step `done`, time t (s): FINE, some entries to be sought (ASKED), or STALE.
 
         They also count as STALE if a step of `stride` base steps would overshoot the `due` ones to go.
         """
@@ -182,7 +177,7 @@ class PerBand:
         if self.sequence.stale(u, t):
             says = STALE
         if ti.static(self.sequence.paced):  # noqa: SIM102
-            if 0 < due < stride:
+            if 0 < due < stride or self.sequence.dawdles(self.clock.world(u), done, due, stride):
                 says = STALE
         return says
 

@@ -43,7 +43,7 @@ class PerGrain:
             if (safe < 1 or stride > target - done) and self.clock.running().any():
                 for matter in self.matters:
                     matter.sort_all()
-                stride = self.choose_stride(target - done)
+                stride = self.choose_stride(done, target - done)
                 self.make_lists(origin + done * base, stride * base)
                 safe = max(1, self.safe_steps(half_skin, origin + done * base, stride * base))
             if not self.clock.running().all() and not self.may_go_on():
@@ -53,17 +53,17 @@ class PerGrain:
                 done, before = done + stride, stride
             self.reach(done, before)
 
-    def choose_stride(self, due: int) -> int:
-        """Stride of the next steps of all running worlds, in base steps, at most `due`."""
+    def choose_stride(self, done: int, due: int) -> int:
+        """Stride of the next steps of all running worlds from base step `done`, in base steps, at most `due`."""
         if self.sequence.paced:
-            self.set_strides(due)
+            self.set_strides(done, due)
         return int(self.clock.stride.to_numpy()[self.clock.running()].min())
 
     @ti.kernel
-    def set_strides(self, due: ti.i32):
+    def set_strides(self, done: ti.i32, due: ti.i32):
         """Set the stride that each world allows, at most `due`."""
         for w in range(self.worlds):
-            self.clock.stride[w] = self.sequence.stride(w, due)
+            self.clock.stride[w] = self.sequence.stride(w, done, due)
 
     def may_go_on(self) -> bool:
         """Whether some worlds are running and no state check has stopped one."""

@@ -4,7 +4,7 @@ import taichi as ti
 
 from solvers.machine.units import ITERATIONS_A_THREAD
 from solvers.time.clock import Clock
-from solvers.time.sequence import Sequence
+from solvers.time.sequence import BAR, Sequence
 from solvers.time.watch import NO_ROOM, OVER, RUNNING, TOO_FAST
 
 
@@ -31,15 +31,16 @@ class PerWorld:
         The steps are an inner loop of their own, so that the compiler keeps their data in registers, not the lists'.
         """
         w, stride = self.clock.world(world), 1
-        dawdles = self.sequence.dawdles(w, target - self.clock.step[w], self.clock.stride[w])
         while self.clock.step[w] < target and self.clock.status[w] == RUNNING:
-            t, fresh = origin + self.clock.step[w] * base, True
-            stale = self.sequence.stale(w, t) or dawdles
-            dawdles = False
+            step = self.clock.step[w]
+            t, fresh = origin + step * base, True
+            stale = self.sequence.stale(w, t)
             if ti.static(self.sequence.paced):
-                due = target - self.clock.step[w]
+                due = target - step
+                if self.sequence.dawdles(w, step, due, self.clock.stride[w]):
+                    stale = True
                 if stale or self.clock.stride[w] > due:
-                    stale, self.clock.stride[w] = True, self.sequence.stride(w, due)
+                    stale, self.clock.stride[w] = True, self.sequence.stride(w, step, due)
                 stride = self.clock.stride[w]
             dt = ti.cast(stride * base, self.real)
             if stale or self.sequence.asked(w):
@@ -55,6 +56,8 @@ class PerWorld:
                 self.clock.step[w], self.clock.before[w] = self.clock.step[w] + stride, stride
                 fresh = self.clock.step[w] + stride <= target
                 fresh = fresh and not self.sequence.worn(w) and not self.sequence.asked(w)
+                if ti.static(self.sequence.paced):
+                    fresh = fresh and self.clock.step[w] % BAR != 0
                 if not sound:
                     self.clock.status[w], fresh = TOO_FAST, False
                 if fresh and not self.carrier.goes_on(w):

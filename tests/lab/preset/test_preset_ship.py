@@ -332,7 +332,9 @@ def test_the_run_with_frozen_cargo_continues_after_the_ship_has_capsized(monkeyp
     def sailed(name: str, capsized: float) -> float:
         series = {"time": np.array([0.0, 0.5]), "pose": np.zeros((2, 1, 3)), "flooded": np.full((2, 1), -1.0)}
         series["capsized"] = np.array([[-1.0], [capsized]])
-        found = ship_frozen.frozen(SimpleNamespace(path=name, series=series, preset=SimpleNamespace(duration=2.0)))
+        found = ship_frozen.frozen(
+            SimpleNamespace(path=name, series=series, preset=SimpleNamespace(duration=2.0, matters=("grains",)))
+        )
         return found[0][-1]
 
     assert sailed("lost", 0.5) == pytest.approx(2.0, abs=ship_frozen.INTERVAL)

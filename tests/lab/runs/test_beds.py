@@ -24,7 +24,7 @@ SMALL = {
     "material": {"restitution": 0.3, "friction": 0.5},
     "contact": {"stiffness_scale": 2e-4, "tangential": "mindlin"},
     "motion": {"tilt": {"rate": "30 deg/s", "angle": "30 deg"}},
-    "run": {"repeats": 6, "step": "20 us", "force_step": True, "rest": 1e-5},
+    "run": {"repeats": 6, "step": "16 us", "force_step": True, "rest": 1e-5},
 }
 
 

@@ -49,7 +49,7 @@ def moved(preset):
 def afloat(tmp_path_factory):
     folder = tmp_path_factory.mktemp("barge") / "run"
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("lab.runs.runner.write_plots", lambda *_: {})
+        patch.setattr("lab.report.plots.write_plots", lambda *_: {})
         run_preset("ship/barge-empty", BARGE, folder, video=False, quiet=True)
     return folder
 

@@ -42,7 +42,7 @@ SMALL = {
 def no_plots():
     """Plots take long, and are tested elsewhere."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("lab.runs.runner.write_plots", lambda *_: {})
+        patch.setattr("lab.report.plots.write_plots", lambda *_: {})
         yield
 
 

@@ -54,7 +54,7 @@ def films():
         return out
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("lab.runs.runner.write_plots", lambda *_: {})
+        patch.setattr("lab.report.plots.write_plots", lambda *_: {})
         patch.setattr(sweep_report, "render_grid", film)
         yield filmed
 
