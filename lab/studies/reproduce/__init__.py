@@ -21,13 +21,20 @@ from lab.sweeps.cluster import fetch
 
 
 def reproduce(
-    report: str, names: Sequence[str], out: Path | str, quick: bool, quiet: bool = False, cluster: str | None = None
+    report: str,
+    names: Sequence[str],
+    out: Path | str,
+    quick: bool,
+    quiet: bool = False,
+    cluster: str | None = None,
+    page_only: bool = False,
 ) -> Path:
     """Run a report's experiments whose names begin like one of `names`, or all, and write the report.
 
     Without names, an experiment that is in the report already is not run again, even if its runs have been removed.
     cluster: the address of a scheduler whose workers first run all that has not been begun. The report is rewritten
-    after each experiment. Returns its file. Raises LabError, one sentence, and KeyboardInterrupt; finished runs stay.
+    after each experiment; `page_only`: nothing is run. Returns its file. Raises LabError, one sentence, and
+    KeyboardInterrupt; finished runs stay.
     """
     known = experiments(report)
     chosen = choose(names, known, "experiment")
@@ -37,6 +44,8 @@ def reproduce(
     removed = [name for name in told if not any(folder.exists() for folder in folders[name].values())]
     if not names:
         chosen = [name for name in chosen if name not in removed]
+    if page_only:
+        chosen = []
     batches = {folders[name][key]: batch for name in chosen for key, batch in known[name].batches(quick).items()}
     if cluster:
         _run_there(batches, cluster, quiet)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from rich.console import Console
 
-from lab.studies.engine import choose
+from lab.studies.engine import Kept, choose
 from lab.studies.verify import (
     chung_ooi,
     cohesion,
@@ -24,7 +24,7 @@ from lab.studies.verify import (
     sameness,
 )
 from lab.studies.verify.case import Case, Outcome
-from lab.studies.verify.report import show, write_report
+from lab.studies.verify.report import record, show, write_page
 
 MODULES = (
     chung_ooi,
@@ -43,19 +43,24 @@ MODULES = (
 CASES: tuple[Case, ...] = tuple(case for module in MODULES for case in module.CASES)
 
 
-def run_cases(names: Sequence[str], out: Path | str, fast: bool) -> bool:
-    """Run the cases whose names begin with any of `names` (none: all), print them, and write the page in `out`.
+def run_cases(names: Sequence[str], out: Path | str, fast: bool, page_only: bool = False) -> bool:
+    """Run the cases whose names begin with any of `names`, or without names all that are not kept; whether all passed.
 
-    With `fast` only what takes seconds. A case that fails or breaks does not stop the others. Returns whether all
-    passed. Raises LabError for a name that no case begins with.
+    They are printed, kept in verify.json and written on the page. With `fast` only what takes seconds; `page_only`:
+    nothing is run. A case that fails or breaks does not stop the others. Raises LabError for a name that no case begins
+    with.
     """
-    chosen, console, outcomes = select(names, fast), Console(highlight=False), []
-    for case in chosen:
-        outcomes.append(outcome := carried_out(case, fast))
+    chosen, console = {case.name: case for case in select(names, fast)}, Console(highlight=False)
+    kept = Kept(Path(out) / "verify.json", "verify", {"fast": fast})
+    for name in kept.missing([] if page_only else chosen, anew=bool(names)):
+        outcome = carried_out(chosen[name], fast)
         show(outcome, console)
-    page = write_report(outcomes, out)
-    bad = [outcome.case.name for outcome in outcomes if not outcome.passed]
-    console.print(f"failed: {', '.join(bad)}" if bad else f"all {len(outcomes)} cases passed", soft_wrap=True)
+        kept.keep(name, record(outcome, Path(out)))
+    shown = kept.shown([case.name for case in CASES])
+    page = write_page(shown, Path(out))
+    done = [name for name in chosen if name in shown]
+    bad = [name for name in done if not shown[name]["passed"]]
+    console.print(f"failed: {', '.join(bad)}" if bad else f"all {len(done)} cases passed", soft_wrap=True)
     console.print(str(page), soft_wrap=True)
     return not bad
 

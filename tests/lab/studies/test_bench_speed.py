@@ -243,7 +243,7 @@ def test_gpu_pages_name_what_was_not_measured(tmp_path, monkeypatch):
         raise Unavailable(f"run.arch: there is no {arch} here.")
 
     monkeypatch.setattr(runtime, "choose_arch", none)
-    text = gpu.run_page(tmp_path, fast=True).read_text()
+    text = gpu.BENCH.run((), tmp_path, fast=True).read_text()
     for arch in gpu.ARCHES:
         assert f"Unmeasured: run.arch: there is no {arch} here." in text
 
@@ -251,7 +251,7 @@ def test_gpu_pages_name_what_was_not_measured(tmp_path, monkeypatch):
 def test_software_devices_are_named_and_run_only_small_beds(tmp_path, monkeypatch):
     monkeypatch.setattr(runtime, "choose_arch", lambda arch, precision: arch)
     monkeypatch.setattr(gpu, "device", lambda arch: Device("a painter", software=True))
-    text = gpu.run_page(tmp_path, fast=False).read_text()
+    text = gpu.BENCH.run((), tmp_path, fast=False).read_text()
     assert text.count("Device: a painter, which is software on the processor.") == 2
     assert text.count("Unmeasured: software is no graphics processor") == 2
 

@@ -1,6 +1,7 @@
 """`cargolab verify`: its fast cases pass and leave a page; what fails or breaks is said and stops nothing else."""
 
 import json
+from dataclasses import replace
 from math import radians, tan
 
 import numpy as np
@@ -16,8 +17,8 @@ from lab.studies.verify.references import viscoelastic_rebound
 PICTURES = ("errors", "chung-ooi-1-2", "chung-ooi-5", "restitution", "oblique-mindlin", "orders")
 
 
-def told(folder) -> dict:
-    """What verify.json says."""
+def told(folder) -> dict[str, dict]:
+    """What verify.json holds of each case."""
     return json.loads((folder / "verify.json").read_text(encoding="utf-8"))
 
 
@@ -34,8 +35,8 @@ def test_fast_cases_pass_and_leave_a_page(tmp_path, capsys):
     names = [case.name for case in verify.CASES if case.quick]
     assert all(f"`{name}`" in page for name in names)
     assert "FAIL" not in page
-    assert printed.count(" pass\n") == len(told(tmp_path)["lines"]) > 100
-    assert {line["case"] for line in told(tmp_path)["lines"]} == set(names)
+    assert printed.count(" pass\n") == sum(len(case["lines"]) for case in told(tmp_path).values()) > 100
+    assert [*told(tmp_path)] == names
     pictures = {picture.name for picture in tmp_path.glob("*.png")}
     assert pictures == {f"verify-{name}.png" for name in PICTURES}
     assert all(f"({name})" in page for name in pictures)
@@ -67,15 +68,34 @@ def test_what_fails_or_breaks_is_reported_and_stops_nothing(tmp_path, monkeypatc
     assert page.count("FAIL |") == 2
     assert "**Failed: off, breaks, nan, empty.**" in page
     assert "ArithmeticError: what went wrong" in page
-    assert not found["passed"]
-    assert found["faults"] == {"breaks": "ArithmeticError: what went wrong"}
-    assert [(line["case"], line["passed"]) for line in found["lines"]] == [
-        ("off", False),
-        ("nan", False),
-        ("good", True),
-    ]
-    assert verify.run_cases(("good",), tmp_path, fast=False)
-    assert told(tmp_path)["passed"]
+    assert {name: (one["passed"], one["fault"]) for name, one in found.items()} == {
+        "off": (False, ""),
+        "breaks": (False, "ArithmeticError: what went wrong"),
+        "nan": (False, ""),
+        "empty": (False, ""),
+        "good": (True, ""),
+    }
+    assert [[line["passed"] for line in found[name]["lines"]] for name in ("off", "nan", "good")] == [
+        [False], [False], [True]
+    ]  # fmt: skip
+    assert verify.run_cases(("good",), tmp_path, fast=False), "only the named one counts"
+
+
+def test_what_is_kept_is_not_run_again_unless_named_or_broken(tmp_path, monkeypatch, capsys):
+    cases = (stub("off", 1.2), Case("breaks", "Section", "Breaks", broken), stub("good", 1.05))
+    monkeypatch.setattr(verify, "CASES", cases)
+    verify.run_cases((), tmp_path, fast=False)
+    page = (tmp_path / "verify.md").read_text(encoding="utf-8")
+    run = []
+    again = [replace(case, check=lambda fast, name=case.name: run.append(name) or Found([])) for case in cases]
+    monkeypatch.setattr(verify, "CASES", again)
+    assert not verify.run_cases((), tmp_path, fast=False, page_only=True)
+    assert (tmp_path / "verify.md").read_text(encoding="utf-8") == page and not run
+    assert not verify.run_cases((), tmp_path, fast=False)
+    assert run == ["breaks"]
+    assert "off: FAIL, kept from an earlier run\ngood: pass, kept" in capsys.readouterr().out
+    verify.run_cases(("good",), tmp_path, fast=False)
+    assert run == ["breaks", "good"]
 
 
 def test_names_are_prefixes_and_unknown_ones_are_answered_with_all(monkeypatch):

@@ -29,7 +29,6 @@ def study(page: Page, work: Path, fast: bool) -> None:
     count, turns, seconds, work_of_one = (500, 3, 0.1, 1e6) if fast else (2000, 9, 0.4, GRAIN_STEPS)
     page.section("Beside other codes")
     page.say("By processor, also of earlier measurements and of others: [speed-peers.md](speed-peers.md).")
-    processors.write_page(page.folder)
     missing = [peer.NAME for peer in RUNS if peer.available() is None]
     for name in missing:
         page.say(f"{name} is not installed here: the comparison with it is left out.")
@@ -52,7 +51,6 @@ def study(page: Page, work: Path, fast: bool) -> None:
     )
     if not fast:  # too few turns to be kept
         processors.keep(page.folder, processors.ratios_of(found, theirs, ours))
-        processors.write_page(page.folder)
     if lammps.available() is not None:
         _on_two_cores(page, bed.times(10 if fast else COPIES), turns, seconds, work_of_one)
 

@@ -1,20 +1,19 @@
 """cargolab bench stability: hard cases at the automatic step and far beyond it, and the true limit of stability.
 
 CASES and MAPS name the tests: the cases, and each integrator's part of the map of limits. Results are kept in
-stability.json and not run again if they are from the same versions and the same choice of fast or full.
+stability.json and not run again where they are from the same code and the same choice of fast or full.
 """
 
 from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 
-from lab.report.kept import machine
 from lab.studies.bench.stability import hard_beds, hard_few, hard_moving, hard_starts, limit_map
 from lab.studies.bench.stability.case import ENERGY, OVERLAP, Case, Check, judge
 from lab.studies.bench.stability.pushed import push
-from lab.studies.bench.stability.report import word, write_page
+from lab.studies.bench.stability.report import write_page
 from lab.studies.bench.stability.trial import follow
-from lab.studies.engine import Kept, choose
+from lab.studies.engine import Kept, choose, word
 from solvers.grains.integrators import INTEGRATORS
 from solvers.simulation import Simulation
 
@@ -23,26 +22,24 @@ MAPS = {f"map-{integrator}": integrator for integrator in INTEGRATORS}
 FAST_MAP = "map-verlet"
 
 
-def run_cases(names: Sequence[str], out: Path, fast: bool) -> bool:
-    """Run the cases whose names begin like one of `names`, or all, print every line, write the page; whether all pass.
+def run_cases(names: Sequence[str], out: Path | str, fast: bool, page_only: bool = False) -> bool:
+    """Run the cases that begin like one of `names`, or without names all that are not kept; whether all pass.
 
-    A case that breaks off fails, and the others go on. Raises LabError for a name that is none.
+    Every line is printed, and the page written. A case that breaks off fails, and the others go on. `page_only`:
+    nothing is run. Raises LabError for a name that is none.
     """
     quick = {name for name, case in CASES.items() if case.fast} | {FAST_MAP}
     chosen = choose(names, [*CASES, *MAPS], "case", quick if fast else None)
-    kept = Kept(Path(out) / "stability.json", "bench stability", {"fast": fast})
-    sound = True
-    for name in chosen:
-        if name in kept:
-            print(f"{name}: {word(kept[name]['passed'])}, kept from an earlier run", flush=True)
-        elif record := _attempt(name, fast):
+    kept, broken = Kept(Path(out) / "stability.json", "bench stability", {"fast": fast}), False
+    for name in kept.missing([] if page_only else chosen, anew=bool(names)):
+        if record := _attempt(name, fast):
             kept.keep(name, record)
-        sound &= name in kept and kept[name]["passed"]
-    cases = {name: kept[name] for name in CASES if name in kept}
-    maps = [row for name in MAPS if name in kept for row in kept[name]["rows"]]
-    made = f"Made by `{kept.made.command}` on {kept.made.date}, on {machine()}."
-    write_page(Path(out), made, cases, maps)
-    return sound
+        else:
+            broken = True
+            kept.drop(name)
+    shown = kept.shown([*CASES, *MAPS])
+    write_page(Path(out), kept.shown(CASES), kept.shown(MAPS))
+    return not broken and all(shown[name]["passed"] for name in chosen if name in shown)
 
 
 def _attempt(name: str, fast: bool) -> dict[str, object] | None:

@@ -12,6 +12,7 @@ from lab.report.plots import BELOW, BLUE, GREEN, GREY, STYLE, VERMILION
 from lab.studies.bench.stability.case import DEEPEST, IMPACTS
 from lab.studies.bench.stability.limit_map import DAMPINGS, DISTURBED, FINE, GROWTH, SPEED, STEPS, WIDEST
 from lab.studies.bench.stability.pushed import RIPPLE
+from lab.studies.engine import word
 
 DRAFT = LEVELS["draft"].longer_steps
 TICKS = (0.5, 1, 2, 5, 10, 20, 50)  # derived steps
@@ -22,20 +23,17 @@ PUSHED = ("case", "times the limit", "step (µs)", "tolerance", "energy error", 
 MARKS = dict(zip(DAMPINGS, ("o", "s", "D"), strict=True))
 
 
-def word(passed: bool) -> str:
-    """The word for a verdict."""
-    return "pass" if passed else "FAIL"
-
-
-def write_page(folder: Path, made: str, cases: Mapping[str, Mapping], maps: Sequence[Mapping]) -> Path:
-    """Write the page from the records of cases, by name, and the rows of the map, worst first; returns its file."""
+def write_page(folder: Path, cases: Mapping[str, Mapping], parts: Mapping[str, Mapping]) -> Path:
+    """Write the page from the records of cases and of parts of the map, by name, worst first; returns its file."""
     cases = dict(sorted(cases.items(), key=lambda one: _held(one[1])))
+    maps = [row for part in parts.values() for row in part["rows"]]
     with matplotlib.rc_context(STYLE):
         figure = save_figure(folder / "stability-limits.png", limit_figure(maps)).name if maps else ""
     return render(
         folder / "stability.md",
         "stability.md.j2",
-        made=made,
+        results=[*cases.values(), *parts.values()],
+        parts=parts,
         counts=_count(cases, maps),
         cases=cases,
         hard_header=HARD,
