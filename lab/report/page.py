@@ -54,6 +54,11 @@ def render(path: Path, template: str, **data: object) -> Path:
     return path
 
 
+def table(header: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
+    """A table in Markdown."""
+    return _environment().get_template("macros.md.j2").module.table(header, rows).strip()
+
+
 def save_figure(path: Path, figure: Figure) -> Path:
     """Save a figure in the style of the lab; returns its file."""
     path.parent.mkdir(parents=True, exist_ok=True)

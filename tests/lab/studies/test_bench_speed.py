@@ -275,3 +275,5 @@ def test_ratios_to_other_codes_stand_by_processor_the_smallest_first(tmp_path, m
     least = [float(re.search(r"\(?([\d.]+) to", row[5])[1]) for row in rows]
     assert least == sorted(least) and len(rows) > 2
     assert all(row[6] and row[7] for row in rows)
+    manual = [line for line in processors.overview(tmp_path).splitlines() if "a trial processor" in line]
+    assert len(manual) == 1 and manual[0].startswith("| a trial processor | 2.25 (2 to 2.5), at rest |  | the lab, ")

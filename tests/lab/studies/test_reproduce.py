@@ -150,6 +150,8 @@ def test_missing_runs_are_reported(tmp_path, monkeypatch):
     monkeypatch.setattr(runtime, "available_cores", lambda: 1)
     text = reproduce("granular", ["stack"], tmp_path, quick=False, quiet=True).read_text()
     assert text.count("| not run |") == len(experiments("granular"))
+    monkeypatch.setattr(workers, "carry_out", None)  # nothing is run for a page alone
+    assert reproduce("granular", [], tmp_path, quick=False, quiet=True, page_only=True).read_text() == text
     with pytest.raises(LabError, match="there is no experiment tilt-x; there are stack-fall, "):
         reproduce("granular", ["tilt-x"], tmp_path, quick=False)
 
