@@ -46,9 +46,9 @@ def stability(cases: tuple[str, ...], out: Path, fast: bool, page_only: bool) ->
     cargolab bench stability
     cargolab bench stability impact column
     """
-    from lab.studies.bench.stability import run_cases
+    from lab.studies.bench.stability import SUITE
 
-    if not run_cases(cases, out, fast, page_only):
+    if not SUITE.run(cases, out, fast, page_only):
         sys.exit(1)
 
 

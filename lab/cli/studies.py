@@ -38,9 +38,9 @@ def verify(cases: tuple[str, ...], out: Path, fast: bool, page_only: bool) -> No
     cargolab verify --fast
     cargolab verify oblique incline     those whose names begin with these
     """
-    from lab.studies.verify import run_cases
+    from lab.studies.verify import SUITE
 
-    if not run_cases(cases, out, fast, page_only):
+    if not SUITE.run(cases, out, fast, page_only):
         sys.exit(1)
 
 

@@ -69,11 +69,6 @@ class Kept:
         self.results[name] = plain({**made, **result})
         write(self.path, self.results)
 
-    def drop(self, name: str) -> None:
-        """Take a result off the disk, which is none any more."""
-        if self.results.pop(name, None):
-            write(self.path, self.results)
-
     def shown(self, names: Iterable[str]) -> dict[str, dict]:
         """What a page tells: the results of these names with the same choices, whatever code has made them.
 

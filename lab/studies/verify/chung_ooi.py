@@ -13,8 +13,8 @@ from matplotlib.figure import Figure
 
 from lab.preset.accuracy import DRAFT_RESTITUTION, LEVELS, RESTITUTION
 from lab.report.plots import BELOW, BLUE, GREY, STYLE, VERMILION
+from lab.studies.case import Case, Found, Line, Picture, Table
 from lab.studies.verify import published
-from lab.studies.verify.case import Case, Found, Line, Picture, Table
 from lab.studies.verify.meetings import LARGER, Meetings, Substance
 
 SECTION = "The eight tests of Chung and Ooi (2011)"
@@ -126,7 +126,7 @@ def level_lines(name: str, fast: bool) -> list[Line]:
             if quantity == "spin":
                 allowed, reason = 2.5 / 3.5 * allowed, f"{reason}, 5/7"
             where = ("derived step", f"{LENGTHS[length]:g} Δt, draft")[length]
-            lines.append(Line(f"{name}: {quantity}, {where}", value, 0.0, source, allowed, reason, relative=False))
+            lines.append(Line.off(f"{name}: {quantity}, {where}", source, value, allowed, reason))
     return lines
 
 
@@ -141,7 +141,7 @@ def normal(fast: bool) -> Found:
             for quantity, here, there in (("force", force, hertz), ("overlap", depth, deep)):
                 worst = np.abs(here - there).max() / there.max()
                 what = f"{name}: {quantity} at any time, of its largest, {where}"
-                lines.append(Line(what, worst, 0.0, source, allowed, reason, relative=False))
+                lines.append(Line.off(what, source, worst, allowed, reason))
     caption = "Tests 1 and 2: force over time at the derived step (dots) and draft's (crosses), and Hertz's"
     return Found(lines, [Picture("chung-ooi-1-2", force_figure(fast), caption)])
 
@@ -228,7 +228,7 @@ def published_lines(name: str) -> list[Line]:
                 f"{name}: {reading.quantity}, {len(chosen)} points from {chosen[0][0]:.3g} to {chosen[-1][0]:.3g}"
             )
             source, reason = "figure of the paper, as Kratos has read it", "reading, another damping"
-            lines.append(Line(quantity, worst, 0.0, source, reading.error, reason, relative=False))
+            lines.append(Line.off(quantity, source, worst, reading.error, reason))
     return lines
 
 
@@ -300,7 +300,7 @@ def levels(_: bool) -> Found:
             rows.append((name, f"{quantity}, {what}", *values))
     for row in rows:
         what, allowed = f"{row[0]}: {row[1]}, standard", SLIP_ALLOWED[DERIVED]
-        lines.append(Line(what, row[2], 0.0, "the law by itself", allowed, "O(Δt²)", relative=False))
+        lines.append(Line.off(what, "the law by itself", row[2], allowed, "O(Δt²)"))
     header = ("test", "largest error over the curve", "draft", "standard", "reference")
     texts = []
     for test, quantity, derived, draft in rows:

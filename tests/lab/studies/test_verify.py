@@ -1,15 +1,13 @@
 """`cargolab verify`: its fast cases pass and leave a page; what fails or breaks is said and stops nothing else."""
 
 import json
-from dataclasses import replace
 from math import radians, tan
 
 import numpy as np
 import pytest
 
-from lab.base.errors import LabError
 from lab.studies import verify
-from lab.studies.verify.case import Case, Found, Line
+from lab.studies.case import Line
 from lab.studies.verify.impacts import Bodies, Impact, Normal, Shear
 from lab.studies.verify.plain import Tank
 from lab.studies.verify.references import viscoelastic_rebound
@@ -24,13 +22,13 @@ def told(folder) -> dict[str, dict]:
 
 @pytest.mark.slow
 def test_a_few_cases_pass(tmp_path):
-    assert verify.run_cases(("momentum",), tmp_path, fast=True)
+    assert verify.SUITE.run(("momentum",), tmp_path, fast=True)
     assert "FAIL" not in (tmp_path / "verify.md").read_text(encoding="utf-8")
 
 
 @pytest.mark.slow
 def test_fast_cases_pass_and_leave_a_page(tmp_path, capsys):
-    assert verify.run_cases((), tmp_path, fast=True)
+    assert verify.SUITE.run((), tmp_path, fast=True)
     page, printed = (tmp_path / "verify.md").read_text(encoding="utf-8"), capsys.readouterr().out
     names = [case.name for case in verify.CASES if case.quick]
     assert all(f"`{name}`" in page for name in names)
@@ -40,75 +38,6 @@ def test_fast_cases_pass_and_leave_a_page(tmp_path, capsys):
     pictures = {picture.name for picture in tmp_path.glob("*.png")}
     assert pictures == {f"verify-{name}.png" for name in PICTURES}
     assert all(f"({name})" in page for name in pictures)
-
-
-def stub(name: str, value: float, quick: bool = True) -> Case:
-    """A case of one line, 1 ± 0.1."""
-    line = Line("a quantity", value, 1.0, "by hand", 0.1, "no reason")
-    return Case(name, "Section", f"Title of {name}", lambda fast: Found([line]), quick)
-
-
-def broken(fast: bool) -> Found:
-    raise ArithmeticError("what went wrong")
-
-
-def test_what_fails_or_breaks_is_reported_and_stops_nothing(tmp_path, monkeypatch, capsys):
-    empty = Case("empty", "Section", "Nothing shown", lambda fast: Found([]))
-    cases = (
-        stub("off", 1.2),
-        Case("breaks", "Section", "Breaks", broken),
-        stub("nan", np.nan),
-        empty,
-        stub("good", 1.05),
-    )
-    monkeypatch.setattr(verify, "CASES", cases)
-    assert not verify.run_cases((), tmp_path, fast=False)
-    assert "failed: off, breaks, nan, empty" in capsys.readouterr().out
-    page, found = (tmp_path / "verify.md").read_text(encoding="utf-8"), told(tmp_path)
-    assert page.count("FAIL |") == 2
-    assert "**Failed: off, breaks, nan, empty.**" in page
-    assert "ArithmeticError: what went wrong" in page
-    assert {name: (one["passed"], one["fault"]) for name, one in found.items()} == {
-        "off": (False, ""),
-        "breaks": (False, "ArithmeticError: what went wrong"),
-        "nan": (False, ""),
-        "empty": (False, ""),
-        "good": (True, ""),
-    }
-    assert [[line["passed"] for line in found[name]["lines"]] for name in ("off", "nan", "good")] == [
-        [False], [False], [True]
-    ]  # fmt: skip
-    assert verify.run_cases(("good",), tmp_path, fast=False), "only the named one counts"
-
-
-def test_what_is_kept_is_not_run_again_unless_named_or_broken(tmp_path, monkeypatch, capsys):
-    cases = (stub("off", 1.2), Case("breaks", "Section", "Breaks", broken), stub("good", 1.05))
-    monkeypatch.setattr(verify, "CASES", cases)
-    verify.run_cases((), tmp_path, fast=False)
-    page = (tmp_path / "verify.md").read_text(encoding="utf-8")
-    run = []
-    again = [replace(case, check=lambda fast, name=case.name: run.append(name) or Found([])) for case in cases]
-    monkeypatch.setattr(verify, "CASES", again)
-    assert not verify.run_cases((), tmp_path, fast=False, page_only=True)
-    assert (tmp_path / "verify.md").read_text(encoding="utf-8") == page and not run
-    assert not verify.run_cases((), tmp_path, fast=False)
-    assert run == ["breaks"]
-    said = capsys.readouterr().out
-    assert "off: FAIL, kept from an earlier run\n" in said and "good: pass, kept from an earlier run\n" in said
-    verify.run_cases(("good",), tmp_path, fast=False)
-    assert run == ["breaks", "good"]
-
-
-def test_names_are_prefixes_and_unknown_ones_are_answered_with_all(monkeypatch):
-    monkeypatch.setattr(
-        verify, "CASES", (stub("fall-far", 1.0), stub("fall-near", 1.0), stub("roll", 1.0, quick=False))
-    )
-    assert [case.name for case in verify.select(("fall",), fast=False)] == ["fall-far", "fall-near"]
-    assert [case.name for case in verify.select((), fast=True)] == ["fall-far", "fall-near"]
-    with pytest.raises(LabError, match="no case spin; there are fall-far, fall-near, roll"):
-        verify.select(("roll", "spin"), fast=False)
-    with pytest.raises(LabError, match="no fast case roll; there are fall-far, fall-near"):
-        verify.select(("roll",), fast=True)
 
 
 def test_an_error_relative_to_nothing_is_no_line():
