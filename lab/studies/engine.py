@@ -2,6 +2,9 @@
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
+from functools import cache
+from hashlib import blake2b
+from importlib.resources import files
 from pathlib import Path
 
 import matplotlib
@@ -29,6 +32,16 @@ def choose(names: Collection[str], known: Iterable[str], what: str, usual: Colle
     return [one for one in known if usual is None or one in usual]
 
 
+@cache
+def code() -> str:
+    """A hash of what makes results: the source of lab and solvers, their data, and the presets."""
+    digest = blake2b(sources().encode(), digest_size=16)
+    for package in ("lab", "solvers", "presets"):
+        for path in sorted(Path(str(files(package))).rglob("*.toml")):
+            digest.update(path.read_bytes())
+    return digest.hexdigest()
+
+
 def word(passed: bool) -> str:
     """The word for a verdict."""
     return "pass" if passed else "FAIL"
@@ -50,7 +63,7 @@ class Kept:
 
     def __contains__(self, name: str) -> bool:
         found = self.results.get(name, {})
-        made, here = found.get("made", {}), (self.asked, sources(), self.made.packages, self.made.processor)
+        made, here = found.get("made", {}), (self.asked, code(), self.made.packages, self.made.processor)
         same = here == (found.get("asked"), found.get("code"), made.get("packages"), made.get("processor"))
         return same and not found.get("fault")
 
@@ -65,7 +78,7 @@ class Kept:
 
     def keep(self, name: str, result: Mapping[str, object]) -> None:
         """Put a result on the disk, in place of an older one; a number that JSON lacks becomes None."""
-        made = {"asked": self.asked, "code": sources(), "made": asdict(self.made)}
+        made = {"asked": self.asked, "code": code(), "made": asdict(self.made)}
         self.results[name] = plain({**made, **result})
         write(self.path, self.results)
 

@@ -1,11 +1,14 @@
 """The eight tests of Chung and Ooi (2011, Granular Matter 13:643), each over its whole curve, at two lengths of step.
 
 Materials, speeds and ranges are those of the paper as open benchmarks restate them (Kratos, Yade), and the points read
-off its figures are Kratos' (`published`). Restitution is that of the viscoelastic law at the closing speed.
+off its figures are Kratos' (`published.toml`). Restitution is that of the viscoelastic law at the closing speed.
 """
 
+import tomllib
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
+from pathlib import Path
 
 import matplotlib
 import numpy as np
@@ -14,9 +17,9 @@ from matplotlib.figure import Figure
 from lab.preset.accuracy import DRAFT_RESTITUTION, LEVELS, RESTITUTION
 from lab.report.plots import BELOW, BLUE, GREY, STYLE, VERMILION
 from lab.studies.case import Case, Found, Line, Picture, Table
-from lab.studies.verify import published
 from lab.studies.verify.meetings import LARGER, Meetings, Substance
 
+PUBLISHED = Path(__file__).with_name("published.toml")
 SECTION = "The eight tests of Chung and Ooi (2011)"
 LENGTHS = (1.0, LEVELS["draft"].longer_steps)  # lengths of step in derived steps
 DERIVED, DRAFT = range(2)
@@ -172,25 +175,20 @@ class Read:
 
     test: str
     quantity: str
-    points: tuple[tuple[float, float], ...]
+    points: list[list[float]]
     begin: float
     end: float
     error: float  # of reading, in units of the ordinate
 
 
-READINGS = (
-    Read("test 4, aluminium oxide", "e_t", published.RESTITUTION_4, 14.0, 90.0, 0.015),
-    Read("test 4, aluminium oxide", "spin (rad/s)", published.SPIN_4, 14.0, 90.0, 12.0),
-    Read("test 4, aluminium oxide", "recoil (deg)", published.RECOIL_4, 14.0, 90.0, 1.5),
-    Read("test 5, steel", "slip", published.SLIP_5["steel"], 5.9, 21.0, 0.1),
-    Read("test 5, polyethylene", "slip", published.SLIP_5["polyethylene"], 5.9, 21.0, 0.1),
-    Read("test 5, steel", "R ω", published.SPIN_5["steel"], 5.9, 21.0, 0.1),
-    Read("test 5, polyethylene", "R ω", published.SPIN_5["polyethylene"], 5.9, 21.0, 0.1),
-    Read("test 6, aluminium", "β", published.KEPT_6, 0.0, 1.25, 0.025),
-    Read("test 6, nylon", "β", published.KEPT_6, 0.0, 1.25, 0.025),
-    Read("test 8, aluminium", "β", published.KEPT_6, 0.0, 1.25, 0.025),
-    Read("test 8, nylon", "β", published.KEPT_6, 0.0, 1.25, 0.025),
-)
+def readings() -> Iterator[Read]:
+    """What `published.toml` holds, for each test."""
+    for one in tomllib.loads(PUBLISHED.read_text(encoding="utf-8"))["reading"]:
+        for test in one.pop("tests"):
+            yield Read(test, **one)
+
+
+READINGS = tuple(readings())
 
 
 def axes_of(name: str, velocities: np.ndarray) -> dict[str, tuple[np.ndarray, np.ndarray]]:

@@ -43,7 +43,7 @@ def check(hard: HardCase, fast: bool) -> Found:
         run.close()
     lines += [_misleads(row) for row in longer]
     time = course.time[-1] if len(course.time) else 0.0
-    note = f"{trial.count} grains, {time:.3g} s, steps of {1e6 * course.step:.3g} µs."
+    note = f"{trial.count} grain{'s' if trial.count > 1 else ''}, {time:.3g} s, steps of {1e6 * course.step:.3g} µs."
     return Found(lines, notes=[note], tables=[Table(PUSHED, [_row(row) for row in longer])] if longer else [])
 
 
