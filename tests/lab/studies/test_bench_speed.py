@@ -11,7 +11,7 @@ import taichi as ti
 from lab.base.errors import LabError
 from lab.studies.bench import gpu
 from lab.studies.bench.devices import Device
-from lab.studies.bench.peers import lammps, liggghts
+from lab.studies.bench.peers import lammps, liggghts, peer
 from lab.studies.bench.speed import beds, curves, grains, parts, processors, run_page, worlds
 from lab.studies.bench.speed.beds import ACETATE, DIAMETER, Bed, settled_bed
 from lab.studies.bench.speed.counts import GRAIN, INTEGER, PAIR, REAL, total
@@ -161,8 +161,8 @@ def test_figures_show_every_size_and_every_number_of_worlds():
 
 
 def test_without_the_other_codes_the_page_says_so(tmp_path, monkeypatch):
-    for peer in (liggghts, lammps):
-        monkeypatch.setattr(peer, "EXECUTABLE", "no-such-peer")
+    for code in (liggghts, lammps):
+        monkeypatch.setattr(code, "EXECUTABLE", "no-such-peer")
     text = run_page(["peers"], tmp_path, fast=True).read_text()
     for name in ("LIGGGHTS", "LAMMPS"):
         assert f"{name} is not installed here: the comparison with it is left out." in text
@@ -204,9 +204,9 @@ def told_to_lammps(monkeypatch, bed, **how) -> str:
         decks.append((folder / arguments[-1]).read_text())
         raise LabError("stop")
 
-    monkeypatch.setattr(lammps, "execute", stop)
+    monkeypatch.setattr(peer, "execute", stop)
     with pytest.raises(LabError, match="stop"):
-        lammps.run_lammps(bed.position, bed.radius, bed.width, 0.2, ACETATE, 1e-6, 10, **how)
+        lammps.run_lammps(peer.Task(bed.position, bed.radius, bed.width, 0.2, ACETATE, 1e-6, 10, **how))
     return decks[0]
 
 

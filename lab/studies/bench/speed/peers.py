@@ -8,6 +8,7 @@ from pathlib import Path
 from lab.base.errors import LabError
 from lab.report.page import Page
 from lab.studies.bench.peers import lammps, liggghts
+from lab.studies.bench.peers.peer import Task
 from lab.studies.bench.speed import processors
 from lab.studies.bench.speed.beds import ACETATE, HEIGHT, SCALE, Bed, usual_bed
 from lab.studies.bench.speed.workers import Speeds, Worker, in_turn, millions, ratio, workers
@@ -72,8 +73,8 @@ def on_one_core(bed: Bed, turns: int, seconds: float, grain_steps: float) -> Spe
 
 def peer_timing(run: Callable, bed: Bed, dt: float, steps: int, **how: object) -> Timing:
     """A timing of a peer on a bed: grain-steps per second over `steps` steps of `dt` (s)."""
-    arguments = bed.position, bed.radius, bed.width, HEIGHT, SOFT, dt, steps
-    return lambda: run(*arguments, sample_every=steps, **how).grain_steps_per_s
+    task = Task(bed.position, bed.radius, bed.width, HEIGHT, SOFT, dt, steps, sample_every=steps, **how)
+    return lambda: run(task).grain_steps_per_s
 
 
 def _on_two_cores(page: Page, bed: Bed, turns: int, seconds: float, grain_steps: float) -> None:
