@@ -25,26 +25,8 @@ from lab.studies.verify.scenes import WEIGHTLESS, Setup, again, grain, simulated
 SECTION = "Oblique impacts"
 # From the wall's normal, in degrees.
 ANGLES = (
-    2.0,
-    5.0,
-    10.0,
-    15.0,
-    20.0,
-    25.0,
-    30.0,
-    35.0,
-    40.0,
-    50.0,
-    60.0,
-    70.0,
-    80.0,
-    82.0,
-    84.0,
-    86.0,
-    87.0,
-    88.0,
-    89.0,
-)
+    2.0, 5.0, 10.0, 15.0, 20.0, 25.0, 30.0, 35.0, 40.0, 50.0, 60.0, 70.0, 80.0, 82.0, 84.0, 86.0, 87.0, 88.0, 89.0
+)  # fmt: skip
 GAP, SPACING = 1e-8, 0.02
 DAMPER = 20.0  # N s/m
 REFERENCES = {"mindlin": "DOP853 at 1e-11", "haff-werner": "Radau at 1e-10"}
