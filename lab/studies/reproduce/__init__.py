@@ -14,7 +14,7 @@ from lab.studies.engine import choose
 from lab.studies.reproduce.claims import experiments
 from lab.studies.reproduce.experiment import Experiment
 from lab.studies.reproduce.findings import read_findings
-from lab.studies.reproduce.report import kept_file, write_report
+from lab.studies.reproduce.report import kept_file, write_page, write_report
 from lab.studies.reproduce.runs import Batch, errands
 from lab.studies.reproduce.workers import carry_out_all
 from lab.sweeps.cluster import fetch
@@ -41,11 +41,11 @@ def reproduce(
     out, work = Path(out), Path(out) / ("quick" if quick else "full")
     folders = places(known, work, quick)
     told = read_findings(kept_file(report, out, quick), known, quick)
+    if page_only:
+        return write_page(report, known, told, out, quick)
     removed = [name for name in told if not any(folder.exists() for folder in folders[name].values())]
     if not names:
         chosen = [name for name in chosen if name not in removed]
-    if page_only:
-        chosen = []
     batches = {folders[name][key]: batch for name in chosen for key, batch in known[name].batches(quick).items()}
     if cluster:
         _run_there(batches, cluster, quiet)
