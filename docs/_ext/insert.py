@@ -4,6 +4,7 @@
 {{ registry MODULE TABLE }}       each class of a registry: its formula, source, limits, units
 {{ things MODULE NAME NAME … }}   classes and functions, a line or more each
 {{ page FILE }}                   a page that lies elsewhere, with its pictures; FILE from the repository's root
+{{ ratios FOLDER }}               by processor how many times as fast as other codes the lab is, with a folder's records
 {{ presets }}                     the reference of all keys of a preset
 """
 
@@ -16,6 +17,7 @@ from sphinx.application import Sphinx
 from sphinx.errors import ExtensionError
 
 from lab.preset.reference import reference
+from lab.studies.bench.speed.processors import overview
 
 ROOT = Path(__file__).parents[2]
 ASKED = re.compile(r"^\{\{ (\w+)((?: [^ }]+)*) \}\}$", re.MULTILINE)
@@ -42,6 +44,7 @@ def filled_in(text: str, folder: Path) -> str:
         "registry": docstrings.registry,
         "things": docstrings.things,
         "page": lambda name: page(ROOT / name, folder),
+        "ratios": lambda name: overview(ROOT / name),
         "presets": reference,
     }
     return ASKED.sub(lambda found: made[found[1]](*found[2].split()), text)

@@ -5,44 +5,50 @@ from pathlib import Path
 
 import click
 
-from lab.cli.options import fast_option, page_option
+from lab.cli.options import fast_option, page_only_option, page_option
 
 
 @click.group()
 def bench() -> None:
-    """Measure cost and accuracy of the lab's results; each command writes a page with tables and figures."""
+    """Measure cost and accuracy of the lab's results; each command writes a page with tables and figures.
+
+    What is measured is kept beside the page with version, date and processor, and only done again where it is named or
+    the code has changed.
+    """
 
 
 @bench.command()
 @click.argument("studies", nargs=-1)
 @page_option
 @fast_option
-def accuracy(studies: tuple[str, ...], out: Path, fast: bool) -> None:
+@page_only_option
+def accuracy(studies: tuple[str, ...], out: Path, fast: bool, page_only: bool) -> None:
     """Error against cost: integrator, step, stiffness, precision, tilt rate, laws, repeats; reasons for the defaults.
 
     \b
     cargolab bench accuracy                an hour or two on two cores; run again, it continues
     cargolab bench accuracy stiffness rate
     """
-    from lab.studies.bench.accuracy import run_page
+    from lab.studies.bench.accuracy import BENCH
 
-    click.echo(run_page(studies, out, fast))
+    click.echo(BENCH.run(studies, out, fast, page_only))
 
 
 @bench.command()
 @click.argument("cases", nargs=-1)
 @page_option
 @fast_option
-def stability(cases: tuple[str, ...], out: Path, fast: bool) -> None:
+@page_only_option
+def stability(cases: tuple[str, ...], out: Path, fast: bool, page_only: bool) -> None:
     """Hard cases at the automatic step and far beyond it: correct results, or a stop with one sentence.
 
     \b
     cargolab bench stability
     cargolab bench stability impact column
     """
-    from lab.studies.bench.stability import run_cases
+    from lab.studies.bench.stability import SUITE
 
-    if not run_cases(cases, out, fast):
+    if not SUITE.run(cases, out, fast, page_only):
         sys.exit(1)
 
 
@@ -50,7 +56,8 @@ def stability(cases: tuple[str, ...], out: Path, fast: bool) -> None:
 @click.argument("studies", nargs=-1)
 @page_option
 @fast_option
-def speed(studies: tuple[str, ...], out: Path, fast: bool) -> None:
+@page_only_option
+def speed(studies: tuple[str, ...], out: Path, fast: bool, page_only: bool) -> None:
     """Grain-steps per second by grains, worlds, precision, schedule, threads; cost of a step's parts; other codes.
 
     \b
@@ -59,7 +66,7 @@ def speed(studies: tuple[str, ...], out: Path, fast: bool) -> None:
     """
     from lab.studies.bench.speed import run_page
 
-    click.echo(run_page(studies, out, fast))
+    click.echo(run_page(studies, out, fast, page_only))
 
 
 @bench.command()
@@ -69,7 +76,8 @@ def speed(studies: tuple[str, ...], out: Path, fast: bool) -> None:
 )
 @page_option
 @fast_option
-def survival(cases: tuple[str, ...], kills: int | None, out: Path, fast: bool) -> None:
+@page_only_option
+def survival(cases: tuple[str, ...], kills: int | None, out: Path, fast: bool, page_only: bool) -> None:
     """Kill the lab at random times, take its memory and disk, give it damaged files; count how it ends.
 
     \b
@@ -78,25 +86,27 @@ def survival(cases: tuple[str, ...], kills: int | None, out: Path, fast: bool) -
     """
     from lab.studies.bench.survival import run_cases
 
-    if not run_cases(cases, out, fast, kills):
+    if not run_cases(cases, out, fast, kills, page_only):
         sys.exit(1)
 
 
 @bench.command()
 @page_option
 @fast_option
-def outlines(out: Path, fast: bool) -> None:
+@page_only_option
+def outlines(out: Path, fast: bool, page_only: bool) -> None:
     """Contact rules of irregular grains: energy error by rule and number of nodes, and cost of a step."""
-    from lab.studies.bench.outlines import run_page
+    from lab.studies.bench.outlines import BENCH
 
-    click.echo(run_page(out, fast))
+    click.echo(BENCH.run((), out, fast, page_only))
 
 
 @bench.command()
 @page_option
 @fast_option
-def gpu(out: Path, fast: bool) -> None:
+@page_only_option
+def gpu(out: Path, fast: bool, page_only: bool) -> None:
     """Correctness against the CPU and speed on CUDA and Vulkan, where there is such a device."""
-    from lab.studies.bench.gpu import run_page
+    from lab.studies.bench.gpu import BENCH
 
-    click.echo(run_page(out, fast))
+    click.echo(BENCH.run((), out, fast, page_only))

@@ -77,6 +77,9 @@ class ColourOption(click.Option):
 
 
 page_option = out_option("of the page and its figures", default=Path("renders/bench"))
+page_only_option = click.option(
+    "--page", "page_only", is_flag=True, help="Run nothing: write the page from what is kept."
+)
 fast_option = click.option("--fast", is_flag=True, help="Only the parts that take seconds.")
 
 

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import click
 
-from lab.cli.options import cluster_option, fast_option, out_option, page_option, quiet_option
+from lab.cli.options import cluster_option, fast_option, out_option, page_only_option, page_option, quiet_option
 
 
 @click.command("list")
@@ -29,17 +29,18 @@ def list_presets() -> None:
 @click.argument("cases", nargs=-1)
 @page_option
 @fast_option
-def verify(cases: tuple[str, ...], out: Path, fast: bool) -> None:
+@page_only_option
+def verify(cases: tuple[str, ...], out: Path, fast: bool, page_only: bool) -> None:
     """Compare small scenes with closed forms, independent integrations and published numbers.
 
     \b
-    cargolab verify                     all CASES, and a page with a table and figures
+    cargolab verify                     all CASES, and a page with a table and figures; run again, it continues
     cargolab verify --fast
     cargolab verify oblique incline     those whose names begin with these
     """
-    from lab.studies.verify import run_cases
+    from lab.studies.verify import SUITE
 
-    if not run_cases(cases, out, fast):
+    if not SUITE.run(cases, out, fast, page_only):
         sys.exit(1)
 
 
@@ -48,10 +49,11 @@ def verify(cases: tuple[str, ...], out: Path, fast: bool) -> None:
 @click.argument("experiments", nargs=-1)
 @click.option("--quick", is_flag=True, help="Fewer beds, faster tilts, draft accuracy: under 20 minutes on two cores.")
 @out_option("of the report and of its runs", default=Path("renders/reproduce"))
+@page_only_option
 @cluster_option
 @quiet_option
 def reproduce(
-    what: str, experiments: tuple[str, ...], quick: bool, out: Path, cluster: str | None, quiet: bool
+    what: str, experiments: tuple[str, ...], quick: bool, out: Path, page_only: bool, cluster: str | None, quiet: bool
 ) -> None:
     """Run the experiments of the source and write a report: its statements, our results, differences, cost.
 
@@ -65,7 +67,7 @@ def reproduce(
     """
     from lab.studies.reproduce import reproduce as reproduced
 
-    click.echo(reproduced(what, experiments, out, quick, quiet, cluster))
+    click.echo(reproduced(what, experiments, out, quick, quiet, cluster, page_only))
 
 
 @click.command()

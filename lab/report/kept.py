@@ -11,7 +11,6 @@ from pathlib import Path
 from lab import __version__
 from lab.base.errors import LabError
 from lab.recording import versions
-from solvers.machine.runtime import available_cores
 
 
 @dataclass(frozen=True)
@@ -33,14 +32,6 @@ class Made:
     def words(self) -> str:
         """For a reader: "version 0.2.0, 2026-11-23, AMD EPYC"."""
         return ", ".join([f"version {self.version}", *filter(None, (self.date, self.processor))])
-
-
-def machine() -> str:
-    """What computes, in words."""
-    found = versions()
-    cores = available_cores()
-    system = f"Cargo Shift Lab {__version__}, Python {found['python']}, Taichi {found.get('taichi', '?')}"
-    return f"{cores} core{'s' if cores > 1 else ''} of {processor()} ({system})"
 
 
 def processor() -> str:

@@ -1,61 +1,49 @@
 """Pages of results: Markdown made by Jinja2 templates, with tables and figures beside it.
 
 The templates are in the folder `templates`. A page is made from results that are kept as JSON, and never typed:
-verify, reproduce and the hard cases have a template of their own; other benches add block by block to a `Page`.
+verify, reproduce and the hard cases have a template of their own; the studies of other benches add block by block to a
+`Page`.
 """
 
 import re
 from collections.abc import Sequence
-from dataclasses import asdict
 from functools import cache
 from pathlib import Path
 
 import matplotlib
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from jinja2 import Environment, FileSystemLoader, StrictUndefined, select_autoescape
 from matplotlib.figure import Figure
 
 from lab.base.text import one_line
-from lab.report.kept import Made, machine, plain, write
 from lab.report.plots import STYLE
 
 TEMPLATES = Path(__file__).with_name("templates")
 
 
 class Page:
-    """The page of a bench: its results in NAME.json, NAME.md and figures NAME-FIGURE.png, in a folder made if missing.
+    """What a study has to show: blocks of text, tables and figures, which are files NAME-FIGURE.png of a folder."""
 
-    `write` leaves them on the disk.
-    """
-
-    def __init__(self, folder: Path | str, name: str, title: str) -> None:
-        self.folder, self.name, self.title = Path(folder), name, title
-        self.made, self.machine = Made.now(f"bench {name}"), machine()
-        self._blocks: list[dict[str, object]] = []
+    def __init__(self, folder: Path | str, name: str) -> None:
+        self.folder, self.name = Path(folder), name
+        self.blocks: list[dict[str, object]] = []
 
     def section(self, title: str) -> None:
         """Begin a section."""
-        self._blocks.append({"section": title})
+        self.blocks.append({"section": title})
 
     def say(self, text: str) -> None:
         """Add a paragraph."""
-        self._blocks.append({"text": " ".join(text.split())})
+        self.blocks.append({"text": " ".join(text.split())})
 
     def table(self, header: Sequence[str], rows: Sequence[Sequence[object]]) -> None:
         """Add a table; numbers are written with three digits unless they come as text."""
-        self._blocks.append({"header": header, "rows": rows})
+        self.blocks.append({"header": header, "rows": rows})
 
     def figure(self, name: str, figure: Figure, caption: str) -> Path:
-        """Save a figure beside the page and show it there."""
+        """Save a figure in the folder, made if missing, and show it."""
         path = save_figure(self.folder / f"{self.name}-{name}.png", figure)
-        self._blocks.append({"file": path.name, "caption": caption})
+        self.blocks.append({"file": path.name, "caption": caption})
         return path
-
-    def write(self) -> Path:
-        """Write the results and the page from them; returns its file."""
-        words = {"title": self.title, "machine": self.machine}
-        data = plain({**words, "made": asdict(self.made), "blocks": self._blocks})
-        write(self.folder / f"{self.name}.json", data)
-        return render(self.folder / f"{self.name}.md", "page.md.j2", **data)
 
 
 def render(path: Path, template: str, **data: object) -> Path:
@@ -64,6 +52,11 @@ def render(path: Path, template: str, **data: object) -> Path:
     text = _environment().get_template(template).render(data)
     path.write_text(re.sub(r"\n{3,}", "\n\n", text).strip() + "\n", encoding="utf-8")
     return path
+
+
+def table(header: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
+    """A table in Markdown."""
+    return _environment().get_template("macros.md.j2").module.table(header, rows).strip()
 
 
 def save_figure(path: Path, figure: Figure) -> Path:
@@ -77,7 +70,11 @@ def save_figure(path: Path, figure: Figure) -> Path:
 @cache
 def _environment() -> Environment:
     found = Environment(
-        loader=FileSystemLoader(TEMPLATES), undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
+        loader=FileSystemLoader(TEMPLATES),
+        autoescape=select_autoescape(("html.j2",)),
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
     )
     found.filters["cell"] = _cell
     found.filters["line"] = lambda text: " ".join(str(text).split())

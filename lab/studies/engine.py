@@ -1,15 +1,19 @@
-"""What reproduce, verify and bench share: cases and studies chosen by name, results of cases that are not run again."""
+"""What reproduce, verify and bench share: names that are beginnings, results that are kept, pages made from them."""
 
-from collections.abc import Callable, Collection, Iterable, Mapping
-from dataclasses import asdict
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from functools import cache
+from hashlib import blake2b
+from importlib.resources import files
 from pathlib import Path
 
 import matplotlib
 
 from lab.base.errors import LabError
 from lab.report.kept import Made, plain, read, write
-from lab.report.page import Page
+from lab.report.page import Page, render
 from lab.report.plots import STYLE
+from lab.sweeps.cluster import sources
 
 Study = Callable[[Page, Path, bool], None]  # adds a section to a page; with a folder to work in, and whether in haste
 
@@ -28,23 +32,26 @@ def choose(names: Collection[str], known: Iterable[str], what: str, usual: Colle
     return [one for one in known if usual is None or one in usual]
 
 
-def add_studies(page: Page, studies: Mapping[str, Study], names: Collection[str], fast: bool) -> Path:
-    """Let the studies that begin like one of `names`, or all, add to a page; it is written after each.
+@cache
+def code() -> str:
+    """A hash of what makes results: the source of lab and solvers, their data, and the presets."""
+    digest = blake2b(sources().encode(), digest_size=16)
+    for package in ("lab", "solvers", "presets"):
+        for path in sorted(Path(str(files(package))).rglob("*.toml")):
+            digest.update(path.read_bytes())
+    return digest.hexdigest()
 
-    What they keep is in a folder beside the page, by its name. Returns the page's file. Raises LabError.
-    """
-    with matplotlib.rc_context(STYLE):
-        for name in choose(names, studies, "study"):
-            studies[name](page, page.folder / page.name, fast)
-            path = page.write()
-    return path
+
+def word(passed: bool) -> str:
+    """The word for a verdict."""
+    return "pass" if passed else "FAIL"
 
 
 class Kept:
     """Results by name in a JSON file, each with what made it.
 
-    A result is `in` it if it was made with the same packages and the same choices (`asked`). Raises LabError if the
-    file is none of these.
+    A result is `in` it if it was made by the same code and packages, on the same processor and with the same choices
+    (`asked`), and has no `fault`: then it need not be made again. Raises LabError if the file is none of these.
     """
 
     def __init__(self, path: Path, command: str, asked: object) -> None:
@@ -56,9 +63,71 @@ class Kept:
 
     def __contains__(self, name: str) -> bool:
         found = self.results.get(name, {})
-        return found.get("asked") == self.asked and found.get("made", {}).get("packages") == self.made.packages
+        made, here = found.get("made", {}), (self.asked, code(), self.made.packages, self.made.processor)
+        same = here == (found.get("asked"), found.get("code"), made.get("packages"), made.get("processor"))
+        return same and not found.get("fault")
+
+    def missing(self, chosen: Iterable[str], anew: bool) -> Iterator[str]:
+        """The chosen ones that are not in it, or `anew` all of them; of each of the others a line is printed."""
+        for name in chosen:
+            if name in self and not anew:
+                verdict = f"{word(self[name]['passed'])}, " if "passed" in self[name] else ""
+                print(f"{name}: {verdict}kept from an earlier run", flush=True)
+            else:
+                yield name
 
     def keep(self, name: str, result: Mapping[str, object]) -> None:
         """Put a result on the disk, in place of an older one; a number that JSON lacks becomes None."""
-        self.results[name] = plain({"asked": self.asked, "made": asdict(self.made), **result})
+        made = {"asked": self.asked, "code": code(), "made": asdict(self.made)}
+        self.results[name] = plain({**made, **result})
         write(self.path, self.results)
+
+    def shown(self, names: Iterable[str]) -> dict[str, dict]:
+        """What a page tells: the results of these names with the same choices, whatever code has made them.
+
+        `said` tells what did.
+        """
+        found = {name: self[name] for name in names if self.results.get(name, {}).get("asked") == self.asked}
+        return {name: one | {"said": _said(Made(**one["made"]))} for name, one in found.items()}
+
+
+def _said(made: Made) -> str:
+    return f"Made by `{made.command}`: {made.words}."
+
+
+@dataclass(frozen=True)
+class Bench:
+    """A bench whose studies each add a section to one page; `about` stands above them.
+
+    Its results are kept in NAME.json, by study; NAME.md is made from them, with figures NAME-FIGURE.png beside it.
+    """
+
+    name: str
+    title: str
+    studies: Mapping[str, Study]
+    about: str = ""
+
+    def run(self, names: Sequence[str], out: Path | str, fast: bool, page_only: bool = False) -> Path:
+        """Do the studies that begin like one of `names`, or without names all that are not kept; returns the page.
+
+        The page is written after each. What a study needs again is in the folder NAME. `page_only`: nothing is done
+        but the page. Raises LabError.
+        """
+        out, chosen = Path(out), choose(names, self.studies, "study")
+        kept = Kept(out / f"{self.name}.json", f"bench {self.name}", {"fast": fast})
+        page = self._write(kept)
+        with matplotlib.rc_context(STYLE):
+            for name in kept.missing([] if page_only else chosen, anew=bool(names)):
+                section = Page(out, self.name)
+                self.studies[name](section, out / self.name, fast)
+                kept.keep(name, {"blocks": section.blocks})
+                page = self._write(kept)
+        return page
+
+    def _write(self, kept: Kept) -> Path:
+        return write_sections(kept.path.with_suffix(".md"), self.title, kept.shown(self.studies), self.about)
+
+
+def write_sections(path: Path, title: str, results: Mapping[str, Mapping], about: str = "") -> Path:
+    """Write a page from the `blocks` of results; returns its file."""
+    return render(path, "page.md.j2", title=title, about=about, results=list(results.values()))

@@ -7,7 +7,6 @@ one, in the folder `runs`; runs that are done are not repeated.
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from html import escape
 from math import ceil
 from pathlib import Path
 
@@ -20,6 +19,7 @@ from lab.preset.find import QUICK, names
 from lab.recording import Recording, open_recording
 from lab.recording.ship_end import ends
 from lab.report.numbers import number
+from lab.report.page import render
 from lab.report.summary import TELLING
 from lab.runs.runner import reported, resume_run, run_preset
 from solvers.machine.errors import BadState
@@ -30,33 +30,7 @@ MOMENT = 0.85  # fraction of the film that the poster shows; of a ship that is l
 UNITS = {"deg": "°", "d": "diameters"}
 MOST_NUMBERS = 4
 CARGOES = "cargoes.png"
-
-ERRORS = (
-    "Behind each number stands of how many beds it is: ± is their standard deviation. Of one bed there is none, "
-    "though angles of like beds differ by several degrees. What a measure knows of its own uncertainty has a name: see "
-    "docs/numbers.md. Each card says with which accuracy, by which version and when its numbers were made."
-)
-
-STYLE = """
-body { font: 15px/1.45 system-ui, sans-serif; color: #212934; margin: 2rem auto; max-width: 1320px; padding: 0 1rem; }
-h2 { margin: 2.2rem 0 .6rem; text-transform: capitalize; }
-.presets { display: grid; grid-template-columns: repeat(auto-fill, minmax(300px, 1fr)); gap: 1.2rem; }
-figure { margin: 0; border: 1px solid #e1e5ea; border-radius: 6px; overflow: hidden; }
-video, img { width: 100%; aspect-ratio: 16 / 9; display: block; background: #f6f7f9; }
-figcaption { padding: .6rem .8rem .8rem; }
-img.wide { aspect-ratio: auto; background: none; margin-bottom: 1.2rem; }
-code { background: #f1f3f6; padding: .1em .35em; border-radius: 3px; }
-table { font-size: 13.5px; } td { padding: .05rem .8rem .05rem 0; vertical-align: top; }
-td + td { padding-right: 0; white-space: nowrap; } .why { color: #68727e; }
-"""
-SCRIPT = """
-for (const clip of document.querySelectorAll("video")) {
-  clip.controls = false;  // they would hide a third of the poster
-  clip.tabIndex = 0;
-  clip.onmouseenter = clip.onfocus = () => { clip.controls = true; };
-  clip.onmouseleave = clip.onblur = () => { clip.controls = !clip.paused; };
-}
-"""
+TOLD = {"status": str, "numbers": dict, "accuracy": str, "beds": int, "version": str, "date": str}
 
 
 def make_gallery(wanted: Sequence[str], out: Path | str, quiet: bool = False, beds: int = 1) -> Path:
@@ -146,57 +120,30 @@ def _telling(summary: Mapping) -> dict[str, object]:
 
 
 def _write_page(every: Mapping[str, str], out: Path) -> Path:
-    groups: dict[str, list[str]] = {}
+    groups: dict[str, list[dict]] = {}
     for name, title in every.items():
         if not name.endswith(QUICK):
             groups.setdefault(name.split("/")[0], []).append(_card(name, title, _cheapest(name, every), out))
-    wide = {"shapes": f'<img class="wide" alt="" src="{CARGOES}">'} if (out / CARGOES).exists() else {}
-    body = "".join(
-        f'<h2>{escape(group)}</h2>{wide.get(group, "")}<div class="presets">{"".join(cards)}</div>'
-        for group, cards in groups.items()
-    )
-    head = f'<meta charset="utf-8"><title>Cargo Shift Lab</title><style>{STYLE}</style>'
-    body = f"<h1>Every experiment of the lab</h1><p class='why'>{ERRORS}</p>{body}<script>{SCRIPT}</script>"
-    text = f"<!doctype html><html><head>{head}</head><body>{body}</body></html>\n"
-    path = out / "index.html"
-    path.write_text(text, encoding="utf-8")
-    return path
+    wide = {"shapes": CARGOES} if (out / CARGOES).exists() else {}
+    return render(out / "index.html", "gallery.html.j2", groups=groups, wide=wide)
 
 
-def _origin(found: Mapping) -> str:
-    """How the numbers of a card were made, in words."""
-    beds = f"{found['beds']} bed{'s' if found['beds'] > 1 else ''}"
-    return f"{found['accuracy']} accuracy, {beds}; version {found['version']}, {found['date']}"
+def _card(name: str, title: str, cheapest: str, out: Path) -> dict[str, object]:
+    """What the page shows of a preset: its files, its cheapest variant, and what is `told` of it, None if not run."""
+    plain = _plain(name)
+    path, clip = out / f"{plain}.json", (out / f"{plain}.mp4").exists()
+    told = _told(path) if path.exists() else None
+    return {"title": title, "cheapest": cheapest, "plain": plain, "clip": clip, "told": told}
 
 
-def _told(path: Path) -> tuple[dict[str, str], str, str]:
-    """Read the numbers of a preset that `_telling` gave, how its run ended, how they were made. Raises LabError."""
+def _told(path: Path) -> dict[str, object]:
+    """Read what `_show` has kept of a preset. Raises LabError."""
     try:
         found = json.loads(path.read_text(encoding="utf-8"))
-        numbers, status, origin = dict(found["numbers"]), found["status"], _origin(found)
-        if not all(isinstance(text, str) for text in (status, *numbers, *numbers.values())):
-            raise ValueError("something is no text")
+        if not all(isinstance(found[key], kind) for key, kind in TOLD.items()):
+            raise ValueError("something is of another kind")
+        if not all(isinstance(text, str) for text in found["numbers"].values()):
+            raise ValueError("a number is no text")
     except (ValueError, KeyError, TypeError, RecursionError) as error:
         raise LabError(f"{path} is damaged: remove it, and the clip beside it, and ask again.") from error
-    return numbers, status, origin
-
-
-def _card(name: str, title: str, cheapest: str, out: Path) -> str:
-    """The card of a preset: its clip, else its poster, the command of its cheapest variant, its numbers."""
-    plain = _plain(name)
-    if not (out / f"{plain}.json").exists():
-        picture, told = "<img alt='not run yet'>", "<p class='why'>not run yet</p>"
-    else:
-        numbers, status, origin = _told(out / f"{plain}.json")
-        rows = [f"<tr><td>{escape(k.replace('_', ' '))}</td><td>{escape(v)}</td></tr>" for k, v in numbers.items()]
-        ended = "" if status == "complete" else f"<p class='why'>{escape(status)}</p>"
-        told = f"<table>{''.join(rows)}</table>{ended}<p class='why'>{escape(origin)}</p>"
-        link = escape(plain)
-        picture = f'<img alt="" src="{link}.png">'
-        if (out / f"{plain}.mp4").exists():
-            picture = f'<video controls loop muted preload="none" poster="{link}.png" src="{link}.mp4"></video>'
-    command = f"cargolab run {cheapest}"
-    return (
-        f"<figure>{picture}<figcaption><b>{escape(title)}</b><p><code>{escape(command)}</code></p>{told}"
-        "</figcaption></figure>"
-    )
+    return found

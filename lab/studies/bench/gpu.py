@@ -6,17 +6,17 @@ from functools import partial
 from multiprocessing import get_context
 from pathlib import Path
 
-import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
 
 from lab.base.errors import LabError
 from lab.report.page import Page
-from lab.report.plots import BELOW, BLUE, GREEN, STYLE, VERMILION
+from lab.report.plots import BELOW, BLUE, GREEN, VERMILION
 from lab.studies.bench.devices import Device, device
 from lab.studies.bench.speed.beds import DIAMETER, Bed, usual_bed
 from lab.studies.bench.speed.drawing import draw_with_range
 from lab.studies.bench.speed.workers import Speeds, Worker, compared, millions
+from lab.studies.engine import Bench
 from solvers.machine import runtime
 from solvers.machine.errors import BadState, Unavailable
 from solvers.motion import Sway
@@ -31,22 +31,10 @@ ROUNDINGS = 10.0  # times what another order of sums changes on the processor, o
 ONE, BATCH = SHAPES = "one world", f"worlds of {COUNT} grains"
 
 
-def run_page(out: Path, fast: bool) -> Path:
-    """Measure each kind of device that is there and write the page; returns its file."""
-    page = Page(out, "gpu", "Graphics processors")
-    page.say("""Schedule per-grain: every grain on its own, a launch a step. M stands for a million grain-steps a
-        second, medians of several runs.""")
-    path, work = page.write(), out / "gpu"
-    with matplotlib.rc_context(STYLE):
-        for arch, precisions in ARCHES.items():
-            page.section(arch.upper() if arch == "cuda" else arch.capitalize())
-            study(page, work, arch, precisions, fast)
-            path = page.write()
-    return path
-
-
-def study(page: Page, work: Path, arch: str, precisions: tuple[str, ...], fast: bool) -> None:
-    """Add what there is to say of one kind of device."""
+def study(page: Page, work: Path, fast: bool, arch: str) -> None:
+    """Add the section on one kind of device to the page."""
+    precisions = ARCHES[arch]
+    page.section(arch.upper() if arch == "cuda" else arch.capitalize())
     found, why_not = there(arch, precisions[-1])
     if found is None:
         page.say(f"Unmeasured: {why_not}")
@@ -164,3 +152,8 @@ def plotted(found: dict[tuple[str, int], Speeds]) -> Figure:
     figure.legend(handles, labels, loc=BELOW, ncols=len(COLOURS))
     figure.axes[0].set_ylabel("million grain-steps a second")
     return figure
+
+
+ABOUT = """Schedule per-grain: every grain on its own, a launch a step. M stands for a million grain-steps a second,
+medians of several runs."""
+BENCH = Bench("gpu", "Graphics processors", {arch: partial(study, arch=arch) for arch in ARCHES}, ABOUT)

@@ -6,13 +6,13 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from lab.report.page import Page
-from lab.report.plots import BLUE, GREY, STYLE, VERMILION
+from lab.report.plots import BLUE, GREY, VERMILION
+from lab.studies.engine import Bench
 from solvers.grains.materials import Material
 from solvers.grains.shapes.cargo import cargo
 from solvers.grains.shapes.contour import Contour
@@ -75,37 +75,29 @@ class Tried:
         return self.rule if self.nodes is None else f"{self.rule}, {self.nodes} nodes"
 
 
-def run_page(out: Path, fast: bool) -> Path:
-    """Try all rules on all outlines and write the page; returns its file."""
-    page = Page(out, "outlines", "How irregular grains touch")
-    page.say(f"""By rule of contact and nodes of an outline. Energy: {PAIRS} pairs without friction or losses meet off
-        centre at random angles, each grain at {SPEED:g} m/s and {RADIUS * 2e3:g} mm wide, with a thousandth of
-        acetate's stiffness and the automatic step; median and largest change of their energy. Cost: a step of a bed of
-        {COLUMNS * ROWS} grains with losses and Mindlin's friction on one core, that of as many discs being 1, median
-        of {TURNS} runs in turn: at rest, and while all are thrown at a wall at {THROW:g} m/s.""")
+def study(page: Page, work: Path, fast: bool) -> None:
+    """Try all rules on all outlines, a section each."""
     kinds = outlines()
     figure = Figure(figsize=(7.2, 3.2), layout="constrained")
     panels = np.atleast_1d(figure.subplots(1, 1 if fast else len(kinds), sharey=True))
-    with matplotlib.rc_context(STYLE):
-        for axes, (name, given) in zip(panels, kinds.items(), strict=False):
-            tried = [try_rule(given, rule, nodes) for rule, nodes in (FEW if fast else RULES)]
-            page.section(name[0].upper() + name[1:])
-            page.table(
-                ["rule", "energy, median change", "largest", "cost at rest (discs = 1)", "thrown"],
+    for axes, (name, given) in zip(panels, kinds.items(), strict=False):
+        tried = [try_rule(given, rule, nodes) for rule, nodes in (FEW if fast else RULES)]
+        page.section(name[0].upper() + name[1:])
+        page.table(
+            ["rule", "energy, median change", "largest", "cost at rest (discs = 1)", "thrown"],
+            [
                 [
-                    [
-                        one.name,
-                        *(f"{f(one.changes):.1e}" for f in (np.median, np.max)),
-                        f"{one.rest:.1f}",
-                        f"{one.thrown:.1f}",
-                    ]
-                    for one in tried
-                ],
-            )
-            draw(axes, tried, name)
-        name_rules(figure)
-        page.figure("cost", figure, "Change of energy in a collision against what a step costs, by rule")
-    return page.write()
+                    one.name,
+                    *(f"{f(one.changes):.1e}" for f in (np.median, np.max)),
+                    f"{one.rest:.1f}",
+                    f"{one.thrown:.1f}",
+                ]
+                for one in tried
+            ],
+        )
+        draw(axes, tried, name)
+    name_rules(figure)
+    page.figure("cost", figure, "Change of energy in a collision against what a step costs, by rule")
 
 
 def draw(axes, tried: list[Tried], title: str) -> None:
@@ -227,3 +219,11 @@ def _taken(run: Simulation, steps: int) -> float:
     begun = time.perf_counter()
     run.advance(steps)
     return (time.perf_counter() - begun) / steps
+
+
+ABOUT = f"""By rule of contact and nodes of an outline. Energy: {PAIRS} pairs without friction or losses meet off centre
+at random angles, each grain at {SPEED:g} m/s and {RADIUS * 2e3:g} mm wide, with a thousandth of acetate's stiffness and
+the automatic step; median and largest change of their energy. Cost: a step of a bed of {COLUMNS * ROWS} grains with
+losses and Mindlin's friction on one core, that of as many discs being 1, median of {TURNS} runs in turn: at rest, and
+while all are thrown at a wall at {THROW:g} m/s."""
+BENCH = Bench("outlines", "How irregular grains touch", {"rules": study}, ABOUT)

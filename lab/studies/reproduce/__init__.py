@@ -14,26 +14,35 @@ from lab.studies.engine import choose
 from lab.studies.reproduce.claims import experiments
 from lab.studies.reproduce.experiment import Experiment
 from lab.studies.reproduce.findings import read_findings
-from lab.studies.reproduce.report import kept_file, write_report
+from lab.studies.reproduce.report import kept_file, write_page, write_report
 from lab.studies.reproduce.runs import Batch, errands
 from lab.studies.reproduce.workers import carry_out_all
 from lab.sweeps.cluster import fetch
 
 
 def reproduce(
-    report: str, names: Sequence[str], out: Path | str, quick: bool, quiet: bool = False, cluster: str | None = None
+    report: str,
+    names: Sequence[str],
+    out: Path | str,
+    quick: bool,
+    quiet: bool = False,
+    cluster: str | None = None,
+    page_only: bool = False,
 ) -> Path:
     """Run a report's experiments whose names begin like one of `names`, or all, and write the report.
 
     Without names, an experiment that is in the report already is not run again, even if its runs have been removed.
     cluster: the address of a scheduler whose workers first run all that has not been begun. The report is rewritten
-    after each experiment. Returns its file. Raises LabError, one sentence, and KeyboardInterrupt; finished runs stay.
+    after each experiment; `page_only`: nothing is run. Returns its file. Raises LabError, one sentence, and
+    KeyboardInterrupt; finished runs stay.
     """
     known = experiments(report)
     chosen = choose(names, known, "experiment")
     out, work = Path(out), Path(out) / ("quick" if quick else "full")
     folders = places(known, work, quick)
     told = read_findings(kept_file(report, out, quick), known, quick)
+    if page_only:
+        return write_page(report, known, told, out, quick)
     removed = [name for name in told if not any(folder.exists() for folder in folders[name].values())]
     if not names:
         chosen = [name for name in chosen if name not in removed]

@@ -8,9 +8,9 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice
 from math import inf
-from typing import Literal
+from typing import Annotated
 
-from pydantic import BaseModel, ConfigDict
+from pydantic import AfterValidator, BaseModel, ConfigDict
 
 from lab.measures.value import Value
 from lab.studies.reproduce import named
@@ -35,6 +35,12 @@ FROZEN = "frozen_"  # measures of ships with frozen cargo, which do not vary fro
 HALF = "more than half of all beds"
 
 
+def _one_of(word: str, known: Mapping) -> str:
+    if word not in known:
+        raise ValueError(f"{word} is none of {', '.join(known)}")
+    return word
+
+
 class Claim(BaseModel):
     """A row: what it `says`, and how its numbers compare with the source.
 
@@ -53,22 +59,7 @@ class Claim(BaseModel):
     runs: str | list[str] = ALL
     at: str | list[str] = ""
     given: float | list[float] | None = None
-    compare: Literal[
-        "told",
-        "value",
-        "at least",
-        "at most",
-        "not before",
-        "fall",
-        "alike",
-        "difference",
-        "ratio",
-        "paired ratio",
-        "same",
-        "most",
-        "capsizes",
-        "scatters",
-    ] = "told"
+    compare: Annotated[str, AfterValidator(lambda word: _one_of(word, KINDS))] = "told"
     value: float | None = None
     within: str = ""
     share: float | None = None

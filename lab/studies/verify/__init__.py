@@ -3,12 +3,8 @@
 A case is a function in a module of this package that returns its results, and a line in that module's CASES.
 """
 
-from collections.abc import Sequence
-from pathlib import Path
-
-from rich.console import Console
-
-from lab.studies.engine import choose
+from lab.studies.case import Case
+from lab.studies.suite import Suite
 from lab.studies.verify import (
     chung_ooi,
     cohesion,
@@ -23,8 +19,6 @@ from lab.studies.verify import (
     rolling,
     sameness,
 )
-from lab.studies.verify.case import Case, Outcome
-from lab.studies.verify.report import show, write_report
 
 MODULES = (
     chung_ooi,
@@ -41,37 +35,10 @@ MODULES = (
     sameness,
 )
 CASES: tuple[Case, ...] = tuple(case for module in MODULES for case in module.CASES)
-
-
-def run_cases(names: Sequence[str], out: Path | str, fast: bool) -> bool:
-    """Run the cases whose names begin with any of `names` (none: all), print them, and write the page in `out`.
-
-    With `fast` only what takes seconds. A case that fails or breaks does not stop the others. Returns whether all
-    passed. Raises LabError for a name that no case begins with.
-    """
-    chosen, console, outcomes = select(names, fast), Console(highlight=False), []
-    for case in chosen:
-        outcomes.append(outcome := carried_out(case, fast))
-        show(outcome, console)
-    page = write_report(outcomes, out)
-    bad = [outcome.case.name for outcome in outcomes if not outcome.passed]
-    console.print(f"failed: {', '.join(bad)}" if bad else f"all {len(outcomes)} cases passed", soft_wrap=True)
-    console.print(str(page), soft_wrap=True)
-    return not bad
-
-
-def select(names: Sequence[str], fast: bool) -> list[Case]:
-    """The cases whose names begin with any of `names`, all where there are none; with `fast` the quick ones.
-
-    Raises LabError for a name that no such case begins with.
-    """
-    possible = {case.name: case for case in CASES if case.quick or not fast}
-    return [possible[name] for name in choose(names, possible, "fast case" if fast else "case")]
-
-
-def carried_out(case: Case, fast: bool) -> Outcome:
-    """Run a case and return its outcome; an exception counts as one."""
-    try:
-        return Outcome(case, case.check(fast))
-    except Exception as error:
-        return Outcome(case, fault=f"{type(error).__name__}: {error}")
+SUITE = Suite(
+    "verify",
+    "The physics against closed forms, independent integrations and published numbers",
+    CASES,
+    """The references do not use the solver. A tolerance, to either side, is what the physics and the scheme at its step
+    allow, not what came out.""",
+)

@@ -1,11 +1,14 @@
 """The eight tests of Chung and Ooi (2011, Granular Matter 13:643), each over its whole curve, at two lengths of step.
 
 Materials, speeds and ranges are those of the paper as open benchmarks restate them (Kratos, Yade), and the points read
-off its figures are Kratos' (`published`). Restitution is that of the viscoelastic law at the closing speed.
+off its figures are Kratos' (`published.toml`). Restitution is that of the viscoelastic law at the closing speed.
 """
 
+import tomllib
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
+from pathlib import Path
 
 import matplotlib
 import numpy as np
@@ -13,10 +16,10 @@ from matplotlib.figure import Figure
 
 from lab.preset.accuracy import DRAFT_RESTITUTION, LEVELS, RESTITUTION
 from lab.report.plots import BELOW, BLUE, GREY, STYLE, VERMILION
-from lab.studies.verify import published
-from lab.studies.verify.case import Case, Found, Line, Picture, Table
+from lab.studies.case import Case, Found, Line, Picture, Table
 from lab.studies.verify.meetings import LARGER, Meetings, Substance
 
+PUBLISHED = Path(__file__).with_name("published.toml")
 SECTION = "The eight tests of Chung and Ooi (2011)"
 LENGTHS = (1.0, LEVELS["draft"].longer_steps)  # lengths of step in derived steps
 DERIVED, DRAFT = range(2)
@@ -126,7 +129,7 @@ def level_lines(name: str, fast: bool) -> list[Line]:
             if quantity == "spin":
                 allowed, reason = 2.5 / 3.5 * allowed, f"{reason}, 5/7"
             where = ("derived step", f"{LENGTHS[length]:g} Δt, draft")[length]
-            lines.append(Line(f"{name}: {quantity}, {where}", value, 0.0, source, allowed, reason, relative=False))
+            lines.append(Line.off(f"{name}: {quantity}, {where}", source, value, allowed, reason))
     return lines
 
 
@@ -141,7 +144,7 @@ def normal(fast: bool) -> Found:
             for quantity, here, there in (("force", force, hertz), ("overlap", depth, deep)):
                 worst = np.abs(here - there).max() / there.max()
                 what = f"{name}: {quantity} at any time, of its largest, {where}"
-                lines.append(Line(what, worst, 0.0, source, allowed, reason, relative=False))
+                lines.append(Line.off(what, source, worst, allowed, reason))
     caption = "Tests 1 and 2: force over time at the derived step (dots) and draft's (crosses), and Hertz's"
     return Found(lines, [Picture("chung-ooi-1-2", force_figure(fast), caption)])
 
@@ -172,25 +175,20 @@ class Read:
 
     test: str
     quantity: str
-    points: tuple[tuple[float, float], ...]
+    points: list[list[float]]
     begin: float
     end: float
     error: float  # of reading, in units of the ordinate
 
 
-READINGS = (
-    Read("test 4, aluminium oxide", "e_t", published.RESTITUTION_4, 14.0, 90.0, 0.015),
-    Read("test 4, aluminium oxide", "spin (rad/s)", published.SPIN_4, 14.0, 90.0, 12.0),
-    Read("test 4, aluminium oxide", "recoil (deg)", published.RECOIL_4, 14.0, 90.0, 1.5),
-    Read("test 5, steel", "slip", published.SLIP_5["steel"], 5.9, 21.0, 0.1),
-    Read("test 5, polyethylene", "slip", published.SLIP_5["polyethylene"], 5.9, 21.0, 0.1),
-    Read("test 5, steel", "R ω", published.SPIN_5["steel"], 5.9, 21.0, 0.1),
-    Read("test 5, polyethylene", "R ω", published.SPIN_5["polyethylene"], 5.9, 21.0, 0.1),
-    Read("test 6, aluminium", "β", published.KEPT_6, 0.0, 1.25, 0.025),
-    Read("test 6, nylon", "β", published.KEPT_6, 0.0, 1.25, 0.025),
-    Read("test 8, aluminium", "β", published.KEPT_6, 0.0, 1.25, 0.025),
-    Read("test 8, nylon", "β", published.KEPT_6, 0.0, 1.25, 0.025),
-)
+def readings() -> Iterator[Read]:
+    """What `published.toml` holds, for each test."""
+    for one in tomllib.loads(PUBLISHED.read_text(encoding="utf-8"))["reading"]:
+        for test in one.pop("tests"):
+            yield Read(test, **one)
+
+
+READINGS = tuple(readings())
 
 
 def axes_of(name: str, velocities: np.ndarray) -> dict[str, tuple[np.ndarray, np.ndarray]]:
@@ -228,7 +226,7 @@ def published_lines(name: str) -> list[Line]:
                 f"{name}: {reading.quantity}, {len(chosen)} points from {chosen[0][0]:.3g} to {chosen[-1][0]:.3g}"
             )
             source, reason = "figure of the paper, as Kratos has read it", "reading, another damping"
-            lines.append(Line(quantity, worst, 0.0, source, reading.error, reason, relative=False))
+            lines.append(Line.off(quantity, source, worst, reading.error, reason))
     return lines
 
 
@@ -300,7 +298,7 @@ def levels(_: bool) -> Found:
             rows.append((name, f"{quantity}, {what}", *values))
     for row in rows:
         what, allowed = f"{row[0]}: {row[1]}, standard", SLIP_ALLOWED[DERIVED]
-        lines.append(Line(what, row[2], 0.0, "the law by itself", allowed, "O(Δt²)", relative=False))
+        lines.append(Line.off(what, "the law by itself", row[2], allowed, "O(Δt²)"))
     header = ("test", "largest error over the curve", "draft", "standard", "reference")
     texts = []
     for test, quantity, derived, draft in rows:

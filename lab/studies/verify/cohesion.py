@@ -4,7 +4,7 @@ from math import atan, cos, log, pi, sqrt
 
 import numpy as np
 
-from lab.studies.verify.case import Case, Found, Line
+from lab.studies.case import Case, Found, Line
 from lab.studies.verify.references import sphere_mass
 from lab.studies.verify.scenes import ACETATE, WEIGHTLESS, Setup, again, grain, simulated
 

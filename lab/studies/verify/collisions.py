@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from lab.studies.verify.case import Case, Found, Line
+from lab.studies.case import Case, Found, Line
 from lab.studies.verify.references import HertzCollision, hertz_stiffness, sphere_mass
 from lab.studies.verify.scenes import WEIGHTLESS, Setup, each_at_its_step, grain, track
 

@@ -4,7 +4,7 @@ from functools import cache
 
 import numpy as np
 
-from lab.studies.verify.case import Case, Found, Line
+from lab.studies.case import Case, Found, Line
 from lab.studies.verify.references import hertz_stiffness, sphere_mass
 from lab.studies.verify.scenes import ACETATE, G, Setup, Track, grain, simulated, track
 
@@ -55,7 +55,7 @@ def stillness(_: bool) -> Found:
     path, _ = column()
     allowed = np.sqrt(2.0 * REST * COUNT * G * 2.0 * RADIUS)  # as if one grain had all the energy that may be left
     speed = np.abs(path.velocity).max()
-    return Found([Line("largest speed", speed, 0.0, "rest", allowed, SETTLED, "m/s", relative=False), creep_line(path)])
+    return Found([Line.off("largest speed", "rest", speed, allowed, SETTLED, "m/s"), creep_line(path)])
 
 
 def bed(_: bool) -> Found:
@@ -73,7 +73,7 @@ def bed(_: bool) -> Found:
     moment, expected = -1e6 * observed["wall_force"][..., 2], 1e6 * weight * observed["centre_of_mass"][..., 0]
     lines = [
         Line("force down", -1e3 * observed["wall_force"][..., 1], 1e3 * weight, "weight", 1e-6, SETTLED, "mN"),
-        Line("force sideways, of the weight", sideways, 0.0, "rest", 1e-6, SETTLED, relative=False),
+        Line.off("force sideways, of the weight", "rest", sideways, 1e-6, SETTLED),
         Line("moment about the floor's middle", moment, expected, "weight at its centre", 1e-5, SETTLED, "µN m"),
         creep_line(path),
     ]
@@ -85,7 +85,7 @@ def creep_line(path: Track) -> Line:
     """How far any grain goes while all should rest."""
     shift = np.linalg.norm(path.position[-1] - path.position[0], axis=-1).max() / RADIUS
     name = f"largest shift in {path.time[-1] - path.time[0]:.2g} s, in radii"
-    return Line(name, shift, 0.0, "a spring with history holds", 1e-7, SETTLED, relative=False)
+    return Line.off(name, "a spring with history holds", shift, 1e-7, SETTLED)
 
 
 CASES = (

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from lab.studies.verify.case import Case, Found, Line
+from lab.studies.case import Case, Found, Line
 from lab.studies.verify.references import sphere_mass
 from lab.studies.verify.scenes import ACETATE, WEIGHTLESS, Setup, again, grain, simulated
 
@@ -110,11 +110,11 @@ def kept_lines(found: Gas, count: int, table: str) -> list[Line]:
     source = CONSERVED.format(table)
     lines = [
         Line("grains in the tank", found.inside, count, source, 0.5, "a whole number", relative=False),
-        Line("largest change of the energy", drift, 0.0, source, 1e-3, "O(Δt²), 0.1 % a collision", relative=False),
+        Line.off("largest change of the energy", source, drift, 1e-3, "O(Δt²), 0.1 % a collision"),
     ]
     for name, missing in zip(("momentum along y", "along z", "about the origin"), found.missing, strict=True):
         quantity = f"{name}, less the walls' impulse"
-        lines.append(Line(quantity, missing.max(), 0.0, "Newton", 1e-9, "rounding", relative=False))
+        lines.append(Line.off(quantity, "Newton", missing.max(), 1e-9, "rounding"))
     return lines
 
 
@@ -128,11 +128,11 @@ def average_lines(found: Gas, table: str) -> list[Line]:
     chance = "chance, as the source's"
     lines = [Line("share of the motion along y", along, 0.5, f"equal parts; {conserved}", KEPT, chance)]
     spread = kinetic.std(axis=0).max() / kinetic.mean()
-    lines.append(Line("spread of the kinetic energy in time", spread, 0.0, conserved, KEPT, chance, relative=False))
+    lines.append(Line.off("spread of the kinetic energy in time", conserved, spread, KEPT, chance))
     for name, values in (("kinetic", kinetic), ("internal (elastic)", elastic)):
         between = CONFIDENCE * values.mean(axis=0).std(ddof=1) / values.mean()
         quantity = f"mean {name} energy from start to start"
-        lines.append(Line(quantity, between, 0.0, averaged, AVERAGES, chance, relative=False))
+        lines.append(Line.off(quantity, averaged, between, AVERAGES, chance))
     return lines
 
 
@@ -160,22 +160,9 @@ def cloud(_: bool) -> Found:
         raise RuntimeError("the cloud has not collided and come apart")
     change = np.abs((told[-1] - told[0]).sum(axis=1)) / np.abs(told[0]).sum(axis=1)
     names = ("momentum along y", "momentum along z", "momentum about the middle")
-    lines = [
-        Line(name, value, 0.0, "Newton", 1e-10, "rounding", relative=False)
-        for name, value in zip(names, change, strict=True)
-    ]
+    lines = [Line.off(name, "Newton", value, 1e-10, "rounding") for name, value in zip(names, change, strict=True)]
     gained = max(0.0, np.diff(energy).max() / energy[0])
-    lines.append(
-        Line(
-            "largest gain of energy in 1 ms",
-            gained,
-            0.0,
-            "losses only",
-            1e-3,
-            "O(Δt²) while grains touch",
-            relative=False,
-        )
-    )
+    lines.append(Line.off("largest gain of energy in 1 ms", "losses only", gained, 1e-3, "O(Δt²) while grains touch"))
     note = f"""Of its own energy the cloud keeps {energy[-1] / energy[0]:.2f}. The change of a momentum is a share of
     the sum over the grains of its sizes at the start; at the end no two grains touch."""
     return Found(lines, notes=[note])
@@ -236,25 +223,17 @@ def impacts(fast: bool) -> Found:
         smooth = np.abs(impact_energies(normal, "none", 1.0, (1, 4)) - 1.0).max(axis=1)
         source = "an elastic impact keeps its energy"
         lines += [
-            Line(
-                f"{normal}, restitution 1: energy gained or lost",
-                smooth[0],
-                0.0,
-                source,
-                allowed,
-                reason,
-                relative=False,
-            ),
-            Line("the same at Δt/4", smooth[1], 0.0, source, allowed / 8.0, "falls as Δt²: /16", relative=False),
+            Line.off(f"{normal}, restitution 1: energy gained or lost", source, smooth[0], allowed, reason),
+            Line.off("the same at Δt/4", source, smooth[1], allowed / 8.0, "falls as Δt²: /16"),
         ]
         for tangential in TANGENTIAL[:1] if fast else TANGENTIAL:
             rough = impact_energies(normal, tangential, 1.0, (1,)).max() - 1.0
             name = f"{normal}, {tangential}, restitution 1: energy gained"
-            lines.append(Line(name, max(0.0, rough), 0.0, "friction only takes", allowed, reason, relative=False))
+            lines.append(Line.off(name, "friction only takes", max(0.0, rough), allowed, reason))
             if normal != "hertz":
                 lossy = impact_energies(normal, tangential, LOSSY, (1,)).max() - 1.0
                 name = f"{normal}, {tangential}, restitution {LOSSY:g}: energy gained"
-                lines.append(Line(name, max(0.0, lossy), 0.0, "losses only", 1e-12, "rounding", relative=False))
+                lines.append(Line.off(name, "losses only", max(0.0, lossy), 1e-12, "rounding"))
     note = f"""Spheres at {THROWN:g} m/s on a wall at 0 to 85°, with and without spin, contacts beginning at four places
     of a step, at the derived step."""
     return Found(lines, notes=[note])

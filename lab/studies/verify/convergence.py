@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from scipy.integrate import solve_ivp
 
 from lab.report.plots import BELOW, BLUE, GREEN, STYLE, VERMILION
-from lab.studies.verify.case import Case, Found, Line, Picture
+from lab.studies.case import Case, Found, Line, Picture
 from lab.studies.verify.references import hertz_stiffness, resting_overlap, sphere_mass
 from lab.studies.verify.scenes import G, Setup, again, grain, simulated, track
 

@@ -4,7 +4,7 @@ from math import cos, pi, sin
 
 import numpy as np
 
-from lab.studies.verify.case import Case, Found, Line
+from lab.studies.case import Case, Found, Line
 from lab.studies.verify.plain import Pose, Tank, across, turned
 from lab.studies.verify.scenes import ACETATE, G, Setup, again, grain, simulated
 
@@ -85,7 +85,7 @@ def moving_tank(fast: bool) -> Found:
     lines = []
     for k, (name, (allowed, unit)) in enumerate(SEEN.items()):
         quantity = f"{name}, Δt = {1e6 * STEP:g} µs"
-        lines.append(Line(quantity, found[0][k], 0.0, SOURCE, allowed, "both schemes O(Δt²)", unit, relative=False))
+        lines.append(Line.off(quantity, SOURCE, found[0][k], allowed, "both schemes O(Δt²)", unit))
         if len(found) > 1:
             order = np.log2(found[0][k] / found[1][k])
             reason = "contacts begin within steps"
@@ -120,8 +120,8 @@ def held_tank(_: bool) -> Found:
     gap = np.linalg.norm(inside["position"] - turned(outside["position"], -HELD), axis=-1).max()
     turning = np.abs(inside["angle"] - outside["angle"]).max()
     lines = [
-        Line("places", gap, 0.0, "the turned outline", 1e-13, GROWN, "m", relative=False),
-        Line("angles", turning, 0.0, "the turned outline", 1e-10, GROWN, "rad", relative=False),
+        Line.off("places", "the turned outline", gap, 1e-13, GROWN, "m"),
+        Line.off("angles", "the turned outline", turning, 1e-10, GROWN, "rad"),
     ]
     fallen = 1e3 * np.linalg.norm(inside["position"][0] - place, axis=-1).min()
     turns = np.degrees(np.abs(inside["angle"]).max())
@@ -153,12 +153,7 @@ def flight(_: bool) -> Found:
         ("spin", abs(state["spin"][0, 0] + rate - spun), 1e-6, "rad/s"),
     )
     reason = "O(Δt²): (ωΔt)² of the tank's motion"
-    return Found(
-        [
-            Line(name, value, 0.0, "parabola", allowed, reason, unit, relative=False)
-            for name, value, allowed, unit in found
-        ]
-    )
+    return Found([Line.off(name, "parabola", value, allowed, reason, unit) for name, value, allowed, unit in found])
 
 
 CASES = (

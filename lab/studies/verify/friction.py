@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from lab.studies.verify.case import Case, Found, Line
+from lab.studies.case import Case, Found, Line
 from lab.studies.verify.references import hertz_stiffness, resting_overlap, sphere_mass
 from lab.studies.verify.scenes import ACETATE, G, Setup, Track, again, grain, simulated, track
 
@@ -54,7 +54,7 @@ def cap_lines(name: str, path: Track) -> list[Line]:
     lines = [Line(f"deceleration, {name}", slowing, FRICTION * G, "μ g", 1e-4, rounding, "m/s²")]
     for grain_name, excess in zip(("slide", "impact"), beyond, strict=True):
         quantity = f"|F_t| beyond μ F_n, {grain_name}, {name}"
-        lines.append(Line(quantity, max(0.0, excess), 0.0, "Coulomb", 1e-4, rounding, relative=False))
+        lines.append(Line.off(quantity, "Coulomb", max(0.0, excess), 1e-4, rounding))
     return lines
 
 
@@ -72,7 +72,7 @@ def held_load(_: bool) -> Found:
         for damper, speed in zip(DAMPERS, sunk, strict=True):
             name = f"creep, {law}, γ_s = {damper:g} N s/m"
             if law == "mindlin":
-                still = Line(name, abs(speed), 0.0, "a spring holds", 1e-12, "rounding", "m/s", relative=False)
+                still = Line.off(name, "a spring holds", abs(speed), 1e-12, "rounding", "m/s")
                 lines.append(still)
                 break
             lines.append(Line(name, speed, MASS * G / (2.0 * damper), "m g/(2 γ_s)", 1e-3, "start died away", "m/s"))

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from lab.report.plots import BELOW, BLUE, GREY, STYLE, VERMILION
-from lab.studies.verify.case import Case, Found, Line, Picture
+from lab.studies.case import Case, Found, Line, Picture
 from lab.studies.verify.collisions import RIGID
 from lab.studies.verify.impacts import Bodies, Impact, Normal, Shear
 from lab.studies.verify.references import (
@@ -25,26 +25,8 @@ from lab.studies.verify.scenes import WEIGHTLESS, Setup, again, grain, simulated
 SECTION = "Oblique impacts"
 # From the wall's normal, in degrees.
 ANGLES = (
-    2.0,
-    5.0,
-    10.0,
-    15.0,
-    20.0,
-    25.0,
-    30.0,
-    35.0,
-    40.0,
-    50.0,
-    60.0,
-    70.0,
-    80.0,
-    82.0,
-    84.0,
-    86.0,
-    87.0,
-    88.0,
-    89.0,
-)
+    2.0, 5.0, 10.0, 15.0, 20.0, 25.0, 30.0, 35.0, 40.0, 50.0, 60.0, 70.0, 80.0, 82.0, 84.0, 86.0, 87.0, 88.0, 89.0
+)  # fmt: skip
 GAP, SPACING = 1e-5, 0.02  # m; more than half a step before first touch
 DAMPER = 20.0  # N s/m
 REFERENCES = {"mindlin": "DOP853 at 1e-11", "haff-werner": "Radau at 1e-10"}
@@ -179,12 +161,10 @@ def integration_lines(throw: Throw, law: str) -> list[Line]:
     tolerance, reason = STUCK[law]
     worst = np.abs((finer[:, 0] - expected[:, 0]) / forwards).max()
     name, allowed = f"largest error of e_t at Δt/{FINER}", tolerance / FALLS[law]
-    lines.append(Line(name, worst, 0.0, source, allowed, f"{reason}, /{FALLS[law]:g}", relative=False))
+    lines.append(Line.off(name, source, worst, allowed, f"{reason}, /{FALLS[law]:g}"))
     left = (here[:, 0] ** 2 + here[:, 1] ** 2 + 0.4 * here[:, 2] ** 2) / throw.speed**2
     made = max(0.0, left.max() - 1.0)
-    lines.append(
-        Line("energy made, largest share", made, 0.0, "an impact makes none", 1e-9, "rounding", relative=False)
-    )
+    lines.append(Line.off("energy made, largest share", "an impact makes none", made, 1e-9, "rounding"))
     return lines
 
 

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from lab.preset.accuracy import DRAFT_RESTITUTION, LEVELS, RESTITUTION
 from lab.report.plots import BELOW, BLUE, GREY, STYLE, VERMILION
-from lab.studies.verify.case import Case, Found, Line, Picture
+from lab.studies.case import Case, Found, Line, Picture
 from lab.studies.verify.references import (
     HertzCollision,
     dissipative_time,
@@ -86,9 +86,7 @@ def given(law: str, fast: bool) -> Found:
         errors = np.abs(draft / np.array(GIVEN) - 1.0).max(axis=(0, 2))
         reason = f"{LEVELS['draft'].longer_steps:g} times the derived step"
         lines += [
-            Line(
-                f"largest error, {name}, draft", error, 0.0, "what is given", DRAFT_RESTITUTION, reason, relative=False
-            )
+            Line.off(f"largest error, {name}, draft", "what is given", error, DRAFT_RESTITUTION, reason)
             for name, error in zip(BODIES, errors, strict=True)
         ]
     return Found(lines)

@@ -4,7 +4,7 @@ from functools import cache
 
 import numpy as np
 
-from lab.studies.verify.case import Case, Found, Line
+from lab.studies.case import Case, Found, Line
 from lab.studies.verify.references import hertz_stiffness, resting_overlap, sphere_mass
 from lab.studies.verify.scenes import ACETATE, G, Setup, Track, grain, simulated, track
 
@@ -107,15 +107,13 @@ def rolling_decay(fast: bool) -> Found:
             _line(f"spin after {time:.2f} s, {rolling}", spin, SPIN - 2.5 * ROLLING * G * time / RADIUS, "rad/s"),
             _line(f"speed after {time:.2f} s, {rolling}", speed[EARLY], ROLLS - slowing * time, "m/s"),
             _line(f"way until it rests, {rolling}", way, 0.5 * ROLLS**2 / slowing, "m"),
-            Line(
+            Line.off(
                 f"speed left at rest, {rolling}",
-                abs(speed[-1]),
-                0.0,
                 "none",
+                abs(speed[-1]),
                 1e-6 * ROLLS,
                 "its own swing has died away",
                 "m/s",
-                relative=False,
             ),
         ]
     return Found(lines)

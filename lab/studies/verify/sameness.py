@@ -4,7 +4,7 @@ from functools import cache
 
 import numpy as np
 
-from lab.studies.verify.case import Case, Found, Line
+from lab.studies.case import Case, Found, Line
 from lab.studies.verify.frames import scattered
 from lab.studies.verify.scenes import ACETATE, Setup, grain, simulated
 
@@ -62,7 +62,7 @@ def mirror(_: bool) -> Found:
     return Found(
         [
             _same("places, mirrored back", apart(found)),
-            Line("angles", turning, 0.0, "opposite angles", 1e3 * ROUNDING, REASON, "rad", relative=False),
+            Line.off("angles", "opposite angles", turning, 1e3 * ROUNDING, REASON, "rad"),
         ]
     )
 
@@ -107,16 +107,16 @@ def precisions(_: bool) -> Found:
     for precision in ("mixed", "f32"):
         found = told(bed(precision=precision))
         gap = apart(found)
-        lines.append(Line(f"places, {precision}", gap, 0.0, "f64", COARSE, COARSE_REASON, "m", relative=False))
+        lines.append(Line.off(f"places, {precision}", "f64", gap, COARSE, COARSE_REASON, "m"))
         shift = (found["centre_of_mass"][..., 0] - usual()["centre_of_mass"][..., 0])[0] / (2.0 * radius.mean())
         source = "f64; Spandonidis (2016): < 2 % of a diameter"
         name = f"centre of mass, {precision}, in diameters"
-        lines.append(Line(name, shift, 0.0, source, SOURCE_SHIFT, "as the source's", relative=False))
+        lines.append(Line.off(name, source, shift, SOURCE_SHIFT, "as the source's"))
     return Found(lines)
 
 
 def _same(quantity: str, gap: float) -> Line:
-    return Line(quantity, gap, 0.0, "the scene as it is by default", ROUNDING, REASON, "m", relative=False)
+    return Line.off(quantity, "the scene as it is by default", gap, ROUNDING, REASON, "m")
 
 
 def _case(name: str, title: str, check) -> Case:

@@ -1,26 +1,31 @@
-"""Pages are made from results that are kept beside them, with what made them."""
-
-import json
+"""Pages are made by templates, and show all that a study has to show."""
 
 import pytest
 from jinja2 import UndefinedError
+from matplotlib.figure import Figure
 
 from lab.report.page import Page, render
+from lab.studies.engine import write_sections
 
 
-def test_a_page_is_made_from_results_that_say_what_made_them(tmp_path):
-    """Rendered again from the file alone it is the same page."""
-    page = Page(tmp_path, "trial", "A trial")
+def test_a_page_shows_the_blocks_of_its_studies(tmp_path):
+    page = Page(tmp_path, "trial")
     page.section("One")
     page.say("A  sentence\n in lines.")
-    page.table(["a", "b"], [[1.23456, "x"], [float("nan"), 2]])
-    text = page.write().read_text()
-    data = json.loads((tmp_path / "trial.json").read_text())
-    assert data["made"]["command"] == "cargolab bench trial"
-    assert all(data["made"][name] for name in ("version", "date", "processor", "packages"))
-    assert render(tmp_path / "again.md", "page.md.j2", **data).read_text() == text
-    assert data["made"]["processor"] in text and "## One\n\nA sentence in lines.\n\n| a | b |" in text
+    page.table(["a", "b"], [[1.23456, "x"], [None, 2]])
+    page.figure("drawn", Figure(), "What it shows")
+    results = {"one": {"said": "Made by hand.", "blocks": page.blocks}}
+    text = write_sections(tmp_path / "trial.md", "A trial", results, "About\n it.").read_text()
+    assert text.startswith("# A trial\n\nMade by hand.\n\nAbout it.\n\n## One\n\nA sentence in lines.\n\n| a | b |")
     assert "| 1.23 | x |\n| none | 2 |" in text
+    assert "![What it shows](trial-drawn.png)" in text and (tmp_path / "trial-drawn.png").stat().st_size > 500
+
+
+def test_what_was_made_at_different_times_says_so_itself(tmp_path):
+    blocks = {name: [{"section": name}, {"text": "It is so."}] for name in ("ann", "bob")}
+    results = {name: {"said": f"Made by {name}.", "blocks": found} for name, found in blocks.items()}
+    text = write_sections(tmp_path / "trial.md", "A trial", results).read_text()
+    assert "# A trial\n\n## ann\n\nMade by ann.\n\nIt is so.\n\n## bob\n\nMade by bob." in text
 
 
 def test_a_page_with_a_number_missing_is_none(tmp_path):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from lab.base.errors import LabError
-from lab.studies.bench.accuracy import run_page
+from lab.studies.bench.accuracy import BENCH
 from lab.studies.bench.accuracy.beds import Point, mean_and_interval
 from lab.studies.bench.accuracy.collisions import worst_error
 from lab.studies.bench.accuracy.repeats import beds_for
@@ -32,7 +32,7 @@ def test_the_restitution_of_verlet_is_of_second_order():
 
 @pytest.mark.slow
 def test_a_fast_study_writes_a_page(tmp_path):
-    path = run_page(["rate"], tmp_path, fast=True)
+    path = BENCH.run(["rate"], tmp_path, fast=True)
     text = path.read_text()
     assert "| 10 |" in text and "| 30 |" in text and "accuracy-rate.png" in text
     assert (tmp_path / "accuracy-rate.png").stat().st_size > 5000
@@ -40,4 +40,4 @@ def test_a_fast_study_writes_a_page(tmp_path):
 
 def test_an_unknown_study_is_reported():
     with pytest.raises(LabError, match=r"there is no study colour; there are .*stiffness.*\.$"):
-        run_page(["colour"], ".", fast=True)
+        BENCH.run(["colour"], ".", fast=True)

@@ -11,7 +11,7 @@ import taichi as ti
 from lab.base.errors import LabError
 from lab.studies.bench import gpu
 from lab.studies.bench.devices import Device
-from lab.studies.bench.peers import lammps, liggghts
+from lab.studies.bench.peers import lammps, liggghts, peer
 from lab.studies.bench.speed import beds, curves, grains, parts, processors, run_page, worlds
 from lab.studies.bench.speed.beds import ACETATE, DIAMETER, Bed, settled_bed
 from lab.studies.bench.speed.counts import GRAIN, INTEGER, PAIR, REAL, total
@@ -161,8 +161,8 @@ def test_figures_show_every_size_and_every_number_of_worlds():
 
 
 def test_without_the_other_codes_the_page_says_so(tmp_path, monkeypatch):
-    for peer in (liggghts, lammps):
-        monkeypatch.setattr(peer, "EXECUTABLE", "no-such-peer")
+    for code in (liggghts, lammps):
+        monkeypatch.setattr(code, "EXECUTABLE", "no-such-peer")
     text = run_page(["peers"], tmp_path, fast=True).read_text()
     for name in ("LIGGGHTS", "LAMMPS"):
         assert f"{name} is not installed here: the comparison with it is left out." in text
@@ -204,9 +204,9 @@ def told_to_lammps(monkeypatch, bed, **how) -> str:
         decks.append((folder / arguments[-1]).read_text())
         raise LabError("stop")
 
-    monkeypatch.setattr(lammps, "execute", stop)
+    monkeypatch.setattr(peer, "execute", stop)
     with pytest.raises(LabError, match="stop"):
-        lammps.run_lammps(bed.position, bed.radius, bed.width, 0.2, ACETATE, 1e-6, 10, **how)
+        lammps.run_lammps(peer.Task(bed.position, bed.radius, bed.width, 0.2, ACETATE, 1e-6, 10, **how))
     return decks[0]
 
 
@@ -243,7 +243,7 @@ def test_gpu_pages_name_what_was_not_measured(tmp_path, monkeypatch):
         raise Unavailable(f"run.arch: there is no {arch} here.")
 
     monkeypatch.setattr(runtime, "choose_arch", none)
-    text = gpu.run_page(tmp_path, fast=True).read_text()
+    text = gpu.BENCH.run((), tmp_path, fast=True).read_text()
     for arch in gpu.ARCHES:
         assert f"Unmeasured: run.arch: there is no {arch} here." in text
 
@@ -251,7 +251,7 @@ def test_gpu_pages_name_what_was_not_measured(tmp_path, monkeypatch):
 def test_software_devices_are_named_and_run_only_small_beds(tmp_path, monkeypatch):
     monkeypatch.setattr(runtime, "choose_arch", lambda arch, precision: arch)
     monkeypatch.setattr(gpu, "device", lambda arch: Device("a painter", software=True))
-    text = gpu.run_page(tmp_path, fast=False).read_text()
+    text = gpu.BENCH.run((), tmp_path, fast=False).read_text()
     assert text.count("Device: a painter, which is software on the processor.") == 2
     assert text.count("Unmeasured: software is no graphics processor") == 2
 
@@ -275,3 +275,5 @@ def test_ratios_to_other_codes_stand_by_processor_the_smallest_first(tmp_path, m
     least = [float(re.search(r"\(?([\d.]+) to", row[5])[1]) for row in rows]
     assert least == sorted(least) and len(rows) > 2
     assert all(row[6] and row[7] for row in rows)
+    manual = [line for line in processors.overview(tmp_path).splitlines() if "a trial processor" in line]
+    assert len(manual) == 1 and manual[0].startswith("| a trial processor | 2.25 (2 to 2.5), at rest |  | the lab, ")

@@ -66,6 +66,8 @@ def test_failures_are_counted_and_reported(tmp_path, monkeypatch):
     assert done.exit_code == 1
     assert done.stdout.splitlines() == ["odd: 3 tried: 2 FAILED, 1 odd", "odd: 0 is even", "odd: 2 is even"]
     assert "| odd | odd numbers | 3 | 2 FAILED, 1 odd |" in (tmp_path / "survival.md").read_text()
+    monkeypatch.setattr(survival, "CASES", {"odd": None})
+    assert not survival.run_cases((), tmp_path, blows=3), "what is kept is not tried again, and has failed all the same"
     assert "there is no case even" in CliRunner().invoke(main, ["bench", "survival", "even"]).stderr
 
 

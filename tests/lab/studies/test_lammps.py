@@ -10,6 +10,7 @@ from lab.base.errors import LabError
 from lab.studies.bench.peers import lammps, liggghts
 from lab.studies.bench.peers.lammps import run_lammps
 from lab.studies.bench.peers.liggghts import run_liggghts
+from lab.studies.bench.peers.peer import Task
 from solvers.grains.materials import Material
 from solvers.grains.restitution import dissipative_time_for, restitution_from
 
@@ -27,7 +28,7 @@ installed = pytest.mark.skipif(lammps.available() is None, reason="the peer code
 def run(position, *, material=ACETATE, dt=1e-5, steps=1000, **options):
     position = np.atleast_2d(np.asarray(position, dtype=float))
     radius = np.full(len(position), RADIUS)
-    return run_lammps(position, radius, WIDTH, HEIGHT, material, dt, steps, **options)
+    return run_lammps(Task(position, radius, WIDTH, HEIGHT, material, dt, steps, **options))
 
 
 def stacked(rows: int) -> np.ndarray:
@@ -115,7 +116,7 @@ def test_two_processes_do_what_one_does():
 def test_a_stacked_bed_settles_to_the_height_that_liggghts_finds():
     start = stacked(5)
     radius = np.full(len(start), RADIUS)
-    theirs = run_liggghts(start, radius, WIDTH, HEIGHT, ACETATE, 1e-5, 20_000)
+    theirs = run_liggghts(Task(start, radius, WIDTH, HEIGHT, ACETATE, 1e-5, 20_000))
     ours = run(start, steps=20_000)
     sunk = start.mean(axis=0)[1] - theirs.centre_of_mass[-1, 1]
     assert start.mean(axis=0)[1] - ours.centre_of_mass[-1, 1] == pytest.approx(sunk, rel=0.01)

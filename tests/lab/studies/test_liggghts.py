@@ -9,6 +9,7 @@ import pytest
 from lab.base.errors import LabError
 from lab.studies.bench.peers import liggghts
 from lab.studies.bench.peers.liggghts import run_liggghts
+from lab.studies.bench.peers.peer import Task
 from solvers.grains.materials import Material
 
 RADIUS = 1.5e-3
@@ -22,7 +23,7 @@ installed = pytest.mark.skipif(liggghts.available() is None, reason="the peer co
 def run(position, *, material=ACETATE, dt=1e-5, steps=1000, **options):
     position = np.atleast_2d(np.asarray(position, dtype=float))
     radius = np.full(len(position), RADIUS)
-    return run_liggghts(position, radius, WIDTH, HEIGHT, material, dt, steps, **options)
+    return run_liggghts(Task(position, radius, WIDTH, HEIGHT, material, dt, steps, **options))
 
 
 def stacked(rows: int) -> np.ndarray:

@@ -150,6 +150,8 @@ def test_missing_runs_are_reported(tmp_path, monkeypatch):
     monkeypatch.setattr(runtime, "available_cores", lambda: 1)
     text = reproduce("granular", ["stack"], tmp_path, quick=False, quiet=True).read_text()
     assert text.count("| not run |") == len(experiments("granular"))
+    monkeypatch.setattr(workers, "carry_out", None)  # nothing is run for a page alone
+    assert reproduce("granular", [], tmp_path, quick=False, quiet=True, page_only=True).read_text() == text
     with pytest.raises(LabError, match="there is no experiment tilt-x; there are stack-fall, "):
         reproduce("granular", ["tilt-x"], tmp_path, quick=False)
 
@@ -391,3 +393,19 @@ def test_only_changes_of_a_presets_physics_require_a_new_run():
     reworded = Batch("tilting/quick", {"title": "Another title", "video.colour": "speed"})
     rougher = Batch("tilting/quick", {"material.friction": 0.3})
     assert asked({"one": plain}) == asked({"one": reworded}) != asked({"one": rougher})
+
+
+@pytest.mark.parametrize(("report_name", "name"), [("granular", "stack-fall"), ("ship", "barge-roll")])
+def test_the_kept_results_in_the_gallery_are_of_the_present_experiments(report_name, name):
+    """Also where presets called the sea water: how a preset is written runs nothing again."""
+    kept = Path(__file__).parents[3] / "renders" / "gallery" / report_name / f"{report_name}.json"
+    assert name in read_findings(kept, {name: experiments(report_name)[name]}, quick=False)
+
+
+def test_a_page_alone_keeps_results_of_other_runs_in_their_file(tmp_path):
+    kept = tmp_path / "granular.json"
+    gallery = Path(__file__).parents[3] / "renders" / "gallery"
+    text = (gallery / "granular" / "granular.json").read_text().replace('"asked": "', '"asked": "0')
+    kept.write_text(text)
+    assert "not run" in reproduce("granular", [], tmp_path, quick=False, quiet=True, page_only=True).read_text()
+    assert kept.read_text() == text

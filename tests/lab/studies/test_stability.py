@@ -9,25 +9,27 @@ import pytest
 from lab.base.errors import LabError
 from lab.preset.accuracy import LEVELS
 from lab.studies.bench import stability
+from lab.studies.bench.stability import limit_case
 from lab.studies.bench.stability.beds import ACETATE, RADIUS, bed, tank
-from lab.studies.bench.stability.case import Case, Check, Measure, judge, made_energy
+from lab.studies.bench.stability.case import HardCase, Measure, judge, made_energy
 from lab.studies.bench.stability.hard_beds import height
-from lab.studies.bench.stability.limit_map import contacts, exact_limit, grows, limits, longest, packing, scene
+from lab.studies.bench.stability.limit_map import Limit, contacts, exact_limit, grows, limits, longest, packing, scene
 from lab.studies.bench.stability.pushed import REFUSED, RIGHT, STOPPED, WRONG, verdict
 from lab.studies.bench.stability.trial import Trial, follow, overlap_of
-from lab.studies.engine import Kept
+from lab.studies.case import Line
+from lab.studies.suite import carried_out
 from solvers.motion import Sway
 from solvers.scene import Scene
 from solvers.simulation import Simulation
 
-SWAYED = Case("sway", "", lambda fast: None, measure=Measure("height", height, 0.1, ""))
+SWAYED = HardCase("sway", "", lambda fast: None, measure=Measure("height", height, 0.1, ""))
 
 
 @pytest.fixture(scope="module")
 def page(tmp_path_factory):
     """The folder that the fast part leaves."""
     folder = tmp_path_factory.mktemp("bench")
-    return folder, stability.run_cases((), folder, True)
+    return folder, stability.SUITE.run((), folder, True)
 
 
 @pytest.fixture(scope="module")
@@ -45,71 +47,53 @@ def test_the_fast_part_passes_and_writes_a_page(page):
     text, data = (folder / "stability.md").read_text(), json.loads((folder / "stability.json").read_text())
     assert passed, text
     assert "FAIL" not in text
-    assert (folder / "stability-limits.png").stat().st_size > 10_000
-    assert set(data) == {name for name, case in stability.CASES.items() if case.fast} | {"map-verlet"}
-    for name, case in stability.CASES.items():
-        if case.fast:
-            assert f"**{name}**" in text
-            assert len(data[name]["pushed"]) == (2 if case.measure else 0)
+    assert (folder / "stability-limits-verlet.png").stat().st_size > 10_000
+    measured = {hard.name: hard.measure for hard in stability.ALL if hard.fast}
+    assert set(data) == {*measured, "map-verlet"}
+    for name, measure in measured.items():
+        assert f"(`{name}`)" in text
+        assert [len(table["rows"]) for table in data[name]["tables"]] == ([2] if measure else [])
     assert STOPPED in text and RIGHT in text
-    assert all(row["ratio"] > 1.0 for row in data["map-verlet"]["rows"])
 
 
 @pytest.mark.slow
-def test_finished_cases_are_not_run_again(page, capsys, monkeypatch):
-    folder, _ = page
-    monkeypatch.setattr(stability, "Simulation", None)
-    monkeypatch.setattr(stability.limit_map, "Simulation", None)
-    before = (folder / "stability.md").read_text()
-    assert stability.run_cases((), folder, True)
-    said = capsys.readouterr().out.splitlines()
-    assert len(said) == 6 and all(line.endswith("kept from an earlier run") for line in said)
-    assert (folder / "stability.md").read_text() == before
-    assert "wedged" in Kept(folder / "stability.json", "", {"fast": True})
-    assert "wedged" not in Kept(folder / "stability.json", "", {"fast": False}), "a full run is another one"
-    data = json.loads((folder / "stability.json").read_text())
-    data["wedged"]["made"]["packages"]["taichi"] = "0"
-    (folder / "older.json").write_text(json.dumps(data))
-    assert "wedged" not in Kept(folder / "older.json", "", {"fast": True})
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", stability.CASES)
-def test_a_hard_case_holds_at_the_automatic_step_and_misleads_at_none(name):
-    assert stability.run_case(stability.CASES[name], fast=True)["passed"]
+@pytest.mark.parametrize("case", stability.CASES, ids=lambda case: case.name)
+def test_a_hard_case_holds_at_the_automatic_step_and_misleads_at_none(case):
+    outcome = carried_out(case, fast=True)
+    assert outcome.passed, (outcome.fault, outcome.found.lines)
 
 
 @pytest.mark.slow
 def test_a_case_passes_and_writes_a_page(tmp_path):
-    assert stability.run_cases(("wedged",), tmp_path, True)
+    assert stability.SUITE.run(("wedged",), tmp_path, True)
     text, data = (tmp_path / "stability.md").read_text(), json.loads((tmp_path / "stability.json").read_text())
-    assert "**wedged**" in text and "FAIL" not in text
-    assert [row["outcome"] for row in data["wedged"]["pushed"]] == [RIGHT, REFUSED + RIGHT]
+    assert "(`wedged`)" in text and "FAIL" not in text
+    assert [row[4] for row in data["wedged"]["tables"][0]["rows"]] == [RIGHT, REFUSED + RIGHT]
 
 
 def test_an_unknown_name_gives_one_sentence(tmp_path):
     with pytest.raises(LabError, match=r"^there is no case wedge-shaped; there are one-grain, corner, .*map-gear\.$"):
-        stability.run_cases(("wedge-shaped",), tmp_path, True)
+        stability.SUITE.run(("wedge-shaped",), tmp_path, False)
     assert not list(tmp_path.iterdir())
     (tmp_path / "stability.json").write_text("[1, 2")
     with pytest.raises(LabError, match="holds no results"):
-        stability.run_cases((), tmp_path, True)
+        stability.SUITE.run((), tmp_path, True)
 
 
-def test_an_aborted_case_fails_alone_and_is_not_stored(tmp_path, capsys, monkeypatch):
-    def broken(fast):
-        raise ZeroDivisionError("of its own")
+@pytest.mark.parametrize(("true", "failed"), [(1.2, 0), (0.99, 1), (0.0, 1)])
+def test_a_derived_step_that_is_not_stable_fails(true, failed, monkeypatch):
+    """In units of the derived step; 2/ω is that found or, in the last line, a tenth longer."""
+    alike = [Limit("verlet", "linear", "none", "undamped", 1.0, true, exact) for exact in (None, true, 1.1 * true)]
+    monkeypatch.setattr(limit_case, "found", lambda integrator, fast: alike)
+    found = limit_case.check(True, "verlet")
+    assert [line.passed for line in found.lines if "missing" in line.quantity] == [not failed] * 3
+    assert [line.passed for line in found.lines if "longest" in line.quantity] == ([True, False] if true else [])
+    assert found.tables[0].rows == [("linear", f"{true:.2g}", "", "")]
 
-    monkeypatch.setitem(stability.CASES, "corner", Case("corner", "", broken))
-    monkeypatch.setattr(stability, "_run_map", lambda integrator, fast: {"rows": [], "passed": True})
-    assert not stability.run_cases(("corner", "map-verlet"), tmp_path, True)
-    assert "corner: FAIL, broke off: ZeroDivisionError: of its own" in capsys.readouterr().out
-    assert set(json.loads((tmp_path / "stability.json").read_text())) == {"map-verlet"}
 
-
-def failed(checks: list[Check]) -> list[str]:
+def failed(checks: list[Line]) -> list[str]:
     """What the checks that fail compare."""
-    return [check.what for check in checks if not check.passed]
+    return [check.quantity for check in checks if not check.passed]
 
 
 @pytest.mark.slow

@@ -6,9 +6,8 @@ from math import radians, tan
 import numpy as np
 import pytest
 
-from lab.base.errors import LabError
 from lab.studies import verify
-from lab.studies.verify.case import Case, Found, Line
+from lab.studies.case import Line
 from lab.studies.verify.impacts import Bodies, Impact, Normal, Shear
 from lab.studies.verify.plain import Tank
 from lab.studies.verify.references import viscoelastic_rebound
@@ -16,78 +15,29 @@ from lab.studies.verify.references import viscoelastic_rebound
 PICTURES = ("errors", "chung-ooi-1-2", "chung-ooi-5", "restitution", "oblique-mindlin", "orders")
 
 
-def told(folder) -> dict:
-    """What verify.json says."""
+def told(folder) -> dict[str, dict]:
+    """What verify.json holds of each case."""
     return json.loads((folder / "verify.json").read_text(encoding="utf-8"))
 
 
 @pytest.mark.slow
 def test_a_few_cases_pass(tmp_path):
-    assert verify.run_cases(("momentum",), tmp_path, fast=True)
+    assert verify.SUITE.run(("momentum",), tmp_path, fast=True)
     assert "FAIL" not in (tmp_path / "verify.md").read_text(encoding="utf-8")
 
 
 @pytest.mark.slow
 def test_fast_cases_pass_and_leave_a_page(tmp_path, capsys):
-    assert verify.run_cases((), tmp_path, fast=True)
+    assert verify.SUITE.run((), tmp_path, fast=True)
     page, printed = (tmp_path / "verify.md").read_text(encoding="utf-8"), capsys.readouterr().out
     names = [case.name for case in verify.CASES if case.quick]
     assert all(f"`{name}`" in page for name in names)
     assert "FAIL" not in page
-    assert printed.count(" pass\n") == len(told(tmp_path)["lines"]) > 100
-    assert {line["case"] for line in told(tmp_path)["lines"]} == set(names)
+    assert printed.count(" pass\n") == sum(len(case["lines"]) for case in told(tmp_path).values()) > 100
+    assert [*told(tmp_path)] == names
     pictures = {picture.name for picture in tmp_path.glob("*.png")}
     assert pictures == {f"verify-{name}.png" for name in PICTURES}
     assert all(f"({name})" in page for name in pictures)
-
-
-def stub(name: str, value: float, quick: bool = True) -> Case:
-    """A case of one line, 1 ± 0.1."""
-    line = Line("a quantity", value, 1.0, "by hand", 0.1, "no reason")
-    return Case(name, "Section", f"Title of {name}", lambda fast: Found([line]), quick)
-
-
-def broken(fast: bool) -> Found:
-    raise ArithmeticError("what went wrong")
-
-
-def test_what_fails_or_breaks_is_reported_and_stops_nothing(tmp_path, monkeypatch, capsys):
-    empty = Case("empty", "Section", "Nothing shown", lambda fast: Found([]))
-    cases = (
-        stub("off", 1.2),
-        Case("breaks", "Section", "Breaks", broken),
-        stub("nan", np.nan),
-        empty,
-        stub("good", 1.05),
-    )
-    monkeypatch.setattr(verify, "CASES", cases)
-    assert not verify.run_cases((), tmp_path, fast=False)
-    assert "failed: off, breaks, nan, empty" in capsys.readouterr().out
-    page, found = (tmp_path / "verify.md").read_text(encoding="utf-8"), told(tmp_path)
-    assert page.count("FAIL |") == 2
-    assert "**Failed: off, breaks, nan, empty.**" in page
-    assert "ArithmeticError: what went wrong" in page
-    assert not found["passed"]
-    assert found["faults"] == {"breaks": "ArithmeticError: what went wrong"}
-    assert [(line["case"], line["passed"]) for line in found["lines"]] == [
-        ("off", False),
-        ("nan", False),
-        ("good", True),
-    ]
-    assert verify.run_cases(("good",), tmp_path, fast=False)
-    assert told(tmp_path)["passed"]
-
-
-def test_names_are_prefixes_and_unknown_ones_are_answered_with_all(monkeypatch):
-    monkeypatch.setattr(
-        verify, "CASES", (stub("fall-far", 1.0), stub("fall-near", 1.0), stub("roll", 1.0, quick=False))
-    )
-    assert [case.name for case in verify.select(("fall",), fast=False)] == ["fall-far", "fall-near"]
-    assert [case.name for case in verify.select((), fast=True)] == ["fall-far", "fall-near"]
-    with pytest.raises(LabError, match="no case spin; there are fall-far, fall-near, roll"):
-        verify.select(("roll", "spin"), fast=False)
-    with pytest.raises(LabError, match="no fast case roll; there are fall-far, fall-near"):
-        verify.select(("roll",), fast=True)
 
 
 def test_an_error_relative_to_nothing_is_no_line():

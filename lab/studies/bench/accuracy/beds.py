@@ -5,9 +5,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from matplotlib.axes import Axes
 
 from lab.measures.value import over_worlds
 from lab.report.numbers import mean_within
+from lab.report.page import Page
 from lab.studies.reproduce.runs import Batch, Outcome, carry_out, outcomes
 
 TANK = {"tank.width": "60 mm", "tank.height": "50 mm", "grains.depth": "30 mm"}  # some 200 grains of 3 mm
@@ -65,3 +67,21 @@ def _point(one: Outcome) -> Point:
 def mean_and_interval(point: Point, name: str, digits: int = 2) -> str:
     """A measure's mean and its 95 % interval, as text."""
     return mean_within(point.mean(name), over_worlds(point.worlds[name], "1").interval, digits)
+
+
+def add_table(
+    page: Page, head: str, labels: Sequence[str], points: Sequence[Point], names: Sequence[str], cost: float = 0.0
+) -> None:
+    """A row a point: measures (deg) as means with intervals and, with a `cost`, steps relative to so many."""
+    columns = [f"{name.replace('_', ' ')} (deg)" for name in names] + (["cost"] if cost else [])
+    rows = [
+        [label, *(mean_and_interval(p, name) for name in names), *([p.steps / cost] if cost else [])]
+        for label, p in zip(labels, points, strict=True)
+    ]
+    page.table([head, *columns], rows)
+
+
+def draw_bars(axes: Axes, x: Sequence[float], points: Sequence[Point], name: str, how: tuple[str, str]) -> None:
+    """A measure's means with their intervals; how: colour and label."""
+    values, errors = [p.mean(name) for p in points], [p.half_interval(name) for p in points]
+    axes.errorbar(x, values, errors, color=how[0], marker="o", markersize=4, capsize=3, label=how[1])

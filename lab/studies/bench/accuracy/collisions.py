@@ -1,8 +1,6 @@
 """Integrator and step against the restitution of collisions, and what a step of each integrator costs."""
 
-import statistics
-import time
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +9,7 @@ from matplotlib.figure import Figure
 from lab.report.page import Page
 from lab.report.plots import BLUE, GREY, VERMILION
 from lab.studies.bench.accuracy.settled import settled_scene
+from lab.studies.bench.speed.workers import in_turn, timed
 from solvers.grains.integrators import INTEGRATORS
 from solvers.grains.materials import Material
 from solvers.grains.restitution import restitution
@@ -105,16 +104,8 @@ def _rebound(integrator: str, share: int) -> np.ndarray:
 def costs(turns: int = 5, steps: int = 4000) -> dict[str, float]:
     """Times of a step by integrator on a settled bed, relative to Verlet: medians of runs in turn."""
     _, place = settled_scene("verlet")
-    runs, times = {}, {name: [] for name in INTEGRATORS}
-    for name in INTEGRATORS:
-        runs[name] = Simulation(settled_scene(name)[0], place, 1, arch="cpu")
-        runs[name].advance(200)
-    for _ in range(turns):
-        for name, run in runs.items():
-            begun = time.perf_counter()
-            run.advance(steps)
-            times[name].append(time.perf_counter() - begun)
+    runs = {name: Simulation(settled_scene(name)[0], place, 1, arch="cpu") for name in INTEGRATORS}
+    speeds = in_turn({name: partial(timed, run, steps) for name, run in runs.items()}, turns)
     for run in runs.values():
         run.close()
-    ratios = {name: [a / b for a, b in zip(found, times["verlet"], strict=True)] for name, found in times.items()}
-    return {name: statistics.median(found) for name, found in ratios.items()}
+    return {name: float(np.median(speeds["verlet"] / found)) for name, found in speeds.items()}

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from lab.report.page import Page
-from lab.studies.bench.accuracy.beds import TILT, TILTED, mean_and_interval, sweep
+from lab.studies.bench.accuracy.beds import TILT, TILTED, add_table, sweep
 
 LAWS = ("haff-werner", "mindlin", "cundall-strack", "coulomb", "viscous", "none")
 KEY = "contact.tangential"
@@ -18,7 +18,4 @@ def study(page: Page, work: Path, fast: bool) -> None:
     page.say("""The same friction coefficient, 0.25, in each law; the tilt of the study of stiffness at a scale of a
         thousandth. The viscous law has no limit to its force, "none" no friction at all. Means of the
         beds with their [95 % intervals].""")
-    page.table(
-        ["law", *(f"{name.replace('_', ' ')} (deg)" for name in NAMES)],
-        [[law, *(mean_and_interval(p, name) for name in NAMES)] for law, p in zip(laws, points, strict=True)],
-    )
+    add_table(page, "law", laws, points, NAMES)

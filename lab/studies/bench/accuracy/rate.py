@@ -6,7 +6,7 @@ from matplotlib.figure import Figure
 
 from lab.report.page import Page
 from lab.report.plots import BLUE, GREEN
-from lab.studies.bench.accuracy.beds import TILT, TILTED, mean_and_interval, sweep
+from lab.studies.bench.accuracy.beds import TILT, TILTED, add_table, draw_bars, sweep
 
 RATES = (1.0, 3.0, 10.0, 30.0)  # deg/s
 KEY = "motion.tilt.rate"
@@ -22,20 +22,11 @@ def study(page: Page, work: Path, fast: bool) -> None:
         fast tilt overtakes the avalanche: the angle at which it begins is read too late by about the rate times
         the time the surface takes to set off. Means of the beds with their [95 % intervals], which are the bars.""")
     names = ("critical_angle", "first_slip_angle", "one_diameter_angle")
-    page.table(
-        ["rate (deg/s)", *(f"{name.replace('_', ' ')} (deg)" for name in names), "cost"],
-        [
-            [f"{rate:g}", *(mean_and_interval(p, name) for name in names), p.steps / points[-1].steps]
-            for rate, p in zip(rates, points, strict=True)
-        ],
-    )
+    add_table(page, "rate (deg/s)", [f"{rate:g}" for rate in rates], points, names, points[-1].steps)
     figure = Figure(figsize=(4.2, 2.8), layout="constrained")
     axes = figure.subplots()
     for name, colour in (("critical_angle", BLUE), ("first_slip_angle", GREEN)):
-        values, errors = [p.mean(name) for p in points], [p.half_interval(name) for p in points]
-        axes.errorbar(
-            rates, values, errors, color=colour, marker="o", markersize=4, capsize=3, label=name.replace("_", " ")
-        )
+        draw_bars(axes, rates, points, name, (colour, name.replace("_", " ")))
     axes.set(xscale="log", xlabel="tilt rate (deg/s)", ylabel="angle (deg)")
     axes.legend()
     page.figure("rate", figure, "Critical angle against the tilt rate")

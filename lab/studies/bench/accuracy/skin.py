@@ -1,13 +1,13 @@
 """The skin of the neighbour lists: it changes only the speed."""
 
-import statistics
-import time
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 
 from lab.report.page import Page
 from lab.studies.bench.accuracy.settled import settled_scene
+from lab.studies.bench.speed.workers import in_turn, timed
 from solvers.simulation import SKIN, Simulation
 
 SKINS = (0.02, 0.05, 0.1, 0.2, 0.4)  # of the mean diameter
@@ -30,17 +30,12 @@ def _speeds(push: float) -> dict[float, float]:
     velocity = np.zeros(place.shape)
     velocity[..., 0] = push
     runs = {skin: Simulation(scene, place, 1, skin * 2.0 * scene.mean_radius, arch="cpu") for skin in SKINS}
-    times: dict[float, list[float]] = {skin: [] for skin in SKINS}
-    for turn in range(TURNS + 1):
-        for skin, run in runs.items():
-            run.place(place, velocity)
-            begun = time.perf_counter()
-            run.advance(STEPS)
-            if turn:  # the first compiles
-                times[skin].append(time.perf_counter() - begun)
+
+    def speed(run: Simulation) -> float:
+        run.place(place, velocity)
+        return timed(run, STEPS)
+
+    found = in_turn({skin: partial(speed, run) for skin, run in runs.items()}, TURNS)
     for run in runs.values():
         run.close()
-    return {
-        skin: statistics.median(usual / taken for usual, taken in zip(times[SKIN], found, strict=True))
-        for skin, found in times.items()
-    }
+    return {skin: float(np.median(speeds / found[SKIN])) for skin, speeds in found.items()}

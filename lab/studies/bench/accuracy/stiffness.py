@@ -7,7 +7,17 @@ from matplotlib.figure import Figure
 
 from lab.report.page import Page
 from lab.report.plots import BLUE, GREEN, VERMILION
-from lab.studies.bench.accuracy.beds import SWAY, SWAYED, TILT, TILTED, Point, mean_and_interval, sweep
+from lab.studies.bench.accuracy.beds import (
+    SWAY,
+    SWAYED,
+    TILT,
+    TILTED,
+    Point,
+    add_table,
+    draw_bars,
+    mean_and_interval,
+    sweep,
+)
 
 SCALES = (1e-4, 1e-3, 1e-2, 1e-1, 1.0)
 KEY = "contact.stiffness_scale"
@@ -25,13 +35,7 @@ def study(page: Page, work: Path, fast: bool) -> None:
         to a sway of 15 mm at 3 Hz. Means of the beds with their [95 % intervals], which are the bars; cost is the
         number of grain-steps, relative to a thousandth. The full stiffness is not run for the sway.""")
     usual = _nearest(tilted, 1e-3).steps
-    page.table(
-        ["scale", "cost", *(f"{name.replace('_', ' ')} (deg)" for name in TILT_MEASURES)],
-        [
-            [f"{p.setting[KEY]:g}", p.steps / usual, *(mean_and_interval(p, name) for name in TILT_MEASURES)]
-            for p in tilted
-        ],
-    )
+    add_table(page, "scale", [f"{p.setting[KEY]:g}" for p in tilted], tilted, list(TILT_MEASURES), usual)
     page.table(
         ["scale", "response (mm)", "phase (deg)", "response in z (mm)"],
         [
@@ -53,20 +57,18 @@ def _nearest(points: list[Point], scale: float) -> Point:
     return min(points, key=lambda p: abs(np.log(p.setting[KEY] / scale)))
 
 
+def _scales(points: list[Point]) -> list[float]:
+    return [p.setting[KEY] for p in points]
+
+
 def _figure(tilted: list[Point], swayed: list[Point]) -> Figure:
     figure = Figure(figsize=(6.4, 2.9), layout="constrained")
     left, right = figure.subplots(1, 2)
     for name, colour in TILT_MEASURES.items():
-        _bars(left, tilted, name, colour, name.replace("_", " "))
-    _bars(right, swayed, "response_amplitude", BLUE, "y")
-    _bars(right, swayed, "response_amplitude_z", VERMILION, "z")
+        draw_bars(left, _scales(tilted), tilted, name, (colour, name.replace("_", " ")))
+    draw_bars(right, _scales(swayed), swayed, "response_amplitude", (BLUE, "y"))
+    draw_bars(right, _scales(swayed), swayed, "response_amplitude_z", (VERMILION, "z"))
     for axes, quantity in ((left, "angle (deg)"), (right, "response to the sway (mm)")):
         axes.set(xscale="log", xlabel="stiffness scale", ylabel=quantity)
         axes.legend()
     return figure
-
-
-def _bars(axes, points: list[Point], name: str, colour: str, label: str) -> None:
-    scale = [p.setting[KEY] for p in points]
-    values, errors = [p.mean(name) for p in points], [p.half_interval(name) for p in points]
-    axes.errorbar(scale, values, errors, color=colour, marker="o", markersize=4, capsize=3, label=label)

@@ -21,26 +21,13 @@ off` and two dimensions changed the median speed by less than a tenth, no more t
 """
 
 import shutil
-from math import degrees, pi
-from pathlib import Path
-from typing import Literal
+from math import pi
 
 import numpy as np
 
-from lab.base.errors import LabError
-from lab.studies.bench.peers.peer import (
-    BED,
-    DECK,
-    FINAL,
-    TRACE,
-    PeerRun,
-    bed_file,
-    execute,
-    read_outcome,
-    working_folder,
-)
+from lab.studies.bench.peers.peer import MOTION, PeerRun, Task, carry_out
 from solvers.grains.laws.splitting import AT_ONCE
-from solvers.grains.materials import Interface, Material, hertz_stiffness, interface
+from solvers.grains.materials import Interface, hertz_stiffness, interface
 from solvers.grains.restitution import damping_ratio_for
 
 NAME = "LAMMPS"
@@ -66,19 +53,8 @@ pair_coeff * *
 fix sides all wall/gran {style} {walls} xplane {left:.17g} {right:.17g}
 fix ends all wall/gran {style} {walls} zplane 0 {lid:.17g}
 
-variable chute equal ramp(0,{chute:.17g})
-fix gravity all gravity {gravity:.17g} chute v_chute
-fix motion all nve/sphere
-timestep {dt:.17g}
-
-compute centre all com
-variable y equal c_centre[1]
-variable z equal c_centre[3]
-fix trace all print {every} "$(step) ${{y}} ${{z}}" file {trace} screen no
-thermo_style custom step atoms
-thermo_modify lost error
-thermo 0
-run {steps}
+"""
+_DUMP = """\
 write_dump all custom {final} id x z modify sort id format float %.17g
 """
 
@@ -88,70 +64,27 @@ def available() -> str | None:
     return shutil.which(EXECUTABLE)
 
 
-def run_lammps(
-    position: np.ndarray,
-    radius: np.ndarray,
-    outline_width: float,
-    outline_height: float,
-    material: Material,
-    dt: float,
-    steps: int,
-    *,
-    tilt_rate: float = 0.0,
-    gravity: float = 9.81,
-    tangential: Literal["history", "no_history"] = "history",
-    sample_every: int = 1000,
-    processes: int = 1,
-    workdir: Path | None = None,
-) -> PeerRun:
-    """Let LAMMPS take `steps` steps from a bed at rest that remembers no earlier contact.
-
-    The arguments are those of `run_liggghts`, and on top `processes`, which share the bed among them through MPI.
-    Raises LabError if LAMMPS is not installed or stops, or the material has no restitution.
-    """
-    if material.restitution is None:
-        raise LabError("LAMMPS is given its damping by a restitution: give the material one.")
-    diameter = 2 * float(np.mean(radius))
-    grains, walls = _models(material, position, diameter / 2, gravity, dt, tangential)
-    deck = _DECK.format(
-        diameter=diameter,
-        skin=SKIN * diameter,
-        style=STYLES[tangential],
-        grains=grains,
-        walls=walls,
-        left=-outline_width / 2,
-        right=outline_width / 2,
-        lid=outline_height,
-        chute=-degrees(tilt_rate * steps * dt),
-        gravity=gravity,
-        dt=dt,
-        every=min(sample_every, steps),
-        steps=steps,
-        bed=BED,
-        trace=TRACE,
-        final=FINAL,
-    )
-    with working_folder(workdir) as folder:
-        (folder / BED).write_text(bed_file(position, radius, material.density, outline_width, outline_height))
-        (folder / DECK).write_text(deck)
-        loop_s = execute(NAME, EXECUTABLE, ["-in", DECK], folder, processes)
-        return read_outcome(folder, position, radius, dt, steps, loop_s)
+def run_lammps(task: Task) -> PeerRun:
+    """Let LAMMPS do a task. Raises LabError if it is not installed or stops."""
+    grains, walls = _models(task)
+    style = STYLES[task.tangential]
+    deck = task.fill(_DECK + MOTION + _DUMP, skin=SKIN * task.diameter, style=style, grains=grains, walls=walls)
+    return carry_out(NAME, EXECUTABLE, task, deck)
 
 
-def _models(
-    material: Material, position: np.ndarray, radius: float, gravity: float, dt: float, tangential: str
-) -> list[str]:
-    """The contact laws' numbers between two mean grains, of `radius` (m), and between one and a wall."""
+def _models(task: Task) -> list[str]:
+    """The contact laws' numbers between two mean grains, and between one and a wall."""
+    material, radius = task.material, task.diameter / 2
     mass = 4 / 3 * pi * radius**3 * material.density
     found = []
     for m_eff, r_eff in ((mass / 2, radius / 2), (mass, radius)):
         between = interface(material, material, m_eff, r_eff, 1.0)
-        if tangential == "history":
+        if task.tangential == "history":
             numbers = _hertz_history(between, m_eff)
         else:
-            rows = np.ptp(np.atleast_2d(position)[:, 1]) / (2 * radius)
-            load = mass * gravity * (1 + rows / 2)
-            numbers = _hooke(between, m_eff, r_eff, load, dt)
+            rows = np.ptp(np.atleast_2d(task.position)[:, 1]) / (2 * radius)
+            load = mass * task.gravity * (1 + rows / 2)
+            numbers = _hooke(between, m_eff, r_eff, load, task.dt)
         found.append(" ".join(f"{number:.17g}" for number in (*numbers, material.friction)) + " 1 limit_damping")
     return found
 

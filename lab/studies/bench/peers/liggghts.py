@@ -24,25 +24,8 @@ Choices for speed, tried on 2000 grains of 3 mm within 10 %, on one core, at res
 """
 
 import shutil
-from math import degrees
-from pathlib import Path
-from typing import Literal
 
-import numpy as np
-
-from lab.base.errors import LabError
-from lab.studies.bench.peers.peer import (
-    BED,
-    DECK,
-    FINAL,
-    TRACE,
-    PeerRun,
-    bed_file,
-    execute,
-    read_outcome,
-    working_folder,
-)
-from solvers.grains.materials import Material
+from lab.studies.bench.peers.peer import MOTION, PeerRun, Task, carry_out
 
 NAME = "LIGGGHTS"
 EXECUTABLE = "liggghts"
@@ -72,19 +55,8 @@ fix right all wall/gran {model} primitive type 1 xplane {right:.17g}
 fix floor all wall/gran {model} primitive type 1 zplane 0
 fix lid all wall/gran {model} primitive type 1 zplane {lid:.17g}
 
-variable chute equal ramp(0,{chute:.17g})
-fix gravity all gravity {gravity:.17g} chute v_chute
-fix motion all nve/sphere
-timestep {dt:.17g}
-
-compute centre all com
-variable y equal c_centre[1]
-variable z equal c_centre[3]
-fix trace all print {every} "$(step) ${{y}} ${{z}}" file {trace} screen no
-thermo_style custom step atoms
-thermo_modify lost error
-thermo 0
-run {steps}
+"""
+_DUMP = """\
 write_dump all custom {final} id x z modify format "%d %.17g %.17g"
 """
 
@@ -94,61 +66,16 @@ def available() -> str | None:
     return shutil.which(EXECUTABLE)
 
 
-def run_liggghts(
-    position: np.ndarray,
-    radius: np.ndarray,
-    outline_width: float,
-    outline_height: float,
-    material: Material,
-    dt: float,
-    steps: int,
-    *,
-    tilt_rate: float = 0.0,
-    gravity: float = 9.81,
-    tangential: Literal["history", "no_history"] = "history",
-    sample_every: int = 1000,
-    workdir: Path | None = None,
-) -> PeerRun:
-    """Let LIGGGHTS take `steps` steps from a bed at rest that remembers no earlier contact.
-
-    position: (n, 2) centres (y, z); the floor is z = 0, the walls are y = ± outline_width / 2 (m).
-    radius: (n,) (m).
-    outline_width, outline_height: inner size of the tank (m).
-    material: of grains and walls; it must have a restitution.
-    dt: time step (s).
-    tilt_rate: constant rate of the tank, counter-clockwise positive (rad/s).
-    gravity: (m/s^2).
-    tangential: "history" is spring, dashpot and slider; "no_history" dashpot and slider.
-    sample_every: steps from one sample of the trace to the next, the first being t = 0.
-    workdir: folder that keeps deck, bed and log; without it they are thrown away.
-
-    Raises LabError if LIGGGHTS is not installed or stops, or the material has no restitution.
-    """
-    if material.restitution is None:
-        raise LabError("LIGGGHTS damps contacts by a restitution: give the material one.")
-    diameter = 2 * float(np.mean(radius))
-    deck = _DECK.format(
-        diameter=diameter,
-        skin=SKIN * diameter,
+def run_liggghts(task: Task) -> PeerRun:
+    """Let LIGGGHTS do a task, on one process. Raises LabError if it is not installed or stops."""
+    material = task.material
+    deck = task.fill(
+        _DECK + MOTION + _DUMP,
+        skin=SKIN * task.diameter,
         young=material.young,
         poisson=material.poisson,
         restitution=material.restitution,
         friction=material.friction,
-        model=f"model hertz tangential {tangential}",
-        left=-outline_width / 2,
-        right=outline_width / 2,
-        lid=outline_height,
-        chute=-degrees(tilt_rate * steps * dt),
-        gravity=gravity,
-        dt=dt,
-        every=min(sample_every, steps),
-        steps=steps,
-        bed=BED,
-        trace=TRACE,
-        final=FINAL,
+        model=f"model hertz tangential {task.tangential}",
     )
-    with working_folder(workdir) as folder:
-        (folder / BED).write_text(bed_file(position, radius, material.density, outline_width, outline_height))
-        (folder / DECK).write_text(deck)
-        loop_s = execute(NAME, EXECUTABLE, ["-in", DECK], folder)
-        return read_outcome(folder, position, radius, dt, steps, loop_s)
+    return carry_out(NAME, EXECUTABLE, task, deck)

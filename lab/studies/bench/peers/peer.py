@@ -8,15 +8,97 @@ import tempfile
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from math import degrees
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 
 from lab.base.errors import LabError
+from solvers.grains.materials import Material
 
 DECK, BED = "deck.in", "bed.data"  # what a peer reads
 TRACE, FINAL = "trace.txt", "final.txt"  # what it writes: step, y, z of the centre of mass; id, y, z of the grains
 HEADER = 9  # lines of a dump before its rows
+
+
+# The end of a deck: gravity that turns, the motion, and what is written of it.
+MOTION = """\
+variable chute equal ramp(0,{chute:.17g})
+fix gravity all gravity {gravity:.17g} chute v_chute
+fix motion all nve/sphere
+timestep {dt:.17g}
+
+compute centre all com
+variable y equal c_centre[1]
+variable z equal c_centre[3]
+fix trace all print {every} "$(step) ${{y}} ${{z}}" file {trace} screen no
+thermo_style custom step atoms
+thermo_modify lost error
+thermo 0
+run {steps}
+"""
+
+
+@dataclass(frozen=True)
+class Task:
+    """A bed at rest that remembers no earlier contact, and the steps that a peer is to take from it.
+
+    position: (n, 2) centres (y, z); the floor is z = 0, the walls are y = ± width / 2 (m).
+    radius: (n,) (m).
+    width, height: inner size of the tank (m).
+    material: of grains and walls; it must have a restitution.
+    dt, steps: time step (s), and how many.
+    tilt_rate: constant rate of the tank, counter-clockwise positive (rad/s).
+    gravity: (m/s^2).
+    tangential: "history" is spring, dashpot and slider; "no_history" dashpot and slider.
+    sample_every: steps from one sample of the trace to the next, the first being t = 0.
+    processes: how many share the bed among them through MPI.
+    workdir: folder that keeps deck, bed and log; without it they are thrown away.
+
+    Raises LabError for a material without a restitution.
+    """
+
+    position: np.ndarray
+    radius: np.ndarray
+    width: float
+    height: float
+    material: Material
+    dt: float
+    steps: int
+    tilt_rate: float = 0.0
+    gravity: float = 9.81
+    tangential: Literal["history", "no_history"] = "history"
+    sample_every: int = 1000
+    processes: int = 1
+    workdir: Path | None = None
+
+    def __post_init__(self):
+        if self.material.restitution is None:
+            raise LabError("other codes are given their damping by a restitution: give the material one.")
+
+    @property
+    def diameter(self) -> float:
+        """Mean diameter of the grains (m)."""
+        return 2 * float(np.mean(self.radius))
+
+    def fill(self, deck: str, **numbers: object) -> str:
+        """A deck, with MOTION at its end but for a dump, with these numbers and those that every deck asks for."""
+        return deck.format(
+            diameter=self.diameter,
+            left=-self.width / 2,
+            right=self.width / 2,
+            lid=self.height,
+            chute=-degrees(self.tilt_rate * self.steps * self.dt),
+            gravity=self.gravity,
+            dt=self.dt,
+            every=min(self.sample_every, self.steps),
+            steps=self.steps,
+            bed=BED,
+            trace=TRACE,
+            final=FINAL,
+            **numbers,
+        )
 
 
 @dataclass(frozen=True)
@@ -35,6 +117,16 @@ class PeerRun:
     time: np.ndarray
     centre_of_mass: np.ndarray
     position: np.ndarray
+
+
+def carry_out(name: str, executable: str, task: Task, deck: str) -> PeerRun:
+    """Let a peer do what its deck says. Raises LabError if it is not installed or stops."""
+    with working_folder(task.workdir) as folder:
+        bed = bed_file(task.position, task.radius, task.material.density, task.width, task.height)
+        (folder / BED).write_text(bed)
+        (folder / DECK).write_text(deck)
+        loop_s = execute(name, executable, ["-in", DECK], folder, task.processes)
+        return read_outcome(folder, task, loop_s)
 
 
 @contextmanager
@@ -104,18 +196,16 @@ def _launcher(processes: int) -> list[str]:
     return ["mpirun", *as_root, "--bind-to", "core", "-np", str(processes)]
 
 
-def read_outcome(
-    folder: Path, position: np.ndarray, radius: np.ndarray, dt: float, steps: int, loop_s: float
-) -> PeerRun:
-    """What a run left in its folder, from `position` (n, 2) m with radii (n,) m at a step `dt` (s)."""
+def read_outcome(folder: Path, task: Task, loop_s: float) -> PeerRun:
+    """What a run left in its folder."""
     trace = np.loadtxt(folder / TRACE, ndmin=2)
     trace = trace[trace[:, 0] > 0]
     final = np.loadtxt(folder / FINAL, skiprows=HEADER, ndmin=2)
-    start = np.average(position, axis=0, weights=np.asarray(radius) ** 3)
+    start = np.average(task.position, axis=0, weights=np.asarray(task.radius) ** 3)
     return PeerRun(
         loop_s=loop_s,
-        grain_steps_per_s=len(radius) * steps / loop_s,
-        time=np.append(0.0, trace[:, 0] * dt),
+        grain_steps_per_s=len(task.radius) * task.steps / loop_s,
+        time=np.append(0.0, trace[:, 0] * task.dt),
         centre_of_mass=np.vstack((start, trace[:, 1:])),
         position=final[np.argsort(final[:, 0]), 1:],
     )

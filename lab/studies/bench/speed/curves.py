@@ -12,6 +12,7 @@ from lab.report.numbers import plus_minus
 from lab.report.page import Page
 from lab.report.plots import BELOW, BLUE, GREEN, VERMILION
 from lab.studies.bench.peers import lammps, liggghts
+from lab.studies.bench.peers.peer import Task
 from lab.studies.bench.speed.beds import ACETATE, DIAMETER, HEIGHT, SCALE, Bed, settled_bed
 from solvers.grains.materials import Material
 from solvers.motion import Tilt
@@ -123,8 +124,9 @@ def followed_there(run: Callable, how: Tilting, bed: Bed) -> Curve:
     dt = bed.scene(material=GRAINS).time_step()
     soft: Material = replace(GRAINS, young=GRAINS.young * SCALE)
     steps, rate = round(how.angle / how.rate / dt), np.radians(how.rate)
+    how_often = every(how, dt)
     found = run(
-        bed.position, bed.radius, bed.width, HEIGHT, soft, dt, steps, tilt_rate=rate, sample_every=every(how, dt)
+        Task(bed.position, bed.radius, bed.width, HEIGHT, soft, dt, steps, tilt_rate=rate, sample_every=how_often)
     )
     centre = found.centre_of_mass[:, 0]
     return Curve(how.rate * found.time, -(centre - centre[0]) / DIAMETER)

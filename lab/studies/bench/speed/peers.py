@@ -8,6 +8,7 @@ from pathlib import Path
 from lab.base.errors import LabError
 from lab.report.page import Page
 from lab.studies.bench.peers import lammps, liggghts
+from lab.studies.bench.peers.peer import Task
 from lab.studies.bench.speed import processors
 from lab.studies.bench.speed.beds import ACETATE, HEIGHT, SCALE, Bed, usual_bed
 from lab.studies.bench.speed.workers import Speeds, Worker, in_turn, millions, ratio, workers
@@ -29,7 +30,6 @@ def study(page: Page, work: Path, fast: bool) -> None:
     count, turns, seconds, work_of_one = (500, 3, 0.1, 1e6) if fast else (2000, 9, 0.4, GRAIN_STEPS)
     page.section("Beside other codes")
     page.say("By processor, also of earlier measurements and of others: [speed-peers.md](speed-peers.md).")
-    processors.write_page(page.folder)
     missing = [peer.NAME for peer in RUNS if peer.available() is None]
     for name in missing:
         page.say(f"{name} is not installed here: the comparison with it is left out.")
@@ -52,7 +52,6 @@ def study(page: Page, work: Path, fast: bool) -> None:
     )
     if not fast:  # too few turns to be kept
         processors.keep(page.folder, processors.ratios_of(found, theirs, ours))
-        processors.write_page(page.folder)
     if lammps.available() is not None:
         _on_two_cores(page, bed.times(10 if fast else COPIES), turns, seconds, work_of_one)
 
@@ -74,8 +73,8 @@ def on_one_core(bed: Bed, turns: int, seconds: float, grain_steps: float) -> Spe
 
 def peer_timing(run: Callable, bed: Bed, dt: float, steps: int, **how: object) -> Timing:
     """A timing of a peer on a bed: grain-steps per second over `steps` steps of `dt` (s)."""
-    arguments = bed.position, bed.radius, bed.width, HEIGHT, SOFT, dt, steps
-    return lambda: run(*arguments, sample_every=steps, **how).grain_steps_per_s
+    task = Task(bed.position, bed.radius, bed.width, HEIGHT, SOFT, dt, steps, sample_every=steps, **how)
+    return lambda: run(task).grain_steps_per_s
 
 
 def _on_two_cores(page: Page, bed: Bed, turns: int, seconds: float, grain_steps: float) -> None:

@@ -13,9 +13,10 @@ import numpy as np
 from pydantic import TypeAdapter
 
 from lab.report.kept import Made, processor, read, write
-from lab.report.page import render
+from lab.report.page import render, table
 
 MEASURED = Path(__file__).with_name("measured.json")
+SPRINGS = "history", "history (Mindlin)"  # the other code's law and the lab's
 HEADER = ("code", "law", "the lab's law", "bed", "counted in", "the lab: times as fast", "processor", "measured by")
 
 
@@ -73,6 +74,21 @@ def known(folder: Path) -> dict[str, Record]:
     return RECORDS.validate_python({**read(MEASURED), **read(folder / "speed-peers.json")})
 
 
+def overview(folder: Path) -> str:
+    """A table in Markdown: a row a processor, the lowest ratios first, of springs with history in both codes."""
+    found = {}
+    for name, record in known(folder).items():
+        ratios = {one.code: one for one in record.ratios if (one.law, one.ours) == SPRINGS}
+        least = min((one.least for one in ratios.values()), default=np.inf)
+        found[name] = (least, ratios, record)
+    codes = sorted({code for _, ratios, _ in found.values() for code in ratios})
+    rows = [
+        [name, *(f"{ratios[code].words}, {ratios[code].bed}" if code in ratios else "" for code in codes), who(record)]
+        for name, (_, ratios, record) in sorted(found.items(), key=lambda one: one[1][0])
+    ]
+    return table(["processor", *codes, "measured by"], rows)
+
+
 def write_page(folder: Path) -> Path:
     """Write the page from the records; returns its file."""
     rows = [(one, name, record) for name, record in known(folder).items() for one in record.ratios]
@@ -82,12 +98,14 @@ def write_page(folder: Path) -> Path:
 
 
 def _row(one: Ratio, name: str, record: Record) -> Sequence[str]:
-    who = (
-        "others, with decks of their own"
-        if record.independent
-        else f"the lab, {replace(record.made, processor='').words}"
-    )
-    return one.code, one.law, one.ours, one.bed, one.unit, one.words, name, who
+    return one.code, one.law, one.ours, one.bed, one.unit, one.words, name, who(record)
+
+
+def who(record: Record) -> str:
+    """Who measured, and with which version when."""
+    if record.independent:
+        return "others, with decks of their own"
+    return f"the lab, {replace(record.made, processor='').words}"
 
 
 def ratios_of(found: Mapping[str, np.ndarray], theirs: Sequence[str], ours: Sequence[str]) -> list[Ratio]:

@@ -1,101 +1,67 @@
 """cargolab bench stability: hard cases at the automatic step and far beyond it, and the true limit of stability.
 
-CASES and MAPS name the tests: the cases, and each integrator's part of the map of limits. Results are kept in
-stability.json and not run again if they are from the same versions and the same choice of fast or full.
+The hard cases are in the modules `hard_…`; each integrator's part of the map of limits is a case, too. The same list is
+run by slow tests.
 """
 
-from collections.abc import Sequence
-from dataclasses import asdict
-from pathlib import Path
+from functools import partial
 
-from lab.report.kept import machine
-from lab.studies.bench.stability import hard_beds, hard_few, hard_moving, hard_starts, limit_map
-from lab.studies.bench.stability.case import ENERGY, OVERLAP, Case, Check, judge
-from lab.studies.bench.stability.pushed import push
-from lab.studies.bench.stability.report import word, write_page
+from lab.preset.accuracy import FURTHEST
+from lab.studies.bench.stability import hard_beds, hard_few, hard_moving, hard_starts, limit_case
+from lab.studies.bench.stability.case import DEEPEST, IMPACTS, HardCase, judge
+from lab.studies.bench.stability.pushed import RIPPLE, Pushed, push
 from lab.studies.bench.stability.trial import follow
-from lab.studies.engine import Kept, choose
+from lab.studies.case import Case, Found, Line, Table
+from lab.studies.engine import word
+from lab.studies.suite import Suite
 from solvers.grains.integrators import INTEGRATORS
 from solvers.simulation import Simulation
 
-CASES = {case.name: case for cases in (hard_few, hard_beds, hard_moving, hard_starts) for case in cases.CASES}
-MAPS = {f"map-{integrator}": integrator for integrator in INTEGRATORS}
-FAST_MAP = "map-verlet"
+HARD, LIMITS = "Hard cases", "Where steps do become unstable"
+SAYS = f"""At the step that the lab derives and, where nothing else is said, at full stiffness. Each is to run to its
+end: nobody escapes and no number is not one. Overlaps, the largest at any look, count in radii of the smallest grain
+and are to stay below {100 * DEEPEST:g} % and below {IMPACTS:g} times Hertz's estimate of the hardest impact (of the
+largest grain upon the smallest at the highest credible speed) or of the weight. The energy made is the largest rise
+of the energy (kinetic, rotational, potential and elastic, in the earth's frame), less the work of the tank's motion,
+above any earlier value, as a share of the energy at the start. Tables: the same with the step forced to multiples of
+the derived limit. The app refuses more than {FURTHEST:g} times the limit; what would come of it is shown all the
+same. Still right: the measure within its tolerance of that at the automatic step, and no energy made beyond
+{100 * RIPPLE:g} % of the scale, the ripple of the scheme while grains touch. What is neither right nor stopped
+misleads, and fails. The height of a settled bed says little of its restitution; one-grain does."""
+PUSHED = ("times the limit", "step (µs)", "tolerance", "energy error", "outcome", "what it was", "verdict")
 
 
-def run_cases(names: Sequence[str], out: Path, fast: bool) -> bool:
-    """Run the cases whose names begin like one of `names`, or all, print every line, write the page; whether all pass.
-
-    A case that breaks off fails, and the others go on. Raises LabError for a name that is none.
-    """
-    quick = {name for name, case in CASES.items() if case.fast} | {FAST_MAP}
-    chosen = choose(names, [*CASES, *MAPS], "case", quick if fast else None)
-    kept = Kept(Path(out) / "stability.json", "bench stability", {"fast": fast})
-    sound = True
-    for name in chosen:
-        if name in kept:
-            print(f"{name}: {word(kept[name]['passed'])}, kept from an earlier run", flush=True)
-        elif record := _attempt(name, fast):
-            kept.keep(name, record)
-        sound &= name in kept and kept[name]["passed"]
-    cases = {name: kept[name] for name in CASES if name in kept}
-    maps = [row for name in MAPS if name in kept for row in kept[name]["rows"]]
-    made = f"Made by `{kept.made.command}` on {kept.made.date}, on {machine()}."
-    write_page(Path(out), made, cases, maps)
-    return sound
-
-
-def _attempt(name: str, fast: bool) -> dict[str, object] | None:
-    """The record of a case or a part of the map; None, and a line, where it breaks off."""
-    try:
-        return _run_map(MAPS[name], fast) if name in MAPS else run_case(CASES[name], fast)
-    except Exception as error:  # whatever it is, the other cases are worth running
-        print(f"{name}: FAIL, broke off: {type(error).__name__}: {error}", flush=True)
-        return None
-
-
-def run_case(case: Case, fast: bool) -> dict[str, object]:
-    """The record of a case at the automatic step and, if it has a measure and ran to its end, at longer ones."""
-    trial = case.make(fast)
+def check(hard: HardCase, fast: bool) -> Found:
+    """A hard case at the automatic step and, if it has a measure and ran to its end, at longer ones."""
+    trial = hard.make(fast)
     run = Simulation(trial.scene, trial.position[None], 1, arch="cpu")
     try:
         course = follow(run, trial, trial.scene.time_step())
-        checks = judge(case, trial, course)
-        for check in checks:
-            print(_line(case.name, check), flush=True)
-        pushed = []
-        if case.measure and not course.stopped:
-            for row in push(run, case, trial, course, fast):
-                said = f"{row.outcome}: {row.said}"
-                print(f"{case.name}, {row.factor:g} times the limit: {word(row.passed)}, {said}", flush=True)
-                pushed.append({**asdict(row), "passed": row.passed})
+        lines = judge(hard, trial, course)
+        longer = list(push(run, hard, trial, course, fast)) if hard.measure and not course.stopped else []
     finally:
         run.close()
-    by_name = {check.what: check.error for check in checks}
-    return {
-        "says": case.says,
-        "grains": trial.count,
-        "time": float(course.time[-1]) if len(course.time) else 0.0,
-        "step": course.step,
-        "overlap": by_name.get(OVERLAP),
-        "energy": by_name.get(ENERGY),
-        "checks": [{**asdict(check), "passed": check.passed} for check in checks],
-        "pushed": pushed,
-        "passed": all(check.passed for check in checks) and all(row["passed"] for row in pushed),
-    }
+    lines += [_misleads(row) for row in longer]
+    time = course.time[-1] if len(course.time) else 0.0
+    note = f"{trial.count} grain{'s' if trial.count > 1 else ''}, {time:.3g} s, steps of {1e6 * course.step:.3g} µs."
+    return Found(lines, notes=[note], tables=[Table(PUSHED, [_row(row) for row in longer])] if longer else [])
 
 
-def _line(name: str, check: Check) -> str:
-    error = f"error {check.error:.3g}, tolerance {check.tolerance:.3g}"
-    return f"{name}: {word(check.passed)}, {check.what} against {check.reference}: {error} ({check.why})"
+def _misleads(row: Pushed) -> Line:
+    said = f"wrong results at {row.factor:g} times the limit"
+    return Line.off(said, "right, or stopped", 0.0 if row.passed else 1.0, 0.0, f"{row.outcome}: {row.said}")
 
 
-def _run_map(integrator: str, fast: bool) -> dict[str, object]:
-    """The record of one integrator's part of the map."""
-    rows = []
-    for found in limit_map.found(integrator, fast):
-        laws = found.normal if found.tangential == "none" else f"{found.normal} and {found.tangential}"
-        what = f"{laws}, {found.damping}: longest stable step {found.ratio:.3g} derived steps"
-        print(f"map-{integrator}: {word(found.passed)}, {what}", flush=True)
-        rows.append(found.record())
-    return {"rows": rows, "passed": all(row["passed"] and row["exact_passed"] for row in rows)}
+def _row(row: Pushed) -> tuple[str, ...]:
+    tolerance = f"{100 * row.tolerance:g} %" if row.tolerance else ""
+    energy = "none" if row.energy != row.energy else f"{row.energy:.3g}"
+    return f"{row.factor:g}", f"{1e6 * row.step:.3g}", tolerance, energy, row.outcome, row.said, word(row.passed)
+
+
+ALL = (*hard_few.CASES, *hard_beds.CASES, *hard_moving.CASES, *hard_starts.CASES)
+CASES = tuple(Case(hard.name, HARD, hard.says, partial(check, hard), hard.fast) for hard in ALL)
+CASES += tuple(
+    Case(f"map-{name}", LIMITS, f"Longest stable steps of {name}", partial(limit_case.check, integrator=name), quick)
+    for name, quick in ((one, one == "verlet") for one in INTEGRATORS)
+)
+SUITE = Suite("bench stability", "Stability", CASES, "", {HARD: SAYS, LIMITS: limit_case.SAYS})

@@ -6,28 +6,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from lab.studies.bench.stability.trial import Course, Trial, overlap_of
+from lab.studies.case import Line
 
 OVERLAP, ENERGY = "largest overlap (radii)", "energy made (share)"  # checks that every case has
 DEEPEST = 0.05  # radii: a contact of small strain, which Hertz's law is for
 IMPACTS = 3.0  # Hertz estimates: grains that push from behind deepen an impact
 RESTING_ENERGY = 1e-6  # of the scale: what a scheme of second order errs by in contacts, and rounding
 MOVING_ENERGY = 1e-3  # of the scale: the tank's work is a sum over looks
-
-
-@dataclass(frozen=True)
-class Check:
-    """One line of a verdict: what is compared with which reference, the error, what it may be, and why so much."""
-
-    what: str
-    reference: str
-    error: float
-    tolerance: float
-    why: str
-
-    @property
-    def passed(self) -> bool:
-        """Whether the error is a number within its tolerance."""
-        return bool(self.error <= self.tolerance)
 
 
 @dataclass(frozen=True)
@@ -45,7 +30,7 @@ class Measure:
 
 
 @dataclass(frozen=True)
-class Case:
+class HardCase:
     """A hard case: `make` builds its trial, in full or fast; `ask` checks what is particular to it.
 
     Without a measure it is not tried at longer steps. `fast`: whether it belongs to what takes seconds. `may_stop`: a
@@ -56,17 +41,17 @@ class Case:
     name: str
     says: str
     make: Callable[[bool], Trial]
-    ask: Callable[[Trial, Course], list[Check]] = lambda trial, course: []
+    ask: Callable[[Trial, Course], list[Line]] = lambda trial, course: []
     measure: Measure | None = None
     fast: bool = False
     may_stop: bool = False
     energy: tuple[float, str] | None = None
 
 
-def judge(case: Case, trial: Trial, course: Course) -> list[Check]:
+def judge(case: HardCase, trial: Trial, course: Course) -> list[Line]:
     """All checks of a course at the automatic step."""
     if case.may_stop and course.stopped:
-        return [Check("the run", "its end, or a sentence", 0.0, 0.0, course.stopped)]
+        return [Line.off("the run", "its end, or a sentence", 0.0, 0.0, course.stopped)]
     checks = [_finished(course)]
     if len(course.time):
         checks += [_overlap(trial, course), _energy(case, trial, course)]
@@ -84,7 +69,7 @@ def made_energy(trial: Trial, course: Course) -> float:
     return float(rise / (start + np.ptp(course.work)))
 
 
-def energy_bound(case: Case, trial: Trial) -> tuple[float, str]:
+def energy_bound(case: HardCase, trial: Trial) -> tuple[float, str]:
     """The share of the scale that may be made, and why."""
     if case.energy:
         return case.energy
@@ -93,20 +78,20 @@ def energy_bound(case: Case, trial: Trial) -> tuple[float, str]:
     return RESTING_ENERGY, "scheme O(Δt²), rounding"
 
 
-def _finished(course: Course) -> Check:
+def _finished(course: Course) -> Line:
     """The watch, which sees grains that escape and numbers that are none, has not stopped it."""
     why = course.stopped or "nobody escaped, all numbers finite"
-    return Check("the run", "its end", 1.0 if course.stopped else 0.0, 0.0, why)
+    return Line.off("the run", "its end", 1.0 if course.stopped else 0.0, 0.0, why)
 
 
-def _overlap(trial: Trial, course: Course) -> Check:
+def _overlap(trial: Trial, course: Course) -> Line:
     speed = trial.scene.credible_speed()
     estimate = IMPACTS * overlap_of(trial.scene, speed, trial.load)
     bound = min(DEEPEST, estimate)
     why = "small strain" if bound == DEEPEST else f"3 times Hertz's at {speed:.3g} m/s"
-    return Check(OVERLAP, "0", float(course.rows["overlap"].max()), bound, why)
+    return Line.off(OVERLAP, "0", float(course.rows["overlap"].max()), bound, why)
 
 
-def _energy(case: Case, trial: Trial, course: Course) -> Check:
+def _energy(case: HardCase, trial: Trial, course: Course) -> Line:
     reference = "start and work of the tank" if trial.scene.motions[0] else "start"
-    return Check(ENERGY, reference, made_energy(trial, course), *energy_bound(case, trial))
+    return Line.off(ENERGY, reference, made_energy(trial, course), *energy_bound(case, trial))

@@ -5,8 +5,9 @@ from dataclasses import replace
 import numpy as np
 
 from lab.studies.bench.stability.beds import ACETATE, GOLD_ORE, RADIUS, bed, hexagonal, square, tank
-from lab.studies.bench.stability.case import Case, Check, Measure
+from lab.studies.bench.stability.case import HardCase, Measure
 from lab.studies.bench.stability.trial import Course, Trial
+from lab.studies.case import Line
 from solvers.scene import Scene
 
 LATE = 0.75  # of the run: when a bed has come to rest
@@ -23,19 +24,19 @@ def height(trial: Trial, course: Course) -> float:
 HEIGHT = Measure("height of the centre of mass at the end (m)", height, 0.05, "chaos of a small bed")
 
 
-def weighed(trial: Trial, course: Course) -> list[Check]:
+def weighed(trial: Trial, course: Course) -> list[Line]:
     """The mean load on the floor over the last quarter, against the weight."""
     late = course.time > LATE * course.time[-1]
     passed = np.diff(course.time, prepend=0.0)[late]
     load = -float(course.rows["wall_force"][late, 1] @ passed) / passed.sum()
     error = abs(load / trial.weight - 1.0)
-    return [Check("load on the floor in the last quarter (share)", "weight", error, BOUNCES, "last bounces")]
+    return [Line.off("load on the floor in the last quarter (share)", "weight", error, BOUNCES, "last bounces")]
 
 
-def still_spins(trial: Trial, course: Course) -> list[Check]:
+def still_spins(trial: Trial, course: Course) -> list[Line]:
     """Without friction nothing ever turns."""
     turning = float(np.abs(course.spin).max())
-    return [*weighed(trial, course), Check("largest spin (rad/s)", "0, no friction", turning, 0.0, "exact")]
+    return [*weighed(trial, course), Line.off("largest spin (rad/s)", "0, no friction", turning, 0.0, "exact")]
 
 
 def kept_energy(trial: Trial, course: Course) -> float:
@@ -99,7 +100,7 @@ def struck(fast: bool) -> Trial:
 
 ROUNDING = 1e-4, "places rounded to 1e-9 m, overlaps of 1e-7 m"
 CASES = (
-    Case(
+    HardCase(
         "gold-ore",
         "300 grains of gold ore, 1 mm ± 10 %, 17.8 g/cm³, Y = 3.2 GPa, fall as a loose lattice and settle, 0.15 s "
         "(fast: 100 grains, 0.12 s).",
@@ -108,7 +109,7 @@ CASES = (
         HEIGHT,
         fast=True,
     ),
-    Case(
+    HardCase(
         "tiny-grains",
         "100 grains of 0.1 mm ± 10 % with a shear damping of 20 N s/m settle in 0.04 s: the damper alone would want "
         "steps far below a nanosecond.",
@@ -116,34 +117,34 @@ CASES = (
         weighed,
         HEIGHT,
     ),
-    Case(
+    HardCase(
         "lossy", "100 grains of 3 mm ± 10 % with e = 0.05 settle in 0.25 s.", made_of(restitution=0.05), weighed, HEIGHT
     ),
-    Case(
+    HardCase(
         "elastic",
         "100 grains of 3 mm ± 10 % with e = 0.999 and no friction bounce for 0.25 s.",
         made_of(restitution=0.999, friction=0.0),
         measure=Measure("energy kept (share)", kept_energy, 0.01, "what 1 - e² loses"),
     ),
-    Case(
+    HardCase(
         "smooth", "100 grains of 3 mm ± 10 % with μ = 0 settle in 0.25 s.", made_of(friction=0.0), still_spins, HEIGHT
     ),
-    Case("rough", "100 grains of 3 mm ± 10 % with μ = 2 settle in 0.25 s.", made_of(friction=2.0), weighed, HEIGHT),
-    Case(
+    HardCase("rough", "100 grains of 3 mm ± 10 % with μ = 2 settle in 0.25 s.", made_of(friction=2.0), weighed, HEIGHT),
+    HardCase(
         "mixed-sizes",
         "12 grains of 3 mm fall upon 120 of 0.3 mm, 0.12 s; overlaps count in radii of the smaller grain.",
         mixed,
         weighed,
         HEIGHT,
     ),
-    Case(
+    HardCase(
         "impact",
         "A grain of 3 mm strikes 80 of its like, in hexagonal rows, at 10 m/s; 5 ms.",
         struck,
         measure=Measure("energy lost (J)", lost_energy, 0.05, "chaos of the collisions"),
         fast=True,
     ),
-    Case(
+    HardCase(
         "single-precision",
         "100 grains of 3 mm ± 10 % settle in 0.25 s in 32-bit floats.",
         single_precision,

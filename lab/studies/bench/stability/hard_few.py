@@ -7,8 +7,9 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from lab.studies.bench.stability.beds import ACETATE, RADIUS, G, tank
-from lab.studies.bench.stability.case import Case, Check, Measure
+from lab.studies.bench.stability.case import HardCase, Measure
 from lab.studies.bench.stability.trial import Course, Trial
+from lab.studies.case import Line
 from solvers.grains.materials import hertz_stiffness
 from solvers.grains.restitution import restitution
 from solvers.scene import Scene
@@ -35,13 +36,13 @@ def rebound(trial: Trial, course: Course) -> float:
     return float(z[lowest:].max())
 
 
-def bounced(trial: Trial, course: Course) -> list[Check]:
+def bounced(trial: Trial, course: Course) -> list[Line]:
     """e² h, with the restitution e of the viscoelastic law at the speed of the fall."""
     between, mass, speed = trial.scene.interfaces[1], trial.mass[0], np.sqrt(2.0 * G * FALL)
     damping = 1.5 * between.dissipative_time * (_stiffness(trial) / mass) ** 0.4 * speed**0.2
     expected = restitution(damping) ** 2 * FALL
     error = abs(rebound(trial, course) / expected - 1.0)
-    return [Check("height of the first bounce", "e² h, e by DOP853", error, 3e-3, "twice 0.1 % of e, weight, looks")]
+    return [Line.off("height of the first bounce", "e² h, e by DOP853", error, 3e-3, "twice 0.1 % of e, weight, looks")]
 
 
 def corner(fast: bool) -> Trial:
@@ -56,11 +57,11 @@ def deepest(trial: Trial, course: Course) -> float:
     return course.last("overlap")
 
 
-def held(trial: Trial, course: Course) -> list[Check]:
+def held(trial: Trial, course: Course) -> list[Line]:
     """Two walls bear m g/(2 sin α) each, ξ = (F/k)^(2/3)."""
     overlap = (trial.weight / (2.0 * np.sin(HALF_ANGLE)) / _stiffness(trial)) ** (2.0 / 3.0) / RADIUS
     error = abs(deepest(trial, course) / overlap - 1.0)
-    return [Check("overlap at rest", "(m g/(2 k sin α))^(2/3)", error, 1e-3, "creep that is left")]
+    return [Line.off("overlap at rest", "(m g/(2 k sin α))^(2/3)", error, 1e-3, "creep that is left")]
 
 
 def wedged(fast: bool) -> Trial:
@@ -75,14 +76,14 @@ def creep(trial: Trial, course: Course) -> float:
     return float((z[half] - z[-1]) / (course.time[-1] - course.time[half]))
 
 
-def crept(trial: Trial, course: Course) -> list[Check]:
+def crept(trial: Trial, course: Course) -> list[Line]:
     """Haff and Werner's friction has no memory: a load creeps at m g/(2 γ_s); the overlap stays as it is."""
     expected = trial.weight / (2.0 * ACETATE.shear_damping)
     error = abs(creep(trial, course) / expected - 1.0)
     squeezed = abs(deepest(trial, course) / (1.0 - TIGHT) - 1.0)
     return [
-        Check("creep down", "m g/(2 γ_s)", error, 1e-3, "as asserted of the law"),
-        Check("overlap", "0.001 radii", squeezed, 1e-6, "rounding"),
+        Line.off("creep down", "m g/(2 γ_s)", error, 1e-3, "as asserted of the law"),
+        Line.off("overlap", "0.001 radii", squeezed, 1e-6, "rounding"),
     ]
 
 
@@ -95,15 +96,15 @@ def column(fast: bool) -> Trial:
     return replace(trial, load=trial.weight)
 
 
-def rested(trial: Trial, course: Course) -> list[Check]:
+def rested(trial: Trial, course: Course) -> list[Line]:
     """The lowest contact bears all the weight, and the column hardly stirs any more."""
     overlap = (trial.weight / _stiffness(trial)) ** (2.0 / 3.0)
     error = abs((COLUMN_RADIUS - course.position[-1, 0, 1]) / overlap - 1.0)
     late = course.position[course.time > 0.75 * course.time[-1]]
     moved = np.ptp(late, axis=0).max() / COLUMN_RADIUS
     return [
-        Check("overlap with the floor", "(N m g/k)^(2/3)", error, 1e-3, "its lowest mode rings on"),
-        Check("moved in the last quarter (radii)", "0", float(moved), 1e-3, "its lowest mode rings on"),
+        Line.off("overlap with the floor", "(N m g/k)^(2/3)", error, 1e-3, "its lowest mode rings on"),
+        Line.off("moved in the last quarter (radii)", "0", float(moved), 1e-3, "its lowest mode rings on"),
     ]
 
 
@@ -145,17 +146,19 @@ def rolled(trial: Trial, course: Course) -> float:
     return float(np.arctan2(y, z))
 
 
-def sticks_not(trial: Trial, course: Course) -> list[Check]:
+def sticks_not(trial: Trial, course: Course) -> list[Line]:
     """The small grain rolls as a sphere must; a large one stays where dimples hold it, and leaves where they cannot."""
     error = abs(rolled(trial, course) / LEAVE - 1.0)
     moved = np.linalg.norm(course.position[-1, 1:] - course.position[0, 1:], axis=1) / (2.0 * SMALL)
     hold = f"dimples hold up to {np.degrees(DIMPLE):.1f}°"
     return [
-        Check(
+        Line.off(
             "angle of a 0.6 mm grain on a 6 mm dome", "(5/7) g sin θ/(R + r), DOP853", error, 1e-3, "overlaps in R + r"
         ),
-        Check(f"6 mm grain on 0.6 mm grains, {SLOPES[0]:g}°: moved (small grains)", hold, moved[0], 0.01, "sinks in"),
-        Check(
+        Line.off(
+            f"6 mm grain on 0.6 mm grains, {SLOPES[0]:g}°: moved (small grains)", hold, moved[0], 0.01, "sinks in"
+        ),
+        Line.off(
             f"the same, {SLOPES[1]:g}°: missing of one grain's way", hold, max(0.0, 1.0 - moved[1]), 0.0, "must roll"
         ),
     ]
@@ -172,21 +175,21 @@ def _stiffness(trial: Trial) -> float:
 
 
 CASES = (
-    Case(
+    HardCase(
         "one-grain",
         "A grain of 3 mm, alone, falls 10 mm and bounces, 0.08 s.",
         one_grain,
         bounced,
         Measure("height of the first bounce (m)", rebound, 0.05, "e to 2.5 %"),
     ),
-    Case(
+    HardCase(
         "corner",
         "A grain of 3 mm falls into a corner of 30° and comes to rest, 0.3 s.",
         corner,
         held,
         Measure("overlap at the end (radii)", deepest, 0.05, "creep that is left"),
     ),
-    Case(
+    HardCase(
         "wedged",
         "A grain of 3 mm between walls 0.999 diameters apart, 0.05 s.",
         wedged,
@@ -194,7 +197,7 @@ CASES = (
         Measure("creep (m/s)", creep, 0.01, "creep does not depend on the step"),
         fast=True,
     ),
-    Case(
+    HardCase(
         "size-ratio",
         "Sizes 10 : 1 with μ = 1: a grain of 0.6 mm rolls down a dome of 6 mm (no static friction that is not there), "
         "and grains of 6 mm lie on slopes of 0.6 mm grains, on one that must hold them and one that must not.",
@@ -203,7 +206,7 @@ CASES = (
         Measure("angle on the dome (rad)", rolled, 0.01, "the motion is smooth"),
         fast=True,
     ),
-    Case(
+    HardCase(
         "column",
         "100 grains of 50 mm (reduced: large grains, since the step grows with their size) upon one another for 60 s.",
         column,

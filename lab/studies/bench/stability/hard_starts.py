@@ -8,8 +8,9 @@ from scipy.optimize import curve_fit
 
 from lab.preset.bed_file import DEEPEST
 from lab.studies.bench.stability.beds import ACETATE, RADIUS, square, tank
-from lab.studies.bench.stability.case import Case, Check, Measure
+from lab.studies.bench.stability.case import HardCase, Measure
 from lab.studies.bench.stability.trial import Course, Trial
+from lab.studies.case import Line
 from solvers.grains.materials import hertz_stiffness
 from solvers.scene import Scene
 
@@ -36,11 +37,11 @@ def squeezed(fast: bool) -> Trial:
     return Trial(scene, scene.relaxed(square(10, 10, pitch)), 0.1)
 
 
-def settles(trial: Trial, course: Course) -> list[Check]:
+def settles(trial: Trial, course: Course) -> list[Line]:
     """Grains that are put a little too close should come apart, not fly up."""
     height = course.rows["centre_of_mass"][..., 1]
     risen = float(height.max() - height[0]) / (2.0 * RADIUS)
-    return [Check("rise of the centre of mass (diameters)", "relaxed, not burst", risen, RISE, "rearranging")]
+    return [Line.off("rise of the centre of mass (diameters)", "relaxed, not burst", risen, RISE, "rearranging")]
 
 
 def gas(fast: bool) -> Trial:
@@ -97,12 +98,12 @@ def slower(trial: Trial, course: Course) -> float:
     return float(curve_fit(law, course.time, np.log(kinetic / kinetic[0]), p0=[0.0, 1.0])[0][1])
 
 
-def cools(trial: Trial, course: Course) -> list[Check]:
+def cools(trial: Trial, course: Course) -> list[Line]:
     """Haff's law: the exponent with its τ, and the τ with its exponent."""
     power, time = abs(exponent(trial, course) / 2.0 - 1.0), abs(slower(trial, course) - 1.0)
     return [
-        Check("exponent of the cooling", "2 (Haff 1983), τ of kinetic theory", power, SCATTER, "600 grains"),
-        Check("cooling time, exponent 2", "4/((1 - e²) ω)", time, SCATTER, "600 grains"),
+        Line.off("exponent of the cooling", "2 (Haff 1983), τ of kinetic theory", power, SCATTER, "600 grains"),
+        Line.off("cooling time, exponent 2", "4/((1 - e²) ω)", time, SCATTER, "600 grains"),
     ]
 
 
@@ -113,7 +114,7 @@ def million(fast: bool) -> Trial:
     return Trial(scene, square(MANY, MANY, pitch), FEW_STEPS * scene.time_step(), looks=1)
 
 
-def counted(trial: Trial, course: Course) -> list[Check]:
+def counted(trial: Trial, course: Course) -> list[Line]:
     """Every contact is found, and holds (2/5) k ξ^(5/2)."""
     pairs, walls = 2 * MANY * (MANY - 1), 4 * MANY
     missing = abs(course.rows["contacts"][0] - (pairs + walls))
@@ -124,13 +125,13 @@ def counted(trial: Trial, course: Course) -> list[Check]:
     )
     error = abs(course.rows["elastic"][0] / elastic - 1.0)
     return [
-        Check("contacts missing", f"{pairs + walls}", float(missing), 0.0, "exact"),
-        Check("elastic energy", "sum of (2/5) k ξ^(5/2)", float(error), 1e-6, "rounding of places 3 m wide"),
+        Line.off("contacts missing", f"{pairs + walls}", float(missing), 0.0, "exact"),
+        Line.off("elastic energy", "sum of (2/5) k ξ^(5/2)", float(error), 1e-6, "rounding of places 3 m wide"),
     ]
 
 
 CASES = (
-    Case(
+    HardCase(
         "overlapping",
         "100 grains of 3 mm at random places in a room that they cover one and a half times: hopeless, so a sentence "
         "of the watch is an answer.",
@@ -138,14 +139,14 @@ CASES = (
         may_stop=True,
         fast=True,
     ),
-    Case(
+    HardCase(
         "squeezed",
         f"100 grains of 3 mm on a lattice where each overlaps its neighbours by {100 * DEEPEST:g} % of a radius, which "
         "the file of a bed may say; where a bed is to settle, as here, the lab relaxes it first; 0.1 s.",
         squeezed,
         settles,
     ),
-    Case(
+    HardCase(
         "gas",
         "600 smooth grains of 3 mm without gravity, e = 0.9 at every speed (linear law), elastic walls, a tenth of the "
         "area, for five of Haff's cooling times.",
@@ -153,5 +154,7 @@ CASES = (
         cools,
         Measure("cooling time (of Haff's)", slower, SCATTER, "600 grains"),
     ),
-    Case("million", "1 000 000 grains, pressed together, ten steps (reduced: it is about memory).", million, counted),
+    HardCase(
+        "million", "1 000 000 grains, pressed together, ten steps (reduced: it is about memory).", million, counted
+    ),
 )

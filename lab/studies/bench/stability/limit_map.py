@@ -7,7 +7,7 @@ within STEPS steps, or if the watch stops the run.
 """
 
 from collections.abc import Callable, Iterator
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from math import cos, pi, sqrt
 
 import numpy as np
@@ -33,7 +33,7 @@ CONSERVATIVE = ("verlet", "symplectic-euler")  # whose limit on an oscillator is
 
 
 @dataclass(frozen=True)
-class Found:
+class Limit:
     """The longest stable step (s) of an integrator under two laws with a damping, beside the derived one.
 
     `exact` is 2/ω (s) where that is known, else None.
@@ -52,19 +52,8 @@ class Found:
         """True over derived."""
         return self.true / self.derived
 
-    @property
-    def passed(self) -> bool:
-        """Whether the derived step is stable."""
-        return self.ratio >= 1.0
 
-    def record(self) -> dict[str, object]:
-        """For the JSON file."""
-        error = abs(self.true / self.exact - 1.0) if self.exact else 0.0
-        checked = {"error": error, "tolerance": NEAR_EXACT, "exact_passed": error <= NEAR_EXACT}
-        return {**asdict(self), "ratio": self.ratio, "passed": self.passed, **checked}
-
-
-def found(integrator: str, fast: bool) -> Iterator[Found]:
+def found(integrator: str, fast: bool) -> Iterator[Limit]:
     """The limits of an integrator with every normal law alone and, on the default one, with every law of friction."""
     pairs = [(normal, "none") for normal in NORMAL]
     pairs += [("hertz-viscoelastic", friction) for friction in TANGENTIAL if friction != "none"]
@@ -72,7 +61,7 @@ def found(integrator: str, fast: bool) -> Iterator[Found]:
         yield from limits(integrator, normal, friction)
 
 
-def limits(integrator: str, normal: str, friction: str) -> Iterator[Found]:
+def limits(integrator: str, normal: str, friction: str) -> Iterator[Limit]:
     """The longest stable steps under two laws for every restitution, one world each."""
     made = scene(RESTITUTIONS.values(), integrator, normal, friction)
     places = np.tile(packing(normal)[1], (made.worlds, 1, 1))
@@ -83,7 +72,7 @@ def limits(integrator: str, normal: str, friction: str) -> Iterator[Found]:
         derived = scene([restitution], integrator, normal, friction).step_limits()[0].step
         true = longest(lambda step, w=world: grows(run, places, w, step), derived)
         known = not world and friction == "none" and integrator in CONSERVATIVE
-        yield Found(integrator, normal, friction, damping, derived, true, exact_limit(normal) if known else None)
+        yield Limit(integrator, normal, friction, damping, derived, true, exact_limit(normal) if known else None)
     run.close()
 
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from lab.preset.accuracy import FURTHEST
-from lab.studies.bench.stability.case import Case, energy_bound, made_energy
+from lab.studies.bench.stability.case import HardCase, energy_bound, made_energy
 from lab.studies.bench.stability.trial import Course, Trial, follow
 from solvers.simulation import Simulation
 
@@ -41,7 +41,7 @@ class Pushed:
         return self.outcome != WRONG
 
 
-def push(run: Simulation, case: Case, trial: Trial, course: Course, fast: bool) -> Iterator[Pushed]:
+def push(run: Simulation, case: HardCase, trial: Trial, course: Course, fast: bool) -> Iterator[Pushed]:
     """The case at every factor; `course` is that at the automatic step."""
     limit, reference = trial.scene.step_limits()[0].step, measured(run, case, trial, course)
     for factor in FAST_FACTORS if fast else FACTORS:
@@ -50,7 +50,7 @@ def push(run: Simulation, case: Case, trial: Trial, course: Course, fast: bool) 
         yield verdict(case, trial, longer, factor, value, reference)
 
 
-def measured(run: Simulation, case: Case, trial: Trial, course: Course) -> float:
+def measured(run: Simulation, case: HardCase, trial: Trial, course: Course) -> float:
     """The case's measure: of a course, or the mean over all starts with the course's step, its own included."""
     found = [case.measure.of(trial, course)]
     for number in range(1, case.measure.starts):
@@ -67,7 +67,7 @@ def nudged(trial: Trial, number: int) -> Trial:
     return replace(trial, position=trial.position + off)
 
 
-def verdict(case: Case, trial: Trial, course: Course, factor: float, value: float, reference: float) -> Pushed:
+def verdict(case: HardCase, trial: Trial, course: Course, factor: float, value: float, reference: float) -> Pushed:
     """Refused, stopped, right within the measure's tolerance and with no energy made beyond a ripple, or neither."""
     if course.stopped:
         return Pushed(factor, course.step, STOPPED, float("nan"), reference, 0.0, float("nan"), course.stopped)

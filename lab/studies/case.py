@@ -1,4 +1,4 @@
-"""The parts of a verification: cases, and their lines of results."""
+"""The parts of a suite (`lab.studies.suite`): cases, and their lines of results."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -28,6 +28,11 @@ class Line:
     def __post_init__(self):
         if self.relative and self.reference == 0.0:
             raise ValueError(f"{self.quantity}: nothing is relative to a reference of zero")
+
+    @classmethod
+    def off(cls, quantity: str, source: str, error: float, tolerance: float, reason: str, unit: str = "") -> "Line":
+        """A quantity that should be zero by its source; what it is, is the error."""
+        return cls(quantity, error, 0.0, source, tolerance, reason, unit, relative=False)
 
     @property
     def error(self) -> float:
