@@ -3,6 +3,7 @@
 import os
 from dataclasses import replace
 from types import SimpleNamespace
+from typing import ClassVar
 
 import numpy as np
 import pytest
@@ -137,6 +138,7 @@ class Fake:
     """A simulation whose settling lets each grain fall by its world's and its own number, and fills its lists."""
 
     arch, schedule_name, units_a_world, skin = "cpu", "per-world", 1, 1e-4
+    matters: ClassVar = {"grains": None}
 
     def __init__(self, scene, position):
         self.scene, self.dt = scene, scene.time_step()
@@ -211,7 +213,7 @@ OTHERS = [
     {"contact": {"stiffness_scale": 2.1e-4}},
     {"run": {"gravity": "9.8 m/s^2"}},
     {"run": {"seed": 2}},
-    {"run": {"step": "19 us"}},
+    {"run": {"step": "15 us"}},
     {"run": {"rest": 2e-5}},
     {"run": {"settle_limit": "4 s"}},
     {"run": {"precision": "f32"}},
@@ -327,6 +329,7 @@ def vars_of(simulation: Fake) -> dict:
         "state": simulation.state,
         "axes": simulation.axes,
         "scene": simulation.scene,
+        "matters": simulation.matters,
         "dt": simulation.dt,
         **{name: getattr(Fake, name) for name in ("arch", "schedule_name", "units_a_world", "skin")},
     }
