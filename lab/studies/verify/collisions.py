@@ -82,8 +82,8 @@ def _impact_lines(
     lines = []
     for (quantity, value, reference, unit), printed in zip(found, published, strict=True):
         quantity = f"{quantity}, {name}"
-        lines.append(Line(quantity, value, reference, "closed form (Hertz 1882)", 1e-3, STEPS_A_COLLISION, unit))
-        lines.append(Line(quantity, value, printed, CHUNG_OOI, 1.2e-3, f"{STEPS_A_COLLISION}; digits printed", unit))
+        lines.append(Line(quantity, value, reference, "closed form (Hertz 1882)", 1.5e-3, STEPS_A_COLLISION, unit))
+        lines.append(Line(quantity, value, printed, CHUNG_OOI, 1.7e-3, f"{STEPS_A_COLLISION}; digits printed", unit))
     return lines
 
 

@@ -1,5 +1,7 @@
 """Tangential spring with history: Mindlin's no-slip stiffness on Hertz contact under a Coulomb cap."""
 
+from math import sqrt
+
 import taichi as ti
 
 from solvers.grains.laws.extremes import greater, lesser, within
@@ -7,6 +9,7 @@ from solvers.grains.laws.history import M_T, STIFFEST, stiffening
 from solvers.grains.laws.splitting import AT_ONCE, shear_limit
 from solvers.grains.materials import Interface, hertz_stiffness
 
+RESOLVED = 0.036  # (ω_t Δt)², for a slip right to 1 %
 SMALLEST_ROOT = 1e-12  # √m; keeps ratios finite: an overlap of 1e-24 m counts as none
 
 
@@ -37,11 +40,18 @@ class Mindlin:
         return [between.friction, ratio, between.dissipative_time]
 
     def limits(self, between: Interface, mass: float, radius: float, speed: float) -> list[tuple[float, str]]:
-        """Longest steps (s) and what sets them, at the largest overlap of a collision without losses."""
+        """Longest steps (s) and what sets them, at the largest overlap of a collision without losses.
+
+        The slip that an undamped contact gives back is off by (ω_t Δt)²/4 of what it had, ω_t² = k_t/m_t.
+        """
         k = hertz_stiffness(between.young_modulus, radius)
         root = (1.25 * mass * speed**2 / k) ** 0.2
         spring = self.coefficients(between)[1] * k * root
-        return [(shear_limit(spring, M_T * mass, between.dissipative_time), "the tangential spring and its dashpot")]
+        damped = shear_limit(spring, M_T * mass, between.dissipative_time)
+        return [
+            (sqrt(RESOLVED * M_T * mass / spring), "the tangential spring"),
+            (damped, "the tangential spring and its dashpot"),
+        ]
 
     @ti.func
     def prepare(self, c: ti.template(), stiffness, mass, radius, dt):

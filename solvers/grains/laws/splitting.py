@@ -13,7 +13,7 @@ from solvers.grains.laws.extremes import greater, lesser, within
 AT_ONCE = 0.2
 FOLLOWING = 0.02
 SPRING = 0.1
-SETTLED = 100.0  # steps: an overlap that would take longer to vanish is at rest, and one in a collision is not
+SETTLED = 150.0  # steps: an overlap that would take longer to vanish is at rest, and one in a collision is not
 
 
 def spring_limit(stiffness: float, inertia: float) -> float:

@@ -177,11 +177,10 @@ def test_every_normal_law_bounds_the_step_and_scales_with_stiffness(law):
 def test_springs_bound_the_step_only_where_they_are_stiff(tangential, rolling):
     """Δt² k/m ≤ 0.1 of every spring, which the collision's own step keeps in ordinary scenes.
 
-    Mindlin's, with its dashpot, is stiff in the hardest impact of lossy grains.
+    Mindlin's is resolved better, for its slip: (ω_t Δt)² ≤ 0.036 in the hardest impact.
     """
     laws = {"tangential": tangential, "rolling": rolling}
     assert (scene(**laws).time_step() < scene().time_step()) == (tangential == "mindlin")
-    assert scene(restitution=1.0, **laws).time_step() == scene(restitution=1.0).time_step()
     rough = material(rolling_friction=30.0)
     stiff = Scene(np.full((1, 4), 1.5e-3), TANK, rough, rough, **laws)
     assert (stiff.time_step() < scene(**laws).time_step()) == (rolling == "elastic-plastic")
