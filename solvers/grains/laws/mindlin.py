@@ -9,7 +9,7 @@ from solvers.grains.laws.history import M_T, STIFFEST, stiffening
 from solvers.grains.laws.splitting import AT_ONCE, shear_limit
 from solvers.grains.materials import Interface, hertz_stiffness
 
-RESOLVED = 0.036  # (ω_t Δt)², for a slip right to 1 %
+RESOLVED = 0.036  # (ω_t Δt)², for a slip right to 1.2 %
 SMALLEST_ROOT = 1e-12  # √m; keeps ratios finite: an overlap of 1e-24 m counts as none
 
 
@@ -42,7 +42,7 @@ class Mindlin:
     def limits(self, between: Interface, mass: float, radius: float, speed: float) -> list[tuple[float, str]]:
         """Longest steps (s) and what sets them, at the largest overlap of a collision without losses.
 
-        The slip that an undamped contact gives back is off by (ω_t Δt)²/4 of what it had, ω_t² = k_t/m_t.
+        The slip that an undamped contact gives back is off by up to (ω_t Δt)²/3 of what it had, ω_t² = k_t/m_t.
         """
         k = hertz_stiffness(between.young_modulus, radius)
         root = (1.25 * mass * speed**2 / k) ** 0.2
