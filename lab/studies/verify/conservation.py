@@ -171,9 +171,9 @@ def cloud(_: bool) -> Found:
 # Of an elastic impact's energy at the derived step, with which its force begins and ends: Hertz's smoothly, the others'
 # with a kink. All fall as Δt².
 KEEPS = {
-    "hertz": (2e-4, "(ω Δt)²/40, a smooth beginning"),
-    "hertz-viscoelastic": (2e-4, "(ω Δt)²/40, a smooth beginning"),
-    "hertz-dashpot": (2e-4, "(ω Δt)²/40, a smooth beginning"),
+    "hertz": (4e-4, "(ω Δt)²/40, a smooth beginning"),
+    "hertz-viscoelastic": (4e-4, "(ω Δt)²/40, a smooth beginning"),
+    "hertz-dashpot": (4e-4, "(ω Δt)²/40, a smooth beginning"),
     "linear": (6e-4, "(ω Δt)²/6, kinks where it begins and ends"),
     "hysteretic": (1.3e-3, "(ω Δt)²/6, kinks where it begins and ends"),
 }
