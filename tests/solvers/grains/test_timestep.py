@@ -91,6 +91,16 @@ def test_step_resolves_the_fastest_collision_of_the_smallest_grains():
     assert lossy.time_step() == pytest.approx(made.time_step() * 3.0**-0.2, rel=1e-12)
 
 
+@pytest.mark.parametrize("restitution", [1.0, 0.9, 0.8, 0.6])
+def test_a_collision_of_usual_grains_takes_at_most_thirty_steps(restitution):
+    """What the mean of the forces over a kick buys; that the restitution is right is tested on collisions."""
+    made = scene(restitution=restitution)
+    grain, radius = made.grain[0], made.sizes[0]
+    mass = 0.5 * grain.density * 4.0 / 3.0 * pi * radius**3
+    duration = hertz_duration(mass, 0.5 * radius, made.interfaces[0].young_modulus, made.credible_speed())
+    assert 15.0 < duration / made.time_step() < 30.0
+
+
 def test_damping_and_slow_waves_shorten_the_step():
     steps = [scene(restitution=e).time_step() for e in (1.0, 0.9, 0.6, 0.3, 0.1)]
     assert np.all(np.diff(steps) <= 0.0)
