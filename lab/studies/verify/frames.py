@@ -89,8 +89,8 @@ def moving_tank(fast: bool) -> Found:
         lines.append(Line.off(quantity, SOURCE, found[0][k], allowed, "both schemes O(Δt²)", unit))
         if len(found) > 1:
             order = np.log2(found[0][k] / found[1][k])
-            reason = "contacts begin within steps"
-            lines.append(Line(f"order of {name}'s difference", order, 2.0, SOURCE, 0.6, reason, relative=False))
+            reason = "first order where contacts begin within steps"
+            lines.append(Line(f"order of {name}'s difference", order, 2.0, SOURCE, 1.2, reason, relative=False))
     moved = 1e3 * np.linalg.norm(state["position"] - start, axis=-1)
     turns = np.degrees(np.abs(state["angle"]).max())
     note = f"""{len(radius)} grains go {moved.min():.1f} to {moved.max():.1f} mm through the tank and turn by up to
