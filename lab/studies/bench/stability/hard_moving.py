@@ -55,13 +55,16 @@ def slowly_tilted(fast: bool) -> Trial:
 
 
 def slid(trial: Trial, course: Course) -> list[Line]:
-    """The tank stands at 45 deg at last; no bed of spheres keeps such a slope, so the centre of mass has shifted."""
+    """The tank stands at 45 deg at last; no bed of spheres keeps such a slope, so the centre of mass has shifted.
+
+    A bed that has frozen would not shift at all. Courses that start a nanometre apart shift by 0.8 to 1.4 diameters.
+    """
     angle = abs(course.last("pose")[2] - RATE * LASTING)
     shift = float(np.ptp(course.rows["centre_of_mass"][..., 0])) / (2.0 * trial.scene.mean_radius)
     return [
         Line.off("angle at the end (rad)", "45 deg", angle, RATE * 0.2, "the ease at its ends"),
         Line.off(
-            "missing of a shift by one diameter", "a slope of 45 deg flows", max(0.0, 1.0 - shift), 0.0, "must flow"
+            "missing of a shift by half a diameter", "a slope of 45 deg flows", max(0.0, 0.5 - shift), 0.0, "must flow"
         ),
     ]
 
