@@ -55,8 +55,8 @@ class Contacts:
     def pair_forces(self, g: ti.template(), pairs: ti.template(), u, dt):
         """Forces between the grains g, a block of pairs at a time.
 
-        The arithmetic on short vectors has no branches, so the compiler vectorises it (SIMD); pairs that do not touch
-        come out with zero overlap, force and memory. Gathering and scattering of grains stays scalar.
+        The arithmetic on short vectors has no branches, so the compiler vectorises it (SIMD); pairs that do not
+        touch within the kick come out with zero force and memory. Gathering and scattering of grains stays scalar.
         """
         load = self.nothing()
         for block in range(pairs.blocks(u)):

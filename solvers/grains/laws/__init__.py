@@ -7,8 +7,9 @@ A law is a class with
   computes the constants of a new contact;
 - `force` (a rolling law: `torque`, a cohesion law: `pull`) and `energy`, Taichi functions. They take a block of
   contacts at once, as vectors of lanes, so only element-wise arithmetic is allowed; a coefficient may be a number or a
-  vector of lanes. A contact with zero overlap must come out with no force and no memory; under a cohesion law, one
-  whose gap is beyond the law's `range`. A cohesion law lists in `needs` the keys that a material must have.
+  vector of lanes. A contact with a gap must come out with no memory, and with no force where it does not begin within
+  the kick (`kick`); under a cohesion law, one whose gap is beyond the law's `range`. A cohesion law lists in `needs`
+  the keys that a material must have.
 Only the laws that a scene uses are compiled.
 """
 
