@@ -7,11 +7,14 @@ from typing import Annotated
 
 import numpy as np
 
+from solvers.fluid.given import Water
+from solvers.fluid.timestep import limits_of_water
 from solvers.grains.bed.relaxing import AT_REST, BURSTING, lifting_overlap, relaxed
 from solvers.grains.laws import COHESION, NORMAL, ROLLING, TANGENTIAL
 from solvers.grains.materials import Interface, Material, interface, touching
 from solvers.grains.shapes.given import Shapes
-from solvers.grains.timestep import SLOWEST, Limit, limits_of_grains
+from solvers.grains.timestep import SLOWEST, limits_of_grains
+from solvers.machine.limit import Limit
 from solvers.machine.marks import EachWorld, LargestOfWorlds, NotOfBed, marked
 from solvers.ship.vessel import Vessel
 from solvers.tank.parts import Part
@@ -34,6 +37,7 @@ class Scene:
       holds the tanks are in. `interval` (s) between updates of the water's forces, by default derived.
     - `step` Δt in s, None: derived; `start_speed` (m/s): the highest closing speed of two grains, or of one and a wall,
       at the start; `velocity` (W, n, 2) m/s and `spin` (W, n) rad/s at the start, None: at rest.
+    - `water` and its particles `drops` (W, n, 6), columns as in `solvers.fluid.given`.
     - `shapes` of irregular grains, whose `radius` and `sizes` are those of discs of equal area; None for discs.
 
     The fields' marks say which may differ between the worlds of a launch, and from which a settled bed follows.
@@ -68,6 +72,8 @@ class Scene:
     thickness: float | None = None
     length: float | None = None
     more_tanks: tuple[Tank, ...] = ()
+    water: Water | None = None
+    drops: Annotated[np.ndarray | None, EachWorld(lambda scene: scene.particles), NotOfBed()] = None
     integrator: str = "verlet"
     precision: str = "f64"
     schedule: str = "auto"
@@ -148,9 +154,19 @@ class Scene:
         return len(self.radius)
 
     @property
+    def particles(self) -> int:
+        """Number of particles of water in a world."""
+        return 0 if self.water is None else self.drops.shape[1]
+
+    @property
     def work(self) -> int:
-        """Relative cost of a step: the number of grains in all worlds, where an empty world counts as one grain."""
-        return max(self.worlds, self.radius.size)
+        """Relative cost of a step: the number of particles in all worlds, where an empty world counts as one."""
+        return max(self.worlds, self.radius.size + self.worlds * self.particles)
+
+    @property
+    def span(self) -> float:
+        """Largest distance (m) of a corner of a tank from the tank's origin."""
+        return float(max(np.linalg.norm(tank.outline, axis=1).max() for tank in self.tanks))
 
     @property
     def mean_radius(self) -> float:
@@ -202,14 +218,15 @@ class Scene:
         return float(speeds[allowed].max(initial=0.0))
 
     def step_limits(self, speed: float | None = None) -> list[Limit]:
-        """Bounds on the step, the tightest first: those of the grains, without grains those of the ships.
+        """Bounds on the step, the tightest first: those of the matters, without any those of the ships.
 
-        Grains meet at up to `speed` (m/s), by default the credible one. Without grains and ships there are none:
-        prescribed motions are exact at any time. With grains the ships need none of their own, since the water's forces
-        are updated every few steps.
+        Grains meet at up to `speed` (m/s), by default the credible one. Without matters and ships there are none:
+        prescribed motions are exact at any time. With grains the ships need none of their own, since the forces of the
+        sea are updated every few steps.
         """
         closing = max(self.credible_speed() if speed is None else speed, SLOWEST)
-        bounds = limits_of_grains(self, closing) if self.radius.size else self._limits_of_ships()
+        bounds = limits_of_grains(self, closing) if self.radius.size else []
+        bounds = [*bounds, *(limits_of_water(self) if self.water else ())] or self._limits_of_ships()
         return sorted(bounds, key=lambda limit: limit.step)
 
     def _limits_of_ships(self) -> list[Limit]:

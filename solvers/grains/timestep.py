@@ -1,7 +1,6 @@
 """The time step derived from the scene: limits of Rayleigh waves, of the contact laws, and of the speed check."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 from itertools import product
 from math import pi, sqrt
 
@@ -10,19 +9,11 @@ import numpy as np
 from solvers.grains.checks import FASTEST_STEP
 from solvers.grains.integrators import INTEGRATORS
 from solvers.grains.materials import Interface, Material
+from solvers.machine.limit import Limit
 
 RAYLEIGH_SHARE = 0.2
 SLOWEST = 1e-3  # m/s: steps are derived for closing speeds of at least this
 FASTER = 1.5  # times the highest credible speed: what the speed check must still accept
-
-
-@dataclass(frozen=True)
-class Limit:
-    """A bound on the step and its reason; neither integrator nor level of accuracy stretches a `firm` one."""
-
-    step: float  # s
-    reason: str
-    firm: bool = False
 
 
 def watched(smallest: float, speed: float, count: int, shaped: bool) -> Limit:

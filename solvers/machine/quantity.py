@@ -10,7 +10,15 @@ import numpy as np
 
 PLANE = ("y", "z")
 FREEDOMS = ("y", "z", "roll")
-OWNERS = {"run": (), "world": ("world",), "grain": ("world", "grain"), "part": ("world", "part")}
+OWNERS = {
+    "run": (),
+    "world": ("world",),
+    "grain": ("world", "grain"),
+    "part": ("world", "part"),
+    "drop": ("world", "drop"),
+    "gauge": ("world", "gauge"),
+    "level": ("world", "level"),
+}
 DIMENSIONS = {PLANE: "axis", FREEDOMS: "freedom"}  # what runs over components that many quantities have
 
 

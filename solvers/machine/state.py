@@ -6,8 +6,8 @@ Each owner declares its arrays under its own name:
     self.step, self.status = own.integers((Axis("world", worlds),), "step", "status")
 
 makes the arrays "clock.step" and "clock.status". Checkpoints, resume, growing, reordering and leaving a world out use
-these names and axes. Three axis names have a general meaning: along "world" and "unit" the worlds are consecutive, and
-entries along "grain" follow the grains when they are renumbered.
+these names and axes. Four axis names have a general meaning: along "world", "unit" and "block" the worlds are
+consecutive, and entries along "grain" follow the grains when they are renumbered.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
@@ -18,7 +18,7 @@ import taichi as ti
 
 from solvers.machine import memory, runtime
 
-OF_WORLDS = ("world", "unit")
+OF_WORLDS = ("world", "unit", "block")
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,80 @@
+"""What a scene says of its water: the liquid, the particles' size, the models by name, and the gauges."""
+
+from dataclasses import dataclass
+from typing import Annotated
+
+from solvers.machine.marks import Doc, Interval, Unit
+
+# Columns of `Scene.drops` (W, n, 6): place and velocity (m, m/s; in the tank's axes, the velocity relative to the
+# tank), relative excess of density s = ρ/ρ0 − 1, and volume (m²) in the plane.
+Y, Z, VELOCITY_Y, VELOCITY_Z, EXCESS, VOLUME = range(6)
+
+
+@dataclass(frozen=True)
+class Gauge:
+    """A pressure gauge in a wall: its middle, the direction of the wall there, its length, and how fast it responds.
+
+    It shows the mean over its length, through a first-order low-pass filter with the time constant `response`.
+    """
+
+    place: Annotated[tuple[float, float], Unit("m"), Doc("Middle of the sensor on the wall, y and z in the tank.")]
+    length: Annotated[float, Unit("m"), Interval(ge=0), Doc("Length of the sensor along the wall.")] = 0.0
+    response: Annotated[float, Unit("s"), Interval(ge=0), Doc("Time constant of the sensor.")] = 0.0
+
+
+@dataclass(frozen=True)
+class Level:
+    """A gauge of the water's depth above the floor at a place `y` (m) of the tank's own axes."""
+
+    y: Annotated[float, Unit("m"), Doc("Where the depth is measured, along the tank's floor.")]
+
+
+@dataclass(frozen=True)
+class Pull:
+    """A force towards a fixed point, −`rate`² (r − centre) per mass (Monaghan & Rafiee 2013, eq. 4.1)."""
+
+    rate: float  # 1/s
+    centre: tuple[float, float] = (0.0, 0.0)  # m
+
+
+@dataclass(frozen=True)
+class Water:
+    """The liquid of a scene and the models that compute it; SI units.
+
+    `spacing` Δx (m) of the particles and `smoothing` h/Δx; `density` ρ0 (kg/m³); `sound_speed` c0 (m/s) of the weakly
+    compressible liquid. `kernel`, `state`, `diffusion` and `viscosity` are names of the registries. `delta` is the
+    strength δ of the diffusion of density; `alpha` that of the artificial viscosity, or `kinematic` ν (m²/s) that of
+    laminar flow. `slip`: water slides freely along walls, else it sticks to them. `full`: the tank has no free surface,
+    so that walls may pull. `shifting`: particles are shifted to even their distances. `walls`: whether the tank's
+    outline holds the water; without, it moves freely in space. `periodic`: y wraps round at the tank's sides.
+    """
+
+    spacing: float
+    sound_speed: float
+    density: float = 1000.0
+    smoothing: float = 2.0
+    kernel: str = "wendland-c2"
+    state: str = "linear"
+    diffusion: str = "antuono"
+    delta: float = 0.1
+    viscosity: str = "artificial"
+    alpha: float = 0.01
+    kinematic: float = 0.0
+    slip: bool = True
+    full: bool = False
+    shifting: str = "none"
+    walls: bool = True
+    periodic: bool = False
+    pull: Pull | None = None
+    gauges: tuple[Gauge, ...] = ()
+    levels: tuple[Level, ...] = ()
+
+    @property
+    def length(self) -> float:
+        """Smoothing length h (m)."""
+        return self.smoothing * self.spacing
+
+    @property
+    def reach(self) -> float:
+        """Radius (m) of the kernels' support, 2h."""
+        return 2.0 * self.length

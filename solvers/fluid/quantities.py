@@ -1,0 +1,27 @@
+"""What is known of the water: its sums and gauges (`census`), and each of its particles (`state`)."""
+
+from solvers.machine.quantity import PLANE, Quantity
+
+SERIES = (
+    Quantity("water_centre", "m", PLANE, "centre of mass of the water in the tank"),
+    Quantity("water_momentum", "N s", PLANE, "momentum of the water over the earth, in the tank's axes"),
+    Quantity("water_kinetic", "J", label="kinetic energy of the water, relative to the tank"),
+    Quantity("water_potential", "J", label="potential energy of the water above the earth's origin"),
+    Quantity("water_elastic", "J", label="elastic energy of the water's compression"),
+    Quantity("water_total", "J", label="energy of the water over the earth: kinetic, potential and elastic"),
+    Quantity("water_viscous", "J", label="energy that viscosity has taken since the start"),
+    Quantity("water_diffusive", "J", label="energy that diffusion of density has taken since the start"),
+    Quantity("water_work", "J", label="work of the walls on the water since the start"),
+    Quantity("water_excess", "1", label="largest deviation of the density from that at rest"),
+    Quantity("water_dense", "1", label="share of the water whose density deviates by more than 3 %"),
+    Quantity("gauge_pressure", "Pa", label="pressure at each gauge", per="gauge"),
+    Quantity("gauge_peak", "Pa", label="highest pressure at each gauge since the last sample", per="gauge"),
+    Quantity("level_depth", "m", label="depth of the water above the floor at each level gauge", per="level"),
+)
+# What the watch asks and no recording has: the number of a particle that has left the tank.
+ESCAPED = Quantity("water_escaped", "1", label="number of a particle outside the tank", never=-1.0)
+FRAMES = (
+    Quantity("water_place", "m", PLANE, "place of each particle of water in the tank", per="drop"),
+    Quantity("water_velocity", "m/s", PLANE, "velocity of each particle of water, relative to the tank", per="drop"),
+    Quantity("water_pressure", "Pa", label="pressure of each particle of water", per="drop"),
+)

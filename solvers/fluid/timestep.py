@@ -1,0 +1,66 @@
+"""The time step derived from a scene's water: sound, acceleration, viscosity, diffusion of density and motion."""
+
+from math import inf, sqrt
+
+from solvers.fluid.given import VELOCITY_Y, VELOCITY_Z
+from solvers.machine.limit import Limit
+
+COURANT = 0.8  # of the time in which sound and water cross h; 1.4 is the largest stable one (standing wave)
+FORCED = 0.25  # of √(h/a) (Monaghan 1992, eq. 10.2)
+SPREAD = 0.125  # of h²/ν (Morris, Fox & Zhu 1997, eq. 21)
+EVENED = 2.0 / 7.0  # of h/(δ c0): the diffusion of density is explicit, with 2 Σ V η = 7/h² over all neighbours
+TRAVELLED = 0.02  # of the shortest period of the tank's motion
+SLOW = 1e-9
+
+
+def limits_of_water(scene) -> list[Limit]:
+    """Bounds on the step of the water of a `solvers.scene.Scene`, for the speeds and accelerations to be expected."""
+    water = scene.water
+    length, sound, speed = water.length, water.sound_speed, water_speed(scene)
+    bounds = [
+        Limit(
+            COURANT * length / (sound + speed),
+            f"{COURANT:g} of the time in which sound crosses the smoothing length of {length:.3g} m at "
+            f"{sound:.3g} + {speed:.3g} m/s",
+            firm=True,
+        )
+    ]
+    pushed = max(scene.gravity, scene.water.pull.rate**2 * scene.span if scene.water.pull else 0.0)
+    pushed += sum(_shaken(motion, scene.span) for motion in scene.motions[0])
+    if pushed > SLOW:
+        bounds.append(Limit(FORCED * sqrt(length / pushed), f"{FORCED:g} √(h/a) at {pushed:.3g} m/s²", firm=True))
+    viscosity = kinematic(water)
+    if viscosity > 0.0:
+        bounds.append(Limit(SPREAD * length**2 / viscosity, f"{SPREAD:g} h²/ν at {viscosity:.3g} m²/s", firm=True))
+    if water.delta > 0.0 and water.diffusion != "none":
+        longest = EVENED * length / (water.delta * sound)
+        bounds.append(Limit(longest, "the diffusion of density", firm=True))
+    shortest = min((1.0 / motion.frequency for motion in scene.motions[0] if hasattr(motion, "frequency")), default=inf)
+    if shortest < inf:
+        bounds.append(Limit(TRAVELLED * shortest, f"{TRAVELLED:g} of the shortest period of the motion"))
+    return bounds
+
+
+def kinematic(water) -> float:
+    """Kinematic viscosity ν (m²/s): as given, or that of the artificial viscosity, α h c0/(2 (D + 2)), D = 2.
+
+    Monaghan (2005), eq. 8.8: the term α h c0 of pairs of neighbours is that of a liquid with this viscosity.
+    """
+    if water.viscosity == "laminar":
+        return water.kinematic
+    return water.alpha * water.length * water.sound_speed / 8.0
+
+
+def water_speed(scene) -> float:
+    """Highest speed (m/s) of the water to be expected: a fall through the tank, its own start, or the tank's motion."""
+    start = scene.drops[..., [VELOCITY_Y, VELOCITY_Z]]
+    fastest = float(sqrt((start**2).sum(axis=-1).max(initial=0.0)))
+    return max(fastest, scene.credible_speed() if scene.water.walls else 0.0)
+
+
+def _shaken(motion, lever: float) -> float:
+    """Bound on the acceleration (m/s²) of a harmonic motion; other motions are slow, and bring none."""
+    if not hasattr(motion, "frequency"):
+        return 0.0
+    peak = motion.amplitude * (6.2832 * motion.frequency) ** 2
+    return peak * (lever if motion.coordinate == "turn" else 1.0)
