@@ -91,7 +91,7 @@ class Census:
     @ti.func
     def sum_chunk(self, w, chunk):
         """Sums over one chunk of blocks."""
-        p, c = ti.static(self.particles, self.constants)
+        p, c = self.particles, self.constants
         sums = [ti.cast(0.0, self.exact) for _ in ti.static(range(len(SUMS)))]
         sums[self.at.escaped] = NEVER
         start = w * p.stride
@@ -120,15 +120,26 @@ class Census:
                     sums[self.at.dense] += ti.select(ti.abs(s) > DENSE, m, 0.0)
                     sums[self.at.excess] = ti.max(sums[self.at.excess], ti.abs(s))
                     if ti.static(self.closed):  # noqa: SIM102 (compiled only where no water may leave)
-                        if not self.walls.holds(p.place[0][b, lane], p.place[1][b, lane]):
+                        if self.is_out(w, p.place[0][b, lane], p.place[1][b, lane]):
                             sums[self.at.escaped] = ti.max(sums[self.at.escaped], p.number[b, lane])
         for k in ti.static(range(len(SUMS))):
             self.sums[k][w, chunk] = sums[k]
 
     @ti.func
+    def is_out(self, w, y, z):
+        """Whether a point is outside the tank by more than half a spacing: in an impact water may dent a wall."""
+        out = not self.walls.holds(y, z)
+        if out:
+            shift, near = self.walls.shift(w, 0.0), 0.5 * self.constants.get("spacing")
+            for feature in range(self.walls.features):
+                if self.walls.near(feature, shift, y, z, near):
+                    out = False
+        return out
+
+    @ti.func
     def velocity_now(self, w, b, lane):
         """Velocity (m/s) of a particle over the earth now, in the tank's axes: that kept, and half a kick."""
-        p, half = ti.static(self.particles), self.behind[w]
+        p, half = self.particles, self.behind[w]
         return [
             ti.cast(p.velocity[a][b, lane], self.exact)
             + half * (ti.cast(p.acceleration[a][b, lane], self.exact) + self.now[3 + a][w])
@@ -138,7 +149,7 @@ class Census:
     @ti.func
     def measure_level(self, w, level):
         """Depth at a level gauge: the water's volume around it, weighted by a one-dimensional kernel."""
-        p = ti.static(self.particles)
+        p = self.particles
         reach, y = ti.cast(self.constants.get("reach"), self.exact), self.level_y[level]
         total = ti.cast(0.0, self.exact)
         for b in range(w * p.stride, w * p.stride + p.used[w]):

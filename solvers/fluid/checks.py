@@ -42,8 +42,9 @@ def check_water(rows: dict[str, np.ndarray], start: np.ndarray, time: float) -> 
 
 
 def residual(rows: dict[str, np.ndarray], start: np.ndarray) -> np.ndarray:
-    """Energy (W,) J that nothing accounts for: gain and losses less the work of the walls."""
-    return rows["water_total"] + rows["water_viscous"] + rows["water_diffusive"] - rows["water_work"] - start
+    """Energy (W,) J that nothing accounts for: gain, losses and what dummies hold, less the work of the walls."""
+    taken = rows["water_viscous"] + rows["water_diffusive"] + rows["water_held"]
+    return rows["water_total"] + taken - rows["water_work"] - start
 
 
 def refuse_scene(water: Water, tanks: int, vessels: bool, parts: int) -> str:

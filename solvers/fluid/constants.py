@@ -11,6 +11,8 @@ from solvers.fluid.viscosity import VISCOSITY
 from solvers.machine.state import State
 
 FLOOR = 1e-6  # of h², added to squared distances that are divided by
+TOUCH = 0.75  # spacings between a particle and a dummy below which the wall is hard; at rest they are one apart
+HARD = 0.2  # of c0/Δx: frequency of a particle on a hard wall, which turns c0/20 back on its way to the dummy
 
 
 @ti.data_oriented
@@ -38,6 +40,8 @@ class Constants:
             "hydrostatic": gravity / sound**2,  # g/c0², 1/m
             "spacing": water.spacing,
             "reach": water.reach,
+            "touch": TOUCH * water.spacing,
+            "hard": water.density * (HARD * sound / water.spacing) ** 2 / (slope * water.spacing**2),
             "fastest": 0.5 * sound,  # Mach 0.5
             "pull": pull.rate**2 if pull else 0.0,
             "pull_y": pull.centre[0] if pull else 0.0,

@@ -47,8 +47,8 @@ class Continuity:
     @ti.func
     def expand_block(self, u, b, listed):
         """As `expand`, for a block; returns the power (W/m) that diffusion takes."""
-        p, c = ti.static(self.particles, self.constants)
-        lists, diffusion = ti.static(self.lists, self.constants.diffusion)
+        p, c = self.particles, self.constants
+        lists = self.lists
         w = self.units.world(u)
         origin = [p.place[a][b, 0] for a in ti.static(range(p.axes))]
         own = [p.offset(b, origin[a], a) for a in ti.static(range(p.axes))]
@@ -56,7 +56,7 @@ class Continuity:
         slope = [p.load(p.slope[a], b) for a in ti.static(range(p.axes))]
         s, shrink = p.load(p.excess, b), c.get("shrink")
         rest = [c.get("hydrostatic") * self.down(w, a) for a in ti.static(range(p.axes))]
-        opened, evened = p.zeros(), p.zeros()
+        opened, evened, walled = p.zeros(), p.zeros(), p.zeros()
         for k in range(lists.near.first[u, listed], lists.near.first[u, listed + 1]):
             j = lists.near.slots[u, k]
             jb, lane = j // p.lanes, j % p.lanes
@@ -64,12 +64,12 @@ class Continuity:
             weight = p.volume[jb, lane] * c.kernel.slope(ti.max(1.0 - ti.sqrt(dot(apart, apart)) * shrink, 0.0))
             nearing = [p.velocity[a][jb, lane] - speed[a] for a in ti.static(range(p.axes))]
             opened += weight * dot(nearing, apart)
-            if ti.static(diffusion.acts):
+            if ti.static(c.diffusion.acts):
                 more = 2.0 * (p.excess[jb, lane] - s)
-                if ti.static(diffusion.renormalised):
+                if ti.static(c.diffusion.renormalised):
                     both = [p.slope[a][jb, lane] + slope[a] for a in ti.static(range(p.axes))]
                     more += dot(both, apart)
-                elif ti.static(diffusion.dynamic):
+                elif ti.static(c.diffusion.dynamic):
                     more += 2.0 * dot(rest, apart)
                 evened += weight * more
         if ti.static(p.dry > 0):
@@ -79,10 +79,11 @@ class Continuity:
                 apart = [own[a] - ti.cast(p.place[a][jb, lane] - origin[a], p.real) for a in ti.static(range(p.axes))]
                 weight = p.volume[jb, lane] * c.kernel.slope(ti.max(1.0 - ti.sqrt(dot(apart, apart)) * shrink, 0.0))
                 nearing = [p.velocity[a][jb, lane] - speed[a] for a in ti.static(range(p.axes))]
-                opened += weight * dot(nearing, apart)
+                walled += weight * dot(nearing, apart)
         factor = c.get("slope")
         evened *= factor * c.get("spread")
         p.store(p.rate, b, (1.0 + s) * (factor * opened) + evened)
+        p.store(p.rate_of_walls, b, (1.0 + s) * (factor * walled))
         taken = evened * c.state.share(s) * p.load(p.mass, b) / ((1.0 + s) * (1.0 + s))
         return 0.0 - ti.cast(taken.sum() * (c.get("stiffness") / c.get("density")), p.exact)
 

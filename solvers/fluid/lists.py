@@ -91,7 +91,7 @@ class Lists:
     @ti.func
     def moved(self, u):
         """Largest displacement (m) of a unit's particles since its lists were built."""
-        p = ti.static(self.particles)
+        p = self.particles
         first, end = self.shares.wet(u)
         farthest = ti.cast(0.0, p.real)
         for b in range(first, end):
@@ -106,7 +106,7 @@ class Lists:
     @ti.func
     def rebuild(self, u):
         """Rebuild the lists of a unit, after its world was sorted; returns whether they fit."""
-        p = ti.static(self.particles)
+        p = self.particles
         spacing = self.constants.get("spacing")
         skin = ti.max(SKIN[0] * spacing, ti.min(SKIN[1] * spacing, 2.0 * LASTING * self.last[u]))
         reach, fits = self.constants.get("reach") + skin, True
@@ -140,7 +140,7 @@ class Lists:
     @ti.func
     def search(self, u, b, reach, found, listing: ti.template(), first: ti.template(), walls: ti.template()):
         """List the water, or the walls, within `reach` (m) of a block's box; returns the number listed up to there."""
-        p, order = ti.static(self.particles, self.order)
+        p, order = self.particles, self.order
         w = self.units.world(u)
         lower, upper = self.box(b)
         far = ti.cast(reach, p.where)
@@ -175,7 +175,7 @@ class Lists:
     @ti.func
     def box(self, b):
         """Lower and upper corner (m) of the box round the particles of a block."""
-        p = ti.static(self.particles)
+        p = self.particles
         lower = [ti.cast(1e9, p.where) for _ in ti.static(range(p.axes))]
         upper = [ti.cast(-1e9, p.where) for _ in ti.static(range(p.axes))]
         for lane in range(p.lanes):

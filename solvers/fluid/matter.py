@@ -182,7 +182,7 @@ class WaterMatter(Matter):
             whole = field.to_numpy().reshape(p.worlds, p.stride, p.lanes)
             whole[:, p.wet :] = values
             field.from_numpy(whole.reshape(-1, p.lanes))
-        for field in (self.forces.lost, self.forces.work, self.continuity.lost, self.census.behind, self.lists.last):
+        for field in (self.forces.lost, self.forces.held, self.forces.work, self.continuity.lost, self.census.behind, self.lists.last):
             field.fill(0.0)
         self.lists.skin.fill(0.0)
         self.lists.expire()
@@ -202,7 +202,7 @@ class WaterMatter(Matter):
         worlds = self.particles.worlds
         spent = [
             field.to_numpy().reshape(worlds, -1).sum(axis=1)
-            for field in (self.forces.lost, self.continuity.lost, self.forces.work)
+            for field in (self.forces.lost, self.continuity.lost, self.forces.work, self.forces.held)
         ]
         rows = {
             "water_centre": centre,
@@ -214,6 +214,7 @@ class WaterMatter(Matter):
             "water_viscous": spent[0] * thick,
             "water_diffusive": spent[1] * thick,
             "water_work": spent[2] * thick,
+            "water_held": spent[3] * thick,
             "water_excess": sums["excess"],
             "water_dense": sums["dense"] / mass,
             "level_depth": self.census.level_depth.to_numpy()[:, : self.census.levels],

@@ -43,7 +43,7 @@ class Mover:
     @ti.func
     def kick(self, u, frame, kick, dt):
         """Change a unit's velocities, and move its particles to the middle of the step; returns that all is well."""
-        p, c = ti.static(self.particles, self.constants)
+        p, c = self.particles, self.constants
         w = self.units.world(u)
         pull = [ti.cast(self.poses.felt[a][w], p.real) for a in ti.static(range(p.axes))]
         first, end = self.shares.wet(u)
@@ -68,14 +68,16 @@ class Mover:
     @ti.func
     def finish(self, u, frame, kick, dt):
         """Step a unit's densities, and move its particles to the end of the step; returns whether they are sound."""
-        p, c = ti.static(self.particles, self.constants)
+        p, c = self.particles, self.constants
         w = self.units.world(u)
         first, end = self.shares.wet(u)
         farthest, deviation, tame = p.zeros(), p.zeros(), p.zeros()
         for b in range(first, end):
             filled = p.filled(b)
-            s = p.load(p.excess, b) + dt * filled * p.load(p.rate, b)
-            s = ti.select(p.load(p.span, b) < SPRAY, ti.max(s, 0.0), s)
+            spray, step = p.load(p.span, b) < SPRAY, dt * filled
+            s = self.floored(spray, p.load(p.excess, b) + step * p.load(p.rate, b))
+            # Walls come last: spray that parts is still pushed off a wall that it nears.
+            s = self.floored(spray, s + step * p.load(p.rate_of_walls, b))
             p.store(p.excess, b, s)
             deviation = ti.max(deviation, s * s)
             tame += s
@@ -90,9 +92,14 @@ class Mover:
         return self.fastest[u] < c.get("fastest") and self.deviation[u] < DENSEST
 
     @ti.func
+    def floored(self, spray, s):
+        """The excess of density, of spray at least zero."""
+        return ti.select(spray, ti.max(s, 0.0), s)
+
+    @ti.func
     def drift(self, w, b, filled, half, part: ti.template()):
         """Move a block through half a step; returns the squares (m²) of how far its particles go in the tank."""
-        p, poses = ti.static(self.particles, self.poses)
+        p, poses = self.particles, self.poses
         u = [p.load(p.velocity[a], b) for a in ti.static(range(p.axes))]
         before = [p.load(p.place[a], b) for a in ti.static(range(p.axes))]
         after = [before[a] + p.long(half * u[a]) for a in ti.static(range(p.axes))]
@@ -117,7 +124,7 @@ class Mover:
     @ti.func
     def turn(self, w, b, vector: ti.template(), fields: ti.template(), part: ti.template()):
         """Turn the vectors of a block into the axes at the end of a half step."""
-        p = ti.static(self.particles)
+        p = self.particles
         cos = ti.cast(self.poses.drift[w, part, 0], p.real)
         sin = ti.cast(self.poses.drift[w, part, 1], p.real)
         p.store(fields[0], b, cos * vector[0] - sin * vector[1])

@@ -47,8 +47,8 @@ class Order:
     @ti.func
     def find(self, b, lane):
         """The key of a particle."""
-        place = self.particles.place
-        return self.strip_of(place[1][b, lane]) * self.bins + self.bin_of(place[0][b, lane])
+        p = self.particles
+        return self.strip_of(p.place[1][b, lane]) * self.bins + self.bin_of(p.place[0][b, lane])
 
     @ti.func
     def sort_world(self, w):

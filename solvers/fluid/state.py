@@ -19,8 +19,8 @@ class Particles:
 
     Fields (W · stride, lanes), in the tank's axes. `place` (m); `velocity` (m/s), over the earth; `excess` s = ρ/ρ0 − 1;
     `mass` (kg per metre of thickness) and `number` belong to a particle for good and move with it from block to block.
-    `volume` (m²) and `pressure` (Pa) are published at the start of a step. `acceleration` (m/s²) is that of the last
-    kick; `slope` (1/m) the renormalised gradient of s; `span` the least eigenvalue of Σ V_j r_ji ⊗ ∇W, 1 within water.
+    `volume` (m²) and `pressure` (Pa) are published at the start of a step. `rate` and
+    `rate_of_walls` (1/s) are those of s; `acceleration` (m/s²) is that of the last kick; `slope` (1/m) the renormalised gradient of s; `span` the least eigenvalue of Σ V_j r_ji ⊗ ∇W, 1 within water.
 
     With `lanes` 1, for processors that move each particle by a thread of its own, a block is a particle.
     """
@@ -39,7 +39,8 @@ class Particles:
         self.velocity = own.wide(each, *named("velocity", self.axes))
         self.excess, self.mass = own.wide(each, "excess", "mass")
         (self.number,) = own.wide(each, "number", kind=ti.i32)
-        self.volume, self.pressure, self.rate, self.span = own.wide(each, "volume", "pressure", "rate", "span")
+        self.volume, self.pressure, self.span = own.wide(each, "volume", "pressure", "span")
+        self.rate, self.rate_of_walls = own.wide(each, "rate", "rate_of_walls", kept=False)
         self.acceleration = own.wide(each, *named("acceleration", self.axes))
         self.slope = own.wide(each, *named("slope", self.axes))
         self.built = own.wide(each, *named("built", self.axes), kind=own.place)

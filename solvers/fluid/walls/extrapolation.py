@@ -50,7 +50,7 @@ class Extrapolation:
     @ti.func
     def press_block(self, u, b, begin, end):
         """The pressures of a block of dummies from the entries `begin` to `end` of its list."""
-        p, c = ti.static(self.particles, self.constants)
+        p, c = self.particles, self.constants
         w = self.units.world(u)
         origin = [p.place[a][b, 0] for a in ti.static(range(p.axes))]
         own = [p.offset(b, origin[a], a) for a in ti.static(range(p.axes))]
@@ -88,7 +88,7 @@ class Extrapolation:
     @ti.func
     def felt(self, w, b):
         """g − a_w (m/s²) of a block of dummies: gravity less the acceleration of the wall."""
-        p = ti.static(self.particles)
+        p = self.particles
         felt = [p.ones() * ti.cast(self.poses.felt[2 + a][w], p.real) for a in ti.static(range(p.axes))]
         if ti.static(self.poses.rotating):
             zero = ti.cast(0.0, p.where)
@@ -101,7 +101,7 @@ class Extrapolation:
     @ti.func
     def carry(self, u):
         """Give a unit's dummies the velocities (m/s) of their walls in the middle of the step."""
-        p = ti.static(self.particles)
+        p = self.particles
         w = self.units.world(u)
         first, end = self.shares.dry(u)
         for b in range(first, end):

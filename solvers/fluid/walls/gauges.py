@@ -47,7 +47,7 @@ class Gauges:
     @ti.func
     def measure(self, w, t, kick, dt):
         """Let the gauges of a world follow the pressures of their probes."""
-        p = ti.static(self.particles)
+        p = self.particles
         for gauge in range(self.count):
             total = ti.cast(0.0, p.exact)
             for k in range(self.ends[gauge], self.ends[gauge + 1]):
