@@ -182,7 +182,14 @@ class WaterMatter(Matter):
             whole = field.to_numpy().reshape(p.worlds, p.stride, p.lanes)
             whole[:, p.wet :] = values
             field.from_numpy(whole.reshape(-1, p.lanes))
-        for field in (self.forces.lost, self.forces.held, self.forces.work, self.continuity.lost, self.census.behind, self.lists.last):
+        for field in (
+            self.forces.lost,
+            self.forces.held,
+            self.forces.work,
+            self.continuity.lost,
+            self.census.behind,
+            self.lists.last,
+        ):
             field.fill(0.0)
         self.lists.skin.fill(0.0)
         self.lists.expire()

@@ -63,7 +63,8 @@ class Order:
                     self.count_up(w, self.key[b, lane])
         slots = self.lay_out(w)
         used = (slots + lanes - 1) // lanes
-        for b in range(start, start + used):
+        end = start + ti.max(used, self.particles.used[w])  # blocks that are in use no more are emptied
+        for b in range(start, end):
             for lane in range(lanes):
                 self.source[b, lane] = UNUSED
         for b in range(start, start + self.particles.used[w]):
@@ -74,7 +75,7 @@ class Order:
                     self.count_up(w, k)
                     self.source[start + slot // lanes, slot % lanes] = b * lanes + lane
         for k in ti.static(range(len(self.particles.moved))):
-            self.move_world(self.particles.moved[k], start, start + used)
+            self.move_world(self.particles.moved[k], start, end)
         self.particles.used[w] = used
 
     @ti.func
