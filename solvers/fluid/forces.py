@@ -3,13 +3,9 @@
 import numpy as np
 import taichi as ti
 
-from solvers.fluid.constants import Constants
-from solvers.fluid.lists import Lists
-from solvers.fluid.state import Particles, Shares
+from solvers.fluid.lists import Medium
 from solvers.fluid.walls.extrapolation import Extrapolation
 from solvers.machine.state import State
-from solvers.machine.units import Units
-from solvers.motion.poses import Poses
 from solvers.space.axes import dot
 from solvers.tank.load import Load
 
@@ -21,30 +17,19 @@ OUTLINE = 0  # number of the piece of the tank that all dummies belong to
 class Forces:
     """m du/dt = −Σ V_i V_j (p_i + p_j) ∇W + viscosity (Antuono, Colagrossi, Marrone & Molteni 2010, eq. 6).
 
-    Forces between pairs of particles are equal and opposite; those of dummies are booked on the tank. `lost` (units,) is
-    the energy that viscosity has taken, `held` that which dummies have, `work` that which the walls have given, J per
-    metre of thickness. Dummies take and give energy since their pressures push, but are not worked on in return: only
-    p_i is in the balance of the particle's own density (Cercos-Pita, Antuono, Colagrossi & Souto-Iglesias 2017).
+    Forces between pairs of particles are equal and opposite; those of dummies are booked on the tank. `lost` (units,)
+    is the energy that viscosity has taken, `held` that which dummies have, `work` that which the walls have given, J
+    per metre of thickness. Dummies take and give energy since their pressures push, but are not worked on in return:
+    only p_i is in the balance of the particle's own density (Cercos-Pita, Antuono, Colagrossi & Souto-Iglesias 2017).
     """
 
-    def __init__(
-        self,
-        arrays: State,
-        units: Units,
-        particles: Particles,
-        shares: Shares,
-        lists: Lists,
-        constants: Constants,
-        walls: Extrapolation,
-        load: Load,
-        poses: Poses,
-        thickness: float,
-    ):
-        self.units, self.particles, self.shares, self.lists = units, particles, shares, lists
-        self.constants, self.walls, self.load, self.poses = constants, walls, load, poses
+    def __init__(self, arrays: State, medium: Medium, walls: Extrapolation, load: Load, thickness: float):
+        self.units, self.particles, self.shares = medium.units, medium.particles, medium.shares
+        self.lists, self.constants, self.poses = medium.lists, medium.constants, medium.poses
+        self.walls, self.load = walls, load
         own = arrays.under("water.forces")
-        self.lost, self.held, self.work = own.reals((units.axis,), "lost", "held", "work", kind=own.exact)
-        self.gradients = constants.diffusion.renormalised
+        self.lost, self.held, self.work = own.reals((medium.units.axis,), "lost", "held", "work", kind=own.exact)
+        self.gradients = medium.constants.diffusion.renormalised
         self.thick = arrays.under("water").holding("thickness", np.array([thickness]), "one", own.exact)
 
     @ti.func

@@ -14,7 +14,7 @@ CHUNK = 256  # keys that one thread sums up
 
 @ti.data_oriented
 class Order:
-    """Sorts the particles of a world. `first` (W, keys) are the first slots of each key; slot = lanes · block + lane."""
+    """Sorts the particles of a world. `first` (W, keys) are the keys' first slots; slot = lanes · block + lane."""
 
     def __init__(self, arrays: State, particles: Particles, grid: Grid):
         self.particles, self.grid = particles, grid
@@ -93,7 +93,7 @@ class Order:
         lanes = self.particles.lanes
         spare = self.particles.wet - (self.particles.count + lanes - 1) // lanes - self.strips
         slot, begin, k = 0, 0, 0
-        for strip in range(self.strips):
+        for _ in range(self.strips):
             slot = (slot + lanes - 1) // lanes * lanes
             for along in range(self.bins):
                 count = self.cursor[w, k]
