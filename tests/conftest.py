@@ -49,5 +49,6 @@ def nudged(run: Simulation, position: np.ndarray, seed: int) -> np.ndarray:
 
 @pytest.fixture(scope="session", autouse=True)
 def own_cache(tmp_path_factory):
-    """Tests neither read nor fill the cache of the person who runs them."""
-    os.environ["CARGOLAB_CACHE"] = str(tmp_path_factory.mktemp("cache"))
+    """Tests neither read nor fill the cache of the person who runs them; workers side by side share one."""
+    base = tmp_path_factory.getbasetemp()
+    os.environ["CARGOLAB_CACHE"] = str((base.parent if "PYTEST_XDIST_WORKER" in os.environ else base) / "cache")
