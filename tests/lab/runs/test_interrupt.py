@@ -25,7 +25,7 @@ ENDLESS = {
     "motion.tilt.rate": "60 deg/s",
     "motion.tilt.angle": "20 deg",
     "motion.tilt.hold": "1000 s",
-    "run.repeats": 1,
+    "run.repeats": 2,
     "run.threads": 1,
     "record.checkpoint_every": "50 ms",  # with it go the rows that a reader is to see
     "contact.tangential": "none",  # kernels of few laws compile fast
