@@ -66,8 +66,10 @@ class Footage:
 
     def grains(self, name: str, frame: int, world: int) -> np.ndarray:
         """The values (n,) or (n, 2) of a quantity for each grain in a frame."""
-        if not self.radius.size:
-            return NO_GRAINS[name]
+        return self.drops(name, frame, world) if self.radius.size else NO_GRAINS[name]
+
+    def drops(self, name: str, frame: int, world: int) -> np.ndarray:
+        """The values (n,) or (n, 2) of a quantity for each particle of water in a frame."""
         if self._read.get(name, (None,))[0] != frame:
             self._read[name] = frame, self._frames[name][frame].astype(float)
         return self._read[name][1][world]
@@ -136,6 +138,17 @@ class Bed:
     def spin(self, frame: int) -> np.ndarray:
         """Grain spins (n,) relative to the tank, rad/s."""
         return self.footage.grains("spin", frame, self.world)
+
+    def drops(self, name: str, frame: int) -> np.ndarray:
+        """The values (n,) or (n, 2) of a quantity for each particle of water."""
+        return self.footage.drops(name, frame, self.world)
+
+    def water_place(self, frame: int) -> np.ndarray:
+        """Places (n, 2) of the water in the tank frame, m; NaN for what is as far away from the tank as it is large."""
+        place, outline = self.drops("water_place", frame), self.footage.outline
+        size = np.ptp(outline, axis=0).max()
+        near = (place >= outline.min(axis=0) - size) & (place <= outline.max(axis=0) + size)
+        return np.where(near.all(axis=1, keepdims=True), place, np.nan)
 
     def plates(self, frame: int) -> list[np.ndarray]:
         """The moving parts as polylines (m, 2) m in the tank frame, at their positions in a frame."""
