@@ -12,6 +12,7 @@ from lab.base.errors import LabError, Unusable
 from lab.base.trust import BEYOND
 from lab.paint.painter import Edges
 from lab.paint.sea import Sea
+from lab.paint.water.pool import pool_of
 from lab.recording import Recording, open_recording
 from lab.recording.ship_end import ends
 from solvers.grains.quantities import FRAMES
@@ -27,6 +28,7 @@ class Footage:
     outlines of irregular grains, None if all are discs; shape_names: of their classes; outline (m, 2) m; open_edges:
     those without a wall; fixed (k, 3) y, z, radius m; parts: polylines at rest (m, 2) m by name; part (F, W, P, 2):
     their displacements, m;
+    matters: the keys of what the tank holds; water: its particles' volume and gauges, None without water;
     sea: the ship and her waves if the tank is a ship's hold, else None; ends: the loss of each ship, None if not lost;
     settings: the preset's [video]; title. Raises LabError when there is no frame or no sample.
     """
@@ -42,6 +44,8 @@ class Footage:
                 raise Unusable(f"{recording.path} is damaged (invalid times or poses): record the run again.")
         self.centre_of_mass, self.spilled = series.get("centre_of_mass"), series.get("spilled")
         self.radius, self.outline, self.kind = recording.radius, recording.outline, recording.kind
+        self.matters, self._series = recording.preset.matters, series
+        self.water = pool_of(recording)
         self.kinds = ["the rest", *recording.preset.kinds]
         self.shapes = recording.shapes
         self.shape_names = list(recording.preset.shapes) if self.shapes else ["disc"]
@@ -57,6 +61,10 @@ class Footage:
     def worlds(self) -> int:
         """W, the number of worlds."""
         return len(self.radius)
+
+    def measured(self, name: str) -> np.ndarray:
+        """A quantity of the series (T, W, ...)."""
+        return self._series[name]
 
     def sea_of(self, frame: int) -> Sea | None:
         """The sea as it is in a frame."""

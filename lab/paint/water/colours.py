@@ -31,7 +31,7 @@ def pressure(beds: Sequence[Bed]) -> Colouring:
     def values(bed: Bed, frame: int) -> np.ndarray:
         return factor * bed.drops("water_pressure", frame)
 
-    return Colouring(f"pressure of the water ({unit})", factor * low, factor * high, table("viridis"), values)
+    return Colouring(f"pressure of the water ({unit})", factor * low, factor * high, table("viridis", low=0.15), values)
 
 
 def speed(beds: Sequence[Bed]) -> Colouring:

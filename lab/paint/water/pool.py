@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from lab.recording import Recording
 from solvers.fluid.given import Gauge, Level
 
 
@@ -27,3 +28,10 @@ def numbered(gauges: tuple[Gauge, ...], levels: tuple[Level, ...]) -> tuple[dict
         {f"P{k}": gauge for k, gauge in enumerate(gauges, start=1)},
         {f"L{k}": level for k, level in enumerate(levels, start=1)},
     )
+
+
+def pool_of(recording: Recording) -> Pool | None:
+    """The water of a recording; None without water."""
+    if "water" not in recording.preset.matters:
+        return None
+    raise NotImplementedError
