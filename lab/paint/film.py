@@ -59,7 +59,9 @@ def choose_look(footage: Footage, **options: object) -> Look:
             f"Pictures of {quoted(look.width)} x {quoted(look.height)} pixels cannot be filmed: width and height must "
             f"be even, {SMALLEST[0]} x {SMALLEST[1]} at least and {LARGEST[0]} x {LARGEST[1]} at most."
         )
-    words = tuple(dict.fromkeys(word for matter in footage.matters for word in OF_MATTERS[matter])) or OF_MATTERS["grains"]
+    words = (
+        tuple(dict.fromkeys(word for matter in footage.matters for word in OF_MATTERS[matter])) or OF_MATTERS["grains"]
+    )
     if look.colour not in words:
         raise LabError(f"Unknown colour '{quoted(str(look.colour))[1:-1]}': choose one of {', '.join(words)}.")
     if look.frame not in FRAMES:

@@ -216,7 +216,7 @@ def mix(picture: ti.template(), row, column, change):
 
 
 @ti.func
-def _colour_of(picture: ti.template(), row, column):
+def colour_of(picture: ti.template(), row, column):
     return ti.Vector([ti.cast(picture[row, column, c], ti.f64) for c in ti.static(range(3))])
 
 
@@ -324,7 +324,7 @@ def _paint_bands(
                             if share == 1.0:
                                 _set(picture, row, column, paint)
                             else:
-                                mix(picture, row, column, share * (paint - _colour_of(under, row, column)))
+                                mix(picture, row, column, share * (paint - colour_of(under, row, column)))
 
 
 @ti.func
@@ -394,7 +394,7 @@ def _paint_walls(
                 inside = ti.math.clamp(0.5 - outside, 0.0, 1.0)
                 reached = (1.0 - inside) * ti.math.clamp(wall - _off_walls(x, y, corners, walled, wall) + 0.5, 0.0, 1.0)
                 for pixel in range(column, stop):
-                    under = _colour_of(picture, row, pixel)
+                    under = colour_of(picture, row, pixel)
                     mix(picture, row, pixel, reached * (wall_colour - under) + inside * (inner_colour - under))
             column = stop
 
@@ -407,7 +407,7 @@ def _paint_line(picture: Picture, corners: Table, box: ti.types.vector(4, ti.i32
             nearest = ti.min(nearest, _past(column + 0.5, row + 0.5, corners, k, k + 1)[0])
         share = ti.math.clamp(reach - nearest + 0.5, 0.0, 1.0)
         if share > 0.0:
-            mix(picture, row, column, share * (colour - _colour_of(picture, row, column)))
+            mix(picture, row, column, share * (colour - colour_of(picture, row, column)))
 
 
 @ti.func
@@ -442,4 +442,4 @@ def _paint_strokes(picture: Picture, covered: Shares, starts: Index, members: In
                 for column in range(picture.shape[1]):
                     share = covered[row, column]
                     if share > 0.0:
-                        mix(picture, row, column, share * (colour - _colour_of(picture, row, column)))
+                        mix(picture, row, column, share * (colour - colour_of(picture, row, column)))

@@ -31,7 +31,7 @@ def pressure(beds: Sequence[Bed]) -> Colouring:
     def values(bed: Bed, frame: int) -> np.ndarray:
         return factor * bed.drops("water_pressure", frame)
 
-    return Colouring(f"pressure of the water ({unit})", factor * low, factor * high, table("viridis", low=0.15), values)
+    return Colouring(f"pressure ({unit})", factor * low, factor * high, table("viridis", low=0.15), values)
 
 
 def speed(beds: Sequence[Bed]) -> Colouring:
@@ -46,7 +46,7 @@ def speed(beds: Sequence[Bed]) -> Colouring:
     def values(bed: Bed, frame: int) -> np.ndarray:
         return factor * speeds(bed, frame)
 
-    return Colouring(f"speed of the water in the tank ({unit})", 0.0, factor * top, table("viridis"), values)
+    return Colouring(f"speed in the tank ({unit})", 0.0, factor * top, table("viridis"), values)
 
 
 def turning(beds: Sequence[Bed]) -> Colouring:

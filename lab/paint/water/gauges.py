@@ -61,7 +61,9 @@ class Marks:
         face = deco.font(LETTERS * u, bold=True)
         at, out = camera.pixels(place[None])[0], camera.pixels(np.array([place, place + outwards]))
         towards = (out[1] - out[0]) / camera.scale
-        half = 0.5 * np.array([face.getlength(name), LETTERS * u])  # of the text, so that it clears the dot on all sides
+        half = 0.5 * np.array(
+            [face.getlength(name), LETTERS * u]
+        )  # of the text, so that it clears the dot on all sides
         at = at + towards * (AWAY * u + np.abs(towards) @ half)
         draw.text(tuple(at), name, self.hues[name], face, "mm", stroke_width=2, stroke_fill=palette.PAPER)
 

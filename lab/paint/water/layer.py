@@ -17,13 +17,13 @@ from lab.paint.water.surface import Paints, paint_surface
 if TYPE_CHECKING:
     from lab.paint.footage import Bed
 
-LIT, DEEP, EDGE, FOAM = (118, 178, 222), (44, 106, 168), (22, 72, 124), (226, 239, 248)
+LIT, DEEP, EDGE, FOAM = (118, 178, 222), (44, 106, 168), (22, 72, 124), (208, 228, 243)
 SPRAY = (150, 196, 230)  # of drops in the air, which foam would let vanish before the empty tank
 FIELD_EDGE = (40, 46, 56)  # of the line around a field
 LINE = 0.085  # thickness of the line along the surface, in units of a page
 STRONG = 0.85  # of that line
-WITHIN, APART = 0.72, 0.52  # levels at a particle: above, it is part of the surface; below, it is a drop of its own
-FOAMING = 0.85, 0.6  # levels at a particle between which foam begins and is full
+WITHIN, APART = 0.62, 0.46  # levels at a particle: above, it is part of the surface; below, it is a drop of its own
+FOAMING = 0.7, 0.5  # levels at a particle between which foam begins and is full
 FAST = 0.2, 0.6  # speeds over that of a fall through the tank's height between which foam begins and is full
 GRAVITY = 9.81  # m/s², for the speed of that fall
 DISC = 0.46  # radius of a particle painted as a disc, over the distance of the particles
@@ -64,10 +64,10 @@ class WaterLayer:
         else:
             share = _foam(bed, frame, reached, there)
             colour = np.array(LIT) + _ramp(reached, (WITHIN, APART))[:, None] * (np.array(SPRAY) - LIT)
-        paint_surface(picture, camera, grid, level, _toned(grid, sums, place, volume, share), self._paints(under))
         apart = np.sqrt(_ramp(reached, (WITHIN, APART)))
         drops = apart > 0.0
         _paint_discs(picture, camera, place[drops], (apart * np.sqrt(volume / np.pi))[drops], colour[drops])
+        paint_surface(picture, camera, grid, level, _toned(grid, sums, place, volume, share), self._paints(under))
 
     def _grid(self, bed: Bed, camera: Camera) -> Grid:
         """The grid over a bed's tank, kept as long as the picture's scale stays."""

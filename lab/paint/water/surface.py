@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 import taichi as ti
 
-from lab.paint.painter import BAND, PER_TASK, Camera, Colour, Picture, Shares, Table, mix, off_outline, whole
+from lab.paint.painter import BAND, PER_TASK, Camera, Colour, Picture, Shares, Table, colour_of, mix, off_outline, whole
 from lab.paint.water.grid import Grid
 
 HALF = 0.5  # the level on the surface
@@ -154,16 +154,21 @@ def _paint(
                         slope = ti.max(_slope(level, left, low, x, y) / node, 1e-6)
                         deep = (here - HALF) / slope  # pixels below the surface
                         share = ti.math.clamp(deep + 0.5, 0.0, 1.0)
+                        inside = 0.0
                         if share > 0.0:
                             away = _bilinear(distances, left, low, x, y)
-                            share *= _inside(px, py, away, node, scale, corners, is_open)
-                        if share > 0.0:
+                            inside = _inside(px, py, away, node, scale, corners, is_open)
+                        if inside > 0.0:
                             shown = ti.cast(_bilinear(tone, left, low, x, y), ti.f64)
                             paint = upper + height * (lower - upper)
+                            rim = strong * ti.math.clamp(line - deep + 0.5, 0.0, 1.0)
                             if ti.static(shaded):
                                 paint += shown * (_table_colour(table, 1.0) - paint)
+                                rim *= 1.0 - shown  # foam has no sharp edge
                             else:
                                 paint = _table_colour(table, shown)
-                            rim = strong * ti.math.clamp(line - deep + 0.5, 0.0, 1.0)
                             paint += rim * (edge - paint)
-                            mix(picture, row, column, share * (paint - under))
+                            below = under  # beside a wall, whose own share of the pixel stays as it is
+                            if inside == 1.0:
+                                below = colour_of(picture, row, column)
+                            mix(picture, row, column, share * inside * (paint - below))

@@ -52,7 +52,9 @@ def check_video(video: Video, matters: Collection[str]) -> None:
     fitting = [name for name, words in OF_MATTERS.items() if video.colour in words]
     if video.colour and not set(fitting) & set(matters):
         said = " or ".join(fitting)
-        raise LabError(f"video.colour: goes with {said}, and there are none; add a table [{fitting[0]}], or leave this out.")
+        raise LabError(
+            f"video.colour: goes with {said}, and there are none; add a table [{fitting[0]}], or leave this out."
+        )
     for name in ("width", "height"):
         if getattr(video, name) % 2:
             raise LabError(f"video.{name}: must be even for H.264 (got {getattr(video, name)}).")
