@@ -227,7 +227,10 @@ class LivePlot:
         draw.text((0, 0), labels[1], INK, face, anchor="la")
         draw.text((right, self._image.height), labels[0], INK, face, anchor="rd")
         x, strong = float(self._image.width), font(self._text, bold=True)
+        end = face.getlength(labels[1]) + self._text
         for name, colour in reversed(self._names):
+            if x - strong.getlength(name) < end:  # no room for more of them
+                break
             draw.text((x, 0), name, colour, strong, anchor="ra")
             x -= strong.getlength(name) + 0.6 * self._text
         for value in self._levels:

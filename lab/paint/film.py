@@ -23,7 +23,7 @@ from lab.paint.water.gauges import Marks, hues_of
 from lab.paint.water.layer import WaterLayer
 from lab.preset.fields import taken_of
 from lab.preset.sections.ship_axis import axis_motion
-from lab.preset.sections.video import OF_MATTERS, Video, usual_colour
+from lab.preset.sections.video import Video, colours_of
 from lab.preset.units import quoted
 
 FRAMES = taken_of(Video)["frame"].words
@@ -52,16 +52,14 @@ def choose_look(footage: Footage, **options: object) -> Look:
     """The look from the `options` that are not None, else the preset's [video]; raises LabError."""
     wanted = {key: value for key, value in options.items() if value is not None}
     look = Look(**{**asdict(footage.settings), **wanted})
-    look = look if look.colour else replace(look, colour=usual_colour(footage.matters))
+    words = colours_of(footage.matters)
+    look = look if look.colour else replace(look, colour=words[0])
     pairs = zip((look.width, look.height), SMALLEST, LARGEST, strict=True)
     if not all(isinstance(size, int) and size % 2 == 0 and low <= size <= high for size, low, high in pairs):
         raise LabError(
             f"Pictures of {quoted(look.width)} x {quoted(look.height)} pixels cannot be filmed: width and height must "
             f"be even, {SMALLEST[0]} x {SMALLEST[1]} at least and {LARGEST[0]} x {LARGEST[1]} at most."
         )
-    words = (
-        tuple(dict.fromkeys(word for matter in footage.matters for word in OF_MATTERS[matter])) or OF_MATTERS["grains"]
-    )
     if look.colour not in words:
         raise LabError(f"Unknown colour '{quoted(str(look.colour))[1:-1]}': choose one of {', '.join(words)}.")
     if look.frame not in FRAMES:

@@ -1,4 +1,4 @@
-"""Made-up water for the tests of its pictures, with known surfaces, speeds and pressures; no solver has a part in it."""
+"""Made-up water for the tests of its pictures, with known surfaces, speeds and pressures; no solver had a part."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -109,11 +109,8 @@ def standing_wave(spacing: float = 6e-3, depth: float = 0.2, height: float = 0.0
     left, right = -0.5 * wide, 0.5 * wide
     gauges = (Gauge((left, 0.05), 0.01), Gauge((right, 0.05), 0.01), Gauge((0.0, 0.0)))
     levels = (Level(-0.4 * wide), Level(0.25 * wide))
-    depths = np.array([[float(surface(np.array(level.y), now)) for level in levels] for now in series_time])
-    heads = [
-        [float(surface(np.array(gauge.place[0]), now)) - gauge.place[1] for gauge in gauges] for now in series_time
-    ]
+    depths = np.array([[surface(level.y, now) for level in levels] for now in series_time])
+    heads = [[surface(gauge.place[0], now) - gauge.place[1] for gauge in gauges] for now in series_time]
     series = {"level_depth": depths, "gauge_pressure": DENSITY * GRAVITY * np.array(heads)}
-    return MadeFootage(
-        outline, spacing, **found, time=time, series_time=series_time, series=series, gauges=gauges, levels=levels
-    )
+    known = {"series_time": series_time, "series": series, "gauges": gauges, "levels": levels}
+    return MadeFootage(outline, spacing, **found, time=time, **known)

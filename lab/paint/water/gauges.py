@@ -15,6 +15,7 @@ from solvers.fluid.given import Gauge
 DOT, RING, BAR = 0.36, 0.12, 0.2  # radius of a dot, width of its white ring, half thickness of a sensor, in u
 DASH, SPACE, THIN = 0.45, 0.4, 0.055  # of the line of a depth gauge: lengths and half thickness, in u
 AWAY, LETTERS = 0.75, 0.95  # distance of a name from the wall's inner face and its height, in u
+LONG = 0.9  # u, half the length of a name that is too long to stand beside the tank
 SMALLEST = 7.0  # pixels; smaller letters are left out
 OF_TANK = 0.03  # largest u, over the larger side of the tank in the picture
 
@@ -61,9 +62,9 @@ class Marks:
         face = deco.font(LETTERS * u, bold=True)
         at, out = camera.pixels(place[None])[0], camera.pixels(np.array([place, place + outwards]))
         towards = (out[1] - out[0]) / camera.scale
-        half = 0.5 * np.array(
-            [face.getlength(name), LETTERS * u]
-        )  # of the text, so that it clears the dot on all sides
+        half = 0.5 * np.array([face.getlength(name), LETTERS * u])  # of the text, so that it clears the dot
+        if abs(towards[0]) > abs(towards[1]) and half[0] > LONG * u:
+            towards = -towards  # beside the tank there is no room for it
         at = at + towards * (AWAY * u + np.abs(towards) @ half)
         draw.text(tuple(at), name, self.hues[name], face, "mm", stroke_width=2, stroke_fill=palette.PAPER)
 

@@ -104,7 +104,7 @@ def _slope(field: ti.template(), left, low, x, y):
 def _inside(x, y, away, node, scale, corners: ti.template(), is_open: ti.template()):
     """Share of a pixel inside the tank, from the interpolated distance `away` (m), negative inside."""
     outside = away * scale
-    if ti.static(not is_open):
+    if ti.static(not is_open):  # noqa: SIM102 (only the outer one is known as the kernel is compiled)
         if ti.abs(outside) < NEAR_WALL * node + 1.0:
             outside = off_outline(x, y, corners)
     return ti.math.clamp(0.5 - outside, 0.0, 1.0)

@@ -11,7 +11,7 @@ from solvers.machine.marks import Doc, Interval, Unit
 OF_GRAINS = ("speed", "displacement", "layer", "size", "kind", "shape", "spin")  # what `lab.paint.colours` paints
 OF_WATER = ("water", "pressure", "speed", "vorticity", "particles")  # what `lab.paint.water` paints
 COLOURS = (*OF_GRAINS, *(colour for colour in OF_WATER if colour not in OF_GRAINS))
-OF_MATTERS = {"grains": OF_GRAINS, "water": OF_WATER}  # the first one is painted where none is named
+OF_MATTERS = {"grains": OF_GRAINS, "water": OF_WATER}
 
 Rate = Annotated[float, Unit("Hz"), Interval(gt=0, le=1e6)]
 
@@ -42,19 +42,17 @@ class Video:
     speed: Annotated[float, Interval(gt=0), Doc("Playback speed; 1 is as in nature.")] = 1.0
 
 
-def usual_colour(matters: Collection[str]) -> str:
-    """The colour that is painted where none is named, for a tank that holds these matters."""
-    return OF_MATTERS[next(iter(matters), "grains")][0]
+def colours_of(matters: Collection[str]) -> tuple[str, ...]:
+    """The colours of these matters; the first one is painted where none is named. Those of grains for an empty tank."""
+    return tuple(dict.fromkeys(word for matter in matters or ("grains",) for word in OF_MATTERS[matter]))
 
 
 def check_video(video: Video, matters: Collection[str]) -> None:
     """Raise LabError for a colour of what is not there, and for picture sizes that the video codec cannot encode."""
     fitting = [name for name, words in OF_MATTERS.items() if video.colour in words]
     if video.colour and not set(fitting) & set(matters):
-        said = " or ".join(fitting)
-        raise LabError(
-            f"video.colour: goes with {said}, and there are none; add a table [{fitting[0]}], or leave this out."
-        )
+        remedy = f"add a table [{fitting[0]}], or leave this out"
+        raise LabError(f"video.colour: goes with {' or '.join(fitting)}, and there are none; {remedy}.")
     for name in ("width", "height"):
         if getattr(video, name) % 2:
             raise LabError(f"video.{name}: must be even for H.264 (got {getattr(video, name)}).")
