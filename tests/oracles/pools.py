@@ -58,7 +58,7 @@ class MadeFootage:
         self.part = np.zeros((len(self.time), 1, 0, 2))
         if self.pose is None:
             self.pose = np.zeros((len(self.time), 3))
-        self.pose = self.pose[:, None]
+        self.pose = self.pose.reshape(-1, 1, 3)
         ways = [np.interp(self.series_time, self.time, self.pose[:, 0, k]) for k in range(3)]
         self.series_pose = np.stack(ways, axis=-1)[:, None]
 
@@ -83,8 +83,8 @@ class MadeFootage:
 def standing_wave(spacing: float = 6e-3, depth: float = 0.2, height: float = 0.05, frames: int = 12) -> MadeFootage:
     """The first standing wave of a tank by linear theory, half a period of it: the surface, velocities and pressures.
 
-    η = height cos kx cos ωt, with x from the left wall. The particles are moved from a lattice at rest by
-    height cos ωt (−cosh kz sin kx, sinh kz cos kx)/sinh kd, a displacement without divergence.
+    Water at rest moves by height cos ωt (−cosh kz sin kx, sinh kz cos kx)/sinh kd, without divergence, x from the left
+    wall. `surface(y, frame)` is its height.
     """
     outline = tank()
     wide = np.ptp(outline[:, 0])
@@ -92,14 +92,19 @@ def standing_wave(spacing: float = 6e-3, depth: float = 0.2, height: float = 0.0
     omega = np.sqrt(GRAVITY * k * np.tanh(k * depth))
     time = np.linspace(0.0, np.pi / omega, frames)
 
+    def ways(place: np.ndarray) -> np.ndarray:
+        x, z = place[:, 0] + 0.5 * wide, place[:, 1]
+        way = np.column_stack([-np.cosh(k * z) * np.sin(k * x), np.sinh(k * z) * np.cos(k * x)])
+        return height / np.sinh(k * depth) * way
+
+    line = np.column_stack([np.linspace(-0.5 * wide, 0.5 * wide, 500), np.full(500, depth)])
+
     def surface(y: np.ndarray, now: float) -> np.ndarray:
-        return depth + height * np.cos(k * (y + 0.5 * wide)) * np.cos(omega * now)
+        return np.interp(y, *(line + np.cos(omega * now) * ways(line)).T)
 
     found = {"place": [], "velocity": [], "pressure": []}
     rest = filled(lambda p: p[:, 1] < depth, outline, spacing, rough=0.1)
-    x, z = rest[:, 0] + 0.5 * wide, rest[:, 1]
-    way = np.column_stack([-np.cosh(k * z) * np.sin(k * x), np.sinh(k * z) * np.cos(k * x)])
-    way *= height / np.sinh(k * depth)
+    way = ways(rest)
     for now in time:
         place = rest + np.cos(omega * now) * way
         found["place"].append(place)
@@ -113,4 +118,6 @@ def standing_wave(spacing: float = 6e-3, depth: float = 0.2, height: float = 0.0
     heads = [[surface(gauge.place[0], now) - gauge.place[1] for gauge in gauges] for now in series_time]
     series = {"level_depth": depths, "gauge_pressure": DENSITY * GRAVITY * np.array(heads)}
     known = {"series_time": series_time, "series": series, "gauges": gauges, "levels": levels}
-    return MadeFootage(outline, spacing, **found, time=time, **known)
+    made = MadeFootage(outline, spacing, **found, time=time, **known)
+    made.surface = lambda y, frame: surface(y, time[frame])
+    return made
