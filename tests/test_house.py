@@ -14,7 +14,19 @@ import pytest
 
 ROOT = Path(__file__).parents[1]
 FLOORS = {  # from the ground up: a room imports those before it
-    "solvers": ("machine", "ship", "space", "tank", "motion", "grains", "fluid", "matters", "time", "scene", "simulation"),
+    "solvers": (
+        "machine",
+        "ship",
+        "space",
+        "tank",
+        "motion",
+        "grains",
+        "fluid",
+        "matters",
+        "time",
+        "scene",
+        "simulation",
+    ),
     "lab": (
         *("base", "preset", "assembly", "recording", "measures", "paint", "report"),
         *("runs", "sweeps", "view", "studies", "cli"),

@@ -7,6 +7,7 @@ from lab.preset.schema import Preset
 from lab.preset.sections.water.liquid import bounds, liquid
 from solvers.fluid.given import VOLUME
 from solvers.fluid.start.lattice import at_rest
+from solvers.scene import Scene
 
 
 def water_of(preset: Preset) -> dict:
@@ -35,3 +36,8 @@ def most_drops(preset: Preset) -> int:
 def volumes_of(drops: np.ndarray | None, worlds: int) -> np.ndarray:
     """Volumes (W, n) m² of the particles of a scene in the plane; n is 0 without water."""
     return np.zeros((worlds, 0)) if drops is None else drops[..., VOLUME]
+
+
+def particles(scene: Scene) -> int:
+    """Number of grains and of particles of water in a world."""
+    return scene.radius.shape[1] + scene.particles

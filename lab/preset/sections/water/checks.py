@@ -41,10 +41,10 @@ def check_water(preset: "Preset") -> None:
 
 def _check_company(preset: "Preset") -> None:
     """Raise LabError for what is in the tank beside water, or carries it, and the solver cannot compute."""
-    if preset.grains is not None:
-        raise LabError("water: grains and water in one tank are not computed yet; leave out [grains] or [water].")
     if preset.ship is not None:
         raise LabError("water: water in a ship's hold is not computed yet; the sea outside is [sea].")
+    if preset.grains is not None:
+        raise LabError("water: grains and water in one tank are not computed yet; leave out [grains] or [water].")
     if preset.parts:
         raise LabError("parts: plates in water are not computed yet; draw them into tank.outline, or leave them out.")
 
