@@ -1,5 +1,6 @@
 """The matters that a tank may hold, a line each: what makes one from a scene, or None where the scene has none."""
 
+from solvers.fluid.matter import make_water
 from solvers.grains.matter import make_grains
 
-MATTERS = (make_grains,)
+MATTERS = (make_grains, make_water)

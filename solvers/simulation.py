@@ -2,15 +2,18 @@
 
 from collections.abc import Callable
 from collections.abc import Sequence as Several
+from contextlib import nullcontext
 from dataclasses import replace
 
 import numpy as np
 
+from solvers.fluid.matter import WaterMatter
 from solvers.grains.matter import GrainMatter
 from solvers.grains.pressing import UNTOUCHED, Pressing
 from solvers.machine import runtime
 from solvers.machine.errors import Unavailable
 from solvers.machine.state import Axes, Axis, State
+from solvers.machine.wide import real_vectors
 from solvers.matters import MATTERS
 from solvers.motion.carrier import carrier_kind, make_carrier
 from solvers.motion.observer import Observer
@@ -53,9 +56,10 @@ class Simulation:
         answers = carrier_kind(scene.vessels).answers
         self.arch = "cpu" if answers and arch == "auto" else runtime.choose_arch(arch, scene.precision)
         runtime.initialise(self.threads, self.arch, scene.precision)
-        worlds, count = scene.radius.shape
+        worlds, grains = scene.radius.shape
         self.scene, self.dt = scene, scene.time_step()
         self.longest_step = scene.longest_step(1.0)  # s, the limit at set-up
+        count = grains + scene.particles
         self.schedule_name = choose_schedule(scene.schedule, self.arch, worlds, count, self.threads, answers)
         self.units_a_world = units or units_a_world(self.schedule_name, worlds, count, self.threads)
         self.skin = skin or (SKIN_OF_CONVEX if scene.shapes and scene.shapes.convex else SKIN) * 2.0 * scene.mean_radius
@@ -70,7 +74,7 @@ class Simulation:
         # When last, and what the means were
         self.observed, self.means = 0, {mean.name: np.zeros((worlds, *mean.shape)) for mean in means}
         places = np.zeros((worlds, 0, 2)) if position is None else np.asarray(position, dtype=np.float64)
-        self.place(places.reshape(worlds, count, 2), scene.velocity, scene.spin)
+        self.place(places.reshape(worlds, grains, 2), scene.velocity, scene.spin)
 
     def _build(self) -> None:
         """Make the arrays and the objects whose kernels work on them."""
@@ -89,7 +93,7 @@ class Simulation:
         self.carrier.bear(loads)
         self.clock = Clock(arrays, setting.units(scene.radius.shape[1]))
         sequence = Sequence(matters, self.carrier)
-        self.beat = sequence.beat
+        self.beat, self.wide = sequence.beat, any(matter.wide for matter in matters)
         self.schedule = SCHEDULES[self.schedule_name](sequence, self.clock, self.threads)
         self.observer = Observer(arrays, worlds, pieces, self.walls, self.carrier, loads)
         arrays.finish()
@@ -99,10 +103,17 @@ class Simulation:
         """The scene's grains; None if it has none."""
         return self.matters.get("grains")
 
+    @property
+    def water(self) -> WaterMatter | None:
+        """The scene's water; None if it has none."""
+        return self.matters.get("water")
+
     def place(self, position: np.ndarray, velocity: np.ndarray | None = None, spin: np.ndarray | None = None) -> None:
-        """Place the grains at `position` (W, n, 2) m without contact history, and `launch` all matters."""
+        """Place the grains at `position` (W, n, 2) m without contact history, and the water; `launch` all matters."""
         if self.grains:
             self.grains.place(position)
+        if self.water:
+            self.water.place()
         self.launch(velocity, spin)
 
     def launch(self, velocity: np.ndarray | None = None, spin: np.ndarray | None = None) -> None:
@@ -158,7 +169,8 @@ class Simulation:
         """Advance every running world to base step `self.steps`, with larger contact lists if they overflow."""
         runtime.merge_repeats(self.scene.shapes is None)
         while True:
-            self.schedule.advance(self.steps, self.origin, self.dt)
+            with real_vectors() if self.wide else nullcontext():
+                self.schedule.advance(self.steps, self.origin, self.dt)
             status = self.clock.status.to_numpy()
             if not np.any(status == watch.NO_ROOM):
                 break
@@ -287,7 +299,8 @@ class Simulation:
 
     def snapshot(self) -> dict[str, np.ndarray]:
         """What is known of each particle now, in the tank's frame: of grains, positions, velocities (W, n, 2) …"""
-        return {name: values for matter in self.matters.values() for name, values in matter.snapshot().items()}
+        now, matters = self.origin + self.time, self.matters.values()
+        return {name: values for matter in matters for name, values in matter.snapshot(now).items()}
 
     def pressing(self, world: int = 0) -> Pressing:
         """The present elastic contact forces in a world; none without grains."""

@@ -5,8 +5,8 @@ from typing import Annotated
 
 from solvers.machine.marks import Doc, Interval, Unit
 
-# Columns of `Scene.drops` (W, n, 6): place and velocity (m, m/s; in the tank's axes, the velocity relative to the
-# tank), relative excess of density s = ρ/ρ0 − 1, and volume (m²) in the plane.
+# Columns of `Scene.drops` (W, n, 6): place (m) and velocity over the earth (m/s) in the tank's axes, relative excess of
+# density s = ρ/ρ0 − 1, and volume (m²) in the plane. A motion that starts abruptly finds the water at rest.
 Y, Z, VELOCITY_Y, VELOCITY_Z, EXCESS, VOLUME = range(6)
 
 

@@ -12,6 +12,7 @@ SERIES = (
     Quantity("water_viscous", "J", label="energy that viscosity has taken since the start"),
     Quantity("water_diffusive", "J", label="energy that diffusion of density has taken since the start"),
     Quantity("water_work", "J", label="work of the walls on the water since the start"),
+    Quantity("water_held", "J", label="energy that the walls' dummy particles hold, since the start"),
     Quantity("water_excess", "1", label="largest deviation of the density from that at rest"),
     Quantity("water_dense", "1", label="share of the water whose density deviates by more than 3 %"),
     Quantity("gauge_pressure", "Pa", label="pressure at each gauge", per="gauge"),

@@ -209,7 +209,7 @@ class GrainMatter(Matter):
         self.lists.laws.learn(scene.interfaces_of)
         self.lists.expire()  # so that the constants of each contact are recomputed
 
-    def snapshot(self) -> dict[str, np.ndarray]:
+    def snapshot(self, time: float) -> dict[str, np.ndarray]:
         """Positions, velocities (W, n, axes), angles and spins (W, n) now, in the tank's frame."""
         return {name: self.numbering.in_own_order(values) for name, values in self.grains.read().items()}
 

@@ -112,7 +112,7 @@ class Prescribed:
             s = self.kinematics(w, t)
             b = turned(-s[6], -self.gravity[0] - s[7], -s[2])
             force = ti.Vector([b[0], b[1], s[5], s[8]])
-        return ti.cast(force, self.real)
+        return ti.Vector([ti.cast(force[k], self.real) for k in ti.static(range(4))])  # whole ones are not for `wide`
 
     @ti.func
     def pace(self, w):

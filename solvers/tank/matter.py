@@ -21,7 +21,7 @@ class Matter:
     `paced`, its steps may be longer than the base step, by as many as its `pace` says. If it has neighbour lists, it
     says when these are `stale`, `worn` or `asked` for in part, and rebuilds them (`sort`, `make_lists`). `of_contacts`
     are those of its quantities that are known only after a step. If it `mixes`, its particles are renumbered now and
-    then. `extent` (m) is how far from the tank's origin a particle may be, `nearing` (m/s) how fast parts of the tank
+    then. If its kernels work on real vectors (`machine.wide`), it is `wide`. `extent` (m) is how far from the tank's origin a particle may be, `nearing` (m/s) how fast parts of the tank
     come at particles.
     """
 
@@ -32,6 +32,7 @@ class Matter:
     after: tuple[Phase, ...] = ()
     paced = False
     mixes = False
+    wide = False
     of_contacts: ClassVar[Sequence[str]] = ()
     extent = 0.0
     nearing = 0.0
@@ -63,8 +64,8 @@ class Matter:
     def alter(self, scene) -> None:
         """Go on with the materials of a scene that equals the present one in everything else."""
 
-    def snapshot(self) -> dict[str, np.ndarray]:
-        """What is known of each particle now, in the tank's frame: (W, n, …) by name."""
+    def snapshot(self, time: float) -> dict[str, np.ndarray]:
+        """What is known of each particle at `time` (s), which is now, in the tank's frame: (W, n, …) by name."""
         return {}
 
     def fields(self) -> list[ti.Field]:

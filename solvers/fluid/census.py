@@ -1,0 +1,181 @@
+"""The census of the water: sums over its particles, taken in one order on any number of threads."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import taichi as ti
+
+from solvers.fluid import quantities
+from solvers.fluid.constants import Constants
+from solvers.fluid.state import UNUSED, Particles
+from solvers.machine.quantity import places
+from solvers.machine.state import Axis, State
+from solvers.motion.frame import turned
+from solvers.space.axes import dot
+from solvers.tank.walls import Walls
+
+CHUNK = 64  # blocks whose sum one thread takes
+DENSE = 0.03  # deviation of the density from which it is counted
+NEVER = -1.0
+SUMS = (
+    *("mass", "moment_y", "moment_z", "momentum_y", "momentum_z", "moving", "flowing", "pulled", "elastic", "dense"),
+    *("excess", "escaped"),  # largest values, not sums
+)
+
+
+@ti.data_oriented
+class Census:
+    """Sums over a world's particles, and what each particle's velocity is now, relative to the tank.
+
+    `now` (W,) m/s, rad/s, m/s²: velocity, rate of roll and gravity of the tank in its own axes when it was last noted.
+    `behind` (W,) s is by how much velocities are behind places.
+    """
+
+    def __init__(
+        self, arrays: State, particles: Particles, walls: Walls, constants: Constants, carrier, closed: bool, levels
+    ):
+        self.particles, self.walls, self.constants, self.carrier = particles, walls, constants, carrier
+        self.exact, self.closed = arrays.exact, closed
+        self.quantities = (*quantities.SERIES, quantities.ESCAPED)
+        self.at = SimpleNamespace(**{name: k for k, name in enumerate(SUMS)})
+        self.columns = places(self.quantities)
+        own, world = arrays.under("water.census"), Axis("world", particles.worlds)
+        self.chunks = -(-particles.wet // CHUNK)
+        sums = world, Axis("chunk", self.chunks)
+        self.sums = own.reals(sums, *SUMS, kind=arrays.exact, kept=False)
+        names = "tank_y", "tank_z", "tank_rate", "pull_y", "pull_z", "height"
+        self.now = own.reals((world,), *names, kind=arrays.exact, kept=False)
+        (self.behind,) = own.reals((world,), "behind", kind=arrays.exact)
+        self.levels = len(levels)
+        places_y = np.array([level.y for level in levels]) if levels else np.zeros(1)
+        self.level_y = own.holding("level_y", places_y, "level", arrays.exact)
+        sides = walls.outline[:, 0].min(), walls.outline[:, 0].max()
+        self.level_sides = own.holding("level_sides", np.array(sides), "side", arrays.exact)
+        (self.level_depth,) = own.reals((world, Axis("level", max(1, self.levels))), "level_depth", kept=False)
+
+    def take(self, time: float, thickness: float) -> dict[str, np.ndarray]:
+        """Sums of every world at `time` (s), (W, …) by the names of `SUMS`, for a tank of `thickness` (m)."""
+        self.count(time)
+        found = {name: field.to_numpy() for name, field in zip(SUMS, self.sums, strict=True)}
+        extreme = {name: found.pop(name).max(axis=1) for name in ("excess", "escaped")}
+        return {name: values.sum(axis=1) * thickness for name, values in found.items()} | extreme
+
+    @ti.kernel
+    def count(self, time: ti.f64):
+        """Fill the sums and the level gauges."""
+        for w in range(self.particles.worlds):
+            self.note_now(w, time)
+        for w, chunk in self.sums[0]:
+            self.sum_chunk(w, chunk)
+        for w, level in self.level_depth:
+            if level < self.levels:
+                self.measure_level(w, level)
+
+    @ti.kernel
+    def note(self, time: ti.f64):
+        """Note how the tanks move at a time (s)."""
+        for w in range(self.particles.worlds):
+            self.note_now(w, time)
+
+    @ti.func
+    def note_now(self, w, time):
+        """Note how the tank of a world moves at a time (s)."""
+        gravity = self.carrier.gravity[0]
+        self.now[3][w], self.now[4][w] = 0.0, -gravity
+        if ti.static(self.carrier.moving):
+            pose = self.carrier.kinematics(w, time)
+            velocity, pull = turned(pose[3], pose[4], -pose[2]), turned(0.0, -gravity, -pose[2])
+            self.now[0][w], self.now[1][w], self.now[2][w] = velocity[0], velocity[1], pose[5]
+            self.now[3][w], self.now[4][w], self.now[5][w] = pull[0], pull[1], pose[1]
+
+    @ti.func
+    def sum_chunk(self, w, chunk):
+        """Sums over one chunk of blocks."""
+        p, c = self.particles, self.constants
+        sums = [ti.cast(0.0, self.exact) for _ in ti.static(range(len(SUMS)))]
+        sums[self.at.escaped] = NEVER
+        start = w * p.stride
+        sound = ti.cast(c.get("stiffness") / c.get("density"), self.exact)
+        for b in range(start + chunk * CHUNK, start + ti.min(p.used[w], (chunk + 1) * CHUNK)):
+            for lane in range(p.lanes):
+                if p.number[b, lane] != UNUSED:
+                    m, s = ti.cast(p.mass[b, lane], self.exact), ti.cast(p.excess[b, lane], self.exact)
+                    r = [ti.cast(p.place[a][b, lane], self.exact) for a in ti.static(range(p.axes))]
+                    u = self.velocity_now(w, b, lane)
+                    v = [
+                        u[0] - self.now[0][w] + self.now[2][w] * r[1],
+                        u[1] - self.now[1][w] - self.now[2][w] * r[0],
+                    ]
+                    sums[self.at.mass] += m
+                    sums[self.at.moment_y] += m * r[0]
+                    sums[self.at.moment_z] += m * r[1]
+                    sums[self.at.momentum_y] += m * u[0]
+                    sums[self.at.momentum_z] += m * u[1]
+                    sums[self.at.moving] += 0.5 * m * dot(u, u)
+                    sums[self.at.flowing] += 0.5 * m * dot(v, v)
+                    if ti.static(c.pulled):
+                        out = [r[0] - c.get("pull_y"), r[1] - c.get("pull_z")]
+                        sums[self.at.pulled] += 0.5 * m * c.get("pull") * dot(out, out)
+                    sums[self.at.elastic] += m * sound * c.state.energy(s)
+                    sums[self.at.dense] += ti.select(ti.abs(s) > DENSE, m, 0.0)
+                    sums[self.at.excess] = ti.max(sums[self.at.excess], ti.abs(s))
+                    if ti.static(self.closed):  # noqa: SIM102 (compiled only where no water may leave)
+                        if self.is_out(w, p.place[0][b, lane], p.place[1][b, lane]):
+                            sums[self.at.escaped] = ti.max(sums[self.at.escaped], p.number[b, lane])
+        for k in ti.static(range(len(SUMS))):
+            self.sums[k][w, chunk] = sums[k]
+
+    @ti.func
+    def is_out(self, w, y, z):
+        """Whether a point is outside the tank by more than half a spacing: in an impact water may dent a wall."""
+        out = not self.walls.holds(y, z)
+        if out:
+            shift, near = self.walls.shift(w, 0.0), 0.5 * self.constants.get("spacing")
+            for feature in range(self.walls.features):
+                if self.walls.near(feature, shift, y, z, near):
+                    out = False
+        return out
+
+    @ti.func
+    def velocity_now(self, w, b, lane):
+        """Velocity (m/s) of a particle over the earth now, in the tank's axes: that kept, and half a kick."""
+        p, half = self.particles, self.behind[w]
+        return [
+            ti.cast(p.velocity[a][b, lane], self.exact)
+            + half * (ti.cast(p.acceleration[a][b, lane], self.exact) + self.now[3 + a][w])
+            for a in ti.static(range(p.axes))
+        ]
+
+    @ti.func
+    def measure_level(self, w, level):
+        """Depth at a level gauge: the water's volume around it, weighted by a one-dimensional kernel."""
+        p = self.particles
+        reach, y = ti.cast(self.constants.get("reach"), self.exact), self.level_y[level]
+        total = ti.cast(0.0, self.exact)
+        for b in range(w * p.stride, w * p.stride + p.used[w]):
+            for lane in range(p.lanes):
+                if p.number[b, lane] != UNUSED:
+                    t = 1.0 - ti.abs(ti.cast(p.place[0][b, lane], self.exact) - y) / reach
+                    if t > 0.0:
+                        total += ti.cast(p.volume[b, lane], self.exact) * t * t * (3.0 - 2.0 * t)
+        left, right = (y - self.level_sides[0]) / reach, (self.level_sides[1] - y) / reach
+        self.level_depth[w, level] = ti.cast(total / (reach * (self.covered(left) + self.covered(right))), p.real)
+
+    @ti.func
+    def covered(self, x):
+        """∫ from 0 to x of the kernel t² (3 − 2 t), t = 1 − x, which is 1/2 from x = 1 on."""
+        t = 1.0 - ti.max(0.0, ti.min(1.0, x))
+        return 0.5 - t * t * t * (1.0 - 0.5 * t)
+
+    def relative(self, time: float, place: np.ndarray, velocity: np.ndarray, push: np.ndarray) -> np.ndarray:
+        """Velocities (W, n, 2) m/s relative to the tank at `time` (s), from those kept and the last accelerations."""
+        self.note(time)
+        tank_y, tank_z, rate, pull_y, pull_z, _ = (field.to_numpy()[:, None] for field in self.now)
+        half = self.behind.to_numpy()[:, None]
+        return np.stack(
+            [
+                velocity[0] + half * (push[0] + pull_y) - tank_y + rate * place[1],
+                velocity[1] + half * (push[1] + pull_z) - tank_z - rate * place[0],
+            ],
+            axis=-1,
+        )

@@ -1,0 +1,57 @@
+"""The constants of the water's pair sums, in an array: scenes that differ in them alone share their compiled kernels."""
+
+import numpy as np
+import taichi as ti
+
+from solvers.fluid.diffusion import DIFFUSION
+from solvers.fluid.given import Water
+from solvers.fluid.kernels import KERNELS
+from solvers.fluid.states import STATES
+from solvers.fluid.viscosity import VISCOSITY
+from solvers.machine.state import State
+
+FLOOR = 1e-6  # of h², added to squared distances that are divided by
+TOUCH = 0.75  # spacings between a particle and a dummy below which the wall is hard; at rest they are one apart
+HARD = 0.2  # of c0/Δx: frequency of a particle on a hard wall, which turns c0/20 back on its way to the dummy
+
+
+@ti.data_oriented
+class Constants:
+    """The models of a scene's water, and their numbers (SI) by name, read by `get` from one small array."""
+
+    def __init__(self, arrays: State, water: Water, gravity: float):
+        self.kernel, self.state = KERNELS[water.kernel](), STATES[water.state]()
+        self.diffusion, self.viscosity = DIFFUSION[water.diffusion](), VISCOSITY[water.viscosity]()
+        length, sound = water.length, water.sound_speed
+        value, slope = self.kernel.factors(length)
+        strength = self.viscosity.strength(water)
+        self.viscous, self.slip, self.full = strength > 0.0, water.slip, water.full
+        self.reach = water.reach
+        pull = water.pull
+        numbers = {
+            "shrink": 0.5 / length,  # 1/(2h): t = 1 − r/(2h)
+            "value": value,
+            "slope": slope,
+            "floor": FLOOR * length**2,
+            "density": water.density,
+            "stiffness": water.density * sound**2,  # ρ0 c0², Pa
+            "spread": water.delta * length * sound,  # δ h c0, m²/s
+            "strength": strength,
+            "hydrostatic": gravity / sound**2,  # g/c0², 1/m
+            "spacing": water.spacing,
+            "reach": water.reach,
+            "touch": TOUCH * water.spacing,
+            "hard": water.density * (HARD * sound / water.spacing) ** 2 / (slope * water.spacing**2),
+            "fastest": 0.5 * sound,  # Mach 0.5
+            "pull": pull.rate**2 if pull else 0.0,
+            "pull_y": pull.centre[0] if pull else 0.0,
+            "pull_z": pull.centre[1] if pull else 0.0,
+        }
+        self.at = {name: place for place, name in enumerate(numbers)}
+        self.pulled = pull is not None
+        self.values = arrays.under("water").holding("constants", np.array(list(numbers.values())), "number")
+
+    @ti.func
+    def get(self, name: ti.template()):
+        """The constant of that name."""
+        return self.values[ti.static(self.at[name])]

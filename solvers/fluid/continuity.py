@@ -1,0 +1,95 @@
+"""The first pass over pairs: the rate of density, from the motion of the neighbours and from diffusion."""
+
+import taichi as ti
+
+from solvers.fluid.constants import Constants
+from solvers.fluid.lists import Lists
+from solvers.fluid.state import Particles, Shares
+from solvers.machine.state import State
+from solvers.machine.units import Units
+from solvers.motion.poses import Poses
+from solvers.space.axes import dot
+
+
+@ti.data_oriented
+class Continuity:
+    """dρ_i/dt = −ρ_i Σ V_j (u_j − u_i)·∇W + δ h c0 Σ V_j ψ·∇W (Antuono et al. 2010, eq. 6); the second sum over water.
+
+    `lost` (units,) J is the energy that diffusion has taken: −Σ m_i p_i/ρ_i² times its share of the rate (Antuono,
+    Marrone, Colagrossi & Bouscasse 2015, eq. 22).
+    """
+
+    def __init__(
+        self,
+        arrays: State,
+        units: Units,
+        particles: Particles,
+        shares: Shares,
+        lists: Lists,
+        constants: Constants,
+        poses: Poses,
+    ):
+        self.units, self.particles, self.shares = units, particles, shares
+        self.lists, self.constants, self.poses = lists, constants, poses
+        own = arrays.under("water.continuity")
+        (self.lost,) = own.reals((units.axis,), "lost", kind=own.exact)
+
+    @ti.func
+    def expand(self, u, frame, kick, dt):
+        """The rates of density of a unit's particles in the middle of the step; returns that all is well."""
+        first, end = self.shares.wet(u)
+        lost = ti.cast(0.0, self.particles.exact)
+        for b in range(first, end):
+            lost += self.expand_block(u, b, b - first)
+        self.lost[u] = self.lost[u] + lost * ti.cast(dt, self.particles.exact)
+        return True
+
+    @ti.func
+    def expand_block(self, u, b, listed):
+        """As `expand`, for a block; returns the power (W/m) that diffusion takes."""
+        p, c = self.particles, self.constants
+        lists = self.lists
+        w = self.units.world(u)
+        origin = [p.place[a][b, 0] for a in ti.static(range(p.axes))]
+        own = [p.offset(b, origin[a], a) for a in ti.static(range(p.axes))]
+        speed = [p.load(p.velocity[a], b) for a in ti.static(range(p.axes))]
+        slope = [p.load(p.slope[a], b) for a in ti.static(range(p.axes))]
+        s, shrink = p.load(p.excess, b), c.get("shrink")
+        rest = [c.get("hydrostatic") * self.down(w, a) for a in ti.static(range(p.axes))]
+        opened, evened, walled = p.zeros(), p.zeros(), p.zeros()
+        for k in range(lists.near.first[u, listed], lists.near.first[u, listed + 1]):
+            j = lists.near.slots[u, k]
+            jb, lane = j // p.lanes, j % p.lanes
+            apart = [own[a] - ti.cast(p.place[a][jb, lane] - origin[a], p.real) for a in ti.static(range(p.axes))]
+            weight = p.volume[jb, lane] * c.kernel.slope(ti.max(1.0 - ti.sqrt(dot(apart, apart)) * shrink, 0.0))
+            nearing = [p.velocity[a][jb, lane] - speed[a] for a in ti.static(range(p.axes))]
+            opened += weight * dot(nearing, apart)
+            if ti.static(c.diffusion.acts):
+                more = 2.0 * (p.excess[jb, lane] - s)
+                if ti.static(c.diffusion.renormalised):
+                    both = [p.slope[a][jb, lane] + slope[a] for a in ti.static(range(p.axes))]
+                    more += dot(both, apart)
+                elif ti.static(c.diffusion.dynamic):
+                    more += 2.0 * dot(rest, apart)
+                evened += weight * more
+        if ti.static(p.dry > 0):
+            for k in range(lists.beside.first[u, listed], lists.beside.first[u, listed + 1]):
+                j = lists.beside.slots[u, k]
+                jb, lane = j // p.lanes, j % p.lanes
+                apart = [own[a] - ti.cast(p.place[a][jb, lane] - origin[a], p.real) for a in ti.static(range(p.axes))]
+                weight = p.volume[jb, lane] * c.kernel.slope(ti.max(1.0 - ti.sqrt(dot(apart, apart)) * shrink, 0.0))
+                nearing = [p.velocity[a][jb, lane] - speed[a] for a in ti.static(range(p.axes))]
+                walled += weight * dot(nearing, apart)
+        factor = c.get("slope")
+        evened *= factor * c.get("spread")
+        p.store(p.rate, b, (1.0 + s) * (factor * opened) + evened)
+        p.store(p.rate_of_walls, b, (1.0 + s) * (factor * walled))
+        taken = evened * c.state.share(s) * p.load(p.mass, b) / ((1.0 + s) * (1.0 + s))
+        return 0.0 - ti.cast(taken.sum() * (c.get("stiffness") / c.get("density")), p.exact)
+
+    @ti.func
+    def down(self, w, axis: ti.template()):
+        """Direction of gravity along an axis of the tank, at the start of the step."""
+        pull = [self.poses.felt[a][w] for a in ti.static(range(2))]
+        size = ti.max(ti.sqrt(dot(pull, pull)), 1e-12)
+        return ti.cast(pull[axis] / size, self.particles.real)

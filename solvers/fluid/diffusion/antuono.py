@@ -1,0 +1,13 @@
+"""Diffusion of density, corrected by renormalised gradients."""
+
+
+class Antuono:
+    """ψ = [2 (ρ_j − ρ_i) − (G_i + G_j)·r_ji] r_ji/r² (Antuono, Colagrossi, Marrone & Molteni 2010, eq. 8).
+
+    G is the renormalised gradient of density, exact for linear fields: water at rest is not diffused, up to the surface
+    itself (Antuono, Colagrossi & Marrone 2012).
+    """
+
+    acts = True
+    renormalised = True  # G is computed and used
+    dynamic = False  # the hydrostatic part is taken off

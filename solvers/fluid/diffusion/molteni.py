@@ -1,0 +1,12 @@
+"""Diffusion of density without corrections."""
+
+
+class Molteni:
+    """ψ = 2 (ρ_j − ρ_i) r_ji/r² (Molteni & Colagrossi 2009, eq. 12).
+
+    At a free surface it diffuses the hydrostatic profile, too: a resting surface creeps up.
+    """
+
+    acts = True
+    renormalised = False
+    dynamic = False

@@ -1,0 +1,193 @@
+"""The second pass over pairs: pressure and viscous forces, the walls' load, and the gradients that diffusion needs."""
+
+import numpy as np
+import taichi as ti
+
+from solvers.fluid.constants import Constants
+from solvers.fluid.lists import Lists
+from solvers.fluid.state import Particles, Shares
+from solvers.fluid.walls.extrapolation import Extrapolation
+from solvers.machine.state import State
+from solvers.machine.units import Units
+from solvers.motion.poses import Poses
+from solvers.space.axes import dot
+from solvers.tank.load import Load
+
+SINGULAR = 0.05  # least eigenvalue of Σ V_j r_ji ⊗ ∇W down to which it is inverted: spray has no gradient
+OUTLINE = 0  # number of the piece of the tank that all dummies belong to
+
+
+@ti.data_oriented
+class Forces:
+    """m du/dt = −Σ V_i V_j (p_i + p_j) ∇W + viscosity (Antuono, Colagrossi, Marrone & Molteni 2010, eq. 6).
+
+    Forces between pairs of particles are equal and opposite; those of dummies are booked on the tank. `lost` (units,) is
+    the energy that viscosity has taken, `held` that which dummies have, `work` that which the walls have given, J per
+    metre of thickness. Dummies take and give energy since their pressures push, but are not worked on in return: only
+    p_i is in the balance of the particle's own density (Cercos-Pita, Antuono, Colagrossi & Souto-Iglesias 2017).
+    """
+
+    def __init__(
+        self,
+        arrays: State,
+        units: Units,
+        particles: Particles,
+        shares: Shares,
+        lists: Lists,
+        constants: Constants,
+        walls: Extrapolation,
+        load: Load,
+        poses: Poses,
+        thickness: float,
+    ):
+        self.units, self.particles, self.shares, self.lists = units, particles, shares, lists
+        self.constants, self.walls, self.load, self.poses = constants, walls, load, poses
+        own = arrays.under("water.forces")
+        self.lost, self.held, self.work = own.reals((units.axis,), "lost", "held", "work", kind=own.exact)
+        self.gradients = constants.diffusion.renormalised
+        self.thick = arrays.under("water").holding("thickness", np.array([thickness]), "one", own.exact)
+
+    @ti.func
+    def publish(self, u, t, kick, dt):
+        """The volumes and pressures of a unit's particles, from their densities."""
+        p, c = self.particles, self.constants
+        first, end = self.shares.wet(u)
+        density, stiffness = c.get("density"), c.get("stiffness")
+        for b in range(first, end):
+            s = p.load(p.excess, b)
+            p.store(p.volume, b, p.load(p.mass, b) / (density * (1.0 + s)))
+            p.store(p.pressure, b, stiffness * c.state.share(s))
+
+    @ti.func
+    def push(self, u, t, kick, dt):
+        """Accelerations of a unit's particles, their gradients of density, and the load on the walls."""
+        self.load.begin(u)
+        first, end = self.shares.wet(u)
+        total = ti.Vector([ti.cast(0.0, self.particles.exact) for _ in ti.static(range(5))])
+        for b in range(first, end):
+            total += self.push_block(u, b, b - first)
+        thick, during = self.thick[0], ti.cast(kick, self.particles.exact)
+        self.lost[u] = self.lost[u] + total[3] * during
+        self.held[u] = self.held[u] + total[4] * during
+        if ti.static(self.poses.moving):
+            w = self.units.world(u)
+            power = dot([total[0], total[1], total[2]], [self.poses.walls[3 + k][w] for k in ti.static(range(3))])
+            self.work[u] = self.work[u] - power * during
+        self.load.book(u, OUTLINE, ti.Vector([total[0] * thick, total[1] * thick, total[2] * thick]), dt)
+
+    @ti.func
+    def push_block(self, u, b, listed):
+        """As `push`, for a block.
+
+        Returns its force (y, z; N/m) and moment (N) on the walls, viscous power, and the
+        power that dummies take (W/m)."""
+        p, c = self.particles, self.constants
+        lists = self.lists
+        origin = [p.place[a][b, 0] for a in ti.static(range(p.axes))]
+        own = [p.offset(b, origin[a], a) for a in ti.static(range(p.axes))]
+        speed = [p.load(p.velocity[a], b) for a in ti.static(range(p.axes))]
+        pressure, s = p.load(p.pressure, b), p.load(p.excess, b)
+        shrink, floor, strength = c.get("shrink"), c.get("floor"), c.get("strength")
+        push = [p.zeros() for _ in ti.static(range(p.axes))]
+        wall = [p.zeros() for _ in ti.static(range(p.axes))]
+        slope = [p.zeros() for _ in ti.static(range(p.axes))]
+        yy, yz, zz, lost, held = p.zeros(), p.zeros(), p.zeros(), p.zeros(), p.zeros()
+        for k in range(lists.near.first[u, listed], lists.near.first[u, listed + 1]):
+            j = lists.near.slots[u, k]
+            jb, lane = j // p.lanes, j % p.lanes
+            apart = [own[a] - ti.cast(p.place[a][jb, lane] - origin[a], p.real) for a in ti.static(range(p.axes))]
+            square = dot(apart, apart)
+            weight = p.volume[jb, lane] * c.kernel.slope(ti.max(1.0 - ti.sqrt(square) * shrink, 0.0))
+            along = (pressure + p.pressure[jb, lane]) * weight
+            if ti.static(c.viscous):
+                nearing = [p.velocity[a][jb, lane] - speed[a] for a in ti.static(range(p.axes))]
+                if ti.static(c.viscosity.central):
+                    closing = dot(nearing, apart)
+                    drag = weight * c.viscosity.pull(closing, square + floor)
+                    along += strength * drag
+                    lost += drag * closing
+                else:
+                    for a in ti.static(range(p.axes)):
+                        push[a] += (strength * weight) * nearing[a]
+                    lost += weight * dot(nearing, nearing)
+            weighted = [weight * apart[a] for a in ti.static(range(p.axes))]
+            for a in ti.static(range(p.axes)):
+                push[a] += along * apart[a]
+            if ti.static(self.gradients):
+                more = p.excess[jb, lane] - s
+                for a in ti.static(range(p.axes)):
+                    slope[a] = slope[a] - more * weighted[a]
+            yy += weighted[0] * apart[0]
+            yz += weighted[0] * apart[1]
+            zz += weighted[1] * apart[1]
+        lost *= 0.5
+        if ti.static(p.dry > 0):
+            for k in range(lists.beside.first[u, listed], lists.beside.first[u, listed + 1]):
+                j = lists.beside.slots[u, k]
+                jb, lane = j // p.lanes, j % p.lanes
+                apart = [own[a] - ti.cast(p.place[a][jb, lane] - origin[a], p.real) for a in ti.static(range(p.axes))]
+                square = dot(apart, apart)
+                weight = p.volume[jb, lane] * c.kernel.slope(ti.max(1.0 - ti.sqrt(square) * shrink, 0.0))
+                seen = [p.velocity[a][jb, lane] - speed[a] for a in ti.static(range(p.axes))]
+                along = p.pressure[jb, lane] + (pressure if ti.static(c.full) else ti.max(pressure, 0.0))
+                along = along * weight + self.hardness(p.volume[jb, lane], square)
+                held += (along - pressure * weight) * dot(seen, apart)
+                if ti.static(self.walls.sticks):
+                    slides = [self.walls.mirrored[a][jb, lane] - speed[a] for a in ti.static(range(p.axes))]
+                    if ti.static(c.viscosity.central):
+                        closing = dot(slides, apart)
+                        drag = weight * c.viscosity.pull(closing, square + floor)
+                        along += strength * drag
+                        lost += drag * closing
+                    else:
+                        for a in ti.static(range(p.axes)):
+                            wall[a] += (strength * weight) * slides[a]
+                        lost += weight * dot(slides, slides)
+                for a in ti.static(range(p.axes)):
+                    wall[a] += along * apart[a]
+        factor, density = c.get("slope"), c.get("density")
+        lightness = (p.filled(b) * factor) / (density * (1.0 + s))
+        for a in ti.static(range(p.axes)):
+            p.store(p.acceleration[a], b, lightness * (push[a] + wall[a]))
+        self.note_span(b, factor * yy, factor * yz, factor * zz, [factor * slope[a] for a in ti.static(range(p.axes))])
+        volume = p.load(p.volume, b) * factor
+        total = self.on_walls(b, origin, own, [volume * wall[a] for a in ti.static(range(p.axes))])
+        total[3] = ti.cast((strength * volume * lost).sum(), p.exact)
+        total[4] = ti.cast((volume * held).sum(), p.exact)
+        return total
+
+    @ti.func
+    def hardness(self, volume, square):
+        """What a dummy at the squared distance (m²) adds, so that a thin layer of water does not pass the wall.
+
+        A spring towards the distance TOUCH, for pressure alone does not hold water that parts along a wall it nears.
+        """
+        c = self.constants
+        return (c.get("hard") * volume) * ti.max(c.get("touch") / ti.sqrt(square + c.get("floor")) - 1.0, 0.0)
+
+    @ti.func
+    def note_span(self, b, yy, yz, zz, slope: ti.template()):
+        """Store the least eigenvalue of the matrix Σ V_j r_ji ⊗ ∇W, and its inverse times the raw gradient."""
+        p = self.particles
+        middle, apart = 0.5 * (yy + zz), 0.5 * (yy - zz)
+        span = middle - ti.sqrt(apart * apart + yz * yz)
+        p.store(p.span, b, span)
+        if ti.static(self.gradients):
+            regular = span > SINGULAR
+            determinant = ti.select(regular, yy * zz - yz * yz, p.ones())
+            along_y = (zz * slope[0] - yz * slope[1]) / determinant
+            along_z = (yy * slope[1] - yz * slope[0]) / determinant
+            p.store(p.slope[0], b, ti.select(regular, along_y, p.zeros()))
+            p.store(p.slope[1], b, ti.select(regular, along_z, p.zeros()))
+
+    @ti.func
+    def on_walls(self, b, origin: ti.template(), own: ti.template(), wall: ti.template()):
+        """Minus the force of the walls on a block, and its moment about the tank's origin, with room for two more."""
+        p = self.particles
+        total = ti.Vector([ti.cast(0.0, p.exact) for _ in ti.static(range(5))])
+        turning = own[0] * wall[1] - own[1] * wall[0]
+        force = [ti.cast(wall[a].sum(), p.exact) for a in ti.static(range(p.axes))]
+        y, z = ti.cast(origin[0], p.exact), ti.cast(origin[1], p.exact)
+        total[0], total[1] = 0.0 - force[0], 0.0 - force[1]
+        total[2] = 0.0 - (ti.cast(turning.sum(), p.exact) + y * force[1] - z * force[0])
+        return total

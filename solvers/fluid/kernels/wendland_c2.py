@@ -1,0 +1,31 @@
+"""Wendland's kernel of second continuity."""
+
+from math import pi
+
+import taichi as ti
+
+
+class WendlandC2:
+    """W = a (1 − q/2)⁴ (2 q + 1), q = r/h < 2, a = 7/(4 π h²) (Wendland 1995; Dehnen & Aly 2012, table 1).
+
+    Its transform is positive, so that particles do not pair. With t = 1 − q/2: W = a t⁴ (5 − 4 t), −W'/r = (5 a/h²) t³.
+    """
+
+    @staticmethod
+    def factors(length: float) -> tuple[float, float]:
+        """The constant factors of `value` (1/m²) and `slope` (1/m⁴) for a smoothing length h (m), in the plane."""
+        alone = 7.0 / (4.0 * pi * length**2)
+        return alone, 5.0 * alone / length**2
+
+    @staticmethod
+    @ti.func
+    def value(t):
+        """W without its factor."""
+        square = t * t
+        return square * square * (5.0 - 4.0 * t)
+
+    @staticmethod
+    @ti.func
+    def slope(t):
+        """−W'/r without its factor."""
+        return t * t * t

@@ -1,0 +1,32 @@
+"""Wendland's kernel of fourth continuity."""
+
+from math import pi
+
+import taichi as ti
+
+
+class WendlandC4:
+    """W = a (1 − q/2)⁶ (35/12 q² + 3 q + 1), q = r/h < 2, a = 9/(4 π h²) (Wendland 1995; Dehnen & Aly 2012, table 1).
+
+    With t = 1 − q/2: W = a t⁶ (35/3 (1 − t)² + 6 (1 − t) + 1), −W'/r = (14 a/(3 h²)) t⁵ (6 − 5 t).
+    """
+
+    @staticmethod
+    def factors(length: float) -> tuple[float, float]:
+        """The constant factors of `value` (1/m²) and `slope` (1/m⁴) for a smoothing length h (m), in the plane."""
+        alone = 9.0 / (4.0 * pi * length**2)
+        return alone, 14.0 / 3.0 * alone / length**2
+
+    @staticmethod
+    @ti.func
+    def value(t):
+        """W without its factor."""
+        square, outer = t * t, 1.0 - t
+        return square * square * square * (35.0 / 3.0 * outer * outer + 6.0 * outer + 1.0)
+
+    @staticmethod
+    @ti.func
+    def slope(t):
+        """−W'/r without its factor."""
+        square = t * t
+        return square * square * t * (6.0 - 5.0 * t)

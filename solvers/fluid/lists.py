@@ -1,0 +1,186 @@
+"""Neighbour lists: for each block, the particles near its bounding box, and when they are rebuilt."""
+
+import numpy as np
+import taichi as ti
+
+from solvers.fluid.constants import Constants
+from solvers.fluid.order import Order
+from solvers.fluid.state import UNUSED, Particles, Shares
+from solvers.machine.state import Axis, State
+from solvers.machine.units import Units
+from solvers.space.axes import dot
+
+NEVER = 1e30  # m, a displacement that makes the lists stale
+SKIN = (0.3, 1.2)  # spacings: the skin in a still tank, and in a violent one
+LASTING = 6  # steps for which a list should last: the skin follows from the speed at the last rebuild
+FASTER = 1.25  # what particles may gain in speed until the next step
+CROWDED = 1.6  # times the neighbours of a square block at rest: room for those of long blocks and of dense impacts
+
+
+@ti.data_oriented
+class Listing:
+    """One list for each block of a unit: `slots[u, first[u, b]]` to `slots[u, first[u, b + 1] - 1]`, b from 0."""
+
+    def __init__(self, arrays: State, units: Units, name: str, blocks: int, capacity: int):
+        self.capacity = capacity
+        own = arrays.under(f"water.{name}")
+        (self.first,) = own.integers((units.axis, Axis("begin", blocks + 1)), "first")
+        (self.slots,) = own.integers((units.axis, Axis("entry", capacity)), "slots")
+
+
+@ti.data_oriented
+class Lists:
+    """Neighbours of each block: `near`, of water in water; `beside`, of walls beside water; `facing`, of water at walls.
+
+    An entry is a slot in all blocks of all worlds. `travel` (units,) m bounds how far any particle of a unit has moved
+    since the lists were built, `last` (m) how far in the last step; `skin` (units,) m was allowed for.
+    """
+
+    def __init__(
+        self,
+        arrays: State,
+        units: Units,
+        particles: Particles,
+        shares: Shares,
+        order: Order,
+        constants: Constants,
+        walls_first: np.ndarray,
+        room: int,
+    ):
+        self.units, self.particles, self.shares, self.order, self.constants = units, particles, shares, order, constants
+        own = arrays.under("water.lists")
+        self.wall_first = own.holding("wall_first", walls_first, "key", ti.i32)
+        wet, dry = (-(-blocks // units.a_world) for blocks in (particles.wet, max(particles.dry, 1)))
+        crowd = room * self._crowd(order.grid, constants.reach)
+        walls = 4 * particles.dry * particles.lanes // units.a_world + wet  # of walls few blocks have any
+        self.near = Listing(arrays, units, "near", wet, crowd * wet)
+        self.beside = Listing(arrays, units, "beside", wet, room * (8 * walls + 64))
+        self.facing = Listing(arrays, units, "facing", dry, crowd * dry)
+        self.travel = own.holding("travel", np.full(units.count, NEVER), "unit", kept=True)
+        self.last, self.skin = own.reals((units.axis,), "last", "skin")
+
+    @staticmethod
+    def _crowd(grid, reach: float) -> int:
+        """Usual number of neighbours of a full block: the area within reach of its square, with the widest skin."""
+        side, far = grid.height if grid.lanes > 1 else 0.0, reach + SKIN[1] * grid.spacing
+        area = side**2 + 4.0 * side * far + np.pi * far**2
+        return int(CROWDED * area / grid.spacing**2)
+
+    def expire(self) -> None:
+        """Have the lists rebuilt before the next step."""
+        self.travel.fill(NEVER)
+
+    @ti.func
+    def worn(self, u):
+        """Whether two particles may come within reach of each other unlisted in the coming step."""
+        return self.travel[u] + FASTER * self.last[u] > 0.5 * self.skin[u]
+
+    @ti.func
+    def stale(self, u):
+        """As `worn`, by the particles' true displacements."""
+        old = False
+        if self.worn(u):
+            old = True
+            if self.travel[u] < 0.5 * NEVER:
+                moved = self.moved(u)
+                if moved + FASTER * self.last[u] <= 0.4 * self.skin[u]:
+                    old = False
+                    self.travel[u] = moved
+        return old
+
+    @ti.func
+    def moved(self, u):
+        """Largest displacement (m) of a unit's particles since its lists were built."""
+        p = self.particles
+        first, end = self.shares.wet(u)
+        farthest = ti.cast(0.0, p.real)
+        for b in range(first, end):
+            for lane in range(p.lanes):
+                if p.number[b, lane] != UNUSED:
+                    gone = [
+                        ti.cast(p.place[a][b, lane] - p.built[a][b, lane], p.real) for a in ti.static(range(p.axes))
+                    ]
+                    farthest = ti.max(farthest, dot(gone, gone))
+        return ti.sqrt(farthest)
+
+    @ti.func
+    def rebuild(self, u):
+        """Rebuild the lists of a unit, after its world was sorted; returns whether they fit."""
+        p = self.particles
+        spacing = self.constants.get("spacing")
+        skin = ti.max(SKIN[0] * spacing, ti.min(SKIN[1] * spacing, 2.0 * LASTING * self.last[u]))
+        reach, fits = self.constants.get("reach") + skin, True
+        first, end = self.shares.wet(u)
+        found, walls = 0, 0
+        for b in range(first, end):
+            self.near.first[u, b - first], self.beside.first[u, b - first] = found, walls
+            found = self.search(u, b, reach, found, self.near, self.order.first, False)
+            if ti.static(p.dry > 0):
+                walls = self.search(u, b, reach, walls, self.beside, self.wall_first, True)
+            for lane in range(p.lanes):
+                for a in ti.static(range(p.axes)):
+                    p.built[a][b, lane] = p.place[a][b, lane]
+        self.near.first[u, end - first], self.beside.first[u, end - first] = found, walls
+        if found > self.near.capacity or walls > self.beside.capacity:
+            fits = False
+        if ti.static(p.dry > 0):
+            first, end = self.shares.dry(u)
+            found = 0
+            for b in range(first, end):
+                self.facing.first[u, b - first] = found
+                found = self.search(u, b, reach, found, self.facing, self.order.first, False)
+            self.facing.first[u, end - first] = found
+            if found > self.facing.capacity:
+                fits = False
+        self.travel[u], self.skin[u] = 0.0, skin
+        if not fits:
+            self.travel[u] = NEVER
+        return fits
+
+    @ti.func
+    def search(self, u, b, reach, found, listing: ti.template(), first: ti.template(), walls: ti.template()):
+        """List the water, or the walls, within `reach` (m) of a block's box; returns the number listed up to there."""
+        p, order = self.particles, self.order
+        w = self.units.world(u)
+        lower, upper = self.box(b)
+        far = ti.cast(reach, p.where)
+        left, right = order.bin_of(lower[0] - far), order.bin_of(upper[0] + far)
+        start = w * p.stride * p.lanes
+        if ti.static(walls):
+            start += p.wet * p.lanes
+        for strip in range(order.strip_of(lower[1] - far), order.strip_of(upper[1] + far) + 1):
+            begin = self.at(w, first, strip * order.bins + left, walls)
+            end = self.at(w, first, strip * order.bins + right + 1, walls)
+            for k in range(start + begin, start + end):
+                square = ti.cast(0.0, p.real)
+                for a in ti.static(range(p.axes)):
+                    place = p.place[a][k // p.lanes, k % p.lanes]
+                    outside = ti.cast(ti.max(lower[a] - place, place - upper[a]), p.real)
+                    outside = ti.max(outside, 0.0)
+                    square += outside * outside
+                listing.slots[u, ti.min(found, listing.capacity - 1)] = k  # without a branch
+                found += ti.select(square < reach * reach, 1, 0)
+        return found
+
+    @ti.func
+    def at(self, w, first: ti.template(), key, walls: ti.template()):
+        """First slot of a key."""
+        slot = 0
+        if ti.static(walls):
+            slot = first[key]
+        else:
+            slot = first[w, key]
+        return slot
+
+    @ti.func
+    def box(self, b):
+        """Lower and upper corner (m) of the box round the particles of a block."""
+        p = self.particles
+        lower = [ti.cast(1e9, p.where) for _ in ti.static(range(p.axes))]
+        upper = [ti.cast(-1e9, p.where) for _ in ti.static(range(p.axes))]
+        for lane in range(p.lanes):
+            if p.number[b, lane] != UNUSED:
+                for a in ti.static(range(p.axes)):
+                    lower[a] = ti.min(lower[a], p.place[a][b, lane])
+                    upper[a] = ti.max(upper[a], p.place[a][b, lane])
+        return lower, upper

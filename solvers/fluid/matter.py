@@ -1,0 +1,276 @@
+"""Water as a matter: what a step asks of it, and what a simulation does."""
+
+from typing import ClassVar
+
+import numpy as np
+import taichi as ti
+
+from solvers.fluid.census import Census
+from solvers.fluid.checks import check_water, refuse_scene, refuse_state
+from solvers.fluid.constants import Constants
+from solvers.fluid.continuity import Continuity
+from solvers.fluid.forces import Forces
+from solvers.fluid.given import VELOCITY_Y, VELOCITY_Z, Water
+from solvers.fluid.grid import Grid
+from solvers.fluid.lists import Lists
+from solvers.fluid.mover import Mover
+from solvers.fluid.order import Order
+from solvers.fluid.state import LANES, UNUSED, Particles, Shares
+from solvers.fluid.walls.extrapolation import Extrapolation
+from solvers.fluid.walls.gauges import Gauges, probes
+from solvers.fluid.walls.layers import layers
+from solvers.machine.errors import Unavailable
+from solvers.machine.phase import Phase
+from solvers.machine.state import Axes
+from solvers.motion.poses import Poses
+from solvers.tank.matter import Matter
+from solvers.tank.setting import Setting
+
+ROOM = 2.0  # supports of the kernel by which the grid reaches beyond the tank's box
+
+
+@ti.data_oriented
+class WaterMatter(Matter):
+    """Water: its dummies' pressures, its forces, then kick and drift, the rates of density, and drift."""
+
+    name = "water"
+    of_contacts: ClassVar = ("gauge_pressure", "gauge_peak")  # quantities that are known only after a step
+
+    def __init__(self, scene, setting: Setting):
+        water: Water = scene.water
+        self.scene, self.water = scene, water
+        arrays, worlds, tank = setting.arrays, setting.worlds, scene.tanks[0]
+        lanes = 1 if setting.per_particle else LANES
+        self.wide = lanes > 1
+        points, volumes, slots = self._walls(tank)
+        grid = self._grid(setting.walls.bounds, lanes)
+        dummy, blocks, first = grid.arranged(points)
+        self.drops = scene.drops
+        count = scene.drops.shape[1]
+        self.particles = p = Particles(arrays, worlds, count, lanes, len(blocks) * lanes, grid.strips)
+        self.units = units = setting.units(p.wet)
+        self.load = setting.load(arrays.under("water"), units)
+        self.dummies = dummy, blocks, volumes
+        shares, self.constants = Shares(p, units), Constants(arrays, water, scene.gravity)
+        self.poses = Poses(arrays, setting.carrier, worlds)
+        self.order = Order(arrays, p, grid)
+        self.lists = Lists(arrays, units, p, shares, self.order, self.constants, first, setting.room)
+        wall = p, shares, self.lists, self.constants
+        self.extrapolation = Extrapolation(arrays, units, *wall, self.poses)
+        self.forces = Forces(arrays, units, *wall, self.extrapolation, self.load, self.poses, tank.thickness)
+        self.continuity = Continuity(arrays, units, *wall, self.poses)
+        self.mover = Mover(arrays, units, *wall, self.extrapolation, self.poses)
+        self.gauges = Gauges(arrays, p, water.gauges, [dummy[slot] + p.wet * lanes for slot in slots])
+        closed = water.walls and not tank.open_edges
+        self.census = Census(arrays, p, setting.walls, self.constants, setting.carrier, closed, water.levels)
+        self.start = np.full(worlds, np.nan)  # J, energy at the start
+        self.thickness = tank.thickness
+        self.before = self._before()
+        self.after = (
+            Phase(self.mover.kick, units),
+            Phase(self.continuity.expand, units),
+            Phase(self.finish, units),
+        )
+
+    def _before(self) -> tuple[Phase, ...]:
+        phases = [
+            Phase(self.note_poses),
+            Phase(self.forces.publish, self.units),
+            *([Phase(self.extrapolation.press, self.units)] if self.particles.dry else ()),
+            *([Phase(self.gauges.measure)] if self.gauges.count else ()),
+            Phase(self.forces.push, self.units),
+        ]
+        return tuple(phases)
+
+    def _walls(self, tank) -> tuple[np.ndarray, np.ndarray, list[np.ndarray]]:
+        """Places and volumes of dummies and gauges' probes, and the numbers of each gauge's probes among them."""
+        if not self.water.walls:
+            return np.zeros((0, 2)), np.zeros(0), []
+        rows = int(np.ceil(self.water.reach / self.water.spacing - 1e-9))
+        points, volumes = layers(tank.outline, self.water.spacing, rows, tank.open_edges)
+        slots = []
+        for gauge in self.water.gauges:
+            of_gauge = probes(gauge, tank.outline, self.water.spacing)
+            slots.append(len(points) + np.arange(len(of_gauge)))
+            points, volumes = np.concatenate([points, of_gauge]), np.append(volumes, np.zeros(len(of_gauge)))
+        return points, volumes, slots
+
+    def _grid(self, bounds: tuple[np.ndarray, np.ndarray], lanes: int) -> Grid:
+        """The grid round the tank; round the water itself where it has no walls, with as much space on all sides."""
+        lower, upper = bounds
+        margin = ROOM * self.water.reach
+        if not self.water.walls:
+            place = self.scene.drops[..., :2].reshape(-1, 2)
+            lower, upper = place.min(axis=0), place.max(axis=0)
+            margin = float(np.ptp(place, axis=0).max())
+        return Grid(tuple(lower - margin), tuple(upper + margin), self.water.spacing, lanes)
+
+    @property
+    def extent(self) -> float:
+        """How far (m) from the tank's origin a particle may be."""
+        return self.scene.span
+
+    def slack(self) -> float:
+        """How far (m) two particles may near each other before the lists are no good."""
+        return float(self.lists.skin.to_numpy().min())
+
+    def sort_all(self) -> None:
+        """Sort the particles of all worlds."""
+        self.order.sort_all()
+
+    @ti.func
+    def note_poses(self, w, t, kick, dt):
+        """Note how the tank of a world moves through the step."""
+        self.poses.note(w, t, dt)
+
+    @ti.func
+    def finish(self, u, frame, kick, dt):
+        """End a unit's step; returns whether its particles are sound."""
+        if u % self.units.a_world == 0:
+            self.census.behind[self.units.world(u)] = 0.5 * ti.cast(dt, self.particles.exact)
+        return self.mover.finish(u, frame, kick, dt)
+
+    @ti.func
+    def speed(self, u):
+        """The speed (m/s) of a unit that is a single particle, relative to the tank."""
+        return self.mover.fastest[u]
+
+    @ti.func
+    def is_sound(self, speed, dt):
+        """Whether a speed (m/s) is one that the liquid bears: up to Mach 0.5."""
+        return speed < self.constants.get("fastest")
+
+    @ti.func
+    def way(self, u, t):
+        """How far (m) any particle of a unit has gone since there are lists; huge where there are none."""
+        return self.lists.travel[u]
+
+    @ti.func
+    def stale(self, u, t):
+        """Whether two particles may come within reach of each other unlisted in the coming step."""
+        return self.lists.stale(u)
+
+    @ti.func
+    def worn(self, u):
+        """Whether that may be so by a bound on what particles have travelled."""
+        return self.lists.worn(u)
+
+    @ti.func
+    def sort(self, w):
+        """Sort the particles of a world."""
+        self.order.sort_world(w)
+
+    @ti.func
+    def make_lists(self, u, t, dt, whole):
+        """List the neighbours of a unit anew; False where they do not fit."""
+        fits = True
+        if whole:
+            fits = self.lists.rebuild(u)
+        return fits
+
+    def place(self) -> None:
+        """Place the particles as the scene says, and the dummies; all that was noted is forgotten."""
+        p = self.particles
+        p.put(self.drops, self.drops[..., [VELOCITY_Y, VELOCITY_Z]], self.water)
+        slots, blocks, volumes = self.dummies
+        wall = np.zeros(p.dry * p.lanes)
+        wall[slots] = volumes
+        number = np.full(p.dry * p.lanes, UNUSED)
+        number[slots] = np.arange(len(slots))
+        held = [blocks[..., 0], blocks[..., 1], wall.reshape(-1, p.lanes), number.reshape(-1, p.lanes)]
+        for field, values in zip([*p.place, p.volume, p.number], held, strict=True):
+            whole = field.to_numpy().reshape(p.worlds, p.stride, p.lanes)
+            whole[:, p.wet :] = values
+            field.from_numpy(whole.reshape(-1, p.lanes))
+        for field in (self.forces.lost, self.forces.held, self.forces.work, self.continuity.lost, self.census.behind, self.lists.last):
+            field.fill(0.0)
+        self.lists.skin.fill(0.0)
+        self.lists.expire()
+        self.gauges.forget()
+        self.load.forget()
+        self.start[:] = np.nan
+
+    def observe(self, time: float) -> dict[str, np.ndarray]:
+        """The quantities of every world at its time (s): (W, *shape) of each by name."""
+        sums, thick = self.census.take(time, self.thickness), self.thickness
+        mass = np.maximum(sums["mass"], 1e-300)
+        centre = np.stack([sums["moment_y"], sums["moment_z"]], axis=1) / mass[:, None]
+        now = [field.to_numpy() for field in self.census.now]
+        # Height over the earth's origin: gravity points down, and `height` is the tank's own.
+        down = np.stack(now[3:5], axis=1) / max(self.scene.gravity, 1e-300)
+        potential = mass * self.scene.gravity * (now[5] - (centre * down).sum(axis=1)) + sums["pulled"]
+        worlds = self.particles.worlds
+        spent = [
+            field.to_numpy().reshape(worlds, -1).sum(axis=1)
+            for field in (self.forces.lost, self.continuity.lost, self.forces.work, self.forces.held)
+        ]
+        rows = {
+            "water_centre": centre,
+            "water_momentum": np.stack([sums["momentum_y"], sums["momentum_z"]], axis=1),
+            "water_kinetic": sums["flowing"],
+            "water_potential": potential,
+            "water_elastic": sums["elastic"],
+            "water_total": sums["moving"] + potential + sums["elastic"],
+            "water_viscous": spent[0] * thick,
+            "water_diffusive": spent[1] * thick,
+            "water_work": spent[2] * thick,
+            "water_held": spent[3] * thick,
+            "water_excess": sums["excess"],
+            "water_dense": sums["dense"] / mass,
+            "level_depth": self.census.level_depth.to_numpy()[:, : self.census.levels],
+            "water_escaped": sums["escaped"],
+            **self.gauges.take(),
+        }
+        fresh = np.isnan(self.start)
+        self.start[fresh] = rows["water_total"][fresh]
+        return rows
+
+    def check(self, rows: dict[str, np.ndarray], time: float) -> None:
+        """Raise BadState if the quantities at `time` (s) show an unphysical state."""
+        check_water(rows, self.start, time)
+
+    def refuse(self, world: int, time: float, dt: float) -> None:
+        """Raise BadState for a world that was stopped at `time` (s)."""
+        p = self.particles
+        found = p.read(*p.place, *p.velocity, *p.acceleration, p.excess)
+        velocity = self.census.relative(time, found[0:2], found[2:4], found[4:6])[world]
+        place = np.stack([found[0][world], found[1][world]], axis=1)
+        speed = np.linalg.norm(velocity, axis=1)
+        refuse_state(world, place, speed, found[6][world], time, self.water.sound_speed)
+
+    def snapshot(self, time: float) -> dict[str, np.ndarray]:
+        """Places, velocities relative to the tank (W, n, 2) and pressures (W, n) at `time` (s), which must be now."""
+        p = self.particles
+        found = p.read(*p.place, *p.velocity, *p.acceleration, p.excess)
+        stiffness = self.water.density * self.water.sound_speed**2
+        return {
+            "water_place": np.stack(found[0:2], axis=-1),
+            "water_velocity": self.census.relative(time, found[0:2], found[2:4], found[4:6]),
+            "water_pressure": stiffness * self.constants.state.pressure(found[6]),
+        }
+
+    def fields(self) -> list[ti.Field]:
+        """The arrays that a step changes, lists aside."""
+        return self.particles.fields()
+
+    def state(self) -> dict[str, np.ndarray]:
+        """What `restore` continues from, beside the arrays."""
+        return {"water_start": self.start.copy()}
+
+    def axes(self) -> dict[str, Axes]:
+        """The axes of the arrays of `state`, by name."""
+        return {"water_start": (self.particles.each_world,)}
+
+    def restore(self, state: dict[str, np.ndarray]) -> None:
+        """Restore what `state` returned."""
+        self.start = np.array(state["water_start"])
+
+
+def make_water(scene, setting: Setting) -> WaterMatter | None:
+    """The water of a scene (`solvers.scene.Scene`); None where it has none. Raises Unavailable."""
+    if scene.water is None:
+        return None
+    reason = refuse_scene(scene.water, len(scene.tanks), bool(scene.vessels), len(scene.parts))
+    if reason or scene.radius.size:
+        raise Unavailable(reason or "water: grains in water are not computed yet; leave out [grains] or [water].")
+    return WaterMatter(scene, setting)

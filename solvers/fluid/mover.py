@@ -1,0 +1,139 @@
+"""From forces and rates to motion: kick, drifts, and the step of density, in a tank that may move."""
+
+import taichi as ti
+
+from solvers.fluid.constants import Constants
+from solvers.fluid.lists import Lists
+from solvers.fluid.state import Particles, Shares
+from solvers.fluid.walls.extrapolation import Extrapolation
+from solvers.machine.state import State
+from solvers.machine.units import Units
+from solvers.motion.poses import AT_MIDDLE, AT_START, Poses
+from solvers.space.axes import dot
+
+DENSEST = 0.2  # deviation of the density at which a run is stopped
+SPRAY = 0.2  # least eigenvalue below which water is spray, which is never less dense than at rest (Marrone et al. 2010)
+
+
+@ti.data_oriented
+class Mover:
+    """The split scheme u += a Δt; r += u Δt/2; ρ += Δt dρ/dt; r += u Δt/2 of kick and drift, of second order.
+
+    Velocities are kept half a step behind and carried from the middle of one step to that of the next: the scheme is
+    kick–drift–kick with its two half kicks in one. They are inertial ones in the tank's axes (`Poses`). `fastest`
+    (units,) m/s and `deviation` (units,) tell why a world was stopped.
+    """
+
+    def __init__(
+        self,
+        arrays: State,
+        units: Units,
+        particles: Particles,
+        shares: Shares,
+        lists: Lists,
+        constants: Constants,
+        walls: Extrapolation,
+        poses: Poses,
+    ):
+        self.units, self.particles, self.shares, self.lists = units, particles, shares, lists
+        self.constants, self.walls, self.poses = constants, walls, poses
+        own = arrays.under("water.mover")
+        self.fastest, self.deviation = own.reals((units.axis,), "fastest", "deviation", kept=False)
+
+    @ti.func
+    def kick(self, u, frame, kick, dt):
+        """Change a unit's velocities, and move its particles to the middle of the step; returns that all is well."""
+        p, c = self.particles, self.constants
+        w = self.units.world(u)
+        pull = [ti.cast(self.poses.felt[a][w], p.real) for a in ti.static(range(p.axes))]
+        first, end = self.shares.wet(u)
+        farthest = p.zeros()
+        for b in range(first, end):
+            filled = p.filled(b)
+            for a in ti.static(range(p.axes)):
+                push = p.load(p.acceleration[a], b) + filled * pull[a]
+                if ti.static(c.pulled):
+                    centre = ti.cast(c.get("pull_y" if a == 0 else "pull_z"), p.where)
+                    push = push - (c.get("pull") * filled) * p.offset(b, centre, a)
+                p.store(p.velocity[a], b, p.load(p.velocity[a], b) + kick * push)
+            farthest = ti.max(farthest, self.drift(w, b, filled, 0.5 * dt, AT_START))
+            if ti.static(self.poses.rotating and c.diffusion.renormalised):
+                slope = [p.load(p.slope[a], b) for a in ti.static(range(p.axes))]
+                self.turn(w, b, slope, p.slope, AT_START)
+        if ti.static(self.poses.moving and p.dry > 0):
+            self.walls.carry(u)
+        self.lists.last[u] = ti.sqrt(self.largest(farthest))
+        return True
+
+    @ti.func
+    def finish(self, u, frame, kick, dt):
+        """Step a unit's densities, and move its particles to the end of the step; returns whether they are sound."""
+        p, c = self.particles, self.constants
+        w = self.units.world(u)
+        first, end = self.shares.wet(u)
+        farthest, deviation, tame = p.zeros(), p.zeros(), p.zeros()
+        for b in range(first, end):
+            filled = p.filled(b)
+            spray, step = p.load(p.span, b) < SPRAY, dt * filled
+            s = self.floored(spray, p.load(p.excess, b) + step * p.load(p.rate, b))
+            # Walls come last: spray that parts is still pushed off a wall that it nears.
+            s = self.floored(spray, s + step * p.load(p.rate_of_walls, b))
+            p.store(p.excess, b, s)
+            deviation = ti.max(deviation, s * s)
+            tame += s
+            farthest = ti.max(farthest, self.drift(w, b, filled, 0.5 * dt, AT_MIDDLE))
+        second, deviated = ti.sqrt(self.largest(farthest)), ti.sqrt(self.largest(deviation))
+        whole = self.lists.last[u] + second
+        self.lists.last[u] = whole
+        self.lists.travel[u] = self.lists.travel[u] + whole
+        self.fastest[u], self.deviation[u] = 2.0 * second / dt, deviated
+        if not tame.sum() < 1e30:  # largest values may pass over what is no number, sums do not
+            self.deviation[u] = tame.sum()
+        return self.fastest[u] < c.get("fastest") and self.deviation[u] < DENSEST
+
+    @ti.func
+    def floored(self, spray, s):
+        """The excess of density, of spray at least zero."""
+        return ti.select(spray, ti.max(s, 0.0), s)
+
+    @ti.func
+    def drift(self, w, b, filled, half, part: ti.template()):
+        """Move a block through half a step; returns the squares (m²) of how far its particles go in the tank."""
+        p, poses = self.particles, self.poses
+        u = [p.load(p.velocity[a], b) for a in ti.static(range(p.axes))]
+        before = [p.load(p.place[a], b) for a in ti.static(range(p.axes))]
+        after = [before[a] + p.long(half * u[a]) for a in ti.static(range(p.axes))]
+        if ti.static(poses.moving):
+            cos, sin = ti.cast(poses.drift[w, part, 0], p.where), ti.cast(poses.drift[w, part, 1], p.where)
+            e_y, e_z = ti.cast(poses.drift[w, part, 2], p.where), ti.cast(poses.drift[w, part, 3], p.where)
+            keep = p.long(filled)
+            if ti.static(poses.rotating):
+                self.turn(w, b, u, p.velocity, part)
+                y, z = cos * after[0] - sin * after[1] + e_y, sin * after[0] + cos * after[1] + e_z
+                p.store(p.place[0], b, before[0] + keep * (y - before[0]))
+                p.store(p.place[1], b, before[1] + keep * (z - before[1]))
+            else:
+                p.store(p.place[0], b, before[0] + keep * (after[0] + e_y - before[0]))
+                p.store(p.place[1], b, before[1] + keep * (after[1] + e_z - before[1]))
+        else:
+            for a in ti.static(range(p.axes)):
+                p.store(p.place[a], b, after[a])
+        gone = [p.short(p.load(p.place[a], b) - before[a]) for a in ti.static(range(p.axes))]
+        return dot(gone, gone)
+
+    @ti.func
+    def turn(self, w, b, vector: ti.template(), fields: ti.template(), part: ti.template()):
+        """Turn the vectors of a block into the axes at the end of a half step."""
+        p = self.particles
+        cos = ti.cast(self.poses.drift[w, part, 0], p.real)
+        sin = ti.cast(self.poses.drift[w, part, 1], p.real)
+        p.store(fields[0], b, cos * vector[0] - sin * vector[1])
+        p.store(fields[1], b, sin * vector[0] + cos * vector[1])
+
+    @ti.func
+    def largest(self, values):
+        """The largest lane."""
+        found = values[0]
+        for lane in ti.static(range(1, self.particles.lanes)):
+            found = ti.max(found, values[lane])
+        return found

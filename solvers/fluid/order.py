@@ -1,0 +1,191 @@
+"""The particles' order in memory: a counting sort into strips, in whole blocks, before lists are rebuilt.
+
+Neighbours lie in one block or in few, so that a block's lanes need nearly the same neighbours.
+"""
+
+import taichi as ti
+
+from solvers.fluid.grid import Grid
+from solvers.fluid.state import FAR, UNUSED, Particles
+from solvers.machine.state import Axis, State
+
+CHUNK = 256  # keys that one thread sums up
+
+
+@ti.data_oriented
+class Order:
+    """Sorts the particles of a world. `first` (W, keys) are the first slots of each key; slot = lanes · block + lane."""
+
+    def __init__(self, arrays: State, particles: Particles, grid: Grid):
+        self.particles, self.grid = particles, grid
+        self.strips, self.bins, self.longest = grid.strips, grid.bins, grid.longest
+        self.keys = self.strips * self.bins
+        self.chunks = -(-(self.keys + 1) // CHUNK)
+        own = arrays.under("water.order")
+        self.numbers = own.holding("numbers", grid.numbers, "number", own.place)
+        world = Axis("world", particles.worlds)
+        keys = world, Axis("key", self.chunks * CHUNK)
+        (self.first,) = own.integers(keys, "first")
+        (self.cursor,) = own.integers(keys, "cursor", kept=False)
+        (self.chunk_first,) = own.integers((world, Axis("chunk", self.chunks)), "chunk_first", kept=False)
+        each = Axis("block", particles.worlds * particles.stride), Axis("lane", particles.lanes)
+        self.key, self.source = own.wide(each, "key", "source", kind=ti.i32, kept=False)
+        (self.aside,) = own.wide(each, "aside", kept=False)
+        (self.aside_place,) = own.wide(each, "aside_place", kind=own.place, kept=False)
+        (self.aside_number,) = own.wide(each, "aside_number", kind=ti.i32, kept=False)
+
+    @ti.func
+    def bin_of(self, y):
+        """The bin of a place along y (m)."""
+        return ti.max(0, ti.min(self.bins - 1, ti.cast((y - self.numbers[0]) * self.numbers[2], ti.i32)))
+
+    @ti.func
+    def strip_of(self, z):
+        """The strip of a height z (m)."""
+        return ti.max(0, ti.min(self.strips - 1, ti.cast((z - self.numbers[1]) * self.numbers[3], ti.i32)))
+
+    @ti.func
+    def find(self, b, lane):
+        """The key of a particle."""
+        p = self.particles
+        return self.strip_of(p.place[1][b, lane]) * self.bins + self.bin_of(p.place[0][b, lane])
+
+    @ti.func
+    def sort_world(self, w):
+        """Sort the particles of one world, on one thread."""
+        start, lanes = w * self.particles.stride, self.particles.lanes
+        for k in range(self.keys):
+            self.cursor[w, k] = 0
+        for b in range(start, start + self.particles.used[w]):
+            for lane in range(lanes):
+                if self.particles.number[b, lane] != UNUSED:
+                    self.key[b, lane] = self.find(b, lane)
+                    self.count_up(w, self.key[b, lane])
+        slots = self.lay_out(w)
+        used = (slots + lanes - 1) // lanes
+        for b in range(start, start + used):
+            for lane in range(lanes):
+                self.source[b, lane] = UNUSED
+        for b in range(start, start + self.particles.used[w]):
+            for lane in range(lanes):
+                if self.particles.number[b, lane] != UNUSED:
+                    k = self.key[b, lane]
+                    slot = self.cursor[w, k]
+                    self.count_up(w, k)
+                    self.source[start + slot // lanes, slot % lanes] = b * lanes + lane
+        for k in ti.static(range(len(self.particles.moved))):
+            self.move_world(self.particles.moved[k], start, start + used)
+        self.particles.used[w] = used
+
+    @ti.func
+    def count_up(self, w, k):
+        """Add one to a key's cursor; no atomic is needed, since one thread has the whole world."""
+        self.cursor[w, k] = self.cursor[w, k] + 1
+
+    @ti.func
+    def lay_out(self, w):
+        """From the counts in `cursor` to the first slots of the keys, in `first` and `cursor`; returns the slots used.
+
+        A block ends with its strip, or where it would get too long while blocks can be spared, so that the
+        neighbourhood of a block stays small where there is little water.
+        """
+        lanes = self.particles.lanes
+        spare = self.particles.wet - (self.particles.count + lanes - 1) // lanes - self.strips
+        slot, begin, k = 0, 0, 0
+        for strip in range(self.strips):
+            slot = (slot + lanes - 1) // lanes * lanes
+            for along in range(self.bins):
+                count = self.cursor[w, k]
+                if count > 0:
+                    if slot % lanes == 0:
+                        begin = along
+                    elif along - begin >= self.longest and spare > 0:
+                        slot = (slot + lanes - 1) // lanes * lanes
+                        begin = along
+                        spare -= 1
+                self.first[w, k], self.cursor[w, k] = slot, slot
+                if slot // lanes != (slot + count) // lanes:
+                    begin = along
+                slot += count
+                k += 1
+        self.first[w, self.keys] = slot
+        return slot
+
+    @ti.func
+    def move_world(self, field: ti.template(), start, end):
+        """Carry an array to the new order."""
+        lanes = self.particles.lanes
+        aside = ti.static(self.buffer(field))
+        fill = ti.static(self.filling(field))
+        for b in range(start, end):
+            for lane in range(lanes):
+                source = self.source[b, lane]
+                aside[b, lane] = fill
+                if source != UNUSED:
+                    aside[b, lane] = field[source // lanes, source % lanes]
+        for b in range(start, end):
+            for lane in range(lanes):
+                field[b, lane] = aside[b, lane]
+
+    def buffer(self, field: ti.Field) -> ti.Field:
+        """The array in which a field of this type is put aside."""
+        if field.dtype == ti.i32:
+            return self.aside_number
+        return self.aside_place if any(field is one for one in self.particles.place) else self.aside
+
+    def filling(self, field: ti.Field) -> float | int:
+        """What unused lanes have in a field."""
+        if field.dtype == ti.i32:
+            return UNUSED
+        return FAR if any(field is one for one in self.particles.place) else 0.0
+
+    @ti.kernel
+    def sort_all(self):
+        """Sort all worlds, with one particle a block, on all threads; the result is that of `sort_world`."""
+        for w, k in self.cursor:
+            self.cursor[w, k] = 0
+        for w, i in ti.ndrange(self.particles.worlds, self.particles.count):
+            b = w * self.particles.stride + i
+            self.key[b, 0] = self.find(b, 0)
+            ti.atomic_add(self.cursor[w, self.key[b, 0]], 1)
+        for w, c in self.chunk_first:
+            total = 0
+            for k in range(c * CHUNK, (c + 1) * CHUNK):
+                count = self.cursor[w, k]
+                self.first[w, k] = total
+                total += count
+            self.chunk_first[w, c] = total
+        for w in range(self.particles.worlds):
+            total = 0
+            for c in range(self.chunks):
+                here = self.chunk_first[w, c]
+                self.chunk_first[w, c] = total
+                total += here
+        for w, k in self.first:
+            self.first[w, k] = self.first[w, k] + self.chunk_first[w, k // CHUNK]
+            self.cursor[w, k] = self.first[w, k]
+        for w, i in ti.ndrange(self.particles.worlds, self.particles.count):
+            b = w * self.particles.stride + i
+            slot = ti.atomic_add(self.cursor[w, self.key[b, 0]], 1)
+            self.source[w * self.particles.stride + slot, 0] = b
+        for w, k in self.first:
+            if k < self.keys:
+                self.order_bin(w, k)
+        for field in ti.static(self.particles.moved):
+            for w, i in ti.ndrange(self.particles.worlds, self.particles.count):
+                b = w * self.particles.stride + i
+                ti.static(self.buffer(field))[b, 0] = field[self.source[b, 0], 0]
+            for w, i in ti.ndrange(self.particles.worlds, self.particles.count):
+                b = w * self.particles.stride + i
+                field[b, 0] = ti.static(self.buffer(field))[b, 0]
+
+    @ti.func
+    def order_bin(self, w, k):
+        """Order the sources of a key by their slots before, since the threads' order is arbitrary."""
+        start = w * self.particles.stride
+        for at in range(self.first[w, k] + 1, self.first[w, k + 1]):
+            moved, hole = self.source[start + at, 0], at
+            while hole > self.first[w, k] and self.source[start + hole - 1, 0] > moved:
+                self.source[start + hole, 0] = self.source[start + hole - 1, 0]
+                hole -= 1
+            self.source[start + hole, 0] = moved

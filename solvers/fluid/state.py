@@ -1,0 +1,160 @@
+"""The particles of water: their arrays, in blocks of lanes, and what is published of each for its neighbours."""
+
+import numpy as np
+import taichi as ti
+
+from solvers.fluid.given import EXCESS, VOLUME, Water
+from solvers.machine.state import Axis, State
+from solvers.space.axes import PLANE, named
+
+LANES = 16  # particles in a block: two AVX2 registers, or one of AVX-512, of 32-bit numbers
+SPARE = 1.5  # blocks for each full one, for those that a sparse surface leaves half empty
+FAR = 1e6  # m, where unused lanes are
+UNUSED = -1  # number of an unused lane
+
+
+@ti.data_oriented
+class Particles:
+    """Particles in `stride` blocks a world: those of water first, `wet` blocks of which `used` are in use, then walls'.
+
+    Fields (W · stride, lanes), in the tank's axes. `place` (m); `velocity` (m/s), over the earth; `excess` s = ρ/ρ0 − 1;
+    `mass` (kg per metre of thickness) and `number` belong to a particle for good and move with it from block to block.
+    `volume` (m²) and `pressure` (Pa) are published at the start of a step. `rate` and
+    `rate_of_walls` (1/s) are those of s; `acceleration` (m/s²) is that of the last kick; `slope` (1/m) the renormalised gradient of s; `span` the least eigenvalue of Σ V_j r_ji ⊗ ∇W, 1 within water.
+
+    With `lanes` 1, for processors that move each particle by a thread of its own, a block is a particle.
+    """
+
+    axes = PLANE
+
+    def __init__(self, arrays: State, worlds: int, count: int, lanes: int, walls: int, strips: int):
+        self.worlds, self.count, self.lanes = worlds, count, lanes
+        self.real, self.exact, self.where = arrays.real, arrays.exact, arrays.place
+        self.wet = count if lanes == 1 else int(SPARE * -(-count // lanes)) + 2 * strips
+        self.dry = -(-walls // lanes)
+        self.stride = self.wet + self.dry
+        blocks, own = Axis("block", worlds * self.stride), arrays.under("water")
+        each = blocks, Axis("lane", lanes)
+        self.place = own.wide(each, *named("place", self.axes), kind=own.place)
+        self.velocity = own.wide(each, *named("velocity", self.axes))
+        self.excess, self.mass = own.wide(each, "excess", "mass")
+        (self.number,) = own.wide(each, "number", kind=ti.i32)
+        self.volume, self.pressure, self.span = own.wide(each, "volume", "pressure", "span")
+        self.rate, self.rate_of_walls = own.wide(each, "rate", "rate_of_walls", kept=False)
+        self.acceleration = own.wide(each, *named("acceleration", self.axes))
+        self.slope = own.wide(each, *named("slope", self.axes))
+        self.built = own.wide(each, *named("built", self.axes), kind=own.place)
+        self.each_world = Axis("world", worlds)
+        (self.used,) = own.integers((self.each_world,), "used")
+
+    @property
+    def moved(self) -> list[ti.Field]:
+        """The arrays that belong to particles and are carried from block to block."""
+        return [*self.place, *self.velocity, self.excess, self.mass, self.number]
+
+    def fields(self) -> list[ti.Field]:
+        """All arrays that a step changes."""
+        return [*self.moved, *self.acceleration, self.used]
+
+    def put(self, drops: np.ndarray, velocity: np.ndarray, water: Water) -> None:
+        """Fill the blocks in the order of the numbers with `drops` (W, n, 6) that have a `velocity` over the earth."""
+        mass = water.density * (1.0 + drops[..., EXCESS]) * drops[..., VOLUME]
+        columns = [drops[..., 0], drops[..., 1], velocity[..., 0], velocity[..., 1], drops[..., EXCESS], mass]
+        columns += [np.broadcast_to(np.arange(self.count), mass.shape), drops[..., VOLUME]]
+        fills = [FAR, FAR, 0.0, 0.0, 0.0, 0.0, UNUSED, 0.0]
+        for field, values, fill in zip([*self.moved, self.volume], columns, fills, strict=True):
+            whole = self.by_world(field.to_numpy())
+            whole[:, : self.wet * self.lanes] = fill
+            whole[:, : self.count] = values
+            field.from_numpy(whole.reshape(-1, self.lanes))
+        for field in self.acceleration:
+            field.fill(0.0)
+        self.used.fill(-(-self.count // self.lanes))
+
+    def by_world(self, values: np.ndarray) -> np.ndarray:
+        """The lanes of each world in a row, (W, stride · lanes)."""
+        return values.reshape(self.worlds, self.stride * self.lanes)
+
+    def read(self, *fields: ti.Field) -> list[np.ndarray]:
+        """Values (W, n) of these fields in the order of the particles' numbers."""
+        number = self.by_world(self.number.to_numpy())[:, : self.wet * self.lanes]
+        order = np.argsort(np.where(number < 0, self.count, number), axis=1, kind="stable")[:, : self.count]
+        wet = slice(0, self.wet * self.lanes)
+        return [np.take_along_axis(self.by_world(field.to_numpy())[:, wet], order, axis=1) for field in fields]
+
+    @ti.func
+    def load(self, field: ti.template(), b):
+        """The lanes of a block as a vector."""
+        return ti.Vector([field[b, lane] for lane in ti.static(range(self.lanes))])
+
+    @ti.func
+    def store(self, field: ti.template(), b, values):
+        """Write the lanes of a block."""
+        for lane in ti.static(range(self.lanes)):
+            field[b, lane] = values[lane]
+
+    @ti.func
+    def offset(self, b, origin: ti.template(), axis: ti.template()):
+        """Places of a block along an axis less the number `origin`, in the precision of `real`."""
+        return ti.Vector(
+            [ti.cast(self.place[axis][b, lane] - origin, self.real) for lane in ti.static(range(self.lanes))]
+        )
+
+    @ti.func
+    def long(self, values):
+        """Lanes of `real` numbers with the digits of places; lane by lane, since whole vectors cannot be cast."""
+        return ti.Vector([ti.cast(values[lane], self.where) for lane in ti.static(range(self.lanes))])
+
+    @ti.func
+    def short(self, values):
+        """Lanes of places with the digits of `real`."""
+        return ti.Vector([ti.cast(values[lane], self.real) for lane in ti.static(range(self.lanes))])
+
+    @ti.func
+    def filled(self, b):
+        """1 in lanes in use, 0 in others."""
+        mass = self.load(self.mass, b)
+        return ti.select(mass > 0.0, self.ones(), self.zeros())
+
+    @ti.func
+    def zeros(self):
+        """A vector of lanes of zeros."""
+        return ti.Vector([ti.cast(0.0, self.real) for _ in ti.static(range(self.lanes))])
+
+    @ti.func
+    def ones(self):
+        """A vector of lanes of ones."""
+        return ti.Vector([ti.cast(1.0, self.real) for _ in ti.static(range(self.lanes))])
+
+
+@ti.data_oriented
+class Shares:
+    """Which blocks of a world each unit works on: of the used ones of water, and of the walls' ones, equal shares."""
+
+    def __init__(self, particles: Particles, units):
+        self.particles, self.units = particles, units
+
+    @ti.func
+    def _cut(self, u, blocks):
+        """First and end of a unit's share of a number of blocks."""
+        first, end = 0, blocks
+        if ti.static(not self.units.whole):
+            size = (blocks + self.units.a_world - 1) // self.units.a_world
+            first = ti.min(blocks, (u % self.units.a_world) * size)
+            end = ti.min(blocks, first + size)
+        return first, end
+
+    @ti.func
+    def wet(self, u):
+        """First and end of a unit's blocks of water."""
+        w = self.units.world(u)
+        first, end = self._cut(u, self.particles.used[w])
+        return w * self.particles.stride + first, w * self.particles.stride + end
+
+    @ti.func
+    def dry(self, u):
+        """First and end of a unit's blocks of walls."""
+        w = self.units.world(u)
+        first, end = self._cut(u, self.particles.dry)
+        start = w * self.particles.stride + self.particles.wet
+        return start + first, start + end

@@ -1,0 +1,23 @@
+"""Laminar viscosity."""
+
+import taichi as ti
+
+
+class Laminar:
+    """2 ν ρ0 Σ V_j (u_j − u_i) (−W'/r) for a constant kinematic viscosity ν (Morris, Fox & Zhu 1997, eq. 22).
+
+    The force is along the difference of velocities: shear is right, angular momentum is kept only on average.
+    """
+
+    central = False
+
+    @staticmethod
+    def strength(water) -> float:
+        """Factor 2 ν ρ0 (Pa s) of the pairs' sum for a `solvers.fluid.given.Water`."""
+        return 2.0 * water.kinematic * water.density
+
+    @staticmethod
+    @ti.func
+    def pull(closing, square):
+        """Not used: the force is not central."""
+        return 0.0 * closing

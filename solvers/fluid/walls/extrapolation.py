@@ -1,0 +1,112 @@
+"""Pressures of the walls' dummy particles, extrapolated from the water before them."""
+
+import taichi as ti
+
+from solvers.fluid.constants import Constants
+from solvers.fluid.lists import Lists
+from solvers.fluid.state import Particles, Shares
+from solvers.machine.state import Axis, State
+from solvers.machine.units import Units
+from solvers.motion.poses import Poses
+from solvers.space.axes import dot, named
+
+SEEN = 1e-6  # of full coverage: a dummy that sees less water has no pressure
+
+
+@ti.data_oriented
+class Extrapolation:
+    """p_w = Σ V_f [p_f + ρ_f (g − a_w)·(r_w − r_f)] W / Σ V_f W over the water f (Adami, Hu & Adams 2012, eq. 27).
+
+    Weighted with volumes, which are nearly equal. Walls do not pull (p_w ≥ 0) unless the tank is full: a clip is needed
+    where there is a free surface, which would stick to a wall. Where water sticks (no slip), its mean velocity ũ at the
+    dummy gives the velocity 2 u_w − ũ for the viscous force (eq. 23).
+    """
+
+    def __init__(
+        self,
+        arrays: State,
+        units: Units,
+        particles: Particles,
+        shares: Shares,
+        lists: Lists,
+        constants: Constants,
+        poses: Poses,
+    ):
+        self.units, self.particles, self.shares = units, particles, shares
+        self.lists, self.constants, self.poses = lists, constants, poses
+        self.sticks = constants.viscous and not constants.slip
+        if self.sticks:
+            own = arrays.under("water")
+            each = Axis("block", particles.worlds * particles.stride), Axis("lane", particles.lanes)
+            self.mirrored = own.wide(each, *named("mirrored", particles.axes), kept=False)
+
+    @ti.func
+    def press(self, u, t, kick, dt):
+        """The pressures of a unit's dummies, and what share of each one's surroundings is water."""
+        first, end = self.shares.dry(u)
+        for b in range(first, end):
+            self.press_block(u, b, self.lists.facing.first[u, b - first], self.lists.facing.first[u, b - first + 1])
+
+    @ti.func
+    def press_block(self, u, b, begin, end):
+        """The pressures of a block of dummies from the entries `begin` to `end` of its list."""
+        p, c = self.particles, self.constants
+        w = self.units.world(u)
+        origin = [p.place[a][b, 0] for a in ti.static(range(p.axes))]
+        own = [p.offset(b, origin[a], a) for a in ti.static(range(p.axes))]
+        shrink = c.get("shrink")
+        seen, pressed = p.zeros(), p.zeros()
+        lever = [p.zeros() for _ in ti.static(range(p.axes))]
+        moved = [p.zeros() for _ in ti.static(range(p.axes))]
+        for k in range(begin, end):
+            j = self.lists.facing.slots[u, k]
+            jb, lane = j // p.lanes, j % p.lanes
+            apart = [
+                own[a] - ti.cast(p.place[a][jb, lane] - origin[a], p.real) for a in ti.static(range(p.axes))
+            ]
+            weight = c.kernel.value(ti.max(1.0 - ti.sqrt(dot(apart, apart)) * shrink, 0.0))
+            volume = p.volume[jb, lane]
+            seen += weight * volume
+            pressed += weight * (volume * p.pressure[jb, lane])
+            massive = weight * p.mass[jb, lane]
+            for a in ti.static(range(p.axes)):
+                lever[a] += massive * apart[a]
+                if ti.static(self.sticks):
+                    moved[a] += weight * (volume * p.velocity[a][jb, lane])
+        pull = self.felt(w, b)
+        pressure = (pressed + dot(pull, lever)) / ti.max(seen, 1e-30)
+        wet = seen * c.get("value")
+        if ti.static(not c.full):
+            pressure = ti.max(pressure, 0.0)
+        p.store(p.pressure, b, ti.select(wet > SEEN, pressure, p.zeros()))
+        p.store(p.span, b, wet)
+        if ti.static(self.sticks):
+            for a in ti.static(range(p.axes)):
+                mean = moved[a] / ti.max(seen, 1e-30)
+                p.store(self.mirrored[a], b, 2.0 * p.load(p.velocity[a], b) - mean)
+
+    @ti.func
+    def felt(self, w, b):
+        """g − a_w (m/s²) of a block of dummies: gravity less the acceleration of the wall."""
+        p = self.particles
+        felt = [p.ones() * ti.cast(self.poses.felt[2 + a][w], p.real) for a in ti.static(range(p.axes))]
+        if ti.static(self.poses.rotating):
+            zero = ti.cast(0.0, p.where)
+            y, z = p.offset(b, zero, 0), p.offset(b, zero, 1)
+            rate, up = ti.cast(self.poses.felt[4][w], p.real), ti.cast(self.poses.felt[5][w], p.real)
+            felt[0] += up * z + (rate * rate) * y
+            felt[1] += (rate * rate) * z - up * y
+        return felt
+
+    @ti.func
+    def carry(self, u):
+        """Give a unit's dummies the velocities (m/s) of their walls in the middle of the step."""
+        p = self.particles
+        w = self.units.world(u)
+        first, end = self.shares.dry(u)
+        for b in range(first, end):
+            zero = ti.cast(0.0, p.where)
+            rate = ti.cast(self.poses.walls[2][w], p.real)
+            y, z = p.offset(b, zero, 0), p.offset(b, zero, 1)
+            p.store(p.velocity[0], b, ti.cast(self.poses.walls[0][w], p.real) - rate * z)
+            p.store(p.velocity[1], b, ti.cast(self.poses.walls[1][w], p.real) + rate * y)

@@ -1,0 +1,68 @@
+"""Pressure gauges: probes on the walls, among the dummies but without volume, averaged and low-passed."""
+
+import numpy as np
+import taichi as ti
+
+from solvers.fluid.given import Gauge
+from solvers.fluid.state import Particles
+from solvers.machine.state import Axis, State
+
+DRY = 0.25  # share of the kernel that water must cover, of half at a wetted wall, for a gauge to show anything
+
+
+def probes(gauge: Gauge, outline: np.ndarray, spacing: float) -> np.ndarray:
+    """Points (n, 2) m, at most half a spacing apart, along a gauge in the wall of a polygon (m, 2) nearest to it."""
+    place = np.asarray(gauge.place, dtype=float)
+    edges = np.roll(outline, -1, axis=0) - outline
+    shares = np.clip(((place - outline) * edges).sum(axis=1) / (edges**2).sum(axis=1), 0.0, 1.0)
+    nearest = np.linalg.norm(outline + shares[:, None] * edges - place, axis=1).argmin()
+    along = edges[nearest] / np.linalg.norm(edges[nearest])
+    count = max(1, int(np.ceil(2.0 * gauge.length / spacing)))
+    return place + along * (gauge.length * ((np.arange(count) + 0.5) / count - 0.5))[:, None]
+
+
+@ti.data_oriented
+class Gauges:
+    """What the pressure gauges of each world show (W, gauges), Pa, and the highest since it was last taken.
+
+    A probe's pressure is extrapolated to the wall as a dummy's is; where there is hardly any water it is zero. A gauge
+    with the time constant τ follows by 1 − exp(−Δt/τ) of the difference in each step.
+    """
+
+    def __init__(self, arrays: State, particles: Particles, gauges: tuple[Gauge, ...], slots: list[np.ndarray]):
+        self.particles, self.count = particles, len(gauges)
+        own, each = arrays.under("gauges"), (Axis("world", particles.worlds), Axis("gauge", max(1, self.count)))
+        self.shown, self.peak = own.reals(each, "shown", "peak", kind=own.exact)
+        if self.count:
+            ends = np.cumsum([0, *(len(slot) for slot in slots)])
+            self.slots = own.holding("slots", np.concatenate(slots), "probe", ti.i32)
+            self.ends = own.holding("ends", ends, "end", ti.i32)
+            self.response = own.holding("response", np.array([gauge.response for gauge in gauges]), "gauge", own.exact)
+
+    def forget(self) -> None:
+        """Show nothing, as before the first step."""
+        self.shown.fill(0.0)
+        self.peak.fill(0.0)
+
+    @ti.func
+    def measure(self, w, t, kick, dt):
+        """Let the gauges of a world follow the pressures of their probes."""
+        p = self.particles
+        for gauge in range(self.count):
+            total = ti.cast(0.0, p.exact)
+            for k in range(self.ends[gauge], self.ends[gauge + 1]):
+                b, lane = w * p.stride + self.slots[k] // p.lanes, self.slots[k] % p.lanes
+                if p.span[b, lane] > DRY:
+                    total += ti.cast(p.pressure[b, lane], p.exact)
+            mean = total / (self.ends[gauge + 1] - self.ends[gauge])
+            follows = ti.cast(1.0, p.exact)
+            if self.response[gauge] > 0.0:
+                follows = 1.0 - ti.exp(0.0 - ti.cast(dt, p.exact) / self.response[gauge])
+            self.shown[w, gauge] = self.shown[w, gauge] + follows * (mean - self.shown[w, gauge])
+            self.peak[w, gauge] = ti.max(self.peak[w, gauge], self.shown[w, gauge])
+
+    def take(self) -> dict[str, np.ndarray]:
+        """What the gauges show, and their peaks (W, gauges), which begin anew from here."""
+        shown, peak = self.shown.to_numpy()[:, : self.count], self.peak.to_numpy()[:, : self.count]
+        self.peak.from_numpy(self.shown.to_numpy())
+        return {"gauge_pressure": shown, "gauge_peak": peak}

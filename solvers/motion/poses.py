@@ -1,0 +1,63 @@
+"""The tank's poses through a step, for matters that keep inertial velocities in the tank's axes."""
+
+import taichi as ti
+
+from solvers.machine.state import Axis, State
+from solvers.motion.frame import turned
+
+AT_START, AT_MIDDLE = range(2)  # the halves of a step by where they begin
+
+
+@ti.data_oriented
+class Poses:
+    """Gravity, drifts and wall velocities of a step in each world; `moving` says whether the tank moves at all.
+
+    A point at the earth's place x lies in the tank at r = R(φ)ᵀ (x − P). With the inertial velocity u in the tank's axes
+    it drifts in a straight line over the earth: from a to b, τ later, r' = D (r + τ u) + e and u' = D u, with
+    D = R(φ_a − φ_b) and e = R(φ_b)ᵀ (P_a − P_b). This is exact, and no fictitious force is needed.
+    """
+
+    def __init__(self, arrays: State, carrier, worlds: int):
+        self.carrier, self.exact = carrier, arrays.exact
+        self.moving, self.rotating = carrier.moving, carrier.moving and carrier.rotating
+        own, world = arrays.under("poses"), (Axis("world", worlds),)
+        names = "pull_y", "pull_z", "felt_y", "felt_z", "rate", "rate_up"
+        self.felt = own.reals(world, *names, kind=own.exact, kept=False)
+        halves = Axis("half", 2), Axis("number", 4)
+        (self.drift,) = own.reals((*world, *halves), "drift", kind=own.exact, kept=False)
+        names = "wall_y", "wall_z", "wall_rate", "start_y", "start_z", "start_rate"
+        self.walls = own.reals(world, *names, kind=own.exact, kept=False)  # velocities in the middle, and at the start
+
+    @ti.func
+    def note(self, w, t, dt):
+        """Note what the step of dt (s) from time t (s) needs."""
+        gravity = self.carrier.gravity[0]
+        if ti.static(self.moving):
+            half = 0.5 * ti.cast(dt, self.exact)
+            start, middle = self.carrier.kinematics(w, t), self.carrier.kinematics(w, t + half)
+            end = self.carrier.kinematics(w, t + 2.0 * half)
+            pull = turned(0.0, -gravity, -start[2])
+            felt = turned(-start[6], -gravity - start[7], -start[2])
+            self.felt[0][w], self.felt[1][w] = pull[0], pull[1]
+            self.felt[2][w], self.felt[3][w] = felt[0], felt[1]
+            self.felt[4][w], self.felt[5][w] = start[5], start[8]
+            self.note_half(w, AT_START, start, middle)
+            self.note_half(w, AT_MIDDLE, middle, end)
+            self.note_walls(w, 0, middle)
+            self.note_walls(w, 3, start)
+        else:
+            self.felt[1][w], self.felt[3][w] = -gravity, -gravity
+
+    @ti.func
+    def note_walls(self, w, first: ti.template(), pose: ti.template()):
+        """Note the velocity and rate of roll of a pose, in the tank's axes."""
+        velocity = turned(pose[3], pose[4], -pose[2])
+        self.walls[first][w], self.walls[first + 1][w], self.walls[first + 2][w] = velocity[0], velocity[1], pose[5]
+
+    @ti.func
+    def note_half(self, w, half, a: ti.template(), b: ti.template()):
+        """Note the drift from pose a to pose b."""
+        turn = turned(1.0, 0.0, a[2] - b[2])
+        shift = turned(a[0] - b[0], a[1] - b[1], -b[2])
+        self.drift[w, half, 0], self.drift[w, half, 1] = turn[0], turn[1]
+        self.drift[w, half, 2], self.drift[w, half, 3] = shift[0], shift[1]
