@@ -12,7 +12,7 @@ from lab.base.errors import LabError, Unusable
 from lab.base.trust import BEYOND
 from lab.paint.painter import Edges
 from lab.paint.sea import Sea
-from lab.paint.water.pool import pool_of
+from lab.paint.water.pool import Pool
 from lab.recording import Recording, open_recording
 from lab.recording.ship_end import ends
 from solvers.grains.quantities import FRAMES
@@ -45,7 +45,7 @@ class Footage:
         self.centre_of_mass, self.spilled = series.get("centre_of_mass"), series.get("spilled")
         self.radius, self.outline, self.kind = recording.radius, recording.outline, recording.kind
         self.matters, self._series = recording.preset.matters, series
-        self.water = pool_of(recording)
+        self.water = Pool.of(recording.preset, recording.volume)
         self.kinds = ["the rest", *recording.preset.kinds]
         self.shapes = recording.shapes
         self.shape_names = list(recording.preset.shapes) if self.shapes else ["disc"]

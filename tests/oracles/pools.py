@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from lab.paint.footage import NO_GRAINS, Bed
-from lab.paint.water.pool import Pool, numbered
+from lab.paint.water.pool import Pool
 from lab.preset.sections.video import Video
 from solvers.fluid.given import Gauge, Level
 
@@ -51,7 +51,9 @@ class MadeFootage:
     title: str = "Water in a tank"
 
     def __post_init__(self) -> None:
-        self.water = Pool(np.full((1, 1), self.spacing**2), *numbered(self.gauges, self.levels))
+        gauges = {f"P{k}": gauge for k, gauge in enumerate(self.gauges, start=1)}
+        levels = {f"L{k}": level for k, level in enumerate(self.levels, start=1)}
+        self.water = Pool(np.full((1, 1), self.spacing**2), gauges, levels)
         self.matters, self.worlds, self.sea, self.ends = ("water",), 1, None, [None]
         self.radius, self.kind, self.kinds = np.zeros((1, 0)), np.zeros((1, 0), dtype=int), ["the rest"]
         self.shapes, self.shape_names, self.fixed, self.parts = None, ["disc"], np.zeros((0, 3)), {}

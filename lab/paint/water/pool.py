@@ -4,7 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from lab.recording import Recording
+from lab.preset.schema import Preset
+from lab.preset.sections.water.liquid import liquid, parted
 from solvers.fluid.given import Gauge, Level
 
 
@@ -16,22 +17,15 @@ class Pool:
     gauges: dict[str, Gauge]
     levels: dict[str, Level]
 
+    @classmethod
+    def of(cls, preset: Preset, volume: np.ndarray) -> "Pool | None":
+        """The water of a preset with the volumes (W, n) m² of its particles; None without water."""
+        if preset.water is None:
+            return None
+        water, (gauges, levels) = liquid(preset), parted(preset.gauges)
+        return cls(volume, dict(zip(gauges, water.gauges, strict=True)), dict(zip(levels, water.levels, strict=True)))
+
     @property
     def spacing(self) -> float:
         """Mean distance of the particles (m)."""
         return float(np.sqrt(self.volume.mean()))
-
-
-def numbered(gauges: tuple[Gauge, ...], levels: tuple[Level, ...]) -> tuple[dict[str, Gauge], dict[str, Level]]:
-    """Gauges without names, numbered from one: P1, P2 … of pressure and L1, L2 … of depth."""
-    return (
-        {f"P{k}": gauge for k, gauge in enumerate(gauges, start=1)},
-        {f"L{k}": level for k, level in enumerate(levels, start=1)},
-    )
-
-
-def pool_of(recording: Recording) -> Pool | None:
-    """The water of a recording; None without water."""
-    if "water" not in recording.preset.matters:
-        return None
-    raise NotImplementedError

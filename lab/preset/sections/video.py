@@ -53,8 +53,8 @@ def check_video(video: Video, matters: Collection[str]) -> None:
     """Raise LabError for a colour of what is not there, and for picture sizes that the video codec cannot encode."""
     fitting = [name for name, words in OF_MATTERS.items() if video.colour in words]
     if video.colour and not set(fitting) & set(matters):
-        remedy = f"add a table [{fitting[0]}], or leave this out"
-        raise LabError(f"video.colour: goes with {' or '.join(fitting)}, and there are none; {remedy}.")
+        said = f"{' or '.join(fitting)}, and there {'is' if fitting == ['water'] else 'are'} none"
+        raise LabError(f"video.colour: goes with {said}; add a table [{fitting[0]}], or leave this out.")
     for name in ("width", "height"):
         if getattr(video, name) % 2:
             raise LabError(f"video.{name}: must be even for H.264 (got {getattr(video, name)}).")
