@@ -16,8 +16,9 @@ from lab.paint.water.vorticity import vorticity
 if TYPE_CHECKING:
     from lab.paint.footage import Bed
 
-COVERED = 99.5  # % of the values in the frame where they are largest lie on the scale
+COVERED = 99.5  # % of the values of all frames lie above the lower end of a scale, and so many below the upper one
 LEAST = 0.05  # of the highest pressure: less suction than that is not given a part of the scale
+MOST_OF_A_FRAME = 20_000  # particles of a frame that are looked at for the scale
 FEW = 15  # frames for the scale of what takes time to compute
 
 
@@ -75,7 +76,12 @@ def field(name: str, beds: Sequence[Bed]) -> Colouring | None:
 def _ends(
     beds: Sequence[Bed], values: Callable[[Bed, int], np.ndarray], frames: int = SAMPLED_FRAMES
 ) -> tuple[float, float]:
-    """The ends of a scale on which nearly all values of all sampled frames lie; 0 and 0 if no water is left."""
-    samples = [values(bed, frame) for bed, frame in spread(beds, frames)]
-    found = [np.percentile(kept, [100.0 - COVERED, COVERED]) for one in samples if len(kept := one[np.isfinite(one)])]
-    return (float(min(low for low, _ in found)), float(max(high for _, high in found))) if found else (0.0, 0.0)
+    """The ends of a scale on which nearly all values of all sampled frames lie; 0 and 0 if no water is left.
+
+    All frames count together, so that an impact, which one frame shows, does not leave the others without colours.
+    """
+    samples = (values(bed, frame) for bed, frame in spread(beds, frames))
+    found = np.concatenate([sample[:: 1 + len(sample) // MOST_OF_A_FRAME] for sample in samples])
+    found = found[np.isfinite(found)]
+    low, high = np.percentile(found, [100.0 - COVERED, COVERED]) if len(found) else (0.0, 0.0)
+    return float(low), float(high)
