@@ -17,6 +17,7 @@ from lab.paint.sea import LINE
 from lab.paint.water.gauges import Marks, hues_of
 from lab.paint.water.layer import WaterLayer
 from lab.recording.ship_end import End
+from lab.view.footage import LiveFootage
 from lab.view.overlays import force_strokes, ring, velocity_strokes
 from lab.view.panel.controls import CONTROLS, RESTARTS
 from lab.view.panel.curves import CURVES
@@ -193,7 +194,7 @@ class Page:
         else:
             stage = self._empty_stage(shown, camera, moved)
         if footage.water:
-            stage = self._with_water(stage, shown, moved)
+            self._paint_water(stage, shown, moved)
         if scale:
             self._paint_grains(stage, shown, moved, scale)
         for line, shift in zip(footage.parts.values(), footage.moved_parts(frame), strict=True):
@@ -207,20 +208,23 @@ class Page:
         self._mark(stage, shown, moved)
         if shown.curve != "nothing":
             _put(stage, self._curve(shown), 0, 0)
+        if footage.water:
+            image = Image.fromarray(stage)
+            self._marks(footage).name(image, moved)
+            stage = np.array(image)
         if shown.lost:
             _put(stage, self._still("lost", (shown.lost,), lambda: self._lost(shown.lost)), 0, -self.u(BAND))
         return stage
 
-    def _with_water(self, stage: np.ndarray, shown: Shown, camera: Camera) -> np.ndarray:
-        """The stage with the water and its gauges."""
+    def _paint_water(self, stage: np.ndarray, shown: Shown, camera: Camera) -> None:
+        """The water and its gauges, whose names are written at the end."""
         footage, frame = shown.footage, shown.frame
         self._water.paint(stage, camera, footage.bed, frame)
-        marks = Marks(footage.outline, footage.water, hues_of(footage.water), self.unit)
         levels = footage.row(frame, "level_depth") if footage.water.levels else ()
-        marks.paint(stage, camera, dict(zip(footage.water.levels, levels, strict=False)))
-        image = Image.fromarray(stage)
-        marks.name(image, camera)
-        return np.array(image)
+        self._marks(footage).paint(stage, camera, dict(zip(footage.water.levels, levels, strict=True)))
+
+    def _marks(self, footage: LiveFootage) -> Marks:
+        return Marks(footage.outline, footage.water, hues_of(footage.water), self.unit)
 
     def _paint_grains(self, stage: np.ndarray, shown: Shown, camera: Camera, scale: Colouring) -> None:
         """The grains, paler below force chains."""

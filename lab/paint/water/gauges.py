@@ -17,7 +17,7 @@ DASH, SPACE, THIN = 0.45, 0.4, 0.055  # of the line of a depth gauge: lengths an
 AWAY, LETTERS = 0.75, 0.95  # distance of a name from the wall's inner face and its height, in u
 LONG = 0.9  # u, half the length of a name that is too long to stand beside the tank
 SMALLEST = 7.0  # pixels; smaller letters are left out
-OF_TANK = 0.03  # largest u, over the larger side of the tank in the picture
+OF_TANK = 0.04  # largest u, over the larger side of the tank in the picture
 
 
 @dataclass(frozen=True)

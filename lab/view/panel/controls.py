@@ -151,7 +151,7 @@ CONTROLS: dict[str, Control] = {
         RESTARTS,
         _diameter,
     ),
-    "depth": Control("depth of water", "water.depth", RESTARTS, lambda preset: preset.water and preset.water.depth),
+    "depth": Control("depth", "water.depth", RESTARTS, lambda preset: preset.water and preset.water.depth),
     "spacing": Control(
         "particles", "water.spacing", RESTARTS, lambda preset: spacing(preset) if preset.water else None
     ),
