@@ -16,7 +16,7 @@ from lab.recording import Recording
 OF = "water"
 BEFORE, AFTER = 0.030, 0.200  # s
 LEAST_SAMPLES = 10  # of an impact
-COARSE = "pressures were recorded too rarely"
+COARSE = f"no impact is recorded whole by {LEAST_SAMPLES} samples or more"
 
 
 def applies(recording: Recording) -> bool:

@@ -1,5 +1,7 @@
 """The gauges of a recording of water, and the cycles of the motion that drives it, for the measures of water."""
 
+from itertools import pairwise
+
 import numpy as np
 
 from lab.measures.motion import driving, soft_start
@@ -47,7 +49,7 @@ def cycles(recording: Recording, signal: np.ndarray) -> list[slice]:
     first = np.ceil(begin * frequency - quietest) + quietest
     cuts = np.arange(first, time[-1] * frequency + 1e-9) / frequency
     rows = np.searchsorted(time, cuts - 1e-9)
-    return [slice(a, b) for a, b in zip(rows, rows[1:], strict=False) if b - a > 1]
+    return [slice(a, b) for a, b in pairwise(rows) if b - a > 1]
 
 
 def over_cycles(numbers: list[np.ndarray], unit: str, note: str = "") -> tuple[Value, Value]:

@@ -6,7 +6,7 @@ earth, `viscous` and `diffusive` are what viscosity and the diffusion of density
 dummy particles hold, `work` that of the walls (Antuono, Marrone, Colagrossi & Bouscasse 2015, for δ-SPH). It is zero
 up to the error of the time step.
 water_excess: the largest deviation of the density from that at rest. Up to some 1 % the water counts as incompressible;
-impacts may exceed it for a moment. water_dense: the largest share of the water at a time that deviates by more than 3 %.
+impacts may exceed it for a moment. water_dense: the largest share of the water that deviates by more than 3 %.
 Error: none of their own.
 """
 
