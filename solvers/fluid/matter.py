@@ -6,7 +6,7 @@ import numpy as np
 import taichi as ti
 
 from solvers.fluid.census import Census
-from solvers.fluid.checks import check_water, refuse_scene, refuse_state
+from solvers.fluid.checks import check_water, refuse_scene, refuse_state, residual
 from solvers.fluid.constants import Constants
 from solvers.fluid.continuity import Continuity
 from solvers.fluid.forces import Forces
@@ -63,7 +63,7 @@ class WaterMatter(Matter):
         self.gauges = Gauges(arrays, p, water.gauges, [dummy[slot] + p.wet * lanes for slot in slots])
         closed = water.walls and not tank.open_edges
         self.census = Census(arrays, p, setting.walls, self.constants, setting.carrier, closed, water.levels)
-        self.start = np.full(worlds, np.nan)  # J, energy at the start
+        self.start = np.full(worlds, np.nan)  # J, energy at the first look
         self.thickness = tank.thickness
         self.before = self._before()
         self.after = (
@@ -222,7 +222,7 @@ class WaterMatter(Matter):
             **self.gauges.take(),
         }
         fresh = np.isnan(self.start)
-        self.start[fresh] = rows["water_total"][fresh]
+        self.start[fresh] = residual(rows, 0.0)[fresh]
         return rows
 
     def check(self, rows: dict[str, np.ndarray], time: float) -> None:
