@@ -3,7 +3,7 @@
 run_up_NAME: the largest depth at each level gauge, less that at the start. Error: none of its own; a gauge averages
 over a width of two smoothing lengths.
 highest_water: the greatest height of any particle over the tank's lowest point, drops in the air included, in the
-picture frames. Error: half a spacing of the particles, since water reaches as far beyond the middle of a particle. A
+picture frames, and half a spacing more, since water reaches beyond the middle of a particle. Error: half a spacing. A
 crest between two frames may be missed. The note says if it came within a spacing of the tank's highest point.
 """
 
@@ -22,8 +22,8 @@ COLOURS = BLUE, VERMILION, GREEN, GREY
 
 
 def applies(recording: Recording) -> bool:
-    """There are pictures of the water."""
-    return len(recording.frames["time"]) > 0
+    """Every run of water has a highest level."""
+    return True
 
 
 def measure(recording: Recording) -> dict[str, Value]:
@@ -32,12 +32,15 @@ def measure(recording: Recording) -> dict[str, Value]:
     for k, name in enumerate(level_gauges(recording)):
         rise = recording.series["level_depth"][..., k]
         found[key("run_up", name)] = over_worlds(1e3 * (rise.max(axis=0) - rise[0]), "mm")
+    if not len(recording.frames["time"]):
+        return found
     floor, top = (float(end(recording.outline[:, 1])) for end in (np.min, np.max))
     size = spacing(recording.preset)
     highest = np.full(recording.worlds, -np.inf)
     for frame in range(len(recording.frames["time"])):
         place = recording.frames["water_place"][frame]
         highest = np.fmax(highest, np.fmax.reduce(place[..., 1].astype(float), axis=1))
+    highest = highest + 0.5 * size
     reached = int(np.count_nonzero(top - highest <= size))
     many = f" in {reached} of {recording.worlds} tanks" if recording.worlds > 1 else ""
     note = f"it reaches the {'rim' if recording.open_edges else 'lid'}{many}" if reached else ""

@@ -26,7 +26,7 @@ OF = "water"
 LEAST_SAMPLES = 32
 LEAST_PERIODS = 3
 STILL = 1e-9  # m/s, rad/s: rates of a tank at rest
-FLAT = 1e-4  # of the depth: a smaller amplitude has no frequency
+FLAT = 1e-3  # of the depth: what deviates less from its mean has no frequency
 SHOWN = 6.0  # frequencies of a figure's range
 CALM = "the water does not swing"
 

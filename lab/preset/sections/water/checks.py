@@ -45,6 +45,8 @@ def _check_company(preset: "Preset") -> None:
         raise LabError("water: water in a ship's hold is not computed yet; the sea outside is [sea].")
     if preset.grains is not None:
         raise LabError("water: grains and water in one tank are not computed yet; leave out [grains] or [water].")
+    if preset.run.repeats > 1:
+        raise LabError("run.repeats: water starts without chance, so that all repeats would be the same; take one.")
     if preset.parts:
         raise LabError("parts: plates in water are not computed yet; draw them into tank.outline, or leave them out.")
 
