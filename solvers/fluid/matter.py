@@ -12,7 +12,7 @@ from solvers.fluid.continuity import Continuity
 from solvers.fluid.forces import Forces
 from solvers.fluid.given import VELOCITY_Y, VELOCITY_Z, Water
 from solvers.fluid.grid import Grid
-from solvers.fluid.lists import Lists
+from solvers.fluid.lists import Lists, Medium
 from solvers.fluid.mover import Mover
 from solvers.fluid.order import Order
 from solvers.fluid.state import LANES, UNUSED, Particles, Shares
@@ -54,12 +54,11 @@ class WaterMatter(Matter):
         shares, self.constants = Shares(p, units), Constants(arrays, water, scene.gravity)
         self.poses = Poses(arrays, setting.carrier, worlds)
         self.order = Order(arrays, p, grid)
-        self.lists = Lists(arrays, units, p, shares, self.order, self.constants, first, setting.room)
-        wall = p, shares, self.lists, self.constants
-        self.extrapolation = Extrapolation(arrays, units, *wall, self.poses)
-        self.forces = Forces(arrays, units, *wall, self.extrapolation, self.load, self.poses, tank.thickness)
-        self.continuity = Continuity(arrays, units, *wall, self.poses)
-        self.mover = Mover(arrays, units, *wall, self.extrapolation, self.poses)
+        self.lists = Lists(arrays, units, self.order, shares, self.constants, first, setting.room)
+        medium = Medium(units, p, shares, self.lists, self.constants, self.poses)
+        self.extrapolation = Extrapolation(arrays, medium)
+        self.forces = Forces(arrays, medium, self.extrapolation, self.load, tank.thickness)
+        self.continuity, self.mover = Continuity(arrays, medium), Mover(arrays, medium, self.extrapolation)
         self.gauges = Gauges(arrays, p, water.gauges, [dummy[slot] + p.wet * lanes for slot in slots])
         closed = water.walls and not tank.open_edges
         self.census = Census(arrays, p, setting.walls, self.constants, setting.carrier, closed, water.levels)
@@ -182,7 +181,14 @@ class WaterMatter(Matter):
             whole = field.to_numpy().reshape(p.worlds, p.stride, p.lanes)
             whole[:, p.wet :] = values
             field.from_numpy(whole.reshape(-1, p.lanes))
-        for field in (self.forces.lost, self.forces.held, self.forces.work, self.continuity.lost, self.census.behind, self.lists.last):
+        for field in (
+            self.forces.lost,
+            self.forces.held,
+            self.forces.work,
+            self.continuity.lost,
+            self.census.behind,
+            self.lists.last,
+        ):
             field.fill(0.0)
         self.lists.skin.fill(0.0)
         self.lists.expire()

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from solvers.fluid.given import EXCESS, VOLUME, Y, Z, Water
+from solvers.fluid.given import EXCESS, VOLUME, Water, Y, Z
 from solvers.fluid.walls.layers import layers
 from solvers.scene import Scene
 
