@@ -169,7 +169,7 @@ def check(preset: Preset) -> None:
     duration_of(preset.run, preset.motion)
     check_parts(preset.parts, preset.tank.corners)
     check_ship(preset.ship, preset.waves, bool(preset.motion.parts), preset.tank.corners)
-    check_video(preset.video)
+    check_video(preset.video, preset.matters)
 
 
 def marked(mark: str) -> list[str]:

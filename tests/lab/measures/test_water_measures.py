@@ -6,7 +6,7 @@ import pytest
 from lab.measures import measure_all
 from lab.measures.gauges import cycles
 from lab.recording import open_recording
-from tests.oracles.pools import DROPS, pool, record_pool
+from tests.oracles.recorded_water import DROPS, pool, record_pool
 
 RATE = 200.0
 TIME = np.arange(0, 10 * RATE + 1) / RATE

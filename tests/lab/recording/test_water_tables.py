@@ -9,7 +9,7 @@ import pytest
 from lab.base.errors import LabError, Unusable
 from lab.recording import open_recording
 from lab.recording.xdmf import write_xdmf
-from tests.oracles.pools import DROPS, pool, record_pool
+from tests.oracles.recorded_water import DROPS, pool, record_pool
 
 TIME = 0.1 * np.arange(5)
 PRESSURE = np.arange(10.0).reshape(5, 1, 2)
