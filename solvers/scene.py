@@ -1,7 +1,7 @@
 """The scene: everything the solver needs to know about an experiment, in SI units."""
 
-from collections.abc import Hashable, Sequence
-from dataclasses import dataclass, field, fields, is_dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass, field, fields, replace
 from itertools import product
 from typing import Annotated
 
@@ -15,7 +15,7 @@ from solvers.grains.materials import Interface, Material, interface, touching
 from solvers.grains.shapes.given import Shapes
 from solvers.grains.timestep import SLOWEST, limits_of_grains
 from solvers.machine.limit import Limit
-from solvers.machine.marks import EachWorld, LargestOfWorlds, NotOfBed, marked
+from solvers.machine.marks import EachWorld, LargestOfWorlds, NotOfBed, comparable, joined, marked
 from solvers.ship.vessel import Vessel
 from solvers.tank.parts import Part
 from solvers.tank.tank import BARE_THICKNESS, Tank
@@ -289,29 +289,6 @@ class Scene:
         """One scene with the worlds of all `scenes`; raises ValueError unless their `shared()` are equal."""
         if any(scene.shared() != scenes[0].shared() for scene in scenes):
             raise ValueError("these scenes cannot run in one launch")
-        each = {name: _joined([getattr(scene, name) for scene in scenes]) for name in marked(Scene, EachWorld)}
+        each = {name: joined([getattr(scene, name) for scene in scenes]) for name in marked(Scene, EachWorld)}
         largest = {name: max(getattr(scene, name) for scene in scenes) for name in marked(Scene, LargestOfWorlds)}
         return replace(scenes[0], **each, **largest)
-
-
-def comparable(value: object) -> Hashable:
-    """A value with arrays in it, in a form that can be compared and hashed."""
-    if isinstance(value, np.ndarray):
-        return value.shape, value.tobytes()
-    if isinstance(value, tuple | list):
-        return tuple(map(comparable, value))
-    if is_dataclass(value):
-        return tuple(comparable(getattr(value, field.name)) for field in fields(value))
-    return value
-
-
-def _joined(values: list) -> object:
-    """The entries of all worlds, from those of each scene; None where there are none."""
-    first = values[0]
-    if first is None:
-        return None
-    if isinstance(first, np.ndarray):
-        return np.concatenate(values)
-    if isinstance(first, Shapes):
-        return replace(first, **{name: _joined([getattr(one, name) for one in values]) for name in ("which", "angle")})
-    return [one for value in values for one in value]

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable
 from collections.abc import Sequence as Several
-from contextlib import nullcontext
 from dataclasses import replace
 
 import numpy as np
@@ -26,12 +25,12 @@ from solvers.time import watch
 from solvers.time.clock import Clock
 from solvers.time.schedules import SCHEDULES, choose_schedule, units_a_world
 from solvers.time.sequence import Sequence
+from solvers.time.settling import settle
 
 LOOK_FOR_MIXING = 0.25  # s, between checks of whether the grains' numbers still follow their positions
 SKIN = 0.05  # of the mean diameter: the fastest of 0.05 … 0.3, in settled and in shaken beds
 SKIN_OF_CONVEX = 0.1  # for convex outlines, whose lists cost more to build
 SHORTER = 0.9  # of the limit on the step at set-up: the lowest limit that `alter` accepts
-AT_REST = -1e9  # a time long before any motion starts
 
 
 class Simulation:
@@ -67,8 +66,7 @@ class Simulation:
         alone = self.arch == "cpu" and (self.schedule_name != "per-grain" or worlds == 1)
         self.stretch = stretch if alone else 1
         self.steps, self.room = 0, 1
-        self.origin = 0.0  # s, time of the tank's motion at step 0
-        self.unkicked = 0  # the first step since the launch
+        self.origin, self.unkicked = 0.0, 0  # time (s) of the tank's motion at step 0; the first step since the launch
         self._build()
         means = [quantity for quantity in self.observer.quantities if quantity.mean]
         # When last, and what the means were
@@ -169,7 +167,7 @@ class Simulation:
         """Advance every running world to base step `self.steps`, with larger contact lists if they overflow."""
         runtime.merge_repeats(self.scene.shapes is None)
         while True:
-            with real_vectors() if self.wide else nullcontext():
+            with real_vectors(self.wide):
                 self.schedule.advance(self.steps, self.origin, self.dt)
             status = self.clock.status.to_numpy()
             if not np.any(status == watch.NO_ROOM):
@@ -239,18 +237,7 @@ class Simulation:
         energy, spin included, in units of m g d) is below `rest` in two checks in a row, 10 ms apart. Settling ends
         after `limit` s at the latest.
         """
-        self.origin = AT_REST
-        look = self.beat * max(1, round(0.01 / (self.beat * self.dt)))
-        quiet = np.zeros(self.scene.worlds, dtype=int)
-        while np.any(quiet < 2) and self.steps * self.dt < limit:
-            self.advance(look)
-            rows = self.observe()
-            calm = np.all([matter.restlessness(rows) < rest for matter in self.matters.values()], axis=0)
-            quiet = np.where(calm, quiet + 1, 0)
-            self.clock.status.from_numpy(np.where(quiet < 2, watch.RUNNING, watch.WAITING).astype(np.int32))
-            tell(self.steps * self.dt)
-        self.start_clock()
-        return bool(np.all(quiet >= 2))
+        return settle(self, rest, limit, tell)
 
     def steer(self, pieces: Several[np.ndarray]) -> None:
         """Let the scene's motions, which must all be `Steered`, follow these polynomials (6,) from now on."""

@@ -41,7 +41,7 @@ def check_water(rows: dict[str, np.ndarray], start: np.ndarray, time: float) -> 
         raise BadState(w, f"the water has gained energy from nothing by t = {time:.4g} s; {REMEDY}.")
 
 
-def residual(rows: dict[str, np.ndarray], start: np.ndarray) -> np.ndarray:
+def residual(rows: dict[str, np.ndarray], start: np.ndarray | float) -> np.ndarray:
     """Energy (W,) J that nothing accounts for: gain, losses and what dummies hold, less the work of the walls."""
     taken = rows["water_viscous"] + rows["water_diffusive"] + rows["water_held"]
     return rows["water_total"] + taken - rows["water_work"] - start

@@ -1,4 +1,4 @@
-"""The constants of the water's pair sums, in an array: scenes that differ in them alone share their compiled kernels."""
+"""The constants of the water's pair sums, in an array: scenes that differ in them alone share compiled kernels."""
 
 import numpy as np
 import taichi as ti

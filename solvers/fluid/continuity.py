@@ -2,12 +2,8 @@
 
 import taichi as ti
 
-from solvers.fluid.constants import Constants
-from solvers.fluid.lists import Lists
-from solvers.fluid.state import Particles, Shares
+from solvers.fluid.lists import Medium
 from solvers.machine.state import State
-from solvers.machine.units import Units
-from solvers.motion.poses import Poses
 from solvers.space.axes import dot
 
 
@@ -19,20 +15,11 @@ class Continuity:
     Marrone, Colagrossi & Bouscasse 2015, eq. 22).
     """
 
-    def __init__(
-        self,
-        arrays: State,
-        units: Units,
-        particles: Particles,
-        shares: Shares,
-        lists: Lists,
-        constants: Constants,
-        poses: Poses,
-    ):
-        self.units, self.particles, self.shares = units, particles, shares
-        self.lists, self.constants, self.poses = lists, constants, poses
+    def __init__(self, arrays: State, medium: Medium):
+        self.units, self.particles, self.shares = medium.units, medium.particles, medium.shares
+        self.lists, self.constants, self.poses = medium.lists, medium.constants, medium.poses
         own = arrays.under("water.continuity")
-        (self.lost,) = own.reals((units.axis,), "lost", kind=own.exact)
+        (self.lost,) = own.reals((medium.units.axis,), "lost", kind=own.exact)
 
     @ti.func
     def expand(self, u, frame, kick, dt):

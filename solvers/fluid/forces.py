@@ -3,13 +3,9 @@
 import numpy as np
 import taichi as ti
 
-from solvers.fluid.constants import Constants
-from solvers.fluid.lists import Lists
-from solvers.fluid.state import Particles, Shares
+from solvers.fluid.lists import Medium
 from solvers.fluid.walls.extrapolation import Extrapolation
 from solvers.machine.state import State
-from solvers.machine.units import Units
-from solvers.motion.poses import Poses
 from solvers.space.axes import dot
 from solvers.tank.load import Load
 
@@ -21,30 +17,19 @@ OUTLINE = 0  # number of the piece of the tank that all dummies belong to
 class Forces:
     """m du/dt = −Σ V_i V_j (p_i + p_j) ∇W + viscosity (Antuono, Colagrossi, Marrone & Molteni 2010, eq. 6).
 
-    Forces between pairs of particles are equal and opposite; those of dummies are booked on the tank. `lost` (units,) is
-    the energy that viscosity has taken, `held` that which dummies have, `work` that which the walls have given, J per
-    metre of thickness. Dummies take and give energy since their pressures push, but are not worked on in return: only
-    p_i is in the balance of the particle's own density (Cercos-Pita, Antuono, Colagrossi & Souto-Iglesias 2017).
+    Forces between pairs of particles are equal and opposite; those of dummies are booked on the tank. `lost` (units,)
+    is the energy that viscosity has taken, `held` that which dummies have, `work` that which the walls have given, J
+    per metre of thickness. Dummies take and give energy since their pressures push, but are not worked on in return:
+    only p_i is in the balance of the particle's own density (Cercos-Pita, Antuono, Colagrossi & Souto-Iglesias 2017).
     """
 
-    def __init__(
-        self,
-        arrays: State,
-        units: Units,
-        particles: Particles,
-        shares: Shares,
-        lists: Lists,
-        constants: Constants,
-        walls: Extrapolation,
-        load: Load,
-        poses: Poses,
-        thickness: float,
-    ):
-        self.units, self.particles, self.shares, self.lists = units, particles, shares, lists
-        self.constants, self.walls, self.load, self.poses = constants, walls, load, poses
+    def __init__(self, arrays: State, medium: Medium, walls: Extrapolation, load: Load, thickness: float):
+        self.units, self.particles, self.shares = medium.units, medium.particles, medium.shares
+        self.lists, self.constants, self.poses = medium.lists, medium.constants, medium.poses
+        self.walls, self.load = walls, load
         own = arrays.under("water.forces")
-        self.lost, self.held, self.work = own.reals((units.axis,), "lost", "held", "work", kind=own.exact)
-        self.gradients = constants.diffusion.renormalised
+        self.lost, self.held, self.work = own.reals((medium.units.axis,), "lost", "held", "work", kind=own.exact)
+        self.gradients = medium.constants.diffusion.renormalised
         self.thick = arrays.under("water").holding("thickness", np.array([thickness]), "one", own.exact)
 
     @ti.func
@@ -65,7 +50,7 @@ class Forces:
         first, end = self.shares.wet(u)
         total = ti.Vector([ti.cast(0.0, self.particles.exact) for _ in ti.static(range(5))])
         for b in range(first, end):
-            total += self.push_block(u, b, b - first)
+            total += self.push_block(u, b, b - first, kick)
         thick, during = self.thick[0], ti.cast(kick, self.particles.exact)
         self.lost[u] = self.lost[u] + total[3] * during
         self.held[u] = self.held[u] + total[4] * during
@@ -76,7 +61,7 @@ class Forces:
         self.load.book(u, OUTLINE, ti.Vector([total[0] * thick, total[1] * thick, total[2] * thick]), dt)
 
     @ti.func
-    def push_block(self, u, b, listed):
+    def push_block(self, u, b, listed, kick):
         """As `push`, for a block.
 
         Returns its force (y, z; N/m) and moment (N) on the walls, viscous power, and the
@@ -90,6 +75,7 @@ class Forces:
         shrink, floor, strength = c.get("shrink"), c.get("floor"), c.get("strength")
         push = [p.zeros() for _ in ti.static(range(p.axes))]
         wall = [p.zeros() for _ in ti.static(range(p.axes))]
+        own_push = [p.zeros() for _ in ti.static(range(p.axes))]  # of the dummies' own pressures
         slope = [p.zeros() for _ in ti.static(range(p.axes))]
         yy, yz, zz, lost, held = p.zeros(), p.zeros(), p.zeros(), p.zeros(), p.zeros()
         for k in range(lists.near.first[u, listed], lists.near.first[u, listed + 1]):
@@ -128,10 +114,13 @@ class Forces:
                 apart = [own[a] - ti.cast(p.place[a][jb, lane] - origin[a], p.real) for a in ti.static(range(p.axes))]
                 square = dot(apart, apart)
                 weight = p.volume[jb, lane] * c.kernel.slope(ti.max(1.0 - ti.sqrt(square) * shrink, 0.0))
-                seen = [p.velocity[a][jb, lane] - speed[a] for a in ti.static(range(p.axes))]
                 along = p.pressure[jb, lane] + (pressure if ti.static(c.full) else ti.max(pressure, 0.0))
                 along = along * weight + self.hardness(p.volume[jb, lane], square)
-                held += (along - pressure * weight) * dot(seen, apart)
+                more = along - pressure * weight
+                for a in ti.static(range(p.axes)):
+                    own_push[a] += more * apart[a]
+                if ti.static(self.poses.moving):
+                    held += more * dot([p.velocity[a][jb, lane] for a in ti.static(range(p.axes))], apart)
                 if ti.static(self.walls.sticks):
                     slides = [self.walls.mirrored[a][jb, lane] - speed[a] for a in ti.static(range(p.axes))]
                     if ti.static(c.viscosity.central):
@@ -148,7 +137,11 @@ class Forces:
         factor, density = c.get("slope"), c.get("density")
         lightness = (p.filled(b) * factor) / (density * (1.0 + s))
         for a in ti.static(range(p.axes)):
-            p.store(p.acceleration[a], b, lightness * (push[a] + wall[a]))
+            acceleration = lightness * (push[a] + wall[a])
+            p.store(p.acceleration[a], b, acceleration)
+            # Velocities are half a kick behind the places at which the dummies push.
+            gain = acceleration + p.filled(b) * ti.cast(self.poses.felt[a][self.units.world(u)], p.real)
+            held = held - own_push[a] * (speed[a] + (0.5 * kick) * gain)
         self.note_span(b, factor * yy, factor * yz, factor * zz, [factor * slope[a] for a in ti.static(range(p.axes))])
         volume = p.load(p.volume, b) * factor
         total = self.on_walls(b, origin, own, [volume * wall[a] for a in ti.static(range(p.axes))])

@@ -1,5 +1,7 @@
 """Neighbour lists: for each block, the particles near its bounding box, and when they are rebuilt."""
 
+from dataclasses import dataclass
+
 import numpy as np
 import taichi as ti
 
@@ -8,6 +10,7 @@ from solvers.fluid.order import Order
 from solvers.fluid.state import UNUSED, Particles, Shares
 from solvers.machine.state import Axis, State
 from solvers.machine.units import Units
+from solvers.motion.poses import Poses
 from solvers.space.axes import dot
 
 NEVER = 1e30  # m, a displacement that makes the lists stale
@@ -30,31 +33,33 @@ class Listing:
 
 @ti.data_oriented
 class Lists:
-    """Neighbours of each block: `near`, of water in water; `beside`, of walls beside water; `facing`, of water at walls.
+    """Neighbours of each block: `near`, of water in water; `beside`, walls beside water; `facing`, water before walls.
 
     An entry is a slot in all blocks of all worlds. `travel` (units,) m bounds how far any particle of a unit has moved
-    since the lists were built, `last` (m) how far in the last step; `skin` (units,) m was allowed for.
+    since the lists were built, `last` (m) how far in the last step; `skin` (units,) m was allowed for. `walls` are the
+    first slots of the dummies by key.
     """
 
     def __init__(
         self,
         arrays: State,
         units: Units,
-        particles: Particles,
-        shares: Shares,
         order: Order,
+        shares: Shares,
         constants: Constants,
-        walls_first: np.ndarray,
+        walls: np.ndarray,
         room: int,
     ):
-        self.units, self.particles, self.shares, self.order, self.constants = units, particles, shares, order, constants
+        self.units, self.particles, self.shares = units, order.particles, shares
+        self.order, self.constants = order, constants
         own = arrays.under("water.lists")
-        self.wall_first = own.holding("wall_first", walls_first, "key", ti.i32)
+        self.wall_first = own.holding("wall_first", walls, "key", ti.i32)
+        particles = self.particles
         wet, dry = (-(-blocks // units.a_world) for blocks in (particles.wet, max(particles.dry, 1)))
         crowd = room * self._crowd(order.grid, constants.reach)
-        walls = 4 * particles.dry * particles.lanes // units.a_world + wet  # of walls few blocks have any
+        few = 4 * particles.dry * particles.lanes // units.a_world + wet  # blocks beside walls
         self.near = Listing(arrays, units, "near", wet, crowd * wet)
-        self.beside = Listing(arrays, units, "beside", wet, room * (8 * walls + 64))
+        self.beside = Listing(arrays, units, "beside", wet, room * (8 * few + 64))
         self.facing = Listing(arrays, units, "facing", dry, crowd * dry)
         self.travel = own.holding("travel", np.full(units.count, NEVER), "unit", kept=True)
         self.last, self.skin = own.reals((units.axis,), "last", "skin")
@@ -166,7 +171,7 @@ class Lists:
     def at(self, w, first: ti.template(), key, walls: ti.template()):
         """First slot of a key."""
         slot = 0
-        if ti.static(walls):
+        if ti.static(walls):  # noqa: SIM108 (else both are compiled)
             slot = first[key]
         else:
             slot = first[w, key]
@@ -184,3 +189,15 @@ class Lists:
                     lower[a] = ti.min(lower[a], p.place[a][b, lane])
                     upper[a] = ti.max(upper[a], p.place[a][b, lane])
         return lower, upper
+
+
+@dataclass(frozen=True)
+class Medium:
+    """What all passes over the water work on."""
+
+    units: Units
+    particles: Particles
+    shares: Shares
+    lists: Lists
+    constants: Constants
+    poses: Poses

@@ -6,13 +6,13 @@ import numpy as np
 import taichi as ti
 
 from solvers.fluid.census import Census
-from solvers.fluid.checks import check_water, refuse_scene, refuse_state
+from solvers.fluid.checks import check_water, refuse_scene, refuse_state, residual
 from solvers.fluid.constants import Constants
 from solvers.fluid.continuity import Continuity
 from solvers.fluid.forces import Forces
 from solvers.fluid.given import VELOCITY_Y, VELOCITY_Z, Water
 from solvers.fluid.grid import Grid
-from solvers.fluid.lists import Lists
+from solvers.fluid.lists import Lists, Medium
 from solvers.fluid.mover import Mover
 from solvers.fluid.order import Order
 from solvers.fluid.state import LANES, UNUSED, Particles, Shares
@@ -54,16 +54,15 @@ class WaterMatter(Matter):
         shares, self.constants = Shares(p, units), Constants(arrays, water, scene.gravity)
         self.poses = Poses(arrays, setting.carrier, worlds)
         self.order = Order(arrays, p, grid)
-        self.lists = Lists(arrays, units, p, shares, self.order, self.constants, first, setting.room)
-        wall = p, shares, self.lists, self.constants
-        self.extrapolation = Extrapolation(arrays, units, *wall, self.poses)
-        self.forces = Forces(arrays, units, *wall, self.extrapolation, self.load, self.poses, tank.thickness)
-        self.continuity = Continuity(arrays, units, *wall, self.poses)
-        self.mover = Mover(arrays, units, *wall, self.extrapolation, self.poses)
+        self.lists = Lists(arrays, units, self.order, shares, self.constants, first, setting.room)
+        medium = Medium(units, p, shares, self.lists, self.constants, self.poses)
+        self.extrapolation = Extrapolation(arrays, medium)
+        self.forces = Forces(arrays, medium, self.extrapolation, self.load, tank.thickness)
+        self.continuity, self.mover = Continuity(arrays, medium), Mover(arrays, medium, self.extrapolation)
         self.gauges = Gauges(arrays, p, water.gauges, [dummy[slot] + p.wet * lanes for slot in slots])
         closed = water.walls and not tank.open_edges
         self.census = Census(arrays, p, setting.walls, self.constants, setting.carrier, closed, water.levels)
-        self.start = np.full(worlds, np.nan)  # J, energy at the start
+        self.start = np.full(worlds, np.nan)  # J, energy at the first look
         self.thickness = tank.thickness
         self.before = self._before()
         self.after = (
@@ -182,7 +181,14 @@ class WaterMatter(Matter):
             whole = field.to_numpy().reshape(p.worlds, p.stride, p.lanes)
             whole[:, p.wet :] = values
             field.from_numpy(whole.reshape(-1, p.lanes))
-        for field in (self.forces.lost, self.forces.held, self.forces.work, self.continuity.lost, self.census.behind, self.lists.last):
+        for field in (
+            self.forces.lost,
+            self.forces.held,
+            self.forces.work,
+            self.continuity.lost,
+            self.census.behind,
+            self.lists.last,
+        ):
             field.fill(0.0)
         self.lists.skin.fill(0.0)
         self.lists.expire()
@@ -222,7 +228,7 @@ class WaterMatter(Matter):
             **self.gauges.take(),
         }
         fresh = np.isnan(self.start)
-        self.start[fresh] = rows["water_total"][fresh]
+        self.start[fresh] = residual(rows, 0.0)[fresh]
         return rows
 
     def check(self, rows: dict[str, np.ndarray], time: float) -> None:

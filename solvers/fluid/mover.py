@@ -2,13 +2,10 @@
 
 import taichi as ti
 
-from solvers.fluid.constants import Constants
-from solvers.fluid.lists import Lists
-from solvers.fluid.state import Particles, Shares
+from solvers.fluid.lists import Medium
 from solvers.fluid.walls.extrapolation import Extrapolation
 from solvers.machine.state import State
-from solvers.machine.units import Units
-from solvers.motion.poses import AT_MIDDLE, AT_START, Poses
+from solvers.motion.poses import AT_MIDDLE, AT_START
 from solvers.space.axes import dot
 
 DENSEST = 0.2  # deviation of the density at which a run is stopped
@@ -24,21 +21,12 @@ class Mover:
     (units,) m/s and `deviation` (units,) tell why a world was stopped.
     """
 
-    def __init__(
-        self,
-        arrays: State,
-        units: Units,
-        particles: Particles,
-        shares: Shares,
-        lists: Lists,
-        constants: Constants,
-        walls: Extrapolation,
-        poses: Poses,
-    ):
-        self.units, self.particles, self.shares, self.lists = units, particles, shares, lists
-        self.constants, self.walls, self.poses = constants, walls, poses
+    def __init__(self, arrays: State, medium: Medium, walls: Extrapolation):
+        self.units, self.particles, self.shares = medium.units, medium.particles, medium.shares
+        self.lists, self.constants, self.poses = medium.lists, medium.constants, medium.poses
+        self.walls = walls
         own = arrays.under("water.mover")
-        self.fastest, self.deviation = own.reals((units.axis,), "fastest", "deviation", kept=False)
+        self.fastest, self.deviation = own.reals((medium.units.axis,), "fastest", "deviation", kept=False)
 
     @ti.func
     def kick(self, u, frame, kick, dt):

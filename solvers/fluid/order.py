@@ -14,7 +14,7 @@ CHUNK = 256  # keys that one thread sums up
 
 @ti.data_oriented
 class Order:
-    """Sorts the particles of a world. `first` (W, keys) are the first slots of each key; slot = lanes · block + lane."""
+    """Sorts the particles of a world. `first` (W, keys) are the keys' first slots; slot = lanes · block + lane."""
 
     def __init__(self, arrays: State, particles: Particles, grid: Grid):
         self.particles, self.grid = particles, grid
@@ -63,7 +63,8 @@ class Order:
                     self.count_up(w, self.key[b, lane])
         slots = self.lay_out(w)
         used = (slots + lanes - 1) // lanes
-        for b in range(start, start + used):
+        end = start + ti.max(used, self.particles.used[w])  # blocks that are in use no more are emptied
+        for b in range(start, end):
             for lane in range(lanes):
                 self.source[b, lane] = UNUSED
         for b in range(start, start + self.particles.used[w]):
@@ -74,7 +75,7 @@ class Order:
                     self.count_up(w, k)
                     self.source[start + slot // lanes, slot % lanes] = b * lanes + lane
         for k in ti.static(range(len(self.particles.moved))):
-            self.move_world(self.particles.moved[k], start, start + used)
+            self.move_world(self.particles.moved[k], start, end)
         self.particles.used[w] = used
 
     @ti.func
@@ -92,7 +93,7 @@ class Order:
         lanes = self.particles.lanes
         spare = self.particles.wet - (self.particles.count + lanes - 1) // lanes - self.strips
         slot, begin, k = 0, 0, 0
-        for strip in range(self.strips):
+        for _ in range(self.strips):
             slot = (slot + lanes - 1) // lanes * lanes
             for along in range(self.bins):
                 count = self.cursor[w, k]

@@ -17,10 +17,11 @@ UNUSED = -1  # number of an unused lane
 class Particles:
     """Particles in `stride` blocks a world: those of water first, `wet` blocks of which `used` are in use, then walls'.
 
-    Fields (W · stride, lanes), in the tank's axes. `place` (m); `velocity` (m/s), over the earth; `excess` s = ρ/ρ0 − 1;
-    `mass` (kg per metre of thickness) and `number` belong to a particle for good and move with it from block to block.
-    `volume` (m²) and `pressure` (Pa) are published at the start of a step. `rate` and
-    `rate_of_walls` (1/s) are those of s; `acceleration` (m/s²) is that of the last kick; `slope` (1/m) the renormalised gradient of s; `span` the least eigenvalue of Σ V_j r_ji ⊗ ∇W, 1 within water.
+    Fields (W · stride, lanes), in the tank's axes. `place` (m); `velocity` (m/s), over the earth; `excess` s = ρ/ρ0 −
+    1; `mass` (kg per metre of thickness) and `number` belong to a particle for good and move with it from block to
+    block. `volume` (m²) and `pressure` (Pa) are published at the start of a step. `rate` and `rate_of_walls` (1/s) are
+    those of s; `acceleration` (m/s²) is that of the last kick; `slope` (1/m) the renormalised gradient of s; `span` the
+    least eigenvalue of Σ V_j r_ji ⊗ ∇W, 1 within water.
 
     With `lanes` 1, for processors that move each particle by a thread of its own, a block is a particle.
     """

@@ -5,9 +5,11 @@ that code that reads user input (the presets of `lab`) can check and describe it
 """
 
 from collections.abc import Callable, Hashable
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, is_dataclass, replace
 from functools import cache
 from typing import Any, get_type_hints
+
+import numpy as np
 
 
 @dataclass(frozen=True)
@@ -77,3 +79,30 @@ def marked(kind: type, mark: type) -> dict[str, Any]:
         for name, hint in hints.items()
     }
     return {name: marks[0] for name, marks in found.items() if marks}
+
+
+def comparable(value: object) -> Hashable:
+    """A value with arrays in it, in a form that can be compared and hashed."""
+    if isinstance(value, np.ndarray):
+        return value.shape, value.tobytes()
+    if isinstance(value, tuple | list):
+        return tuple(map(comparable, value))
+    if is_dataclass(value):
+        return tuple(comparable(getattr(value, field.name)) for field in fields(value))
+    return value
+
+
+def joined(values: list) -> object:
+    """The entries of all worlds, from those of each scene; None where there are none.
+
+    Arrays and lists have an entry a world; of a dataclass, its arrays have.
+    """
+    first = values[0]
+    if first is None:
+        return None
+    if isinstance(first, np.ndarray):
+        return np.concatenate(values)
+    if is_dataclass(first):
+        names = [field.name for field in fields(first) if isinstance(getattr(first, field.name), np.ndarray)]
+        return replace(first, **{name: joined([getattr(one, name) for one in values]) for name in names})
+    return [one for value in values for one in value]

@@ -13,11 +13,11 @@ import taichi as ti
 
 
 @contextmanager
-def real_vectors() -> Iterator[None]:
-    """Context in which kernels called for the first time keep their vectors whole; other kernels are not affected."""
+def real_vectors(wanted: bool = True) -> Iterator[None]:
+    """Context in which kernels called for the first time keep their vectors whole, if `wanted`; others do not."""
     config = ti.lang.impl.current_cfg()
     before = config.real_matrix_scalarize
-    config.real_matrix_scalarize = False
+    config.real_matrix_scalarize = not wanted
     try:
         yield
     finally:

@@ -12,9 +12,9 @@ AT_START, AT_MIDDLE = range(2)  # the halves of a step by where they begin
 class Poses:
     """Gravity, drifts and wall velocities of a step in each world; `moving` says whether the tank moves at all.
 
-    A point at the earth's place x lies in the tank at r = R(φ)ᵀ (x − P). With the inertial velocity u in the tank's axes
-    it drifts in a straight line over the earth: from a to b, τ later, r' = D (r + τ u) + e and u' = D u, with
-    D = R(φ_a − φ_b) and e = R(φ_b)ᵀ (P_a − P_b). This is exact, and no fictitious force is needed.
+    A point at the earth's place x lies in the tank at r = R(φ)ᵀ (x − P). With the inertial velocity u in the tank's
+    axes it drifts in a straight line over the earth: from a to b, τ later, r' = D (r + τ u) + e and u' = D u, with D =
+    R(φ_a − φ_b) and e = R(φ_b)ᵀ (P_a − P_b). This is exact, and no fictitious force is needed.
     """
 
     def __init__(self, arrays: State, carrier, worlds: int):

@@ -21,8 +21,8 @@ class Matter:
     `paced`, its steps may be longer than the base step, by as many as its `pace` says. If it has neighbour lists, it
     says when these are `stale`, `worn` or `asked` for in part, and rebuilds them (`sort`, `make_lists`). `of_contacts`
     are those of its quantities that are known only after a step. If it `mixes`, its particles are renumbered now and
-    then. If its kernels work on real vectors (`machine.wide`), it is `wide`. `extent` (m) is how far from the tank's origin a particle may be, `nearing` (m/s) how fast parts of the tank
-    come at particles.
+    then. If its kernels work on real vectors (`machine.wide`), it is `wide`. `extent` (m) is how far from the tank's
+    origin a particle may be, `nearing` (m/s) how fast parts of the tank come at particles.
     """
 
     name: str

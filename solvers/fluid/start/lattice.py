@@ -1,13 +1,14 @@
-"""Water at rest as a lattice of particles under hydrostatic pressure; numpy only."""
+"""Water at rest as a lattice of particles under hydrostatic pressure."""
 
 import numpy as np
 
 from solvers.fluid.given import EXCESS, VOLUME, Y, Z
+from solvers.fluid.states.tait import GAMMA
 from solvers.tank.outline import area_below, cut_off
 from solvers.tank.tank import Tank
 
 CLOSE = 0.25  # spacings: no particle starts nearer to a slanted wall
-EXPONENTS = {"linear": 1, "tait": 7}  # γ of the equations of state
+EXPONENTS = {"linear": 1, "tait": GAMMA}  # γ of the equations of state
 NEAR = 1e-9  # of the spacing: rounding
 
 

@@ -2,12 +2,8 @@
 
 import taichi as ti
 
-from solvers.fluid.constants import Constants
-from solvers.fluid.lists import Lists
-from solvers.fluid.state import Particles, Shares
+from solvers.fluid.lists import Medium
 from solvers.machine.state import Axis, State
-from solvers.machine.units import Units
-from solvers.motion.poses import Poses
 from solvers.space.axes import dot, named
 
 SEEN = 1e-6  # of full coverage: a dummy that sees less water has no pressure
@@ -22,23 +18,15 @@ class Extrapolation:
     dummy gives the velocity 2 u_w − ũ for the viscous force (eq. 23).
     """
 
-    def __init__(
-        self,
-        arrays: State,
-        units: Units,
-        particles: Particles,
-        shares: Shares,
-        lists: Lists,
-        constants: Constants,
-        poses: Poses,
-    ):
-        self.units, self.particles, self.shares = units, particles, shares
-        self.lists, self.constants, self.poses = lists, constants, poses
-        self.sticks = constants.viscous and not constants.slip
+    def __init__(self, arrays: State, medium: Medium):
+        self.units, self.particles, self.shares = medium.units, medium.particles, medium.shares
+        self.lists, self.constants, self.poses = medium.lists, medium.constants, medium.poses
+        self.sticks = medium.constants.viscous and not medium.constants.slip
         if self.sticks:
             own = arrays.under("water")
-            each = Axis("block", particles.worlds * particles.stride), Axis("lane", particles.lanes)
-            self.mirrored = own.wide(each, *named("mirrored", particles.axes), kept=False)
+            p = self.particles
+            each = Axis("block", p.worlds * p.stride), Axis("lane", p.lanes)
+            self.mirrored = own.wide(each, *named("mirrored", p.axes), kept=False)
 
     @ti.func
     def press(self, u, t, kick, dt):
@@ -61,9 +49,7 @@ class Extrapolation:
         for k in range(begin, end):
             j = self.lists.facing.slots[u, k]
             jb, lane = j // p.lanes, j % p.lanes
-            apart = [
-                own[a] - ti.cast(p.place[a][jb, lane] - origin[a], p.real) for a in ti.static(range(p.axes))
-            ]
+            apart = [own[a] - ti.cast(p.place[a][jb, lane] - origin[a], p.real) for a in ti.static(range(p.axes))]
             weight = c.kernel.value(ti.max(1.0 - ti.sqrt(dot(apart, apart)) * shrink, 0.0))
             volume = p.volume[jb, lane]
             seen += weight * volume

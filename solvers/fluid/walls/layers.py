@@ -13,9 +13,9 @@ def layers(
     """Places (n, 2) m and volumes (n,) m² of dummies in `rows` layers outside a counter-clockwise polygon (m, 2) m.
 
     Layer k lies (k + 1/2) `spacing` outside, on the offset polygon with mitred corners, in equal steps of about a
-    spacing along each edge (after Adami, Hu & Adams 2012, for any angle). A dummy's volume is its share of its layer, so
-    that together they fill the layer's area. Behind a re-entrant corner, and in a thin wall, dummies that are nearer to
-    another edge than their layer is deep are left out. Edges of `open_edges` have none.
+    spacing along each edge (after Adami, Hu & Adams 2012, for any angle). A dummy's volume is its share of its layer,
+    so that together they fill the layer's area. Behind a re-entrant corner, and in a thin wall, dummies that are nearer
+    to another edge than their layer is deep are left out. Edges of `open_edges` have none.
     """
     corners = np.asarray(outline, dtype=float)
     edges = np.roll(corners, -1, axis=0) - corners

@@ -9,8 +9,9 @@ import pytest
 from solvers.machine.errors import BadState
 from solvers.motion import Roll, Sway, Tilt
 from solvers.scene import Scene
-from solvers.simulation import AT_REST, Simulation
+from solvers.simulation import Simulation
 from solvers.tank.parts import Part
+from solvers.time.settling import AT_REST
 from solvers.time.watch import RUNNING
 from tests.oracles.scenes import material
 from tests.solvers.grains.test_neighbours import segment_distance

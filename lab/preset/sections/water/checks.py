@@ -1,7 +1,6 @@
 """Consistency checks of the water in a preset; each error is one sentence that names the key."""
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,15 +12,20 @@ from lab.preset.sections.water.schemes import SCHEMES
 from lab.preset.sections.water.section import Gauge, Water
 from lab.preset.units import needed, show
 
-if TYPE_CHECKING:
-    from lab.preset.schema import Preset
-
 MOST_PARTICLES = 20e6  # in a tank; what fits into the memory is checked as a scene is built
 MOST_GAUGES = 100
 NEAR = 1e-3  # of the tank's larger side: how far a gauge may be from the wall that it is in
 
 
-def check_water(preset: "Preset") -> None:
+class Whole(liquid.Wet):
+    """Those sections, and the ones that cannot be there beside water."""
+
+    grains: object | None
+    ship: object | None
+    parts: Mapping[str, object]
+
+
+def check_water(preset: Whole) -> None:
     """Raise LabError for water that cannot be: in company, of contradictory keys, too much, or outside of the tank."""
     water, tank = preset.water, preset.tank
     if water is None:
@@ -39,12 +43,14 @@ def check_water(preset: "Preset") -> None:
     _check_gauges(preset.gauges, tank)
 
 
-def _check_company(preset: "Preset") -> None:
+def _check_company(preset: Whole) -> None:
     """Raise LabError for what is in the tank beside water, or carries it, and the solver cannot compute."""
     if preset.ship is not None:
         raise LabError("water: water in a ship's hold is not computed yet; the sea outside is [sea].")
     if preset.grains is not None:
         raise LabError("water: grains and water in one tank are not computed yet; leave out [grains] or [water].")
+    if preset.run.repeats > 1:
+        raise LabError("run.repeats: water starts without chance, so that all repeats would be the same; take one.")
     if preset.parts:
         raise LabError("parts: plates in water are not computed yet; draw them into tank.outline, or leave them out.")
 
@@ -85,7 +91,7 @@ def _check_region(water: Water, tank: Tank) -> None:
         raise LabError(f"water.region: it reaches out of the tank at {_place(out)}; keep it inside.")
 
 
-def _check_spacing(preset: "Preset") -> None:
+def _check_spacing(preset: Whole) -> None:
     """Raise LabError for particles that are larger than the water or the tank, or too many."""
     water, (polygon, _) = preset.water, liquid.bounds(preset)
     deep, wide = liquid.depth(preset), float(np.ptp(polygon[:, 0]))

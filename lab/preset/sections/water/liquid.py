@@ -4,23 +4,33 @@ These need the tank, gravity and the motions, so that they are functions of whol
 """
 
 from math import sqrt
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 import numpy as np
 
 from lab.preset.accuracy import LEVELS
 from lab.preset.outline import simple_polygon
+from lab.preset.sections.motion import MotionGroup
+from lab.preset.sections.run import Run
+from lab.preset.sections.tank import Tank
 from lab.preset.sections.water.schemes import SCHEMES, Scheme
+from lab.preset.sections.water.section import Gauge, Water
 from solvers.fluid import given
-
-if TYPE_CHECKING:
-    from lab.preset.schema import Preset
-    from lab.preset.sections.water.section import Gauge
 
 FRONT = 2.0  # √(gH): the front of a column that collapses (Ritter 1892)
 
 
-def liquid(preset: "Preset") -> given.Water:
+class Wet(Protocol):
+    """The sections of a preset that the water follows from."""
+
+    water: Water
+    gauges: dict[str, Gauge]
+    tank: Tank
+    motion: MotionGroup
+    run: Run
+
+
+def liquid(preset: Wet) -> given.Water:
     """The water of a preset as the solver takes it."""
     water, scheme = preset.water, SCHEMES[preset.water.scheme]
     pressure, level = parted(preset.gauges)
@@ -44,14 +54,14 @@ def liquid(preset: "Preset") -> given.Water:
     )
 
 
-def parted(gauges: "dict[str, Gauge]") -> "tuple[dict[str, Gauge], dict[str, Gauge]]":
+def parted(gauges: dict[str, Gauge]) -> tuple[dict[str, Gauge], dict[str, Gauge]]:
     """The gauges of pressure and those of level by their names, each in the order of their numbers."""
     kinds = "pressure", "level"
     pressure, level = ({name: gauge for name, gauge in gauges.items() if gauge.kind == kind} for kind in kinds)
     return pressure, level
 
 
-def bounds(preset: "Preset") -> tuple[np.ndarray, float]:
+def bounds(preset: Wet) -> tuple[np.ndarray, float]:
     """The polygon (m, 2) m, counter-clockwise, that the water fills up to a level (m), and this level."""
     water, tank = preset.water, np.array(preset.tank.corners)
     if water.region is None:
@@ -60,24 +70,24 @@ def bounds(preset: "Preset") -> tuple[np.ndarray, float]:
     return region, float(region[:, 1].max())
 
 
-def depth(preset: "Preset") -> float:
+def depth(preset: Wet) -> float:
     """Depth (m) of the water, or height of its region."""
     polygon, level = bounds(preset)
     return level - float(polygon[:, 1].min())
 
 
-def layers(preset: "Preset") -> int:
+def layers(preset: Wet) -> int:
     """How many particles make up the depth."""
     wanted, deep = preset.water.spacing, depth(preset)
     return LEVELS[preset.run.accuracy].layers if wanted == "auto" else max(1, round(deep / wanted))
 
 
-def spacing(preset: "Preset") -> float:
+def spacing(preset: Wet) -> float:
     """Distance (m) of the particles: the nearest to the one that is asked for that divides the depth."""
     return depth(preset) / layers(preset)
 
 
-def expected_speed(preset: "Preset") -> float:
+def expected_speed(preset: Wet) -> float:
     """The highest speed (m/s) to be expected: of long waves, √(gH), of a column that collapses, 2 √(gH), of the tank.
 
     H is the height of the water's surface over the tank's lowest point.
@@ -88,7 +98,7 @@ def expected_speed(preset: "Preset") -> float:
     return max(wave, tank_speed(preset))
 
 
-def tank_speed(preset: "Preset") -> float:
+def tank_speed(preset: Wet) -> float:
     """Bound (m/s) on the speed of any point of the tank by its motions, each alone."""
     corners, fastest = np.array(preset.tank.corners), 0.0
     for motion in preset.motion.parts.values():
@@ -99,7 +109,7 @@ def tank_speed(preset: "Preset") -> float:
     return fastest
 
 
-def sound_speed(preset: "Preset", scheme: Scheme) -> float:
+def sound_speed(preset: Wet, scheme: Scheme) -> float:
     """Speed of sound (m/s): as given, that of the scheme, or so many times the expected speed."""
     if preset.water.sound_speed != "auto":
         return preset.water.sound_speed

@@ -4,13 +4,12 @@ from dataclasses import dataclass
 from typing import Annotated, Literal
 
 from lab.preset.sections.water.schemes import SCHEMES
+from solvers.fluid.diffusion import DIFFUSION
+from solvers.fluid.kernels import KERNELS
+from solvers.fluid.states import STATES
+from solvers.fluid.viscosity import VISCOSITY
 from solvers.machine.marks import Cheap, Doc, Interval, Unit, Usual
 
-# The names of the solver's models
-KERNELS = "wendland-c2", "wendland-c4"
-STATES = "linear", "tait"
-DIFFUSIONS = "antuono", "fourtakas", "molteni", "none"
-VISCOSITIES = "artificial", "approaching", "laminar"
 SHIFTINGS = ("none",)
 
 Length = Annotated[float, Unit("m"), Interval(gt=0)]
@@ -53,12 +52,12 @@ class Water:
     ] = None
     state: Annotated[Literal[*STATES] | None, Doc("Equation of state; the scheme's without it.")] = None
     diffusion: Annotated[
-        Literal[*DIFFUSIONS] | None, Doc("Diffusion of density, which quietens pressures; the scheme's without it.")
+        Literal[*DIFFUSION] | None, Doc("Diffusion of density, which quietens pressures; the scheme's without it.")
     ] = None
     delta: Annotated[
         Annotated[float, Interval(ge=0, le=1)] | None, Doc("Strength of that diffusion; the scheme's without it.")
     ] = None
-    viscosity: Annotated[Literal[*VISCOSITIES] | None, Doc("Viscous law; the scheme's without it.")] = None
+    viscosity: Annotated[Literal[*VISCOSITY] | None, Doc("Viscous law; the scheme's without it.")] = None
     alpha: Annotated[
         Annotated[float, Interval(ge=0, le=1)] | None,
         Doc("Strength of the artificial viscosity; the scheme's without it."),

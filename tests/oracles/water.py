@@ -1,0 +1,106 @@
+"""Water in plain numpy: lattices, scenes, and a step by double sums over all particles, without lists or blocks."""
+
+import numpy as np
+
+from solvers.fluid.given import EXCESS, VOLUME, Water, Y, Z
+from solvers.fluid.walls.layers import layers
+from solvers.scene import Scene
+
+GRAVITY = 9.81
+
+
+def box(width: float, height: float) -> np.ndarray:
+    """Outline of a rectangular tank, its origin in the middle of the floor."""
+    half = 0.5 * width
+    return np.array([[-half, 0.0], [half, 0.0], [half, height], [-half, height]])
+
+
+def lattice(width: float, depth: float, spacing: float, sound: float, left: float | None = None) -> np.ndarray:
+    """Drops (1, n, 6) of a column of water at rest under gravity, from `left` (m) on, by default in the middle."""
+    y = (np.arange(round(width / spacing)) + 0.5) * spacing + (-0.5 * width if left is None else left)
+    z = (np.arange(round(depth / spacing)) + 0.5) * spacing
+    grid = np.stack(np.meshgrid(y, z, indexing="ij"), axis=-1).reshape(-1, 2)
+    drops = np.zeros((1, len(grid), 6))
+    drops[0, :, [Y, Z]] = grid.T
+    drops[0, :, EXCESS] = GRAVITY * (depth - grid[:, 1]) / sound**2
+    drops[0, :, VOLUME] = spacing**2
+    return drops
+
+
+def still(width: float, height: float, depth: float, rows: int, **changes) -> Scene:
+    """A tank with `rows` layers of water at rest; changes of the scene or of its water."""
+    spacing, sound = depth / rows, changes.pop("sound_speed", 10.0 * np.sqrt(GRAVITY * depth))
+    of_water = {name: changes.pop(name) for name in list(changes) if name in Water.__dataclass_fields__}
+    drops = changes.pop("drops", None)
+    drops = lattice(width, depth, spacing, sound) if drops is None else drops
+    water = Water(**{"spacing": spacing, "sound_speed": sound} | of_water)
+    given = {"radius": np.zeros((len(drops), 0)), "outline": box(width, height), "gravity": GRAVITY}
+    return Scene(**{**given, "water": water, "drops": drops, **changes})
+
+
+def kernel(distance: np.ndarray, length: float) -> tuple[np.ndarray, np.ndarray]:
+    """Wendland's C2 kernel as printed, W(r), and W'(r)/r by its derivative, in the plane."""
+    q = np.minimum(distance / length, 2.0)
+    factor = 7.0 / (4.0 * np.pi * length**2)
+    value = factor * (1.0 - 0.5 * q) ** 4 * (2.0 * q + 1.0)
+    slope = factor * (-2.0 * (1.0 - 0.5 * q) ** 3 * (2.0 * q + 1.0) + 2.0 * (1.0 - 0.5 * q) ** 4)
+    return value, slope / (length * np.maximum(distance, 1e-12))
+
+
+class PlainWater:
+    """The equations of a tank at rest with free slip, linear state, Antuono's diffusion and artificial viscosity."""
+
+    def __init__(self, scene: Scene):
+        self.water, self.gravity = scene.water, np.array([0.0, -scene.gravity])
+        rows = int(np.ceil(scene.water.reach / scene.water.spacing))
+        self.wall, self.wall_volume = layers(scene.outline, scene.water.spacing, rows)
+
+    def volume(self, mass: np.ndarray, s: np.ndarray) -> np.ndarray:
+        """V = m/ρ."""
+        return mass / (self.water.density * (1.0 + s))
+
+    def between(self, r: np.ndarray, others: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """r_j − r_i, its square, W and ∇_i W for all pairs."""
+        apart = others[None] - r[:, None]
+        square = (apart**2).sum(axis=2)
+        value, slope = kernel(np.sqrt(square), self.water.length)
+        return apart, square, value, -slope[..., None] * apart
+
+    def wall_pressure(self, r: np.ndarray, mass: np.ndarray, s: np.ndarray) -> np.ndarray:
+        """Adami, Hu & Adams (2012), eq. 27, weighted with volumes and without pull."""
+        volume = self.volume(mass, s)
+        apart, _, value, _ = self.between(self.wall, r)
+        pressure = self.water.density * self.water.sound_speed**2 * s
+        total = (volume * value).sum(axis=1)
+        lever = -(apart @ self.gravity) * mass + volume * pressure
+        return np.where(total > 1e-6, np.maximum((value * lever).sum(axis=1), 0.0) / np.maximum(total, 1e-30), 0.0)
+
+    def push(self, r, u, s, mass) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Accelerations without gravity, renormalised gradients of s, and the walls' forces on each particle."""
+        water, volume = self.water, self.volume(mass, s)
+        pressure = water.density * water.sound_speed**2 * s
+        apart, square, _, gradient = self.between(r, r)
+        pairs = -(pressure[:, None] + pressure[None]) * volume[:, None] * volume[None]
+        pi = ((u[None] - u[:, None]) * apart).sum(axis=2) / (square + 1e-6 * water.length**2)
+        viscous = water.alpha * water.length * water.sound_speed * water.density * volume[:, None] * volume[None] * pi
+        force = ((pairs + viscous)[..., None] * gradient).sum(axis=1)
+        _, _, _, at_wall = self.between(r, self.wall)
+        push = np.maximum(pressure, 0.0)[:, None] + self.wall_pressure(r, mass, s)[None]
+        walls = -((push * volume[:, None] * self.wall_volume[None])[..., None] * at_wall).sum(axis=1)
+        matrix = np.einsum("j,ija,ijb->iab", volume, apart, gradient)
+        raw = np.einsum("j,ij,ija->ia", volume, s[None] - s[:, None], gradient)
+        regular = np.linalg.eigvalsh(matrix)[:, 0] > 0.05
+        slope = np.zeros_like(r)
+        slope[regular] = np.linalg.solve(matrix[regular], raw[regular][..., None])[..., 0]
+        return (force + walls) / mass[:, None], slope, walls
+
+    def rate(self, r, u, s, mass, slope) -> np.ndarray:
+        """Rate of s, in the middle of a step."""
+        water, volume = self.water, self.volume(mass, s)
+        apart, _, _, gradient = self.between(r, r)
+        flow = ((u[None] - u[:, None]) * gradient).sum(axis=2) @ volume
+        _, _, _, at_wall = self.between(r, self.wall)
+        flow += (-u[:, None] * at_wall).sum(axis=2) @ self.wall_volume
+        more = 2.0 * (s[None] - s[:, None]) - ((slope[:, None] + slope[None]) * apart).sum(axis=2)
+        eta = -kernel(np.linalg.norm(apart, axis=2), water.length)[1]
+        return -(1.0 + s) * flow + water.delta * water.length * water.sound_speed * (more * eta) @ volume

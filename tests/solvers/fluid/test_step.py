@@ -1,0 +1,105 @@
+"""A step of water in a tank at rest: against double sums in plain numpy, and what it must conserve."""
+
+import numpy as np
+import pytest
+
+from solvers.fluid.given import VELOCITY_Y, VELOCITY_Z, Gauge, Level
+from solvers.simulation import Simulation
+from tests.oracles.water import GRAVITY, PlainWater, still
+
+WIDTH, HEIGHT, DEPTH, ROWS = 0.6, 0.6, 0.3, 15
+GAUGES = Gauge((-0.3, 0.06), 0.02), Gauge((0.1, 0.0), 0.02), Gauge((0.3, 0.5), 0.02)
+
+
+def disturbed(seed: int = 1, **changes):
+    """A still tank whose particles were displaced and set in motion at random."""
+    scene = still(WIDTH, HEIGHT, DEPTH, ROWS, gauges=GAUGES, levels=(Level(0.0), Level(-0.3)), **changes)
+    random, drops = np.random.default_rng(seed), scene.drops
+    drops[..., :2] += 0.1 * scene.water.spacing * random.uniform(-1.0, 1.0, drops[..., :2].shape)
+    drops[..., [VELOCITY_Y, VELOCITY_Z]] = 0.2 * random.uniform(-1.0, 1.0, drops[..., :2].shape)
+    return scene
+
+
+def held(run: Simulation) -> list[np.ndarray]:
+    """Places, velocities, s, masses, accelerations and slopes of the first world's particles, by their numbers."""
+    p = run.water.particles
+    y, z, v, w, s, m, *rest = p.read(*p.place, *p.velocity, p.excess, p.mass, *p.acceleration, *p.slope)
+    pairs = [np.stack(pair, axis=-1)[0] for pair in ((y, z), (v, w), rest[0:2], rest[2:4])]
+    return [*pairs[:2], s[0], m[0], *pairs[2:]]
+
+
+@pytest.fixture(scope="module")
+def run() -> Simulation:
+    return Simulation(disturbed(), threads=1, arch="cpu")
+
+
+def test_a_step_equals_double_sums(run):
+    plain, dt = PlainWater(run.scene), run.dt
+    run.advance(7)
+    r, u, s, m, *_ = held(run)
+    run.advance(1)
+    push, slope, _ = plain.push(r, u, s, m)
+    u = u + dt * (push + plain.gravity)
+    middle = r + 0.5 * dt * u
+    s = s + dt * plain.rate(middle, u, s, m, slope)
+    found = held(run)
+    np.testing.assert_allclose(found[4], push, atol=1e-9 * np.abs(push).max())
+    np.testing.assert_allclose(found[5], slope, atol=1e-8 * np.abs(slope).max())
+    np.testing.assert_allclose(found[2], s, atol=1e-9 * np.abs(s).max())
+    np.testing.assert_allclose(found[0], middle + 0.5 * dt * u, atol=1e-12)
+
+
+def test_the_load_is_what_the_water_loses(run):
+    """The momentum of the water changes by its weight and by minus the load on the tank, to rounding."""
+    run.observe()
+    _, before, _, mass, *_ = held(run)
+    steps = 50
+    run.advance(steps)
+    load = run.observe()["wall_force"][0, :2]
+    change = mass @ (held(run)[1] - before)
+    weight = np.array([0.0, -GRAVITY * mass.sum()])
+    scale = steps * run.dt * np.abs(load).max()
+    np.testing.assert_allclose(change, steps * run.dt * (weight - load), atol=1e-12 * scale)
+
+
+def test_energy_is_accounted_for(run):
+    """What is lost goes to viscosity, to diffusion and to the dummies of the walls; it only falls.
+
+    The account has the errors of the step: on this rough state 1.6 %, with half the step 0.4 %, with a quarter 0.15 %.
+    """
+    start = run.observe()
+    run.advance(400)
+    end = run.observe()
+    lost = start["water_total"] - end["water_total"]
+    taken = sum(end[name] - start[name] for name in ("water_viscous", "water_diffusive", "water_held"))
+    assert 0.5 * start["water_kinetic"] < lost
+    np.testing.assert_allclose(taken, lost, rtol=0.03)
+
+
+def test_water_at_rest_weighs_on_the_floor_and_its_gauges():
+    """From hydrostatic rest: pressures, levels and the load stay; c0 = 10 √(gH) compresses the water by up to 1 %."""
+    run = Simulation(still(WIDTH, HEIGHT, DEPTH, ROWS, gauges=GAUGES, levels=(Level(0.0), Level(-0.3))), threads=1)
+    run.observe()
+    run.advance(600)
+    rows, mass = run.observe(), held(run)[3].sum()
+    np.testing.assert_allclose(rows["wall_force"][0], [0.0, -mass * GRAVITY, 0.0], atol=2e-3 * mass * GRAVITY)
+    deep = 1000.0 * GRAVITY * np.array([DEPTH - 0.06, DEPTH, 0.0])
+    np.testing.assert_allclose(rows["gauge_pressure"][0], deep, atol=0.02 * 1000.0 * GRAVITY * DEPTH)
+    np.testing.assert_allclose(rows["level_depth"][0], DEPTH, rtol=0.01)
+    assert rows["water_kinetic"][0] < 1e-4 * 1000.0 * GRAVITY * DEPTH * WIDTH * DEPTH
+    place, pressure = (run.snapshot()[name][0] for name in ("water_place", "water_pressure"))
+    wanted = 1000.0 * GRAVITY * (DEPTH - place[:, 1])
+    np.testing.assert_allclose(pressure, wanted, atol=0.5 * 1000.0 * GRAVITY * DEPTH / ROWS)  # half a layer
+
+
+@pytest.mark.parametrize("changes", [{"precision": "mixed"}, {"schedule": "per-band"}, {"schedule": "per-grain"}])
+def test_other_ways_of_running_give_the_same_water(run, changes):
+    """Numbers of 32 bits, bands on threads, and particles one by one: the same course, to the rounding of each."""
+    units = {"units": 2} if changes == {"schedule": "per-band"} else {}
+    place = []
+    for more, cut in (({}, {}), (changes, units)):
+        other = Simulation(disturbed(3, **more), threads=2, arch="cpu", **cut)
+        other.advance(60)
+        place.append(other.snapshot()["water_place"][0])
+    spacing, tight = other.scene.water.spacing, 2e-5 if "precision" in changes else 1e-9
+    np.testing.assert_allclose(place[1], place[0], atol=tight * spacing)
