@@ -228,6 +228,24 @@ def test_water_above_an_open_edge_is_painted_too():
     assert area(footage(place, low)) < 0.6 * len(place) * SPACING**2  # a lid cuts it off
 
 
+def test_the_picture_of_water_does_not_depend_on_the_number_of_threads():
+    wave, pictures = standing_wave(SPACING), []
+    for threads in (1, 2):
+        initialise(threads)
+        pictures.append(painted(wave, "pressure", frame=3))
+    initialise()
+    assert pictures[0].tobytes() == pictures[1].tobytes()
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf, 1e300, -1e300])
+@pytest.mark.parametrize("colour", ["water", *FIELDS])
+def test_odd_numbers_of_water_give_a_picture(colour, value):
+    made = still()
+    for values in (made.place[0][:5], made.velocity[0][5:10], made.pressure[0][10:15]):
+        values[:] = value
+    assert (painted(made, colour) < 255).any()
+
+
 # Films
 
 
