@@ -310,6 +310,18 @@ def test_the_peak_of_a_pressure_is_on_its_curve_however_short_it_is():
     assert len(plot.curves[0][0]) < 1.1 * MOST_SAMPLES
 
 
+def test_beds_in_one_film_have_their_own_hues_and_one_scale():
+    wave, calm = standing_wave(SPACING), still()
+    beds = [calm.bed, wave.bed]
+    blue, red = (0, 0, 255), (255, 0, 0)
+    assert [plot.colours for plot in plots(beds, [blue, red])] == [[red], [red]]  # the first one has no gauges
+    assert plots(beds, [blue])[0].colours == [palette.LINE]  # the other one is not shown
+    film = Film(beds, choose_look(calm, colour="speed"))
+    highest = np.hypot(*wave.velocity[6].T).max()
+    assert film._bar.high >= 990.0 * highest
+    assert film.picture(0).shape == (720, 1280, 3)
+
+
 def test_without_gauges_the_shift_of_the_water_is_drawn():
     (plot,) = plots([still().bed], [palette.INK])
     assert plot.labels[1] == "shift Δy (mm)"
