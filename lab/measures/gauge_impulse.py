@@ -10,6 +10,7 @@ An impact whose 230 ms are not all recorded is left out.
 import numpy as np
 
 from lab.measures.gauges import cycles, key, over_cycles, pressure_gauges
+from lab.measures.motion import driving
 from lab.measures.value import Value, over_worlds
 from lab.recording import Recording
 
@@ -29,8 +30,8 @@ def measure(recording: Recording) -> dict[str, Value]:
     time, found = recording.series["time"], {}
     for k, name in enumerate(pressure_gauges(recording)):
         pressure, peak = recording.series["gauge_pressure"][..., k], recording.series["gauge_peak"][..., k]
-        parts = [cycles(recording, one) for one in peak.T]
-        if any(parts):
+        if driving(recording) is not None:
+            parts = [cycles(recording, one) for one in peak.T]
             impulses = [_impulses(time, *worlds) for worlds in zip(pressure.T, peak.T, parts, strict=True)]
             found[key("gauge_impulse", name)] = over_cycles(impulses, "Pa s")[0]
         else:

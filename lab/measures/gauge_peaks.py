@@ -15,6 +15,7 @@ import numpy as np
 
 from lab.measures.drawing import BLUE, GREY, VERMILION, Sheet, band, level
 from lab.measures.gauges import cycles, key, over_cycles, pressure_gauges
+from lab.measures.motion import driving
 from lab.measures.value import Value, over_worlds
 from lab.preset.units import show
 from lab.recording import Recording
@@ -35,8 +36,8 @@ def measure(recording: Recording) -> dict[str, Value]:
         peak = recording.series["gauge_peak"][..., k]
         when = ", ".join(show(float(time[row]), "s") for row in peak.argmax(axis=0))
         found[key("gauge_largest", name)] = over_worlds(peak.max(axis=0), "Pa", note=f"at {when}")
-        parts = [cycles(recording, one) for one in peak.T]
-        if any(parts):
+        if driving(recording) is not None:
+            parts = [cycles(recording, one) for one in peak.T]
             highest = [np.array([one[rows].max() for rows in of]) for one, of in zip(peak.T, parts, strict=True)]
             mean, scatter = over_cycles(highest, "Pa")
             found |= {key("gauge_peak", name): mean, key("gauge_peak_scatter", name): scatter}
