@@ -144,6 +144,14 @@ def test_a_click_on_water_picks_nothing_and_other_cargo_is_refused(opened):
     assert session.picture().shape == (720, 1280, 3)
 
 
+def test_water_under_the_hand_is_stiff_enough_for_a_fall_through_the_tank(preset):
+    """A hit at v compresses it by v/c0; what a preset says, as that of a replay does, stays."""
+    fall = np.sqrt(2.0 * 9.81 * 0.24)
+    assert steerable(load(preset)).resolved.water.sound_speed == pytest.approx(8.0 * fall)
+    stays = load(preset, {"water.sound_speed": "12 m/s"})
+    assert steerable(stays).resolved.water.sound_speed == 12.0
+
+
 @pytest.mark.slow
 def test_live_water_flows_to_the_lower_side(preset, tmp_path):
     """The tank tilts counter-clockwise, its port side down: water gathers at negative y."""
