@@ -28,6 +28,7 @@ LEAST_PERIODS = 3
 STILL = 1e-9  # m/s, rad/s: rates of a tank at rest
 FLAT = 1e-3  # of the depth: what deviates less from its mean has no frequency
 SHOWN = 6.0  # frequencies of a figure's range
+SHORT = "too few swings"
 CALM = "the water does not swing"
 
 
@@ -40,8 +41,9 @@ def measure(recording: Recording) -> dict[str, Value]:
     """sloshing_frequency (Hz), and sloshing_damping (%) of a free oscillation."""
     rows, free = swinging(recording)
     time, signal = recording.series["time"][rows], _signal(recording)[rows]
-    if len(time) < LEAST_SAMPLES:
-        return {"sloshing_frequency": over_worlds(np.full(recording.worlds, np.nan), "Hz", missing="too short")}
+    driven = bool(np.abs(recording.series["pose_rate"][rows]).max(initial=0.0) > STILL)
+    if len(time) < LEAST_SAMPLES or not (free or driven):
+        return {"sloshing_frequency": over_worlds(np.full(recording.worlds, np.nan), "Hz", missing=SHORT)}
     frequency = peak_frequency(time, signal)
     error = np.full(recording.worlds, 0.5 / (time[-1] - time[0]))
     half = len(time) // 2

@@ -47,6 +47,7 @@ def models(scene: Scene) -> Rows:
         ("state", water.state),
         ("diffusion", f"{water.diffusion}, δ {water.delta:g}" if water.diffusion != "none" else "none"),
         ("viscosity", f"{water.viscosity}{strength}: that of {kinematic(water):.3g} m²/s"),
+        ("shifting", water.shifting),
         ("at walls", f"{'free slip' if water.slip else 'no slip'}{', no free surface' if water.full else ''}"),
     ]
 

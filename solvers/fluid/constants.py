@@ -6,6 +6,7 @@ import taichi as ti
 from solvers.fluid.diffusion import DIFFUSION
 from solvers.fluid.given import Water
 from solvers.fluid.kernels import KERNELS
+from solvers.fluid.shifting import SHIFTING
 from solvers.fluid.states import STATES
 from solvers.fluid.viscosity import VISCOSITY
 from solvers.machine.state import State
@@ -22,6 +23,7 @@ class Constants:
     def __init__(self, arrays: State, water: Water, gravity: float):
         self.kernel, self.state = KERNELS[water.kernel](), STATES[water.state]()
         self.diffusion, self.viscosity = DIFFUSION[water.diffusion](), VISCOSITY[water.viscosity]()
+        self.shifting = SHIFTING[water.shifting]()
         length, sound = water.length, water.sound_speed
         value, slope = self.kernel.factors(length)
         strength = self.viscosity.strength(water)
@@ -43,6 +45,9 @@ class Constants:
             "touch": TOUCH * water.spacing,
             "hard": water.density * (HARD * sound / water.spacing) ** 2 / (slope * water.spacing**2),
             "fastest": 0.5 * sound,  # Mach 0.5
+            "shift": self.shifting.strength(water) * slope if self.shifting.acts else 0.0,
+            "shift_most": 0.5 * water.speed,
+            "shift_scale": value / self.kernel.printed(water.spacing, length),
             "pull": pull.rate**2 if pull else 0.0,
             "pull_y": pull.centre[0] if pull else 0.0,
             "pull_z": pull.centre[1] if pull else 0.0,

@@ -46,8 +46,8 @@ class Continuity:
         opened, evened, walled = p.zeros(), p.zeros(), p.zeros()
         for k in range(lists.near.first[u, listed], lists.near.first[u, listed + 1]):
             j = lists.near.slots[u, k]
-            jb, lane = j // p.lanes, j % p.lanes
-            apart = [own[a] - ti.cast(p.place[a][jb, lane] - origin[a], p.real) for a in ti.static(range(p.axes))]
+            jb, lane = lists.block_of(j), lists.lane_of(j)
+            apart = lists.apart(own, origin, j)
             weight = p.volume[jb, lane] * c.kernel.slope(ti.max(1.0 - ti.sqrt(dot(apart, apart)) * shrink, 0.0))
             nearing = [p.velocity[a][jb, lane] - speed[a] for a in ti.static(range(p.axes))]
             opened += weight * dot(nearing, apart)
@@ -62,8 +62,8 @@ class Continuity:
         if ti.static(p.dry > 0):
             for k in range(lists.beside.first[u, listed], lists.beside.first[u, listed + 1]):
                 j = lists.beside.slots[u, k]
-                jb, lane = j // p.lanes, j % p.lanes
-                apart = [own[a] - ti.cast(p.place[a][jb, lane] - origin[a], p.real) for a in ti.static(range(p.axes))]
+                jb, lane = lists.block_of(j), lists.lane_of(j)
+                apart = lists.apart(own, origin, j)
                 weight = p.volume[jb, lane] * c.kernel.slope(ti.max(1.0 - ti.sqrt(dot(apart, apart)) * shrink, 0.0))
                 nearing = [p.velocity[a][jb, lane] - speed[a] for a in ti.static(range(p.axes))]
                 walled += weight * dot(nearing, apart)

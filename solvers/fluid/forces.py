@@ -4,11 +4,13 @@ import numpy as np
 import taichi as ti
 
 from solvers.fluid.lists import Medium
+from solvers.fluid.state import SPRAY
 from solvers.fluid.walls.extrapolation import Extrapolation
 from solvers.machine.state import State
 from solvers.space.axes import dot
 from solvers.tank.load import Load
 
+INSIDE = 0.75  # least eigenvalue above which no surface is near (Marrone, Colagrossi, Le Touzé & Graziani 2010)
 SINGULAR = 0.05  # least eigenvalue of Σ V_j r_ji ⊗ ∇W down to which it is inverted: spray has no gradient
 OUTLINE = 0  # number of the piece of the tank that all dummies belong to
 
@@ -42,6 +44,8 @@ class Forces:
             s = p.load(p.excess, b)
             p.store(p.volume, b, p.load(p.mass, b) / (density * (1.0 + s)))
             p.store(p.pressure, b, stiffness * c.state.share(s))
+            if ti.static(c.shifting.acts):
+                p.store(p.span_before, b, p.load(p.span, b))
 
     @ti.func
     def push(self, u, t, kick, dt):
@@ -77,13 +81,26 @@ class Forces:
         wall = [p.zeros() for _ in ti.static(range(p.axes))]
         own_push = [p.zeros() for _ in ti.static(range(p.axes))]  # of the dummies' own pressures
         slope = [p.zeros() for _ in ti.static(range(p.axes))]
+        shift = [p.zeros() for _ in ti.static(range(p.axes))]
+        inwards = [p.zeros() for _ in ti.static(range(p.axes))]
+        span, least = p.ones(), p.ones()
+        if ti.static(c.shifting.acts):
+            span = p.load(p.span_before, b)
         yy, yz, zz, lost, held = p.zeros(), p.zeros(), p.zeros(), p.zeros(), p.zeros()
         for k in range(lists.near.first[u, listed], lists.near.first[u, listed + 1]):
             j = lists.near.slots[u, k]
-            jb, lane = j // p.lanes, j % p.lanes
-            apart = [own[a] - ti.cast(p.place[a][jb, lane] - origin[a], p.real) for a in ti.static(range(p.axes))]
+            jb, lane = lists.block_of(j), lists.lane_of(j)
+            apart = lists.apart(own, origin, j)
             square = dot(apart, apart)
-            weight = p.volume[jb, lane] * c.kernel.slope(ti.max(1.0 - ti.sqrt(square) * shrink, 0.0))
+            t = ti.max(1.0 - ti.sqrt(square) * shrink, 0.0)
+            weight = p.volume[jb, lane] * c.kernel.slope(t)
+            if ti.static(c.shifting.acts):
+                crowded = weight * c.shifting.crowded(c.get("shift_scale") * c.kernel.value(t))
+                deeper = p.span_before[jb, lane] - span
+                least = ti.min(least, ti.select(t > 0.0, p.ones() * p.span_before[jb, lane], p.ones()))
+                for a in ti.static(range(p.axes)):
+                    shift[a] += crowded * apart[a]
+                    inwards[a] = inwards[a] - (deeper * weight) * apart[a]
             along = (pressure + p.pressure[jb, lane]) * weight
             if ti.static(c.viscous):
                 nearing = [p.velocity[a][jb, lane] - speed[a] for a in ti.static(range(p.axes))]
@@ -110,10 +127,15 @@ class Forces:
         if ti.static(p.dry > 0):
             for k in range(lists.beside.first[u, listed], lists.beside.first[u, listed + 1]):
                 j = lists.beside.slots[u, k]
-                jb, lane = j // p.lanes, j % p.lanes
-                apart = [own[a] - ti.cast(p.place[a][jb, lane] - origin[a], p.real) for a in ti.static(range(p.axes))]
+                jb, lane = lists.block_of(j), lists.lane_of(j)
+                apart = lists.apart(own, origin, j)
                 square = dot(apart, apart)
-                weight = p.volume[jb, lane] * c.kernel.slope(ti.max(1.0 - ti.sqrt(square) * shrink, 0.0))
+                t = ti.max(1.0 - ti.sqrt(square) * shrink, 0.0)
+                weight = p.volume[jb, lane] * c.kernel.slope(t)
+                if ti.static(c.shifting.acts):
+                    crowded = weight * c.shifting.crowded(c.get("shift_scale") * c.kernel.value(t))
+                    for a in ti.static(range(p.axes)):
+                        shift[a] += crowded * apart[a]
                 along = p.pressure[jb, lane] + (pressure if ti.static(c.full) else ti.max(pressure, 0.0))
                 along = along * weight + self.hardness(p.volume[jb, lane], square)
                 more = along - pressure * weight
@@ -142,6 +164,8 @@ class Forces:
             # Velocities are half a kick behind the places at which the dummies push.
             gain = acceleration + p.filled(b) * ti.cast(self.poses.felt[a][self.units.world(u)], p.real)
             held = held - own_push[a] * (speed[a] + (0.5 * kick) * gain)
+        if ti.static(c.shifting.acts):
+            self.note_shift(b, shift, inwards, least, span)
         self.note_span(b, factor * yy, factor * yz, factor * zz, [factor * slope[a] for a in ti.static(range(p.axes))])
         volume = p.load(p.volume, b) * factor
         total = self.on_walls(b, origin, own, [volume * wall[a] for a in ti.static(range(p.axes))])
@@ -157,6 +181,19 @@ class Forces:
         """
         c = self.constants
         return (c.get("hard") * volume) * ti.max(c.get("touch") / ti.sqrt(square + c.get("floor")) - 1.0, 0.0)
+
+    @ti.func
+    def note_shift(self, b, shift: ti.template(), inwards: ti.template(), least, span):
+        """Store the velocity with which the particles of a block are shifted; see `DeltaPlus`."""
+        p, c = self.particles, self.constants
+        steep = ti.max(dot(inwards, inwards), 1e-30)
+        along = ti.select(least < INSIDE, dot(shift, inwards) / steep, p.zeros())
+        lasting = ti.select(span < SPRAY, p.zeros(), p.filled(b))
+        moved = [lasting * c.get("shift") * (shift[a] - along * inwards[a]) for a in ti.static(range(p.axes))]
+        fast = ti.sqrt(dot(moved, moved))
+        limited = ti.min(1.0, c.get("shift_most") / ti.max(fast, 1e-30))
+        for a in ti.static(range(p.axes)):
+            p.store(p.shift[a], b, limited * moved[a])
 
     @ti.func
     def note_span(self, b, yy, yz, zz, slope: ti.template()):

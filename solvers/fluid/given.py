@@ -45,8 +45,10 @@ class Water:
     compressible liquid. `kernel`, `state`, `diffusion` and `viscosity` are names of the registries. `delta` is the
     strength δ of the diffusion of density; `alpha` that of the artificial viscosity, or `kinematic` ν (m²/s) that of
     laminar flow. `slip`: water slides freely along walls, else it sticks to them. `full`: the tank has no free surface,
-    so that walls may pull. `shifting`: particles are shifted to even their distances. `walls`: whether the tank's
-    outline holds the water; without, it moves freely in space. `periodic`: y wraps round at the tank's sides.
+    so that walls may pull. `shifting`: the name of how particles are shifted to even their distances, for water of up
+    to the `speed` (m/s). `walls`: whether the tank's outline holds the water; without, it moves freely in space.
+    `periodic`: axes, "y" or "z", along which space repeats itself with the tank's width or height, so that it has no
+    walls there.
     """
 
     spacing: float
@@ -63,8 +65,9 @@ class Water:
     slip: bool = True
     full: bool = False
     shifting: str = "none"
+    speed: float = 0.0
     walls: bool = True
-    periodic: bool = False
+    periodic: tuple[str, ...] = ()
     pull: Pull | None = None
     gauges: tuple[Gauge, ...] = ()
     levels: tuple[Level, ...] = ()

@@ -14,12 +14,15 @@ class Grid:
     """Strips of the height √lanes Δx and bins of half a spacing over a box from `lower` to `upper` (m).
 
     A block of particles at rest in a strip is about a square. Points outside the box belong to its outermost cells.
+    Space may repeat itself along an axis with a period (m), from the `origin` on; 0: it does not.
     """
 
     lower: tuple[float, float]
     upper: tuple[float, float]
     spacing: float
     lanes: int
+    periods: tuple[float, float] = (0.0, 0.0)
+    origin: tuple[float, float] = (0.0, 0.0)
 
     @property
     def height(self) -> float:
@@ -48,8 +51,8 @@ class Grid:
 
     @property
     def numbers(self) -> np.ndarray:
-        """What `Order` computes keys from: lower corner (m), bins and strips per metre."""
-        return np.array([*self.lower, 1.0 / self.bin, 1.0 / self.height])
+        """What `Order` computes keys from: lower corner (m), bins and strips per metre, periods, their origin (m)."""
+        return np.array([*self.lower, 1.0 / self.bin, 1.0 / self.height, *self.periods, *self.origin])
 
     def key(self, points: np.ndarray) -> np.ndarray:
         """Keys (n,) of points (n, 2) m."""

@@ -1,6 +1,7 @@
 """Neighbour lists: for each block, the particles near its bounding box, and when they are rebuilt."""
 
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 import taichi as ti
@@ -17,6 +18,7 @@ NEVER = 1e30  # m, a displacement that makes the lists stale
 SKIN = (0.3, 1.2)  # spacings: the skin in a still tank, and in a violent one
 LASTING = 6  # steps for which a list should last: the skin follows from the speed at the last rebuild
 FASTER = 1.25  # what particles may gain in speed until the next step
+PLACES = 27  # bits of an entry that number a slot; the others number the periodic image in which it is seen
 CROWDED = 1.6  # times the neighbours of a square block at rest: room for those of long blocks and of dense impacts
 
 
@@ -35,9 +37,9 @@ class Listing:
 class Lists:
     """Neighbours of each block: `near`, of water in water; `beside`, walls beside water; `facing`, water before walls.
 
-    An entry is a slot in all blocks of all worlds. `travel` (units,) m bounds how far any particle of a unit has moved
-    since the lists were built, `last` (m) how far in the last step; `skin` (units,) m was allowed for. `walls` are the
-    first slots of the dummies by key.
+    An entry is a slot in all blocks of all worlds, and where space is periodic the image in which it is seen. `travel`
+    (units,) m bounds how far any particle of a unit has moved since the lists were built, `last` (m) how far in the
+    last step; `skin` (units,) m was allowed for. `walls` are the first slots of the dummies by key.
     """
 
     def __init__(
@@ -53,6 +55,9 @@ class Lists:
         self.units, self.particles, self.shares = units, order.particles, shares
         self.order, self.constants = order, constants
         own = arrays.under("water.lists")
+        self.periods = own.holding("periods", np.array(order.grid.periods), "axis", own.place)
+        wraps = [(-1, 0, 1) if period else (0,) for period in order.grid.periods]
+        self.images = tuple(3 * (up + 1) + along + 1 for along, up in product(*wraps))
         self.wall_first = own.holding("wall_first", walls, "key", ti.i32)
         particles = self.particles
         wet, dry = (-(-blocks // units.a_world) for blocks in (particles.wet, max(particles.dry, 1)))
@@ -119,9 +124,10 @@ class Lists:
         found, walls = 0, 0
         for b in range(first, end):
             self.near.first[u, b - first], self.beside.first[u, b - first] = found, walls
-            found = self.search(u, b, reach, found, self.near, self.order.first, False)
-            if ti.static(p.dry > 0):
-                walls = self.search(u, b, reach, walls, self.beside, self.wall_first, True)
+            for image in ti.static(self.images):
+                found = self.search(u, b, reach, found, self.near, image, False)
+                if ti.static(p.dry > 0):
+                    walls = self.search(u, b, reach, walls, self.beside, image, True)
             for lane in range(p.lanes):
                 for a in ti.static(range(p.axes)):
                     p.built[a][b, lane] = p.place[a][b, lane]
@@ -133,7 +139,8 @@ class Lists:
             found = 0
             for b in range(first, end):
                 self.facing.first[u, b - first] = found
-                found = self.search(u, b, reach, found, self.facing, self.order.first, False)
+                for image in ti.static(self.images):
+                    found = self.search(u, b, reach, found, self.facing, image, False)
             self.facing.first[u, end - first] = found
             if found > self.facing.capacity:
                 fits = False
@@ -143,19 +150,28 @@ class Lists:
         return fits
 
     @ti.func
-    def search(self, u, b, reach, found, listing: ti.template(), first: ti.template(), walls: ti.template()):
-        """List the water, or the walls, within `reach` (m) of a block's box; returns the number listed up to there."""
+    def search(self, u, b, reach, found, listing: ti.template(), image: ti.template(), walls: ti.template()):
+        """List the water, or the walls, within `reach` (m) of a block's box, as seen in an image of periodic space.
+
+        Returns the number listed up to there.
+        """
         p, order = self.particles, self.order
         w = self.units.world(u)
         lower, upper = self.box(b)
+        code = 0
+        if ti.static(len(self.images) > 1):
+            code = ti.static(image << PLACES)
+            for a in ti.static(range(p.axes)):
+                lower[a] -= self.shift(image, a)
+                upper[a] -= self.shift(image, a)
         far = ti.cast(reach, p.where)
         left, right = order.bin_of(lower[0] - far), order.bin_of(upper[0] + far)
         start = w * p.stride * p.lanes
         if ti.static(walls):
             start += p.wet * p.lanes
         for strip in range(order.strip_of(lower[1] - far), order.strip_of(upper[1] + far) + 1):
-            begin = self.at(w, first, strip * order.bins + left, walls)
-            end = self.at(w, first, strip * order.bins + right + 1, walls)
+            begin = self.at(w, strip * order.bins + left, walls)
+            end = self.at(w, strip * order.bins + right + 1, walls)
             for k in range(start + begin, start + end):
                 square = ti.cast(0.0, p.real)
                 for a in ti.static(range(p.axes)):
@@ -163,19 +179,60 @@ class Lists:
                     outside = ti.cast(ti.max(lower[a] - place, place - upper[a]), p.real)
                     outside = ti.max(outside, 0.0)
                     square += outside * outside
-                listing.slots[u, ti.min(found, listing.capacity - 1)] = k  # without a branch
+                listing.slots[u, ti.min(found, listing.capacity - 1)] = k + code  # without a branch
                 found += ti.select(square < reach * reach, 1, 0)
         return found
 
     @ti.func
-    def at(self, w, first: ti.template(), key, walls: ti.template()):
+    def at(self, w, key, walls: ti.template()):
         """First slot of a key."""
         slot = 0
         if ti.static(walls):  # noqa: SIM108 (else both are compiled)
-            slot = first[key]
+            slot = self.wall_first[key]
         else:
-            slot = first[w, key]
+            slot = self.order.first[w, key]
         return slot
+
+    @ti.func
+    def shift(self, image, axis: ti.template()):
+        """By how much (m) an image of periodic space is displaced along an axis."""
+        step = image % 3 if ti.static(axis == 0) else image // 3
+        return (step - 1) * self.periods[axis]
+
+    @ti.func
+    def block_of(self, entry):
+        """The block of an entry."""
+        return self.slot_of(entry) // self.particles.lanes
+
+    @ti.func
+    def lane_of(self, entry):
+        """The lane of an entry."""
+        return self.slot_of(entry) % self.particles.lanes
+
+    @ti.func
+    def slot_of(self, entry):
+        """The slot of an entry."""
+        slot = entry
+        if ti.static(len(self.images) > 1):
+            slot = entry & ti.static((1 << PLACES) - 1)
+        return slot
+
+    @ti.func
+    def apart(self, own: ti.template(), origin: ti.template(), entry):
+        """The places of a block, `own` (m) from `origin`, less that of an entry's particle."""
+        p, b, lane = self.particles, self.block_of(entry), self.lane_of(entry)
+        return [
+            own[a] - ti.cast(p.place[a][b, lane] + self.seen(entry, a) - origin[a], p.real)
+            for a in ti.static(range(p.axes))
+        ]
+
+    @ti.func
+    def seen(self, entry, axis: ti.template()):
+        """By how much (m) the image of an entry is displaced along an axis."""
+        shift = ti.cast(0.0, self.particles.where)
+        if ti.static(len(self.images) > 1):
+            shift = self.shift(entry >> PLACES, axis)
+        return shift
 
     @ti.func
     def box(self, b):

@@ -23,6 +23,7 @@ from solvers.machine.errors import Unavailable
 from solvers.machine.phase import Phase
 from solvers.machine.state import Axes
 from solvers.motion.poses import Poses
+from solvers.space.axes import NAMES as PLANE_NAMES
 from solvers.tank.matter import Matter
 from solvers.tank.setting import Setting
 
@@ -47,7 +48,9 @@ class WaterMatter(Matter):
         dummy, blocks, first = grid.arranged(points)
         self.drops = scene.drops
         count = scene.drops.shape[1]
-        self.particles = p = Particles(arrays, worlds, count, lanes, len(blocks) * lanes, grid.strips)
+        self.particles = p = Particles(
+            arrays, worlds, count, lanes, len(blocks) * lanes, grid.strips, water.shifting != "none"
+        )
         self.units = units = setting.units(p.wet)
         self.load = setting.load(arrays.under("water"), units)
         self.dummies = dummy, blocks, volumes
@@ -60,7 +63,7 @@ class WaterMatter(Matter):
         self.forces = Forces(arrays, medium, self.extrapolation, self.load, tank.thickness)
         self.continuity, self.mover = Continuity(arrays, medium), Mover(arrays, medium, self.extrapolation)
         self.gauges = Gauges(arrays, p, water.gauges, [dummy[slot] + p.wet * lanes for slot in slots])
-        closed = water.walls and not tank.open_edges
+        closed = water.walls and not tank.open_edges and not water.periodic
         self.census = Census(arrays, p, setting.walls, self.constants, setting.carrier, closed, water.levels)
         self.start = np.full(worlds, np.nan)  # J, energy at the first look
         self.thickness = tank.thickness
@@ -87,6 +90,11 @@ class WaterMatter(Matter):
             return np.zeros((0, 2)), np.zeros(0), []
         rows = int(np.ceil(self.water.reach / self.water.spacing - 1e-9))
         points, volumes = layers(tank.outline, self.water.spacing, rows, tank.open_edges)
+        lower, upper = tank.outline.min(axis=0), tank.outline.max(axis=0)
+        for a, name in enumerate(PLANE_NAMES[:2]):
+            if name in self.water.periodic:
+                kept = (points[:, a] >= lower[a]) & (points[:, a] < upper[a])
+                points, volumes = points[kept], volumes[kept]
         slots = []
         for gauge in self.water.gauges:
             of_gauge = probes(gauge, tank.outline, self.water.spacing)
@@ -98,11 +106,16 @@ class WaterMatter(Matter):
         """The grid round the tank; round the water itself where it has no walls, with as much space on all sides."""
         lower, upper = bounds
         margin = ROOM * self.water.reach
-        if not self.water.walls:
+        if not self.water.walls and not self.water.periodic:
             place = self.scene.drops[..., :2].reshape(-1, 2)
             lower, upper = place.min(axis=0), place.max(axis=0)
             margin = float(np.ptp(place, axis=0).max())
-        return Grid(tuple(lower - margin), tuple(upper + margin), self.water.spacing, lanes)
+        periods = tuple(
+            float(side) if name in self.water.periodic else 0.0
+            for name, side in zip(PLANE_NAMES, np.ptp(self.scene.outline, axis=0), strict=False)
+        )
+        corners = tuple(lower - margin), tuple(upper + margin)
+        return Grid(*corners, self.water.spacing, lanes, periods, tuple(self.scene.outline.min(axis=0)))
 
     @property
     def extent(self) -> float:

@@ -3,13 +3,13 @@
 import taichi as ti
 
 from solvers.fluid.lists import Medium
+from solvers.fluid.state import SPRAY
 from solvers.fluid.walls.extrapolation import Extrapolation
 from solvers.machine.state import State
 from solvers.motion.poses import AT_MIDDLE, AT_START
 from solvers.space.axes import dot
 
 DENSEST = 0.2  # deviation of the density at which a run is stopped
-SPRAY = 0.2  # least eigenvalue below which water is spray, which is never less dense than at rest (Marrone et al. 2010)
 
 
 @ti.data_oriented
@@ -91,6 +91,9 @@ class Mover:
         u = [p.load(p.velocity[a], b) for a in ti.static(range(p.axes))]
         before = [p.load(p.place[a], b) for a in ti.static(range(p.axes))]
         after = [before[a] + p.long(half * u[a]) for a in ti.static(range(p.axes))]
+        if ti.static(self.constants.shifting.acts and part == AT_MIDDLE):
+            for a in ti.static(range(p.axes)):
+                after[a] += p.long((2.0 * half) * p.load(p.shift[a], b))
         if ti.static(poses.moving):
             cos, sin = ti.cast(poses.drift[w, part, 0], p.where), ti.cast(poses.drift[w, part, 1], p.where)
             e_y, e_z = ti.cast(poses.drift[w, part, 2], p.where), ti.cast(poses.drift[w, part, 3], p.where)

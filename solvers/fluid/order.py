@@ -51,6 +51,16 @@ class Order:
         return self.strip_of(p.place[1][b, lane]) * self.bins + self.bin_of(p.place[0][b, lane])
 
     @ti.func
+    def wrap(self, b, lane):
+        """Bring a particle that has left periodic space on one side back on the other."""
+        p = self.particles
+        for a in ti.static(range(p.axes)):
+            if ti.static(self.grid.periods[a] > 0.0):
+                period = self.numbers[4 + a]
+                beyond = ti.floor((p.place[a][b, lane] - self.numbers[6 + a]) / period)
+                p.place[a][b, lane] = p.place[a][b, lane] - beyond * period
+
+    @ti.func
     def sort_world(self, w):
         """Sort the particles of one world, on one thread."""
         start, lanes = w * self.particles.stride, self.particles.lanes
@@ -59,6 +69,7 @@ class Order:
         for b in range(start, start + self.particles.used[w]):
             for lane in range(lanes):
                 if self.particles.number[b, lane] != UNUSED:
+                    self.wrap(b, lane)
                     self.key[b, lane] = self.find(b, lane)
                     self.count_up(w, self.key[b, lane])
         slots = self.lay_out(w)
@@ -147,6 +158,7 @@ class Order:
             self.cursor[w, k] = 0
         for w, i in ti.ndrange(self.particles.worlds, self.particles.count):
             b = w * self.particles.stride + i
+            self.wrap(b, 0)
             self.key[b, 0] = self.find(b, 0)
             ti.atomic_add(self.cursor[w, self.key[b, 0]], 1)
         for w, c in self.chunk_first:

@@ -10,6 +10,7 @@ from solvers.space.axes import PLANE, named
 LANES = 16  # particles in a block: two AVX2 registers, or one of AVX-512, of 32-bit numbers
 SPARE = 1.5  # blocks for each full one, for those that a sparse surface leaves half empty
 FAR = 1e6  # m, where unused lanes are
+SPRAY = 0.2  # least eigenvalue below which water is spray, never less dense than at rest (Marrone et al. 2010)
 UNUSED = -1  # number of an unused lane
 
 
@@ -28,7 +29,7 @@ class Particles:
 
     axes = PLANE
 
-    def __init__(self, arrays: State, worlds: int, count: int, lanes: int, walls: int, strips: int):
+    def __init__(self, arrays: State, worlds: int, count: int, lanes: int, walls: int, strips: int, shifts: bool):
         self.worlds, self.count, self.lanes = worlds, count, lanes
         self.real, self.exact, self.where = arrays.real, arrays.exact, arrays.place
         self.wet = count if lanes == 1 else int(SPARE * -(-count // lanes)) + 2 * strips
@@ -43,6 +44,9 @@ class Particles:
         self.volume, self.pressure, self.span = own.wide(each, "volume", "pressure", "span")
         self.rate, self.rate_of_walls = own.wide(each, "rate", "rate_of_walls", kept=False)
         self.acceleration = own.wide(each, *named("acceleration", self.axes))
+        if shifts:
+            (self.span_before,) = own.wide(each, "span_before", kept=False)
+            self.shift = own.wide(each, *named("shift", self.axes), kept=False)
         self.slope = own.wide(each, *named("slope", self.axes))
         self.built = own.wide(each, *named("built", self.axes), kind=own.place)
         self.each_world = Axis("world", worlds)

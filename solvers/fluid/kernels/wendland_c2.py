@@ -17,6 +17,12 @@ class WendlandC2:
         alone = 7.0 / (4.0 * pi * length**2)
         return alone, 5.0 * alone / length**2
 
+    @classmethod
+    def printed(cls, distance: float, length: float) -> float:
+        """W (1/m²) at a distance (m) within the support, in the plane."""
+        q = distance / length
+        return cls.factors(length)[0] * (1.0 - 0.5 * q) ** 4 * (2.0 * q + 1.0)
+
     @staticmethod
     @ti.func
     def value(t):

@@ -17,6 +17,12 @@ class WendlandC4:
         alone = 9.0 / (4.0 * pi * length**2)
         return alone, 14.0 / 3.0 * alone / length**2
 
+    @classmethod
+    def printed(cls, distance: float, length: float) -> float:
+        """W (1/m²) at a distance (m) within the support, in the plane."""
+        q = distance / length
+        return cls.factors(length)[0] * (1.0 - 0.5 * q) ** 6 * (35.0 / 12.0 * q**2 + 3.0 * q + 1.0)
+
     @staticmethod
     @ti.func
     def value(t):

@@ -48,8 +48,8 @@ class Extrapolation:
         moved = [p.zeros() for _ in ti.static(range(p.axes))]
         for k in range(begin, end):
             j = self.lists.facing.slots[u, k]
-            jb, lane = j // p.lanes, j % p.lanes
-            apart = [own[a] - ti.cast(p.place[a][jb, lane] - origin[a], p.real) for a in ti.static(range(p.axes))]
+            jb, lane = self.lists.block_of(j), self.lists.lane_of(j)
+            apart = self.lists.apart(own, origin, j)
             weight = c.kernel.value(ti.max(1.0 - ti.sqrt(dot(apart, apart)) * shrink, 0.0))
             volume = p.volume[jb, lane]
             seen += weight * volume

@@ -83,8 +83,15 @@ def test_a_driven_wave_has_the_frequency_of_the_drive_and_no_damping(tmp_path):
     assert values["run_up_L_1"].value == pytest.approx(20.0, rel=1e-3)
 
 
-def test_calm_water_has_no_frequency(tmp_path):
-    values = of(tmp_path, level_depth=np.full((len(TIME), 1), 0.2))
+def test_few_free_swings_have_no_frequency(tmp_path):
+    depth = 0.2 + 0.02 * np.cos(2 * np.pi * 0.15 * TIME)
+    found = of(tmp_path, level_depth=depth[:, None])["sloshing_frequency"]
+    assert found.value is None and found.note == "too few swings"
+
+
+def test_calm_water_in_a_tank_that_moves_has_no_frequency(tmp_path):
+    rate = np.stack([0 * TIME, np.cos(np.pi * TIME), 0 * TIME], axis=1)
+    values = of(tmp_path, level_depth=np.full((len(TIME), 1), 0.2), pose_rate=rate)
     assert values["sloshing_frequency"].value is None
     assert values["sloshing_frequency"].note.endswith("the water does not swing")
 

@@ -112,6 +112,10 @@ FAULTS = {
         {"water__spacing": "1 um"},
         "water.spacing: particles of 1 µm are too small for so much water.",
     ),
+    "soft water": (
+        {"water__sound_speed": "2 m/s"},
+        "water.sound_speed: at 2 m/s the water's weight would compress it by more than 10 %; take at least 3.132 m/s, ",
+    ),
     "region outside": (
         {"water__region": [["-500 mm", "0 mm"], ["0 mm", "0 mm"], ["0 mm", "100 mm"]]},
         "water.region: it reaches out of the tank at [-500 mm, 0 m]; keep it inside.",

@@ -17,7 +17,7 @@ from lab.preset.find import QUICK, load, names
 from lab.preset.reference import range_of, reference, value_of
 from lab.preset.schema import Preset
 from solvers.machine.marks import Interval
-from tests.lab.preset.test_malformed import LISTED, RICH
+from tests.lab.preset.test_malformed import LISTED, RICH, WET
 
 PRESETS = Path(__file__).parents[3] / "presets"
 VALIDATOR = Draft7Validator(json_schema())
@@ -54,7 +54,7 @@ def test_the_schema_beside_the_presets_is_the_present_one():
     Draft7Validator.check_schema(json_schema())
 
 
-@pytest.mark.parametrize("text", [RICH, LISTED])
+@pytest.mark.parametrize("text", [RICH, LISTED, WET])
 def test_other_sound_presets_fit_the_schema(text):
     assert complaints(text) == []
 

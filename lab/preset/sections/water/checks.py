@@ -14,6 +14,7 @@ from lab.preset.units import needed, show
 
 MOST_PARTICLES = 20e6  # in a tank; what fits into the memory is checked as a scene is built
 MOST_GAUGES = 100
+COMPRESSED = 0.1  # most that water is compressed by its own weight, g H/c0²
 NEAR = 1e-3  # of the tank's larger side: how far a gauge may be from the wall that it is in
 
 
@@ -40,6 +41,7 @@ def check_water(preset: Whole) -> None:
     else:
         _check_region(water, tank)
     _check_spacing(preset)
+    _check_sound(preset)
     _check_gauges(preset.gauges, tank)
 
 
@@ -107,6 +109,18 @@ def _check_spacing(preset: Whole) -> None:
     size = deep if water.spacing == "auto" else water.spacing
     if of_all > MOST_PARTICLES * size**2:
         raise LabError(f"water.spacing: particles of {show(size, 'm')} are too small for so much water.")
+
+
+def _check_sound(preset: Whole) -> None:
+    """Raise LabError for a speed of sound at which the water's own weight would compress it visibly."""
+    head = preset.run.gravity * liquid.depth(preset)
+    sound = liquid.liquid(preset).sound_speed
+    if head > COMPRESSED * sound**2:
+        least = show((head / COMPRESSED) ** 0.5, "m/s")
+        raise LabError(
+            f"water.sound_speed: at {show(sound, 'm/s')} the water's weight would compress it by more than "
+            f"{100.0 * COMPRESSED:g} %; take at least {least}, better ten times the speed of the water."
+        )
 
 
 def _check_gauges(gauges: Mapping[str, Gauge], tank: Tank) -> None:

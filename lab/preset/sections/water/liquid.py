@@ -49,6 +49,7 @@ def liquid(preset: Wet) -> given.Water:
         slip=water.slip,
         full=water.full,
         shifting=water.shifting,
+        speed=expected_speed(preset),
         gauges=tuple(given.Gauge(gauge.place, gauge.length, gauge.response) for gauge in pressure.values()),
         levels=tuple(given.Level(gauge.y) for gauge in level.values()),
     )

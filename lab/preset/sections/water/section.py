@@ -6,11 +6,10 @@ from typing import Annotated, Literal
 from lab.preset.sections.water.schemes import SCHEMES
 from solvers.fluid.diffusion import DIFFUSION
 from solvers.fluid.kernels import KERNELS
+from solvers.fluid.shifting import SHIFTING
 from solvers.fluid.states import STATES
 from solvers.fluid.viscosity import VISCOSITY
 from solvers.machine.marks import Cheap, Doc, Interval, Unit, Usual
-
-SHIFTINGS = ("none",)
 
 Length = Annotated[float, Unit("m"), Interval(gt=0)]
 
@@ -68,7 +67,7 @@ class Water:
     ] = None
     slip: Annotated[bool, Doc("Whether water slides along walls; else it sticks to them.")] = True
     full: Annotated[bool, Doc("Whether the water fills the whole tank, so that walls may pull at it.")] = False
-    shifting: Annotated[Literal[*SHIFTINGS], Doc("How particles are shifted to even their distances.")] = "none"
+    shifting: Annotated[Literal[*SHIFTING], Doc("How particles are shifted to even their distances.")] = "none"
 
 
 @dataclass(frozen=True)

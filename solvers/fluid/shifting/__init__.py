@@ -1,0 +1,6 @@
+"""Shifting of particles by name: how their distances are evened."""
+
+from solvers.fluid.shifting.delta_plus import DeltaPlus
+from solvers.fluid.shifting.none import NoShifting
+
+SHIFTING = {"delta-plus": DeltaPlus, "none": NoShifting}

@@ -1,0 +1,7 @@
+"""No shifting."""
+
+
+class NoShifting:
+    """Particles move with the water alone."""
+
+    acts = False
