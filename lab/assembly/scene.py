@@ -8,6 +8,7 @@ import numpy as np
 from lab.assembly.grains import check_softness, grain_count, grains_of
 from lab.assembly.room import check_room
 from lab.assembly.ship import make_vessel
+from lab.assembly.water import most_drops, water_of
 from lab.preset.accuracy import LEVELS, check_forced
 from lab.preset.schema import Preset
 from solvers.motion.steered import Steered
@@ -28,10 +29,12 @@ def build(preset: Preset, hands: Sequence[Steered] | None = None) -> tuple[Scene
     fall on steps. Raises LabError if the grains do not fit into the tank or the memory, or a given step is too long.
     """
     worlds = preset.run.repeats
-    check_room(preset, grain_count(preset))
+    check_room(preset, grain_count(preset), most_drops(preset))
     given, position = {"radius": np.zeros((worlds, 0))}, np.zeros((worlds, 0, 2))
     if preset.grains:
         given, position = grains_of(preset)
+    elif preset.water:
+        given |= water_of(preset)
     scene = Scene(
         **given,
         outline=np.array(preset.tank.corners),

@@ -16,7 +16,7 @@ import numpy as np
 from lab.base.errors import Unusable
 from lab.base.memory import SHARE, machine_memory
 
-GROUPS = ("preset", "grains", "tank", "shapes", "series", "frames", "steering", "checks")
+GROUPS = ("preset", "grains", "water", "tank", "shapes", "series", "frames", "steering", "checks")
 DEEPER = ("tank/parts",)
 ATTRIBUTES = ("format", "preset", "status", "created", "versions", "machine", "step", "wall_s", "grain_steps")
 BEYOND = 1e15  # larger than any SI number in a recording

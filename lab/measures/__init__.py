@@ -20,12 +20,16 @@ from lab.measures import (
     critical_angle,
     energies,
     flow_rate,
+    gauge_impulse,
+    gauge_peaks,
     heap_angle,
     hysteresis,
+    run_up,
     ship_frozen,
     ship_power,
     ship_roll,
     ship_stability,
+    sloshing_frequency,
     spectrum,
     spilled,
     steady_amplitude,
@@ -33,6 +37,7 @@ from lab.measures import (
     swelling,
     top_altitude,
     wall_force,
+    water_residual,
     wave,
 )
 from lab.measures.value import Value
@@ -59,6 +64,11 @@ MEASURES = (
     wall_force,
     contact_number,
     energies,
+    gauge_peaks,
+    gauge_impulse,
+    run_up,
+    sloshing_frequency,
+    water_residual,
 )
 
 

@@ -79,6 +79,7 @@ KINDS = {
     "detector": "how far from the onset of a step its detector may have found it",
     "fit": "half the 68 % confidence interval of a line fitted to one bed",
     "averaging": "standard error of a mean over time, from the means of blocks of it",
+    "cycles": "standard error of a mean over cycles, from their scatter",
     "halves": "half the difference between the two halves of the time looked at",
     "resolution": "half the distance to the next value that the samples can tell apart",
     "creep": "how far the bed still moves where the number is read",

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lab.base.errors import LabError
+from lab.preset.sections.video import OF_WATER
 
 if TYPE_CHECKING:
     from lab.paint.footage import Bed
@@ -38,22 +39,25 @@ class Colouring:
     values: Callable[[Bed, int], np.ndarray]
     ticks: dict[float, str] | None = field(default=None)
 
+    def shares(self, bed: Bed, frame: int) -> np.ndarray:
+        """How far along the scale the values (n,) are, 0 to 1 on it."""
+        return (self.values(bed, frame) - self.low) / (self.high - self.low)
+
     def colours(self, bed: Bed, frame: int) -> np.ndarray:
         """Colours (n, 3) of the grains in 0..255."""
-        share = (self.values(bed, frame) - self.low) / (self.high - self.low)
-        index = np.nan_to_num(share * len(self.table))
+        index = np.nan_to_num(self.shares(bed, frame) * len(self.table))
         return self.table[np.clip(index, 0, len(self.table) - 1).astype(int)]
 
 
 def speed(beds: Sequence[Bed]) -> Colouring:
     """|v| relative to the tank."""
-    top = _round_up(max(_largest(beds, lambda bed, frame: bed.speed(frame)), beds[0].diameter))
+    top = round_up(max(_largest(beds, lambda bed, frame: bed.speed(frame)), beds[0].diameter))
     factor, unit = (1.0, "m/s") if top >= 1.0 else (1000.0, "mm/s")
 
     def values(bed: Bed, frame: int) -> np.ndarray:
         return factor * bed.speed(frame)
 
-    return Colouring(f"speed in the tank ({unit})", 0.0, factor * top, _table("viridis"), values)
+    return Colouring(f"speed in the tank ({unit})", 0.0, factor * top, table("viridis"), values)
 
 
 def spin(beds: Sequence[Bed]) -> Colouring:
@@ -62,8 +66,8 @@ def spin(beds: Sequence[Bed]) -> Colouring:
     def values(bed: Bed, frame: int) -> np.ndarray:
         return np.abs(bed.spin(frame)) / (2 * np.pi)
 
-    top = _round_up(max(_largest(beds, values), 0.1))
-    return Colouring("spin in the tank (turns a second)", 0.0, top, _table("magma", low=0.3), values)
+    top = round_up(max(_largest(beds, values), 0.1))
+    return Colouring("spin in the tank (turns a second)", 0.0, top, table("magma", low=0.3), values)
 
 
 def displacement(beds: Sequence[Bed]) -> Colouring:
@@ -74,8 +78,8 @@ def displacement(beds: Sequence[Bed]) -> Colouring:
         moved = bed.position(frame) - starts[bed]
         return np.hypot(*moved.T) / bed.diameter
 
-    top = _round_up(max(_largest(beds, values), 1.0))
-    return Colouring("displacement (diameters)", 0.0, top, _table("plasma"), values)
+    top = round_up(max(_largest(beds, values), 1.0))
+    return Colouring("displacement (diameters)", 0.0, top, table("plasma"), values)
 
 
 def layer(beds: Sequence[Bed]) -> Colouring:
@@ -91,7 +95,7 @@ def layer(beds: Sequence[Bed]) -> Colouring:
 
     ticks = {k + 0.5: str(k + 1) for k in range(count)}
     wide = "1 diameter" if band == 1 else f"{band} diameters"
-    return Colouring(f"starting layer ({wide})", 0.0, count, _table("viridis", count), values, ticks)
+    return Colouring(f"starting layer ({wide})", 0.0, count, table("viridis", count), values, ticks)
 
 
 def size(beds: Sequence[Bed]) -> Colouring:
@@ -104,7 +108,7 @@ def size(beds: Sequence[Bed]) -> Colouring:
     def values(bed: Bed, frame: int) -> np.ndarray:
         return 2e3 * bed.radius
 
-    return Colouring("diameter (mm)", low, high, _table("cividis"), values)
+    return Colouring("diameter (mm)", low, high, table("cividis"), values)
 
 
 def kind(beds: Sequence[Bed]) -> Colouring:
@@ -129,11 +133,14 @@ MODES: dict[str, Callable[[Sequence[Bed]], Colouring]] = {
 
 
 def colouring(name: str, beds: Sequence[Bed]) -> Colouring | None:
-    """The colouring of that name, one scale for all beds, None without grains; raises LabError for an unknown one."""
-    if name not in MODES:
+    """The colouring of that name, one scale for all beds, None without grains; raises LabError for an unknown one.
+
+    Where the name is one of a colour of water, grains show their speed.
+    """
+    if name not in MODES and name not in OF_WATER:
         raise LabError(f"Unknown colour '{name}': choose one of {', '.join(MODES)}.")
     filled = [bed for bed in beds if not bed.empty]
-    return MODES[name](filled) if filled else None
+    return MODES.get(name, speed)(filled) if filled else None
 
 
 def mark_colours(colours: np.ndarray) -> np.ndarray:
@@ -157,7 +164,7 @@ def _named(label: str, names: Sequence[str], number: Callable[[Bed], np.ndarray]
         return number(bed) + 0.5
 
     ticks = {k + 0.5: name for k, name in enumerate(names)}
-    return Colouring(label, 0.0, len(names), _table("viridis", len(names)), values, ticks)
+    return Colouring(label, 0.0, len(names), table("viridis", len(names)), values, ticks)
 
 
 def _largest(beds: Sequence[Bed], values: Callable[[Bed, int], np.ndarray]) -> float:
@@ -167,20 +174,20 @@ def _largest(beds: Sequence[Bed], values: Callable[[Bed, int], np.ndarray]) -> f
     return max((float(np.percentile(sample, PERCENTILE)) for sample in finite if len(sample)), default=0.0)
 
 
-def spread(beds: Sequence[Bed]) -> Iterator[tuple[Bed, int]]:
+def spread(beds: Sequence[Bed], frames: int = SAMPLED_FRAMES) -> Iterator[tuple[Bed, int]]:
     """Frames spread evenly over each bed's film, ordered by time across the beds, which suits the file's layout."""
-    for share in np.linspace(0, 1, SAMPLED_FRAMES):
+    for share in np.linspace(0, 1, frames):
         yield from ((bed, round(share * (bed.frames - 1))) for bed in beds)
 
 
-def _table(name: str, size: int = 256, low: float = 0.06) -> np.ndarray:
+def table(name: str, size: int = 256, low: float = 0.06) -> np.ndarray:
     """One of matplotlib's perceptually uniform colour maps without its first part `low`, (size, 3) in 0..255."""
     from matplotlib import colormaps
 
     return 255.0 * colormaps[name](np.linspace(low, 0.98, size))[:, :3]
 
 
-def _round_up(value: float) -> float:
+def round_up(value: float) -> float:
     """The smallest round number that is not below `value`."""
     power = 10.0 ** np.floor(np.log10(value))
     return float(power * next(step for step in (1, 1.5, 2, 3, 4, 5, 6, 8, 10) if step >= value / power - 1e-9))

@@ -181,19 +181,30 @@ class LivePlot:
     """Curves that grow with the film; the axes are drawn once.
 
     size: (width, height) in pixels; curves: pairs of arrays x, y; colours: one each;
-    labels: of x and y; text: height of the letters in pixels.
+    labels: of x and y; text: height of the letters in pixels; names: texts and colours, at the upper right;
+    indent: least distance of the axis from the left, for plots that stand one above the other.
     """
 
-    def __init__(self, size: tuple, curves: list, colours: list, labels: tuple[str, str], text: float) -> None:
-        self._text = FINER * text
+    def __init__(
+        self,
+        size: tuple,
+        curves: list,
+        colours: list,
+        labels: tuple[str, str],
+        text: float,
+        names: Sequence = (),
+        indent: float = 0.0,
+    ) -> None:
+        self._text, self._names = FINER * text, names
         width, height = (FINER * round(side) for side in size)
         self._image = Image.new("RGB", (width, height), PAPER)
         self._low, self._high = _limits(curves)
-        top, bottom = 1.7 * self._text, height - 3.1 * self._text
+        top, bottom = 1.7 * self._text, height - (3.1 if labels[0] else 1.9) * self._text
         room = int((bottom - top) / (1.6 * self._text))  # number of labels that fit without touching
         self._levels = ticks(self._low[1], self._high[1], min(4, max(1, room)))
         widest = max(font(self._text).getlength(plain(level)) for level in self._levels)
-        left, right = widest + 0.5 * self._text, width - 0.4 * self._text
+        self.indent = max(widest + 0.5 * self._text, indent)
+        left, right = self.indent, width - 0.4 * self._text
         self._box = (left, top, right, bottom)
         placed = [self._place(np.column_stack(curve)) for curve in curves]
         self._curves = [
@@ -224,6 +235,13 @@ class LivePlot:
         left, top, right, bottom = self._box
         draw.text((0, 0), labels[1], INK, face, anchor="la")
         draw.text((right, self._image.height), labels[0], INK, face, anchor="rd")
+        x, strong = float(self._image.width), font(self._text, bold=True)
+        end = face.getlength(labels[1]) + self._text
+        for name, colour in reversed(self._names):
+            if x - strong.getlength(name) < end:  # no room for more of them
+                break
+            draw.text((x, 0), name, colour, strong, anchor="ra")
+            x -= strong.getlength(name) + 0.6 * self._text
         for value in self._levels:
             y = self._place(np.array([[self._low[0], value]]))[0, 1]
             draw.line([(left, y), (right, y)], fill=GRID, width=thin)

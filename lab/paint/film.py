@@ -5,8 +5,8 @@ tanks on the left, a column of readings, plot and colour bar on the right.
 """
 
 import math
-from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, replace
 
 import numpy as np
 from PIL import Image, ImageDraw
@@ -14,26 +14,27 @@ from PIL import Image, ImageDraw
 from lab.base.errors import LabError
 from lab.paint import decorations as deco
 from lab.paint import palette
-from lab.paint.colours import MODES, bed_colours, colouring, mark_colours, spread
+from lab.paint.colours import bed_colours, colouring, mark_colours, spread
+from lab.paint.curves import TOLERANCE, plots
 from lab.paint.footage import Bed, Footage
 from lab.paint.painter import Camera, Edges, paint_grains, paint_plate, paint_tank, to_discs
 from lab.paint.sea import LINE
+from lab.paint.water.gauges import Marks, hues_of
+from lab.paint.water.layer import WaterLayer
 from lab.preset.fields import taken_of
 from lab.preset.sections.ship_axis import axis_motion
-from lab.preset.sections.video import Video
+from lab.preset.sections.video import Video, colours_of
 from lab.preset.units import quoted
 
 FRAMES = taken_of(Video)["frame"].words
 SMALLEST, LARGEST = (320, 180), (7680, 4320)  # pixels
 MOST_BEDS = 6  # beds of one recording shown side by side
-MOST_SAMPLES = 800  # points per curve of the plot
 
 MARGIN, COLUMN, GAP, WALL, PLATE = 2.0, 17.0, 2.5, 0.36, 0.3  # in u
 TEXT, READING, TITLE = 1.1, 1.35, 1.45  # heights of letters in u
 BAND = 2.6  # height in u of the band across the picture of a lost ship
 THICKEST = 0.04  # largest wall thickness relative to the tank's smaller side
 ROOM = 0.3  # largest margin around an open tank relative to its larger side; smaller for many tanks
-TOLERANCE = 1e-9  # poses that differ by less (m, rad) count as equal
 
 
 @dataclass(frozen=True)
@@ -51,14 +52,16 @@ def choose_look(footage: Footage, **options: object) -> Look:
     """The look from the `options` that are not None, else the preset's [video]; raises LabError."""
     wanted = {key: value for key, value in options.items() if value is not None}
     look = Look(**{**asdict(footage.settings), **wanted})
+    words = colours_of(footage.matters)
+    look = look if look.colour else replace(look, colour=words[0])
     pairs = zip((look.width, look.height), SMALLEST, LARGEST, strict=True)
     if not all(isinstance(size, int) and size % 2 == 0 and low <= size <= high for size, low, high in pairs):
         raise LabError(
             f"Pictures of {quoted(look.width)} x {quoted(look.height)} pixels cannot be filmed: width and height must "
             f"be even, {SMALLEST[0]} x {SMALLEST[1]} at least and {LARGEST[0]} x {LARGEST[1]} at most."
         )
-    if look.colour not in tuple(MODES):
-        raise LabError(f"Unknown colour '{quoted(str(look.colour))[1:-1]}': choose one of {', '.join(MODES)}.")
+    if look.colour not in words:
+        raise LabError(f"Unknown colour '{quoted(str(look.colour))[1:-1]}': choose one of {', '.join(words)}.")
     if look.frame not in FRAMES:
         raise LabError(f"Unknown frame '{quoted(str(look.frame))[1:-1]}': choose one of {', '.join(FRAMES)}.")
     if not isinstance(look.speed, int | float) or not 0 < look.speed < math.inf:
@@ -94,22 +97,28 @@ class Film:
         self._named = any(bed.name for bed in self._beds)
         self._hues = palette.SERIES if len(self._beds) <= len(palette.SERIES) else bed_colours(len(self._beds))
         self._colouring = colouring(look.colour, self._beds)
+        self._water = WaterLayer(self._beds, look.colour, self._unit)
+        self._bar = self._water.colouring or self._colouring
+        self._marks = self._find_marks()
         self._sorts = _sort_by_shape(self._beds)
         self._grounds = self._find_grounds()
         self._cameras, self._names_at, self._name_width = self._place_beds()
-        self._plot, self._samples = self._prepare_plot()
+        self._plots = self._prepare_plots()
         self._page = self._draw_page()
 
     def picture(self, frame: int) -> np.ndarray:
         """The picture (height, width, 3), u8, of one frame."""
         picture = self._page.copy()
         self._paint_beds(picture, frame)
+        self._paint_marks(picture, frame)
         image = Image.fromarray(picture)
         self._draw_readings(image, frame)
         self._draw_ends(image, frame)
+        for k, marks in self._marks.items():
+            marks.name(image, self._tank_camera(k, frame))
         now = self.time[frame] + 1e-9
-        counts = [max(1, int(np.searchsorted(samples, now, "right"))) for samples in self._samples]
-        image.paste(self._plot.picture(counts), self._plot_box()[:2])
+        for plot, samples, corner in self._plots:
+            image.paste(plot.picture([max(1, int(np.searchsorted(time, now, "right"))) for time in samples]), corner)
         return np.asarray(image)
 
     @property
@@ -136,10 +145,12 @@ class Film:
         right = self._look.width - self._u(MARGIN)
         return right - self._u(COLUMN), right
 
-    def _plot_box(self) -> tuple[int, int, int, int]:
+    def _plot_box(self, count: int) -> tuple[int, int, int, int]:
+        """Left, top, right, bottom of so many plots, above the colour bar if there is one."""
         left, right = self._column()
-        lowest = self._look.height - self._u(MARGIN + 4.6 + 2.2)
-        return left, self._u(12.0), right, min(lowest, self._u(12.0 + 16.0))
+        top, bar = (12.0, 4.6 + 2.2) if count == 1 else (9.6, 4.6 + 1.2)
+        lowest = self._look.height - self._u(MARGIN + (bar if self._bar or count == 1 else 0.0))
+        return left, self._u(top), right, min(lowest, self._u(top + 16.0 * count))
 
     def _stage(self) -> tuple[int, int, int, int]:
         """Left, top, right, bottom of the part of the page with the tanks."""
@@ -201,26 +212,45 @@ class Film:
         names = [(x, y + name - 0.5 * self._unit) for x, y in cells]
         return cameras, names, float(pitch[0] - 0.5 * gap)
 
-    def _prepare_plot(self) -> tuple[deco.LivePlot, list[np.ndarray]]:
-        """The plot of the beds' main quantity, and the times of the points of each curve."""
-        afloat = any(bed.footage.sea for bed in self._all)
-        still = afloat or any(bed.empty for bed in self._all)
-        steady = not still and all(_monotonic(bed.footage.series_pose[:, bed.world, 2]) for bed in self._all)
-        label, measured = _quantity(self._all)
-        curves, colours, samples = [], [], []
-        for k in reversed(range(len(self._all))):  # the beds that are shown on top
-            footage, world = self._all[k].footage, self._all[k].world
-            count = len(footage.series_time)
-            kept = np.unique(np.linspace(0, count - 1, min(count, MOST_SAMPLES)).astype(int))
-            time = footage.series_time[kept]
-            across = np.degrees(footage.series_pose[kept, world, 2]) if steady else time
-            curves.append((across, measured(self._all[k])[kept]))
-            colours.append(self._hues[k] if k < len(self._beds) else palette.LINE)
-            samples.append(time)
-        left, top, right, bottom = self._plot_box()
-        labels = ("tilt φ (°)" if steady else "time (s)", label)
-        size = right - left, bottom - top
-        return deco.LivePlot(size, curves, colours, labels, TEXT * self._unit), samples
+    def _find_marks(self) -> dict[int, Marks]:
+        """The gauges of each bed with water, in the colours of their curves."""
+        found = {}
+        for k, bed in enumerate(self._beds):
+            if pool := bed.footage.water:
+                names = (*pool.gauges, *pool.levels)
+                hues = hues_of(pool) if len(self._all) == 1 else dict.fromkeys(names, self._hues[k])
+                found[k] = Marks(bed.footage.outline, pool, hues, self._unit)
+        return found
+
+    def _paint_marks(self, picture: np.ndarray, frame: int) -> None:
+        """The gauges, with the levels at the time of a frame."""
+        for k, marks in self._marks.items():
+            footage, world = self._beds[k].footage, self._beds[k].world
+            depths = {}
+            for level, name in enumerate(marks.pool.levels):
+                measured = footage.measured("level_depth")[:, world, level]
+                depths[name] = float(np.interp(self.time[frame], footage.series_time, measured))
+            marks.paint(picture, self._tank_camera(k, frame), depths)
+
+    def _tank_camera(self, k: int, frame: int) -> Camera:
+        """The camera for points of the tank of bed k."""
+        camera = self._cameras[k]
+        return camera.carried(self._pose[frame, k]) if self._look.frame == "earth" else camera
+
+    def _prepare_plots(self) -> list[tuple[deco.LivePlot, list[np.ndarray], tuple[int, int]]]:
+        """The plots one above the other: each with the times of the points of each curve, and its corner."""
+        drawn = plots(self._all, self._hues[: len(self._beds)])
+        left, top, right, bottom = self._plot_box(len(drawn))
+        gap, below = (self._u(0.8), self._u(1.2)) if len(drawn) > 1 else (0, 0)  # the last one says what is across
+        height, found = (bottom - top - below - gap * (len(drawn) - 1)) // len(drawn), []
+        indent = 0.0
+        for plot in (*drawn, *drawn):  # twice, since the axes stand below each other
+            last = plot is drawn[-1]
+            labels, size = (plot.labels[0] if last else "", plot.labels[1]), (right - left, height + last * below)
+            live = deco.LivePlot(size, plot.curves, plot.colours, labels, TEXT * self._unit, plot.names, indent)
+            found.append((live, plot.samples, (left, top + (len(found) % len(drawn)) * (height + gap))))
+            indent = max(indent, live.indent)
+        return found[len(drawn) :]
 
     def _draw_page(self) -> np.ndarray:
         """Draw the parts that stay the same in all frames."""
@@ -236,8 +266,8 @@ class Film:
         deco.draw_scale_bar(draw, (left, bottom), longest, self._cameras[0].scale, text)
         draw.text((right, bottom - 0.3 * text), self._note(), palette.QUIET, deco.font(text), anchor="rm")
         bar = column_left, bottom - self._u(4.6), column_right, bottom
-        if self._colouring:
-            deco.draw_colour_bar(image, bar, self._colouring, text)
+        if self._bar:
+            deco.draw_colour_bar(image, bar, self._bar, text)
         page = np.array(image)
         colours = (palette.WALL, palette.HOLD) if look.frame == "tank" else (palette.GRID, palette.PAPER)
         for bed, camera in zip(self._beds, self._cameras, strict=True):
@@ -263,9 +293,10 @@ class Film:
             if self._look.frame == "earth":
                 if bed.footage.sea:
                     self._paint_ship(picture, k, frame)
-                camera = camera.carried(self._pose[frame, k])
+                camera = self._tank_camera(k, frame)
                 self._paint_tank(picture, bed, camera, palette.WALL, palette.HOLD)
                 _paint_fixed(picture, bed, camera)
+            self._water.paint(picture, camera, bed, row)
             if not bed.empty:
                 place = self._on_ground(k, bed.position(row), self._pose[frame, k])
                 discs[k] = to_discs(camera, place, bed.radius, bed.angle(row))
@@ -340,35 +371,6 @@ def _motion(bed: Bed, pose: np.ndarray) -> np.ndarray:
     return axis_motion(bed.footage.sea.ship, pose) if bed.footage.sea else pose
 
 
-def _quantity(beds: Sequence[Bed]) -> tuple[str, Callable[[Bed], np.ndarray]]:
-    """The quantity of the plot, the same for all beds: its label and a function to the values (T,) of a bed.
-
-    The roll of ships; of empty tanks what moves; the spilled grains if there are any; else the shift of the centre of
-    mass, upwards if only heave or parts can move the grains, sideways otherwise.
-    """
-    if any(bed.footage.sea for bed in beds):
-        return _coordinate(2)
-    if any(bed.empty for bed in beds):
-        ways = [np.ptp(bed.footage.series_pose[:, bed.world], axis=0) for bed in beds]
-        return _coordinate(max((2, 0, 1), key=lambda axis: max(way[axis] for way in ways) > TOLERANCE))
-    if any(bed.footage.spilled[:, bed.world].any() for bed in beds):
-        return "spilled (%)", lambda bed: 100 * bed.footage.spilled[:, bed.world] / len(bed.radius)
-    upright = not any(np.ptp(bed.footage.series_pose[:, bed.world, ::2], axis=0).any() for bed in beds)
-    axis = 1 if upright else 0
-
-    def shift(bed: Bed) -> np.ndarray:
-        centre = bed.footage.centre_of_mass[:, bed.world, axis]
-        return (centre - centre[0]) / bed.diameter
-
-    return f"shift Δ{'yz'[axis]} (diameters)", shift
-
-
-def _coordinate(axis: int) -> tuple[str, Callable[[Bed], np.ndarray]]:
-    """A coordinate of the pose as the quantity of the plot."""
-    label, scale = (("sway (mm)", 1e3), ("heave (mm)", 1e3), ("roll φ (°)", 180.0 / np.pi))[axis]
-    return label, lambda bed: scale * bed.footage.series_pose[:, bed.world, axis]
-
-
 def _sort_by_shape(beds: Sequence[Bed]) -> list[tuple[list[int], Edges | None]]:
     """Indices of the beds of discs, and of the beds of irregular grains with their edges; without empty groups."""
     round_ones = [k for k, bed in enumerate(beds) if bed.edges is None and not bed.empty]
@@ -399,10 +401,3 @@ def _carried(points: np.ndarray, pose: np.ndarray) -> np.ndarray:
     across = pose[..., 0, None] + cosine * y - sine * z
     up = pose[..., 1, None] + sine * y + cosine * z
     return np.stack([across, up], axis=-1)
-
-
-def _monotonic(tilt: np.ndarray) -> bool:
-    """Whether tilt (T,) in rad is monotonic and changes by more than half a degree."""
-    steps = np.diff(tilt)
-    one_way = bool((steps >= -TOLERANCE).all() or (steps <= TOLERANCE).all())
-    return one_way and bool(np.ptp(tilt) > np.radians(0.5))

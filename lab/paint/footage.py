@@ -12,6 +12,7 @@ from lab.base.errors import LabError, Unusable
 from lab.base.trust import BEYOND
 from lab.paint.painter import Edges
 from lab.paint.sea import Sea
+from lab.paint.water.pool import Pool
 from lab.recording import Recording, open_recording
 from lab.recording.ship_end import ends
 from solvers.grains.quantities import FRAMES
@@ -27,6 +28,7 @@ class Footage:
     outlines of irregular grains, None if all are discs; shape_names: of their classes; outline (m, 2) m; open_edges:
     those without a wall; fixed (k, 3) y, z, radius m; parts: polylines at rest (m, 2) m by name; part (F, W, P, 2):
     their displacements, m;
+    matters: the keys of what the tank holds; water: its particles' volume and gauges, None without water;
     sea: the ship and her waves if the tank is a ship's hold, else None; ends: the loss of each ship, None if not lost;
     settings: the preset's [video]; title. Raises LabError when there is no frame or no sample.
     """
@@ -42,6 +44,8 @@ class Footage:
                 raise Unusable(f"{recording.path} is damaged (invalid times or poses): record the run again.")
         self.centre_of_mass, self.spilled = series.get("centre_of_mass"), series.get("spilled")
         self.radius, self.outline, self.kind = recording.radius, recording.outline, recording.kind
+        self.matters, self._series = recording.preset.matters, series
+        self.water = Pool.of(recording.preset, recording.volume)
         self.kinds = ["the rest", *recording.preset.kinds]
         self.shapes = recording.shapes
         self.shape_names = list(recording.preset.shapes) if self.shapes else ["disc"]
@@ -58,6 +62,10 @@ class Footage:
         """W, the number of worlds."""
         return len(self.radius)
 
+    def measured(self, name: str) -> np.ndarray:
+        """A quantity of the series (T, W, ...)."""
+        return self._series[name]
+
     def sea_of(self, frame: int) -> Sea | None:
         """The sea as it is in a frame."""
         if self._waves is not None:
@@ -66,8 +74,10 @@ class Footage:
 
     def grains(self, name: str, frame: int, world: int) -> np.ndarray:
         """The values (n,) or (n, 2) of a quantity for each grain in a frame."""
-        if not self.radius.size:
-            return NO_GRAINS[name]
+        return self.drops(name, frame, world) if self.radius.size else NO_GRAINS[name]
+
+    def drops(self, name: str, frame: int, world: int) -> np.ndarray:
+        """The values (n,) or (n, 2) of a quantity for each particle of water in a frame."""
         if self._read.get(name, (None,))[0] != frame:
             self._read[name] = frame, self._frames[name][frame].astype(float)
         return self._read[name][1][world]
@@ -136,6 +146,17 @@ class Bed:
     def spin(self, frame: int) -> np.ndarray:
         """Grain spins (n,) relative to the tank, rad/s."""
         return self.footage.grains("spin", frame, self.world)
+
+    def drops(self, name: str, frame: int) -> np.ndarray:
+        """The values (n,) or (n, 2) of a quantity for each particle of water."""
+        return self.footage.drops(name, frame, self.world)
+
+    def water_place(self, frame: int) -> np.ndarray:
+        """Places (n, 2) of the water in the tank frame, m; NaN for what is as far away from the tank as it is large."""
+        place, outline = self.drops("water_place", frame), self.footage.outline
+        size = np.ptp(outline, axis=0).max()
+        near = (place >= outline.min(axis=0) - size) & (place <= outline.max(axis=0) + size)
+        return np.where(near.all(axis=1, keepdims=True), place, np.nan)
 
     def plates(self, frame: int) -> list[np.ndarray]:
         """The moving parts as polylines (m, 2) m in the tank frame, at their positions in a frame."""

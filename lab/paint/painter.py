@@ -111,7 +111,7 @@ def paint_grains(
     else:
         which, radii = edges.which[seen].astype(np.int32), edges.radii
         reach = discs[:, 2] * radii.max(axis=1)[which]
-    starts, members = _sort_into_bands(discs[:, 1], reach + 1.0, picture.shape[0])
+    starts, members = sort_into_bands(discs[:, 1], reach + 1.0, picture.shape[0])
     if len(members):
         covered, boxed = np.zeros(picture.shape[:2], dtype=np.float32), np.column_stack([discs, reach])
         _paint_bands(picture, picture.copy(), covered, starts, members, boxed, paints, which, radii, edges is not None)
@@ -160,7 +160,7 @@ def paint_strokes(picture: np.ndarray, strokes: np.ndarray, colour: tuple) -> No
     strokes -= [left, top, 0.0, left, top, 0.0]
     low, high = strokes[:, [1, 4]].min(axis=1), strokes[:, [1, 4]].max(axis=1)
     reach = 0.5 * (high - low) + strokes[:, [2, 5]].max(axis=1) + 1.0
-    starts, members = _sort_into_bands(0.5 * (low + high), reach, len(part))
+    starts, members = sort_into_bands(0.5 * (low + high), reach, len(part))
     if len(members) and part.size:
         covered = np.zeros(part.shape[:2], dtype=np.float32)
         _paint_strokes(part, covered, starts, members, strokes, Colour(colour))
@@ -175,7 +175,7 @@ def _box(picture: np.ndarray, corners: np.ndarray, reach: float) -> ti.Vector:
     return ti.Vector([left, top, right, bottom])
 
 
-def _sort_into_bands(y: np.ndarray, reach: np.ndarray, height: int) -> tuple:
+def sort_into_bands(y: np.ndarray, reach: np.ndarray, height: int) -> tuple:
     """Sort grains into bands: band b holds the grains members[starts[b]:starts[b + 1]], ascending."""
     bands = -(-height // BAND)
     first = np.clip(np.floor((y - reach) / BAND), 0, bands).astype(int)
@@ -208,7 +208,7 @@ def _set(picture: ti.template(), row, column, colour):
 
 
 @ti.func
-def _mix(picture: ti.template(), row, column, change):
+def mix(picture: ti.template(), row, column, change):
     """Add a change of colour to a pixel."""
     for c in ti.static(range(3)):
         mixed = ti.math.clamp(picture[row, column, c] + change[c], 0.0, 255.0)
@@ -216,7 +216,7 @@ def _mix(picture: ti.template(), row, column, change):
 
 
 @ti.func
-def _colour_of(picture: ti.template(), row, column):
+def colour_of(picture: ti.template(), row, column):
     return ti.Vector([ti.cast(picture[row, column, c], ti.f64) for c in ti.static(range(3))])
 
 
@@ -275,7 +275,7 @@ def _grain_paint(offset, radius, inner, towards, colour, mark):
 
 
 @ti.func
-def _whole(place, low, high):
+def whole(place, low, high):
     """The pixel at a coordinate, clamped between low and high."""
     return ti.cast(ti.math.clamp(ti.floor(place), low, high), ti.i32)
 
@@ -307,10 +307,10 @@ def _paint_bands(
                 reach, row_of = discs[i, 5], 0
                 if ti.static(irregular):
                     row_of = which[i]
-                left = _whole(x - reach - 1.0, 0, picture.shape[1])
-                right = _whole(x + reach + 2.0, 0, picture.shape[1])
-                upper = _whole(y - reach - 1.0, top, bottom)
-                lower = _whole(y + reach + 2.0, top, bottom)
+                left = whole(x - reach - 1.0, 0, picture.shape[1])
+                right = whole(x + reach + 2.0, 0, picture.shape[1])
+                upper = whole(y - reach - 1.0, top, bottom)
+                lower = whole(y + reach + 2.0, top, bottom)
                 for row in range(upper, lower):
                     for column in range(left, right):
                         offset = ti.Vector([column + 0.5 - x, row + 0.5 - y])
@@ -324,7 +324,7 @@ def _paint_bands(
                             if share == 1.0:
                                 _set(picture, row, column, paint)
                             else:
-                                _mix(picture, row, column, share * (paint - _colour_of(under, row, column)))
+                                mix(picture, row, column, share * (paint - colour_of(under, row, column)))
 
 
 @ti.func
@@ -338,7 +338,7 @@ def _past(x, y, corners: ti.template(), k, after):
 
 
 @ti.func
-def _outside(x, y, corners: ti.template()):
+def off_outline(x, y, corners: ti.template()):
     """Distance to the polygon's edge, negative inside (even-odd crossing rule)."""
     nearest, sign = 1e30, 1.0
     for k in range(corners.shape[0]):
@@ -387,15 +387,15 @@ def _paint_walls(
         column = box[0]
         while column < box[2]:
             x, y = column + 0.5, row + 0.5
-            outside = _outside(x, y, corners)
+            outside = off_outline(x, y, corners)
             alike = ti.max(-outside, outside - wall) - 0.5
             stop = ti.min(column + ti.max(ti.cast(alike, ti.i32), 1), box[2])
             if alike < 0.0 or outside < 0.0:
                 inside = ti.math.clamp(0.5 - outside, 0.0, 1.0)
                 reached = (1.0 - inside) * ti.math.clamp(wall - _off_walls(x, y, corners, walled, wall) + 0.5, 0.0, 1.0)
                 for pixel in range(column, stop):
-                    under = _colour_of(picture, row, pixel)
-                    _mix(picture, row, pixel, reached * (wall_colour - under) + inside * (inner_colour - under))
+                    under = colour_of(picture, row, pixel)
+                    mix(picture, row, pixel, reached * (wall_colour - under) + inside * (inner_colour - under))
             column = stop
 
 
@@ -407,17 +407,17 @@ def _paint_line(picture: Picture, corners: Table, box: ti.types.vector(4, ti.i32
             nearest = ti.min(nearest, _past(column + 0.5, row + 0.5, corners, k, k + 1)[0])
         share = ti.math.clamp(reach - nearest + 0.5, 0.0, 1.0)
         if share > 0.0:
-            _mix(picture, row, column, share * (colour - _colour_of(picture, row, column)))
+            mix(picture, row, column, share * (colour - colour_of(picture, row, column)))
 
 
 @ti.func
 def _paint_stroke(covered: ti.template(), first, along, half, growth, top, bottom):
     """Add the coverage of a line from `first` in rows top to bottom; a line thinner than a pixel is faint."""
     inverse, reach = 1.0 / ti.max(along.dot(along), 1e-30), ti.max(half, half + growth, 0.5) + 0.5
-    left = _whole(first.x + ti.min(along.x, 0.0) - reach + 0.5, 0, covered.shape[1])
-    right = _whole(first.x + ti.max(along.x, 0.0) + reach + 0.5, 0, covered.shape[1])
-    upper = _whole(first.y + ti.min(along.y, 0.0) - reach + 0.5, top, bottom)
-    lower = _whole(first.y + ti.max(along.y, 0.0) + reach + 0.5, top, bottom)
+    left = whole(first.x + ti.min(along.x, 0.0) - reach + 0.5, 0, covered.shape[1])
+    right = whole(first.x + ti.max(along.x, 0.0) + reach + 0.5, 0, covered.shape[1])
+    upper = whole(first.y + ti.min(along.y, 0.0) - reach + 0.5, top, bottom)
+    lower = whole(first.y + ti.max(along.y, 0.0) + reach + 0.5, top, bottom)
     for row in range(upper, lower):
         for column in range(left, right):
             away = ti.Vector([column + 0.5, row + 0.5]) - first
@@ -442,4 +442,4 @@ def _paint_strokes(picture: Picture, covered: Shares, starts: Index, members: In
                 for column in range(picture.shape[1]):
                     share = covered[row, column]
                     if share > 0.0:
-                        _mix(picture, row, column, share * (colour - _colour_of(picture, row, column)))
+                        mix(picture, row, column, share * (colour - colour_of(picture, row, column)))

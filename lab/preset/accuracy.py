@@ -19,6 +19,7 @@ class Level:
     longer_steps: float  # factor by which the bounds on the derived step are stretched
     restitution: float  # largest relative error
     beyond: str  # what else is known of its error
+    layers: int  # of particles over the depth of water, unless water.spacing is given
 
     @property
     def error(self) -> str:
@@ -27,9 +28,9 @@ class Level:
 
 
 LEVELS = {
-    "draft": Level(1e-3, 1.6, DRAFT_RESTITUTION, "softer beds slide up to 4 deg later"),
-    "standard": Level(1e-2, 1.0, RESTITUTION, "no error of the softness found among 12 beds"),
-    "reference": Level(1.0, 1.0, RESTITUTION, "the material's own stiffness"),
+    "draft": Level(1e-3, 1.6, DRAFT_RESTITUTION, "softer beds slide up to 4 deg later", 20),
+    "standard": Level(1e-2, 1.0, RESTITUTION, "no error of the softness found among 12 beds", 40),
+    "reference": Level(1.0, 1.0, RESTITUTION, "the material's own stiffness", 80),
 }
 DEFAULT = "standard"
 
@@ -44,8 +45,8 @@ def check_forced(step: float, derived: float, reason: str, force: bool) -> None:
     limit = f"the limit of {show(derived, 's')} ({reason})"
     if step > FURTHEST * derived:
         raise LabError(
-            f"run.step: {show(step, 's')} is {step / derived:.3g} times {limit}, and collisions would go wrong without "
-            f"a sign of it; leave it out, or force at most {FURTHEST:g} times the limit."
+            f"run.step: {show(step, 's')} is {step / derived:.3g} times {limit}, and the run would go wrong without a "
+            f"sign of it; leave it out, or force at most {FURTHEST:g} times the limit."
         )
     if step > derived and not force:
         raise LabError(f"run.step: {show(step, 's')} is past {limit}; leave it out, or set run.force_step = true.")

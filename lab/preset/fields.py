@@ -24,9 +24,12 @@ class Alike:
 
 @dataclass(frozen=True)
 class Of:
-    """Marks a field that says something of a matter, which is named by its key; refused without that matter."""
+    """Marks a field that says something of matters, which are named by their keys; refused without any of them."""
 
-    matter: str
+    matters: tuple[str, ...]
+
+    def __init__(self, *matters: str) -> None:
+        object.__setattr__(self, "matters", matters)
 
 
 @dataclass(frozen=True)
@@ -60,7 +63,7 @@ class Taken:
     columns: Columns | None = None
     cheap: bool = False
     alike: bool = False
-    of: str = ""
+    of: tuple[str, ...] = ()
 
     @property
     def table(self) -> type | None:
@@ -127,7 +130,7 @@ def _marked(marks: tuple) -> dict[str, object]:
         elif isinstance(mark, Unit):
             found["symbol"] = mark.symbol
         elif isinstance(mark, Of):
-            found["of"] = mark.matter
+            found["of"] = mark.matters
         elif isinstance(mark, Cheap | Alike):
             found[type(mark).__name__.lower()] = True
         elif isinstance(mark, Interval | Usual | Columns):

@@ -11,6 +11,7 @@ ALTERNATIVES = {
     "grains": ({"count"}, {"depth"}),
     "material": ({"restitution"}, {"dissipative_time"}),
     "wall": ({"restitution"}, {"dissipative_time"}),
+    "water": ({"depth"}, {"region"}),
     "ship": ({"gyradius"}, {"roll_period"}),
 }
 

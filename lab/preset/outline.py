@@ -10,6 +10,7 @@ from lab.base.errors import LabError
 Point = tuple[float, float]
 
 MOST_CORNERS = 200
+TOUCHING = 1e-9  # of the outer polygon's size: how far an inner one may stand out of it by rounding
 
 
 def rectangle(width: float, height: float) -> tuple[Point, ...]:
@@ -57,6 +58,26 @@ def simple_polygon(corners: Sequence[Point]) -> tuple[Point, ...]:
     if not 0.0 < abs(size) < float("inf"):
         raise LabError("the outline has no area.")
     return outline if size > 0 else outline[::-1]
+
+
+def stands_out(inner: np.ndarray, outer: np.ndarray) -> np.ndarray | None:
+    """Where a polygon (m, 2) stands out of another: a corner of it outside, or one of the other inside; or None."""
+    slack = TOUCHING * float(np.ptp(outer, axis=0).max())
+    out = [corner for corner in inner if depth_inside(corner, outer) < -slack]
+    out += [corner for corner in outer if depth_inside(corner, inner) > slack]
+    return out[0] if out else None
+
+
+def depth_inside(point: np.ndarray, outline: np.ndarray) -> float:
+    """Distance (m) of a point from the edge of a polygon (m, 2); negative outside."""
+    begin, along = outline, np.roll(outline, -1, axis=0) - outline
+    share = np.clip(((point - begin) * along).sum(1) / (along**2).sum(1), 0.0, 1.0)
+    away = float(np.hypot(*(point - begin - share[:, None] * along).T).min())
+    (y, z), end = point, begin + along
+    crosses = (begin[:, 1] > z) != (end[:, 1] > z)
+    rise = np.where(crosses, along[:, 1], 1.0)
+    right = crosses & (begin[:, 0] + (z - begin[:, 1]) / rise * along[:, 0] > y)
+    return away if right.sum() % 2 else -away
 
 
 def _edges(outline: Sequence[Point]) -> list[tuple[Point, Point]]:

@@ -23,7 +23,6 @@ LONGEST_NAME = 40  # characters of a table's name that a user chooses
 BOUND = 1e15  # SI numbers must be within 1/BOUND and BOUND; their squares and cubes stay finite
 
 RENAMED = {"ship.sheet": "tank.thickness"}  # keys of earlier versions
-RESERVED = {"water": "is water in a tank, which cannot be filled with it yet; the sea outside the ship is [sea]."}
 
 
 def check_keys(kind: type, table: object) -> None:
@@ -69,8 +68,6 @@ def _refuse(key: object, wrong: str, known: list[str], everywhere: list[str]) ->
     """Raise LabError for a key that is unknown here; `wrong` is the whole of it."""
     if wrong in RENAMED:
         raise LabError(f"{wrong}: this key is {RENAMED[wrong]} now.")
-    if wrong in RESERVED:
-        raise LabError(f"{wrong}: {RESERVED[wrong]}")
     raise LabError(f"{wrong}: unknown key; {_hint(key, known, everywhere)}")
 
 

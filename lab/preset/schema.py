@@ -27,6 +27,8 @@ from lab.preset.sections.ship import Ship
 from lab.preset.sections.ship_checks import check_ship
 from lab.preset.sections.tank import Tank, check_tank
 from lab.preset.sections.video import Record, Video, check_video
+from lab.preset.sections.water.checks import check_water
+from lab.preset.sections.water.section import Gauge, Water
 from solvers.grains.bed.sizes import Sizes
 from solvers.grains.materials import Material
 from solvers.machine.marks import Cheap, Doc, Interval
@@ -34,7 +36,7 @@ from solvers.tank.parts import Part
 from solvers.tank.tank import BARE_THICKNESS
 
 FORMAT = 3
-MATTERS = ("grains",)  # the keys of the matters that a tank may hold
+MATTERS = ("grains", "water")  # the keys of the matters that a tank may hold
 
 
 @dataclass(frozen=True)
@@ -66,6 +68,10 @@ class Preset:
     ] = field(default_factory=dict)
     shapes: Annotated[dict[str, Shape], Of("grains"), Doc("Classes of irregular grains.")] = field(default_factory=dict)
     contact: Annotated[Contact, Of("grains"), Doc("The contact laws.")] = field(default_factory=Contact)
+    water: Annotated[Water | None, Doc("The water in the tank.")] = None
+    gauges: Annotated[dict[str, Gauge], Of("water"), Doc("Gauges of the water's pressure and level.")] = field(
+        default_factory=dict
+    )
     motion: Annotated[Motion, Doc("How the tank moves.")] = field(default_factory=Motion)
     parts: Annotated[dict[str, Part], Doc("Plates in the tank, such as gates and funnels, which may move.")] = field(
         default_factory=dict
@@ -159,10 +165,11 @@ def check(preset: Preset) -> None:
     if preset.grains is not None:
         _check_of_grains(preset)
     check_motion(preset.motion)
+    check_water(preset)
     duration_of(preset.run, preset.motion)
     check_parts(preset.parts, preset.tank.corners)
     check_ship(preset.ship, preset.waves, bool(preset.motion.parts), preset.tank.corners)
-    check_video(preset.video)
+    check_video(preset.video, preset.matters)
 
 
 def marked(mark: str) -> list[str]:
@@ -181,13 +188,14 @@ def value_at(preset: Preset, dotted: str) -> object:
 def _check_matters(preset: Preset) -> None:
     """Raise LabError for a key that says something of a matter that the tank does not hold."""
     for key, taken in walk(Preset):
-        if not taken.of or taken.of in preset.matters:
+        if not taken.of or set(taken.of) & set(preset.matters):
             continue
         section, _, name = key.rpartition(".")
         table = value_at(preset, section) if section else preset
         if getattr(table, name) != defaults_of(type(table))[name]:
             remedy = f"set {key} = false" if taken.below or taken.optional else "leave this out"
-            raise LabError(f"{key}: goes with {taken.of}, and there are none; add a table [{taken.of}], or {remedy}.")
+            what, there = " or ".join(taken.of), "is none" if taken.of == ("water",) else "are none"
+            raise LabError(f"{key}: goes with {what}, and there {there}; add a table [{taken.of[0]}], or {remedy}.")
 
 
 def _check_of_grains(preset: Preset) -> None:

@@ -63,9 +63,19 @@ KINDS = {
     "J": Kind("an energy", "J", "1 J"),
     "N/m": Kind("a surface tension", "N/m", "0.072 N/m"),
     "m^3": Kind("a volume", "mm^3", "0.002 mm^3"),
+    "m^2/s": Kind("a kinematic viscosity", "m^2/s", "1e-6 m^2/s"),
     "N s/m": Kind("a damping coefficient", "N s/m", "20 N s/m"),
 }
-MEASURED = {"deg": "rad", "mm": "m", "mN": "N", "µJ": "J", "Hz": "Hz", "s": "s", "%": "1"}  # units of measures
+MEASURED = {
+    "deg": "rad",
+    "mm": "m",
+    "mN": "N",
+    "µJ": "J",
+    "Hz": "Hz",
+    "s": "s",
+    "Pa": "Pa",
+    "%": "1",
+}  # units of measures
 PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
 # Units shown with a prefix, and the smallest power of ten of that prefix.
 PREFIXED = {"m": -9, "s": -9, "Pa": 0, "N": -9, "J": -9, "Hz": 0}

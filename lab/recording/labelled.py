@@ -4,6 +4,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from lab.preset.sections.water.liquid import parted
+
 if TYPE_CHECKING:
     import xarray
 
@@ -24,6 +26,9 @@ def labelled(recording, frames: slice | None = None) -> "xarray.Dataset":
         found[name] = values
         if quantity.components:
             coordinates[quantity.dimension] = list(quantity.components)
+    for owner, gauges in zip(("gauge", "level"), parted(recording.preset.gauges), strict=True):
+        if any(owner in values.dims for values in found.values()):
+            coordinates[owner] = list(gauges)
     coordinates["world"] = np.arange(recording.worlds)
     about = {"preset": recording.name, "created": recording.created, "status": recording.status}
     return xarray.Dataset(found, coordinates, about)

@@ -10,6 +10,8 @@ import numpy as np
 
 from lab.base.trust import attribute_words
 from lab.preset.schema import MATTERS, Preset
+from lab.preset.sections.water.liquid import parted
+from solvers.fluid import quantities as water
 from solvers.grains import quantities as grains
 from solvers.machine.quantity import OWNERS, Quantity
 from solvers.ship import quantities as ship
@@ -40,7 +42,7 @@ CHECKS = "checks"  # the group of the checksums
 FLUSHED_ROWS = "rows"  # its attribute with the number of rows of the table at the last flush
 COLUMNS = "columns"  # its attribute with the names of the data sets, in the order of the checksums in a row
 
-OF_MATTERS = {"grains": grains}  # what each matter is recorded by
+OF_MATTERS = {"grains": grains, "water": water}  # what each matter is recorded by
 
 CHUNK_BYTES = 2**19  # approximate size of a chunk
 CHUNK_ROWS = 1024
@@ -61,18 +63,32 @@ def frames_of(swell: bool = False, matters: Collection[str] = MATTERS) -> tuple[
 
 def tables_of(preset: Preset, steered: bool) -> dict[str, tuple[Quantity, ...]]:
     """The quantities of each table of a preset's run; `steered`: by the user in `cargolab view`."""
-    afloat, matters = bool(preset.ship), preset.matters
-    tables = {"series": series_of(afloat, matters), "frames": frames_of(afloat and steered, matters)}
+    afloat, matters, sizes = bool(preset.ship), preset.matters, gauges_of(preset)
+    series = tuple(quantity for quantity in series_of(afloat, matters) if sizes.get(quantity.per, 1))
+    tables = {"series": series, "frames": frames_of(afloat and steered, matters)}
     return tables | ({"steering": STEERING} if steered else {})
 
 
+def gauges_of(preset: Preset) -> dict[str, int]:
+    """Numbers of a preset's gauges of pressure and of level, by the owners of their quantities."""
+    pressure, level = parted(preset.gauges)
+    return {"gauge": len(pressure), "level": len(level)}
+
+
+def sizes_of(preset: Preset, radius: np.ndarray, volume: np.ndarray | None, parts: int) -> dict[str, int]:
+    """How many worlds, grains, particles of water, parts and gauges there are, by the owners of quantities."""
+    worlds, count = radius.shape
+    drops = 0 if volume is None else volume.shape[1]
+    return {"world": worlds, "grain": count, "drop": drops, "part": parts, **gauges_of(preset)}
+
+
 def dtype_of(quantity: Quantity) -> str:
-    """The data type in which a quantity is stored: 32 bits for values per grain, 64 bits for all others."""
-    return DTYPES.get(quantity.name, "<f4" if quantity.per == "grain" else "<f8")
+    """The data type in which a quantity is stored: 32 bits for values per particle, 64 bits for all others."""
+    return DTYPES.get(quantity.name, "<f4" if quantity.per in ("grain", "drop") else "<f8")
 
 
 def rows_of(quantities: Iterable[Quantity], sizes: Mapping[str, int]) -> dict[str, tuple[tuple[int, ...], str]]:
-    """Row shape and data type of every data set, by name; sizes: numbers of worlds, grains and parts."""
+    """Row shape and data type of every data set, by name; sizes: numbers of worlds, grains, parts …, by owner."""
     return {
         quantity.name: ((*(sizes[owner] for owner in OWNERS[quantity.per]), *quantity.shape), dtype_of(quantity))
         for quantity in quantities

@@ -13,7 +13,7 @@ from lab.base.trust import BEYOND, attributes, check_recording, format_of, text
 from lab.preset.recorded import from_table
 from lab.recording import older
 from lab.recording.checks import Checks
-from lab.recording.layout import CHECKS, FILE_NAME, FORMAT, described, rows_of, tables_of
+from lab.recording.layout import CHECKS, FILE_NAME, FORMAT, described, rows_of, sizes_of, tables_of
 from lab.recording.opening import open_to_read
 from lab.recording.outlines import GROUP, TABLES, read_outlines
 from lab.recording.tables import Frames, Series, reading
@@ -22,7 +22,14 @@ from solvers.machine.quantity import Quantity
 if TYPE_CHECKING:
     import xarray
 
-SIZES = {"world": 2, "grain": 3, "part": 5}  # arbitrary but distinct sizes, to compare shapes
+SIZES = {
+    "world": 2,
+    "grain": 3,
+    "part": 5,
+    "drop": 7,
+    "gauge": 11,
+    "level": 13,
+}  # arbitrary but distinct sizes, to compare shapes
 TABLE_KINDS = {"series": Series, "frames": Frames, "steering": Series}
 
 
@@ -32,6 +39,7 @@ class Recording:
     path, folder; name: of the preset; given: its TOML text; preset: the Preset itself, in SI;
     status, created, versions, machine, step (s), wall_s, grain_steps;
     radius (W, n) m, n is 0 without grains; kind (W, n): 0 for the preset's material, then the preset's kinds in order;
+    volume (W, n) m² of the particles of water in the plane, n is 0 without water;
     outline (m, 2) m; fixed (k, 3): y, z, radius m; open_edges; parts: polylines (m, 2) m by name;
     shapes: the Outlines of irregular grains, None if all are discs.
     series: "time" (T,) s and the other quantities by name, whole arrays (T, W, ...).
@@ -61,6 +69,7 @@ class Recording:
             self.given = self._stored("preset/given", text)
             self.preset = from_table(json.loads(self._stored("preset/resolved", text)))
             self.radius, self.kind = self._grains()
+            self.volume = self._volumes()
             self.outline, self.fixed = self._stored("tank/outline"), self._stored("tank/fixed")
             self.open_edges = tuple(int(edge) for edge in self._stored("tank/open_edges"))
             self.parts = {name: self._stored(f"tank/parts/{name}") for name in self._file["tank/parts"]}
@@ -91,10 +100,15 @@ class Recording:
         none = self.preset.run.repeats, 0
         return np.zeros(none), np.zeros(none, dtype=np.uint8)
 
+    def _volumes(self) -> np.ndarray:
+        """Volumes (W, n), m², of the particles of water; n is 0 without water."""
+        if "water" in self.preset.matters:
+            return self._stored("water/volume")
+        return np.zeros((len(self.radius), 0))
+
     def _tables(self) -> dict[str, Frames]:
         """The tables by name. Raises ValueError or KeyError if one is not as the lab writes it."""
-        (worlds, grains), is_older = self.radius.shape, older.is_older(self.form)
-        sizes = {"world": worlds, "grain": grains, "part": len(self.parts)}
+        sizes, is_older = sizes_of(self.preset, self.radius, self.volume, len(self.parts)), older.is_older(self.form)
         wanted = tables_of(self.preset, "steering" in self._file)
         found = {}
         for name, known in wanted.items():
@@ -109,13 +123,16 @@ class Recording:
 
     def _check_contents(self) -> None:
         """Raise ValueError if something is not as a Recorder writes it."""
-        worlds_and_grains, some = self.radius.shape, bool(self.preset.matters)
+        worlds_and_grains, some = self.radius.shape, "grains" in self.preset.matters
+        wet = "water" in self.preset.matters
         sound = {
             "a number of its attributes": all(np.isfinite([self.step, self.wall_s])) and self.step > 0.0,
             "attribute versions": isinstance(self.versions, dict),
             "attribute machine": isinstance(self.machine, dict),
             "preset/resolved": some == (self.preset.material is not None),
             "grains/radius": _finite(self.radius, 2) and (self.radius.size > 0) == some and (self.radius > 0.0).all(),
+            "water/volume": _finite(self.volume, 2) and (self.volume.size > 0) == wet and (self.volume > 0.0).all(),
+            "the number of worlds": len(self.volume) == len(self.radius),
             "grains/kind": self.kind.shape == worlds_and_grains and self.kind.dtype == np.uint8,
             "shapes/which": self.shapes is None or self.shapes.which.shape == worlds_and_grains,
             "tank/outline": _finite(self.outline, 2, columns=2) and len(self.outline) > 2 and _wide(self.outline),
@@ -135,8 +152,8 @@ class Recording:
     def labelled(self, frames: slice | None = None) -> "xarray.Dataset":
         """The series, or the given frames, as arrays with named axes, units and labels.
 
-        Axes are time, world, grain and part; components lie along `axis` (y, z), `freedom` (y, z, roll) or
-        NAME_component. Raises LabError if the rows are damaged.
+        Axes are time, world, grain, drop, part, gauge and level; components lie along `axis` (y, z), `freedom` (y, z,
+        roll) or NAME_component. Raises LabError if the rows are damaged.
         """
         from lab.recording.labelled import labelled
 

@@ -1,12 +1,15 @@
 """Texts for error messages about data that a recording does not have."""
 
-from lab.recording.layout import WAVES, frames_of, series_of
+from lab.recording.layout import OF_MATTERS, WAVES, frames_of, series_of
 from solvers.machine.quantity import Quantity
 
 COUNTED = {  # what each axis counts, and the preset key that sets its size
     "world": "beds (run.repeats)",
     "part": "parts (parts.NAME)",
     "grain": "grains (grains.count)",
+    "drop": "particles of water (water.spacing)",
+    "gauge": "gauges of pressure (gauges.NAME)",
+    "level": "gauges of level (gauges.NAME)",
 }
 
 
@@ -14,6 +17,10 @@ def recorded_by(name: object) -> str:
     """The end of a sentence on a missing quantity: what would record it."""
     if name == WAVES.name:
         return "; `cargolab view` records it, of a ship in waves."
+    of_water = {quantity.name: quantity for quantity in (*OF_MATTERS["water"].SERIES, *OF_MATTERS["water"].FRAMES)}
+    if name in of_water:
+        table = "gauges.NAME" if of_water[name].per in ("gauge", "level") else "water"
+        return f"; a preset with a table [{table}] records it."
     if name in _names(series_of(afloat=False)):
         return "; it is in the series (record.series_rate)."
     if name in _names(series_of(afloat=True)):

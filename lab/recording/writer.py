@@ -3,24 +3,20 @@
 import errno
 import json
 import os
-import platform
 import shutil
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from datetime import datetime
-from importlib import metadata
 from pathlib import Path
 
 import h5py
 import numpy as np
 
-from lab import __version__
 from lab.base.errors import LabError, Unusable
 from lab.base.trust import attribute_words, format_of
 from lab.preset.recorded import to_table
 from lab.preset.schema import Preset
-from lab.preset.sections.ship_axis import axis_place
 from lab.recording.checks import Checks, row_checks
 from lab.recording.layout import (
     CHECKS,
@@ -32,10 +28,12 @@ from lab.recording.layout import (
     fixed_text,
     row_bytes,
     sentence,
+    sizes_of,
     store,
     tables_of,
 )
 from lab.recording.opening import create, end_of, open_to_add
+from lab.recording.origin import reference_points, this_machine, versions
 from lab.recording.outlines import GROUP, Outlines, outline_tables
 
 BUFFER_BYTES = 2**25  # most that is kept in memory before it is written
@@ -43,7 +41,6 @@ FLUSH_EVERY = 2.0  # wall-clock time (s) between flushes, which a killed run may
 SPARE_BYTES = 2**22  # disk space reserved in addition, to close the file and to write the run's summary
 LONGEST_STATUS = 500  # bytes
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)  # errors of a full disk or quota
-PACKAGES = ("taichi", "numpy", "scipy", "h5py")
 
 
 def new_recording(
@@ -55,6 +52,7 @@ def new_recording(
     radius: np.ndarray,
     outline: np.ndarray,
     step: float,
+    volume: np.ndarray | None = None,
     kind: np.ndarray | None = None,
     fixed: np.ndarray = (),
     open_edges: Sequence[int] = (),
@@ -66,11 +64,12 @@ def new_recording(
     """Create the recording of a run, without rows yet; returns its file.
 
     folder: of the new recording.h5, created if missing; preset: its name; given: its TOML text; resolved: the
-    preset itself; radius (W, n) m, n is 0 without grains; outline (m, 2) m; step: the time step, s; kind (W, n):
-    numbers of the kinds of grains, 0 for the preset's material, None if all are 0; fixed (k, 3): y, z, radius m of the
-    fixed grains; open_edges: outline edges without a wall; parts: moving parts by name, polylines at rest (m, 2) m;
-    shapes: outlines of irregular grains, None if all are discs; machine: the device and threads, added to the data
-    found here; steered: whether the user steers the run.
+    preset itself; radius (W, n) m, n is 0 without grains; outline (m, 2) m; step: the time step, s;
+    volume (W, n) m²: of the particles of water, None without water; kind (W, n): numbers of the kinds of grains, 0 for
+    the preset's material, None if all are 0; fixed (k, 3): y, z, radius m of the fixed grains; open_edges: outline
+    edges without a wall; parts: moving parts by name, polylines at rest (m, 2) m; shapes: outlines of irregular
+    grains, None if all are discs; machine: the device and threads, added to the data found here; steered: whether the
+    user steers the run.
 
     The file gets its name only when it is complete, so it is readable from then on. Raises LabError if the folder
     cannot be written, is full, or already holds a recording.
@@ -84,11 +83,11 @@ def new_recording(
         "status": _status("running"),
         "created": fixed_text(datetime.now().astimezone().isoformat(timespec="seconds")),
         "versions": fixed_text(json.dumps(versions())),
-        "machine": fixed_text(json.dumps({**_machine(), **(machine or {})})),
+        "machine": fixed_text(json.dumps({**this_machine(), **(machine or {})})),
         "step": float(step),
         "wall_s": 0.0,
         "grain_steps": 0,
-        **_reference(resolved),
+        **reference_points(resolved),
     }
     with _writing(path.parent):
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -104,6 +103,8 @@ def new_recording(
                 store(file, "grains/radius", radius)
                 kind = np.zeros(radius.shape) if kind is None else kind
                 store(file, "grains/kind", np.asarray(kind, dtype="u1"))
+            if volume is not None and volume.size:
+                store(file, "water/volume", np.asarray(volume, dtype=float))
             store(file, "tank/outline", np.asarray(outline, dtype=float))
             store(file, "tank/fixed", np.asarray(fixed, dtype=float).reshape(-1, 3))
             store(file, "tank/open_edges", np.asarray(open_edges, dtype=int))
@@ -112,8 +113,7 @@ def new_recording(
                 store(file, f"tank/parts/{name}", np.asarray(line, dtype=float))
             for name, table in tables.items():
                 store(file, f"{GROUP}/{name}", table)
-            sizes = dict(zip(("world", "grain"), radius.shape, strict=True)) | {"part": len(parts)}
-            create_tables(file, tables_of(resolved, steered), sizes)
+            create_tables(file, tables_of(resolved, steered), sizes_of(resolved, radius, volume, len(parts)))
         _publish(path)
     return path
 
@@ -352,29 +352,3 @@ def _writing(folder: Path) -> Iterator[None]:
         reason = os.strerror(number) if number else sentence(error)
         remedy = "make room there" if number in FULL else "choose another folder"
         raise LabError(f"{folder} cannot be written ({reason}): {remedy}.") from error
-
-
-def versions() -> dict[str, str]:
-    """Versions of the lab, of Python and of the packages that the results depend on, by name."""
-    found = {"cargo-shift-lab": __version__, "python": platform.python_version()}
-    for package in PACKAGES:
-        try:
-            found[package] = metadata.version(package)
-        except metadata.PackageNotFoundError:
-            continue
-    return found
-
-
-def _reference(preset: Preset) -> dict[str, object]:
-    """Attributes on the reference point of the poses and, for a ship, of sway and heave (see `axis_motion`)."""
-    found = {"pose_is_of": fixed_text("the origin of the tank's axes")}
-    if ship := preset.ship:
-        found["ship_axis"] = np.array(ship.about)
-        found["ship_axis_in_tank"] = np.subtract(ship.about, ship.hold)
-        found["sway_and_heave_are_of"] = fixed_text(f"the ship's axis, {axis_place(ship)}")
-    return found
-
-
-def _machine() -> dict[str, object]:
-    processor = platform.processor() or platform.machine()
-    return {"system": platform.platform(), "processor": processor, "cores": os.cpu_count()}

@@ -1,4 +1,4 @@
-"""An XDMF file for ParaView, with the grains of a recording as points and their quantities as attributes.
+"""An XDMF file for ParaView: the grains or the water of a recording as points, their quantities as attributes.
 
 The file itself contains only the times; all else refers to the recording's data sets (XDMF 3, xdmf.org: Model and
 Format).
@@ -6,12 +6,27 @@ Format).
 
 from collections.abc import Iterator
 from pathlib import Path
+from typing import NamedTuple
 from xml.etree import ElementTree as Xml
 
 from lab.base.errors import LabError
 from lab.recording import Recording
 
 KINDS = {1: "Scalar", 2: "Vector"}  # by the number of components
+
+
+class Points(NamedTuple):
+    """What is drawn as points: the owner of its quantities, that of their places, and a stored data set of sizes."""
+
+    owner: str
+    place: str
+    size: str
+
+
+OF_MATTERS = {
+    "grains": Points("grain", "position", "grains/radius"),
+    "water": Points("drop", "water_place", "water/volume"),
+}
 
 
 def write_xdmf(recording: Recording) -> Path:
@@ -32,24 +47,26 @@ def _lines(recording: Recording) -> Iterator[str]:
     for world in range(recording.worlds):
         yield f'<Grid Name="bed {world}" GridType="Collection" CollectionType="Temporal">\n'
         for frame, time in enumerate(times):
-            grid = _grains(recording, world, frame, float(time))
-            Xml.indent(grid)
-            yield Xml.tostring(grid, encoding="unicode") + "\n"
+            for matter in recording.preset.matters:
+                grid = _points(recording, matter, (frame, world), float(time))
+                Xml.indent(grid)
+                yield Xml.tostring(grid, encoding="unicode") + "\n"
         yield "</Grid>\n"
     yield "</Domain>\n</Xdmf>\n"
 
 
-def _grains(recording: Recording, world: int, frame: int, time: float) -> Xml.Element:
-    """The grains of one world at one time."""
-    count = recording.radius.shape[1]
-    grid = Xml.Element("Grid", Name="grains", GridType="Uniform")
+def _points(recording: Recording, matter: str, at: tuple[int, int], time: float) -> Xml.Element:
+    """The particles of a matter in one world at one time; `at`: the numbers of the frame and of the world."""
+    points = OF_MATTERS[matter]
+    shape, _ = recording.layout(points.size)
+    grid = Xml.Element("Grid", Name=matter, GridType="Uniform")
     _add(grid, "Time", Value=repr(time))
-    _add(grid, "Topology", TopologyType="Polyvertex", NumberOfElements=count, NodesPerElement=1)
-    _add_slab(_add(grid, "Geometry", GeometryType="XY"), recording, "frames/position", (frame, world))
-    _add_slab(_add_values(grid, "radius", 1), recording, "grains/radius", (world,))
+    _add(grid, "Topology", TopologyType="Polyvertex", NumberOfElements=shape[1])
+    _add_slab(_add(grid, "Geometry", GeometryType="XY"), recording, f"frames/{points.place}", at)
+    _add_slab(_add_values(grid, points.size.partition("/")[2], 1), recording, points.size, at[1:])
     for name, quantity in recording.frames.quantities.items():
-        if quantity.per == "grain" and name != "position":
-            _add_slab(_add_values(grid, name, quantity.width), recording, f"frames/{name}", (frame, world))
+        if quantity.per == points.owner and name != points.place:
+            _add_slab(_add_values(grid, name, quantity.width), recording, f"frames/{name}", at)
     return grid
 
 

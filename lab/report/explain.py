@@ -6,12 +6,13 @@ from dataclasses import replace
 from lab.assembly.grains import grain_count
 from lab.assembly.room import check_room
 from lab.assembly.scene import build
+from lab.assembly.water import most_drops, particles
 from lab.measures.ship_frozen import INTERVAL
 from lab.preset.fields import join, taken_by
 from lab.preset.find import LoadedPreset
 from lab.preset.schema import Preset
 from lab.preset.units import show
-from lab.report import grains
+from lab.report import grains, water
 from lab.report.ship import describe
 from solvers.machine.runtime import available_cores, choose_arch
 from solvers.simulation import Simulation
@@ -21,10 +22,11 @@ from solvers.time.schedules import choose_schedule, units_a_world
 # README, "Speed"). It is used for the estimate of the run time only.
 GRAIN_STEPS_PER_CORE = 20e6
 OUTLINES_PER_CORE = {"continuous": 3e6, "nodes": 3e6, "area": 3e6}  # of irregular grains
+DROP_STEPS_PER_CORE = 1.1e6  # particle-steps of water a second of one core
 # Other parts of a run, in seconds of CPU time of one core (AMD EPYC, Zen 5): to start Python, its libraries and Taichi,
 # to compile the kernels when they are new, and in addition those of a ship
 STARTING = 2.0
-COMPILING = {"discs": 2.0, "continuous": 8.0, "nodes": 6.0, "area": 4.5}
+COMPILING = {"water": 25.0, "discs": 2.0, "continuous": 8.0, "nodes": 6.0, "area": 4.5}
 COMPILING_SHIP = 3.0
 STEP = 0.07e-6  # of a world, without its grains
 SAMPLE = 0.25e-3  # to stop and observe all worlds
@@ -51,7 +53,7 @@ KEYS_WIDTH = 34  # characters of a key and its value, before its sentence
 def explain(loaded: LoadedPreset) -> str:
     """A page of text on a preset: scene, step and what limits it, what is compiled in, memory, expected run time."""
     preset = loaded.resolved
-    check_room(preset, grain_count(preset))
+    check_room(preset, grain_count(preset), most_drops(preset))
     simulation = _one_bed(preset)
     scene = simulation.scene
     blocks = [
@@ -59,6 +61,7 @@ def explain(loaded: LoadedPreset) -> str:
         _section("Scene", _scene(preset, scene)),
         *_ship(preset, simulation),
         *([_section("Accuracy", grains.accuracy(preset))] if preset.grains else []),
+        *([_section("Accuracy", water.accuracy(preset))] if preset.water else []),
         _section("Step", _step(scene)),
         _section("Compiled in", _parts(preset, simulation)),
         _section("Cost", _cost(preset, scene, simulation)),
@@ -83,7 +86,7 @@ def _one_bed(preset: Preset) -> Simulation:
     run = preset.run
     scene, position = build(replace(preset, run=replace(run, repeats=1)))
     arch = "cpu" if scene.vessels and run.arch == "auto" else choose_arch(run.arch, run.precision)
-    sizes = run.repeats, scene.radius.shape[1], run.threads or available_cores()
+    sizes = run.repeats, particles(scene), run.threads or available_cores()
     schedule = choose_schedule(run.schedule, arch, *sizes, bool(scene.vessels))
     units = units_a_world(schedule, *sizes)
     return Simulation(replace(scene, schedule=schedule), position, run.threads, arch=arch, units=units)
@@ -102,11 +105,12 @@ def _scene(preset, scene) -> list[tuple[str, str]]:
         ("repeats", f"{worlds}, seeds {preset.run.seed} to {preset.run.seed + worlds - 1}"),
         ("tank", _tank(preset, scene)),
         *(grains.described(preset, scene) if preset.grains else []),
+        *(water.described(preset, scene) if preset.water else []),
     ]
     motions = preset.motion.parts
     parts = [_motion(name, motion, scene.soft_start) for name, motion in motions.items()]
     rows.append(("motion", ", then ".join(parts) or "none"))
-    rows.append(("duration", show(preset.duration, "s") + " after settling" * bool(preset.matters)))
+    rows.append(("duration", show(preset.duration, "s") + " after settling" * bool(preset.grains)))
     return rows
 
 
@@ -152,6 +156,7 @@ def _parts(preset: Preset, simulation: Simulation) -> list[tuple[str, str]]:
         terms += ", Euler, centrifugal and Coriolis terms"
     return [
         *(grains.laws(preset, simulation) if preset.grains else []),
+        *(water.models(scene) if preset.water else []),
         ("body forces", terms),
         ("walls", f"{walls.segments} segments, {walls.corners} corners that cargo can touch"),
         ("numbers", PRECISIONS[scene.precision]),
@@ -160,7 +165,7 @@ def _parts(preset: Preset, simulation: Simulation) -> list[tuple[str, str]]:
 
 
 def _cost(preset, scene, simulation: Simulation) -> list[tuple[str, str]]:
-    worlds, count = preset.run.repeats, scene.radius.shape[1]
+    worlds, count, what = preset.run.repeats, particles(scene), "grain" if preset.grains else "particle"
     steps = preset.duration / scene.step
     frames = preset.duration * preset.record.picture_rate
     seconds = cost_in_seconds(preset, scene, simulation)
@@ -168,17 +173,21 @@ def _cost(preset, scene, simulation: Simulation) -> list[tuple[str, str]]:
     cores = min(worlds, preset.run.threads or available_cores())
     settling = f"and at most {_span(_stepping(preset.run.settle_limit, preset, scene))} to settle a new bed"
     return [
-        ("grain-steps", f"{worlds * count * steps:.3g}, and those of settling") if count else ("steps", f"{steps:.3g}"),
+        *(
+            [(f"{what}-steps", f"{worlds * count * steps:.3g}{', and those of settling' * bool(preset.grains)}")]
+            * bool(count)
+        ),
+        *([("steps", f"{steps:.3g}")] if not preset.grains else []),
         ("memory", f"{worlds * simulation.arrays.bytes / 2**20:.1f} MiB"),
         ("recording", f"{frames * worlds * count * 24 / 2**20:.0f} MiB"),
         ("run time", f"about {_span(sum(seconds.values()))} on {cores} core(s): {parts}"),
-        *([("", settling)] if preset.run.settle and count else []),
+        *([("", settling)] if preset.run.settle and preset.grains else []),
     ]
 
 
 def cost_in_seconds(preset, scene, simulation: Simulation) -> dict[str, float]:
     """Seconds that a run takes, by its parts, without settling; kernels are compiled anew and all pictures painted."""
-    rule = scene.shapes.contact if scene.shapes else "discs"
+    rule = "water" if scene.water else scene.shapes.contact if scene.shapes else "discs"
     duration, record = preset.duration, preset.record
     found = {
         "to start and compile": STARTING + COMPILING[rule] + (COMPILING_SHIP if simulation.carrier.answers else 0.0),
@@ -190,10 +199,11 @@ def cost_in_seconds(preset, scene, simulation: Simulation) -> dict[str, float]:
 
 
 def _stepping(duration: float, preset, scene) -> float:
-    """Seconds of computation for the grains' steps over a duration (s)."""
-    worlds, count = scene.radius.shape
+    """Seconds of computation for the steps of grains or water over a duration (s)."""
+    worlds, count = scene.worlds, particles(scene)
     rounds = -(-worlds // min(worlds, preset.run.threads or available_cores()))
     speed = OUTLINES_PER_CORE[scene.shapes.contact] if scene.shapes else GRAIN_STEPS_PER_CORE
+    speed = DROP_STEPS_PER_CORE if scene.water else speed
     return rounds * duration / scene.step * (STEP + count / speed)
 
 

@@ -1,18 +1,23 @@
-"""The rows of `cargolab explain` on grains: what they are, how exactly they are computed, their laws."""
+"""What is said of grains by `cargolab explain` and in summaries: what they are, how exact they are, their laws."""
 
+from collections.abc import Iterator
 from math import pi
 
 import numpy as np
 
+from lab.base.text import inline
 from lab.preset.accuracy import LEVELS
 from lab.preset.schema import Preset
 from lab.preset.sections.shapes import ShapeClass, caution
 from lab.preset.units import show
+from lab.recording import Recording
+from lab.report.numbers import count_of
 from solvers.grains.laws import COHESION
 from solvers.grains.shapes.given import Shapes
 from solvers.scene import Scene
 from solvers.simulation import Simulation
 
+LARGE_OVERLAP = 0.05  # of a radius
 Rows = list[tuple[str, str]]
 
 
@@ -96,3 +101,38 @@ def _cohesion(scene) -> str:
         f"{scene.cohesion}: {show(pull, 'N')}, {pull / weight:.2g} times a mean grain's weight, "
         f"across gaps of up to {show(law.range(between), 'm')}"
     )
+
+
+def in_tank(recording: Recording) -> Iterator[str]:
+    """What a summary says of the grains, a line each."""
+    worlds, count = recording.radius.shape
+    low, high = show(2 * recording.radius.min(), "m"), show(2 * recording.radius.max(), "m")
+    size = low if low == high else f"{low} to {high}"
+    yield f"{count_of(worlds, 'bed')} of {count_of(count, 'grain')}, {size} in diameter"
+    shapes = recording.preset.shape_classes
+    if shapes:
+        parts = [f"{100 * shape.share:.3g} % {inline(name)}" for name, shape in shapes.items()]
+        yield f"irregular grains, diameters those of discs of equal area: {', '.join(parts)}"
+
+
+def cautions(recording: Recording) -> Iterator[str]:
+    """What a reader must know about how the grains were computed."""
+    scale = recording.preset.stiffness_scale
+    if scale < 1:
+        yield f"The grains are softer than their material: Young's moduli times {scale:g}, {_softened(recording)}."
+    rule = recording.preset.contact.outlines
+    if recording.shapes and (rough := caution(recording.shapes.contours, rule)):
+        yield rough
+    if recording.preset.run.force_step:
+        yield "The step is forced past the derived one: restitution errs by some 2 % at five times that."
+    overlap = recording.series["overlap"].max(initial=0.0)
+    if overlap > LARGE_OVERLAP:
+        yield f"Grains overlapped by up to {100 * overlap:.1f} % of a radius."
+
+
+def _softened(recording: Recording) -> str:
+    """Which key of the preset makes the grains softer."""
+    accuracy = recording.preset.run.accuracy
+    if LEVELS[accuracy].stiffness_scale == recording.preset.stiffness_scale:
+        return f'set by run.accuracy = "{accuracy}"'
+    return "set by contact.stiffness_scale"

@@ -71,6 +71,11 @@ def mean_within(mean: float, ends: Sequence[float] | None, digits: int) -> str:
     return f"{mean:.{digits}f} [{', '.join(f'{end:.{digits}f}' for end in ends)}]"
 
 
+def count_of(count: int, noun: str) -> str:
+    """A number of things in words: "3 grains"."""
+    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
+
+
 def _digits(error: float) -> int:
     """Number of decimals that show two digits of an error."""
     return max(0, 1 - floor(log10(error)))

@@ -55,6 +55,7 @@ class Sheet:
         self.figure = Figure(figsize=SIZE, layout="constrained")
         self._columns = 2
         count = f"{recording.radius.shape[1]} grains" if recording.preset.grains else "an empty tank"
+        count = f"{recording.volume.shape[1]} particles of water" if recording.preset.water else count
         if recording.worlds > 1:
             count = f"{recording.worlds} beds of {count}; bands: ± std over beds, unless the legend says otherwise"
         title = f"{textwrap.fill(recording.preset.title, TITLE)}\n{count}"

@@ -11,13 +11,12 @@ from lab.base.costs import in_words
 from lab.base.errors import LabError
 from lab.base.text import code, fenced, inline, one_line, paragraphs, printable
 from lab.measures.value import Value
-from lab.preset.accuracy import LEVELS
 from lab.preset.fields import taken_of
-from lab.preset.sections.shapes import caution
 from lab.preset.sections.ship_axis import axis_place
 from lab.preset.units import show
 from lab.recording import Recording, ship_end
-from lab.report.numbers import RULE, number, own
+from lab.report import grains, water
+from lab.report.numbers import RULE, count_of, number, own
 from solvers.motion import MOTIONS
 
 # The measures that answer the question of an experiment, the most important first; a run has only some of them.
@@ -48,9 +47,16 @@ TELLING = (
     "first_slip_angle",
     "moment_amplitude",
     "contact_number",
+    "gauge_peak_",
+    "gauge_largest_",
+    "sloshing_frequency",
+    "run_up_",
+    "highest_water",
+    "gauge_impulse_",
+    "water_residual",
+    "gauge_peak_scatter_",
 )
 HEADLINES, TOLD = 3, 6  # numbers at the head of the page, and in the terminal
-LARGE_OVERLAP = 0.05  # of a radius
 
 
 def write_summary(
@@ -100,7 +106,7 @@ def terminal_summary(
     lines = [one_line(title)]
     lines += _aligned(rows)
     if len(told) < len(values):
-        lines.append(f"  and {_count(len(values) - len(told), 'more number')} in the summary")
+        lines.append(f"  and {count_of(len(values) - len(told), 'more number')} in the summary")
     lines += ["", f"  {_cost(recording)}", *([f"  {in_words(costs)}"] if costs else [])]
     lines += _aligned(made)
     lines += [f"  warning: {one_line(text)}" for text in (*warnings, *_cautions(recording))]
@@ -109,9 +115,14 @@ def terminal_summary(
 
 def headlines(values: Mapping[str, Value], most: int) -> dict[str, Value]:
     """The most important of the measured values, then others in their order, `most` in all."""
-    order = {name: place for place, name in enumerate(TELLING)}
-    names = sorted(values, key=lambda name: order.get(name, len(order)))
+    names = sorted(values, key=_place)
     return {name: values[name] for name in names[:most]}
+
+
+def _place(name: str) -> int:
+    """The place of a number among the telling ones; those of gauges begin with a name that ends in _."""
+    fitting = [k for k, known in enumerate(TELLING) if name == known or (known[-1] == "_" and name.startswith(known))]
+    return max(fitting, key=lambda k: len(TELLING[k]), default=len(TELLING))
 
 
 def _page(
@@ -177,6 +188,7 @@ def _data(
             "grain_steps_per_s": recording.grain_steps / wall if wall else None,
             "dt_s": recording.step,
         },
+        **({"water": water.facts(recording)} if recording.preset.water else {}),
         "files": dict(links),
         "warnings": list(warnings),
     }
@@ -186,8 +198,10 @@ def _scene(recording: Recording) -> Iterator[str]:
     if base := recording.preset.based_on:
         yield f"based on the preset {code(base)}, whose source and reports are its own"
     if recording.preset.grains:
-        yield from _grains(recording)
-    else:
+        yield from grains.in_tank(recording)
+    if recording.preset.water:
+        yield from water.in_tank(recording)
+    if not recording.preset.matters:
         yield "nothing in the tank"
     width, height = (show(extent, "m") for extent in np.ptp(recording.outline, axis=0))
     lidless = ", open at the top" if recording.open_edges else ""
@@ -202,19 +216,8 @@ def _scene(recording: Recording) -> Iterator[str]:
         yield f"sway, heave and roll of the ship are those of her axis, {axis_place(recording.preset.ship)}"
     time = recording.series["time"]
     if len(time):
-        settled = ", after the cargo had settled" * bool(recording.preset.matters)
+        settled = ", after the cargo had settled" * bool(recording.preset.grains)
         yield f"{show(time[-1], 's')} of motion recorded{settled}"
-
-
-def _grains(recording: Recording) -> Iterator[str]:
-    worlds, count = recording.radius.shape
-    low, high = show(2 * recording.radius.min(), "m"), show(2 * recording.radius.max(), "m")
-    size = low if low == high else f"{low} to {high}"
-    yield f"{_count(worlds, 'bed')} of {_count(count, 'grain')}, {size} in diameter"
-    shapes = recording.preset.shape_classes
-    if shapes:
-        parts = [f"{100 * shape.share:.3g} % {inline(name)}" for name, shape in shapes.items()]
-        yield f"irregular grains, diameters those of discs of equal area: {', '.join(parts)}"
 
 
 def _settings(motion: object) -> str:
@@ -240,36 +243,16 @@ def _cautions(recording: Recording) -> Iterator[str]:
     if not recording.complete:
         yield f"The run is {_status(recording)}; the numbers cover what was recorded until then."
     if recording.preset.grains:
-        yield from _cautions_on_grains(recording)
-
-
-def _cautions_on_grains(recording: Recording) -> Iterator[str]:
-    """What a reader must know about how the grains were computed."""
-    scale = recording.preset.stiffness_scale
-    if scale < 1:
-        yield f"The grains are softer than their material: Young's moduli times {scale:g}, {_softened(recording)}."
-    rule = recording.preset.contact.outlines
-    if recording.shapes and (rough := caution(recording.shapes.contours, rule)):
-        yield rough
-    if recording.preset.run.force_step:
-        yield "The step is forced past the derived one: restitution errs by some 2 % at five times that."
-    overlap = recording.series["overlap"].max(initial=0.0)
-    if overlap > LARGE_OVERLAP:
-        yield f"Grains overlapped by up to {100 * overlap:.1f} % of a radius."
-
-
-def _softened(recording: Recording) -> str:
-    """Which key of the preset makes the grains softer."""
-    accuracy = recording.preset.run.accuracy
-    if LEVELS[accuracy].stiffness_scale == recording.preset.stiffness_scale:
-        return f'set by run.accuracy = "{accuracy}"'
-    return "set by contact.stiffness_scale"
+        yield from grains.cautions(recording)
+    if recording.preset.water:
+        yield from water.cautions(recording)
 
 
 def _cost(recording: Recording) -> str:
     rate = recording.grain_steps / recording.wall_s if recording.wall_s else 0.0
-    steps = f"{recording.grain_steps:.3g} grain-steps at {rate / 1e6:.1f} million a second, "
-    steps *= bool(recording.preset.grains)
+    what = "grain" if recording.preset.grains else "particle"
+    steps = f"{recording.grain_steps:.3g} {what}-steps at {rate / 1e6:.1f} million a second, "
+    steps *= bool(recording.preset.matters)
     return f"{_duration(recording.wall_s)}: {steps}time step {show(recording.step, 's')}"
 
 
@@ -281,7 +264,7 @@ def _duration(seconds: float) -> str:
 def _machine(recording: Recording) -> str:
     """The computer that ran it, as far as the recording knows it."""
     machine = recording.machine
-    cores, arch = _count(machine.get("cores") or 0, "core"), machine.get("arch", "cpu")
+    cores, arch = count_of(machine.get("cores") or 0, "core"), machine.get("arch", "cpu")
     if arch != "cpu":
         used = f"a graphics processor ({arch})"
     elif "threads" in machine:
@@ -293,10 +276,6 @@ def _machine(recording: Recording) -> str:
 
 def _remark(value: Value) -> str:
     return f" ({value.note})" if value.note else ""
-
-
-def _count(count: int, noun: str) -> str:
-    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
 
 
 def _aligned(rows: Mapping[str, str]) -> list[str]:

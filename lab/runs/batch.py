@@ -14,6 +14,7 @@ import numpy as np
 
 from lab.assembly.drawn import classes
 from lab.assembly.scene import LONGEST_STRIDE, build, stretch
+from lab.assembly.water import particles, volumes_of
 from lab.base.errors import Unusable
 from lab.base.interrupt import Interrupt
 from lab.base.progress import Progress
@@ -61,14 +62,14 @@ class Run:
     @property
     def can_share(self) -> bool:
         """Whether it may share a batch; not in schedule per-band, which divides a world by the number of threads."""
-        settings, (worlds, count) = self.loaded.resolved.run, self.scene.radius.shape
+        settings, worlds, count = self.loaded.resolved.run, self.scene.worlds, particles(self.scene)
         arch, threads = choose_arch(settings.arch, settings.precision), settings.threads or available_cores()
         afloat = bool(self.scene.vessels)
         return choose_schedule(settings.schedule, arch, worlds, count, threads, afloat) != "per-band"
 
     def device(self, worlds: int = 0) -> dict[str, object]:
         """The device for a batch of `worlds` worlds (0: the run's own): `arch`, `schedule`, on the CPU `threads`."""
-        settings, (own, count) = self.loaded.resolved.run, self.scene.radius.shape
+        settings, own, count = self.loaded.resolved.run, self.scene.worlds, particles(self.scene)
         afloat, worlds = bool(self.scene.vessels), worlds or own
         arch = "cpu" if afloat and settings.arch == "auto" else choose_arch(settings.arch, settings.precision)
         threads = settings.threads or available_cores()
@@ -89,6 +90,7 @@ class Run:
             radius=scene.radius,
             outline=scene.outline,
             step=scene.step,
+            volume=volumes_of(scene.drops, scene.worlds),
             kind=scene.kind,
             fixed=scene.fixed,
             open_edges=scene.open_edges,
@@ -259,7 +261,7 @@ class Batch:
         now, whole = time.perf_counter(), sum(run.scene.work for run in self.runs)
         for recorder, run in zip(self._recorders, self.runs, strict=True):
             recorder.wall_s += (now - self._counted) * run.scene.work / whole
-            recorder.grain_steps = self._simulation.steps * run.scene.radius.size
+            recorder.grain_steps = self._simulation.steps * run.scene.worlds * particles(run.scene)
         self._counted = now
 
     def _worlds(self) -> Iterator[slice]:

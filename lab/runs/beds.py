@@ -83,10 +83,10 @@ def settled(scene: Scene, position: np.ndarray, how: Settling, start: Start, pro
     """A simulation of `scene` with its beds settled, from `position` (W, n, 2) m; the clock stands at zero.
 
     The beds come from the store if it has all of them. `start` makes a simulation from a scene and positions. Raises
-    BadState from the watch, LabError if a bed does not fit under its tank's lid. Without matter nothing settles.
+    BadState from the watch, LabError if a bed does not fit under its tank's lid. Without grains nothing settles.
     """
     simulation = start(scene, position)
-    if not simulation.matters:
+    if not simulation.grains:  # water starts at rest
         return simulation
     if not how.settle:
         progress.note("The grains start where they were placed, without settling (run.settle = false).")

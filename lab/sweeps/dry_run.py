@@ -13,17 +13,18 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 from lab.assembly.scene import build
+from lab.assembly.water import volumes_of
 from lab.measures import measure_all
 from lab.measures.value import Value
 from lab.preset.find import LoadedPreset
 from lab.preset.schema import Preset
 from lab.recording import Recorder, new_recording, open_recording
-from lab.recording.layout import rows_of, tables_of
+from lab.recording.layout import rows_of, sizes_of, tables_of
 from solvers.machine.quantity import parted
 from solvers.scene import Scene
 from solvers.simulation import Simulation
 
-GRAINS = 50  # largest number that is recorded
+GRAINS = 50  # largest number of grains, or of particles of water, that is recorded
 ROLL = 0.1  # amplitude (rad) of a ship's roll
 
 
@@ -42,6 +43,7 @@ def available_measures(loaded: LoadedPreset) -> dict[str, Value]:
 def _record(folder: Path, loaded: LoadedPreset, preset: Preset, scene: Scene, position: np.ndarray) -> None:
     """Write the recording of the dry run."""
     count, parts = min(GRAINS, scene.radius.shape[1]), {name: part.points for name, part in preset.parts.items()}
+    volume = volumes_of(scene.drops, 1)[:, :GRAINS]
     new_recording(
         folder,
         preset=loaded.name,
@@ -50,11 +52,12 @@ def _record(folder: Path, loaded: LoadedPreset, preset: Preset, scene: Scene, po
         radius=scene.radius[:, :count],
         outline=scene.outline,
         step=scene.step,
+        volume=volume,
         fixed=scene.fixed,
         open_edges=scene.open_edges,
         parts=parts,
     )
-    rate, sizes = preset.record.series_rate, {"world": 1, "grain": count, "part": len(parts)}
+    rate, sizes = preset.record.series_rate, sizes_of(preset, scene.radius[:, :count], volume, len(parts))
     a_frame = max(1, round(rate / preset.record.picture_rate))
     tables = tables_of(preset, steered=False)
     series, frames = tables["series"], tables["frames"]
@@ -63,6 +66,8 @@ def _record(folder: Path, loaded: LoadedPreset, preset: Preset, scene: Scene, po
     frame = {name: np.zeros(shape) for name, (shape, _) in rows_of(frames, sizes).items()}
     if preset.grains:
         frame["position"] = position[:, :count]
+    if preset.water:
+        frame["water_place"] = scene.drops[:, :GRAINS, :2]
     times = np.arange(max(1, round(preset.duration * rate)) + 1) / rate
     with Recorder(folder) as recorder:
         for k, (time, pose) in enumerate(zip(times, _poses(preset, scene, position, times), strict=True)):

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from lab.assembly.grains import grain_count
+from lab.assembly.water import most_drops
 from lab.base.errors import LabError
 from lab.preset.find import LoadedPreset, load
 from lab.preset.recorded import resolved_from, to_table
@@ -37,9 +38,9 @@ class Sweep:
         return [dict(zip(self.axes, chosen, strict=True)) for chosen in product(*self.axes.values())]
 
     def cost(self, number: int) -> float:
-        """Relative cost of a point: model time (s) times number of grains, an empty tank counting as one."""
+        """Relative cost of a point: model time (s) times number of particles, an empty tank counting as one."""
         preset = self.points[number].resolved
-        return preset.duration * preset.run.repeats * max(1, grain_count(preset))
+        return preset.duration * preset.run.repeats * max(1, grain_count(preset) + most_drops(preset))
 
     def same_as(self, other: "Sweep") -> bool:
         """Whether the other sweep has the same points."""

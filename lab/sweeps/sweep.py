@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 
+from lab.assembly.water import particles
 from lab.base.errors import LabError, Unusable
 from lab.base.lock import only_one
 from lab.base.progress import Progress
@@ -201,7 +202,7 @@ def _plan(sweep: Sweep) -> Iterator[list[int]]:
         if not run.can_share:
             yield [number]
             continue
-        worlds, count = run.scene.radius.shape
+        worlds, count = run.scene.worlds, particles(run.scene)
         group = begun.setdefault(run.shared, {})
         if group and (sum(group.values()) + worlds > _most_worlds(run, count) or len(group) == MOST_RUNS):
             yield list(group)
@@ -211,7 +212,7 @@ def _plan(sweep: Sweep) -> Iterator[list[int]]:
 
 
 def _most_worlds(run: Run, count: int) -> int:
-    """How many worlds of `count` grains a batch may have."""
+    """How many worlds of `count` particles a batch may have."""
     settings = run.loaded.resolved.run
     bound = MOST_GRAINS // max(1, count)
     if choose_arch(settings.arch, settings.precision) != "cpu":

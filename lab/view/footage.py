@@ -8,9 +8,11 @@ from pathlib import Path
 import numpy as np
 
 from lab.assembly.scene import vessels
+from lab.assembly.water import volumes_of
 from lab.paint.footage import NO_GRAINS, Bed
 from lab.paint.painter import Edges
 from lab.paint.sea import Sea
+from lab.paint.water.pool import Pool
 from lab.preset.find import LoadedPreset
 from lab.preset.schema import Preset
 from lab.recording import Outlines
@@ -40,6 +42,7 @@ class Scenery:
     parts: Mapping[str, np.ndarray]
     shapes: Outlines | None
     step: float
+    water: Pool | None = None
 
     @classmethod
     def of(cls, loaded: LoadedPreset, folder: Path, simulation: Simulation) -> "Scenery":
@@ -49,7 +52,8 @@ class Scenery:
         lines = {name: np.array(part.points) for name, part in preset.parts.items()}
         bounds = scene.outline, tuple(scene.open_edges), scene.fixed
         shapes = outlines_of(preset, scene)
-        return cls(preset, loaded.name, folder, scene.radius, kind, *bounds, lines, shapes, simulation.dt)
+        pool = Pool.of(preset, volumes_of(scene.drops, scene.worlds))
+        return cls(preset, loaded.name, folder, scene.radius, kind, *bounds, lines, shapes, simulation.dt, pool)
 
     def for_filling(self, top: float) -> "Scenery":
         """The scenery while the bed settles: no ship, and the tank cut off at the height `top` (m)."""
@@ -66,8 +70,9 @@ class LiveFootage:
 
     def __init__(self, scenery: Scenery) -> None:
         self.scenery = scenery
-        for name in ("radius", "kind", "outline", "open_edges", "fixed", "parts", "shapes"):
+        for name in ("radius", "kind", "water", "outline", "open_edges", "fixed", "parts", "shapes"):
             setattr(self, name, getattr(scenery, name))
+        self.matters = scenery.preset.matters
         self.kinds = ["the rest", *scenery.preset.kinds]
         self.shape_names = list(scenery.preset.shapes) if self.shapes else ["disc"]
         self.sea = Sea(scenery.preset) if scenery.preset.ship else None
@@ -132,7 +137,11 @@ class LiveFootage:
 
     def grains(self, name: str, frame: int, world: int = 0) -> np.ndarray:
         """The value `name` of each grain in a frame."""
-        return self._frames[frame].grains[name][world] if self.radius.size else NO_GRAINS[name]
+        return self.drops(name, frame, world) if self.radius.size else NO_GRAINS[name]
+
+    def drops(self, name: str, frame: int, world: int = 0) -> np.ndarray:
+        """The value `name` of each particle of water in a frame."""
+        return self._frames[frame].grains[name][world]
 
     @cached_property
     def extent(self) -> tuple[np.ndarray, np.ndarray]:

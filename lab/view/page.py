@@ -14,10 +14,14 @@ from lab.paint import palette
 from lab.paint.colours import Colouring, colouring, mark_colours
 from lab.paint.painter import Camera, paint_grains, paint_plate, paint_strokes, paint_tank, to_discs
 from lab.paint.sea import LINE
+from lab.paint.water.gauges import Marks, hues_of
+from lab.paint.water.layer import WaterLayer
 from lab.recording.ship_end import End
+from lab.view.footage import LiveFootage
+from lab.view.overlays import force_strokes, ring, velocity_strokes
 from lab.view.panel.controls import CONTROLS, RESTARTS
 from lab.view.panel.curves import CURVES
-from lab.view.panel.forces import chains, newtons
+from lab.view.panel.forces import newtons
 from lab.view.panel.help import draw_help
 from lab.view.panel.readings import clock, readings
 from lab.view.shown import Shown
@@ -30,8 +34,6 @@ SENTENCE = 0.8, 3  # a message: height of its letters in u, largest number of li
 SCALE_UPDATE, CURVE_UPDATE, TEXT_UPDATE = 2.0, 0.25, 0.1  # s after which colour scale, curve and readings are updated
 HANDLE = 0.42  # u, half the height of a slider's handle
 GRIP = 0.8  # u around the centre of roll
-THICKEST = 0.3  # half thickness of the line of the largest force, over the mean radius
-LONGEST, FASTEST = 6.0, 0.99  # length in radii of the line for the speed at this quantile
 GRAB, FORCE, PICKED = (213, 94, 0), (200, 30, 30), (213, 94, 0)
 
 
@@ -175,10 +177,11 @@ class Page:
     # Paint
 
     def _scale(self, shown: Shown) -> Colouring | None:
-        """The colouring, None without grains; its scale is updated from time to time."""
-        key, now = (shown.look.colour, shown.footage), time.monotonic()
+        """The colouring of the grains, None without any; the scales are updated from time to time."""
+        key, now, beds = (shown.look.colour, shown.footage), time.monotonic(), [shown.footage.bed]
         if self._colouring is None or self._colouring[0] != key or now - self._colouring[1] > SCALE_UPDATE:
-            self._colouring = key, now, colouring(shown.look.colour, [shown.footage.bed])
+            self._colouring = key, now, colouring(shown.look.colour, beds)
+            self._water = WaterLayer(beds, shown.look.colour, self.unit)
         return self._colouring[2]
 
     def _stage_picture(self, shown: Shown, scale: Colouring | None) -> np.ndarray:
@@ -190,20 +193,38 @@ class Page:
             stage = self._still("tank", key, lambda: self._empty_stage(shown, camera, moved)).copy()
         else:
             stage = self._empty_stage(shown, camera, moved)
+        if footage.water:
+            self._paint_water(stage, shown, moved)
         if scale:
             self._paint_grains(stage, shown, moved, scale)
         for line, shift in zip(footage.parts.values(), footage.moved_parts(frame), strict=True):
             paint_plate(stage, moved, line + shift, PLATE * self.unit, palette.PART)
         if scale and shown.look.overlay == "forces":
-            paint_strokes(stage, self._force_strokes(shown, moved), FORCE)
+            lines, self._largest = force_strokes(shown, moved)
+            paint_strokes(stage, lines, FORCE)
         elif scale and shown.look.overlay == "velocities":
-            paint_strokes(stage, self._velocity_strokes(shown, moved), palette.INK)
+            lines, self._largest = velocity_strokes(shown, moved)
+            paint_strokes(stage, lines, palette.INK)
         self._mark(stage, shown, moved)
         if shown.curve != "nothing":
             _put(stage, self._curve(shown), 0, 0)
+        if footage.water:
+            image = Image.fromarray(stage)
+            self._marks(footage).name(image, moved)
+            stage = np.array(image)
         if shown.lost:
             _put(stage, self._still("lost", (shown.lost,), lambda: self._lost(shown.lost)), 0, -self.u(BAND))
         return stage
+
+    def _paint_water(self, stage: np.ndarray, shown: Shown, camera: Camera) -> None:
+        """The water and its gauges, whose names are written at the end."""
+        footage, frame = shown.footage, shown.frame
+        self._water.paint(stage, camera, footage.bed, frame)
+        levels = footage.row(frame, "level_depth") if footage.water.levels else ()
+        self._marks(footage).paint(stage, camera, dict(zip(footage.water.levels, levels, strict=True)))
+
+    def _marks(self, footage: LiveFootage) -> Marks:
+        return Marks(footage.outline, footage.water, hues_of(footage.water), self.unit)
 
     def _paint_grains(self, stage: np.ndarray, shown: Shown, camera: Camera, scale: Colouring) -> None:
         """The grains, paler below force chains."""
@@ -257,11 +278,11 @@ class Page:
         if centre is not None:
             (x, y), r = centre - self.stage[:2], self.u(0.45)
             arms = np.array([[x - 1.7 * r, y, 0.7, x + 1.7 * r, y, 0.7], [x, y - 1.7 * r, 0.7, x, y + 1.7 * r, 0.7]])
-            paint_strokes(stage, np.concatenate([arms, _ring(x, y, r, 0.07 * self.unit)]), GRAB)
+            paint_strokes(stage, np.concatenate([arms, ring(x, y, r, 0.07 * self.unit)]), GRAB)
         if picked is not None:
             place = camera.pixels(footage.grains("position", shown.frame)[picked][None])[0]
             r = 1.3 * footage.radius[0][picked] * camera.scale + 2.0
-            paint_strokes(stage, _ring(*place, r, 0.08 * self.unit), PICKED)
+            paint_strokes(stage, ring(*place, r, 0.08 * self.unit), PICKED)
 
     def _put_texts(self, picture: np.ndarray, shown: Shown) -> None:
         """The title above the stage; below it the scale, and the latest message or else the meaning of the overlay."""
@@ -307,32 +328,17 @@ class Page:
         ImageDraw.Draw(image).text((0, 0), said, palette.INK, face, anchor="la")
         return image
 
-    def _force_strokes(self, shown: Shown, camera: Camera) -> np.ndarray:
-        """Force chains: lines from the grains to their contacts, with thickness proportional to the force."""
-        footage, frame = shown.footage, shown.frame
-        lines, thickness, self._largest = chains(footage.pressing(frame), footage.grains("position", frame))
-        half = thickness * (THICKEST * footage.radius[0].mean() * camera.scale)
-        return _strokes(camera, lines, half, half)
-
-    def _velocity_strokes(self, shown: Shown, camera: Camera) -> np.ndarray:
-        """Tapered lines along the velocities relative to the tank."""
-        footage, frame = shown.footage, shown.frame
-        place, velocity = (footage.grains(name, frame) for name in ("position", "velocity"))
-        speed, radius = np.hypot(*velocity.T), footage.radius[0].mean()
-        self._largest = float(np.nanquantile(speed, FASTEST))
-        moving = speed > 0.03 * self._largest
-        tips = place + velocity * (LONGEST * radius / max(self._largest, 1e-9))
-        half = np.full(moving.sum(), max(0.15 * radius * camera.scale, 0.7))
-        return _strokes(camera, np.stack([place, tips], axis=1)[moving], half, 0.0 * half)
-
     def _curve(self, shown: Shown) -> np.ndarray:
         """The small plot of the experiment, redrawn a few times a second."""
 
         def drawn() -> Image.Image:
             drawing = CURVES[shown.curve](shown.footage, shown.frame)
-            labels, colours = (drawing.across, drawing.upwards), palette.SERIES[: len(drawing.curves)]
+            labels, colours = (
+                (drawing.across, drawing.upwards),
+                drawing.colours or palette.SERIES[: len(drawing.curves)],
+            )
             edge, size = self.u(0.5), (self.u(PLOT[0] - 1.5), self.u(PLOT[1] - 1.5))
-            plot = deco.LivePlot(size, drawing.curves, colours, labels, 0.9 * TEXT * self.unit)
+            plot = deco.LivePlot(size, drawing.curves, colours, labels, 0.9 * TEXT * self.unit, drawing.names)
             return ImageOps.expand(plot.picture(drawing.counts), edge, palette.PAPER)
 
         return self._still("plot", (shown.curve, shown.footage, shown.playhead), drawn, CURVE_UPDATE)
@@ -344,8 +350,9 @@ class Page:
         key = shown.playhead, shown.going, shown.pace, look.picked, shown.footage
         lines = self._still("readings", key, lambda: self._lines(shown), TEXT_UPDATE)
         _put(picture, lines, left, self.u(MARGIN))
-        key = id(scale), look.typing, *shown.values.items()
-        rest = self._still("column", key, lambda: self._still_column(shown, scale))
+        bar = self._water.colouring or scale
+        key = id(bar), look.typing, *shown.values.items()
+        rest = self._still("column", key, lambda: self._still_column(shown, bar))
         _put(picture, rest, left, self.controls[0])
 
     def _lines(self, shown: Shown) -> Image.Image:
@@ -428,16 +435,3 @@ def _put(picture: np.ndarray, part: np.ndarray, left: int, top: int) -> None:
     """Put a part into a picture, in place; a negative `top` counts from below."""
     top %= len(picture)
     picture[top : top + part.shape[0], left : left + part.shape[1]] = part
-
-
-def _ring(x: float, y: float, radius: float, half: float) -> np.ndarray:
-    """A circle as strokes (k, 6) in pixels; `half` is half its thickness."""
-    turn = np.linspace(0.0, 2.0 * np.pi, 33)
-    points = np.column_stack([x + radius * np.cos(turn), y + radius * np.sin(turn), np.full(33, half)])
-    return np.hstack([points[:-1], points[1:]])
-
-
-def _strokes(camera: Camera, lines: np.ndarray, first: np.ndarray, second: np.ndarray) -> np.ndarray:
-    """Lines (k, 2, 2) m as strokes (k, 6) in pixels; `first`, `second`: half thickness (pixels) at their ends."""
-    ends = camera.pixels(lines.reshape(-1, 2)).reshape(-1, 2, 2)
-    return np.column_stack([ends[:, 0], first, ends[:, 1], second])

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from lab.base.errors import LabError
-from lab.paint.colours import MODES
+from lab.preset.sections.video import colours_of
 from lab.runs.runner import RENDERS, free_folder
 from lab.view.footage import LiveFootage, Scenery
 from lab.view.page import Page
@@ -48,8 +48,8 @@ class Session(Shown):
     def __post_init__(self) -> None:
         from lab.preset.find import load
 
-        video = load(self.name, self.overrides).resolved.video
-        self.look = Look(video.colour, video.frame)
+        preset = load(self.name, self.overrides).resolved
+        self.look = Look(preset.video.colour or colours_of(preset.matters)[0], preset.video.frame)
         self.page = Page(self.size)
         self._grip, self._shape = None, "disc"
         self._restart(self.overrides)
@@ -98,7 +98,7 @@ class Session(Shown):
         self.settling = False
         self.footage = LiveFootage(scenery)
         if self.footage.sea or self.footage.bed.empty:
-            self.look.inset = "turn"
+            self.look.inset = "water" if self.footage.water else "turn"
         self.values = offered(scenery.preset) | own
         self._own = own
         for name, value in own.items():
@@ -343,7 +343,7 @@ KEYS: dict[str, tuple[str, Callable[[Session], None]]] = {
     "d": ("tilt to starboard by 5°", _tilt(-NUDGE)),
     "w": ("hold everything upright and still", _calm),
     "m": ("move as the preset does", _as_preset),
-    "c": ("another colouring", _look("colour", lambda session: tuple(MODES))),
+    "c": ("another colouring", _look("colour", lambda session: session.colours)),
     "f": ("frame of the tank or the earth", _look("frame", lambda _: ("tank", "earth"))),
     "o": ("overlay of forces or velocities", _look("overlay", lambda _: OVERLAYS)),
     "i": ("another curve", _look("inset", lambda session: offered_curves(session.footage))),

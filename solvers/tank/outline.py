@@ -19,8 +19,8 @@ def top_edges(outline: np.ndarray) -> tuple[int, ...]:
     return tuple(int(k) for k in np.flatnonzero(at_top & np.roll(at_top, -1)))
 
 
-def area_below(outline: np.ndarray, depth: float) -> float:
-    """Area (m²) of the tank up to `depth` m above its lowest point, by the shoelace formula."""
+def cut_off(outline: np.ndarray, depth: float) -> np.ndarray:
+    """Corners (k, 2) of what is left of the tank when it is cut off at `depth` m above its lowest point."""
     corners = []
     floor = outline[:, 1].min()
     for a, b in zip(outline, np.roll(outline, -1, axis=0), strict=True):
@@ -29,7 +29,12 @@ def area_below(outline: np.ndarray, depth: float) -> float:
             corners.append(a)
         if below_a != below_b:
             corners.append(a + (b - a) * (floor + depth - a[1]) / (b[1] - a[1]))
-    y, z = np.array(corners).T
+    return np.array(corners)
+
+
+def area_below(outline: np.ndarray, depth: float) -> float:
+    """Area (m²) of the tank up to `depth` m above its lowest point, by the shoelace formula."""
+    y, z = cut_off(outline, depth).T
     return float(0.5 * abs(y @ np.roll(z, -1) - z @ np.roll(y, -1)))
 
 

@@ -12,6 +12,7 @@ from lab.preset.recorded import from_table, to_table
 from lab.recording import Recorder, new_recording
 from lab.recording.layout import frames_of, rows_of, series_of
 
+GRAINS = ("grains",)
 WIDTH, DEPTH, DIAMETER = 0.180, 0.060, 0.003  # m
 
 
@@ -54,7 +55,7 @@ def recorder(folder: Path, worlds: int = 1, count: int = 4, **options: object) -
 
 def sample(time: float, worlds: int = 1, **values: object) -> dict:
     """A row of the series; quantities that are not given are zero."""
-    return {**_zeros(series_of(afloat=False), worlds), "time": time, **values}
+    return {**_zeros(series_of(False, GRAINS), worlds), "time": time, **values}
 
 
 def _zeros(quantities: tuple, worlds: int, count: int = 0) -> dict:
@@ -69,7 +70,7 @@ def of_a_ship(worlds: int = 1, **values: object) -> dict:
 
 def frame(time: float, worlds: int = 1, count: int = 4, **values: object) -> dict:
     """A picture frame without parts; quantities that are not given are zero."""
-    return {**_zeros(frames_of(), worlds, count), "time": time, **values}
+    return {**_zeros(frames_of(False, GRAINS), worlds, count), "time": time, **values}
 
 
 def record(

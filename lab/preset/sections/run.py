@@ -29,9 +29,11 @@ class Run:
         Doc("Time step; derived from the material and the speeds without it."),
     ] = "auto"
     force_step: Annotated[bool, Doc("Allow a step past the derived one.")] = False
-    accuracy: Annotated[Literal[*LEVELS], Of("grains"), Doc("Level of accuracy, which sets stiffness and step.")] = (
-        DEFAULT
-    )
+    accuracy: Annotated[
+        Literal[*LEVELS],
+        Of("grains", "water"),
+        Doc("Level of accuracy, which sets the grains' stiffness and step, or the spacing of the water."),
+    ] = DEFAULT
     gravity: Annotated[
         float, Unit("m/s^2"), Interval(gt=0), Usual(0.1, 9.81, "m/s^2"), Doc("Acceleration of gravity.")
     ] = 9.81

@@ -3,13 +3,13 @@
 import numpy as np
 
 from lab.base.errors import LabError
+from lab.preset.outline import stands_out
 from lab.preset.sections.sea import Waves
 from lab.preset.sections.ship import Ship
 from lab.preset.units import show
 from solvers.machine.errors import Unavailable
 from solvers.ship.section import Section
 
-TOUCHING = 1e-9  # of the hull's size: tolerance for a hold outside the hull
 MOST_FLAT = 200.0  # largest ratio of breadth and draught, either way; the panels do not resolve flatter sections
 FARTHEST = 10.0  # times the hull's size: largest distance of a ship's points from the origin
 
@@ -104,24 +104,9 @@ def _check_openings(ship: Ship, box: bool) -> None:
 
 def _check_hold(ship: Ship, hold: np.ndarray) -> None:
     """Raise LabError if the hold sticks out of the hull: a corner of it outside, or one of the hull inside it."""
-    hull, placed = ship.corners, hold + np.array(ship.hold)
-    slack = TOUCHING * float(np.ptp(hull, axis=0).max())
-    out = [corner for corner in placed if _inside(corner, hull) < -slack]
-    out += [corner for corner in hull if _inside(corner, placed) > slack]
-    if out:
-        place = f"[{show(float(out[0][0]), 'm')}, {show(float(out[0][1]), 'm')}]"
+    out = stands_out(hold + np.array(ship.hold), ship.corners)
+    if out is not None:
+        place = f"[{show(float(out[0]), 'm')}, {show(float(out[1]), 'm')}]"
         raise LabError(
             f"ship.hold: the tank stands out of the hull at {place}; move it, or change the hull or the tank."
         )
-
-
-def _inside(point: np.ndarray, outline: np.ndarray) -> float:
-    """Distance (m) of a point from the edge of a polygon (m, 2); negative outside."""
-    begin, along = outline, np.roll(outline, -1, axis=0) - outline
-    share = np.clip(((point - begin) * along).sum(1) / (along**2).sum(1), 0.0, 1.0)
-    away = float(np.hypot(*(point - begin - share[:, None] * along).T).min())
-    (y, z), end = point, begin + along
-    crosses = (begin[:, 1] > z) != (end[:, 1] > z)
-    rise = np.where(crosses, along[:, 1], 1.0)
-    right = crosses & (begin[:, 0] + (z - begin[:, 1]) / rise * along[:, 0] > y)
-    return away if right.sum() % 2 else -away

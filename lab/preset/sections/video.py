@@ -1,5 +1,6 @@
 """What a run records, and how it is filmed."""
 
+from collections.abc import Collection
 from dataclasses import dataclass
 from typing import Annotated, Literal
 
@@ -7,7 +8,10 @@ from lab.base.errors import LabError
 from lab.preset.fields import Alike, Of
 from solvers.machine.marks import Doc, Interval, Unit
 
-COLOURS = ("speed", "displacement", "layer", "size", "kind", "shape", "spin")  # what `lab.paint.colours` paints
+OF_GRAINS = ("speed", "displacement", "layer", "size", "kind", "shape", "spin")  # what `lab.paint.colours` paints
+OF_WATER = ("water", "pressure", "speed", "vorticity", "particles")  # what `lab.paint.water` paints
+COLOURS = (*OF_GRAINS, *(colour for colour in OF_WATER if colour not in OF_GRAINS))
+OF_MATTERS = {"grains": OF_GRAINS, "water": OF_WATER}
 
 Rate = Annotated[float, Unit("Hz"), Interval(gt=0, le=1e6)]
 
@@ -21,7 +25,9 @@ class Record:
     checkpoint_every: Annotated[
         float, Unit("s"), Alike(), Interval(ge=0), Doc("Wall-clock time between checkpoints.")
     ] = 60.0
-    xdmf: Annotated[bool, Of("grains"), Doc("Write a file beside the recording with which ParaView opens it.")] = False
+    xdmf: Annotated[
+        bool, Of("grains", "water"), Doc("Write a file beside the recording with which ParaView opens it.")
+    ] = False
 
 
 @dataclass(frozen=True)
@@ -30,13 +36,25 @@ class Video:
 
     width: Annotated[int, Interval(ge=320, le=7680), Doc("Width of the picture in pixels, an even number.")] = 1280
     height: Annotated[int, Interval(ge=180, le=4320), Doc("Height of the picture in pixels, an even number.")] = 720
-    colour: Annotated[Literal[*COLOURS], Of("grains"), Doc("What the colour of a grain shows.")] = "speed"
+    colour: Annotated[
+        Literal[*COLOURS] | None,
+        Doc("What the colour of the grains or of the water shows; by default the speed of grains, and water as it is."),
+    ] = None
     frame: Annotated[Literal["tank", "earth"], Doc("Whether the camera moves with the tank or stands still.")] = "tank"
     speed: Annotated[float, Interval(gt=0), Doc("Playback speed; 1 is as in nature.")] = 1.0
 
 
-def check_video(video: Video) -> None:
-    """Raise LabError for picture sizes that the video codec cannot encode."""
+def colours_of(matters: Collection[str]) -> tuple[str, ...]:
+    """The colours of these matters; the first one is painted where none is named. Those of grains for an empty tank."""
+    return tuple(dict.fromkeys(word for matter in matters or ("grains",) for word in OF_MATTERS[matter]))
+
+
+def check_video(video: Video, matters: Collection[str]) -> None:
+    """Raise LabError for a colour of what is not there, and for picture sizes that the video codec cannot encode."""
+    fitting = [name for name, words in OF_MATTERS.items() if video.colour in words]
+    if video.colour and not set(fitting) & set(matters):
+        said = f"{' or '.join(fitting)}, and there {'is' if fitting == ['water'] else 'are'} none"
+        raise LabError(f"video.colour: goes with {said}; add a table [{fitting[0]}], or leave this out.")
     for name in ("width", "height"):
         if getattr(video, name) % 2:
             raise LabError(f"video.{name}: must be even for H.264 (got {getattr(video, name)}).")

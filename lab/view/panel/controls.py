@@ -7,6 +7,7 @@ from math import pi
 
 from lab.preset.fields import taken_by
 from lab.preset.schema import Preset
+from lab.preset.sections.water.liquid import spacing
 from lab.preset.units import parse
 from lab.view.panel.swell import RANDOM
 from solvers.machine.marks import Usual
@@ -149,6 +150,10 @@ CONTROLS: dict[str, Control] = {
         "grains.diameter",
         RESTARTS,
         _diameter,
+    ),
+    "depth": Control("depth", "water.depth", RESTARTS, lambda preset: preset.water and preset.water.depth),
+    "spacing": Control(
+        "particles", "water.spacing", RESTARTS, lambda preset: spacing(preset) if preset.water else None
     ),
 }
 

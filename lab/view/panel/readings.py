@@ -27,6 +27,9 @@ def readings(shown: Shown) -> list[str]:
     count = footage.radius.size
     if shown.settling:
         return [f"{count} grains"]
+    if footage.water:
+        drops = f"{footage.water.volume.size} particles of water, {1e3 * footage.water.spacing:.3g} mm apart"
+        return [f"{shown.factor:.2f} of real time ({limit})", _pose(shown), drops]
     found = [f"{shown.factor:.2f} of real time ({limit})", _pose(shown)]
     if count:
         found.append(f"{count} grains, {contacts_each(footage.pressing(frame), count):.2f} contacts each")

@@ -1,7 +1,6 @@
 """Videos, pictures and posters of a recording, and the messages if there can be none."""
 
 import shutil
-from typing import get_args, get_type_hints
 
 import h5py
 import imageio.v2 as imageio
@@ -14,7 +13,9 @@ from lab.paint.colours import MODES
 from lab.paint.film import Film, choose_beds, choose_look
 from lab.paint.footage import Bed, open_footage
 from lab.paint.video import playback, poster, render_grid, render_recording
-from lab.preset.sections.video import Video
+from lab.paint.water.colours import FIELDS
+from lab.preset.fields import taken_of
+from lab.preset.sections.video import Video, colours_of
 from solvers.machine.runtime import initialise
 from tests.oracles.synthetic import box, frame, recorder, sample
 from tests.oracles.tampering import sealed
@@ -182,7 +183,9 @@ def test_spin_is_coloured_in_turns_a_second(tmp_path):
 
 
 def test_a_preset_may_name_every_colour_and_no_other():
-    assert get_args(get_type_hints(Video)["colour"]) == tuple(MODES)
+    assert taken_of(Video)["colour"].words == (*MODES, *(name for name in ("water", *FIELDS) if name not in MODES))
+    assert colours_of(("grains",)) == tuple(MODES)
+    assert colours_of(("water",)) == ("water", *FIELDS)
 
 
 def test_the_curves_grow_with_the_film(four_beds):

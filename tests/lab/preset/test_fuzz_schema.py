@@ -14,7 +14,7 @@ from lab.preset.fields import NAME, walk
 from lab.preset.recorded import checked, from_table, to_table
 from lab.preset.schema import Preset, resolve
 from lab.preset.units import quoted
-from tests.lab.preset.test_malformed import LISTED, RICH, TABLES, assert_sentence, examples
+from tests.lab.preset.test_malformed import LISTED, RICH, TABLES, WET, assert_sentence, examples
 from tests.oracles.made_presets import presets
 
 SHIP = {
@@ -28,7 +28,7 @@ SHIP = {
     "waves": {"amplitude": "10 mm", "frequency": "5 rad/s"},
 }
 FEW, MANY = 300, int(os.environ.get("FUZZ", 20_000))
-BASES = [*map(tomllib.loads, (RICH, LISTED)), SHIP]
+BASES = [*map(tomllib.loads, (RICH, LISTED, WET)), SHIP]
 TOP = {key.partition(".")[0] for key, _ in walk(Preset)}
 
 

@@ -15,7 +15,7 @@ from lab.preset.fields import Taken, taken_from, walk
 from lab.preset.find import load
 from lab.preset.schema import Preset
 from lab.report.explain import explain
-from tests.lab.preset.test_malformed import RICH, TABLES, assert_sentence, tried, write
+from tests.lab.preset.test_malformed import RICH, TABLES, WET, assert_sentence, tried, write
 
 EXPONENTS = 30  # numbers come from 1e-30 to 1e30
 FEW, MANY = 2, 12  # of them for each key
@@ -54,6 +54,7 @@ def bases(tmp_path_factory) -> dict[str, dict]:
     barge = tomllib.loads(load("ship/barge-3dof-quick", {"grains.diameter": "12 mm"}).given_text)
     outlines = rich | {"grains": {"diameter": "6 mm", "count": 20}} | tomllib.loads(SHAPES)
     found = dict.fromkeys(("ship", "sea", "waves"), barge)
+    found |= dict.fromkeys(("water", "gauges"), tomllib.loads(WET))
     found |= {"kinds": rich | tomllib.loads(KINDS), "shapes": outlines}
     return {"": rich, "folder": folder} | found
 

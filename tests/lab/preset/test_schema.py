@@ -17,7 +17,7 @@ from lab.preset.find import QUICK, load, names
 from lab.preset.reference import range_of, reference, value_of
 from lab.preset.schema import Preset
 from solvers.machine.marks import Interval
-from tests.lab.preset.test_malformed import LISTED, RICH
+from tests.lab.preset.test_malformed import LISTED, RICH, WET
 
 PRESETS = Path(__file__).parents[3] / "presets"
 VALIDATOR = Draft7Validator(json_schema())
@@ -31,7 +31,8 @@ WRONG = {
     "a point of three": "[motion.tilt]\ncentre = ['0 m', '0 m', '0 m']",
     "a name that is none": "[parts.'a b']\nstart = '1 s'",
     "a quick variant of another experiment": "quick.tank.width = '3 mm'",
-    "the sea by its former name": "[water]\ndepth = '1 m'",
+    "a kernel that is none": "[water]\nkernel = 'cubic'",
+    "a gauge of another kind": "[gauges.P1]\nkind = 'sound'",
 }
 
 
@@ -53,7 +54,7 @@ def test_the_schema_beside_the_presets_is_the_present_one():
     Draft7Validator.check_schema(json_schema())
 
 
-@pytest.mark.parametrize("text", [RICH, LISTED])
+@pytest.mark.parametrize("text", [RICH, LISTED, WET])
 def test_other_sound_presets_fit_the_schema(text):
     assert complaints(text) == []
 
@@ -136,10 +137,8 @@ def test_the_command_says_so_in_a_sentence(tmp_path):
 
 
 @pytest.mark.parametrize("head", ["format = 3\n", ""])
-def test_water_of_the_present_format_is_not_there_yet(head, tmp_path):
-    with pytest.raises(
-        LabError, match=r"^water: is water in a tank, which cannot be filled with it yet; .* is \[sea\]"
-    ):
+def test_water_of_the_present_format_is_not_the_sea(head, tmp_path):
+    with pytest.raises(LabError, match=r"^water: water in a ship's hold is not computed yet; .* is \[sea\]"):
         load(written(tmp_path, f"{head}{BARGE}"), {"water.depth": "1 m"})
 
 

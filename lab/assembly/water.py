@@ -1,0 +1,43 @@
+"""The water of a scene, and its particles at rest, from a preset."""
+
+import numpy as np
+
+from lab.base.errors import LabError
+from lab.preset.schema import Preset
+from lab.preset.sections.water.liquid import bounds, liquid
+from solvers.fluid.given import VOLUME
+from solvers.fluid.start.lattice import at_rest
+from solvers.scene import Scene
+
+
+def water_of(preset: Preset) -> dict:
+    """What a scene says of the water, by its fields; it is the same in all repeats. Raises LabError."""
+    return {"water": liquid(preset), "drops": np.tile(drops_of(preset), (preset.run.repeats, 1, 1))}
+
+
+def drops_of(preset: Preset) -> np.ndarray:
+    """The particles (n, 6) of a world. Raises LabError if none fits in."""
+    try:
+        return at_rest(*bounds(preset), liquid(preset), preset.run.gravity)
+    except ValueError as error:
+        raise LabError(f"water.spacing: {error}; take smaller particles.") from None
+
+
+def most_drops(preset: Preset) -> int:
+    """Number of particles of water in a world, rounded up, before any is made; 0 without water."""
+    if preset.water is None:
+        return 0
+    polygon, level = bounds(preset)
+    low, size = polygon.min(axis=0), liquid(preset).spacing
+    wide, deep = polygon[:, 0].max() - low[0], level - low[1]
+    return int(np.ceil(wide / size + 1.0) * np.ceil(deep / size + 1.0))
+
+
+def volumes_of(drops: np.ndarray | None, worlds: int) -> np.ndarray:
+    """Volumes (W, n) m² of the particles of a scene in the plane; n is 0 without water."""
+    return np.zeros((worlds, 0)) if drops is None else drops[..., VOLUME]
+
+
+def particles(scene: Scene) -> int:
+    """Number of grains and of particles of water in a world."""
+    return scene.radius.shape[1] + scene.particles

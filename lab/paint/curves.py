@@ -1,0 +1,153 @@
+"""The curves beside the picture: what is drawn against time, and in which colours."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from lab.paint import palette
+from lab.paint.footage import Bed
+from lab.paint.water.gauges import hues_of
+
+MOST_SAMPLES = 800  # points per curve of the plot
+MOST_PLOTS = 2
+TOLERANCE = 1e-9  # poses that differ by less (m, rad) count as equal
+
+
+@dataclass
+class Plot:
+    """Curves (x, y) with their colours and the times of their points; labels: of x and y; names: in their colours."""
+
+    labels: tuple[str, str]
+    curves: list[tuple[np.ndarray, np.ndarray]] = field(default_factory=list)
+    colours: list[tuple] = field(default_factory=list)
+    samples: list[np.ndarray] = field(default_factory=list)
+    names: list[tuple[str, tuple]] = field(default_factory=list)
+
+    def add(self, bed: Bed, values: np.ndarray, colour: tuple, name: str = "") -> None:
+        """Add a curve of a bed's values (T,) against time; its highest and lowest points stay."""
+        kept = _kept(values)
+        time = bed.footage.series_time[kept]
+        self.curves.append((time, values[kept]))
+        self.colours.append(colour)
+        self.samples.append(time)
+        self.names += [(name, colour)] if name else []
+
+
+def plots(beds: Sequence[Bed], hues: Sequence[tuple]) -> list[Plot]:
+    """What is drawn of some beds, the first of which are shown and have these hues: one plot, or two."""
+    hue = dict(zip(beds, hues, strict=False))  # of the beds that are shown
+    wet = [bed for bed in beds if bed.footage.water]
+    of_gauges = _of_gauges(wet, hue) if wet else []
+    moved = [_of_motion(beds, hues)] if not wet or any(bed.footage.sea for bed in beds) else []
+    return (moved + of_gauges)[:MOST_PLOTS] or [_of_the_centre(wet, hue)]
+
+
+def _of_motion(beds: Sequence[Bed], hues: Sequence[tuple]) -> Plot:
+    """The main quantity of beds of grains, of empty tanks and of ships, against time or a steady tilt."""
+    afloat = any(bed.footage.sea for bed in beds)
+    still = afloat or any(bed.empty for bed in beds)
+    steady = not still and all(_monotonic(bed.footage.series_pose[:, bed.world, 2]) for bed in beds)
+    label, measured = _quantity(beds)
+    plot = Plot(("tilt φ (°)" if steady else "time (s)", label))
+    for k in reversed(range(len(beds))):  # the beds that are shown on top
+        footage, world = beds[k].footage, beds[k].world
+        count = len(footage.series_time)
+        kept = np.unique(np.linspace(0, count - 1, min(count, MOST_SAMPLES)).astype(int))
+        time = footage.series_time[kept]
+        across = np.degrees(footage.series_pose[kept, world, 2]) if steady else time
+        plot.curves.append((across, measured(beds[k])[kept]))
+        plot.colours.append(hues[k] if k < len(hues) else palette.LINE)
+        plot.samples.append(time)
+    return plot
+
+
+def _of_gauges(beds: Sequence[Bed], hue: Mapping[Bed, tuple]) -> list[Plot]:
+    """The pressure and the depth at the gauges: all those of one bed, or the first one of several beds."""
+    found = []
+    for quantity, of in (("gauge_pressure", "gauges"), ("level_depth", "levels")):
+        there = [bed for bed in beds if getattr(bed.footage.water, of)]
+        if not there:
+            continue
+        largest = max(float(np.nanmax(np.abs(_measured(bed, quantity)), initial=0.0)) for bed in there)
+        label, scale = _pressures(largest) if of == "gauges" else _depths(largest)
+        plot = Plot(("time (s)", label))
+        if len(beds) == 1:
+            names, colours = getattr(there[0].footage.water, of), hues_of(there[0].footage.water)
+            for k, name in reversed(list(enumerate(names))[: len(palette.SERIES)]):
+                plot.add(there[0], scale * _measured(there[0], quantity)[:, k], colours[name], name)
+            plot.names.reverse()
+        else:
+            for bed in reversed(there):
+                plot.add(bed, scale * _measured(bed, quantity)[:, 0], hue.get(bed, palette.LINE))
+        found.append(plot)
+    return found
+
+
+def _of_the_centre(beds: Sequence[Bed], hue: Mapping[Bed, tuple]) -> Plot:
+    """The sideways shift of the water's centre of mass."""
+    plot = Plot(("time (s)", "shift Δy (mm)"))
+    for bed in reversed(beds):
+        across = _measured(bed, "water_centre")[:, 0]
+        plot.add(bed, 1e3 * (across - across[0]), hue.get(bed, palette.LINE))
+    return plot
+
+
+def _measured(bed: Bed, name: str) -> np.ndarray:
+    """A quantity of a bed (T, ...)."""
+    return bed.footage.measured(name)[:, bed.world]
+
+
+def _pressures(largest: float) -> tuple[str, float]:
+    return ("pressure (kPa)", 1e-3) if largest >= 1e3 else ("pressure (Pa)", 1.0)
+
+
+def _depths(largest: float) -> tuple[str, float]:
+    return ("depth (m)", 1.0) if largest >= 1.0 else ("depth (mm)", 1e3)
+
+
+def _kept(values: np.ndarray) -> np.ndarray:
+    """The rows of MOST_SAMPLES points or a few more that keep the peaks: of each part the lowest and the highest."""
+    count = len(values)
+    if count <= MOST_SAMPLES:
+        return np.arange(count)
+    parts = np.array_split(np.nan_to_num(values), MOST_SAMPLES // 2)
+    first = np.cumsum([0, *(len(part) for part in parts[:-1])])
+    extremes = [(start + part.argmin(), start + part.argmax()) for start, part in zip(first, parts, strict=True)]
+    return np.unique(np.append(extremes, [0, count - 1]))
+
+
+def _quantity(beds: Sequence[Bed]) -> tuple[str, Callable[[Bed], np.ndarray]]:
+    """The quantity of the plot, the same for all beds: its label and a function to the values (T,) of a bed.
+
+    The roll of ships; of empty tanks what moves; the spilled grains if there are any; else the shift of the centre of
+    mass, upwards if only heave or parts can move the grains, sideways otherwise.
+    """
+    if any(bed.footage.sea for bed in beds):
+        return _coordinate(2)
+    if any(bed.empty for bed in beds):
+        ways = [np.ptp(bed.footage.series_pose[:, bed.world], axis=0) for bed in beds]
+        return _coordinate(max((2, 0, 1), key=lambda axis: max(way[axis] for way in ways) > TOLERANCE))
+    if any(bed.footage.spilled[:, bed.world].any() for bed in beds):
+        return "spilled (%)", lambda bed: 100 * bed.footage.spilled[:, bed.world] / len(bed.radius)
+    upright = not any(np.ptp(bed.footage.series_pose[:, bed.world, ::2], axis=0).any() for bed in beds)
+    axis = 1 if upright else 0
+
+    def shift(bed: Bed) -> np.ndarray:
+        centre = bed.footage.centre_of_mass[:, bed.world, axis]
+        return (centre - centre[0]) / bed.diameter
+
+    return f"shift Δ{'yz'[axis]} (diameters)", shift
+
+
+def _coordinate(axis: int) -> tuple[str, Callable[[Bed], np.ndarray]]:
+    """A coordinate of the pose as the quantity of the plot."""
+    label, scale = (("sway (mm)", 1e3), ("heave (mm)", 1e3), ("roll φ (°)", 180.0 / np.pi))[axis]
+    return label, lambda bed: scale * bed.footage.series_pose[:, bed.world, axis]
+
+
+def _monotonic(tilt: np.ndarray) -> bool:
+    """Whether tilt (T,) in rad is monotonic and changes by more than half a degree."""
+    steps = np.diff(tilt)
+    one_way = bool((steps >= -TOLERANCE).all() or (steps <= TOLERANCE).all())
+    return one_way and bool(np.ptp(tilt) > np.radians(0.5))

@@ -1,0 +1,87 @@
+"""What the colour of water shows.
+
+A new one takes a function from beds to `Colouring`, a line in FIELDS, and its name in the colours of the presets.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from lab.paint.colours import SAMPLED_FRAMES, Colouring, round_up, spread, table
+from lab.paint.water.vorticity import vorticity
+
+if TYPE_CHECKING:
+    from lab.paint.footage import Bed
+
+COVERED = 99.5  # % of the values of all frames lie above the lower end of a scale, and so many below the upper one
+LEAST = 0.05  # of the highest pressure: less suction than that is not given a part of the scale
+MOST_OF_A_FRAME = 20_000  # particles of a frame that are looked at for the scale
+FEW = 15  # frames for the scale of what takes time to compute
+
+
+def pressure(beds: Sequence[Bed]) -> Colouring:
+    """Pressure over that of the air, from zero, or from the largest suction if there is some."""
+    low, high = _ends(beds, lambda bed, frame: bed.drops("water_pressure", frame))
+    high = round_up(max(high, 1.0))
+    low = -round_up(-low) if low < -LEAST * high else 0.0
+    factor, unit = (1e-6, "MPa") if high >= 1e6 else (1e-3, "kPa") if high >= 1e3 else (1.0, "Pa")
+
+    def values(bed: Bed, frame: int) -> np.ndarray:
+        return factor * bed.drops("water_pressure", frame)
+
+    return Colouring(f"pressure ({unit})", factor * low, factor * high, table("viridis", low=0.15), values)
+
+
+def speed(beds: Sequence[Bed]) -> Colouring:
+    """|u| relative to the tank."""
+
+    def speeds(bed: Bed, frame: int) -> np.ndarray:
+        return np.hypot(*bed.drops("water_velocity", frame).T)
+
+    top = round_up(max(_ends(beds, speeds)[1], beds[0].footage.water.spacing))
+    factor, unit = (1.0, "m/s") if top >= 1.0 else (1e3, "mm/s")
+
+    def values(bed: Bed, frame: int) -> np.ndarray:
+        return factor * speeds(bed, frame)
+
+    return Colouring(f"speed in the tank ({unit})", 0.0, factor * top, table("viridis"), values)
+
+
+def turning(beds: Sequence[Bed]) -> Colouring:
+    """Vorticity relative to the tank, red counter-clockwise and blue clockwise."""
+
+    def values(bed: Bed, frame: int) -> np.ndarray:
+        return vorticity(bed.water_place(frame), bed.drops("water_velocity", frame), bed.footage.water.spacing)
+
+    top = round_up(max(_ends(beds, lambda bed, frame: np.abs(values(bed, frame)), FEW)[1], 1e-2))
+    return Colouring("vorticity in the tank (1/s)", -top, top, table("coolwarm", low=0.02), values)
+
+
+FIELDS: dict[str, Callable[[Sequence[Bed]], Colouring]] = {
+    "pressure": pressure,
+    "speed": speed,
+    "vorticity": turning,
+    "particles": speed,
+}
+
+
+def field(name: str, beds: Sequence[Bed]) -> Colouring | None:
+    """The colours of water by this name, one scale for all beds; None for water that looks like water."""
+    return FIELDS[name](beds) if name in FIELDS else None
+
+
+def _ends(
+    beds: Sequence[Bed], values: Callable[[Bed, int], np.ndarray], frames: int = SAMPLED_FRAMES
+) -> tuple[float, float]:
+    """The ends of a scale on which nearly all values of all sampled frames lie; 0 and 0 if no water is left.
+
+    All frames count together, so that an impact, which one frame shows, does not leave the others without colours.
+    """
+    samples = (values(bed, frame) for bed, frame in spread(beds, frames))
+    found = np.concatenate([sample[:: 1 + len(sample) // MOST_OF_A_FRAME] for sample in samples])
+    found = found[np.isfinite(found)]
+    low, high = np.percentile(found, [100.0 - COVERED, COVERED]) if len(found) else (0.0, 0.0)
+    return float(low), float(high)

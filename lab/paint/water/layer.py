@@ -1,0 +1,109 @@
+"""The water of some beds in one look: a smooth surface with spray above it, or each particle as a disc."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from lab.paint import palette
+from lab.paint.colours import Colouring
+from lab.paint.painter import Camera, paint_grains, to_discs
+from lab.paint.water.colours import field
+from lab.paint.water.grid import Grid, sampled
+from lab.paint.water.surface import Paints, paint_surface
+
+if TYPE_CHECKING:
+    from lab.paint.footage import Bed
+
+LIT, DEEP, EDGE, FOAM = (118, 178, 222), (44, 106, 168), (22, 72, 124), (208, 228, 243)
+SPRAY = (150, 196, 230)  # of drops in the air, which foam would let vanish before the empty tank
+FIELD_EDGE = (40, 46, 56)  # of the line around a field
+LINE = 0.085  # thickness of the line along the surface, in units of a page
+STRONG = 0.85  # of that line
+WITHIN, APART = 0.62, 0.46  # levels at a particle: above, it is part of the surface; below, it is a drop of its own
+FOAMING = 0.7, 0.5  # levels at a particle between which foam begins and is full
+FAST = 0.2, 0.6  # speeds over that of a fall through the tank's height between which foam begins and is full
+GRAVITY = 9.81  # m/s², for the speed of that fall
+DISC = 0.46  # radius of a particle painted as a disc, over the distance of the particles
+
+
+class WaterLayer:
+    """Paints the water of beds (those without are left out) by the name of its colour; `unit`: pixels of a page's unit.
+
+    colouring: of a field, for the colour bar; None for water that looks like water, or if there is none.
+    """
+
+    def __init__(self, beds: Sequence[Bed], colour: str, unit: float) -> None:
+        wet = [bed for bed in beds if bed.footage.water]
+        self._discs = colour == "particles"
+        self.colouring: Colouring | None = field(colour, wet) if wet else None
+        self._line = max(1.0, LINE * unit)
+        self._grids: dict[Bed, Grid] = {}
+
+    def paint(self, picture: np.ndarray, camera: Camera, bed: Bed, frame: int, under: tuple = palette.HOLD) -> None:
+        """Paint a bed's water over a picture, in place; camera: of the tank's points; under: colour of the tank."""
+        if not bed.footage.water:
+            return
+        place = bed.water_place(frame)
+        there = np.isfinite(place).all(axis=1)
+        place = place[there]
+        volume = np.broadcast_to(bed.footage.water.volume[bed.world], there.shape)[there]
+        if self._discs:
+            size = np.full(len(place), DISC * bed.footage.water.spacing)
+            _paint_discs(picture, camera, place, size, self.colouring.colours(bed, frame)[there])
+            return
+        grid = self._grid(bed, camera)
+        sums = grid.sums(place, volume)
+        level = grid.level(sums)
+        reached = sampled(level, grid.nodes(place))
+        if self.colouring:
+            share = np.clip(np.nan_to_num(self.colouring.shares(bed, frame)[there]), 0.0, 1.0)
+            colour = self.colouring.colours(bed, frame)[there]
+        else:
+            share = _foam(bed, frame, reached, there)
+            colour = np.array(LIT) + _ramp(reached, (WITHIN, APART))[:, None] * (np.array(SPRAY) - LIT)
+        apart = np.sqrt(_ramp(reached, (WITHIN, APART)))
+        drops = apart > 0.0
+        _paint_discs(picture, camera, place[drops], (apart * np.sqrt(volume / np.pi))[drops], colour[drops])
+        paint_surface(picture, camera, grid, level, _toned(grid, sums, place, volume, share), self._paints(under))
+
+    def _grid(self, bed: Bed, camera: Camera) -> Grid:
+        """The grid over a bed's tank, kept as long as the picture's scale stays."""
+        footage = bed.footage
+        made = Grid.over(footage.outline, footage.open_edges, footage.water.spacing, 1.0 / camera.scale)
+        if bed not in self._grids or self._grids[bed].distance != made.distance:
+            self._grids[bed] = made
+        return self._grids[bed]
+
+    def _paints(self, under: tuple) -> Paints:
+        if self.colouring:
+            return Paints(self.colouring.table, LIT, DEEP, FIELD_EDGE, under, self._line, STRONG, False)
+        return Paints(np.array([FOAM]), LIT, DEEP, EDGE, under, self._line, STRONG, True)
+
+
+def _paint_discs(picture: np.ndarray, camera: Camera, place: np.ndarray, size: np.ndarray, colour: np.ndarray) -> None:
+    """Paint discs (n) of these radii (m) and colours (n, 3), without marks."""
+    paint_grains(picture, to_discs(camera, place, size, np.zeros(len(place))), colour, colour)
+
+
+def _foam(bed: Bed, frame: int, reached: np.ndarray, there: np.ndarray) -> np.ndarray:
+    """How far each particle (n,) is foam, 0 to 1: fast, and with few neighbours."""
+    speed = np.hypot(*bed.drops("water_velocity", frame)[there].T)
+    fall = np.sqrt(2.0 * GRAVITY * np.ptp(bed.footage.outline[:, 1]))
+    return _ramp(reached, FOAMING) * _ramp(speed / fall, FAST)
+
+
+def _ramp(value: np.ndarray, ends: tuple[float, float]) -> np.ndarray:
+    """0 at the first end, 1 at the second, linear between them."""
+    return np.clip((value - ends[0]) / (ends[1] - ends[0]), 0.0, 1.0)
+
+
+def _toned(grid: Grid, sums: np.ndarray, place: np.ndarray, volume: np.ndarray, share: np.ndarray) -> np.ndarray:
+    """The mean of the particles' shares about each node, Σ V W share / Σ V W; 0 where there is no water."""
+    some = share > 0.0
+    if not some.any():
+        return np.zeros_like(sums)
+    found = grid.sums(place[some], (volume * share)[some])
+    return np.divide(found, sums, out=np.zeros_like(sums), where=sums > 0.0)

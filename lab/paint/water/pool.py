@@ -1,0 +1,31 @@
+"""What a picture needs to know of the water in a recording besides its particles: their volume, and the gauges."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from lab.preset.schema import Preset
+from lab.preset.sections.water.liquid import liquid, parted
+from solvers.fluid.given import Gauge, Level
+
+
+@dataclass(frozen=True)
+class Pool:
+    """volume (W, n): of the particles in the plane, m²; gauges of pressure and of depth, by name."""
+
+    volume: np.ndarray
+    gauges: dict[str, Gauge]
+    levels: dict[str, Level]
+
+    @classmethod
+    def of(cls, preset: Preset, volume: np.ndarray) -> "Pool | None":
+        """The water of a preset with the volumes (W, n) m² of its particles; None without water."""
+        if preset.water is None:
+            return None
+        water, (gauges, levels) = liquid(preset), parted(preset.gauges)
+        return cls(volume, dict(zip(gauges, water.gauges, strict=True)), dict(zip(levels, water.levels, strict=True)))
+
+    @property
+    def spacing(self) -> float:
+        """Mean distance of the particles (m)."""
+        return float(np.sqrt(self.volume.mean()))

@@ -1,0 +1,176 @@
+"""Consistency checks of the water in a preset; each error is one sentence that names the key."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from lab.base.errors import LabError
+from lab.preset.outline import Point, area, simple_polygon, stands_out
+from lab.preset.sections.tank import Tank
+from lab.preset.sections.water import liquid
+from lab.preset.sections.water.schemes import SCHEMES
+from lab.preset.sections.water.section import Gauge, Water
+from lab.preset.units import needed, show
+
+MOST_PARTICLES = 20e6  # in a tank; what fits into the memory is checked as a scene is built
+MOST_GAUGES = 100
+COMPRESSED = 0.1  # most that water is compressed by its own weight, g H/c0²
+NEAR = 1e-3  # of the tank's larger side: how far a gauge may be from the wall that it is in
+
+
+class Whole(liquid.Wet):
+    """Those sections, and the ones that cannot be there beside water."""
+
+    grains: object | None
+    ship: object | None
+    parts: Mapping[str, object]
+
+
+def check_water(preset: Whole) -> None:
+    """Raise LabError for water that cannot be: in company, of contradictory keys, too much, or outside of the tank."""
+    water, tank = preset.water, preset.tank
+    if water is None:
+        return
+    _check_company(preset)
+    _check_models(water)
+    if (water.depth is None) == (water.region is None):
+        got = "neither" if water.depth is None else "both"
+        raise LabError(f"water.depth: give exactly one of depth and region (got {got}).")
+    if water.region is None:
+        _check_depth(water, tank)
+    else:
+        _check_region(water, tank)
+    _check_spacing(preset)
+    _check_sound(preset)
+    _check_gauges(preset.gauges, tank)
+
+
+def _check_company(preset: Whole) -> None:
+    """Raise LabError for what is in the tank beside water, or carries it, and the solver cannot compute."""
+    if preset.ship is not None:
+        raise LabError("water: water in a ship's hold is not computed yet; the sea outside is [sea].")
+    if preset.grains is not None:
+        raise LabError("water: grains and water in one tank are not computed yet; leave out [grains] or [water].")
+    if preset.run.repeats > 1:
+        raise LabError("run.repeats: water starts without chance, so that all repeats would be the same; take one.")
+    if preset.parts:
+        raise LabError("parts: plates in water are not computed yet; draw them into tank.outline, or leave them out.")
+
+
+def _check_models(water: Water) -> None:
+    """Raise LabError for models whose numbers are missing, or numbers whose models are."""
+    viscosity = water.viscosity or SCHEMES[water.scheme].viscosity
+    if viscosity == "laminar" and water.kinematic_viscosity is None:
+        raise LabError(f'water.kinematic_viscosity: missing for viscosity = "laminar"; {needed("m^2/s")}.')
+    if viscosity != "laminar" and water.kinematic_viscosity is not None:
+        raise LabError('water.kinematic_viscosity: goes with viscosity = "laminar"; leave out either.')
+    if viscosity == "laminar" and water.alpha is not None:
+        raise LabError('water.alpha: goes with an artificial viscosity, not with viscosity = "laminar".')
+    if water.diffusion == "none" and water.delta:
+        raise LabError('water.delta: there is no diffusion of density with diffusion = "none".')
+
+
+def _check_depth(water: Water, tank: Tank) -> None:
+    deep, high = show(water.depth, "m"), show(tank.extent[1], "m")
+    full = np.isclose(water.depth, tank.extent[1], rtol=1e-9)
+    if water.depth > tank.extent[1] and not full:
+        raise LabError(f"water.depth: {deep} is more than the tank's height, {high}.")
+    if full and tank.lid and not water.full:
+        raise LabError(f"water.depth: {deep} fills the tank up to its lid; set water.full = true, or take less.")
+    if water.full and not (full and tank.lid):
+        raise LabError(f"water.full: the water is {deep} deep in a tank {high} high; it must fill a tank with a lid.")
+
+
+def _check_region(water: Water, tank: Tank) -> None:
+    if water.full:
+        raise LabError("water.full: goes with a depth; water in a region has room to flow.")
+    try:
+        region = simple_polygon(water.region)
+    except LabError as error:
+        raise LabError(f"water.region: {error}") from None
+    out = stands_out(np.array(region), np.array(tank.corners))
+    if out is not None:
+        raise LabError(f"water.region: it reaches out of the tank at {_place(out)}; keep it inside.")
+
+
+def _check_spacing(preset: Whole) -> None:
+    """Raise LabError for particles that are larger than the water or the tank, or too many."""
+    water, (polygon, _) = preset.water, liquid.bounds(preset)
+    deep, wide = liquid.depth(preset), float(np.ptp(polygon[:, 0]))
+    if water.spacing != "auto" and water.spacing > min(deep, wide):
+        which, size = ("deep", deep) if deep <= wide else ("wide", wide)
+        raise LabError(
+            f"water.spacing: particles of {show(water.spacing, 'm')} are larger than the water, which is "
+            f"{show(size, 'm')} {which}."
+        )
+    of_all = area([tuple(point) for point in polygon.tolist()])
+    if water.region is None:
+        of_all *= min(1.0, deep / preset.tank.extent[1])
+    size = deep if water.spacing == "auto" else water.spacing
+    if of_all > MOST_PARTICLES * size**2:
+        raise LabError(f"water.spacing: particles of {show(size, 'm')} are too small for so much water.")
+
+
+def _check_sound(preset: Whole) -> None:
+    """Raise LabError for a speed of sound at which the water's own weight would compress it visibly."""
+    head = preset.run.gravity * liquid.depth(preset)
+    sound = liquid.liquid(preset).sound_speed
+    if head > COMPRESSED * sound**2:
+        least = show((head / COMPRESSED) ** 0.5, "m/s")
+        raise LabError(
+            f"water.sound_speed: at {show(sound, 'm/s')} the water's weight would compress it by more than "
+            f"{100.0 * COMPRESSED:g} %; take at least {least}, better ten times the speed of the water."
+        )
+
+
+def _check_gauges(gauges: Mapping[str, Gauge], tank: Tank) -> None:
+    if len(gauges) > MOST_GAUGES:
+        raise LabError(f"gauges: at most {MOST_GAUGES} are possible (got {len(gauges)}).")
+    for name, gauge in gauges.items():
+        (_check_pressure if gauge.kind == "pressure" else _check_level)(f"gauges.{name}", gauge, tank)
+
+
+def _check_pressure(key: str, gauge: Gauge, tank: Tank) -> None:
+    """Raise LabError for a pressure gauge that does not lie in one wall."""
+    if gauge.place is None:
+        raise LabError(f'{key}.place: missing for a pressure gauge; give y and z on a wall, e.g. ["0 mm", "10 mm"].')
+    if gauge.y is not None:
+        raise LabError(f'{key}.y: goes with kind = "level"; a pressure gauge has a place.')
+    place, nearest, left = np.array(gauge.place), _nearest(gauge.place, tank), NEAR * max(tank.extent)
+    away = float(np.hypot(*(nearest[0] - place)))
+    if away > left:
+        raise LabError(
+            f"{key}.place: {_place(place)} is {show(away, 'm')} away from the tank's walls; the nearest point on one "
+            f"is {_place(nearest[0])}."
+        )
+    if 0.5 * gauge.length > nearest[1] + left:
+        raise LabError(f"{key}.length: {show(gauge.length, 'm')} reaches past the end of its wall.")
+
+
+def _nearest(place: Point, tank: Tank) -> tuple[np.ndarray, float]:
+    """The point (m) on a wall that is nearest to a place, and its distance (m) from the nearer end of that wall."""
+    corners = np.array(tank.corners)
+    walls = [k for k in range(len(corners)) if k not in tank.open_edges]
+    begin, along = corners[walls], (np.roll(corners, -1, axis=0) - corners)[walls]
+    length = np.hypot(*along.T)
+    share = np.clip(((np.array(place) - begin) * along).sum(axis=1) / length**2, 0.0, 1.0)
+    points = begin + share[:, None] * along
+    k = int(np.hypot(*(points - place).T).argmin())
+    return points[k], float(length[k] * min(share[k], 1.0 - share[k]))
+
+
+def _check_level(key: str, gauge: Gauge, tank: Tank) -> None:
+    """Raise LabError for a level gauge beside the tank, or with keys of a pressure gauge."""
+    for name, given in (("place", gauge.place), ("length", gauge.length), ("response", gauge.response)):
+        if given:
+            raise LabError(f'{key}.{name}: goes with kind = "pressure"; a level gauge has y alone.')
+    if gauge.y is None:
+        raise LabError(f"{key}.y: missing for a level gauge; {needed('m')}.")
+    sides = [y for y, _ in tank.corners]
+    if not min(sides) <= gauge.y <= max(sides):
+        ends = f"{show(min(sides), 'm')} to {show(max(sides), 'm')}"
+        raise LabError(f"{key}.y: {show(gauge.y, 'm')} is outside of the tank, which reaches from {ends}.")
+
+
+def _place(point: np.ndarray) -> str:
+    return f"[{show(float(point[0]), 'm')}, {show(float(point[1]), 'm')}]"

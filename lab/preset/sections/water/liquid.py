@@ -1,0 +1,117 @@
+"""What follows from the keys of a preset's water: the particles' spacing, the speed of sound, and the models.
+
+These need the tank, gravity and the motions, so that they are functions of whole presets.
+"""
+
+from math import sqrt
+from typing import Protocol
+
+import numpy as np
+
+from lab.preset.accuracy import LEVELS
+from lab.preset.outline import simple_polygon
+from lab.preset.sections.motion import MotionGroup
+from lab.preset.sections.run import Run
+from lab.preset.sections.tank import Tank
+from lab.preset.sections.water.schemes import SCHEMES, Scheme
+from lab.preset.sections.water.section import Gauge, Water
+from solvers.fluid import given
+
+FRONT = 2.0  # √(gH): the front of a column that collapses (Ritter 1892)
+
+
+class Wet(Protocol):
+    """The sections of a preset that the water follows from."""
+
+    water: Water
+    gauges: dict[str, Gauge]
+    tank: Tank
+    motion: MotionGroup
+    run: Run
+
+
+def liquid(preset: Wet) -> given.Water:
+    """The water of a preset as the solver takes it."""
+    water, scheme = preset.water, SCHEMES[preset.water.scheme]
+    pressure, level = parted(preset.gauges)
+    return given.Water(
+        spacing=spacing(preset),
+        sound_speed=sound_speed(preset, scheme),
+        density=water.density,
+        smoothing=water.smoothing or scheme.smoothing,
+        kernel=water.kernel or scheme.kernel,
+        state=water.state or scheme.state,
+        diffusion=water.diffusion or scheme.diffusion,
+        delta=scheme.delta if water.delta is None else water.delta,
+        viscosity=water.viscosity or scheme.viscosity,
+        alpha=scheme.alpha if water.alpha is None else water.alpha,
+        kinematic=water.kinematic_viscosity or 0.0,
+        slip=water.slip,
+        full=water.full,
+        shifting=water.shifting,
+        speed=expected_speed(preset),
+        gauges=tuple(given.Gauge(gauge.place, gauge.length, gauge.response) for gauge in pressure.values()),
+        levels=tuple(given.Level(gauge.y) for gauge in level.values()),
+    )
+
+
+def parted(gauges: dict[str, Gauge]) -> tuple[dict[str, Gauge], dict[str, Gauge]]:
+    """The gauges of pressure and those of level by their names, each in the order of their numbers."""
+    kinds = "pressure", "level"
+    pressure, level = ({name: gauge for name, gauge in gauges.items() if gauge.kind == kind} for kind in kinds)
+    return pressure, level
+
+
+def bounds(preset: Wet) -> tuple[np.ndarray, float]:
+    """The polygon (m, 2) m, counter-clockwise, that the water fills up to a level (m), and this level."""
+    water, tank = preset.water, np.array(preset.tank.corners)
+    if water.region is None:
+        return tank, float(tank[:, 1].min()) + water.depth
+    region = np.array(simple_polygon(water.region))
+    return region, float(region[:, 1].max())
+
+
+def depth(preset: Wet) -> float:
+    """Depth (m) of the water, or height of its region."""
+    polygon, level = bounds(preset)
+    return level - float(polygon[:, 1].min())
+
+
+def layers(preset: Wet) -> int:
+    """How many particles make up the depth."""
+    wanted, deep = preset.water.spacing, depth(preset)
+    return LEVELS[preset.run.accuracy].layers if wanted == "auto" else max(1, round(deep / wanted))
+
+
+def spacing(preset: Wet) -> float:
+    """Distance (m) of the particles: the nearest to the one that is asked for that divides the depth."""
+    return depth(preset) / layers(preset)
+
+
+def expected_speed(preset: Wet) -> float:
+    """The highest speed (m/s) to be expected: of long waves, √(gH), of a column that collapses, 2 √(gH), of the tank.
+
+    H is the height of the water's surface over the tank's lowest point.
+    """
+    floor = min(z for _, z in preset.tank.corners)
+    height = bounds(preset)[1] - floor
+    wave = sqrt(preset.run.gravity * height) * (1.0 if preset.water.region is None else FRONT)
+    return max(wave, tank_speed(preset))
+
+
+def tank_speed(preset: Wet) -> float:
+    """Bound (m/s) on the speed of any point of the tank by its motions, each alone."""
+    corners, fastest = np.array(preset.tank.corners), 0.0
+    for motion in preset.motion.parts.values():
+        lever = 1.0
+        if motion.coordinate == "turn":
+            lever = float(np.linalg.norm(corners - np.asarray(motion.centre), axis=1).max())
+        fastest = max(fastest, lever * motion.fastest(preset.motion.soft_start))
+    return fastest
+
+
+def sound_speed(preset: Wet, scheme: Scheme) -> float:
+    """Speed of sound (m/s): as given, that of the scheme, or so many times the expected speed."""
+    if preset.water.sound_speed != "auto":
+        return preset.water.sound_speed
+    return scheme.sound or scheme.mach * expected_speed(preset)

@@ -1,0 +1,91 @@
+"""The water in the tank, and its gauges, as a preset gives them."""
+
+from dataclasses import dataclass
+from typing import Annotated, Literal
+
+from lab.preset.sections.water.schemes import SCHEMES
+from solvers.fluid.diffusion import DIFFUSION
+from solvers.fluid.kernels import KERNELS
+from solvers.fluid.shifting import SHIFTING
+from solvers.fluid.states import STATES
+from solvers.fluid.viscosity import VISCOSITY
+from solvers.machine.marks import Cheap, Doc, Interval, Unit, Usual
+
+Length = Annotated[float, Unit("m"), Interval(gt=0)]
+
+
+@dataclass(frozen=True)
+class Water:
+    """Water in the plane as particles: weakly compressible, δ-SPH.
+
+    It stands level up to its `depth`, or fills a `region`, such as a column that collapses; at rest in either case.
+    The spacing is rounded so that a whole number of particles makes up the depth, or the height of the region. The
+    models that are not given are those of the `scheme`, see `lab.preset.sections.water.schemes`.
+    """
+
+    depth: Annotated[
+        Length | None, Usual(0.02, 1.0, "mm"), Doc("Depth of the water over the tank's lowest point; or give `region`.")
+    ] = None
+    region: Annotated[
+        Annotated[tuple[tuple[float, float], ...], Unit("m")] | None,
+        Doc("Corners, y and z each, of the part of the tank that is filled with water, in place of `depth`."),
+    ] = None
+    spacing: Annotated[
+        Length | Literal["auto"],
+        Cheap(),
+        Usual(1e-3, 2e-2, "mm"),
+        Doc("Distance of the particles; a share of the depth by the level of accuracy without it."),
+    ] = "auto"
+    density: Annotated[float, Unit("kg/m^3"), Interval(gt=0), Doc("Density at rest.")] = 1000.0
+    sound_speed: Annotated[
+        Annotated[float, Unit("m/s"), Interval(gt=0)] | Literal["auto"],
+        Doc("Speed of sound of the weakly compressible water; ten times the expected speed without it."),
+    ] = "auto"
+    scheme: Annotated[Literal[*SCHEMES], Doc("Whose models and numbers are used where no others are given.")] = "lab"
+    kernel: Annotated[
+        Literal[*KERNELS] | None, Doc("Kernel that smooths over neighbours; the scheme's without it.")
+    ] = None
+    smoothing: Annotated[
+        Annotated[float, Interval(ge=1, le=4)] | None,
+        Doc("Smoothing length in spacings, half the kernel's radius; the scheme's without it."),
+    ] = None
+    state: Annotated[Literal[*STATES] | None, Doc("Equation of state; the scheme's without it.")] = None
+    diffusion: Annotated[
+        Literal[*DIFFUSION] | None, Doc("Diffusion of density, which quietens pressures; the scheme's without it.")
+    ] = None
+    delta: Annotated[
+        Annotated[float, Interval(ge=0, le=1)] | None, Doc("Strength of that diffusion; the scheme's without it.")
+    ] = None
+    viscosity: Annotated[Literal[*VISCOSITY] | None, Doc("Viscous law; the scheme's without it.")] = None
+    alpha: Annotated[
+        Annotated[float, Interval(ge=0, le=1)] | None,
+        Doc("Strength of the artificial viscosity; the scheme's without it."),
+    ] = None
+    kinematic_viscosity: Annotated[
+        Annotated[float, Unit("m^2/s"), Interval(gt=0)] | None,
+        Doc('Viscosity of the liquid, for viscosity = "laminar".'),
+    ] = None
+    slip: Annotated[bool, Doc("Whether water slides along walls; else it sticks to them.")] = True
+    full: Annotated[bool, Doc("Whether the water fills the whole tank, so that walls may pull at it.")] = False
+    shifting: Annotated[Literal[*SHIFTING], Doc("How particles are shifted to even their distances.")] = "none"
+
+
+@dataclass(frozen=True)
+class Gauge:
+    """A pressure gauge in a wall, or a gauge of the water's depth."""
+
+    kind: Annotated[Literal["pressure", "level"], Doc("What it measures.")] = "pressure"
+    place: Annotated[
+        Annotated[tuple[float, float], Unit("m")] | None,
+        Doc("Middle of a pressure gauge on the wall, y and z in the tank."),
+    ] = None
+    length: Annotated[
+        Annotated[float, Unit("m"), Interval(ge=0)],
+        Doc("Length of a pressure gauge along the wall; it shows the mean."),
+    ] = 0.0
+    response: Annotated[
+        Annotated[float, Unit("s"), Interval(ge=0)], Doc("Time constant of a pressure gauge, a low-pass filter.")
+    ] = 0.0
+    y: Annotated[Annotated[float, Unit("m")] | None, Doc("Where a level gauge measures the depth over the floor.")] = (
+        None
+    )

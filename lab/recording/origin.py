@@ -1,0 +1,41 @@
+"""Where a recording comes from: the versions of the lab and of what it builds on, the machine, the reference points."""
+
+import os
+import platform
+from importlib import metadata
+
+import numpy as np
+
+from lab import __version__
+from lab.preset.schema import Preset
+from lab.preset.sections.ship_axis import axis_place
+from lab.recording.layout import fixed_text
+
+PACKAGES = ("taichi", "numpy", "scipy", "h5py")
+
+
+def versions() -> dict[str, str]:
+    """Versions of the lab, of Python and of the packages that the results depend on, by name."""
+    found = {"cargo-shift-lab": __version__, "python": platform.python_version()}
+    for package in PACKAGES:
+        try:
+            found[package] = metadata.version(package)
+        except metadata.PackageNotFoundError:
+            continue
+    return found
+
+
+def reference_points(preset: Preset) -> dict[str, object]:
+    """Attributes on the reference point of the poses and, for a ship, of sway and heave (see `axis_motion`)."""
+    found = {"pose_is_of": fixed_text("the origin of the tank's axes")}
+    if ship := preset.ship:
+        found["ship_axis"] = np.array(ship.about)
+        found["ship_axis_in_tank"] = np.subtract(ship.about, ship.hold)
+        found["sway_and_heave_are_of"] = fixed_text(f"the ship's axis, {axis_place(ship)}")
+    return found
+
+
+def this_machine() -> dict[str, object]:
+    """The system, the processor and its cores."""
+    processor = platform.processor() or platform.machine()
+    return {"system": platform.platform(), "processor": processor, "cores": os.cpu_count()}

@@ -1,0 +1,142 @@
+"""What is said of water by `cargolab explain` and in summaries: what it is, its models, its step, how sound it is."""
+
+from collections.abc import Iterator
+from dataclasses import asdict, replace
+
+import numpy as np
+
+from lab.assembly.scene import build
+from lab.base.errors import LabError
+from lab.measures.gauges import pressure_gauges
+from lab.measures.water_residual import residual
+from lab.preset.accuracy import LEVELS
+from lab.preset.schema import Preset
+from lab.preset.sections.water.liquid import depth, expected_speed, layers, liquid, parted
+from lab.preset.units import show
+from lab.recording import Recording
+from lab.report.numbers import count_of
+from solvers.fluid import given
+from solvers.fluid.timestep import kinematic
+from solvers.machine.limit import Limit
+from solvers.scene import Scene
+
+COMPRESSED = 0.03  # of the density: more is said
+UNEXPLAINED = 0.05  # of the energy exchanged: more is said
+Rows = list[tuple[str, str]]
+
+
+def described(preset: Preset, scene: Scene) -> Rows:
+    """The water and its gauges, each row a name and a text."""
+    pressure, level = parted(preset.gauges)
+    rows = [
+        ("water", f"{scene.particles} particles in each tank, {_size(preset, scene.water)}"),
+        ("sound", _sound(preset, scene.water)),
+    ]
+    if preset.gauges:
+        names = [f"{name} of pressure" for name in pressure] + [f"{name} of level" for name in level]
+        rows.append(("gauges", ", ".join(names)))
+    return rows
+
+
+def models(scene: Scene) -> Rows:
+    """What is compiled in for the water, each row a name and a text."""
+    water = scene.water
+    strength = "" if water.viscosity == "laminar" else f", α {water.alpha:g}"
+    return [
+        ("kernel", f"{water.kernel}, h = {water.smoothing:g} spacings"),
+        ("state", water.state),
+        ("diffusion", f"{water.diffusion}, δ {water.delta:g}" if water.diffusion != "none" else "none"),
+        ("viscosity", f"{water.viscosity}{strength}: that of {kinematic(water):.3g} m²/s"),
+        ("shifting", water.shifting),
+        ("at walls", f"{'free slip' if water.slip else 'no slip'}{', no free surface' if water.full else ''}"),
+    ]
+
+
+def accuracy(preset: Preset) -> Rows:
+    """The level of accuracy, and the spacing that follows from it unless the preset has its own."""
+    own = "; the preset's own" if preset.water.spacing != "auto" else ""
+    level = f"{LEVELS[preset.run.accuracy].layers} particles over the depth"
+    return [
+        ("level", f"{preset.run.accuracy}: {level}; what error that is, only finer runs of the same tank tell"),
+        ("spacing", f"{layers(preset)} particles over {show(depth(preset), 'm')}{own}"),
+    ]
+
+
+def in_tank(recording: Recording) -> Iterator[str]:
+    """What a summary says of the water, a line each."""
+    preset, water = recording.preset, liquid(recording.preset)
+    worlds, count = recording.volume.shape
+    yield f"{count_of(worlds, 'tank')} with {count} particles of water, {_size(preset, water)}"
+    yield _sound(preset, water)
+    yield f"{_steps(recording)} steps of {show(recording.step, 's')}"
+    yield from (f"limit of the step, {show(limit.step, 's')}: {limit.reason}" for limit in _limits(preset))
+    if preset.water.scheme != "lab":
+        yield f"models as {preset.water.scheme} has them, as far as the solver does"
+    time = recording.series["time"]
+    for k, name in enumerate(pressure_gauges(recording) if len(time) else ()):
+        value, when = _peak(recording, k)
+        yield f"highest pressure at {name}: {show(value, 'Pa')} at {show(when, 's')}"
+
+
+def facts(recording: Recording) -> dict[str, object]:
+    """The numbers of a summary for programs, in SI."""
+    water, names = liquid(recording.preset), pressure_gauges(recording)
+    found = len(recording.series["time"])
+    peaks = {name: _peak(recording, k) for k, name in enumerate(names)} if found else {}
+    return {
+        "particles": recording.volume.shape[1],
+        "spacing_m": water.spacing,
+        "sound_speed_m_s": water.sound_speed,
+        "steps": _steps(recording),
+        "limits": [asdict(limit) for limit in _limits(recording.preset)],
+        "largest_excess": float(recording.series["water_excess"].max(initial=0.0)),
+        "energy_residual_J": float(np.abs(residual(recording)).max(initial=0.0)) if found else 0.0,
+        "peaks": {name: {"pressure_Pa": value, "time_s": when} for name, (value, when) in peaks.items()},
+    }
+
+
+def cautions(recording: Recording) -> Iterator[str]:
+    """What a reader must know about how the water was computed."""
+    series = recording.series
+    dense = series["water_dense"].max(initial=0.0)
+    if dense > COMPRESSED:
+        yield (
+            f"Up to {100.0 * dense:.2g} % of the water was off its density by more than 3 %; raise water.sound_speed, "
+            "and see whether the result stays."
+        )
+    if not len(series["time"]):
+        return
+    exchanged = np.abs(series["water_work"]) + series["water_viscous"] + series["water_diffusive"]
+    exchanged = (exchanged + series["water_kinetic"]).max()
+    missing = np.abs(residual(recording)).max()
+    if missing > UNEXPLAINED * exchanged:
+        yield f"The water's account lacks {100.0 * missing / exchanged:.2g} % of the energy exchanged."
+
+
+def _size(preset: Preset, water: given.Water) -> str:
+    return f"{show(water.spacing, 'm')} apart, {show(depth(preset), 'm')} deep, {show(water.density, 'kg/m^3')}"
+
+
+def _sound(preset: Preset, water: given.Water) -> str:
+    fast = expected_speed(preset)
+    times = f"{water.sound_speed / fast:.3g} times the expected {show(fast, 'm/s')}"
+    return f"speed of sound {show(water.sound_speed, 'm/s')}, {times}"
+
+
+def _steps(recording: Recording) -> int:
+    time = recording.series["time"]
+    return round(float(time[-1]) / recording.step) if len(time) else 0
+
+
+def _limits(preset: Preset) -> list[Limit]:
+    """The bounds on the step of a preset's water; none if this machine cannot hold the scene."""
+    try:
+        return build(replace(preset, run=replace(preset.run, repeats=1)))[0].step_limits()
+    except LabError:
+        return []
+
+
+def _peak(recording: Recording, gauge: int) -> tuple[float, float]:
+    """The highest pressure (Pa) at a gauge in any tank, and its time (s)."""
+    peak = recording.series["gauge_peak"][..., gauge].max(axis=1)
+    return float(peak.max()), float(recording.series["time"][peak.argmax()])

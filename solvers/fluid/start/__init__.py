@@ -1,0 +1,1 @@
+"""Water at rest: where its particles are at the start, and how dense."""
