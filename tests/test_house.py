@@ -42,12 +42,12 @@ FULL = {"lab/studies/reproduce": 23, "lab/studies/verify": 20}  # too full, and 
 
 MOST_LINES = 300  # of a file
 LONG = {  # too long, and not to become longer
-    "lab/paint/film.py": 408,
+    "lab/paint/film.py": 403,
     "lab/paint/painter.py": 445,
     "lab/recording/writer.py": 354,
     "lab/runs/beds.py": 320,
     "lab/studies/verify/chung_ooi.py": 324,
-    "lab/view/page.py": 443,
+    "lab/view/page.py": 437,
     "lab/view/session.py": 360,
     "solvers/grains/shapes/rules/continuous.py": 408,
     "solvers/motion/afloat.py": 415,

@@ -1,6 +1,6 @@
 """The curves beside the picture: what is drawn against time, and in which colours."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -36,10 +36,11 @@ class Plot:
 
 def plots(beds: Sequence[Bed], hues: Sequence[tuple]) -> list[Plot]:
     """What is drawn of some beds, the first of which are shown and have these hues: one plot, or two."""
+    hue = dict(zip(beds, hues, strict=False))  # of the beds that are shown
     wet = [bed for bed in beds if bed.footage.water]
-    of_gauges = _of_gauges(wet, hues) if wet else []
+    of_gauges = _of_gauges(wet, hue) if wet else []
     moved = [_of_motion(beds, hues)] if not wet or any(bed.footage.sea for bed in beds) else []
-    return (moved + of_gauges)[:MOST_PLOTS] or [_of_the_centre(wet, hues)]
+    return (moved + of_gauges)[:MOST_PLOTS] or [_of_the_centre(wet, hue)]
 
 
 def _of_motion(beds: Sequence[Bed], hues: Sequence[tuple]) -> Plot:
@@ -61,7 +62,7 @@ def _of_motion(beds: Sequence[Bed], hues: Sequence[tuple]) -> Plot:
     return plot
 
 
-def _of_gauges(beds: Sequence[Bed], hues: Sequence[tuple]) -> list[Plot]:
+def _of_gauges(beds: Sequence[Bed], hue: Mapping[Bed, tuple]) -> list[Plot]:
     """The pressure and the depth at the gauges: all those of one bed, or the first one of several beds."""
     found = []
     for quantity, of in (("gauge_pressure", "gauges"), ("level_depth", "levels")):
@@ -77,19 +78,18 @@ def _of_gauges(beds: Sequence[Bed], hues: Sequence[tuple]) -> list[Plot]:
                 plot.add(there[0], scale * _measured(there[0], quantity)[:, k], colours[name], name)
             plot.names.reverse()
         else:
-            for k, bed in reversed(list(enumerate(there))):
-                hue = hues[k] if k < len(hues) else palette.LINE
-                plot.add(bed, scale * _measured(bed, quantity)[:, 0], hue)
+            for bed in reversed(there):
+                plot.add(bed, scale * _measured(bed, quantity)[:, 0], hue.get(bed, palette.LINE))
         found.append(plot)
     return found
 
 
-def _of_the_centre(beds: Sequence[Bed], hues: Sequence[tuple]) -> Plot:
+def _of_the_centre(beds: Sequence[Bed], hue: Mapping[Bed, tuple]) -> Plot:
     """The sideways shift of the water's centre of mass."""
     plot = Plot(("time (s)", "shift Δy (mm)"))
-    for k, bed in reversed(list(enumerate(beds))):
+    for bed in reversed(beds):
         across = _measured(bed, "water_centre")[:, 0]
-        plot.add(bed, 1e3 * (across - across[0]), hues[k] if k < len(hues) else palette.LINE)
+        plot.add(bed, 1e3 * (across - across[0]), hue.get(bed, palette.LINE))
     return plot
 
 

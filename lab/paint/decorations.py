@@ -181,11 +181,19 @@ class LivePlot:
     """Curves that grow with the film; the axes are drawn once.
 
     size: (width, height) in pixels; curves: pairs of arrays x, y; colours: one each;
-    labels: of x and y; text: height of the letters in pixels; names: texts and colours, at the upper right.
+    labels: of x and y; text: height of the letters in pixels; names: texts and colours, at the upper right;
+    indent: least distance of the axis from the left, for plots that stand one above the other.
     """
 
     def __init__(
-        self, size: tuple, curves: list, colours: list, labels: tuple[str, str], text: float, names: Sequence = ()
+        self,
+        size: tuple,
+        curves: list,
+        colours: list,
+        labels: tuple[str, str],
+        text: float,
+        names: Sequence = (),
+        indent: float = 0.0,
     ) -> None:
         self._text, self._names = FINER * text, names
         width, height = (FINER * round(side) for side in size)
@@ -195,7 +203,8 @@ class LivePlot:
         room = int((bottom - top) / (1.6 * self._text))  # number of labels that fit without touching
         self._levels = ticks(self._low[1], self._high[1], min(4, max(1, room)))
         widest = max(font(self._text).getlength(plain(level)) for level in self._levels)
-        left, right = widest + 0.5 * self._text, width - 0.4 * self._text
+        self.indent = max(widest + 0.5 * self._text, indent)
+        left, right = self.indent, width - 0.4 * self._text
         self._box = (left, top, right, bottom)
         placed = [self._place(np.column_stack(curve)) for curve in curves]
         self._curves = [

@@ -243,14 +243,14 @@ class Film:
         left, top, right, bottom = self._plot_box(len(drawn))
         gap, below = (self._u(0.8), self._u(1.2)) if len(drawn) > 1 else (0, 0)  # the last one says what is across
         height, found = (bottom - top - below - gap * (len(drawn) - 1)) // len(drawn), []
-        for plot in drawn:
-            if plot is not drawn[-1]:
-                plot.labels = "", plot.labels[1]
-            size = right - left, height + (below if plot is drawn[-1] else 0)
-            live = deco.LivePlot(size, plot.curves, plot.colours, plot.labels, TEXT * self._unit, plot.names)
-            found.append((live, plot.samples, (left, top)))
-            top += height + gap
-        return found
+        indent = 0.0
+        for plot in (*drawn, *drawn):  # twice, since the axes stand below each other
+            last = plot is drawn[-1]
+            labels, size = (plot.labels[0] if last else "", plot.labels[1]), (right - left, height + last * below)
+            live = deco.LivePlot(size, plot.curves, plot.colours, labels, TEXT * self._unit, plot.names, indent)
+            found.append((live, plot.samples, (left, top + (len(found) % len(drawn)) * (height + gap))))
+            indent = max(indent, live.indent)
+        return found[len(drawn) :]
 
     def _draw_page(self) -> np.ndarray:
         """Draw the parts that stay the same in all frames."""

@@ -138,13 +138,18 @@ def _marked(marks: tuple) -> dict[str, object]:
     return found
 
 
-def walk(kind: type, path: str = "") -> Iterator[tuple[str, Taken]]:
+@cache
+def walk(kind: type) -> tuple[tuple[str, Taken], ...]:
     """Every dotted key below a dataclass, with what it takes; a name that users choose is NAME."""
+    return tuple(_walk(kind, ""))
+
+
+def _walk(kind: type, path: str) -> Iterator[tuple[str, Taken]]:
     for name, taken in taken_of(kind).items():
         key = join(path, name)
         yield key, taken
         if taken.below:
-            yield from walk(taken.below, join(key, NAME) if taken.named else key)
+            yield from _walk(taken.below, join(key, NAME) if taken.named else key)
 
 
 def taken_by(kind: type, dotted: str) -> Taken | None:

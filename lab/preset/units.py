@@ -84,6 +84,9 @@ NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 FACTOR = re.compile(r"\s*([*/·]?)\s*([^\W\d]+|[%°]|1(?=\s*/))(?:\s*(?:\^|\*\*)\s*(-?[1-9]))?")
 TYPOGRAPHY = str.maketrans({"\N{MINUS SIGN}": "-", "²": "^2", "³": "^3"})
 LONGEST = 100  # characters of a quantity
+MOST_FACTORS = 1000  # kept, of units as they are written
+
+_factors: dict[tuple[str, str], float] = {}  # from units as they are written to SI, since pint takes long over each
 QUOTED = 40  # characters of a user's text that an error quotes
 LONGEST_PATH = 100  # characters of a path that an error quotes
 
@@ -179,15 +182,20 @@ def _split(text: str, symbol: str) -> tuple[float, str]:
 
 def _factor(unit: str, value: str, symbol: str) -> float:
     """The factor from `unit` to `symbol`; `value` is the text that errors quote."""
+    if (unit, symbol) in _factors:
+        return _factors[unit, symbol]
     if not unit and symbol != "1":
         raise LabError(f"{quoted(value)} has no unit; {needed(symbol)}.")
     given = _unit(unit, value, symbol)
     if given.dimensionality != _si(symbol).dimensionality:
         raise LabError(f"{_mismatch(value, given, symbol)}.")
     try:
-        return (1 * given).to(_si(symbol)).magnitude
+        factor = (1 * given).to(_si(symbol)).magnitude
     except OverflowError:
-        return math.inf
+        factor = math.inf
+    if len(_factors) < MOST_FACTORS:
+        _factors[unit, symbol] = factor
+    return factor
 
 
 def _unit(text: str, value: str, symbol: str):

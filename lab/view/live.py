@@ -8,6 +8,7 @@ import time
 from collections.abc import Callable, Mapping
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
+from math import sqrt
 from pathlib import Path
 
 import numpy as np
@@ -18,6 +19,8 @@ from lab.base.progress import Progress
 from lab.preset.find import LoadedPreset
 from lab.preset.schema import Preset
 from lab.preset.sections.motion import Motion
+from lab.preset.sections.water.liquid import sound_speed
+from lab.preset.sections.water.schemes import SCHEMES
 from lab.recording import WAVES, Recorder
 from lab.runs.batch import Run
 from lab.runs.beds import settled, settling
@@ -29,6 +32,7 @@ from solvers.machine.errors import Unavailable
 from solvers.simulation import Simulation
 
 PICTURES = 25.0  # Hz; lowest rate of the frames
+SOUND = 8.0  # times the speed of a fall through the tank: water that hits a wall at v is compressed by v/c0
 
 
 @dataclass(frozen=True)
@@ -58,10 +62,17 @@ class LiveFrame:
 
 
 def steerable(loaded: LoadedPreset) -> LoadedPreset:
-    """The preset prepared for steering: one bed, none of its own motions, and a picture rate of at least PICTURES."""
+    """The preset prepared for steering: one bed, none of its own motions, and a picture rate of at least PICTURES.
+
+    Nobody knows how a hand will move the water, so its speed of sound follows from a fall through the whole tank.
+    """
     preset = loaded.resolved
     record = replace(preset.record, picture_rate=max(preset.record.picture_rate, PICTURES))
     changes = {"motion": Motion(), "run": replace(preset.run, repeats=1, duration=preset.duration), "record": record}
+    if preset.water and preset.water.sound_speed == "auto":
+        fall = sqrt(2.0 * preset.run.gravity * preset.tank.extent[1])
+        sound = max(SOUND * fall, sound_speed(preset, SCHEMES[preset.water.scheme]))
+        changes["water"] = replace(preset.water, sound_speed=sound)
     return LoadedPreset(loaded.name, loaded.given_text, replace(preset, **changes))
 
 

@@ -343,10 +343,7 @@ KEYS: dict[str, tuple[str, Callable[[Session], None]]] = {
     "d": ("tilt to starboard by 5°", _tilt(-NUDGE)),
     "w": ("hold everything upright and still", _calm),
     "m": ("move as the preset does", _as_preset),
-    "c": (
-        "another colouring",
-        _look("colour", lambda session: colours_of(session.footage.matters if session.footage else ())),
-    ),
+    "c": ("another colouring", _look("colour", lambda session: session.colours)),
     "f": ("frame of the tank or the earth", _look("frame", lambda _: ("tank", "earth"))),
     "o": ("overlay of forces or velocities", _look("overlay", lambda _: OVERLAYS)),
     "i": ("another curve", _look("inset", lambda session: offered_curves(session.footage))),

@@ -3,6 +3,7 @@
 import time
 from dataclasses import dataclass
 
+from lab.preset.sections.video import colours_of
 from lab.recording.ship_end import VERBS, End, end_of
 from lab.view.footage import LiveFootage
 
@@ -67,6 +68,11 @@ class Shown:
         if self.settling or not self.footage or not self.footage.sea:
             return None
         return end_of(*(self.footage.row(self.frame, name) for name in VERBS), self.footage.row(self.frame, "pose")[2])
+
+    @property
+    def colours(self) -> tuple[str, ...]:
+        """The colourings of what the tank holds."""
+        return colours_of(self.footage.matters if self.footage else ())
 
     @property
     def frame(self) -> int:

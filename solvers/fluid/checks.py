@@ -27,10 +27,10 @@ def refuse_state(world: int, place: np.ndarray, speed: np.ndarray, excess: np.nd
     raise BadState(world, f"{what} at y = {at[0]:.4g} m, z = {at[1]:.4g} m, t = {time:.4g} s; {REMEDY}.")
 
 
-def check_water(rows: dict[str, np.ndarray], start: np.ndarray, time: float) -> None:
+def check_water(rows: dict[str, np.ndarray], start: np.ndarray | float, time: float) -> None:
     """Raise BadState if a particle has left a closed tank, or if energy has been created.
 
-    `rows` are the quantities at `time` (s), `start` (W,) J the energy at the start.
+    `rows` are the quantities at `time` (s), `start` (W,) J the energy at the start, NaN if unknown.
     """
     for w in np.flatnonzero(rows["water_escaped"] >= 0):
         raise BadState(

@@ -160,7 +160,7 @@ class Lists:
         lower, upper = self.box(b)
         code = 0
         if ti.static(len(self.images) > 1):
-            code = ti.static(image << PLACES)
+            code = image * (1 << PLACES)
             for a in ti.static(range(p.axes)):
                 lower[a] -= self.shift(image, a)
                 upper[a] -= self.shift(image, a)
@@ -196,8 +196,10 @@ class Lists:
     @ti.func
     def shift(self, image, axis: ti.template()):
         """By how much (m) an image of periodic space is displaced along an axis."""
-        step = image % 3 if ti.static(axis == 0) else image // 3
-        return (step - 1) * self.periods[axis]
+        step = image // 3 - 1
+        if ti.static(axis == 0):
+            step = image % 3 - 1
+        return ti.cast(step, self.particles.where) * self.periods[axis]
 
     @ti.func
     def block_of(self, entry):

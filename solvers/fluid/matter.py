@@ -246,7 +246,8 @@ class WaterMatter(Matter):
 
     def check(self, rows: dict[str, np.ndarray], time: float) -> None:
         """Raise BadState if the quantities at `time` (s) show an unphysical state."""
-        check_water(rows, self.start, time)
+        known = np.nan if self.water.periodic else self.start  # a particle that goes round falls for ever
+        check_water(rows, known, time)
 
     def refuse(self, world: int, time: float, dt: float) -> None:
         """Raise BadState for a world that was stopped at `time` (s)."""

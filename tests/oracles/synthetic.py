@@ -1,5 +1,7 @@
 """Synthetic recordings for the tests, with known results."""
 
+from copy import deepcopy
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -22,9 +24,14 @@ def box(width: float = WIDTH, height: float = 0.15) -> np.ndarray:
 
 def preset(**motion: dict) -> dict:
     """A preset with such motions, as the lab writes it down."""
-    plain = to_table(load("tilting/acetate", {"contact.stiffness_scale": 1, "run.duration": "1 s"}).resolved)
+    plain = deepcopy(_plain())
     said = {"title": "Acetate grains in a tank", "source": "Spandonidis 2016, 5.4", "reports": "24 deg"}
     return plain | said | {"motion": {"soft_start": 0.0, **motion}, "based_on": ""}
+
+
+@cache
+def _plain() -> dict:
+    return to_table(load("tilting/acetate", {"contact.stiffness_scale": 1, "run.duration": "1 s"}).resolved)
 
 
 def recorder(folder: Path, worlds: int = 1, count: int = 4, **options: object) -> Recorder:

@@ -12,6 +12,7 @@ import taichi as ti
 from lab.paint.painter import Index, Table
 from lab.paint.water.grid import REACH
 
+FINEST = 1e-3  # least reach over the size of the water, which bounds the number of cells
 ALONE = 1e-3  # of the trace of A squared: with a smaller determinant the neighbours lie in a row, and do not tell
 
 Values = ti.types.ndarray(dtype=ti.f64, ndim=1)
@@ -26,7 +27,7 @@ def vorticity(place: np.ndarray, velocity: np.ndarray, spacing: float) -> np.nda
     there = np.flatnonzero(np.isfinite(place).all(axis=1) & np.isfinite(velocity).all(axis=1))
     if not len(there):
         return found
-    reach = REACH * spacing
+    reach = max(REACH * spacing, FINEST * float(np.ptp(place[there], axis=0).max()))
     cell = np.floor((place[there] - place[there].min(axis=0)) / reach).astype(int) + 1
     columns, rows = cell.max(axis=0) + 2
     number = cell[:, 1] * columns + cell[:, 0]

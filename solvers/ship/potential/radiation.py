@@ -12,6 +12,7 @@ is taken at the y of the hull's origin. Modes are sway, heave and roll; roll is 
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from math import inf
 
 import numpy as np
@@ -48,15 +49,19 @@ class Hydrodynamics:
 
     def at(self, frequency: Sequence[float]) -> "Hydrodynamics":
         """The table at other frequencies within its range, by cubic splines; raises `Unavailable` beyond it."""
-        from scipy.interpolate import CubicSpline  # slow to import
-
         frequency = np.atleast_1d(np.asarray(frequency, dtype=float))
         low, high = self.frequency[0], self.frequency[-1]
         if frequency.min() < low or frequency.max() > high:
             raise Unavailable(f"the table of the hull's coefficients reaches from {low:.4g} to {high:.4g} rad/s only.")
+        return Hydrodynamics(frequency, *(spline(frequency) for spline in self._splines), self.infinite_added_mass)
+
+    @cached_property
+    def _splines(self) -> tuple:
+        """Of all that `at` tells between the frequencies of the table."""
+        from scipy.interpolate import CubicSpline  # slow to import
+
         tables = (self.added_mass, self.damping, self.excitation, self.froude_krylov, self.haskind)
-        found = (CubicSpline(self.frequency, table)(frequency) for table in tables)
-        return Hydrodynamics(frequency, *found, self.infinite_added_mass)
+        return tuple(CubicSpline(self.frequency, table) for table in tables)
 
 
 def hydrodynamics(

@@ -69,6 +69,7 @@ def test_videos_go_beside_their_recordings_or_into_one_folder_under_their_names(
 
 
 def test_a_bad_recording_fails_alone_and_what_is_done_is_left_out(sweep, tmp_path, monkeypatch):
+    monkeypatch.setattr(many, "available_cores", lambda: 1)
     failed, (first, second, third) = painted([sweep], tmp_path / "out")
     bad = sweep / "points" / "001"
     assert list(failed) == [bad] and "cannot be read as a recording" in failed[bad]
@@ -122,7 +123,7 @@ def test_a_killed_painter_fails_one_recording_and_another_takes_its_place(sweep,
 
 @pytest.mark.skipif(os.name != "posix", reason="looks for processes")
 def test_an_interrupt_ends_the_painters_and_leaves_no_torn_video(tmp_path, monkeypatch):
-    runs = [made(tmp_path / name, frames=400) for name in ("a", "b")]
+    runs = [made(tmp_path / name, frames=100) for name in ("a", "b")]
     pids = []
 
     class Counted(many._Studio):

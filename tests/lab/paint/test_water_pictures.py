@@ -228,6 +228,24 @@ def test_water_above_an_open_edge_is_painted_too():
     assert area(footage(place, low)) < 0.6 * len(place) * SPACING**2  # a lid cuts it off
 
 
+def test_the_picture_of_water_does_not_depend_on_the_number_of_threads():
+    wave, pictures = standing_wave(SPACING), []
+    for threads in (1, 2):
+        initialise(threads)
+        pictures.append(painted(wave, "pressure", frame=3))
+    initialise()
+    assert pictures[0].tobytes() == pictures[1].tobytes()
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf, 1e300, -1e300])
+@pytest.mark.parametrize("colour", ["water", *FIELDS])
+def test_odd_numbers_of_water_give_a_picture(colour, value):
+    made = still()
+    for values in (made.place[0][:5], made.velocity[0][5:10], made.pressure[0][10:15]):
+        values[:] = value
+    assert (painted(made, colour) < 255).any()
+
+
 # Films
 
 
@@ -290,6 +308,18 @@ def test_the_peak_of_a_pressure_is_on_its_curve_however_short_it_is():
     (plot,) = plots([gauged.bed], [palette.INK])
     assert plot.curves[0][1].max() == pytest.approx(50.0)
     assert len(plot.curves[0][0]) < 1.1 * MOST_SAMPLES
+
+
+def test_beds_in_one_film_have_their_own_hues_and_one_scale():
+    wave, calm = standing_wave(SPACING), still()
+    beds = [calm.bed, wave.bed]
+    blue, red = (0, 0, 255), (255, 0, 0)
+    assert [plot.colours for plot in plots(beds, [blue, red])] == [[red], [red]]  # the first one has no gauges
+    assert plots(beds, [blue])[0].colours == [palette.LINE]  # the other one is not shown
+    film = Film(beds, choose_look(calm, colour="speed"))
+    highest = np.hypot(*wave.velocity[6].T).max()
+    assert film._bar.high >= 990.0 * highest
+    assert film.picture(0).shape == (720, 1280, 3)
 
 
 def test_without_gauges_the_shift_of_the_water_is_drawn():

@@ -25,6 +25,7 @@ from solvers.machine.marks import Interval, Unit
 from solvers.motion import MOTIONS, Tilt
 from tests.oracles.presets import MATERIAL, error_of
 
+NAMES = names()
 MINIMAL = f"""
 title = "a tank"
 [tank]
@@ -55,7 +56,7 @@ def write(folder, name: str, text: str) -> str:
     return str(path)
 
 
-@pytest.mark.parametrize("name", names())
+@pytest.mark.parametrize("name", NAMES)
 def test_every_preset_of_the_lab_resolves_and_has_a_title_and_source(name):
     preset = load(name)
     assert preset.name == name
@@ -71,7 +72,7 @@ def on_its_own(preset: Preset) -> Preset:
     return replace(preset, based_on="")
 
 
-@pytest.mark.parametrize("name", names())
+@pytest.mark.parametrize("name", NAMES)
 def test_given_text_is_the_same_preset(name, tmp_path):
     changes = {"grains.spread": "5 %", "material.dissipative_time": "1e-6 s"} if load(name).resolved.grains else {}
     preset = load(name, {"run.seed": 5, **changes})
@@ -82,7 +83,7 @@ def test_given_text_is_the_same_preset(name, tmp_path):
     assert again.resolved == on_its_own(preset.resolved)
 
 
-@pytest.mark.parametrize("name", [name for name in names() if name.endswith(QUICK)])
+@pytest.mark.parametrize("name", [name for name in NAMES if name.endswith(QUICK)])
 def test_a_quick_variant_states_its_differences_and_differs_only_in_cost(name):
     whole, quick = load(name.removesuffix(QUICK)).resolved, load(name).resolved
     assert quick.quick.strip() and not whole.quick
@@ -105,7 +106,7 @@ def cost(preset: Preset) -> float:
     return preset.run.repeats * preset.duration / build(one)[0].step
 
 
-@pytest.mark.parametrize("name", names())
+@pytest.mark.parametrize("name", NAMES)
 def test_resolved_goes_to_json_and_back(name):
     resolved = load(name).resolved
     assert from_table(to_table(resolved)) == resolved

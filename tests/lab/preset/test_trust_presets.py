@@ -43,11 +43,11 @@ TABLES_TO_REFUSE = {  # what makes them, since they are large
     "wide-names": (lambda: ",".join(f"c{k}" for k in range(2_000_000)), "more than 100 columns"),
     "wide-empty": (lambda: "," * 20_000_000, "more than 100 columns"),
     "wide-row": (lambda: "y,z,radius\n" + "1," * 10_000_000, "more than 100 columns"),
-    "long": (lambda: "y,z,radius\n" + "0,0,1\n" * 5_000_000, "more than 100000 rows"),
+    "long": (lambda: "y,z,radius\n" + "0,0,1\n" * 2_000_000, "more than 100000 rows"),
     "long-cell": (lambda: "y,z,radius\n" + "1" * 20_000_000 + ",0,0", "cannot be read"),
     "quoted-cell": (lambda: 'y,z,radius\n"' + "x" * 20_000_000 + '",0,0', "cannot be read"),
     "large": (lambda: "#" * 33_000_000, "too large for a table"),
-    "comments": (lambda: "#\n" * 10_000_000, "empty"),
+    "comments": (lambda: "#\n" * 4_000_000, "empty"),
 }
 
 

@@ -149,7 +149,7 @@ def test_an_incomplete_write_loses_no_flushed_row(tmp_path):
         moved = {name: before.frames[name][:].tobytes() for name in before.frames}
     changed = np.flatnonzero(np.frombuffer(early, "u1") != np.frombuffer(late, "u1")[: len(early)])
     rows = changed[changed > standing.min()]
-    for _ in range(40):
+    for _ in range(20):
         torn = np.frombuffer(early, "u1").copy()
         reached = chance.choice(rows.tolist())
         chunk = slice(reached // 4096 * 4096, reached)  # a write that ended there, from the start of its page

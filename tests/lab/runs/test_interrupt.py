@@ -25,10 +25,27 @@ ENDLESS = {
     "motion.tilt.rate": "60 deg/s",
     "motion.tilt.angle": "20 deg",
     "motion.tilt.hold": "1000 s",
-    "run.repeats": 1,
+    "run.repeats": 2,
     "run.threads": 1,
+    "record.checkpoint_every": "50 ms",  # with it go the rows that a reader is to see
     "contact.tangential": "none",  # kernels of few laws compile fast
 }
+TANK = """
+format = 3
+title = "An empty tank"
+tank = { width = "0.3 m", height = "0.2 m", lid = false }
+motion.sway = { amplitude = "10 mm", frequency = "1 Hz" }
+run = { duration = "9000 s", repeats = 1, threads = 1 }
+record.checkpoint_every = "50 ms"
+"""
+COMMAND = """
+import sys
+from types import SimpleNamespace
+from lab.cli import main
+
+sys.modules["lab.report.plots"] = SimpleNamespace(write_plots=lambda *_: {})  # figures take seconds
+main(sys.argv[1:], prog_name="cargolab")
+"""
 STUBBORN = """
 import time
 from lab.base.interrupt import handling_signals
@@ -51,7 +68,7 @@ from lab.base.progress import Progress
 from lab.studies.reproduce.runs import Batch
 from lab.studies.reproduce.workers import carry_out_all
 
-batches = {Path(sys.argv[1]) / name: Batch("tilting/quick", %r) for name in ("a", "b")}
+batches = {Path(sys.argv[1]) / name: Batch(sys.argv[2]) for name in ("a", "b")}
 try:
     with handling_signals():
         list(carry_out_all(batches, Progress(quiet=True)))
@@ -68,10 +85,17 @@ def hear_all() -> None:
         signal.signal(number, signal.SIG_DFL)
 
 
-def endless_run(folder: Path, **options) -> subprocess.Popen:
+@pytest.fixture
+def tank(tmp_path) -> Path:
+    """A preset that goes on for long and compiles fast."""
+    path = tmp_path / "tank.toml"
+    path.write_text(TANK)
+    return path
+
+
+def endless_run(folder: Path, *preset: object, **options) -> subprocess.Popen:
     """A run of the command line that goes on until it is ended, with some rows recorded."""
-    settings = [word for key, value in ENDLESS.items() for word in ("--set", f"{key}={value}")]
-    line = [sys.executable, "-m", "lab", "run", "tilting/quick", "--no-video", "--out", folder, *settings]
+    line = [sys.executable, "-c", COMMAND, "run", *preset, "--no-video", "--out", folder]
     usual = {"stderr": subprocess.PIPE, "preexec_fn": hear_all}
     run = subprocess.Popen(line, cwd=ROOT, text=True, **(usual | options))
     wait_for_rows(folder, 1, run)
@@ -86,7 +110,7 @@ def wait_for_rows(folder: Path, count: int, run: subprocess.Popen) -> int:
                     return rows
         except LabError:  # not there yet
             pass
-        time.sleep(0.02)
+        time.sleep(0.1)
     raise AssertionError(run.stderr and run.stderr.read())
 
 
@@ -103,7 +127,8 @@ def assert_summed_up(folder: Path) -> None:
 
 
 def test_sigterm_ends_a_run_as_ctrl_c_does_and_nohup_lets_it_continue(tmp_path):
-    run = endless_run(tmp_path / "run", preexec_fn=ignore_hangups)
+    settings = [word for key, value in ENDLESS.items() for word in ("--set", f"{key}={value}")]
+    run = endless_run(tmp_path / "run", "tilting/quick", *settings, preexec_fn=ignore_hangups)
     run.send_signal(signal.SIGHUP)
     rows = wait_for_rows(tmp_path / "run", 1, run)
     wait_for_rows(tmp_path / "run", rows + 1, run)
@@ -114,11 +139,11 @@ def test_sigterm_ends_a_run_as_ctrl_c_does_and_nohup_lets_it_continue(tmp_path):
     assert_summed_up(tmp_path / "run")
 
 
-def test_a_run_whose_terminal_is_closed_ends_cleanly(tmp_path):
+def test_a_run_whose_terminal_is_closed_ends_cleanly(tank, tmp_path):
     import pty
 
     master, terminal = pty.openpty()
-    run = endless_run(tmp_path / "run", stdin=terminal, stdout=terminal, stderr=terminal)
+    run = endless_run(tmp_path / "run", tank, stdin=terminal, stdout=terminal, stderr=terminal)
     os.close(terminal)
     os.close(master)
     run.send_signal(signal.SIGHUP)  # as the system does for who has this terminal for their own
@@ -138,11 +163,11 @@ def test_a_second_signal_ends_at_once(number):
 
 
 @pytest.fixture
-def workers(tmp_path):
+def workers(tank, tmp_path):
     """A process that has two workers carry out a batch each."""
     if len(os.sched_getaffinity(0)) < 2:
         pytest.skip("needs two cores")
-    line = [sys.executable, "-c", WORKERS % ENDLESS, tmp_path]
+    line = [sys.executable, "-c", WORKERS, tmp_path, tank]
     process = subprocess.Popen(line, cwd=ROOT, stderr=subprocess.PIPE, text=True, preexec_fn=hear_all)
     for name in ("a", "b"):
         wait_for_rows(tmp_path / name, 1, process)
@@ -167,9 +192,8 @@ def test_a_killed_worker_is_reported_in_one_sentence(workers, tmp_path):
     assert said.startswith("a process that ran a batch was ended from outside") and said.count("\n") == 1
 
 
-def test_sigterm_to_a_live_experiment_closes_its_recording(tmp_path):
-    settings = {key: value for key, value in ENDLESS.items() if not key.startswith(("motion", "run.repeats"))}
-    experiment, pipe = begin("tilting/quick", settings, tmp_path / "live")
+def test_sigterm_to_a_live_experiment_closes_its_recording(tank, tmp_path):
+    experiment, pipe = begin(str(tank), {}, tmp_path / "live")
     word = ""
     while word != "ready":
         assert pipe.poll(60)

@@ -126,7 +126,8 @@ def test_the_summary_reports_a_forced_step(tmp_path):
 
 def test_a_run_stopped_by_the_watch_keeps_its_recording_and_the_reason(tmp_path):
     thrown = {"tilt": False, "sway": {"amplitude": "4 mm", "frequency": "600 Hz"}}
-    changes = SMALL | {"run": {"repeats": 1, "duration": "0.3 s"}, "motion": thrown}
+    changes = {"tank": {"width": "24 mm", "height": "24 mm"}, "grains": {"count": 16}, "motion": thrown}
+    changes |= {"run": {"repeats": 1, "threads": 1, "duration": "0.3 s"}}
     with pytest.raises(BadState, match=r"world 0: (a grain moves at .* too fast|grains overlap by .* too soft)"):
         run_preset("tilting/quick", changes, tmp_path / "thrown", video=False, quiet=True)
     with open_recording(tmp_path / "thrown") as recording:

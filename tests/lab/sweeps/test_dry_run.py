@@ -6,12 +6,16 @@ from lab.preset.find import load, names
 from lab.runs.runner import run_preset
 from lab.sweeps.dry_run import available_measures
 
-SMALL = {"tank": {"width": "30 mm", "height": "30 mm"}, "grains": {"count": 25, "depth": False}}
+SMALL = {
+    "tank": {"width": "24 mm", "height": "24 mm"},
+    "grains": {"count": 16, "depth": False},
+    "run": {"repeats": 1, "threads": 1},
+}
 RUNS = {
     "there and back": {"motion": {"tilt": {"rate": "60 deg/s", "angle": "15 deg", "hold": "0 s", "reverse": True}}},
     "swayed": {
         "motion": {"tilt": False, "soft_start": "0.1 s", "sway": {"amplitude": "2 mm", "frequency": "4 Hz"}},
-        "run": {"duration": "3 s"},
+        "run": SMALL["run"] | {"duration": "3 s"},
         "record": {"picture_rate": "100 Hz"},
     },
     "open": {"tank": SMALL["tank"] | {"lid": False}, "motion": {"tilt": {"rate": "60 deg/s", "angle": "15 deg"}}},

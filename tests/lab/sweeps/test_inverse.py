@@ -45,7 +45,7 @@ def test_beds_of_one_slope_have_students_interval():
 
 @pytest.mark.parametrize("beds", [4, 8, pytest.param(30, marks=pytest.mark.slow)])
 def test_the_interval_contains_the_value_at_its_confidence_level(beds):
-    random, held, trials = np.random.default_rng(beds), 0, 1000
+    random, held, trials = np.random.default_rng(beds), 0, 500
     for _ in range(trials):
         response = fitted(X, measured(X, beds, random))
         roots = crossings(response, 30.0)

@@ -21,6 +21,14 @@ HAND = {3: ("sway", 0.02), 8: ("friction", 0.6), 12: ("gravity", 5.0), 15: ("til
 PIECES = 30
 
 
+@pytest.fixture(scope="module", autouse=True)
+def no_plots():
+    """Plots take long, and are tested elsewhere."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("lab.report.plots.write_plots", lambda *_: {})
+        yield
+
+
 @pytest.fixture(scope="module")
 def steered(tmp_path_factory):
     folder, loaded = tmp_path_factory.mktemp("view") / "hand", load("tilting/quick", SMALL)

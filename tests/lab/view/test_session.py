@@ -19,6 +19,7 @@ from lab.view import footage as footages
 from lab.view import session as sessions
 from lab.view.footage import Scenery
 from lab.view.live import LiveFrame, own_motion, steerable
+from lab.view.overlays import force_strokes
 from lab.view.page import PLOT
 from lab.view.panel.controls import CONTROLS
 from lab.view.panel.readings import clock, readings
@@ -222,7 +223,7 @@ def test_the_thickness_of_forces_is_proportional_to_them(opened):
     session, _, _ = opened
     session.look.overlay = "forces"
     session.picture()
-    strokes = session.page._force_strokes(session, session.page.tank_camera(session))
+    strokes = force_strokes(session, session.page.tank_camera(session))[0]
     weak, strong = np.unique(strokes[:, 2].round(9))
     assert strong == pytest.approx(2.0 * weak)  # 0.2 and 0.1 N
 

@@ -1,5 +1,6 @@
 """Contact laws under prescribed overlaps, slips and rotations: the resulting forces and work."""
 
+from functools import cache
 from itertools import pairwise
 from math import pi
 
@@ -35,7 +36,7 @@ class Driven:
 
     def __init__(self, normal="hertz-viscoelastic", tangential="none", rolling="none", between=BETWEEN):
         runtime.initialise(1)
-        arrays = State()
+        self.arrays = arrays = State()
         laws = NORMAL[normal](), TANGENTIAL[tangential](), ROLLING[rolling](), COHESION["none"]()
         self.laws = ChosenLaws(arrays, Units(1, 1, 1, 1), *laws, [(between, between)])
         (self.stiffness,) = arrays.vectors(axes(1, 1, self.lanes), "stiffness")
@@ -83,15 +84,30 @@ class Driven:
                     result[k, 5] += ti.abs(self.memory[m][0, 0][1])
 
 
+@pytest.fixture(scope="module")
+def driven():
+    """Makes contacts of some laws, each once; their arrays are freed in the end."""
+    made = cache(Driven)
+    known = []
+
+    def make(*laws, **others):
+        known.append(made(*laws, **others))
+        return known[-1]
+
+    yield make
+    for contact in set(known):
+        contact.arrays.release()
+
+
 def slowly(*corners, steps=2000):
     """A path through the corners, so slow that dashpots hardly count."""
     return np.concatenate([np.linspace(a, b, steps) for a, b in pairwise(corners)])
 
 
 @pytest.mark.parametrize("law", NORMAL)
-def test_grains_only_push(law):
+def test_grains_only_push(driven, law):
     """However fast they part, and at once when they touch; nothing before."""
-    contact = Driven(law)
+    contact = driven(law)
     force, energy = contact.move(np.concatenate([[0.0], DEEP * np.abs(np.sin(np.linspace(0.01, 9.0, 400)))]))
     assert np.all(force[:, 0] >= 0.0) and force[:, 0].max() > 0.0
     assert np.all(energy >= 0.0)
@@ -99,9 +115,9 @@ def test_grains_only_push(law):
 
 @pytest.mark.parametrize("begins", [0.0, 0.3, 0.5, 0.8])
 @pytest.mark.parametrize("law, power", [("hertz-viscoelastic", 1.5), ("hertz-dashpot", 1.0)])
-def test_a_damper_gives_its_whole_impulse_wherever_in_a_step_a_contact_begins(law, power, begins):
+def test_a_damper_gives_its_whole_impulse_wherever_in_a_step_a_contact_begins(driven, law, power, begins):
     """Sum of F Δt less the spring's is γ ∫ ξ^(power − 1) dξ from first touch, along a straight path; no error in Δt."""
-    contact, k = Driven(law), hertz_stiffness(BETWEEN.young_modulus, RADIUS)
+    contact, k = driven(law), hertz_stiffness(BETWEEN.young_modulus, RADIUS)
     speed, steps, dt = 1e-2, 30, 1e-8  # so small that the lag of Verlet's prediction does not count
     overlap = speed * dt * (np.arange(-3, steps) - begins)
     force, _ = contact.move(overlap, dt=dt)
@@ -112,9 +128,9 @@ def test_a_damper_gives_its_whole_impulse_wherever_in_a_step_a_contact_begins(la
 
 
 @pytest.mark.parametrize("law", NORMAL)
-def test_slow_unloading_returns_the_stored_energy(law):
+def test_slow_unloading_returns_the_stored_energy(driven, law):
     """Work done on the contact is elastic energy or lost; nothing is made, and an elastic law returns all of it."""
-    contact = Driven(law, between=interface(material(restitution=0.5), material(restitution=0.5), MASS, RADIUS, 1.0))
+    contact = driven(law, between=interface(material(restitution=0.5), material(restitution=0.5), MASS, RADIUS, 1.0))
     overlap = slowly(0.0, DEEP, 0.3 * DEEP, 0.8 * DEEP, 0.0)
     force, energy = contact.move(overlap, dt=1e-2)
     work = np.concatenate([[0.0], np.cumsum(0.5 * (force[1:, 0] + force[:-1, 0]) * np.diff(overlap))])
@@ -126,9 +142,9 @@ def test_slow_unloading_returns_the_stored_energy(law):
         assert work[-1] == pytest.approx(0.0, abs=tolerance)
 
 
-def test_hysteretic_loading_unloading_and_reloading():
+def test_hysteretic_loading_unloading_and_reloading(driven):
     """k₁ ξ, then k₂ (ξ − ξ₀) with k₂ = k₁/e² both ways, k₁ ξ again past the old depth; forgotten once apart."""
-    contact = Driven("hysteretic")
+    contact = driven("hysteretic")
     k = hertz_stiffness(BETWEEN.young_modulus, RADIUS)
     first = MASS / (1.25 * MASS / k) ** 0.8  # as deep as Hertz's at 1 m/s
     force, _ = contact.move(np.array([0.5, 1.0, 0.9, 0.64, 0.3, 0.9, 1.0, 2.0, 0.0, 0.5]) * DEEP)
@@ -139,9 +155,9 @@ def test_hysteretic_loading_unloading_and_reloading():
 
 @pytest.mark.parametrize("dt", [DT, 0.1 * DT])
 @pytest.mark.parametrize("law", ["haff-werner", "mindlin", "cundall-strack", "coulomb"])
-def test_friction_slides_at_its_cap_whatever_the_step(law, dt):
+def test_friction_slides_at_its_cap_whatever_the_step(driven, law, dt):
     """|F_t| ≤ μ F_n always, μ F_n against the slip in the end, and the turn-round is no exception."""
-    contact = Driven(tangential=law)
+    contact = driven(tangential=law)
     slip = np.repeat([0.1, -0.1, 1e-3], 4000)
     force, _ = contact.move(np.full(12000, DEEP), slip, dt=dt)
     cap = 0.4 * force[:, 0]
@@ -149,21 +165,21 @@ def test_friction_slides_at_its_cap_whatever_the_step(law, dt):
     assert force[[3999, 7999], 1] == pytest.approx([-cap[3999], cap[7999]], rel=1e-9)
 
 
-def test_shear_without_a_cap_and_without_a_force():
-    contact = Driven(tangential="viscous")
+def test_shear_without_a_cap_and_without_a_force(driven):
+    contact = driven(tangential="viscous")
     force, _ = contact.move(np.full(4000, DEEP), 0.5)
     assert force[-1, 1] == pytest.approx(-20.0 * 0.5, rel=1e-6)
-    force, _ = Driven(tangential="none").move(np.full(10, DEEP), 0.5)
+    force, _ = driven(tangential="none").move(np.full(10, DEEP), 0.5)
     assert np.all(force[:, 1] == 0.0)
 
 
 @pytest.mark.parametrize("law", ["mindlin", "cundall-strack"])
-def test_no_closed_path_creates_energy(law):
+def test_no_closed_path_creates_energy(driven, law):
     """Elata and Berryman (1996): load, shear, unload, shear back and reload, in any order, costs work or nothing.
 
     At fixed shear a cycle of the load alone leaves no more force than there was.
     """
-    contact = Driven("hertz", law, between=interface(material(friction=9.0), material(friction=9.0), MASS, RADIUS, 1.0))
+    contact = driven("hertz", law, between=interface(material(friction=9.0), material(friction=9.0), MASS, RADIUS, 1.0))
     random = np.random.default_rng(5)
     shift = 2e-7
     square = [(0.3, 0.0), (1.0, 0.0), (1.0, 1.0), (0.3, 1.0), (0.3, 0.0)]
@@ -186,9 +202,9 @@ def test_no_closed_path_creates_energy(law):
 
 @pytest.mark.parametrize("law", ["constant-torque", "elastic-plastic"])
 @pytest.mark.parametrize("dt", [DT, 0.1 * DT])
-def test_rolling_torque_is_friction_times_radius(law, dt):
+def test_rolling_torque_is_friction_times_radius(driven, law, dt):
     """|M| ≤ μ_r R_eff F_n always, and against the turning in the end."""
-    contact = Driven(rolling=law)
+    contact = driven(rolling=law)
     turning = np.repeat([300.0, -300.0], 20000)
     force, _ = contact.move(np.full(40000, DEEP), 0.0, turning, dt=dt)
     cap = 0.2 * RADIUS * force[:, 0]
@@ -196,9 +212,9 @@ def test_rolling_torque_is_friction_times_radius(law, dt):
     assert force[[19999, 39999], 2] == pytest.approx([-cap[0], cap[0]], rel=1e-9)
 
 
-def test_rolling_memory_changes_its_sign_when_grains_are_swapped():
+def test_rolling_memory_changes_its_sign_when_grains_are_swapped(driven):
     """The one that remembers ω_i − ω_j, and no other; the slip of two grains is the same from either."""
-    contact = Driven(normal="hysteretic", tangential="mindlin", rolling="elastic-plastic")
+    contact = driven(normal="hysteretic", tangential="mindlin", rolling="elastic-plastic")
     kept = []
     for turning in (1.0, -1.0):
         contact.move(np.full(20, DEEP), 1e-3, turning)
@@ -207,9 +223,9 @@ def test_rolling_memory_changes_its_sign_when_grains_are_swapped():
     assert kept[1] == pytest.approx(np.where(contact.laws.odd, -1.0, 1.0) * kept[0])
 
 
-def test_rolling_spring_is_that_of_ai():
+def test_rolling_spring_is_that_of_ai(driven):
     """k_r = 2.25 k_n (μ_r R_eff)², C_r = 2 η_r √(I_r k_r), I_r = (7/5) m R²: before it yields, M = −k_r θ − C_r ω."""
-    contact = Driven(rolling="elastic-plastic")
+    contact = driven(rolling="elastic-plastic")
     k = hertz_stiffness(BETWEEN.young_modulus, RADIUS)
     spring = 2.25 * MASS / (1.25 * MASS / k) ** 0.8 * (0.2 * RADIUS) ** 2
     dashpot = 2 * 0.3 * np.sqrt(1.4 * MASS * RADIUS**2 * spring)

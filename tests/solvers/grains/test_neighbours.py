@@ -164,7 +164,7 @@ def test_no_contact_is_missed(usual):
 def test_history_survives_rebuilds(usual):
     """A skin so thin that the lists are made anew at nearly every step leads to the same motion."""
     looks = 60
-    run = shaken(1e-6)
+    run = shaken(1e-6, room=2)
     apart = []
     for k in range(looks):
         run.advance(round(5e-4 / run.dt))

@@ -27,7 +27,7 @@ from tests.oracles.voyages import cargo_energy, earth, hull_energy
 WATER, G = Water(), 9.81
 BARGE = box(0.34, 0.30)
 AXIS, HOLD = (0.0, 0.11), (0.0, 0.02)  # m above the keel
-RADIUS, ACROSS, DEEP = 0.01, 15, 4
+RADIUS, ACROSS, DEEP = 0.015, 10, 3
 SITES = RADIUS * np.array(
     [(2 * k - ACROSS + 1 + row % 2, 1.0 + np.sqrt(3.0) * row) for row in range(DEEP) for k in range(ACROSS - row % 2)]
 )  # in a triangular lattice from wall to wall, which does not shift at small angles
@@ -41,7 +41,7 @@ CARGO = COUNT * 4.0 / 3.0 * pi * RADIUS**3 * GRAIN.density / SHEET  # kg/m
 ADDED = Radiation(np.diag([40.0, 52.0, 0.2]), np.diag([20.0, 100.0, 0.05]))
 NONE = Radiation(np.zeros((3, 3)), np.zeros((3, 3)))
 ALONE, TINY, LIVELY, VACUUM, OVER, RESONANT, ROLLING, LOSSY, HATCH = range(9)
-LASTS = 6.0  # s
+LASTS, CLOSE = 5.0, 2.0  # s, of the voyage and of those that it is compared with
 HEEL, RELEASE = 0.006, 0.5  # rad, s
 ROUNDING = 1e-10  # of sums over many steps
 EDGES = ((0.15, 0.17), (-0.15, 0.17))  # m, of a hatch
@@ -130,7 +130,7 @@ class Run:
             vessels=vessels,
             thickness=SHEET,
             length=1.0,
-            step=2e-5,
+            step=2.5e-5,
         )
         with pytest.MonkeyPatch.context() as patch:
             patch.setattr("solvers.grains.matter.ChosenLaws", CountedLaws)
@@ -141,7 +141,7 @@ class Run:
         self.every = int(self.simulation.carrier.every[0])
         self.cargo = self.simulation.cargo()
 
-    def sail(self, every: int, lasts: float, looks: int = 60, nudged: bool = False):
+    def sail(self, every: int, lasts: float, looks: int = 50, nudged: bool = False):
         """Times, rows of observations, and what is asked of the frame and the grains, at even looks.
 
         Grains that are nudged begin one last digit beside their places, some to this side and some to that.
@@ -206,12 +206,12 @@ def voyage(run):
 
 @pytest.fixture(scope="module")
 def finer(run):
-    return run.sail(run.every // 2, 3.0, 30)
+    return run.sail(run.every // 2, CLOSE, 20)
 
 
 @pytest.fixture(scope="module")
 def twin(run):
-    return run.sail(run.every, 3.0, 30, nudged=True)
+    return run.sail(run.every, CLOSE, 20, nudged=True)
 
 
 def test_a_ship_without_cargo_moves_as_the_ship_alone(run, voyage):
@@ -237,10 +237,10 @@ def test_cargo_that_does_not_move_is_part_of_the_rigid_body(run, voyage):
     later = voyage["time"] > RELEASE + 0.01
     wanted = np.interp(voyage["time"][later] - RELEASE, frozen.time, frozen.roll)
     assert np.ptp(wanted) > 1.5 * HEEL
-    assert voyage["roll"][later, TINY] == pytest.approx(wanted, abs=0.002 * np.ptp(wanted))
+    assert voyage["roll"][later, TINY] == pytest.approx(wanted, abs=0.003 * np.ptp(wanted))
 
 
-@pytest.mark.parametrize(("world", "until"), [(ALONE, 3.0), (TINY, 3.0), (LOSSY, 1.55)])
+@pytest.mark.parametrize(("world", "until"), [(ALONE, CLOSE), (TINY, CLOSE), (LOSSY, 1.55)])
 def test_half_the_interval_gives_the_same_motion(voyage, finer, twin, world, until):
     """To 1e-5 of the roll: without cargo, with cargo that lies and with cargo that has shifted.
 
@@ -472,7 +472,7 @@ def test_bands_move_the_ship_as_one_unit_does(together):
             GRAIN,
             tangential="mindlin",
             vessels=[vessel],
-            step=2e-5,
+            step=2.5e-5,
             schedule=schedule,
         )
         run = Simulation(scene, SITES[None] + [0.0, 1e-4], 2, arch="cpu")
@@ -499,22 +499,22 @@ def test_intervals():
 
 
 def test_changed_waves_act_from_then_on(run):
-    """Twice as high and shorter, after the first second: as by the method of Runge and Kutta, waves changed then."""
+    """Twice as high and shorter, after half a second: as by the method of Runge and Kutta, waves changed then."""
     simulation, every = run.simulation, run.every
     simulation.restore(run.settled)
     simulation.carrier.every.fill(every)
     before = list(simulation.scene.vessels)
     ship = before[ALONE].ship
     interval = every * simulation.dt
-    steps = every * round(1.0 / interval)
+    steps = every * round(0.5 / interval)
     simulation.advance(steps)
     other = replace(ship, load=floating(0.04, 5.2))
     simulation.meet([replace(v, ship=other) if w == ALONE else v for w, v in enumerate(before)])
     simulation.advance(steps)
     roll = simulation.carrier.pose.to_numpy()[ALONE, 2]
     simulation.meet(before)
-    second = steps * simulation.dt
-    first = sail(ship, start(ship, before[ALONE].heave(Body(0.0, (0.0, 0.0), 0.0), 0.0)), interval, second)
-    then = sail(other, first.state[-1], interval, second, begin=second)
+    half = steps * simulation.dt
+    first = sail(ship, start(ship, before[ALONE].heave(Body(0.0, (0.0, 0.0), 0.0), 0.0)), interval, half)
+    then = sail(other, first.state[-1], interval, half, begin=half)
     assert abs(then.roll[-1] - first.roll[-1]) > 1e-3
     assert roll == pytest.approx(then.roll[-1], abs=1e-9)

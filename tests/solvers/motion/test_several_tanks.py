@@ -22,7 +22,7 @@ from tests.oracles.scenes import material
 AXIS, HOLD = (0.0, 0.11), (0.0, 0.02)  # m above the keel
 HULL = Body(37.0, (0.004, 0.09), 0.6)
 GRAIN = material(young=5e7, friction=0.6, restitution=0.3)
-RADIUS, LENGTH, HEEL, RELEASE, LASTS = 0.01, 2.0, 0.006, 0.5, 3.0
+RADIUS, LENGTH, HEEL, RELEASE, LASTS = 0.01, 2.0, 0.006, 0.5, 2.0
 SNUG = 0.9999  # of the width that a row of grains needs
 PORT, BOARD, VOID = (-0.06, 0.0), (0.08, 0.03), (0.0, 0.15)  # where the tanks stand in the hold, m
 

@@ -1,0 +1,24 @@
+"""What the tests of the application share."""
+
+import pytest
+
+from lab.assembly import ship_tables
+from lab.report import plots
+
+PANELS = 32  # of 80: a tenth of the time; the tests of the potential flow say how it converges
+
+
+@pytest.fixture(scope="session", autouse=True)
+def coarse_hulls():
+    """Hulls of few panels wherever a preset has a ship."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(ship_tables, "PANELS", PANELS)
+        yield
+
+
+@pytest.fixture(scope="session", autouse=True)
+def coarse_figures():
+    """Figures of a third of the dots."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setitem(plots.STYLE, "savefig.dpi", 60)
+        yield
