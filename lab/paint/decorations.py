@@ -236,12 +236,12 @@ class LivePlot:
         draw.text((0, 0), labels[1], INK, face, anchor="la")
         draw.text((right, self._image.height), labels[0], INK, face, anchor="rd")
         x, strong = float(self._image.width), font(self._text, bold=True)
-        end = face.getlength(labels[1]) + self._text
-        for name, colour in reversed(self._names):
-            if x - strong.getlength(name) < end:  # no room for more of them
-                break
+        gap, widths = 0.55 * self._text, [strong.getlength(name) for name, _ in self._names]
+        ends = np.cumsum(np.add(widths, gap))
+        fitting = int((ends < x - face.getlength(labels[1])).sum())  # of many names the last ones are left out
+        for (name, colour), width in list(zip(self._names, widths, strict=True))[:fitting][::-1]:
             draw.text((x, 0), name, colour, strong, anchor="ra")
-            x -= strong.getlength(name) + 0.6 * self._text
+            x -= width + gap
         for value in self._levels:
             y = self._place(np.array([[self._low[0], value]]))[0, 1]
             draw.line([(left, y), (right, y)], fill=GRID, width=thin)

@@ -16,6 +16,8 @@ DOT, RING, BAR = 0.36, 0.12, 0.2  # radius of a dot, width of its white ring, ha
 DASH, SPACE, THIN = 0.45, 0.4, 0.055  # of the line of a depth gauge: lengths and half thickness, in u
 AWAY, LETTERS = 0.75, 0.95  # distance of a name from the wall's inner face and its height, in u
 LONG = 0.9  # u, half the length of a name that is too long to stand beside the tank
+TRIES = (0.0, 1.0, -1.0, 2.0, -2.0, 3.0, 4.0)  # how far along the wall a name is moved off others, over its size
+SMALL = 0.4  # least size of a dot, over the usual one
 SMALLEST = 7.0  # pixels; smaller letters are left out
 OF_TANK = 0.04  # largest u, over the larger side of the tank in the picture
 
@@ -32,8 +34,9 @@ class Marks:
     def paint(self, picture: np.ndarray, camera: Camera, depths: Mapping[str, float]) -> None:
         """Paint the gauges over a picture, in place; camera: of the tank's points; depths (m) of those of depth."""
         u = self._u(camera)
+        small = self._apart(camera, u)
         for name, gauge in self.pool.gauges.items():
-            self._paint_sensor(picture, camera, gauge, self.hues[name], u)
+            self._paint_sensor(picture, camera, gauge, self.hues[name], small)
         for name, level in self.pool.levels.items():
             low, high = self._ends(level.y)
             ends = camera.pixels(np.array([(level.y, low), (level.y, high)]))
@@ -47,18 +50,26 @@ class Marks:
         u, draw = self._u(camera), ImageDraw.Draw(image)
         if LETTERS * u < SMALLEST:
             return
-        for name, gauge in self.pool.gauges.items():
-            self._write(draw, camera, name, np.array(gauge.place), self._wall(gauge)[1])
+        places = [(name, np.array(gauge.place), self._wall(gauge)[1]) for name, gauge in self.pool.gauges.items()]
         for name, level in self.pool.levels.items():
-            self._write(draw, camera, name, np.array([level.y, self._ends(level.y)[1]]), np.array([0.0, 1.0]))
+            places.append((name, np.array([level.y, self._ends(level.y)[1]]), np.array([0.0, 1.0])))
+        written: list[tuple[np.ndarray, np.ndarray]] = []
+        for name, place, outwards in places:
+            self._write(draw, camera, name, (place, outwards), written)
+
+    def _apart(self, camera: Camera, u: float) -> float:
+        """The unit of the dots, so small that those of gauges beside each other can be told apart."""
+        places = camera.pixels(np.array([gauge.place for gauge in self.pool.gauges.values()]).reshape(-1, 2))
+        away = np.linalg.norm(places[:, None] - places, axis=2)
+        nearest = away[away > 0.0].min(initial=np.inf)
+        return min(u, max(SMALL * u, 0.5 * nearest / DOT))
 
     def _u(self, camera: Camera) -> float:
         return min(self.unit, OF_TANK * camera.scale * float(np.ptp(self.outline, axis=0).max()))
 
-    def _write(
-        self, draw: ImageDraw.ImageDraw, camera: Camera, name: str, place: np.ndarray, outwards: np.ndarray
-    ) -> None:
-        u = self._u(camera)
+    def _write(self, draw: ImageDraw.ImageDraw, camera: Camera, name: str, spot: tuple, written: list) -> None:
+        """Write a name outwards of a place in the tank, beside those that are `written`: their middles and halves."""
+        u, (place, outwards) = self._u(camera), spot
         face = deco.font(LETTERS * u, bold=True)
         at, out = camera.pixels(place[None])[0], camera.pixels(np.array([place, place + outwards]))
         towards = (out[1] - out[0]) / camera.scale
@@ -66,6 +77,10 @@ class Marks:
         if abs(towards[0]) > abs(towards[1]) and half[0] > LONG * u:
             towards = -towards  # beside the tank there is no room for it
         at = at + towards * (AWAY * u + np.abs(towards) @ half)
+        along = np.array([0.0, -2.0 * half[1]] if abs(towards[0]) > abs(towards[1]) else [2.0 * half[0], 0.0])
+        tries = (at + step * along for step in TRIES)
+        at = next((one for one in tries if not any((abs(one - m) < 0.95 * (half + h)).all() for m, h in written)), at)
+        written.append((at, half))
         draw.text(tuple(at), name, self.hues[name], face, "mm", stroke_width=2, stroke_fill=palette.PAPER)
 
     def _paint_sensor(self, picture: np.ndarray, camera: Camera, gauge: Gauge, hue: tuple, u: float) -> None:

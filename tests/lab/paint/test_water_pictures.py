@@ -285,6 +285,18 @@ def test_gauges_are_marked_where_they_are(frame):
         assert near(picture[y - 3 : y + 4, x - 3 : x + 4], hues[name]).mean() > 0.6, name
 
 
+def test_gauges_close_to_each_other_and_their_names_can_be_told_apart():
+    """Four gauges 12 mm apart in a wall: of each the dot, the name and the name over the curves are seen."""
+    gauges = tuple(Gauge((0.45, 0.02 + 0.012 * k)) for k in range(4))
+    made = replace(still(), gauges=gauges, series={"gauge_pressure": np.ones((1, 4))})
+    picture, hues = film_of(made).picture(0), hues_of(made.water)
+    for name, hue in hues.items():
+        there = near(picture, hue)
+        assert there[:, 830:856].sum() > 30, name  # the dot
+        assert there[:, 858:890].sum() > 60, name  # the name
+        assert there[200:265, 1000:].sum() > 60, name
+
+
 def test_the_curves_of_gauges_grow_and_are_named():
     wave = standing_wave(SPACING)
     pressures, depths = plots([wave.bed], [palette.INK])
