@@ -75,7 +75,7 @@ def in_tank(recording: Recording) -> Iterator[str]:
     time = recording.series["time"]
     for k, name in enumerate(pressure_gauges(recording) if len(time) else ()):
         value, when = _peak(recording, k)
-        yield f"highest pressure at {name}: {show(value, 'Pa')} at {show(when, 's')}"
+        yield f"highest pressure at {name}: {show(value, 'Pa')} at {show(when, 's')}" if value else f"{name} stays dry"
 
 
 def facts(recording: Recording) -> dict[str, object]:
