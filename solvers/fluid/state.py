@@ -51,7 +51,7 @@ class Particles:
         self.slope = own.wide(each, *named("slope", self.axes))
         self.built = own.wide(each, *named("built", self.axes), kind=own.place)
         self.each_world = Axis("world", worlds)
-        (self.used,) = own.integers((self.each_world,), "used")
+        (self.used,) = own.integers((self.each_world,), "used", below=self.wet + 1)
 
     @property
     def moved(self) -> list[ti.Field]:

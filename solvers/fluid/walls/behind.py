@@ -4,7 +4,7 @@ import numpy as np
 
 from solvers.fluid.given import Water
 from solvers.fluid.walls.gauges import probes
-from solvers.fluid.walls.layers import layers
+from solvers.fluid.walls.layers import edge_of, layers
 from solvers.space.axes import NAMES
 from solvers.tank.tank import Tank
 
@@ -36,11 +36,3 @@ class Behind:
             points, volumes = np.concatenate([points, of_gauge]), np.append(volumes, np.zeros(len(of_gauge)))
             edges = np.append(edges, np.full(len(of_gauge), OF_NONE))
         self.points, self.volumes, self.edges = points, volumes, edges
-
-
-def edge_of(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
-    """The edge (n,) of a polygon (m, 2) that is nearest to each point (n, 2) m, by its first corner."""
-    edges = np.roll(corners, -1, axis=0) - corners
-    apart = points[:, None] - corners
-    shares = np.clip((apart * edges).sum(axis=2) / (edges**2).sum(axis=1), 0.0, 1.0)
-    return np.linalg.norm(apart - shares[..., None] * edges, axis=2).argmin(axis=1)
