@@ -6,9 +6,14 @@ import taichi as ti
 
 
 class WendlandC2:
-    """W = a (1 − q/2)⁴ (2 q + 1), q = r/h < 2, a = 7/(4 π h²) (Wendland 1995; Dehnen & Aly 2012, table 1).
+    """W = a (1 − q/2)⁴ (2 q + 1), q = r/h (Wendland 1995): of second continuity, a = 7/(4 π h²) in the plane.
 
-    Its transform is positive, so that particles do not pair. With t = 1 − q/2: W = a t⁴ (5 − 4 t), −W'/r = (5 a/h²) t³.
+    Its transform is positive, so that particles do not pair (Dehnen & Aly 2012, table 1). With t = 1 − q/2:
+    W = a t⁴ (5 − 4 t), −W'/r = (5 a/h²) t³.
+
+    Limits: support 2 h; needs about 1.5 to 2 spacings in h.
+
+    Units: r and h m, W 1/m².
     """
 
     @staticmethod

@@ -6,9 +6,14 @@ import taichi as ti
 
 
 class WendlandC4:
-    """W = a (1 − q/2)⁶ (35/12 q² + 3 q + 1), q = r/h < 2, a = 9/(4 π h²) (Wendland 1995; Dehnen & Aly 2012, table 1).
+    """W = a (1 − q/2)⁶ (35/12 q² + 3 q + 1), q = r/h (Wendland 1995): of fourth continuity, a = 9/(4 π h²).
 
-    With t = 1 − q/2: W = a t⁶ (35/3 (1 − t)² + 6 (1 − t) + 1), −W'/r = (14 a/(3 h²)) t⁵ (6 − 5 t).
+    Smoother than C2 and broader in its effect (Dehnen & Aly 2012, table 1). With t = 1 − q/2:
+    W = a t⁶ (35/3 (1 − t)² + 6 (1 − t) + 1), −W'/r = (14 a/(3 h²)) t⁵ (6 − 5 t).
+
+    Limits: support 2 h; wants more neighbours than C2.
+
+    Units: r and h m, W 1/m².
     """
 
     @staticmethod
