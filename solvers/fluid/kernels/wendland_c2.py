@@ -2,6 +2,7 @@
 
 from math import pi
 
+import numpy as np
 import taichi as ti
 
 
@@ -23,8 +24,8 @@ class WendlandC2:
         return alone, 5.0 * alone / length**2
 
     @classmethod
-    def printed(cls, distance: float, length: float) -> float:
-        """W (1/m²) at a distance (m) within the support, in the plane."""
+    def printed(cls, distance: np.ndarray | float, length: float) -> np.ndarray | float:
+        """W (1/m²) at distances (m) within the support, in the plane."""
         q = distance / length
         return cls.factors(length)[0] * (1.0 - 0.5 * q) ** 4 * (2.0 * q + 1.0)
 
