@@ -103,8 +103,7 @@ def standing(fast: bool) -> Found:
         *order_line("the decay", spacings, [-wave.swing.decay / exact.real - 1.0 for wave in waves], 0.01),
     ]
     shown = "; ".join(
-        f"{count}: {100 * (exact.imag / wave.swing.rate - 1):.2f} %, "
-        f"{100 * (-wave.swing.decay / exact.real - 1):.1f} %"
+        f"{count}: {100 * (exact.imag / wave.swing.rate - 1):.2f} %, {100 * (-wave.swing.decay / exact.real - 1):.1f} %"
         for count, wave in zip(rows, waves, strict=True)
     )
     lamb = 4.0 * VISCOSITY * K**2
