@@ -6,8 +6,8 @@ import numpy as np
 
 from lab.studies.case import Case, Found, Line
 from lab.studies.verify.water.scenes import (
-    G,
     Field,
+    G,
     box,
     filled,
     grid,

@@ -5,6 +5,7 @@ triangles K φ = (ω²/g) M φ, where M has only the surface's nodes; those with
 """
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from scipy.interpolate import LinearNDInterpolator
@@ -54,7 +55,7 @@ def mesh(outline: np.ndarray, depth: float, columns: int, rows: int) -> tuple[np
     heights = np.unique([*(z for z in outline[:, 1] if z < depth), depth])
     parts = [
         np.linspace(low, high, max(2, round(rows * (high - low) / depth)), endpoint=False)
-        for low, high in zip(heights[:-1], heights[1:], strict=True)
+        for low, high in pairwise(heights)
     ]
     z = np.append(np.concatenate(parts), depth)
     left, right = sides(outline, z)

@@ -83,14 +83,13 @@ def rotating(fast: bool) -> Found:
     lattice = "a square lattice has 0.71"
     free = "free flight: no pressure gradient in a corner"
     sharp = "the corner particle is half a spacing inside, and feels its neighbours' pressure"
+    apart = "no particles in pairs"
     spacings = [SIDE / count for count in counts]
     errors = [abs(one.corners.mean() - 1.0) for one in found]
     lines = [
         Line.off("angular momentum", "kept", drift, 1e-3, "pair forces are central; shifting moves water alone"),
         Line("widest gap in the middle, radius in spacings", best.hole, 0.71, lattice, 0.4, "no voids", relative=False),
-        Line(
-            "least distance in the middle, in spacings", best.nearest, 1.0, "lattice", 0.5, "no pairs", relative=False
-        ),
+        Line("least distance in the middle, in spacings", best.nearest, 1.0, "lattice", 0.5, apart, relative=False),
         Line("corners' distance, of free flight", best.corners.mean(), 1.0, free, 0.1 if fast else 0.05, sharp),
         *order_line("the corners' distance", spacings, errors, 5e-3),
     ]
