@@ -7,6 +7,7 @@ import numpy as np
 from lab.studies.case import Case, Found, Line
 from lab.studies.verify.water.laplace import first_mode
 from lab.studies.verify.water.scenes import (
+    LATTICE,
     G,
     box,
     chamfered,
@@ -85,7 +86,7 @@ def compared(pools: dict[str, Pool], fast: bool) -> Found:
         found = [slosh(pool, count) for count in rows]
         lines.append(Line(name, found[-1] / (2.0 * np.pi), exact / (2.0 * np.pi), source, allowed, WHY, "Hz"))
         errors = [rate / exact - 1.0 for rate in found]
-        lines += order_line(f"the frequency, {name}", [pool.depth / count for count in rows], errors, 2e-3)
+        lines += order_line(f"the frequency, {name}", [pool.depth / count for count in rows], errors, LATTICE)
         if len(rows) > 1:
             shown = ", ".join(f"{100 * error:.2f} %" for error in errors)
             notes.append(f"{name}, with {', '.join(map(str, rows))} layers: {shown}.")

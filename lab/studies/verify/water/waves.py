@@ -10,6 +10,7 @@ from scipy.optimize import fsolve
 from lab.report.plots import BLUE, GREY, STYLE, VERMILION
 from lab.studies.case import Case, Found, Line, Picture
 from lab.studies.verify.water.scenes import (
+    LATTICE,
     G,
     Swing,
     box,
@@ -99,7 +100,7 @@ def standing(fast: bool) -> Found:
     lines = [
         Line("period", 2.0 * np.pi / best.rate, 2.0 * np.pi / RATE, "ω² = g k tanh kH", 0.01, slack, "s"),
         Line("decay of the kinetic energy", 2.0 * best.decay, -2.0 * exact.real, source, allowed, lossy, "1/s"),
-        *order_line("the period", spacings, [wave.swing.rate / exact.imag - 1.0 for wave in waves], 1e-3),
+        *order_line("the period", spacings, [wave.swing.rate / exact.imag - 1.0 for wave in waves], LATTICE),
         *order_line("the decay", spacings, [-wave.swing.decay / exact.real - 1.0 for wave in waves], 0.01),
     ]
     shown = "; ".join(
