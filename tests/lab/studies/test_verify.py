@@ -14,7 +14,7 @@ from lab.studies.verify.references import viscoelastic_rebound
 
 PICTURES = (
     *("errors", "chung-ooi-1-2", "chung-ooi-5", "restitution", "oblique-mindlin", "orders"),
-    *("water-wave", "water-channel", "water-drop", "water-patch"),
+    *("water-wave", "water-channel", "water-drop"),
 )
 
 

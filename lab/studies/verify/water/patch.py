@@ -103,4 +103,4 @@ def rotating(fast: bool) -> Found:
     return Found(lines, [picture], notes=[note])
 
 
-CASES = (Case("water-patch", SECTION, "A rotating square patch", rotating),)
+CASES = (Case("water-patch", SECTION, "A rotating square patch", rotating, quick=False),)
