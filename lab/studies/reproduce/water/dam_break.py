@@ -1,0 +1,142 @@
+"""A dam break beside measured fronts and the wall pressures of a hundred repeats.
+
+Lobovský et al. (2014), J. Fluids Struct. 48, 407: a column of H = 300 mm, 2 H long. Lengths are in H, times in √(H/g),
+pressures in ρ g H. Our column has no gate: it is free at once.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from lab.preset.sections.water.liquid import spacing
+from lab.report.plots import BELOW, BLUE, GREEN, GREY, VERMILION
+from lab.studies.reproduce.estimates import Estimate
+from lab.studies.reproduce.experiment import Found, Row, Told, held
+from lab.studies.reproduce.figures import SIZE
+from lab.studies.reproduce.runs import Outcome
+from lab.studies.reproduce.water.costs import COSTS, cost
+from lab.studies.reproduce.water.measured import drawn
+
+FITTED = 1.0, 3.3  # H beyond the column, of the line through the front; the wall is at 3.37
+PLATEAU = 3.5, 4.5  # √(H/g)
+ARRIVED = 0.2  # ρ g H
+FIRST = 0.6  # √(H/g) after the arrival in which the first peak is sought
+FRONTS, PRESSURES = "dam_break_fronts/front_lobovsky_H0.300m.csv", "lobovsky_dam_break/pressure_sensor1.csv"
+COLOURS = BLUE, VERMILION, GREEN
+NUMBERS = {  # our number, what is stated, the range that agrees, its origin
+    "front": ("front's speed, √(gH)", "1.6 to 1.8", (1.6, 1.8), "line fits to experiments with H of 0.2 m or more"),
+    "arrival": ("reaches sensor 1 at, √(H/g)", "2.42", (0.97 * 2.42, 1.03 * 2.42), "3 %"),
+    "peak": ("first peak at sensor 1, ρgH", "2.66", (2.1, 3.7), "2.1 to 3.7: 95 % of a hundred repeats"),
+    "second": ("first peak at sensor 2, ρgH", "1.87", (1.77, 2.02), "1.77 to 2.02: 95 % of a hundred repeats"),
+    "plateau": ("mean from 3.5 to 4.5 at sensor 1, ρgH", "0.72", (0.60, 0.91), "0.60 to 0.91: 95 % of the repeats"),
+    "codes": ("the same beside inviscid codes", "0.95 to 1.02", (0.90, 1.07), "5 % about the codes with 80 layers"),
+}
+
+
+@dataclass(frozen=True)
+class Break:
+    """A dam break in H, √(H/g), ρ g H: the front's speed, its arrival at sensor 1, first peaks, and the plateau."""
+
+    front: float
+    arrival: float
+    peak: float
+    second: float
+    plateau: float
+
+
+class Scales:
+    """The units of a run: length m, time s, pressure Pa; the column's end m."""
+
+    def __init__(self, one: Outcome):
+        preset = one.recording.preset
+        corners = np.array(preset.water.region)
+        self.length = float(np.ptp(corners[:, 1]))
+        self.end = float(corners[:, 0].max())
+        self.time = (self.length / preset.run.gravity) ** 0.5
+        self.pressure = preset.water.density * preset.run.gravity * self.length
+
+
+def front_course(one: Outcome) -> tuple[np.ndarray, np.ndarray]:
+    """Times and places of the front: the foremost particle and half a spacing, beyond the column's end."""
+    recording, unit = one.recording, Scales(one)
+    places = recording.frames["water_place"]
+    foremost = [np.nanmax(places[k][0, :, 0].astype(float)) for k in range(len(recording.frames["time"]))]
+    ahead = np.array(foremost) + 0.5 * spacing(recording.preset) - unit.end
+    return recording.frames["time"][:] / unit.time, ahead / unit.length
+
+
+def front_speed(time: np.ndarray, place: np.ndarray) -> float:
+    """Slope of the line through the front's places within FITTED, before it reaches the wall."""
+    upto = int(np.argmax(place > FITTED[1])) or len(place)
+    within = place[:upto] > FITTED[0]
+    return float(np.polyfit(time[:upto][within], place[:upto][within], 1)[0])
+
+
+def find_break(one: Outcome) -> Break:
+    """The numbers of a run."""
+    series, unit = one.recording.series, Scales(one)
+    time = series["time"] / unit.time
+    pressure, highest = (series[name][:, 0] / unit.pressure for name in ("gauge_pressure", "gauge_peak"))
+    arrival = float(time[np.argmax(highest[:, 0] > ARRIVED)])
+    first = (time >= arrival) & (time <= arrival + FIRST)
+    late = (time >= PLATEAU[0]) & (time <= PLATEAU[1])
+    peaks = highest[first].max(axis=0)
+    plateau = float(pressure[late, 0].mean())
+    return Break(front_speed(*front_course(one)), arrival, float(peaks[0]), float(peaks[1]), plateau)
+
+
+def tell(found: Found) -> Told:
+    """The last run beside the experiments, and all runs with what they cost."""
+    runs = {label: outcomes[0] for label, outcomes in found.items()}
+    breaks = {label: find_break(one) for label, one in runs.items()}
+    heads = ("front", "arrival", "peak 1", "peak 2", "plateau")
+    cells = [
+        [*cost(label, runs[label]), *(f"{getattr(each, name):.3g}" for name in Break.__dataclass_fields__)]
+        for label, each in breaks.items()
+    ]
+    last = list(runs)[-1]
+    return Told(_rows(last, breaks[last]), _figure(runs), [[*COSTS, *heads], *cells])
+
+
+def _rows(label: str, ours: Break) -> list[Row]:
+    rows = []
+    for name, (says, stated, between, origin) in NUMBERS.items():
+        number = ours.plateau if name == "codes" else getattr(ours, name)
+        rows.append(held(f"{says}, {label}", stated, Estimate.exact(number), between, origin))
+    return rows
+
+
+def _figure(runs: dict[str, Outcome]) -> Figure:
+    figure = Figure(figsize=(SIZE[0] + 0.8, 3.6), layout="constrained")
+    fronts, pressures = figure.subplots(1, 2)
+    _draw_fronts(fronts, runs)
+    _draw_pressures(pressures, runs)
+    handles, labels = fronts.get_legend_handles_labels()
+    more = pressures.get_legend_handles_labels()
+    figure.legend([*handles, more[0][0]], [*labels, more[1][0]], loc=BELOW, ncols=3)
+    return figure
+
+
+def _draw_fronts(axes: Axes, runs: dict[str, Outcome]) -> None:
+    for (label, one), colour in zip(runs.items(), COLOURS, strict=False):
+        time, place = front_course(one)
+        axes.plot(time[place <= FITTED[1]], place[place <= FITTED[1]], color=colour, label=label)
+    middle = np.array([1.2, 2.6])
+    for speed, style in ((1.6, ":"), (1.8, "--")):
+        axes.plot(middle, 0.6 + speed * (middle - middle[0]), color="0.5", ls=style, lw=1.0, label=f"{speed} √(gH)")
+    if (measured := drawn(axes, FRONTS)) is not None:
+        axes.plot(*measured, "o", ms=2.5, color="black", label="measured")
+    axes.set(xlabel="t √(g/H)", ylabel="front beyond the column (H)", xlim=(0.0, 3.0), ylim=(0.0, 3.6))
+
+
+def _draw_pressures(axes: Axes, runs: dict[str, Outcome]) -> None:
+    axes.axhspan(*NUMBERS["plateau"][2], color=GREY, alpha=0.3, lw=0, label="95 % of the repeats from 3.5 to 4.5")
+    for (_, one), colour in zip(runs.items(), COLOURS, strict=False):
+        series, unit = one.recording.series, Scales(one)
+        axes.plot(series["time"] / unit.time, series["gauge_pressure"][:, 0, 0] / unit.pressure, color=colour, lw=0.8)
+    if (measured := drawn(axes, PRESSURES)) is not None:
+        axes.fill_between(measured[0], measured[1], measured[3], color="0.5", alpha=0.4, lw=0)
+        axes.plot(measured[0], measured[2], color="black", lw=0.9)
+    axes.set(xlabel="t √(g/H)", ylabel="pressure at sensor 1 (ρgH)", xlim=(2.2, 4.6), ylim=(-0.1, 4.0))
