@@ -1,9 +1,9 @@
 """Impacts of water on the wall of a rolled tank beside SPHERIC's benchmark 10.
 
-Botia-Vera, Souto-Iglesias & Bulian (2011), ISOPE: sensor 1, at the still level of the side wall. An arrival is the first
-time at which the pressure exceeds 1 kPa, an impulse the integral from 30 ms before the highest pressure to 200 ms after it.
-Peaks of single runs scatter by a fifth, and in a liquid without air they are hits of a few particles whose pressure is
-ρ c U and lasts a millisecond. So means over 10 ms are compared, too.
+Botia-Vera, Souto-Iglesias & Bulian (2011), ISOPE: sensor 1, at the still level of the side wall. An arrival is the
+first time at which the pressure exceeds 1 kPa, an impulse the integral from 30 ms before the highest pressure to 200 ms
+after it. Peaks of single runs scatter by a fifth, and in a liquid without air they are hits of a few particles whose
+pressure is ρ c U and lasts a millisecond. So means over 10 ms are compared, too.
 """
 
 from collections.abc import Sequence
@@ -40,8 +40,16 @@ class Impact:
 
 EXPERIMENT = Impact(2.3738, 3683.0, 2213.0, 179.0), Impact(4.0470, 3890.0, 3017.0, 187.0)  # of the one record
 WORDS = {
-    "arrival": ("20 ms: what a sound computation of this size is expected to give", "s", lambda x: (x - 0.02, x + 0.02)),
-    "impulse": ("10 %: what a sound computation of this size is expected to give", "Pa s", lambda x: (0.9 * x, 1.1 * x)),
+    "arrival": (
+        "20 ms: what a sound computation of this size is expected to give",
+        "s",
+        lambda x: (x - 0.02, x + 0.02),
+    ),
+    "impulse": (
+        "10 %: what a sound computation of this size is expected to give",
+        "Pa s",
+        lambda x: (0.9 * x, 1.1 * x),
+    ),
     "peak": ("3.7 ± 1.5 kPa: twice the scatter of a hundred repeats", "Pa", lambda _: (2200.0, 5200.0)),
     "mean": ("40 %: twice the scatter of the peaks, read off for lack of its own", "Pa", lambda x: (0.6 * x, 1.4 * x)),
 }
@@ -89,7 +97,9 @@ def _rows(label: str, ours: Sequence[Impact | None]) -> list[Row]:
 
 
 def _header() -> list[str]:
-    of_each = [f"{order} {name}" for order in ("first", "second") for name in ("arrival", "peak", "10 ms mean", "impulse")]
+    of_each = [
+        f"{order} {name}" for order in ("first", "second") for name in ("arrival", "peak", "10 ms mean", "impulse")
+    ]
     return [*COSTS, *of_each]
 
 

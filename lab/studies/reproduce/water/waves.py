@@ -1,7 +1,7 @@
 """Waves that do not break, beside measured ones: the beat in a swaying tank, the slow swing in a pitching one.
 
-Faltinsen, Rognebakke, Lukovsky & Timokha (2000), J. Fluid Mech. 407, 201, figure 7; Akyildiz & Ünal (2006), Ocean Eng. 33,
-2135, figure 5. Both series were read off their figures, the first to some 3 mm and 0.02 s.
+Faltinsen, Rognebakke, Lukovsky & Timokha (2000), J. Fluid Mech. 407, 201, figure 7; Akyildiz & Ünal (2006), Ocean Eng.
+33, 2135, figure 5. Both series were read off their figures, the first to some 3 mm and 0.02 s.
 """
 
 import numpy as np
@@ -131,7 +131,14 @@ def _swings(runs: dict[str, Outcome]) -> Figure:
     size, phase, mean = SWING
     for share, style in ((0.9, ":"), (1.1, ":")):
         sine = mean + share * size * np.sin(2.0 * time + np.radians(phase))
-        axes.plot(time, sine, color="0.5", ls=style, lw=1.0, label="sine through the measured points, ± 10 %" if share < 1 else None)
+        axes.plot(
+            time,
+            sine,
+            color="0.5",
+            ls=style,
+            lw=1.0,
+            label="sine through the measured points, ± 10 %" if share < 1 else None,
+        )
     if (measured := drawn(axes, PITCH)) is not None:
         axes.plot(*measured, "o", ms=3, color="black", label="measured")
     axes.set(xlabel="time (s)", ylabel="pressure on the end wall (kPa)")
