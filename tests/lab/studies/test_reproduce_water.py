@@ -105,7 +105,8 @@ def test_the_swing_of_a_pressure_is_that_of_its_sine():
     pressure = 1e3 * np.stack([3.2 + sine, 3.2 - sine], axis=-1)[:, None, :]
     one = ran("sloshing/pitch", time=time, gauge_pressure=pressure)
     assert waves.swing(one) == pytest.approx((0.36, -6.0, 3.2), rel=2e-3)
-    assert {row.verdict for row in waves.pitch({"30 layers": [one]}).rows} == {Verdict.AGREES}
+    verdicts = [row.verdict for row in waves.pitch({"30 layers": [one]}).rows]
+    assert verdicts == [Verdict.AGREES, Verdict.DIFFERS, Verdict.AGREES, Verdict.AGREES]  # it is not linear theory's
 
 
 def test_a_measured_series_is_drawn_where_it_is_and_missed_in_a_sentence(tmp_path, monkeypatch):
@@ -189,5 +190,5 @@ SOUND = {
     "roll-impact": ("first impact arrives at", "first impact impulse", "second impact impulse"),
     "dam-break": ("reaches sensor 1 at, √(H/g)", "the same beside inviscid codes"),
     "sway-beat": ("farthest of eight crests and troughs from its time",),
-    "pitch": ("swing of the pressure", "ahead of the tank", "mean"),
+    "pitch": ("the same", "ahead of the tank", "mean"),
 }

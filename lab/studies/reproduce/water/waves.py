@@ -28,7 +28,7 @@ SWAY, PITCH = (
     "sloshing_pitch_rectangular/akyildiz_unal2006_P2.csv",
 )
 SWING = 0.367, -6.2, 3.22  # kPa, deg, kPa: the sine of 2 rad/s through the measured points, and their mean
-QUASI_STATIC = "0.367 kPa; a level surface gives 0.315"
+THEORY = "0.323 kPa by linear potential flow, by finite differences at 2.5 mm"
 COLOURS = BLUE, VERMILION, GREEN
 
 
@@ -95,10 +95,9 @@ def pitch(found: Found) -> Told:
     label, one = list(runs.items())[-1]
     size, phase, mean = swing(one)
     rows = [
-        held(f"swing of the pressure, {label}", QUASI_STATIC, Estimate.exact(size), (0.33, 0.404), "10 %: ours", "kPa"),
-        held(
-            f"ahead of the tank, {label}", "-6 deg", Estimate.exact(phase), (-18.0, 6.0), "12 deg, 0.1 s: ours", "deg"
-        ),
+        held(f"swing of the pressure, {label}", "0.367 kPa", Estimate.exact(size), (0.330, 0.404), "10 %: ours", "kPa"),
+        held(f"the same, {label}", THEORY, Estimate.exact(size), (0.317, 0.329), "2 %: ours", "kPa"),
+        held(f"ahead of the tank, {label}", "-6 deg", Estimate.exact(phase), (-18.0, 6.0), "0.1 s: ours", "deg"),
         held(f"mean, {label}", "3.22 kPa", Estimate.exact(mean), (3.16, 3.29), "2 %: its place follows from it", "kPa"),
     ]
     return Told(rows, _swings(runs), [[*COSTS, *heads], *cells])
