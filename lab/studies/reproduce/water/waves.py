@@ -22,7 +22,7 @@ TURNS = {  # s: mm, the measured crests and troughs of the gauge 50 mm from the 
 }
 NEAR = 0.3  # s about a measured turn, where ours is sought
 CREST, LATE = "10 %: a crest of a sound computation", "0.1 s in 10 s: the beat of a sound computation"
-GAUGE = 1  # the wall at which the water falls first, as in the experiment
+GAUGE = 0  # the wall at which the water falls first, as in the experiment
 SWAY, PITCH = (
     "sloshing_sway_rectangular/faltinsen2000_h0.6_T1.3.csv",
     "sloshing_pitch_rectangular/akyildiz_unal2006_P2.csv",
