@@ -1,5 +1,7 @@
 """Check that a scene fits into this machine's memory, before anything is allocated for it."""
 
+from dataclasses import dataclass
+
 from lab.base.errors import LabError
 from lab.base.memory import SHARE, machine_memory
 from lab.preset.schema import Preset
@@ -11,34 +13,47 @@ A_DROP = 3_000  # bytes per particle of water
 A_BED = 10  # fixed cost of a bed, as a number of grains
 
 
+@dataclass(frozen=True)
+class Load:
+    """So many particles in each world, and how they are called: the memory they take, and the key that sets them."""
+
+    count: int
+    each: int  # bytes
+    key: str
+    noun: str
+    world: str
+    remedy: str
+
+    def many(self, worlds: int) -> str:
+        """All of them in words."""
+        nouns = self.noun.replace(" ", "s ", 1) if " " in self.noun else f"{self.noun}s"
+        return f"{worlds} {self.world}s of {self.count} {nouns}" if worlds > 1 else f"{self.count} {nouns}"
+
+
 def check_room(preset: Preset, grains: int, drops: int = 0) -> None:
-    """Raise LabError if beds of so many `grains`, or of `drops` of water, do not fit into this machine's memory."""
-    count, what, each = grains, "grains", AN_OUTLINE if preset.shapes else A_DISC
-    if drops:
-        count, what, each = drops, "particles of water", A_DROP
-    beds, room, a_bed = preset.run.repeats, SHARE * machine_memory(), (count + A_BED) * each
-    if beds * a_bed <= room:
-        return
-    many = f"{beds} {'tanks' if drops else 'beds'} of {count} {what}" if beds > 1 else f"{count} {what}"
-    one = "particle" if drops else "grain"
-    needed = f"{many} take some {_size(beds * a_bed)} of memory, at {_size(each)} a {one}"
-    bound = f"half of this machine's is {_size(room)}"
-    if room < a_bed:
-        remedy = "take larger ones" if drops else "take fewer grains"
-        raise LabError(f"{_count_key(preset)}: {needed}, and {bound}: {remedy}.")
-    raise LabError(
-        f"run.repeats: {needed}, and {bound}: take at most {int(room // a_bed)} {'tanks' if drops else 'beds'}."
+    """Raise LabError if worlds of so many `grains`, or of `drops` of water, do not fit into this machine's memory."""
+    load = Load(
+        grains, AN_OUTLINE if preset.shapes else A_DISC, _count_key(preset), "grain", "bed", "take fewer grains"
     )
+    if drops:
+        load = Load(drops, A_DROP, "water.spacing", "particle of water", "tank", "take larger ones")
+    worlds, room, a_world = preset.run.repeats, SHARE * machine_memory(), (load.count + A_BED) * load.each
+    if worlds * a_world <= room:
+        return
+    one = load.noun.partition(" ")[0]
+    needed = f"{load.many(worlds)} take some {_size(worlds * a_world)} of memory, at {_size(load.each)} a {one}"
+    bound = f"half of this machine's is {_size(room)}"
+    if room < a_world:
+        raise LabError(f"{load.key}: {needed}, and {bound}: {load.remedy}.")
+    raise LabError(f"run.repeats: {needed}, and {bound}: take at most {int(room // a_world)} {load.world}s.")
 
 
 def _count_key(preset: Preset) -> str:
-    """The key that sets the number of grains, or of particles of water."""
+    """The key that sets the number of grains."""
     grains = preset.grains
-    if grains is None:
-        return "water.spacing"
-    if grains.listed:
-        return "grains.bed"
-    return "grains.depth" if grains.count is None else "grains.count"
+    if grains is None or not grains.listed:
+        return "grains.depth" if grains is None or grains.count is None else "grains.count"
+    return "grains.bed"
 
 
 def _size(size: float) -> str:

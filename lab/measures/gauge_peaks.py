@@ -35,7 +35,8 @@ def measure(recording: Recording) -> dict[str, Value]:
     for k, name in enumerate(pressure_gauges(recording)):
         peak = recording.series["gauge_peak"][..., k]
         when = ", ".join(show(float(time[row]), "s") for row in peak.argmax(axis=0))
-        found[key("gauge_largest", name)] = over_worlds(peak.max(axis=0), "Pa", note=f"at {when}")
+        note = f"at {when}" if peak.any() else "it stays dry"
+        found[key("gauge_largest", name)] = over_worlds(peak.max(axis=0), "Pa", note=note)
         if driving(recording) is not None:
             parts = [cycles(recording, one) for one in peak.T]
             highest = [np.array([one[rows].max() for rows in of]) for one, of in zip(peak.T, parts, strict=True)]

@@ -26,7 +26,7 @@ def labelled(recording, frames: slice | None = None) -> "xarray.Dataset":
         found[name] = values
         if quantity.components:
             coordinates[quantity.dimension] = list(quantity.components)
-    for owner, gauges in zip(("gauge", "level"), parted(recording.preset.gauges), strict=True):
+    for owner, gauges in zip(("gauge", "level", "edge"), parted(recording.preset.gauges), strict=True):
         if any(owner in values.dims for values in found.values()):
             coordinates[owner] = list(gauges)
     coordinates["world"] = np.arange(recording.worlds)

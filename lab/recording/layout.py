@@ -70,9 +70,9 @@ def tables_of(preset: Preset, steered: bool) -> dict[str, tuple[Quantity, ...]]:
 
 
 def gauges_of(preset: Preset) -> dict[str, int]:
-    """Numbers of a preset's gauges of pressure and of level, by the owners of their quantities."""
-    pressure, level = parted(preset.gauges)
-    return {"gauge": len(pressure), "level": len(level)}
+    """Numbers of a preset's gauges of pressure, level and force, by the owners of their quantities."""
+    pressure, level, force = parted(preset.gauges)
+    return {"gauge": len(pressure), "level": len(level), "edge": len(force)}
 
 
 def sizes_of(preset: Preset, radius: np.ndarray, volume: np.ndarray | None, parts: int) -> dict[str, int]:

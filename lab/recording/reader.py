@@ -29,6 +29,7 @@ SIZES = {
     "drop": 7,
     "gauge": 11,
     "level": 13,
+    "edge": 17,
 }  # arbitrary but distinct sizes, to compare shapes
 TABLE_KINDS = {"series": Series, "frames": Frames, "steering": Series}
 

@@ -10,6 +10,7 @@ COUNTED = {  # what each axis counts, and the preset key that sets its size
     "drop": "particles of water (water.spacing)",
     "gauge": "gauges of pressure (gauges.NAME)",
     "level": "gauges of level (gauges.NAME)",
+    "edge": "gauges of force (gauges.NAME)",
 }
 
 
@@ -19,7 +20,7 @@ def recorded_by(name: object) -> str:
         return "; `cargolab view` records it, of a ship in waves."
     of_water = {quantity.name: quantity for quantity in (*OF_MATTERS["water"].SERIES, *OF_MATTERS["water"].FRAMES)}
     if name in of_water:
-        table = "gauges.NAME" if of_water[name].per in ("gauge", "level") else "water"
+        table = "gauges.NAME" if of_water[name].per in ("gauge", "level", "edge") else "water"
         return f"; a preset with a table [{table}] records it."
     if name in _names(series_of(afloat=False)):
         return "; it is in the series (record.series_rate)."

@@ -27,13 +27,14 @@ Rows = list[tuple[str, str]]
 
 def described(preset: Preset, scene: Scene) -> Rows:
     """The water and its gauges, each row a name and a text."""
-    pressure, level = parted(preset.gauges)
+    pressure, level, force = parted(preset.gauges)
     rows = [
         ("water", f"{scene.particles} particles in each tank, {_size(preset, scene.water)}"),
         ("sound", _sound(preset, scene.water)),
     ]
     if preset.gauges:
-        names = [f"{name} of pressure" for name in pressure] + [f"{name} of level" for name in level]
+        kinds = zip(("pressure", "level", "force"), (pressure, level, force), strict=True)
+        names = [f"{name} of {kind}" for kind, gauges in kinds for name in gauges]
         rows.append(("gauges", ", ".join(names)))
     return rows
 
@@ -75,7 +76,7 @@ def in_tank(recording: Recording) -> Iterator[str]:
     time = recording.series["time"]
     for k, name in enumerate(pressure_gauges(recording) if len(time) else ()):
         value, when = _peak(recording, k)
-        yield f"highest pressure at {name}: {show(value, 'Pa')} at {show(when, 's')}"
+        yield f"highest pressure at {name}: {show(value, 'Pa')} at {show(when, 's')}" if value else f"{name} stays dry"
 
 
 def facts(recording: Recording) -> dict[str, object]:

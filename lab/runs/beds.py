@@ -86,7 +86,7 @@ def settled(scene: Scene, position: np.ndarray, how: Settling, start: Start, pro
     BadState from the watch, LabError if a bed does not fit under its tank's lid. Without grains nothing settles.
     """
     simulation = start(scene, position)
-    if not simulation.grains:  # water starts at rest
+    if not scene.radius.size:  # water starts at rest
         return simulation
     if not how.settle:
         progress.note("The grains start where they were placed, without settling (run.settle = false).")

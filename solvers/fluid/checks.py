@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from solvers.fluid.constants import FASTEST
 from solvers.fluid.given import Water
-from solvers.fluid.mover import DENSEST
 from solvers.machine.errors import BadState
 
 CREATED = 0.1  # of the energy exchanged: what may be missing from the account before a run is stopped
@@ -18,12 +18,12 @@ def refuse_state(world: int, place: np.ndarray, speed: np.ndarray, excess: np.nd
     bad = ~(np.isfinite(speed) & np.isfinite(excess) & np.isfinite(place).all(axis=1))
     if bad.any():
         what, at = "the state of a particle of water is not a number", place[bad.argmax()]
-    elif np.abs(excess).max() >= DENSEST:
-        worst = np.abs(excess).argmax()
-        what, at = f"the water's density is off by {100.0 * excess[worst]:.3g} %", place[worst]
-    else:
+    elif speed.max() >= FASTEST * sound:
         worst = speed.argmax()
         what, at = f"water moves at {speed[worst]:.3g} m/s, Mach {speed[worst] / sound:.2g},", place[worst]
+    else:
+        worst = np.abs(excess).argmax()
+        what, at = f"the water's density is off by {100.0 * excess[worst]:.3g} %", place[worst]
     raise BadState(world, f"{what} at y = {at[0]:.4g} m, z = {at[1]:.4g} m, t = {time:.4g} s; {REMEDY}.")
 
 

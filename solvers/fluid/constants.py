@@ -12,6 +12,7 @@ from solvers.fluid.viscosity import VISCOSITY
 from solvers.machine.state import State
 
 FLOOR = 1e-6  # of h², added to squared distances that are divided by
+FASTEST = 0.5  # Mach number at which a run is stopped
 TOUCH = 0.75  # spacings between a particle and a dummy below which the wall is hard; at rest they are one apart
 HARD = 0.2  # of c0/Δx: frequency of a particle on a hard wall, which turns c0/20 back on its way to the dummy
 
@@ -44,7 +45,7 @@ class Constants:
             "reach": water.reach,
             "touch": TOUCH * water.spacing,
             "hard": water.density * (HARD * sound / water.spacing) ** 2 / (slope * water.spacing**2),
-            "fastest": 0.5 * sound,  # Mach 0.5
+            "fastest": FASTEST * sound,
             "shift": self.shifting.strength(water) * slope if self.shifting.acts else 0.0,
             "shift_most": 0.5 * water.speed,
             "shift_scale": value / self.kernel.printed(water.spacing, length),
@@ -60,3 +61,11 @@ class Constants:
     def get(self, name: ti.template()):
         """The constant of that name."""
         return self.values[ti.static(self.at[name])]
+
+    @ti.func
+    def hardness(self, square):
+        """What a dummy adds at the squared distance (m²), per volume, so that a thin layer does not pass the wall.
+
+        A spring up to the distance TOUCH, for pressure alone does not hold water that parts along a wall it nears.
+        """
+        return self.get("hard") * ti.max(self.get("touch") / ti.sqrt(square + self.get("floor")) - 1.0, 0.0)

@@ -4,13 +4,12 @@ import numpy as np
 import taichi as ti
 
 from solvers.fluid.lists import Medium
-from solvers.fluid.state import SPRAY
+from solvers.fluid.state import INSIDE, SPRAY
 from solvers.fluid.walls.extrapolation import Extrapolation
 from solvers.machine.state import State
 from solvers.space.axes import dot
 from solvers.tank.load import Load
 
-INSIDE = 0.75  # least eigenvalue above which no surface is near (Marrone, Colagrossi, Le Touzé & Graziani 2010)
 SINGULAR = 0.05  # least eigenvalue of Σ V_j r_ji ⊗ ∇W down to which it is inverted: spray has no gradient
 OUTLINE = 0  # number of the piece of the tank that all dummies belong to
 
@@ -137,7 +136,7 @@ class Forces:
                     for a in ti.static(range(p.axes)):
                         shift[a] += crowded * apart[a]
                 along = p.pressure[jb, lane] + (pressure if ti.static(c.full) else ti.max(pressure, 0.0))
-                along = along * weight + self.hardness(p.volume[jb, lane], square)
+                along = along * weight + p.volume[jb, lane] * c.hardness(square)
                 more = along - pressure * weight
                 for a in ti.static(range(p.axes)):
                     own_push[a] += more * apart[a]
@@ -172,15 +171,6 @@ class Forces:
         total[3] = ti.cast((strength * volume * lost).sum(), p.exact)
         total[4] = ti.cast((volume * held).sum(), p.exact)
         return total
-
-    @ti.func
-    def hardness(self, volume, square):
-        """What a dummy at the squared distance (m²) adds, so that a thin layer of water does not pass the wall.
-
-        A spring towards the distance TOUCH, for pressure alone does not hold water that parts along a wall it nears.
-        """
-        c = self.constants
-        return (c.get("hard") * volume) * ti.max(c.get("touch") / ti.sqrt(square + c.get("floor")) - 1.0, 0.0)
 
     @ti.func
     def note_shift(self, b, shift: ti.template(), inwards: ti.template(), least, span):

@@ -47,8 +47,8 @@ class Water:
     laminar flow. `slip`: water slides freely along walls, else it sticks to them. `full`: the tank has no free surface,
     so that walls may pull. `shifting`: the name of how particles are shifted to even their distances, for water of up
     to the `speed` (m/s). `walls`: whether the tank's outline holds the water; without, it moves freely in space.
-    `periodic`: axes, "y" or "z", along which space repeats itself with the tank's width or height, so that it has no
-    walls there.
+    `edges`: those of the outline, by their first corners, whose force is told. `periodic`: axes, "y" or "z", along
+    which space repeats itself with the tank's width or height, so that it has no walls there.
     """
 
     spacing: float
@@ -71,6 +71,7 @@ class Water:
     pull: Pull | None = None
     gauges: tuple[Gauge, ...] = ()
     levels: tuple[Level, ...] = ()
+    edges: tuple[int, ...] = ()
 
     @property
     def length(self) -> float:

@@ -4,9 +4,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from solvers.fluid.given import Water
 from solvers.fluid.state import FAR
+from solvers.space.axes import NAMES
 
 BIN = 0.5  # length of a bin, in spacings
+ROOM = 2.0  # supports of the kernel by which the grid reaches beyond the tank's box
 
 
 @dataclass(frozen=True)
@@ -83,3 +86,22 @@ class Grid:
         lanes = np.full((blocks * self.lanes, 2), FAR)
         lanes[slots] = points
         return slots, lanes.reshape(blocks, self.lanes, 2), first
+
+
+def grid_round(
+    water: Water, drops: np.ndarray, outline: np.ndarray, bounds: tuple[np.ndarray, np.ndarray], lanes: int
+) -> Grid:
+    """The grid round a tank with an `outline` (m, 2) m, in which water stays within `bounds`.
+
+    Where it has no walls, the grid is round the water itself, with as much space on all sides.
+    """
+    lower, upper = bounds
+    margin = ROOM * water.reach
+    if not water.walls and not water.periodic:
+        place = drops[..., :2].reshape(-1, 2)
+        lower, upper = place.min(axis=0), place.max(axis=0)
+        margin = float(np.ptp(place, axis=0).max())
+    sides = zip(NAMES, np.ptp(outline, axis=0), strict=False)
+    periods = tuple(float(side) if name in water.periodic else 0.0 for name, side in sides)
+    corners = tuple(lower - margin), tuple(upper + margin)
+    return Grid(*corners, water.spacing, lanes, periods, tuple(outline.min(axis=0)))

@@ -26,11 +26,11 @@ CROWDED = 1.6  # times the neighbours of a square block at rest: room for those 
 class Listing:
     """One list for each block of a unit: `slots[u, first[u, b]]` to `slots[u, first[u, b + 1] - 1]`, b from 0."""
 
-    def __init__(self, arrays: State, units: Units, name: str, blocks: int, capacity: int):
+    def __init__(self, arrays: State, units: Units, name: str, blocks: int, capacity: int, below: int):
         self.capacity = capacity
         own = arrays.under(f"water.{name}")
-        (self.first,) = own.integers((units.axis, Axis("begin", blocks + 1)), "first")
-        (self.slots,) = own.integers((units.axis, Axis("entry", capacity)), "slots")
+        (self.first,) = own.integers((units.axis, Axis("begin", blocks + 1)), "first", below=capacity + 1)
+        (self.slots,) = own.integers((units.axis, Axis("entry", capacity)), "slots", below=below)
 
 
 @ti.data_oriented
@@ -63,9 +63,11 @@ class Lists:
         wet, dry = (-(-blocks // units.a_world) for blocks in (particles.wet, max(particles.dry, 1)))
         crowd = room * self._crowd(order.grid, constants.reach)
         few = 4 * particles.dry * particles.lanes // units.a_world + wet  # blocks beside walls
-        self.near = Listing(arrays, units, "near", wet, crowd * wet)
-        self.beside = Listing(arrays, units, "beside", wet, room * (8 * few + 64))
-        self.facing = Listing(arrays, units, "facing", dry, crowd * dry)
+        slots = particles.worlds * particles.stride * particles.lanes
+        below = slots if len(self.images) == 1 else 9 << PLACES  # an entry of periodic space has its image in front
+        self.near = Listing(arrays, units, "near", wet, crowd * wet, below)
+        self.beside = Listing(arrays, units, "beside", wet, room * (8 * few + 64), below)
+        self.facing = Listing(arrays, units, "facing", dry, crowd * dry, below)
         self.travel = own.holding("travel", np.full(units.count, NEVER), "unit", kept=True)
         self.last, self.skin = own.reals((units.axis,), "last", "skin")
 

@@ -11,23 +11,21 @@ from solvers.fluid.constants import Constants
 from solvers.fluid.continuity import Continuity
 from solvers.fluid.forces import Forces
 from solvers.fluid.given import VELOCITY_Y, VELOCITY_Z, Water
-from solvers.fluid.grid import Grid
+from solvers.fluid.grid import grid_round
 from solvers.fluid.lists import Lists, Medium
 from solvers.fluid.mover import Mover
 from solvers.fluid.order import Order
 from solvers.fluid.state import LANES, UNUSED, Particles, Shares
+from solvers.fluid.walls.behind import OF_NONE, Behind
+from solvers.fluid.walls.edges import Edges
 from solvers.fluid.walls.extrapolation import Extrapolation
-from solvers.fluid.walls.gauges import Gauges, probes
-from solvers.fluid.walls.layers import layers
+from solvers.fluid.walls.gauges import Gauges
 from solvers.machine.errors import Unavailable
 from solvers.machine.phase import Phase
 from solvers.machine.state import Axes
 from solvers.motion.poses import Poses
-from solvers.space.axes import NAMES as PLANE_NAMES
 from solvers.tank.matter import Matter
 from solvers.tank.setting import Setting
-
-ROOM = 2.0  # supports of the kernel by which the grid reaches beyond the tank's box
 
 
 @ti.data_oriented
@@ -35,7 +33,11 @@ class WaterMatter(Matter):
     """Water: its dummies' pressures, its forces, then kick and drift, the rates of density, and drift."""
 
     name = "water"
-    of_contacts: ClassVar = ("gauge_pressure", "gauge_peak")  # quantities that are known only after a step
+    of_contacts: ClassVar = (
+        "gauge_pressure",
+        "gauge_peak",
+        "edge_force",
+    )  # quantities that are known only after a step
 
     def __init__(self, scene, setting: Setting):
         water: Water = scene.water
@@ -43,9 +45,8 @@ class WaterMatter(Matter):
         arrays, worlds, tank = setting.arrays, setting.worlds, scene.tanks[0]
         lanes = 1 if setting.per_particle else LANES
         self.wide = lanes > 1
-        points, volumes, slots = self._walls(tank)
-        grid = self._grid(setting.walls.bounds, lanes)
-        dummy, blocks, first = grid.arranged(points)
+        behind, grid = Behind(water, tank), grid_round(water, scene.drops, tank.outline, setting.walls.bounds, lanes)
+        dummy, blocks, first = grid.arranged(behind.points)
         self.drops = scene.drops
         count = scene.drops.shape[1]
         self.particles = p = Particles(
@@ -53,7 +54,7 @@ class WaterMatter(Matter):
         )
         self.units = units = setting.units(p.wet)
         self.load = setting.load(arrays.under("water"), units)
-        self.dummies = dummy, blocks, volumes
+        self.dummies = dummy, blocks, behind.volumes
         shares, self.constants = Shares(p, units), Constants(arrays, water, scene.gravity)
         self.poses = Poses(arrays, setting.carrier, worlds)
         self.order = Order(arrays, p, grid)
@@ -62,7 +63,10 @@ class WaterMatter(Matter):
         self.extrapolation = Extrapolation(arrays, medium)
         self.forces = Forces(arrays, medium, self.extrapolation, self.load, tank.thickness)
         self.continuity, self.mover = Continuity(arrays, medium), Mover(arrays, medium, self.extrapolation)
-        self.gauges = Gauges(arrays, p, water.gauges, [dummy[slot] + p.wet * lanes for slot in slots])
+        self.gauges = Gauges(arrays, p, water.gauges, [dummy[slot] + p.wet * lanes for slot in behind.probes])
+        owner = np.full(p.dry * lanes, OF_NONE)
+        owner[dummy] = behind.edges
+        self.edges = Edges(arrays, medium, water.edges, owner, tank.thickness)
         closed = water.walls and not tank.open_edges and not water.periodic
         self.census = Census(arrays, p, setting.walls, self.constants, setting.carrier, closed, water.levels)
         self.start = np.full(worlds, np.nan)  # J, energy at the first look
@@ -80,42 +84,10 @@ class WaterMatter(Matter):
             Phase(self.forces.publish, self.units),
             *([Phase(self.extrapolation.press, self.units)] if self.particles.dry else ()),
             *([Phase(self.gauges.measure)] if self.gauges.count else ()),
+            *([Phase(self.edges.bear, self.units), Phase(self.edges.add)] if self.edges.wanted else ()),
             Phase(self.forces.push, self.units),
         ]
         return tuple(phases)
-
-    def _walls(self, tank) -> tuple[np.ndarray, np.ndarray, list[np.ndarray]]:
-        """Places and volumes of dummies and gauges' probes, and the numbers of each gauge's probes among them."""
-        if not self.water.walls:
-            return np.zeros((0, 2)), np.zeros(0), []
-        rows = int(np.ceil(self.water.reach / self.water.spacing - 1e-9))
-        points, volumes = layers(tank.outline, self.water.spacing, rows, tank.open_edges)
-        lower, upper = tank.outline.min(axis=0), tank.outline.max(axis=0)
-        for a, name in enumerate(PLANE_NAMES[:2]):
-            if name in self.water.periodic:
-                kept = (points[:, a] >= lower[a]) & (points[:, a] < upper[a])
-                points, volumes = points[kept], volumes[kept]
-        slots = []
-        for gauge in self.water.gauges:
-            of_gauge = probes(gauge, tank.outline, self.water.spacing)
-            slots.append(len(points) + np.arange(len(of_gauge)))
-            points, volumes = np.concatenate([points, of_gauge]), np.append(volumes, np.zeros(len(of_gauge)))
-        return points, volumes, slots
-
-    def _grid(self, bounds: tuple[np.ndarray, np.ndarray], lanes: int) -> Grid:
-        """The grid round the tank; round the water itself where it has no walls, with as much space on all sides."""
-        lower, upper = bounds
-        margin = ROOM * self.water.reach
-        if not self.water.walls and not self.water.periodic:
-            place = self.scene.drops[..., :2].reshape(-1, 2)
-            lower, upper = place.min(axis=0), place.max(axis=0)
-            margin = float(np.ptp(place, axis=0).max())
-        periods = tuple(
-            float(side) if name in self.water.periodic else 0.0
-            for name, side in zip(PLANE_NAMES, np.ptp(self.scene.outline, axis=0), strict=False)
-        )
-        corners = tuple(lower - margin), tuple(upper + margin)
-        return Grid(*corners, self.water.spacing, lanes, periods, tuple(self.scene.outline.min(axis=0)))
 
     @property
     def extent(self) -> float:
@@ -206,6 +178,7 @@ class WaterMatter(Matter):
         self.lists.skin.fill(0.0)
         self.lists.expire()
         self.gauges.forget()
+        self.edges.forget()
         self.load.forget()
         self.start[:] = np.nan
 
@@ -239,6 +212,7 @@ class WaterMatter(Matter):
             "level_depth": self.census.level_depth.to_numpy()[:, : self.census.levels],
             "water_escaped": sums["escaped"],
             **self.gauges.take(),
+            **self.edges.take(),
         }
         fresh = np.isnan(self.start)
         self.start[fresh] = residual(rows, 0.0)[fresh]

@@ -25,7 +25,7 @@ class Order:
         self.numbers = own.holding("numbers", grid.numbers, "number", own.place)
         world = Axis("world", particles.worlds)
         keys = world, Axis("key", self.chunks * CHUNK)
-        (self.first,) = own.integers(keys, "first")
+        (self.first,) = own.integers(keys, "first", below=particles.wet * particles.lanes + 1)
         (self.cursor,) = own.integers(keys, "cursor", kept=False)
         (self.chunk_first,) = own.integers((world, Axis("chunk", self.chunks)), "chunk_first", kept=False)
         each = Axis("block", particles.worlds * particles.stride), Axis("lane", particles.lanes)

@@ -17,6 +17,7 @@ SERIES = (
     Quantity("water_dense", "1", label="share of the water whose density deviates by more than 3 %"),
     Quantity("gauge_pressure", "Pa", label="pressure at each gauge", per="gauge"),
     Quantity("gauge_peak", "Pa", label="highest pressure at each gauge since the last sample", per="gauge"),
+    Quantity("edge_force", "N", PLANE, "force of the water on each edge of the tank", mean=True, per="edge"),
     Quantity("level_depth", "m", label="depth of the water above the floor at each level gauge", per="level"),
 )
 # What the watch asks and no recording has: the number of a particle that has left the tank.

@@ -10,6 +10,7 @@ from solvers.space.axes import PLANE, named
 LANES = 16  # particles in a block: two AVX2 registers, or one of AVX-512, of 32-bit numbers
 SPARE = 1.5  # blocks for each full one, for those that a sparse surface leaves half empty
 FAR = 1e6  # m, where unused lanes are
+INSIDE = 0.75  # least eigenvalue above which no surface is near (Marrone, Colagrossi, Le Touzé & Graziani 2010)
 SPRAY = 0.2  # least eigenvalue below which water is spray, never less dense than at rest (Marrone et al. 2010)
 UNUSED = -1  # number of an unused lane
 
@@ -50,7 +51,7 @@ class Particles:
         self.slope = own.wide(each, *named("slope", self.axes))
         self.built = own.wide(each, *named("built", self.axes), kind=own.place)
         self.each_world = Axis("world", worlds)
-        (self.used,) = own.integers((self.each_world,), "used")
+        (self.used,) = own.integers((self.each_world,), "used", below=self.wet + 1)
 
     @property
     def moved(self) -> list[ti.Field]:

@@ -18,6 +18,7 @@ OWNERS = {
     "drop": ("world", "drop"),
     "gauge": ("world", "gauge"),
     "level": ("world", "level"),
+    "edge": ("world", "edge"),
 }
 DIMENSIONS = {PLANE: "axis", FREEDOMS: "freedom"}  # what runs over components that many quantities have
 

@@ -22,7 +22,7 @@ class Pool:
         """The water of a preset with the volumes (W, n) m² of its particles; None without water."""
         if preset.water is None:
             return None
-        water, (gauges, levels) = liquid(preset), parted(preset.gauges)
+        water, (gauges, levels, _) = liquid(preset), parted(preset.gauges)
         return cls(volume, dict(zip(gauges, water.gauges, strict=True)), dict(zip(levels, water.levels, strict=True)))
 
     @property

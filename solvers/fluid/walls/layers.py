@@ -59,3 +59,11 @@ def distance(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
         share = np.clip(apart @ edge / (edge @ edge), 0.0, 1.0)
         nearest = np.minimum(nearest, np.linalg.norm(apart - share[:, None] * edge, axis=1))
     return nearest
+
+
+def edge_of(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
+    """The edge (n,) of a polygon (m, 2) that is nearest to each point (n, 2) m, by its first corner."""
+    edges = np.roll(corners, -1, axis=0) - corners
+    apart = points[:, None] - corners
+    shares = np.clip((apart * edges).sum(axis=2) / (edges**2).sum(axis=1), 0.0, 1.0)
+    return np.linalg.norm(apart - shares[..., None] * edges, axis=2).argmin(axis=1)

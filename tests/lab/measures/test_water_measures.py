@@ -36,7 +36,7 @@ def test_the_peaks_of_cycles_are_averaged_and_their_scatter_told(tmp_path):
     assert scatter == pytest.approx(np.std(heights[2:4], ddof=1))
     assert found.uncertainty == pytest.approx(scatter / 2**0.5) and found.kind == "cycles"
     assert values["gauge_largest_P1"].value == pytest.approx(9000.0) and values["gauge_largest_P1"].note == "at 1 s"
-    assert values["gauge_peak_P2"].value == 0.0
+    assert values["gauge_peak_P2"].value == 0.0 and values["gauge_largest_P2"].note == "it stays dry"
 
 
 def test_no_impact_falls_on_a_cut_between_cycles(tmp_path):

@@ -52,6 +52,7 @@ EXCESS = {
     "odd-pixels": {"video.width": 641},
     "region": {"grains.region": MANY},
     "grains-listed": {"grains.bed": {"name": "", "columns": dict.fromkeys(("y", "z", "radius"), [0.01] * 100_001)}},
+    "gauges": {"gauges": {f"P{k}": {"place": [0.0, 0.0]} for k in range(10_000)}},
     "grains-outside": {"grains.bed": {"name": "", "columns": {"y": [9.0], "z": [9.0], "radius": [0.003]}}},
 }
 

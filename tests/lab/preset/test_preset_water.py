@@ -87,6 +87,24 @@ def test_a_recorded_preset_is_the_same():
     assert from_table(to_table(preset)) == preset == resolved_from(to_table(preset))
 
 
+@pytest.mark.parametrize(
+    ("key", "value"),
+    [
+        ("spacing", 1e-12),
+        ("density", float("nan")),
+        ("region", [[1e-7 * k, (k * k % 7) * 1e-7] for k in range(2000)]),
+        ("sound_speed", 1e-3),
+        ("smoothing", 100.0),
+        ("kernel", "cubic"),
+    ],
+)
+def test_a_recorded_preset_beyond_the_limits_is_refused(key, value):
+    table = to_table(wet())
+    table["water"][key] = value
+    with pytest.raises(ValueError, match="water"):
+        resolved_from(table)
+
+
 FAULTS = {
     "neither": ({"water__depth": False}, "water.depth: give exactly one of depth and region (got neither)."),
     "negative depth": ({"water__depth": "-1 mm"}, "water.depth: must be greater than 0 (got -1 mm)."),

@@ -127,15 +127,19 @@ def _check_gauges(gauges: Mapping[str, Gauge], tank: Tank) -> None:
     if len(gauges) > MOST_GAUGES:
         raise LabError(f"gauges: at most {MOST_GAUGES} are possible (got {len(gauges)}).")
     for name, gauge in gauges.items():
-        (_check_pressure if gauge.kind == "pressure" else _check_level)(f"gauges.{name}", gauge, tank)
+        (_check_level if gauge.kind == "level" else _check_pressure)(f"gauges.{name}", gauge, tank)
 
 
 def _check_pressure(key: str, gauge: Gauge, tank: Tank) -> None:
-    """Raise LabError for a pressure gauge that does not lie in one wall."""
+    """Raise LabError for a gauge of pressure or force that does not lie in one wall."""
     if gauge.place is None:
-        raise LabError(f'{key}.place: missing for a pressure gauge; give y and z on a wall, e.g. ["0 mm", "10 mm"].')
+        what = f'missing for a {gauge.kind} gauge; give y and z on a wall, e.g. ["0 mm", "10 mm"]'
+        raise LabError(f"{key}.place: {what}.")
     if gauge.y is not None:
-        raise LabError(f'{key}.y: goes with kind = "level"; a pressure gauge has a place.')
+        raise LabError(f'{key}.y: goes with kind = "level"; a {gauge.kind} gauge has a place.')
+    for name, given in (("length", gauge.length), ("response", gauge.response)):
+        if given and gauge.kind == "force":
+            raise LabError(f'{key}.{name}: goes with kind = "pressure"; a force gauge is a whole edge.')
     place, nearest, left = np.array(gauge.place), _nearest(gauge.place, tank), NEAR * max(tank.extent)
     away = float(np.hypot(*(nearest[0] - place)))
     if away > left:

@@ -16,6 +16,7 @@ from lab.preset.sections.tank import Tank
 from lab.preset.sections.water.schemes import SCHEMES, Scheme
 from lab.preset.sections.water.section import Gauge, Water
 from solvers.fluid import given
+from solvers.fluid.walls.layers import edge_of
 
 FRONT = 2.0  # √(gH): the front of a column that collapses (Ritter 1892)
 
@@ -33,7 +34,7 @@ class Wet(Protocol):
 def liquid(preset: Wet) -> given.Water:
     """The water of a preset as the solver takes it."""
     water, scheme = preset.water, SCHEMES[preset.water.scheme]
-    pressure, level = parted(preset.gauges)
+    pressure, level, force = parted(preset.gauges)
     return given.Water(
         spacing=spacing(preset),
         sound_speed=sound_speed(preset, scheme),
@@ -52,14 +53,20 @@ def liquid(preset: Wet) -> given.Water:
         speed=expected_speed(preset),
         gauges=tuple(given.Gauge(gauge.place, gauge.length, gauge.response) for gauge in pressure.values()),
         levels=tuple(given.Level(gauge.y) for gauge in level.values()),
+        edges=tuple(_edge(gauge, preset.tank) for gauge in force.values()),
     )
 
 
-def parted(gauges: dict[str, Gauge]) -> tuple[dict[str, Gauge], dict[str, Gauge]]:
-    """The gauges of pressure and those of level by their names, each in the order of their numbers."""
-    kinds = "pressure", "level"
-    pressure, level = ({name: gauge for name, gauge in gauges.items() if gauge.kind == kind} for kind in kinds)
-    return pressure, level
+def parted(gauges: dict[str, Gauge]) -> tuple[dict[str, Gauge], dict[str, Gauge], dict[str, Gauge]]:
+    """The gauges of pressure, of level and of force by their names, each in the order of their numbers."""
+    kinds = "pressure", "level", "force"
+    pressure, level, force = ({name: gauge for name, gauge in gauges.items() if gauge.kind == kind} for kind in kinds)
+    return pressure, level, force
+
+
+def _edge(gauge: Gauge, tank: Tank) -> int:
+    """The edge of the tank that is nearest to a gauge, by its first corner."""
+    return int(edge_of(np.array([gauge.place]), np.array(tank.corners))[0])
 
 
 def bounds(preset: Wet) -> tuple[np.ndarray, float]:

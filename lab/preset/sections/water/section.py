@@ -72,12 +72,12 @@ class Water:
 
 @dataclass(frozen=True)
 class Gauge:
-    """A pressure gauge in a wall, or a gauge of the water's depth."""
+    """A pressure gauge in a wall, a gauge of the water's depth, or one of the force on a whole edge of the tank."""
 
-    kind: Annotated[Literal["pressure", "level"], Doc("What it measures.")] = "pressure"
+    kind: Annotated[Literal["pressure", "level", "force"], Doc("What it measures.")] = "pressure"
     place: Annotated[
         Annotated[tuple[float, float], Unit("m")] | None,
-        Doc("Middle of a pressure gauge on the wall, y and z in the tank."),
+        Doc("Middle of a pressure gauge on the wall, y and z in the tank; of a force gauge, a point of its edge."),
     ] = None
     length: Annotated[
         Annotated[float, Unit("m"), Interval(ge=0)],
