@@ -85,6 +85,16 @@ def test_a_dam_breaks_front_has_the_speed_of_its_foremost_particle_before_the_wa
     assert verdicts["that mean beside inviscid codes, 30 layers"] is Verdict.AGREES
 
 
+def test_what_a_run_that_was_stopped_did_not_reach_is_not_judged():
+    """A dam break that ends at 3.1 √(H/g) and has not left its place."""
+    time, still = np.arange(0.0, 0.55, 1e-3), np.zeros((550, 1, 4))
+    places = np.full((110, 1, 2, 2), -0.21)
+    frames = {"frames_time": np.arange(0.0, 0.55, 0.005), "frames_water_place": places}
+    one = ran("validation/dam-break", time=time, gauge_pressure=still, gauge_peak=still, **frames)
+    rows = dam_break.tell({"30 layers": [one]}).rows
+    assert {(row.ours, row.verdict) for row in rows} == {("not found", Verdict.CANNOT_TELL)}
+
+
 def test_turns_of_a_wave_are_found_near_the_measured_ones():
     """A curve through the measured turns, 0.05 s late and 1.2 times as high."""
     times = np.array([0.0, *waves.TURNS, 10.0])

@@ -80,29 +80,36 @@ def front_course(one: Outcome) -> tuple[np.ndarray, np.ndarray]:
 
 
 def front_speed(time: np.ndarray, place: np.ndarray) -> float:
-    """Slope of the line through the front's places within FITTED, before it reaches the wall."""
+    """Slope of the line through the front's places within FITTED, before it reaches the wall; NaN of fewer than two."""
     upto = int(np.argmax(place > FITTED[1])) or len(place)
     within = place[:upto] > FITTED[0]
+    if within.sum() < 2:
+        return np.nan
     return float(np.polyfit(time[:upto][within], place[:upto][within], 1)[0])
 
 
 def find_break(one: Outcome) -> Break:
-    """The numbers of a run."""
+    """The numbers of a run; NaN for what it did not reach."""
     series, unit = one.recording.series, Scales(one)
     time = series["time"] / unit.time
     pressure, highest = (series[name][:, 0] / unit.pressure for name in ("gauge_pressure", "gauge_peak"))
-    arrival = float(time[np.argmax(highest[:, 0] > ARRIVED)])
+    arrival = _first(time, highest[:, 0] > ARRIVED)
     first = (time >= arrival) & (time <= arrival + FIRST)
     late = (time >= PLATEAU[0]) & (time <= PLATEAU[1])
-    peaks = highest[first].max(axis=0)
     samples = max(1, round(AVERAGE / (series["time"][1] - series["time"][0])))
     share = np.full(samples, 1.0 / samples)
-    means = [float(np.convolve(pressure[first, k], share, "valid").max()) for k in (0, 1)]
+    peaks = means = (np.nan, np.nan)
+    if first.sum() >= samples:
+        peaks = [float(highest[first, k].max()) for k in (0, 1)]
+        means = [float(np.convolve(pressure[first, k], share, "valid").max()) for k in (0, 1)]
     course = front_course(one)
-    reached = course[1] >= WALL - spacing(one.recording.preset) / unit.length
-    wall = float(course[0][np.argmax(reached)]) if reached.any() else np.nan
-    plateau = float(pressure[late, 0].mean())
-    return Break(front_speed(*course), wall, arrival, float(peaks[0]), float(peaks[1]), *means, plateau)
+    wall = _first(course[0], course[1] >= WALL - spacing(one.recording.preset) / unit.length)
+    plateau = float(pressure[late, 0].mean()) if time[-1] >= PLATEAU[1] else np.nan
+    return Break(front_speed(*course), wall, arrival, *peaks, *means, plateau)
+
+
+def _first(time: np.ndarray, reached: np.ndarray) -> float:
+    return float(time[np.argmax(reached)]) if reached.any() else np.nan
 
 
 def tell(found: Found) -> Told:
@@ -122,7 +129,8 @@ def _rows(label: str, ours: Break) -> list[Row]:
     rows = []
     for name, (says, stated, between, origin) in NUMBERS.items():
         number = ours.plateau if name == "codes" else getattr(ours, name)
-        rows.append(held(f"{says}, {label}", stated, Estimate.exact(number), between, origin))
+        estimate = None if np.isnan(number) else Estimate.exact(number)
+        rows.append(held(f"{says}, {label}", stated, estimate, between, origin))
     return rows
 
 
