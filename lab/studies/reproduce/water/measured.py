@@ -1,6 +1,7 @@
 """Measured series from files that are not shipped, in the folder that the environment variable CARGOLAB_DATA names."""
 
 import os
+import textwrap
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +10,7 @@ from matplotlib.axes import Axes
 from lab.base.errors import LabError
 
 FOLDER = "CARGOLAB_DATA"
+LINE = 44  # letters, of a sentence in a figure
 
 
 def series(name: str) -> np.ndarray | None:
@@ -32,5 +34,6 @@ def drawn(axes: Axes, name: str) -> np.ndarray | None:
     found = series(name)
     if found is None:
         said = f"The measured series is not drawn: {FOLDER} names no folder with {name}."
-        axes.text(0.01, 1.02, said, transform=axes.transAxes, fontsize=6, color="0.4")
+        place = {"xy": (0.98, 0.98), "xycoords": "axes fraction", "ha": "right", "va": "top"}
+        axes.annotate(textwrap.fill(said, LINE), fontsize=6, color="0.4", **place).set_in_layout(False)
     return found
