@@ -154,7 +154,7 @@ def _draw_fronts(axes: Axes, runs: dict[str, Outcome]) -> None:
         axes.plot(middle, 0.6 + speed * (middle - middle[0]), color="0.5", ls=style, lw=1.0, label=f"{speed} √(gH)")
     if (measured := drawn(axes, FRONTS)) is not None:
         axes.plot(*measured, "o", ms=2.5, color="black", label="measured")
-    axes.set(xlabel="t √(g/H)", ylabel="front beyond the column (H)", xlim=(0.0, 3.0), ylim=(0.0, 3.6))
+    axes.set(xlabel="t √(g/H)", ylabel="front beyond the column (H)", xlim=(0.0, 3.0), ylim=(0.0, 4.2))
 
 
 def _draw_pressures(axes: Axes, runs: dict[str, Outcome]) -> None:

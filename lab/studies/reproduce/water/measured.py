@@ -35,5 +35,7 @@ def drawn(axes: Axes, name: str) -> np.ndarray | None:
     if found is None:
         said = f"The measured series is not drawn: {FOLDER} names no folder with {name}."
         place = {"xy": (0.98, 0.98), "xycoords": "axes fraction", "ha": "right", "va": "top"}
-        axes.annotate(textwrap.fill(said, LINE), fontsize=6, color="0.4", **place).set_in_layout(False)
+        axes.annotate(
+            textwrap.fill(said, LINE, break_long_words=False, break_on_hyphens=False), fontsize=6, color="0.4", **place
+        ).set_in_layout(False)
     return found
