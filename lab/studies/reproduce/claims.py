@@ -100,11 +100,13 @@ class Source(Strict):
 
 
 class Report(Strict):
-    """A report: its title, its files of claims in their order, and how its full runs differ from the source's own."""
+    """A report: its title, its files of claims in their order, how its full runs differ from the source's own, and
+    what its source is."""
 
     title: str
     files: list[str]
     less: str
+    source: str = "The source is Spandonidis (2016), doctoral thesis, NTUA."
 
 
 @cache

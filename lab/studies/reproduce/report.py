@@ -57,6 +57,7 @@ def write_page(
         command=command_of(name, quick),
         date=date.today(),
         counts=_counts([row for finding in findings.values() for row in finding.rows]),
+        source=reports()[name].source,
         level=f"{100.0 * LEVEL:g}",
         limits=QUICK if quick else less,
         quick=quick,

@@ -1,0 +1,168 @@
+"""A dam break beside measured fronts and the wall pressures of a hundred repeats.
+
+Lobovský et al. (2014), J. Fluids Struct. 48, 407: a column of H = 300 mm, 2 H long. Lengths are in H, times in √(H/g),
+pressures in ρ g H. Our column has no gate: it is free at once.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from lab.preset.sections.water.liquid import spacing
+from lab.report.plots import BELOW, BLUE, GREEN, GREY, VERMILION
+from lab.studies.reproduce.estimates import Estimate
+from lab.studies.reproduce.experiment import Found, Row, Told, held
+from lab.studies.reproduce.figures import SIZE
+from lab.studies.reproduce.runs import Outcome
+from lab.studies.reproduce.water.costs import COSTS, cost
+from lab.studies.reproduce.water.measured import drawn
+
+FITTED = 1.0, 3.3  # H beyond the column, of the line through the front; the wall is at 3.37
+PLATEAU = 3.5, 4.5  # √(H/g)
+ARRIVED = 0.2  # ρ g H
+AVERAGE = 0.010  # s: hits of a few particles are shorter
+WALL = 1010.0 / 300.0  # H from the column's end
+FIRST = 0.6  # √(H/g) after the arrival in which the first peak is sought
+FRONTS, PRESSURES = "dam_break_fronts/front_lobovsky_H0.300m.csv", "lobovsky_dam_break/pressure_sensor1.csv"
+COLOURS = BLUE, VERMILION, GREEN
+NUMBERS = {  # our number, what is stated, the range that agrees, its origin
+    "front": ("front's speed, √(gH)", "1.6 to 1.8", (1.6, 1.8), "line fits to experiments with H of 0.2 m or more"),
+    "wall": ("front at the wall at, √(H/g)", "2.42", (0.97 * 2.42, 1.03 * 2.42), "3 %"),
+    "arrival": ("pressure at sensor 1 from, √(H/g)", "2.42", (0.97 * 2.42, 1.03 * 2.42), "3 %"),
+    "peak": ("first peak at sensor 1, ρgH", "2.66", (2.1, 3.7), "2.1 to 3.7: 95 % of a hundred repeats"),
+    "second": ("first peak at sensor 2, ρgH", "1.87", (1.77, 2.02), "1.77 to 2.02: 95 % of a hundred repeats"),
+    "mean": ("largest mean over 10 ms at sensor 1, ρgH", "2.44", (1.99, 3.28), "1.99 to 3.28: 95 % of the repeats"),
+    "second_mean": ("the same at sensor 2, ρgH", "1.86", (1.73, 1.98), "1.73 to 1.98: 95 % of the repeats"),
+    "plateau": ("mean from 3.5 to 4.5 at sensor 1, ρgH", "0.72", (0.60, 0.91), "0.60 to 0.91: 95 % of the repeats"),
+    "codes": ("that mean beside inviscid codes", "0.95 to 1.02", (0.90, 1.07), "5 % about the codes with 80 layers"),
+}
+
+
+@dataclass(frozen=True)
+class Break:
+    """A dam break in H, √(H/g), ρ g H.
+
+    The front's speed and when it is at the wall; from when sensor 1 shows it; first peaks and largest means over 10 ms
+    at sensors 1 and 2; the plateau at sensor 1.
+    """
+
+    front: float
+    wall: float
+    arrival: float
+    peak: float
+    second: float
+    mean: float
+    second_mean: float
+    plateau: float
+
+
+class Scales:
+    """The units of a run: length m, time s, pressure Pa; the column's end m."""
+
+    def __init__(self, one: Outcome):
+        preset = one.recording.preset
+        corners = np.array(preset.water.region)
+        self.length = float(np.ptp(corners[:, 1]))
+        self.end = float(corners[:, 0].max())
+        self.time = (self.length / preset.run.gravity) ** 0.5
+        self.pressure = preset.water.density * preset.run.gravity * self.length
+
+
+def front_course(one: Outcome) -> tuple[np.ndarray, np.ndarray]:
+    """Times and places of the front: the foremost particle and half a spacing, beyond the column's end."""
+    recording, unit = one.recording, Scales(one)
+    places = recording.frames["water_place"]
+    foremost = [np.nanmax(places[k][0, :, 0].astype(float)) for k in range(len(recording.frames["time"]))]
+    ahead = np.array(foremost) + 0.5 * spacing(recording.preset) - unit.end
+    return recording.frames["time"][:] / unit.time, ahead / unit.length
+
+
+def front_speed(time: np.ndarray, place: np.ndarray) -> float:
+    """Slope of the line through the front's places within FITTED, before it reaches the wall; NaN of fewer than two."""
+    upto = int(np.argmax(place > FITTED[1])) or len(place)
+    within = place[:upto] > FITTED[0]
+    if within.sum() < 2:
+        return np.nan
+    return float(np.polyfit(time[:upto][within], place[:upto][within], 1)[0])
+
+
+def find_break(one: Outcome) -> Break:
+    """The numbers of a run; NaN for what it did not reach."""
+    series, unit = one.recording.series, Scales(one)
+    time = series["time"] / unit.time
+    pressure, highest = (series[name][:, 0] / unit.pressure for name in ("gauge_pressure", "gauge_peak"))
+    arrival = _first(time, highest[:, 0] > ARRIVED)
+    first = (time >= arrival) & (time <= arrival + FIRST)
+    late = (time >= PLATEAU[0]) & (time <= PLATEAU[1])
+    samples = max(1, round(AVERAGE / (series["time"][1] - series["time"][0])))
+    share = np.full(samples, 1.0 / samples)
+    peaks = means = (np.nan, np.nan)
+    if first.sum() >= samples:
+        peaks = [float(highest[first, k].max()) for k in (0, 1)]
+        means = [float(np.convolve(pressure[first, k], share, "valid").max()) for k in (0, 1)]
+    course = front_course(one)
+    wall = _first(course[0], course[1] >= WALL - spacing(one.recording.preset) / unit.length)
+    plateau = float(pressure[late, 0].mean()) if time[-1] >= PLATEAU[1] else np.nan
+    return Break(front_speed(*course), wall, arrival, *peaks, *means, plateau)
+
+
+def _first(time: np.ndarray, reached: np.ndarray) -> float:
+    return float(time[np.argmax(reached)]) if reached.any() else np.nan
+
+
+def tell(found: Found) -> Told:
+    """The last run beside the experiments, and all runs with what they cost."""
+    runs = {label: outcomes[0] for label, outcomes in found.items()}
+    breaks = {label: find_break(one) for label, one in runs.items()}
+    heads = ("front", "at the wall", "at sensor 1", "peak 1", "peak 2", "10 ms mean 1", "10 ms mean 2", "plateau")
+    cells = [
+        [*cost(label, runs[label]), *(f"{getattr(each, name):.3g}" for name in Break.__dataclass_fields__)]
+        for label, each in breaks.items()
+    ]
+    last = list(runs)[-1]
+    return Told(_rows(last, breaks[last]), _figure(runs), [[*COSTS, *heads], *cells])
+
+
+def _rows(label: str, ours: Break) -> list[Row]:
+    rows = []
+    for name, (says, stated, between, origin) in NUMBERS.items():
+        number = ours.plateau if name == "codes" else getattr(ours, name)
+        estimate = None if np.isnan(number) else Estimate.exact(number)
+        rows.append(held(f"{says}, {label}", stated, estimate, between, origin))
+    return rows
+
+
+def _figure(runs: dict[str, Outcome]) -> Figure:
+    figure = Figure(figsize=(SIZE[0] + 0.8, 3.6), layout="constrained")
+    fronts, pressures = figure.subplots(1, 2)
+    _draw_fronts(fronts, runs)
+    _draw_pressures(pressures, runs)
+    handles, labels = fronts.get_legend_handles_labels()
+    more = pressures.get_legend_handles_labels()
+    figure.legend([*handles, more[0][0]], [*labels, more[1][0]], loc=BELOW, ncols=3)
+    return figure
+
+
+def _draw_fronts(axes: Axes, runs: dict[str, Outcome]) -> None:
+    for (label, one), colour in zip(runs.items(), COLOURS, strict=False):
+        time, place = front_course(one)
+        axes.plot(time[place <= FITTED[1]], place[place <= FITTED[1]], color=colour, label=label)
+    middle = np.array([1.2, 2.6])
+    for speed, style in ((1.6, ":"), (1.8, "--")):
+        axes.plot(middle, 0.6 + speed * (middle - middle[0]), color="0.5", ls=style, lw=1.0, label=f"{speed} √(gH)")
+    if (measured := drawn(axes, FRONTS)) is not None:
+        axes.plot(*measured, "o", ms=2.5, color="black", label="measured")
+    axes.set(xlabel="t √(g/H)", ylabel="front beyond the column (H)", xlim=(0.0, 3.0), ylim=(0.0, 4.2))
+
+
+def _draw_pressures(axes: Axes, runs: dict[str, Outcome]) -> None:
+    axes.axhspan(*NUMBERS["plateau"][2], color=GREY, alpha=0.3, lw=0, label="95 % of the repeats from 3.5 to 4.5")
+    for (_, one), colour in zip(runs.items(), COLOURS, strict=False):
+        series, unit = one.recording.series, Scales(one)
+        axes.plot(series["time"] / unit.time, series["gauge_pressure"][:, 0, 0] / unit.pressure, color=colour, lw=0.8)
+    if (measured := drawn(axes, PRESSURES)) is not None:
+        axes.fill_between(measured[0], measured[1], measured[3], color="0.5", alpha=0.4, lw=0)
+        axes.plot(measured[0], measured[2], color="black", lw=0.9)
+    axes.set(xlabel="t √(g/H)", ylabel="pressure at sensor 1 (ρgH)", xlim=(2.2, 4.6), ylim=(-0.1, 4.0))

@@ -1,0 +1,205 @@
+"""Water beside experiments: what is read off a run, measured series from files that are not shipped, and slow runs."""
+
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+from scipy.interpolate import PchipInterpolator
+
+import lab
+from lab.base.errors import LabError
+from lab.preset.find import load
+from lab.studies.reproduce import experiments
+from lab.studies.reproduce.estimates import Verdict
+from lab.studies.reproduce.runs import Outcome, carry_out, outcomes
+from lab.studies.reproduce.water import dam_break, impact, measured, waves
+
+PRESETS = Path(lab.__file__).parents[1] / "presets"
+ROLL = "spheric10_lateral_water/roll_motion.csv"
+given = pytest.mark.skipif(measured.series(ROLL) is None, reason=f"{measured.FOLDER} names no folder with {ROLL}")
+
+
+def ran(preset: str, changes: dict | None = None, **series: np.ndarray) -> Outcome:
+    """A run with these series and frames."""
+    frames = {name[7:]: series.pop(name) for name in [*series] if name.startswith("frames_")}
+    recording = SimpleNamespace(preset=load(preset, changes or {}).resolved, series=series, frames=frames, worlds=1)
+    recording.volume = np.zeros((1, 100))
+    one = Outcome({}, None, "complete", {}, {"wall_s": 1.0, "grain_steps": 1e5})
+    one.__dict__["recording"] = recording
+    return one
+
+
+def test_an_impact_has_the_arrival_peak_and_impulse_of_its_pressure():
+    """A jump to 5 kPa that falls off linearly within 40 ms, on 0.5 kPa that stays."""
+    time = np.arange(0.0, 5.0, 5e-4)
+    since = time - 2.4
+    pressure = np.where(since >= 0.0, 500.0 + 4500.0 * np.clip(1.0 - since / 0.04, 0.0, 1.0), 0.0)
+    found = impact.find_impact(time, pressure, pressure, 2.374)
+    assert found.arrival == pytest.approx(2.4, abs=6e-4) and found.peak == 5000.0
+    assert found.impulse == pytest.approx(500.0 * 0.2 + 0.5 * 4500.0 * 0.04, rel=0.01)
+    assert found.mean == pytest.approx(5000.0 - 4500.0 * 0.125, rel=0.01)
+    assert impact.find_impact(time, 0.1 * pressure, 0.1 * pressure, 2.374) is None
+
+
+def test_both_impacts_are_judged_by_arrival_impulse_and_peak():
+    """One that comes 30 ms late, twice as high and with the right impulse differs in two of them."""
+    time = np.arange(0.0, 5.0, 5e-4)
+    pressure = np.zeros((len(time), 1, 1))
+    for one in impact.EXPERIMENT:
+        since = time - one.arrival - 0.03
+        pressure[:, 0, 0] += np.where((since >= 0.0) & (since < one.impulse / 8000.0), 8000.0, 0.0)
+    rows = impact.tell(
+        {"15 layers": [ran("sloshing/impact", time=time, gauge_pressure=pressure, gauge_peak=pressure)]}
+    ).rows
+    verdicts = {row.quantity: row.verdict for row in rows}
+    for order in ("first", "second"):
+        assert verdicts[f"{order} impact arrives at, 15 layers"] is Verdict.DIFFERS
+        assert verdicts[f"{order} impact peak, 15 layers"] is Verdict.DIFFERS
+        assert verdicts[f"{order} impact impulse, 15 layers"] is Verdict.AGREES
+
+
+def test_a_dam_breaks_front_has_the_speed_of_its_foremost_particle_before_the_wall():
+    """It runs 1.7 √(gH) and stops at the wall; the pressure at sensor 1 jumps to 2.5 and stays at 1 ρgH."""
+    unit = (0.3 / 9.81) ** 0.5
+    frames = np.arange(0.0, 0.8, 0.005)
+    place = np.minimum(-0.205 + 1.7 * 0.3 * frames / unit, 0.802)
+    time = np.arange(0.0, 0.9, 1e-3)
+    star = np.where(time / unit > 2.4, np.where(time / unit < 2.5, 2.5, 1.0), 0.0) * 997.0 * 9.81 * 0.3
+    one = ran(
+        "validation/dam-break",
+        frames_time=frames,
+        frames_water_place=np.stack([np.stack([place, place], axis=1)[:, None, :]] * 2, axis=2)[:, 0, :, :][:, None],
+        time=time,
+        gauge_pressure=np.repeat(star[:, None, None], 4, axis=2),
+        gauge_peak=np.repeat(star[:, None, None], 4, axis=2),
+    )
+    found = dam_break.find_break(one)
+    assert found.front == pytest.approx(1.7, rel=0.01)
+    assert found.arrival == pytest.approx(2.4, abs=0.01)
+    assert (found.peak, found.mean, found.plateau) == pytest.approx((2.5, 2.5, 1.0))
+    assert found.wall == pytest.approx((0.999 * 1.01 / 0.3 - 0.02) / 1.7, abs=0.03)
+    verdicts = {row.quantity: row.verdict for row in dam_break.tell({"30 layers": [one]}).rows}
+    assert verdicts["mean from 3.5 to 4.5 at sensor 1, ρgH, 30 layers"] is Verdict.DIFFERS
+    assert verdicts["that mean beside inviscid codes, 30 layers"] is Verdict.AGREES
+
+
+def test_what_a_run_that_was_stopped_did_not_reach_is_not_judged():
+    """A dam break that ends at 3.1 √(H/g) and has not left its place."""
+    time, still = np.arange(0.0, 0.55, 1e-3), np.zeros((550, 1, 4))
+    places = np.full((110, 1, 2, 2), -0.21)
+    frames = {"frames_time": np.arange(0.0, 0.55, 0.005), "frames_water_place": places}
+    one = ran("validation/dam-break", time=time, gauge_pressure=still, gauge_peak=still, **frames)
+    rows = dam_break.tell({"30 layers": [one]}).rows
+    assert {(row.ours, row.verdict) for row in rows} == {("not found", Verdict.CANNOT_TELL)}
+
+
+def test_turns_of_a_wave_are_found_near_the_measured_ones():
+    """A curve through the measured turns, 0.05 s late and 1.2 times as high."""
+    times = np.array([0.0, *waves.TURNS, 10.0])
+    sizes = 1.2 * np.array([0.0, *waves.TURNS.values(), 0.0])
+    time = np.arange(0.0, 10.0, 0.002)
+    rise = PchipInterpolator(times + 0.05, sizes, extrapolate=True)(time)
+    found = waves.turns(time, rise)
+    assert [late for late, _ in found] == pytest.approx([0.05] * len(found), abs=0.003)
+    depth = np.zeros((len(time), 1, 2))
+    depth[..., waves.GAUGE] = 0.6 + 1e-3 * rise[:, None]
+    rows = waves.sway_beat({"20 layers": [ran("sloshing/sway-quick", time=time, level_depth=depth)]}).rows
+    assert [row.verdict for row in rows] == [Verdict.DIFFERS] * 4 + [Verdict.AGREES, Verdict.DIFFERS]
+
+
+def test_the_swing_of_a_pressure_is_that_of_its_sine():
+    """3.2 kPa and a sine of 0.36 kPa, 6 deg behind the tank, at the wall that rises first."""
+    time = np.arange(0.0, 10.0, 0.005)
+    sine = 0.36 * np.sin(2.0 * time - np.radians(6.0))
+    pressure = 1e3 * np.stack([3.2 + sine, 3.2 - sine], axis=-1)[:, None, :]
+    one = ran("sloshing/pitch", time=time, gauge_pressure=pressure)
+    assert waves.swing(one) == pytest.approx((0.36, -6.0, 3.2), rel=2e-3)
+    verdicts = [row.verdict for row in waves.pitch({"30 layers": [one]}).rows]
+    assert verdicts == [Verdict.AGREES, Verdict.DIFFERS, Verdict.AGREES, Verdict.AGREES]  # it is not linear theory's
+
+
+def test_a_measured_series_is_drawn_where_it_is_and_missed_in_a_sentence(tmp_path, monkeypatch):
+    monkeypatch.delenv(measured.FOLDER, raising=False)
+    axes = Figure().add_subplot()
+    assert measured.drawn(axes, "a/b.csv") is None
+    assert "CARGOLAB_DATA names no folder with a/b.csv." in " ".join(axes.texts[0].get_text().split())
+    (tmp_path / "a").mkdir()
+    (tmp_path / "a" / "b.csv").write_text("time_s,rise_m\n0.0,1.0\n0.5,2.0\n")
+    monkeypatch.setenv(measured.FOLDER, str(tmp_path))
+    axes = Figure().add_subplot()
+    assert measured.drawn(axes, "a/b.csv").tolist() == [[0.0, 0.5], [1.0, 2.0]] and not axes.texts
+    (tmp_path / "a" / "b.csv").write_text("time_s,rise_m\n0.0,none\n")
+    with pytest.raises(LabError, match="is not a table of numbers"):
+        measured.series("a/b.csv")
+
+
+def test_the_rolled_tanks_motion_is_the_sine_that_its_preset_tells():
+    time, roll = np.loadtxt(PRESETS / "sloshing" / "impact.csv", delimiter=",", skiprows=1).T
+    later = time >= 1.0
+    sine = -0.07 - 3.975 * np.sin(2.0 * np.pi / 1.6365 * (time[later] - 0.9884))
+    assert np.abs(roll[later] - sine).max() < 1e-3
+    assert load("sloshing/impact").resolved.motion.history.history.motions["roll"].rests[0]
+
+
+@given
+def test_the_rolled_tanks_motion_follows_the_measured_one():
+    time, roll = measured.series(ROLL)
+    apart = np.degrees(load("sloshing/impact").resolved.motion.history.history.motions["roll"].curve(time)) - roll
+    assert np.abs(apart).max() < 0.09 and np.sqrt(np.mean(apart**2)) < 0.05
+
+
+@given
+def test_the_numbers_of_the_impacts_are_those_of_the_record():
+    time, pressure = measured.series(impact.MEASURED)
+    often = np.arange(0.0, 5.0, 1e-4)
+    even = np.interp(often, time, pressure)
+    for stated in impact.EXPERIMENT:
+        found = impact.find_impact(often, even, even, stated.arrival)
+        assert found.arrival == pytest.approx(stated.arrival, abs=1e-3)
+        assert (found.peak, found.mean, found.impulse) == pytest.approx(
+            (stated.peak, stated.mean, stated.impulse), 0.015
+        )
+
+
+@given
+def test_the_numbers_of_the_waves_are_those_of_the_read_off_series():
+    time, rise = measured.series(waves.SWAY)
+    turned = [float(np.interp(when, time, 1e3 * rise)) for when in waves.TURNS]
+    assert turned == pytest.approx([*waves.TURNS.values()], abs=3.0)
+    time, pressure = measured.series(waves.PITCH)
+    terms = np.stack([np.ones_like(time), np.sin(2.0 * time), np.cos(2.0 * time)], axis=1)
+    mean, ahead, across = np.linalg.lstsq(terms, pressure, rcond=None)[0]
+    assert (np.hypot(ahead, across), np.degrees(np.arctan2(across, ahead)), mean) == pytest.approx(
+        waves.SWING, rel=0.01
+    )
+
+
+@given
+def test_the_band_of_the_dam_breaks_pressure_is_that_of_the_repeats():
+    time, low, middle, high = measured.series(dam_break.PRESSURES)
+    late = (time > dam_break.PLATEAU[0]) & (time < dam_break.PLATEAU[1])
+    assert (low[late].mean(), high[late].mean()) == pytest.approx(dam_break.NUMBERS["plateau"][2], abs=0.01)
+    assert (low.max(), high.max()) == pytest.approx(dam_break.NUMBERS["peak"][2], abs=0.01)
+    assert middle.max() == pytest.approx(float(dam_break.NUMBERS["peak"][1]), abs=0.01)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["dam-break", "sway-beat", "pitch", "roll-impact"])
+def test_the_quick_run_is_judged_as_the_report_says(name, tmp_path):
+    """What agrees in the full report agrees here, apart from what few particles cannot show."""
+    one = experiments("water")[name]
+    ((label, batch),) = one.batches(True).items()
+    carry_out(batch, tmp_path / "run", quiet=True)
+    verdicts = {row.quantity: row.verdict for row in one.tell({label: outcomes(tmp_path / "run")}).rows}
+    for says in SOUND[name]:
+        assert verdicts[f"{says}, {label}"] is Verdict.AGREES, (says, verdicts)
+
+
+SOUND = {
+    "roll-impact": ("first impact arrives at", "first impact impulse", "second impact impulse"),
+    "dam-break": ("front's speed, √(gH)", "front at the wall at, √(H/g)", "that mean beside inviscid codes"),
+    "sway-beat": ("farthest of eight crests and troughs from its time", "first trough"),
+    "pitch": ("the same", "ahead of the tank", "mean"),
+}
