@@ -29,10 +29,10 @@ def study(page: Page, work: Path, fast: bool) -> None:
         codes |= {f"{dualsphysics.NAME}, {walls}": partial(_theirs, walls=walls) for walls in ("dbc", "mdbc")}
     page.section("Errors")
     page.say(f"""{rows} rows of particles. At rest for {STILL:g} s from hydrostatic pressure: rms of the error of
-        pressure over all particles, and their fastest, over ρ g H and √(gH). Standing wave of 20 mm for a period: its frequency
-        against linear theory √(g k tanh kH), and its loss of height; α = 0.01 alone, a kinematic viscosity of α h c0/8,
-        takes {1e2 * _viscous(gentle(rows)):.1f} % of it. Column that collapses: speed of its front, experiments 1.6 to
-        1.8 √(gH), and when it is near the far wall.""")
+        pressure over all particles, and their fastest, over ρ g H and √(gH). Standing wave of 20 mm for a period: its
+        frequency against linear theory √(g k tanh kH), and its loss of height; α = 0.01 alone, a kinematic viscosity of
+        α h c0/8, takes {1e2 * _viscous(gentle(rows)):.1f} % of it. Column that collapses: speed of its front,
+        experiments 1.6 to 1.8 √(gH), and when it is near the far wall.""")
     table = []
     for name, follow in codes.items():
         print(f"water: errors of {name}", flush=True)

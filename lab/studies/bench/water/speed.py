@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from lab.report.page import Page
-from lab.studies.bench.peers import dualsphysics
+from lab.studies.bench.peers import dualsphysics, pysph
 from lab.studies.bench.peers.pool import PoolRun
 from lab.studies.bench.speed.workers import ratio
 from lab.studies.bench.water.cases import Case, dam, gentle
@@ -15,8 +15,9 @@ from lab.studies.bench.water.motion import moving
 from lab.studies.bench.water.workers import Worker
 
 OURS = {"the lab": {}, "the lab, fourtakas": {"diffusion": "fourtakas"}}
-WALL = 3.0  # s of a turn of ours
-STEPS = 5e6  # particle-steps of a turn of a peer on a core
+WALL, PASS = 3.0, 0.06  # s of a turn of ours, and of one run from the start
+RUNS = {dualsphysics: dualsphysics.run_dualsphysics, pysph: pysph.run_pysph}
+STEPS = {dualsphysics: 5e6, pysph: 1e6}  # particle-steps of a turn on a core
 Timing = Callable[[], PoolRun]
 
 
@@ -24,14 +25,15 @@ def study(page: Page, work: Path, fast: bool) -> None:
     """Add the section to the page."""
     turns = 2 if fast else 6
     page.section("Speed")
-    if dualsphysics.available() is None:
-        page.say(f"{dualsphysics.NAME} is not installed here: the comparison with it is left out.")
-        return
+    for peer in RUNS:
+        if peer.available() is None:
+            page.say(f"{peer.NAME} is not installed here: the comparison with it is left out.")
     page.say("""The gentle pool is a tank of 2 m by 1 m of water with a standing wave of 20 mm, the violent one a column
         twice as wide as high that has collapsed, run up the far wall and falls back (t √(g/H) from 6 on); each run
         starts from the same particles. h = 2 Δx for all, Wendland's kernel, α = 0.01, δ = 0.1, the same speed of sound;
         each with its own default step. The lab: mixed precision, its defaults, and with the diffusion of Fourtakas et
-        al., as the peer's. DualSPHysics: Verlet's scheme, one layer of boundary particles.""")
+        al. DualSPHysics: Verlet's scheme, Fourtakas' diffusion, one layer of boundary particles; PySPH: δ-SPH with
+        Antuono's diffusion. Ratios are of particle-steps and, in the second table, of simulated seconds.""")
     found = {}
     for threads in (1, 2):
         for name, case in {"gentle, 100 rows": gentle(100), "violent, 50 rows": moving(work, dam(50))}.items():
@@ -44,10 +46,13 @@ def compared(case: Case, threads: int, turns: int) -> dict[str, list[PoolRun]]:
     """Runs of each code on a case, in turn, after a turn to warm up."""
     workers = {name: Worker(case, threads, **how) for name, how in OURS.items()}
     try:
-        seconds = STEPS * threads / case.count * dualsphysics.COURANT * 2.0 * case.spacing / case.sound_speed
-        pool = case.pool(seconds, seconds, threads)
-        timings: dict[str, Timing] = {dualsphysics.NAME: partial(dualsphysics.run_dualsphysics, pool)}
-        timings |= {name: partial(worker.run, seconds, WALL) for name, worker in workers.items()}
+        timings: dict[str, Timing] = {}
+        for peer, run in RUNS.items():
+            if peer.available() is not None:
+                steps = STEPS[peer] * threads / case.count
+                seconds = steps * peer.COURANT * 2.0 * case.spacing / case.sound_speed
+                timings[peer.NAME] = partial(run, case.pool(seconds, seconds, threads))
+        timings |= {name: partial(worker.run, PASS, WALL) for name, worker in workers.items()}
         rows = [{name: timing() for name, timing in timings.items()} for _ in range(turns + 1)]
     finally:
         for worker in workers.values():
@@ -68,23 +73,16 @@ def numbers(runs: list[PoolRun], threads: int) -> Mapping[str, np.ndarray]:
 
 
 def _tell(page: Page, found: Mapping[tuple[str, int], Mapping[str, list[PoolRun]]]) -> None:
-    header = ["pool", "cores", "code", "M", "steps/s", "simulated s/s", "times as fast: particle-steps", "simulated s"]
-    rows = []
+    speeds, against = [], {"particle_steps": [], "seconds": []}
     for (name, threads), runs in found.items():
         told = {code: numbers(of_code, threads) for code, of_code in runs.items()}
-        theirs = told[dualsphysics.NAME]
         for code, own in told.items():
-            against = ["", ""]
-            if own is not theirs:
-                against = [ratio(own[key], theirs[key]) for key in ("particle_steps", "seconds")]
             medians = [float(np.median(own[key])) for key in ("particle_steps", "steps", "seconds")]
-            rows.append([name, str(threads), code, medians[0] / 1e6, medians[1], medians[2], *against])
-    page.table(header, rows)
-    page.table(
-        ["pool", "cores", "code", "M of wall time, each turn"],
-        [
-            [name, str(threads), code, ", ".join(f"{run.particle_steps_per_s / 1e6:.2f}" for run in of_code)]
-            for (name, threads), runs in found.items()
-            for code, of_code in runs.items()
-        ],
-    )
+            turns = ", ".join(f"{speed / 1e6:.2f}" for speed in own["particle_steps"])
+            speeds.append([name, str(threads), code, medians[0] / 1e6, *medians[1:], turns])
+            for key, rows in against.items():
+                if code not in OURS:
+                    rows.append([name, str(threads), code, *(ratio(told[one][key], own[key]) for one in OURS)])
+    page.table(["pool", "cores", "code", "M", "steps/s", "simulated s/s", "M in each turn"], speeds)
+    for rows in against.values():
+        page.table(["pool", "cores", "code", *(f"{one}: times as fast" for one in OURS)], rows)
