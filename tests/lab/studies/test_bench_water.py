@@ -58,8 +58,9 @@ def test_the_mode_fits_the_tank():
     assert np.abs(mode(np.array([[0.2, 0.0]]))[:, 1]).max() < 1e-12
     step = 1e-5
     place = case.drops[::17, :2]
-    across = (mode(place + [step, 0.0]) - mode(place - [step, 0.0]))[:, 0]
-    upwards = (mode(place + [0.0, step]) - mode(place - [0.0, step]))[:, 1]
+    right, up = step * np.eye(2)
+    across = (mode(place + right) - mode(place - right))[:, 0]
+    upwards = (mode(place + up) - mode(place - up))[:, 1]
     np.testing.assert_allclose(across, -upwards, atol=1e-9)
 
 
@@ -71,7 +72,7 @@ def test_errors_of_a_made_up_rest_and_front():
     column, unit = dam(10), np.sqrt(GRAVITY * HIGH)
     start = column.drops[:, :2].copy()
     times = np.linspace(0.0, 0.5, 21)
-    frames = [Frame(t, start + [1.7 * unit * t, 0.0], start, start[:, 0]) for t in times]
+    frames = [Frame(t, start + np.array([1.7 * unit * t, 0.0]), start, start[:, 0]) for t in times]
     assert front_speed(column, frames)[0] == pytest.approx(1.7)
 
 
