@@ -15,9 +15,10 @@ from lab.studies.bench.water.motion import moving
 from lab.studies.bench.water.workers import Worker
 
 OURS = {"the lab": {}, "the lab, fourtakas": {"diffusion": "fourtakas"}}
-WALL, PASS = 2.0, 0.06  # s of a turn of ours, and of one run from the start
+WALL, PASS = 1.0, 0.06  # s of a turn of ours, and of one run from the start
 RUNS = {dualsphysics: dualsphysics.run_dualsphysics, pysph: pysph.run_pysph}
-STEPS = {dualsphysics: 2.5e6, pysph: 4e5}  # particle-steps of a turn on a core
+STEPS = {dualsphysics: 2e6, pysph: 3e5}  # particle-steps of a turn on a core
+MOST = {dualsphysics: 2, pysph: 1}  # threads
 Timing = Callable[[], PoolRun]
 
 
@@ -48,16 +49,25 @@ def compared(case: Case, threads: int, turns: int) -> dict[str, list[PoolRun]]:
     try:
         timings: dict[str, Timing] = {}
         for peer, run in RUNS.items():
-            if peer.available() is not None:
+            if peer.available() is not None and threads <= MOST[peer]:
                 steps = STEPS[peer] * threads / case.count
                 seconds = steps * peer.COURANT * 2.0 * case.spacing / case.sound_speed
                 timings[peer.NAME] = partial(run, case.pool(seconds, seconds, threads))
         timings |= {name: partial(worker.run, PASS, WALL) for name, worker in workers.items()}
-        rows = [{name: timing() for name, timing in timings.items()} for _ in range(turns + 1)]
+        rows = [_turn(timings) for _ in range(turns + 1)]
     finally:
         for worker in workers.values():
             worker.close()
     return {name: [row[name] for row in rows[1:]] for name in timings}
+
+
+def _turn(timings: Mapping[str, Timing]) -> dict[str, PoolRun]:
+    """A run of each code, told at once: a turn takes its time."""
+    found = {name: timing() for name, timing in timings.items()}
+    for name, run in found.items():
+        spent = f"{run.loop_s:.2f} s, of the processor {run.busy_s:.2f} s, {run.seconds:.4f} s simulated"
+        print(f"  {name}: {run.steps} steps of {run.particles} particles, {spent}", flush=True)
+    return found
 
 
 def numbers(runs: list[PoolRun], threads: int) -> Mapping[str, np.ndarray]:
