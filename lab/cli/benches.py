@@ -70,6 +70,23 @@ def speed(studies: tuple[str, ...], out: Path, fast: bool, page_only: bool) -> N
 
 
 @bench.command()
+@click.argument("studies", nargs=-1)
+@page_option
+@fast_option
+@page_only_option
+def water(studies: tuple[str, ...], out: Path, fast: bool, page_only: bool) -> None:
+    """Water: particle-steps and simulated seconds a second beside DualSPHysics, where it is installed; errors of both.
+
+    \b
+    cargolab bench water
+    cargolab bench water accuracy
+    """
+    from lab.studies.bench.water import BENCH
+
+    click.echo(BENCH.run(studies, out, fast, page_only))
+
+
+@bench.command()
 @click.argument("cases", nargs=-1)
 @click.option(
     "--kills", type=click.IntRange(min=1), metavar="N", help="Number of kills for each kind of command.  [default: 50]"

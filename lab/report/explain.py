@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from lab.assembly.grains import grain_count
 from lab.assembly.room import check_room
-from lab.assembly.scene import build
+from lab.assembly.scene import build, stretch
 from lab.assembly.water import most_drops, particles
 from lab.measures.ship_frozen import INTERVAL
 from lab.preset.fields import join, taken_by
@@ -89,7 +89,8 @@ def _one_bed(preset: Preset) -> Simulation:
     sizes = run.repeats, particles(scene), run.threads or available_cores()
     schedule = choose_schedule(run.schedule, arch, *sizes, bool(scene.vessels))
     units = units_a_world(schedule, *sizes)
-    return Simulation(replace(scene, schedule=schedule), position, run.threads, arch=arch, units=units)
+    placed = replace(scene, schedule=schedule), position, run.threads
+    return Simulation(*placed, arch=arch, units=units, stretch=stretch(preset))
 
 
 def _section(title: str, rows: list[tuple[str, str]]) -> str:

@@ -48,8 +48,20 @@ def laws(preset: Preset, simulation: Simulation) -> Rows:
         *rows,
         ("memory", f"{remembered} number(s) a contact"),
         ("integrator", scene.integrator),
+        *_longer_steps(simulation),
         ("skin", f"{show(simulation.skin, 'm')} of the neighbour lists"),
     ]
+
+
+def _longer_steps(simulation: Simulation) -> Rows:
+    """When steps are longer than the step that is told, which the run time takes no account of."""
+    if not simulation.grains.paced:
+        return []
+    calm = simulation.scene.calm_speed(float(simulation.stretch))
+    if not calm:
+        return [("slow grains", "steps are never longer: they do not follow from the grains' speeds")]
+    when = f"while no two grains may meet faster than {show(calm, 'm/s')}"
+    return [("slow grains", f"steps are {simulation.stretch} times as long {when}; the run time below counts none")]
 
 
 def accuracy(preset: Preset) -> Rows:

@@ -13,8 +13,10 @@ from solvers.machine.state import State
 
 FLOOR = 1e-6  # of h², added to squared distances that are divided by
 FASTEST = 0.5  # Mach number at which a run is stopped
-TOUCH = 0.75  # spacings between a particle and a dummy below which the wall is hard; at rest they are one apart
-HARD = 0.2  # of c0/Δx: frequency of a particle on a hard wall, which turns c0/20 back on its way to the dummy
+# Spacings between a particle and a dummy below which the wall is hard: at rest they are one apart, in the face half
+# a one. A stiffer or a longer spring makes impacts ring.
+TOUCH = 0.6
+HARD = 0.1  # of c0/Δx: frequency of a particle on a hard wall
 
 
 @ti.data_oriented

@@ -63,7 +63,9 @@ class WaterMatter(Matter):
         self.extrapolation = Extrapolation(arrays, medium)
         self.forces = Forces(arrays, medium, self.extrapolation, self.load, tank.thickness)
         self.continuity, self.mover = Continuity(arrays, medium), Mover(arrays, medium, self.extrapolation)
-        self.gauges = Gauges(arrays, p, water.gauges, [dummy[slot] + p.wet * lanes for slot in behind.probes])
+        self.gauges = Gauges(
+            arrays, p, water.gauges, [dummy[slot] + p.wet * lanes for slot in behind.probes], behind.open
+        )
         owner = np.full(p.dry * lanes, OF_NONE)
         owner[dummy] = behind.edges
         self.edges = Edges(arrays, medium, water.edges, owner, tank.thickness)

@@ -6,6 +6,11 @@ from pathlib import Path
 
 import pytest
 
+from solvers.fluid.diffusion import DIFFUSION
+from solvers.fluid.kernels import KERNELS
+from solvers.fluid.shifting import SHIFTING
+from solvers.fluid.states import STATES
+from solvers.fluid.viscosity import VISCOSITY
 from solvers.grains.integrators import INTEGRATORS
 from solvers.grains.laws import COHESION, NORMAL, ROLLING, TANGENTIAL
 from solvers.motion import MOTIONS
@@ -22,6 +27,11 @@ TABLES = {
     "COHESION": COHESION,
     "INTEGRATORS": INTEGRATORS,
     "MOTIONS": MOTIONS,
+    "KERNELS": KERNELS,
+    "STATES": STATES,
+    "DIFFUSION": DIFFUSION,
+    "VISCOSITY": VISCOSITY,
+    "SHIFTING": SHIFTING,
 }
 LAWS = [(table, name, law) for table, laws in TABLES.items() for name, law in laws.items()]
 IN_WORDS = re.compile(r"[A-Z]\w+ (?:and \w+ |et al\. )?\(?(1[6-9]|20)\d\d")  # an author with a year

@@ -18,6 +18,7 @@ from lab.studies.verify import (
     restitution,
     rolling,
     sameness,
+    water,
 )
 
 MODULES = (
@@ -33,6 +34,7 @@ MODULES = (
     convergence,
     frames,
     sameness,
+    water,
 )
 CASES: tuple[Case, ...] = tuple(case for module in MODULES for case in module.CASES)
 SUITE = Suite(

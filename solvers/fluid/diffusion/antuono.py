@@ -2,10 +2,15 @@
 
 
 class Antuono:
-    """ψ = [2 (ρ_j − ρ_i) − (G_i + G_j)·r_ji] r_ji/r² (Antuono, Colagrossi, Marrone & Molteni 2010, eq. 8).
+    """ψ = (2 (ρ_j − ρ_i) − (G_i + G_j)·r_ji) r_ji/r² (Antuono, Colagrossi, Marrone & Molteni 2010, eq. 8).
 
-    G is the renormalised gradient of density, exact for linear fields: water at rest is not diffused, up to the surface
-    itself (Antuono, Colagrossi & Marrone 2012).
+    δ h c0 Σ V_j ψ·∇W is added to dρ/dt. G is the renormalised gradient of density, exact for linear fields: water at
+    rest is not diffused, up to the surface itself (Antuono, Colagrossi & Marrone 2012).
+
+    Limits: G is half a step old, and zero in spray, where its matrix is singular; it costs a third of a pass over
+    pairs.
+
+    Units: ψ kg/m⁴, ρ kg/m³, r m.
     """
 
     acts = True

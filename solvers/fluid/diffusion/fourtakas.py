@@ -2,10 +2,13 @@
 
 
 class Fourtakas:
-    """ψ = 2 (ρ_j − ρ_i − ρ^H_ij) r_ji/r² with the hydrostatic difference ρ^H_ij = ρ0 g·r_ji/c0².
+    """ψ = 2 (ρ_j − ρ_i − ρ_H) r_ji/r² (Fourtakas, Dominguez, Vacondio & Rogers 2019, eq. 16), ρ_H = ρ0 g·r_ji/c0².
 
-    Fourtakas, Dominguez, Vacondio & Rogers (2019), eq. 16, for the linear equation of state and gravity alone: it costs
-    less than gradients, but water at rest in an accelerated tank is diffused a little.
+    The hydrostatic difference is taken off, which costs less than gradients.
+
+    Limits: the linear equation of state, and gravity alone: water at rest in an accelerated tank is diffused a little.
+
+    Units: ψ kg/m⁴, ρ kg/m³, r m.
     """
 
     acts = True

@@ -2,9 +2,11 @@
 
 
 class Molteni:
-    """ψ = 2 (ρ_j − ρ_i) r_ji/r² (Molteni & Colagrossi 2009, eq. 12).
+    """ψ = 2 (ρ_j − ρ_i) r_ji/r² (Molteni & Colagrossi 2009, eq. 12): diffusion of density without corrections.
 
-    At a free surface it diffuses the hydrostatic profile, too: a resting surface creeps up.
+    Limits: at a free surface it diffuses the hydrostatic profile, too: a resting surface creeps up.
+
+    Units: ψ kg/m⁴, ρ kg/m³, r m.
     """
 
     acts = True

@@ -2,7 +2,12 @@
 
 
 class NoDiffusion:
-    """Plain weakly compressible SPH (Monaghan 1994): pressures are noisy."""
+    """ψ = 0 (Monaghan 1994): no diffusion of density, plain weakly compressible SPH.
+
+    Limits: pressures are noisy.
+
+    Units: ψ kg/m⁴.
+    """
 
     acts = False
     renormalised = False

@@ -2,13 +2,19 @@
 
 from math import pi
 
+import numpy as np
 import taichi as ti
 
 
 class WendlandC2:
-    """W = a (1 − q/2)⁴ (2 q + 1), q = r/h < 2, a = 7/(4 π h²) (Wendland 1995; Dehnen & Aly 2012, table 1).
+    """W = a (1 − q/2)⁴ (2 q + 1), q = r/h (Wendland 1995): of second continuity, a = 7/(4 π h²) in the plane.
 
-    Its transform is positive, so that particles do not pair. With t = 1 − q/2: W = a t⁴ (5 − 4 t), −W'/r = (5 a/h²) t³.
+    Its transform is positive, so that particles do not pair (Dehnen & Aly 2012, table 1). With t = 1 − q/2:
+    W = a t⁴ (5 − 4 t), −W'/r = (5 a/h²) t³.
+
+    Limits: support 2 h; needs about 1.5 to 2 spacings in h.
+
+    Units: r and h m, W 1/m².
     """
 
     @staticmethod
@@ -18,8 +24,8 @@ class WendlandC2:
         return alone, 5.0 * alone / length**2
 
     @classmethod
-    def printed(cls, distance: float, length: float) -> float:
-        """W (1/m²) at a distance (m) within the support, in the plane."""
+    def printed(cls, distance: np.ndarray | float, length: float) -> np.ndarray | float:
+        """W (1/m²) at distances (m) within the support, in the plane."""
         q = distance / length
         return cls.factors(length)[0] * (1.0 - 0.5 * q) ** 4 * (2.0 * q + 1.0)
 

@@ -2,13 +2,19 @@
 
 from math import pi
 
+import numpy as np
 import taichi as ti
 
 
 class WendlandC4:
-    """W = a (1 − q/2)⁶ (35/12 q² + 3 q + 1), q = r/h < 2, a = 9/(4 π h²) (Wendland 1995; Dehnen & Aly 2012, table 1).
+    """W = a (1 − q/2)⁶ (35/12 q² + 3 q + 1), q = r/h (Wendland 1995): of fourth continuity, a = 9/(4 π h²).
 
-    With t = 1 − q/2: W = a t⁶ (35/3 (1 − t)² + 6 (1 − t) + 1), −W'/r = (14 a/(3 h²)) t⁵ (6 − 5 t).
+    Smoother than C2 and broader in its effect (Dehnen & Aly 2012, table 1). With t = 1 − q/2:
+    W = a t⁶ (35/3 (1 − t)² + 6 (1 − t) + 1), −W'/r = (14 a/(3 h²)) t⁵ (6 − 5 t).
+
+    Limits: support 2 h; wants more neighbours than C2.
+
+    Units: r and h m, W 1/m².
     """
 
     @staticmethod
@@ -18,8 +24,8 @@ class WendlandC4:
         return alone, 14.0 / 3.0 * alone / length**2
 
     @classmethod
-    def printed(cls, distance: float, length: float) -> float:
-        """W (1/m²) at a distance (m) within the support, in the plane."""
+    def printed(cls, distance: np.ndarray | float, length: float) -> np.ndarray | float:
+        """W (1/m²) at distances (m) within the support, in the plane."""
         q = distance / length
         return cls.factors(length)[0] * (1.0 - 0.5 * q) ** 6 * (35.0 / 12.0 * q**2 + 3.0 * q + 1.0)
 

@@ -6,11 +6,14 @@ CROWDING = 0.2  # weight of the term against pairing
 
 
 class DeltaPlus:
-    """δu = −U (2h)²/(2 Δx) Σ (1 + 0.2 (W/W(Δx))⁴) ∇W m_j/(ρ_i + ρ_j), |δu| ≤ U/2 (Sun, Colagrossi et al. 2017).
+    """δu = −U (2 h)²/(2 Δx) Σ (1 + 0.2 (W/W(Δx))⁴) ∇W V_j/2 (Sun, Colagrossi, Marrone & Zhang 2017).
 
-    U is the highest speed to be expected, and m_j/(ρ_i + ρ_j) is taken as V_j/2. Near a free surface only the part
-    along it is taken; spray is not shifted. The shift is one of places alone: volume and energy are not corrected for
-    it.
+    Velocity with which places are shifted, at most U/2; U is the highest speed to be expected, and m_j/(ρ_i + ρ_j) is
+    taken as V_j/2. Within 2 h of a free surface only the part along it is taken; spray is not shifted.
+
+    Limits: the shift is one of places alone: volume and energy are not corrected for it.
+
+    Units: δu and U m/s, h and Δx m.
     """
 
     acts = True

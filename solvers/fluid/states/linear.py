@@ -5,7 +5,12 @@ import taichi as ti
 
 
 class Linear:
-    """p = c0² (ρ − ρ0) (Antuono, Colagrossi, Marrone & Molteni 2010, eq. 3)."""
+    """p = c0² (ρ − ρ0) (Antuono, Colagrossi, Marrone & Molteni 2010, eq. 3): pressure in proportion to compression.
+
+    Limits: small compression; c0 is chosen, some ten times the speed of the water, and not that of real water.
+
+    Units: p Pa, c0 m/s, ρ and ρ0 kg/m³.
+    """
 
     @staticmethod
     @ti.func

@@ -7,7 +7,12 @@ GAMMA = 7
 
 
 class Tait:
-    """p = ρ0 c0²/γ ((ρ/ρ0)^γ − 1), γ = 7 (Monaghan 1994, eq. 2.6)."""
+    """p = ρ0 c0²/γ ((ρ/ρ0)^γ − 1) (Monaghan 1994, eq. 2.6), γ = 7: stiffer the more the water is compressed.
+
+    Limits: as of the linear one, which it equals for small compression.
+
+    Units: p Pa, c0 m/s, ρ and ρ0 kg/m³.
+    """
 
     @staticmethod
     @ti.func

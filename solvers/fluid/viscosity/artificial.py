@@ -4,9 +4,14 @@ import taichi as ti
 
 
 class Artificial:
-    """α h c0 ρ0 Σ V_j π ∇W with π = (u_j − u_i)·r_ji/r² (Monaghan & Gingold 1983; Antuono et al. 2010, eq. 7).
+    """π = (u_j − u_i)·r_ji/r² (Monaghan & Gingold 1983; Antuono et al. 2010, eq. 7): artificial viscosity of all pairs.
 
-    It is central, so that it keeps the angular momentum, and acts as a kinematic viscosity of α h c0/(2 (D + 2)).
+    The force per volume is α h c0 ρ0 Σ V_j π ∇W. It is central, so that it keeps the angular momentum, and acts as a
+    kinematic viscosity of α h c0/(2 (D + 2)), D = 2 (Monaghan 2005, eq. 8.8).
+
+    Limits: slip at walls unless `slip` is false; waves are damped by it, ζ = 2 ν k²/ω.
+
+    Units: π 1/s, u m/s, r m.
     """
 
     central = True  # the force is along the line between the two particles

@@ -4,9 +4,13 @@ import taichi as ti
 
 
 class Laminar:
-    """2 ν ρ0 Σ V_j (u_j − u_i) (−W'/r) for a constant kinematic viscosity ν (Morris, Fox & Zhu 1997, eq. 22).
+    """f = 2 ν ρ0 Σ V_j (u_j − u_i) (−W'/r) (Morris, Fox & Zhu 1997, eq. 22): laminar flow of constant viscosity ν.
 
-    The force is along the difference of velocities: shear is right, angular momentum is kept only on average.
+    The force per volume is along the difference of velocities.
+
+    Limits: shear is right, angular momentum is kept only on average; no turbulence.
+
+    Units: f N/m³, ν m²/s, u m/s.
     """
 
     central = False

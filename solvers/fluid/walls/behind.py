@@ -3,6 +3,7 @@
 import numpy as np
 
 from solvers.fluid.given import Water
+from solvers.fluid.kernels import KERNELS
 from solvers.fluid.walls.gauges import probes
 from solvers.fluid.walls.layers import edge_of, layers
 from solvers.space.axes import NAMES
@@ -15,11 +16,12 @@ class Behind:
     """Dummies and probes of a tank: `points` (n, 2) m, `volumes` (n,) m² and `edges` (n,) of each.
 
     An edge is named by its first corner; probes have no volume and no edge. `probes` are each gauge's, by their
-    numbers.
+    numbers, `open` what dummies leave of their kernels.
     """
 
     def __init__(self, water: Water, tank: Tank):
         self.probes: list[np.ndarray] = []
+        self.open: list[np.ndarray] = []
         if not water.walls:
             self.points, self.volumes, self.edges = np.zeros((0, 2)), np.zeros(0), np.zeros(0, dtype=int)
             return
@@ -36,3 +38,12 @@ class Behind:
             points, volumes = np.concatenate([points, of_gauge]), np.append(volumes, np.zeros(len(of_gauge)))
             edges = np.append(edges, np.full(len(of_gauge), OF_NONE))
         self.points, self.volumes, self.edges = points, volumes, edges
+        self.open = [1.0 - covered(points[probe], points, volumes, water) for probe in self.probes]
+
+
+def covered(places: np.ndarray, points: np.ndarray, volumes: np.ndarray, water: Water) -> np.ndarray:
+    """What share of the kernel at each place (k, 2) m dummies (n, 2) m cover, (k,)."""
+    away = np.linalg.norm(places[:, None] - points, axis=2)
+    kernel = KERNELS[water.kernel]
+    near = np.where(away < water.reach, kernel.printed(np.minimum(away, water.reach), water.length), 0.0)
+    return near @ volumes

@@ -7,7 +7,7 @@ from solvers.fluid.given import Gauge
 from solvers.fluid.state import Particles
 from solvers.machine.state import Axis, State
 
-DRY = 0.25  # share of the kernel that water must cover, of half at a wetted wall, for a gauge to show anything
+DRY = 0.5  # of what water can cover of a probe's kernel: half of it in a plane wall, a quarter in a corner
 
 
 def probes(gauge: Gauge, outline: np.ndarray, spacing: float) -> np.ndarray:
@@ -25,17 +25,26 @@ def probes(gauge: Gauge, outline: np.ndarray, spacing: float) -> np.ndarray:
 class Gauges:
     """What the pressure gauges of each world show (W, gauges), Pa, and the highest since it was last taken.
 
-    A probe's pressure is extrapolated to the wall as a dummy's is; where there is hardly any water it is zero. A gauge
+    A probe's pressure is extrapolated to the wall as a dummy's is; where water covers less than DRY of the `open` part
+    of its kernel (of each probe, what dummies leave) it is zero. A gauge
     with the time constant τ follows by 1 − exp(−Δt/τ) of the difference in each step.
     """
 
-    def __init__(self, arrays: State, particles: Particles, gauges: tuple[Gauge, ...], slots: list[np.ndarray]):
+    def __init__(
+        self,
+        arrays: State,
+        particles: Particles,
+        gauges: tuple[Gauge, ...],
+        slots: list[np.ndarray],
+        open_part: list[np.ndarray],
+    ):
         self.particles, self.count = particles, len(gauges)
         own, each = arrays.under("gauges"), (Axis("world", particles.worlds), Axis("gauge", max(1, self.count)))
         self.shown, self.peak = own.reals(each, "shown", "peak", kind=own.exact)
         if self.count:
             ends = np.cumsum([0, *(len(slot) for slot in slots)])
             self.slots = own.holding("slots", np.concatenate(slots), "probe", ti.i32)
+            self.open = own.holding("open", np.concatenate(open_part), "probe")
             self.ends = own.holding("ends", ends, "end", ti.i32)
             self.response = own.holding("response", np.array([gauge.response for gauge in gauges]), "gauge", own.exact)
 
@@ -52,7 +61,7 @@ class Gauges:
             total = ti.cast(0.0, p.exact)
             for k in range(self.ends[gauge], self.ends[gauge + 1]):
                 b, lane = w * p.stride + self.slots[k] // p.lanes, self.slots[k] % p.lanes
-                if p.span[b, lane] > DRY:
+                if p.span[b, lane] > DRY * self.open[k]:
                     total += ti.cast(p.pressure[b, lane], p.exact)
             mean = total / (self.ends[gauge + 1] - self.ends[gauge])
             follows = ti.cast(1.0, p.exact)

@@ -54,3 +54,9 @@ def test_each_key_of_the_preset_is_explained():
     lines = explain(load("tilting/quick", FEW)).splitlines()
     (rate,) = (line for line in lines if line.strip().startswith("rate = "))
     assert rate.split(" # ")[1] == "Speed of turning."
+
+
+def test_it_says_when_steps_are_longer_and_when_they_never_are():
+    slow = r"slow grains +steps are 2 times as long while no two grains may meet faster than \d"
+    assert re.search(slow, explain(load("tilting/quick", FEW)))
+    assert "slow grains" not in explain(load("tilting/quick", FEW | {"run.step": "1 us"}))

@@ -12,7 +12,10 @@ from lab.studies.verify.impacts import Bodies, Impact, Normal, Shear
 from lab.studies.verify.plain import Tank
 from lab.studies.verify.references import viscoelastic_rebound
 
-PICTURES = ("errors", "chung-ooi-1-2", "chung-ooi-5", "restitution", "oblique-mindlin", "orders")
+PICTURES = (
+    *("errors", "chung-ooi-1-2", "chung-ooi-5", "restitution", "oblique-mindlin", "orders"),
+    *("water-wave", "water-channel", "water-drop"),
+)
 
 
 def told(folder) -> dict[str, dict]:

@@ -1,0 +1,15 @@
+"""cargolab bench water: the lab's water beside DualSPHysics on the same pools, in turn, with errors of both.
+
+Each study is a function `study(page, work, fast)` that adds a section to the page. What was measured is in the page's
+JSON.
+"""
+
+from lab.studies.bench.water import accuracy, speed
+from lab.studies.engine import Bench
+
+STUDIES = {"speed": speed.study, "accuracy": accuracy.study}
+ABOUT = """Times are of runs taken in turn, so that a machine whose speed drifts slows all alike: medians, and of the
+ratios of runs of the same turn the median, with the smallest and the largest in brackets. M stands for a million
+particle-steps a second, of particles of water alone; a step is one evaluation of the forces. Other processes may have
+shared the machine: on one core the time is the process's own."""
+BENCH = Bench("water", "Water beside other codes", STUDIES, ABOUT)

@@ -1,0 +1,67 @@
+"""What the codes make of the pools: pressure of water at rest, a small wave, the front of a column that collapses."""
+
+from collections.abc import Callable, Sequence
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+
+from lab.report.page import Page
+from lab.studies.bench.peers import dualsphysics
+from lab.studies.bench.peers.pool import Frame
+from lab.studies.bench.water.cases import GRAVITY, HIGH, Case, dam, frequency, gentle
+from lab.studies.bench.water.errors import front_speed, pressure_error, wave_errors
+from lab.studies.bench.water.speed import OURS
+from lab.studies.bench.water.workers import Worker
+
+ROWS, FEW = 50, 25
+STILL, FRONT = 0.5, 2.6  # s at rest; t √(g/H) of the collapse
+FRAMES = 16
+
+Follow = Callable[[Case, float], Sequence[Frame]]
+
+
+def study(page: Page, work: Path, fast: bool) -> None:
+    """Add the section to the page."""
+    rows = FEW if fast else ROWS
+    codes: dict[str, Follow] = {name: partial(_ours, **how) for name, how in OURS.items()}
+    if dualsphysics.available() is not None:
+        codes |= {f"{dualsphysics.NAME}, {walls}": partial(_theirs, walls=walls) for walls in ("dbc", "mdbc")}
+    page.section("Errors")
+    page.say(f"""{rows} rows of particles. At rest for {STILL:g} s from hydrostatic pressure: rms of the error of
+        pressure over all particles, and their fastest, over ρ g H and √(gH). Standing wave of 20 mm for a period: its
+        frequency against linear theory √(g k tanh kH), and its loss of height; α = 0.01 alone, a kinematic viscosity of
+        α h c0/8, takes {1e2 * _viscous(gentle(rows)):.1f} % of it. Column that collapses: speed of its front,
+        experiments 1.6 to 1.8 √(gH), and when it is near the far wall.""")
+    table = []
+    for name, follow in codes.items():
+        print(f"water: errors of {name}", flush=True)
+        table.append([name, *_errors(follow, rows)])
+    header = ["code", "pressure at rest, %", "fastest at rest", "frequency, %", "loss in a period, %"]
+    page.table([*header, "front / √(gH)", "at the wall, t √(g/H)"], table)
+
+
+def _errors(follow: Follow, rows: int) -> list[float]:
+    rest = follow(gentle(rows, steep=0.0), STILL)[-1]
+    wave = wave_errors(follow(gentle(rows), 2.0 * np.pi / frequency()))
+    front = front_speed(dam(rows), follow(dam(rows), FRONT * np.sqrt(HIGH / GRAVITY)))
+    fastest = np.linalg.norm(rest.velocity, axis=1).max() / np.sqrt(GRAVITY)
+    return [1e2 * pressure_error(rest), float(fastest), 1e2 * wave[0], 1e2 * wave[1], *front]
+
+
+def _viscous(case: Case) -> float:
+    """Share of the wave's height that its viscosity ν takes in a period T: 1 − exp(−2 ν k² T)."""
+    viscosity, k = 0.01 * 2.0 * case.spacing * case.sound_speed / 8.0, np.pi / case.width
+    return float(1.0 - np.exp(-2.0 * viscosity * k**2 * 2.0 * np.pi / frequency()))
+
+
+def _ours(case: Case, seconds: float, **how: object) -> list[Frame]:
+    worker = Worker(case, **how)
+    try:
+        return worker.frames(np.linspace(0.0, seconds, FRAMES + 1))
+    finally:
+        worker.close()
+
+
+def _theirs(case: Case, seconds: float, walls: str) -> list[Frame]:
+    return dualsphysics.run_dualsphysics(case.pool(seconds, seconds / FRAMES), walls=walls).frames

@@ -1,0 +1,96 @@
+"""The pools that are timed: a small standing wave, a column that collapses, and that column in full motion."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from lab.studies.bench.peers.pool import Pool
+from solvers.fluid.given import EXCESS, VELOCITY_Y, VELOCITY_Z, VOLUME, Water, Y, Z
+from solvers.fluid.start.lattice import hydrostatic_excess
+from solvers.scene import Scene
+
+GRAVITY, DENSITY = 9.81, 1000.0
+GENTLE, DEPTH, LID = 2.0, 1.0, 1.2  # m: width, depth and height of the tank of the gentle wave
+STEEP = 0.02  # amplitude of the wave over the depth
+# Lobovský et al. (2014): a column of 600 mm by 300 mm in a tank of 1610 mm by 600 mm.
+TANK, HEIGHT, COLUMN, HIGH = 1.61, 0.6, 0.6, 0.3  # m
+
+
+@dataclass(frozen=True)
+class Case:
+    """Particles `drops` (n, 6) of `solvers.scene.Scene` in a rectangular tank, their spacing and speed of sound."""
+
+    drops: np.ndarray
+    width: float
+    height: float
+    spacing: float
+    sound_speed: float
+
+    @property
+    def count(self) -> int:
+        """Number of particles."""
+        return len(self.drops)
+
+    def scene(self, **of_water: object) -> Scene:
+        """The scene of the lab, its defaults changed by `of_water`."""
+        half = 0.5 * self.width
+        outline = np.array([[-half, 0.0], [half, 0.0], [half, self.height], [-half, self.height]])
+        water = Water(**{"spacing": self.spacing, "sound_speed": self.sound_speed, "density": DENSITY} | of_water)
+        return Scene(radius=np.zeros((1, 0)), outline=outline, water=water, drops=self.drops[None], precision="mixed")
+
+    def pool(self, seconds: float, every: float, threads: int = 1) -> Pool:
+        """The same for a peer: its pressures are those of the linear equation of state."""
+        s = self.drops[:, EXCESS]
+        return Pool(
+            position=self.drops[:, [Y, Z]],
+            velocity=self.drops[:, [VELOCITY_Y, VELOCITY_Z]],
+            pressure=DENSITY * self.sound_speed**2 * s,
+            mass=DENSITY * (1.0 + s) * self.drops[:, VOLUME],
+            width=self.width,
+            height=self.height,
+            spacing=self.spacing,
+            sound_speed=self.sound_speed,
+            seconds=seconds,
+            every=every,
+            threads=threads,
+        )
+
+
+def gentle(rows: int, steep: float = STEEP) -> Case:
+    """A tank of 2 m with 1 m of water in `rows`, at the instant when its first standing wave is flat; c0 = 10 √(gH)."""
+    drops = _block(GENTLE, DEPTH, rows, 10.0, -0.5 * GENTLE)
+    place = drops[:, [Y, Z]]
+    drops[:, [VELOCITY_Y, VELOCITY_Z]] = steep * DEPTH * frequency() * mode(place)
+    return Case(drops, GENTLE, LID, DEPTH / rows, 10.0 * np.sqrt(GRAVITY * DEPTH))
+
+
+def dam(rows: int) -> Case:
+    """A column of water, twice as wide as high, let go at once; c0 = 20 √(gH), ten times the front's speed."""
+    spacing = HIGH / rows
+    width = round(TANK / spacing) * spacing
+    return Case(_block(COLUMN, HIGH, rows, 20.0, -0.5 * width), width, HEIGHT, spacing, 20.0 * np.sqrt(GRAVITY * HIGH))
+
+
+def frequency() -> float:
+    """Angular frequency (1/s) of the first standing wave by linear theory, √(g k tanh kH)."""
+    k = np.pi / GENTLE
+    return float(np.sqrt(GRAVITY * k * np.tanh(k * DEPTH)))
+
+
+def mode(place: np.ndarray) -> np.ndarray:
+    """Velocities (n, 2) of that wave at places (n, 2) m, 1 m/s upwards at the surface on the left wall."""
+    k, x = np.pi / GENTLE, place[:, 0] + 0.5 * GENTLE
+    z = place[:, 1]
+    shape = np.stack([-np.cosh(k * z) * np.sin(k * x), np.sinh(k * z) * np.cos(k * x)], axis=-1)
+    return shape / np.sinh(k * DEPTH)
+
+
+def _block(width: float, depth: float, rows: int, mach: float, left: float) -> np.ndarray:
+    spacing, sound = depth / rows, mach * np.sqrt(GRAVITY * depth)
+    y = left + (np.arange(round(width / spacing)) + 0.5) * spacing
+    z = (np.arange(rows) + 0.5) * spacing
+    grid = np.stack(np.meshgrid(y, z, indexing="ij"), axis=-1).reshape(-1, 2)
+    drops = np.zeros((len(grid), 6))
+    drops[:, [Y, Z]], drops[:, VOLUME] = grid, spacing**2
+    drops[:, EXCESS] = hydrostatic_excess(depth - grid[:, 1], GRAVITY, sound, "linear")
+    return drops

@@ -1,0 +1,7 @@
+"""Water against closed forms: rest, waves, sloshing, viscous flow, free drops, and what must be kept."""
+
+from lab.studies.case import Case
+from lab.studies.verify.water import balance, drops, patch, rest, sloshing, vortices, waves
+
+MODULES = (rest, waves, sloshing, vortices, drops, patch, balance)
+CASES: tuple[Case, ...] = tuple(case for module in MODULES for case in module.CASES)

@@ -1,0 +1,110 @@
+"""Water in `cargolab verify`: its references against what is known of them otherwise, and its cheapest fast case."""
+
+import numpy as np
+import pytest
+
+from lab.studies.verify.water import CASES, balance, drops, patch, vortices, waves
+from lab.studies.verify.water.laplace import first_mode
+from lab.studies.verify.water.scenes import Swing, box, chamfered, order, order_line, swing
+
+WIDTH, DEPTH = 0.30, 0.105  # m
+CUTS = (0.0525, 0.045, 1.126), (0.105, 0.05, 1.435), (0.105, 0.075, 1.403)
+
+
+def test_finite_elements_have_the_closed_form_of_a_box():
+    """ω² = (πg/l) tanh(πd/l) to 0.1 %, and with second order."""
+    k = np.pi / WIDTH
+    exact = np.sqrt(9.81 * k * np.tanh(k * DEPTH))
+    errors = [first_mode(box(WIDTH, 0.2), DEPTH, n, n).rate / exact - 1.0 for n in (10, 20, 40)]
+    assert 0.0 < errors[-1] < 1e-3
+    assert order([4.0, 2.0, 1.0], errors) == pytest.approx(2.0, abs=0.1)
+
+
+def test_finite_elements_find_the_flow_of_a_box():
+    """Fastest at the surface in the middle, along it; up at one side and down at the other."""
+    mode = first_mode(box(WIDTH, 0.2), DEPTH)
+    k, place = np.pi / WIDTH, np.array([[0.0, 0.1], [0.1, 0.05], [-0.1, 0.05]])
+    y, z = place.T
+    exact = np.stack([np.cos(k * y) * np.cosh(k * z), np.sin(k * y) * np.sinh(k * z)], axis=1) / np.cosh(k * DEPTH)
+    found = mode.flow(place)
+    np.testing.assert_allclose(found * np.sign(found[0, 0]), exact, atol=0.01)
+
+
+@pytest.mark.parametrize(("depth", "cut", "rate"), CUTS)
+def test_slanted_corners_slow_the_water(depth, cut, rate):
+    """Hz, by another finite-element program."""
+    assert first_mode(chamfered(WIDTH, 0.21, cut), depth).rate / (2.0 * np.pi) == pytest.approx(rate, abs=1e-3)
+
+
+def test_a_damped_oscillation_is_found_in_its_values():
+    time = np.linspace(0.0, 9.0, 90)
+    value = 0.3 * np.exp(-0.12 * time) * np.cos(5.1 * time + 0.4) + 0.02
+    found = swing(time, value, 5.5)
+    assert (found.rate, found.decay) == pytest.approx((5.1, 0.12), rel=1e-6)
+    np.testing.assert_allclose(Swing(5.1, 0.12).course(time, value), value, atol=1e-12)
+
+
+def test_no_order_is_told_of_one_error_or_of_noise():
+    assert order_line("it", [1.0], [0.1], 0.01) == []
+    assert order_line("it", [2.0, 1.0], [0.1, 0.005], 0.01) == []
+    (line,) = order_line("it", [2.0, 1.0], [0.2, 0.1], 0.01)
+    assert line.value == pytest.approx(1.0)
+    (line,) = order_line("it", [2.0, 1.0], [0.1, 0.1], 0.01)
+    assert not line.passed  # what does not converge fails
+
+
+def test_the_axes_of_a_drop_are_those_of_the_literature():
+    """At 7.6 ms of a strain of 100/s; and period and extremes of one that is pulled to a point."""
+    np.testing.assert_allclose(drops.exact(100.0, 0.0, np.array([7.6e-3]))[0], drops.AXES, rtol=1e-4)
+    round_again = drops.exact(1.0, 1.0, np.array([drops.PERIOD]))[0]
+    np.testing.assert_allclose(round_again, 1.0, atol=2e-3)
+    swung = drops.exact(1.0, 1.0, np.linspace(0.0, drops.PERIOD, 2001)[1:])[:, 0]
+    np.testing.assert_allclose([swung.min(), swung.max()], drops.EXTREMES, rtol=1e-4)
+
+
+def test_a_viscous_wave_decays_as_lamb_says(monkeypatch):
+    """s → −2νk² (Lamb 1932, §348) for small ν; the layer under the surface takes √(νk²/ω)/√2 of it away."""
+    monkeypatch.setattr(waves, "VISCOSITY", 1e-5)
+    thin = 1e-5 * waves.K**2 / waves.RATE
+    share = -waves.viscous().real / (2.0 * 1e-5 * waves.K**2)
+    assert share == pytest.approx(1.0 - np.sqrt(thin / 2.0), abs=3e-4)
+    assert waves.viscous().imag == pytest.approx(waves.RATE, rel=1e-4)
+
+
+def test_the_channel_starts_at_rest_and_ends_as_a_parabola():
+    across = np.linspace(-vortices.HALF, vortices.HALF, 11)
+    parabola = vortices.FASTEST * (1.0 - (across / vortices.HALF) ** 2)
+    np.testing.assert_allclose(vortices.channel(across, 0.0), 0.0, atol=1e-4)
+    np.testing.assert_allclose(vortices.channel(across, 100.0), parabola, atol=1e-12)
+    # At first the middle falls freely
+    assert vortices.channel(np.zeros(1), 0.05)[0] == pytest.approx(vortices.PULL * 0.05, rel=1e-3)
+
+
+def test_the_pressure_of_a_turning_patch_solves_its_equation():
+    """∇²p = 2 ρ ω², and none at the edges; lowest in the middle."""
+    step, middle = 0.02, np.array([0.07, -0.11])
+    around = middle + step * np.array([[0, 0], [1, 0], [-1, 0], [0, 1], [0, -1]])
+    p = patch.pressure(around)
+    assert (p[1:].sum() - 4.0 * p[0]) / step**2 == pytest.approx(2.0 * 1000.0 * patch.RATE**2, rel=0.02)
+    assert np.abs(patch.pressure(np.array([[0.5, 0.1], [-0.2, -0.5]]))).max() < 1e-9
+    assert patch.pressure(np.zeros((1, 2)))[0] < -100.0
+
+
+def test_a_hole_in_a_patch_is_seen():
+    place = np.stack(np.meshgrid(*[np.linspace(-0.5, 0.5, 21)] * 2), axis=-1).reshape(-1, 2)
+    assert patch.widest_gap(place) == pytest.approx(0.05 / np.sqrt(2.0), rel=1e-3)
+    assert patch.widest_gap(place[np.hypot(*(place - 0.1).T) > 0.12]) > 0.09
+
+
+def test_a_strained_drop_passes():
+    """The cheapest case that runs water; the others are run by `test_fast_cases_pass_and_leave_a_page`."""
+    found = drops.ellipse(True)
+    assert found.lines and all(line.passed for line in found.lines)
+
+
+def test_a_free_drop_keeps_its_momentum():
+    assert balance.free_drop().passed
+
+
+def test_every_case_of_water_says_so():
+    assert all(case.name.startswith("water-") and case.section.startswith("Water") for case in CASES)
