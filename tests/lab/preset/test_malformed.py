@@ -125,6 +125,7 @@ TABLES = {
     "grains.csv": "y,z,radius,vy,vz,omega\n0,0.005,0.003,0,0,0\n0.01,0.02,0.003,0.1,0,5\n-0.01,0.03,0.002,0,-0.1,0\n",
     "drop.csv": "time,heave\n" + "".join(f"{0.1 * k:.1f},{-k * k * (10 - k) ** 2}e-3\n" for k in range(11)),
     "standing-wave.csv": "time,sway\n" + "".join(f"{0.1 * k:.1f},{k * k * (30 - 2 * k)}e-3\n" for k in range(11)),
+    "impact.csv": "time,roll\n" + "".join(f"{0.1 * k:.1f},{k * k * (30 - 2 * k)}e-3\n" for k in range(11)),
     "stack-fall.csv": "y,z,radius\n-0.006,0.0007,0.0007\n0,0.0007,0.0007\n0.003,0.003,0.0007\n",
 }
 

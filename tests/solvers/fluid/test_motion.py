@@ -31,7 +31,7 @@ def positions(scene, steps: int) -> tuple[Simulation, np.ndarray]:
 
 
 def test_a_free_drop_keeps_its_momentum_and_turning():
-    scene = drop(2.0, across=16)
+    scene = drop(2.0)
     scene.drops[0, :, VELOCITY_Y] -= 3.0 * scene.drops[0, :, 1]  # it also turns
     scene.drops[0, :, VELOCITY_Z] += 3.0 * scene.drops[0, :, 0]
     run = Simulation(scene, threads=1, arch="cpu")
@@ -49,8 +49,8 @@ def test_a_free_drop_keeps_its_momentum_and_turning():
 
 def test_the_axes_that_a_drop_is_seen_from_do_not_matter():
     """In a tank that rolls, sways and heaves round it without touching, a drop moves over the earth as without."""
-    still_run, alone = positions(drop(1.0, across=12), 100)
-    run, seen = positions(drop(1.0, across=12, motions=[MOTIONS]), 100)
+    still_run, alone = positions(drop(1.0), 100)
+    run, seen = positions(drop(1.0, motions=[MOTIONS]), 100)
     assert run.dt == pytest.approx(still_run.dt)
     pose = run.observe()["pose"][0]
     turn = np.array([[np.cos(pose[2]), -np.sin(pose[2])], [np.sin(pose[2]), np.cos(pose[2])]])
