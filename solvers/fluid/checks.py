@@ -3,18 +3,20 @@
 import numpy as np
 
 from solvers.fluid.constants import FASTEST
-from solvers.fluid.given import Water
-from solvers.machine.errors import BadState
+from solvers.fluid.state import allowed
+from solvers.machine.errors import BadState, Unavailable
 
 CREATED = 0.1  # of the energy exchanged: what may be missing from the account before a run is stopped
 REMEDY = "use a higher water.sound_speed, a smaller water.spacing, or check the motion's amplitude"
 
 
-def refuse_state(world: int, place: np.ndarray, speed: np.ndarray, excess: np.ndarray, time: float, sound: float):
-    """Raise BadState for a world whose particles, at `place` (n, 2) m, made the watch stop it at `time` (s).
+def refuse_state(world: int, particles: dict[str, np.ndarray], time: float, sound: float) -> None:
+    """Raise BadState for a world whose particles made the watch stop it at `time` (s).
 
-    `speed` (n,) m/s is that relative to the tank, `excess` (n,) the relative excess of density, `sound` c0 in m/s.
+    `particles` have their "place" (n, 2) m, "speed" (n,) m/s relative to the tank, "excess" (n,) of density and "span"
+    (n,); `sound` is c0 in m/s.
     """
+    place, speed, excess = (particles[name] for name in ("place", "speed", "excess"))
     bad = ~(np.isfinite(speed) & np.isfinite(excess) & np.isfinite(place).all(axis=1))
     if bad.any():
         what, at = "the state of a particle of water is not a number", place[bad.argmax()]
@@ -22,7 +24,7 @@ def refuse_state(world: int, place: np.ndarray, speed: np.ndarray, excess: np.nd
         worst = speed.argmax()
         what, at = f"water moves at {speed[worst]:.3g} m/s, Mach {speed[worst] / sound:.2g},", place[worst]
     else:
-        worst = np.abs(excess).argmax()
+        worst = (np.abs(excess) / allowed(particles["span"])).argmax()
         what, at = f"the water's density is off by {100.0 * excess[worst]:.3g} %", place[worst]
     raise BadState(world, f"{what} at y = {at[0]:.4g} m, z = {at[1]:.4g} m, t = {time:.4g} s; {REMEDY}.")
 
@@ -47,10 +49,11 @@ def residual(rows: dict[str, np.ndarray], start: np.ndarray | float) -> np.ndarr
     return rows["water_total"] + taken - rows["water_work"] - start
 
 
-def refuse_scene(water: Water, tanks: int, vessels: bool, parts: int) -> str:
-    """Why a scene with water cannot be run, in a sentence; empty if it can."""
+def refuse_scene(tanks: int, vessels: bool, parts: bool, grains: bool) -> None:
+    """Raise Unavailable, one sentence, for a scene in which water cannot be computed."""
     if vessels:
-        return "water: water in a ship's hold is not computed yet; leave out [ship] or [water]."
+        raise Unavailable("water: water in a ship's hold is not computed yet; leave out [ship] or [water].")
     if tanks > 1 or parts:
-        return "water: tanks of water have no parts, and stand alone; leave out [parts] or [water]."
-    return ""
+        raise Unavailable("water: tanks of water have no parts, and stand alone; leave out [parts] or [water].")
+    if grains:
+        raise Unavailable("water: grains in water are not computed yet; leave out [grains] or [water].")

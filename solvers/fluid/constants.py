@@ -59,6 +59,12 @@ class Constants:
         self.pulled = pull is not None
         self.values = arrays.under("water").holding("constants", np.array(list(numbers.values())), "number")
 
+    def set(self, name: str, value: float) -> None:
+        """Change the constant of that name."""
+        values = self.values.to_numpy()
+        values[self.at[name]] = value
+        self.values.from_numpy(values)
+
     @ti.func
     def get(self, name: ti.template()):
         """The constant of that name."""

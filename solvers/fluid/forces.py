@@ -202,7 +202,7 @@ class Forces:
 
     @ti.func
     def on_walls(self, b, origin: ti.template(), own: ti.template(), wall: ti.template()):
-        """Minus the force of the walls on a block, and its moment about the tank's origin, with room for two more."""
+        """Minus the walls' force on a block, and its moment about the tank's origin; the last two entries are zero."""
         p = self.particles
         total = ti.Vector([ti.cast(0.0, p.exact) for _ in ti.static(range(5))])
         turning = own[0] * wall[1] - own[1] * wall[0]

@@ -68,6 +68,7 @@ class Lists:
         self.near = Listing(arrays, units, "near", wet, crowd * wet, below)
         self.beside = Listing(arrays, units, "beside", wet, room * (8 * few + 64), below)
         self.facing = Listing(arrays, units, "facing", dry, crowd * dry, below)
+        self.fixed_skin = SKIN[1] * order.grid.spacing  # m, of particles that move one by one
         self.travel = own.holding("travel", np.full(units.count, NEVER), "unit", kept=True)
         self.last, self.skin = own.reals((units.axis,), "last", "skin")
 
@@ -121,6 +122,8 @@ class Lists:
         p = self.particles
         spacing = self.constants.get("spacing")
         skin = ti.max(SKIN[0] * spacing, ti.min(SKIN[1] * spacing, 2.0 * LASTING * self.last[u]))
+        if ti.static(self.units.single):  # all worlds together are told one skin before they go on
+            skin = SKIN[1] * spacing
         reach, fits = self.constants.get("reach") + skin, True
         first, end = self.shares.wet(u)
         found, walls = 0, 0

@@ -20,7 +20,6 @@ from solvers.fluid.walls.behind import OF_NONE, Behind
 from solvers.fluid.walls.edges import Edges
 from solvers.fluid.walls.extrapolation import Extrapolation
 from solvers.fluid.walls.gauges import Gauges
-from solvers.machine.errors import Unavailable
 from solvers.machine.phase import Phase
 from solvers.machine.state import Axes
 from solvers.motion.poses import Poses
@@ -33,11 +32,7 @@ class WaterMatter(Matter):
     """Water: its dummies' pressures, its forces, then kick and drift, the rates of density, and drift."""
 
     name = "water"
-    of_contacts: ClassVar = (
-        "gauge_pressure",
-        "gauge_peak",
-        "edge_force",
-    )  # quantities that are known only after a step
+    of_contacts: ClassVar = ("gauge_pressure", "gauge_peak", "edge_force")  # known only after a step
 
     def __init__(self, scene, setting: Setting):
         water: Water = scene.water
@@ -98,7 +93,7 @@ class WaterMatter(Matter):
 
     def slack(self) -> float:
         """How far (m) two particles may near each other before the lists are no good."""
-        return float(self.lists.skin.to_numpy().min())
+        return self.lists.fixed_skin
 
     def sort_all(self) -> None:
         """Sort the particles of all worlds."""
@@ -228,11 +223,15 @@ class WaterMatter(Matter):
     def refuse(self, world: int, time: float, dt: float) -> None:
         """Raise BadState for a world that was stopped at `time` (s)."""
         p = self.particles
-        found = p.read(*p.place, *p.velocity, *p.acceleration, p.excess)
+        found = p.read(*p.place, *p.velocity, *p.acceleration, p.excess, p.span)
         velocity = self.census.relative(time, found[0:2], found[2:4], found[4:6])[world]
-        place = np.stack([found[0][world], found[1][world]], axis=1)
-        speed = np.linalg.norm(velocity, axis=1)
-        refuse_state(world, place, speed, found[6][world], time, self.water.sound_speed)
+        particles = {
+            "place": np.stack([found[0][world], found[1][world]], axis=1),
+            "speed": np.linalg.norm(velocity, axis=1),
+            "excess": found[6][world],
+            "span": found[7][world],
+        }
+        refuse_state(world, particles, time, self.water.sound_speed)
 
     def snapshot(self, time: float) -> dict[str, np.ndarray]:
         """Places, velocities relative to the tank (W, n, 2) and pressures (W, n) at `time` (s), which must be now."""
@@ -244,6 +243,12 @@ class WaterMatter(Matter):
             "water_velocity": self.census.relative(time, found[0:2], found[2:4], found[4:6]),
             "water_pressure": stiffness * self.constants.state.pressure(found[6]),
         }
+
+    def alter(self, scene) -> None:
+        """Go on with another gravity; the account of energy begins anew."""
+        self.scene = scene
+        self.constants.set("hydrostatic", scene.gravity / self.water.sound_speed**2)
+        self.start[:] = np.nan
 
     def fields(self) -> list[ti.Field]:
         """The arrays that a step changes, lists aside."""
@@ -266,7 +271,5 @@ def make_water(scene, setting: Setting) -> WaterMatter | None:
     """The water of a scene (`solvers.scene.Scene`); None where it has none. Raises Unavailable."""
     if scene.water is None:
         return None
-    reason = refuse_scene(scene.water, len(scene.tanks), bool(scene.vessels), len(scene.parts))
-    if reason or scene.radius.size:
-        raise Unavailable(reason or "water: grains in water are not computed yet; leave out [grains] or [water].")
+    refuse_scene(len(scene.tanks), bool(scene.vessels), bool(scene.parts), bool(scene.radius.size))
     return WaterMatter(scene, setting)

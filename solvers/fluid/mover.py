@@ -3,14 +3,11 @@
 import taichi as ti
 
 from solvers.fluid.lists import Medium
-from solvers.fluid.state import INSIDE, SPRAY
+from solvers.fluid.state import DENSEST, DENSEST_SPRAY, INSIDE, SPRAY
 from solvers.fluid.walls.extrapolation import Extrapolation
 from solvers.machine.state import State
 from solvers.motion.poses import AT_MIDDLE, AT_START
 from solvers.space.axes import dot
-
-DENSEST = 0.2  # deviation of the density within the water at which a run is stopped
-DENSEST_SPRAY = 0.5  # that of drops, and of the surface: a drop that hits a wall at Mach 0.2 is compressed by a fifth
 
 
 @ti.data_oriented

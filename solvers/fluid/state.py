@@ -10,9 +10,16 @@ from solvers.space.axes import PLANE, named
 LANES = 16  # particles in a block: two AVX2 registers, or one of AVX-512, of 32-bit numbers
 SPARE = 1.5  # blocks for each full one, for those that a sparse surface leaves half empty
 FAR = 1e6  # m, where unused lanes are
+DENSEST = 0.2  # deviation of the density within the water at which a run is stopped
+DENSEST_SPRAY = 0.5  # that of drops, and of the surface: a drop that hits a wall at Mach 0.2 is compressed by a fifth
 INSIDE = 0.75  # least eigenvalue above which no surface is near (Marrone, Colagrossi, Le Touzé & Graziani 2010)
 SPRAY = 0.2  # least eigenvalue below which water is spray, never less dense than at rest (Marrone et al. 2010)
 UNUSED = -1  # number of an unused lane
+
+
+def allowed(span: np.ndarray) -> np.ndarray:
+    """The deviation of density at which a run is stopped, (n,), by the particles' least eigenvalues `span` (n,)."""
+    return np.where(span < INSIDE, DENSEST_SPRAY, DENSEST)
 
 
 @ti.data_oriented

@@ -90,6 +90,19 @@ def test_energy_is_accounted_for(run):
     np.testing.assert_allclose(taken, lost, rtol=0.03)
 
 
+def test_gravity_may_change_while_water_runs():
+    """Under half of the gravity the water weighs half as much on its tank, and no energy counts as created."""
+    run = Simulation(still(WIDTH, HEIGHT, DEPTH, ROWS, **TOLD), threads=1, arch="cpu")
+    run.observe()
+    run.alter(gravity=0.5 * GRAVITY)
+    loads = []
+    for _ in range(40):  # over some ten times that sound takes through the depth
+        run.advance(20)
+        loads.append(run.observe()["wall_force"][0, 1])
+    weight = 0.5 * GRAVITY * held(run)[3].sum()
+    np.testing.assert_allclose(np.mean(loads[10:]), -weight, rtol=0.03)
+
+
 def test_water_at_rest_weighs_on_the_floor_and_its_gauges():
     """From hydrostatic rest: pressures, levels and the load stay; c0 = 10 √(gH) compresses the water by up to 1 %."""
     run = Simulation(still(WIDTH, HEIGHT, DEPTH, ROWS, **TOLD), threads=1, arch="cpu")
