@@ -23,22 +23,39 @@ Speeds = dict[Hashable, np.ndarray]
 class Worker:
     """A simulation of a bed in as many equal worlds, in a process of its own; it rests unless it is asked.
 
-    `how` goes to the scene; `arch` and `threads` to the simulation. Raises LabError if it cannot be made or breaks
-    off.
+    `how` goes to the scene; `arch`, `threads` and `stretch` to the simulation, whose motions have ended if `ended`.
+    Raises LabError if it cannot be made or breaks off.
     """
 
-    def __init__(self, bed: Bed, threads: int = 1, worlds: int = 1, arch: str = "cpu", **how: object):
+    def __init__(
+        self,
+        bed: Bed,
+        threads: int = 1,
+        worlds: int = 1,
+        arch: str = "cpu",
+        stretch: int = 1,
+        ended: bool = False,
+        **how: object,
+    ):
         context = get_context("spawn")  # Taichi hangs in a fork
         self._pipe, theirs = context.Pipe()
-        self._process = context.Process(target=_serve, args=(theirs, bed, threads, worlds, arch, how), daemon=True)
+        told = theirs, bed, threads, worlds, arch, stretch, ended, how
+        self._process = context.Process(target=_serve, args=told, daemon=True)
         self._process.start()
         theirs.close()
         self.dt = self._answer()
 
     def speed(self, seconds: float) -> float:
         """Grain-steps per second, measured over about `seconds` seconds."""
+        return self._asked(("speed", seconds))
+
+    def course(self, duration: float) -> float:
+        """Grain-steps per second over the first `duration` (s, of model time) from where the bed was at first."""
+        return self._asked(("course", duration))
+
+    def _asked(self, question: tuple[str, float]) -> float:
         with suppress(BrokenPipeError):  # what it said last is still to be read
-            self._pipe.send(seconds)
+            self._pipe.send(question)
         return self._answer()
 
     def close(self) -> None:
@@ -56,23 +73,36 @@ class Worker:
         return answer
 
 
-def _serve(pipe: Connection, bed: Bed, threads: int, worlds: int, arch: str, how: Mapping[str, object]) -> None:
-    """Make the simulation, tell its step, then answer each number of seconds by grain-steps a second."""
+def _serve(
+    pipe: Connection, bed: Bed, threads: int, worlds: int, arch: str, stretch: int, ended: bool, how: Mapping
+) -> None:
+    """Make the simulation, tell its step, then answer each question, what and for how long, by grain-steps a second."""
     try:
-        run = Simulation(bed.scene(worlds, **how), bed.places(worlds), threads, arch=arch)
-        steps = FEWEST
-        timed(run, steps)  # compiles, and lists the contacts
-        speed = timed(run, steps)
+        run = Simulation(bed.scene(worlds, **how), bed.places(worlds), threads, arch=arch, stretch=stretch)
+        if ended:
+            run.origin = max(motion.duration() for motion in run.scene.motions[0])
+        speed = _warmed(run)
         pipe.send(run.dt)
         while True:
-            seconds = pipe.recv()
-            steps = max(FEWEST, round(seconds * speed / run.scene.radius.size))
-            speed = timed(run, steps)
-            pipe.send(speed)
+            question, seconds = pipe.recv()
+            if question == "course":
+                run.place(bed.places(worlds))
+                _warmed(run)
+                run.place(bed.places(worlds))
+                pipe.send(timed(run, max(FEWEST, round(seconds / run.dt))))
+            else:
+                speed = timed(run, max(FEWEST, round(seconds * speed / run.scene.radius.size)))
+                pipe.send(speed)
     except EOFError:  # nobody asks any more
         pass
     except (BadState, Unavailable) as error:
         pipe.send(str(error))
+
+
+def _warmed(run: Simulation) -> float:
+    """Compile the kernels and list the contacts; returns grain-steps per second of the few steps after that."""
+    timed(run, FEWEST)
+    return timed(run, FEWEST)
 
 
 def timed(run: Simulation, steps: int) -> float:
