@@ -40,11 +40,11 @@ def accuracy(studies: tuple[str, ...], out: Path, fast: bool, page_only: bool) -
 @fast_option
 @page_only_option
 def stability(cases: tuple[str, ...], out: Path, fast: bool, page_only: bool) -> None:
-    """Hard cases at the automatic step and far beyond it: correct results, or a stop with one sentence.
+    """The longest stable step of each integrator under each law of contact, beside the derived one.
 
     \b
     cargolab bench stability
-    cargolab bench stability impact column
+    cargolab bench stability map-verlet
     """
     from lab.studies.bench.stability import SUITE
 

@@ -1,4 +1,4 @@
-"""A suite of cases that pass or fail, as verify and the hard cases: run, printed, kept as JSON, told on a page.
+"""A suite of cases that pass or fail, as verify and the map of step limits: run, printed, kept as JSON, told on a page.
 
 The page has tables by section, in each the cases that fail first, and a figure of all errors.
 """
