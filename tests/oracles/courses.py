@@ -77,9 +77,17 @@ class Course:
         return self.time > (1.0 - share) * self.time[-1]
 
 
-def bed(count: int, duration: float, grain: Material | None = None, diameter: float = 2.0 * RADIUS, **scene) -> Trial:
-    """Grains let go of on a loose lattice, ten or, of many, twenty wide, in a tank twice as high as that."""
-    random, across, looks = np.random.default_rng(1), 10 if count <= 100 else 20, scene.pop("looks", 200)
+def bed(
+    count: int,
+    duration: float,
+    grain: Material | None = None,
+    diameter: float = 2.0 * RADIUS,
+    across: int = 10,
+    looks: int = 200,
+    **scene: object,
+) -> Trial:
+    """Grains let go of on a loose lattice `across` grains wide, in a tank twice as high as that."""
+    random = np.random.default_rng(1)
     radius = radii(count, diameter, SPREAD, random)
     pitch = SPACING * diameter * (1.0 + SPREAD)
     outline = box((across + 0.5) * pitch, 2.0 * ceil(count / across) * pitch)

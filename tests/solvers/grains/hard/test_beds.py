@@ -41,7 +41,7 @@ def mixed() -> Trial:
 
 
 SETTLING = {
-    "gold ore, 1 mm": lambda: bed(300, 0.15, GOLD_ORE, diameter=1e-3),
+    "gold ore, 1 mm": lambda: bed(300, 0.15, GOLD_ORE, diameter=1e-3, across=20),
     # The damper alone would want steps far below a nanosecond.
     "0.1 mm, a shear damping of 20 N s/m": lambda: bed(100, 0.04, material(shear_damping=20.0), diameter=1e-4),
     "a restitution of 0.05": lambda: bed(100, 0.25, material(restitution=0.05)),

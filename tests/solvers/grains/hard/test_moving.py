@@ -55,7 +55,7 @@ def test_energy_equals_the_work_of_the_tank_and_any_other_source_is_seen():
     What is asked of hard cases is not met without the tank's work, with a little more energy than there is, with deeper
     overlaps, with a number that is none, or by a run that the watch has stopped.
     """
-    trial = bed(20, 0.1, motions=[(Sway(0.1, 2.0, -0.5 * pi),)])
+    trial = bed(20, 0.1, across=5, motions=[(Sway(0.1, 2.0, -0.5 * pi),)])
     with running(trial) as run:
         course = followed(run, trial, 4.0 * trial.scene.time_step())
     sound(trial, course)
