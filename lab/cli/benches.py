@@ -87,27 +87,6 @@ def water(studies: tuple[str, ...], out: Path, fast: bool, page_only: bool) -> N
 
 
 @bench.command()
-@click.argument("cases", nargs=-1)
-@click.option(
-    "--kills", type=click.IntRange(min=1), metavar="N", help="Number of kills for each kind of command.  [default: 50]"
-)
-@page_option
-@fast_option
-@page_only_option
-def survival(cases: tuple[str, ...], kills: int | None, out: Path, fast: bool, page_only: bool) -> None:
-    """Kill the lab at random times, take its memory and disk, give it damaged files; count how it ends.
-
-    \b
-    cargolab bench survival                   all cases; --fast: a few kills, odd folders, missing programs
-    cargolab bench survival kill --kills 200
-    """
-    from lab.studies.bench.survival import run_cases
-
-    if not run_cases(cases, out, fast, kills, page_only):
-        sys.exit(1)
-
-
-@bench.command()
 @page_option
 @fast_option
 @page_only_option
