@@ -36,8 +36,7 @@ def shift(found: Found, points: str = "") -> Figure | None:
             [np.interp(common, tilt, s) / d for (tilt, s), d in zip(curves, recording.mean_diameter, strict=True)]
         )
         _band(axes, common, shifts, colour, label)
-    axes.set_xlabel("tilt (deg)")
-    axes.set_ylabel(f"shift of the centre of mass\ndownhill (mean diameters),\n{BARS}")
+    axes.set(xlabel="tilt (deg)", ylabel=f"shift of the centre of mass\ndownhill (mean diameters),\n{BARS}")
     figure.legend(loc=BELOW, ncols=3)
     return figure
 
@@ -58,8 +57,7 @@ def against(
         means, beds = [value.value for value in values], max((value.n for value in values), default=0)
         spread = [value.std or 0.0 for value in values]
         axes.errorbar(x, means, spread, fmt="o-", ms=3.5, capsize=2, color=colour, label=_named(name, beds))
-    axes.set_xlabel(label)
-    axes.set_ylabel(f"{quantity}\n{BARS}")
+    axes.set(xlabel=label, ylabel=f"{quantity}\n{BARS}")
     figure.legend(loc=BELOW, ncols=3)
     if line and (level := found[line][0][of]) and level.value is not None:
         axes.axhline(level.value, color="0.5", ls=":", lw=1.0, label=line)

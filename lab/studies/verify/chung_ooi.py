@@ -10,12 +10,11 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
 
 from lab.preset.accuracy import DRAFT_RESTITUTION, LEVELS, RESTITUTION
-from lab.report.plots import BELOW, BLUE, GREY, STYLE, VERMILION
+from lab.report.plots import BELOW, BLUE, GREY, VERMILION
 from lab.studies.case import Case, Found, Line, Picture, Table
 from lab.studies.verify.meetings import LARGER, Meetings, Substance
 
@@ -151,16 +150,15 @@ def normal(fast: bool) -> Found:
 
 def force_figure(fast: bool) -> Figure:
     """Forces over time at both lengths of step, and Hertz's."""
-    with matplotlib.rc_context(STYLE):
-        figure = Figure(figsize=(6.4, 4.4), layout="constrained")
-        for axes, (name, curve) in zip(figure.subplots(2, 2).flat, normal_impacts().items(), strict=True):
-            c = curve.elastic()
-            curves = pressed(name, fast)
-            axes.plot(curves[0][0] / c.duration, curves[0][4] / c.force, color=GREY, lw=1.0)
-            for (time, _, force, _, _), colour, mark in zip(curves, (BLUE, VERMILION), (".", "x"), strict=False):
-                axes.plot(time / c.duration, force / c.force, mark, color=colour, ms=4)
-            axes.set_title(name)
-        return figure
+    figure = Figure(figsize=(6.4, 4.4), layout="constrained")
+    for axes, (name, curve) in zip(figure.subplots(2, 2).flat, normal_impacts().items(), strict=True):
+        c = curve.elastic()
+        curves = pressed(name, fast)
+        axes.plot(curves[0][0] / c.duration, curves[0][4] / c.force, color=GREY, lw=1.0)
+        for (time, _, force, _, _), colour, mark in zip(curves, (BLUE, VERMILION), (".", "x"), strict=False):
+            axes.plot(time / c.duration, force / c.force, mark, color=colour, ms=4)
+        axes.set_title(name)
+    return figure
 
 
 def given(fast: bool) -> Found:
@@ -258,21 +256,20 @@ NOTES = {
 def curves_figure(names: list[str]) -> Figure:
     """The paper's quantities of some curves: here, by the law itself, and read off the paper."""
     panels = axes_of(names[0], oblique()[names[0]].expected)
-    with matplotlib.rc_context(STYLE):
-        figure = Figure(figsize=(6.4, 1.1 + 1.9 * len(panels)), layout="constrained")
-        for axes, quantity in zip(np.atleast_1d(figure.subplots(len(panels), 1)), panels, strict=True):
-            for name, colour in zip(names, (BLUE, VERMILION), strict=False):
-                where, values = axes_of(name, oblique()[name].expected)[quantity]
-                axes.plot(where, values, color=colour, lw=1.0, label=name)
-                axes.plot(*axes_of(name, met(name, True)[DERIVED, 0])[quantity], "o", color=colour, ms=3.5)
-                for reading in READINGS:
-                    if (reading.test, reading.quantity) == (name, quantity):
-                        axes.plot(*np.array(reading.points).T, "x", color=colour, ms=4, alpha=0.6)
-            axes.set_ylabel(quantity)
-        axes.set_xlabel(ABSCISSAE[names[0][:6]])
-        handles, labels = axes.get_legend_handles_labels()
-        figure.legend(handles, labels, loc=BELOW, ncols=2)
-        return figure
+    figure = Figure(figsize=(6.4, 1.1 + 1.9 * len(panels)), layout="constrained")
+    for axes, quantity in zip(np.atleast_1d(figure.subplots(len(panels), 1)), panels, strict=True):
+        for name, colour in zip(names, (BLUE, VERMILION), strict=False):
+            where, values = axes_of(name, oblique()[name].expected)[quantity]
+            axes.plot(where, values, color=colour, lw=1.0, label=name)
+            axes.plot(*axes_of(name, met(name, True)[DERIVED, 0])[quantity], "o", color=colour, ms=3.5)
+            for reading in READINGS:
+                if (reading.test, reading.quantity) == (name, quantity):
+                    axes.plot(*np.array(reading.points).T, "x", color=colour, ms=4, alpha=0.6)
+        axes.set_ylabel(quantity)
+    axes.set_xlabel(ABSCISSAE[names[0][:6]])
+    handles, labels = axes.get_legend_handles_labels()
+    figure.legend(handles, labels, loc=BELOW, ncols=2)
+    return figure
 
 
 ABSCISSAE = {

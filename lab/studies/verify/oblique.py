@@ -3,11 +3,10 @@
 from dataclasses import dataclass
 from functools import cache, cached_property
 
-import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
 
-from lab.report.plots import BELOW, BLUE, GREY, STYLE, VERMILION
+from lab.report.plots import BELOW, BLUE, GREY, VERMILION
 from lab.studies.case import Case, Found, Line, Picture
 from lab.studies.verify.collisions import RIGID
 from lab.studies.verify.impacts import Bodies, Impact, Normal, Shear
@@ -195,27 +194,25 @@ def impacts_figure(throw: Throw, law: str) -> Figure:
     """Tangential restitution, spin and their errors over the angle."""
     forwards = throw.speed * np.sin(np.radians(ANGLES))[:, None]
     (here, finer), expected = thrown(throw, law)[:, :, [0, 2]] / forwards, integrated(throw, law) / forwards
-    with matplotlib.rc_context(STYLE):
-        figure = Figure(figsize=(6.4, 4.6), layout="constrained")
-        upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(2, 1))
-        for k, (colour, name) in enumerate(((BLUE, "tangential restitution"), (VERMILION, "spin, −R ω/v$_t$"))):
-            sign = -1.0 if k else 1.0
-            upper.plot(ANGLES, sign * expected[:, k], color=colour, lw=1.0, label=f"{name}, integration")
-            upper.plot(ANGLES, sign * here[:, k], "o", color=colour, ms=4, label=f"{name}, here")
-            for values, marker in ((here, "o"), (finer, "v")):
-                error = np.maximum(np.abs(values[:, k] - expected[:, k]), 1e-9)
-                lower.plot(ANGLES, error, marker, color=colour, ms=3.5, ls="-", lw=0.6)
-        for marker, name in (("o", "error at the derived step"), ("v", "at an eighth of it")):
-            lower.plot([], [], marker, color=GREY, ms=3.5, ls="-", lw=0.6, label=name)
-        upper.set_ylim(bottom=0.0)
-        upper.set_title(f"{law}, μ = {throw.friction:g}, e = {throw.restitution:g} at {throw.speed:g} m/s")
-        lower.axhline(STUCK[law][0], color=GREY, ls=":", lw=1.0)
-        lower.set_yscale("log")
-        lower.set_ylabel("error")
-        lower.set_xlabel("angle between the path and the wall's normal (deg)")
-        lower.set_xlim(0, 90)
-        figure.legend(loc=BELOW, ncols=2)
-        return figure
+    figure = Figure(figsize=(6.4, 4.6), layout="constrained")
+    upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(2, 1))
+    for k, (colour, name) in enumerate(((BLUE, "tangential restitution"), (VERMILION, "spin, −R ω/v$_t$"))):
+        sign = -1.0 if k else 1.0
+        upper.plot(ANGLES, sign * expected[:, k], color=colour, lw=1.0, label=f"{name}, integration")
+        upper.plot(ANGLES, sign * here[:, k], "o", color=colour, ms=4, label=f"{name}, here")
+        for values, marker in ((here, "o"), (finer, "v")):
+            error = np.maximum(np.abs(values[:, k] - expected[:, k]), 1e-9)
+            lower.plot(ANGLES, error, marker, color=colour, ms=3.5, ls="-", lw=0.6)
+    for marker, name in (("o", "error at the derived step"), ("v", "at an eighth of it")):
+        lower.plot([], [], marker, color=GREY, ms=3.5, ls="-", lw=0.6, label=name)
+    upper.set_ylim(bottom=0.0)
+    upper.set_title(f"{law}, μ = {throw.friction:g}, e = {throw.restitution:g} at {throw.speed:g} m/s")
+    lower.axhline(STUCK[law][0], color=GREY, ls=":", lw=1.0)
+    lower.set_yscale("log")
+    lower.set(xlabel="angle between the path and the wall's normal (deg)", ylabel="error")
+    lower.set_xlim(0, 90)
+    figure.legend(loc=BELOW, ncols=2)
+    return figure
 
 
 CASES = (

@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 
 from lab.measures.value import Value, over_worlds
 from lab.report.numbers import BARS, with_error
-from lab.report.plots import BLUE, GREY, VERMILION
+from lab.report.plots import BLUE, GREY, VERMILION, canvas
 from lab.studies.reproduce.estimates import Verdict, ratio, together
 from lab.studies.reproduce.experiment import Found, Row, counted, observed
 from lab.studies.reproduce.figures import leading_number
@@ -67,8 +67,7 @@ def tanks_span(found: Found) -> list[Row]:
 
 def heaps(found: Found, box: str) -> Figure:
     """Angles of heaps at rest and of the box at the slide, ± standard deviation."""
-    figure = Figure(figsize=(6.4, 2.6), layout="constrained")
-    axes = figure.add_subplot()
+    figure, axes = canvas((6.4, 2.6))
     angles = {says: runs[0]["critical_angle" if says == box else "heap_angle"] for says, runs in found.items()}
     known = {says: value for says, value in angles.items() if value and value.value is not None}
     for row, value in enumerate(known.values()):
@@ -115,8 +114,7 @@ def _effect(outcomes: Sequence[Outcome], key: str, first: object) -> str:
 def memory(found: Found) -> Figure:
     """Critical angles ± standard deviation of all combinations."""
     outcomes = found["all"]
-    drawn = Figure(figsize=(6.4, 3.2), layout="constrained")
-    axes = drawn.add_subplot()
+    drawn, axes = canvas((6.4, 3.2))
     for row, one in enumerate(outcomes):
         angle = one["critical_angle"]
         if angle and angle.value is not None:

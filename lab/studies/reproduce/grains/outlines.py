@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from lab.measures.critical_angle import shift_curve
 from lab.measures.value import Value, over_worlds
 from lab.report.numbers import BARS
-from lab.report.plots import GREY
+from lab.report.plots import GREY, canvas
 from lab.studies.reproduce.experiment import Found
 from lab.studies.reproduce.figures import SIZE
 from lab.studies.reproduce.runs import Outcome
@@ -32,8 +32,7 @@ def early_range(outcomes: Sequence[Outcome], until: float) -> Value:
 
 def descriptors(found: Found) -> Figure:
     """Critical angles over that of discs against the descriptor."""
-    figure = Figure(figsize=(6.4, 3.4), layout="constrained")
-    axes = figure.add_subplot()
+    figure, axes = canvas((6.4, 3.4))
     discs = found["discs"][0]["critical_angle"]
     for name, outcomes in found.items():
         points = [(next(iter(one.setting.values()))[-1], one["critical_angle"]) for one in outcomes if one.setting]
@@ -41,8 +40,7 @@ def descriptors(found: Found) -> Figure:
         if known:
             axes.errorbar(*zip(*known, strict=True), fmt="o-", ms=3.5, capsize=2, label=name)
     axes.axhline(1.0, color=GREY, ls=":", lw=1.0)
-    axes.set_xlabel("descriptor relative to R0")
-    axes.set_ylabel(f"critical angle over that of discs\n{BARS}")
+    axes.set(xlabel="descriptor relative to R0", ylabel=f"critical angle over that of discs\n{BARS}")
     axes.legend()
     return figure
 

@@ -2,7 +2,7 @@
 
 from matplotlib.figure import Figure
 
-from lab.report.plots import BLUE, GREY
+from lab.report.plots import BLUE, GREY, canvas
 from lab.studies.reproduce.experiment import Found, Row, observed
 
 DROP, THEN = 0.05, 9.81  # s, when the floor of the stack begins to fall; m/s²
@@ -20,12 +20,10 @@ def stack(found: Found) -> Figure:
     """The centre of mass of the falling stack beside free fall."""
     series = found["stack"][0].recording.series
     time, middle = series["time"], 1e3 * series["centre_of_mass"][:, 0, 1]
-    figure = Figure(figsize=(6.4, 3.2), layout="constrained")
-    axes = figure.add_subplot()
+    figure, axes = canvas((6.4, 3.2))
     axes.plot(time, middle - middle[0], color=BLUE, label="centre of mass of the stack")
     fallen = time > DROP
     axes.plot(time[fallen], -500.0 * THEN * (time[fallen] - DROP) ** 2, color=GREY, ls=":", label="free fall")
-    axes.set_xlabel("time (s)")
-    axes.set_ylabel("altitude, change (mm)")
+    axes.set(xlabel="time (s)", ylabel="altitude, change (mm)")
     axes.legend()
     return figure

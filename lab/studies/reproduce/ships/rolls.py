@@ -10,7 +10,7 @@ from matplotlib.lines import Line2D
 
 from lab.measures.value import Value, over_worlds
 from lab.report.numbers import BARS
-from lab.report.plots import BELOW
+from lab.report.plots import BELOW, canvas
 from lab.studies.reproduce.estimates import Verdict, mean, together
 from lab.studies.reproduce.experiment import ANY, Found, Row, Tolerance, alone, counted, observed, stated
 from lab.studies.reproduce.figures import leading_number
@@ -37,8 +37,7 @@ def rolls_figure(found: Found, key: str, label: str, frozen: Collection[str]) ->
     Curves of every run with loose cargo, and of those named in `frozen` with frozen cargo. Ships that capsized are
     crosses at the top and in no curve.
     """
-    figure = Figure(figsize=SIZE, layout="constrained")
-    panels = figure.subplots(2, sharex=True)
+    figure, panels = canvas(SIZE, 2, sharex=True)
     colours = colormaps["viridis"](np.linspace(0.0, 0.75, len(found)))
     kinds = {LOOSE: ("loose", found), FROZEN: ("frozen", frozen)}
     drawn = [

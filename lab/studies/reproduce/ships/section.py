@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from lab.assembly.ship import make_water
 from lab.measures.value import Value
 from lab.preset.sections.sea import Sea
-from lab.report.plots import BELOW, BLUE, GREY
+from lab.report.plots import BELOW, BLUE, GREY, canvas
 from lab.studies.reproduce.estimates import Verdict
 from lab.studies.reproduce.experiment import Found, Row, Told, Tolerance, observed, stated
 from lab.studies.reproduce.figures import leading_number
@@ -160,8 +160,7 @@ def window(frequency: float) -> tuple[float, float]:
 
 def _figure(base: Model) -> Figure:
     """About the peak to the left, the small motions to the right."""
-    figure = Figure(figsize=(9.0, 8.4), layout="constrained")
-    panels = figure.subplots(3, 2)
+    figure, panels = canvas((9.0, 8.4), 3, 2)
     fine, curves = np.linspace(DENSE[0], DENSE[-1], 400), _dense()
     steady = base.steady(fine)
     for k, motion in enumerate(MOTIONS):
