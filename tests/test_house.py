@@ -46,7 +46,6 @@ LONG = {  # too long, and not to become longer
     "lab/paint/painter.py": 445,
     "lab/recording/writer.py": 354,
     "lab/runs/beds.py": 320,
-    "lab/studies/verify/chung_ooi.py": 324,
     "lab/view/page.py": 437,
     "lab/view/session.py": 360,
     "solvers/grains/shapes/rules/continuous.py": 408,
