@@ -136,7 +136,7 @@ class Forces:
                     for a in ti.static(range(p.axes)):
                         shift[a] += crowded * apart[a]
                 along = p.pressure[jb, lane] + (pressure if ti.static(c.full) else ti.max(pressure, 0.0))
-                along = along * weight + p.volume[jb, lane] * c.hardness(square)
+                along = along * weight + p.volume[jb, lane] * c.hardness(square, p.firm[jb, lane])
                 more = along - pressure * weight
                 for a in ti.static(range(p.axes)):
                     own_push[a] += more * apart[a]

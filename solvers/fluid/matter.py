@@ -49,7 +49,7 @@ class WaterMatter(Matter):
         )
         self.units = units = setting.units(p.wet)
         self.load = setting.load(arrays.under("water"), units)
-        self.dummies = dummy, blocks, behind.volumes
+        self.dummies = dummy, blocks, behind.volumes, behind.firm
         shares, self.constants = Shares(p, units), Constants(arrays, water, scene.gravity)
         self.poses = Poses(arrays, setting.carrier, worlds)
         self.order = Order(arrays, p, grid)
@@ -153,13 +153,16 @@ class WaterMatter(Matter):
         """Place the particles as the scene says, and the dummies; all that was noted is forgotten."""
         p = self.particles
         p.put(self.drops, self.drops[..., [VELOCITY_Y, VELOCITY_Z]], self.water)
-        slots, blocks, volumes = self.dummies
+        slots, blocks, volumes, firm = self.dummies
         wall = np.zeros(p.dry * p.lanes)
         wall[slots] = volumes
+        held_back = np.zeros(p.dry * p.lanes)
+        held_back[slots] = firm
         number = np.full(p.dry * p.lanes, UNUSED)
         number[slots] = np.arange(len(slots))
         held = [blocks[..., 0], blocks[..., 1], wall.reshape(-1, p.lanes), number.reshape(-1, p.lanes)]
-        for field, values in zip([*p.place, p.volume, p.number], held, strict=True):
+        held.append(held_back.reshape(-1, p.lanes))
+        for field, values in zip([*p.place, p.volume, p.number, p.firm], held, strict=True):
             whole = field.to_numpy().reshape(p.worlds, p.stride, p.lanes)
             whole[:, p.wet :] = values
             field.from_numpy(whole.reshape(-1, p.lanes))

@@ -50,6 +50,7 @@ class Particles:
         self.excess, self.mass = own.wide(each, "excess", "mass")
         (self.number,) = own.wide(each, "number", kind=ti.i32)
         self.volume, self.pressure, self.span = own.wide(each, "volume", "pressure", "span")
+        (self.firm,) = own.wide(each, "firm")
         self.rate, self.rate_of_walls = own.wide(each, "rate", "rate_of_walls", kept=False)
         self.acceleration = own.wide(each, *named("acceleration", self.axes))
         if shifts:
