@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from solvers.fluid.given import EXCESS, VOLUME, Water
-from solvers.fluid.start.lattice import at_rest, from_edges, hydrostatic_excess, lattice
+from solvers.fluid.start.lattice import from_edges, lattice
+from solvers.fluid.start.rest import at_rest, hydrostatic_excess
 from solvers.tank.outline import area_below
 from solvers.tank.tank import Tank
 

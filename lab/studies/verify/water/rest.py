@@ -7,7 +7,7 @@ import numpy as np
 from lab.studies.case import Case, Found, Line
 from lab.studies.verify.water.scenes import G, box, chamfered, looks, order_line, resting, simulated
 from solvers.fluid.given import Gauge, Level, Water
-from solvers.fluid.start.lattice import hydrostatic_excess
+from solvers.fluid.start.rest import hydrostatic_excess
 from solvers.tank.outline import area_below
 
 SECTION = "Water: rest"
