@@ -21,7 +21,8 @@ SLANTED = 20.0  # s, of the tanks whose walls are slanted all the way
 
 @dataclass(frozen=True)
 class Vessel:
-    """A tank: its outline (m, 2) m, where in its wall the pressure is measured (m), and how long it rests (s)."""
+    """A tank: its outline (m, 2) m, a point of its wall where pressure and depth are measured (m), and how long
+    it rests (s)."""
 
     outline: np.ndarray
     gauge: tuple[float, float] = (0.0, 0.0)
@@ -52,7 +53,7 @@ class Rest:
 def rested(vessel: Vessel, rows: int, duration: float) -> Rest:
     """Water in a tank, left alone for a time (s)."""
     outline, deep = vessel.outline, DEPTH - vessel.gauge[1]
-    gauges, levels = (Gauge(vessel.gauge, DEPTH / 10.0),), (Level(0.0),)
+    gauges, levels = (Gauge(vessel.gauge, DEPTH / 10.0),), (Level(vessel.gauge[0]),)
     water = Water(DEPTH / rows, SOUND, gauges=gauges, levels=levels)
     head, area = water.density * G * DEPTH, area_below(outline, DEPTH)
     times = np.arange(1.0, duration + 0.5)
@@ -71,7 +72,7 @@ def rested(vessel: Vessel, rows: int, duration: float) -> Rest:
     half = len(loads) // 2
     load, gauge = np.mean(loads[half:], axis=0), max(gauged[half:], key=abs)
     calm = max(kinetic), max(kinetic[half:])
-    return Rest(max(errors[half:]), gauge, *calm, level / DEPTH - 1.0, -load[1], load[0])
+    return Rest(max(errors[half:]), gauge, *calm, (level - deep) / DEPTH, -load[1], load[0])
 
 
 def exact(below: np.ndarray | float, water: Water) -> np.ndarray:
