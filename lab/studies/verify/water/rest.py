@@ -44,7 +44,6 @@ class Rest:
     pressure: float  # root mean square of the errors of all particles, at the worst look
     gauge: float  # error of the gauge, likewise
     stirred: float  # largest kinetic energy at any look, from the first second on
-    kinetic: float  # largest in the second half
     level: float  # error of the level in the middle
     down: float
     sideways: float
@@ -71,8 +70,7 @@ def rested(vessel: Vessel, rows: int, duration: float) -> Rest:
         level = rows_now["level_depth"][0, 0]
     half = len(loads) // 2
     load, gauge = np.mean(loads[half:], axis=0), max(gauged[half:], key=abs)
-    calm = max(kinetic), max(kinetic[half:])
-    return Rest(max(errors[half:]), gauge, *calm, (level - deep) / DEPTH, -load[1], load[0])
+    return Rest(max(errors[half:]), gauge, max(kinetic), (level - deep) / DEPTH, -load[1], load[0])
 
 
 def exact(below: np.ndarray | float, water: Water) -> np.ndarray:
