@@ -17,6 +17,11 @@ def lattice(polygon: np.ndarray, level: float, spacing: float) -> tuple[np.ndarr
     over the whole width. A lattice with other gaps at the walls than within would start with a blow. Where walls are
     slanted, the lattice is cut off, and particles within CLOSE of a wall are left out. The volumes are equal, and their
     sum is exactly the polygon's area below the level.
+
+    A lattice under a pressure p is elastic. To a flow without rotation and divergence, ξ = ∇φ, it answers with the
+    energy p [a φ_yy² + b φ_yz²] per area, a = S_yyyy − S_yzyz − 1, b = S_yyzz + S_yzyz − 1, S_abcd = Σ V ∂²W/∂r_a∂r_b
+    r_c r_d: zero for integrals, a = 0.018 and b = 0.007 for Wendland's C2 and h = 2 Δx, which quickens deep waves by
+    (a + b)/4, shallow ones by a/2, 0.6 and 0.9 % at any spacing. Own derivation.
     """
     corners = cut_off(polygon, level - polygon[:, 1].min())
     floor, (left, right) = corners[:, 1].min(), (corners[:, 0].min(), corners[:, 0].max())
