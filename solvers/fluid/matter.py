@@ -15,6 +15,7 @@ from solvers.fluid.grid import grid_round
 from solvers.fluid.lists import Lists, Medium
 from solvers.fluid.mover import Mover
 from solvers.fluid.order import Order
+from solvers.fluid.shifting import SHIFTING
 from solvers.fluid.state import LANES, UNUSED, Particles, Shares
 from solvers.fluid.walls.behind import OF_NONE, Behind
 from solvers.fluid.walls.edges import Edges
@@ -45,7 +46,7 @@ class WaterMatter(Matter):
         self.drops = scene.drops
         count = scene.drops.shape[1]
         self.particles = p = Particles(
-            arrays, worlds, count, lanes, len(blocks) * lanes, grid.strips, water.shifting != "none"
+            arrays, worlds, count, lanes, len(blocks) * lanes, grid.strips, SHIFTING[water.shifting]
         )
         self.units = units = setting.units(p.wet)
         self.load = setting.load(arrays.under("water"), units)
