@@ -7,7 +7,7 @@ import pytest
 
 from solvers.fluid.checks import residual
 from solvers.fluid.given import VELOCITY_Y, VELOCITY_Z, VOLUME, Water
-from solvers.fluid.start.lattice import at_rest
+from solvers.fluid.start.rest import at_rest
 from solvers.motion import Roll, Sway, Tilt
 from solvers.scene import Scene
 from solvers.simulation import Simulation
