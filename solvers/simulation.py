@@ -52,7 +52,7 @@ class Simulation:
         stretch: int = 1,
     ):
         self.threads = threads or runtime.available_cores()
-        answers = carrier_kind(scene.vessels).answers
+        answers = carrier_kind(scene.vessels, scene.axles).answers
         self.arch = "cpu" if answers and arch == "auto" else runtime.choose_arch(arch, scene.precision)
         runtime.initialise(self.threads, self.arch, scene.precision)
         worlds, grains = scene.radius.shape
@@ -217,7 +217,7 @@ class Simulation:
         still = ended | (self.observed == self.steps)
         for name, before in self.means.items():
             rows[name] = np.where(still.reshape(-1, *[1] * (before.ndim - 1)), before, rows[name])
-        rows |= self.carrier.account()
+        rows |= self.carrier.account(rows)
         self.observed, self.means = self.steps, {name: rows[name] for name in self.means}
         for matter in self.matters.values():
             matter.check(rows, self.time)
