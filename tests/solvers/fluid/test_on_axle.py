@@ -62,24 +62,26 @@ def account(steps: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         water = row["water_total"] - start["water_total"]
         taken = row["water_viscous"] + row["water_diffusive"] + row["water_held"]
         rows.append((tank_gain + (water + taken)[0], tank_gain - row["axle_works"][0, 0], row["water_work"][0]))
-        assert row["axle_works"][0, 0] == pytest.approx(-row["water_work"][0], abs=1e-3 * row["water_work"][0])
+        assert row["axle_works"][0, 0] == pytest.approx(-row["water_work"][0], rel=1e-3)
     run.close()
     return tuple(np.array(rows).T)
 
 
 def test_what_the_walls_give_the_water_the_tank_loses():
-    """The energy of an undamped tank and its water, losses counted, to 1e-3 of what passes between them."""
+    """The energy of an undamped tank and its water, losses counted, to 2e-3 of what passes between them."""
     lost, _, given = account(1)
     assert np.abs(given).max() > 0.05
-    assert np.abs(lost).max() < 1e-3 * np.abs(given).max()
+    assert np.abs(lost).max() < 2e-3 * np.abs(given).max()
 
 
 @pytest.mark.slow
 def test_the_account_of_energy_closes_with_the_step():
-    """What is missing falls with Δt: works are known up to half a step ago, energies now."""
-    missing = [np.abs(account(steps)[1]).max() for steps in (1, 2, 4)]
-    assert missing[0] / missing[1] == pytest.approx(2.0, abs=0.3)
-    assert missing[1] / missing[2] == pytest.approx(2.0, abs=0.3)
+    """What is missing falls with Δt, of the tank alone and of both: works and losses lag by half a step."""
+    runs = [account(steps)[:2] for steps in (1, 2, 4)]
+    for missing in zip(*runs, strict=True):
+        coarse, middle, fine = (np.abs(values).max() for values in missing)
+        assert coarse / middle == pytest.approx(2.0, abs=0.3)
+        assert middle / fine == pytest.approx(2.0, abs=0.3)
 
 
 def test_water_that_is_held_is_a_rigid_weight():
