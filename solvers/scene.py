@@ -71,7 +71,9 @@ class Scene:
     parts: tuple[Part, ...] = ()
     shapes: Annotated[Shapes | None, EachWorld(lambda scene: scene.shapes and scene.shapes.alike)] = None
     vessels: Annotated[Sequence[Vessel], EachWorld(lambda scene: bool(scene.vessels)), NotOfBed()] = ()
-    axles: Annotated[Sequence[Axle], EachWorld(lambda scene: [axle.kind for axle in scene.axles[:1]]), NotOfBed()] = ()
+    axles: Annotated[
+        Sequence[Axle], EachWorld(lambda scene: bool(scene.axles) and scene.axles[0].kind), NotOfBed()
+    ] = ()
     interval: Annotated[float | None, NotOfBed()] = None
     thickness: float | None = None
     length: float | None = None
@@ -148,6 +150,11 @@ class Scene:
         for number, material in enumerate(self.others, start=1):
             density[self.kind == number] = material.density
         return density
+
+    @property
+    def answers(self) -> bool:
+        """Whether the tanks' motion answers to the load of what is in them."""
+        return bool(self.vessels or self.axles)
 
     @property
     def worlds(self) -> int:

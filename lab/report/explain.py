@@ -85,9 +85,9 @@ def _one_bed(preset: Preset) -> Simulation:
     """A simulation of the first bed alone, with the units of work it has among all beds; the others are alike."""
     run = preset.run
     scene, position = build(replace(preset, run=replace(run, repeats=1)))
-    arch = "cpu" if scene.vessels and run.arch == "auto" else choose_arch(run.arch, run.precision)
+    arch = "cpu" if scene.answers and run.arch == "auto" else choose_arch(run.arch, run.precision)
     sizes = run.repeats, particles(scene), run.threads or available_cores()
-    schedule = choose_schedule(run.schedule, arch, *sizes, bool(scene.vessels))
+    schedule = choose_schedule(run.schedule, arch, *sizes, scene.answers)
     units = units_a_world(schedule, *sizes)
     placed = replace(scene, schedule=schedule), position, run.threads
     return Simulation(*placed, arch=arch, units=units, stretch=stretch(preset))

@@ -13,11 +13,6 @@ from solvers.ship.vessel import Vessel
 from solvers.tank.tank import Tank
 
 
-def carrier_kind(vessels: Sequence[Vessel], axles: Sequence[Axle]) -> type[Prescribed | Afloat | OnAxle]:
-    """The carrier's class: `Afloat` if there are vessels, `OnAxle` if there are axles, else `Prescribed`."""
-    return Afloat if vessels else OnAxle if axles else Prescribed
-
-
 def make_carrier(arrays: State, scene, dt: float) -> Prescribed | Afloat | OnAxle:
     """The carrier of a scene (`solvers.scene.Scene`) with steps of dt (s)."""
     if scene.vessels:
