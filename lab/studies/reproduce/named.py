@@ -16,7 +16,7 @@ from lab.studies.reproduce.figures import DROP, THEN, leading_number
 from lab.studies.reproduce.runs import Outcome
 from lab.studies.reproduce.ships import capsizes, damping, low_sides, section
 from lab.studies.reproduce.ships.rolls import DIGITS, FREQUENCY, FROZEN, LOOSE, PEAK, rolls_figure
-from lab.studies.reproduce.water import dam_break, impact, waves
+from lab.studies.reproduce.water import dam_break, damper, impact, waves
 
 ONSET = 0.02  # of the tank's amplitude: a larger response is distinguished from noise
 STEP = Tolerance(0.3, "the step of our frequencies")
@@ -197,4 +197,5 @@ TELLS: Mapping[str, Callable[[Found], Told]] = {
     "dam break": dam_break.tell,
     "sway beat": waves.sway_beat,
     "pitch": waves.pitch,
+    "damper": damper.tell,
 }
