@@ -153,10 +153,8 @@ def _experiment(stated: Stated, runs: Mapping[str, Run], source: Source) -> Expe
         figure = named.FIGURES[stated.figure["by"]](found, **draw) if stated.figure else None
         return Told(rows(claims, found, source.tolerance), figure)
 
-    words = {
-        name: getattr(stated, name)
-        for name in ("name", "title", "section", "states", "lost", "why", "question", "needs")
-    }
+    told = "name", "title", "section", "states", "lost", "why", "question", "needs"
+    words = {name: getattr(stated, name) for name in told}
     shown = stated.shown.run, stated.shown.at
     return Experiment(batches=batches, tell=tell, shown=shown, point=stated.shown.point, **words)
 

@@ -48,9 +48,10 @@ def test_water_and_tank_keep_their_angular_momentum():
 
 
 def account(steps: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """At eight times, with so many steps for the usual one: energy (J) that the tank and its water have gained together.
+    """Energies (J) at eight times, with so many steps for the usual one.
 
-    Losses are counted. And what the tank has gained beyond the work of its load, and the work of the walls.
+    What the tank and its water have gained together, losses counted; what the tank has gained beyond the work of its
+    load; the work of the walls.
     """
     dt = scene_of(AXLE).time_step() / steps
     run = tank(AXLE, step=dt)

@@ -1,4 +1,4 @@
-"""A tank free to roll about an axle: an empty one against the pendulum's theory, and one with cargo that does not move."""
+"""A tank free to roll about an axle: empty against the pendulum's theory, and with cargo that does not move."""
 
 from dataclasses import replace
 from math import pi, sin, sqrt
@@ -127,7 +127,7 @@ def test_a_recorded_slide_moves_the_mass_as_its_formula():
 
 
 def test_dry_friction_takes_as_much_of_each_swing_and_then_holds():
-    """|φ| falls by 2 K/(g |S|) from one turn to the next, and rests where the friction can hold it (den Hartog 1931)."""
+    """|φ| falls by 2 K/(g |S|) from turn to turn, and rests where the friction can hold it (den Hartog 1931)."""
     found = rolled([RUBBED], 2e-3, 12.0)
     lost = 2.0 * RUBBED.friction / (G * 29.2)  # rad a half swing
     angle, rate = roll(found), found["pose_rate"][:, 0, 2]
@@ -178,7 +178,7 @@ def wedged():
         thickness=slab,
         step=2.5e-5,
     )
-    run = Simulation(scene, (sites + [0.0, 0.1 * RADIUS])[None], 1)
+    run = Simulation(scene, np.add(sites, [0.0, 0.1 * RADIUS])[None], 1)
     run.settle(1e-7, 0.8)
     mass = 4.0 / 3.0 * pi * RADIUS**3 * grain.density
     place = run.snapshot()["position"][0] - axle.place
@@ -212,7 +212,7 @@ def test_wedged_grains_turn_with_the_tank_as_a_rigid_weight(wedged):
 
 def test_a_held_load_is_a_rigid_weights(wedged):
     """As the tank is turned by hand the moment about the axle is that of the grains' weight and inertia, to 1e-3."""
-    axle, own, moment, found = wedged
+    _, own, moment, found = wedged
     phi = roll(found)
     mean, rise = 0.5 * (phi[1:] + phi[:-1]), np.gradient(np.gradient(phi, 0.02), 0.02)
     wanted = G * (np.sin(mean) * moment[1] - np.cos(mean) * moment[0]) - own * 0.5 * (rise[1:] + rise[:-1])

@@ -86,8 +86,7 @@ def _figure(runs: dict[str, Outcome], wet: Sequence[str]) -> Figure:
             axes.plot(*roll(runs[label]), color=colour, lw=0.9, ls="--" if column == EMPTY else "-", label=label)
         axes.set_ylabel("roll (deg)")
     lower.set_xlabel("time (s)")
-    named = {
-        name: line for axes in (upper, lower) for line, name in zip(*axes.get_legend_handles_labels(), strict=True)
-    }
+    (lines, names), (more, further) = (axes.get_legend_handles_labels() for axes in (upper, lower))
+    named = dict(zip([*names, *further], [*lines, *more], strict=True))
     figure.legend(named.values(), named.keys(), loc=BELOW, ncols=4)
     return figure
