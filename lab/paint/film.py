@@ -22,7 +22,7 @@ from lab.paint.sea import LINE
 from lab.paint.water.gauges import Marks, hues_of
 from lab.paint.water.layer import WaterLayer
 from lab.preset.fields import taken_of
-from lab.preset.sections.ship_axis import axis_motion
+from lab.preset.sections.ship import axis_motion
 from lab.preset.sections.video import Video, colours_of
 from lab.preset.units import quoted
 
