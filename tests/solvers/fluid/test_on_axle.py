@@ -1,7 +1,11 @@
 """Water in a tank that rolls freely about an axle: what walls and tank give each other, and water that is held."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from scipy.linalg import eigh
+from scipy.optimize import least_squares
 
 from solvers.fluid.given import VELOCITY_Y
 from solvers.motion.axle import Axle
@@ -96,3 +100,55 @@ def test_water_that_is_held_is_a_rigid_weight():
     assert row["axle_moment"][0] == pytest.approx(0.05 * weight, rel=1e-3)
     assert row["wall_force"][0, 1] == pytest.approx(-weight, rel=1e-3)
     run.close()
+
+
+def coupled_periods(axle: Axle, width: float, depth: float, modes: int = 4) -> np.ndarray:
+    """Periods (s) of small swings of tank and water together, the longest first: linear potential flow.
+
+    The water of a rectangular tank moves as masses on springs at heights H_n over its centre (Graham & Rodriguez 1952;
+    Ibrahim 2005, section 5.2), m_n = 8 m tanh(k_n d)/((2n − 1)³ π³ d/l). Of its inertia about its centre, which here
+    makes 0.3 % of a period, all is counted.
+    """
+    mass, odd = 1000.0 * width * depth * THICK, 2.0 * np.arange(modes) + 1.0
+    number = odd * np.pi / width
+    each = 8.0 * mass * np.tanh(number * depth) / (odd**3 * np.pi**3 * depth / width)
+    over = 0.5 * depth - 2.0 / number * np.tanh(0.5 * number * depth)
+    centre, rest = 0.5 * depth - axle.place[1], mass - each.sum()
+    height = centre + over
+    inertia, spring = np.diag([0.0, *each]), np.diag([0.0, *(each * GRAVITY * number * np.tanh(number * depth))])
+    inertia[0, 0] = axle.inertia + each @ height**2 + rest * (centre - each @ over / rest) ** 2
+    inertia[0, 0] += mass * (width**2 + depth**2) / 12.0
+    spring[0, 0] = -GRAVITY * (axle.moment + mass * centre)
+    inertia[0, 1:] = inertia[1:, 0] = -each * height
+    spring[0, 1:] = spring[1:, 0] = GRAVITY * each
+    return 2.0 * np.pi / np.sqrt(eigh(spring, inertia, eigvals_only=True))
+
+
+@pytest.mark.slow
+def test_water_and_tank_swing_at_the_two_periods_of_linear_theory():
+    """A tank tuned to its water, let go at 0.3 deg: the roll is two damped sines, to 1 % of it, with periods to 1 %."""
+    width, depth, axle = 0.9, 0.092, Axle((0.0, 0.47), 26.9 * THICK / 0.062, -29.2 * THICK / 0.062)
+    released = replace(axle, heel=0.3 * np.pi / 180.0, release=0.5)
+    scene = still(width, 0.2, depth, 8, axles=[released], thickness=THICK, sound_speed=12.0)
+    run, time, roll = Simulation(scene, threads=1, arch="cpu"), [], []
+    while run.time < 16.0:
+        run.advance(40)
+        time.append(run.time - 1.0)
+        roll.append(run.observe()["pose"][0, 2])
+    run.close()
+    free = np.array(time) > 0.0
+    time, roll = np.array(time)[free], np.array(roll)[free]
+
+    def missing(x: np.ndarray) -> np.ndarray:
+        """The roll that two damped sines leave, each by cosine, sine, rate and decay."""
+        parts = [(c * np.cos(w * time) + s * np.sin(w * time)) * np.exp(-d * time) for c, s, w, d in x.reshape(2, 4)]
+        return sum(parts) - roll
+
+    wanted = coupled_periods(axle, width, depth)[:2]
+    start = [(released.heel / 2.0, 0.0, 2.0 * np.pi / period, 0.02) for period in wanted]
+    found = least_squares(missing, np.ravel(start))
+    assert np.std(found.fun) < 0.02 * np.std(roll)
+    periods = 2.0 * np.pi / found.x.reshape(2, 4)[:, 2]
+    np.testing.assert_allclose(periods, wanted, rtol=0.01)
+    alone = axle.natural_period(GRAVITY)
+    assert wanted[0] > 1.08 * alone > 1.14 * wanted[1]  # else nothing was tried
