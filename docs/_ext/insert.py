@@ -27,7 +27,7 @@ SHOWN = {  # pages that lie elsewhere, and the pages here that show them
     "CHANGELOG": "changes",
     "renders/gallery/bench/accuracy": "results/accuracy",
     "renders/gallery/bench/outlines": "results/outlines",
-    "renders/gallery/bench/water": "results/water",
+    "renders/gallery/bench/water": "results/water-peers",
     "renders/gallery/bench/speed": "results/speed",
     "renders/gallery/bench/speed-peers": "results/speed-peers",
     "renders/gallery/bench/stability": "results/stability",

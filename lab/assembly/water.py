@@ -6,7 +6,7 @@ from lab.base.errors import LabError
 from lab.preset.schema import Preset
 from lab.preset.sections.water.liquid import bounds, liquid
 from solvers.fluid.given import VOLUME
-from solvers.fluid.start.lattice import at_rest
+from solvers.fluid.start.rest import at_rest
 from solvers.scene import Scene
 
 

@@ -40,11 +40,11 @@ def accuracy(studies: tuple[str, ...], out: Path, fast: bool, page_only: bool) -
 @fast_option
 @page_only_option
 def stability(cases: tuple[str, ...], out: Path, fast: bool, page_only: bool) -> None:
-    """Hard cases at the automatic step and far beyond it: correct results, or a stop with one sentence.
+    """The longest stable step of each integrator under each law of contact, beside the derived one.
 
     \b
     cargolab bench stability
-    cargolab bench stability impact column
+    cargolab bench stability map-verlet
     """
     from lab.studies.bench.stability import SUITE
 
@@ -84,27 +84,6 @@ def water(studies: tuple[str, ...], out: Path, fast: bool, page_only: bool) -> N
     from lab.studies.bench.water import BENCH
 
     click.echo(BENCH.run(studies, out, fast, page_only))
-
-
-@bench.command()
-@click.argument("cases", nargs=-1)
-@click.option(
-    "--kills", type=click.IntRange(min=1), metavar="N", help="Number of kills for each kind of command.  [default: 50]"
-)
-@page_option
-@fast_option
-@page_only_option
-def survival(cases: tuple[str, ...], kills: int | None, out: Path, fast: bool, page_only: bool) -> None:
-    """Kill the lab at random times, take its memory and disk, give it damaged files; count how it ends.
-
-    \b
-    cargolab bench survival                   all cases; --fast: a few kills, odd folders, missing programs
-    cargolab bench survival kill --kills 200
-    """
-    from lab.studies.bench.survival import run_cases
-
-    if not run_cases(cases, out, fast, kills, page_only):
-        sys.exit(1)
 
 
 @bench.command()

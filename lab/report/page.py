@@ -1,8 +1,8 @@
 """Pages of results: Markdown made by Jinja2 templates, with tables and figures beside it.
 
 The templates are in the folder `templates`. A page is made from results that are kept as JSON, and never typed:
-verify, reproduce and the hard cases have a template of their own; the studies of other benches add block by block to a
-`Page`.
+verify, reproduce and the map of step limits have a template of their own; the studies of other benches add block by
+block to a `Page`.
 """
 
 import re

@@ -22,7 +22,7 @@ from lab.recording import Recording
 from lab.report.numbers import number
 from solvers.machine.quantity import Quantity
 
-__all__ = ["BELOW", "BLUE", "GREEN", "GREY", "STYLE", "VERMILION", "figures", "write_plots"]
+__all__ = ["BELOW", "BLUE", "GREEN", "GREY", "STYLE", "VERMILION", "canvas", "figures", "write_plots"]
 
 STYLE = {
     "font.size": 9,
@@ -46,6 +46,12 @@ TALLER = 0.9  # inches for each further row
 BELOW = "outside lower center"  # where a legend covers no curve
 TITLE = 88  # letters in a line
 AXIS = 36  # letters in a line beside an axis
+
+
+def canvas(size: tuple[float, float], rows: int = 1, columns: int = 1, **how: object) -> tuple[Figure, object]:
+    """A figure of a size (inches), and its panel or panels, which are laid out as matplotlib's `subplots` says."""
+    figure = Figure(figsize=size, layout="constrained")
+    return figure, figure.subplots(rows, columns, **how)
 
 
 class Sheet:

@@ -1,4 +1,4 @@
-"""A suite of cases that pass or fail, as verify and the hard cases: run, printed, kept as JSON, told on a page.
+"""A suite of cases that pass or fail, as verify and the map of step limits: run, printed, kept as JSON, told on a page.
 
 The page has tables by section, in each the cases that fail first, and a figure of all errors.
 """
@@ -14,7 +14,7 @@ from rich.console import Console
 from rich.table import Table
 
 from lab.report.page import render, save_figure
-from lab.report.plots import BLUE, GREY, STYLE, VERMILION
+from lab.report.plots import BLUE, GREY, STYLE, VERMILION, canvas
 from lab.studies.case import Case, Line, Outcome
 from lab.studies.engine import Kept, choose, word
 
@@ -115,7 +115,8 @@ class Suite:
 def carried_out(case: Case, fast: bool) -> Outcome:
     """Run a case and return its outcome; an exception counts as one."""
     try:
-        return Outcome(case, case.check(fast))
+        with matplotlib.rc_context(STYLE):  # figures are drawn as the lab's are
+            return Outcome(case, case.check(fast))
     except Exception as error:
         return Outcome(case, fault=f"{type(error).__name__}: {error}")
 
@@ -166,8 +167,7 @@ def _share_of_allowed(line: Line) -> float:
 def errors_figure(records: Mapping[str, Mapping]) -> Figure:
     """Each line's error in units of its tolerance on a logarithmic axis, a row a case."""
     shown = {name: [_line(row) for row in one["lines"]] for name, one in records.items() if one["lines"]}
-    figure = Figure(figsize=(6.4, 0.9 + 0.21 * len(shown)), layout="constrained")
-    axes = figure.subplots()
+    figure, axes = canvas((6.4, 0.9 + 0.21 * len(shown)))
     for row, lines in enumerate(shown.values()):
         shares = [_share_of_allowed(line) for line in lines]
         colours = [BLUE if line.passed else VERMILION for line in lines]

@@ -13,10 +13,9 @@ from solvers.machine.state import State
 
 FLOOR = 1e-6  # of h², added to squared distances that are divided by
 FASTEST = 0.5  # Mach number at which a run is stopped
-# Spacings between a particle and a dummy below which the wall is hard: at rest they are one apart, in the face half
-# a one. A stiffer or a longer spring makes impacts ring.
-TOUCH = 0.6
-HARD = 0.1  # of c0/Δx: frequency of a particle on a hard wall
+# Of c0/Δx, frequency of a particle behind the face of a wall: at a tenth of the speed of sound, the highest that water
+# is to have, it comes half a spacing deep.
+HARD = 0.2
 
 
 @ti.data_oriented
@@ -45,7 +44,6 @@ class Constants:
             "hydrostatic": gravity / sound**2,  # g/c0², 1/m
             "spacing": water.spacing,
             "reach": water.reach,
-            "touch": TOUCH * water.spacing,
             "hard": water.density * (HARD * sound / water.spacing) ** 2 / (slope * water.spacing**2),
             "fastest": FASTEST * sound,
             "shift": self.shifting.strength(water) * slope if self.shifting.acts else 0.0,
@@ -71,9 +69,10 @@ class Constants:
         return self.values[ti.static(self.at[name])]
 
     @ti.func
-    def hardness(self, square):
+    def hardness(self, square, firm):
         """What a dummy adds at the squared distance (m²), per volume, so that a thin layer does not pass the wall.
 
-        A spring up to the distance TOUCH, for pressure alone does not hold water that parts along a wall it nears.
+        A spring up to the distance `firm` (m), that of the dummy from its wall's face, for pressure alone does not hold
+        water that parts along a wall it nears.
         """
-        return self.get("hard") * ti.max(self.get("touch") / ti.sqrt(square + self.get("floor")) - 1.0, 0.0)
+        return self.get("hard") * ti.max(firm / ti.sqrt(square + self.get("floor")) - 1.0, 0.0)

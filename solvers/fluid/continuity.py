@@ -12,7 +12,7 @@ class Continuity:
     """dρ_i/dt = −ρ_i Σ V_j (u_j − u_i)·∇W + δ h c0 Σ V_j ψ·∇W (Antuono et al. 2010, eq. 6); the second sum over water.
 
     `lost` (units,) J is the energy that diffusion has taken: −Σ m_i p_i/ρ_i² times its share of the rate (Antuono,
-    Marrone, Colagrossi & Bouscasse 2015, eq. 22).
+    Marrone, Colagrossi & Bouscasse 2015, eq. 22). The momentum that shifts carry is summed up over the same pairs.
     """
 
     def __init__(self, arrays: State, medium: Medium):
@@ -44,6 +44,12 @@ class Continuity:
         s, shrink = p.load(p.excess, b), c.get("shrink")
         rest = [c.get("hydrostatic") * self.down(w, a) for a in ti.static(range(p.axes))]
         opened, evened, walled = p.zeros(), p.zeros(), p.zeros()
+        carried = [p.zeros() for _ in ti.static(range(p.axes))]
+        shift = [p.zeros() for _ in ti.static(range(p.axes))]
+        if ti.static(c.shifting.carries):
+            for a in ti.static(range(p.axes)):
+                shift[a] += p.load(p.shift[a], b)
+        tank = [ti.cast(self.tank_speed(w, a), p.real) for a in ti.static(range(p.axes))]
         for k in range(lists.near.first[u, listed], lists.near.first[u, listed + 1]):
             j = lists.near.slots[u, k]
             jb, lane = lists.block_of(j), lists.lane_of(j)
@@ -51,6 +57,13 @@ class Continuity:
             weight = p.volume[jb, lane] * c.kernel.slope(ti.max(1.0 - ti.sqrt(dot(apart, apart)) * shrink, 0.0))
             nearing = [p.velocity[a][jb, lane] - speed[a] for a in ti.static(range(p.axes))]
             opened += weight * dot(nearing, apart)
+            if ti.static(c.shifting.carries):
+                away = (weight * (1.0 + s)) * dot(shift, apart)
+                shift_there = [p.shift[a][jb, lane] for a in ti.static(range(p.axes))]
+                away_there = (weight * (1.0 + p.excess[jb, lane])) * dot(shift_there, apart)
+                for a in ti.static(range(p.axes)):
+                    own_flow, its_flow = away * (speed[a] - tank[a]), away_there * (p.velocity[a][jb, lane] - tank[a])
+                    carried[a] = carried[a] - (own_flow + its_flow)
             if ti.static(c.diffusion.acts):
                 more = 2.0 * (p.excess[jb, lane] - s)
                 if ti.static(c.diffusion.renormalised):
@@ -71,8 +84,20 @@ class Continuity:
         evened *= factor * c.get("spread")
         p.store(p.rate, b, (1.0 + s) * (factor * opened) + evened)
         p.store(p.rate_of_walls, b, (1.0 + s) * (factor * walled))
+        if ti.static(c.shifting.carries):
+            flux = p.load(p.volume, b) * (factor * c.get("density"))
+            for a in ti.static(range(p.axes)):
+                p.store(p.carried[a], b, flux * carried[a])
         taken = evened * c.state.share(s) * p.load(p.mass, b) / ((1.0 + s) * (1.0 + s))
         return 0.0 - ti.cast(taken.sum() * (c.get("stiffness") / c.get("density")), p.exact)
+
+    @ti.func
+    def tank_speed(self, w, axis: ti.template()):
+        """The velocity (m/s) of the tank's origin along its own axis, in the middle of the step."""
+        speed = ti.cast(0.0, self.particles.exact)
+        if ti.static(self.poses.moving):
+            speed = self.poses.walls[axis][w]
+        return speed
 
     @ti.func
     def down(self, w, axis: ti.template()):

@@ -136,7 +136,7 @@ class Forces:
                     for a in ti.static(range(p.axes)):
                         shift[a] += crowded * apart[a]
                 along = p.pressure[jb, lane] + (pressure if ti.static(c.full) else ti.max(pressure, 0.0))
-                along = along * weight + p.volume[jb, lane] * c.hardness(square)
+                along = along * weight + p.volume[jb, lane] * c.hardness(square, p.firm[jb, lane])
                 more = along - pressure * weight
                 for a in ti.static(range(p.axes)):
                     own_push[a] += more * apart[a]
@@ -179,6 +179,8 @@ class Forces:
         steep = ti.max(dot(inwards, inwards), 1e-30)
         along = ti.select(least < INSIDE, dot(shift, inwards) / steep, p.zeros())
         lasting = ti.select(span < SPRAY, p.zeros(), p.filled(b))
+        if ti.static(c.shifting.carries):
+            lasting = ti.select(least < INSIDE, p.zeros(), lasting)
         moved = [lasting * c.get("shift") * (shift[a] - along * inwards[a]) for a in ti.static(range(p.axes))]
         fast = ti.sqrt(dot(moved, moved))
         limited = ti.min(1.0, c.get("shift_most") / ti.max(fast, 1e-30))

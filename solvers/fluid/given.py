@@ -48,7 +48,8 @@ class Water:
     so that walls may pull. `shifting`: the name of how particles are shifted to even their distances, for water of up
     to the `speed` (m/s). `walls`: whether the tank's outline holds the water; without, it moves freely in space.
     `edges`: those of the outline, by their first corners, whose force is told. `periodic`: axes, "y" or "z", along
-    which space repeats itself with the tank's width or height, so that it has no walls there.
+    which space repeats itself with the tank's width or height, so that it has no walls there. `start`: the name of how
+    water at rest is laid, "packed" or as a "lattice".
     """
 
     spacing: float
@@ -72,6 +73,7 @@ class Water:
     gauges: tuple[Gauge, ...] = ()
     levels: tuple[Level, ...] = ()
     edges: tuple[int, ...] = ()
+    start: str = "packed"
 
     @property
     def length(self) -> float:

@@ -15,6 +15,7 @@ from solvers.fluid.grid import grid_round
 from solvers.fluid.lists import Lists, Medium
 from solvers.fluid.mover import Mover
 from solvers.fluid.order import Order
+from solvers.fluid.shifting import SHIFTING
 from solvers.fluid.state import LANES, UNUSED, Particles, Shares
 from solvers.fluid.walls.behind import OF_NONE, Behind
 from solvers.fluid.walls.edges import Edges
@@ -45,11 +46,11 @@ class WaterMatter(Matter):
         self.drops = scene.drops
         count = scene.drops.shape[1]
         self.particles = p = Particles(
-            arrays, worlds, count, lanes, len(blocks) * lanes, grid.strips, water.shifting != "none"
+            arrays, worlds, count, lanes, len(blocks) * lanes, grid.strips, SHIFTING[water.shifting]
         )
         self.units = units = setting.units(p.wet)
         self.load = setting.load(arrays.under("water"), units)
-        self.dummies = dummy, blocks, behind.volumes
+        self.dummies = dummy, blocks, behind.volumes, behind.firm
         shares, self.constants = Shares(p, units), Constants(arrays, water, scene.gravity)
         self.poses = Poses(arrays, setting.carrier, worlds)
         self.order = Order(arrays, p, grid)
@@ -158,13 +159,16 @@ class WaterMatter(Matter):
         """Place the particles as the scene says, and the dummies; all that was noted is forgotten."""
         p = self.particles
         p.put(self.drops, self.drops[..., [VELOCITY_Y, VELOCITY_Z]], self.water)
-        slots, blocks, volumes = self.dummies
+        slots, blocks, volumes, firm = self.dummies
         wall = np.zeros(p.dry * p.lanes)
         wall[slots] = volumes
+        held_back = np.zeros(p.dry * p.lanes)
+        held_back[slots] = firm
         number = np.full(p.dry * p.lanes, UNUSED)
         number[slots] = np.arange(len(slots))
         held = [blocks[..., 0], blocks[..., 1], wall.reshape(-1, p.lanes), number.reshape(-1, p.lanes)]
-        for field, values in zip([*p.place, p.volume, p.number], held, strict=True):
+        held.append(held_back.reshape(-1, p.lanes))
+        for field, values in zip([*p.place, p.volume, p.number, p.firm], held, strict=True):
             whole = field.to_numpy().reshape(p.worlds, p.stride, p.lanes)
             whole[:, p.wet :] = values
             field.from_numpy(whole.reshape(-1, p.lanes))

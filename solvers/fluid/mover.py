@@ -65,6 +65,10 @@ class Mover:
             # Walls come last: spray that parts is still pushed off a wall that it nears.
             s = self.floored(spray, s + step * p.load(p.rate_of_walls, b))
             p.store(p.excess, b, s)
+            if ti.static(c.shifting.carries):
+                share = step / (p.load(p.mass, b) + (1.0 - filled))
+                for a in ti.static(range(p.axes)):
+                    p.store(p.velocity[a], b, p.load(p.velocity[a], b) + share * p.load(p.carried[a], b))
             loose = ti.select(p.load(p.span, b) < INSIDE, p.ones() * (DENSEST / DENSEST_SPRAY), p.ones())
             deviation = ti.max(deviation, (loose * s) * (loose * s))
             tame += s

@@ -30,14 +30,14 @@ class Particles:
     1; `mass` (kg per metre of thickness) and `number` belong to a particle for good and move with it from block to
     block. `volume` (m²) and `pressure` (Pa) are published at the start of a step. `rate` and `rate_of_walls` (1/s) are
     those of s; `acceleration` (m/s²) is that of the last kick; `slope` (1/m) the renormalised gradient of s; `span` the
-    least eigenvalue of Σ V_j r_ji ⊗ ∇W, 1 within water.
+    least eigenvalue of Σ V_j r_ji ⊗ ∇W, 1 within water; `carried` (N/m) the momentum that shifts bring (`shifting`).
 
     With `lanes` 1, for processors that move each particle by a thread of its own, a block is a particle.
     """
 
     axes = PLANE
 
-    def __init__(self, arrays: State, worlds: int, count: int, lanes: int, walls: int, strips: int, shifts: bool):
+    def __init__(self, arrays: State, worlds: int, count: int, lanes: int, walls: int, strips: int, shifting):
         self.worlds, self.count, self.lanes = worlds, count, lanes
         self.real, self.exact, self.where = arrays.real, arrays.exact, arrays.place
         self.wet = count if lanes == 1 else int(SPARE * -(-count // lanes)) + 2 * strips
@@ -50,11 +50,14 @@ class Particles:
         self.excess, self.mass = own.wide(each, "excess", "mass")
         (self.number,) = own.wide(each, "number", kind=ti.i32)
         self.volume, self.pressure, self.span = own.wide(each, "volume", "pressure", "span")
+        (self.firm,) = own.wide(each, "firm")
         self.rate, self.rate_of_walls = own.wide(each, "rate", "rate_of_walls", kept=False)
         self.acceleration = own.wide(each, *named("acceleration", self.axes))
-        if shifts:
+        if shifting.acts:
             (self.span_before,) = own.wide(each, "span_before", kept=False)
             self.shift = own.wide(each, *named("shift", self.axes), kept=False)
+        if shifting.carries:
+            self.carried = own.wide(each, *named("carried", self.axes), kept=False)
         self.slope = own.wide(each, *named("slope", self.axes))
         self.built = own.wide(each, *named("built", self.axes), kind=own.place)
         self.each_world = Axis("world", worlds)

@@ -2,12 +2,15 @@
 
 import importlib.util
 import re
+import shutil
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+from click.testing import CliRunner
 
+from lab.cli import main
 from lab.preset.find import load
 
 ROOT = Path(__file__).parents[2]
@@ -52,6 +55,15 @@ def test_the_first_preset_is_one_and_its_result_has_what_is_read(tmp_path):
     asked = re.findall(r'result\.measures\["(\w+)"\]', text)
     sources = "\n".join(path.read_text(encoding="utf-8") for path in (ROOT / "lab" / "measures").glob("*.py"))
     assert asked and all(f'"{name}"' in sources for name in asked)
+
+
+@pytest.mark.parametrize("name", ["accuracy", "outlines", "speed", "stability", "verify", "water"])
+def test_a_kept_page_is_what_its_command_writes_from_the_kept_results(name, tmp_path):
+    kept = ROOT / "renders" / "gallery" / "bench"
+    shutil.copy(kept / f"{name}.json", tmp_path)
+    command = ["verify"] if name == "verify" else ["bench", name]
+    CliRunner().invoke(main, [*command, "--page", "--out", str(tmp_path)])
+    assert (tmp_path / f"{name}.md").read_bytes() == (kept / f"{name}.md").read_bytes()
 
 
 def test_readme_is_short():

@@ -53,7 +53,7 @@ class PlainWater:
     def __init__(self, scene: Scene):
         self.water, self.gravity = scene.water, np.array([0.0, -scene.gravity])
         rows = int(np.ceil(scene.water.reach / scene.water.spacing))
-        self.wall, self.wall_volume = layers(scene.outline, scene.water.spacing, rows)
+        self.wall, self.wall_volume, _ = layers(scene.outline, scene.water.spacing, rows)
 
     def volume(self, mass: np.ndarray, s: np.ndarray) -> np.ndarray:
         """V = m/ρ."""

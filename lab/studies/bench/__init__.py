@@ -1,1 +1,1 @@
-"""Benchmarks: accuracy, speed, stability, survival, graphics processors, outlines, and comparisons with peer codes."""
+"""Benchmarks: accuracy, speed, stability, graphics processors, outlines, and comparisons with peer codes."""

@@ -2,7 +2,7 @@
 
 An experiment names its runs, each a preset with changes and perhaps a grid, in full and quick, and its rows, each a
 number that is told or held against what the source states (see `lab.studies.reproduce.compare`). What needs code has a
-name in `lab.studies.reproduce.named`.
+name in `lab.studies.reproduce.registry`.
 """
 
 import tomllib
@@ -13,7 +13,7 @@ from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from lab.studies.reproduce import named
+from lab.studies.reproduce import registry
 from lab.studies.reproduce.compare import ALL, Claim, rows
 from lab.studies.reproduce.experiment import Experiment, Found, Told, Tolerance
 from lab.studies.reproduce.runs import Batch
@@ -72,9 +72,9 @@ class Shown(Strict):
 class Stated(Strict):
     """An experiment of the source as a file tells it; `Experiment` says what its words are.
 
-    `runs_of` names the experiment whose runs it looks at, too. `figure` names a function of `named.FIGURES` by `by`,
-    with its arguments; `tell` one of `named.TELLS`, which gives rows, figure and table. `needs` is the measured series
-    without which it cannot be run (`lab.base.data`).
+    `runs_of` names the experiment whose runs it looks at, too. `figure` names a function of `registry.FIGURES` by `by`,
+    with its arguments; `tell` one of `registry.TELLS`, which gives rows, figure and table. `needs` is the measured
+    series without which it cannot be run (`lab.base.data`).
     """
 
     name: str
@@ -148,9 +148,9 @@ def _experiment(stated: Stated, runs: Mapping[str, Run], source: Source) -> Expe
 
     def tell(found: Found) -> Told:
         if stated.tell:
-            return named.TELLS[stated.tell](found)
+            return registry.TELLS[stated.tell](found)
         draw = {key: value for key, value in stated.figure.items() if key != "by"}
-        figure = named.FIGURES[stated.figure["by"]](found, **draw) if stated.figure else None
+        figure = registry.FIGURES[stated.figure["by"]](found, **draw) if stated.figure else None
         return Told(rows(claims, found, source.tolerance), figure)
 
     told = "name", "title", "section", "states", "lost", "why", "question", "needs"
@@ -166,9 +166,9 @@ def _check(stated: Stated, claims: Sequence[Claim], runs: Mapping[str, Run], sou
         "run": ([*asked, stated.shown.run], {*runs, ALL}),
         "setting": ([run.like for run in runs.values()], source.settings),
         "tolerance": ([claim.within for claim in claims], source.tolerance),
-        "function of rows": ([claim.by for claim in claims], named.ROWS),
-        "figure": ([stated.figure.get("by", "")], named.FIGURES),
-        "function": ([stated.tell], named.TELLS),
+        "function of rows": ([claim.by for claim in claims], registry.ROWS),
+        "figure": ([stated.figure.get("by", "")], registry.FIGURES),
+        "function": ([stated.tell], registry.TELLS),
     }
     for kind, (used, known) in names.items():
         if missing := {*filter(None, used)} - {*known}:

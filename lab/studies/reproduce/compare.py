@@ -13,7 +13,7 @@ from typing import Annotated
 from pydantic import AfterValidator, BaseModel, ConfigDict
 
 from lab.measures.value import Value
-from lab.studies.reproduce import named
+from lab.studies.reproduce import registry
 from lab.studies.reproduce.estimates import (
     Estimate,
     Verdict,
@@ -29,6 +29,7 @@ from lab.studies.reproduce.estimates import (
 )
 from lab.studies.reproduce.experiment import Found, Row, Tolerance, alone, counted, held, less, observed, stated
 from lab.studies.reproduce.runs import Outcome
+from lab.studies.reproduce.ships.rolls import end
 
 ALL = "*"  # all runs of the report
 FROZEN = "frozen_"  # measures of ships with frozen cargo, which do not vary from bed to bed
@@ -48,8 +49,8 @@ class Claim(BaseModel):
     or `not before` its value; numbers fall one after the other or are alike; the difference or ratio of two, of the
     same beds where paired, lies `between` two numbers; one is the `same` as another within a tolerance or a `share`;
     most beds have or ship's `capsizes`; the first `scatters` most. `tolerance` says how words of the source are read,
-    `shows` how ours are written, `given` is a number that a function of `named.DERIVED` needs. `judged`: with false the
-    verdict is told as a word that does not count.
+    `shows` how ours are written, `given` is a number that a function of `registry.DERIVED` needs. `judged`: with false
+    the verdict is told as a word that does not count.
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True)
@@ -89,7 +90,7 @@ def rows(claims: Sequence[Claim], found: Found, tolerances: Mapping[str, Toleran
     told: list[Row] = []
     for claim in claims:
         if claim.by:
-            told += named.ROWS[claim.by](found)
+            told += registry.ROWS[claim.by](found)
         elif numbers := _numbers(claim, found):
             told.append(KINDS[claim.compare](claim, numbers, _tolerance(claim, numbers, tolerances)))
     return told
@@ -105,7 +106,7 @@ def _numbers(claim: Claim, found: Found) -> list[Number]:
     for run, of, at, given in asked:
         outcomes = [one for one in found.get(run, ()) if not at or at in map(_word, one.setting.values())]
         if outcomes:
-            first = outcomes[0][of] if of not in named.DERIVED else named.DERIVED[of](outcomes, given)
+            first = outcomes[0][of] if of not in registry.DERIVED else registry.DERIVED[of](outcomes, given)
             numbers.append(Number(run, of, outcomes, first))
     least = {"told": 1, "fall": 2, "alike": 2}.get(claim.compare, size)
     return numbers if len(numbers) >= least else []
@@ -134,7 +135,7 @@ def _words(claim: Claim, numbers: Sequence[Number], allowed: Tolerance) -> str:
 def _ours(claim: Claim, numbers: Sequence[Number]) -> str:
     """Our numbers as the claim shows them."""
     if claim.shows == "end":
-        return named.end(numbers[0].outcomes[0])
+        return end(numbers[0].outcomes[0])
     if "{value}" in claim.shows:
         return ", ".join(claim.shows.format(run=one.run, value=one.text()) for one in numbers)
     texts = [one.text() for one in numbers]
@@ -220,10 +221,10 @@ def _capsizes(claim: Claim, numbers: Sequence[Number], allowed: Tolerance) -> Ro
     """Whether she capsizes with loose cargo in more than half of all beds, where the source says that she does."""
     one = numbers[0].outcomes[0]
     if not claim.source:
-        return observed(claim.says, "", named.end(one), None)
+        return observed(claim.says, "", end(one), None)
     ends = one["capsized_at"].worlds
     verdict = mostly(sum(end is not None for end in ends), len(ends))
-    return observed(claim.says, claim.source, named.end(one), verdict, HALF)
+    return observed(claim.says, claim.source, end(one), verdict, HALF)
 
 
 def _scatters(claim: Claim, numbers: Sequence[Number], allowed: Tolerance) -> Row:

@@ -8,7 +8,6 @@ from lab.studies.suite import Suite
 from lab.studies.verify import (
     chung_ooi,
     cohesion,
-    collisions,
     columns,
     conservation,
     convergence,
@@ -23,7 +22,6 @@ from lab.studies.verify import (
 
 MODULES = (
     chung_ooi,
-    collisions,
     restitution,
     oblique,
     friction,

@@ -10,23 +10,17 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
 
-from lab.preset.accuracy import DRAFT_RESTITUTION, LEVELS, RESTITUTION
-from lab.report.plots import BELOW, BLUE, GREY, STYLE, VERMILION
+from lab.preset.accuracy import DRAFT_RESTITUTION, RESTITUTION
+from lab.report.plots import BELOW, BLUE, VERMILION
 from lab.studies.case import Case, Found, Line, Picture, Table
+from lab.studies.verify.head_on import DERIVED, DRAFT, LENGTHS, normal, normal_impacts, pressed
 from lab.studies.verify.meetings import LARGER, Meetings, Substance
 
 PUBLISHED = Path(__file__).with_name("published.toml")
 SECTION = "The eight tests of Chung and Ooi (2011)"
-LENGTHS = (1.0, LEVELS["draft"].longer_steps)  # lengths of step in derived steps
-DERIVED, DRAFT = range(2)
-GLASS = Substance("glass", 48e9, 0.20, 2800.0)
-LIMESTONE = Substance("limestone", 20e9, 0.25, 2500.0)
-ALUMINIUM_2 = Substance("aluminium", 70e9, 0.30, 2699.0)
-MAGNESIUM = Substance("magnesium", 40e9, 0.35, 1800.0)
 OXIDE = Substance("aluminium oxide", 380e9, 0.23, 4000.0)
 IRON = Substance("cast iron", 100e9, 0.25, 7000.0)
 ALUMINIUM = Substance("aluminium", 70e9, 0.33, 2700.0)
@@ -41,13 +35,6 @@ OBLIQUE = np.array([0.06, 0.35, 0.68, 1.0, 1.34, 1.67, 2.0, 2.34, 3.0, 3.34, 4.0
 SPUN = 0.2 * np.tan(np.radians(np.arange(5.0, 86.0, 5.0)))  # m/s, of the surface
 SLIP_ALLOWED = {DERIVED: 1.3e-2, DRAFT: 0.1}
 SLIP_REASON = {DERIVED: "history O(Δt²): (ω_t Δt)²/3 of the slip", DRAFT: "the same at 1.6 Δt"}
-
-
-@cache
-def normal_impacts() -> dict[str, Meetings]:
-    """Tests 1 and 2."""
-    two = {f"test 1, {s.name}": Meetings(s, 0.01, 20.0, 0.35, mate="twin") for s in (GLASS, LIMESTONE)}
-    return two | {f"test 2, {s.name}": Meetings(s, 0.1, 0.2, 0.35) for s in (ALUMINIUM_2, MAGNESIUM)}
 
 
 @cache
@@ -82,12 +69,6 @@ def met(name: str, fast: bool) -> np.ndarray:
         curve = (oblique() | given_restitutions())[name]
         _MET[name] = curve.run(LENGTHS[:1] if fast else LENGTHS)
     return _MET[name]
-
-
-@cache
-def pressed(name: str, fast: bool) -> list[tuple[np.ndarray, ...]]:
-    """Times, overlaps and forces of a curve of tests 1 and 2, for each length."""
-    return normal_impacts()[name].forces(LENGTHS[:1] if fast else LENGTHS)
 
 
 def slip(curve: Meetings, velocities: np.ndarray) -> np.ndarray:
@@ -131,36 +112,6 @@ def level_lines(name: str, fast: bool) -> list[Line]:
             where = ("derived step", f"{LENGTHS[length]:g} Δt, draft")[length]
             lines.append(Line.off(f"{name}: {quantity}, {where}", source, value, allowed, reason))
     return lines
-
-
-def normal(fast: bool) -> Found:
-    """Tests 1 and 2: the force over the time of an elastic impact, and its depth and duration."""
-    lines = []
-    for name in normal_impacts():
-        for length, (_, depth, force, deep, hertz) in enumerate(pressed(name, fast)):
-            where = ("derived step", f"{LENGTHS[length]:g} Δt, draft")[length]
-            allowed, reason = (1.5e-3, 1.2e-2)[length], "scheme O(Δt²)"
-            source = "DOP853 at 1e-11 of Hertz's law"
-            for quantity, here, there in (("force", force, hertz), ("overlap", depth, deep)):
-                worst = np.abs(here - there).max() / there.max()
-                what = f"{name}: {quantity} at any time, of its largest, {where}"
-                lines.append(Line.off(what, source, worst, allowed, reason))
-    caption = "Tests 1 and 2: force over time at the derived step (dots) and draft's (crosses), and Hertz's"
-    return Found(lines, [Picture("chung-ooi-1-2", force_figure(fast), caption)])
-
-
-def force_figure(fast: bool) -> Figure:
-    """Forces over time at both lengths of step, and Hertz's."""
-    with matplotlib.rc_context(STYLE):
-        figure = Figure(figsize=(6.4, 4.4), layout="constrained")
-        for axes, (name, curve) in zip(figure.subplots(2, 2).flat, normal_impacts().items(), strict=True):
-            c = curve.elastic()
-            curves = pressed(name, fast)
-            axes.plot(curves[0][0] / c.duration, curves[0][4] / c.force, color=GREY, lw=1.0)
-            for (time, _, force, _, _), colour, mark in zip(curves, (BLUE, VERMILION), (".", "x"), strict=False):
-                axes.plot(time / c.duration, force / c.force, mark, color=colour, ms=4)
-            axes.set_title(name)
-        return figure
 
 
 def given(fast: bool) -> Found:
@@ -258,21 +209,20 @@ NOTES = {
 def curves_figure(names: list[str]) -> Figure:
     """The paper's quantities of some curves: here, by the law itself, and read off the paper."""
     panels = axes_of(names[0], oblique()[names[0]].expected)
-    with matplotlib.rc_context(STYLE):
-        figure = Figure(figsize=(6.4, 1.1 + 1.9 * len(panels)), layout="constrained")
-        for axes, quantity in zip(np.atleast_1d(figure.subplots(len(panels), 1)), panels, strict=True):
-            for name, colour in zip(names, (BLUE, VERMILION), strict=False):
-                where, values = axes_of(name, oblique()[name].expected)[quantity]
-                axes.plot(where, values, color=colour, lw=1.0, label=name)
-                axes.plot(*axes_of(name, met(name, True)[DERIVED, 0])[quantity], "o", color=colour, ms=3.5)
-                for reading in READINGS:
-                    if (reading.test, reading.quantity) == (name, quantity):
-                        axes.plot(*np.array(reading.points).T, "x", color=colour, ms=4, alpha=0.6)
-            axes.set_ylabel(quantity)
-        axes.set_xlabel(ABSCISSAE[names[0][:6]])
-        handles, labels = axes.get_legend_handles_labels()
-        figure.legend(handles, labels, loc=BELOW, ncols=2)
-        return figure
+    figure = Figure(figsize=(6.4, 1.1 + 1.9 * len(panels)), layout="constrained")
+    for axes, quantity in zip(np.atleast_1d(figure.subplots(len(panels), 1)), panels, strict=True):
+        for name, colour in zip(names, (BLUE, VERMILION), strict=False):
+            where, values = axes_of(name, oblique()[name].expected)[quantity]
+            axes.plot(where, values, color=colour, lw=1.0, label=name)
+            axes.plot(*axes_of(name, met(name, True)[DERIVED, 0])[quantity], "o", color=colour, ms=3.5)
+            for reading in READINGS:
+                if (reading.test, reading.quantity) == (name, quantity):
+                    axes.plot(*np.array(reading.points).T, "x", color=colour, ms=4, alpha=0.6)
+        axes.set_ylabel(quantity)
+    axes.set_xlabel(ABSCISSAE[names[0][:6]])
+    handles, labels = axes.get_legend_handles_labels()
+    figure.legend(handles, labels, loc=BELOW, ncols=2)
+    return figure
 
 
 ABSCISSAE = {

@@ -3,12 +3,11 @@
 from functools import cache
 from math import exp, pi, sin, sqrt
 
-import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
 from scipy.integrate import solve_ivp
 
-from lab.report.plots import BELOW, BLUE, GREEN, STYLE, VERMILION
+from lab.report.plots import BELOW, BLUE, GREEN, VERMILION, canvas
 from lab.studies.case import Case, Found, Line, Picture
 from lab.studies.verify.references import hertz_stiffness, resting_overlap, sphere_mass
 from lab.studies.verify.scenes import G, Setup, again, grain, simulated, track
@@ -108,23 +107,18 @@ def orders(fast: bool) -> Found:
 
 def orders_figure(integrators: list[str]) -> Figure:
     """Errors over the steps a period."""
-    with matplotlib.rc_context(STYLE):
-        figure = Figure(figsize=(6.4, 4.0), layout="constrained")
-        axes = figure.subplots()
-        for integrator in integrators:
-            found = errors(integrator)
-            for k, (name, style) in enumerate(zip(STARTS, ("-", "--"), strict=True)):
-                label = f"{integrator}, {name}: order {ORDERS[integrator][k]}"
-                axes.plot(
-                    SHARES, found[:, k], MARKERS[integrator], ls=style, color=COLOURS[integrator], ms=5, label=label
-                )
-        axes.set_xscale("log", base=2)
-        axes.set_yscale("log")
-        axes.set_xticks(SHARES, [str(share) for share in SHARES])
-        axes.set_xlabel("steps a period of the swing")
-        axes.set_ylabel("error of the place\n(overlaps at rest)")
-        figure.legend(loc=BELOW, ncols=2)
-        return figure
+    figure, axes = canvas((6.4, 4.0))
+    for integrator in integrators:
+        found = errors(integrator)
+        for k, (name, style) in enumerate(zip(STARTS, ("-", "--"), strict=True)):
+            label = f"{integrator}, {name}: order {ORDERS[integrator][k]}"
+            axes.plot(SHARES, found[:, k], MARKERS[integrator], ls=style, color=COLOURS[integrator], ms=5, label=label)
+    axes.set_xscale("log", base=2)
+    axes.set_yscale("log")
+    axes.set_xticks(SHARES, [str(share) for share in SHARES])
+    axes.set(xlabel="steps a period of the swing", ylabel="error of the place\n(overlaps at rest)")
+    figure.legend(loc=BELOW, ncols=2)
+    return figure
 
 
 CASES = (Case("integrator-order", SECTION, "Order of the integrators on a lasting contact", orders),)

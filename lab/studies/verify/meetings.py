@@ -7,9 +7,9 @@ from math import inf
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from lab.studies.verify.collisions import RIGID
 from lab.studies.verify.impacts import Bodies, Impact, Normal, Shear
 from lab.studies.verify.references import (
+    RIGID,
     HertzCollision,
     damping_of,
     dissipative_time,
@@ -40,9 +40,10 @@ class Substance:
 class Meetings:
     """Spheres of a radius (m) that come down on another body at a closing speed (m/s) and move past it or spin.
 
-    `along` (n,) m/s and `spin` (n,) rad/s of the first body; speed and restitution, at this speed, (n,) or one. The
-    other body is a rigid "plane", a "twin", which spins the other way, or a "giant" at rest. Under Hertz's and
-    Mindlin's laws.
+    `along` (n,) m/s and `spin` (n,) rad/s of the first body; speed and restitution (n,) or one. The restitution is that
+    at each closing speed, or for all of them at the speed `given_at`. The other body is a "plane" of Young's modulus
+    `wall`, a "twin", which spins the other way, or a "giant" at rest. Under Hertz's law and along the plane Mindlin's,
+    or Haff and Werner's with a `damper` (N s/m).
     """
 
     substance: Substance
@@ -53,6 +54,9 @@ class Meetings:
     along: np.ndarray = field(default_factory=lambda: np.zeros(1))
     spin: np.ndarray = field(default_factory=lambda: np.zeros(1))
     mate: str = "plane"
+    wall: float = RIGID
+    given_at: float | None = None
+    damper: float | None = None
 
     @cached_property
     def all(self) -> np.ndarray:
@@ -75,7 +79,7 @@ class Meetings:
         """k and 8 G* √R_eff (N/m^1.5)."""
         s, other = self.substance, self.bodies.other_radius
         reduced = 1.0 / (1.0 / self.radius + (1.0 / other if other else 0.0))
-        wall = None if other else RIGID
+        wall = None if other else self.wall
         moduli = s.young, s.poisson, reduced, wall
         return hertz_stiffness(*moduli), mindlin_stiffness(*moduli)
 
@@ -84,8 +88,8 @@ class Meetings:
         return HertzCollision(self.bodies.m_eff, self.contact[0], float(self.all[k, 3]))
 
     def time(self, e: float, speed: float) -> float:
-        """The dissipative time A (s) of a restitution e at a speed (m/s)."""
-        return dissipative_time(damping_of(e), self.bodies.m_eff, self.contact[0], speed)
+        """The dissipative time A (s) of a restitution e, given at a speed (m/s) if not at one for all."""
+        return dissipative_time(damping_of(e), self.bodies.m_eff, self.contact[0], self.given_at or speed)
 
     @cached_property
     def expected(self) -> np.ndarray:
@@ -94,6 +98,8 @@ class Meetings:
         for e, along, spin, speed in self.all:
             time = self.time(e, speed)
             rough = Shear(self.friction, shear, 0.5, time) if self.friction else Shear(0.0)
+            if self.damper:
+                rough = Shear(self.friction, damper=self.damper)
             law = Normal(stiffness, 1.5 * time * stiffness), rough
             spins = spin, -spin if self.mate == "twin" else 0.0
             found.append(Impact(self.bodies, *law).meet(along, speed, spins))
@@ -102,12 +108,13 @@ class Meetings:
     def scene(self, chosen: slice = slice(None), phases: int = len(PHASES)) -> Scene:
         """A world for each of the meetings that are chosen, at each phase."""
         s, rows = self.substance, np.repeat(self.all[chosen], phases, axis=0)
+        damped = {"shear_damping": self.damper} if self.damper else {}
         own, wall = (
             [
-                Material(s.density, young, s.poisson, self.friction, dissipative_time=self.time(e, speed))
+                Material(s.density, young, s.poisson, self.friction, dissipative_time=self.time(e, speed), **damped)
                 for e, _, _, speed in rows
             ]
-            for young in (s.young, RIGID)
+            for young in (s.young, self.wall)
         )
         size = [self.radius] + ([self.bodies.other_radius] if self.bodies.other_radius else [])
         more = {}
@@ -123,7 +130,7 @@ class Meetings:
             outline,
             own,
             wall,
-            tangential="mindlin",
+            tangential="haff-werner" if self.damper else "mindlin",
             gravity=0.0,
             start_speed=fastest,
             **more,

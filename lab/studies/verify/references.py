@@ -7,6 +7,7 @@ from math import gamma, pi, sqrt
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
+RIGID = 1e15  # Pa, the most that a preset may say of a wall
 # 2 ∫ dx/√(1 − x^(5/2)) from 0 to 1: the duration of a Hertz collision in units of its depth over its speed.
 HERTZ_DURATION = 0.8 * sqrt(pi) * gamma(0.4) / gamma(0.9)
 

@@ -2,12 +2,11 @@
 
 from functools import cache
 
-import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
 
 from lab.preset.accuracy import DRAFT_RESTITUTION, LEVELS, RESTITUTION
-from lab.report.plots import BELOW, BLUE, GREY, STYLE, VERMILION
+from lab.report.plots import BELOW, BLUE, GREY, VERMILION
 from lab.studies.case import Case, Found, Line, Picture
 from lab.studies.verify.references import (
     HertzCollision,
@@ -120,24 +119,23 @@ def over_damping(_: bool) -> Found:
 
 def damping_figure(places: np.ndarray) -> Figure:
     """Both references over x; the restitutions found, rows (x, found, expected), and their errors below."""
-    with matplotlib.rc_context(STYLE):
-        figure = Figure(figsize=(6.4, 4.4), layout="constrained")
-        upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(2, 1))
-        x = np.geomspace(DAMPINGS[0] * 0.9, places[:, 0].max() * 1.05, 40)
-        ends = np.array([viscoelastic_rebound(float(value)) for value in x])
-        upper.plot(x, ends[:, 0], color=BLUE, label="integration, contact ends with its force")
-        upper.plot(x, ends[:, 1], color=GREY, ls="--", label="integration, contact ends with its overlap")
-        upper.plot(places[:, 0], places[:, 1], "o", color=VERMILION, ms=4, label="here")
-        upper.set_ylabel("restitution")
-        upper.set_ylim(bottom=0)
-        lower.plot(places[:, 0], 100.0 * (places[:, 1] / places[:, 2] - 1.0), "o", color=VERMILION, ms=4)
-        for side in (-1.0, 1.0):
-            lower.axhline(side * 100.0 * ALLOWED, color=GREY, ls=":", lw=1.0)
-        lower.set_ylabel("error (%)")
-        lower.set_xscale("log")
-        lower.set_xlabel("damping x = β v$^{1/5}$")
-        figure.legend(loc=BELOW, ncols=2)
-        return figure
+    figure = Figure(figsize=(6.4, 4.4), layout="constrained")
+    upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(2, 1))
+    x = np.geomspace(DAMPINGS[0] * 0.9, places[:, 0].max() * 1.05, 40)
+    ends = np.array([viscoelastic_rebound(float(value)) for value in x])
+    upper.plot(x, ends[:, 0], color=BLUE, label="integration, contact ends with its force")
+    upper.plot(x, ends[:, 1], color=GREY, ls="--", label="integration, contact ends with its overlap")
+    upper.plot(places[:, 0], places[:, 1], "o", color=VERMILION, ms=4, label="here")
+    upper.set_ylabel("restitution")
+    upper.set_ylim(bottom=0)
+    lower.plot(places[:, 0], 100.0 * (places[:, 1] / places[:, 2] - 1.0), "o", color=VERMILION, ms=4)
+    for side in (-1.0, 1.0):
+        lower.axhline(side * 100.0 * ALLOWED, color=GREY, ls=":", lw=1.0)
+    lower.set_ylabel("error (%)")
+    lower.set_xscale("log")
+    lower.set_xlabel("damping x = β v$^{1/5}$")
+    figure.legend(loc=BELOW, ncols=2)
+    return figure
 
 
 def _given_case(law: str, title: str, quick: bool = False) -> Case:

@@ -11,12 +11,14 @@ class DeltaPlus:
     Velocity with which places are shifted, at most U/2; U is the highest speed to be expected, and m_j/(ρ_i + ρ_j) is
     taken as V_j/2. Within 2 h of a free surface only the part along it is taken; spray is not shifted.
 
-    Limits: the shift is one of places alone: volume and energy are not corrected for it.
+    Limits: the shift is one of places alone: moment of momentum, volume and energy are not corrected for it. A square
+    patch of water that turns gains 2.6 % of its moment of momentum within two radians at 32 particles across.
 
     Units: δu and U m/s, h and Δx m.
     """
 
     acts = True
+    carries = False
 
     @staticmethod
     def strength(water) -> float:

@@ -12,3 +12,4 @@ class NoShifting:
     """
 
     acts = False
+    carries = False

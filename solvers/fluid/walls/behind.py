@@ -5,7 +5,7 @@ import numpy as np
 from solvers.fluid.given import Water
 from solvers.fluid.kernels import KERNELS
 from solvers.fluid.walls.gauges import probes
-from solvers.fluid.walls.layers import edge_of, layers
+from solvers.fluid.walls.layers import edge_of, firm, layers
 from solvers.space.axes import NAMES
 from solvers.tank.tank import Tank
 
@@ -23,21 +23,24 @@ class Behind:
         self.probes: list[np.ndarray] = []
         self.open: list[np.ndarray] = []
         if not water.walls:
-            self.points, self.volumes, self.edges = np.zeros((0, 2)), np.zeros(0), np.zeros(0, dtype=int)
+            self.points, self.volumes, self.firm = np.zeros((0, 2)), np.zeros(0), np.zeros(0)
+            self.edges = np.zeros(0, dtype=int)
             return
         rows = int(np.ceil(water.reach / water.spacing - 1e-9))
-        points, volumes = layers(tank.outline, water.spacing, rows, tank.open_edges)
+        points, volumes, depths = layers(tank.outline, water.spacing, rows, tank.open_edges)
         for axis, (low, high) in enumerate(zip(tank.outline.min(axis=0), tank.outline.max(axis=0), strict=True)):
             if NAMES[axis] in water.periodic:
                 kept = (points[:, axis] >= low) & (points[:, axis] < high)
-                points, volumes = points[kept], volumes[kept]
+                points, volumes, depths = points[kept], volumes[kept], depths[kept]
         edges = edge_of(points, tank.outline)
         for gauge in water.gauges:
             of_gauge = probes(gauge, tank.outline, water.spacing)
             self.probes.append(len(points) + np.arange(len(of_gauge)))
             points, volumes = np.concatenate([points, of_gauge]), np.append(volumes, np.zeros(len(of_gauge)))
+            depths = np.append(depths, np.zeros(len(of_gauge)))
             edges = np.append(edges, np.full(len(of_gauge), OF_NONE))
         self.points, self.volumes, self.edges = points, volumes, edges
+        self.firm = firm(depths, water.spacing)
         self.open = [1.0 - covered(points[probe], points, volumes, water) for probe in self.probes]
 
 

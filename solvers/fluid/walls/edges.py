@@ -50,7 +50,7 @@ class Edges:
         p, c, lists = self.particles, self.constants, self.lists
         origin = [p.place[a][b, 0] for a in ti.static(range(p.axes))]
         own = [p.offset(b, origin[a], a) for a in ti.static(range(p.axes))]
-        pressure, volume = p.load(p.pressure, b), p.load(p.volume, b)
+        pressure, volume, firm = p.load(p.pressure, b), p.load(p.volume, b), p.load(p.firm, b)
         force = [p.zeros() for _ in ti.static(range(p.axes))]
         for k in range(begin, end):
             j = lists.facing.slots[u, k]
@@ -61,7 +61,7 @@ class Edges:
             push = p.pressure[jb, lane]
             if ti.static(not c.full):
                 push = ti.max(push, 0.0)
-            along = p.volume[jb, lane] * ((pressure + push) * weight + c.hardness(square))
+            along = p.volume[jb, lane] * ((pressure + push) * weight + c.hardness(square, firm))
             for a in ti.static(range(p.axes)):
                 force[a] += along * apart[a]
         for a in ti.static(range(p.axes)):

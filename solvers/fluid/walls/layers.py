@@ -5,12 +5,15 @@ from collections.abc import Sequence
 import numpy as np
 
 NEARER = 0.25  # spacings by which a dummy may be nearer to a wall than its layer is
+FIRM = 1  # the layer that holds what has come through the face; the layer before it has gaps there
 
 
 def layers(
     outline: np.ndarray, spacing: float, rows: int, open_edges: Sequence[int] = ()
-) -> tuple[np.ndarray, np.ndarray]:
-    """Places (n, 2) m and volumes (n,) m² of dummies in `rows` layers outside a counter-clockwise polygon (m, 2) m.
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Dummies in `rows` layers outside a counter-clockwise polygon (m, 2) m.
+
+    Their places (n, 2) m, volumes (n,) m², and how far (n,) m their layers lie behind the face.
 
     Layer k lies (k + 1/2) `spacing` outside, on the offset polygon with mitred corners, in equal steps of about a
     spacing along each edge (after Adami, Hu & Adams 2012, for any angle). A dummy's volume is its share of its layer,
@@ -23,14 +26,20 @@ def layers(
     normal = np.stack([along[:, 1], -along[:, 0]], axis=1)  # outwards
     before = np.roll(normal, 1, axis=0)
     mitre = (before + normal) / (1.0 + (before * normal).sum(axis=1))[:, None]
-    places, volumes = [], []
+    places, volumes, depths = [], [], []
     for row in range(rows):
         depth = (row + 0.5) * spacing
         points, shares, of_edge = _round(corners + depth * mitre, along, spacing)
         kept = ~np.isin(of_edge, list(open_edges)) & (distance(points, corners) > depth - NEARER * spacing)
         places.append(points[kept])
         volumes.append(spacing * shares[kept])
-    return np.concatenate(places), np.concatenate(volumes)
+        depths.append(np.full(kept.sum(), depth))
+    return np.concatenate(places), np.concatenate(volumes), np.concatenate(depths)
+
+
+def firm(depths: np.ndarray, spacing: float) -> np.ndarray:
+    """Distances (n,) m within which dummies of layers at these depths (n,) m push water back; 0 where they do not."""
+    return np.where(np.round(depths / spacing - 0.5) == FIRM, depths, 0.0)
 
 
 def _round(corners: np.ndarray, along: np.ndarray, spacing: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

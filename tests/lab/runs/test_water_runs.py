@@ -16,6 +16,7 @@ from lab.runs.batch import Batch
 from lab.runs.runner import resume_run, run_preset
 from lab.sweeps.dry_run import available_measures
 from lab.sweeps.sweep import run_sweep
+from solvers.fluid.start.rest import STARTS
 
 CUP = """
 format = 3
@@ -117,7 +118,7 @@ def test_a_recording_of_other_water_is_not_continued(cup, tmp_path, monkeypatch)
     with monkeypatch.context() as patch, pytest.raises(KeyboardInterrupt):
         patch.setattr(Batch, "_pause", lambda *_: (_ for _ in ()).throw(KeyboardInterrupt))
         run_preset(cup, out=tmp_path / "run", video=False, quiet=True)
-    monkeypatch.setattr("solvers.fluid.start.lattice.CLOSE", 0.6)
+    monkeypatch.setitem(STARTS, "packed", STARTS["lattice"])
     with pytest.raises(Unusable, match="does not belong to the preset in it"):
         resume_run(tmp_path / "run", video=False, quiet=True)
 

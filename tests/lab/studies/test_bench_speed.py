@@ -170,7 +170,7 @@ def test_without_the_other_codes_the_page_says_so(tmp_path, monkeypatch):
 
 
 def test_an_unknown_study_is_reported(tmp_path):
-    with pytest.raises(LabError, match=r"there is no study colour; there are grains, .*peers, curves\.$"):
+    with pytest.raises(LabError, match=r"there is no study colour; there are grains, .*peers, equal-error, curves\.$"):
         run_page(["colour"], tmp_path, fast=True)
 
 

@@ -25,11 +25,12 @@ from lab.measures.value import over_worlds
 from lab.preset.find import load
 from lab.report.kept import Made
 from lab.studies import reproduce as package
-from lab.studies.reproduce import experiments, named, report, reproduce, runs, workers
+from lab.studies.reproduce import experiments, report, reproduce, runs, workers
 from lab.studies.reproduce.claims import FOLDER, read, reports
 from lab.studies.reproduce.estimates import Verdict, surely
 from lab.studies.reproduce.experiment import EXACT, Experiment, Row, Told, Tolerance, counted, observed, stated
 from lab.studies.reproduce.findings import Finding, asked, read_findings
+from lab.studies.reproduce.grains import beds, outlines
 from lab.studies.reproduce.report import write_report
 from lab.studies.reproduce.runs import Batch, Outcome
 from lab.sweeps.grid import define_sweep
@@ -313,16 +314,16 @@ def test_the_onset_is_each_beds_own_and_lies_between_two_frequencies():
     def at(frequency, *responses):
         return outcome({"motion.sway.frequency": f"{frequency} Hz"}, response_amplitude=over_worlds(responses, "mm"))
 
-    found = named.onset([at(1, 0.0, 0.0), at(2, 0.0, 4.0), at(3, 1.6, 8.0)], 40.0)
+    found = beds.onset([at(1, 0.0, 0.0), at(2, 0.0, 4.0), at(3, 1.6, 8.0)], 40.0)
     assert found.worlds == pytest.approx((2.5, 1.2))  # 2 % of 40 mm is 0.8 mm
-    assert named.onset([at(1, 0.1), at(2, 0.2)], 40.0).value is None
+    assert beds.onset([at(1, 0.1), at(2, 0.2)], 40.0).value is None
 
 
 def test_round_outlines_are_judged_bed_by_bed_before_they_slide(monkeypatch):
     """Six beds of which some shift half as far again: 36 nodes lag by 5 %, 120 by 2 %, as the source does not say."""
     tilt = np.linspace(0.0, 30.0, 61)
     curve = lambda recording, world: (tilt, 1e-4 * tilt * recording.slopes[world])  # noqa: E731
-    monkeypatch.setattr(named, "shift_curve", curve)
+    monkeypatch.setattr(outlines, "shift_curve", curve)
     monkeypatch.setattr(critical_angle, "shift_curve", curve)
 
     def ran(stretch, **setting):

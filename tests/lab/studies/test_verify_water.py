@@ -3,9 +3,11 @@
 import numpy as np
 import pytest
 
-from lab.studies.verify.water import CASES, balance, drops, patch, vortices, waves
+from lab.studies.verify.water import CASES, balance, drops, patch, rest, sloshing, vortices, waves
 from lab.studies.verify.water.laplace import first_mode
 from lab.studies.verify.water.scenes import Swing, box, chamfered, order, order_line, swing
+from lab.studies.verify.water.vorticity import middle_pressure
+from solvers.fluid.start.rest import STARTS
 
 WIDTH, DEPTH = 0.30, 0.105  # m
 CUTS = (0.0525, 0.045, 1.126), (0.105, 0.05, 1.435), (0.105, 0.075, 1.403)
@@ -108,3 +110,31 @@ def test_a_free_drop_keeps_its_momentum():
 
 def test_every_case_of_water_says_so():
     assert all(case.name.startswith("water-") and case.section.startswith("Water") for case in CASES)
+
+
+def test_the_pressure_in_a_turning_patch_begins_as_its_series_says(monkeypatch):
+    """And later does not hang on how many terms and markers find it."""
+    times = (0.0, 0.5, 1.0)
+    found = middle_pressure(times)
+    assert found[0] == pytest.approx(patch.pressure(np.zeros((1, 2)))[0] / 1000.0, rel=1e-3)
+    monkeypatch.setattr("lab.studies.verify.water.vorticity.TERMS", 4)
+    monkeypatch.setattr("lab.studies.verify.water.vorticity.MARKERS", 40)
+    assert middle_pressure(times) == pytest.approx(found, abs=1e-4)
+
+
+@pytest.mark.slow
+def test_water_between_slanted_corners_rests_for_a_minute():
+    found = rest.rested(rest.VESSELS["chamfers"], 20, rest.LONG)
+    assert found.pressure < 0.01 and abs(found.gauge) < 0.01
+    assert found.stirred < rest.STILL
+    assert found.down == pytest.approx(1.0, abs=1e-3)
+
+
+@pytest.mark.slow
+def test_water_that_starts_packed_sloshes_as_water_and_a_lattice_faster(monkeypatch):
+    """The shear stiffness of a lattice under pressure quickens it by 0.6 to 0.9 %, see `lattice`."""
+    pool = sloshing.BOXES[sloshing.FAST]
+    packed = sloshing.slosh(pool, 12) / pool.rate - 1.0
+    monkeypatch.setitem(STARTS, "packed", STARTS["lattice"])
+    assert abs(packed) < 0.005
+    assert 0.004 < sloshing.slosh(pool, 12) / pool.rate - 1.0 - packed < 0.012

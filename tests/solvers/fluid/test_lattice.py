@@ -4,9 +4,11 @@ import numpy as np
 import pytest
 
 from solvers.fluid.given import EXCESS, VOLUME, Water
-from solvers.fluid.start.lattice import at_rest, from_edges, hydrostatic_excess, lattice
+from solvers.fluid.start.lattice import from_edges, lattice
+from solvers.fluid.start.rest import at_rest, hydrostatic_excess
 from solvers.tank.outline import area_below
 from solvers.tank.tank import Tank
+from tests.oracles.water import kernel
 
 BOX = np.array([(-0.45, 0.0), (0.45, 0.0), (0.45, 0.5), (-0.45, 0.5)])
 PRISM = np.array(
@@ -68,3 +70,20 @@ def test_particles_that_do_not_fit_are_refused():
     sliver = np.array([(0.0, 0.0), (0.1, 0.0), (0.1, 1e-4)])
     with pytest.raises(ValueError, match="no particle of this spacing"):
         lattice(sliver, 1e-4, 0.05)
+
+
+@pytest.mark.parametrize(("smoothing", "stretch", "shear"), [(2.0, 0.018, 0.007), (2.5, 0.009, -0.001)])
+def test_a_square_lattice_under_pressure_is_elastic(smoothing, stretch, shear):
+    """Moduli over p, from S_abcd = Σ V ∂²W/∂r_a∂r_b r_c r_d, by differences of −W'/r; none in a liquid."""
+    half = np.arange(-6, 7)
+    place = np.stack(np.meshgrid(half, half), axis=-1).reshape(-1, 2)
+    place = place[(place != 0).any(axis=1)].astype(float)
+
+    def pull(r: np.ndarray) -> np.ndarray:
+        return kernel(np.linalg.norm(r, axis=1), smoothing)[1][:, None] * r  # ∇W
+
+    step = 1e-5
+    hessian = np.stack([(pull(place + step * e) - pull(place - step * e)) / (2.0 * step) for e in np.eye(2)], axis=-1)
+    s = np.einsum("nab,nc,nd->abcd", hessian, place, place)
+    along, across, mixed = s[0, 0, 0, 0] - 2.0, s[0, 0, 1, 1], s[0, 1, 0, 1] - 1.0
+    assert (along - mixed, across + mixed) == pytest.approx((stretch, shear), abs=6e-4)

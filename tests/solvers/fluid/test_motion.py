@@ -103,3 +103,21 @@ def test_a_drop_that_is_pulled_to_a_point_swings_at_the_frequency_of_theory():
     falls = np.flatnonzero((wide[:-1] > 0.0) & (wide[1:] <= 0.0))[0]
     crossing = time[falls] + (time[falls + 1] - time[falls]) * wide[falls] / (wide[falls] - wide[falls + 1])
     np.testing.assert_allclose(crossing, np.pi / (np.sqrt(2.0) * 10.0), rtol=0.02)
+
+
+@pytest.mark.parametrize("deep", [0.05, 0.25, 0.45])
+def test_a_wall_pushes_back_what_has_come_through_its_face(deep):
+    """Single particles behind the face of a wall, anywhere between two dummies, and behind corners are pushed in."""
+    spacing = 0.01
+    ways = (np.arange(9) + np.arange(9) / 9.0) * 6.0 * spacing  # six spacings apart: none sees another
+    beside = np.stack([np.full(9, 0.5 + deep * spacing), 0.1 + ways], axis=1)
+    corners = np.array([[-0.5 - deep * spacing, -deep * spacing], [-0.5 - deep * spacing, 1.0 + deep * spacing]])
+    drops = np.zeros((1, 11, 6))
+    drops[0, :, :2], drops[0, :, VOLUME] = np.concatenate([beside, corners]), spacing**2
+    scene = still(1.0, 1.0, 0.5, 50, drops=drops, gravity=0.0, sound_speed=10.0, step=1e-4)
+    run = Simulation(scene, threads=1, arch="cpu")
+    run.advance(1)
+    push = np.stack([values[0] for values in run.water.particles.read(*run.water.particles.acceleration)], axis=1)
+    assert (push[:9, 0] < 0.0).all()
+    assert push[:9, 0].max() < 0.4 * push[:9, 0].min()
+    assert (push[9:, 0] > 0.0).all() and push[9, 1] > 0.0 > push[10, 1]

@@ -51,6 +51,7 @@ def liquid(preset: Wet) -> given.Water:
         full=water.full,
         shifting=water.shifting,
         speed=expected_speed(preset),
+        start=water.start,
         gauges=tuple(given.Gauge(gauge.place, gauge.length, gauge.response) for gauge in pressure.values()),
         levels=tuple(given.Level(gauge.y) for gauge in level.values()),
         edges=tuple(_edge(gauge, preset.tank) for gauge in force.values()),

@@ -7,6 +7,7 @@ from lab.preset.sections.water.schemes import SCHEMES
 from solvers.fluid.diffusion import DIFFUSION
 from solvers.fluid.kernels import KERNELS
 from solvers.fluid.shifting import SHIFTING
+from solvers.fluid.start.rest import STARTS
 from solvers.fluid.states import STATES
 from solvers.fluid.viscosity import VISCOSITY
 from solvers.machine.marks import Cheap, Doc, Interval, Unit, Usual
@@ -68,6 +69,10 @@ class Water:
     slip: Annotated[bool, Doc("Whether water slides along walls; else it sticks to them.")] = True
     full: Annotated[bool, Doc("Whether the water fills the whole tank, so that walls may pull at it.")] = False
     shifting: Annotated[Literal[*SHIFTING], Doc("How particles are shifted to even their distances.")] = "none"
+    start: Annotated[
+        Literal[*STARTS],
+        Doc("How the particles are laid: packed evenly up to walls of any slant, or as a square lattice."),
+    ] = "packed"
 
 
 @dataclass(frozen=True)

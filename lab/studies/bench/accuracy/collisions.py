@@ -4,10 +4,9 @@ from functools import cache, partial
 from pathlib import Path
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from lab.report.page import Page
-from lab.report.plots import BLUE, GREY, VERMILION
+from lab.report.plots import BLUE, GREY, VERMILION, canvas
 from lab.studies.bench.accuracy.settled import settled_scene
 from lab.studies.bench.speed.workers import in_turn, timed
 from solvers.grains.integrators import INTEGRATORS
@@ -38,8 +37,7 @@ def study(page: Page, work: Path, fast: bool) -> None:
         [[str(share), *(f"{errors[name][k]:.1e}" for name in errors)] for k, share in enumerate(steps)],
     )
     page.table(["cost of a step", *cost], [["relative to Verlet", *(f"{value:.2f}" for value in cost.values())]])
-    figure = Figure(figsize=(4.6, 3.0), layout="constrained")
-    axes = figure.subplots()
+    figure, axes = canvas((4.6, 3.0))
     for name, found in errors.items():
         axes.loglog(np.array(steps) * cost[name], found, "o-", markersize=4, color=COLOURS[name], label=name)
     if DEFAULT_STEPS in steps:

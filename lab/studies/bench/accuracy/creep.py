@@ -3,12 +3,12 @@
 from pathlib import Path
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from lab.measures.value import over_worlds
 from lab.recording import open_recording
 from lab.report.numbers import interval
 from lab.report.page import Page
+from lab.report.plots import canvas
 from lab.studies.bench.accuracy.beds import TILT, TILTED, Point, sweep
 from lab.studies.bench.accuracy.laws import KEY, LAWS
 
@@ -34,8 +34,7 @@ def study(page: Page, work: Path, fast: bool) -> None:
     page.say(f"""Two beds, at the steps of draft, tilted to {ANGLE:g} deg and held there for {hold:g} s: drift of the
         centre of mass downhill from {REST:g} s into the hold to its end, in grain diameters a minute. The laws without
         a spring creep as they should, at F_t/γ_s in each contact; those with a spring should stand still.""")
-    figure = Figure(figsize=(4.6, 2.8), layout="constrained")
-    axes = figure.subplots()
+    figure, axes = canvas((4.6, 2.8))
     rows = []
     for law, point in zip(laws, points, strict=True):
         time, shift = _held(point)

@@ -2,10 +2,8 @@
 
 from pathlib import Path
 
-from matplotlib.figure import Figure
-
 from lab.report.page import Page
-from lab.report.plots import BLUE, GREEN
+from lab.report.plots import BLUE, GREEN, canvas
 from lab.studies.bench.accuracy.beds import TILT, TILTED, add_table, draw_bars, sweep
 
 RATES = (1.0, 3.0, 10.0, 30.0)  # deg/s
@@ -23,8 +21,7 @@ def study(page: Page, work: Path, fast: bool) -> None:
         the time the surface takes to set off. Means of the beds with their [95 % intervals], which are the bars.""")
     names = ("critical_angle", "first_slip_angle", "one_diameter_angle")
     add_table(page, "rate (deg/s)", [f"{rate:g}" for rate in rates], points, names, points[-1].steps)
-    figure = Figure(figsize=(4.2, 2.8), layout="constrained")
-    axes = figure.subplots()
+    figure, axes = canvas((4.2, 2.8))
     for name, colour in (("critical_angle", BLUE), ("first_slip_angle", GREEN)):
         draw_bars(axes, rates, points, name, (colour, name.replace("_", " ")))
     axes.set(xscale="log", xlabel="tilt rate (deg/s)", ylabel="angle (deg)")

@@ -3,9 +3,9 @@
 from pathlib import Path
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from lab.report.page import Page
+from lab.report.plots import canvas
 from lab.studies.bench.accuracy.collisions import COLOURS, costs
 from lab.studies.bench.accuracy.settled import deviation, settled_scene
 from solvers.grains.integrators import INTEGRATORS
@@ -33,8 +33,7 @@ def study(page: Page, work: Path, fast: bool) -> None:
         ["step (derived = 1)", *errors],
         [[f"{share:g}", *(f"{errors[name][k]:.1e}" for name in errors)] for k, share in enumerate(steps)],
     )
-    figure = Figure(figsize=(4.6, 3.0), layout="constrained")
-    axes = figure.subplots()
+    figure, axes = canvas((4.6, 3.0))
     for name, found in errors.items():
         axes.loglog(cost[name] / np.array(steps), found, "o-", markersize=4, color=COLOURS[name], label=name)
     if 1.0 in steps:

@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from lab.report.page import Page
-from lab.report.plots import BLUE, GREEN, VERMILION
+from lab.report.plots import BLUE, GREEN, VERMILION, canvas
 from lab.studies.bench.accuracy.beds import (
     SWAY,
     SWAYED,
@@ -62,8 +62,7 @@ def _scales(points: list[Point]) -> list[float]:
 
 
 def _figure(tilted: list[Point], swayed: list[Point]) -> Figure:
-    figure = Figure(figsize=(6.4, 2.9), layout="constrained")
-    left, right = figure.subplots(1, 2)
+    figure, (left, right) = canvas((6.4, 2.9), 1, 2)
     for name, colour in TILT_MEASURES.items():
         draw_bars(left, _scales(tilted), tilted, name, (colour, name.replace("_", " ")))
     draw_bars(right, _scales(swayed), swayed, "response_amplitude", (BLUE, "y"))

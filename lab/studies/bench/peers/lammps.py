@@ -55,7 +55,7 @@ fix ends all wall/gran {style} {walls} zplane 0 {lid:.17g}
 
 """
 _DUMP = """\
-write_dump all custom {final} id x z modify sort id format float %.17g
+write_dump all custom {final} id x z vx vz modify sort id format float %.17g
 """
 
 

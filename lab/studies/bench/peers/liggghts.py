@@ -57,7 +57,7 @@ fix lid all wall/gran {model} primitive type 1 zplane {lid:.17g}
 
 """
 _DUMP = """\
-write_dump all custom {final} id x z modify format "%d %.17g %.17g"
+write_dump all custom {final} id x z vx vz modify format "%d %.17g %.17g %.17g %.17g"
 """
 
 

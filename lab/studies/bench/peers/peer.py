@@ -18,13 +18,16 @@ from lab.base.errors import LabError
 from solvers.grains.materials import Material
 
 DECK, BED = "deck.in", "bed.data"  # what a peer reads
-TRACE, FINAL = "trace.txt", "final.txt"  # what it writes: step, y, z of the centre of mass; id, y, z of the grains
+TRACE, FINAL = (
+    "trace.txt",
+    "final.txt",
+)  # what it writes: step, y, z of the centre of mass; id, y, z, velocities of the grains
 HEADER = 9  # lines of a dump before its rows
 
 
 # The end of a deck: gravity that turns, the motion, and what is written of it.
 MOTION = """\
-variable chute equal ramp(0,{chute:.17g})
+variable chute equal ramp({lean:.17g},{chute:.17g})
 fix gravity all gravity {gravity:.17g} chute v_chute
 fix motion all nve/sphere
 timestep {dt:.17g}
@@ -49,7 +52,8 @@ class Task:
     width, height: inner size of the tank (m).
     material: of grains and walls; it must have a restitution.
     dt, steps: time step (s), and how many.
-    tilt_rate: constant rate of the tank, counter-clockwise positive (rad/s).
+    tilt, tilt_rate: tilt of the tank at the start (rad) and its constant rate (rad/s), counter-clockwise positive.
+    velocity: (n, 2) of the grains at the start (m/s); None for grains at rest.
     gravity: (m/s^2).
     tangential: "history" is spring, dashpot and slider; "no_history" dashpot and slider.
     sample_every: steps from one sample of the trace to the next, the first being t = 0.
@@ -66,7 +70,9 @@ class Task:
     material: Material
     dt: float
     steps: int
+    tilt: float = 0.0
     tilt_rate: float = 0.0
+    velocity: np.ndarray | None = None
     gravity: float = 9.81
     tangential: Literal["history", "no_history"] = "history"
     sample_every: int = 1000
@@ -89,7 +95,8 @@ class Task:
             left=-self.width / 2,
             right=self.width / 2,
             lid=self.height,
-            chute=-degrees(self.tilt_rate * self.steps * self.dt),
+            lean=-degrees(self.tilt),
+            chute=-degrees(self.tilt + self.tilt_rate * self.steps * self.dt),
             gravity=self.gravity,
             dt=self.dt,
             every=min(self.sample_every, self.steps),
@@ -109,7 +116,7 @@ class PeerRun:
     grain_steps_per_s: grains times steps over that time (1/s).
     time: (T,) instants of the trace (s).
     centre_of_mass: (T, 2) centre of mass of all grains, (y, z) in the tank's frame (m).
-    position: (n, 2) grains at the end, (y, z) in the tank's frame, in the order given (m).
+    position, velocity: (n, 2) of the grains at the end, (y, z) in the tank's frame, in the order given (m, m/s).
     """
 
     loop_s: float
@@ -117,12 +124,14 @@ class PeerRun:
     time: np.ndarray
     centre_of_mass: np.ndarray
     position: np.ndarray
+    velocity: np.ndarray
 
 
 def carry_out(name: str, executable: str, task: Task, deck: str) -> PeerRun:
     """Let a peer do what its deck says. Raises LabError if it is not installed or stops."""
     with working_folder(task.workdir) as folder:
         bed = bed_file(task.position, task.radius, task.material.density, task.width, task.height)
+        bed += moving(task.velocity)
         (folder / BED).write_text(bed)
         (folder / DECK).write_text(deck)
         loop_s = execute(name, executable, ["-in", DECK], folder, task.processes)
@@ -165,6 +174,14 @@ def bed_file(position: np.ndarray, radius: np.ndarray, density: float, width: fl
     )
 
 
+def moving(velocity: np.ndarray | None) -> str:
+    """The data file's section of velocities (n, 2) m/s; nothing where there are none."""
+    if velocity is None:
+        return ""
+    rows = (f"{number} {y:.17g} 0 {z:.17g} 0 0 0" for number, (y, z) in enumerate(velocity, start=1))
+    return "\n".join(("", "Velocities", "", *rows, ""))
+
+
 def execute(name: str, executable: str, arguments: Sequence[str], folder: Path, processes: int = 1) -> float:
     """Run a peer in `folder`, each process on one thread; returns the loop time it prints (s).
 
@@ -201,11 +218,13 @@ def read_outcome(folder: Path, task: Task, loop_s: float) -> PeerRun:
     trace = np.loadtxt(folder / TRACE, ndmin=2)
     trace = trace[trace[:, 0] > 0]
     final = np.loadtxt(folder / FINAL, skiprows=HEADER, ndmin=2)
+    final = final[np.argsort(final[:, 0])]
     start = np.average(task.position, axis=0, weights=np.asarray(task.radius) ** 3)
     return PeerRun(
         loop_s=loop_s,
         grain_steps_per_s=len(task.radius) * task.steps / loop_s,
         time=np.append(0.0, trace[:, 0] * task.dt),
         centre_of_mass=np.vstack((start, trace[:, 1:])),
-        position=final[np.argsort(final[:, 0]), 1:],
+        position=final[:, 1:3],
+        velocity=final[:, 3:5],
     )

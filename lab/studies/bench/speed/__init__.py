@@ -7,7 +7,7 @@ the curves of the slow study are kept in the folder `work`; times are measured a
 from collections.abc import Sequence
 from pathlib import Path
 
-from lab.studies.bench.speed import choices, curves, grains, parts, peers, processors, worlds
+from lab.studies.bench.speed import choices, curves, equal_error, grains, parts, peers, processors, worlds
 from lab.studies.engine import Bench
 
 # In the order of the page, which is also that of time.
@@ -17,6 +17,7 @@ STUDIES = {
     "choices": choices.study,
     "parts": parts.study,
     "peers": peers.study,
+    "equal-error": equal_error.study,
     "curves": curves.study,
 }
 ABOUT = """All times are of runs taken in turn, so that a machine whose speed drifts slows all alike: medians, and of

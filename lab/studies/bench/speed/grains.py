@@ -5,7 +5,7 @@ from pathlib import Path
 from matplotlib.figure import Figure
 
 from lab.report.page import Page
-from lab.report.plots import BELOW, BLUE, VERMILION
+from lab.report.plots import BELOW, BLUE, VERMILION, canvas
 from lab.studies.bench.speed.beds import usual_bed
 from lab.studies.bench.speed.drawing import draw_with_range
 from lab.studies.bench.speed.workers import Speeds, Worker, compared, millions, ratio
@@ -44,8 +44,7 @@ def measured(work: Path, size: int, turns: int, seconds: float) -> Speeds:
 
 def plotted(found: dict[int, Speeds]) -> Figure:
     """Medians with their ranges against the number of grains."""
-    figure = Figure(figsize=(6.4, 3.0), layout="constrained")
-    axes = figure.subplots()
+    figure, axes = canvas((6.4, 3.0))
     for name, colour in COLOURS.items():
         draw_with_range(axes, list(found), [found[size][name] for size in found], colour, name)
     axes.set(xscale="log", xlabel="grains", ylabel="million grain-steps a second", ylim=(0.0, None))

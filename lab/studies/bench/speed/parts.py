@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from lab.report.page import Page
-from lab.report.plots import BLUE, GREY, VERMILION
+from lab.report.plots import BLUE, GREY, VERMILION, canvas
 from lab.studies.bench.speed.beds import Bed, usual_bed
 from lab.studies.bench.speed.counts import GRAIN, PAIR, REAL, total
 from lab.studies.bench.speed.kernels import MULTIPLY_ADDS, Limits, Parts
@@ -237,8 +237,7 @@ def caches() -> str:
 
 def plotted(rest: AtRest, bounds: Mapping[str, float]) -> Figure:
     """Bars of ns a grain-step: the step by its parts, the pieces of the pair forces alone, the limits."""
-    figure = Figure(figsize=(6.4, 3.2), layout="constrained")
-    axes = figure.subplots()
+    figure, axes = canvas((6.4, 3.2))
     names = {"simple": "limit: arithmetic", "slow": "limit: roots, divisions", "near": "limit: bytes, near"}
     names["far"] = "limit: bytes, main memory"
     rows = [(STEP, rest.seconds[STEP], BLUE)]

@@ -17,6 +17,7 @@ from lab.report.page import render, table
 
 MEASURED = Path(__file__).with_name("measured.json")
 SPRINGS = "history", "history (Mindlin)"  # the other code's law and the lab's
+GRAIN_STEPS = "grain-steps"
 HEADER = ("code", "law", "the lab's law", "bed", "counted in", "the lab: times as fast", "processor", "measured by")
 
 
@@ -35,6 +36,11 @@ class Ratio:
     least: float
     most: float
     median: float | None = None
+
+    @property
+    def what(self) -> tuple[str, ...]:
+        """All but the numbers."""
+        return self.code, self.law, self.ours, self.bed, self.unit
 
     @property
     def words(self) -> str:
@@ -59,13 +65,16 @@ def ratio(code: str, law: str, ours: str, speeds: np.ndarray, others: np.ndarray
     """The ratio of grain-steps a second (turns,) on a bed at rest."""
     found = speeds / others
     least, most, median = (float(f"{pick(found):.3g}") for pick in (np.min, np.max, np.median))
-    return Ratio(code, law, ours, "at rest", "grain-steps", least, most, median)
+    return Ratio(code, law, ours, "at rest", GRAIN_STEPS, least, most, median)
 
 
 def keep(folder: Path, ratios: Sequence[Ratio]) -> None:
-    """Put the ratios on this processor into the folder's records."""
+    """Put the ratios on this processor into the folder's records, in place of older ones of the same things."""
     path = folder / "speed-peers.json"
-    record = Record(Made.now("bench speed peers"), ratios)
+    records = RECORDS.validate_python(read(path))
+    older = records[processor()].ratios if processor() in records else ()
+    new = {one.what for one in ratios}
+    record = Record(Made.now("bench speed"), [*(one for one in older if one.what not in new), *ratios])
     write(path, {**read(path), processor(): asdict(record)})
 
 
@@ -78,7 +87,7 @@ def overview(folder: Path) -> str:
     """A table in Markdown: a row a processor, the lowest ratios first, of springs with history in both codes."""
     found = {}
     for name, record in known(folder).items():
-        ratios = {one.code: one for one in record.ratios if (one.law, one.ours) == SPRINGS}
+        ratios = {one.code: one for one in record.ratios if (one.law, one.ours, one.unit) == (*SPRINGS, GRAIN_STEPS)}
         least = min((one.least for one in ratios.values()), default=np.inf)
         found[name] = (least, ratios, record)
     codes = sorted({code for _, ratios, _ in found.values() for code in ratios})

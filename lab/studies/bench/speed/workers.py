@@ -1,78 +1,74 @@
-"""Simulations in processes of their own, so that runs on different threads and precisions can be timed in turn.
-
-Taichi has one number of threads and one precision per process; a simulation that restarts Taichi ends all others.
-"""
+"""Simulations in processes of their own, so that runs on different threads and precisions can be timed in turn."""
 
 import time
 from collections.abc import Callable, Hashable, Iterator, Mapping
-from contextlib import contextmanager, suppress
-from multiprocessing import get_context
-from multiprocessing.connection import Connection
+from contextlib import contextmanager
 
 import numpy as np
 
-from lab.base.errors import LabError
+from lab.studies.bench.aside import Aside
 from lab.studies.bench.speed.beds import Bed
-from solvers.machine.errors import BadState, Unavailable
 from solvers.simulation import Simulation
 
 FEWEST = 5  # steps of a timing
 Speeds = dict[Hashable, np.ndarray]
 
 
-class Worker:
-    """A simulation of a bed in as many equal worlds, in a process of its own; it rests unless it is asked.
+class Worker(Aside):
+    """A simulation of a bed in as many equal worlds, in a process of its own.
 
-    `how` goes to the scene; `arch` and `threads` to the simulation. Raises LabError if it cannot be made or breaks
-    off.
+    `how` goes to the scene; `arch`, `threads` and `stretch` to the simulation, whose motions have ended if `ended`.
     """
 
-    def __init__(self, bed: Bed, threads: int = 1, worlds: int = 1, arch: str = "cpu", **how: object):
-        context = get_context("spawn")  # Taichi hangs in a fork
-        self._pipe, theirs = context.Pipe()
-        self._process = context.Process(target=_serve, args=(theirs, bed, threads, worlds, arch, how), daemon=True)
-        self._process.start()
-        theirs.close()
-        self.dt = self._answer()
+    def __init__(
+        self,
+        bed: Bed,
+        threads: int = 1,
+        worlds: int = 1,
+        arch: str = "cpu",
+        stretch: int = 1,
+        ended: bool = False,
+        **how: object,
+    ):
+        super().__init__(_Timed, bed, threads, worlds, arch, stretch, ended, how)
+        self.dt = self.ask("step")
 
     def speed(self, seconds: float) -> float:
         """Grain-steps per second, measured over about `seconds` seconds."""
-        with suppress(BrokenPipeError):  # what it said last is still to be read
-            self._pipe.send(seconds)
-        return self._answer()
+        return self.ask("speed", seconds)
 
-    def close(self) -> None:
-        """End the process."""
-        self._pipe.close()
-        self._process.join()
-
-    def _answer(self) -> float:
-        try:
-            answer = self._pipe.recv()
-        except EOFError:
-            raise LabError("a process that times a simulation broke off.") from None
-        if isinstance(answer, str):
-            raise LabError(answer)
-        return answer
+    def course(self, duration: float) -> float:
+        """Grain-steps per second over the first `duration` (s, of model time) from where the bed was at first."""
+        return self.ask("course", duration)
 
 
-def _serve(pipe: Connection, bed: Bed, threads: int, worlds: int, arch: str, how: Mapping[str, object]) -> None:
-    """Make the simulation, tell its step, then answer each number of seconds by grain-steps a second."""
-    try:
-        run = Simulation(bed.scene(worlds, **how), bed.places(worlds), threads, arch=arch)
-        steps = FEWEST
-        timed(run, steps)  # compiles, and lists the contacts
-        speed = timed(run, steps)
-        pipe.send(run.dt)
-        while True:
-            seconds = pipe.recv()
-            steps = max(FEWEST, round(seconds * speed / run.scene.radius.size))
-            speed = timed(run, steps)
-            pipe.send(speed)
-    except EOFError:  # nobody asks any more
-        pass
-    except (BadState, Unavailable) as error:
-        pipe.send(str(error))
+class _Timed:
+    """The simulation in the process of a worker."""
+
+    def __init__(self, bed: Bed, threads: int, worlds: int, arch: str, stretch: int, ended: bool, how: Mapping):
+        self.places = bed.places(worlds)
+        self.run = Simulation(bed.scene(worlds, **how), self.places, threads, arch=arch, stretch=stretch)
+        if ended:
+            self.run.origin = max(motion.duration() for motion in self.run.scene.motions[0])
+        self.last = self.warmed()
+
+    def step(self) -> float:
+        return self.run.dt
+
+    def speed(self, seconds: float) -> float:
+        self.last = timed(self.run, max(FEWEST, round(seconds * self.last / self.run.scene.radius.size)))
+        return self.last
+
+    def course(self, duration: float) -> float:
+        self.run.place(self.places)
+        self.warmed()
+        self.run.place(self.places)
+        return timed(self.run, max(FEWEST, round(duration / self.run.dt)))
+
+    def warmed(self) -> float:
+        """Compile the kernels and list the contacts; returns grain-steps per second of the few steps after that."""
+        timed(self.run, FEWEST)
+        return timed(self.run, FEWEST)
 
 
 def timed(run: Simulation, steps: int) -> float:

@@ -2,11 +2,10 @@
 
 from collections.abc import Sequence
 
-import matplotlib
 from matplotlib.figure import Figure
 
 from lab.preset.accuracy import LEVELS
-from lab.report.plots import BELOW, BLUE, GREEN, GREY, STYLE, VERMILION
+from lab.report.plots import BELOW, BLUE, GREEN, GREY, VERMILION, canvas
 from lab.studies.bench.stability.limit_map import (
     DAMPINGS,
     DISTURBED,
@@ -64,22 +63,20 @@ def limit_figure(limits: Sequence[Limit]) -> Figure:
     """Ratios of true to derived limits: a row a law, a colour a damping; a cross where no step is stable."""
     laws = list(dict.fromkeys(map(_laws, limits)))
     lowest = min([0.5, *(0.7 * one.ratio for one in limits if one.ratio)])
-    with matplotlib.rc_context(STYLE):
-        figure = Figure(figsize=(6.4, 1.4 + 0.3 * len(laws)), layout="constrained")
-        axes = figure.add_subplot()
-        for damping, (colour, mark) in LOOKS.items():
-            shown = [one for one in limits if one.damping == damping]
-            for stable, how in ((True, mark), (False, "x")):
-                points = [(one.ratio or lowest, laws.index(_laws(one))) for one in shown if bool(one.ratio) is stable]
-                label = damping if stable else None
-                axes.plot(*(zip(*points, strict=True) if points else ((), ())), how, color=colour, ms=5, label=label)
-        axes.axvline(1.0, color=GREY, lw=1.0, label="derived step")
-        axes.set_xscale("log")
-        axes.set_xlim(lowest, TICKS[-1])
-        axes.set_xticks(TICKS, [f"{tick:g}" for tick in TICKS])
-        axes.minorticks_off()
-        axes.set_yticks(range(len(laws)), laws)
-        axes.invert_yaxis()
-        axes.set_xlabel("longest stable step (derived steps); ×: none is stable")
-        figure.legend(loc=BELOW, ncols=len(LOOKS) + 1)
+    figure, axes = canvas((6.4, 1.4 + 0.3 * len(laws)))
+    for damping, (colour, mark) in LOOKS.items():
+        shown = [one for one in limits if one.damping == damping]
+        for stable, how in ((True, mark), (False, "x")):
+            points = [(one.ratio or lowest, laws.index(_laws(one))) for one in shown if bool(one.ratio) is stable]
+            label = damping if stable else None
+            axes.plot(*(zip(*points, strict=True) if points else ((), ())), how, color=colour, ms=5, label=label)
+    axes.axvline(1.0, color=GREY, lw=1.0, label="derived step")
+    axes.set_xscale("log")
+    axes.set_xlim(lowest, TICKS[-1])
+    axes.set_xticks(TICKS, [f"{tick:g}" for tick in TICKS])
+    axes.minorticks_off()
+    axes.set_yticks(range(len(laws)), laws)
+    axes.invert_yaxis()
+    axes.set_xlabel("longest stable step (derived steps); ×: none is stable")
+    figure.legend(loc=BELOW, ncols=len(LOOKS) + 1)
     return figure

@@ -12,7 +12,7 @@ from math import cos, pi, sqrt
 
 import numpy as np
 
-from lab.studies.bench.stability.beds import ACETATE, RADIUS
+from lab.studies.bench.speed.beds import ACETATE
 from solvers.grains.laws import NORMAL, TANGENTIAL
 from solvers.grains.materials import Material, effective_young, hertz_stiffness
 from solvers.machine.errors import BadState
@@ -20,6 +20,7 @@ from solvers.scene import Scene
 from solvers.simulation import Simulation
 from solvers.time.watch import RUNNING
 
+RADIUS = 1.5e-3  # m
 SPEED = 1.0  # m/s, of the impact, and that at which the linear spring is as deep as Hertz's contact
 DISTURBED = 1e-6  # of that speed
 GROWTH, STEPS, LOOKS = 1e4, 2000, 10

@@ -6,7 +6,7 @@ import numpy as np
 
 from lab.studies.bench.peers.pool import Pool
 from solvers.fluid.given import EXCESS, VELOCITY_Y, VELOCITY_Z, VOLUME, Water, Y, Z
-from solvers.fluid.start.lattice import hydrostatic_excess
+from solvers.fluid.start.rest import hydrostatic_excess
 from solvers.scene import Scene
 
 GRAVITY, DENSITY = 9.81, 1000.0

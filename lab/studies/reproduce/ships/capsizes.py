@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 
 from lab.assembly.scene import vessels
 from lab.preset.find import load
-from lab.report.plots import BELOW
+from lab.report.plots import BELOW, canvas
 from lab.studies.reproduce.estimates import surely
 from lab.studies.reproduce.experiment import EXACT, Row, Told, observed
 from lab.studies.reproduce.figures import leading_number
@@ -217,8 +217,7 @@ def _heap_beside_grains(found: Mapping[str, Sequence[Outcome]]) -> Row:
 
 def _figure(maps: Mapping[str, Scan]) -> Figure:
     """Share of the reposes with which loose cargo capsizes her, over the waves; crosses: the source's."""
-    figure = Figure(figsize=SIZE, layout="constrained")
-    panels = figure.subplots(2, 2, sharex=True, sharey=True)
+    figure, panels = canvas(SIZE, 2, 2, sharex=True, sharey=True)
     for axes, (words, scanned) in zip(panels.flat, maps.items(), strict=True):
         levels = np.arange(len(scanned.amplitudes))
         drawn = axes.pcolormesh(scanned.frequencies, levels, scanned.capsized, vmin=0.0, vmax=1.0, cmap="Blues")

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from lab.assembly.scene import vessels
 from lab.preset.find import load
-from lab.report.plots import BELOW
+from lab.report.plots import BELOW, canvas
 from lab.studies.reproduce.estimates import surely
 from lab.studies.reproduce.experiment import EXACT, Told, observed
 from lab.studies.reproduce.figures import SIZE
@@ -152,14 +152,12 @@ def _end(response: Response) -> str:
 
 
 def _figure(curves: Mapping[Damping, Response]) -> Figure:
-    figure = Figure(figsize=SIZE, layout="constrained")
-    axes = figure.add_subplot()
+    figure, axes = canvas(SIZE)
     colours = colormaps["viridis"](np.linspace(0.0, 0.75, len(curves)))
     for (damping, response), colour in zip(curves.items(), colours, strict=True):
         axes.plot(response.frequency, response.amplitude, "s--", ms=4, mfc="white", color=colour, label=damping.words)
     axes.axhline(PEAK, color="black", ls=":", lw=0.8, label="the source's peak")
-    axes.set_xlabel("frequency of the waves (rad/s)")
-    axes.set_ylabel("mean amplitude of\nthe roll, frozen (deg)")
+    axes.set(xlabel="frequency of the waves (rad/s)", ylabel="mean amplitude of\nthe roll, frozen (deg)")
     axes.set_ylim(bottom=0.0)
     figure.legend(loc=BELOW, ncols=2)
     return figure

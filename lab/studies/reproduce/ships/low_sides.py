@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 from lab.assembly.scene import vessels
 from lab.preset.find import load
-from lab.report.plots import BELOW, BLUE
+from lab.report.plots import BELOW, BLUE, canvas
 from lab.studies.reproduce.estimates import chance, surely
 from lab.studies.reproduce.experiment import EXACT, Told, counted, observed
 from lab.studies.reproduce.figures import SIZE, leading_number
@@ -112,8 +112,7 @@ def _from(lost: Sequence[float], stands: Sequence[float]) -> str:
 
 def _map_figure(runs: Sequence[Outcome]) -> Figure:
     """Where she is lost with a heap, shaded by its reposes, and with beds of grains."""
-    figure = Figure(figsize=(6.4, 4.2), layout="constrained")
-    axes = figure.add_subplot()
+    figure, axes = canvas((6.4, 4.2))
     shares = np.ma.masked_equal(scan(low_ship(), *FINE).capsized, 0.0)
     shade = axes.pcolormesh(FINE[1], FINE[0], shares, cmap="Oranges", shading="nearest", vmin=-0.2, vmax=2.0)
     shade.set_rasterized(True)
@@ -129,24 +128,21 @@ def _map_figure(runs: Sequence[Outcome]) -> Figure:
             axes.plot(*place, "x", ms=5, color="black")
     axes.plot([], [], "s", color=shade.cmap(0.5), label="with a heap, of reposes from 17 to 25 deg")
     axes.plot([], [], "x", color="black", label="with frozen cargo, too")
-    axes.set_xlabel("frequency of the waves (rad/s)")
-    axes.set_ylabel("amplitude of the waves (mm)")
+    axes.set(xlabel="frequency of the waves (rad/s)", ylabel="amplitude of the waves (mm)")
     axes.grid(False)
     figure.legend(loc=BELOW, ncols=3)
     return figure
 
 
 def _figure(sizes: np.ndarray, lost: Sequence[tuple[int, int]], heap: np.ndarray) -> Figure:
-    figure = Figure(figsize=SIZE, layout="constrained")
-    axes = figure.add_subplot()
+    figure, axes = canvas(SIZE)
     axes.step(CURVE, heap, where="mid", color="0.5", label="a heap, reposes of 17 to 25 deg")
     share = np.array([k / n for k, n in lost])
     ends = np.array([chance(k, n) for k, n in lost]).T
     axes.errorbar(
         sizes, share, np.abs(ends - share), fmt="o", capsize=3, label="beds of grains, bars: Wilson's interval (95 %)"
     )
-    axes.set_xlabel("amplitude of the waves (mm)")
-    axes.set_ylabel("share with which\nshe is lost")
+    axes.set(xlabel="amplitude of the waves (mm)", ylabel="share with which\nshe is lost")
     axes.set_ylim(-0.05, 1.05)
     figure.legend(loc=BELOW, ncols=2)
     return figure

@@ -1,4 +1,4 @@
-"""Figures of the roll of ships with loose and frozen cargo, laid out as figures 7.6 to 7.19 of Spandonidis (2016)."""
+"""The roll of ships with loose and frozen cargo, drawn as figures 7.6 to 7.19 of Spandonidis (2016), and told."""
 
 from collections.abc import Collection, Sequence
 
@@ -10,13 +10,16 @@ from matplotlib.lines import Line2D
 
 from lab.measures.value import Value, over_worlds
 from lab.report.numbers import BARS
-from lab.report.plots import BELOW
-from lab.studies.reproduce.experiment import Found, Tolerance
+from lab.report.plots import BELOW, canvas
+from lab.studies.reproduce.estimates import Verdict, mean, together
+from lab.studies.reproduce.experiment import ANY, Found, Row, Tolerance, alone, counted, observed, stated
 from lab.studies.reproduce.figures import leading_number
 from lab.studies.reproduce.runs import Outcome
 
 FREQUENCY, AMPLITUDE = "waves.frequency", "waves.amplitude"
 DIGITS = Tolerance(1.0, "the source's 'approximately', to whole degrees")
+STEP = Tolerance(0.3, "the step of our frequencies")
+LARGE = 30.0  # deg: not reached with loose cargo in the source
 PEAK = 36.0, 4.4  # deg, rad/s: of frozen cargo in the source, in waves of 10 mm
 SIZE = (6.4, 5.2)
 # Of loose and of frozen cargo: mean amplitude, absolute maximum, when she capsized; and how they are drawn
@@ -34,8 +37,7 @@ def rolls_figure(found: Found, key: str, label: str, frozen: Collection[str]) ->
     Curves of every run with loose cargo, and of those named in `frozen` with frozen cargo. Ships that capsized are
     crosses at the top and in no curve.
     """
-    figure = Figure(figsize=SIZE, layout="constrained")
-    panels = figure.subplots(2, sharex=True)
+    figure, panels = canvas(SIZE, 2, sharex=True)
     colours = colormaps["viridis"](np.linspace(0.0, 0.75, len(found)))
     kinds = {LOOSE: ("loose", found), FROZEN: ("frozen", frozen)}
     drawn = [
@@ -62,9 +64,9 @@ def rolls_figure(found: Found, key: str, label: str, frozen: Collection[str]) ->
 
 def _curve(axes: Axes, at: Sequence[float], values: Sequence[Value | None], colour, label: str, style: dict) -> None:
     """Draw a curve, with a gap at each missing value."""
-    mean = [np.nan if value is None or value.value is None else value.value for value in values]
+    middle = [np.nan if value is None or value.value is None else value.value for value in values]
     spread = [0.0 if value is None or value.std is None else value.std for value in values]
-    axes.errorbar(at, mean, spread, ms=4, capsize=2, lw=1.2, color=colour, label=label, **style)
+    axes.errorbar(at, middle, spread, ms=4, capsize=2, lw=1.2, color=colour, label=label, **style)
 
 
 def _upright(one: Outcome, measure: str, capsized: str) -> Value | None:
@@ -79,3 +81,39 @@ def _upright(one: Outcome, measure: str, capsized: str) -> Value | None:
 def _capsized(one: Outcome, capsized: str) -> bool:
     """Whether any of the run's worlds did."""
     return one[capsized] is not None and one[capsized].value is not None
+
+
+def largest_rolls(found: Found) -> list[Row]:
+    """The largest rolls over the frequencies, with frozen and with loose cargo."""
+    runs, rows = found["10 mm"], []
+    frozen, loose = (_largest(runs, name) for name in ("frozen_amplitude", "roll_amplitude"))
+    if frozen:
+        value, at = frozen
+        rows.append(stated("largest with frozen cargo", PEAK[0], value, DIGITS, exact=True))
+        there = Value(at, "rad/s", worlds=(at,))
+        rows.append(stated("largest with frozen cargo: frequency", PEAK[1], there, STEP, exact=True))
+    quantity, source = "largest with loose cargo", "less than 30 deg, and less than frozen"
+    if not (loose and frozen):
+        return [*rows, observed(quantity, source, "not found", Verdict.CANNOT_TELL, ANY)]
+    rolls = mean(loose[0])
+    verdict = together([rolls.lies(-np.inf, LARGE), rolls.lies(-np.inf, frozen[0].value)])
+    return [*rows, observed(quantity, source, f"{counted(loose[0])} at {loose[1]:g} rad/s", verdict, ANY)]
+
+
+def _largest(runs: Sequence[Outcome], name: str) -> tuple[Value, float] | None:
+    """The largest value of a measure, and at which frequency."""
+    known = [(one[name], leading_number(one.setting[FREQUENCY])) for one in runs if mean(one[name]) is not None]
+    return max(known, key=lambda pair: pair[0].value, default=None)
+
+
+def end(one: Outcome) -> str:
+    """How a ship's run ended, with loose cargo and frozen."""
+    return f"{_fate(one, LOOSE)}; frozen {_fate(one, FROZEN)}"
+
+
+def _fate(one: Outcome, names: tuple[str, str, str]) -> str:
+    steady, when = one[names[0]], one[names[2]]
+    said = alone if names is FROZEN else counted
+    if when and when.value is not None:
+        return f"capsizes at {said(when)}"
+    return f"rolls {said(steady)}" if steady and steady.value is not None else "not steady"

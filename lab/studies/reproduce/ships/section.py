@@ -6,10 +6,15 @@ from math import pi
 import numpy as np
 from matplotlib.figure import Figure
 
-from lab.report.plots import BELOW, BLUE, GREY
+from lab.assembly.ship import make_water
+from lab.measures.value import Value
+from lab.preset.sections.sea import Sea
+from lab.report.plots import BELOW, BLUE, GREY, canvas
 from lab.studies.reproduce.estimates import Verdict
-from lab.studies.reproduce.experiment import Row, Told, observed
+from lab.studies.reproduce.experiment import Found, Row, Told, Tolerance, observed, stated
+from lab.studies.reproduce.figures import leading_number
 from lab.studies.reproduce.runs import Outcome
+from lab.studies.reproduce.ships.rolls import FREQUENCY
 from lab.studies.reproduce.ships.section_terms import (
     COMMON,
     FLAP,
@@ -34,6 +39,14 @@ PEAK = 5.0, 5.5  # rad/s, about the natural roll and heave
 DENSE = np.array([4.0, 4.3, 4.6, 4.8, 4.9, 5.0, 5.1, 5.2, 5.3, 5.4, 5.5, 5.7, 6.0, 6.5, 7.0, 8.0, 9.0, 10.0])  # rad/s
 SPLIT = (4.0, 6.0), (6.0, 10.0)  # rad/s, of the figure's columns
 TOPS, LOWS, HIGHS = (1.8, 2.2, 16.0), (0.1, 0.015, 0.03), (1.0, 1.2, 1.2)  # of its axes
+# Sundsdal, Greco, Hanssen and Lugni (NTNU, 2025): sway and heave over the waves' amplitude, roll over their slope's
+MEASURED = {
+    "4.143 rad/s": (0.931, 1.210, 2.356),
+    "5.194 rad/s": (0.344, 1.623, 5.933),
+    "7.004 rad/s": (0.397, 0.307, 0.331),
+}
+HEIGHT = 12.0  # mm
+MARGIN = "20 %, at least 0.1: ours, as one run was measured at each frequency"
 LIGHT, WARM = "#9ecae1", "#f4a582"
 
 
@@ -122,6 +135,22 @@ def _changed(values: np.ndarray, before: np.ndarray, unit: np.ndarray) -> list[s
     return [f"{v:.3g} ({100.0 * (v - b) / u:+.0f} %)" for v, b, u in zip(values, before, unit, strict=True)]
 
 
+def section_amplitudes(found: Found) -> list[Row]:
+    """Amplitudes of the section without cargo beside the measured ones."""
+    rows = []
+    for one in found["section"]:
+        at = str(one.setting[FREQUENCY])
+        omega, water = leading_number(at), make_water(Sea(depth=1.0), 9.81)
+        slope = np.degrees(1e-3 * HEIGHT * float(water.wave_number(omega)))
+        units = {"sway_amplitude": HEIGHT, "heave_amplitude": HEIGHT, "roll_fundamental": slope}
+        for (name, per), measured in zip(units.items(), MEASURED[at], strict=True):
+            ours = one[name]
+            found_ratio = None if ours.value is None else Value(ours.value / per, "1", worlds=(ours.value / per,))
+            allowed = Tolerance(max(0.2 * measured, 0.1), MARGIN)
+            rows.append(stated(f"{name.split('_')[0]} at {at}", measured, found_ratio, allowed, exact=True))
+    return rows
+
+
 def window(frequency: float) -> tuple[float, float]:
     """Time window (s after the flap's start): the train is steady, the model's own waves are not reflected back yet."""
     period, travel = 2.0 * pi / frequency, FLAP.distance / float(FLUME.group_speed(frequency))
@@ -131,8 +160,7 @@ def window(frequency: float) -> tuple[float, float]:
 
 def _figure(base: Model) -> Figure:
     """About the peak to the left, the small motions to the right."""
-    figure = Figure(figsize=(9.0, 8.4), layout="constrained")
-    panels = figure.subplots(3, 2)
+    figure, panels = canvas((9.0, 8.4), 3, 2)
     fine, curves = np.linspace(DENSE[0], DENSE[-1], 400), _dense()
     steady = base.steady(fine)
     for k, motion in enumerate(MOTIONS):

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from lab.preset.sections.water.liquid import spacing
-from lab.report.plots import BELOW, BLUE, GREEN, GREY, VERMILION
+from lab.report.plots import BELOW, BLUE, GREEN, GREY, VERMILION, canvas
 from lab.studies.reproduce.estimates import Estimate
 from lab.studies.reproduce.experiment import Found, Row, Told, held
 from lab.studies.reproduce.figures import SIZE
@@ -135,8 +135,7 @@ def _rows(label: str, ours: Break) -> list[Row]:
 
 
 def _figure(runs: dict[str, Outcome]) -> Figure:
-    figure = Figure(figsize=(SIZE[0] + 0.8, 3.6), layout="constrained")
-    fronts, pressures = figure.subplots(1, 2)
+    figure, (fronts, pressures) = canvas((SIZE[0] + 0.8, 3.6), 1, 2)
     _draw_fronts(fronts, runs)
     _draw_pressures(pressures, runs)
     handles, labels = fronts.get_legend_handles_labels()

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.figure import Figure
 
-from lab.report.plots import BELOW, BLUE, GREEN, VERMILION
+from lab.report.plots import BELOW, BLUE, GREEN, VERMILION, canvas
 from lab.studies.reproduce.estimates import Estimate
 from lab.studies.reproduce.experiment import Found, Row, Told, alone, held
 from lab.studies.reproduce.figures import SIZE
@@ -76,8 +76,7 @@ def _cells(label: str, one: Outcome, record: np.ndarray | None) -> list[str]:
 
 
 def _figure(runs: dict[str, Outcome], wet: Sequence[str]) -> Figure:
-    figure = Figure(figsize=(SIZE[0], 5.0), layout="constrained")
-    upper, lower = figure.subplots(2, 1, sharex=True)
+    figure, (upper, lower) = canvas((SIZE[0], 5.0), 2, 1, sharex=True)
     record = drawn(upper, MEASURED)
     for axes, column, labels in ((upper, EMPTY, [DRY]), (lower, WATER, wet)):
         if record is not None:

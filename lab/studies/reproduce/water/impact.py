@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.figure import Figure
 
-from lab.report.plots import BELOW, BLUE, GREY, VERMILION
+from lab.report.plots import BELOW, BLUE, GREY, VERMILION, canvas
 from lab.studies.reproduce.estimates import Estimate
 from lab.studies.reproduce.experiment import Found, Row, Told, held
 from lab.studies.reproduce.figures import SIZE
@@ -116,8 +116,7 @@ def _cells(label: str, one: Outcome) -> list[str]:
 
 def _figure(runs: dict[str, Outcome]) -> Figure:
     """The pressure about both impacts, cut off where short hits are."""
-    figure = Figure(figsize=(SIZE[0], 3.6), layout="constrained")
-    panels = figure.subplots(1, 2, sharey=True)
+    figure, panels = canvas((SIZE[0], 3.6), 1, 2, sharey=True)
     measured = drawn(panels[0], MEASURED)
     for axes, each in zip(panels, EXPERIMENT, strict=True):
         axes.axhspan(2.2, 5.2, color=GREY, alpha=0.15, lw=0, label="peaks of a hundred repeats, ± 2 std")

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from lab.measures.steady import harmonics
-from lab.report.plots import BELOW, BLUE, GREEN, VERMILION
+from lab.report.plots import BELOW, BLUE, GREEN, VERMILION, canvas
 from lab.studies.reproduce.estimates import Estimate
 from lab.studies.reproduce.experiment import Found, Row, Told, held
 from lab.studies.reproduce.figures import SIZE
@@ -85,8 +85,7 @@ def _first_row(label: str, one: Outcome) -> Row:
 
 
 def _waves(runs: dict[str, Outcome]) -> Figure:
-    figure = Figure(figsize=SIZE, layout="constrained")
-    axes = figure.add_subplot()
+    figure, axes = canvas(SIZE)
     for (label, one), colour in zip(runs.items(), COLOURS, strict=False):
         axes.plot(*elevation(one), color=colour, lw=1.1, label=label)
     crests = {when: size for when, size in TURNS.items() if size > 0}
@@ -134,8 +133,7 @@ def _pressure(one: Outcome) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _swings(runs: dict[str, Outcome]) -> Figure:
-    figure = Figure(figsize=SIZE, layout="constrained")
-    axes = figure.add_subplot()
+    figure, axes = canvas(SIZE)
     for (label, one), colour in zip(runs.items(), COLOURS, strict=False):
         axes.plot(*_pressure(one), color=colour, lw=1.0, label=label)
     time = np.linspace(0.0, 10.0, 400)

@@ -19,7 +19,7 @@ from lab.studies.verify.water.scenes import (
     simulated,
 )
 from solvers.fluid.given import Water
-from solvers.fluid.start.lattice import at_rest
+from solvers.fluid.start.rest import at_rest
 from solvers.motion.harmonic import Heave, Roll, Sway
 from solvers.motion.tilt import Tilt
 from solvers.scene import Scene

@@ -2,56 +2,47 @@
 
 from collections.abc import Callable, Mapping, Sequence
 
-import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
 
-from lab.report.plots import BLUE, GREEN, GREY, STYLE, VERMILION
+from lab.report.plots import BLUE, GREEN, GREY, VERMILION, canvas
 
 COLOURS = (BLUE, VERMILION, GREEN, GREY)
 
 
 def profiles(run: Sequence[tuple], exact: Callable, half: float) -> Figure:
     """Velocities (m/s) of particles across a channel at several times, and exact ones."""
-    with matplotlib.rc_context(STYLE):
-        figure = Figure(figsize=(6.4, 3.0), layout="constrained")
-        axes = figure.subplots()
-        across = np.linspace(-half, half, 200)
-        for (time, place, velocity), colour in zip(run, COLOURS, strict=True):
-            axes.plot(across, exact(across, time), color=colour, lw=1.0, label=f"{time:.3g} s")
-            axes.plot(place, velocity, ".", color=colour, ms=4)
-        axes.set_xlabel("place across (m)")
-        axes.set_ylabel("velocity (m/s)")
-        axes.legend()
+    figure, axes = canvas((6.4, 3.0))
+    across = np.linspace(-half, half, 200)
+    for (time, place, velocity), colour in zip(run, COLOURS, strict=True):
+        axes.plot(across, exact(across, time), color=colour, lw=1.0, label=f"{time:.3g} s")
+        axes.plot(place, velocity, ".", color=colour, ms=4)
+    axes.set(xlabel="place across (m)", ylabel="velocity (m/s)")
+    axes.legend()
     return figure
 
 
 def shapes(clouds: Mapping[str, np.ndarray], lines: Mapping[str, np.ndarray], unit: str) -> Figure:
     """Particles (n, 2) by a panel's title, side by side, each with a line (m, 2) where one is given."""
-    with matplotlib.rc_context(STYLE):
-        figure = Figure(figsize=(6.4, 3.2), layout="constrained")
-        for axes, (title, place) in zip(np.atleast_1d(figure.subplots(1, len(clouds))), clouds.items(), strict=True):
-            axes.plot(*place.T, ".", color=BLUE, ms=1.0)
-            if title in lines:
-                axes.plot(*lines[title].T, color=VERMILION, lw=1.0)
-            axes.set_aspect("equal")
-            axes.set_title(title)
-            axes.set_xlabel(f"y ({unit})")
-            axes.set_ylabel(f"z ({unit})")
+    figure = Figure(figsize=(6.4, 3.2), layout="constrained")
+    for axes, (title, place) in zip(np.atleast_1d(figure.subplots(1, len(clouds))), clouds.items(), strict=True):
+        axes.plot(*place.T, ".", color=BLUE, ms=1.0)
+        if title in lines:
+            axes.plot(*lines[title].T, color=VERMILION, lw=1.0)
+        axes.set_aspect("equal")
+        axes.set_title(title)
+        axes.set(xlabel=f"y ({unit})", ylabel=f"z ({unit})")
     return figure
 
 
 def courses(curves: Mapping[str, tuple[np.ndarray, np.ndarray]], axis: tuple[str, str]) -> Figure:
     """Curves by their names, exact ones (names that end in "exact") in black."""
-    with matplotlib.rc_context(STYLE):
-        figure = Figure(figsize=(6.4, 3.0), layout="constrained")
-        axes = figure.subplots()
-        colours = iter(COLOURS * 3)
-        for name, (x, y) in curves.items():
-            exact = name.endswith("exact")
-            look = {"color": "black", "ls": "--", "lw": 0.8} if exact else {"color": next(colours), "lw": 1.0}
-            axes.plot(x, y, label=name, **look)
-        axes.set_xlabel(axis[0])
-        axes.set_ylabel(axis[1])
-        axes.legend()
+    figure, axes = canvas((6.4, 3.0))
+    colours = iter(COLOURS * 3)
+    for name, (x, y) in curves.items():
+        exact = name.endswith("exact")
+        look = {"color": "black", "ls": "--", "lw": 0.8} if exact else {"color": next(colours), "lw": 1.0}
+        axes.plot(x, y, label=name, **look)
+    axes.set(xlabel=axis[0], ylabel=axis[1])
+    axes.legend()
     return figure

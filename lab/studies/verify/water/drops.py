@@ -7,12 +7,14 @@ from scipy.integrate import solve_ivp
 
 from lab.studies.case import Case, Found, Line, Picture
 from lab.studies.verify.water.drawing import courses
-from lab.studies.verify.water.scenes import LATTICE, box, filled, grid, looks, order_line, scene, seen, simulated, swing
-from solvers.fluid.given import Pull, Water
+from lab.studies.verify.water.scenes import LATTICE, box, filled, looks, order_line, scene, seen, simulated, swing
+from solvers.fluid.given import VOLUME, Pull, Water
+from solvers.fluid.start.packing import packed
 
 SECTION = "Water: drops"
 RADIUS = 1.0  # m
 ACROSS = (20, 40, 80)  # particles
+SIDES = 240  # of the polygon in place of a circle: 1e-4 less area
 STRAIN, SOUND, UNTIL = 100.0, 1400.0, 7.6e-3  # 1/s, m/s, s
 AXES = (1.9445, 0.5143)  # m, at UNTIL
 RATE, SLOW = 1.0, 0.02  # 1/s: Ω, and the strain of small swings
@@ -52,8 +54,9 @@ def strained(count: int, strain: float, rate: float, sound: float, times: np.nda
     """A drop of so many particles across, its pressure at first the exact one, ρ (σ² + Ω²)(R² − r²)/2."""
     pull = Pull(rate) if rate else None
     water = Water(2.0 * RADIUS / count, sound, alpha=alpha, walls=False, pull=pull)
-    place = grid(2.0 * RADIUS, 2.0 * RADIUS, water.spacing) - RADIUS
-    place = place[np.hypot(*place.T) < RADIUS]
+    turns = np.linspace(0.0, 2.0 * np.pi, SIDES, endpoint=False)
+    packing = packed(RADIUS * np.stack([np.cos(turns), np.sin(turns)], axis=1), RADIUS, water)
+    place = packing.points
     squeezed = 0.5 * water.density * (strain**2 + rate**2)
     drops = filled(
         place,
@@ -61,6 +64,7 @@ def strained(count: int, strain: float, rate: float, sound: float, times: np.nda
         lambda r: strain * r * [1.0, -1.0],
         lambda r: squeezed * (RADIUS**2 - (r**2).sum(axis=1)),
     )
+    drops[..., VOLUME] = packing.volume
     first, found = np.sqrt((place**2).mean(axis=0)), []
     with simulated(scene(water, drops, box(4.0, 4.0), 0.0)) as run:
         begun = run.observe()["water_total"][0]

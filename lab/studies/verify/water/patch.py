@@ -5,9 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import Delaunay, cKDTree
 
-from lab.studies.case import Case, Found, Line, Picture
+from lab.studies.case import Case, Found, Line, Picture, Table
 from lab.studies.verify.water.drawing import shapes
-from lab.studies.verify.water.scenes import box, filled, grid, looks, order_line, scene, seen, simulated
+from lab.studies.verify.water.scenes import box, filled, grid, looks, order_line, scene, simulated
+from lab.studies.verify.water.vorticity import middle_pressure
 from solvers.fluid.given import Water
 
 SECTION = "Water: drops"
@@ -16,6 +17,8 @@ SOUND = 15.0 * RATE * SIDE / np.sqrt(2.0)
 ACROSS, TIMES = (32, 64, 96), (0.5, 1.0, 1.5, 2.0)  # particles; s
 SUM = 41  # largest number of the waves in the series
 CORE = 0.25  # m: the radius of the middle, where the pressure is lowest
+MIDST = 0.15  # m: the radius within which a parabola is laid through the pressure
+FOLLOWED = (0.5, 1.0)  # s: times at which there is a reference of the pressure
 
 
 @dataclass(frozen=True)
@@ -27,6 +30,7 @@ class Patch:
     corners: np.ndarray  # distances (4,) m of the particles of the corners, over those of free flight
     hole: float  # radius of the largest empty circle in the middle, in spacings, at any of TIMES
     nearest: float  # least distance of two particles in the middle, in spacings
+    middle: np.ndarray  # pressure (2,) in the middle at FOLLOWED over ρ ω² L²
 
 
 def pressure(place: np.ndarray) -> np.ndarray:
@@ -41,27 +45,37 @@ def pressure(place: np.ndarray) -> np.ndarray:
     return 1000.0 * RATE**2 * np.einsum("in,nm,im->i", along_y, weight, along_z)
 
 
-def turned(count: int) -> Patch:
-    """A patch of so many particles across, with shifting, no walls and no gravity."""
-    water = Water(SIDE / count, SOUND, alpha=0.01, walls=False, shifting="delta-plus", speed=RATE * SIDE / np.sqrt(2.0))
+def turned(count: int, shifting: str = "delta-plus-momentum") -> Patch:
+    """A patch of so many particles across, without walls and gravity."""
+    water = Water(SIDE / count, SOUND, alpha=0.01, walls=False, shifting=shifting, speed=RATE * SIDE / np.sqrt(2.0))
     place = grid(SIDE, SIDE, water.spacing) - 0.5 * SIDE
     drops = filled(place, water, lambda r: RATE * np.stack([-r[:, 1], r[:, 0]], axis=1), pressure)
     corner = [np.argmax(place @ [a, b]) for a in (-1, 1) for b in (-1, 1)]
     start = np.hypot(*place[corner].T)
-    places, turning, holes, distances = [], [], [], []
+    places, turning, holes, distances, middle = [], [], [], [], []
     with simulated(scene(water, drops, box(4.0, 4.0), 0.0)) as run:
         mass = run.water.particles.read(run.water.particles.mass)[0][0]
         for time in looks(run, (0.0, *TIMES)):
-            place, velocity = seen(run)
+            place, velocity, pressed = (values[0] for values in run.snapshot().values())
             turning.append(mass @ (place[:, 0] * velocity[:, 1] - place[:, 1] * velocity[:, 0]))
             if time > 0.0:
                 places.append(place)
+                middle.append(in_middle(place, pressed))
                 holes.append(widest_gap(place) / water.spacing)
                 middle = place[np.hypot(*place.T) < CORE]
                 distances.append(cKDTree(middle).query(middle, 2)[0][:, 1].min() / water.spacing)
     flown = start * np.sqrt(1.0 + (RATE * time) ** 2)
     corners = np.hypot(*place[corner].T) / flown
-    return Patch(places, np.array(turning) / turning[0], corners, max(holes), min(distances))
+    followed = np.array(middle)[np.isin(TIMES, FOLLOWED)]
+    return Patch(places, np.array(turning) / turning[0], corners, max(holes), min(distances), followed)
+
+
+def in_middle(place: np.ndarray, pressed: np.ndarray) -> float:
+    """Pressure in the middle over ρ ω² L²: of the parabola a + b r² that fits pressures (n,) Pa near it best."""
+    square = (place**2).sum(axis=1)
+    near = square < MIDST**2
+    a, _ = np.linalg.lstsq(np.stack([np.ones(near.sum()), square[near]], axis=1), pressed[near], rcond=None)[0]
+    return a / (1000.0 * (RATE * SIDE) ** 2)
 
 
 def widest_gap(place: np.ndarray) -> float:
@@ -78,29 +92,46 @@ def widest_gap(place: np.ndarray) -> float:
 def rotating(fast: bool) -> Found:
     """A square patch turned loose at ω = 1 rad/s (Colagrossi 2005), without surface tension."""
     counts = ACROSS[:1] if fast else ACROSS
-    found = [turned(count) for count in counts]
-    best, drift = found[-1], np.abs(found[-1].turning - 1.0).max()
+    found, alone = [turned(count) for count in counts], turned(counts[0], "none")
+    best, drift, unshifted = found[-1], *(np.abs(one.turning - 1.0).max() for one in (found[-1], alone))
+    wanted = middle_pressure(FOLLOWED)
     lattice = "a square lattice has 0.71"
     free = "free flight: no pressure gradient in a corner"
     sharp = "the corner particle is half a spacing inside, and feels its neighbours' pressure"
     apart = "no particles in pairs"
+    flux = "the momentum of a shift is spread over neighbours, whose sums are not exact at the surface"
+    sound = "sound of the start, of a twentieth, and the corners, which are half a spacing short"
     spacings = [SIDE / count for count in counts]
     errors = [abs(one.corners.mean() - 1.0) for one in found]
+    pressures = [
+        Line(f"pressure in the middle at ωt = {time:g}, of ρ ω² L²", value, exact, "potential flow", 0.05, sound)
+        for time, value, exact in zip(FOLLOWED, best.middle, wanted, strict=True)
+    ]
     lines = [
-        Line.off("angular momentum", "kept", drift, 1e-3, "pair forces are central; shifting moves water alone"),
+        Line.off(
+            f"angular momentum, unshifted, {counts[0]} across", "kept", unshifted, 1e-3, "pair forces are central"
+        ),
+        Line.off("angular momentum, shifted", "kept", drift, 1e-2, flux),
+        *pressures,
         Line("widest gap in the middle, radius in spacings", best.hole, 0.71, lattice, 0.4, "no voids", relative=False),
         Line("least distance in the middle, in spacings", best.nearest, 1.0, "lattice", 0.5, apart, relative=False),
         Line("corners' distance, of free flight", best.corners.mean(), 1.0, free, 0.1 if fast else 0.05, sharp),
         *order_line("the corners' distance", spacings, errors, 5e-3),
     ]
-    rows = ", ".join(
-        f"{count}: {one.turning[-1] - 1:.1e}, {one.hole:.2f}, {one.nearest:.2f}, {one.corners.mean():.3f}"
-        for count, one in zip(counts, found, strict=True)
-    )
-    note = f"By particles across, the change of angular momentum, widest gap, least distance and corners: {rows}."
+    rows = [row(str(count), one) for count, one in zip(counts, found, strict=True)]
+    rows.append(row(f"{counts[0]}, unshifted", alone))
+    head = "particles across", "angular momentum", "pressure at 0.5", "at 1", "widest gap", "least distance", "corners"
+    note = "Shifting with its momentum; changes and errors in shares, distances in spacings, corners of free flight."
     shown = {f"ωt = {time:g}": place for time, place in zip(TIMES[1::2], best.places[1::2], strict=True)}
     picture = Picture("water-patch", shapes(shown, {}, "m"), "The rotating patch; its arms are its corners.")
-    return Found(lines, [picture], notes=[note])
+    return Found(lines, [picture], notes=[note], tables=[Table(head, rows)])
+
+
+def row(name: str, one: Patch) -> tuple[str, ...]:
+    """A patch in the table."""
+    errors = one.middle / middle_pressure(FOLLOWED) - 1.0
+    shares = f"{one.turning[-1] - 1.0:.1e}", *(f"{100.0 * error:.1f} %" for error in errors)
+    return name, *shares, f"{one.hole:.2f}", f"{one.nearest:.2f}", f"{one.corners.mean():.3f}"
 
 
 CASES = (Case("water-patch", SECTION, "A rotating square patch", rotating, quick=False),)

@@ -9,7 +9,7 @@ from scipy.optimize import least_squares
 
 from lab.studies.case import Line
 from solvers.fluid.given import EXCESS, VELOCITY_Y, VELOCITY_Z, VOLUME, Water
-from solvers.fluid.start.lattice import at_rest
+from solvers.fluid.start.rest import at_rest
 from solvers.scene import Scene
 from solvers.simulation import Simulation
 

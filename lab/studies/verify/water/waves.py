@@ -2,12 +2,11 @@
 
 from dataclasses import dataclass
 
-import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
 from scipy.optimize import fsolve
 
-from lab.report.plots import BLUE, GREY, STYLE, VERMILION
+from lab.report.plots import BLUE, GREY, VERMILION, canvas
 from lab.studies.case import Case, Found, Line, Picture
 from lab.studies.verify.water.scenes import (
     LATTICE,
@@ -120,17 +119,14 @@ CAPTION = "Amplitude of the standing wave's velocity; the lines are the envelope
 
 def wave_figure(rows: tuple[int, ...], waves: list[Wave], exact: complex) -> Figure:
     """Amplitudes against time, and the envelope of theory."""
-    with matplotlib.rc_context(STYLE):
-        figure = Figure(figsize=(6.4, 3.0), layout="constrained")
-        axes = figure.subplots()
-        for count, wave, colour in zip(rows, waves, (GREY, VERMILION, BLUE), strict=False):
-            axes.plot(wave.time * RATE / (2.0 * np.pi), wave.amplitude, color=colour, label=f"{count} layers", lw=1.0)
-        envelope = STEEP / K * RATE * np.exp(exact.real * waves[0].time)
-        for sign in (1.0, -1.0):
-            axes.plot(waves[0].time * RATE / (2.0 * np.pi), sign * envelope, color="black", ls="--", lw=0.8)
-        axes.set_xlabel("periods")
-        axes.set_ylabel("velocity at the surface (m/s)")
-        axes.legend()
+    figure, axes = canvas((6.4, 3.0))
+    for count, wave, colour in zip(rows, waves, (GREY, VERMILION, BLUE), strict=False):
+        axes.plot(wave.time * RATE / (2.0 * np.pi), wave.amplitude, color=colour, label=f"{count} layers", lw=1.0)
+    envelope = STEEP / K * RATE * np.exp(exact.real * waves[0].time)
+    for sign in (1.0, -1.0):
+        axes.plot(waves[0].time * RATE / (2.0 * np.pi), sign * envelope, color="black", ls="--", lw=0.8)
+    axes.set(xlabel="periods", ylabel="velocity at the surface (m/s)")
+    axes.legend()
     return figure
 
 

@@ -1,4 +1,4 @@
-"""Run the lab in child processes that are killed or deprived of resources: how each ended, and what it left."""
+"""The lab in processes of its own that are killed or lack something: how each ended, and what it left."""
 
 import os
 import signal

@@ -1,0 +1,118 @@
+"""A prismatic tank, swayed and rolled: error against spacing and speed of sound, roof contact, and what runs cost.
+
+Trimulyono, Hashimoto & Matsuda (2019), J. Mar. Sci. Eng. 7, 247. The source gives its pressures in figures only, so
+runs are compared with the finest of ours: by the root mean square difference of the pressure at P1 over nine cycles,
+which counts hits and where they come, and by the mean peak of these cycles, of means over AVERAGE.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from lab.preset.sections.water.liquid import spacing
+from lab.report.plots import BELOW, BLUE, GREEN, GREY, VERMILION, canvas
+from lab.studies.reproduce.estimates import Verdict
+from lab.studies.reproduce.experiment import Found, Row, Told, observed
+from lab.studies.reproduce.figures import SIZE
+from lab.studies.reproduce.runs import Outcome
+from lab.studies.reproduce.water.costs import COSTS, cost
+
+CYCLES = 9  # the last of a run, as in the source
+AVERAGE = 0.010  # s
+ROOF = 210.0  # mm
+FALLS = "it falls with the spacing, as the source's does from 119 to 57 Pa"
+COLOURS = (*(GREY,) * 3, GREEN, VERMILION, BLUE)
+
+
+@dataclass(frozen=True)
+class Pressure:
+    """The pressure (T,) Pa at P1 over the last CYCLES cycles, at times (T,) s."""
+
+    time: np.ndarray
+    value: np.ndarray
+
+    @property
+    def means(self) -> np.ndarray:
+        """Running means over AVERAGE."""
+        samples = max(1, round(AVERAGE / (self.time[1] - self.time[0])))
+        return np.convolve(self.value, np.full(samples, 1.0 / samples), "same")
+
+    @property
+    def mean_peak(self) -> float:
+        """Mean of the highest running mean (Pa) of each cycle."""
+        return float(np.mean([part.max() for part in np.array_split(self.means, CYCLES)]))
+
+    def off(self, other: "Pressure") -> float:
+        """Root mean square difference (Pa) from another, of running means."""
+        return float(np.sqrt(np.mean((self.means - np.interp(self.time, other.time, other.means)) ** 2)))
+
+
+def pressure(one: Outcome) -> Pressure:
+    """The pressure at the first gauge over the last cycles of the run's motion."""
+    series, motion = one.recording.series, one.recording.preset.motion
+    driven = motion.sway or motion.roll
+    time = series["time"]
+    last = time >= time[-1] - CYCLES / driven.frequency
+    return Pressure(time[last], series["gauge_pressure"][last, 0, 0])
+
+
+def convergence(found: Found) -> Told:
+    """Runs by spacing, the last the finest, and by speed of sound, beside the finest."""
+    runs = {label: outcomes[0] for label, outcomes in found.items()}
+    pressures = {label: pressure(one) for label, one in runs.items()}
+    finest = min(runs, key=lambda label: (spacing(runs[label].recording.preset), label))
+    cells = []
+    for label, one in runs.items():
+        own = pressures[label]
+        off = "" if label == finest else f"{own.off(pressures[finest]):.0f} Pa"
+        cells.append([*cost(label, one), f"{own.value.mean():.0f} Pa", f"{own.mean_peak:.0f} Pa", off, roof(one)])
+    heads = [*COSTS, "mean at P1", f"mean peak of {CYCLES} cycles", f"off {finest}", "highest water"]
+    return Told(_falls(runs, pressures, finest), _figure(pressures), [heads, *cells])
+
+
+def _falls(runs: Mapping[str, Outcome], pressures: Mapping[str, Pressure], finest: str) -> list[Row]:
+    """Whether the difference from the finest falls with the spacing, at one speed of sound."""
+    sound = runs[finest].recording.preset.water.sound_speed
+    alike = [label for label, one in runs.items() if one.recording.preset.water.sound_speed == sound]
+    alike = sorted(set(alike) - {finest}, key=lambda label: -spacing(runs[label].recording.preset))
+    if len(alike) < 2:
+        return []
+    off = [pressures[label].off(pressures[finest]) for label in alike]
+    ours = ", ".join(f"{value:.0f} Pa at {label}" for label, value in zip(alike, off, strict=True))
+    verdict = Verdict.AGREES if off == sorted(off, reverse=True) else Verdict.DIFFERS
+    return [observed(f"difference at P1 from {finest}", FALLS, ours, verdict, "each finer run is nearer")]
+
+
+def roof(one: Outcome) -> str:
+    """How high the water comes, in words."""
+    highest = one["highest_water"].value
+    within = 1e3 * spacing(one.recording.preset)  # as the measure has it
+    return f"{highest:.0f} mm{', the roof' if highest >= ROOF - within else ''}"
+
+
+def contact(found: Found) -> Told:
+    """Whether one-phase water touches the roof, by run; the source says it of a quarter full tank that rolls."""
+    runs = {label: outcomes[0] for label, outcomes in found.items()}
+    pressures = {label: pressure(one) for label, one in runs.items()}
+    rows, cells = [], []
+    for label, one in runs.items():
+        own, highest = pressures[label], roof(one)
+        if label.startswith("25 %, roll"):
+            verdict = Verdict.DIFFERS if "the roof" in highest else Verdict.AGREES
+            rows.append(observed(f"highest water, {label}", "less than the roof's 210 mm", highest, verdict))
+        cells.append([*cost(label, one), f"{own.value.mean():.0f} Pa", f"{own.mean_peak:.0f} Pa", highest])
+    heads = [*COSTS, "mean at P1", f"mean peak of {CYCLES} cycles", "highest water"]
+    return Told(rows, _figure(pressures), [heads, *cells])
+
+
+def _figure(pressures: Mapping[str, Pressure]) -> Figure:
+    """Running means of the pressure over the last three cycles."""
+    figure, axes = canvas((SIZE[0], 3.0))
+    for (label, one), colour in zip(pressures.items(), COLOURS[-len(pressures) :], strict=False):
+        late = one.time >= one.time[-1] - (one.time[-1] - one.time[0]) / 3.0
+        axes.plot(one.time[late], 1e-3 * one.means[late], lw=1.0, color=colour, label=label)
+    axes.set(xlabel="time (s)", ylabel="pressure at P1 (kPa)")
+    figure.legend(loc=BELOW, ncols=4)
+    return figure

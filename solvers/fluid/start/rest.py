@@ -1,0 +1,53 @@
+"""Water at rest: its particles, under hydrostatic pressure."""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from solvers.fluid.given import EXCESS, VOLUME, Water, Y, Z
+from solvers.fluid.start.lattice import lattice
+from solvers.fluid.start.packing import packed
+from solvers.fluid.states.tait import GAMMA
+
+EXPONENTS = {"linear": 1, "tait": GAMMA}  # γ of the equations of state
+
+
+def laid_packed(polygon: np.ndarray, level: float, water: Water) -> tuple[np.ndarray, float]:
+    """Places (n, 2) m and the volume (m²) of each, see `packed`."""
+    packing = packed(polygon, level, water)
+    return packing.points, packing.volume
+
+
+def laid_lattice(polygon: np.ndarray, level: float, water: Water) -> tuple[np.ndarray, float]:
+    """Places (n, 2) m and the volume (m²) of each, see `lattice`."""
+    return lattice(polygon, level, water.spacing)
+
+
+STARTS: dict[str, Callable[[np.ndarray, float, Water], tuple[np.ndarray, float]]] = {
+    "packed": laid_packed,
+    "lattice": laid_lattice,
+}
+
+
+def hydrostatic_excess(depth: np.ndarray, gravity: float, sound: float, state: str) -> np.ndarray:
+    """Relative excess of density s = ρ/ρ0 − 1 of water at rest at depths (m) below its surface.
+
+    dp/dz = −ρ g with p = ρ0 c0²/γ ((ρ/ρ0)^γ − 1) gives (ρ/ρ0)^(γ−1) = 1 + (γ − 1) g d/c0²; for the linear equation of
+    state, γ = 1, ρ/ρ0 = exp(g d/c0²). Own derivation.
+    """
+    share, more = gravity * np.asarray(depth, dtype=float) / sound**2, EXPONENTS[state] - 1
+    return np.expm1(np.log1p(more * share) / more) if more else np.expm1(share)
+
+
+def at_rest(polygon: np.ndarray, level: float, water: Water, gravity: float) -> np.ndarray:
+    """The particles (n, 6) of water at rest in a polygon up to a level (m); columns as of `Scene.drops`.
+
+    Each has the volume that it takes, so that its mass ρ0 (1 + s) V is that of the compressed water: with equal masses
+    the level would sink by g H²/(2 c0²). Raises ValueError if no particle fits in.
+    """
+    points, volume = STARTS[water.start](polygon, level, water)
+    drops = np.zeros((len(points), 6))
+    drops[:, [Y, Z]] = points
+    drops[:, EXCESS] = hydrostatic_excess(level - points[:, 1], gravity, water.sound_speed, water.state)
+    drops[:, VOLUME] = volume
+    return drops

@@ -1,0 +1,75 @@
+"""How codes are compared at equal error: the step each may take, the pairs that meet, and what peers are told."""
+
+import numpy as np
+import pytest
+
+from lab.base.errors import LabError
+from lab.studies.bench.peers import lammps, liggghts, peer
+from lab.studies.bench.speed import equal_error, processors
+from lab.studies.bench.speed.equal_error import PAIRS, SPEED, duration, longest_step, meeting, parted
+
+
+def erring(order: float, at_thirty: float):
+    """Rebounds whose error grows with a power of the step, and is `at_thirty` with 30 steps a collision."""
+    return lambda dt: (
+        SPEED * (0.6 + 0.6 * at_thirty * np.linspace(-1.0, 1.0, PAIRS) * (30.0 * dt / duration()) ** order)
+    )
+
+
+@pytest.mark.parametrize("order", [1.0, 2.0])
+def test_the_longest_step_is_the_one_that_just_holds_the_error(order):
+    assert longest_step(erring(order, 0.99e-2), 0.01) == pytest.approx(duration() / 30)
+    assert longest_step(erring(order, 1.01e-2), 0.01) == pytest.approx(duration() / 38)
+
+
+def test_a_step_that_is_right_by_chance_does_not_count():
+    def lucky(dt: float) -> np.ndarray:
+        off = 0.02 if 20.0 < duration() / dt < 40.0 else 0.0  # right again at longer steps
+        return np.full(PAIRS, 0.6 * (1.0 + off))
+
+    assert longest_step(lucky, 0.01) == pytest.approx(duration() / 48)
+
+
+def test_a_code_that_holds_the_error_at_no_step_is_not_compared():
+    with pytest.raises(LabError, match="restitution"):
+        longest_step(erring(0.0, 0.5), 0.01)
+
+
+def test_pairs_meet_at_moments_spread_over_a_step():
+    dt = duration() / 20
+    bed, velocity, steps = meeting(dt)
+    pairs = bed.position.reshape(PAIRS, 2, 2)
+    gap = pairs[:, 1, 0] - pairs[:, 0, 0] - 2.0 * bed.radius[0]
+    np.testing.assert_allclose(gap / (SPEED * dt), 2.0 + np.arange(PAIRS) / PAIRS, rtol=1e-9)
+    assert (pairs[1:, 0, 0] - pairs[:-1, 1, 0]).min() > SPEED * steps * dt  # no pair reaches the next
+    np.testing.assert_allclose(parted(velocity), -SPEED)
+
+
+@pytest.mark.parametrize(("code", "run"), [(lammps, lammps.run_lammps), (liggghts, liggghts.run_liggghts)])
+def test_peers_are_told_velocities_and_the_tilt(code, run, monkeypatch, tmp_path):
+    def stop(*_):
+        raise LabError("stop")
+
+    monkeypatch.setattr(peer, "execute", stop)
+    bed, velocity, _ = meeting(1e-5)
+    how = {"velocity": velocity, "tilt": np.radians(30.0), "workdir": tmp_path}
+    with pytest.raises(LabError, match="stop"):
+        run(peer.Task(bed.position, bed.radius, bed.width, 0.2, equal_error.SOFT, 1e-5, 10, **how))
+    rows = (tmp_path / peer.BED).read_text().split("Velocities\n\n")[1].splitlines()
+    np.testing.assert_allclose(np.array([row.split() for row in rows], dtype=float)[:, [1, 3]], velocity)
+    ramp = (tmp_path / peer.DECK).read_text().split("equal ramp(")[1].split(")")[0]
+    np.testing.assert_allclose([float(angle) for angle in ramp.split(",")], -30.0)
+
+
+@pytest.mark.slow
+def test_the_lab_rebounds_with_the_restitution_asked_for():
+    np.testing.assert_allclose(equal_error.rebounds_here(duration() / 100), 0.6 * SPEED, rtol=1e-3)
+
+
+def test_ratios_of_one_kind_stay_when_others_are_measured(tmp_path):
+    at_error = equal_error.kept_ratio("LAMMPS", "1 % of restitution", "at rest", np.array([4.0, 5.0]))
+    by_steps = processors.ratio("LAMMPS", *processors.SPRINGS, np.array([9.0]), np.array([3.0]))
+    for ratios in ([by_steps], [at_error]):
+        processors.keep(tmp_path, ratios)
+    kept = next(iter(processors.RECORDS.validate_python(processors.read(tmp_path / "speed-peers.json")).values()))
+    assert {one.what for one in kept.ratios} == {by_steps.what, at_error.what}

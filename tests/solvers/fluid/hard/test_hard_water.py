@@ -1,0 +1,165 @@
+"""Water in hard cases at the step that the lab derives: each runs to its end, keeps its water, and makes no energy."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import pytest
+
+from solvers.fluid.checks import residual
+from solvers.fluid.given import VELOCITY_Y, VELOCITY_Z, VOLUME, Water
+from solvers.fluid.start.lattice import at_rest
+from solvers.motion import Roll, Sway, Tilt
+from solvers.scene import Scene
+from solvers.simulation import Simulation
+from tests.oracles.water import GRAVITY, box
+
+pytestmark = pytest.mark.slow
+
+
+def tank_of(outline: np.ndarray, level: float, rows: int, within: np.ndarray | None = None, **changes) -> Scene:
+    """A tank with `rows` layers of water at rest up to a level (m), in all of it or `within` a polygon alone."""
+    spacing, sound = level / rows, 10.0 * np.sqrt(GRAVITY * level)
+    of_water = {name: changes.pop(name) for name in list(changes) if name in Water.__dataclass_fields__}
+    water = Water(**{"spacing": spacing, "sound_speed": sound} | of_water)
+    drops = at_rest(outline if within is None else within, level, water, GRAVITY)[None]
+    return Scene(np.zeros((1, 0)), outline, gravity=GRAVITY, water=water, drops=drops, **changes)
+
+
+def course(scene: Scene, times: Sequence[float]) -> list[dict[str, np.ndarray]]:
+    """What is observed at the start and at the times (s); the run ends by itself if the watch stops it."""
+    run = Simulation(scene, threads=1, arch="cpu")
+    rows = [run.observe()]
+    for time in times:
+        run.advance(round(time / run.dt) - run.steps)
+        rows.append({**run.observe(), **run.snapshot()})
+    run.close()
+    return rows
+
+
+def unaccounted(rows: list[dict[str, np.ndarray]]) -> np.ndarray:
+    """Energy of each look that nothing accounts for, over all that was exchanged until then."""
+    start = residual(rows[0], 0.0)
+    names = "water_viscous", "water_diffusive", "water_held"
+    found = []
+    for row in rows[1:]:
+        exchanged = sum(np.abs(row[name][0]) for name in names) + np.abs(row["water_work"][0])
+        found.append(residual(row, start)[0] / max(exchanged, 1e-12))
+    return np.array(found)
+
+
+def level_of(row: dict[str, np.ndarray], scene: Scene, left: float, right: float) -> float:
+    """Mean level (m) of the water between two places (m), by the volume there."""
+    here = (row["water_place"][0, :, 0] > left) & (row["water_place"][0, :, 0] < right)
+    return float(scene.drops[0, here, VOLUME].sum() / (right - left))
+
+
+def test_a_wave_of_a_fifth_of_the_shallow_speed():
+    """Ten times the largest speed of the wave by which frequencies are verified: it steepens, and may break."""
+    width, depth = 0.6, 0.15
+    scene = tank_of(box(width, 0.4), depth, 20)
+    place, wavenumber = scene.drops[0, :, :2], np.pi / width
+    push = 0.2 * np.sqrt(GRAVITY * depth) / np.sinh(wavenumber * depth)
+    scene.drops[0, :, VELOCITY_Y] = push * np.cosh(wavenumber * place[:, 1]) * np.cos(wavenumber * place[:, 0])
+    scene.drops[0, :, VELOCITY_Z] = push * np.sinh(wavenumber * place[:, 1]) * np.sin(wavenumber * place[:, 0])
+    rows = course(scene, np.arange(1, 21) * 0.5)
+    assert np.abs(unaccounted(rows)).max() < 0.05
+    assert rows[-1]["water_kinetic"][0] < 0.5 * rows[0]["water_kinetic"][0]
+
+
+def test_chamfers_of_45_degrees_under_a_strong_roll():
+    outline = np.array([[-0.2, 0.0], [0.2, 0.0], [0.3, 0.1], [0.3, 0.35], [-0.3, 0.35], [-0.3, 0.1]])
+    roll = Roll(np.radians(12.0), 0.75, centre=(0.0, 0.15))
+    rows = course(tank_of(outline, 0.15, 20, motions=[(roll,)]), np.arange(1, 17) * 0.5)
+    assert np.abs(unaccounted(rows)).max() < 0.05
+
+
+def test_a_jet_through_a_slot_of_four_spacings_levels_two_basins():
+    """From a full basin into an empty one: in the end both levels are half of the first, to a spacing."""
+    level, rows = 0.2, 40
+    slot = 4.0 * level / rows
+    outline = np.array(
+        [[-0.3, 0], [0.3, 0], [0.3, 0.5], [0.05, 0.5], [0.05, slot], [-0.05, slot], [-0.05, 0.5], [-0.3, 0.5]]
+    )
+    scene = tank_of(outline, level, rows, within=np.array([[-0.3, 0], [-0.05, 0], [-0.05, 0.5], [-0.3, 0.5]]))
+    looks = course(scene, [0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 12.0])
+    left, right = (
+        np.array([level_of(row, scene, *sides) for row in looks[1:]]) for sides in ((-0.3, -0.05), (0.05, 0.3))
+    )
+    assert right[0] > 0.0 and left[0] < level - scene.water.spacing
+    assert abs(left[-1] - right[-1]) < 1.5 * scene.water.spacing
+    assert np.abs(unaccounted(looks)).max() < 0.05
+
+
+def test_a_drop_falls_on_a_dry_floor():
+    """It hits the floor at 2.4 m/s, spreads, and comes to rest with the energy that lies on a floor has."""
+    spacing, radius, height = 4e-3, 0.05, 0.35
+    water = Water(spacing, 10.0 * np.sqrt(2.0 * GRAVITY * height))
+    square = at_rest(box(2.0 * radius, 1.0), 2.0 * radius, water, 0.0)
+    drop = square[np.hypot(square[:, 0], square[:, 1] - radius) < radius]
+    drop[:, 1] += height - radius
+    outline = box(0.6, 0.6)
+    scene = Scene(np.zeros((1, 0)), outline, gravity=GRAVITY, water=water, drops=drop[None])
+    rows = course(scene, np.arange(1, 31) * 0.1)
+    assert rows[-1]["water_centre"][0, 1] < 0.03
+    assert rows[-1]["water_kinetic"][0] < 0.05 * rows[0]["water_total"][0]
+
+
+def test_a_tank_is_turned_upside_down():
+    """The water ends where the lid was, as deep as before, and at rest."""
+    width, height, depth = 0.4, 0.4, 0.15
+    tilt = Tilt(np.radians(60.0), np.radians(180.0), centre=(0.0, 0.2))
+    scene = tank_of(box(width, height), depth, 20, motions=[(tilt,)])
+    rows = course(scene, np.arange(1, 17) * 0.5)
+    assert rows[-1]["water_centre"][0, 1] == pytest.approx(height - 0.5 * depth, abs=scene.water.spacing)
+    assert rows[-1]["water_kinetic"][0] < 0.02 * rows[0]["water_potential"][0]
+    assert np.abs(unaccounted(rows)).max() < 0.05
+
+
+def test_a_full_tank_sways_for_twenty_thousand_steps():
+    """Without a free surface the water moves as a solid: it stays at rest in the tank, which bears its mass."""
+    width, height = 0.4, 0.2
+    sway = Sway(0.02, 1.0)
+    scene = tank_of(box(width, height), height, 20, motions=[(sway,)], soft_start=1.0, full=True)
+    end = 20_000 * scene.time_step()
+    rows = course(scene, np.linspace(0.1, 1.0, 10) * end)
+    fastest = 2.0 * np.pi * sway.frequency * sway.amplitude
+    speeds = np.array([np.linalg.norm(row["water_velocity"][0], axis=1).max() for row in rows[1:]])
+    assert speeds.max() < 0.2 * fastest
+    moved = np.linalg.norm(rows[-1]["water_place"][0] - scene.drops[0, :, :2], axis=1)
+    assert moved.max() < 2.0 * scene.water.spacing
+
+
+def test_one_particle_of_depth():
+    """A single layer that slides to and fro on the floor of a swaying tank."""
+    scene = tank_of(box(0.4, 0.1), 0.01, 1, motions=[(Sway(0.02, 0.8),)], soft_start=1.0)
+    rows = course(scene, np.arange(1, 11) * 1.0)
+    assert np.abs(rows[-1]["water_centre"][0, 0]) < 0.2
+    assert rows[-1]["water_place"][0, :, 1].min() > 0.0
+
+
+def test_half_an_hour_of_resonance():
+    """Mean level and mean energy of nine cycles stay, and the account closes to a thousandth of the work done."""
+    width, depth, rows = 0.2, 0.08, 10
+    wavenumber = np.pi / width
+    frequency = np.sqrt(GRAVITY * wavenumber * np.tanh(wavenumber * depth)) / (2.0 * np.pi)
+    scene = tank_of(box(width, 0.2), depth, rows, motions=[(Sway(2e-3, float(frequency)),)], soft_start=5.0)
+    run, cycle = Simulation(scene, threads=1, arch="cpu"), 1.0 / frequency
+    start = run.observe()
+    means = {}
+    for minute in (10.0, 25.0, 27.5, 30.0):
+        run.advance(round((60.0 * minute - 9.0 * cycle) / run.dt) - run.steps)
+        looks = []
+        for _ in range(9 * 16):
+            run.advance(max(1, round(cycle / 16.0 / run.dt)))
+            looks.append(run.observe())
+        means[minute] = {
+            name: np.mean([row[name][0] for row in looks]) for name in ("water_kinetic", "water_potential")
+        }
+    energy = {minute: found["water_kinetic"] for minute, found in means.items()}
+    late = np.mean([energy[minute] for minute in (25.0, 27.5, 30.0)])
+    print(energy, residual(looks[-1], residual(start, 0.0)), looks[-1]["water_work"])
+    assert late == pytest.approx(energy[10.0], rel=0.02)
+    assert abs(residual(looks[-1], residual(start, 0.0))[0]) < 1e-3 * looks[-1]["water_work"][0]
+    mass = 1000.0 * width * depth
+    rise = (means[30.0]["water_potential"] - means[10.0]["water_potential"]) / (mass * GRAVITY)
+    assert abs(rise) < 0.05 * depth / rows
