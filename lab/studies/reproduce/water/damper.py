@@ -81,7 +81,7 @@ def _figure(runs: dict[str, Outcome], wet: Sequence[str]) -> Figure:
     for axes, column, labels in ((upper, EMPTY, [DRY]), (lower, WATER, wet)):
         if record is not None:
             axes.plot(record[TIME], record[column], color="black", lw=0.8, label="measured")
-        for label, colour in zip(labels, COLOURS, strict=False):
+        for label, colour in zip(labels, COLOURS[column == WATER :], strict=False):
             axes.plot(*roll(runs[label]), color=colour, lw=0.9, ls="--" if column == EMPTY else "-", label=label)
         axes.set_ylabel("roll (deg)")
     lower.set_xlabel("time (s)")
