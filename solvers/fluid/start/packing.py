@@ -70,7 +70,7 @@ def _packed(shapes: tuple, level: float, spacing: float, smoothing: float) -> Pa
         raise ValueError("no particle of this spacing fits in")
     rows = int(np.ceil(2.0 * smoothing - 1e-9))
     sides = [layers(polygon, spacing, rows), *(layers(hole[::-1], spacing, rows) for hole in holes)]
-    dummies, volumes = (np.concatenate(parts) for parts in zip(*sides, strict=True))
+    dummies, volumes, _ = (np.concatenate(parts) for parts in zip(*sides, strict=True))
     crowd = Crowd(scattered(polygon, holes, count), area / count, dummies, volumes, smoothing * spacing)
     steps = relax(crowd, spacing)
     return Packing(crowd.points, area / count, spacing * crowd.pushes(), crowd.covers(), steps)
