@@ -16,6 +16,8 @@ from solvers.grains.shapes.given import Shapes
 from solvers.grains.timestep import SLOWEST, limits_of_grains
 from solvers.machine.limit import Limit
 from solvers.machine.marks import EachWorld, LargestOfWorlds, NotOfBed, comparable, joined, marked
+from solvers.motion.axle import Axle
+from solvers.motion.carrier import answered_shares, limits_of_carrier
 from solvers.ship.vessel import Vessel
 from solvers.tank.parts import Part
 from solvers.tank.tank import BARE_THICKNESS, Tank
@@ -34,7 +36,8 @@ class Scene:
     - `grain`, `wall`: materials, one or one per world, none without grains. `kind` (W, n) is 0 for grains of `grain`
       and counts on through `others`, None if there is one kind; `unlike`: the contact materials of pairs of kinds.
     - `motions[w]`: the tank's motions in world w, of the same kinds in every world; or `vessels` (W,): the ships whose
-      holds the tanks are in. `interval` (s) between updates of the water's forces, by default derived.
+      holds the tanks are in, or `axles` (W,), about which they roll. `interval` (s) between updates of the forces of
+      the sea, by default derived.
     - `step` Δt in s, None: derived; `start_speed` (m/s): the highest closing speed of two grains, or of one and a wall,
       at the start; `velocity` (W, n, 2) m/s and `spin` (W, n) rad/s at the start, None: at rest.
     - `water` and its particles `drops` (W, n, 6), columns as in `solvers.fluid.given`.
@@ -68,6 +71,9 @@ class Scene:
     parts: tuple[Part, ...] = ()
     shapes: Annotated[Shapes | None, EachWorld(lambda scene: scene.shapes and scene.shapes.alike)] = None
     vessels: Annotated[Sequence[Vessel], EachWorld(lambda scene: bool(scene.vessels)), NotOfBed()] = ()
+    axles: Annotated[
+        Sequence[Axle], EachWorld(lambda scene: bool(scene.axles) and scene.axles[0].kind), NotOfBed()
+    ] = ()
     interval: Annotated[float | None, NotOfBed()] = None
     thickness: float | None = None
     length: float | None = None
@@ -113,12 +119,9 @@ class Scene:
 
     @property
     def shares(self) -> np.ndarray | None:
-        """Factors (W, pieces), 1/m, from each piece's load to the load per metre of ship; None without ships."""
-        if not self.vessels:
-            return None
+        """Factors (W, pieces) from each piece's load to that which a carrier answers to; None if none does."""
         more = len(self.parts) + bool(len(self.fixed))
-        rows = [[tank.share(vessel.length) for tank in self.tanks] for vessel in self.vessels]
-        return np.array([[*row, *row[:1] * more] for row in rows])
+        return answered_shares(self.tanks, self.vessels, self.axles, more)
 
     def per_metre(self, position: np.ndarray) -> np.ndarray:
         """Factors (W, n), 1/m, from masses at `position` (W, n, 2) m to masses per metre of ship, by their tanks."""
@@ -147,6 +150,11 @@ class Scene:
         for number, material in enumerate(self.others, start=1):
             density[self.kind == number] = material.density
         return density
+
+    @property
+    def answers(self) -> bool:
+        """Whether the tanks' motion answers to the load of what is in them."""
+        return bool(self.vessels or self.axles)
 
     @property
     def worlds(self) -> int:
@@ -218,7 +226,7 @@ class Scene:
         return float(speeds[allowed].max(initial=0.0))
 
     def step_limits(self, speed: float | None = None) -> list[Limit]:
-        """Bounds on the step, the tightest first: those of the matters, without any those of the ships.
+        """Bounds on the step, the tightest first: those of the matters, without any those of ships or axles.
 
         Grains meet at up to `speed` (m/s), by default the credible one. Without matters and ships there are none:
         prescribed motions are exact at any time. With grains the ships need none of their own, since the forces of the
@@ -226,13 +234,10 @@ class Scene:
         """
         closing = max(self.credible_speed() if speed is None else speed, SLOWEST)
         bounds = limits_of_grains(self, closing) if self.radius.size else []
-        bounds = [*bounds, *(limits_of_water(self) if self.water else ())] or self._limits_of_ships()
+        bounds = [*bounds, *(limits_of_water(self) if self.water else ())] or (
+            limits_of_carrier(self.vessels, self.axles, self.gravity)
+        )
         return sorted(bounds, key=lambda limit: limit.step)
-
-    def _limits_of_ships(self) -> list[Limit]:
-        """Bounds on the step of ships alone, for each reason that of the ship with the shortest."""
-        of_each = zip(*(vessel.step_limits for vessel in self.vessels), strict=True)
-        return [Limit(*min(bounds, key=lambda bound: bound[0]), firm=True) for bounds in of_each]
 
     def longest_step(self, longer: float) -> float:
         """The step (s) `longer` times the derived one, within the bounds that are `firm`; ∞ without bounds."""

@@ -14,7 +14,7 @@ from solvers.machine.errors import Unavailable
 from solvers.machine.state import Axes, Axis, State
 from solvers.machine.wide import real_vectors
 from solvers.matters import MATTERS
-from solvers.motion.carrier import carrier_kind, make_carrier
+from solvers.motion.carrier import make_carrier
 from solvers.motion.observer import Observer
 from solvers.scene import Scene
 from solvers.ship.body import Body, bolted
@@ -52,14 +52,13 @@ class Simulation:
         stretch: int = 1,
     ):
         self.threads = threads or runtime.available_cores()
-        answers = carrier_kind(scene.vessels).answers
-        self.arch = "cpu" if answers and arch == "auto" else runtime.choose_arch(arch, scene.precision)
+        self.arch = "cpu" if scene.answers and arch == "auto" else runtime.choose_arch(arch, scene.precision)
         runtime.initialise(self.threads, self.arch, scene.precision)
         worlds, grains = scene.radius.shape
         self.scene, self.dt = scene, scene.time_step()
         self.longest_step = scene.longest_step(1.0)  # s, the limit at set-up
         count = grains + scene.particles
-        self.schedule_name = choose_schedule(scene.schedule, self.arch, worlds, count, self.threads, answers)
+        self.schedule_name = choose_schedule(scene.schedule, self.arch, worlds, count, self.threads, scene.answers)
         self.units_a_world = units or units_a_world(self.schedule_name, worlds, count, self.threads)
         self.skin = skin or (SKIN_OF_CONVEX if scene.shapes and scene.shapes.convex else SKIN) * 2.0 * scene.mean_radius
         # Per grain all worlds share a step, and one would depend on the others.
@@ -217,7 +216,7 @@ class Simulation:
         still = ended | (self.observed == self.steps)
         for name, before in self.means.items():
             rows[name] = np.where(still.reshape(-1, *[1] * (before.ndim - 1)), before, rows[name])
-        rows |= self.carrier.account()
+        rows |= self.carrier.account(rows)
         self.observed, self.means = self.steps, {name: rows[name] for name in self.means}
         for matter in self.matters.values():
             matter.check(rows, self.time)

@@ -44,6 +44,7 @@ def build(preset: Preset, hands: Sequence[Steered] | None = None) -> tuple[Scene
         open_edges=preset.tank.open_edges,
         parts=tuple(preset.parts.values()),
         vessels=vessels(preset) * worlds,
+        axles=[preset.axle.solved] * worlds if preset.axle else (),
         thickness=preset.thickness,
         precision=preset.run.precision,
         schedule=preset.run.schedule,

@@ -15,6 +15,7 @@ it can be measured.
 from types import ModuleType
 
 from lab.measures import (
+    axle_roll,
     centre_of_mass,
     contact_number,
     critical_angle,
@@ -49,6 +50,7 @@ MEASURES = (
     ship_frozen,
     ship_stability,
     ship_power,
+    axle_roll,
     heap_angle,
     flow_rate,
     spilled,

@@ -9,7 +9,7 @@ import numpy as np
 
 from lab.base.errors import LabError
 from lab.measures.value import Value, over_worlds
-from lab.preset.sections.ship_axis import axis_motion
+from lab.preset.sections.ship import axis_motion
 from lab.recording import Recording
 from lab.recording.ship_end import VERBS, End
 from solvers.machine.errors import Unavailable

@@ -38,7 +38,7 @@ from lab.measures.ship import (
 from lab.measures.ship_frozen import frozen
 from lab.measures.spectrum import QUIETEST, amplitude_spectrum
 from lab.measures.value import Value, over_worlds
-from lab.preset.sections.ship_axis import axis_place
+from lab.preset.sections.ship import axis_place
 from lab.recording import Recording
 from lab.recording.ship_end import VERBS, End, ends
 from solvers.ship.outcome import CYCLES, Outcome

@@ -39,7 +39,8 @@ def plots(beds: Sequence[Bed], hues: Sequence[tuple]) -> list[Plot]:
     hue = dict(zip(beds, hues, strict=False))  # of the beds that are shown
     wet = [bed for bed in beds if bed.footage.water]
     of_gauges = _of_gauges(wet, hue) if wet else []
-    moved = [_of_motion(beds, hues)] if not wet or any(bed.footage.sea for bed in beds) else []
+    carried = any(bed.footage.sea or bed.footage.rail for bed in beds)
+    moved = [_of_motion(beds, hues)] if not wet or carried else []
     return (moved + of_gauges)[:MOST_PLOTS] or [_of_the_centre(wet, hue)]
 
 

@@ -22,7 +22,7 @@ from lab.paint.sea import LINE
 from lab.paint.water.gauges import Marks, hues_of
 from lab.paint.water.layer import WaterLayer
 from lab.preset.fields import taken_of
-from lab.preset.sections.ship_axis import axis_motion
+from lab.preset.sections.ship import axis_motion
 from lab.preset.sections.video import Video, colours_of
 from lab.preset.units import quoted
 
@@ -161,7 +161,7 @@ class Film:
         """Lower and upper corner (m) of the box around each tank, its parts and, up to a limit, its grains."""
         tanks = [self._seen(bed.footage.outline, bed.pose).reshape(-1, 2) for bed in self._beds]
         reached = {bed: [tank.min(axis=0), tank.max(axis=0)] for bed, tank in zip(self._beds, tanks, strict=True)}
-        for bed, frame in spread([bed for bed in self._beds if bed.footage.open_edges or bed.footage.parts]):
+        for bed, frame in spread([bed for bed in self._beds if bed.footage.protrudes]):
             places = bed.plates(frame)
             if bed.footage.open_edges and not bed.empty:
                 places.append(bed.position(frame))

@@ -11,7 +11,7 @@ import numpy as np
 from lab.base.errors import LabError, Unusable
 from lab.base.trust import BEYOND
 from lab.paint.painter import Edges
-from lab.paint.sea import Sea
+from lab.paint.sea import Rail, Sea
 from lab.paint.water.pool import Pool
 from lab.recording import Recording, open_recording
 from lab.recording.ship_end import ends
@@ -29,7 +29,8 @@ class Footage:
     those without a wall; fixed (k, 3) y, z, radius m; parts: polylines at rest (m, 2) m by name; part (F, W, P, 2):
     their displacements, m;
     matters: the keys of what the tank holds; water: its particles' volume and gauges, None without water;
-    sea: the ship and her waves if the tank is a ship's hold, else None; ends: the loss of each ship, None if not lost;
+    sea: the ship and her waves if the tank is a ship's hold, rail: that of a tank on an axle, else None;
+    ends: the loss of each ship, None if not lost;
     settings: the preset's [video]; title. Raises LabError when there is no frame or no sample.
     """
 
@@ -50,12 +51,19 @@ class Footage:
         self.shapes = recording.shapes
         self.shape_names = list(recording.preset.shapes) if self.shapes else ["disc"]
         self.open_edges, self.fixed, self.parts = recording.open_edges, recording.fixed, recording.parts
-        self.sea = Sea(recording.preset) if recording.preset.ship else None
+        self.sea, self.rail = Sea(recording.preset) if recording.preset.ship else None, None
+        if recording.preset.axle:
+            self.rail = Rail(recording.preset.axle, np.ptp(self.outline[:, 0]), self.series_time, series["axle_slide"])
         self.ends = ends(series)
         self.settings = recording.preset.video
         self.title = recording.preset.title or recording.name
         self._frames, self._waves = frames, frames["waves"][:] if "waves" in frames else None
         self._read: dict[str, tuple[int, np.ndarray]] = {}  # the frame last read of each quantity
+
+    @property
+    def protrudes(self) -> bool:
+        """Whether anything that is drawn may stand out of the tank."""
+        return bool(self.open_edges or self.parts or self.rail)
 
     @property
     def worlds(self) -> int:
@@ -159,9 +167,10 @@ class Bed:
         return np.where(near.all(axis=1, keepdims=True), place, np.nan)
 
     def plates(self, frame: int) -> list[np.ndarray]:
-        """The moving parts as polylines (m, 2) m in the tank frame, at their positions in a frame."""
-        moved = self.footage.part[frame, self.world]
-        return [line + shift for line, shift in zip(self.footage.parts.values(), moved, strict=True)]
+        """The moving parts, and a sliding mass, as polylines (m, 2) m in the tank frame at their places in a frame."""
+        moved, rail = self.footage.part[frame, self.world], self.footage.rail
+        lines = [line + shift for line, shift in zip(self.footage.parts.values(), moved, strict=True)]
+        return lines + (rail.lines(self.world, self.footage.time[frame]) if rail else [])
 
 
 @contextmanager

@@ -1,6 +1,10 @@
-"""The ship and the sea in a picture: the hull around the tank, and the water up to the free surface."""
+"""What carries a tank, in a picture.
 
-from dataclasses import replace
+A ship and the sea: the hull around the tank, and the water up to the free surface. An axle, and the mass that slides on
+a rail through it, as lines.
+"""
+
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -9,12 +13,18 @@ from lab.assembly.ship import make_water, make_waves
 from lab.paint import palette
 from lab.paint.painter import Camera, paint_tank
 from lab.preset.schema import Preset
+from lab.preset.sections.axle import Axle
 from solvers.ship.waves import Waves, soft_start
 
 WATER, SURFACE = (214, 230, 243), (70, 130, 180)
 LINE = 0.12  # thickness of the surface's line, in the units of a page
 HATCH = 4  # the edge of a box's outline that its hatch leaves open: see `Ship.corners`
 AROUND = np.array([0.45, 0.2])  # width of the sea shown beside, and above and below the hull, relative to her size
+BEYOND = 1.3  # of the farthest place of the mass: half the rail's length
+BLOCK = 0.18  # of half the rail: half the mass's side
+PIVOT = 0.012  # of the tank's width: half the axle's size
+SQUARE = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, 1.0]])
+CROSS = np.array([[-1.0, -1.0], [1.0, 1.0], [0.0, 0.0], [-1.0, 1.0], [1.0, -1.0]])
 
 
 class Sea:
@@ -89,3 +99,23 @@ class Sea:
         line = np.clip(0.5 * thick + 0.5 - np.abs(row + 0.5 - surface), 0.0, 1.0)[..., None]
         box += line * (np.array(SURFACE) - box)
         picture[first:last, columns[0] : columns[-1] + 1] = np.round(box).astype(np.uint8)
+
+
+@dataclass(frozen=True, eq=False)
+class Rail:
+    """The rail of a tank `width` m wide; `time` (T,) s and `slide` (T, W) m of the mass along it."""
+
+    axle: Axle
+    width: float
+    time: np.ndarray
+    slide: np.ndarray
+
+    def lines(self, world: int, time: float) -> list[np.ndarray]:
+        """Polylines (k, 2) m in the tank's axes at a time (s): the axle, the rail, and the mass as a crossed square."""
+        pivot = np.array(self.axle.place)
+        found = [pivot + PIVOT * self.width * CROSS]
+        if self.axle.slide is not None:
+            half = BEYOND * max(float(np.abs(self.slide).max(initial=0.0)), 0.02 * self.width)
+            mass = np.add(pivot, [float(np.interp(time, self.time, self.slide[:, world])), 0.0])
+            found += [pivot + np.array([[-half, 0.0], [half, 0.0]]), mass + BLOCK * half * SQUARE]
+        return found

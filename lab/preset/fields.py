@@ -14,6 +14,7 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_typ
 from lab.base.errors import LabError
 from solvers.machine.marks import Cheap, Doc, Interval, Unit, Usual
 
+ANY = "*"  # among the columns of a file: those of any name
 NAME = "NAME"  # stands in dotted keys for a name that users choose
 
 
@@ -34,7 +35,7 @@ class Of:
 
 @dataclass(frozen=True)
 class Columns:
-    """Marks a field whose value is a CSV file: the columns it needs, those it may have, the most rows."""
+    """Marks a field whose value is a CSV file: the columns it needs, those it may have (ANY: all), the most rows."""
 
     needed: tuple[str, ...]
     optional: tuple[str, ...] = ()

@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from lab.base import toml
+from lab.base.data import FOLDER, PREFIX, data_file
 from lab.base.errors import LabError
 from lab.base.files import read_bytes
 from lab.preset import formats
@@ -94,7 +95,19 @@ class Layer:
     def _located_value(self, value: object, rest: str) -> object:
         if rest and isinstance(value, Mapping):
             return self._with_full_path(dict(value), rest)
-        return os.path.abspath(self.folder / value) if not rest and isinstance(value, str) else value
+        if rest or not isinstance(value, str):
+            return value
+        if value.startswith(PREFIX):
+            return _measured(value)
+        return os.path.abspath(self.folder / value)
+
+
+def _measured(value: str) -> str:
+    """The path of a file of measured series. Raises LabError where it is not there."""
+    path = data_file(value.removeprefix(PREFIX))
+    if path is None:
+        raise LabError(f"{quoted(value)} is not there: set {FOLDER} to the folder of measured series that has it.")
+    return os.path.abspath(path)
 
 
 def names() -> dict[str, str]:

@@ -15,7 +15,7 @@ from pydantic import TypeAdapter, ValidationError
 from lab.base.errors import LabError
 from lab.base.toml import BARE_KEY
 from lab.preset import formats
-from lab.preset.fields import Table, Taken, taken_of
+from lab.preset.fields import ANY, Table, Taken, taken_of
 from lab.preset.reader import BOUND, check_interval
 from lab.preset.schema import Preset, check
 
@@ -78,7 +78,8 @@ def _check_columns(key: str, taken: Taken, table: Table) -> None:
     """Raise LabError for columns that a file may not have, are too long, or are no finite numbers."""
     lengths = {len(values) for values in table.columns.values()}
     allowed = {*taken.columns.needed, *taken.columns.optional}
-    if not set(taken.columns.needed) <= table.columns.keys() <= allowed or len(lengths) != 1:
+    known = ANY in allowed or table.columns.keys() <= allowed
+    if not (known and set(taken.columns.needed) <= table.columns.keys()) or len(lengths) != 1:
         raise LabError(f"{key}: its columns are not those of such a file.")
     if not 1 <= max(lengths) <= taken.columns.most:
         raise LabError(f"{key}: more rows than such a file may have.")

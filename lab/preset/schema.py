@@ -15,6 +15,7 @@ from lab.preset.accuracy import LEVELS
 from lab.preset.fields import Of, defaults_of, join, walk
 from lab.preset.reader import check_keys, read
 from lab.preset.sections import materials, shapes
+from lab.preset.sections.axle import Axle, check_axle
 from lab.preset.sections.contact import Contact
 from lab.preset.sections.grains import Grains, check_grains, check_room
 from lab.preset.sections.materials import Kind, Wall, check_cohesion, check_dissipation, check_kinds
@@ -77,6 +78,7 @@ class Preset:
         default_factory=dict
     )
     ship: Annotated[Ship | None, Doc("The ship whose hold the tank is.")] = None
+    axle: Annotated[Axle | None, Doc("The axle about which the tank rolls freely.")] = None
     sea: Annotated[Sea, Doc("The sea outside the ship.")] = field(default_factory=Sea)
     waves: Annotated[Waves | None, Doc("The waves of the sea, which travel to starboard.")] = None
     run: Annotated[Run, Cheap(), Doc("How the experiment is run.")] = field(default_factory=Run)
@@ -166,7 +168,8 @@ def check(preset: Preset) -> None:
         _check_of_grains(preset)
     check_motion(preset.motion)
     check_water(preset)
-    duration_of(preset.run, preset.motion)
+    duration = duration_of(preset.run, preset.motion)
+    check_axle(preset.axle, preset.ship is not None, bool(preset.motion.parts), bool(preset.matters), duration)
     check_parts(preset.parts, preset.tank.corners)
     check_ship(preset.ship, preset.waves, bool(preset.motion.parts), preset.tank.corners)
     check_video(preset.video, preset.matters)

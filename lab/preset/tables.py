@@ -24,6 +24,7 @@ def read_table(
     path: str, needed: Sequence[str], optional: Sequence[str] = (), key: str = "", most: int = 1_000_000
 ) -> dict[str, np.ndarray]:
     """Columns (rows,) of a CSV file by name, in the file's order: all `needed` ones and any of the `optional` ones.
+    "*" among these is for columns of any name.
 
     The first line names the columns; cells are separated by commas, or by semicolons if the first line has any. Blank
     lines and lines that begin with # are skipped. Raises LabError, one sentence that begins with the preset's `key`,
@@ -89,7 +90,7 @@ def _lines(text: str) -> Iterator[Line]:
 def _check_names(names: list[str], needed: Sequence[str], optional: Sequence[str], number: int) -> None:
     known = [*needed, *optional]
     for k, name in enumerate(names):
-        if name not in known:
+        if name not in known and "*" not in known:
             near = get_close_matches(name.lower()[:100], known, n=1)
             hint = f"did you mean {near[0]}?" if near else f"known here: {', '.join(known)}."
             raise LabError(f", line {number}: unknown column {quoted(name)}; {hint}")

@@ -49,10 +49,10 @@ CHUNK_ROWS = 1024
 ATTEMPTS, RETRY_DELAY = 100, 0.02  # attempts to open a file that another process has open, and the pause (s) between
 
 
-def series_of(afloat: bool, matters: Collection[str] = MATTERS) -> tuple[Quantity, ...]:
-    """The quantities in the series of a run with these matters; `afloat`: with those of a ship."""
+def series_of(afloat: bool, matters: Collection[str] = MATTERS, axled: bool = False) -> tuple[Quantity, ...]:
+    """The quantities in the series of a run with these matters; `afloat`: with those of a ship, `axled`: of an axle."""
     of_matters = (quantity for name in matters for quantity in OF_MATTERS[name].SERIES)
-    return (TIME, *tank.SERIES, *of_matters, *(ship.SERIES if afloat else ()))
+    return (TIME, *tank.SERIES, *of_matters, *(ship.SERIES if afloat else ()), *(tank.OF_AXLE if axled else ()))
 
 
 def frames_of(swell: bool = False, matters: Collection[str] = MATTERS) -> tuple[Quantity, ...]:
@@ -64,7 +64,7 @@ def frames_of(swell: bool = False, matters: Collection[str] = MATTERS) -> tuple[
 def tables_of(preset: Preset, steered: bool) -> dict[str, tuple[Quantity, ...]]:
     """The quantities of each table of a preset's run; `steered`: by the user in `cargolab view`."""
     afloat, matters, sizes = bool(preset.ship), preset.matters, gauges_of(preset)
-    series = tuple(quantity for quantity in series_of(afloat, matters) if sizes.get(quantity.per, 1))
+    series = tuple(quantity for quantity in series_of(afloat, matters, bool(preset.axle)) if sizes.get(quantity.per, 1))
     tables = {"series": series, "frames": frames_of(afloat and steered, matters)}
     return tables | ({"steering": STEERING} if steered else {})
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from lab import __version__
 from lab.preset.schema import Preset
-from lab.preset.sections.ship_axis import axis_place
+from lab.preset.sections.ship import axis_place
 from lab.recording.layout import fixed_text
 
 PACKAGES = ("taichi", "numpy", "scipy", "h5py")

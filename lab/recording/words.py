@@ -26,6 +26,8 @@ def recorded_by(name: object) -> str:
         return "; it is in the series (record.series_rate)."
     if name in _names(series_of(afloat=True)):
         return "; a preset with a table [ship] records it."
+    if name in _names(series_of(afloat=False, axled=True)):
+        return "; a preset with a table [axle] records it."
     if name in _names(frames_of()):
         return "; it is in the frames (record.picture_rate)."
     return "; nothing records that."

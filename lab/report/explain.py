@@ -12,7 +12,7 @@ from lab.preset.fields import join, taken_by
 from lab.preset.find import LoadedPreset
 from lab.preset.schema import Preset
 from lab.preset.units import show
-from lab.report import grains, water
+from lab.report import axle, grains, water
 from lab.report.ship import describe
 from solvers.machine.runtime import available_cores, choose_arch
 from solvers.simulation import Simulation
@@ -60,6 +60,7 @@ def explain(loaded: LoadedPreset) -> str:
         f"{preset.title}  ({loaded.name})",
         _section("Scene", _scene(preset, scene)),
         *_ship(preset, simulation),
+        *([_section("Axle", axle.described(preset))] if preset.axle else []),
         *([_section("Accuracy", grains.accuracy(preset))] if preset.grains else []),
         *([_section("Accuracy", water.accuracy(preset))] if preset.water else []),
         _section("Step", _step(scene)),
@@ -85,9 +86,9 @@ def _one_bed(preset: Preset) -> Simulation:
     """A simulation of the first bed alone, with the units of work it has among all beds; the others are alike."""
     run = preset.run
     scene, position = build(replace(preset, run=replace(run, repeats=1)))
-    arch = "cpu" if scene.vessels and run.arch == "auto" else choose_arch(run.arch, run.precision)
+    arch = "cpu" if scene.answers and run.arch == "auto" else choose_arch(run.arch, run.precision)
     sizes = run.repeats, particles(scene), run.threads or available_cores()
-    schedule = choose_schedule(run.schedule, arch, *sizes, bool(scene.vessels))
+    schedule = choose_schedule(run.schedule, arch, *sizes, scene.answers)
     units = units_a_world(schedule, *sizes)
     placed = replace(scene, schedule=schedule), position, run.threads
     return Simulation(*placed, arch=arch, units=units, stretch=stretch(preset))
@@ -110,14 +111,14 @@ def _scene(preset, scene) -> list[tuple[str, str]]:
     ]
     motions = preset.motion.parts
     parts = [_motion(name, motion, scene.soft_start) for name, motion in motions.items()]
-    rows.append(("motion", ", then ".join(parts) or "none"))
+    rows.append(("motion", ", then ".join(parts) or ("as it rolls about its axle" if preset.axle else "none")))
     rows.append(("duration", show(preset.duration, "s") + " after settling" * bool(preset.grains)))
     return rows
 
 
 def _ship(preset, simulation: Simulation) -> list[str]:
     """The section on the ship; none without a ship."""
-    if not simulation.carrier.answers:
+    if not preset.ship:
         return []
     every = int(simulation.carrier.every[0]) * simulation.dt
     slab = simulation.scene.tanks[0].thickness if preset.matters else None
@@ -191,10 +192,10 @@ def cost_in_seconds(preset, scene, simulation: Simulation) -> dict[str, float]:
     rule = "water" if scene.water else scene.shapes.contact if scene.shapes else "discs"
     duration, record = preset.duration, preset.record
     found = {
-        "to start and compile": STARTING + COMPILING[rule] + (COMPILING_SHIP if simulation.carrier.answers else 0.0),
+        "to start and compile": STARTING + COMPILING[rule] + (COMPILING_SHIP if preset.ship else 0.0),
         "of steps": _stepping(duration, preset, scene) + duration * record.series_rate * SAMPLE,
     }
-    if simulation.carrier.answers:
+    if preset.ship:
         found["of her hull and water"] = _floating(preset, simulation)
     return found | {"of figures": REPORTING, "of pictures": duration * record.picture_rate * PICTURE}
 

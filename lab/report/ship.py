@@ -5,7 +5,7 @@ from math import pi
 from lab.assembly.ship import flooding_angles
 from lab.preset.sections import ship as ships
 from lab.preset.sections.sea import Waves
-from lab.preset.sections.ship_axis import axis_place
+from lab.preset.sections.ship import axis_place
 from lab.preset.units import show
 from solvers.ship.hydrostatics import metacentric_height
 from solvers.ship.vessel import Vessel

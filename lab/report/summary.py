@@ -12,7 +12,7 @@ from lab.base.errors import LabError
 from lab.base.text import code, fenced, inline, one_line, paragraphs, printable
 from lab.measures.value import Value
 from lab.preset.fields import taken_of
-from lab.preset.sections.ship_axis import axis_place
+from lab.preset.sections.ship import axis_place
 from lab.preset.units import show
 from lab.recording import Recording, ship_end
 from lab.report import grains, water

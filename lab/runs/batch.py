@@ -64,16 +64,16 @@ class Run:
         """Whether it may share a batch; not in schedule per-band, which divides a world by the number of threads."""
         settings, worlds, count = self.loaded.resolved.run, self.scene.worlds, particles(self.scene)
         arch, threads = choose_arch(settings.arch, settings.precision), settings.threads or available_cores()
-        afloat = bool(self.scene.vessels)
-        return choose_schedule(settings.schedule, arch, worlds, count, threads, afloat) != "per-band"
+        answers = self.scene.answers
+        return choose_schedule(settings.schedule, arch, worlds, count, threads, answers) != "per-band"
 
     def device(self, worlds: int = 0) -> dict[str, object]:
         """The device for a batch of `worlds` worlds (0: the run's own): `arch`, `schedule`, on the CPU `threads`."""
         settings, own, count = self.loaded.resolved.run, self.scene.worlds, particles(self.scene)
-        afloat, worlds = bool(self.scene.vessels), worlds or own
-        arch = "cpu" if afloat and settings.arch == "auto" else choose_arch(settings.arch, settings.precision)
+        answers, worlds = self.scene.answers, worlds or own
+        arch = "cpu" if answers and settings.arch == "auto" else choose_arch(settings.arch, settings.precision)
         threads = settings.threads or available_cores()
-        schedule = choose_schedule(settings.schedule, arch, worlds, count, threads, afloat)
+        schedule = choose_schedule(settings.schedule, arch, worlds, count, threads, answers)
         if arch != "cpu":
             return {"arch": arch, "schedule": schedule}
         units = worlds * units_a_world(schedule, worlds, count, threads)

@@ -77,9 +77,9 @@ def _record(folder: Path, loaded: LoadedPreset, preset: Preset, scene: Scene, po
 
 
 def _poses(preset: Preset, scene: Scene, position: np.ndarray, times: np.ndarray) -> Iterator[np.ndarray]:
-    """Pose (1, 3) of the tank at each time (s); a ship, whose motion is not known in advance, rolls slowly."""
-    if scene.vessels or not scene.motions[0]:
-        yield from (np.array([[0.0, 0.0, ROLL * np.sin(time)]]) * bool(scene.vessels) for time in times)
+    """Pose (1, 3) of the tank at each time (s); one that answers to its load rolls slowly."""
+    if scene.answers or not scene.motions[0]:
+        yield from (np.array([[0.0, 0.0, ROLL * np.sin(time)]]) * scene.answers for time in times)
         return
     simulation = Simulation(scene, position, preset.run.threads, arch="cpu")
     try:

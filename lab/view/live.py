@@ -86,7 +86,7 @@ class Live:
     def __init__(self, loaded: LoadedPreset, folder: Path, progress: Progress) -> None:
         preset = loaded.resolved
         self.preset, self.folder, self.pieces = preset, folder, 0
-        self.helm = None if preset.ship else Helm(offered(preset))
+        self.helm = None if preset.ship or preset.axle else Helm(offered(preset))
         self.swell = swell_of(preset)
         self.run = Run(loaded, folder, *build(preset, Helm.motions() if self.helm else None))
         self._end = ExitStack()

@@ -69,7 +69,7 @@ class WaterMatter(Matter):
         self.census = Census(arrays, p, setting.walls, self.constants, setting.carrier, closed, water.levels)
         self.start = np.full(worlds, np.nan)  # J, energy at the first look
         self.thickness = tank.thickness
-        self.before = self._before()
+        self.before, self.between = self._before(), (Phase(self.note_passage),)
         self.after = (
             Phase(self.mover.kick, units),
             Phase(self.continuity.expand, units),
@@ -102,8 +102,13 @@ class WaterMatter(Matter):
 
     @ti.func
     def note_poses(self, w, t, kick, dt):
-        """Note how the tank of a world moves through the step."""
-        self.poses.note(w, t, dt)
+        """Note how the tank of a world moves as the step begins."""
+        self.poses.note_start(w, t)
+
+    @ti.func
+    def note_passage(self, w, t, kick, dt):
+        """Note how it moves through the step."""
+        self.poses.note_passage(w, t, dt)
 
     @ti.func
     def finish(self, u, frame, kick, dt):

@@ -161,7 +161,7 @@ class Afloat:
     def _typed(self, values) -> np.ndarray:
         return np.array(values, dtype=np.float64 if self.exact is ti.f64 else np.float32)
 
-    def account(self) -> dict[str, np.ndarray]:
+    def account(self, rows: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
         """Work done so far, `ship_works` (W, 4) J/m: of waves, against radiation, against viscosity, of the cargo.
 
         And the times (s) at which a ship `capsized` and `flooded`, (W,) each, −1 if that has not happened.

@@ -1,21 +1,43 @@
-"""The choice of the carrier that moves the tanks of a scene."""
+"""The choice of the carrier that moves the tanks of a scene, and what follows from it."""
 
 from collections.abc import Sequence
 
+import numpy as np
+
+from solvers.machine.limit import Limit
 from solvers.machine.state import State
 from solvers.motion.afloat import Afloat, steps_an_interval
+from solvers.motion.axle import Axle, OnAxle
 from solvers.motion.prescribed import Prescribed
 from solvers.ship.vessel import Vessel
+from solvers.tank.tank import Tank
 
 
-def carrier_kind(vessels: Sequence[Vessel]) -> type[Prescribed] | type[Afloat]:
-    """The carrier's class: `Afloat` if there are vessels, else `Prescribed`."""
-    return Afloat if vessels else Prescribed
-
-
-def make_carrier(arrays: State, scene, dt: float) -> Prescribed | Afloat:
+def make_carrier(arrays: State, scene, dt: float) -> Prescribed | Afloat | OnAxle:
     """The carrier of a scene (`solvers.scene.Scene`) with steps of dt (s)."""
     if scene.vessels:
         every = steps_an_interval(scene.vessels, scene.interval, dt)
         return Afloat(arrays, scene.vessels, scene.gravity, every)
+    if scene.axles:
+        return OnAxle(arrays, scene.axles, scene.gravity, scene.tanks[0].thickness)
     return Prescribed(arrays, scene.motions, scene.soft_start, scene.gravity)
+
+
+def answered_shares(
+    tanks: Sequence[Tank], vessels: Sequence[Vessel], axles: Sequence[Axle], more: int
+) -> np.ndarray | None:
+    """Factors (W, pieces) from each piece's load to what the carrier answers to; None for prescribed motions.
+
+    That is the load per metre of a ship, or that on the whole tank of an axle. `more` pieces are of the first tank.
+    """
+    rows = [[tank.share(vessel.length) for tank in tanks] for vessel in vessels]
+    rows = rows or [[axle.share(tank.thickness) for tank in tanks] for axle in axles]
+    return np.array([[*row, *row[:1] * more] for row in rows]) if rows else None
+
+
+def limits_of_carrier(vessels: Sequence[Vessel], axles: Sequence[Axle], gravity: float) -> list[Limit]:
+    """Bounds on the step of carriers alone, for each reason that of the one with the shortest."""
+    of_ships = zip(*(vessel.step_limits for vessel in vessels), strict=True)
+    bounds = [Limit(*min(bounds, key=lambda bound: bound[0]), firm=True) for bounds in of_ships]
+    of_axles = [axle.step_limit(gravity) for axle in axles]
+    return [*bounds, *sorted(of_axles, key=lambda limit: limit.step)[:1]]

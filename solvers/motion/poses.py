@@ -23,30 +23,46 @@ class Poses:
         own, world = arrays.under("poses"), (Axis("world", worlds),)
         names = "pull_y", "pull_z", "felt_y", "felt_z", "rate", "rate_up"
         self.felt = own.reals(world, *names, kind=own.exact, kept=False)
+        self.start = own.reals(world, "pose_y", "pose_z", "pose_roll", kind=own.exact, kept=False)
         halves = Axis("half", 2), Axis("number", 4)
         (self.drift,) = own.reals((*world, *halves), "drift", kind=own.exact, kept=False)
         names = "wall_y", "wall_z", "wall_rate", "start_y", "start_z", "start_rate"
         self.walls = own.reals(world, *names, kind=own.exact, kept=False)  # velocities in the middle, and at the start
 
     @ti.func
-    def note(self, w, t, dt):
-        """Note what the step of dt (s) from time t (s) needs."""
+    def note_start(self, w, t):
+        """Note what the forces at the beginning of a step need, at time t (s).
+
+        The walls' acceleration is as the carrier knows it. One that answers to the load knows that of its last step.
+        Only the layer of water before the walls, a smoothing length thick, feels it through the dummies' pressures. If
+        this layer were heavier than the carrier, it and the carrier would drive each other (Causin, Gerbeau & Nobile
+        2005); as it is far lighter, the delay is one of a step, in which sound crosses less than that layer.
+        """
         gravity = self.carrier.gravity[0]
         if ti.static(self.moving):
-            half = 0.5 * ti.cast(dt, self.exact)
-            start, middle = self.carrier.kinematics(w, t), self.carrier.kinematics(w, t + half)
-            end = self.carrier.kinematics(w, t + 2.0 * half)
+            start = self.carrier.kinematics(w, t)
             pull = turned(0.0, -gravity, -start[2])
             felt = turned(-start[6], -gravity - start[7], -start[2])
             self.felt[0][w], self.felt[1][w] = pull[0], pull[1]
             self.felt[2][w], self.felt[3][w] = felt[0], felt[1]
             self.felt[4][w], self.felt[5][w] = start[5], start[8]
-            self.note_half(w, AT_START, start, middle)
-            self.note_half(w, AT_MIDDLE, middle, end)
-            self.note_walls(w, 0, middle)
+            for k in ti.static(range(3)):
+                self.start[k][w] = start[k]
             self.note_walls(w, 3, start)
         else:
             self.felt[1][w], self.felt[3][w] = -gravity, -gravity
+
+    @ti.func
+    def note_passage(self, w, t, dt):
+        """Note how the tank moves through the step of dt (s) from time t (s), once its carrier has answered."""
+        if ti.static(self.moving):
+            found = self.carrier.passage(w, t, dt)
+            start = ti.Vector([self.start[k][w] for k in ti.static(range(3))])
+            middle = ti.Vector([found[k] for k in ti.static(range(6))])
+            end = ti.Vector([found[6 + k] for k in ti.static(range(3))])
+            self.note_half(w, AT_START, start, middle)
+            self.note_half(w, AT_MIDDLE, middle, end)
+            self.note_walls(w, 0, middle)
 
     @ti.func
     def note_walls(self, w, first: ti.template(), pose: ti.template()):

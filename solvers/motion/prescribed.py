@@ -54,7 +54,7 @@ class Prescribed:
     def begin(self, cargo: Callable[[], Sequence]) -> None:
         """Do nothing: the motions start with the clock."""
 
-    def account(self) -> dict[str, np.ndarray]:
+    def account(self, rows: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
         """Further output of each world: none."""
         return {}
 
@@ -102,6 +102,14 @@ class Prescribed:
                 v += ti.Vector([0.0, q[1]])
                 a += ti.Vector([0.0, q[2]])
         return ti.Vector([p[0], p[1], turn[0], v[0], v[1], turn[1], a[0], a[1], turn[2]])
+
+    @ti.func
+    def passage(self, w, t, dt):
+        """Pose and velocity in the middle of the step of dt (s) that begins at t (s), and the pose at its end."""
+        half = 0.5 * ti.cast(dt, self.exact)
+        middle, end = self.kinematics(w, t + half), self.kinematics(w, t + 2.0 * half)
+        both = [middle[0], middle[1], middle[2], middle[3], middle[4], middle[5], end[0], end[1], end[2]]
+        return ti.Vector(both)
 
     @ti.func
     def frame(self, w, t):

@@ -17,7 +17,8 @@ from solvers.tank.load import Load
 class Matter:
     """The interface of all matters, with the answers of one that has no lists and nothing to say.
 
-    A matter has a `name`, `units`, a `load` on the tank, and the phases `before` and `after` of a step. If it is
+    A matter has a `name`, `units`, a `load` on the tank, and the phases of a step: `before` the carrier answers to
+    the load, `between` that and the motion of the particles, and `after`, when these move. If it is
     `paced`, its steps may be longer than the base step, by as many as its `pace` says. If it has neighbour lists, it
     says when these are `stale`, `worn` or `asked` for in part, and rebuilds them (`sort`, `make_lists`). `of_contacts`
     are those of its quantities that are known only after a step. If it `mixes`, its particles are renumbered now and
@@ -29,6 +30,7 @@ class Matter:
     units: Units
     load: Load
     before: tuple[Phase, ...] = ()
+    between: tuple[Phase, ...] = ()
     after: tuple[Phase, ...] = ()
     paced = False
     mixes = False

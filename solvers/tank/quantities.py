@@ -1,6 +1,7 @@
 """What is known of the tank: how it moves and what loads it (`motion.observer`), and its parts (`walls`).
 
-Files of quantities import no Taichi, for those who read recordings need none.
+A tank on an axle has further ones (`motion.axle`). Files of quantities import no Taichi, for those who read recordings
+need none.
 """
 
 from solvers.machine.quantity import FREEDOMS, PLANE, Quantity
@@ -12,3 +13,14 @@ WALL_FORCE = Quantity(
 )
 SERIES = (POSE, POSE_RATE, WALL_FORCE)
 FRAMES = (POSE, Quantity("part", "m", PLANE, "displacement of each moving part in the tank", per="part"))
+OF_AXLE = (
+    Quantity("axle_moment", "N m", label="moment of the cargo on the whole tank about the axle", mean=True),
+    Quantity("axle_slide", "m", label="place of the sliding mass along its rail"),
+    Quantity("axle_energy", "J", label="kinetic and potential energy of the tank and the sliding mass, empty"),
+    Quantity(
+        "axle_works",
+        "J",
+        ("cargo", "slide", "friction", "damping"),
+        "work so far: of the cargo on the tank, of the slide, against friction, against damping",
+    ),
+)

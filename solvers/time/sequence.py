@@ -15,8 +15,9 @@ class Sequence:
     """The step that every schedule runs, for worlds that hold `matters` and are moved by a `carrier`.
 
     A step of a world at time t (s) is: every phase of `before`, in which matters compute their forces and book those on
-    the tank, and the carrier then responds to that load; the carrier's frame; every phase of `after`, in which matters
-    move. A phase with a longer pace (`Phase.every`) is run at every few steps, and its matter's load stands in between.
+    the tank; the carrier's, which responds to that load; every phase of `between`, in which matters note how the tank
+    will move; the carrier's frame; every phase of `after`, in which matters move. A phase with a longer pace
+    (`Phase.every`) is run at every few steps, and its matter's load stands in between.
     A step is `stride` base steps long. The stride changes only when all lists are rebuilt, to the least that any
     matter or the carrier allows (`pace`), and never overshoots the target. Since a quiet world seldom rebuilds its
     lists, it is asked every BAR base steps whether it may take longer ones. What a matter must offer is in
@@ -25,7 +26,8 @@ class Sequence:
 
     def __init__(self, matters: Several, carrier):
         self.matters, self.carrier = tuple(matters), carrier
-        self.before: tuple[Phase, ...] = (*(phase for matter in matters for phase in matter.before), *carrier.phases)
+        pushing = (phase for matter in matters for phase in matter.before)
+        self.before: tuple[Phase, ...] = (*pushing, *carrier.phases, *(p for m in matters for p in m.between))
         self.after: tuple[Phase, ...] = tuple(phase for matter in matters for phase in matter.after)
         alike = all(phase.every == 1 for phase in (*self.before, *self.after))
         self.paced = alike and carrier.paced and all(matter.paced for matter in matters)  # may any step be longer

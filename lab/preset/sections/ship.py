@@ -7,7 +7,9 @@ from typing import Annotated, Literal
 import numpy as np
 
 from lab.preset.outline import at_height, box_hull
+from lab.preset.units import show
 from solvers.machine.marks import Doc, Interval, Unit
+from solvers.ship.hydrostatics import turned
 
 FREEDOM = {"roll": (False, False, True), "heave-roll": (False, True, True), "sway-heave-roll": (True, True, True)}
 
@@ -140,3 +142,20 @@ class Ship:
     def heave(self) -> float:
         """Heave of the hull's origin at rest (m)."""
         return -self.draught - float(self.corners[:, 1].min())
+
+
+def axis_place(ship: Ship) -> str:
+    """Where the ship's axis is, in words."""
+    y, z = ship.about
+    beside = "" if y == 0.0 else f"{show(abs(y), 'm')} to {'starboard' if y > 0.0 else 'port'} of and "
+    return f"{beside}{show(z, 'm')} above her origin" + ("" if ship.axis else ", in the waterline")
+
+
+def axis_motion(ship: Ship, pose: np.ndarray) -> np.ndarray:
+    """Sway and heave (m) of the ship's axis from its position at rest, and roll (rad), from the tank's poses (…, 3).
+
+    Everywhere in the lab, sway and heave of a ship are defined in this way.
+    """
+    arm = turned(tuple(np.subtract(ship.hold, ship.about)), pose[..., 2])
+    rest = np.array([ship.about[0], ship.heave + ship.about[1]])
+    return np.concatenate([pose[..., :2] - arm - rest, pose[..., 2:]], axis=-1)

@@ -8,6 +8,8 @@ from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
 from pathlib import Path
 
+from lab.base.data import FOLDER, data_file
+from lab.base.errors import LabError
 from lab.base.lock import only_one
 from lab.base.progress import Progress
 from lab.studies.engine import choose
@@ -38,6 +40,7 @@ def reproduce(
     """
     known = experiments(report)
     chosen = choose(names, known, "experiment")
+    chosen = [name for name in chosen if _has_data(known[name], name, bool(names))]
     out, work = Path(out), Path(out) / ("quick" if quick else "full")
     folders = places(known, work, quick)
     told = read_findings(kept_file(report, out, quick), known, quick)
@@ -57,6 +60,15 @@ def reproduce(
         if ended:
             page = write_report(report, known, {name: folders[name] for name in ended}, out, quick)
     return page
+
+
+def _has_data(one: Experiment, name: str, asked: bool) -> bool:
+    """Whether the measured series that an experiment needs is there. Raises LabError for one that was asked for."""
+    if not one.needs or data_file(one.needs):
+        return True
+    if asked:
+        raise LabError(f"{name}: needs {one.needs}; set {FOLDER} to the folder of measured series that has it.")
+    return False
 
 
 def places(known: Mapping[str, Experiment], work: Path, quick: bool) -> dict[str, dict[str, Path]]:

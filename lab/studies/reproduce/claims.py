@@ -73,7 +73,8 @@ class Stated(Strict):
     """An experiment of the source as a file tells it; `Experiment` says what its words are.
 
     `runs_of` names the experiment whose runs it looks at, too. `figure` names a function of `registry.FIGURES` by `by`,
-    with its arguments; `tell` one of `registry.TELLS`, which gives rows, figure and table.
+    with its arguments; `tell` one of `registry.TELLS`, which gives rows, figure and table. `needs` is the measured
+    series without which it cannot be run (`lab.base.data`).
     """
 
     name: str
@@ -89,6 +90,7 @@ class Stated(Strict):
     rows: list[dict] = []
     figure: dict[str, object] = {}
     tell: str = ""
+    needs: str = ""
 
 
 class Source(Strict):
@@ -151,7 +153,8 @@ def _experiment(stated: Stated, runs: Mapping[str, Run], source: Source) -> Expe
         figure = registry.FIGURES[stated.figure["by"]](found, **draw) if stated.figure else None
         return Told(rows(claims, found, source.tolerance), figure)
 
-    words = {name: getattr(stated, name) for name in ("name", "title", "section", "states", "lost", "why", "question")}
+    told = "name", "title", "section", "states", "lost", "why", "question", "needs"
+    words = {name: getattr(stated, name) for name in told}
     shown = stated.shown.run, stated.shown.at
     return Experiment(batches=batches, tell=tell, shown=shown, point=stated.shown.point, **words)
 

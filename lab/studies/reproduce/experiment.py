@@ -45,7 +45,7 @@ class Experiment:
     `tell` compares the outcomes of the batches, each a list by the points of its grid. `lost` says what the quick runs
     leave out; `shown` is the batch of which a `point`, mostly the last, is pictured, at this fraction of its time;
     `why` explains how to read the rows, and why they differ from the source where they do; `question` says what is not
-    known of that.
+    known of that; `needs` names the measured series without which it cannot be run (`lab.base.data`).
     """
 
     name: str
@@ -58,6 +58,7 @@ class Experiment:
     shown: tuple[str, float]
     why: str = ""
     question: str = ""
+    needs: str = ""
     point: int = -1
 
 

@@ -12,7 +12,7 @@ from lab.studies.reproduce.experiment import Found, Row, Told
 from lab.studies.reproduce.grains import beds, outlines, stack
 from lab.studies.reproduce.runs import Outcome
 from lab.studies.reproduce.ships import capsizes, damping, low_sides, rolls, section
-from lab.studies.reproduce.water import dam_break, impact, prismatic, waves
+from lab.studies.reproduce.water import dam_break, damper, impact, prismatic, waves
 
 DERIVED: Mapping[str, Callable[[Sequence[Outcome], float | None], Value]] = {
     "spill_lag": beds.spill_lag,
@@ -47,6 +47,7 @@ TELLS: Mapping[str, Callable[[Found], Told]] = {
     "dam break": dam_break.tell,
     "sway beat": waves.sway_beat,
     "pitch": waves.pitch,
+    "damper": damper.tell,
     "convergence": prismatic.convergence,
     "roof": prismatic.contact,
 }

@@ -3,7 +3,7 @@
 import numpy as np
 
 from lab.paint.decorations import number
-from lab.preset.sections.ship_axis import axis_motion
+from lab.preset.sections.ship import axis_motion
 from lab.view.panel.forces import contacts_each, newtons, on_grain
 from lab.view.shown import Shown
 

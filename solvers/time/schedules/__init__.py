@@ -24,7 +24,8 @@ def choose_schedule(wanted: str, arch: str, worlds: int, grains: int, threads: i
     """
     if answering:
         if wanted == "per-grain" or arch != "cpu":
-            raise Unavailable('run.schedule: ships run per-world or per-band, on the processor; set run.arch = "cpu".')
+            kinds = "ships and tanks on axles run per-world or per-band, on the processor"
+            raise Unavailable(f'run.schedule: {kinds}; set run.arch = "cpu".')
         wanted = "per-world" if wanted == "auto" and not 2 * worlds <= threads else wanted
     if wanted != "auto":
         return wanted

@@ -18,8 +18,7 @@ from lab.preset.find import load
 from lab.preset.recorded import from_table, to_table
 from lab.preset.sections.sea import Sea as Seas
 from lab.preset.sections.sea import Waves
-from lab.preset.sections.ship import Ship
-from lab.preset.sections.ship_axis import axis_motion
+from lab.preset.sections.ship import Ship, axis_motion
 from lab.recording import open_recording
 from lab.recording.ship_end import End
 from lab.report.plots import figures

@@ -18,6 +18,7 @@ from pydantic import TypeAdapter
 
 import lab
 from lab.assembly.scene import build
+from lab.base.data import data_file
 from lab.base.errors import LabError
 from lab.measures import critical_angle
 from lab.measures.value import over_worlds
@@ -57,6 +58,8 @@ EXPERIMENTS = {name: one for part in reports() for name, one in experiments(part
 
 @pytest.mark.parametrize("name", EXPERIMENTS)
 def test_every_batch_of_every_experiment_can_be_built(name):
+    if EXPERIMENTS[name].needs and not data_file(EXPERIMENTS[name].needs):
+        pytest.skip(f"{name} needs {EXPERIMENTS[name].needs}; see CARGOLAB_DATA")
     for quick in (True, False):
         for batch in EXPERIMENTS[name].batches(quick).values():
             points = (

@@ -1,15 +1,13 @@
 """Measured series from files that are not shipped, in the folder that the environment variable CARGOLAB_DATA names."""
 
-import os
 import textwrap
-from pathlib import Path
 
 import numpy as np
 from matplotlib.axes import Axes
 
+from lab.base.data import FOLDER, data_file
 from lab.base.errors import LabError
 
-FOLDER = "CARGOLAB_DATA"
 LINE = 44  # letters, of a sentence in a figure
 
 
@@ -18,9 +16,8 @@ def series(name: str) -> np.ndarray | None:
 
     Raises LabError for a file that holds something else.
     """
-    folder = os.environ.get(FOLDER)
-    path = Path(folder or "", name)
-    if not folder or not path.is_file():
+    path = data_file(name)
+    if path is None:
         return None
     try:
         columns = np.loadtxt(path, delimiter=",", skiprows=1, ndmin=2).T

@@ -1,0 +1,51 @@
+"""The section of `cargolab explain` on an axle: the tank's own swing, the water's first one, and what drives it."""
+
+from math import pi, sqrt, tanh
+
+from lab.preset.schema import Preset
+from lab.preset.sections.axle import Axle
+from lab.preset.units import show
+
+
+def described(preset: Preset) -> list[tuple[str, str]]:
+    """Rows on the axle, each a name and a text."""
+    axle, gravity = preset.axle, preset.run.gravity
+    y, z = axle.place
+    rows = [
+        ("place", f"[{show(y, 'm')}, {show(z, 'm')}] in the tank's axes"),
+        ("empty tank", f"{axle.inertia:.4g} kg m^2 about the axle, static moment {axle.moment:.4g} kg m"),
+        ("natural period", _period(axle, gravity)),
+    ]
+    if (first := sloshing_period(preset)) is not None:
+        rows.append(("first sloshing period", f"{show(first, 's')} by linear theory, in a tank at rest"))
+    if axle.friction or axle.damping:
+        rows.append(("losses", f"{axle.friction:.3g} N m of dry friction, {axle.damping:.3g} N m s of damping"))
+    if axle.slide:
+        rows.append(("slide", f"{show(axle.slide.mass, 'kg')}, {_slide(axle)}"))
+    if axle.heel:
+        rows.append(("let go", f"at {show(axle.heel, 'rad')}, {show(axle.release, 's')} after the start"))
+    length = axle.length or preset.thickness
+    return [*rows, ("load", f"that of {show(length, 'm')} of tank, {length / preset.thickness:.4g} times the slab's")]
+
+
+def _period(axle: Axle, gravity: float) -> str:
+    period = axle.solved.natural_period(gravity)
+    return (
+        f"{show(period, 's')}, empty and undamped, of small rolls" if period else "none: empty it does not hang upright"
+    )
+
+
+def sloshing_period(preset: Preset) -> float | None:
+    """First period (s) of water in a rectangular tank, ω² = (π g/l) tanh(π d/l) (Faltinsen & Timokha 2009), or None."""
+    water, tank = preset.water, preset.tank
+    if water is None or tank.outline is not None or water.depth is None or water.full:
+        return None
+    number = pi / tank.width
+    return 2.0 * pi / sqrt(number * preset.run.gravity * tanh(number * water.depth))
+
+
+def _slide(axle: Axle) -> str:
+    slide = axle.slide
+    if slide.file is not None:
+        return f"as {slide.file.name} has it, up to {show(slide.motion.fastest(slide.soft_start), 'm/s')}"
+    return f"by {show(slide.amplitude, 'm')} with a period of {show(slide.period, 's')}"
