@@ -7,7 +7,7 @@ from math import inf
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from lab.studies.verify.impacts import Bodies, Impact, Normal, Shear
+from lab.studies.verify.impacts.law import Bodies, Impact, Normal, Shear
 from lab.studies.verify.references import (
     RIGID,
     HertzCollision,
