@@ -43,7 +43,7 @@ class Meetings:
     `along` (n,) m/s and `spin` (n,) rad/s of the first body; speed and restitution (n,) or one. The restitution is that
     at each closing speed, or for all of them at the speed `given_at`. The other body is a "plane" of Young's modulus
     `wall`, a "twin", which spins the other way, or a "giant" at rest. Under Hertz's law and along the plane Mindlin's,
-    or Haff and Werner's with a `damper` (N s/m).
+    or Haff and Werner's with a `damper` (N s/m); contact begins at each of some `phases` of a step.
     """
 
     substance: Substance
@@ -57,6 +57,8 @@ class Meetings:
     wall: float = RIGID
     given_at: float | None = None
     damper: float | None = None
+    integrator: str = "verlet"
+    phases: tuple[float, ...] = PHASES
 
     @cached_property
     def all(self) -> np.ndarray:
@@ -105,9 +107,9 @@ class Meetings:
             found.append(Impact(self.bodies, *law).meet(along, speed, spins))
         return np.array(found)
 
-    def scene(self, chosen: slice = slice(None), phases: int = len(PHASES)) -> Scene:
-        """A world for each of the meetings that are chosen, at each phase."""
-        s, rows = self.substance, np.repeat(self.all[chosen], phases, axis=0)
+    def scene(self, chosen: slice = slice(None), phases: int = 0) -> Scene:
+        """A world for each of the meetings that are chosen, at each phase, or at so many."""
+        s, rows = self.substance, np.repeat(self.all[chosen], phases or len(self.phases), axis=0)
         damped = {"shear_damping": self.damper} if self.damper else {}
         own, wall = (
             [
@@ -132,6 +134,7 @@ class Meetings:
             wall,
             tangential="haff-werner" if self.damper else "mindlin",
             gravity=0.0,
+            integrator=self.integrator,
             start_speed=fastest,
             **more,
         )
@@ -141,7 +144,7 @@ class Meetings:
         return np.array([self.scene(slice(k, k + 1), 1).time_step() for k in range(len(self.all))])
 
     def run(self, lengths: tuple[float, ...]) -> np.ndarray:
-        """What `expected` is (lengths, PHASES, n, 4), each meeting at its own derived step times the lengths."""
+        """What `expected` is (lengths, phases, n, 4), each meeting at its own derived step times the lengths."""
         scene, steps, found = self.scene(), self.steps(), []
         place = self._starts(scene, 0.0)[0]
         run = Simulation(scene, place, 1, arch="cpu")
@@ -153,12 +156,12 @@ class Meetings:
                 run.advance(int(LONGEST * self.elastic(k).duration / step))
                 found.append(self._relative(run)[k])
         run.close()
-        return np.moveaxis(np.array(found).reshape(len(lengths), len(steps), len(PHASES), 4), 1, 2)
+        return np.moveaxis(np.array(found).reshape(len(lengths), len(steps), len(self.phases), 4), 1, 2)
 
     def _starts(self, scene: Scene, step: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Places (W, n, 2) m, velocities and spins of all worlds, to touch at their phases of a step (s)."""
-        rows, other = np.repeat(self.all, len(PHASES), axis=0), self.bodies.other_radius
-        gap = (0.5 + np.tile(PHASES, len(self.all))) * step * rows[:, 3]
+        rows, other = np.repeat(self.all, len(self.phases), axis=0), self.bodies.other_radius
+        gap = (0.5 + np.tile(self.phases, len(self.all))) * step * rows[:, 3]
         base = 0.5 * np.ptp(scene.outline[:, 1]) if other else 0.0
         place = np.zeros((*scene.radius.shape, 2))
         velocity, spin = np.zeros_like(place), np.zeros(scene.radius.shape)
@@ -173,14 +176,14 @@ class Meetings:
         return place, velocity, spin
 
     def _relative(self, run: Simulation) -> np.ndarray:
-        """Velocities past the second body and both spins (n, PHASES, 4) now."""
+        """Velocities past the second body and both spins (n, phases, 4) now."""
         state = run.snapshot()
         velocity, spin = state["velocity"], state["spin"]
         if velocity.shape[1] == 1:
             velocity = np.concatenate([velocity, np.zeros_like(velocity)], axis=1)
             spin = np.concatenate([spin, np.zeros_like(spin)], axis=1)
         columns = np.concatenate([velocity[:, 0] - velocity[:, 1], spin], axis=1)
-        return columns.reshape(len(self.all), len(PHASES), 4)
+        return columns.reshape(len(self.all), len(self.phases), 4)
 
     def forces(self, lengths: tuple[float, ...]) -> list[tuple[np.ndarray, ...]]:
         """For each length of step: times since touch (T,) s, overlaps (m) and forces (N) in the solver and by Hertz.
