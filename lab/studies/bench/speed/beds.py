@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
+from lab.preset.outline import rectangle
 from solvers.grains.bed.filling import radii, start_positions
 from solvers.grains.materials import Material
 from solvers.scene import Scene
@@ -55,8 +56,7 @@ class Bed:
 
 def tank(width: float) -> np.ndarray:
     """Outline (4, 2) m of a closed tank, its floor centred on the origin."""
-    half = 0.5 * width
-    return np.array([[-half, 0.0], [half, 0.0], [half, HEIGHT], [-half, HEIGHT]])
+    return np.array(rectangle(width, HEIGHT))
 
 
 def usual_bed(work: Path, count: int) -> Bed:

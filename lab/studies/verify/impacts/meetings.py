@@ -7,6 +7,7 @@ from math import inf
 import numpy as np
 from scipy.integrate import solve_ivp
 
+from lab.preset.outline import rectangle
 from lab.studies.verify.impacts.law import Bodies, Impact, Normal, Shear
 from lab.studies.verify.references import (
     RIGID,
@@ -125,11 +126,10 @@ class Meetings:
             more = {"others": (heavy,), "kind": np.tile([0, 1], (len(rows), 1)), "unlike": (((0, 1), own[0]),)}
         slowest = self.elastic(int(self.all[:, 3].argmin())).duration
         half = 20.0 * max(size) + 20.0 * slowest * np.abs(rows[:, 1]).max()
-        outline = np.array([[-half, 0.0], [half, 0.0], [half, half], [-half, half]])
         fastest = float(np.hypot(rows[:, 1], rows[:, 3]).max())
         return Scene(
             np.tile(size, (len(rows), 1)),
-            outline,
+            np.array(rectangle(2.0 * half, half)),
             own,
             wall,
             tangential="haff-werner" if self.damper else "mindlin",
