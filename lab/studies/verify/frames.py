@@ -37,9 +37,8 @@ FLIGHT = 0.2  # s
 
 def motion_tables() -> dict:
     """The motions as a preset has them."""
-    names = ("amplitude", "frequency", "phase")
-    tables = {name: dict(zip(names, m, strict=True)) for name, m in (("sway", SWAY), ("heave", HEAVE), ("roll", ROLL))}
-    return tables | {"roll": tables["roll"] | {"amplitude": f"{ROLL[0]} rad", "centre": CENTRE}}
+    sway, heave, roll = (dict(zip(("amplitude", "frequency", "phase"), m, strict=True)) for m in (SWAY, HEAVE, ROLL))
+    return {"sway": sway, "heave": heave, "roll": roll | {"centre": CENTRE}}
 
 
 def pose(t: float) -> Pose:
