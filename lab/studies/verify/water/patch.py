@@ -99,7 +99,7 @@ def rotating(fast: bool) -> Found:
     )
     note = f"By particles across, the change of angular momentum, widest gap, least distance and corners: {rows}."
     shown = {f"ωt = {time:g}": place for time, place in zip(TIMES[1::2], best.places[1::2], strict=True)}
-    picture = Picture("water-patch", shapes(shown, {}, "m"), "The rotating patch; its arms are its corners.")
+    picture = Picture("water-patch", shapes(shown, "m"), "The rotating patch; its arms are its corners.")
     return Found(lines, [picture], notes=[note])
 
 
