@@ -82,17 +82,6 @@ def simulated(*setups: Setup, **options) -> Iterator[Simulation]:
         yield run
 
 
-def each_at_its_step(*setups: Setup) -> Iterator[tuple[int, Simulation]]:
-    """The number of each setup in turn, and a simulation whose world of that number runs at its own derived step."""
-    built = [setup.build() for setup in setups]
-    steps = [scene.step for scene, _ in built]
-    with _together(built, {}) as run:
-        scene, position = run.scene, run.snapshot()["position"]
-        for k, step in enumerate(steps):
-            again(run, position, step, scene.velocity, scene.spin)
-            yield k, run
-
-
 @contextmanager
 def _together(built: Sequence[tuple[Scene, np.ndarray]], options: Mapping) -> Iterator[Simulation]:
     scenes, positions = zip(*built, strict=True)

@@ -23,7 +23,7 @@ from solvers.scene import Scene
 from solvers.simulation import Simulation
 
 PHASES = (0.1, 0.4, 0.7)  # of a step, when contact begins
-LONGEST = 8.0  # elastic collisions; none here takes longer
+LONGEST = 12.0  # elastic collisions; none here takes longer
 HEAVIER, LARGER = 1000.0, 5.0  # density and radius of a giant, which stands for a plane
 
 
@@ -43,8 +43,9 @@ class Meetings:
 
     `along` (n,) m/s and `spin` (n,) rad/s of the first body; speed and restitution (n,) or one. The restitution is that
     at each closing speed, or for all of them at the speed `given_at`. The other body is a "plane" of Young's modulus
-    `wall`, a "twin", which spins the other way, or a "giant" at rest. Under Hertz's law and along the plane Mindlin's,
-    or Haff and Werner's with a `damper` (N s/m); contact begins at each of some `phases` of a step.
+    `wall`, a "twin", which spins the other way, or a "giant" at rest. Under the viscoelastic or another `normal`
+    law, along the plane under Mindlin's, or Haff and Werner's with a `damper` (N s/m); contact begins at some `phases`
+    of a step. The solver is told the dissipative time or, if `told`, the restitution.
     """
 
     substance: Substance
@@ -58,6 +59,8 @@ class Meetings:
     wall: float = RIGID
     given_at: float | None = None
     damper: float | None = None
+    normal: str = "hertz-viscoelastic"
+    told: bool = False
     integrator: str = "verlet"
     phases: tuple[float, ...] = PHASES
 
@@ -111,12 +114,8 @@ class Meetings:
     def scene(self, chosen: slice = slice(None), phases: int = 0) -> Scene:
         """A world for each of the meetings that are chosen, at each phase, or at so many."""
         s, rows = self.substance, np.repeat(self.all[chosen], phases or len(self.phases), axis=0)
-        damped = {"shear_damping": self.damper} if self.damper else {}
         own, wall = (
-            [
-                Material(s.density, young, s.poisson, self.friction, dissipative_time=self.time(e, speed), **damped)
-                for e, _, _, speed in rows
-            ]
+            [Material(s.density, young, s.poisson, self.friction, **self._losses(e, speed)) for e, _, _, speed in rows]
             for young in (s.young, self.wall)
         )
         size = [self.radius] + ([self.bodies.other_radius] if self.bodies.other_radius else [])
@@ -126,18 +125,26 @@ class Meetings:
             more = {"others": (heavy,), "kind": np.tile([0, 1], (len(rows), 1)), "unlike": (((0, 1), own[0]),)}
         slowest = self.elastic(int(self.all[:, 3].argmin())).duration
         half = 20.0 * max(size) + 20.0 * slowest * np.abs(rows[:, 1]).max()
+        law = "haff-werner" if self.damper else "mindlin" if self.friction else "none"
         fastest = float(np.hypot(rows[:, 1], rows[:, 3]).max())
         return Scene(
             np.tile(size, (len(rows), 1)),
             np.array(rectangle(2.0 * half, half)),
             own,
             wall,
-            tangential="haff-werner" if self.damper else "mindlin",
+            normal=self.normal,
+            tangential=law,
             gravity=0.0,
             integrator=self.integrator,
             start_speed=fastest,
             **more,
         )
+
+    def _losses(self, e: float, speed: float) -> dict[str, float]:
+        damped = {"shear_damping": self.damper} if self.damper else {}
+        if self.told:
+            return {"restitution": e, "restitution_speed": self.given_at or speed, **damped}
+        return {"dissipative_time": self.time(e, speed), **damped}
 
     def steps(self) -> np.ndarray:
         """The derived step (n,) s of every meeting by itself."""
