@@ -78,17 +78,11 @@ def grain(y: float, z: float, radius: float, vy: float = 0.0, vz: float = 0.0, s
 @contextmanager
 def simulated(*setups: Setup, **options) -> Iterator[Simulation]:
     """A simulation with a world for each setup, at the smallest of their steps, on one core unless `options` differ."""
-    with _together([setup.build() for setup in setups], options) as run:
-        yield run
-
-
-@contextmanager
-def _together(built: Sequence[tuple[Scene, np.ndarray]], options: Mapping) -> Iterator[Simulation]:
-    scenes, positions = zip(*built, strict=True)
+    scenes, positions = zip(*(setup.build() for setup in setups), strict=True)
     step = min(scene.step for scene in scenes)
     for scene in scenes:
         scene.step = step
-    run = Simulation(Scene.joined(scenes), np.concatenate(positions), **{"threads": 1, "arch": "cpu"} | dict(options))
+    run = Simulation(Scene.joined(scenes), np.concatenate(positions), **{"threads": 1, "arch": "cpu"} | options)
     try:
         yield run
     finally:
