@@ -10,6 +10,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from lab.preset.outline import rectangle
 from lab.report.page import Page
 from lab.report.plots import BLUE, GREY, VERMILION
 from lab.studies.engine import Bench
@@ -142,7 +143,7 @@ def collide(given: list[Contour], rule: str, nodes: int | None) -> np.ndarray:
     velocity[:, 0, 0], velocity[:, 1, 0] = SPEED, -SPEED
     scene = Scene(
         np.full((PAIRS, 2), RADIUS),
-        np.array([[-0.05, 0.0], [0.05, 0.0], [0.05, 0.1], [-0.05, 0.1]]),
+        np.array(rectangle(0.1, 0.1)),
         LOSSLESS,
         LOSSLESS,
         gravity=0.0,
@@ -195,7 +196,7 @@ def bed(given: list[Contour], rule: str | None, nodes: int | None) -> Simulation
     high = place[:, 1].max() + 2.0 * pitch
     scene = Scene(
         np.full((1, count), RADIUS),
-        np.array([[-0.5 * width, 0.0], [0.5 * width, 0.0], [0.5 * width, high], [-0.5 * width, high]]),
+        np.array(rectangle(width, high)),
         SOFT,
         SOFT,
         tangential="mindlin",

@@ -6,19 +6,17 @@ A case is a function in a module of this package that returns its results, and a
 from lab.studies.case import Case
 from lab.studies.suite import Suite
 from lab.studies.verify import (
-    chung_ooi,
     cohesion,
     columns,
     conservation,
     convergence,
     frames,
     friction,
-    oblique,
-    restitution,
     rolling,
     sameness,
     water,
 )
+from lab.studies.verify.impacts import chung_ooi, oblique, restitution
 
 MODULES = (
     chung_ooi,

@@ -4,6 +4,7 @@ from math import cos, pi, sin
 
 import numpy as np
 
+from lab.preset.outline import rectangle
 from lab.studies.case import Case, Found, Line
 from lab.studies.verify.plain import Pose, Tank, across, turned
 from lab.studies.verify.scenes import ACETATE, G, Setup, again, grain, simulated
@@ -36,9 +37,8 @@ FLIGHT = 0.2  # s
 
 def motion_tables() -> dict:
     """The motions as a preset has them."""
-    names = ("amplitude", "frequency", "phase")
-    tables = {name: dict(zip(names, m, strict=True)) for name, m in (("sway", SWAY), ("heave", HEAVE), ("roll", ROLL))}
-    return tables | {"roll": tables["roll"] | {"amplitude": f"{ROLL[0]} rad", "centre": CENTRE}}
+    sway, heave, roll = (dict(zip(("amplitude", "frequency", "phase"), m, strict=True)) for m in (SWAY, HEAVE, ROLL))
+    return {"sway": sway, "heave": heave, "roll": roll | {"centre": CENTRE}}
 
 
 def pose(t: float) -> Pose:
@@ -103,7 +103,7 @@ def held_tank(_: bool) -> Found:
     """A tank held at an angle is a turned tank under the same gravity."""
     radius, place = scattered(5, 8, seed=3)
     width, height = 0.026, 0.05
-    corners = np.array([[-width, 0.0], [width, 0.0], [width, 2.0 * height], [-width, 2.0 * height]]) / 2.0
+    corners = np.array(rectangle(width, height))
     contact, run = {"tangential": "mindlin", "stiffness_scale": 1e-3}, {"step": 1e-5, "force_step": True}
     states = []
     for tilted in (True, False):

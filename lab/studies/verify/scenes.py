@@ -10,7 +10,9 @@ import numpy as np
 
 from lab.assembly.scene import build
 from lab.base import toml
+from lab.preset.fields import join, taken_by
 from lab.preset.find import load
+from lab.preset.schema import Preset
 from solvers.scene import Scene
 from solvers.simulation import Simulation
 
@@ -18,29 +20,6 @@ G = 9.81  # m/s²
 # Cellulose acetate of Spandonidis (2016), table 5.2, with a restitution of our own.
 ACETATE = {"density": 1319.0, "young": 3.2e9, "poisson": 0.28, "friction": 0.25, "restitution": 0.6}
 WEIGHTLESS = 1e-15  # m/s²: a preset wants some gravity, and takes no less
-UNITS = {
-    "width": "m",
-    "height": "m",
-    "outline": "m",
-    "centre": "m",
-    "amplitude": "m",
-    "density": "kg/m^3",
-    "surface_tension": "N/m",
-    "contact_angle": "rad",
-    "bridge_volume": "m^3",
-    "young": "Pa",
-    "restitution_speed": "m/s",
-    "dissipative_time": "s",
-    "shear_damping": "N s/m",
-    "gravity": "m/s^2",
-    "step": "s",
-    "duration": "s",
-    "frequency": "Hz",
-    "phase": "rad",
-    "angle": "rad",
-    "rate": "rad/s",
-    "soft_start": "s",
-}
 
 
 @dataclass(frozen=True)
@@ -72,16 +51,19 @@ class Setup:
             return build(load(preset).resolved)
 
 
-def _with_units(table: Mapping) -> dict:
-    """A table of numbers as a preset writes them."""
+def _with_units(table: Mapping, path: str = "") -> dict:
+    """A table of numbers in SI as a preset writes them, with the units of its keys."""
+    keys = {key: join(path, key) for key in table}
     return {
-        key: _with_units(value) if isinstance(value, Mapping) else _quantity(value, UNITS.get(key))
+        key: _with_units(value, keys[key])
+        if isinstance(value, Mapping)
+        else _quantity(value, taken_by(Preset, keys[key]).symbol)
         for key, value in table.items()
     }
 
 
-def _quantity(value: object, unit: str | None) -> object:
-    if unit is None or isinstance(value, str):
+def _quantity(value: object, unit: str) -> object:
+    if unit == "1" or isinstance(value, str):
         return value
     if isinstance(value, Sequence | np.ndarray):
         return [_quantity(item, unit) for item in value]
@@ -96,28 +78,11 @@ def grain(y: float, z: float, radius: float, vy: float = 0.0, vz: float = 0.0, s
 @contextmanager
 def simulated(*setups: Setup, **options) -> Iterator[Simulation]:
     """A simulation with a world for each setup, at the smallest of their steps, on one core unless `options` differ."""
-    with _together([setup.build() for setup in setups], options) as run:
-        yield run
-
-
-def each_at_its_step(*setups: Setup) -> Iterator[tuple[int, Simulation]]:
-    """The number of each setup in turn, and a simulation whose world of that number runs at its own derived step."""
-    built = [setup.build() for setup in setups]
-    steps = [scene.step for scene, _ in built]
-    with _together(built, {}) as run:
-        scene, position = run.scene, run.snapshot()["position"]
-        for k, step in enumerate(steps):
-            again(run, position, step, scene.velocity, scene.spin)
-            yield k, run
-
-
-@contextmanager
-def _together(built: Sequence[tuple[Scene, np.ndarray]], options: Mapping) -> Iterator[Simulation]:
-    scenes, positions = zip(*built, strict=True)
+    scenes, positions = zip(*(setup.build() for setup in setups), strict=True)
     step = min(scene.step for scene in scenes)
     for scene in scenes:
         scene.step = step
-    run = Simulation(Scene.joined(scenes), np.concatenate(positions), **{"threads": 1, "arch": "cpu"} | dict(options))
+    run = Simulation(Scene.joined(scenes), np.concatenate(positions), **{"threads": 1, "arch": "cpu"} | options)
     try:
         yield run
     finally:

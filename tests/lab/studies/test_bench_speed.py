@@ -13,7 +13,7 @@ from lab.studies.bench import gpu
 from lab.studies.bench.devices import Device
 from lab.studies.bench.peers import lammps, liggghts, peer
 from lab.studies.bench.speed import beds, curves, grains, parts, processors, run_page, worlds
-from lab.studies.bench.speed.beds import ACETATE, DIAMETER, Bed, settled_bed
+from lab.studies.bench.speed.beds import ACETATE, DIAMETER, settled_bed
 from lab.studies.bench.speed.counts import GRAIN, INTEGER, PAIR, REAL, total
 from lab.studies.bench.speed.curves import Curve, Tilting
 from lab.studies.bench.speed.kernels import Limits, Parts
@@ -46,7 +46,7 @@ def test_ratios_are_within_a_round_and_the_first_round_is_a_warm_up():
 
 
 def test_a_bed_is_settled_once(tmp_path, monkeypatch):
-    settled = [Bed(np.ones(COUNT), np.zeros((COUNT, 2)), WIDTH)]
+    settled = [{"radius": np.ones(COUNT), "position": np.zeros((COUNT, 2))}]
     monkeypatch.setattr(beds, "_settled", lambda count, width, seed: settled.pop())
     first = settled_bed(tmp_path, COUNT, WIDTH)
     np.testing.assert_array_equal(settled_bed(tmp_path, COUNT, WIDTH).radius, first.radius)

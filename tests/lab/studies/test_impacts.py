@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lab.studies.verify.impacts import Bodies, Impact, Normal, Shear
+from lab.studies.verify.impacts.law import Bodies, Impact, Normal, Shear
 from lab.studies.verify.references import damping_of, dissipative_time, hertz_stiffness, sphere_mass
 from lab.studies.verify.scenes import ACETATE, WEIGHTLESS, Setup, again, grain, simulated
 from solvers.grains.restitution import damping_ratio_for

@@ -8,7 +8,7 @@ import pytest
 
 from lab.studies import verify
 from lab.studies.case import Line
-from lab.studies.verify.impacts import Bodies, Impact, Normal, Shear
+from lab.studies.verify.impacts.law import Bodies, Impact, Normal, Shear
 from lab.studies.verify.plain import Tank
 from lab.studies.verify.references import viscoelastic_rebound
 

@@ -9,6 +9,7 @@ from lab.report.page import Page
 from lab.report.plots import BLUE, GREY, VERMILION
 from lab.studies.bench.accuracy.beds import TILT, TILTED, mean_and_interval, sweep
 from lab.studies.bench.accuracy.settled import settled_scene
+from lab.studies.bench.remembered import remembered
 from solvers.motion import Tilt
 from solvers.simulation import Simulation
 
@@ -48,13 +49,11 @@ def study(page: Page, work: Path, fast: bool) -> None:
 
 def drifts(work: Path, scale: float, beds: int) -> dict[str, tuple[np.ndarray, np.ndarray]]:
     """By run, tilts (T,) in degrees and deviations (T,) in diameters from the 64-bit run; kept in `work`."""
-    kept = work / f"precision-drift-{scale:g}-{beds}.npz"
-    if not kept.is_file():
-        work.mkdir(parents=True, exist_ok=True)
-        print(f"precision: drift at a stiffness of {scale:g}", flush=True)
-        np.savez(kept, **{name: _centres(name, scale, beds) for name in (*PRECISIONS, NUDGED)})
-    with np.load(kept) as found:
-        centres = dict(found)
+    centres = remembered(
+        work / f"precision-drift-{scale:g}-{beds}.npz",
+        f"precision: drift at a stiffness of {scale:g}",
+        lambda: {name: _centres(name, scale, beds) for name in (*PRECISIONS, NUDGED)},
+    )
     diameter = 2.0 * settled_scene(kind="tilt", beds=beds, scale=scale)[0].mean_radius
     angle = ANGLE * np.arange(1, LOOKS + 1) / LOOKS
     usual = centres["f64"]

@@ -6,7 +6,7 @@ particles, which are written here. The water's plane is its (x, z) at y = 0.
 Models, the nearest to ours that it has: Wendland's kernel with the same smoothing length, artificial viscosity with the
 same α, the diffusion of density of Fourtakas et al. (2019) with the same δ = 0.1 (Antuono's it has not), Tait's
 equation of state with γ = 7 and the same speed of sound. Time step by its own default, 0.2 of the time in which sound
-crosses h; Verlet's scheme, one force evaluation a step, or its symplectic one with two.
+crosses h; Verlet's scheme, one force evaluation a step.
 
 Walls: `dbc`, its dynamic boundary particles, in one layer half a spacing behind the wall: the cheapest that it can, and
 what its users take first. `mdbc` extrapolates pressure to as many layers as the kernel reaches, and slips freely.
@@ -46,13 +46,13 @@ def available() -> str | None:
     return next(filter(None, map(shutil.which, EXECUTABLES)), None)
 
 
-def run_dualsphysics(pool: Pool, scheme: Literal["verlet", "symplectic"] = "verlet", walls: Walls = "dbc") -> PoolRun:
+def run_dualsphysics(pool: Pool, walls: Walls = "dbc") -> PoolRun:
     """Let DualSPHysics follow a pool. Raises LabError if it is not installed or stops."""
     executable = available()
     if executable is None:
         raise LabError(f"`{EXECUTABLES[0]}` is not on the PATH: install {NAME}.")
     with working_folder(pool.workdir) as folder:
-        bound = _write_case(folder, pool, scheme, walls)
+        bound = _write_case(folder, pool, walls)
         options = [f"-ompthreads:{pool.threads}", "-sv:binx", "-svres:0", "-svtimers:0"]
         before = times()
         done = subprocess.run(
@@ -69,7 +69,7 @@ def run_dualsphysics(pool: Pool, scheme: Literal["verlet", "symplectic"] = "verl
     return PoolRun(loop_s, busy * loop_s / whole, int(steps), ran, len(pool.position), frames)
 
 
-def _write_case(folder: Path, pool: Pool, scheme: str, walls: str) -> int:
+def _write_case(folder: Path, pool: Pool, walls: str) -> int:
     """Write both files; returns the number of wall particles."""
     layers = 1 if walls == "dbc" else int(np.ceil(2.0 * pool.smoothing))
     wall, nearest = wall_particles(pool, layers)
@@ -116,7 +116,7 @@ def _write_case(folder: Path, pool: Pool, scheme: str, walls: str) -> int:
     }
     part = Item("PART_0000", {"Cpart": (UINT, 0), "TimeStep": (DOUBLE, 0.0), "Npok": (UINT, len(place))}, arrays)
     write_file(folder / f"{CASE}.bi4", Item("JPartDataBi4", values, {}, [part]))
-    _write_xml(folder / f"{CASE}.xml", pool, len(wall), {"verlet": 1, "symplectic": 2}[scheme], walls)
+    _write_xml(folder / f"{CASE}.xml", pool, len(wall), walls)
     return len(wall)
 
 
@@ -133,7 +133,7 @@ def _constants(pool: Pool) -> dict[str, float]:
     }
 
 
-def _write_xml(path: Path, pool: Pool, bound: int, scheme: int, walls: str) -> None:
+def _write_xml(path: Path, pool: Pool, bound: int, walls: str) -> None:
     case = ElementTree.Element("case", app="Cargo Shift Lab")
     execution = ElementTree.SubElement(case, "execution")
     constants = ElementTree.SubElement(execution, "constants")
@@ -149,7 +149,7 @@ def _write_xml(path: Path, pool: Pool, bound: int, scheme: int, walls: str) -> N
     ElementTree.SubElement(particles, "fluid", mkfluid="0", mk="1", begin=str(bound), count=str(fluid))
     parameters = ElementTree.SubElement(execution, "parameters")
     chosen = {
-        "StepAlgorithm": scheme,
+        "StepAlgorithm": 1,  # Verlet
         "Kernel": 2,
         "ViscoTreatment": 1,
         "Visco": pool.alpha,

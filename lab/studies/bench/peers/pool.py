@@ -72,16 +72,6 @@ class PoolRun:
     particles: int
     frames: list[Frame]
 
-    @property
-    def particle_steps_per_s(self) -> float:
-        """Particles of water times steps over the wall time (1/s)."""
-        return self.particles * self.steps / self.loop_s
-
-    @property
-    def seconds_per_s(self) -> float:
-        """Physical seconds over the wall time."""
-        return self.seconds / self.loop_s
-
 
 def tait_density(pool: Pool, exponent: float) -> np.ndarray:
     """Densities (n,) whose pressures are the pool's by p = ρ0 c0²/γ ((ρ/ρ0)^γ − 1) (Cole 1948)."""

@@ -1,10 +1,12 @@
 """The settled beds whose steps are timed: acetate grains at rest in a tank, and copies of them side by side."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
+from lab.preset.outline import rectangle
+from lab.studies.bench.remembered import remembered
 from solvers.grains.bed.filling import radii, start_positions
 from solvers.grains.materials import Material
 from solvers.scene import Scene
@@ -55,8 +57,7 @@ class Bed:
 
 def tank(width: float) -> np.ndarray:
     """Outline (4, 2) m of a closed tank, its floor centred on the origin."""
-    half = 0.5 * width
-    return np.array([[-half, 0.0], [half, 0.0], [half, HEIGHT], [-half, HEIGHT]])
+    return np.array(rectangle(width, HEIGHT))
 
 
 def usual_bed(work: Path, count: int) -> Bed:
@@ -66,19 +67,12 @@ def usual_bed(work: Path, count: int) -> Bed:
 
 def settled_bed(work: Path, count: int, width: float, seed: int = 1) -> Bed:
     """A bed of `count` grains at rest in a tank `width` (m) wide, from the folder `work`, where it is kept."""
-    kept = work / f"bed-{count}-{1e3 * width:g}-{seed}.npz"
-    if not kept.is_file():
-        print(f"settling {count} grains", flush=True)
-        work.mkdir(parents=True, exist_ok=True)
-        part = kept.with_suffix(".part.npz")
-        bed = _settled(count, width, seed)
-        np.savez(part, radius=bed.radius, position=bed.position)
-        part.replace(kept)
-    with np.load(kept) as found:
-        return Bed(found["radius"], found["position"], width)
+    path = work / f"bed-{count}-{1e3 * width:g}-{seed}.npz"
+    found = remembered(path, f"settling {count} grains", lambda: _settled(count, width, seed))
+    return Bed(found["radius"], found["position"], width)
 
 
-def _settled(count: int, width: float, seed: int) -> Bed:
+def _settled(count: int, width: float, seed: int) -> dict[str, np.ndarray]:
     random = np.random.default_rng(seed)
     radius = radii(count, DIAMETER, SPREAD, random)
     bed = Bed(radius, start_positions(radius, tank(width), random), width)
@@ -88,4 +82,4 @@ def _settled(count: int, width: float, seed: int) -> Bed:
     run.close()
     # Column by column, as the solver orders large worlds itself.
     order = np.lexsort((position[:, 1], np.floor(position[:, 0] / DIAMETER)))
-    return replace(bed, radius=radius[order], position=position[order])
+    return {"radius": radius[order], "position": position[order]}

@@ -1,9 +1,11 @@
 """Cost of precision, schedule and law on one bed."""
 
+from collections.abc import Mapping
+from functools import partial
 from pathlib import Path
 
 from lab.report.page import Page
-from lab.studies.bench.speed.beds import usual_bed
+from lab.studies.bench.speed.beds import Bed, usual_bed
 from lab.studies.bench.speed.workers import Worker, compared, millions, ratio
 from solvers.machine.runtime import available_cores
 
@@ -21,30 +23,27 @@ def study(page: Page, work: Path, fast: bool) -> None:
     page.section("Precision, schedule and law")
     page.say(f"""One world of {count} grains. A world runs on one core, its bands and its grains on {cores}; grains on
         their own are a schedule for graphics processors. Mixed keeps places in 64 bits and the rest in 32.""")
-    print("choices: precision and schedule", flush=True)
-    made = {
-        (precision, schedule): lambda p=precision, s=schedule: Worker(bed, threads[s], precision=p, schedule=s)
+    ways = {
+        (precision, schedule): {"threads": threads[schedule], "precision": precision, "schedule": schedule}
         for precision in PRECISIONS
         for schedule in SCHEDULES
     }
-    found = compared(made, turns, seconds)
-    usual = found[PRECISIONS[0], SCHEDULES[0]]
-    page.table(
-        ["precision", "schedule", "M", f"ratio to {PRECISIONS[0]}, {SCHEDULES[0]}"],
-        [[*name, millions(speeds), ratio(speeds, usual)] for name, speeds in found.items()],
-    )
-    print("choices: laws", flush=True)
-    made = {
-        (tangential, rolling): lambda t=tangential, r=rolling: Worker(
-            bed, schedule="per-world", tangential=t, rolling=r
-        )
+    _compare(page, bed, ("precision", "schedule"), ways, turns, seconds)
+    laws = {
+        (tangential, rolling): {"schedule": "per-world", "tangential": tangential, "rolling": rolling}
         for tangential in TANGENTIAL
         for rolling in ROLLING
     }
-    found = compared(made, turns, seconds)
-    usual = found[TANGENTIAL[0], ROLLING[0]]
     page.say("Laws, on one core in 64 bits:")
+    _compare(page, bed, ("friction", "rolling resistance"), laws, turns, seconds)
+
+
+def _compare(page: Page, bed: Bed, kinds: tuple[str, str], ways: Mapping, turns: int, seconds: float) -> None:
+    """Time workers made in these ways, and add a table with their ratios to the first."""
+    print(f"choices: {' and '.join(kinds)}", flush=True)
+    found = compared({name: partial(Worker, bed, **how) for name, how in ways.items()}, turns, seconds)
+    usual = next(iter(found))
     page.table(
-        ["friction", "rolling resistance", "M", f"ratio to {TANGENTIAL[0]}, {ROLLING[0]}"],
-        [[*name, millions(speeds), ratio(speeds, usual)] for name, speeds in found.items()],
+        [*kinds, "M", f"ratio to {', '.join(usual)}"],
+        [[*name, millions(speeds), ratio(speeds, found[usual])] for name, speeds in found.items()],
     )

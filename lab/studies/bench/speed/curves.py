@@ -13,6 +13,7 @@ from lab.report.page import Page
 from lab.report.plots import BELOW, BLUE, GREEN, VERMILION
 from lab.studies.bench.peers import lammps, liggghts
 from lab.studies.bench.peers.peer import Task
+from lab.studies.bench.remembered import remembered
 from lab.studies.bench.speed.beds import ACETATE, DIAMETER, HEIGHT, SCALE, Bed, settled_bed
 from solvers.grains.materials import Material
 from solvers.motion import Tilt
@@ -92,14 +93,7 @@ def followers() -> dict[str, Callable[..., Curve]]:
 def kept(work: Path, name: str, how: Tilting, bed: Bed, number: int) -> Curve:
     """The curve of a code and a bed from the folder `work`, where it is put once it is done."""
     path = work / f"curve-{name.replace(' ', '-')}-{how.count}-{how.rate:g}-{how.angle:g}-{number}.npz"
-    if not path.is_file():
-        print(f"curves: {name}, bed {number}", flush=True)
-        curve = followers()[name](how, bed)
-        part = path.with_suffix(".part.npz")
-        np.savez(part, tilt=curve.tilt, shift=curve.shift)
-        part.replace(path)
-    with np.load(path) as values:
-        return Curve(values["tilt"], values["shift"])
+    return Curve(**remembered(path, f"curves: {name}, bed {number}", lambda: vars(followers()[name](how, bed))))
 
 
 def followed_here(how: Tilting, bed: Bed) -> Curve:

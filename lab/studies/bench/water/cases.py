@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from lab.preset.outline import rectangle
 from lab.studies.bench.peers.pool import Pool
 from solvers.fluid.given import EXCESS, VELOCITY_Y, VELOCITY_Z, VOLUME, Water, Y, Z
 from solvers.fluid.start.rest import hydrostatic_excess
@@ -33,8 +34,7 @@ class Case:
 
     def scene(self, **of_water: object) -> Scene:
         """The scene of the lab, its defaults changed by `of_water`."""
-        half = 0.5 * self.width
-        outline = np.array([[-half, 0.0], [half, 0.0], [half, self.height], [-half, self.height]])
+        outline = np.array(rectangle(self.width, self.height))
         water = Water(**{"spacing": self.spacing, "sound_speed": self.sound_speed, "density": DENSITY} | of_water)
         return Scene(radius=np.zeros((1, 0)), outline=outline, water=water, drops=self.drops[None], precision="mixed")
 

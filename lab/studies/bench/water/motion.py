@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
+from lab.studies.bench.remembered import remembered
 from lab.studies.bench.water.cases import DENSITY, GRAVITY, HIGH, Case
 from lab.studies.bench.water.workers import Worker
 from solvers.fluid.given import EXCESS, VELOCITY_Y, VELOCITY_Z, VOLUME, Y, Z
@@ -14,16 +15,17 @@ LATER = 6.0  # t √(g/H): the water has run up the far wall and falls back
 
 def moving(work: Path, column: Case) -> Case:
     """The case that a column of `cases.dam` is at LATER, from the folder `work`, where it is kept."""
-    kept = work / f"moving-{column.count}.npy"
-    if not kept.is_file():
-        work.mkdir(parents=True, exist_ok=True)
-        worker = Worker(column)
-        frame = worker.frames([LATER * np.sqrt(HIGH / GRAVITY)])[0]
-        worker.close()
-        drops = column.drops.copy()
-        mass = (1.0 + drops[:, EXCESS]) * drops[:, VOLUME]
-        drops[:, [Y, Z]], drops[:, [VELOCITY_Y, VELOCITY_Z]] = frame.position, frame.velocity
-        drops[:, EXCESS] = frame.pressure / (DENSITY * column.sound_speed**2)
-        drops[:, VOLUME] = mass / (1.0 + drops[:, EXCESS])
-        np.save(kept, drops)
-    return replace(column, drops=np.load(kept))
+    found = remembered(work / f"moving-{column.count}.npz", "water: a column collapses", lambda: _moved(column))
+    return replace(column, drops=found["drops"])
+
+
+def _moved(column: Case) -> dict[str, np.ndarray]:
+    worker = Worker(column)
+    frame = worker.frames([LATER * np.sqrt(HIGH / GRAVITY)])[0]
+    worker.close()
+    drops = column.drops.copy()
+    mass = (1.0 + drops[:, EXCESS]) * drops[:, VOLUME]
+    drops[:, [Y, Z]], drops[:, [VELOCITY_Y, VELOCITY_Z]] = frame.position, frame.velocity
+    drops[:, EXCESS] = frame.pressure / (DENSITY * column.sound_speed**2)
+    drops[:, VOLUME] = mass / (1.0 + drops[:, EXCESS])
+    return {"drops": drops}

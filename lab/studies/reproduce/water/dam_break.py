@@ -4,7 +4,7 @@ Lobovský et al. (2014), J. Fluids Struct. 48, 407: a column of H = 300 mm, 2 H 
 pressures in ρ g H. Our column has no gate: it is free at once.
 """
 
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -16,7 +16,7 @@ from lab.studies.reproduce.estimates import Estimate
 from lab.studies.reproduce.experiment import Found, Row, Told, held
 from lab.studies.reproduce.figures import SIZE
 from lab.studies.reproduce.runs import Outcome
-from lab.studies.reproduce.water.costs import COSTS, cost
+from lab.studies.reproduce.water.costs import beside
 from lab.studies.reproduce.water.measured import drawn
 
 FITTED = 1.0, 3.3  # H beyond the column, of the line through the front; the wall is at 3.37
@@ -113,20 +113,13 @@ def _first(time: np.ndarray, reached: np.ndarray) -> float:
 
 
 def tell(found: Found) -> Told:
-    """The last run beside the experiments, and all runs with what they cost."""
-    runs = {label: outcomes[0] for label, outcomes in found.items()}
-    breaks = {label: find_break(one) for label, one in runs.items()}
+    """The numbers of the collapse beside the experiments'."""
     heads = ("front", "at the wall", "at sensor 1", "peak 1", "peak 2", "10 ms mean 1", "10 ms mean 2", "plateau")
-    cells = [
-        [*cost(label, runs[label]), *(f"{getattr(each, name):.3g}" for name in Break.__dataclass_fields__)]
-        for label, each in breaks.items()
-    ]
-    last = list(runs)[-1]
-    return Told(_rows(last, breaks[last]), _figure(runs), [[*COSTS, *heads], *cells])
+    return beside(found, heads, lambda one: [f"{each:.3g}" for each in astuple(find_break(one))], _rows, _figure)
 
 
-def _rows(label: str, ours: Break) -> list[Row]:
-    rows = []
+def _rows(label: str, one: Outcome) -> list[Row]:
+    rows, ours = [], find_break(one)
     for name, (says, stated, between, origin) in NUMBERS.items():
         number = ours.plateau if name == "codes" else getattr(ours, name)
         estimate = None if np.isnan(number) else Estimate.exact(number)

@@ -6,7 +6,7 @@ after it. Peaks of single runs scatter by a fifth, and in a liquid without air t
 pressure is ρ c U and lasts a millisecond. So means over 10 ms are compared, too.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,7 +17,7 @@ from lab.studies.reproduce.estimates import Estimate
 from lab.studies.reproduce.experiment import Found, Row, Told, held
 from lab.studies.reproduce.figures import SIZE
 from lab.studies.reproduce.runs import Outcome
-from lab.studies.reproduce.water.costs import COSTS, cost
+from lab.studies.reproduce.water.costs import beside
 from lab.studies.reproduce.water.measured import drawn
 
 ABOVE = 1000.0  # Pa: the wave is there
@@ -71,11 +71,9 @@ def find_impact(time: np.ndarray, pressure: np.ndarray, highest: np.ndarray, abo
 
 
 def tell(found: Found) -> Told:
-    """Both impacts of the last run beside the measured ones, and those of all runs with what they cost."""
-    runs = {label: outcomes[0] for label, outcomes in found.items()}
-    last = list(runs)[-1]
-    rows = _rows(last, impacts(runs[last]))
-    return Told(rows, _figure(runs), [_header(), *(_cells(label, one) for label, one in runs.items())])
+    """Both impacts beside the measured ones."""
+    names = ("arrival", "peak", "10 ms mean", "impulse")
+    return beside(found, [f"{order} {name}" for order in ("first", "second") for name in names], _cells, _rows, _figure)
 
 
 def impacts(one: Outcome) -> list[Impact | None]:
@@ -85,9 +83,9 @@ def impacts(one: Outcome) -> list[Impact | None]:
     return [find_impact(series["time"], pressure, highest, each.arrival) for each in EXPERIMENT]
 
 
-def _rows(label: str, ours: Sequence[Impact | None]) -> list[Row]:
+def _rows(label: str, outcome: Outcome) -> list[Row]:
     rows = []
-    for order, measured, one in zip(("first", "second"), EXPERIMENT, ours, strict=True):
+    for order, measured, one in zip(("first", "second"), EXPERIMENT, impacts(outcome), strict=True):
         for name, (tolerance, unit, allowed) in WORDS.items():
             stated = getattr(measured, name)
             estimate = Estimate.exact(getattr(one, name)) if one else None
@@ -96,22 +94,13 @@ def _rows(label: str, ours: Sequence[Impact | None]) -> list[Row]:
     return rows
 
 
-def _header() -> list[str]:
-    of_each = [
-        f"{order} {name}" for order in ("first", "second") for name in ("arrival", "peak", "10 ms mean", "impulse")
-    ]
-    return [*COSTS, *of_each]
-
-
-def _cells(label: str, one: Outcome) -> list[str]:
-    cells = cost(label, one)
+def _cells(one: Outcome) -> Iterator[str]:
     for each in impacts(one):
         if each is None:
-            cells += ["none"] * 4
+            yield from ["none"] * 4
         else:
             kilo = f"{1e-3 * each.peak:.2f} kPa", f"{1e-3 * each.mean:.2f} kPa"
-            cells += [f"{each.arrival:.3f} s", *kilo, f"{each.impulse:.0f} Pa s"]
-    return cells
+            yield from (f"{each.arrival:.3f} s", *kilo, f"{each.impulse:.0f} Pa s")
 
 
 def _figure(runs: dict[str, Outcome]) -> Figure:

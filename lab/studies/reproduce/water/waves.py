@@ -13,7 +13,7 @@ from lab.studies.reproduce.estimates import Estimate
 from lab.studies.reproduce.experiment import Found, Row, Told, held
 from lab.studies.reproduce.figures import SIZE
 from lab.studies.reproduce.runs import Outcome
-from lab.studies.reproduce.water.costs import COSTS, cost
+from lab.studies.reproduce.water.costs import beside
 from lab.studies.reproduce.water.measured import drawn
 
 TURNS = {  # s: mm, the measured crests and troughs of the gauge 50 mm from the wall
@@ -35,16 +35,13 @@ COLOURS = BLUE, VERMILION, GREEN
 
 def sway_beat(found: Found) -> Told:
     """The turns of the wave beside the measured ones."""
-    runs = {label: outcomes[0] for label, outcomes in found.items()}
-    turned = {label: turns(*elevation(one)) for label, one in runs.items()}
     heads = [f"{'crest' if size > 0 else 'trough'} at {when:g} s: {size:g} mm" for when, size in TURNS.items()]
-    cells = [
-        [*cost(label, runs[label]), *(f"{size:.0f} mm, {late:+.2f} s" for late, size in each)]
-        for label, each in turned.items()
-    ]
-    last = list(runs)[-1]
-    return Told(
-        [*_turn_rows(last, turned[last]), _first_row(last, runs[last])], _waves(runs), [[*COSTS, *heads], *cells]
+    return beside(
+        found,
+        heads,
+        lambda one: [f"{size:.0f} mm, {late:+.2f} s" for late, size in turns(*elevation(one))],
+        lambda label, one: [*_turn_rows(label, turns(*elevation(one))), _first_row(label, one)],
+        _waves,
     )
 
 
@@ -100,18 +97,18 @@ def _waves(runs: dict[str, Outcome]) -> Figure:
 
 def pitch(found: Found) -> Told:
     """The swing of the pressure beside the measured one."""
-    runs = {label: outcomes[0] for label, outcomes in found.items()}
-    cells = [[*cost(label, one), *(f"{number:.3f}" for number in swing(one))] for label, one in runs.items()]
     heads = ("swing (kPa)", "phase (deg)", "mean (kPa)")
-    label, one = list(runs.items())[-1]
-    size, phase, mean = swing(one)
-    rows = [
-        held(f"swing of the pressure, {label}", "0.367 kPa", Estimate.exact(size), (0.330, 0.404), "10 %: ours", "kPa"),
-        held(f"the same, {label}", THEORY, Estimate.exact(size), (0.317, 0.329), "2 %: ours", "kPa"),
-        held(f"ahead of the tank, {label}", "-6 deg", Estimate.exact(phase), (-18.0, 6.0), "0.1 s: ours", "deg"),
-        held(f"mean, {label}", "3.22 kPa", Estimate.exact(mean), (3.16, 3.29), "2 %: its place follows from it", "kPa"),
+    return beside(found, heads, lambda one: [f"{number:.3f}" for number in swing(one)], _swing_rows, _swings)
+
+
+def _swing_rows(label: str, one: Outcome) -> list[Row]:
+    size, phase, mean = map(Estimate.exact, swing(one))
+    return [
+        held(f"swing of the pressure, {label}", "0.367 kPa", size, (0.330, 0.404), "10 %: ours", "kPa"),
+        held(f"the same, {label}", THEORY, size, (0.317, 0.329), "2 %: ours", "kPa"),
+        held(f"ahead of the tank, {label}", "-6 deg", phase, (-18.0, 6.0), "0.1 s: ours", "deg"),
+        held(f"mean, {label}", "3.22 kPa", mean, (3.16, 3.29), "2 %: its place follows from it", "kPa"),
     ]
-    return Told(rows, _swings(runs), [[*COSTS, *heads], *cells])
 
 
 def swing(one: Outcome) -> tuple[float, float, float]:
@@ -138,16 +135,10 @@ def _swings(runs: dict[str, Outcome]) -> Figure:
         axes.plot(*_pressure(one), color=colour, lw=1.0, label=label)
     time = np.linspace(0.0, 10.0, 400)
     size, phase, mean = SWING
-    for share, style in ((0.9, ":"), (1.1, ":")):
+    for share in (0.9, 1.1):
         sine = mean + share * size * np.sin(2.0 * time + np.radians(phase))
-        axes.plot(
-            time,
-            sine,
-            color="0.5",
-            ls=style,
-            lw=1.0,
-            label="sine through the measured points, ± 10 %" if share < 1 else None,
-        )
+        label = "sine through the measured points, ± 10 %" if share < 1 else None
+        axes.plot(time, sine, color="0.5", ls=":", lw=1.0, label=label)
     if (measured := drawn(axes, PITCH)) is not None:
         axes.plot(*measured, "o", ms=3, color="black", label="measured")
     axes.set(xlabel="time (s)", ylabel="pressure on the end wall (kPa)")

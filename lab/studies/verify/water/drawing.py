@@ -22,13 +22,11 @@ def profiles(run: Sequence[tuple], exact: Callable, half: float) -> Figure:
     return figure
 
 
-def shapes(clouds: Mapping[str, np.ndarray], lines: Mapping[str, np.ndarray], unit: str) -> Figure:
-    """Particles (n, 2) by a panel's title, side by side, each with a line (m, 2) where one is given."""
+def shapes(clouds: Mapping[str, np.ndarray], unit: str) -> Figure:
+    """Particles (n, 2) by a panel's title, side by side."""
     figure = Figure(figsize=(6.4, 3.2), layout="constrained")
     for axes, (title, place) in zip(np.atleast_1d(figure.subplots(1, len(clouds))), clouds.items(), strict=True):
         axes.plot(*place.T, ".", color=BLUE, ms=1.0)
-        if title in lines:
-            axes.plot(*lines[title].T, color=VERMILION, lw=1.0)
         axes.set_aspect("equal")
         axes.set_title(title)
         axes.set(xlabel=f"y ({unit})", ylabel=f"z ({unit})")

@@ -123,7 +123,7 @@ def rotating(fast: bool) -> Found:
     head = "particles across", "angular momentum", "pressure at 0.5", "at 1", "widest gap", "least distance", "corners"
     note = "Shifting with its momentum; changes and errors in shares, distances in spacings, corners of free flight."
     shown = {f"ωt = {time:g}": place for time, place in zip(TIMES[1::2], best.places[1::2], strict=True)}
-    picture = Picture("water-patch", shapes(shown, {}, "m"), "The rotating patch; its arms are its corners.")
+    picture = Picture("water-patch", shapes(shown, "m"), "The rotating patch; its arms are its corners.")
     return Found(lines, [picture], notes=[note], tables=[Table(head, rows)])
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import least_squares
 
+from lab.preset.outline import rectangle
 from lab.studies.case import Line
 from solvers.fluid.given import EXCESS, VELOCITY_Y, VELOCITY_Z, VOLUME, Water
 from solvers.fluid.start.rest import at_rest
@@ -23,8 +24,7 @@ Field = Callable[[np.ndarray], np.ndarray]
 
 def box(width: float, height: float) -> np.ndarray:
     """Outline of a rectangular tank, the middle of its floor at the origin."""
-    half = 0.5 * width
-    return np.array([[-half, 0.0], [half, 0.0], [half, height], [-half, height]])
+    return np.array(rectangle(width, height))
 
 
 def chamfered(width: float, height: float, cut: float) -> np.ndarray:

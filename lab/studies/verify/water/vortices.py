@@ -5,6 +5,7 @@ import numpy as np
 from lab.studies.case import Case, Found, Line, Picture, Table
 from lab.studies.verify.water.drawing import profiles
 from lab.studies.verify.water.scenes import (
+    box,
     filled,
     grid,
     looks,
@@ -103,9 +104,8 @@ def flowing(count: int) -> list[tuple[float, np.ndarray, np.ndarray]]:
         full=True,
     )
     place = grid(2.0 * HALF, HALF, spacing) - [HALF, 0.0]
-    outline = np.array([[-HALF, 0.0], [HALF, 0.0], [HALF, HALF], [-HALF, HALF]])
     found = []
-    with simulated(scene(water, filled(place, water, np.zeros_like), outline, PULL)) as run:
+    with simulated(scene(water, filled(place, water, np.zeros_like), box(2.0 * HALF, HALF), PULL)) as run:
         for time in looks(run, TIMES):
             place, velocity = seen(run)
             found.append((time, place[:, 0], -velocity[:, 1]))

@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 
 from lab.report.plots import BELOW, BLUE, GREY, VERMILION, canvas
 from lab.studies.case import Case, Found, Line, Picture
-from lab.studies.verify.meetings import Meetings, Substance
+from lab.studies.verify.impacts.meetings import Meetings, Substance
 from lab.studies.verify.references import damping_of, sphere_mass, viscoelastic_rebound
 
 SECTION = "Oblique impacts"

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from lab.preset.accuracy import LEVELS
 from lab.report.plots import BLUE, GREY, VERMILION, canvas
 from lab.studies.case import Found, Line, Picture
-from lab.studies.verify.meetings import Meetings, Substance
+from lab.studies.verify.impacts.meetings import Meetings, Substance
 
 LENGTHS = (1.0, LEVELS["draft"].longer_steps)  # lengths of step in derived steps
 DERIVED, DRAFT = range(2)

@@ -16,8 +16,8 @@ from matplotlib.figure import Figure
 from lab.preset.accuracy import DRAFT_RESTITUTION, RESTITUTION
 from lab.report.plots import BELOW, BLUE, VERMILION
 from lab.studies.case import Case, Found, Line, Picture, Table
-from lab.studies.verify.head_on import DERIVED, DRAFT, LENGTHS, normal, normal_impacts, pressed
-from lab.studies.verify.meetings import LARGER, Meetings, Substance
+from lab.studies.verify.impacts.head_on import DERIVED, DRAFT, LENGTHS, normal, normal_impacts, pressed
+from lab.studies.verify.impacts.meetings import LARGER, Meetings, Substance
 
 PUBLISHED = Path(__file__).with_name("published.toml")
 SECTION = "The eight tests of Chung and Ooi (2011)"

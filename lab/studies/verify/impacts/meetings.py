@@ -7,7 +7,8 @@ from math import inf
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from lab.studies.verify.impacts import Bodies, Impact, Normal, Shear
+from lab.preset.outline import rectangle
+from lab.studies.verify.impacts.law import Bodies, Impact, Normal, Shear
 from lab.studies.verify.references import (
     RIGID,
     HertzCollision,
@@ -22,7 +23,7 @@ from solvers.scene import Scene
 from solvers.simulation import Simulation
 
 PHASES = (0.1, 0.4, 0.7)  # of a step, when contact begins
-LONGEST = 8.0  # elastic collisions; none here takes longer
+LONGEST = 12.0  # elastic collisions; none here takes longer
 HEAVIER, LARGER = 1000.0, 5.0  # density and radius of a giant, which stands for a plane
 
 
@@ -42,8 +43,9 @@ class Meetings:
 
     `along` (n,) m/s and `spin` (n,) rad/s of the first body; speed and restitution (n,) or one. The restitution is that
     at each closing speed, or for all of them at the speed `given_at`. The other body is a "plane" of Young's modulus
-    `wall`, a "twin", which spins the other way, or a "giant" at rest. Under Hertz's law and along the plane Mindlin's,
-    or Haff and Werner's with a `damper` (N s/m).
+    `wall`, a "twin", which spins the other way, or a "giant" at rest. Under the viscoelastic or another `normal`
+    law, along the plane under Mindlin's, or Haff and Werner's with a `damper` (N s/m); contact begins at some `phases`
+    of a step. The solver is told the dissipative time or, if `told`, the restitution.
     """
 
     substance: Substance
@@ -57,6 +59,10 @@ class Meetings:
     wall: float = RIGID
     given_at: float | None = None
     damper: float | None = None
+    normal: str = "hertz-viscoelastic"
+    told: bool = False
+    integrator: str = "verlet"
+    phases: tuple[float, ...] = PHASES
 
     @cached_property
     def all(self) -> np.ndarray:
@@ -105,15 +111,11 @@ class Meetings:
             found.append(Impact(self.bodies, *law).meet(along, speed, spins))
         return np.array(found)
 
-    def scene(self, chosen: slice = slice(None), phases: int = len(PHASES)) -> Scene:
-        """A world for each of the meetings that are chosen, at each phase."""
-        s, rows = self.substance, np.repeat(self.all[chosen], phases, axis=0)
-        damped = {"shear_damping": self.damper} if self.damper else {}
+    def scene(self, chosen: slice = slice(None), phases: int = 0) -> Scene:
+        """A world for each of the meetings that are chosen, at each phase, or at so many."""
+        s, rows = self.substance, np.repeat(self.all[chosen], phases or len(self.phases), axis=0)
         own, wall = (
-            [
-                Material(s.density, young, s.poisson, self.friction, dissipative_time=self.time(e, speed), **damped)
-                for e, _, _, speed in rows
-            ]
+            [Material(s.density, young, s.poisson, self.friction, **self._losses(e, speed)) for e, _, _, speed in rows]
             for young in (s.young, self.wall)
         )
         size = [self.radius] + ([self.bodies.other_radius] if self.bodies.other_radius else [])
@@ -123,25 +125,33 @@ class Meetings:
             more = {"others": (heavy,), "kind": np.tile([0, 1], (len(rows), 1)), "unlike": (((0, 1), own[0]),)}
         slowest = self.elastic(int(self.all[:, 3].argmin())).duration
         half = 20.0 * max(size) + 20.0 * slowest * np.abs(rows[:, 1]).max()
-        outline = np.array([[-half, 0.0], [half, 0.0], [half, half], [-half, half]])
+        law = "haff-werner" if self.damper else "mindlin" if self.friction else "none"
         fastest = float(np.hypot(rows[:, 1], rows[:, 3]).max())
         return Scene(
             np.tile(size, (len(rows), 1)),
-            outline,
+            np.array(rectangle(2.0 * half, half)),
             own,
             wall,
-            tangential="haff-werner" if self.damper else "mindlin",
+            normal=self.normal,
+            tangential=law,
             gravity=0.0,
+            integrator=self.integrator,
             start_speed=fastest,
             **more,
         )
+
+    def _losses(self, e: float, speed: float) -> dict[str, float]:
+        damped = {"shear_damping": self.damper} if self.damper else {}
+        if self.told:
+            return {"restitution": e, "restitution_speed": self.given_at or speed, **damped}
+        return {"dissipative_time": self.time(e, speed), **damped}
 
     def steps(self) -> np.ndarray:
         """The derived step (n,) s of every meeting by itself."""
         return np.array([self.scene(slice(k, k + 1), 1).time_step() for k in range(len(self.all))])
 
     def run(self, lengths: tuple[float, ...]) -> np.ndarray:
-        """What `expected` is (lengths, PHASES, n, 4), each meeting at its own derived step times the lengths."""
+        """What `expected` is (lengths, phases, n, 4), each meeting at its own derived step times the lengths."""
         scene, steps, found = self.scene(), self.steps(), []
         place = self._starts(scene, 0.0)[0]
         run = Simulation(scene, place, 1, arch="cpu")
@@ -153,12 +163,12 @@ class Meetings:
                 run.advance(int(LONGEST * self.elastic(k).duration / step))
                 found.append(self._relative(run)[k])
         run.close()
-        return np.moveaxis(np.array(found).reshape(len(lengths), len(steps), len(PHASES), 4), 1, 2)
+        return np.moveaxis(np.array(found).reshape(len(lengths), len(steps), len(self.phases), 4), 1, 2)
 
     def _starts(self, scene: Scene, step: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Places (W, n, 2) m, velocities and spins of all worlds, to touch at their phases of a step (s)."""
-        rows, other = np.repeat(self.all, len(PHASES), axis=0), self.bodies.other_radius
-        gap = (0.5 + np.tile(PHASES, len(self.all))) * step * rows[:, 3]
+        rows, other = np.repeat(self.all, len(self.phases), axis=0), self.bodies.other_radius
+        gap = (0.5 + np.tile(self.phases, len(self.all))) * step * rows[:, 3]
         base = 0.5 * np.ptp(scene.outline[:, 1]) if other else 0.0
         place = np.zeros((*scene.radius.shape, 2))
         velocity, spin = np.zeros_like(place), np.zeros(scene.radius.shape)
@@ -173,14 +183,14 @@ class Meetings:
         return place, velocity, spin
 
     def _relative(self, run: Simulation) -> np.ndarray:
-        """Velocities past the second body and both spins (n, PHASES, 4) now."""
+        """Velocities past the second body and both spins (n, phases, 4) now."""
         state = run.snapshot()
         velocity, spin = state["velocity"], state["spin"]
         if velocity.shape[1] == 1:
             velocity = np.concatenate([velocity, np.zeros_like(velocity)], axis=1)
             spin = np.concatenate([spin, np.zeros_like(spin)], axis=1)
         columns = np.concatenate([velocity[:, 0] - velocity[:, 1], spin], axis=1)
-        return columns.reshape(len(self.all), len(PHASES), 4)
+        return columns.reshape(len(self.all), len(self.phases), 4)
 
     def forces(self, lengths: tuple[float, ...]) -> list[tuple[np.ndarray, ...]]:
         """For each length of step: times since touch (T,) s, overlaps (m) and forces (N) in the solver and by Hertz.
