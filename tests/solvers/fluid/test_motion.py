@@ -105,7 +105,7 @@ def test_a_drop_that_is_pulled_to_a_point_swings_at_the_frequency_of_theory():
     np.testing.assert_allclose(crossing, np.pi / (np.sqrt(2.0) * 10.0), rtol=0.02)
 
 
-@pytest.mark.parametrize("deep", [0.05, 0.25, 0.45])
+@pytest.mark.parametrize("deep", [0.15, 0.3, 0.45])
 def test_a_wall_pushes_back_what_has_come_through_its_face(deep):
     """Single particles behind the face of a wall, anywhere between two dummies, and behind corners are pushed in."""
     spacing = 0.01
