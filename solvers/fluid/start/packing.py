@@ -14,8 +14,8 @@ from solvers.tank.outline import area_below, cut_off
 from solvers.tank.tank import Tank
 
 PLASTIC = 1.324717957244746  # the root of x³ = x + 1
-EVEN = 3e-3  # largest Δx |Σ V ∇W| at the end
-STEPS = 400  # at most
+EVEN = 5e-4  # largest Δx |Σ V ∇W| at the end; less even water rearranges itself as it moves, which damps waves
+STEPS = 1500  # at most
 PUSH, DRAG = (
     0.3,
     0.1,
