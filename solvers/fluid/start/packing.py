@@ -14,17 +14,13 @@ from solvers.tank.outline import area_below, cut_off
 from solvers.tank.tank import Tank
 
 PLASTIC = 1.324717957244746  # the root of x³ = x + 1
-EVEN = 3e-3  # largest Δx |Σ V ∇W| at the end
-STEPS = 400  # at most
-PUSH, DRAG = (
-    0.3,
-    0.1,
-)  # of a step: its length in units of Δx over the speed of a push Σ V ∇W, and the share that it slows
+EVEN = 5e-4  # largest Δx |Σ V ∇W| at the end; less even water rearranges itself as it moves, which damps waves
+STEPS = 1500  # at most
+PUSH = 1.5  # length of a step, over the time in which a push Δx Σ V ∇W of 1 would move a particle by a spacing
+DRAG = 0.1  # of the velocity, lost in a step
 FARTHEST = 0.1  # spacings that a particle may move in a step
 SKIN = 0.2  # smoothing lengths by which pairs are looked for beyond the kernel's reach
-STRIP = (
-    4  # spacings, about: height of the strips along which particles are numbered, so that neighbours are near in memory
-)
+STRIP = 4  # spacings: height of the strips along which particles are numbered, to be near in memory
 KEPT = 8  # packings that are remembered: repeats, and runs of a sweep, start alike
 
 

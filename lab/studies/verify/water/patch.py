@@ -52,7 +52,7 @@ def turned(count: int, shifting: str = "delta-plus-momentum") -> Patch:
     drops = filled(place, water, lambda r: RATE * np.stack([-r[:, 1], r[:, 0]], axis=1), pressure)
     corner = [np.argmax(place @ [a, b]) for a in (-1, 1) for b in (-1, 1)]
     start = np.hypot(*place[corner].T)
-    places, turning, holes, distances, middle = [], [], [], [], []
+    places, turning, holes, distances, pressures = [], [], [], [], []
     with simulated(scene(water, drops, box(4.0, 4.0), 0.0)) as run:
         mass = run.water.particles.read(run.water.particles.mass)[0][0]
         for time in looks(run, (0.0, *TIMES)):
@@ -60,13 +60,13 @@ def turned(count: int, shifting: str = "delta-plus-momentum") -> Patch:
             turning.append(mass @ (place[:, 0] * velocity[:, 1] - place[:, 1] * velocity[:, 0]))
             if time > 0.0:
                 places.append(place)
-                middle.append(in_middle(place, pressed))
+                pressures.append(in_middle(place, pressed))
                 holes.append(widest_gap(place) / water.spacing)
                 middle = place[np.hypot(*place.T) < CORE]
                 distances.append(cKDTree(middle).query(middle, 2)[0][:, 1].min() / water.spacing)
     flown = start * np.sqrt(1.0 + (RATE * time) ** 2)
     corners = np.hypot(*place[corner].T) / flown
-    followed = np.array(middle)[np.isin(TIMES, FOLLOWED)]
+    followed = np.array(pressures)[np.isin(TIMES, FOLLOWED)]
     return Patch(places, np.array(turning) / turning[0], corners, max(holes), min(distances), followed)
 
 
