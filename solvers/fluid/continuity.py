@@ -61,7 +61,8 @@ class Continuity:
                     more += 2.0 * dot(rest, apart)
                 evened += weight * more
         if ti.static(p.dry > 0):
-            for k in range(lists.beside.first[u, listed], lists.beside.first[u, listed + 1]):
+            pieces = lists.pieces
+            for k in range(lists.beside.first[u, listed * pieces], lists.beside.first[u, (listed + 1) * pieces]):
                 j = lists.beside.slots[u, k]
                 jb, lane = lists.block_of(j), lists.lane_of(j)
                 apart = lists.apart(b, own, origin, j, AT_MIDDLE)

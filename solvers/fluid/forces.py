@@ -62,12 +62,12 @@ class Forces:
             w = self.units.world(u)
             power = dot([total[0], total[1], total[2]], [self.poses.walls[3 + k][w] for k in ti.static(range(3))])
             self.work[u] = self.work[u] - power * during
-        for k in range(self.bodies.count):
-            load = [self.bodies.force[n][u, k] for n in ti.static(range(3))]
-            self.load.book(u, 1 + OUTLINE + k, ti.Vector([thick * load[n] for n in ti.static(range(3))]), dt)
-            for n in ti.static(range(3)):
-                total[n] -= load[n]
         if ti.static(self.bodies.count > 0):
+            for k in range(self.bodies.count):
+                load = [self.bodies.force[n][u, k] for n in ti.static(range(3))]
+                self.load.book(u, 1 + OUTLINE + k, ti.Vector([thick * load[n] for n in ti.static(range(3))]), dt)
+                for n in ti.static(range(3)):
+                    total[n] -= load[n]
             self.bodies.book(u, kick, dt)
         self.load.book(u, OUTLINE, ti.Vector([total[0] * thick, total[1] * thick, total[2] * thick]), dt)
 
