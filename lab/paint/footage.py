@@ -54,6 +54,7 @@ class Footage:
         self.ends = ends(series)
         self.settings = recording.preset.video
         self.title = recording.preset.title or recording.name
+        self.part_turn = frames["part_turn"][:] if "part_turn" in frames else np.zeros(self.part.shape[:-1])
         self._frames, self._waves = frames, frames["waves"][:] if "waves" in frames else None
         self._read: dict[str, tuple[int, np.ndarray]] = {}  # the frame last read of each quantity
 
@@ -160,8 +161,9 @@ class Bed:
 
     def plates(self, frame: int) -> list[np.ndarray]:
         """The moving parts as polylines (m, 2) m in the tank frame, at their positions in a frame."""
-        moved = self.footage.part[frame, self.world]
-        return [line + shift for line, shift in zip(self.footage.parts.values(), moved, strict=True)]
+        moved, turn = self.footage.part[frame, self.world], self.footage.part_turn[frame, self.world]
+        lines = zip(self.footage.parts.values(), moved, np.cos(turn), np.sin(turn), strict=True)
+        return [shift + line @ np.array([[c, s], [-s, c]]) for line, shift, c, s in lines]
 
 
 @contextmanager

@@ -8,9 +8,9 @@ import taichi as ti
 
 from solvers.fluid.constants import Constants
 from solvers.fluid.order import Order
-from solvers.fluid.state import UNUSED, Particles, Shares
+from solvers.fluid.state import UNUSED, Listing, Particles, Shares
 from solvers.fluid.walls.bodies import Bodies
-from solvers.machine.state import Axis, State
+from solvers.machine.state import State
 from solvers.machine.units import Units
 from solvers.motion.poses import Poses
 from solvers.space.axes import dot
@@ -21,17 +21,6 @@ LASTING = 6  # steps for which a list should last: the skin follows from the spe
 FASTER = 1.25  # what particles may gain in speed until the next step
 PLACES = 27  # bits of an entry that number a slot; the others number the periodic image in which it is seen
 CROWDED = 1.6  # times the neighbours of a square block at rest: room for those of long blocks and of dense impacts
-
-
-@ti.data_oriented
-class Listing:
-    """One list for each block of a unit: `slots[u, first[u, b]]` to `slots[u, first[u, b + 1] - 1]`, b from 0."""
-
-    def __init__(self, arrays: State, units: Units, name: str, blocks: int, capacity: int, below: int):
-        self.capacity = capacity
-        own = arrays.under(f"water.{name}")
-        (self.first,) = own.integers((units.axis, Axis("begin", blocks + 1)), "first", below=capacity + 1)
-        (self.slots,) = own.integers((units.axis, Axis("entry", capacity)), "slots", below=below)
 
 
 @ti.data_oriented
@@ -191,7 +180,7 @@ class Lists:
 
     @ti.func
     def search_part(self, u, b, reach, found, part, image: ti.template()):
-        """As `search`, for the dummies of a part beside a block of water: block by block, since they move."""
+        """As `search`, for the dummies of a part beside a block of water, block by block."""
         p, bodies, listing = self.particles, self.bodies, self.beside
         lower, upper = self.box(b)
         code = self.seen_in(image, lower, upper)
@@ -274,9 +263,9 @@ class Lists:
             own[a] - ti.cast(p.place[a][jb, lane] + self.seen(entry, a) - origin[a], p.real)
             for a in ti.static(range(p.axes))
         ]
-        if ti.static(len(self.bodies.plates) > 0):
+        if ti.static(len(self.bodies.sight.plates) > 0):
             place = [ti.cast(p.place[a][jb, lane] + self.seen(entry, a), p.real) for a in ti.static(range(p.axes))]
-            found[0] += self.bodies.out_of_sight(b, jb, place, found, part)
+            found[0] += self.bodies.sight.out_of_sight(b, jb, place, found, part)
         return found
 
     @ti.func

@@ -19,7 +19,9 @@ SERIES = (
     Quantity("gauge_peak", "Pa", label="highest pressure at each gauge since the last sample", per="gauge"),
     Quantity("edge_force", "N", PLANE, "force of the water on each edge of the tank", mean=True, per="edge"),
     Quantity("part_force", "N, N, N m", FREEDOMS, "force of the water on each part in it", mean=True, per="part"),
-    Quantity("part_work", "J", label="work of each part on the water since the start, by its motion in the tank", per="part"),
+    Quantity(
+        "part_work", "J", label="work of each part on the water since the start, by its motion in the tank", per="part"
+    ),
     Quantity("level_depth", "m", label="depth of the water above the floor at each level gauge", per="level"),
 )
 # What the watch asks and no recording has: the number of a particle that has left the tank.

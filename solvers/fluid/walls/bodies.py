@@ -1,4 +1,4 @@
-"""Bodies and plates that move in the water: where their dummies are, what they do to it, and who sees past a plate."""
+"""Bodies and plates that move in the water: where their dummies are, and what they do to it."""
 
 from collections.abc import Sequence
 
@@ -6,21 +6,18 @@ import numpy as np
 import taichi as ti
 
 from solvers.fluid.given import Water
-from solvers.fluid.state import FAR, UNUSED, Particles, Shares
-from solvers.fluid.walls.layers import distance
-from solvers.fluid.walls.solids import Solids, is_solid
+from solvers.fluid.state import UNUSED, Particles, Shares
+from solvers.fluid.walls.sight import COSINE, RATE, SINE, V_Y, V_Z, Sight, Y, Z
+from solvers.fluid.walls.solids import Solids
 from solvers.machine.state import Axis, State
 from solvers.motion.moved import motions_of
-from solvers.motion.poses import AT_MIDDLE, AT_START, Poses
+from solvers.motion.poses import AT_START, Poses
 from solvers.motion.prescribed import Prescribed
 from solvers.space.axes import dot
 from solvers.tank.parts import Part
 from solvers.tank.tank import Tank
 
 AT_END = 2  # of a step, beside its start and its middle
-Y, Z, COSINE, SINE, V_Y, V_Z, RATE = range(7)  # a pose in the tank: its origin (m), its turn, its velocities
-LINE_Y, LINE_Z, ALONG_Y, ALONG_Z, LOW, HIGH = range(6)  # a plate: a point (m), its direction, its ends (m) from there
-TOUCHES = 0.25  # spacings between a plate's end and a wall from which on no water passes between them
 
 
 @ti.data_oriented
@@ -31,10 +28,6 @@ class Bodies:
     accelerated by A + ω' × R p − ω² R p, to which −2 Ω × v comes where the tank itself rolls at Ω. Dummies of bodies
     follow those of the tank in memory.
 
-    A plate has no thickness. Two particles see each other if no plate crosses the line between them; a plate's own
-    dummies, which lie behind it, are seen just by those whose line of sight it crosses. So what is seen past the end of
-    a plate and what is seen through it never overlap. An end that touches the tank's wall reaches on into it.
-
     `impulse` (units, parts; N s/m, N s) is what the water did to each part since it was last taken, `work` (units,
     parts; J/m) what the parts have done on the water.
     """
@@ -43,7 +36,7 @@ class Bodies:
         self.count, self.lanes, self.worlds = len(parts), lanes, worlds
         self.solids = Solids(parts, water, lanes)
         self.rows = len(self.solids.places)
-        self.plates = tuple(k for k, part in enumerate(parts) if not is_solid(part))
+        self.sight = Sight(arrays, parts, water, tank, worlds)
         self.arms = [max(float(np.hypot(*point)) for point in part.points) for part in parts]
         self.fastest = max((part.fastest() for part in parts), default=0.0)
         self.carriers = [
@@ -51,35 +44,29 @@ class Bodies:
             for k, part in enumerate(parts)
         ]
         self.moving = any(carrier.moving for carrier in self.carriers)
-        self.reach, self.touches = water.reach, TOUCHES * water.spacing
         if parts:
-            self._declare(arrays.under("bodies"), parts, tank)
+            self._declare(arrays.under("bodies"))
 
-    def _declare(self, own: State, parts: Sequence[Part], tank: Tank) -> None:
+    def _declare(self, own: State) -> None:
         """Make the arrays."""
         self.exact = own.exact
         kept = {"kind": own.place}
-        self.rest = [own.holding(f"rest_{n}", self.solids.places[..., a], "row lane", **kept) for a, n in enumerate("yz")]
+        self.rest = [
+            own.holding(f"rest_{n}", self.solids.places[..., a], "row lane", **kept) for a, n in enumerate("yz")
+        ]
         self.radius = own.holding("radius", self.solids.radius, "row")
         self.owner = own.holding("owner", self.solids.owner, "row", ti.i32)
         self.ends = own.holding("ends", self.solids.ends, "end", ti.i32)
-        plate = np.array([self.plates.index(k) if k in self.plates else UNUSED for k in range(self.count)])
-        self.plate = own.holding("plate", plate[self.solids.owner], "row", ti.i32)
-        lines = np.array([[*parts[k].points[0], *parts[k].points[1]] for k in self.plates]).reshape(-1, 4)
-        self.drawn = own.holding("drawn", lines if len(lines) else np.zeros((1, 4)), "plate number", own.exact)
-        edges = np.column_stack([tank.outline, np.roll(tank.outline, -1, axis=0)])
-        self.edges, self.outline = len(edges), own.holding("outline", edges, "edge number", own.exact)
         world, part = Axis("world", self.worlds), Axis("part", self.count)
         (self.pose,) = own.reals((world, part, Axis("number", 21)), "pose", kind=own.exact, kept=False)
         self.pull = own.reals((world, part), "pull_y", "pull_z", "pull_turn", kind=own.exact, kept=False)
-        numbers = Axis("plate", max(1, len(self.plates))), Axis("number", 12)
-        (self.line,) = own.reals((world, *numbers), "line", kept=False)
         (self.way,) = own.reals((world,), "way", kept=False)
 
     def join(self, arrays: State, particles: Particles, shares: Shares, poses: Poses, units) -> None:
         """Take the `particles` among which the dummies are, and the tank's `poses`; count for these `units`."""
         self.particles, self.shares, self.poses, self.units = particles, shares, poses, units
         self.first = particles.dry - self.rows  # of the dry blocks
+        self.sight.join(arrays, particles, self.solids.owner, self.first)
         if self.count:
             own, each = arrays.under("bodies"), (units.axis, Axis("part", self.count))
             names = "impulse_y", "impulse_z", "impulse_turn", "work"
@@ -111,40 +98,8 @@ class Bodies:
                     if ti.static(part == AT_START):
                         self.pull[0][w, k], self.pull[1][w, k], self.pull[2][w, k] = s[6], s[7], s[8]
         self.way[w] = ti.cast(farthest, self.particles.real)
-        for q in ti.static(range(len(self.plates))):
-            for part in ti.static((AT_START, AT_MIDDLE)):
-                self.note_line(w, q, self.plates[q], part)
-
-    @ti.func
-    def note_line(self, w, q: ti.template(), k: ti.template(), part: ti.template()):
-        """Note where a plate is, and whether its ends touch the tank's wall."""
-        first, at = ti.static(6 * part), ti.static(7 * part)
-        cos, sin = self.pose[w, k, at + COSINE], self.pose[w, k, at + SINE]
-        y = [self.pose[w, k, at + Y] + cos * self.drawn[q, n] - sin * self.drawn[q, n + 1] for n in ti.static((0, 2))]
-        z = [self.pose[w, k, at + Z] + sin * self.drawn[q, n] + cos * self.drawn[q, n + 1] for n in ti.static((0, 2))]
-        length = ti.sqrt((y[1] - y[0]) ** 2 + (z[1] - z[0]) ** 2)
-        values = [y[0], z[0], (y[1] - y[0]) / length, (z[1] - z[0]) / length]
-        for n in ti.static(range(4)):
-            self.line[w, q, first + n] = ti.cast(values[n], self.particles.real)
-        low = ti.select(self.touching(y[0], z[0]), 0.0 - self.reach, 0.0)
-        high = ti.select(self.touching(y[1], z[1]), length + self.reach, length)
-        self.line[w, q, first + LOW] = ti.cast(low, self.particles.real)
-        self.line[w, q, first + HIGH] = ti.cast(high, self.particles.real)
-
-    @ti.func
-    def touching(self, y, z):
-        """Whether a point is at the tank's outline, or outside it."""
-        near, inside = False, False
-        for k in range(self.edges):
-            a_y, a_z, b_z = self.outline[k, 0], self.outline[k, 1], self.outline[k, 3]
-            along, up, off_y, off_z = self.outline[k, 2] - a_y, b_z - a_z, y - a_y, z - a_z
-            share = ti.max(0.0, ti.min(1.0, (off_y * along + off_z * up) / (along * along + up * up)))
-            off = [off_y - share * along, off_z - share * up]
-            if dot(off, off) < self.touches * self.touches:
-                near = True
-            if (a_z > z) != (b_z > z) and off_y < off_z * along / up:
-                inside = not inside
-        return near or not inside
+        if ti.static(len(self.sight.plates) > 0):
+            self.sight.note(w, self.pose)
 
     @ti.func
     def place(self, u, part: ti.template()):
@@ -184,39 +139,15 @@ class Bodies:
             if ti.static(self.poses.rotating):
                 turn = 2.0 * self.poses.felt[4][w]
         y, z = p.offset(b, ti.cast(o_y, p.where), 0), p.offset(b, ti.cast(o_z, p.where), 1)
-        square, up, rate, turn = ti.cast(rate * rate, p.real), ti.cast(up, p.real), ti.cast(rate, p.real), ti.cast(turn, p.real)
+        square, up, rate, turn = (
+            ti.cast(rate * rate, p.real),
+            ti.cast(up, p.real),
+            ti.cast(rate, p.real),
+            ti.cast(turn, p.real),
+        )
         v_y, v_z = ti.cast(v_y, p.real), ti.cast(v_z, p.real)
         felt[0] += up * z + square * y + turn * (rate * y + v_z) - ti.cast(a_y, p.real)
         felt[1] += square * z - up * y + turn * (rate * z - v_y) - ti.cast(a_z, p.real)
-
-    @ti.func
-    def out_of_sight(self, b, jb, place: ti.template(), apart: ti.template(), part: ti.template()):
-        """For each particle of a block b, a huge length (m) if it does not see the one at `place` in block jb, else 0.
-
-        `apart` are the places of the block less the other one's.
-        """
-        p = self.particles
-        w, own, other = b // p.stride, self.row(b), self.row(jb)
-        far = p.zeros()
-        for q in ti.static(range(len(self.plates))):
-            first = ti.static(6 * part)
-            t_y, t_z = self.line[w, q, first + ALONG_Y], self.line[w, q, first + ALONG_Z]
-            y, z = place[0] - self.line[w, q, first + LINE_Y], place[1] - self.line[w, q, first + LINE_Z]
-            across = t_y * z - t_z * y
-            if across * across < 4.0 * self.reach * self.reach:
-                its = ti.cast(0.0, p.real)  # 1 where one of the two is a dummy of this plate
-                if own >= 0:
-                    its = ti.select(self.plate[own] == q, 1.0, its)
-                if other >= 0:
-                    its = ti.select(self.plate[other] == q, 1.0, its)
-                beyond = t_y * apart[1] - t_z * apart[0]
-                least = ti.select(beyond * beyond > 1e-30, beyond, p.ones())
-                through = t_y * y + t_z * z + (t_y * apart[0] + t_z * apart[1]) * ((0.0 - across) / least)
-                low, high = self.line[w, q, first + LOW], self.line[w, q, first + HIGH]
-                crossed = ti.select((beyond + across) * across < 0.0, p.ones(), p.zeros())
-                crossed = ti.select((through - low) * (high - through) > 0.0, crossed, p.zeros())
-                far += ti.select((crossed - its) * (crossed - its) > 0.25, p.ones() * FAR, p.zeros())
-        return far
 
     @ti.func
     def note_built(self, u):
