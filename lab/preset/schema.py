@@ -165,9 +165,9 @@ def check(preset: Preset) -> None:
     if preset.grains is not None:
         _check_of_grains(preset)
     check_motion(preset.motion)
+    check_parts(preset.parts, preset.tank.corners, preset.water is not None)
     check_water(preset)
     duration_of(preset.run, preset.motion)
-    check_parts(preset.parts, preset.tank.corners, preset.water is not None)
     if preset.water is not None:
         check_solids(preset)
     check_ship(preset.ship, preset.waves, bool(preset.motion.parts), preset.tank.corners)

@@ -29,8 +29,8 @@ class Lists:
 
     An entry is a slot in all blocks of all worlds, and where space is periodic the image in which it is seen. `travel`
     (units,) m bounds how far any particle of a unit has moved since the lists were built, `last` (m) how far in the
-    last step; `skin` (units,) m was allowed for. `walls` are the first slots of the dummies by key. Entries of `beside`
-    come piece by piece: those of the tank, then those of each part (`Bodies`), so that a block has as many beginnings.
+    last step; `skin` (units,) m was allowed for. `walls` are the first slots of the dummies by key. In `beside` those
+    of the tank are followed by those of each part (`Bodies`), with a beginning for each of these pieces.
     """
 
     def __init__(
@@ -51,7 +51,7 @@ class Lists:
         wraps = [(-1, 0, 1) if period else (0,) for period in order.grid.periods]
         self.images = tuple(3 * (up + 1) + along + 1 for along, up in product(*wraps))
         self.wall_first = own.holding("wall_first", walls, "key", ti.i32)
-        particles = self.particles
+        particles = order.particles
         wet, dry = (-(-blocks // units.a_world) for blocks in (particles.wet, max(particles.dry, 1)))
         crowd = room * self._crowd(order.grid, constants.reach)
         few = 4 * particles.dry * particles.lanes // units.a_world + wet  # blocks beside walls
@@ -127,11 +127,10 @@ class Lists:
                 found = self.search(u, b, reach, found, self.near, image, False)
                 if ti.static(p.dry > 0):
                     walls = self.search(u, b, reach, walls, self.beside, image, True)
-            if ti.static(self.bodies.count > 0):
-                for part in range(self.bodies.count):
-                    self.beside.first[u, (b - first) * self.pieces + 1 + part] = walls
-                    for image in ti.static(self.images):
-                        walls = self.search_part(u, b, reach, walls, part, image)
+            for part in range(self.bodies.count):
+                self.beside.first[u, (b - first) * self.pieces + 1 + part] = walls
+                for image in ti.static(self.images if self.bodies.count else ()):
+                    walls = self.search_part(u, b, reach, walls, part, image)
             for lane in range(p.lanes):
                 for a in ti.static(range(p.axes)):
                     p.built[a][b, lane] = p.place[a][b, lane]

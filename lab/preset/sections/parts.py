@@ -7,7 +7,7 @@ from typing import Annotated
 
 from lab.base.errors import LabError
 from lab.preset.outline import MOST_CORNERS, Point
-from lab.preset.sections.history import Record
+from lab.preset.sections.history import Record, check_history, check_start
 from lab.preset.units import needed, show
 from solvers.machine.marks import Doc
 from solvers.motion import MOTIONS
@@ -67,6 +67,22 @@ def check_parts(parts: Mapping[str, Part], outline: Sequence[Point], wet: bool) 
         for key, _, default in () if wet else KEYS:
             if getattr(part, key) != default:
                 raise LabError(f"parts.{name}.{key}: goes with water, and there is none; leave this out.")
+        _check_motions(part, f"parts.{name}")
+
+
+def _check_motions(part: Part, key: str) -> None:
+    """Raise LabError for a motion that starts elsewhere than where the part is drawn, or a record that is no motion."""
+    if part.history:
+        try:
+            check_history(part.history.history)
+            check_start(part.history.history, 0.0)
+        except LabError as error:
+            fault, *_ = str(error).replace("motion.history", f"{key}.history").partition("; let it")
+            raise LabError(fault if fault.endswith(".") else f"{fault}.") from None
+    for name in ("sway", "heave", "roll"):
+        motion = getattr(part, name)
+        if motion and motion.phase:
+            raise LabError(f"{key}.{name}.phase: a part starts where it is drawn; leave the phase out.")
 
 
 def _faults(part: Part, outline: Sequence[Point]) -> Iterator[tuple[str, str]]:

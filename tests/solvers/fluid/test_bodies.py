@@ -18,7 +18,7 @@ FLAP, LOW = ((0.2, 0.0), (0.2, 0.4)), 0.2
 
 
 def stirred(share: float) -> Scene:
-    """A square that sways and rolls, and a flap on the floor with less water behind it; by this share of full motions."""
+    """A square that sways and rolls, and a flap with less water behind it; by this share of their full motions."""
     square = Body(SIDES, closed=True, motions=(Sway(0.02 * share, 2.0), Roll(0.1 * share, 1.5, centre=(0.0, 0.15))))
     parts = square, Body(FLAP, motions=(Roll(0.1 * share, 1.0, centre=FLAP[0]),))
     drops = still(WIDTH, HEIGHT, DEPTH, ROWS).drops

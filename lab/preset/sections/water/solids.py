@@ -6,7 +6,7 @@ import numpy as np
 
 from lab.base.errors import LabError
 from lab.preset.outline import simple_polygon
-from lab.preset.sections.history import check_end, check_history, check_start
+from lab.preset.sections.history import check_end
 from lab.preset.sections.parts import PartGroup
 from lab.preset.sections.water import liquid
 from lab.preset.units import show
@@ -23,7 +23,8 @@ def check_solids(preset: liquid.Wet) -> None:
     """Raise LabError, one sentence, for the first part that water cannot have in it."""
     for name, part in preset.parts.items():
         key = f"parts.{name}"
-        _check_motions(preset, part, key)
+        if part.history:
+            _check_end(preset, part, key)
         if part.closed:
             _check_body(part, 2.0 * liquid.liquid(preset).reach, key)
         elif len(part.points) != 2:
@@ -32,19 +33,12 @@ def check_solids(preset: liquid.Wet) -> None:
         _check_place(preset, part, key)
 
 
-def _check_motions(preset: liquid.Wet, part: PartGroup, key: str) -> None:
-    """Raise LabError for a motion that starts elsewhere than where the part is drawn, or a record without use."""
-    if part.history:
-        try:
-            check_history(part.history.history)
-            check_start(part.history.history, 0.0)
-            check_end(part.history.history, preset.duration)
-        except LabError as error:
-            raise LabError(str(error).replace("motion.history", f"{key}.history").partition("; let it")[0]) from None
-    for name in ("sway", "heave", "roll"):
-        motion = getattr(part, name)
-        if motion and motion.phase:
-            raise LabError(f"{key}.{name}.phase: a part starts where it is drawn; leave the phase out.")
+def _check_end(preset: liquid.Wet, part: PartGroup, key: str) -> None:
+    """Raise LabError if the run goes on after a record that ends in motion."""
+    try:
+        check_end(part.history.history, preset.duration)
+    except LabError as error:
+        raise LabError(str(error).replace("the motion's record", f"the record of {key}.history")) from None
 
 
 def _check_body(part: PartGroup, least: float, key: str) -> None:
