@@ -145,8 +145,7 @@ class Lists:
                 for image in ti.static(self.images):
                     found = self.search(u, b, reach, found, self.facing, image, False)
             self.facing.first[u, end - first] = found
-            if found > self.facing.capacity:
-                fits = False
+            fits = fits and found <= self.facing.capacity
             if ti.static(self.bodies.moving):
                 self.bodies.note_built(u)
         self.travel[u], self.skin[u] = 0.0, skin
