@@ -139,15 +139,13 @@ class Bodies:
             if ti.static(self.poses.rotating):
                 turn = 2.0 * self.poses.felt[4][w]
         y, z = p.offset(b, ti.cast(o_y, p.where), 0), p.offset(b, ti.cast(o_z, p.where), 1)
-        square, up, rate, turn = (
-            ti.cast(rate * rate, p.real),
-            ti.cast(up, p.real),
-            ti.cast(rate, p.real),
-            ti.cast(turn, p.real),
-        )
-        v_y, v_z = ti.cast(v_y, p.real), ti.cast(v_z, p.real)
-        felt[0] += up * z + square * y + turn * (rate * y + v_z) - ti.cast(a_y, p.real)
-        felt[1] += square * z - up * y + turn * (rate * z - v_y) - ti.cast(a_z, p.real)
+        # Variables keep their type, and whole vectors cannot be cast: the factors have the vectors' own.
+        of_square, of_up = ti.cast(rate * rate, p.real), ti.cast(up, p.real)
+        of_turn, spin = ti.cast(turn, p.real), ti.cast(turn * rate, p.real)
+        even_y, even_z = ti.cast(a_y, p.real), ti.cast(a_z, p.real)
+        drift_y, drift_z = ti.cast(v_y, p.real), ti.cast(v_z, p.real)
+        felt[0] += of_up * z + (of_square + spin) * y + (of_turn * drift_z - even_y)
+        felt[1] += (of_square + spin) * z - of_up * y - (of_turn * drift_y + even_z)
 
     @ti.func
     def note_built(self, u):
