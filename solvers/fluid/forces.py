@@ -204,15 +204,17 @@ class Forces:
                 taken[1] += more * dot([p.velocity[a][jb, lane] for a in ti.static(range(p.axes))], apart)
             if ti.static(self.walls.sticks):
                 slides = [self.walls.mirrored[a][jb, lane] - speed[a] for a in ti.static(range(p.axes))]
+                # What the drag takes is its power on the wall less that on the water.
+                lags = [p.velocity[a][jb, lane] - speed[a] for a in ti.static(range(p.axes))]
                 if ti.static(c.viscosity.central):
                     closing = dot(slides, apart)
                     drag = weight * c.viscosity.pull(closing, square + floor)
                     along += strength * drag
-                    taken[0] += drag * closing
+                    taken[0] += drag * dot(lags, apart)
                 else:
                     for a in ti.static(range(p.axes)):
                         wall[a] += (strength * weight) * slides[a]
-                    taken[0] += weight * dot(slides, slides)
+                    taken[0] += weight * dot(slides, lags)
             for a in ti.static(range(p.axes)):
                 wall[a] += along * apart[a]
 

@@ -32,6 +32,10 @@ class PartGroup(solved.Part):
         recorded = self.history.history.motions if self.history else {}
         return used | {f"history.{name}": motion for name, motion in recorded.items()}
 
+    def fastest(self) -> float:
+        """Bound on its speed (m/s), by its move and its motions."""
+        return self.wet.fastest()
+
     @property
     def line(self) -> tuple[Point, ...]:
         """The corners (m) as a line to draw; that of a body ends where it begins."""
