@@ -1,12 +1,15 @@
 """The water of a scene, and its particles at rest, from a preset."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from lab.base.errors import LabError
 from lab.preset.schema import Preset
 from lab.preset.sections.water.liquid import bounds, liquid
-from solvers.fluid.given import VOLUME
-from solvers.fluid.start.rest import at_rest
+from solvers.fluid.given import EXCESS, VOLUME, Y, Z
+from solvers.fluid.start.parts import clear_of, free_share, surfaces
+from solvers.fluid.start.rest import at_rest, hydrostatic_excess
 from solvers.scene import Scene
 
 
@@ -17,10 +20,29 @@ def water_of(preset: Preset) -> dict:
 
 def drops_of(preset: Preset) -> np.ndarray:
     """The particles (n, 6) of a world. Raises LabError if none fits in."""
+    water = liquid(preset)
+    if preset.parts:  # which a lattice is cut off at; a packing knows nothing of them
+        water = replace(water, start="lattice")
     try:
-        return at_rest(*bounds(preset), liquid(preset), preset.run.gravity)
+        drops = at_rest(*bounds(preset), water, preset.run.gravity)
     except ValueError as error:
         raise LabError(f"water.spacing: {error}; take smaller particles.") from None
+    return _beside_parts(preset, drops) if preset.parts else drops
+
+
+def _beside_parts(preset: Preset, drops: np.ndarray) -> np.ndarray:
+    """The particles (n, 6) that parts leave free; in a region each stands under the surface right above it."""
+    water, (polygon, level) = liquid(preset), bounds(preset)
+    parts = [part.wet for part in preset.parts.values()]
+    if preset.water.region is not None:
+        depth = surfaces(drops[:, [Y, Z]], polygon, level) - drops[:, Z]
+        drops[:, EXCESS] = hydrostatic_excess(depth, preset.run.gravity, water.sound_speed, water.state)
+    whole = drops[:, VOLUME].sum()
+    drops = drops[clear_of(drops[:, [Y, Z]], parts, water.spacing)]
+    if not len(drops):
+        raise LabError("parts: they leave no room for the water.")
+    drops[:, VOLUME] *= whole * free_share(polygon, level, parts, water.spacing) / drops[:, VOLUME].sum()
+    return drops
 
 
 def most_drops(preset: Preset) -> int:

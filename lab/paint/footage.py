@@ -57,6 +57,7 @@ class Footage:
         self.ends = ends(series)
         self.settings = recording.preset.video
         self.title = recording.preset.title or recording.name
+        self.part_turn = frames["part_turn"][:] if "part_turn" in frames else np.zeros(self.part.shape[:-1])
         self._frames, self._waves = frames, frames["waves"][:] if "waves" in frames else None
         self._read: dict[str, tuple[int, np.ndarray]] = {}  # the frame last read of each quantity
 
@@ -168,8 +169,10 @@ class Bed:
 
     def plates(self, frame: int) -> list[np.ndarray]:
         """The moving parts, and a sliding mass, as polylines (m, 2) m in the tank frame at their places in a frame."""
-        moved, rail = self.footage.part[frame, self.world], self.footage.rail
-        lines = [line + shift for line, shift in zip(self.footage.parts.values(), moved, strict=True)]
+        moved, turn = self.footage.part[frame, self.world], self.footage.part_turn[frame, self.world]
+        parts = zip(self.footage.parts.values(), moved, np.cos(turn), np.sin(turn), strict=True)
+        lines = [shift + line @ np.array([[c, s], [-s, c]]) for line, shift, c, s in parts]
+        rail = self.footage.rail
         return lines + (rail.lines(self.world, self.footage.time[frame]) if rail else [])
 
 

@@ -20,7 +20,7 @@ from lab.preset.sections.contact import Contact
 from lab.preset.sections.grains import Grains, check_grains, check_room
 from lab.preset.sections.materials import Kind, Wall, check_cohesion, check_dissipation, check_kinds
 from lab.preset.sections.motion import Motion, check_motion
-from lab.preset.sections.parts import check_parts
+from lab.preset.sections.parts import Part, check_parts
 from lab.preset.sections.run import Run, duration_of
 from lab.preset.sections.sea import Sea, Waves
 from lab.preset.sections.shapes import Shape, ShapeClass, by_number
@@ -30,10 +30,10 @@ from lab.preset.sections.tank import Tank, check_tank
 from lab.preset.sections.video import Record, Video, check_video
 from lab.preset.sections.water.checks import check_water
 from lab.preset.sections.water.section import Gauge, Water
+from lab.preset.sections.water.solids import check_solids
 from solvers.grains.bed.sizes import Sizes
 from solvers.grains.materials import Material
 from solvers.machine.marks import Cheap, Doc, Interval
-from solvers.tank.parts import Part
 from solvers.tank.tank import BARE_THICKNESS
 
 FORMAT = 3
@@ -74,8 +74,8 @@ class Preset:
         default_factory=dict
     )
     motion: Annotated[Motion, Doc("How the tank moves.")] = field(default_factory=Motion)
-    parts: Annotated[dict[str, Part], Doc("Plates in the tank, such as gates and funnels, which may move.")] = field(
-        default_factory=dict
+    parts: Annotated[dict[str, Part], Doc("Parts in the tank, such as gates, funnels and pistons, which may move.")] = (
+        field(default_factory=dict)
     )
     ship: Annotated[Ship | None, Doc("The ship whose hold the tank is.")] = None
     axle: Annotated[Axle | None, Doc("The axle about which the tank rolls freely.")] = None
@@ -167,10 +167,12 @@ def check(preset: Preset) -> None:
     if preset.grains is not None:
         _check_of_grains(preset)
     check_motion(preset.motion)
+    check_parts(preset.parts, preset.tank.corners, preset.water is not None)
     check_water(preset)
     duration = duration_of(preset.run, preset.motion)
     check_axle(preset.axle, preset.ship is not None, bool(preset.motion.parts), bool(preset.matters), duration)
-    check_parts(preset.parts, preset.tank.corners)
+    if preset.water is not None:
+        check_solids(preset)
     check_ship(preset.ship, preset.waves, bool(preset.motion.parts), preset.tank.corners)
     check_video(preset.video, preset.matters)
 

@@ -94,7 +94,7 @@ class Run:
             kind=scene.kind,
             fixed=scene.fixed,
             open_edges=scene.open_edges,
-            parts={name: part.points for name, part in preset.parts.items()},
+            parts={name: part.line for name, part in preset.parts.items()},
             shapes=outlines_of(preset, scene),
             machine=self.device() if device is None else device,
             steered=steered,

@@ -42,7 +42,7 @@ def available_measures(loaded: LoadedPreset) -> dict[str, Value]:
 
 def _record(folder: Path, loaded: LoadedPreset, preset: Preset, scene: Scene, position: np.ndarray) -> None:
     """Write the recording of the dry run."""
-    count, parts = min(GRAINS, scene.radius.shape[1]), {name: part.points for name, part in preset.parts.items()}
+    count, parts = min(GRAINS, scene.radius.shape[1]), {name: part.line for name, part in preset.parts.items()}
     volume = volumes_of(scene.drops, 1)[:, :GRAINS]
     new_recording(
         folder,

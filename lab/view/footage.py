@@ -49,7 +49,7 @@ class Scenery:
         """The scenery of a preset's simulation, running or while its bed settles."""
         preset, scene = loaded.resolved, simulation.scene
         kind = np.zeros(scene.radius.shape, dtype=int) if scene.kind is None else scene.kind
-        lines = {name: np.array(part.points) for name, part in preset.parts.items()}
+        lines = {name: np.array(part.line) for name, part in preset.parts.items()}
         bounds = scene.outline, tuple(scene.open_edges), scene.fixed
         shapes = outlines_of(preset, scene)
         pool = Pool.of(preset, volumes_of(scene.drops, scene.worlds))

@@ -49,11 +49,11 @@ def residual(rows: dict[str, np.ndarray], start: np.ndarray | float) -> np.ndarr
     return rows["water_total"] + taken - rows["water_work"] - start
 
 
-def refuse_scene(tanks: int, vessels: bool, parts: bool, grains: bool) -> None:
+def refuse_scene(tanks: int, vessels: bool, grains: bool) -> None:
     """Raise Unavailable, one sentence, for a scene in which water cannot be computed."""
     if vessels:
         raise Unavailable("water: water in a ship's hold is not computed yet; leave out [ship] or [water].")
-    if tanks > 1 or parts:
-        raise Unavailable("water: tanks of water have no parts, and stand alone; leave out [parts] or [water].")
+    if tanks > 1:
+        raise Unavailable("water: tanks of water stand alone; leave out the other tanks or [water].")
     if grains:
         raise Unavailable("water: grains in water are not computed yet; leave out [grains] or [water].")

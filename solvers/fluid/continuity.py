@@ -4,6 +4,7 @@ import taichi as ti
 
 from solvers.fluid.lists import Medium
 from solvers.machine.state import State
+from solvers.motion.poses import AT_MIDDLE
 from solvers.space.axes import dot
 
 
@@ -53,7 +54,7 @@ class Continuity:
         for k in range(lists.near.first[u, listed], lists.near.first[u, listed + 1]):
             j = lists.near.slots[u, k]
             jb, lane = lists.block_of(j), lists.lane_of(j)
-            apart = lists.apart(own, origin, j)
+            apart = lists.apart(b, own, origin, j, AT_MIDDLE)
             weight = p.volume[jb, lane] * c.kernel.slope(ti.max(1.0 - ti.sqrt(dot(apart, apart)) * shrink, 0.0))
             nearing = [p.velocity[a][jb, lane] - speed[a] for a in ti.static(range(p.axes))]
             opened += weight * dot(nearing, apart)
@@ -73,10 +74,11 @@ class Continuity:
                     more += 2.0 * dot(rest, apart)
                 evened += weight * more
         if ti.static(p.dry > 0):
-            for k in range(lists.beside.first[u, listed], lists.beside.first[u, listed + 1]):
+            pieces = lists.pieces
+            for k in range(lists.beside.first[u, listed * pieces], lists.beside.first[u, (listed + 1) * pieces]):
                 j = lists.beside.slots[u, k]
                 jb, lane = lists.block_of(j), lists.lane_of(j)
-                apart = lists.apart(own, origin, j)
+                apart = lists.apart(b, own, origin, j, AT_MIDDLE)
                 weight = p.volume[jb, lane] * c.kernel.slope(ti.max(1.0 - ti.sqrt(dot(apart, apart)) * shrink, 0.0))
                 nearing = [p.velocity[a][jb, lane] - speed[a] for a in ti.static(range(p.axes))]
                 walled += weight * dot(nearing, apart)

@@ -7,6 +7,7 @@ from solvers.fluid.lists import Medium
 from solvers.fluid.state import INSIDE, SPRAY
 from solvers.fluid.walls.extrapolation import Extrapolation
 from solvers.machine.state import State
+from solvers.motion.poses import AT_START
 from solvers.space.axes import dot
 from solvers.tank.load import Load
 
@@ -27,7 +28,7 @@ class Forces:
     def __init__(self, arrays: State, medium: Medium, walls: Extrapolation, load: Load, thickness: float):
         self.units, self.particles, self.shares = medium.units, medium.particles, medium.shares
         self.lists, self.constants, self.poses = medium.lists, medium.constants, medium.poses
-        self.walls, self.load = walls, load
+        self.walls, self.load, self.bodies = walls, load, medium.lists.bodies
         own = arrays.under("water.forces")
         self.lost, self.held, self.work = own.reals((medium.units.axis,), "lost", "held", "work", kind=own.exact)
         self.gradients = medium.constants.diffusion.renormalised
@@ -61,6 +62,13 @@ class Forces:
             w = self.units.world(u)
             power = dot([total[0], total[1], total[2]], [self.poses.walls[3 + k][w] for k in ti.static(range(3))])
             self.work[u] = self.work[u] - power * during
+        if ti.static(self.bodies.count > 0):
+            for k in range(self.bodies.count):
+                load = [self.bodies.force[n][u, k] for n in ti.static(range(3))]
+                self.load.book(u, 1 + OUTLINE + k, ti.Vector([thick * load[n] for n in ti.static(range(3))]), dt)
+                for n in ti.static(range(3)):
+                    total[n] -= load[n]
+            self.bodies.book(u, kick, dt)
         self.load.book(u, OUTLINE, ti.Vector([total[0] * thick, total[1] * thick, total[2] * thick]), dt)
 
     @ti.func
@@ -89,7 +97,7 @@ class Forces:
         for k in range(lists.near.first[u, listed], lists.near.first[u, listed + 1]):
             j = lists.near.slots[u, k]
             jb, lane = lists.block_of(j), lists.lane_of(j)
-            apart = lists.apart(own, origin, j)
+            apart = lists.apart(b, own, origin, j, AT_START)
             square = dot(apart, apart)
             t = ti.max(1.0 - ti.sqrt(square) * shrink, 0.0)
             weight = p.volume[jb, lane] * c.kernel.slope(t)
@@ -124,37 +132,21 @@ class Forces:
             zz += weighted[1] * apart[1]
         lost *= 0.5
         if ti.static(p.dry > 0):
-            for k in range(lists.beside.first[u, listed], lists.beside.first[u, listed + 1]):
-                j = lists.beside.slots[u, k]
-                jb, lane = lists.block_of(j), lists.lane_of(j)
-                apart = lists.apart(own, origin, j)
-                square = dot(apart, apart)
-                t = ti.max(1.0 - ti.sqrt(square) * shrink, 0.0)
-                weight = p.volume[jb, lane] * c.kernel.slope(t)
-                if ti.static(c.shifting.acts):
-                    crowded = weight * c.shifting.crowded(c.get("shift_scale") * c.kernel.value(t))
+            begin = listed * lists.pieces
+            if ti.static(lists.pieces == 1):
+                ends = [lists.beside.first[u, begin], lists.beside.first[u, begin + 1]]
+                self.push_off(u, b, ends, own, origin, speed, pressure, wall, own_push, shift, [lost, held])
+            else:
+                for piece in range(lists.pieces):
+                    ends = [lists.beside.first[u, begin + piece], lists.beside.first[u, begin + piece + 1]]
+                    off = [p.zeros() for _ in ti.static(range(p.axes))]
+                    self.push_off(u, b, ends, own, origin, speed, pressure, off, own_push, shift, [lost, held])
                     for a in ti.static(range(p.axes)):
-                        shift[a] += crowded * apart[a]
-                along = p.pressure[jb, lane] + (pressure if ti.static(c.full) else ti.max(pressure, 0.0))
-                along = along * weight + p.volume[jb, lane] * c.hardness(square, p.firm[jb, lane])
-                more = along - pressure * weight
-                for a in ti.static(range(p.axes)):
-                    own_push[a] += more * apart[a]
-                if ti.static(self.poses.moving):
-                    held += more * dot([p.velocity[a][jb, lane] for a in ti.static(range(p.axes))], apart)
-                if ti.static(self.walls.sticks):
-                    slides = [self.walls.mirrored[a][jb, lane] - speed[a] for a in ti.static(range(p.axes))]
-                    if ti.static(c.viscosity.central):
-                        closing = dot(slides, apart)
-                        drag = weight * c.viscosity.pull(closing, square + floor)
-                        along += strength * drag
-                        lost += drag * closing
-                    else:
-                        for a in ti.static(range(p.axes)):
-                            wall[a] += (strength * weight) * slides[a]
-                        lost += weight * dot(slides, slides)
-                for a in ti.static(range(p.axes)):
-                    wall[a] += along * apart[a]
+                        wall[a] += off[a]
+                    if piece > 0 and ends[0] < ends[1]:
+                        force = p.load(p.volume, b) * c.get("slope")
+                        load = self.on_walls(b, origin, own, [force * off[a] for a in ti.static(range(p.axes))])
+                        self.bodies.bear(u, piece - 1, load)
         factor, density = c.get("slope"), c.get("density")
         lightness = (p.filled(b) * factor) / (density * (1.0 + s))
         for a in ti.static(range(p.axes)):
@@ -171,6 +163,60 @@ class Forces:
         total[3] = ti.cast((strength * volume * lost).sum(), p.exact)
         total[4] = ti.cast((volume * held).sum(), p.exact)
         return total
+
+    @ti.func
+    def push_off(
+        self,
+        u,
+        b,
+        ends: ti.template(),
+        own: ti.template(),
+        origin: ti.template(),
+        speed: ti.template(),
+        pressure: ti.template(),
+        wall: ti.template(),
+        own_push: ti.template(),
+        shift: ti.template(),
+        taken: ti.template(),
+    ):
+        """Add what the dummies of the entries between two `ends` of a list do to a block.
+
+        `taken` are the powers that viscosity and dummies take."""
+        p, c, lists = self.particles, self.constants, self.lists
+        shrink, floor, strength = c.get("shrink"), c.get("floor"), c.get("strength")
+        for k in range(ends[0], ends[1]):
+            j = lists.beside.slots[u, k]
+            jb, lane = lists.block_of(j), lists.lane_of(j)
+            apart = lists.apart(b, own, origin, j, AT_START)
+            square = dot(apart, apart)
+            t = ti.max(1.0 - ti.sqrt(square) * shrink, 0.0)
+            weight = p.volume[jb, lane] * c.kernel.slope(t)
+            if ti.static(c.shifting.acts):
+                crowded = weight * c.shifting.crowded(c.get("shift_scale") * c.kernel.value(t))
+                for a in ti.static(range(p.axes)):
+                    shift[a] += crowded * apart[a]
+            along = p.pressure[jb, lane] + (pressure if ti.static(c.full) else ti.max(pressure, 0.0))
+            along = along * weight + p.volume[jb, lane] * c.hardness(square, p.firm[jb, lane])
+            more = along - pressure * weight
+            for a in ti.static(range(p.axes)):
+                own_push[a] += more * apart[a]
+            if ti.static(self.poses.moving or self.bodies.moving):
+                taken[1] += more * dot([p.velocity[a][jb, lane] for a in ti.static(range(p.axes))], apart)
+            if ti.static(self.walls.sticks):
+                slides = [self.walls.mirrored[a][jb, lane] - speed[a] for a in ti.static(range(p.axes))]
+                # What the drag takes is its power on the wall less that on the water.
+                lags = [p.velocity[a][jb, lane] - speed[a] for a in ti.static(range(p.axes))]
+                if ti.static(c.viscosity.central):
+                    closing = dot(slides, apart)
+                    drag = weight * c.viscosity.pull(closing, square + floor)
+                    along += strength * drag
+                    taken[0] += drag * dot(lags, apart)
+                else:
+                    for a in ti.static(range(p.axes)):
+                        wall[a] += (strength * weight) * slides[a]
+                    taken[0] += weight * dot(slides, lags)
+            for a in ti.static(range(p.axes)):
+                wall[a] += along * apart[a]
 
     @ti.func
     def note_shift(self, b, shift: ti.template(), inwards: ti.template(), least, span):

@@ -8,8 +8,9 @@ import taichi as ti
 
 from solvers.fluid.constants import Constants
 from solvers.fluid.order import Order
-from solvers.fluid.state import UNUSED, Particles, Shares
-from solvers.machine.state import Axis, State
+from solvers.fluid.state import UNUSED, Listing, Particles, Shares
+from solvers.fluid.walls.bodies import Bodies
+from solvers.machine.state import State
 from solvers.machine.units import Units
 from solvers.motion.poses import Poses
 from solvers.space.axes import dot
@@ -23,23 +24,13 @@ CROWDED = 1.6  # times the neighbours of a square block at rest: room for those 
 
 
 @ti.data_oriented
-class Listing:
-    """One list for each block of a unit: `slots[u, first[u, b]]` to `slots[u, first[u, b + 1] - 1]`, b from 0."""
-
-    def __init__(self, arrays: State, units: Units, name: str, blocks: int, capacity: int, below: int):
-        self.capacity = capacity
-        own = arrays.under(f"water.{name}")
-        (self.first,) = own.integers((units.axis, Axis("begin", blocks + 1)), "first", below=capacity + 1)
-        (self.slots,) = own.integers((units.axis, Axis("entry", capacity)), "slots", below=below)
-
-
-@ti.data_oriented
 class Lists:
     """Neighbours of each block: `near`, of water in water; `beside`, walls beside water; `facing`, water before walls.
 
     An entry is a slot in all blocks of all worlds, and where space is periodic the image in which it is seen. `travel`
     (units,) m bounds how far any particle of a unit has moved since the lists were built, `last` (m) how far in the
-    last step; `skin` (units,) m was allowed for. `walls` are the first slots of the dummies by key.
+    last step; `skin` (units,) m was allowed for. `walls` are the first slots of the dummies by key. In `beside` those
+    of the tank are followed by those of each part (`Bodies`), with a beginning for each of these pieces.
     """
 
     def __init__(
@@ -50,23 +41,24 @@ class Lists:
         shares: Shares,
         constants: Constants,
         walls: np.ndarray,
+        bodies: Bodies,
         room: int,
     ):
         self.units, self.particles, self.shares = units, order.particles, shares
-        self.order, self.constants = order, constants
+        self.order, self.constants, self.bodies, self.pieces = order, constants, bodies, 1 + bodies.count
         own = arrays.under("water.lists")
         self.periods = own.holding("periods", np.array(order.grid.periods), "axis", own.place)
         wraps = [(-1, 0, 1) if period else (0,) for period in order.grid.periods]
         self.images = tuple(3 * (up + 1) + along + 1 for along, up in product(*wraps))
         self.wall_first = own.holding("wall_first", walls, "key", ti.i32)
-        particles = self.particles
+        particles = order.particles
         wet, dry = (-(-blocks // units.a_world) for blocks in (particles.wet, max(particles.dry, 1)))
         crowd = room * self._crowd(order.grid, constants.reach)
         few = 4 * particles.dry * particles.lanes // units.a_world + wet  # blocks beside walls
         slots = particles.worlds * particles.stride * particles.lanes
         below = slots if len(self.images) == 1 else 9 << PLACES  # an entry of periodic space has its image in front
         self.near = Listing(arrays, units, "near", wet, crowd * wet, below)
-        self.beside = Listing(arrays, units, "beside", wet, room * (8 * few + 64), below)
+        self.beside = Listing(arrays, units, "beside", wet * self.pieces, room * (8 * few + 64), below)
         self.facing = Listing(arrays, units, "facing", dry, crowd * dry, below)
         self.fixed_skin = SKIN[1] * order.grid.spacing  # m, of particles that move one by one
         self.travel = own.holding("travel", np.full(units.count, NEVER), "unit", kept=True)
@@ -114,6 +106,8 @@ class Lists:
                         ti.cast(p.place[a][b, lane] - p.built[a][b, lane], p.real) for a in ti.static(range(p.axes))
                     ]
                     farthest = ti.max(farthest, dot(gone, gone))
+        if ti.static(self.bodies.moving):
+            farthest = ti.max(farthest, self.bodies.gone(u))
         return ti.sqrt(farthest)
 
     @ti.func
@@ -128,15 +122,19 @@ class Lists:
         first, end = self.shares.wet(u)
         found, walls = 0, 0
         for b in range(first, end):
-            self.near.first[u, b - first], self.beside.first[u, b - first] = found, walls
+            self.near.first[u, b - first], self.beside.first[u, (b - first) * self.pieces] = found, walls
             for image in ti.static(self.images):
                 found = self.search(u, b, reach, found, self.near, image, False)
                 if ti.static(p.dry > 0):
                     walls = self.search(u, b, reach, walls, self.beside, image, True)
+            for part in range(self.bodies.count):
+                self.beside.first[u, (b - first) * self.pieces + 1 + part] = walls
+                for image in ti.static(self.images if self.bodies.count else ()):
+                    walls = self.search_part(u, b, reach, walls, part, image)
             for lane in range(p.lanes):
                 for a in ti.static(range(p.axes)):
                     p.built[a][b, lane] = p.place[a][b, lane]
-        self.near.first[u, end - first], self.beside.first[u, end - first] = found, walls
+        self.near.first[u, end - first], self.beside.first[u, (end - first) * self.pieces] = found, walls
         if found > self.near.capacity or walls > self.beside.capacity:
             fits = False
         if ti.static(p.dry > 0):
@@ -147,8 +145,9 @@ class Lists:
                 for image in ti.static(self.images):
                     found = self.search(u, b, reach, found, self.facing, image, False)
             self.facing.first[u, end - first] = found
-            if found > self.facing.capacity:
-                fits = False
+            fits = fits and found <= self.facing.capacity
+            if ti.static(self.bodies.moving):
+                self.bodies.note_built(u)
         self.travel[u], self.skin[u] = 0.0, skin
         if not fits:
             self.travel[u] = NEVER
@@ -163,12 +162,7 @@ class Lists:
         p, order = self.particles, self.order
         w = self.units.world(u)
         lower, upper = self.box(b)
-        code = 0
-        if ti.static(len(self.images) > 1):
-            code = image * (1 << PLACES)
-            for a in ti.static(range(p.axes)):
-                lower[a] -= self.shift(image, a)
-                upper[a] -= self.shift(image, a)
+        code = self.seen_in(image, lower, upper)
         far = ti.cast(reach, p.where)
         left, right = order.bin_of(lower[0] - far), order.bin_of(upper[0] + far)
         start = w * p.stride * p.lanes
@@ -178,15 +172,47 @@ class Lists:
             begin = self.at(w, strip * order.bins + left, walls)
             end = self.at(w, strip * order.bins + right + 1, walls)
             for k in range(start + begin, start + end):
-                square = ti.cast(0.0, p.real)
-                for a in ti.static(range(p.axes)):
-                    place = p.place[a][k // p.lanes, k % p.lanes]
-                    outside = ti.cast(ti.max(lower[a] - place, place - upper[a]), p.real)
-                    outside = ti.max(outside, 0.0)
-                    square += outside * outside
                 listing.slots[u, ti.min(found, listing.capacity - 1)] = k + code  # without a branch
-                found += ti.select(square < reach * reach, 1, 0)
+                found += ti.select(self.outside(k, lower, upper) < reach * reach, 1, 0)
         return found
+
+    @ti.func
+    def search_part(self, u, b, reach, found, part, image: ti.template()):
+        """As `search`, for the dummies of a part beside a block of water, block by block."""
+        p, bodies, listing = self.particles, self.bodies, self.beside
+        lower, upper = self.box(b)
+        code = self.seen_in(image, lower, upper)
+        start = self.units.world(u) * p.stride + p.wet + bodies.first
+        for row in range(bodies.ends[part], bodies.ends[part + 1]):
+            k, far = (start + row) * p.lanes, reach + bodies.radius[row]
+            if self.outside(k, lower, upper) < far * far:
+                for lane in range(p.lanes):
+                    listing.slots[u, ti.min(found, listing.capacity - 1)] = k + lane + code
+                    found += ti.select(self.outside(k + lane, lower, upper) < reach * reach, 1, 0)
+        return found
+
+    @ti.func
+    def seen_in(self, image: ti.template(), lower: ti.template(), upper: ti.template()):
+        """Shift a box to where an image of periodic space sees it; returns what entries of that image have in front."""
+        code = 0
+        if ti.static(len(self.images) > 1):
+            code = image * (1 << PLACES)
+            for a in ti.static(range(self.particles.axes)):
+                lower[a] -= self.shift(image, a)
+                upper[a] -= self.shift(image, a)
+        return code
+
+    @ti.func
+    def outside(self, slot, lower: ti.template(), upper: ti.template()):
+        """The square (m²) of the distance of the particle in a slot from a box; 0 within."""
+        p = self.particles
+        square = ti.cast(0.0, p.real)
+        for a in ti.static(range(p.axes)):
+            place = p.place[a][slot // p.lanes, slot % p.lanes]
+            outside = ti.cast(ti.max(lower[a] - place, place - upper[a]), p.real)
+            outside = ti.max(outside, 0.0)
+            square += outside * outside
+        return square
 
     @ti.func
     def at(self, w, key, walls: ti.template()):
@@ -225,13 +251,20 @@ class Lists:
         return slot
 
     @ti.func
-    def apart(self, own: ti.template(), origin: ti.template(), entry):
-        """The places of a block, `own` (m) from `origin`, less that of an entry's particle."""
-        p, b, lane = self.particles, self.block_of(entry), self.lane_of(entry)
-        return [
-            own[a] - ti.cast(p.place[a][b, lane] + self.seen(entry, a) - origin[a], p.real)
+    def apart(self, b, own: ti.template(), origin: ti.template(), entry, part: ti.template()):
+        """The places of a block b, `own` (m) from `origin`, less that of an entry's particle, at a part of the step.
+
+        Particles that a plate hides from each other are huge distances apart.
+        """
+        p, jb, lane = self.particles, self.block_of(entry), self.lane_of(entry)
+        found = [
+            own[a] - ti.cast(p.place[a][jb, lane] + self.seen(entry, a) - origin[a], p.real)
             for a in ti.static(range(p.axes))
         ]
+        if ti.static(len(self.bodies.sight.plates) > 0):
+            place = [ti.cast(p.place[a][jb, lane] + self.seen(entry, a), p.real) for a in ti.static(range(p.axes))]
+            found[0] += self.bodies.sight.out_of_sight(b, jb, place, found, part)
+        return found
 
     @ti.func
     def seen(self, entry, axis: ti.template()):

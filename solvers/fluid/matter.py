@@ -18,6 +18,7 @@ from solvers.fluid.order import Order
 from solvers.fluid.shifting import SHIFTING
 from solvers.fluid.state import LANES, UNUSED, Particles, Shares
 from solvers.fluid.walls.behind import OF_NONE, Behind
+from solvers.fluid.walls.bodies import Bodies
 from solvers.fluid.walls.edges import Edges
 from solvers.fluid.walls.extrapolation import Extrapolation
 from solvers.fluid.walls.gauges import Gauges
@@ -33,7 +34,7 @@ class WaterMatter(Matter):
     """Water: its dummies' pressures, its forces, then kick and drift, the rates of density, and drift."""
 
     name = "water"
-    of_contacts: ClassVar = ("gauge_pressure", "gauge_peak", "edge_force")  # known only after a step
+    of_contacts: ClassVar = ("gauge_pressure", "gauge_peak", "edge_force", "part_force")  # known only after a step
 
     def __init__(self, scene, setting: Setting):
         water: Water = scene.water
@@ -43,18 +44,20 @@ class WaterMatter(Matter):
         self.wide = lanes > 1
         behind, grid = Behind(water, tank), grid_round(water, scene.drops, tank.outline, setting.walls.bounds, lanes)
         dummy, blocks, first = grid.arranged(behind.points)
+        self.bodies = Bodies(arrays, scene.parts, water, tank, worlds, lanes)
+        self.nearing = self.bodies.fastest
+        walls = (len(blocks) + self.bodies.rows) * lanes
         self.drops = scene.drops
         count = scene.drops.shape[1]
-        self.particles = p = Particles(
-            arrays, worlds, count, lanes, len(blocks) * lanes, grid.strips, SHIFTING[water.shifting]
-        )
+        self.particles = p = Particles(arrays, worlds, count, lanes, walls, grid.strips, SHIFTING[water.shifting])
         self.units = units = setting.units(p.wet)
         self.load = setting.load(arrays.under("water"), units)
         self.dummies = dummy, blocks, behind.volumes, behind.firm
         shares, self.constants = Shares(p, units), Constants(arrays, water, scene.gravity)
         self.poses = Poses(arrays, setting.carrier, worlds)
         self.order = Order(arrays, p, grid)
-        self.lists = Lists(arrays, units, self.order, shares, self.constants, first, setting.room)
+        self.bodies.join(arrays, p, shares, self.poses, units)
+        self.lists = Lists(arrays, units, self.order, shares, self.constants, first, self.bodies, setting.room)
         medium = Medium(units, p, shares, self.lists, self.constants, self.poses)
         self.extrapolation = Extrapolation(arrays, medium)
         self.forces = Forces(arrays, medium, self.extrapolation, self.load, tank.thickness)
@@ -102,12 +105,14 @@ class WaterMatter(Matter):
 
     @ti.func
     def note_poses(self, w, t, kick, dt):
-        """Note how the tank of a world moves as the step begins."""
+        """Note how the tank of a world and the parts in it move as the step begins."""
         self.poses.note_start(w, t)
+        if ti.static(self.bodies.count > 0):
+            self.bodies.note(w, t, dt)
 
     @ti.func
     def note_passage(self, w, t, kick, dt):
-        """Note how it moves through the step."""
+        """Note how the tank moves through the step."""
         self.poses.note_passage(w, t, dt)
 
     @ti.func
@@ -159,16 +164,14 @@ class WaterMatter(Matter):
         """Place the particles as the scene says, and the dummies; all that was noted is forgotten."""
         p = self.particles
         p.put(self.drops, self.drops[..., [VELOCITY_Y, VELOCITY_Z]], self.water)
-        slots, blocks, volumes, firm = self.dummies
-        wall = np.zeros(p.dry * p.lanes)
-        wall[slots] = volumes
-        held_back = np.zeros(p.dry * p.lanes)
-        held_back[slots] = firm
-        number = np.full(p.dry * p.lanes, UNUSED)
-        number[slots] = np.arange(len(slots))
-        held = [blocks[..., 0], blocks[..., 1], wall.reshape(-1, p.lanes), number.reshape(-1, p.lanes)]
-        held.append(held_back.reshape(-1, p.lanes))
-        for field, values in zip([*p.place, p.volume, p.number, p.firm], held, strict=True):
+        (slots, blocks, *of_walls), solids = self.dummies, self.bodies.solids
+        wall, firm, number = (np.zeros(len(blocks) * p.lanes, kind) for kind in (float, float, int))
+        number[:] = UNUSED
+        wall[slots], firm[slots], number[slots] = *of_walls, np.arange(len(slots))
+        both = (blocks, solids.places), (wall, solids.volumes), (firm, solids.firm), (number, solids.numbers)
+        places, *held = (np.concatenate([tank.reshape(-1, *body.shape[1:]), body]) for tank, body in both)
+        fields = *p.place, p.volume, p.firm, p.number
+        for field, values in zip(fields, [*np.moveaxis(places, 2, 0), *held], strict=True):
             whole = field.to_numpy().reshape(p.worlds, p.stride, p.lanes)
             whole[:, p.wet :] = values
             field.from_numpy(whole.reshape(-1, p.lanes))
@@ -181,6 +184,7 @@ class WaterMatter(Matter):
             self.lists.last,
         ):
             field.fill(0.0)
+        self.bodies.forget()
         self.lists.skin.fill(0.0)
         self.lists.expire()
         self.gauges.forget()
@@ -211,7 +215,7 @@ class WaterMatter(Matter):
             "water_total": sums["moving"] + potential + sums["elastic"],
             "water_viscous": spent[0] * thick,
             "water_diffusive": spent[1] * thick,
-            "water_work": spent[2] * thick,
+            "water_work": (spent[2] + self.bodies.given()) * thick,
             "water_held": spent[3] * thick,
             "water_excess": sums["excess"],
             "water_dense": sums["dense"] / mass,
@@ -219,6 +223,7 @@ class WaterMatter(Matter):
             "water_escaped": sums["escaped"],
             **self.gauges.take(),
             **self.edges.take(),
+            **self.bodies.take(thick),
         }
         fresh = np.isnan(self.start)
         self.start[fresh] = residual(rows, 0.0)[fresh]
@@ -251,6 +256,7 @@ class WaterMatter(Matter):
             "water_place": np.stack(found[0:2], axis=-1),
             "water_velocity": self.census.relative(time, found[0:2], found[2:4], found[4:6]),
             "water_pressure": stiffness * self.constants.state.pressure(found[6]),
+            **self.bodies.places(time),
         }
 
     def alter(self, scene) -> None:
@@ -280,5 +286,5 @@ def make_water(scene, setting: Setting) -> WaterMatter | None:
     """The water of a scene (`solvers.scene.Scene`); None where it has none. Raises Unavailable."""
     if scene.water is None:
         return None
-    refuse_scene(len(scene.tanks), bool(scene.vessels), bool(scene.parts), bool(scene.radius.size))
+    refuse_scene(len(scene.tanks), bool(scene.vessels), bool(scene.radius.size))
     return WaterMatter(scene, setting)

@@ -4,6 +4,7 @@ import taichi as ti
 
 from solvers.fluid.lists import Medium
 from solvers.fluid.state import DENSEST, DENSEST_SPRAY, INSIDE, SPRAY
+from solvers.fluid.walls.bodies import AT_END
 from solvers.fluid.walls.extrapolation import Extrapolation
 from solvers.machine.state import State
 from solvers.motion.poses import AT_MIDDLE, AT_START
@@ -22,7 +23,7 @@ class Mover:
     def __init__(self, arrays: State, medium: Medium, walls: Extrapolation):
         self.units, self.particles, self.shares = medium.units, medium.particles, medium.shares
         self.lists, self.constants, self.poses = medium.lists, medium.constants, medium.poses
-        self.walls = walls
+        self.walls, self.bodies = walls, medium.lists.bodies
         own = arrays.under("water.mover")
         self.fastest, self.deviation = own.reals((medium.units.axis,), "fastest", "deviation", kept=False)
 
@@ -48,6 +49,8 @@ class Mover:
                 self.turn(w, b, slope, p.slope, AT_START)
         if ti.static(self.poses.moving and p.dry > 0):
             self.walls.carry(u)
+        if ti.static(self.bodies.moving):
+            self.bodies.place(u, AT_MIDDLE)
         self.lists.last[u] = ti.sqrt(self.largest(farthest))
         return True
 
@@ -75,6 +78,9 @@ class Mover:
             farthest = ti.max(farthest, self.drift(w, b, filled, 0.5 * dt, AT_MIDDLE))
         second, deviated = ti.sqrt(self.largest(farthest)), ti.sqrt(self.largest(deviation))
         whole = self.lists.last[u] + second
+        if ti.static(self.bodies.moving):
+            self.bodies.place(u, AT_END)
+            whole = ti.max(whole, self.bodies.way[w])
         self.lists.last[u] = whole
         self.lists.travel[u] = self.lists.travel[u] + whole
         self.fastest[u], self.deviation[u] = 2.0 * second / dt, deviated

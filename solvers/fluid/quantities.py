@@ -1,6 +1,6 @@
 """What is known of the water: its sums and gauges (`census`), and each of its particles (`state`)."""
 
-from solvers.machine.quantity import PLANE, Quantity
+from solvers.machine.quantity import FREEDOMS, PLANE, Quantity
 
 SERIES = (
     Quantity("water_centre", "m", PLANE, "centre of mass of the water in the tank"),
@@ -18,6 +18,10 @@ SERIES = (
     Quantity("gauge_pressure", "Pa", label="pressure at each gauge", per="gauge"),
     Quantity("gauge_peak", "Pa", label="highest pressure at each gauge since the last sample", per="gauge"),
     Quantity("edge_force", "N", PLANE, "force of the water on each edge of the tank", mean=True, per="edge"),
+    Quantity("part_force", "N, N, N m", FREEDOMS, "force of the water on each part in it", mean=True, per="part"),
+    Quantity(
+        "part_work", "J", label="work of each part on the water since the start, by its motion in the tank", per="part"
+    ),
     Quantity("level_depth", "m", label="depth of the water above the floor at each level gauge", per="level"),
 )
 # What the watch asks and no recording has: the number of a particle that has left the tank.
@@ -25,5 +29,6 @@ ESCAPED = Quantity("water_escaped", "1", label="number of a particle outside the
 FRAMES = (
     Quantity("water_place", "m", PLANE, "place of each particle of water in the tank", per="drop"),
     Quantity("water_velocity", "m/s", PLANE, "velocity of each particle of water, relative to the tank", per="drop"),
+    Quantity("part_turn", "rad", label="angle by which each part has turned in the tank", per="part", never=0.0),
     Quantity("water_pressure", "Pa", label="pressure of each particle of water", per="drop"),
 )

@@ -5,6 +5,7 @@ import taichi as ti
 
 from solvers.fluid.given import EXCESS, VOLUME, Water
 from solvers.machine.state import Axis, State
+from solvers.machine.units import Units
 from solvers.space.axes import PLANE, named
 
 LANES = 16  # particles in a block: two AVX2 registers, or one of AVX-512, of 32-bit numbers
@@ -174,3 +175,14 @@ class Shares:
         first, end = self._cut(u, self.particles.dry)
         start = w * self.particles.stride + self.particles.wet
         return start + first, start + end
+
+
+@ti.data_oriented
+class Listing:
+    """One list for each block of a unit: `slots[u, first[u, b]]` to `slots[u, first[u, b + 1] - 1]`, b from 0."""
+
+    def __init__(self, arrays: State, units: Units, name: str, blocks: int, capacity: int, below: int):
+        self.capacity = capacity
+        own = arrays.under(f"water.{name}")
+        (self.first,) = own.integers((units.axis, Axis("begin", blocks + 1)), "first", below=capacity + 1)
+        (self.slots,) = own.integers((units.axis, Axis("entry", capacity)), "slots", below=below)

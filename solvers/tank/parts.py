@@ -63,5 +63,28 @@ class Part:
         """The kernel's table: start, time to speed up, time under way (s), top rate (1/s), move (y, z; m)."""
         if not self.way:
             return [0.0] * 6
-        ramp, cruise = max(self.fastest() / self.acceleration, SHORTEST), self.way / self.fastest()
+        fastest = Part.fastest(self)
+        ramp, cruise = max(fastest / self.acceleration, SHORTEST), self.way / fastest
         return [self.start, ramp, ramp + cruise, 1.0 / cruise, *self.move]
+
+
+@dataclass(frozen=True)
+class Body(Part):
+    """A part in water: a thin plate between two points or, if it is `closed`, a solid polygon.
+
+    Its `motions` are those that a tank may have (`solvers.motion`), in the tank's frame, from the drawn place on; they
+    follow its `move`. They begin with the tank's own motion.
+    """
+
+    closed: bool = False
+    motions: tuple = ()
+
+    def fastest(self) -> float:
+        """Bound on the speed (m/s) of its corners."""
+        fastest = super().fastest()
+        for motion in self.motions:
+            lever = 1.0
+            if motion.coordinate == "turn":
+                lever = max(hypot(y - motion.centre[0], z - motion.centre[1]) for y, z in self.points)
+            fastest += lever * motion.fastest(0.0)
+        return fastest

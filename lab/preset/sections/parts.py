@@ -1,23 +1,92 @@
-"""Checks of the parts in the tank, as a preset gives them."""
+"""The parts in the tank, as a preset gives them, and their checks."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, make_dataclass
 from math import isfinite
+from typing import Annotated
 
 from lab.base.errors import LabError
 from lab.preset.outline import MOST_CORNERS, Point
+from lab.preset.sections.history import Record, check_history, check_start
 from lab.preset.units import needed, show
-from solvers.tank.parts import Part
+from solvers.machine.marks import Doc
+from solvers.motion import MOTIONS
+from solvers.tank import parts as solved
 
 MOST_PARTS = 50
 
 
-def check_parts(parts: Mapping[str, Part], outline: Sequence[Point]) -> None:
-    """Raise LabError for the first fault of a part; `outline` is the tank's (m)."""
+@dataclass(frozen=True)
+class PartGroup(solved.Part):
+    """A part of the tank: thin plates along a polyline, or in water a plate between two points, or a solid body.
+
+    From `start` (s after the tank's motion begins) it is displaced by `move` in the tank's frame: it accelerates with
+    `acceleration` up to `speed`, and brakes likewise at the end. If the way is too short to reach `speed`, the top
+    speed is lower. A part whose `move` is zero stands still. In water it may also have motions as the tank has.
+    """
+
+    @property
+    def moves(self) -> dict[str, object]:
+        """The motions in use by name; those from a record are outermost."""
+        used = {name: getattr(self, name) for name in MOTIONS if getattr(self, name) is not None}
+        recorded = self.history.history.motions if self.history else {}
+        return used | {f"history.{name}": motion for name, motion in recorded.items()}
+
+    def fastest(self) -> float:
+        """Bound on its speed (m/s), by its move and its motions."""
+        return self.wet.fastest()
+
+    @property
+    def line(self) -> tuple[Point, ...]:
+        """The corners (m) as a line to draw; that of a body ends where it begins."""
+        return (*self.points, self.points[0]) if self.closed else self.points
+
+    @property
+    def dry(self) -> solved.Part:
+        """The part among grains."""
+        return solved.Part(self.points, self.move, self.start, self.speed, self.acceleration)
+
+    @property
+    def wet(self) -> solved.Body:
+        """The part in water."""
+        motions = tuple(self.moves.values())
+        return solved.Body(self.points, self.move, self.start, self.speed, self.acceleration, self.closed, motions)
+
+
+KEYS = [("closed", Annotated[bool, Doc("Whether it is a solid body, for water alone.")], False)]
+KEYS += [(name, Annotated[kind | None, Doc(f"Its {name}, in water.")], None) for name, kind in MOTIONS.items()]
+KEYS.append(("history", Annotated[Record | None, Doc("Its motion from a file, in water.")], None))
+Part = make_dataclass("Part", KEYS, bases=(PartGroup,), frozen=True)
+"""A part, with its motions in water, any of which may be left out."""
+Part.__module__ = __name__  # so that it can be sent to another process
+
+
+def check_parts(parts: Mapping[str, Part], outline: Sequence[Point], wet: bool) -> None:
+    """Raise LabError for the first fault of a part; `outline` is the tank's (m); `wet`: it holds water."""
     if len(parts) > MOST_PARTS:
         raise LabError(f"parts: at most {MOST_PARTS} are possible (got {len(parts)}).")
     for name, part in parts.items():
         for key, fault in _faults(part, outline):
             raise LabError(f"parts.{name}.{key}: {fault}.")
+        for key, _, default in () if wet else KEYS:
+            if getattr(part, key) != default:
+                raise LabError(f"parts.{name}.{key}: goes with water, and there is none; leave this out.")
+        _check_motions(part, f"parts.{name}")
+
+
+def _check_motions(part: Part, key: str) -> None:
+    """Raise LabError for a motion that starts elsewhere than where the part is drawn, or a record that is no motion."""
+    if part.history:
+        try:
+            check_history(part.history.history)
+            check_start(part.history.history, 0.0)
+        except LabError as error:
+            fault, *_ = str(error).replace("motion.history", f"{key}.history").partition("; let it")
+            raise LabError(fault if fault.endswith(".") else f"{fault}.") from None
+    for name in ("sway", "heave", "roll"):
+        motion = getattr(part, name)
+        if motion and motion.phase:
+            raise LabError(f"{key}.{name}.phase: a part starts where it is drawn; leave the phase out.")
 
 
 def _faults(part: Part, outline: Sequence[Point]) -> Iterator[tuple[str, str]]:

@@ -139,5 +139,5 @@ def _sketch(name: str, size: tuple[int, int]) -> Image.Image:
         draw.polygon(placed(preset.grains.place or _filling(preset)), fill=GRAIN)
     draw.line([*placed(outline), placed(outline)[0]], fill=palette.WALL, width=3)
     for part in preset.parts.values():
-        draw.line(placed(part.points), fill=palette.PART, width=3)
+        draw.line(placed(part.line), fill=palette.PART, width=3)
     return image

@@ -6,6 +6,7 @@ import taichi as ti
 from solvers.fluid.lists import Medium
 from solvers.fluid.walls.behind import OF_NONE
 from solvers.machine.state import Axis, State
+from solvers.motion.poses import AT_START
 from solvers.space.axes import dot, named
 
 
@@ -55,7 +56,7 @@ class Edges:
         for k in range(begin, end):
             j = lists.facing.slots[u, k]
             jb, lane = lists.block_of(j), lists.lane_of(j)
-            apart = lists.apart(own, origin, j)
+            apart = lists.apart(b, own, origin, j, AT_START)
             square = dot(apart, apart)
             weight = c.kernel.slope(ti.max(1.0 - ti.sqrt(square) * c.get("shrink"), 0.0))
             push = p.pressure[jb, lane]

@@ -4,6 +4,7 @@ import taichi as ti
 
 from solvers.fluid.lists import Medium
 from solvers.machine.state import Axis, State
+from solvers.motion.poses import AT_START
 from solvers.space.axes import dot, named
 
 SEEN = 1e-6  # of full coverage: a dummy that sees less water has no pressure
@@ -21,6 +22,7 @@ class Extrapolation:
     def __init__(self, arrays: State, medium: Medium):
         self.units, self.particles, self.shares = medium.units, medium.particles, medium.shares
         self.lists, self.constants, self.poses = medium.lists, medium.constants, medium.poses
+        self.bodies = medium.lists.bodies
         self.sticks = medium.constants.viscous and not medium.constants.slip
         if self.sticks:
             own = arrays.under("water")
@@ -49,7 +51,7 @@ class Extrapolation:
         for k in range(begin, end):
             j = self.lists.facing.slots[u, k]
             jb, lane = self.lists.block_of(j), self.lists.lane_of(j)
-            apart = self.lists.apart(own, origin, j)
+            apart = self.lists.apart(b, own, origin, j, AT_START)
             weight = c.kernel.value(ti.max(1.0 - ti.sqrt(dot(apart, apart)) * shrink, 0.0))
             volume = p.volume[jb, lane]
             seen += weight * volume
@@ -82,6 +84,8 @@ class Extrapolation:
             rate, up = ti.cast(self.poses.felt[4][w], p.real), ti.cast(self.poses.felt[5][w], p.real)
             felt[0] += up * z + (rate * rate) * y
             felt[1] += (rate * rate) * z - up * y
+        if ti.static(self.bodies.moving):
+            self.bodies.hold_back(w, b, felt)
         return felt
 
     @ti.func

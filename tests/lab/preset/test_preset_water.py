@@ -2,13 +2,16 @@
 
 import tomllib
 
+import numpy as np
 import pytest
 
+from lab.assembly.water import drops_of
 from lab.preset.merge import merged, nested
 from lab.preset.recorded import from_table, resolved_from, to_table
 from lab.preset.schema import Preset, resolve
 from lab.preset.sections.water.liquid import depth, expected_speed, liquid, spacing, tank_speed
 from lab.preset.sections.water.schemes import SCHEMES
+from solvers.fluid.given import EXCESS, VOLUME, Y, Z
 from tests.oracles.presets import error_of
 
 TANK = """
@@ -26,6 +29,9 @@ COLUMN = [["-450 mm", "0 mm"], ["-250 mm", "0 mm"], ["-250 mm", "300 mm"], ["-45
 GRAINS = {"grains": {"diameter": "3 mm", "depth": "30 mm"}, "material": {"density": "1319 kg/m^3", "young": "3 GPa"}}
 GRAINS["material"] |= {"poisson": 0.28, "friction": 0.25, "restitution": 0.6}
 SHIP = {"breadth": "2 m", "height": "1 m", "draught": "0.4 m", "gravity_height": "0.3 m", "gyradius": "0.5 m"}
+GATE = {"points": [["0 mm", "0 mm"], ["0 mm", "150 mm"]], "speed": "1 m/s", "acceleration": "10 m/s^2"}
+THIN = [["0 mm", "20 mm"], ["20 mm", "20 mm"], ["20 mm", "90 mm"], ["0 mm", "90 mm"]]
+ROLL = {"amplitude": "5 deg", "frequency": "1 Hz", "phase": "1 rad"}
 
 
 def wet(**overrides) -> Preset:
@@ -193,9 +199,38 @@ FAULTS = {
         "water: grains and water in one tank are not computed yet; leave out [grains] or [water].",
     ),
     "a ship": ({"ship": SHIP}, "water: water in a ship's hold is not computed yet; the sea outside is [sea]."),
-    "a plate": (
-        {"parts__gate": {"points": [["0 mm", "0 mm"], ["0 mm", "50 mm"]]}},
-        "parts: plates in water are not computed yet; draw them into tank.outline, or leave them out.",
+    "a bent plate": (
+        {"parts__gate": {"points": [["0 mm", "0 mm"], ["0 mm", "50 mm"], ["10 mm", "90 mm"]]}},
+        "parts.gate.points: a plate in water is straight (got 3 points); give two points, or set closed = true for a "
+        "solid body.",
+    ),
+    "a plate through a wall": (
+        {"parts__gate": {"points": [["0 mm", "20 mm"], ["470 mm", "20 mm"]]}},
+        "parts.gate.points: it stands in a wall of the tank at [455.3 mm, 20 mm]; keep it inside, or "
+        "let it out through the top.",
+    ),
+    "a gate through the floor": (
+        {"parts__gate": GATE | {"move": ["0 mm", "-100 mm"]}},
+        "parts.gate.move: it stands in a wall of the tank at [0 m, -2.5 mm] on its way; keep it inside, or let it out "
+        "through the top.",
+    ),
+    "a piston that leaves": (
+        {"parts__piston": {"points": GATE["points"], "sway": {"amplitude": "500 mm", "frequency": "1 Hz"}}},
+        "parts.piston.sway: it stands in a wall of the tank at [-500 mm, 0 m] on its way; keep it inside, "
+        "or let it out through the top.",
+    ),
+    "a part that starts elsewhere": (
+        {"parts__flap": {"points": GATE["points"], "roll": ROLL}},
+        "parts.flap.roll.phase: a part starts where it is drawn; leave the phase out.",
+    ),
+    "a thin body": (
+        {"water__spacing": "4 mm", "parts__wall": {"points": THIN, "closed": True}},
+        "parts.wall.points: this body is 20 mm thin, under 4 h = 32 mm; take smaller particles, or draw it as a "
+        "plate of two points.",
+    ),
+    "a body without water": (
+        {"water": False, "parts__wall": {"points": THIN, "closed": True}},
+        "parts.wall.closed: goes with water, and there is none; leave this out.",
     ),
     "repeats": (
         {"run__repeats": 3},
@@ -230,3 +265,24 @@ def test_a_full_tank_and_an_open_one_filled_to_its_rim_are_allowed():
     assert wet(water__depth="500 mm", tank__lid=False).tank.open_edges == (2,)
     gone = fault(tank__lid=False, gauges__P1={"place": ["0 mm", "500 mm"]})  # where no wall is
     assert gone.startswith("gauges.P1.place: [0 m, 500 mm] is 450 mm away from the tank's walls")
+
+
+def test_a_gate_may_leave_through_the_top_and_its_speed_counts():
+    """A gate that is lifted out; the expected speed of the water, and with it that of sound, is at least the gate's."""
+    gate = wet(parts__gate=GATE | {"move": ["0 mm", "600 mm"], "speed": "9 m/s", "acceleration": "1e3 m/s^2"})
+    assert expected_speed(gate) == pytest.approx(9.0)
+    assert expected_speed(gate) > expected_speed(wet())
+
+
+def test_water_leaves_room_for_bodies_and_stands_at_its_level_on_either_side_of_a_gate():
+    block = [["-50 mm", "0 mm"], ["50 mm", "0 mm"], ["50 mm", "60 mm"], ["-50 mm", "60 mm"]]
+    given = {"water__spacing": "5 mm", "run__gravity": "10 m/s^2"}
+    drops = drops_of(wet(parts__block={"points": block, "closed": True}, **given))
+    assert not ((np.abs(drops[:, Y]) < 0.05) & (drops[:, Z] < 0.06)).any()
+    assert drops[:, VOLUME].sum() == pytest.approx(0.9 * 0.1 - 0.1 * 0.06, rel=1e-6)
+    steps = [["-450 mm", "0 mm"], ["450 mm", "0 mm"], ["450 mm", "50 mm"], ["0 mm", "50 mm"], ["0 mm", "100 mm"]]
+    region = {"water__depth": False, "water__region": [*steps, ["-450 mm", "100 mm"]]}
+    drops = drops_of(wet(parts__gate=GATE, **given, **region))
+    sound = liquid(wet(parts__gate=GATE, **given, **region)).sound_speed
+    level = np.where(drops[:, Y] < 0.0, 0.1, 0.05)
+    np.testing.assert_allclose(np.log1p(drops[:, EXCESS]) * sound**2, 10.0 * (level - drops[:, Z]), rtol=1e-9)

@@ -23,7 +23,6 @@ class Whole(liquid.Wet):
 
     grains: object | None
     ship: object | None
-    parts: Mapping[str, object]
 
 
 def check_water(preset: Whole) -> None:
@@ -53,8 +52,6 @@ def _check_company(preset: Whole) -> None:
         raise LabError("water: grains and water in one tank are not computed yet; leave out [grains] or [water].")
     if preset.run.repeats > 1:
         raise LabError("run.repeats: water starts without chance, so that all repeats would be the same; take one.")
-    if preset.parts:
-        raise LabError("parts: plates in water are not computed yet; draw them into tank.outline, or leave them out.")
 
 
 def _check_models(water: Water) -> None:

@@ -11,6 +11,7 @@ import numpy as np
 from lab.preset.accuracy import LEVELS
 from lab.preset.outline import simple_polygon
 from lab.preset.sections.motion import MotionGroup
+from lab.preset.sections.parts import PartGroup
 from lab.preset.sections.run import Run
 from lab.preset.sections.tank import Tank
 from lab.preset.sections.water.schemes import SCHEMES, Scheme
@@ -28,6 +29,7 @@ class Wet(Protocol):
     gauges: dict[str, Gauge]
     tank: Tank
     motion: MotionGroup
+    parts: dict[str, PartGroup]
     run: Run
 
 
@@ -104,7 +106,7 @@ def expected_speed(preset: Wet) -> float:
     floor = min(z for _, z in preset.tank.corners)
     height = bounds(preset)[1] - floor
     wave = sqrt(preset.run.gravity * height) * (1.0 if preset.water.region is None else FRONT)
-    return max(wave, tank_speed(preset))
+    return max([wave, tank_speed(preset), *(part.wet.fastest() for part in preset.parts.values())])
 
 
 def tank_speed(preset: Wet) -> float:

@@ -1,0 +1,114 @@
+"""Checks of the parts in a preset's water: plates and bodies that can be represented, and stay in the tank."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from lab.base.errors import LabError
+from lab.preset.outline import simple_polygon
+from lab.preset.sections.history import check_end
+from lab.preset.sections.parts import PartGroup
+from lab.preset.sections.water import liquid
+from lab.preset.units import show
+from solvers.fluid.walls.solids import counter_clockwise
+from solvers.tank.tank import Tank as Outline
+
+THINNEST = 4.0  # smoothing lengths: the least thickness at which no dummy of a body is seen from both of its sides
+LOOKS = 41  # places at which a motion is looked at
+ALONG = 33  # points at which a part's sides are looked at
+NEAR = 1e-3  # of the tank's larger side: how far a part may stand in a wall
+
+
+def check_solids(preset: liquid.Wet) -> None:
+    """Raise LabError, one sentence, for the first part that water cannot have in it."""
+    for name, part in preset.parts.items():
+        key = f"parts.{name}"
+        if part.history:
+            _check_end(preset, part, key)
+        if part.closed:
+            _check_body(part, 2.0 * liquid.liquid(preset).reach, key)
+        elif len(part.points) != 2:
+            remedy = "give two points, or set closed = true for a solid body"
+            raise LabError(f"{key}.points: a plate in water is straight (got {len(part.points)} points); {remedy}.")
+        _check_place(preset, part, key)
+
+
+def _check_end(preset: liquid.Wet, part: PartGroup, key: str) -> None:
+    """Raise LabError if the run goes on after a record that ends in motion."""
+    try:
+        check_end(part.history.history, preset.duration)
+    except LabError as error:
+        raise LabError(str(error).replace("the motion's record", f"the record of {key}.history")) from None
+
+
+def _check_body(part: PartGroup, least: float, key: str) -> None:
+    """Raise LabError for a body that is no simple polygon, or thinner (m) than `least`."""
+    try:
+        corners = counter_clockwise(simple_polygon(part.points))
+    except LabError as error:
+        raise LabError(f"{key}.points: {error}") from None
+    thin = thickness(corners)
+    if thin < least:
+        remedy = "take smaller particles, or draw it as a plate of two points"
+        raise LabError(f"{key}.points: this body is {show(thin, 'm')} thin, under 4 h = {show(least, 'm')}; {remedy}.")
+
+
+def thickness(corners: np.ndarray) -> float:
+    """The least distance (m) from the middle of an edge of a polygon (m, 2), counter-clockwise, straight through it."""
+    found, ends = np.inf, np.roll(corners, -1, axis=0)
+    for begin, end in zip(corners, ends, strict=True):
+        along = (end - begin) / np.hypot(*(end - begin))
+        inwards, middle = np.array([-along[1], along[0]]), 0.5 * (begin + end)
+        deep, aside = (corners - middle) @ inwards, (corners - middle) @ along
+        after, beside = np.roll(deep, -1), np.roll(aside, -1)
+        for d, e, a, b in zip(deep, after, aside, beside, strict=True):
+            if (a > 0.0) != (b > 0.0):
+                at = d + (e - d) * a / (a - b)
+                if at > 1e-9 * np.ptp(corners):
+                    found = min(found, at)
+    return float(found)
+
+
+def _check_place(preset: liquid.Wet, part: PartGroup, key: str) -> None:
+    """Raise LabError for a part that stands in a wall, at the start or on its way; above the tank it may be."""
+    tank = np.array(preset.tank.corners)
+    outline, top, left = Outline(tank, 1.0), tank[:, 1].max(), NEAR * max(preset.tank.extent)
+    points = np.array(part.points)
+    sides = points[:-1] if not part.closed else points
+    share = np.linspace(0.0, 1.0, ALONG)[:, None]
+    ends = points[1:] if not part.closed else np.roll(points, -1, axis=0)
+    drawn = np.concatenate([a + share * (b - a) for a, b in zip(sides, ends, strict=True)])
+    for motion, places in _ways(part, drawn):
+        inside = outline.holds(places) | (places[:, 1] >= top - left)
+        for step in left * np.array([(1, 0), (-1, 0), (0, 1), (0, -1)]):
+            inside |= outline.holds(places + step)
+        if not inside.all():
+            y, z = places[(~inside).argmax()]
+            where = f"[{show(float(y), 'm')}, {show(float(z), 'm')}]"
+            when = "" if motion == "points" else " on its way"
+            raise LabError(
+                f"{key}.{motion}: it stands in a wall of the tank at {where}{when}; keep it inside, or let it out "
+                "through the top."
+            )
+
+
+def _ways(part: PartGroup, drawn: np.ndarray) -> Iterator[tuple[str, np.ndarray]]:
+    """Where points of a part (n, 2) m come to by each of its motions alone, with the key of that motion."""
+    yield "points", drawn
+    for share in np.linspace(0.0, 1.0, LOOKS) if part.way else ():
+        yield "move", drawn + share * np.array(part.move)
+    for name, motion in part.moves.items():
+        if hasattr(motion, "values"):
+            ways = motion.values
+        else:
+            farthest = motion.amplitude if hasattr(motion, "amplitude") else motion.angle
+            ways = farthest * np.linspace(-1.0 if hasattr(motion, "amplitude") else 0.0, 1.0, LOOKS)
+        for way in ways:
+            if motion.coordinate == "turn":
+                arm, (c, s) = drawn - motion.centre, (np.cos(way), np.sin(way))
+                yield (
+                    name,
+                    motion.centre + np.column_stack([c * arm[:, 0] - s * arm[:, 1], s * arm[:, 0] + c * arm[:, 1]]),
+                )
+            else:
+                yield name, drawn + way * np.array([motion.coordinate == "y", motion.coordinate == "z"])

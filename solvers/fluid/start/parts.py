@@ -1,0 +1,44 @@
+"""Water at rest round the parts in a tank, and beside gates with other levels behind them."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from solvers.fluid.start.lattice import CLOSE, NEAR, from_edges, lattice
+from solvers.fluid.walls.solids import is_solid
+from solvers.tank.parts import Part
+from solvers.tank.tank import Tank
+
+FINER = 8  # points of a finer lattice along a spacing, by which the area that bodies take is counted
+
+
+def cleared(points: np.ndarray, parts: Sequence[Part], close: float) -> np.ndarray:
+    """Which of the points (n, 2) m are outside of all bodies, and at least `close` (m) from their faces and plates."""
+    free = np.ones(len(points), dtype=bool)
+    for part in parts:
+        corners = np.array(part.points)
+        free &= from_edges(points, corners) >= close
+        if is_solid(part):
+            free &= ~Tank(corners, 1.0).holds(points)
+    return free
+
+
+def free_share(polygon: np.ndarray, level: float, parts: Sequence[Part], spacing: float) -> float:
+    """Which share of a polygon (m, 2) up to a level (m) bodies leave free, by a lattice finer than the `spacing`."""
+    solid = [part for part in parts if is_solid(part)]
+    return float(cleared(lattice(polygon, level, spacing / FINER)[0], solid, 0.0).mean()) if solid else 1.0
+
+
+def clear_of(points: np.ndarray, parts: Sequence[Part], spacing: float) -> np.ndarray:
+    """Which places (n, 2) m of particles bodies and plates leave free."""
+    return cleared(points, parts, (CLOSE - NEAR) * spacing)
+
+
+def surfaces(points: np.ndarray, polygon: np.ndarray, level: float) -> np.ndarray:
+    """Height (n,) m of the water's surface over each point (n, 2) m: the level edge of the polygon next above it."""
+    found = np.full(len(points), level)
+    for a, b in zip(polygon, np.roll(polygon, -1, axis=0), strict=True):
+        if a[1] == b[1]:
+            over = (points[:, 0] >= min(a[0], b[0])) & (points[:, 0] <= max(a[0], b[0])) & (points[:, 1] < a[1])
+            found = np.where(over, np.minimum(found, a[1]), found)
+    return found

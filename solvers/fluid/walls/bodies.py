@@ -1,0 +1,232 @@
+"""Bodies and plates that move in the water: where their dummies are, and what they do to it."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import taichi as ti
+
+from solvers.fluid.given import Water
+from solvers.fluid.state import UNUSED, Particles, Shares
+from solvers.fluid.walls.sight import COSINE, RATE, SINE, V_Y, V_Z, Sight, Y, Z
+from solvers.fluid.walls.solids import Solids
+from solvers.machine.state import Axis, State
+from solvers.motion.moved import motions_of
+from solvers.motion.poses import AT_START, Poses
+from solvers.motion.prescribed import Prescribed
+from solvers.space.axes import dot
+from solvers.tank.parts import Part
+from solvers.tank.tank import Tank
+
+AT_END = 2  # of a step, beside its start and its middle
+
+
+@ti.data_oriented
+class Bodies:
+    """The parts in the water of each world, rigid bodies whose motion in the tank is prescribed.
+
+    At a pose (O, θ) in the tank's axes a point that is drawn at p is at O + R(θ) p; it moves at V + ω × R p and is
+    accelerated by A + ω' × R p − ω² R p, to which −2 Ω × v comes where the tank itself rolls at Ω. Dummies of bodies
+    follow those of the tank in memory.
+
+    `impulse` (units, parts; N s/m, N s) is what the water did to each part since it was last taken, `work` (units,
+    parts; J/m) what the parts have done on the water.
+    """
+
+    def __init__(self, arrays: State, parts: Sequence[Part], water: Water, tank: Tank, worlds: int, lanes: int):
+        self.count, self.lanes, self.worlds = len(parts), lanes, worlds
+        self.solids = Solids(parts, water, lanes)
+        self.rows = len(self.solids.places)
+        self.sight = Sight(arrays, parts, water, tank, worlds)
+        self.arms = [max(float(np.hypot(*point)) for point in part.points) for part in parts]
+        self.fastest = max((part.fastest() for part in parts), default=0.0)
+        self.carriers = [
+            Prescribed(arrays.under(f"parts.{k}"), [motions_of(part)] * worlds, 0.0, 0.0)
+            for k, part in enumerate(parts)
+        ]
+        self.moving = any(carrier.moving for carrier in self.carriers)
+        if parts:
+            self._declare(arrays.under("bodies"))
+
+    def _declare(self, own: State) -> None:
+        """Make the arrays."""
+        self.exact = own.exact
+        kept = {"kind": own.place}
+        self.rest = [
+            own.holding(f"rest_{n}", self.solids.places[..., a], "row lane", **kept) for a, n in enumerate("yz")
+        ]
+        self.radius = own.holding("radius", self.solids.radius, "row")
+        self.owner = own.holding("owner", self.solids.owner, "row", ti.i32)
+        self.ends = own.holding("ends", self.solids.ends, "end", ti.i32)
+        world, part = Axis("world", self.worlds), Axis("part", self.count)
+        (self.pose,) = own.reals((world, part, Axis("number", 21)), "pose", kind=own.exact, kept=False)
+        self.pull = own.reals((world, part), "pull_y", "pull_z", "pull_turn", kind=own.exact, kept=False)
+        (self.way,) = own.reals((world,), "way", kept=False)
+
+    def join(self, arrays: State, particles: Particles, shares: Shares, poses: Poses, units) -> None:
+        """Take the `particles` among which the dummies are, and the tank's `poses`; count for these `units`."""
+        self.particles, self.shares, self.poses, self.units = particles, shares, poses, units
+        self.first = particles.dry - self.rows  # of the dry blocks
+        self.sight.join(arrays, particles, self.solids.owner, self.first)
+        if self.count:
+            own, each = arrays.under("bodies"), (units.axis, Axis("part", self.count))
+            names = "impulse_y", "impulse_z", "impulse_turn", "work"
+            *self.impulse, self.work = own.reals(each, *names, kind=own.exact)
+            self.force = own.reals(each, "force_y", "force_z", "moment", kind=own.exact, kept=False)
+            (self.elapsed,) = own.reals((units.axis,), "elapsed", kind=own.exact)
+
+    @ti.func
+    def row(self, b):
+        """The row of a block among the bodies' ones; below zero for any other block."""
+        return b % self.particles.stride - (self.particles.wet + self.first)
+
+    @ti.func
+    def note(self, w, t, dt):
+        """Note how the parts of a world move in the step of dt (s) from time t (s)."""
+        half, farthest = 0.5 * ti.cast(dt, self.exact), ti.cast(0.0, self.exact)
+        for k in ti.static(range(self.count)):
+            for part in ti.static(range(3)):
+                first = ti.static(7 * part)
+                self.pose[w, k, first + COSINE] = 1.0
+                if ti.static(self.carriers[k].moving):
+                    s = self.carriers[k].kinematics(w, t + part * half)
+                    self.pose[w, k, first + Y], self.pose[w, k, first + Z] = s[0], s[1]
+                    self.pose[w, k, first + COSINE], self.pose[w, k, first + SINE] = ti.cos(s[2]), ti.sin(s[2])
+                    self.pose[w, k, first + V_Y], self.pose[w, k, first + V_Z] = s[3], s[4]
+                    self.pose[w, k, first + RATE] = s[5]
+                    fast = ti.sqrt(s[3] * s[3] + s[4] * s[4]) + ti.abs(s[5]) * self.arms[k]
+                    farthest = ti.max(farthest, fast * 2.0 * half)
+                    if ti.static(part == AT_START):
+                        self.pull[0][w, k], self.pull[1][w, k], self.pull[2][w, k] = s[6], s[7], s[8]
+        self.way[w] = ti.cast(farthest, self.particles.real)
+        if ti.static(len(self.sight.plates) > 0):
+            self.sight.note(w, self.pose)
+
+    @ti.func
+    def place(self, u, part: ti.template()):
+        """Place a unit's dummies of moving parts where they are at a `part` of the step, with the velocity there."""
+        p, at = self.particles, ti.static(7 * part)
+        w = self.units.world(u)
+        first, end = self.shares.dry(u)
+        for b in range(ti.max(first, w * p.stride + p.wet + self.first), end):
+            row = self.row(b)
+            k = self.owner[row]
+            cos, sin = self.pose[w, k, at + COSINE], self.pose[w, k, at + SINE]
+            rate = self.pose[w, k, at + RATE]
+            v_y, v_z, turn = self.pose[w, k, at + V_Y], self.pose[w, k, at + V_Z], ti.cast(0.0, self.exact)
+            o_y, o_z = self.pose[w, k, at + Y], self.pose[w, k, at + Z]
+            if ti.static(self.poses.moving):
+                v_y, v_z, turn = v_y + self.poses.walls[0][w], v_z + self.poses.walls[1][w], self.poses.walls[2][w]
+            for lane in range(p.lanes):
+                if p.number[b, lane] != UNUSED:
+                    y, z = ti.cast(self.rest[0][row, lane], self.exact), ti.cast(self.rest[1][row, lane], self.exact)
+                    arm_y, arm_z = cos * y - sin * z, sin * y + cos * z
+                    p.place[0][b, lane] = ti.cast(o_y + arm_y, p.where)
+                    p.place[1][b, lane] = ti.cast(o_z + arm_z, p.where)
+                    p.velocity[0][b, lane] = ti.cast(v_y - rate * arm_z - turn * (o_z + arm_z), p.real)
+                    p.velocity[1][b, lane] = ti.cast(v_z + rate * arm_y + turn * (o_y + arm_y), p.real)
+
+    @ti.func
+    def hold_back(self, w, b, felt: ti.template()):
+        """Take the acceleration of its part in the tank (m/s²) from what a block of dummies feels, at the start."""
+        p, row = self.particles, self.row(b)
+        zero = ti.cast(0.0, self.exact)
+        a_y, a_z, up, rate, v_y, v_z, turn, o_y, o_z = zero, zero, zero, zero, zero, zero, zero, zero, zero
+        if row >= 0:
+            k = self.owner[row]
+            a_y, a_z, up = self.pull[0][w, k], self.pull[1][w, k], self.pull[2][w, k]
+            v_y, v_z, rate = self.pose[w, k, V_Y], self.pose[w, k, V_Z], self.pose[w, k, RATE]
+            o_y, o_z = self.pose[w, k, Y], self.pose[w, k, Z]
+            if ti.static(self.poses.rotating):
+                turn = 2.0 * self.poses.felt[4][w]
+        y, z = p.offset(b, ti.cast(o_y, p.where), 0), p.offset(b, ti.cast(o_z, p.where), 1)
+        # Variables keep their type, and whole vectors cannot be cast: the factors have the vectors' own.
+        of_square, of_up = ti.cast(rate * rate, p.real), ti.cast(up, p.real)
+        of_turn, spin = ti.cast(turn, p.real), ti.cast(turn * rate, p.real)
+        even_y, even_z = ti.cast(a_y, p.real), ti.cast(a_z, p.real)
+        drift_y, drift_z = ti.cast(v_y, p.real), ti.cast(v_z, p.real)
+        felt[0] += of_up * z + (of_square + spin) * y + (of_turn * drift_z - even_y)
+        felt[1] += (of_square + spin) * z - of_up * y - (of_turn * drift_y + even_z)
+
+    @ti.func
+    def note_built(self, u):
+        """Note where a unit's dummies of parts are as its lists are built."""
+        p = self.particles
+        first, end = self.shares.dry(u)
+        for b in range(ti.max(first, self.units.world(u) * p.stride + p.wet + self.first), end):
+            for lane in range(p.lanes):
+                for a in ti.static(range(p.axes)):
+                    p.built[a][b, lane] = p.place[a][b, lane]
+
+    @ti.func
+    def gone(self, u):
+        """The square (m²) of how far any of a unit's dummies of parts has gone since then."""
+        p = self.particles
+        first, end = self.shares.dry(u)
+        farthest = ti.cast(0.0, p.real)
+        for b in range(ti.max(first, self.units.world(u) * p.stride + p.wet + self.first), end):
+            for lane in range(p.lanes):
+                if p.number[b, lane] != UNUSED:
+                    way = [ti.cast(p.place[a][b, lane] - p.built[a][b, lane], p.real) for a in ti.static(range(p.axes))]
+                    farthest = ti.max(farthest, dot(way, way))
+        return farthest
+
+    @ti.func
+    def bear(self, u, k, load: ti.template()):
+        """Add the load of one block of a unit on a part: force (y, z; N/m) and moment (N) about the tank's origin."""
+        for n in ti.static(range(3)):
+            self.force[n][u, k] = self.force[n][u, k] + load[n]
+
+    @ti.func
+    def book(self, u, kick, dt):
+        """Book what a unit's parts bore in a step of dt (s), and the work of their motion in the tank; begin anew."""
+        w = self.units.world(u)
+        for k in range(self.count):
+            load = [self.force[n][u, k] for n in ti.static(range(3))]
+            if ti.static(self.moving):
+                o_y, o_z, rate = self.pose[w, k, Y], self.pose[w, k, Z], self.pose[w, k, RATE]
+                v_y, v_z = self.pose[w, k, V_Y] + rate * o_z, self.pose[w, k, V_Z] - rate * o_y
+                power = dot(load, [v_y, v_z, rate])
+                self.work[u, k] = self.work[u, k] - power * ti.cast(kick, self.exact)
+            for n in ti.static(range(3)):
+                self.impulse[n][u, k] = self.impulse[n][u, k] + load[n] * ti.cast(dt, self.exact)
+                self.force[n][u, k] = 0.0
+        self.elapsed[u] = self.elapsed[u] + ti.cast(dt, self.exact)
+
+    def forget(self) -> None:
+        """Forget all loads and work."""
+        if self.count:
+            for field in (*self.impulse, *self.force, self.work, self.elapsed):
+                field.fill(0.0)
+
+    def given(self) -> np.ndarray:
+        """The work (W,) J/m of all parts on the water, by their motion in the tank."""
+        return self._of_worlds(self.work).sum(axis=1) if self.count else np.zeros(self.worlds)
+
+    def take(self, thickness: float) -> dict[str, np.ndarray]:
+        """The mean loads on the parts (W, parts, 3) since they were last taken, which begin anew; and their work."""
+        if not self.count:
+            return {"part_force": np.zeros((self.worlds, 0, 3)), "part_work": np.zeros((self.worlds, 0))}
+        impulse = np.stack([self._of_worlds(field) for field in self.impulse], axis=-1)
+        elapsed = self.elapsed.to_numpy().reshape(self.worlds, -1)[:, 0]
+        for field in (*self.impulse, self.elapsed):
+            field.fill(0.0)
+        mean = thickness * impulse / np.where(elapsed > 0.0, elapsed, 1.0)[:, None, None]
+        return {"part_force": mean, "part_work": thickness * self._of_worlds(self.work)}
+
+    def _of_worlds(self, field: ti.Field) -> np.ndarray:
+        """Sums over the units of each world (W, parts)."""
+        return field.to_numpy().reshape(self.worlds, -1, self.count).sum(axis=1)
+
+    def places(self, time: float) -> dict[str, np.ndarray]:
+        """Where the parts are in the tank at a time (s): displacements (W, parts, 2) m of the origin, and turns."""
+        if self.count:
+            self.note_at(time)
+        pose = self.pose.to_numpy() if self.count else np.zeros((self.worlds, 0, 21))
+        turn = np.arctan2(pose[..., SINE], pose[..., COSINE])
+        return {"part": pose[..., [Y, Z]], "part_turn": turn}
+
+    @ti.kernel
+    def note_at(self, time: ti.f64):
+        """Note where the parts are at a time (s)."""
+        for w in range(self.worlds):
+            self.note(w, time, 0.0)

@@ -1,0 +1,116 @@
+"""Who sees whom past the plates in the water: plates have no thickness, and hide what is behind them."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import taichi as ti
+
+from solvers.fluid.given import Water
+from solvers.fluid.state import FAR, UNUSED, Particles
+from solvers.fluid.walls.solids import is_solid
+from solvers.machine.state import Axis, State
+from solvers.motion.poses import AT_MIDDLE, AT_START
+from solvers.space.axes import dot
+from solvers.tank.parts import Part
+from solvers.tank.tank import Tank
+
+Y, Z, COSINE, SINE, V_Y, V_Z, RATE = range(7)  # a pose in the tank: its origin (m), its turn, its velocities
+LINE_Y, LINE_Z, ALONG_Y, ALONG_Z, LOW, HIGH = range(6)  # a plate: a point (m), its direction, its ends (m) from there
+TOUCHES = 0.25  # spacings between a plate's end and a wall from which on no water passes between them
+
+
+@ti.data_oriented
+class Sight:
+    """Two particles see each other if no plate crosses the line between them.
+
+    A plate's own dummies, which lie behind it, are seen just by those whose line of sight it crosses. So what is seen
+    past the end of a plate and what is seen through it never overlap. An end that touches the tank's wall reaches on
+    into it. `plates` are the numbers of those parts that are plates.
+    """
+
+    def __init__(self, arrays: State, parts: Sequence[Part], water: Water, tank: Tank, worlds: int):
+        self.exact, self.worlds, self.reach, self.touches = arrays.exact, worlds, water.reach, TOUCHES * water.spacing
+        self.plates = tuple(k for k, part in enumerate(parts) if not is_solid(part))
+        if self.plates:
+            own = arrays.under("sight")
+            lines = np.array([[*parts[k].points[0], *parts[k].points[1]] for k in self.plates])
+            self.drawn = own.holding("drawn", lines, "plate number", own.exact)
+            edges = np.column_stack([tank.outline, np.roll(tank.outline, -1, axis=0)])
+            self.edges, self.outline = len(edges), own.holding("outline", edges, "edge number", own.exact)
+            each = Axis("world", worlds), Axis("plate", len(self.plates)), Axis("number", 12)
+            (self.line,) = own.reals(each, "line", kept=False)
+
+    def join(self, arrays: State, particles: Particles, owner: np.ndarray, first: int) -> None:
+        """Take the `particles`, of whose dry blocks those from the `first` on belong to the parts `owner`."""
+        self.particles, self.first = particles, first
+        if self.plates:
+            plate = [self.plates.index(k) if k in self.plates else UNUSED for k in owner]
+            self.plate = arrays.under("sight").holding("plate", np.array(plate), "row", ti.i32)
+
+    @ti.func
+    def note(self, w, poses: ti.template()):
+        """Note where the plates of a world are at the start and in the middle of a step, by their bodies' `poses`."""
+        for q in ti.static(range(len(self.plates))):
+            for part in ti.static((AT_START, AT_MIDDLE)):
+                self.note_line(w, q, poses, part)
+
+    @ti.func
+    def note_line(self, w, q: ti.template(), poses: ti.template(), part: ti.template()):
+        """Note where a plate is, and whether its ends touch the tank's wall."""
+        first, at, k = ti.static(6 * part), ti.static(7 * part), self.plates[q]
+        cos, sin = poses[w, k, at + COSINE], poses[w, k, at + SINE]
+        y = [poses[w, k, at + Y] + cos * self.drawn[q, n] - sin * self.drawn[q, n + 1] for n in ti.static((0, 2))]
+        z = [poses[w, k, at + Z] + sin * self.drawn[q, n] + cos * self.drawn[q, n + 1] for n in ti.static((0, 2))]
+        length = ti.sqrt((y[1] - y[0]) ** 2 + (z[1] - z[0]) ** 2)
+        values = [y[0], z[0], (y[1] - y[0]) / length, (z[1] - z[0]) / length]
+        for n in ti.static(range(4)):
+            self.line[w, q, first + n] = ti.cast(values[n], self.particles.real)
+        low = ti.select(self.touching(y[0], z[0]), 0.0 - self.reach, 0.0)
+        high = ti.select(self.touching(y[1], z[1]), length + self.reach, length)
+        self.line[w, q, first + LOW] = ti.cast(low, self.particles.real)
+        self.line[w, q, first + HIGH] = ti.cast(high, self.particles.real)
+
+    @ti.func
+    def touching(self, y, z):
+        """Whether a point is at the tank's outline, or outside it."""
+        near, inside = False, False
+        for k in range(self.edges):
+            a_y, a_z, b_z = self.outline[k, 0], self.outline[k, 1], self.outline[k, 3]
+            along, up, off_y, off_z = self.outline[k, 2] - a_y, b_z - a_z, y - a_y, z - a_z
+            share = ti.max(0.0, ti.min(1.0, (off_y * along + off_z * up) / (along * along + up * up)))
+            off = [off_y - share * along, off_z - share * up]
+            if dot(off, off) < self.touches * self.touches:
+                near = True
+            if (a_z > z) != (b_z > z) and off_y < off_z * along / up:
+                inside = not inside
+        return near or not inside
+
+    @ti.func
+    def out_of_sight(self, b, jb, place: ti.template(), apart: ti.template(), part: ti.template()):
+        """For each particle of a block b, a huge length (m) if it does not see the one at `place` in block jb, else 0.
+
+        `apart` are the places of the block less the other one's.
+        """
+        p = self.particles
+        before = p.wet + self.first
+        w, own, other = b // p.stride, b % p.stride - before, jb % p.stride - before
+        far = p.zeros()
+        for q in ti.static(range(len(self.plates))):
+            first = ti.static(6 * part)
+            t_y, t_z = self.line[w, q, first + ALONG_Y], self.line[w, q, first + ALONG_Z]
+            y, z = place[0] - self.line[w, q, first + LINE_Y], place[1] - self.line[w, q, first + LINE_Z]
+            across = t_y * z - t_z * y
+            if across * across < 4.0 * self.reach * self.reach:
+                its = ti.cast(0.0, p.real)  # 1 where one of the two is a dummy of this plate
+                if own >= 0:
+                    its = ti.select(self.plate[own] == q, 1.0, its)
+                if other >= 0:
+                    its = ti.select(self.plate[other] == q, 1.0, its)
+                beyond = t_y * apart[1] - t_z * apart[0]
+                least = ti.select(beyond * beyond > 1e-30, beyond, p.ones())
+                through = t_y * y + t_z * z + (t_y * apart[0] + t_z * apart[1]) * ((0.0 - across) / least)
+                low, high = self.line[w, q, first + LOW], self.line[w, q, first + HIGH]
+                crossed = ti.select((beyond + across) * across < 0.0, p.ones(), p.zeros())
+                crossed = ti.select((through - low) * (high - through) > 0.0, crossed, p.zeros())
+                far += ti.select((crossed - its) * (crossed - its) > 0.25, p.ones() * FAR, p.zeros())
+        return far

@@ -1,0 +1,80 @@
+"""Dummies of the bodies and plates in the water, as they are drawn, in blocks of lanes."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from solvers.fluid.given import Water
+from solvers.fluid.state import FAR, UNUSED
+from solvers.fluid.walls.layers import firm, layers
+from solvers.tank.parts import Part
+
+STRIP = 4.0  # spacings: height of the strips by which the dummies of a body are cut into blocks
+
+
+def sheet(points: Sequence, spacing: float, rows: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Dummies on both sides of a plate between two points (m): places (n, 2) m, volumes (n,) m², depths (n,) m.
+
+    Each side has `rows` rows; those on one side are seen by the water on the other, which looks through the plate. So
+    they reach beyond the plate's ends as well, where what is seen past an end and through the plate lies side by side.
+    """
+    start, end = np.asarray(points, dtype=float)
+    length = float(np.hypot(*(end - start)))
+    along = (end - start) / length
+    normal = np.array([-along[1], along[0]])
+    count = int(np.ceil(length / spacing - 1e-9)) + 2 * rows
+    ways = (np.arange(count) + 0.5 - rows) * spacing
+    depths = (np.arange(-rows, rows) + 0.5) * spacing
+    places = start + ways[:, None, None] * along + depths[None, :, None] * normal
+    return places.reshape(-1, 2), np.full(count * 2 * rows, spacing**2), np.tile(np.abs(depths), count)
+
+
+def is_solid(part: Part) -> bool:
+    """Whether a part is a solid polygon; else it is a plate without thickness."""
+    return getattr(part, "closed", False)
+
+
+def counter_clockwise(points: Sequence) -> np.ndarray:
+    """Corners (m, 2) of a polygon in counter-clockwise order."""
+    corners = np.asarray(points, dtype=float)
+    y, z = corners.T
+    return corners if y @ np.roll(z, -1) > z @ np.roll(y, -1) else corners[::-1]
+
+
+class Solids:
+    """The dummies of all parts in blocks of `lanes`, each block of one part.
+
+    `places` (blocks, lanes, 2) m as drawn, `volumes` (blocks, lanes) m², `firm` (blocks, lanes) m, the distances within
+    which they push water back, `numbers` (blocks, lanes), UNUSED in lanes without a dummy, of which the first lane is
+    none; `owner` (blocks,) is the part, `radius` (blocks,) m how far a block's dummies are from its first one.
+    """
+
+    def __init__(self, parts: Sequence[Part], water: Water, lanes: int):
+        rows = int(np.ceil(water.reach / water.spacing - 1e-9))
+        found = [self._part(part, water.spacing, rows, lanes) for part in parts]
+        places = [place for place, *_ in found]
+        self.ends = np.cumsum([0, *(len(place) for place in places)])
+        blocks = int(self.ends[-1])
+        self.places = np.concatenate([*places, np.zeros((0, lanes, 2))])
+        self.volumes = np.concatenate([*(volume for _, volume, _ in found), np.zeros((0, lanes))])
+        self.firm = np.concatenate([*(held for *_, held in found), np.zeros((0, lanes))])
+        self.owner = np.repeat(np.arange(len(parts)), np.diff(self.ends))
+        used = self.volumes > 0.0
+        self.numbers = np.where(used, np.arange(blocks * lanes).reshape(blocks, lanes), UNUSED)
+        away = np.linalg.norm(self.places - self.places[:, :1], axis=2)
+        self.radius = np.where(used, away, 0.0).max(axis=1, initial=0.0)
+
+    @staticmethod
+    def _part(part: Part, spacing: float, rows: int, lanes: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Places (blocks, lanes, 2), volumes and `firm` (blocks, lanes) of the dummies of one part."""
+        if is_solid(part):
+            points, volumes, depths = layers(counter_clockwise(part.points)[::-1], spacing, rows)
+        else:
+            points, volumes, depths = sheet(part.points, spacing, rows)
+        strip = np.floor((points[:, 1] - points[:, 1].min()) / (STRIP * spacing))
+        order = np.lexsort((points[:, 0], strip))
+        blocks = -(-len(points) // lanes)
+        places, sizes, held = np.full((blocks * lanes, 2), FAR), np.zeros(blocks * lanes), np.zeros(blocks * lanes)
+        places[: len(points)], sizes[: len(points)] = points[order], volumes[order]
+        held[: len(points)] = firm(depths, spacing)[order]
+        return places.reshape(blocks, lanes, 2), sizes.reshape(blocks, lanes), held.reshape(blocks, lanes)

@@ -1,0 +1,46 @@
+"""The move of a part along one axis, as a motion: it speeds up, goes on steadily, and brakes."""
+
+from dataclasses import dataclass
+
+import taichi as ti
+
+from solvers.tank.parts import Part, travel
+
+
+@ti.func
+def moved(table: ti.template(), w, first, t):
+    """Displacement, velocity and acceleration at time t: those of `travel`, times the way in the first column."""
+    way = table[w, first]
+    ramp, total, rate = table[w, first + 2], table[w, first + 3], table[w, first + 4]
+    done = travel(table, w, first + 1, t)
+    passed, gain = t - table[w, first + 1], ti.zero(t)
+    if 0.0 < passed < ramp:
+        gain = rate / ramp
+    if total - ramp < passed < total:
+        gain = -rate / ramp
+    return ti.Vector([way * done[0], way * done[1], way * gain])
+
+
+@dataclass(frozen=True)
+class Moved:
+    """The move of a `part` along its `axis`, 0 for y and 1 for z."""
+
+    part: Part
+    axis: int
+
+    state = staticmethod(moved)
+
+    @property
+    def coordinate(self) -> str:
+        """The coordinate that moves."""
+        return "yz"[self.axis]
+
+    def parameters(self, soft_start: float) -> list[float]:
+        """The kernel's table: the way (m), then start, time to speed up, time under way (s) and top rate (1/s)."""
+        return [self.part.move[self.axis], *self.part.parameters()[:4]]
+
+
+def motions_of(part: Part) -> tuple:
+    """All motions of a part: its move along each axis, then the others that a body has."""
+    moves = tuple(Moved(part, axis) for axis in range(2) if part.move[axis])
+    return (*moves, *getattr(part, "motions", ()))

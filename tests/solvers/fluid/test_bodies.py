@@ -1,0 +1,137 @@
+"""Bodies and plates that stand or move in the water: loads, momentum, energy, tightness, added mass."""
+
+import numpy as np
+import pytest
+
+from solvers.fluid.given import EXCESS, VOLUME
+from solvers.fluid.start.parts import clear_of
+from solvers.motion.harmonic import Roll, Sway
+from solvers.scene import Scene
+from solvers.simulation import Simulation
+from solvers.tank.parts import Body
+from tests.oracles.water import GRAVITY, box, still
+
+WIDTH, HEIGHT, DEPTH, ROWS = 0.6, 0.6, 0.3, 15
+SPACING = DEPTH / ROWS
+SIDES = ((-0.1, 0.08), (0.06, 0.08), (0.06, 0.24), (-0.1, 0.24))
+FLAP, LOW = ((0.2, 0.0), (0.2, 0.4)), 0.2
+
+
+def stirred(share: float) -> Scene:
+    """A square that sways and rolls, and a flap with less water behind it; by this share of their full motions."""
+    square = Body(SIDES, closed=True, motions=(Sway(0.02 * share, 2.0), Roll(0.1 * share, 1.5, centre=(0.0, 0.15))))
+    parts = square, Body(FLAP, motions=(Roll(0.1 * share, 1.0, centre=FLAP[0]),))
+    drops = still(WIDTH, HEIGHT, DEPTH, ROWS).drops
+    beyond = drops[0, :, 0] > FLAP[0][0]
+    drops[0, beyond, EXCESS] -= (DEPTH - LOW) / (100.0 * DEPTH)
+    free = clear_of(drops[0, :, :2], parts, SPACING) & ~(beyond & (drops[0, :, 1] > LOW))
+    return still(WIDTH, HEIGHT, DEPTH, ROWS, parts=parts, drops=drops[:, free], alpha=0.02)
+
+
+def momentum(run: Simulation) -> tuple[np.ndarray, float]:
+    """Momentum over the earth (N s/m) and mass (kg/m) of the water of the first world."""
+    p = run.water.particles
+    v, w, m = (values[0] for values in p.read(*p.velocity, p.mass))
+    return np.array([m @ v, m @ w]), m.sum()
+
+
+def test_water_tank_and_bodies_share_momentum_and_energy():
+    """Momentum changes by weight and by minus all loads, to rounding; the work of the bodies is all accounted for.
+
+    The account has the errors of the step on a start from rest with a jump of the bodies' velocities: 1 % of the work.
+    """
+    run = Simulation(stirred(1.0), threads=1, arch="cpu")
+    start = run.observe()
+    run.advance(10)
+    run.observe()
+    (before, mass), steps = momentum(run), 590
+    run.advance(steps)
+    end, after = run.observe(), momentum(run)[0]
+    load, weight = end["wall_force"][0, :2], np.array([0.0, -GRAVITY * mass])
+    scale = steps * run.dt * np.abs(load).max()
+    np.testing.assert_allclose(after - before, steps * run.dt * (weight - load), atol=1e-12 * scale)
+    taken = sum(end[name] - start[name] for name in ("water_viscous", "water_diffusive", "water_held"))
+    work, gain = end["water_work"] - start["water_work"], end["water_total"] - start["water_total"]
+    assert np.abs(end["part_force"]).min() > 0.0 and work > 5.0  # else nothing was tried
+    np.testing.assert_allclose(end["part_work"].sum(axis=1), work)
+    np.testing.assert_allclose(gain + taken, work, rtol=0.02)
+    turn = run.snapshot()["part_turn"][0]
+    angles = [0.1 * np.sin(2.0 * np.pi * frequency * run.time) for frequency in (1.5, 1.0)]
+    np.testing.assert_allclose(turn, angles, atol=1e-12)
+    run.close()
+
+
+def test_bodies_in_still_water_bear_its_pressure():
+    """A square 8 spacings wide bears its own weight of water (Archimedes), to 4 %, a plate between two levels their
+    difference, and no water passes it. The load on the tank and the bodies is the weight of the water.
+    """
+    run = Simulation(stirred(1e-9), threads=1, arch="cpu")
+    run.observe()
+    run.advance(100)
+    run.observe()
+    beyond = run.snapshot()["water_place"][0, :, 0] > FLAP[0][0]
+    run.advance(500)
+    rows, mass, place = run.observe(), momentum(run)[1], run.snapshot()["water_place"][0]
+    run.close()
+    np.testing.assert_array_equal(place[:, 0] > FLAP[0][0], beyond)
+    buoyancy = 1000.0 * GRAVITY * 0.16**2
+    np.testing.assert_allclose(rows["part_force"][0, 0, :2], [0.0, buoyancy], atol=0.04 * buoyancy)
+    push = 0.5 * 1000.0 * GRAVITY * (DEPTH**2 - LOW**2)
+    np.testing.assert_allclose(rows["part_force"][0, 1, 0], push, rtol=0.06)
+    np.testing.assert_allclose(rows["wall_force"][0, 1], -mass * GRAVITY, rtol=5e-3)
+
+
+@pytest.mark.slow
+def test_a_plate_is_as_tight_as_a_wall():
+    """Water on one side of a plate moves as in a tank that ends there, whatever stands on the other; to rounding."""
+    plate = Body(((0.0, 0.0), (0.0, HEIGHT)))
+    drops = still(WIDTH, HEIGHT, DEPTH, ROWS).drops
+    left, low = drops[0, :, 0] < 0.0, 0.1
+    other = ~left & (drops[0, :, 1] < low)
+    whole, alone = drops[:, left | other], drops[:, left]
+    beyond = whole[0, :, 0] > 0.0
+    whole[0, beyond, EXCESS] = GRAVITY * (low - whole[0, beyond, 1]) / (100.0 * GRAVITY * DEPTH)
+    half = box(0.5 * WIDTH, HEIGHT) - [0.25 * WIDTH, 0.0]
+    scenes = {"parts": (plate,), "drops": whole}, {"outline": half, "drops": alone}
+    runs = [Simulation(still(WIDTH, HEIGHT, DEPTH, ROWS, **changes), threads=1, arch="cpu") for changes in scenes]
+    places = []
+    for run in runs:
+        run.advance(200)
+        places.append(run.snapshot()["water_place"][0])
+    np.testing.assert_allclose(places[0][~beyond], places[1], atol=1e-9 * SPACING)
+    assert places[0][beyond, 0].min() > 0.25 * SPACING
+    runs[0].observe()
+    runs[0].advance(100)
+    wanted = 0.5 * 1000.0 * GRAVITY * (DEPTH**2 - low**2)
+    np.testing.assert_allclose(runs[0].observe()["part_force"][0, 0, 0], wanted, rtol=0.03)
+
+
+@pytest.mark.slow
+def test_a_swaying_cylinder_has_the_added_mass_of_potential_theory():
+    """In a full round tank: ρ π a² (b² + a²)/(b² − a²) (Lamb 1932, art. 68), to 8 % with 16 spacings across."""
+    inner, outer, spacing, frequency, amplitude = 0.1, 0.25, 0.0125, 4.0, 0.004
+    angle = 2.0 * np.pi * (np.arange(48) + 0.5) / 48
+    ring = np.column_stack([np.cos(angle), np.sin(angle)])
+    body = Body(tuple(map(tuple, inner * ring)), closed=True, motions=(Sway(amplitude, frequency),))
+    count = int(outer / spacing)
+    side = (np.arange(-count, count) + 0.5) * spacing
+    grid = np.stack(np.meshgrid(side, side), axis=-1).reshape(-1, 2)
+    grid = grid[(np.hypot(*grid.T) > inner + 0.3 * spacing) & (np.hypot(*grid.T) < outer - 0.3 * spacing)]
+    drops = np.zeros((1, len(grid), 6))
+    drops[0, :, :2], drops[..., VOLUME] = grid, np.pi * (outer**2 - inner**2) / len(grid)
+    changes = {"outline": outer * ring, "parts": (body,), "drops": drops, "gravity": 0.0, "full": True}
+    scene = still(1.0, 1.0, 20 * spacing, 20, sound_speed=40.0, **changes)
+    run = Simulation(scene, threads=1, arch="cpu")
+    run.advance(1)
+    time, force = [], []
+    run.observe()
+    for _ in range(100):
+        run.advance(10)
+        time.append(run.time - 5 * run.dt)
+        force.append(run.observe()["part_force"][0, 0, 0])
+    time, force = np.array(time), np.array(force)
+    whole = time > time[-1] - 1.0 / frequency
+    waves = np.column_stack([f(2.0 * np.pi * frequency * time[whole]) for f in (np.cos, np.sin)])
+    found = np.linalg.lstsq(waves, force[whole], rcond=None)[0][1] / (amplitude * (2.0 * np.pi * frequency) ** 2)
+    wanted = 1000.0 * np.pi * inner**2 * (outer**2 + inner**2) / (outer**2 - inner**2)
+    np.testing.assert_allclose(found, wanted, rtol=0.08)
