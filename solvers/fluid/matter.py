@@ -6,11 +6,11 @@ import numpy as np
 import taichi as ti
 
 from solvers.fluid.census import Census
-from solvers.fluid.checks import check_water, refuse_scene, refuse_state, residual
+from solvers.fluid.checks import LEAST, check_water, refuse_scene, refuse_state, residual
 from solvers.fluid.constants import Constants
 from solvers.fluid.continuity import Continuity
 from solvers.fluid.forces import Forces
-from solvers.fluid.given import VELOCITY_Y, VELOCITY_Z, Water
+from solvers.fluid.given import VELOCITY_Y, VELOCITY_Z, VOLUME, Water
 from solvers.fluid.grid import grid_round
 from solvers.fluid.lists import Lists, Medium
 from solvers.fluid.mover import Mover
@@ -72,6 +72,8 @@ class WaterMatter(Matter):
         self.census = Census(arrays, p, setting.walls, self.constants, setting.carrier, closed, water.levels)
         self.start = np.full(worlds, np.nan)  # J, energy at the first look
         self.thickness = tank.thickness
+        mass = water.density * scene.drops[..., VOLUME].sum(axis=1).max() * tank.thickness
+        self.least = 0.5 * mass * (LEAST * water.sound_speed) ** 2  # J
         self.before, self.between = self._before(), (Phase(self.note_passage),)
         self.after = (
             Phase(self.mover.kick, units),
@@ -232,7 +234,7 @@ class WaterMatter(Matter):
     def check(self, rows: dict[str, np.ndarray], time: float) -> None:
         """Raise BadState if the quantities at `time` (s) show an unphysical state."""
         known = np.nan if self.water.periodic else self.start  # a particle that goes round falls for ever
-        check_water(rows, known, time)
+        check_water(rows, known, time, self.least)
 
     def refuse(self, world: int, time: float, dt: float) -> None:
         """Raise BadState for a world that was stopped at `time` (s)."""
