@@ -16,7 +16,7 @@ from solvers.tank.tank import Tank
 PLASTIC = 1.324717957244746  # the root of x³ = x + 1
 EVEN = 5e-4  # largest Δx |Σ V ∇W| at the end; less even water rearranges itself as it moves, which damps waves
 STEPS = 1500  # at most
-PUSH = 1.5  # length of a step, over the time in which a push Δx Σ V ∇W of 1 would move a particle by a spacing
+PUSH = 1.5  # for h/Δx ≥ 2: a step's length, over the time in which a push Δx Σ V ∇W of 1 moves by a spacing
 DRAG = 0.1  # of the velocity, lost in a step
 FARTHEST = 0.1  # spacings that a particle may move in a step
 SKIN = 0.2  # smoothing lengths by which pairs are looked for beyond the kernel's reach
@@ -68,7 +68,7 @@ def _packed(shapes: tuple, level: float, spacing: float, smoothing: float) -> Pa
     sides = [layers(polygon, spacing, rows), *(layers(hole[::-1], spacing, rows) for hole in holes)]
     dummies, volumes, _ = (np.concatenate(parts) for parts in zip(*sides, strict=True))
     crowd = Crowd(scattered(polygon, holes, count), area / count, dummies, volumes, smoothing * spacing)
-    steps = relax(crowd, spacing)
+    steps = relax(crowd, spacing, PUSH * min(1.0, smoothing / 2.0) ** 2)
     return Packing(crowd.points, area / count, spacing * crowd.pushes(), crowd.covers(), steps)
 
 
@@ -100,8 +100,8 @@ def scattered(polygon: np.ndarray, holes: Sequence[np.ndarray], count: int) -> n
     return found[np.lexsort((found[:, 0], strip))]
 
 
-def relax(crowd: "Crowd", spacing: float) -> int:
-    """Let the particles of a crowd push each other apart until they are EVEN; returns the number of steps.
+def relax(crowd: "Crowd", spacing: float, pace: float) -> int:
+    """Let the particles of a crowd push each other apart until they are EVEN, by steps of a `pace`; returns how many.
 
     Velocities begin anew where the forces work against them (as of quick min, Sheppard, Terrell & Henkelman 2008).
     """
@@ -110,10 +110,10 @@ def relax(crowd: "Crowd", spacing: float) -> int:
         push = spacing * crowd.pushes()
         if np.hypot(*push.T).max() < EVEN:
             return step
-        velocity = (1.0 - DRAG) * velocity + PUSH * push
+        velocity = (1.0 - DRAG) * velocity + pace * push
         if (velocity * push).sum() < 0.0:
             velocity[:] = 0.0
-        way = PUSH * velocity
+        way = pace * velocity
         crowd.move(spacing * way * min(1.0, FARTHEST / max(np.hypot(*way.T).max(), FARTHEST)))
     return STEPS
 

@@ -1,6 +1,7 @@
 """Runs of water: from the preset to the report, continued after an interruption, and swept, bit for bit."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -114,11 +115,12 @@ def test_an_interrupted_run_goes_on_with_the_same_bits(cup, swayed, monkeypatch)
 
 
 def test_a_recording_of_other_water_is_not_continued(cup, tmp_path, monkeypatch):
-    """Such as after a change of how the lattice is laid."""
+    """Such as after a change of how the particles are laid."""
     with monkeypatch.context() as patch, pytest.raises(KeyboardInterrupt):
         patch.setattr(Batch, "_pause", lambda *_: (_ for _ in ()).throw(KeyboardInterrupt))
         run_preset(cup, out=tmp_path / "run", video=False, quiet=True)
-    monkeypatch.setitem(STARTS, "packed", STARTS["lattice"])
+    usual = STARTS["packed"]
+    monkeypatch.setitem(STARTS, "packed", lambda *of: usual(*of[:2], replace(of[2], spacing=0.8 * of[2].spacing)))
     with pytest.raises(Unusable, match="does not belong to the preset in it"):
         resume_run(tmp_path / "run", video=False, quiet=True)
 

@@ -54,7 +54,7 @@ def test_it_ends_even(case):
     assert cKDTree(found.points).query(found.points, 2)[0][:, 1].min() > 0.65 * spacing
     edges = [cut_off(one, DEPTH - one[:, 1].min()) for one in (polygon, *holes)]
     walls = np.min([distance(found.points, edge) for edge in edges], axis=0)
-    assert 0.15 * spacing < walls.min() and walls.min() < 0.5 * spacing
+    assert 0.1 * spacing < walls.min() and walls.min() < 0.5 * spacing
     assert widest_gap(found.points, edges) < 1.5 * spacing * np.sqrt(0.5)
 
 
