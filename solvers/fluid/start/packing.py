@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from solvers.fluid.given import Water
 from solvers.fluid.kernels.wendland_c2 import WendlandC2
@@ -123,13 +122,16 @@ class Crowd:
 
     def __init__(self, points: np.ndarray, volume: float, dummies: np.ndarray, volumes: np.ndarray, length: float):
         self.points, self.volume, self.length = points, volume, length
+        from scipy.spatial import cKDTree  # here, so that runs without water do not wait for it
+
+        self.make_tree = cKDTree
         self.dummies, self.volumes, self.tree = dummies, volumes, cKDTree(dummies)
         self.look(SKIN * length)
 
     def look(self, skin: float) -> None:
         """Find the pairs that are nearer than the kernel's reach and a `skin` (m)."""
         reach, self.skin, self.seen = 2.0 * self.length + skin, skin, self.points.copy()
-        tree = cKDTree(self.points)
+        tree = self.make_tree(self.points)
         self.first, self.second = tree.query_pairs(reach, output_type="ndarray").T
         near = tree.sparse_distance_matrix(self.tree, reach, output_type="ndarray")
         order = np.lexsort((near["j"], near["i"]))  # sums are taken in one order
