@@ -28,6 +28,9 @@ class Bodies:
     accelerated by A + ω' × R p − ω² R p, to which −2 Ω × v comes where the tank itself rolls at Ω. Dummies of bodies
     follow those of the tank in memory.
 
+    Limits: dummies take the whole acceleration of their part, that along a plate included, which water that slides
+    freely does not feel: near the ends of a gate that is torn up pressures are off by ρ a times the kernel's reach.
+
     `impulse` (units, parts; N s/m, N s) is what the water did to each part since it was last taken, `work` (units,
     parts; J/m) what the parts have done on the water.
     """
