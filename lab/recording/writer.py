@@ -53,6 +53,7 @@ def new_recording(
     outline: np.ndarray,
     step: float,
     volume: np.ndarray | None = None,
+    air: np.ndarray | None = None,
     kind: np.ndarray | None = None,
     fixed: np.ndarray = (),
     open_edges: Sequence[int] = (),
@@ -65,11 +66,11 @@ def new_recording(
 
     folder: of the new recording.h5, created if missing; preset: its name; given: its TOML text; resolved: the
     preset itself; radius (W, n) m, n is 0 without grains; outline (m, 2) m; step: the time step, s;
-    volume (W, n) m²: of the particles of water, None without water; kind (W, n): numbers of the kinds of grains, 0 for
-    the preset's material, None if all are 0; fixed (k, 3): y, z, radius m of the fixed grains; open_edges: outline
-    edges without a wall; parts: moving parts by name, polylines at rest (m, 2) m; shapes: outlines of irregular
-    grains, None if all are discs; machine: the device and threads, added to the data found here; steered: whether the
-    user steers the run.
+    volume (W, n) m²: of the particles of water, None without water; air (W, n) m²: of those of air; kind (W, n):
+    numbers of the kinds of grains, 0 for the preset's material, None if all are 0; fixed (k, 3): y, z, radius m of the
+    fixed grains; open_edges: outline edges without a wall; parts: moving parts by name, polylines at rest (m, 2) m;
+    shapes: outlines of irregular grains, None if all are discs; machine: the device and threads, added to the data
+    found here; steered: whether the user steers the run.
 
     The file gets its name only when it is complete, so it is readable from then on. Raises LabError if the folder
     cannot be written, is full, or already holds a recording.
@@ -105,6 +106,8 @@ def new_recording(
                 store(file, "grains/kind", np.asarray(kind, dtype="u1"))
             if volume is not None and volume.size:
                 store(file, "water/volume", np.asarray(volume, dtype=float))
+            if air is not None and air.size:
+                store(file, "air/volume", np.asarray(air, dtype=float))
             store(file, "tank/outline", np.asarray(outline, dtype=float))
             store(file, "tank/fixed", np.asarray(fixed, dtype=float).reshape(-1, 3))
             store(file, "tank/open_edges", np.asarray(open_edges, dtype=int))
@@ -113,7 +116,7 @@ def new_recording(
                 store(file, f"tank/parts/{name}", np.asarray(line, dtype=float))
             for name, table in tables.items():
                 store(file, f"{GROUP}/{name}", table)
-            create_tables(file, tables_of(resolved, steered), sizes_of(resolved, radius, volume, len(parts)))
+            create_tables(file, tables_of(resolved, steered), sizes_of(resolved, radius, volume, len(parts), air))
         _publish(path)
     return path
 

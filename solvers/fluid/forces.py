@@ -12,6 +12,7 @@ from solvers.space.axes import dot
 from solvers.tank.load import Load
 
 SINGULAR = 0.05  # least eigenvalue of Σ V_j r_ji ⊗ ∇W down to which it is inverted: spray has no gradient
+NEAR = 1e-3  # of (2 h)² times the squared gradient of the phase: from there on the other phase is near
 OUTLINE = 0  # number of the piece of the tank that all dummies belong to
 
 
@@ -42,10 +43,23 @@ class Forces:
         density, stiffness = c.get("density"), c.get("stiffness")
         for b in range(first, end):
             s = p.load(p.excess, b)
-            p.store(p.volume, b, p.load(p.mass, b) / (density * (1.0 + s)))
-            p.store(p.pressure, b, stiffness * c.state.share(s))
+            if ti.static(c.two):
+                self.publish_both(b, s)
+            else:
+                p.store(p.volume, b, p.load(p.mass, b) / (density * (1.0 + s)))
+                p.store(p.pressure, b, stiffness * c.state.share(s))
             if ti.static(c.shifting.acts):
                 p.store(p.span_before, b, p.load(p.span, b))
+
+    @ti.func
+    def publish_both(self, b, s):
+        """As `publish`, for a block of two phases; pressures have the background's on top."""
+        p, c = self.particles, self.constants
+        p.store(p.volume, b, p.load(p.mass, b) / (c.of("density", p.load(p.gas, b)) * (1.0 + s)))
+        p.store(p.pressure, b, c.get("stiffness") * c.state.share(s) + c.get("background"))
+        for lane in range(p.lanes):
+            if p.gas[b, lane] > 0.5:
+                p.pressure[b, lane] = c.get("air_stiffness") * c.gas.share(p.excess[b, lane]) + c.get("background")
 
     @ti.func
     def push(self, u, t, kick, dt):
@@ -82,8 +96,8 @@ class Forces:
         origin = [p.place[a][b, 0] for a in ti.static(range(p.axes))]
         own = [p.offset(b, origin[a], a) for a in ti.static(range(p.axes))]
         speed = [p.load(p.velocity[a], b) for a in ti.static(range(p.axes))]
-        pressure, s = p.load(p.pressure, b), p.load(p.excess, b)
-        shrink, floor, strength = c.get("shrink"), c.get("floor"), c.get("strength")
+        pressure, s, gas = p.load(p.pressure, b), p.load(p.excess, b), p.gases(b)
+        shrink, floor, strength = c.get("shrink"), c.get("floor"), self.strength()
         push = [p.zeros() for _ in ti.static(range(p.axes))]
         wall = [p.zeros() for _ in ti.static(range(p.axes))]
         own_push = [p.zeros() for _ in ti.static(range(p.axes))]  # of the dummies' own pressures
@@ -107,20 +121,30 @@ class Forces:
                 least = ti.min(least, ti.select(t > 0.0, p.ones() * p.span_before[jb, lane], p.ones()))
                 for a in ti.static(range(p.axes)):
                     shift[a] += crowded * apart[a]
-                    inwards[a] = inwards[a] - (deeper * weight) * apart[a]
+                    if ti.static(not c.two):
+                        inwards[a] = inwards[a] - (deeper * weight) * apart[a]
             along = (pressure + p.pressure[jb, lane]) * weight
+            other, heavy = gas - p.gas_at(jb, lane), weight  # `heavy`: as strong as the viscosity of the two
+            if ti.static(c.two):
+                along += (c.get("lean_of_pressure") * other) * (pressure - p.pressure[jb, lane]) * weight
+                heavy = weight * c.drag(gas, p.gas[jb, lane])
+                if ti.static(c.shifting.acts):
+                    for a in ti.static(range(p.axes)):
+                        inwards[a] += (other * weight) * apart[a]
             if ti.static(c.viscous):
                 nearing = [p.velocity[a][jb, lane] - speed[a] for a in ti.static(range(p.axes))]
                 if ti.static(c.viscosity.central):
                     closing = dot(nearing, apart)
-                    drag = weight * c.viscosity.pull(closing, square + floor)
+                    drag = heavy * c.viscosity.pull(closing, square + floor)
                     along += strength * drag
                     lost += drag * closing
                 else:
                     for a in ti.static(range(p.axes)):
-                        push[a] += (strength * weight) * nearing[a]
-                    lost += weight * dot(nearing, nearing)
-            weighted = [weight * apart[a] for a in ti.static(range(p.axes))]
+                        push[a] += (strength * heavy) * nearing[a]
+                    lost += heavy * dot(nearing, nearing)
+            if ti.static(c.two):  # from here on within a phase
+                weight *= 1.0 - other * other
+            weighted = [(weight * apart[a]) for a in ti.static(range(p.axes))]
             for a in ti.static(range(p.axes)):
                 push[a] += along * apart[a]
             if ti.static(self.gradients):
@@ -147,7 +171,7 @@ class Forces:
                         force = p.load(p.volume, b) * c.get("slope")
                         load = self.on_walls(b, origin, own, [force * off[a] for a in ti.static(range(p.axes))])
                         self.bodies.bear(u, piece - 1, load)
-        factor, density = c.get("slope"), c.get("density")
+        factor, density = c.get("slope"), c.of("density", gas)
         lightness = (p.filled(b) * factor) / (density * (1.0 + s))
         for a in ti.static(range(p.axes)):
             acceleration = lightness * (push[a] + wall[a])
@@ -183,7 +207,7 @@ class Forces:
 
         `taken` are the powers that viscosity and dummies take."""
         p, c, lists = self.particles, self.constants, self.lists
-        shrink, floor, strength = c.get("shrink"), c.get("floor"), c.get("strength")
+        shrink, floor, strength, gas = c.get("shrink"), c.get("floor"), self.strength(), p.gases(b)
         for k in range(ends[0], ends[1]):
             j = lists.beside.slots[u, k]
             jb, lane = lists.block_of(j), lists.lane_of(j)
@@ -195,8 +219,8 @@ class Forces:
                 crowded = weight * c.shifting.crowded(c.get("shift_scale") * c.kernel.value(t))
                 for a in ti.static(range(p.axes)):
                     shift[a] += crowded * apart[a]
-            along = p.pressure[jb, lane] + (pressure if ti.static(c.full) else ti.max(pressure, 0.0))
-            along = along * weight + p.volume[jb, lane] * c.hardness(square, p.firm[jb, lane])
+            along = self.wall_pressure(jb, lane, gas) + c.clipped(pressure, gas)
+            along = along * weight + p.volume[jb, lane] * c.hardness(square, p.firm[jb, lane], gas)
             more = along - pressure * weight
             for a in ti.static(range(p.axes)):
                 own_push[a] += more * apart[a]
@@ -209,21 +233,45 @@ class Forces:
                 if ti.static(c.viscosity.central):
                     closing = dot(slides, apart)
                     drag = weight * c.viscosity.pull(closing, square + floor)
+                    if ti.static(c.two):
+                        drag *= c.of("strength", gas)
                     along += strength * drag
                     taken[0] += drag * dot(lags, apart)
                 else:
+                    heavy = weight
+                    if ti.static(c.two):
+                        heavy *= c.of("strength", gas)
                     for a in ti.static(range(p.axes)):
-                        wall[a] += (strength * weight) * slides[a]
-                    taken[0] += weight * dot(slides, lags)
+                        wall[a] += (strength * heavy) * slides[a]
+                    taken[0] += heavy * dot(slides, lags)
             for a in ti.static(range(p.axes)):
                 wall[a] += along * apart[a]
+
+    @ti.func
+    def strength(self):
+        """The factor (Pa s) of the pairs' viscous sums; of two phases each pair has its own."""
+        return 1.0 if ti.static(self.constants.two) else self.constants.get("strength")
+
+    @ti.func
+    def wall_pressure(self, b, lane, gas: ti.template()):
+        """The pressure (Pa) of a dummy, as particles of these phases see it."""
+        p = self.particles
+        if ti.static(p.two):
+            return (1.0 - gas) * p.pressure[b, lane] + gas * p.pressure_of_air[b, lane]
+        else:
+            return p.pressure[b, lane]
 
     @ti.func
     def note_shift(self, b, shift: ti.template(), inwards: ti.template(), least, span):
         """Store the velocity with which the particles of a block are shifted; see `DeltaPlus`."""
         p, c = self.particles, self.constants
         steep = ti.max(dot(inwards, inwards), 1e-30)
-        along = ti.select(least < INSIDE, dot(shift, inwards) / steep, p.zeros())
+        along = p.zeros()
+        if ti.static(c.two):  # `inwards` is the gradient of the phase: there is a surface where there are two
+            seen = steep * (c.get("slope") * c.get("reach")) * (c.get("slope") * c.get("reach"))
+            along = ti.select(seen > NEAR, dot(shift, inwards) / steep, p.zeros())
+        else:
+            along = ti.select(least < INSIDE, dot(shift, inwards) / steep, p.zeros())
         lasting = ti.select(span < SPRAY, p.zeros(), p.filled(b))
         if ti.static(c.shifting.carries):
             lasting = ti.select(least < INSIDE, p.zeros(), lasting)

@@ -1,8 +1,9 @@
 """The time step derived from a scene's water: sound, acceleration, viscosity, diffusion of density and motion."""
 
+from dataclasses import replace
 from math import inf, sqrt
 
-from solvers.fluid.given import VELOCITY_Y, VELOCITY_Z
+from solvers.fluid.given import VELOCITY_Y, VELOCITY_Z, Water
 from solvers.machine.limit import Limit
 
 COURANT = 0.8  # of the time in which sound and water cross h; 1.4 is the largest stable one (standing wave)
@@ -16,7 +17,8 @@ SLOW = 1e-9
 def limits_of_water(scene) -> list[Limit]:
     """Bounds on the step of the water of a `solvers.scene.Scene`, for the speeds and accelerations to be expected."""
     water = scene.water
-    length, sound, speed = water.length, water.sound_speed, water_speed(scene)
+    length, speed = water.length, water_speed(scene)
+    sound = max(water.sound_speed, water.air.sound_speed if water.air else 0.0)
     bounds = [
         Limit(
             COURANT * length / (sound + speed),
@@ -29,7 +31,7 @@ def limits_of_water(scene) -> list[Limit]:
     pushed += sum(_shaken(motion, scene.span) for motion in scene.motions[0])
     if pushed > SLOW:
         bounds.append(Limit(FORCED * sqrt(length / pushed), f"{FORCED:g} √(h/a) at {pushed:.3g} m/s²", firm=True))
-    viscosity = kinematic(water)
+    viscosity = max(kinematic(water), kinematic(of_air(water)) if water.air else 0.0)
     if viscosity > 0.0:
         bounds.append(Limit(SPREAD * length**2 / viscosity, f"{SPREAD:g} h²/ν at {viscosity:.3g} m²/s", firm=True))
     if water.delta > 0.0 and water.diffusion != "none":
@@ -39,6 +41,12 @@ def limits_of_water(scene) -> list[Limit]:
     if shortest < inf:
         bounds.append(Limit(TRAVELLED * shortest, f"{TRAVELLED:g} of the shortest period of the motion"))
     return bounds
+
+
+def of_air(water: Water) -> Water:
+    """The air beside a water, as if it were one."""
+    air = water.air
+    return replace(water, density=air.density, sound_speed=air.sound_speed, alpha=air.alpha, kinematic=air.kinematic)
 
 
 def kinematic(water) -> float:

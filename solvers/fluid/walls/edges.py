@@ -59,10 +59,12 @@ class Edges:
             apart = lists.apart(b, own, origin, j, AT_START)
             square = dot(apart, apart)
             weight = c.kernel.slope(ti.max(1.0 - ti.sqrt(square) * c.get("shrink"), 0.0))
-            push = p.pressure[jb, lane]
-            if ti.static(not c.full):
-                push = ti.max(push, 0.0)
-            along = p.volume[jb, lane] * ((pressure + push) * weight + c.hardness(square, firm))
+            gas = p.gas_at(jb, lane)
+            push = c.clipped(p.pressure[jb, lane], gas)
+            along = pressure + push
+            if ti.static(c.two):
+                along = (1.0 - gas) * pressure + gas * p.load(p.pressure_of_air, b) + (push - 2.0 * c.get("background"))
+            along = p.volume[jb, lane] * (along * weight + c.hardness(square, firm, gas))
             for a in ti.static(range(p.axes)):
                 force[a] += along * apart[a]
         for a in ti.static(range(p.axes)):

@@ -3,6 +3,7 @@
 import numpy as np
 import taichi as ti
 
+from solvers.fluid.constants import Constants
 from solvers.fluid.given import Gauge
 from solvers.fluid.state import Particles
 from solvers.machine.state import Axis, State
@@ -37,8 +38,9 @@ class Gauges:
         gauges: tuple[Gauge, ...],
         slots: list[np.ndarray],
         open_part: list[np.ndarray],
+        constants: Constants,
     ):
-        self.particles, self.count = particles, len(gauges)
+        self.particles, self.count, self.constants = particles, len(gauges), constants
         own, each = arrays.under("gauges"), (Axis("world", particles.worlds), Axis("gauge", max(1, self.count)))
         self.shown, self.peak = own.reals(each, "shown", "peak", kind=own.exact)
         if self.count:
@@ -62,13 +64,27 @@ class Gauges:
             for k in range(self.ends[gauge], self.ends[gauge + 1]):
                 b, lane = w * p.stride + self.slots[k] // p.lanes, self.slots[k] % p.lanes
                 if p.span[b, lane] > DRY * self.open[k]:
-                    total += ti.cast(p.pressure[b, lane], p.exact)
+                    total += ti.cast(self.at(b, lane), p.exact)
             mean = total / (self.ends[gauge + 1] - self.ends[gauge])
             follows = ti.cast(1.0, p.exact)
             if self.response[gauge] > 0.0:
                 follows = 1.0 - ti.exp(0.0 - ti.cast(dt, p.exact) / self.response[gauge])
             self.shown[w, gauge] = self.shown[w, gauge] + follows * (mean - self.shown[w, gauge])
             self.peak[w, gauge] = ti.max(self.peak[w, gauge], self.shown[w, gauge])
+
+    @ti.func
+    def at(self, b, lane):
+        """The pressure (Pa) of a probe; of two phases the mean of what each shows, by its share of what is seen."""
+        p = self.particles
+        if ti.static(p.two):
+            share = p.share[b, lane]
+            return (
+                share * p.pressure[b, lane]
+                + (1.0 - share) * p.pressure_of_air[b, lane]
+                - self.constants.get("background")
+            )
+        else:
+            return p.pressure[b, lane]
 
     def take(self) -> dict[str, np.ndarray]:
         """What the gauges show, and their peaks (W, gauges), which begin anew from here."""
