@@ -58,6 +58,7 @@ class Constants:
             "pull_z": pull.centre[1] if pull else 0.0,
         }
         self.two, self.gas = water.air is not None, Adiabatic()
+        self.tense = self.two and water.air.tension > 0.0
         if self.two:
             numbers |= of_air(water, gravity, numbers, self.viscosity)
             self.viscous = self.viscous or numbers["air_strength"] > 0.0
@@ -85,6 +86,11 @@ class Constants:
             return (1.0 - gas) * self.get(name) + gas * self.values[ti.static(self.at_air[name])]
         else:
             return self.get(name)
+
+    @ti.func
+    def strength(self):
+        """The factor (Pa s) of the pairs' viscous sums; of two phases each pair has its own."""
+        return 1.0 if ti.static(self.two) else self.get("strength")
 
     @ti.func
     def drag(self, gas: ti.template(), there):

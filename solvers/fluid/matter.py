@@ -51,8 +51,8 @@ class WaterMatter(Matter):
         count = scene.drops.shape[1]
         self.gas = scene.drops[..., GAS] if water.air else np.zeros(scene.drops.shape[:2])
         self.puffs = int(self.gas[0].sum())  # particles of air, which come last
-        two = water.air is not None
-        self.particles = p = Particles(arrays, worlds, count, lanes, walls, grid.strips, SHIFTING[water.shifting], two)
+        shifting = SHIFTING[water.shifting]
+        self.particles = p = Particles(arrays, worlds, count, lanes, walls, grid.strips, shifting, water.air)
         self.units = units = setting.units(p.wet)
         self.load = setting.load(arrays.under("water"), units)
         self.dummies = dummy, blocks, behind.volumes, behind.firm
@@ -234,7 +234,8 @@ class WaterMatter(Matter):
 
     def check(self, rows: dict[str, np.ndarray], time: float) -> None:
         """Raise BadState if the quantities at `time` (s) show an unphysical state."""
-        known = np.nan if self.water.periodic else self.start  # a particle that goes round falls for ever
+        # A particle that goes round falls for ever; the energy of a surface under tension is not known.
+        known = np.nan if self.water.periodic or self.constants.tense else self.start
         check_water(rows, known, time, self.least)
 
     def refuse(self, world: int, time: float, dt: float) -> None:

@@ -3,7 +3,7 @@
 import numpy as np
 import taichi as ti
 
-from solvers.fluid.given import EXCESS, GAS, VOLUME, Water
+from solvers.fluid.given import EXCESS, GAS, VOLUME, Air, Water
 from solvers.machine.state import Axis, State
 from solvers.machine.units import Units
 from solvers.space.axes import PLANE, named
@@ -43,7 +43,15 @@ class Particles:
     axes = PLANE
 
     def __init__(
-        self, arrays: State, worlds: int, count: int, lanes: int, walls: int, strips: int, shifting, two: bool = False
+        self,
+        arrays: State,
+        worlds: int,
+        count: int,
+        lanes: int,
+        walls: int,
+        strips: int,
+        shifting,
+        air: Air | None = None,
     ):
         self.worlds, self.count, self.lanes = worlds, count, lanes
         self.real, self.exact, self.where = arrays.real, arrays.exact, arrays.place
@@ -66,8 +74,10 @@ class Particles:
         if shifting.carries:
             self.carried = own.wide(each, *named("carried", self.axes), kept=False)
         self.slope = own.wide(each, *named("slope", self.axes))
-        self.two = two
-        if two:
+        self.two = air is not None
+        if air and air.tension > 0.0:
+            self.stress = own.wide(each, "stress_yy", "stress_yz", "stress_zz")
+        if self.two:
             (self.gas,) = own.wide(each, "gas")
             self.pressure_of_air, self.share = own.wide(each, "pressure_of_air", "share", kept=False)
         self.built = own.wide(each, *named("built", self.axes), kind=own.place)

@@ -1,7 +1,7 @@
 """The time step derived from a scene's water: sound, acceleration, viscosity, diffusion of density and motion."""
 
 from dataclasses import replace
-from math import inf, sqrt
+from math import inf, pi, sqrt
 
 from solvers.fluid.given import VELOCITY_Y, VELOCITY_Z, Water
 from solvers.machine.limit import Limit
@@ -10,6 +10,7 @@ COURANT = 0.8  # of the time in which sound and water cross h; 1.4 is the larges
 FORCED = 0.25  # of √(h/a) (Monaghan 1992, eq. 10.2)
 SPREAD = 0.125  # of h²/ν (Morris, Fox & Zhu 1997, eq. 21)
 EVENED = 2.0 / 7.0  # of h/(δ c0): the diffusion of density is explicit, with 2 Σ V η = 7/h² over all neighbours
+SURFACE = 0.25  # of √((ρ_w + ρ_a) h³/(2 π σ)) (Brackbill, Kothe & Zemach 1992, eq. 61; Hu & Adams 2006, eq. 26)
 TRAVELLED = 0.02  # of the shortest period of the tank's motion
 SLOW = 1e-9
 
@@ -37,6 +38,9 @@ def limits_of_water(scene) -> list[Limit]:
     if water.delta > 0.0 and water.diffusion != "none":
         longest = EVENED * length / (water.delta * sound)
         bounds.append(Limit(longest, "the diffusion of density", firm=True))
+    if water.air and water.air.tension > 0.0:
+        crossed = SURFACE * sqrt((water.density + water.air.density) * length**3 / (2.0 * pi * water.air.tension))
+        bounds.append(Limit(crossed, f"{SURFACE:g} of the time of the shortest ripple", firm=True))
     shortest = min((1.0 / motion.frequency for motion in scene.motions[0] if hasattr(motion, "frequency")), default=inf)
     if shortest < inf:
         bounds.append(Limit(TRAVELLED * shortest, f"{TRAVELLED:g} of the shortest period of the motion"))

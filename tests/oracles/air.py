@@ -82,18 +82,28 @@ class PlainBoth(PlainWater):
         walls = -(((own[:, None] + seen) * volume[:, None] * self.wall_volume)[..., None] * at_wall).sum(axis=1)
         matrix = np.einsum("ij,j,ija,ijb->iab", same, volume, apart, gradient)
         raw = np.einsum("ij,j,ij,ija->ia", same, volume, s[None] - s[:, None], gradient)
-        regular = np.linalg.eigvalsh(matrix)[:, 0] > 0.05
+        self.span = np.linalg.eigvalsh(matrix)[:, 0]
+        regular = self.span > 0.05
         slope = np.zeros_like(r)
         slope[regular] = np.linalg.solve(matrix[regular], raw[regular][..., None])[..., 0]
         return (force + walls) / mass[:, None], slope, walls
 
-    def rate(self, r, u, s, mass, slope):
-        """Rate of s, in the middle of a step."""
+    def later(self, r, u, s, mass, slope, dt):
+        """The excess of density after a step, from its middle; water with few of its kind about is never less dense."""
+        spray = (self.span < 0.2) & (self.gas < 0.5)
+        for rate in self.rates(r, u, s, mass, slope):
+            s = s + dt * rate
+            s = np.where(spray, np.maximum(s, 0.0), s)
+        return s
+
+    def rates(self, r, u, s, mass, slope):
+        """Rates of s in the middle of a step, by the particles and by the walls."""
         water, volume, same = self.water, self.volume(mass, s), self.other == 0.0
         apart, _, _, gradient = self.between(r, r)
         flow = ((1.0 + self.lean * self.other) * ((u[None] - u[:, None]) * gradient).sum(axis=2)) @ volume
         _, _, _, at_wall = self.between(r, self.wall)
-        flow += (-u[:, None] * at_wall).sum(axis=2) @ self.wall_volume
+        walled = (-u[:, None] * at_wall).sum(axis=2) @ self.wall_volume
         more = 2.0 * (s[None] - s[:, None]) - ((slope[:, None] + slope[None]) * apart).sum(axis=2)
         eta = -kernel(np.linalg.norm(apart, axis=2), water.length)[1]
-        return -(1.0 + s) * flow + water.delta * water.length * self.sound * ((same * more * eta) @ volume)
+        evened = water.delta * water.length * self.sound * ((same * more * eta) @ volume)
+        return evened - (1.0 + s) * flow, -(1.0 + s) * walled

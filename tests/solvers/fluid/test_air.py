@@ -42,7 +42,7 @@ def test_a_step_equals_double_sums(run):
     push, slope, _ = plain.push(r, u, s, m)
     u = u + dt * (push + plain.gravity)
     middle = r + 0.5 * dt * u
-    s = s + dt * plain.rate(middle, u, s, m, slope)
+    s = plain.later(middle, u, s, m, slope, dt)
     found = held(run)
     np.testing.assert_allclose(found[4], push, atol=1e-9 * np.abs(push).max())
     np.testing.assert_allclose(found[5], slope, atol=1e-8 * np.abs(slope).max())
@@ -104,5 +104,5 @@ def test_other_ways_of_running_give_the_same(changes):
         state = other.snapshot()
         place.append(np.concatenate([state["water_place"][0], state["air_place"][0]]))
         other.close()
-    tight = {"mixed": 1e-4, "f32": 3e-3}[changes["precision"]]
+    tight = {"mixed": 5e-4, "f32": 3e-3}[changes["precision"]]
     np.testing.assert_allclose(place[1], place[0], atol=tight * made.water.spacing)

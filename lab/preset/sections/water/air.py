@@ -9,7 +9,7 @@ from lab.base.errors import LabError
 from lab.preset.units import needed, show
 from solvers.fluid.phases.adiabatic import GAMMA
 from solvers.fluid.phases.interfaces import INTERFACES
-from solvers.machine.marks import Doc, Interval, Unit
+from solvers.machine.marks import Doc, Interval, Unit, Usual
 
 REAL_SOUND = 343.0  # m/s, of air at 20 °C
 SLOWEST = 0.5  # of the air's speed of sound: what its own weight may lift over its height, √(0.4 g H)
@@ -41,6 +41,11 @@ class Air:
     background: Annotated[
         Annotated[float, Unit("Pa"), Interval(ge=0)],
         Doc("Pressure added in sums over particles alone; it presses the air's particles into gaps."),
+    ] = 0.0
+    surface_tension: Annotated[
+        Annotated[float, Unit("N/m"), Interval(ge=0)],
+        Usual(0.0, 0.1),
+        Doc("Tension of the surface between water and air; 0.072 N/m of clean water."),
     ] = 0.0
     interface: Annotated[
         Literal[*INTERFACES], Doc("What acts between water and air, see `solvers.fluid.phases.interfaces`.")

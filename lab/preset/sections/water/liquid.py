@@ -72,6 +72,7 @@ def _air(preset: Wet, scheme: Scheme) -> given.Air:
         alpha=alpha if air.alpha is None else air.alpha,
         kinematic=air.kinematic_viscosity or 0.0,
         background=air.background,
+        tension=air.surface_tension,
         interface=air.interface,
     )
 
