@@ -10,7 +10,7 @@ from solvers.fluid.constants import Constants
 from solvers.fluid.phases import quantities as of_air
 from solvers.fluid.state import UNUSED, Particles
 from solvers.machine.quantity import places
-from solvers.machine.state import Axis, State
+from solvers.machine.state import Axis, State, padded, roomy
 from solvers.motion.frame import turned
 from solvers.space.axes import dot
 from solvers.tank.walls import Walls
@@ -18,6 +18,7 @@ from solvers.tank.walls import Walls
 CHUNK = 64  # blocks whose sum one thread takes
 DENSE = 0.03  # deviation of the density from which it is counted
 NEVER = -1.0
+USUAL = 8  # level gauges for which there is room at least
 SUMS = (
     *("mass", "moment_y", "moment_z", "momentum_y", "momentum_z", "moving", "flowing", "pulled", "elastic", "dense"),
     *(
@@ -56,11 +57,13 @@ class Census:
         self.now = own.reals((world,), *names, kind=arrays.exact, kept=False)
         (self.behind,) = own.reals((world,), "behind", kind=arrays.exact)
         self.levels = len(levels)
-        places_y = np.array([level.y for level in levels]) if levels else np.zeros(1)
+        room = roomy(self.levels, USUAL)
+        places_y = padded(np.array([level.y for level in levels]), room)
+        self.level_number = own.holding("level_number", np.array([self.levels]), "one", ti.i32)
         self.level_y = own.holding("level_y", places_y, "level", arrays.exact)
         sides = walls.outline[:, 0].min(), walls.outline[:, 0].max()
         self.level_sides = own.holding("level_sides", np.array(sides), "side", arrays.exact)
-        (self.level_depth,) = own.reals((world, Axis("level", max(1, self.levels))), "level_depth", kept=False)
+        (self.level_depth,) = own.reals((world, Axis("level", room)), "level_depth", kept=False)
 
     def take(self, time: float, thickness: float) -> dict[str, np.ndarray]:
         """Sums of every world at `time` (s), (W, …) by the names of `SUMS`, for a tank of `thickness` (m)."""
@@ -80,7 +83,7 @@ class Census:
             "water_dense": sums["dense"] / water,
             "air_centre": of_air / air[:, None],
             "air_kinetic": sums["air_flowing"],
-            "air_pressure": sums["air_pressed"] / np.maximum(sums["air_volume"], 1e-300),
+            "air_mean_pressure": sums["air_pressed"] / np.maximum(sums["air_volume"], 1e-300),
             "air_volume": sums["air_volume"],
             "air_excess": sums["air_excess"],
         }
@@ -93,7 +96,7 @@ class Census:
         for w, chunk in self.sums[0]:
             self.sum_chunk(w, chunk)
         for w, level in self.level_depth:
-            if level < self.levels:
+            if level < self.level_number[0]:
                 self.measure_level(w, level)
 
     @ti.kernel

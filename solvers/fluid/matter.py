@@ -177,7 +177,7 @@ class WaterMatter(Matter):
         fields = *p.place, p.volume, p.firm, p.number
         for field, values in zip(fields, [*np.moveaxis(places, 2, 0), *held], strict=True):
             whole = field.to_numpy().reshape(p.worlds, p.stride, p.lanes)
-            whole[:, p.wet :] = values
+            whole[:, p.wet : p.wet + p.walls] = values
             field.from_numpy(whole.reshape(-1, p.lanes))
         for field in (
             self.forces.lost,
@@ -255,18 +255,14 @@ class WaterMatter(Matter):
         """Places, velocities relative to the tank (W, n, 2) and pressures (W, n) at `time` (s), which must be now."""
         p = self.particles
         found = p.read(*p.place, *p.velocity, *p.acceleration, p.excess)
-        place, velocity = (
-            np.stack(found[0:2], axis=-1),
-            self.census.relative(time, *(found[k : k + 2] for k in (0, 2, 4))),
-        )
-        pressure, wet = self.constants.pressures(found[6], self.gas), p.count - self.puffs
-        rows = {"water_place": place[:, :wet], "water_velocity": velocity[:, :wet], "water_pressure": pressure[:, :wet]}
-        if p.two:
-            rows |= {
-                "air_place": place[:, wet:],
-                "air_velocity": velocity[:, wet:],
-                "air_pressure_at": pressure[:, wet:],
-            }
+        told = {
+            "place": np.stack(found[0:2], axis=-1),
+            "velocity": self.census.relative(time, found[0:2], found[2:4], found[4:6]),
+            "pressure": self.constants.pressures(found[6], self.gas),
+        }
+        phases = {"water": slice(0, p.count - self.puffs), "air": slice(p.count - self.puffs, None)}
+        names = ("water", "air") if p.two else ("water",)
+        rows = {f"{phase}_{name}": values[:, phases[phase]] for phase in names for name, values in told.items()}
         return rows | self.bodies.places(time)
 
     def alter(self, scene) -> None:

@@ -25,7 +25,7 @@ def pressure_of_air(beds: Sequence[Bed]) -> Colouring:
     """Pressure of the air over that outside, red above and blue below."""
 
     def pressures(bed: Bed, frame: int) -> np.ndarray:
-        return bed.drops("air_pressure_at", frame)
+        return bed.drops("air_pressure", frame)
 
     top = round_up(max(*np.abs(ends(beds, pressures)), 1e-3))
     factor, unit = (1e-3, "kPa") if top >= 1e3 else (1.0, "Pa")
@@ -43,7 +43,7 @@ def colouring_of_air(name: str, beds: Sequence[Bed], of_water: Colouring | None)
         return None
     if name == "pressure":  # on the water's scale
         factor = {"MPa": 1e-6, "kPa": 1e-3, "Pa": 1.0}[of_water.label.partition("(")[2].rstrip(")")]
-        return replace(of_water, values=lambda bed, frame: factor * bed.drops("air_pressure_at", frame))
+        return replace(of_water, values=lambda bed, frame: factor * bed.drops("air_pressure", frame))
     return pressure_of_air(airy) if name == BY_ITSELF else None
 
 

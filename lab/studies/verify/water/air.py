@@ -161,7 +161,7 @@ def squeezed(sound: float, rows: int) -> tuple[float, float]:
         list(looks(run, [SQUEEZE + 0.1]))
         found, start = [], run.time
         for _ in looks(run, start + np.arange(1, 11) * 0.02):
-            found.append(run.observe()["air_pressure"][0])
+            found.append(run.observe()["air_mean_pressure"][0])
     at_rest_pressure = 1.2 * sound**2 / 1.4
     return float(np.mean(found)), at_rest_pressure * ((COLUMN / (COLUMN - PRESSED)) ** 1.4 - 1.0)
 
