@@ -28,7 +28,8 @@ from lab.preset.sections.ship import Ship
 from lab.preset.sections.ship_checks import check_ship
 from lab.preset.sections.tank import Tank, check_tank
 from lab.preset.sections.video import Record, Video, check_video
-from lab.preset.sections.water.air import Air, check_air
+from lab.preset.sections.water.air import Air
+from lab.preset.sections.water.air_checks import check_air
 from lab.preset.sections.water.checks import check_water
 from lab.preset.sections.water.section import Gauge, Water
 from lab.preset.sections.water.solids import check_solids

@@ -1,18 +1,12 @@
-"""The air over the water, as a preset gives it, its checks, and what the solver takes of it."""
+"""The air over the water, as a preset gives it."""
 
 from dataclasses import dataclass
 from typing import Annotated, Literal
 
-import numpy as np
-
-from lab.base.errors import LabError
-from lab.preset.units import needed, show
-from solvers.fluid.phases.adiabatic import GAMMA
 from solvers.fluid.phases.interfaces import INTERFACES
 from solvers.machine.marks import Doc, Interval, Unit, Usual
 
 REAL_SOUND = 343.0  # m/s, of air at 20 °C
-SLOWEST = 0.5  # of the air's speed of sound: what its own weight may lift over its height, √(0.4 g H)
 
 
 @dataclass(frozen=True)
@@ -44,7 +38,7 @@ class Air:
     ] = 0.0
     surface_tension: Annotated[
         Annotated[float, Unit("N/m"), Interval(ge=0)],
-        Usual(0.0, 0.1),
+        Usual(0.0, 0.1, "N/m"),
         Doc("Tension of the surface between water and air; 0.072 N/m of clean water."),
     ] = 0.0
     interface: Annotated[
@@ -55,43 +49,3 @@ class Air:
 def sound_of_air(air: Air, sound: float) -> float:
     """Speed of sound (m/s) of the air over water with a speed of sound (m/s)."""
     return {"equal": sound, "real": REAL_SOUND}.get(air.sound_speed, air.sound_speed)
-
-
-def check_air(preset) -> None:
-    """Raise LabError for air that cannot be: in an open tank, over water that leaves it no room, beside parts."""
-    from lab.preset.sections.water.liquid import depth, liquid
-
-    air, water, tank = preset.air, preset.water, preset.tank
-    if air is None:
-        return
-    if tank.open_edges:
-        raise LabError("air: it fills closed tanks; give the tank a lid (tank.lid = true), or leave out [air].")
-    if water.full:
-        raise LabError("air: the water fills the tank (water.full), so that there is none; leave out either.")
-    if preset.parts:
-        raise LabError("air: parts in water with air are not computed yet; leave out [parts] or [air].")
-    if water.shifting == "delta-plus-momentum":
-        raise LabError(
-            'water.shifting: "delta-plus-momentum" is for water alone; take "delta-plus", or leave out [air].'
-        )
-    laminar = liquid(preset).viscosity == "laminar"
-    if laminar and air.kinematic_viscosity is None:
-        raise LabError(f'air.kinematic_viscosity: missing for water.viscosity = "laminar"; {needed("m^2/s")}.')
-    if air.kinematic_viscosity is not None and not laminar:
-        raise LabError('air.kinematic_viscosity: goes with water.viscosity = "laminar"; leave out either.')
-    if laminar and air.alpha is not None:
-        raise LabError('air.alpha: goes with an artificial viscosity, not with water.viscosity = "laminar".')
-    if air.density > water.density:
-        raise LabError(f"air.density: {show(air.density, 'kg/m^3')} is more than that of the water; take less.")
-    room = tank.extent[1] - (depth(preset) if water.region is None else 0.0)
-    if room < liquid(preset).spacing:
-        raise LabError(
-            "air: the water leaves it no room of a particle's height; take less water, or smaller particles."
-        )
-    slow = float(np.sqrt((GAMMA - 1.0) * preset.run.gravity * room)) / SLOWEST
-    sound = sound_of_air(air, liquid(preset).sound_speed)
-    if sound < slow:
-        raise LabError(
-            f"air.sound_speed: air of {show(sound, 'm/s')} would be compressed by its own weight; take at least "
-            f"{show(slow, 'm/s')}."
-        )
