@@ -155,7 +155,8 @@ class Census:
                         sums[self.at.dense] += ti.select(ti.abs(s) > DENSE, m, 0.0)
                         sums[self.at.excess] = ti.max(sums[self.at.excess], ti.abs(s))
                     if ti.static(self.closed):  # noqa: SIM102 (compiled only where no water may leave)
-                        if self.is_out(w, p.place[0][b, lane], p.place[1][b, lane]):
+                        dent = 0.5 + p.gas_at(b, lane)  # spacings: water may squeeze air into a wall
+                        if self.is_out(w, p.place[0][b, lane], p.place[1][b, lane], dent):
                             sums[self.at.escaped] = ti.max(sums[self.at.escaped], p.number[b, lane])
         for k in ti.static(range(len(SUMS))):
             self.sums[k][w, chunk] = sums[k]
@@ -182,11 +183,11 @@ class Census:
         sums[self.at.elastic] += self.constants.get("background") * (m / density) * (s / (1.0 + s))
 
     @ti.func
-    def is_out(self, w, y, z):
-        """Whether a point is outside the tank by more than half a spacing: in an impact water may dent a wall."""
+    def is_out(self, w, y, z, dent):
+        """Whether a point is outside the tank by more than `dent` spacings: in an impact water may dent a wall."""
         out = not self.walls.holds(y, z)
         if out:
-            shift, near = self.walls.shift(w, 0.0), 0.5 * self.constants.get("spacing")
+            shift, near = self.walls.shift(w, 0.0), dent * self.constants.get("spacing")
             for feature in range(self.walls.features):
                 if self.walls.near(feature, shift, y, z, near):
                     out = False

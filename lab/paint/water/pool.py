@@ -1,6 +1,6 @@
 """What a picture needs to know of the water in a recording besides its particles: their volume, and the gauges."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -16,7 +16,7 @@ class Pool:
     volume: np.ndarray
     gauges: dict[str, Gauge]
     levels: dict[str, Level]
-    air: np.ndarray
+    air: np.ndarray = field(default_factory=lambda: np.zeros((1, 0)))
 
     @classmethod
     def of(cls, preset: Preset, volume: np.ndarray, air: np.ndarray) -> "Pool | None":
