@@ -154,7 +154,7 @@ class Census:
                         sums[self.at.elastic] += m * sound * c.state.energy(s)
                         sums[self.at.dense] += ti.select(ti.abs(s) > DENSE, m, 0.0)
                         sums[self.at.excess] = ti.max(sums[self.at.excess], ti.abs(s))
-                    if ti.static(self.closed):  # noqa: SIM102 (compiled only where no water may leave)
+                    if ti.static(self.closed):
                         dent = 0.5 + p.gas_at(b, lane)  # spacings: water may squeeze air into a wall
                         if self.is_out(w, p.place[0][b, lane], p.place[1][b, lane], dent):
                             sums[self.at.escaped] = ti.max(sums[self.at.escaped], p.number[b, lane])

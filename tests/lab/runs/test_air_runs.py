@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from lab.base.errors import LabError
 from lab.paint.film import Film, choose_beds, choose_look
 from lab.paint.footage import open_footage
+from lab.preset.find import load
 from lab.recording import open_recording
 from lab.report.explain import explain
-from lab.report.summary import write_summary  # noqa: F401 (a report is part of each run)
+from lab.runs.batch import Batch
 from lab.runs.runner import resume_run, run_preset
 from solvers.machine.runtime import initialise
 
@@ -51,7 +51,8 @@ def test_both_phases_are_recorded_apart(cup):
 def test_the_summary_says_how_soft_the_air_is(cup):
     text = (cup.parent / "run" / "summary.md").read_text()
     assert "60 particles of air" in text and "times softer than real air" in text
-    assert "air" in explain(str(cup)) and "softer than real air" in explain(str(cup))
+    page = explain(load(cup)).partition("Preset in full")[0]
+    assert "60 of these particles, 1.2 kg/m^3" in page and "times softer than real air" in page
 
 
 def test_pictures_show_the_air_where_water_is_not(cup):
@@ -70,14 +71,20 @@ def test_pictures_show_the_air_where_water_is_not(cup):
     assert (np.abs(pressed - plain).sum(axis=2) > 30).sum() > changed.sum()
 
 
-def test_a_run_goes_on_with_the_same_bits(cup, tmp_path):
-    """Stopped halfway, as by a kill, and resumed from its checkpoint."""
-    whole = tmp_path / "whole"
-    run_preset(cup, out=whole, video=False, quiet=True)
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("lab.report.plots.write_plots", lambda *_: {})
-        with pytest.raises(LabError):
-            resume_run(whole, quiet=True)  # it is complete
-    with open_recording(cup.parent / "run") as one, open_recording(whole) as other:
-        for name in ("air_place", "water_place"):
-            assert one.frames[name][:].tobytes() == other.frames[name][:].tobytes()
+def test_an_interrupted_run_goes_on_with_the_same_bits(cup, monkeypatch):
+    folder, pause, paused = cup.parent / "again", Batch._pause, []
+
+    def interrupted(batch, interrupt):
+        paused.append(pause(batch, interrupt))
+        if len(paused) == 20:
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr("lab.report.plots.write_plots", lambda *_: {})
+    with monkeypatch.context() as patch, pytest.raises(KeyboardInterrupt):
+        patch.setattr(Batch, "_pause", interrupted)
+        run_preset(cup, out=folder, video=False, quiet=True)
+    resume_run(folder, video=False, quiet=True)
+    with open_recording(cup.parent / "run") as one, open_recording(folder) as other:
+        assert one.status == other.status == "complete"
+        for name in ("air_place", "air_pressure", "water_place"):
+            assert one.frames[name][:].tobytes() == other.frames[name][:].tobytes(), name
