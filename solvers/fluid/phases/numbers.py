@@ -5,7 +5,7 @@ from dataclasses import replace
 from solvers.fluid.given import Water
 from solvers.fluid.phases.interfaces import INTERFACES
 
-FASTEST = 0.5, 2.0  # Mach numbers of water and of air at which a run is stopped: air is squeezed out from under water
+FASTEST = 0.5, 2.0  # Mach numbers of water and air at which runs are stopped: air is squeezed out from under water
 
 # Times the spring behind a wall's face for its mass, beside water's: air may be as fast as its sound, and water squeezes
 # it against walls. At the longest step the frequency is 1.1 over the step, where explicit steps bear 2.
