@@ -5,9 +5,9 @@ from dataclasses import replace
 from solvers.fluid.given import Water
 from solvers.fluid.phases.interfaces import INTERFACES
 
-FASTEST = 0.5, 2.0  # Mach numbers of water and air at which runs are stopped: air is squeezed out from under water
+FASTEST = 0.5, 2.0  # Mach numbers of water and air at which a run is stopped: impacts squeeze air out
 
-# Times the spring behind a wall's face for its mass, beside water's: air may be as fast as its sound, and water squeezes
+# Times the spring behind a wall's face for its mass, beside water's: air may be as fast as its sound, and water presses
 # it against walls. At the longest step the frequency is 1.1 over the step, where explicit steps bear 2.
 FIRMER = 12.0
 

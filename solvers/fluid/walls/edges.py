@@ -65,7 +65,10 @@ class Edges:
             along = pressure + push
             if ti.static(c.two):
                 along = (1.0 - gas) * pressure + gas * p.load(p.pressure_of_air, b) + (push - 2.0 * c.get("background"))
-            along = p.volume[jb, lane] * (along * weight + c.hardness(square, firm, gas))
+            spring = c.hardness(square, firm, gas)
+            if ti.static(c.two):
+                spring *= 1.0 + gas * p.excess[jb, lane]
+            along = p.volume[jb, lane] * (along * weight + spring)
             for a in ti.static(range(p.axes)):
                 force[a] += along * apart[a]
         for a in ti.static(range(p.axes)):

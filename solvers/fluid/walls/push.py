@@ -36,6 +36,7 @@ class WallPush:
         `taken` are the powers that viscosity and dummies take."""
         p, c, lists = self.particles, self.constants, self.lists
         shrink, floor, strength, gas = c.get("shrink"), c.get("floor"), c.strength(), p.gases(b)
+        squeezed = 1.0 + gas * p.load(p.excess, b)  # of air as heavy as before in less volume
         for k in range(ends[0], ends[1]):
             j = lists.beside.slots[u, k]
             jb, lane = lists.block_of(j), lists.lane_of(j)
@@ -48,7 +49,10 @@ class WallPush:
                 for a in ti.static(range(p.axes)):
                     shift[a] += crowded * apart[a]
             along = self.wall_pressure(jb, lane, gas) + c.clipped(pressure, gas)
-            along = along * weight + p.volume[jb, lane] * c.hardness(square, p.firm[jb, lane], gas)
+            spring = p.volume[jb, lane] * c.hardness(square, p.firm[jb, lane], gas)
+            if ti.static(c.two):
+                spring *= squeezed
+            along = along * weight + spring
             more = along - pressure * weight
             for a in ti.static(range(p.axes)):
                 own_push[a] += more * apart[a]
