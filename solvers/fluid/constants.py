@@ -31,7 +31,7 @@ class Constants:
         strength = self.viscosity.strength(water)
         self.viscous, self.slip, self.full = strength > 0.0, water.slip, water.full
         self.pressed = water.background > 0.0
-        self.reach = water.reach
+        self.smoothing = water.smoothing  # h/Δx
         pull = water.pull
         numbers = {
             "shrink": 0.5 / length,  # 1/(2h): t = 1 − r/(2h)

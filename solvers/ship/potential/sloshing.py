@@ -17,10 +17,10 @@ class SloshingLiquid:
     takes no energy and is infinite at its own frequencies ω_n² = g κ_n, κ_n = q tanh q d, q = n π/l.
 
     The potential is that of a tank that moves on with a lid at the level surface, sway U y and roll Ω ψ (Joukowski),
-    and of modes that swing at the surface (Faltinsen & Timokha 2009, ch. 5; for sway the sum is Graham & Rodriguez 1952:
-    F = ω² m y (1 + Σ m_n ω²/(ω_n² − ω²)), m_n = 8 tanh(nπd/l)/(n³π³ d/l), n odd). With a_n = −4 l/(nπ)² and
-    b_n = −8 l² tanh(nπd/2l)/(nπ)³, the shares of mode n in y and in ψ at the surface, the force and moment about its
-    middle of sway and roll with amplitudes x, as e^(−iωt), are
+    and of modes that swing at the surface (Faltinsen & Timokha 2009, ch. 5; for sway the sum is that of Graham &
+    Rodriguez 1952: F = ω² m y (1 + Σ m_n ω²/(ω_n² − ω²)), m_n = 8 tanh(nπd/l)/(n³π³ d/l), n odd).
+    With a_n = −4 l/(nπ)² and b_n = −8 l² tanh(nπd/2l)/(nπ)³, the shares of mode n in y and in ψ at the surface, the
+    force and moment about its middle of sway and roll with amplitudes x, as e^(−iωt), are
 
         X = [ω² M − C + (m/2d) Σ κ_n v_n v_nᵀ/(ω_n² − ω² − 2iζ ω_n ω)] x,   v_n = (ω² a_n, ω² b_n − g a_n),
 

@@ -1,19 +1,16 @@
-"""A full tank: there is no free surface, so that water closes up behind a body; nothing shows a pressure that all bear."""
+"""A full tank: there is no free surface, so that water closes up behind a body; what all bear is not shown."""
 
 from collections.abc import Iterator
-
 
 import numpy as np
 import pytest
 from scipy.spatial import cKDTree
-
 
 from solvers.fluid.checks import residual
 from solvers.fluid.given import EXCESS, Gauge
 from solvers.simulation import Simulation
 from solvers.tank.parts import Body
 from tests.oracles.water import box, lattice, still
-
 
 SPACING, SIDE, SPEED = 0.1, 0.8, 1.0  # m, m, m/s
 WIDTH, HEIGHT = 4.0, 2.4
@@ -22,7 +19,7 @@ BACKGROUND = 4000.0  # Pa, four times ρ U²
 
 def corners(middle: float) -> np.ndarray:
     """The square about a middle (y), half way up."""
-    return box(SIDE, SIDE) + [middle, 0.5 * (HEIGHT - SIDE)]
+    return box(SIDE, SIDE) + np.array([middle, 0.5 * (HEIGHT - SIDE)])
 
 
 @pytest.fixture(scope="module")
