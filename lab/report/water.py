@@ -53,11 +53,7 @@ def models(scene: Scene) -> Rows:
         ("diffusion", f"{water.diffusion}, δ {water.delta:g}" if water.diffusion != "none" else "none"),
         ("viscosity", f"{water.viscosity}{strength}: that of {kinematic(water):.3g} m²/s"),
         ("shifting", water.shifting),
-        *(
-            [("surface", f"{water.air.interface}, background pressure {water.air.background:g} Pa")]
-            if water.air
-            else []
-        ),
+        *([("surface", water.air.interface)] if water.air else []),
         ("at walls", f"{'free slip' if water.slip else 'no slip'}{', no free surface' if water.full else ''}"),
     ]
 

@@ -144,10 +144,10 @@ class Census:
                     if ti.static(c.pulled):
                         out = [r[0] - c.get("pull_y"), r[1] - c.get("pull_z")]
                         sums[self.at.pulled] += 0.5 * m * c.get("pull") * dot(out, out)
-                    is_water = True
+                    if ti.static(c.pressed):
+                        self.add_background(sums, m, s, p.gas_at(b, lane))
+                    is_water = p.gas_at(b, lane) < 0.5
                     if ti.static(p.two):
-                        is_water = p.gas[b, lane] < 0.5
-                        self.add_background(sums, m, s, is_water)
                         if not is_water:
                             self.add_air(sums, [m, s], r, v)
                     if is_water:
@@ -177,10 +177,10 @@ class Census:
         sums[self.at.air_excess] = ti.max(sums[self.at.air_excess], ti.abs(s))
 
     @ti.func
-    def add_background(self, sums: ti.template(), m, s, is_water):
+    def add_background(self, sums: ti.template(), m, s, gas):
         """Add −p_b (V − V0), what the background pressure holds of a particle's compression."""
-        density = ti.select(is_water, self.constants.get("density"), self.constants.get("air_density"))
-        sums[self.at.elastic] += self.constants.get("background") * (m / density) * (s / (1.0 + s))
+        light = self.constants.get("background") / self.constants.of("density", gas)
+        sums[self.at.elastic] += m * light * (s / (1.0 + s))
 
     @ti.func
     def is_out(self, w, y, z, dent):

@@ -103,7 +103,10 @@ class Continuity:
             taken = evened * p.load(p.pressure, b) * p.load(p.mass, b) / ((1.0 + s) * (1.0 + s) * c.of("density", gas))
             return 0.0 - ti.cast(taken.sum(), p.exact)
         else:
-            taken = evened * c.state.share(s) * p.load(p.mass, b) / ((1.0 + s) * (1.0 + s))
+            share = c.state.share(s)
+            if ti.static(c.pressed):
+                share += p.filled(b) * (c.get("background") / c.get("stiffness"))
+            taken = evened * share * p.load(p.mass, b) / ((1.0 + s) * (1.0 + s))
             return 0.0 - ti.cast(taken.sum() * (c.get("stiffness") / c.get("density")), p.exact)
 
     @ti.func

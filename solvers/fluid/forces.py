@@ -50,7 +50,10 @@ class Forces:
                 self.publish_both(b, s)
             else:
                 p.store(p.volume, b, p.load(p.mass, b) / (density * (1.0 + s)))
-                p.store(p.pressure, b, stiffness * c.state.share(s))
+                pressure = stiffness * c.state.share(s)
+                if ti.static(c.pressed):
+                    pressure += p.filled(b) * c.get("background")
+                p.store(p.pressure, b, pressure)
             if ti.static(c.shifting.acts):
                 p.store(p.span_before, b, p.load(p.span, b))
 
@@ -123,11 +126,12 @@ class Forces:
             weight = p.volume[jb, lane] * c.kernel.slope(t)
             if ti.static(c.shifting.acts):
                 crowded = weight * c.shifting.crowded(c.get("shift_scale") * c.kernel.value(t))
-                deeper = p.span_before[jb, lane] - span
-                least = ti.min(least, ti.select(t > 0.0, p.ones() * p.span_before[jb, lane], p.ones()))
                 for a in ti.static(range(p.axes)):
                     shift[a] += crowded * apart[a]
-                    if ti.static(not c.two):
+                if ti.static(not (c.full or c.two)):
+                    deeper = p.span_before[jb, lane] - span
+                    least = ti.min(least, ti.select(t > 0.0, p.ones() * p.span_before[jb, lane], p.ones()))
+                    for a in ti.static(range(p.axes)):
                         inwards[a] = inwards[a] - (deeper * weight) * apart[a]
             along = (pressure + p.pressure[jb, lane]) * weight
             other, heavy = gas - p.gas_at(jb, lane), weight  # `heavy`: as strong as the viscosity of the two
@@ -200,18 +204,21 @@ class Forces:
 
     @ti.func
     def note_shift(self, b, shift: ti.template(), inwards: ti.template(), least, span):
-        """Store the velocity with which the particles of a block are shifted; see `DeltaPlus`."""
+        """Store the velocity with which the particles of a block are shifted; see `DeltaPlus`.
+
+        A full tank has no free surface: what lacks water near it, lacks it at a wall, whose dummies stand for it.
+        """
         p, c = self.particles, self.constants
+        along, lasting = p.zeros(), p.filled(b)
         steep = ti.max(dot(inwards, inwards), 1e-30)
-        along = p.zeros()
         if ti.static(c.two):  # `inwards` is the gradient of the phase: there is a surface where there are two
-            seen = steep * (c.get("slope") * c.get("reach")) * (c.get("slope") * c.get("reach"))
-            along = ti.select(seen > NEAR, dot(shift, inwards) / steep, p.zeros())
-        else:
+            near = c.get("slope") * c.get("reach")
+            along = ti.select(steep * (near * near) > NEAR, dot(shift, inwards) / steep, p.zeros())
+        elif ti.static(not c.full):
             along = ti.select(least < INSIDE, dot(shift, inwards) / steep, p.zeros())
-        lasting = ti.select(span < SPRAY, p.zeros(), p.filled(b))
-        if ti.static(c.shifting.carries):
-            lasting = ti.select(least < INSIDE, p.zeros(), lasting)
+            lasting = ti.select(span < SPRAY, p.zeros(), lasting)
+            if ti.static(c.shifting.carries):
+                lasting = ti.select(least < INSIDE, p.zeros(), lasting)
         moved = [lasting * c.get("shift") * (shift[a] - along * inwards[a]) for a in ti.static(range(p.axes))]
         fast = ti.sqrt(dot(moved, moved))
         limited = ti.min(1.0, c.get("shift_most") / ti.max(fast, 1e-30))

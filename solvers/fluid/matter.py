@@ -66,7 +66,7 @@ class WaterMatter(Matter):
         self.forces = Forces(arrays, medium, self.extrapolation, self.load, tank.thickness)
         self.continuity, self.mover = Continuity(arrays, medium), Mover(arrays, medium, self.extrapolation)
         probes = [dummy[slot] + p.wet * lanes for slot in behind.probes]
-        self.gauges = Gauges(arrays, p, water.gauges, probes, behind.open, self.constants)
+        self.gauges = Gauges(arrays, p, self.constants, water.gauges, probes, behind.open)
         owner = np.full(p.dry * lanes, OF_NONE)
         owner[dummy] = behind.edges
         self.edges = Edges(arrays, medium, water.edges, owner, tank.thickness)

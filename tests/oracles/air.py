@@ -57,7 +57,7 @@ class PlainBoth(PlainWater):
         """Linear of water; ρ c²/1.4 ((1 + s)^1.4 − 1) of air; and the background's."""
         of_air = self.density * self.sound**2 * ((1.0 + s) ** 1.4 - 1.0) / 1.4
         alone = np.where(self.gas > 0.5, of_air, self.density * self.sound**2 * s)
-        return alone + self.water.air.background
+        return alone + self.water.background
 
     def wall_pressure(self, r, mass, s, gas: float):
         """The dummies' pressures that one phase sees: Adami, Hu & Adams (2012), eq. 27, over that phase alone."""

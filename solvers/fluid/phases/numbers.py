@@ -32,7 +32,6 @@ def of_air(water: Water, gravity: float, numbers: dict[str, float], viscosity) -
         "air_hard": FIRMER * numbers["hard"] * stiffness / numbers["stiffness"],
         "lean_of_pressure": lean_of_pressure,
         "lean_of_speed": lean_of_speed,
-        "background": air.background,
         "tension": air.tension,
         "air_pace": FASTEST[0] * water.sound_speed / (FASTEST[1] * air.sound_speed),
     }

@@ -51,7 +51,7 @@ def test_the_air_has_the_sound_of_the_water_or_its_own():
 
 
 def test_a_preset_with_air_comes_back_from_its_table():
-    preset = airy(air__sound_speed="real", air__background="20 Pa", air__surface_tension="0.072 N/m")
+    preset = airy(air__sound_speed="real", water__background_pressure="20 Pa", air__surface_tension="0.072 N/m")
     assert from_table(to_table(preset)) == preset
     assert preset.matters == ("water", "air")
 

@@ -27,7 +27,7 @@ def held(run: Simulation) -> list[np.ndarray]:
 @pytest.fixture(scope="module")
 def run() -> Simulation:
     """Both phases displaced and set in motion at random, the air slower than the water's sound."""
-    made = scene(air={"sound_speed": 9.0, "alpha": 0.03, "background": 20.0})
+    made = scene(air={"sound_speed": 9.0, "alpha": 0.03}, background=20.0)
     random, drops = np.random.default_rng(1), made.drops
     drops[..., :2] += 0.1 * made.water.spacing * random.uniform(-1.0, 1.0, drops[..., :2].shape)
     drops[..., [VELOCITY_Y, VELOCITY_Z]] = 0.2 * random.uniform(-1.0, 1.0, drops[..., :2].shape)

@@ -32,10 +32,6 @@ class Air:
         Annotated[float, Unit("m^2/s"), Interval(gt=0)] | None,
         Doc('Viscosity of the air, for water.viscosity = "laminar".'),
     ] = None
-    background: Annotated[
-        Annotated[float, Unit("Pa"), Interval(ge=0)],
-        Doc("Pressure added in sums over particles alone; it presses the air's particles into gaps."),
-    ] = 0.0
     surface_tension: Annotated[
         Annotated[float, Unit("N/m"), Interval(ge=0)],
         Usual(0.0, 0.1, "N/m"),

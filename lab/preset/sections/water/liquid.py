@@ -53,6 +53,7 @@ def liquid(preset: Wet) -> given.Water:
         kinematic=water.kinematic_viscosity or 0.0,
         slip=water.slip,
         full=water.full,
+        background=water.background_pressure,
         shifting=water.shifting,
         speed=expected_speed(preset),
         start=water.start,
@@ -71,7 +72,6 @@ def _air(preset: Wet, scheme: Scheme) -> given.Air:
         sound_speed=sound_of_air(air, sound_speed(preset, scheme)),
         alpha=alpha if air.alpha is None else air.alpha,
         kinematic=air.kinematic_viscosity or 0.0,
-        background=air.background,
         tension=air.surface_tension,
         interface=air.interface,
     )
