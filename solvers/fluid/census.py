@@ -147,7 +147,7 @@ class Census:
                     if ti.static(c.pressed):
                         self.add_background(sums, m, s, p.gas_at(b, lane))
                     is_water = p.gas_at(b, lane) < 0.5
-                    if ti.static(p.two):
+                    if ti.static(p.two):  # noqa: SIM102 (compiled only where there is air)
                         if not is_water:
                             self.add_air(sums, [m, s], r, v)
                     if is_water:

@@ -43,7 +43,8 @@ class Air:
     """The air in a tank with water, the second phase of its fluid; SI units.
 
     `density` ρ_a (kg/m³) of air that is not compressed, `sound_speed` c_a (m/s), `alpha` the strength of its artificial
-    viscosity or `kinematic` ν (m²/s) that of laminar flow, `tension` (N/m) of the surface between the phases; `interface`: the name of what acts between them.
+    viscosity or `kinematic` ν (m²/s) that of laminar flow, `tension` (N/m) of the surface between the phases;
+    `interface`: the name of what acts between them.
     """
 
     density: float = 1.2
