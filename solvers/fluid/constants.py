@@ -11,6 +11,7 @@ from solvers.fluid.phases.numbers import of_air
 from solvers.fluid.shifting import SHIFTING
 from solvers.fluid.states import STATES
 from solvers.fluid.viscosity import VISCOSITY
+from solvers.fluid.walls.layers import FIRM
 from solvers.machine.state import State
 
 FLOOR = 1e-6  # of h², added to squared distances that are divided by
@@ -126,6 +127,12 @@ class Constants:
         """What a dummy adds at the squared distance (m²), per volume, so that a thin layer does not pass the wall.
 
         A spring up to the distance `firm` (m), that of the dummy from its wall's face, for pressure alone does not hold
-        water that parts along a wall it nears.
+        water that parts along a wall it nears. With air, `firm` is the depth of each layer: all of them hold air.
         """
-        return self.of("hard", gas) * ti.max(firm / ti.sqrt(square + self.get("floor")) - 1.0, 0.0)
+        away = ti.sqrt(square + self.get("floor"))
+        if ti.static(self.two):
+            layer = firm / self.get("spacing") - (0.5 + FIRM)
+            for_water = ti.select(layer * layer < 0.0625, firm, 0.0 * firm)
+            return self.of("hard", gas) * ti.max(((1.0 - gas) * for_water + gas * firm) / away - 1.0, 0.0)
+        else:
+            return self.get("hard") * ti.max(firm / away - 1.0, 0.0)

@@ -3,7 +3,7 @@
 import taichi as ti
 
 from solvers.fluid.lists import Medium
-from solvers.fluid.state import DENSEST, DENSEST_AIR, DENSEST_SPRAY, INSIDE, SPRAY
+from solvers.fluid.state import DENSEST, DENSEST_AIR, DENSEST_SPRAY, INSIDE, SPRAY, THINNEST
 from solvers.fluid.walls.bodies import AT_END
 from solvers.fluid.walls.extrapolation import Extrapolation
 from solvers.machine.state import State
@@ -68,6 +68,8 @@ class Mover:
             s = self.floored(spray, p.load(p.excess, b) + step * p.load(p.rate, b))
             # Walls come last: spray that parts is still pushed off a wall that it nears.
             s = self.floored(spray, s + step * p.load(p.rate_of_walls, b))
+            if ti.static(c.two):
+                s = ti.max(s, (1.0 - gas) * (-1.0) + gas * THINNEST)
             p.store(p.excess, b, s)
             if ti.static(c.shifting.carries):
                 share = step / (p.load(p.mass, b) + (1.0 - filled))
