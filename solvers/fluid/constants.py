@@ -30,7 +30,7 @@ class Constants:
         value, slope = self.kernel.factors(length)
         strength = self.viscosity.strength(water)
         self.viscous, self.slip, self.full = strength > 0.0, water.slip, water.full
-        self.reach = water.reach
+        self.smoothing = water.smoothing  # h/Δx
         pull = water.pull
         numbers = {
             "shrink": 0.5 / length,  # 1/(2h): t = 1 − r/(2h)

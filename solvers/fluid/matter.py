@@ -175,7 +175,7 @@ class WaterMatter(Matter):
         fields = *p.place, p.volume, p.firm, p.number
         for field, values in zip(fields, [*np.moveaxis(places, 2, 0), *held], strict=True):
             whole = field.to_numpy().reshape(p.worlds, p.stride, p.lanes)
-            whole[:, p.wet :] = values
+            whole[:, p.wet : p.wet + p.walls] = values
             field.from_numpy(whole.reshape(-1, p.lanes))
         for field in (
             self.forces.lost,

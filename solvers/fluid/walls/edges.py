@@ -4,6 +4,7 @@ import numpy as np
 import taichi as ti
 
 from solvers.fluid.lists import Medium
+from solvers.fluid.state import DRY
 from solvers.fluid.walls.behind import OF_NONE
 from solvers.machine.state import Axis, State
 from solvers.motion.poses import AT_START
@@ -72,7 +73,7 @@ class Edges:
     def add(self, w, t, kick, dt):
         """Add the forces on a world's dummies to the impulses of their edges."""
         p, during = self.particles, ti.cast(dt, self.particles.exact)
-        for slot in range(p.dry * p.lanes):
+        for slot in range(p.sizes[DRY] * p.lanes):
             edge = self.owner[slot]
             if edge != OF_NONE:
                 b = w * p.stride + p.wet + slot // p.lanes

@@ -5,8 +5,9 @@ import taichi as ti
 
 from solvers.fluid.given import Gauge
 from solvers.fluid.state import Particles
-from solvers.machine.state import Axis, State
+from solvers.machine.state import Axis, State, padded, roomy
 
+USUAL = 8  # gauges, and probes of each, for which there is room at least
 DRY = 0.5  # of what water can cover of a probe's kernel: half of it in a plane wall, a quarter in a corner
 
 
@@ -39,14 +40,17 @@ class Gauges:
         open_part: list[np.ndarray],
     ):
         self.particles, self.count = particles, len(gauges)
-        own, each = arrays.under("gauges"), (Axis("world", particles.worlds), Axis("gauge", max(1, self.count)))
+        own, each = arrays.under("gauges"), (Axis("world", particles.worlds), Axis("gauge", roomy(self.count, USUAL)))
         self.shown, self.peak = own.reals(each, "shown", "peak", kind=own.exact)
         if self.count:
-            ends = np.cumsum([0, *(len(slot) for slot in slots)])
-            self.slots = own.holding("slots", np.concatenate(slots), "probe", ti.i32)
-            self.open = own.holding("open", np.concatenate(open_part), "probe")
-            self.ends = own.holding("ends", ends, "end", ti.i32)
-            self.response = own.holding("response", np.array([gauge.response for gauge in gauges]), "gauge", own.exact)
+            ends, room = np.cumsum([0, *(len(slot) for slot in slots)]), each[1].length
+            probes = roomy(int(ends[-1]), USUAL * room)
+            self.number = own.holding("number", np.array([self.count]), "one", ti.i32)
+            self.slots = own.holding("slots", padded(np.concatenate(slots), probes), "probe", ti.i32)
+            self.open = own.holding("open", padded(np.concatenate(open_part), probes), "probe")
+            self.ends = own.holding("ends", padded(ends, room + 1), "end", ti.i32)
+            response = padded(np.array([gauge.response for gauge in gauges]), room)
+            self.response = own.holding("response", response, "gauge", own.exact)
 
     def forget(self) -> None:
         """Show nothing, as before the first step."""
@@ -57,7 +61,7 @@ class Gauges:
     def measure(self, w, t, kick, dt):
         """Let the gauges of a world follow the pressures of their probes."""
         p = self.particles
-        for gauge in range(self.count):
+        for gauge in range(self.number[0]):
             total = ti.cast(0.0, p.exact)
             for k in range(self.ends[gauge], self.ends[gauge + 1]):
                 b, lane = w * p.stride + self.slots[k] // p.lanes, self.slots[k] % p.lanes
