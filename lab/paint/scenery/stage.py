@@ -23,7 +23,7 @@ from lab.paint.water.layer import WaterLayer
 WALL, PLATE = 0.36, 0.3  # thickness in u
 THICKEST = 0.04  # largest wall thickness relative to the tank's smaller side
 ROOM = 0.3  # largest margin around an open tank relative to its larger side; smaller for many tanks
-ARROW = 1.4  # u, room for the arrow of the drive
+ARROW, LABEL = 1.4, 2.3  # u, room for the arrow of the drive and for names of gauges
 NAME = 1.8  # u, for the name of a bed
 HOUSE = 0.15  # of the superstructure's height that the stage has room for; the rest may stand behind the title
 TRAILS = 6  # frames that a trail goes back
@@ -239,10 +239,8 @@ class Stage:
         left, top, right, bottom = self.setting.box
         stage = np.array([right - left, bottom - top])
         afloat = self._earth and self.beds[0].footage.sea is not None
-        wall, gap = (
-            (WALL + ARROW * (self._earth and not afloat) / np.sqrt(len(self.beds))) * self._unit,
-            1.5 * self._unit,
-        )
+        room = max(ARROW * (self._earth and not afloat), LABEL * any(bed.footage.water for bed in self.beds))
+        wall, gap = (WALL + room / np.sqrt(len(self.beds))) * self._unit, 1.5 * self._unit
         name = NAME * self._unit if self._named else 0.0
         around = np.array([2 * wall, 2 * wall + name])
         extent = np.max([high - low for low, high in self.grounds], axis=0)
