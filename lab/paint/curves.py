@@ -51,7 +51,7 @@ def _of_motion(beds: Sequence[Bed], hues: Sequence[tuple]) -> Plot:
     """The main quantity of beds of grains, of empty tanks and of ships, against time or a steady tilt."""
     afloat = any(bed.footage.sea for bed in beds)
     still = afloat or any(bed.empty for bed in beds)
-    steady = not still and all(_monotonic(bed.footage.series_pose[:, bed.world, 2]) for bed in beds)
+    steady = not still and all(monotonic(bed.footage.series_pose[:, bed.world, 2]) for bed in beds)
     label, measured = _quantity(beds)
     plot = Plot(("tilt φ (°)" if steady else "time (s)", label))
     for k in reversed(range(len(beds))):  # the beds that are shown on top
@@ -150,7 +150,7 @@ def _coordinate(axis: int) -> tuple[str, Callable[[Bed], np.ndarray]]:
     return label, lambda bed: scale * bed.footage.series_pose[:, bed.world, axis]
 
 
-def _monotonic(tilt: np.ndarray) -> bool:
+def monotonic(tilt: np.ndarray) -> bool:
     """Whether tilt (T,) in rad is monotonic and changes by more than half a degree."""
     steps = np.diff(tilt)
     one_way = bool((steps >= -TOLERANCE).all() or (steps <= TOLERANCE).all())

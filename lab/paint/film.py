@@ -97,6 +97,11 @@ class Film:
         """Whether a ship that is shown capsizes or floods."""
         return any(bed.footage.ends[bed.world] for bed in self._beds)
 
+    @property
+    def held(self) -> int:
+        """How many pictures at the end of a course show what came of it; 0 without a course."""
+        return self._course.held if self._course else 0
+
     def tank_camera(self, bed: int, frame: int) -> Camera:
         """The camera for points of the tank of a shown bed at the time of a picture."""
         return self._stage.tank_camera(bed, frame)
@@ -209,6 +214,8 @@ class Film:
 
     def _draw_verdict(self, image: Image.Image, texts: Texts, frame: int) -> None:
         """The band with what came of it: the loss of a ship from then on, or the verdict on the last pictures."""
+        if self._moments is not None:
+            return
         if len(self._beds) > 1 or "band" not in self._layout.boxes:
             self._stage.draw_ends(image, frame)
             return

@@ -68,7 +68,7 @@ def fitted_lines(
     )
     parts = [text] if at is None else [text[:at], text[at + 1 :]]
     longest = max(deco.font(size, bold).getlength(part) for part in parts)
-    smaller = min(size, 0.98 * size * width / longest, height / (1.0 + LEADING))
+    smaller = min(size, 0.98 * size * width / longest, height / (1.3 + LEADING))
     face = deco.font(max(smaller, SMALLEST * size), bold)
     return [_cut(part, width, face) for part in parts], face
 

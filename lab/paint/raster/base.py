@@ -43,6 +43,10 @@ class Camera:
         right, up = cosine * y - sine * z, sine * y + cosine * z
         return np.column_stack([self.offset[0] + self.scale * right, self.offset[1] - self.scale * up])
 
+    def shifted(self, left: float, top: float) -> "Camera":
+        """This camera for a part of the picture whose first pixel is in this column and row."""
+        return Camera(self.scale, (self.offset[0] - left, self.offset[1] - top), self.turn)
+
     def carried(self, pose: np.ndarray) -> "Camera":
         """This earth camera for points of a tank with the pose (Y, Z, phi) in m, m, rad."""
         origin = self.pixels(np.asarray(pose[None, :2]))[0]

@@ -25,7 +25,7 @@ THICKEST = 0.04  # largest wall thickness relative to the tank's smaller side
 ROOM = 0.3  # largest margin around an open tank relative to its larger side; smaller for many tanks
 ARROW, LABEL = 1.4, 2.3  # u, room for the arrow of the drive and for names of gauges
 NAME = 1.8  # u, for the name of a bed
-HOUSE = 0.15  # of the superstructure's height that the stage has room for; the rest may stand behind the title
+HOUSE = 0.15, 0.7  # of the superstructure's height that has room in the stage, of one ship alone and of several
 TRAILS = 6  # frames that a trail goes back
 
 
@@ -139,10 +139,14 @@ class Stage:
         bed, camera, theme, unit = self.beds[k], self.cameras[k], self._theme, self._unit
         carried = self.tank_camera(k, frame)
         if bed.footage.sea:
+            left, top, right, bottom = self._sea_box(k)
+            part = np.ascontiguousarray(picture[top:bottom, left:right])
+            moved, still = carried.shifted(left, top), camera.shifted(left, top)
             sea = bed.footage.sea_of(round(float(self._rows[k][frame])))
-            sea.paint_superstructure(picture, carried, theme)
-            sea.paint_box(picture, camera, self._sea_box(k), self._time[frame], LINE * unit, theme)
-            sea.paint_hull(picture, carried, self._thick(sea.hull, camera), theme, unit)
+            sea.paint_superstructure(part, moved, theme)
+            sea.paint_box(part, still, (0, 0, right - left, bottom - top), self._time[frame], LINE * unit, theme)
+            sea.paint_hull(part, moved, self._thick(sea.hull, camera), theme, unit)
+            picture[top:bottom, left:right] = part
         self._paint_tank(picture, bed, carried, theme.wall, theme.hold)
         self._paint_fixed(picture, bed, carried)
 
@@ -212,7 +216,7 @@ class Stage:
         if footage.sea and self._earth:
             low, high = footage.sea.ground(self._seen(footage.sea.hull, bed.pose).reshape(-1, 2))
             house = silhouette(footage.sea.ship)
-            above = 0.0 if house is None else HOUSE * np.ptp(house[:, 1])
+            above = 0.0 if house is None else HOUSE[len(self.beds) > 1] * np.ptp(house[:, 1])
             return low, high + np.array([0.0, above])
         tank = self._seen(footage.outline, bed.pose).reshape(-1, 2)
         corners = [tank.min(axis=0), tank.max(axis=0)]
