@@ -120,6 +120,8 @@ class Census:
                         out = [r[0] - c.get("pull_y"), r[1] - c.get("pull_z")]
                         sums[self.at.pulled] += 0.5 * m * c.get("pull") * dot(out, out)
                     sums[self.at.elastic] += m * sound * c.state.energy(s)
+                    if ti.static(c.pressed):
+                        sums[self.at.elastic] += m * (c.get("background") / c.get("density")) * (s / (1.0 + s))
                     sums[self.at.dense] += ti.select(ti.abs(s) > DENSE, m, 0.0)
                     sums[self.at.excess] = ti.max(sums[self.at.excess], ti.abs(s))
                     if ti.static(self.closed):  # noqa: SIM102 (compiled only where no water may leave)

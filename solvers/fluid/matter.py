@@ -63,7 +63,12 @@ class WaterMatter(Matter):
         self.forces = Forces(arrays, medium, self.extrapolation, self.load, tank.thickness)
         self.continuity, self.mover = Continuity(arrays, medium), Mover(arrays, medium, self.extrapolation)
         self.gauges = Gauges(
-            arrays, p, water.gauges, [dummy[slot] + p.wet * lanes for slot in behind.probes], behind.open
+            arrays,
+            p,
+            self.constants,
+            water.gauges,
+            [dummy[slot] + p.wet * lanes for slot in behind.probes],
+            behind.open,
         )
         owner = np.full(p.dry * lanes, OF_NONE)
         owner[dummy] = behind.edges

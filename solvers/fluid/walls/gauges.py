@@ -3,6 +3,7 @@
 import numpy as np
 import taichi as ti
 
+from solvers.fluid.constants import Constants
 from solvers.fluid.given import Gauge
 from solvers.fluid.state import Particles
 from solvers.machine.state import Axis, State, padded, roomy
@@ -26,20 +27,21 @@ def probes(gauge: Gauge, outline: np.ndarray, spacing: float) -> np.ndarray:
 class Gauges:
     """What the pressure gauges of each world show (W, gauges), Pa, and the highest since it was last taken.
 
-    A probe's pressure is extrapolated to the wall as a dummy's is; where water covers less than DRY of the `open` part
-    of its kernel (of each probe, what dummies leave) it is zero. A gauge
-    with the time constant τ follows by 1 − exp(−Δt/τ) of the difference in each step.
+    A probe's pressure is extrapolated to the wall as a dummy's is, less that of the background; where water covers less
+    than DRY of the `open` part of its kernel (of each probe, what dummies leave) it is zero. A gauge with the time
+    constant τ follows by 1 − exp(−Δt/τ) of the difference in each step.
     """
 
     def __init__(
         self,
         arrays: State,
         particles: Particles,
+        constants: Constants,
         gauges: tuple[Gauge, ...],
         slots: list[np.ndarray],
         open_part: list[np.ndarray],
     ):
-        self.particles, self.count = particles, len(gauges)
+        self.particles, self.constants, self.count = particles, constants, len(gauges)
         own, each = arrays.under("gauges"), (Axis("world", particles.worlds), Axis("gauge", roomy(self.count, USUAL)))
         self.shown, self.peak = own.reals(each, "shown", "peak", kind=own.exact)
         if self.count:
@@ -67,6 +69,8 @@ class Gauges:
                 b, lane = w * p.stride + self.slots[k] // p.lanes, self.slots[k] % p.lanes
                 if p.span[b, lane] > DRY * self.open[k]:
                     total += ti.cast(p.pressure[b, lane], p.exact)
+                    if ti.static(self.constants.pressed):
+                        total -= ti.cast(self.constants.get("background"), p.exact)
             mean = total / (self.ends[gauge + 1] - self.ends[gauge])
             follows = ti.cast(1.0, p.exact)
             if self.response[gauge] > 0.0:
