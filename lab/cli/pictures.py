@@ -156,11 +156,11 @@ def poster(recording: Path, out: Path | None, event: bool, **wishes: object) -> 
     cargolab poster renders/ship/capsize-map --theme dark --width 3840 --height 2160
     cargolab poster renders/sloshing/quick --event --inset impact
     """
-    from lab.paint.video import event_time
     from lab.paint.video import poster as paint
+    from lab.paint.video import telling_time
 
     if event:
-        wishes["time"] = event_time(recording, wishes["world"])
+        wishes["time"] = telling_time(recording, wishes["world"])
     click.echo(paint(recording, out, **wishes))
 
 

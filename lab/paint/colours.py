@@ -28,6 +28,9 @@ MOST_LAYERS = 8
 EMBERS = (206, 211, 217), (248, 196, 76), (216, 92, 36), (112, 20, 56)
 DEEPS = (208, 213, 218), (126, 200, 190), (36, 124, 164), (26, 40, 100)
 ORCHID = (210, 212, 218), (228, 156, 194), (152, 64, 152), (66, 20, 88)
+APART = (  # of a few kinds, for the colour-blind (Okabe and Ito 2008)
+    *((86, 180, 233), (230, 159, 0), (0, 158, 115), (204, 121, 167), (240, 228, 66), (213, 94, 0)),
+)
 ON_DARK = {  # the same on dark paper, where lightness rises
     "speed": ((60, 68, 78), (176, 62, 44), (244, 160, 58), (255, 244, 190)),
     "displacement": ((60, 68, 78), (34, 116, 150), (96, 200, 188), (226, 252, 240)),
@@ -200,7 +203,8 @@ def _named(label: str, names: Sequence[str], number: Callable[[Bed], np.ndarray]
         return number(bed) + 0.5
 
     ticks = {k + 0.5: name for k, name in enumerate(names)}
-    return Colouring(label, 0.0, len(names), table("viridis", len(names)), values, ticks)
+    apart = np.array(APART, dtype=float)[: len(names)] if len(names) <= len(APART) else table("viridis", len(names))
+    return Colouring(label, 0.0, len(names), apart, values, ticks)
 
 
 def _largest(beds: Sequence[Bed], values: Callable[[Bed, int], np.ndarray]) -> float:

@@ -24,6 +24,7 @@ from solvers.machine.runtime import initialise
 
 MOST_IN_GRID, MOMENTS = 24, 6  # beds of a grid; moments of a contact sheet
 HERO = 1920, 1080  # pixels
+AFTER, LATE = 0.15, 0.85  # s after an event, and the share of a film without one, of the moment that tells most
 SLOWEST, FASTEST = 0.01, 60.0  # pictures per second of a video
 USUAL = 0.04  # s between pictures if the frames' times do not define it
 HELD = 3.0  # s for which the last picture is held if a ship is lost
@@ -167,12 +168,12 @@ def poster(
         return out
 
 
-def event_time(path: Path | str, world: int | None = None) -> float:
-    """When most happens in one bed of a recording (s): its event, else a telling moment in its midst."""
+def telling_time(path: Path | str, world: int | None = None) -> float:
+    """When one picture of a bed tells most (s): just after its event, else late in the film."""
     with open_footage(path) as footage:
         (bed,) = choose_beds(footage, world or 0)
-        event = find_event(bed)
-        return event.time if event else float(telling_moments(bed, MOMENTS)[MOMENTS // 2])
+        event, first, last = find_event(bed), footage.time[0], footage.time[-1]
+        return float(min(event.time + AFTER, last) if event else first + LATE * (last - first))
 
 
 def contact_sheet(

@@ -24,7 +24,7 @@ def paint_arrow(
     """
     corner = outline[np.argmax(outline @ [1.0, 2.0])]
     out = corner - outline.mean(axis=0)
-    start = corner + AWAY * unit / camera.scale * out / max(np.linalg.norm(out), 1e-12)
+    start = corner + AWAY * unit / camera.scale * np.sign(out)
     way = np.concatenate([camera.carried(s * pose).pixels(start[None]) for s in np.linspace(0.0, 1.0, STEPS + 1)])
     pieces = np.hypot(*np.diff(way, axis=0).T)
     if pieces.sum() < LEAST * unit:

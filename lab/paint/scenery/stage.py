@@ -25,7 +25,7 @@ THICKEST = 0.04  # largest wall thickness relative to the tank's smaller side
 ROOM = 0.3  # largest margin around an open tank relative to its larger side; smaller for many tanks
 ARROW, LABEL = 1.4, 2.3  # u, room for the arrow of the drive and for names of gauges
 NAME = 1.8  # u, for the name of a bed
-HOUSE = 0.15, 0.7  # of the superstructure's height that has room in the stage, of one ship alone and of several
+HOUSE = 0.5, 0.7  # of the superstructure's height that has room in the stage, of one ship alone and of several
 TRAILS = 6  # frames that a trail goes back
 
 

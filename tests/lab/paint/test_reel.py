@@ -54,10 +54,10 @@ def test_the_pace_is_slow_about_the_event_and_even_elsewhere(slide):
     running = paces[: len(course.time) - 1 - course.held - 1]
     assert running.max() == pytest.approx(1.0) and running.min() == pytest.approx(1.0 / SLOWER)
     slow = running < 0.21
-    assert slow.sum() / RATE == pytest.approx(3.0, abs=0.2)  # s of film
+    assert slow.sum() / RATE == pytest.approx(3.0, abs=0.3)  # s of film
     assert course.time[:-1][: len(running)][slow].min() < SLIDES < course.time[:-1][: len(running)][slow].max()
     assert all(
-        ("slow motion: 0.2 of real time" == note) == bool(late)
+        (note == "slow motion: 0.2 of real time") == bool(late)
         for note, late in zip(course.notes, slow, strict=False)
         if late
     )
@@ -73,7 +73,7 @@ def test_the_last_still_says_what_happened_and_earlier_pictures_do_not(slide):
         film.picture(0)
         assert "band" not in film.written
         last = film.picture(len(film.time) - 1)
-        left, top, right, bottom = film.written["band"]
+        left, top, _, bottom = film.written["band"]
         assert (last[(top + bottom) // 2, left + 3] == (190, 60, 20)).all()
 
 
