@@ -214,10 +214,13 @@ def test_render_passes_on_all_options(monkeypatch):
 
 
 def test_poster_sheet_and_beside_pass_on_their_options(monkeypatch):
-    posters = stand_in(monkeypatch, "lab.paint.video", "poster", Path("p.png"))
-    sheets = stand_in(monkeypatch, "lab.paint.video", "contact_sheet", Path("s.png"))
-    grids = stand_in(monkeypatch, "lab.paint.video", "render_grid", Path("b.mp4"))
-    stand_in(monkeypatch, "lab.paint.video", "telling_time", 2.5)
+    painted, fake = {}, ModuleType("lab.paint.video")
+    made = {"poster": "p.png", "contact_sheet": "s.png", "render_grid": "b.mp4", "telling_time": 2.5}
+    for name, act in made.items():
+        painted[name] = stand_in(monkeypatch, "lab.paint.video", name, act)
+        setattr(fake, name, getattr(sys.modules["lab.paint.video"], name))
+    monkeypatch.setitem(sys.modules, "lab.paint.video", fake)
+    posters, sheets, grids = painted["poster"], painted["contact_sheet"], painted["render_grid"]
     assert call("poster", "there", "--event", "--theme", "dark").stdout == "p.png\n"
     assert posters[0][0] == (Path("there"), None) and posters[0][1]["time"] == 2.5 and posters[0][1]["theme"] == "dark"
     assert call("sheet", "there", "--world", "1").stdout == "s.png\n" and sheets[0][1]["world"] == 1

@@ -237,7 +237,7 @@ def test_a_run_in_progress_can_be_filmed(tmp_path):
         ({"frame": "moon"}, "Unknown frame 'moon': choose one of tank, earth"),
         ({"world": 1}, "no world 1 in this recording: choose 0 to 0"),
         ({"speed": 0.0}, "playback speed 0.0"),
-        ({"out": "film.gif"}, "a video is an .mp4 file"),
+        ({"out": "film.avi"}, "a video is an .mp4 file"),
     ],
 )
 def test_impossible_options_are_refused_in_one_sentence(recording, wishes, said):
