@@ -15,7 +15,7 @@ import numpy as np
 from lab.base.errors import LabError
 from lab.paint.cargo.dress import CargoColours, aboard_of
 from lab.paint.cargo.looks import looks
-from lab.preset.sections.video import OF_WATER
+from lab.preset.sections.video import OF_AIR, OF_WATER
 
 if TYPE_CHECKING:
     from lab.paint.footage import Bed
@@ -175,7 +175,7 @@ def colouring(name: str, beds: Sequence[Bed], dark: bool = False) -> Colouring |
 
     dark: for dark paper. Where the name is one of a colour of water, grains look like their cargo.
     """
-    if name not in MODES and name not in OF_WATER:
+    if name not in MODES and name not in (*OF_WATER, *OF_AIR):
         raise LabError(f"Unknown colour '{name}': choose one of {', '.join(MODES)}.")
     filled = [bed for bed in beds if not bed.empty]
     found = MODES.get(name, cargo)(filled) if filled else None

@@ -19,12 +19,13 @@ OF_GRAINS = (
     "spin",
 )  # what `lab.paint.colours` paints
 OF_WATER = ("water", "pressure", "speed", "vorticity", "particles")  # what `lab.paint.water` paints
+OF_AIR = ("air",)  # the air's pressure, and water as it is
 CARGOES = (  # whose looks are in `lab.paint.cargo`
     *("wheat", "rice", "corn", "sunflower", "beans", "soybeans", "chickpeas", "sand"),
     *("acetate", "coal", "iron-ore", "copper-ore", "gold-ore", "aluminium", "stone"),
 )
-COLOURS = (*OF_GRAINS, *(colour for colour in OF_WATER if colour not in OF_GRAINS))
-OF_MATTERS = {"grains": OF_GRAINS, "water": OF_WATER}
+COLOURS = (*OF_GRAINS, *(colour for colour in OF_WATER if colour not in OF_GRAINS), *OF_AIR)
+OF_MATTERS = {"grains": OF_GRAINS, "water": OF_WATER, "air": OF_AIR}
 
 Rate = Annotated[float, Unit("Hz"), Interval(gt=0, le=1e6)]
 
@@ -82,7 +83,7 @@ def check_video(video: Video, matters: Collection[str]) -> None:
     """Raise LabError for a colour of what is not there, and for picture sizes that the video codec cannot encode."""
     fitting = [name for name, words in OF_MATTERS.items() if video.colour in words]
     if video.colour and not set(fitting) & set(matters):
-        said = f"{' or '.join(fitting)}, and there {'is' if fitting == ['water'] else 'are'} none"
+        said = f"{' or '.join(fitting)}, and there {'are' if 'grains' in fitting else 'is'} none"
         raise LabError(f"video.colour: goes with {said}; add a table [{fitting[0]}], or leave this out.")
     for name in ("width", "height"):
         if getattr(video, name) % 2:
