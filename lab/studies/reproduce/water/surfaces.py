@@ -1,7 +1,8 @@
 """Surfaces of water beside measured ones: profiles of a dam break over a wet bed, waves at gauges of a flume.
 
 Jánosi, Jan, Szabó & Tél (2004), Exp. Fluids 37, 219 (SPHERIC benchmark 5): the profiles carry no times; they are
-62.5 ms apart, and the first is taken at the time at which it fits ours best. Waves: CIEMito flume, UPC Barcelona.
+62.5 ms apart, and the last is taken at the time at which it fits ours best. As read, the water far ahead lies up to
+7 mm over the 38 mm of the bed; each profile is taken down to that. Waves: CIEMito flume, UPC Barcelona.
 """
 
 from collections.abc import Sequence
@@ -21,7 +22,7 @@ BETWEEN = 0.0625  # s, two profiles
 PROFILES = (1, 2, 4, 5, 7)  # those that are there
 HIGH = 60.0  # mm: the breaking front is the farthest water as high
 TIP = 60.0  # mm on either side of it are left out
-STILL, GATE = 38.0, 380.0  # mm: the bed; the end of the column
+STILL, AHEAD = 38.0, 120.0  # mm: depth of the bed, which lies still so far before the front
 COLOURS = BLUE, VERMILION, GREEN
 FLUME = "ciemito_flume/piston_and_gauges.csv"
 STARTED = 0.882  # s, in the record, when the piston begins to move
@@ -38,36 +39,41 @@ def surface(one: Outcome, frame: int, at: np.ndarray) -> np.ndarray:
 
 @cache
 def profile(number: int) -> tuple[np.ndarray, np.ndarray] | None:
-    """Places and heights (mm) of a measured profile away from its breaking tip; None if it is not there."""
+    """Places and heights (mm) of a measured profile; None if it is not there."""
     read = series(f"spheric05_dam_break_wet_bed/profile_{number}.csv")
     if read is None:
         return None
     x, y = 10.0 * read
-    front = x[y > HIGH].max()
-    kept = np.abs(x - front) > TIP
-    return x[kept], y[kept]
+    return x, y + STILL - float(np.median(y[x > front(x, y) + AHEAD]))
+
+
+def front(x: np.ndarray, y: np.ndarray) -> float:
+    """The place (mm) of the farthest water that is HIGH."""
+    return float(x[y > HIGH].max())
 
 
 def off(one: Outcome, frame: int, number: int) -> float:
-    """Root mean square difference (mm) of our surface in a frame from a measured profile."""
+    """Root mean square difference (mm) of our surface in a frame from a measured profile, its breaking tip left out."""
     x, y = profile(number)
+    kept = np.abs(x - front(x, y)) > TIP
+    x, y = x[kept], y[kept]
     return float(np.sqrt(np.nanmean((surface(one, frame, x) - y) ** 2)))
 
 
 def first_time(one: Outcome, _: object) -> float:
-    """The time (s) of the frame that the first profile fits best."""
-    if profile(1) is None:
+    """The time (s) of the first profile, from that of the frame that the last one fits best."""
+    last = PROFILES[-1]
+    if profile(last) is None:
         return np.nan
     time = one.recording.frames["time"][:]
-    frames = np.flatnonzero((time > 0.05) & (time < 0.4))
-    return float(time[min(frames, key=lambda k: off(one, k, 1))])
+    frames = np.flatnonzero(time > (last - 1) * BETWEEN)
+    return float(time[min(frames, key=lambda k: off(one, k, last))]) - (last - 1) * BETWEEN
 
 
 def profile_off(one: Outcome, number: float) -> float:
     """How far (mm, rms) our surface is from a measured profile, the first of which is at `first_time`."""
-    start = first_time(one, None)
-    wanted, time = start + (number - 1) * BETWEEN, one.recording.frames["time"][:]
-    if np.isnan(start) or time[-1] < wanted - 0.01:
+    wanted, time = first_time(one, None) + (number - 1) * BETWEEN, one.recording.frames["time"][:]
+    if np.isnan(wanted) or time[-1] < wanted - 0.01:
         return np.nan
     return off(one, int(np.abs(time - wanted).argmin()), int(number))
 
@@ -108,10 +114,10 @@ def profiles(found: Found) -> Figure:
         frame = int(np.abs(time - when).argmin())
         place = 1e3 * np.asarray(one.recording.frames["water_place"][frame][0], dtype=float)
         axes.plot(place[:, 0], place[:, 1], ".", ms=0.8, color=BLUE, alpha=0.4)
-        read = drawn(axes, f"spheric05_dam_break_wet_bed/profile_{number}.csv")
-        if read is not None:
-            axes.fill_between(10.0 * read[0], 10.0 * read[1] - 5.0, 10.0 * read[1] + 5.0, color="0.5", alpha=0.3, lw=0)
-            axes.plot(10.0 * read[0], 10.0 * read[1], color="black", lw=1.0)
+        if (read := profile(number)) is not None:
+            axes.plot(*read, color="black", lw=1.0)
+            for way in (-5.0, 5.0):
+                axes.plot(read[0], read[1] + way, color="0.5", lw=0.5)
         axes.set(xlim=(300.0, 1050.0), ylim=(0.0, 160.0), ylabel=f"{time[frame]:.3f} s")
     panels[-1].set_xlabel("mm from the upstream wall")
     return drawing
