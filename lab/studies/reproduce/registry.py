@@ -12,7 +12,7 @@ from lab.studies.reproduce.experiment import Found, Row, Told
 from lab.studies.reproduce.grains import beds, outlines, stack
 from lab.studies.reproduce.runs import Outcome
 from lab.studies.reproduce.ships import capsizes, damping, low_sides, rolls, section
-from lab.studies.reproduce.water import dam_break, damper, drag, impact, prismatic, surfaces, waves
+from lab.studies.reproduce.water import dam_break, damper, drag, impact, prismatic, sinking, surfaces, waves
 
 
 def _alone(unit: str, number: Callable[[Outcome, object], float]) -> Callable[[Sequence[Outcome], object], Value]:
@@ -22,7 +22,7 @@ def _alone(unit: str, number: Callable[[Outcome, object], float]) -> Callable[[S
 # Numbers of single runs without scatter from bed to bed; NaN where a run has none.
 OF_ONE_RUN = {
     name: _alone(*number)
-    for of in (impact, dam_break, waves, damper, prismatic, drag, surfaces)
+    for of in (impact, dam_break, waves, damper, prismatic, drag, sinking, surfaces)
     for name, number in of.NUMBERS.items()
 }
 DERIVED: Mapping[str, Callable[[Sequence[Outcome], object], Value]] = {
@@ -54,6 +54,7 @@ FIGURES: Mapping[str, Callable] = {
     "pitch": waves.swings,
     "damper": damper.figure,
     "drag": drag.figure,
+    "sinking": sinking.figure,
     "profiles": surfaces.profiles,
     "waves": surfaces.waves,
     "pressures at P1": prismatic.figure,
