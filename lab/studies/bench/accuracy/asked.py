@@ -21,7 +21,7 @@ from lab.studies.reproduce.estimates import difference
 from lab.studies.reproduce.runs import Batch, Outcome, carry_out, outcomes
 
 SCALE, LEVEL, PRECISION = "contact.stiffness_scale", "run.accuracy", "run.precision"
-BEDS = 16
+BEDS = 12
 USUAL = "derived steps"
 FORCED = {"half the derived step": 0.5, "the derived step, never doubled": 1.0, "twice the derived step": 2.0}
 CHOICES: dict[str, dict[str, object]] = {
@@ -90,7 +90,8 @@ def answered(question: Question, choice: str, folder: Path, fast: bool = False) 
     changes = {**question.changes, **(HASTY if fast else {}), **CHOICES[choice]}
     if choice in FORCED:
         scene, _ = build(load(question.preset, {**changes, "run.repeats": 1}).resolved)
-        changes |= {"run.step": 0.999 * FORCED[choice] * scene.longest_step(1.0), "run.force_step": True}
+        step = 0.999 * FORCED[choice] * scene.longest_step(1.0)
+        changes |= {"run.step": f"{step:.6g} s", "run.force_step": True}
     where = folder / f"{question.name}-{list(CHOICES).index(choice)}"
     print(f"asked: {question.name}, {choice}", flush=True)
     carry_out(Batch(question.preset, changes), where, quiet=True)
