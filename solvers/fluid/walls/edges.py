@@ -4,6 +4,7 @@ import numpy as np
 import taichi as ti
 
 from solvers.fluid.lists import Medium
+from solvers.fluid.state import DRY
 from solvers.fluid.walls.behind import OF_NONE
 from solvers.machine.state import Axis, State
 from solvers.motion.poses import AT_START
@@ -15,7 +16,7 @@ class Edges:
     """The force (y, z; N) on each edge in each world, as mean since it was last taken.
 
     A dummy bears minus what it does to the water (`Forces`), the drag of water that sticks excepted, and belongs to the
-    nearest edge. Together the edges bear the load on the tank.
+    nearest edge. Together the edges bear the load on the tank; each without the pressure of the background.
     """
 
     def __init__(self, arrays: State, medium: Medium, edges: tuple[int, ...], owner: np.ndarray, thickness: float):
@@ -59,10 +60,16 @@ class Edges:
             apart = lists.apart(b, own, origin, j, AT_START)
             square = dot(apart, apart)
             weight = c.kernel.slope(ti.max(1.0 - ti.sqrt(square) * c.get("shrink"), 0.0))
-            push = p.pressure[jb, lane]
-            if ti.static(not c.full):
-                push = ti.max(push, 0.0)
-            along = p.volume[jb, lane] * ((pressure + push) * weight + c.hardness(square, firm))
+            gas = p.gas_at(jb, lane)
+            push = c.clipped(p.pressure[jb, lane], gas)
+            if ti.static(c.pressed):
+                push = push - 2.0 * c.get("background")
+            along = pressure + push
+            spring = c.hardness(square, firm, gas)
+            if ti.static(c.two):
+                along = (1.0 - gas) * pressure + gas * p.load(p.pressure_of_air, b) + push
+                spring *= 1.0 + gas * p.excess[jb, lane]
+            along = p.volume[jb, lane] * (along * weight + spring)
             for a in ti.static(range(p.axes)):
                 force[a] += along * apart[a]
         for a in ti.static(range(p.axes)):
@@ -72,7 +79,7 @@ class Edges:
     def add(self, w, t, kick, dt):
         """Add the forces on a world's dummies to the impulses of their edges."""
         p, during = self.particles, ti.cast(dt, self.particles.exact)
-        for slot in range(p.dry * p.lanes):
+        for slot in range(p.sizes[DRY] * p.lanes):
             edge = self.owner[slot]
             if edge != OF_NONE:
                 b = w * p.stride + p.wet + slot // p.lanes
