@@ -16,7 +16,7 @@ from lab.studies.bench.speed.equal_error.situations import (
     MIXED,
     SWAY,
     Situation,
-    situations,
+    every_situation,
     timed,
 )
 from lab.studies.bench.speed.equal_error.steps import (
