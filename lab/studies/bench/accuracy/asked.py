@@ -76,7 +76,7 @@ def study(page: Page, work: Path, fast: bool) -> None:
         of 6 mm that run out of a funnel: {BEDS} beds a row. The first row has a thousandth of the material's stiffness,
         the derived step, twice that while grains are slow, and 64 bits; each other row differs from it in one thing.
         Differences are from the first row. In brackets: 95 % intervals. Cost: grain-steps, relative to the first
-        row.""")
+        row, steps that are doubled while grains are slow counted as two.""")
     chosen = dict(list(CHOICES.items())[:2]) if fast else CHOICES
     for question in QUESTIONS[:1] if fast else QUESTIONS:
         found = {name: answered(question, name, work / "asked", fast) for name in chosen}
@@ -110,10 +110,11 @@ def rows(found: Mapping[str, Outcome], measure: str) -> list[list[str]]:
 
 
 def with_interval(value: Value | None) -> str:
-    """A mean over beds with its interval; "none" where no bed has one."""
+    """A mean over beds with its interval, and their number where some have none; "none" where no bed has one."""
     if value is None or value.value is None:
         return "none"
-    return mean_within(value.value, value.interval, 2)
+    few = f" ({value.n} of {len(value.worlds)} beds)" if value.n < len(value.worlds) else ""
+    return mean_within(value.value, value.interval, 2) + few
 
 
 def plotted(found: Mapping[str, Outcome], question: Question) -> Figure:
