@@ -10,6 +10,8 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Annotated
 
+import numpy as np
+
 from lab.base.errors import LabError
 from lab.preset.accuracy import LEVELS
 from lab.preset.fields import Of, defaults_of, join, walk
@@ -26,6 +28,7 @@ from lab.preset.sections.sea import Sea, Waves
 from lab.preset.sections.shapes import Shape, ShapeClass, by_number
 from lab.preset.sections.ship import Ship
 from lab.preset.sections.ship_checks import check_ship
+from lab.preset.sections.stability import Stability, check_stability
 from lab.preset.sections.tank import Tank, check_tank
 from lab.preset.sections.video import Record, Video, check_video
 from lab.preset.sections.water.checks import check_water
@@ -35,6 +38,7 @@ from solvers.grains.bed.sizes import Sizes
 from solvers.grains.materials import Material
 from solvers.machine.marks import Cheap, Doc, Interval
 from solvers.tank.tank import BARE_THICKNESS
+from solvers.tank.tank import Tank as SlabTank
 
 FORMAT = 3
 MATTERS = ("grains", "water")  # the keys of the matters that a tank may hold
@@ -78,6 +82,9 @@ class Preset:
         field(default_factory=dict)
     )
     ship: Annotated[Ship | None, Doc("The ship whose hold the tank is.")] = None
+    stability: Annotated[Stability, Doc("What criteria of stability need to know of the whole ship.")] = field(
+        default_factory=Stability
+    )
     axle: Annotated[Axle | None, Doc("The axle about which the tank rolls freely.")] = None
     sea: Annotated[Sea, Doc("The sea outside the ship.")] = field(default_factory=Sea)
     waves: Annotated[Waves | None, Doc("The waves of the sea, which travel to starboard.")] = None
@@ -148,6 +155,12 @@ class Preset:
         """Thickness (m) of the slab: the tank's, else the grains' mean diameter, without grains one metre."""
         return self.tank.thickness or (self.mean_diameter if self.grains else BARE_THICKNESS)
 
+    @property
+    def a_metre(self) -> float:
+        """Factor (1/m) from what is in the slab to what a metre of the ship carries of it."""
+        ship = self.ship.length if self.ship and self.ship.length else 1.0
+        return SlabTank(np.zeros((0, 2)), self.thickness, length=self.tank.length).share(ship)
+
 
 def resolve(table: Mapping) -> Preset:
     """The preset of a table, with its base and overrides already merged in.
@@ -173,7 +186,8 @@ def check(preset: Preset) -> None:
     check_axle(preset.axle, preset.ship is not None, bool(preset.motion.parts), bool(preset.matters), duration)
     if preset.water is not None:
         check_solids(preset)
-    check_ship(preset.ship, preset.waves, bool(preset.motion.parts), preset.tank.corners)
+    check_ship(preset.ship, preset.waves, bool(preset.motion.parts), preset.tank)
+    check_stability(preset.stability, preset.ship)
     check_video(preset.video, preset.matters)
 
 

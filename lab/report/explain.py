@@ -121,7 +121,7 @@ def _ship(preset, simulation: Simulation) -> list[str]:
     if not preset.ship:
         return []
     every = int(simulation.carrier.every[0]) * simulation.dt
-    slab = simulation.scene.tanks[0].thickness if preset.matters else None
+    slab = (preset.thickness, preset.a_metre) if preset.matters else None
     return [_section("Ship", describe(preset.ship, simulation.scene.vessels[0], preset.waves, slab, every))]
 
 

@@ -14,20 +14,21 @@ from solvers.ship.waves import froude_factors
 
 
 def describe(
-    given: ships.Ship, vessel: Vessel, waves: Waves | None, thickness: float | None, every: float
+    given: ships.Ship, vessel: Vessel, waves: Waves | None, slab: tuple[float, float] | None, every: float
 ) -> list[tuple[str, str]]:
     """Rows on a ship, each a name and a text: balance, roll, forces of the water.
 
-    thickness: of the slab that her cargo is (m), None if her hold is empty; every: the water's forces' step (s).
+    slab: thickness of the slab that her cargo is (m), and how many of them a metre of her carries (1/m); None if her hold
+    is empty. every: the step (s) of the water's forces.
     """
     ship, body = vessel.ship, vessel.ship.body
     water, memory = ship.load.water, ship.radiation.memory
     height = metacentric_height(ship.load.section, body.loading, water)
     floats = f"{body.mass:.4g} kg/m, GM {show(height, 'm')}, gyradius {show(body.gyradius, 'm')}"
     rows = [("empty", floats)]
-    if thickness is not None:
-        slab = f"a slab {show(thickness, 'm')} thick: its load counts {1.0 / thickness:.4g} times a metre"
-        rows = [("with her cargo", floats), ("cargo", slab)]
+    if slab is not None:
+        thick = f"a slab {show(slab[0], 'm')} thick: its load counts {slab[1]:.4g} times a metre"
+        rows = [("with her cargo", floats), ("cargo", thick)]
     rows += [
         ("free in", given.freedom.replace("-", ", ") + f", about her axis, {axis_place(given)}"),
         (
@@ -35,7 +36,7 @@ def describe(
             f"{ship.damping.linear:.3g} N s φ̇ and {ship.damping.quadratic:.3g} N s^2 φ̇|φ̇|, a metre",
         ),
         ("radiation", _radiated(given, memory)),
-        ("water's forces", f"every {show(every, 's')}" + "; the cargo's at each step" * (thickness is not None)),
+        ("water's forces", f"every {show(every, 's')}" + "; the cargo's at each step" * (slab is not None)),
     ]
     if waves is not None:
         rows += [("excitation", given.excitation), ("waves", _sea(waves, water))]
@@ -46,7 +47,7 @@ def describe(
         for name, angle in flooding_angles(given, vessel).items()
         if angle is not None
     ]
-    if thickness is not None:
+    if slab is not None:
         rows.append(("her cargo's repose", f"{show(given.repose, 'rad')}, in the curve of righting levers alone"))
     if given.scale:
         rows.append((f"full scale 1:{given.scale:g}", _full_scale(given, waves)))
