@@ -5,7 +5,7 @@ import click
 from lab import __version__
 from lab.cli.benches import bench
 from lab.cli.errors import Commands
-from lab.cli.naval import stability
+from lab.cli.naval import hull, report, stability
 from lab.cli.pictures import render, view
 from lab.cli.presets import schema
 from lab.cli.runs import explain, resume, run
@@ -34,8 +34,10 @@ for command in (
     calibrate,
     explain,
     gallery,
+    hull,
     list_presets,
     render,
+    report,
     reproduce,
     resume,
     run,

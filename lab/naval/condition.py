@@ -9,7 +9,7 @@ from lab.assembly.grains import grain_count
 from lab.assembly.ship import flooding_angles
 from lab.base.errors import LabError
 from lab.preset.schema import Preset
-from lab.preset.sections.stability import Stability
+from lab.preset.sections.naval.stability import Stability
 from solvers.machine.errors import Unavailable
 from solvers.ship.naval.curve import Levers
 from solvers.ship.naval.form import TONNE, Form, Hydrostatics, prism
@@ -161,7 +161,10 @@ def _stowed(preset: Preset, form: Form, scale: float, level: float | None, mass:
         return None, None
     keel = float(preset.ship.corners[:, 1].min())
     shift = np.array(preset.ship.hold) - [0.0, keel]
-    hold = Hold(Section((np.array(preset.tank.corners) + shift) * scale), (preset.tank.length or preset.ship.length or 1.0) * scale)
+    hold = Hold(
+        Section((np.array(preset.tank.corners) + shift) * scale),
+        (preset.tank.length or preset.ship.length or 1.0) * scale,
+    )
     level = level_of(preset) if level is None else level
     if level is None:
         return None, None

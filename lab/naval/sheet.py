@@ -6,7 +6,7 @@ from math import inf
 
 import numpy as np
 
-from lab.naval.condition import Condition
+from lab.naval.condition import Cargo, Condition
 from solvers.ship.naval import grain_code, intact, weather
 from solvers.ship.naval.criteria import Criterion
 
@@ -68,24 +68,34 @@ def facts(condition: Condition) -> list[tuple[str, str]]:
         ("displacement", f"{condition.displacement:.5g} t, by {condition.form.perpendiculars:.5g} m of her section"),
         ("draught", f"{condition.draught:.4g} m, breadth {h.breadth:.4g} m, block coefficient {condition.block:.3f}"),
         ("KB, BM, KM", f"{h.kb:.3f}, {h.bm:.3f}, {h.km:.3f} m"),
-        ("KG, free surfaces, GM", f"{condition.gravity_height:.3f}, {condition.fluid_height - condition.gravity_height:.3f}, "
-         f"{condition.metacentric_height:.3f} m"),
+        (
+            "KG, free surfaces, GM",
+            f"{condition.gravity_height:.3f}, {condition.fluid_height - condition.gravity_height:.3f}, "
+            f"{condition.metacentric_height:.3f} m",
+        ),
         ("deck edge, flooding", f"{degrees(condition.deck)}, {degrees(condition.flooding)}"),
-        ("levers vanish", degrees(condition.levers.vanishing)),
+        ("levers vanish", degrees(condition.levers.vanishing, "beyond 90 deg")),
     ]
     if condition.cargo is None:
         return rows
-    cargo, given = condition.cargo, condition.given
-    rows += [
-        ("hold", f"{condition.hold.length:.4g} m long, {condition.hold.volume:.5g} m3, {given.filling} to {cargo.level:.3f} m"),
-        ("grain", f"{cargo.volume:.5g} m3, {cargo.mass:.5g} t; stowage factor {condition.stowage:.3f} m3/t"
-         + (f" (the bed's {cargo.stowage:.3f})" if given.stowage else "")),
-        ("assumed shift", f"surface {np.degrees(grain_code.ASSUMED[given.filling].surface):.0f} deg, "
-         f"{condition.assumed_moment:.5g} m4 x {grain_code.ASSUMED[given.filling].factor:.2f}, arm {condition.assumed_arm:.3f} m"),
+    return [*rows, *_loaded(condition, condition.cargo)]
+
+
+def _loaded(condition: Condition, cargo: Cargo) -> list[tuple[str, str]]:
+    """Rows on the hold and the grain in it."""
+    hold, given, assumed = condition.hold, condition.given, grain_code.ASSUMED[condition.given.filling]
+    stows = f"{cargo.volume:.5g} m3, {cargo.mass:.5g} t; stowage factor {condition.stowage:.3f} m3/t"
+    angle, moment = np.degrees(assumed.surface), condition.assumed_moment
+    return [
+        ("hold", f"{hold.length:.4g} m long, {hold.volume:.5g} m3, {given.filling} to {cargo.level:.3f} m"),
+        ("grain", stows + (f" (the bed's {cargo.stowage:.3f})" if given.stowage else "")),
+        (
+            "assumed shift",
+            f"surface {angle:.0f} deg, {moment:.5g} m4 x {assumed.factor:.2f}, arm {condition.assumed_arm:.3f} m",
+        ),
     ]
-    return rows
 
 
-def degrees(angle: float | None) -> str:
-    """An angle (rad) in degrees; "never" for None."""
-    return "never" if angle is None or angle == inf else f"{np.degrees(angle):.1f} deg"
+def degrees(angle: float | None, never: str = "never") -> str:
+    """An angle (rad) in degrees; `never` for None."""
+    return never if angle is None or angle == inf else f"{np.degrees(angle):.1f} deg"

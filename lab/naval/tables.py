@@ -123,5 +123,3 @@ def write(tables: dict[str, Table], folder: Path) -> dict[str, Path]:
         except OSError as error:
             raise LabError(f"{folder} cannot be written ({error.strerror}): choose another folder.") from error
     return written
-
-

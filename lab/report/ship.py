@@ -18,8 +18,8 @@ def describe(
 ) -> list[tuple[str, str]]:
     """Rows on a ship, each a name and a text: balance, roll, forces of the water.
 
-    slab: thickness of the slab that her cargo is (m), and how many of them a metre of her carries (1/m); None if her hold
-    is empty. every: the step (s) of the water's forces.
+    slab: thickness (m) of the slab that her cargo is, and how many of them a metre of her carries (1/m); None if her
+    hold is empty. every: the step (s) of the water's forces.
     """
     ship, body = vessel.ship, vessel.ship.body
     water, memory = ship.load.water, ship.radiation.memory

@@ -1,16 +1,17 @@
 """`cargolab stability`: the criteria of a preset's ship in a table, a figure and CSV files, without a simulation."""
 
 import textwrap
+from collections.abc import Callable
 from pathlib import Path
 
 import matplotlib
 
 from lab.assembly.scene import vessels
 from lab.base.errors import LabError
+from lab.measures.naval_levers import draw_levers
 from lab.naval import sheet, tables
 from lab.naval.condition import Condition, condition
 from lab.preset.find import LoadedPreset
-from lab.measures.naval_levers import draw_levers
 from lab.report.page import save_figure
 from lab.report.plots import BELOW, STYLE, TITLE, canvas
 
@@ -30,7 +31,7 @@ def judge(loaded: LoadedPreset, out: Path | None = None) -> tuple[str, Path]:
     found = condition(preset, vessels(preset)[0])
     rows = sheet.rows(found)
     tables.write(tables.all_of(found, rows), folder)
-    write_figure(found, preset.title, folder / "righting-levers.png")
+    save_axes(folder / "righting-levers.png", preset.title, lambda axes: draw_levers(axes, found))
     return "\n".join([f"{preset.title}  ({loaded.name})", *described(found, rows)]), folder
 
 
@@ -39,27 +40,32 @@ def described(found: Condition, rows: list[sheet.Row]) -> list[str]:
     facts = sheet.facts(found)
     width = max(len(name) for name, _ in facts)
     lines = [f"  {name:<{width}}  {text}" for name, text in facts]
-    lines += ["", *_aligned(rows), "", *sheet.unjudged(found), SIGNS]
+    lines += ["", *aligned(rows), "", *sheet.unjudged(found), SIGNS]
     return lines
 
 
-def _aligned(rows: list[sheet.Row]) -> list[str]:
+def aligned(rows: list[sheet.Row]) -> list[str]:
     """The sheet in columns of equal width."""
     cells = [("rule", "criterion", "required", "attained", "verdict", "")]
     for row in rows:
         one = row.criterion
         what = f"{one.what} ({row.shift})" if row.shift else one.what
         unit = "" if one.unit == "1" else f" {one.unit}"
-        cells.append((one.rule, what, f"{one.kind} {one.limit:.4g}{unit}", f"{one.attained:.4g}", one.verdict, one.note))
+        cells.append(
+            (one.rule, what, f"{one.kind} {one.limit:.4g}{unit}", f"{one.attained:.4g}", one.verdict, one.note)
+        )
     widths = [max(len(line[k]) for line in cells) for k in range(len(cells[0]))]
-    return ["  " + "  ".join(f"{cell:<{width}}" for cell, width in zip(line, widths, strict=True)).rstrip() for line in cells]
+    return [
+        "  " + "  ".join(f"{cell:<{width}}" for cell, width in zip(line, widths, strict=True)).rstrip()
+        for line in cells
+    ]
 
 
-def write_figure(found: Condition, title: str, path: Path) -> Path:
-    """Draw the righting levers with their heeling arms. Raises LabError when the file cannot be written."""
+def save_axes(path: Path, title: str, draw: Callable) -> Path:
+    """Save a figure of one panel that `draw` fills. Raises LabError when the file cannot be written."""
     with matplotlib.rc_context(STYLE):
         figure, axes = canvas((6.4, 4.6))
-        draw_levers(axes, found)
+        draw(axes)
         axes.set_title(textwrap.fill(title, TITLE), parse_math=False)
         figure.legend(loc=BELOW, ncols=1)
         try:

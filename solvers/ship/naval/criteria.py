@@ -25,8 +25,8 @@ class Criterion:
     def passed(self) -> bool:
         """Whether the requirement is met; a number that is not one does not meet it."""
         if self.kind == "at most":
-            return self.attained <= self.limit
-        return isfinite(self.attained) and self.attained >= self.limit
+            return bool(self.attained <= self.limit)
+        return bool(isfinite(self.attained) and self.attained >= self.limit)
 
     @property
     def margin(self) -> float:
@@ -35,5 +35,5 @@ class Criterion:
 
     @property
     def verdict(self) -> str:
-        """"pass" or "fail", as sheets of criteria have it."""
+        """ "pass" or "fail", as sheets of criteria have it."""
         return "pass" if self.passed else "fail"

@@ -64,7 +64,7 @@ class Levers:
         return float(brentq(self._spline, heel[found[0]], heel[found[0] + 1])) if len(found) else None
 
     def equilibrium(self) -> float | None:
-        """The heel (rad) at which she lies, from upright to the side that the curve pulls her to; None: she has none."""
+        """The heel (rad) at which she lies, nearest to upright on the side that pulls her; None: there is none."""
         upright = float(self._spline(0.0))
         if upright < 0.0:
             return self.crossing(0.0)

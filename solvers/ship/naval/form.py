@@ -2,7 +2,7 @@
 
 Each station is a section (`solvers.ship.section`), cut at x (m) forward from the aft perpendicular; z is from the keel.
 Along the ship Simpson's rule is used, in its form for unequal distances. A ship that is known by one section alone is a
-prism: two stations, by the trapezoidal rule exact.
+prism of three equal stations, for which the rule is exact.
 """
 
 from collections.abc import Sequence
@@ -62,8 +62,8 @@ class Form:
     def __post_init__(self):
         x = np.asarray(self.x, dtype=float)
         object.__setattr__(self, "x", x)
-        if len(x) < 2 or len(x) != len(self.sections):
-            raise Unavailable("a hull needs at least two stations.")
+        if len(x) < 3 or len(x) != len(self.sections):
+            raise Unavailable("a hull needs at least three stations.")
         if not (np.diff(x) > 0.0).all():
             raise Unavailable("the hull's stations must rise from aft to forward, none of them twice.")
         if not any(self.sections):
@@ -120,7 +120,9 @@ class Form:
     def hydrostatics(self, draught: float, water: Water) -> Hydrostatics:
         """Particulars at an even draught (m). Raises `Unavailable` for one above the stations' tops, or a dry hull."""
         if not 0.0 < draught <= self.depth:
-            raise Unavailable(f"the draught of {draught:.4g} m must be above 0 and at most the {self.depth:.4g} m of the stations.")
+            raise Unavailable(
+                f"the draught of {draught:.4g} m must be above 0 and at most the {self.depth:.4g} m of the stations."
+            )
         level = np.full(len(self.x), draught)
         volume, centre = self.displaced(level)
         areas, plane = self._along(level, 0.0)[:, 0], self._along(level, 0.0, plane=True)
@@ -172,7 +174,8 @@ class Form:
         if not 0.0 < needed < self.volume:
             most = self.volume * water.density / TONNE
             raise Unavailable(
-                f"the weight of {displacement:.5g} t must be above 0 and below the {most:.5g} t that the whole hull displaces."
+                f"the weight of {displacement:.5g} t does not float: it must be above 0 and below the {most:.5g} t "
+                "that the whole hull displaces."
             )
         if lcg is None:
             return self._level(needed, roll, 0.0)
@@ -194,10 +197,15 @@ class Form:
         surplus = lambda level: float(self.weights @ self._along(level + tilt, roll)[:, 0]) - needed  # noqa: E731
         return brentq(surplus, -reach, reach, xtol=1e-12 * size, rtol=1e-15) + tilt
 
-    def cross_curves(self, displacement: float, water: Water, heels: np.ndarray, lcg: float | None = None) -> np.ndarray:
-        """Levers KN (m) about the keel at heels (rad) to port: KN = GZ + KG sin φ, for a centre of gravity amidships."""
+    def cross_curves(
+        self, displacement: float, water: Water, heels: np.ndarray, lcg: float | None = None
+    ) -> np.ndarray:
+        """Levers KN (m) about the keel at heels (rad) to port: KN = GZ + KG sin φ with G amidships."""
         return np.array(
-            [-self.displaced(self.floating(displacement, water, h, lcg), h)[1][1] for h in np.asarray(heels, dtype=float)]
+            [
+                -self.displaced(self.floating(displacement, water, h, lcg), h)[1][1]
+                for h in np.asarray(heels, dtype=float)
+            ]
         )
 
     def righting_levers(
@@ -210,11 +218,13 @@ class Form:
     ) -> np.ndarray:
         """Levers GZ (m) at heels (rad) to port, with the centre of gravity y, z (m) of `gravity`, y to starboard."""
         heels = np.asarray(heels, dtype=float)
-        return self.cross_curves(displacement, water, heels, lcg) - gravity[1] * np.sin(heels) + gravity[0] * np.cos(heels)
+        return (
+            self.cross_curves(displacement, water, heels, lcg) - gravity[1] * np.sin(heels) + gravity[0] * np.cos(heels)
+        )
 
 
 def prism(section: Section, length: float) -> Form:
     """A ship of one section all along a length (m); her section's lowest point is her keel."""
     keel = float(section.outline[:, 1].min())
     above = Section(section.outline - [0.0, keel]) if keel else section
-    return Form(np.array([0.0, length]), (above, above))
+    return Form(np.array([0.0, 0.5 * length, length]), (above, above, above))

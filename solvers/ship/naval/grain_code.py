@@ -87,7 +87,12 @@ def criteria(
     why = "deck edge" if steepest < STEEPEST else ""
     return (
         Criterion(
-            "Grain Code A 7.1.1", "heel from the shift of grain", "at most", *np.degrees([steepest, found.heel]), "deg", why
+            "Grain Code A 7.1.1",
+            "heel from the shift of grain",
+            "at most",
+            *np.degrees([steepest, found.heel]),
+            "deg",
+            why,
         ),
         Criterion(
             "Grain Code A 7.1.2", "residual area", "at least", LEAST_AREA, found.area, "m rad", f"up to {found.ends_at}"

@@ -23,7 +23,16 @@ def criteria(levers: Levers, metacentric_height: float, flooding: float | None =
         Criterion("IS Code A 2.2.1", f"{area}0 to 30 deg", "at least", 0.055, levers.area(0.0, low), "m rad", note),
         Criterion("IS Code A 2.2.1", f"{area}0 to 40 deg", "at least", 0.090, levers.area(0.0, high), "m rad", note),
         Criterion("IS Code A 2.2.1", f"{area}30 to 40 deg", "at least", 0.030, levers.area(low, high), "m rad", note),
-        Criterion("IS Code A 2.2.2", "largest righting lever at 30 deg or more", "at least", 0.20, float(levers.at(beyond)), "m"),
-        Criterion("IS Code A 2.2.3", "heel of the largest righting lever", "at least", 25.0, float(np.degrees(top)), "deg"),
+        Criterion(
+            "IS Code A 2.2.2",
+            "largest righting lever at 30 deg or more",
+            "at least",
+            0.20,
+            float(levers.at(beyond)),
+            "m",
+        ),
+        Criterion(
+            "IS Code A 2.2.3", "heel of the largest righting lever", "at least", 25.0, float(np.degrees(top)), "deg"
+        ),
         Criterion("IS Code A 2.2.4", "GM, free surfaces off", "at least", 0.15, metacentric_height, "m"),
     )

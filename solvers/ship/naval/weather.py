@@ -106,14 +106,18 @@ def weather(levers: Levers, ship: Exposed, flooding: float | None = None) -> Wea
     return Weather(wind, gust, heel, roll, end, a, left.area(first, end) if end > first else 0.0)
 
 
-def criteria(levers: Levers, ship: Exposed, deck: float | None = None, flooding: float | None = None):
-    """The two criteria of 2.3.1; `deck` and `flooding`: angles (rad) at which the deck's edge and an opening go under."""
+def criteria(
+    levers: Levers, ship: Exposed, deck: float | None = None, flooding: float | None = None
+) -> tuple[Criterion, ...]:
+    """The two criteria of 2.3.1; `deck` and `flooding`: angles (rad) of immersion of deck edge and opening."""
     found = weather(levers, ship, flooding)
     most = STEADY if deck is None else min(STEADY, OF_DECK * deck)
     note = f"l_w1 {found.wind:.3f} m, roll {np.degrees(found.roll):.1f} deg to windward, T {ship.period:.1f} s"
     ratio = found.b / found.a if found.a > 0.0 else inf
     return (
-        Criterion("IS Code A 2.3.1.2", "heel under steady wind", "at most", *np.degrees([most, found.heel]), "deg", note),
+        Criterion(
+            "IS Code A 2.3.1.2", "heel under steady wind", "at most", *np.degrees([most, found.heel]), "deg", note
+        ),
         Criterion(
             "IS Code A 2.3.1.4",
             "area b over area a",

@@ -23,15 +23,18 @@ class Stability:
     length: Annotated[
         Length | None, Doc("Her length in the waterline, for the period of roll and the block; ship.length without it.")
     ] = None
-    filling: Annotated[
-        Literal[*ASSUMED], Doc("Which surface and which factor the Grain Code assumes of her hold.")
-    ] = "partly-filled"
+    filling: Annotated[Literal[*ASSUMED], Doc("Which surface and which factor the Grain Code assumes of her hold.")] = (
+        "partly-filled"
+    )
     stowage: Annotated[
         Annotated[float, Unit("m^3/kg"), Interval(gt=0, le=1.0)] | None,
         Doc("Stowage factor of the cargo; as the bed of grains stows without it."),
     ] = None
     other_moment: Annotated[
-        float, Unit("m^4"), Interval(ge=0), Doc("Volumetric heeling moment of grain in her other holds, factors included.")
+        float,
+        Unit("m^4"),
+        Interval(ge=0),
+        Doc("Volumetric heeling moment of grain in her other holds, factors included."),
     ] = 0.0
     free_surface: Annotated[
         float, Unit("kg m"), Interval(ge=0), Doc("Moment of the free surfaces of her tanks, taken off GM and levers.")
