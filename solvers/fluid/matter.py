@@ -63,7 +63,12 @@ class WaterMatter(Matter):
         self.forces = Forces(arrays, medium, self.extrapolation, self.load, tank.thickness)
         self.continuity, self.mover = Continuity(arrays, medium), Mover(arrays, medium, self.extrapolation)
         self.gauges = Gauges(
-            arrays, p, water.gauges, [dummy[slot] + p.wet * lanes for slot in behind.probes], behind.open
+            arrays,
+            p,
+            self.constants,
+            water.gauges,
+            [dummy[slot] + p.wet * lanes for slot in behind.probes],
+            behind.open,
         )
         owner = np.full(p.dry * lanes, OF_NONE)
         owner[dummy] = behind.edges
@@ -175,7 +180,7 @@ class WaterMatter(Matter):
         fields = *p.place, p.volume, p.firm, p.number
         for field, values in zip(fields, [*np.moveaxis(places, 2, 0), *held], strict=True):
             whole = field.to_numpy().reshape(p.worlds, p.stride, p.lanes)
-            whole[:, p.wet :] = values
+            whole[:, p.wet : p.wet + p.walls] = values
             field.from_numpy(whole.reshape(-1, p.lanes))
         for field in (
             self.forces.lost,

@@ -3,13 +3,15 @@
 Neighbours lie in one block or in few, so that a block's lanes need nearly the same neighbours.
 """
 
+import numpy as np
 import taichi as ti
 
 from solvers.fluid.grid import Grid
-from solvers.fluid.state import FAR, UNUSED, Particles
-from solvers.machine.state import Axis, State
+from solvers.fluid.state import COUNT, FAR, UNUSED, WET, Particles
+from solvers.machine.state import Axis, State, roomy
 
 CHUNK = 256  # keys that one thread sums up
+STRIPS, BINS, LONGEST, KEYS = range(4)  # what of the grid is kept in `sizes`
 
 
 @ti.data_oriented
@@ -18,10 +20,12 @@ class Order:
 
     def __init__(self, arrays: State, particles: Particles, grid: Grid):
         self.particles, self.grid = particles, grid
-        self.strips, self.bins, self.longest = grid.strips, grid.bins, grid.longest
-        self.keys = self.strips * self.bins
-        self.chunks = -(-(self.keys + 1) // CHUNK)
+        sizes = grid.strips, grid.bins, grid.longest, grid.strips * grid.bins
+        # A particle of a full tank takes two keys, and there is room for twice as many.
+        self.keys = roomy(sizes[KEYS] + 1, 2 * particles.wet * particles.lanes)
+        self.chunks = -(-self.keys // CHUNK)
         own = arrays.under("water.order")
+        self.sizes = own.holding("sizes", np.array(sizes), "size", ti.i32)
         self.numbers = own.holding("numbers", grid.numbers, "number", own.place)
         world = Axis("world", particles.worlds)
         keys = world, Axis("key", self.chunks * CHUNK)
@@ -37,18 +41,18 @@ class Order:
     @ti.func
     def bin_of(self, y):
         """The bin of a place along y (m)."""
-        return ti.max(0, ti.min(self.bins - 1, ti.cast((y - self.numbers[0]) * self.numbers[2], ti.i32)))
+        return ti.max(0, ti.min(self.sizes[BINS] - 1, ti.cast((y - self.numbers[0]) * self.numbers[2], ti.i32)))
 
     @ti.func
     def strip_of(self, z):
         """The strip of a height z (m)."""
-        return ti.max(0, ti.min(self.strips - 1, ti.cast((z - self.numbers[1]) * self.numbers[3], ti.i32)))
+        return ti.max(0, ti.min(self.sizes[STRIPS] - 1, ti.cast((z - self.numbers[1]) * self.numbers[3], ti.i32)))
 
     @ti.func
     def find(self, b, lane):
         """The key of a particle."""
         p = self.particles
-        return self.strip_of(p.place[1][b, lane]) * self.bins + self.bin_of(p.place[0][b, lane])
+        return self.strip_of(p.place[1][b, lane]) * self.sizes[BINS] + self.bin_of(p.place[0][b, lane])
 
     @ti.func
     def wrap(self, b, lane):
@@ -64,7 +68,7 @@ class Order:
     def sort_world(self, w):
         """Sort the particles of one world, on one thread."""
         start, lanes = w * self.particles.stride, self.particles.lanes
-        for k in range(self.keys):
+        for k in range(self.sizes[KEYS]):
             self.cursor[w, k] = 0
         for b in range(start, start + self.particles.used[w]):
             for lane in range(lanes):
@@ -102,16 +106,17 @@ class Order:
         neighbourhood of a block stays small where there is little water.
         """
         lanes = self.particles.lanes
-        spare = self.particles.wet - (self.particles.count + lanes - 1) // lanes - self.strips
+        strips, bins, longest = self.sizes[STRIPS], self.sizes[BINS], self.sizes[LONGEST]
+        spare = self.particles.sizes[WET] - (self.particles.sizes[COUNT] + lanes - 1) // lanes - strips
         slot, begin, k = 0, 0, 0
-        for _ in range(self.strips):
+        for _ in range(strips):
             slot = (slot + lanes - 1) // lanes * lanes
-            for along in range(self.bins):
+            for along in range(bins):
                 count = self.cursor[w, k]
                 if count > 0:
                     if slot % lanes == 0:
                         begin = along
-                    elif along - begin >= self.longest and spare > 0:
+                    elif along - begin >= longest and spare > 0:
                         slot = (slot + lanes - 1) // lanes * lanes
                         begin = along
                         spare -= 1
@@ -120,7 +125,7 @@ class Order:
                     begin = along
                 slot += count
                 k += 1
-        self.first[w, self.keys] = slot
+        self.first[w, k] = slot
         return slot
 
     @ti.func
@@ -156,7 +161,7 @@ class Order:
         """Sort all worlds, with one particle a block, on all threads; the result is that of `sort_world`."""
         for w, k in self.cursor:
             self.cursor[w, k] = 0
-        for w, i in ti.ndrange(self.particles.worlds, self.particles.count):
+        for w, i in ti.ndrange(self.particles.worlds, self.particles.sizes[COUNT]):
             b = w * self.particles.stride + i
             self.wrap(b, 0)
             self.key[b, 0] = self.find(b, 0)
@@ -177,18 +182,18 @@ class Order:
         for w, k in self.first:
             self.first[w, k] = self.first[w, k] + self.chunk_first[w, k // CHUNK]
             self.cursor[w, k] = self.first[w, k]
-        for w, i in ti.ndrange(self.particles.worlds, self.particles.count):
+        for w, i in ti.ndrange(self.particles.worlds, self.particles.sizes[COUNT]):
             b = w * self.particles.stride + i
             slot = ti.atomic_add(self.cursor[w, self.key[b, 0]], 1)
             self.source[w * self.particles.stride + slot, 0] = b
         for w, k in self.first:
-            if k < self.keys:
+            if k < self.sizes[KEYS]:
                 self.order_bin(w, k)
         for field in ti.static(self.particles.moved):
-            for w, i in ti.ndrange(self.particles.worlds, self.particles.count):
+            for w, i in ti.ndrange(self.particles.worlds, self.particles.sizes[COUNT]):
                 b = w * self.particles.stride + i
                 ti.static(self.buffer(field))[b, 0] = field[self.source[b, 0], 0]
-            for w, i in ti.ndrange(self.particles.worlds, self.particles.count):
+            for w, i in ti.ndrange(self.particles.worlds, self.particles.sizes[COUNT]):
                 b = w * self.particles.stride + i
                 field[b, 0] = ti.static(self.buffer(field))[b, 0]
 
