@@ -1,7 +1,7 @@
 """The section of `cargolab explain` on coarse grains: the model's grain and the real one side by side.
 
 A grain of the model, s times as large as a real one, stands for s³ of them. The bulk is the same where stresses are:
-so density, moduli of Hertz's law, restitution, friction and rolling friction (its torque goes with the radius) are kept.
+so density, Hertz's moduli, restitution, friction and rolling friction (its torque goes with the radius) are kept.
 The stiffness of a linear spring goes with s, an adhesive force with s² (Thakur, Ooi and Ahmadian 2015, confirmed there
 in compression), the coefficient of a linear dashpot with s², as forces do at equal speeds (Feng and Owen 2014, exact
 scaling laws). A capillary force, 2 π γ cos θ R, goes with s by itself: its surface tension has to go with s too.

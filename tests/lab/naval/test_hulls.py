@@ -66,7 +66,7 @@ def test_box_trims_by_its_longitudinal_metacentre():
     form = prism(box(27.0, 14.0), 130.0)
     displacement = form.hydrostatics(7.0, SEA).displacement
     level = form.floating(displacement, SEA, lcg=64.0)
-    assert (level[0] - level[1]) / 130.0 == pytest.approx(1.0 * 12.0 * 7.0 / 130.0**2, rel=1e-6)
+    assert (level[0] - level[-1]) / 130.0 == pytest.approx(1.0 * 12.0 * 7.0 / 130.0**2, rel=1e-6)
     assert level.mean() == pytest.approx(7.0, rel=1e-9)
 
 
