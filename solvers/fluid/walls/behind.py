@@ -40,7 +40,7 @@ class Behind:
             depths = np.append(depths, np.zeros(len(of_gauge)))
             edges = np.append(edges, np.full(len(of_gauge), OF_NONE))
         self.points, self.volumes, self.edges = points, volumes, edges
-        self.firm = firm(depths, water.spacing)
+        self.firm = depths if water.air else firm(depths, water.spacing)  # each layer holds air, see `Constants`
         self.open = [1.0 - covered(points[probe], points, volumes, water) for probe in self.probes]
 
 

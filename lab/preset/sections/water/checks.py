@@ -124,8 +124,8 @@ def _check_sound(preset: Whole) -> None:
 def _check_background(preset: Whole) -> None:
     """Raise LabError for a background pressure at a free surface, or one that compresses the water visibly."""
     pressure, sound = preset.water.background_pressure, liquid.liquid(preset).sound_speed
-    if pressure and not preset.water.full:
-        raise LabError("water.background_pressure: goes with water.full; a free surface would be blown apart.")
+    if pressure and not (preset.water.full or preset.air):
+        raise LabError("water.background_pressure: goes with water.full or [air]; a free surface would be blown apart.")
     most = COMPRESSED * preset.water.density * sound**2
     if pressure > most:
         raise LabError(
