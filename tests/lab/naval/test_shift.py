@@ -37,7 +37,7 @@ def run(tmp_path_factory):
             aside = np.interp(now, [0.0, 30.0, 60.0, LASTS], [0.0, -MOST, ASIDE, ASIDE])
             up = np.interp(now, [0.0, 60.0, LASTS], [0.0, UP, UP])
             pose = np.array([[0.0, 0.0, -0.1 * np.sin(now)]])
-            writer.sample(sample(now, pose=pose, centre_of_mass=np.array([settled + [aside, up]]), **of_a_ship()))
+            writer.sample(sample(now, pose=pose, centre_of_mass=np.add(settled, [[aside, up]]), **of_a_ship()))
         writer.frame(frame(0.0, count=COUNT))
         writer.close("complete")
     return folder
@@ -101,6 +101,11 @@ def test_coarse_grains_side_by_side():
     rows = dict(coarse.described(load(SHIP, {"grains.stands_for": "5 mm"}).resolved))
     assert rows["grain"] == "250 mm; 5 mm, s = 50" and rows["across the tank"] == "106; 5320, 1/s"
     assert coarse.described(load("tilting/quick").resolved) == []
-    wet = {"contact.cohesion": "humid", "contact.tangential": "haff-werner", "material.shear_damping": "25 N s/m"}
+    wet = {
+        "contact.cohesion": "humid",
+        "material.humidity": "70 %",
+        "contact.tangential": "haff-werner",
+        "material.shear_damping": "25 N s/m",
+    }
     rows = dict(coarse.described(load(SHIP, {"grains.stands_for": "5 mm", **wet}).resolved))
     assert rows["shear damping"].startswith("25 N s/m; 0.01 N s/m, s^2")
