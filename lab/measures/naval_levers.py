@@ -44,10 +44,10 @@ def draw_levers(axes, condition: Condition, lying: Callable[[np.ndarray], np.nda
             axes.axvline(np.degrees(angle), color=GREY, lw=1.0, ls=style, label=f"{name} {np.degrees(angle):.1f} deg")
 
 
-def draw_curve(axes, levers: Levers, metacentric_height: float) -> None:
-    """GZ against heel to starboard, its GM (m) in the legend."""
+def draw_curve(axes, levers: Levers, metacentric_height: float, side: str = "") -> None:
+    """GZ against heel to a side, its GM (m) in the legend."""
     axes.plot(np.degrees(HEEL), levers.at(HEEL), color="black", label=f"GZ, GM {metacentric_height:.2f} m")
     axes.axhline(0.0, color=GREY, lw=0.8)
     axes.set_xlim(0.0, FURTHEST)
-    axes.set_xlabel("heel (deg)")
+    axes.set_xlabel(f"heel{side} (deg)")
     axes.set_ylabel("lever (m)")

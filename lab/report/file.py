@@ -13,14 +13,12 @@ from pathlib import Path
 import matplotlib
 
 from lab.base.errors import LabError
-from lab.measures import measure_all, ship_grain
-from lab.measures.ship import has_ship, vessel_of
-from lab.naval import sheet
-from lab.naval.condition import condition
+from lab.measures import measure_all
 from lab.recording import Recording, open_recording
 from lab.report.numbers import number
 from lab.report.page import render_text
 from lab.report.plots import STYLE, figures
+from lab.report.ship import judged
 from lab.report.stability import SIGNS
 from lab.report.summary import cautions, machine_of, status_of
 
@@ -60,7 +58,7 @@ def _pdf(text: str, path: Path) -> Path:
 def _data(recording: Recording) -> dict[str, object]:
     """What the template shows."""
     values = measure_all(recording)
-    rows, facts = _judged(recording)
+    rows, facts = judged(recording)
     with recording.path.open("rb") as file:
         signature = file_digest(file, "sha256").hexdigest()
     return {
@@ -80,24 +78,6 @@ def _data(recording: Recording) -> dict[str, object]:
         "recording": recording.path.name,
         "signature": signature,
     }
-
-
-def _judged(recording: Recording) -> tuple[list[sheet.Row], list[tuple[str, str]]]:
-    """Sheet and condition of a recording's ship; both empty without one that can be judged."""
-    if not has_ship(recording):
-        return [], []
-    found = ship_grain.shift(recording)
-    if found is not None:
-        arm = found.lying(ship_grain.end_of(found, recording))
-        return sheet.rows(found.condition, arm), sheet.facts(found.condition)
-    vessel = vessel_of(recording.path)
-    if vessel is None:
-        return [], []
-    try:
-        alone = condition(recording.preset, vessel)
-    except LabError:
-        return [], []
-    return sheet.rows(alone), sheet.facts(alone)
 
 
 def _assumptions(recording: Recording, judged: bool) -> Iterator[str]:

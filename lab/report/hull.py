@@ -17,7 +17,7 @@ from solvers.ship.naval.curve import Levers
 from solvers.ship.naval.form import Form
 from solvers.ship.water import Water
 
-HEELS = np.radians(np.arange(-60.0, 91.0))
+HEELS = np.radians(np.arange(-90.0, 91.0))
 SURFACES = (".stl",)
 DEEPEST = 0.95  # of the depth: the last draught of the tables
 
@@ -66,22 +66,26 @@ def _loaded(form: Form, water: Water, total: Weights, folder: Path, name: str):
     fore, mean = aft + slope * form.perpendiculars, float(np.mean([level[0], level[-1]]))
     upright = form.hydrostatics(min(mean, form.depth), water)
     gravity = total.tcg, total.fluid_vcg
-    levers = Levers(HEELS, form.righting_levers(total.mass, water, HEELS, gravity, total.lcg))
+    port = Levers(HEELS, form.righting_levers(total.mass, water, HEELS, gravity, total.lcg))
+    starboard = Levers(HEELS, -port.lever[::-1])
+    lies = starboard.equilibrium()
+    # She is judged to the side that she lists to, where her levers are less.
+    side, levers = ("port", port) if lies is not None and lies < 0.0 else ("starboard", starboard)
     gm = upright.km - total.fluid_vcg
     rows = [sheet.Row("", one) for one in intact.criteria(levers, gm)]
-    lies = levers.equilibrium()
     lines = [
         f"  weights   {total.mass:.5g} t at {total.lcg:.3f} m, {total.tcg:.3f} m to starboard, KG {total.vcg:.3f} m, "
         f"free surfaces {total.free_surface:.4g} t m",
         f"  draught   aft {aft:.3f}, forward {fore:.3f} m; trim {aft - fore:.3f} m by the stern",
-        f"  KM, GM    {upright.km:.3f}, {gm:.3f} m; heel {sheet.degrees(None if lies is None else -lies)} to starboard",
+        f"  KM, GM    {upright.km:.3f}, {gm:.3f} m; heel {sheet.degrees(lies)} to starboard",
+        f"  levers    to {side}, the side that she is judged on",
         "",
         *aligned(rows),
     ]
-    save_axes(folder / "righting-levers.png", name, lambda axes: draw_curve(axes, levers, gm))
+    save_axes(folder / "righting-levers.png", name, lambda axes: draw_curve(axes, levers, gm, f" to {side}"))
     heel = levers.heel[levers.heel >= 0.0]
     curve = [(f"{np.degrees(h):.1f}", f"{lever:.4f}") for h, lever in zip(heel, levers.at(heel), strict=True)]
-    return lines, {"criteria": tables.criteria(rows), "righting-levers": (("heel deg", "GZ m"), curve)}
+    return lines, {"criteria": tables.criteria(rows), "righting-levers": ((f"heel to {side} deg", "GZ m"), curve)}
 
 
 def _weights(total: Weights, rows: list[dict[str, object]]) -> tables.Table:

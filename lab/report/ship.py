@@ -1,12 +1,19 @@
-"""The section of `cargolab explain` on a ship: her balance, her roll and the forces of the water."""
+"""What is said of a ship: by `cargolab explain` her balance, roll and forces, in reports the sheet of criteria."""
 
+from collections.abc import Iterator
 from math import pi
 
 from lab.assembly.ship import flooding_angles
+from lab.base.errors import LabError
+from lab.measures import ship_grain
+from lab.measures.ship import has_ship, vessel_of
+from lab.naval import sheet
+from lab.naval.condition import condition
 from lab.preset.sections import ship as ships
 from lab.preset.sections.sea import Waves
 from lab.preset.sections.ship import axis_place
 from lab.preset.units import show
+from lab.recording import Recording
 from solvers.ship.hydrostatics import metacentric_height
 from solvers.ship.vessel import Vessel
 from solvers.ship.water import Water
@@ -77,3 +84,36 @@ def _full_scale(given: ships.Ship, waves: Waves | None) -> str:
         words.append(f"waves of {show(size * factor['length'], 'm')}")
         words.append(f"every {show(2.0 * pi / waves.frequency * factor['time'], 's')}")
     return ", ".join(words)
+
+
+def judged(recording: Recording) -> tuple[list[sheet.Row], list[tuple[str, str]]]:
+    """Sheet and condition of a recording's ship; both empty without one that can be judged."""
+    if not has_ship(recording):
+        return [], []
+    found = ship_grain.shift(recording)
+    if found is not None:
+        arm = found.lying(ship_grain.end_of(found, recording))
+        return sheet.rows(found.condition, arm), sheet.facts(found.condition)
+    vessel = vessel_of(recording.path)
+    if vessel is None:
+        return [], []
+    try:
+        alone = condition(recording.preset, vessel)
+    except LabError:
+        return [], []
+    return sheet.rows(alone), sheet.facts(alone)
+
+
+def criteria(recording: Recording) -> Iterator[str]:
+    """The sheet of criteria of a recording's ship as a table in Markdown; nothing without one that can be judged."""
+    rows, _ = judged(recording)
+    if not rows:
+        return
+    yield "\n## Criteria\n"
+    yield "| rule | criterion | required | attained | unit | verdict |\n|---|---|---|---|---|---|"
+    for row in rows:
+        one = row.criterion
+        what = f"{one.what} ({row.shift})" if row.shift else one.what
+        numbers = f"{one.kind} {one.limit:.4g}", f"{one.attained:.4g}", one.unit, one.verdict
+        yield f"| {' | '.join((one.rule, what, *numbers))} |"
+    yield "\nIn calm water; heel is positive starboard down. `cargolab report` puts it on one page for the file."

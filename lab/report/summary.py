@@ -15,7 +15,7 @@ from lab.preset.fields import taken_of
 from lab.preset.sections.ship import axis_place
 from lab.preset.units import show
 from lab.recording import Recording, ship_end
-from lab.report import grains, water
+from lab.report import grains, ship, water
 from lab.report.numbers import RULE, count_of, number, own
 from solvers.motion import MOTIONS
 
@@ -157,6 +157,8 @@ def _page(
     yield from (_row(name, value) for name, value in values.items())
     unit = " d is the mean grain diameter." * bool(preset.grains)
     yield f"\n{RULE}{unit} `lab/measures` defines each measure."
+    if preset.ship and preset.grains:
+        yield from ship.criteria(recording)
     yield f"\n## What it cost\n\n{_cost(recording)}, on {inline(machine_of(recording))}."
     yield f"\n{in_words(costs)}." if costs else ""
     yield "\n## Files\n"

@@ -211,6 +211,8 @@ def test_weight_off_the_middle_lists_her_to_starboard(tmp_path):
     gm = draught / 2 + 27.0**2 / (12 * draught) - 9.0
     heel = float(answer.output.split("heel ")[1].split(" deg to starboard")[0])
     assert heel == pytest.approx(np.degrees(0.1 / gm), abs=0.06)
+    first = (tmp_path / "out" / "righting-levers.csv").read_text().splitlines()[:2]
+    assert first == ["heel to starboard deg,GZ m", "0.0,-0.1000"]  # upright she is pulled to starboard
 
 
 def test_offsets_that_bound_no_hull():
