@@ -6,7 +6,7 @@ from lab import __version__
 from lab.cli.benches import bench
 from lab.cli.errors import Commands
 from lab.cli.naval import hull, report, stability
-from lab.cli.pictures import render, view
+from lab.cli.pictures import beside, poster, render, sheet, view
 from lab.cli.presets import schema
 from lab.cli.runs import explain, resume, run
 from lab.cli.studies import gallery, list_presets, reproduce, verify
@@ -31,17 +31,20 @@ def main() -> None:
 
 for command in (
     bench,
+    beside,
     calibrate,
     explain,
     gallery,
     hull,
     list_presets,
+    poster,
     render,
     report,
     reproduce,
     resume,
     run,
     schema,
+    sheet,
     stability,
     sweep,
     verify,
