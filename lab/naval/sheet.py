@@ -22,7 +22,7 @@ class Row:
 
 
 def rows(condition: Condition, lying: Callable[[np.ndarray], np.ndarray] | None = None) -> list[Row]:
-    """All criteria that the condition can be judged by; `lying`: the heeling arm (m) of the cargo as it lies."""
+    """All criteria that the condition can be judged by; `lying`: the heeling arm (m) of the cargo as it lay."""
     given = condition.levers, condition.metacentric_height
     ends = condition.deck, condition.flooding
     found = []

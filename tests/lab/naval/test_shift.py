@@ -60,7 +60,7 @@ def test_volumetric_moment_is_volume_times_way(measured):
 
 
 def test_list_is_that_of_the_moved_centre_of_gravity(measured):
-    """By the hydrostatics of the section with G moved as when the cargo lay farthest, to port: the lab's positive roll."""
+    """By the hydrostatics of the section with G as when the cargo lay farthest, to port: the lab's positive roll."""
     values, found = measured
     condition = found.condition
     share = COUNT * np.pi / 6.0 * 0.25**3 * 1400.0 / 0.25 * 25.0 / (condition.displacement * 1000.0)
