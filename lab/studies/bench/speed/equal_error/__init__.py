@@ -96,8 +96,7 @@ def say_how(page: Page, effort: Effort) -> None:
 
 def measured(codes: Mapping[str, Callable], work: Path, kept: Path, effort: Effort) -> Iterator[tuple]:
     """What was timed: (grains, rule, bed, steps (s) by code, speeds); `kept` is the folder that spares timing again."""
-    print("equal error: steps", flush=True)
-    found = remembered(kept / "steps.npz", "", lambda: _packed(steps_taken(codes)))
+    found = remembered(kept / "steps.npz", "equal error: steps", lambda: _packed(steps_taken(codes)))
     taken = {rule: dict(zip(codes, values, strict=True)) for rule, values in found.items()}
     beds = every_situation(usual_bed(work, effort.count), work)
     for rule, dts in taken.items():
