@@ -69,14 +69,14 @@ def area(made, camera=None):
 @pytest.mark.parametrize("spacing", [0.02, 0.01, 0.004, 0.002])
 def test_the_painted_area_of_still_water_is_its_volume(spacing, turn):
     made = still(spacing=spacing)
-    assert area(made, camera_of(turn)) == pytest.approx(len(made.place[0]) * spacing**2, rel=0.02)
+    assert area(made, camera_of(turn)) == pytest.approx(len(made.place[0]) * spacing**2, rel=0.01)
 
 
 def test_the_painted_area_of_a_drop_and_of_spray_is_their_volume():
     drop = filled(lambda p: np.hypot(p[:, 0], p[:, 1] - 0.3) < 0.1, tank(), SPACING, rough=0.1)
-    assert area(footage(drop)) == pytest.approx(len(drop) * SPACING**2, rel=0.02)
+    assert area(footage(drop)) == pytest.approx(len(drop) * SPACING**2, rel=0.01)
     apart = filled(lambda p: p[:, 1] > 0.1, tank(), 0.06, rough=0.2)
-    assert area(footage(apart)) == pytest.approx(len(apart) * SPACING**2, rel=0.02)
+    assert area(footage(apart)) == pytest.approx(len(apart) * SPACING**2, rel=0.01)
 
 
 def chamfered():
