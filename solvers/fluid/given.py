@@ -49,7 +49,9 @@ class Water:
     to the `speed` (m/s). `walls`: whether the tank's outline holds the water; without, it moves freely in space.
     `edges`: those of the outline, by their first corners, whose force is told. `periodic`: axes, "y" or "z", along
     which space repeats itself with the tank's width or height, so that it has no walls there. `start`: the name of how
-    water at rest is laid, "packed" or as a "lattice".
+    water at rest is laid, "packed" or as a "lattice". `fills`: how many particles are in each tank of a world, by their
+    numbers one after the other; (): all are in the first. Water of different tanks never meets, though they may overlap
+    in the plane.
     """
 
     spacing: float
@@ -74,11 +76,16 @@ class Water:
     levels: tuple[Level, ...] = ()
     edges: tuple[int, ...] = ()
     start: str = "packed"
+    fills: tuple[int, ...] = ()
 
     @property
     def length(self) -> float:
         """Smoothing length h (m)."""
         return self.smoothing * self.spacing
+
+    def in_tanks(self, count: int, tanks: int) -> tuple[int, ...]:
+        """How many of `count` particles are in each of so many tanks."""
+        return self.fills or (count, *[0] * (tanks - 1))
 
     @property
     def reach(self) -> float:
