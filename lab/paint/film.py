@@ -173,7 +173,7 @@ class Film:
             room = ROOM / np.sqrt(len(self._beds)) * np.ptp(bed.footage.outline, axis=0).max()
             within = np.clip(corners, corners[0] - room, corners[1] + room)
             if bed.footage.sea and self._look.frame == "earth":
-                grounds.append(bed.footage.sea.ground(self._seen(bed.footage.sea.hull, bed.pose).reshape(-1, 2)))
+                grounds.append(bed.footage.sea.ground(self._seen(bed.footage.afloat, bed.pose).reshape(-1, 2)))
                 continue
             grounds.append((np.nanmin(within, axis=0), np.nanmax(within, axis=0)))
         return grounds
@@ -323,9 +323,9 @@ class Film:
         return np.where(off.any(axis=1, keepdims=True), np.nan, position)
 
     def _paint_tank(self, picture: np.ndarray, bed: Bed, camera: Camera, wall: tuple, hold: tuple) -> None:
-        footage = bed.footage
-        thick = min(WALL * self._unit, max(1.0, THICKEST * camera.scale * np.ptp(footage.outline, axis=0).min()))
-        paint_tank(picture, camera, footage.outline, thick, wall, hold, footage.open_edges)
+        thick = min(WALL * self._unit, max(1.0, THICKEST * camera.scale * np.ptp(bed.footage.outline, axis=0).min()))
+        for basin in bed.footage.basins:
+            paint_tank(picture, camera, basin.drawn, thick, wall, hold, basin.open_edges)
 
     def _draw_readings(self, image: Image.Image, frame: int) -> None:
         """Clock, tilt, displacement and gravity in the column, names above the beds."""

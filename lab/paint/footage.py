@@ -10,6 +10,7 @@ import numpy as np
 
 from lab.base.errors import LabError, Unusable
 from lab.base.trust import BEYOND
+from lab.paint.basins import basins_of
 from lab.paint.painter import Edges
 from lab.paint.sea import Rail, Sea
 from lab.paint.water.pool import Pool
@@ -47,6 +48,7 @@ class Footage:
         self.radius, self.outline, self.kind = recording.radius, recording.outline, recording.kind
         self.matters, self._series = recording.preset.matters, series
         self.water = Pool.of(recording.preset, recording.volume)
+        self.basins = basins_of(recording.preset, recording.outline, recording.open_edges, recording.volume)
         self.kinds = ["the rest", *recording.preset.kinds]
         self.shapes = recording.shapes
         self.shape_names = list(recording.preset.shapes) if self.shapes else ["disc"]
@@ -65,6 +67,11 @@ class Footage:
     def protrudes(self) -> bool:
         """Whether anything that is drawn may stand out of the tank."""
         return bool(self.open_edges or self.parts or self.rail)
+
+    @property
+    def afloat(self) -> np.ndarray:
+        """The corners (k, 2) m of a ship's hull and of all tanks as they are drawn."""
+        return np.concatenate([self.sea.hull, *(basin.drawn for basin in self.basins)])
 
     @property
     def worlds(self) -> int:
@@ -162,7 +169,8 @@ class Bed:
 
     def water_place(self, frame: int) -> np.ndarray:
         """Places (n, 2) of the water in the tank frame, m; NaN for what is as far away from the tank as it is large."""
-        place, outline = self.drops("water_place", frame), self.footage.outline
+        place = self.drops("water_place", frame)
+        outline = np.concatenate([basin.outline for basin in self.footage.basins])
         size = np.ptp(outline, axis=0).max()
         near = (place >= outline.min(axis=0) - size) & (place <= outline.max(axis=0) + size)
         return np.where(near.all(axis=1, keepdims=True), place, np.nan)

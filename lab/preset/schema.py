@@ -26,7 +26,8 @@ from lab.preset.sections.sea import Sea, Waves
 from lab.preset.sections.shapes import Shape, ShapeClass, by_number
 from lab.preset.sections.ship import Ship
 from lab.preset.sections.ship_checks import check_ship
-from lab.preset.sections.tank import Tank, check_tank
+from lab.preset.sections.tank import FurtherTank, Tank, check_tank
+from lab.preset.sections.tanks import check_tanks
 from lab.preset.sections.video import Record, Video, check_video
 from lab.preset.sections.water.checks import check_water
 from lab.preset.sections.water.section import Gauge, Water
@@ -78,6 +79,9 @@ class Preset:
         field(default_factory=dict)
     )
     ship: Annotated[Ship | None, Doc("The ship whose hold the tank is.")] = None
+    tanks: Annotated[dict[str, FurtherTank], Doc("Further tanks of the ship, beside [tank].")] = field(
+        default_factory=dict
+    )
     axle: Annotated[Axle | None, Doc("The axle about which the tank rolls freely.")] = None
     sea: Annotated[Sea, Doc("The sea outside the ship.")] = field(default_factory=Sea)
     waves: Annotated[Waves | None, Doc("The waves of the sea, which travel to starboard.")] = None
@@ -168,12 +172,13 @@ def check(preset: Preset) -> None:
         _check_of_grains(preset)
     check_motion(preset.motion)
     check_parts(preset.parts, preset.tank.corners, preset.water is not None)
+    check_ship(preset.ship, preset.waves, bool(preset.motion.parts), preset.tank.corners)
+    check_tanks(preset)
     check_water(preset)
     duration = duration_of(preset.run, preset.motion)
     check_axle(preset.axle, preset.ship is not None, bool(preset.motion.parts), bool(preset.matters), duration)
     if preset.water is not None:
         check_solids(preset)
-    check_ship(preset.ship, preset.waves, bool(preset.motion.parts), preset.tank.corners)
     check_video(preset.video, preset.matters)
 
 

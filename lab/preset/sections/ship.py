@@ -54,6 +54,9 @@ class Ship:
         float, Unit("m"), Doc("Height of the centre of gravity of ship and cargo above the hull's origin.")
     ]
     breadth: Annotated[Length | None, Doc("Breadth of a box.")] = None
+    length: Annotated[
+        Length | None, Doc("Length of the ship; tanks that are not as long as she count by their share of it.")
+    ] = None
     height: Annotated[Length | None, Doc("Depth of a box, from keel to deck.")] = None
     outline: Annotated[
         Points | None, Doc("Corners of the hull in its own axes, y and z each, in place of breadth and height.")
@@ -64,6 +67,10 @@ class Ship:
     roll_period: Annotated[
         Annotated[float, Unit("s"), Interval(gt=0)] | None, Doc("Natural period of roll, in place of `gyradius`.")
     ] = None
+    bare: Annotated[
+        bool,
+        Doc("Whether `gravity_height` and `gyradius` are hers without the water in her tanks; her draught is with it."),
+    ] = False
     hold: Annotated[Point, Doc("Where the tank's origin is in the hull's axes, y and z.")] = (0.0, 0.0)
     axis: Annotated[
         Point | None, Doc("The ship's point of reference in the hull's axes; the middle of the waterline without it.")
@@ -78,6 +85,10 @@ class Ship:
     damping: Annotated[
         float, Interval(ge=0, le=1), Doc("Viscous roll damping ζ as a fraction of the critical damping.")
     ] = 0.0
+    linear_damping: Annotated[
+        Annotated[float, Unit("N s"), Interval(ge=0)] | None,
+        Doc("Linear roll damping, moment over rate per metre of length, in place of `damping`."),
+    ] = None
     quadratic_damping: Annotated[float, Interval(ge=0), Doc("Quadratic roll damping b, per rad.")] = 0.0
     heel: Annotated[float, Unit("rad"), Interval(ge=-pi, le=pi), Doc("Heel at the start, positive to port.")] = 0.0
     release: Annotated[float, Unit("s"), Interval(ge=0), Doc("When she is let go, heeled slowly until then.")] = 0.0

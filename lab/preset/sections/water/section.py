@@ -25,8 +25,14 @@ class Water:
     """
 
     depth: Annotated[
-        Length | None, Usual(0.02, 1.0, "mm"), Doc("Depth of the water over the tank's lowest point; or give `region`.")
+        Length | None,
+        Usual(0.02, 1.0, "mm"),
+        Doc("Depth of the water over the tank's lowest point; or give `region`. [tanks.NAME] have their own."),
     ] = None
+    model: Annotated[
+        Literal["sph", "linear", "frozen"],
+        Doc("How water moves in a ship: as particles, by linear potential theory in box-shaped tanks, or not at all."),
+    ] = "sph"
     region: Annotated[
         Annotated[tuple[tuple[float, float], ...], Unit("m")] | None,
         Doc("Corners, y and z each, of the part of the tank that is filled with water, in place of `depth`."),
