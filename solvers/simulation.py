@@ -65,6 +65,7 @@ class Simulation:
         alone = self.arch == "cpu" and (self.schedule_name != "per-grain" or worlds == 1)
         self.stretch = stretch if alone else 1
         self.steps, self.room = 0, 1
+        self.simple = scene.shapes is None and scene.water is None  # short kernels
         self.origin, self.unkicked = 0.0, 0  # time (s) of the tank's motion at step 0; the first step since the launch
         self._build()
         means = [quantity for quantity in self.observer.quantities if quantity.mean]
@@ -164,7 +165,7 @@ class Simulation:
 
     def _reach_step(self) -> None:
         """Advance every running world to base step `self.steps`, with larger contact lists if they overflow."""
-        runtime.merge_repeats(self.scene.shapes is None)
+        runtime.merge_repeats(self.simple)
         while True:
             with real_vectors(self.wide):
                 self.schedule.advance(self.steps, self.origin, self.dt)
@@ -206,7 +207,7 @@ class Simulation:
         return rows | {name: touching[name] for name in of_contacts} | self.means
 
     def _observe(self) -> dict[str, np.ndarray]:
-        runtime.merge_repeats(self.scene.shapes is None)
+        runtime.merge_repeats(self.simple)
         now = self.origin + self.time
         rows = self.observer.take(now, max(self.steps - self.observed, 1) * self.dt)
         for matter in self.matters.values():
@@ -292,7 +293,7 @@ class Simulation:
         """The present elastic contact forces in a world; none without grains."""
         if not self.grains:
             return UNTOUCHED
-        runtime.merge_repeats(self.scene.shapes is None)
+        runtime.merge_repeats(self.simple)
         return self.grains.pressing(world, self.origin + self.time)
 
     def part_places(self) -> np.ndarray:

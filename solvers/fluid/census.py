@@ -11,7 +11,7 @@ from solvers.fluid.constants import Constants
 from solvers.fluid.order import Order
 from solvers.fluid.state import UNUSED, Particles
 from solvers.machine.quantity import places
-from solvers.machine.state import Axis, State
+from solvers.machine.state import Axis, State, padded, roomy
 from solvers.motion.frame import turned
 from solvers.space.axes import dot
 from solvers.tank.walls import Walls
@@ -19,6 +19,7 @@ from solvers.tank.walls import Walls
 CHUNK = 64  # blocks whose sum one thread takes
 DENSE = 0.03  # deviation of the density from which it is counted
 NEVER = -1.0
+USUAL = 8  # level gauges for which there is room at least
 SUMS = (
     *("mass", "moment_y", "moment_z", "momentum_y", "momentum_z", "moving", "flowing", "pulled", "elastic", "dense"),
     *("excess", "escaped"),  # largest values, not sums
@@ -70,11 +71,13 @@ class Census:
         self.now = own.reals((world,), *names, kind=arrays.exact, kept=False)
         (self.behind,) = own.reals((world,), "behind", kind=arrays.exact)
         self.levels = len(levels)
-        places_y = np.array([level.y for level in levels]) if levels else np.zeros(1)
+        room = roomy(self.levels, USUAL)
+        places_y = padded(np.array([level.y for level in levels]), room)
+        self.level_number = own.holding("level_number", np.array([self.levels]), "one", ti.i32)
         self.level_y = own.holding("level_y", places_y, "level", arrays.exact)
         sides = pool.sides.min(), pool.sides.max()
         self.level_sides = own.holding("level_sides", np.array(sides), "side", arrays.exact)
-        (self.level_depth,) = own.reals((world, Axis("level", max(1, self.levels))), "level_depth", kept=False)
+        (self.level_depth,) = own.reals((world, Axis("level", room)), "level_depth", kept=False)
 
     def take(self, time: float, thickness: float) -> dict[str, np.ndarray]:
         """Sums of every world at `time` (s), (W, …) by the names of `SUMS`, for a tank of `thickness` (m)."""
@@ -91,7 +94,7 @@ class Census:
         for w, chunk in self.sums[0]:
             self.sum_chunk(w, chunk)
         for w, level in self.level_depth:
-            if level < self.levels:
+            if level < self.level_number[0]:
                 self.measure_level(w, level)
 
     @ti.kernel
@@ -141,6 +144,8 @@ class Census:
                         out = [r[0] - c.get("pull_y"), r[1] - c.get("pull_z")]
                         sums[self.at.pulled] += 0.5 * m * c.get("pull") * dot(out, out)
                     sums[self.at.elastic] += m * sound * c.state.energy(s)
+                    if ti.static(c.pressed):
+                        sums[self.at.elastic] += m * (c.get("background") / c.get("density")) * (s / (1.0 + s))
                     sums[self.at.dense] += ti.select(ti.abs(s) > DENSE, m, 0.0)
                     sums[self.at.excess] = ti.max(sums[self.at.excess], ti.abs(s))
                     if ti.static(self.closed):  # noqa: SIM102 (compiled only where no water may leave)

@@ -30,7 +30,8 @@ class Constants:
         value, slope = self.kernel.factors(length)
         strength = self.viscosity.strength(water)
         self.viscous, self.slip, self.full = strength > 0.0, water.slip, water.full
-        self.reach = water.reach
+        self.pressed = water.background > 0.0
+        self.smoothing = water.smoothing  # h/Δx
         pull = water.pull
         numbers = {
             "shrink": 0.5 / length,  # 1/(2h): t = 1 − r/(2h)
@@ -39,6 +40,7 @@ class Constants:
             "floor": FLOOR * length**2,
             "density": water.density,
             "stiffness": water.density * sound**2,  # ρ0 c0², Pa
+            "background": water.background,
             "spread": water.delta * length * sound,  # δ h c0, m²/s
             "strength": strength,
             "hydrostatic": gravity / sound**2,  # g/c0², 1/m

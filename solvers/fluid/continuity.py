@@ -90,7 +90,10 @@ class Continuity:
             flux = p.load(p.volume, b) * (factor * c.get("density"))
             for a in ti.static(range(p.axes)):
                 p.store(p.carried[a], b, flux * carried[a])
-        taken = evened * c.state.share(s) * p.load(p.mass, b) / ((1.0 + s) * (1.0 + s))
+        share = c.state.share(s)
+        if ti.static(c.pressed):
+            share += p.filled(b) * (c.get("background") / c.get("stiffness"))
+        taken = evened * share * p.load(p.mass, b) / ((1.0 + s) * (1.0 + s))
         return 0.0 - ti.cast(taken.sum() * (c.get("stiffness") / c.get("density")), p.exact)
 
     @ti.func

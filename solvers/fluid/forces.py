@@ -43,7 +43,10 @@ class Forces:
         for b in range(first, end):
             s = p.load(p.excess, b)
             p.store(p.volume, b, p.load(p.mass, b) / (density * (1.0 + s)))
-            p.store(p.pressure, b, stiffness * c.state.share(s))
+            pressure = stiffness * c.state.share(s)
+            if ti.static(c.pressed):
+                pressure += p.filled(b) * c.get("background")
+            p.store(p.pressure, b, pressure)
             if ti.static(c.shifting.acts):
                 p.store(p.span_before, b, p.load(p.span, b))
 
@@ -118,11 +121,13 @@ class Forces:
             weight = p.volume[jb, lane] * c.kernel.slope(t)
             if ti.static(c.shifting.acts):
                 crowded = weight * c.shifting.crowded(c.get("shift_scale") * c.kernel.value(t))
-                deeper = p.span_before[jb, lane] - span
-                least = ti.min(least, ti.select(t > 0.0, p.ones() * p.span_before[jb, lane], p.ones()))
                 for a in ti.static(range(p.axes)):
                     shift[a] += crowded * apart[a]
-                    inwards[a] = inwards[a] - (deeper * weight) * apart[a]
+                if ti.static(not c.full):
+                    deeper = p.span_before[jb, lane] - span
+                    least = ti.min(least, ti.select(t > 0.0, p.ones() * p.span_before[jb, lane], p.ones()))
+                    for a in ti.static(range(p.axes)):
+                        inwards[a] = inwards[a] - (deeper * weight) * apart[a]
             along = (pressure + p.pressure[jb, lane]) * weight
             if ti.static(c.viscous):
                 nearing = [p.velocity[a][jb, lane] - speed[a] for a in ti.static(range(p.axes))]
@@ -235,13 +240,18 @@ class Forces:
 
     @ti.func
     def note_shift(self, b, shift: ti.template(), inwards: ti.template(), least, span):
-        """Store the velocity with which the particles of a block are shifted; see `DeltaPlus`."""
+        """Store the velocity with which the particles of a block are shifted; see `DeltaPlus`.
+
+        A full tank has no free surface: what lacks water near it, lacks it at a wall, whose dummies stand for it.
+        """
         p, c = self.particles, self.constants
-        steep = ti.max(dot(inwards, inwards), 1e-30)
-        along = ti.select(least < INSIDE, dot(shift, inwards) / steep, p.zeros())
-        lasting = ti.select(span < SPRAY, p.zeros(), p.filled(b))
-        if ti.static(c.shifting.carries):
-            lasting = ti.select(least < INSIDE, p.zeros(), lasting)
+        along, lasting = p.zeros(), p.filled(b)
+        if ti.static(not c.full):
+            steep = ti.max(dot(inwards, inwards), 1e-30)
+            along = ti.select(least < INSIDE, dot(shift, inwards) / steep, p.zeros())
+            lasting = ti.select(span < SPRAY, p.zeros(), lasting)
+            if ti.static(c.shifting.carries):
+                lasting = ti.select(least < INSIDE, p.zeros(), lasting)
         moved = [lasting * c.get("shift") * (shift[a] - along * inwards[a]) for a in ti.static(range(p.axes))]
         fast = ti.sqrt(dot(moved, moved))
         limited = ti.min(1.0, c.get("shift_most") / ti.max(fast, 1e-30))

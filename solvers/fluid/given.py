@@ -45,8 +45,9 @@ class Water:
     compressible liquid. `kernel`, `state`, `diffusion` and `viscosity` are names of the registries. `delta` is the
     strength δ of the diffusion of density; `alpha` that of the artificial viscosity, or `kinematic` ν (m²/s) that of
     laminar flow. `slip`: water slides freely along walls, else it sticks to them. `full`: the tank has no free surface,
-    so that walls may pull. `shifting`: the name of how particles are shifted to even their distances, for water of up
-    to the `speed` (m/s). `walls`: whether the tank's outline holds the water; without, it moves freely in space.
+    so that walls may pull, and `background` is the pressure (Pa) that all of the water bears besides (Adami, Hu & Adams
+    2012, eq. 6: χ). `shifting`: the name of how particles are shifted to even their distances, for water of up to the
+    `speed` (m/s). `walls`: whether the tank's outline holds the water; without, it moves freely in space.
     `edges`: those of the outline, by their first corners, whose force is told. `periodic`: axes, "y" or "z", along
     which space repeats itself with the tank's width or height, so that it has no walls there. `start`: the name of how
     water at rest is laid, "packed" or as a "lattice". `fills`: how many particles are in each tank of a world, by their
@@ -67,6 +68,7 @@ class Water:
     kinematic: float = 0.0
     slip: bool = True
     full: bool = False
+    background: float = 0.0
     shifting: str = "none"
     speed: float = 0.0
     walls: bool = True

@@ -7,10 +7,10 @@ import numpy as np
 import taichi as ti
 
 from solvers.fluid.constants import Constants
-from solvers.fluid.order import Order
+from solvers.fluid.order import BINS, ROWS, Order
 from solvers.fluid.state import UNUSED, Listing, Particles, Shares
 from solvers.fluid.walls.bodies import Bodies
-from solvers.machine.state import State
+from solvers.machine.state import State, padded
 from solvers.machine.units import Units
 from solvers.motion.poses import Poses
 from solvers.space.axes import dot
@@ -50,10 +50,10 @@ class Lists:
         self.periods = own.holding("periods", np.array(order.grid.periods), "axis", own.place)
         wraps = [(-1, 0, 1) if period else (0,) for period in order.grid.periods]
         self.images = tuple(3 * (up + 1) + along + 1 for along, up in product(*wraps))
-        self.wall_first = own.holding("wall_first", walls, "key", ti.i32)
+        self.wall_first = own.holding("wall_first", padded(walls, order.keys), "key", ti.i32)
         particles = order.particles
         wet, dry = (-(-blocks // units.a_world) for blocks in (particles.wet, max(particles.dry, 1)))
-        crowd = room * self._crowd(order.grid, constants.reach)
+        crowd = room * self._crowd(order.grid.lanes, constants.smoothing)
         few = 4 * particles.dry * particles.lanes // units.a_world + wet  # blocks beside walls
         slots = particles.worlds * particles.stride * particles.lanes
         below = slots if len(self.images) == 1 else 9 << PLACES  # an entry of periodic space has its image in front
@@ -65,11 +65,10 @@ class Lists:
         self.last, self.skin = own.reals((units.axis,), "last", "skin")
 
     @staticmethod
-    def _crowd(grid, reach: float) -> int:
+    def _crowd(lanes: int, smoothing: float) -> int:
         """Usual number of neighbours of a full block: the area within reach of its square, with the widest skin."""
-        side, far = grid.height if grid.lanes > 1 else 0.0, reach + SKIN[1] * grid.spacing
-        area = side**2 + 4.0 * side * far + np.pi * far**2
-        return int(CROWDED * area / grid.spacing**2)
+        side, far = lanes**0.5 if lanes > 1 else 0.0, 2.0 * smoothing + SKIN[1]
+        return int(CROWDED * (side**2 + 4.0 * side * far + np.pi * far**2))
 
     def expire(self) -> None:
         """Have the lists rebuilt before the next step."""
@@ -168,10 +167,10 @@ class Lists:
         start = w * p.stride * p.lanes
         if ti.static(walls):
             start += p.wet * p.lanes
-        base = order.layer(b) * order.rows
+        base = order.layer(b) * order.sizes[ROWS]
         for strip in range(base + order.strip_of(lower[1] - far), base + order.strip_of(upper[1] + far) + 1):
-            begin = self.at(w, strip * order.bins + left, walls)
-            end = self.at(w, strip * order.bins + right + 1, walls)
+            begin = self.at(w, strip * order.sizes[BINS] + left, walls)
+            end = self.at(w, strip * order.sizes[BINS] + right + 1, walls)
             for k in range(start + begin, start + end):
                 listing.slots[u, ti.min(found, listing.capacity - 1)] = k + code  # without a branch
                 found += ti.select(self.outside(k, lower, upper) < reach * reach, 1, 0)
@@ -183,7 +182,7 @@ class Lists:
         p, bodies, listing = self.particles, self.bodies, self.beside
         lower, upper = self.box(b)
         code = self.seen_in(image, lower, upper)
-        start = self.units.world(u) * p.stride + p.wet + bodies.first
+        start = self.units.world(u) * p.stride + p.wet + bodies.first[0]
         for row in range(bodies.ends[part], bodies.ends[part + 1]):
             k, far = (start + row) * p.lanes, reach + bodies.radius[row]
             if self.outside(k, lower, upper) < far * far:

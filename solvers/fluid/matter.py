@@ -66,7 +66,12 @@ class WaterMatter(Matter):
         self.forces = Forces(arrays, medium, self.extrapolation, self.load, tank.thickness)
         self.continuity, self.mover = Continuity(arrays, medium), Mover(arrays, medium, self.extrapolation)
         self.gauges = Gauges(
-            arrays, p, water.gauges, [dummy[slot] + p.wet * lanes for slot in behind.probes], behind.open
+            arrays,
+            p,
+            self.constants,
+            water.gauges,
+            [dummy[slot] + p.wet * lanes for slot in behind.probes],
+            behind.open,
         )
         pool = Pool.of(scene, setting.walls, self.order)
         owner = np.full(p.dry * lanes, OF_NONE)
@@ -184,16 +189,10 @@ class WaterMatter(Matter):
         fields = *p.place, p.volume, p.firm, p.number
         for field, values in zip(fields, [*np.moveaxis(places, 2, 0), *held], strict=True):
             whole = field.to_numpy().reshape(p.worlds, p.stride, p.lanes)
-            whole[:, p.wet :] = values
+            whole[:, p.wet : p.wet + p.walls] = values
             field.from_numpy(whole.reshape(-1, p.lanes))
-        for field in (
-            self.forces.lost,
-            self.forces.held,
-            self.forces.work,
-            self.continuity.lost,
-            self.census.behind,
-            self.lists.last,
-        ):
+        sums = self.forces.lost, self.forces.held, self.forces.work, self.continuity.lost
+        for field in (*sums, self.census.behind, self.lists.last):
             field.fill(0.0)
         self.bodies.forget()
         self.lists.skin.fill(0.0)

@@ -90,8 +90,11 @@ class Mover:
 
     @ti.func
     def floored(self, spray, s):
-        """The excess of density, of spray at least zero."""
-        return ti.select(spray, ti.max(s, 0.0), s)
+        """The excess of density, of spray at least zero; in a full tank there is no spray."""
+        found = s
+        if ti.static(not self.constants.full):
+            found = ti.select(spray, ti.max(s, 0.0), s)
+        return found
 
     @ti.func
     def drift(self, w, b, filled, half, part: ti.template()):

@@ -10,10 +10,11 @@ import numpy as np
 import taichi as ti
 
 from solvers.fluid.grid import Grid
-from solvers.fluid.state import FAR, UNUSED, Particles
-from solvers.machine.state import Axis, State
+from solvers.fluid.state import COUNT, FAR, UNUSED, WET, Particles
+from solvers.machine.state import Axis, State, roomy
 
 CHUNK = 256  # keys that one thread sums up
+STRIPS, BINS, LONGEST, KEYS, ROWS = range(5)  # what of the grid is kept in `sizes`
 
 
 @dataclass(frozen=True)
@@ -46,11 +47,13 @@ class Order:
 
     def __init__(self, arrays: State, particles: Particles, grid: Grid, tanks: Tanks):
         self.particles, self.grid = particles, grid
-        self.strips, self.bins, self.longest = grid.strips, grid.bins, grid.longest
-        self.rows, self.layers = grid.rows, grid.layers
-        self.keys = self.strips * self.bins
-        self.chunks = -(-(self.keys + 1) // CHUNK)
+        self.layers = grid.layers
+        sizes = grid.strips, grid.bins, grid.longest, grid.strips * grid.bins, grid.rows
+        # A particle of a full tank takes two keys, and there is room for twice as many.
+        self.keys = roomy(sizes[KEYS] + 1, 2 * particles.wet * particles.lanes)
+        self.chunks = -(-self.keys // CHUNK)
         own = arrays.under("water.order")
+        self.sizes = own.holding("sizes", np.array(sizes), "size", ti.i32)
         self.numbers = own.holding("numbers", grid.numbers, "number", own.place)
         if self.layers > 1:
             self.ends = own.holding("ends", np.cumsum(tanks.fills), "layer", ti.i32)
@@ -70,12 +73,12 @@ class Order:
     @ti.func
     def bin_of(self, y):
         """The bin of a place along y (m)."""
-        return ti.max(0, ti.min(self.bins - 1, ti.cast((y - self.numbers[0]) * self.numbers[2], ti.i32)))
+        return ti.max(0, ti.min(self.sizes[BINS] - 1, ti.cast((y - self.numbers[0]) * self.numbers[2], ti.i32)))
 
     @ti.func
     def strip_of(self, z):
         """The strip of a height z (m)."""
-        return ti.max(0, ti.min(self.rows - 1, ti.cast((z - self.numbers[1]) * self.numbers[3], ti.i32)))
+        return ti.max(0, ti.min(self.sizes[ROWS] - 1, ti.cast((z - self.numbers[1]) * self.numbers[3], ti.i32)))
 
     @ti.func
     def find(self, b, lane):
@@ -83,8 +86,8 @@ class Order:
         p = self.particles
         strip = self.strip_of(p.place[1][b, lane])
         if ti.static(self.layers > 1):
-            strip += self.layer_of(p.number[b, lane]) * self.rows
-        return strip * self.bins + self.bin_of(p.place[0][b, lane])
+            strip += self.layer_of(p.number[b, lane]) * self.sizes[ROWS]
+        return strip * self.sizes[BINS] + self.bin_of(p.place[0][b, lane])
 
     @ti.func
     def layer_of(self, number):
@@ -128,7 +131,7 @@ class Order:
     def sort_world(self, w):
         """Sort the particles of one world, on one thread."""
         start, lanes = w * self.particles.stride, self.particles.lanes
-        for k in range(self.keys):
+        for k in range(self.sizes[KEYS]):
             self.cursor[w, k] = 0
         for b in range(start, start + self.particles.used[w]):
             for lane in range(lanes):
@@ -166,16 +169,17 @@ class Order:
         neighbourhood of a block stays small where there is little water.
         """
         lanes = self.particles.lanes
-        spare = self.particles.wet - (self.particles.count + lanes - 1) // lanes - self.strips
+        strips, bins, longest = self.sizes[STRIPS], self.sizes[BINS], self.sizes[LONGEST]
+        spare = self.particles.sizes[WET] - (self.particles.sizes[COUNT] + lanes - 1) // lanes - strips
         slot, begin, k = 0, 0, 0
-        for _ in range(self.strips):
+        for _ in range(strips):
             slot = (slot + lanes - 1) // lanes * lanes
-            for along in range(self.bins):
+            for along in range(bins):
                 count = self.cursor[w, k]
                 if count > 0:
                     if slot % lanes == 0:
                         begin = along
-                    elif along - begin >= self.longest and spare > 0:
+                    elif along - begin >= longest and spare > 0:
                         slot = (slot + lanes - 1) // lanes * lanes
                         begin = along
                         spare -= 1
@@ -184,7 +188,7 @@ class Order:
                     begin = along
                 slot += count
                 k += 1
-        self.first[w, self.keys] = slot
+        self.first[w, k] = slot
         return slot
 
     @ti.func
@@ -220,7 +224,7 @@ class Order:
         """Sort all worlds, with one particle a block, on all threads; the result is that of `sort_world`."""
         for w, k in self.cursor:
             self.cursor[w, k] = 0
-        for w, i in ti.ndrange(self.particles.worlds, self.particles.count):
+        for w, i in ti.ndrange(self.particles.worlds, self.particles.sizes[COUNT]):
             b = w * self.particles.stride + i
             self.wrap(b, 0)
             self.key[b, 0] = self.find(b, 0)
@@ -241,18 +245,18 @@ class Order:
         for w, k in self.first:
             self.first[w, k] = self.first[w, k] + self.chunk_first[w, k // CHUNK]
             self.cursor[w, k] = self.first[w, k]
-        for w, i in ti.ndrange(self.particles.worlds, self.particles.count):
+        for w, i in ti.ndrange(self.particles.worlds, self.particles.sizes[COUNT]):
             b = w * self.particles.stride + i
             slot = ti.atomic_add(self.cursor[w, self.key[b, 0]], 1)
             self.source[w * self.particles.stride + slot, 0] = b
         for w, k in self.first:
-            if k < self.keys:
+            if k < self.sizes[KEYS]:
                 self.order_bin(w, k)
         for field in ti.static(self.particles.moved):
-            for w, i in ti.ndrange(self.particles.worlds, self.particles.count):
+            for w, i in ti.ndrange(self.particles.worlds, self.particles.sizes[COUNT]):
                 b = w * self.particles.stride + i
                 ti.static(self.buffer(field))[b, 0] = field[self.source[b, 0], 0]
-            for w, i in ti.ndrange(self.particles.worlds, self.particles.count):
+            for w, i in ti.ndrange(self.particles.worlds, self.particles.sizes[COUNT]):
                 b = w * self.particles.stride + i
                 field[b, 0] = ti.static(self.buffer(field))[b, 0]
 

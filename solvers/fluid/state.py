@@ -4,12 +4,15 @@ import numpy as np
 import taichi as ti
 
 from solvers.fluid.given import EXCESS, VOLUME, Water
-from solvers.machine.state import Axis, State
+from solvers.machine.state import Axis, State, roomy
 from solvers.machine.units import Units
 from solvers.space.axes import PLANE, named
 
 LANES = 16  # particles in a block: two AVX2 registers, or one of AVX-512, of 32-bit numbers
 SPARE = 1.5  # blocks for each full one, for those that a sparse surface leaves half empty
+ROOM = 16384  # lanes for which there is room at least: tanks up to there, all together, share compiled kernels
+BESIDE = 64.0  # lanes of walls for the root of those of water: four rows round a tank that is longer than it is high
+COUNT, WET, DRY = range(3)  # of the numbers that differ between tanks: particles, blocks that they may use, walls'
 FAR = 1e6  # m, where unused lanes are
 DENSEST = 0.2  # deviation of the density within the water at which a run is stopped
 DENSEST_SPRAY = 0.5  # that of drops, and of the surface: a drop that hits a wall at Mach 0.2 is compressed by a fifth
@@ -27,6 +30,7 @@ def allowed(span: np.ndarray) -> np.ndarray:
 class Particles:
     """Particles in `stride` blocks a world: those of water first, `wet` blocks of which `used` are in use, then walls'.
 
+    There are `wet` and `dry` of either, lengths that many tanks have in common; `sizes` are the numbers of the scene.
     Fields (W · stride, lanes), in the tank's axes. `place` (m); `velocity` (m/s), over the earth; `excess` s = ρ/ρ0 −
     1; `mass` (kg per metre of thickness) and `number` belong to a particle for good and move with it from block to
     block. `volume` (m²) and `pressure` (Pa) are published at the start of a step. `rate` and `rate_of_walls` (1/s) are
@@ -41,10 +45,13 @@ class Particles:
     def __init__(self, arrays: State, worlds: int, count: int, lanes: int, walls: int, strips: int, shifting):
         self.worlds, self.count, self.lanes = worlds, count, lanes
         self.real, self.exact, self.where = arrays.real, arrays.exact, arrays.place
-        self.wet = count if lanes == 1 else int(SPARE * -(-count // lanes)) + 2 * strips
-        self.dry = -(-walls // lanes)
+        sizes = count, count if lanes == 1 else int(SPARE * -(-count // lanes)) + 2 * strips, -(-walls // lanes)
+        self.wet = roomy(sizes[WET], roomy(1, ROOM // lanes // worlds))
+        self.walls = sizes[DRY]
+        self.dry = roomy(self.walls, roomy(1, int(BESIDE * (self.wet * lanes) ** 0.5) // lanes)) if walls else 0
         self.stride = self.wet + self.dry
         blocks, own = Axis("block", worlds * self.stride), arrays.under("water")
+        self.sizes = own.holding("sizes", np.array(sizes), "size", ti.i32)
         each = blocks, Axis("lane", lanes)
         self.place = own.wide(each, *named("place", self.axes), kind=own.place)
         self.velocity = own.wide(each, *named("velocity", self.axes))
@@ -172,7 +179,7 @@ class Shares:
     def dry(self, u):
         """First and end of a unit's blocks of walls."""
         w = self.units.world(u)
-        first, end = self._cut(u, self.particles.dry)
+        first, end = self._cut(u, self.particles.sizes[DRY])
         start = w * self.particles.stride + self.particles.wet
         return start + first, start + end
 

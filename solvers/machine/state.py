@@ -80,6 +80,20 @@ class Array:
         return 0 if self.base is None else self.base.astype(np.int32).reshape(-1, 1, 1)
 
 
+def roomy(wanted: int, usual: int) -> int:
+    """Length of an axis with room for `wanted` entries: the `usual` length, or the least power of two that is enough.
+
+    Kernels are compiled for the shapes of the arrays. Scenes whose arrays have the same few lengths, and keep in
+    arrays how much of them is used, share compiled kernels.
+    """
+    return max(usual, 1 << max(0, wanted - 1).bit_length())
+
+
+def padded(values: np.ndarray, length: int) -> np.ndarray:
+    """Values with zeros after them along the first axis, `length` in all."""
+    return np.concatenate([values, np.zeros((length - len(values), *values.shape[1:]), values.dtype)])
+
+
 class Scope:
     """Declares arrays of a state whose names begin with that of their owner."""
 

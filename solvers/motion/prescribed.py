@@ -5,16 +5,22 @@ from collections.abc import Callable, Sequence
 import numpy as np
 import taichi as ti
 
-from solvers.machine.state import State
+from solvers.machine.state import State, roomy
 from solvers.motion.frame import turned
 from solvers.motion.steered import Steered
 
 ANY = 2**30
+FEW = 16  # numbers of a motion that is a formula; a record has many
 
 
 def _centre(motion) -> tuple[float, float]:
     """The point (m) in the earth frame about which a motion turns; the origin if it does not turn."""
     return motion.centre if motion.coordinate == "turn" else (0.0, 0.0)
+
+
+def _roomy(numbers: list[float]) -> list[float]:
+    """The numbers of a motion; of a record with zeros after them, so that many records share compiled kernels."""
+    return numbers + [0.0] * (roomy(len(numbers), 256) - len(numbers) if len(numbers) > FEW else 0)
 
 
 @ti.data_oriented
@@ -32,7 +38,7 @@ class Prescribed:
     def __init__(self, arrays: State, motions: Sequence[Sequence], soft_start: float, gravity: float):
         self.exact, self.real = arrays.exact, arrays.real
         self.kinds = tuple(motions[0])
-        rows = [[[*_centre(m), *m.parameters(soft_start)] for m in world] for world in motions]
+        rows = [[_roomy([*_centre(m), *m.parameters(soft_start)]) for m in world] for world in motions]
         sizes = [len(p) for p in rows[0]]
         self.first = tuple(int(k) for k in np.cumsum([0, *sizes])[:-1])
         self.rotating = any(m.coordinate == "turn" for m in self.kinds)

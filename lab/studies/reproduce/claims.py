@@ -14,7 +14,8 @@ from typing import Literal
 from pydantic import BaseModel, ConfigDict, Field
 
 from lab.studies.reproduce import registry
-from lab.studies.reproduce.compare import ALL, Claim, rows
+from lab.studies.reproduce.columns import Column, table
+from lab.studies.reproduce.compare import ALL, LAST, Claim, rows
 from lab.studies.reproduce.experiment import Experiment, Found, Told, Tolerance
 from lab.studies.reproduce.runs import Batch
 
@@ -73,8 +74,8 @@ class Stated(Strict):
     """An experiment of the source as a file tells it; `Experiment` says what its words are.
 
     `runs_of` names the experiment whose runs it looks at, too. `figure` names a function of `registry.FIGURES` by `by`,
-    with its arguments; `tell` one of `registry.TELLS`, which gives rows, figure and table. `needs` is the measured
-    series without which it cannot be run (`lab.base.data`).
+    with its arguments; `columns` are those of a table of runs of water; `tell` is one of `registry.TELLS`, which gives
+    rows, figure and table. `needs` is the measured series without which it cannot be run (`lab.base.data`).
     """
 
     name: str
@@ -88,6 +89,7 @@ class Stated(Strict):
     runs: dict[str, Run] = {}
     runs_of: str = ""
     rows: list[dict] = []
+    columns: list[Column] = []
     figure: dict[str, object] = {}
     tell: str = ""
     needs: str = ""
@@ -151,7 +153,8 @@ def _experiment(stated: Stated, runs: Mapping[str, Run], source: Source) -> Expe
             return registry.TELLS[stated.tell](found)
         draw = {key: value for key, value in stated.figure.items() if key != "by"}
         figure = registry.FIGURES[stated.figure["by"]](found, **draw) if stated.figure else None
-        return Told(rows(claims, found, source.tolerance), figure)
+        further = table(stated.columns, found) if stated.columns else ()
+        return Told(rows(claims, found, source.tolerance), figure, further)
 
     told = "name", "title", "section", "states", "lost", "why", "question", "needs"
     words = {name: getattr(stated, name) for name in told}
@@ -163,7 +166,7 @@ def _check(stated: Stated, claims: Sequence[Claim], runs: Mapping[str, Run], sou
     """Raise ValueError where a name is of nothing: a run, a setting, a tolerance, a function."""
     asked = [one for claim in claims for one in ([claim.runs] if isinstance(claim.runs, str) else claim.runs)]
     names = {
-        "run": ([*asked, stated.shown.run], {*runs, ALL}),
+        "run": ([*asked, stated.shown.run], {*runs, ALL, LAST}),
         "setting": ([run.like for run in runs.values()], source.settings),
         "tolerance": ([claim.within for claim in claims], source.tolerance),
         "function of rows": ([claim.by for claim in claims], registry.ROWS),

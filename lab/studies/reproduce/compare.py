@@ -5,7 +5,7 @@ of them; lists go together word by word. What a report leaves out is left out of
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import islice
 from math import inf
 from typing import Annotated
@@ -31,7 +31,7 @@ from lab.studies.reproduce.experiment import Found, Row, Tolerance, alone, count
 from lab.studies.reproduce.runs import Outcome
 from lab.studies.reproduce.ships.rolls import end
 
-ALL = "*"  # all runs of the report
+ALL, LAST = "*", "last"  # all runs of the report; the last of them
 FROZEN = "frozen_"  # measures of ships with frozen cargo, which do not vary from bed to bed
 HALF = "more than half of all beds"
 
@@ -43,14 +43,15 @@ def _one_of(word: str, known: Mapping) -> str:
 
 
 class Claim(BaseModel):
-    """A row: what it `says`, and how its numbers compare with the source.
+    """A row: what it `says`, "{run}" being the name of its run, and how its numbers compare with the source.
 
-    compare: `told` is not judged; a `value` agrees `within` a tolerance by name; a number lies `at least`, `at most`
-    or `not before` its value; numbers fall one after the other or are alike; the difference or ratio of two, of the
-    same beds where paired, lies `between` two numbers; one is the `same` as another within a tolerance or a `share`;
-    most beds have or ship's `capsizes`; the first `scatters` most. `tolerance` says how words of the source are read,
-    `shows` how ours are written, `given` is a number that a function of `registry.DERIVED` needs. `judged`: with false
-    the verdict is told as a word that does not count.
+    compare: `told` is not judged; a `value` agrees `within` a tolerance by name or a `share` of it; a number lies
+    `at least`, `at most` or `not before` its value, or in a `range`; numbers fall one after the other or are alike; the
+    difference or ratio of two, of the same beds where paired, lies `between` two numbers; one is the `same` as another
+    within a tolerance or a `share`; most beds have or ship's `capsizes`; the first `scatters` most. `tolerance` says
+    how words of the source are read, `shows` how ours are written, `given` is a number that a function of
+    `registry.DERIVED` needs, or a list within a list of them. `judged`: with false the verdict is told as a word that
+    does not count.
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True)
@@ -59,7 +60,7 @@ class Claim(BaseModel):
     of: str | list[str] = ""
     runs: str | list[str] = ALL
     at: str | list[str] = ""
-    given: float | list[float] | None = None
+    given: float | list[float] | list[list[float]] | None = None
     compare: Annotated[str, AfterValidator(lambda word: _one_of(word, KINDS))] = "told"
     value: float | None = None
     within: str = ""
@@ -80,9 +81,14 @@ class Number:
     outcomes: Sequence[Outcome]
     value: Value | None
 
+    @property
+    def exact(self) -> bool:
+        """Whether it does not vary from bed to bed."""
+        return self.of.startswith(FROZEN) or self.of in registry.OF_ONE_RUN
+
     def text(self) -> str:
         """For a reader."""
-        return alone(self.value) if self.of.startswith(FROZEN) else counted(self.value)
+        return alone(self.value) if self.exact else counted(self.value)
 
 
 def rows(claims: Sequence[Claim], found: Found, tolerances: Mapping[str, Tolerance]) -> list[Row]:
@@ -92,13 +98,14 @@ def rows(claims: Sequence[Claim], found: Found, tolerances: Mapping[str, Toleran
         if claim.by:
             told += registry.ROWS[claim.by](found)
         elif numbers := _numbers(claim, found):
-            told.append(KINDS[claim.compare](claim, numbers, _tolerance(claim, numbers, tolerances)))
+            named = claim.model_copy(update={"says": claim.says.replace("{run}", numbers[0].run)})
+            told.append(KINDS[claim.compare](named, numbers, _tolerance(claim, numbers, tolerances)))
     return told
 
 
 def _numbers(claim: Claim, found: Found) -> list[Number]:
     """The numbers of a claim; none where the report lacks one of a pair, or all."""
-    runs = list(found) if claim.runs == ALL else claim.runs
+    runs = {ALL: list(found), LAST: list(found)[-1:]}[claim.runs] if claim.runs in (ALL, LAST) else claim.runs
     lists = [one if isinstance(one, list) else [one] for one in (runs, claim.of, claim.at, claim.given)]
     size = max(map(len, lists))
     asked = list(zip(*(one * size if len(one) == 1 else one for one in lists), strict=True))
@@ -106,10 +113,15 @@ def _numbers(claim: Claim, found: Found) -> list[Number]:
     for run, of, at, given in asked:
         outcomes = [one for one in found.get(run, ()) if not at or at in map(_word, one.setting.values())]
         if outcomes:
-            first = outcomes[0][of] if of not in registry.DERIVED else registry.DERIVED[of](outcomes, given)
-            numbers.append(Number(run, of, outcomes, first))
+            numbers.append(number_of(run, of, outcomes, given))
     least = {"told": 1, "fall": 2, "alike": 2}.get(claim.compare, size)
     return numbers if len(numbers) >= least else []
+
+
+def number_of(run: str, of: str, outcomes: Sequence[Outcome], given: object = None) -> Number:
+    """A number of the first outcome of a run, or one that a function gives."""
+    value = registry.DERIVED[of](outcomes, given) if of in registry.DERIVED else outcomes[0][of]
+    return Number(run, of, outcomes, value)
 
 
 def _word(value: object) -> str:
@@ -121,6 +133,7 @@ def _tolerance(claim: Claim, numbers: Sequence[Number], known: Mapping[str, Tole
     """What is allowed, with its words."""
     if claim.share is not None:
         sizes = [abs(one.value.value) for one in numbers if mean(one.value) is not None]
+        sizes = sizes if claim.value is None else [abs(claim.value)]
         return Tolerance(claim.share * max(sizes, default=0.0), claim.tolerance)
     return known[claim.within] if claim.within else Tolerance(inf, claim.tolerance)
 
@@ -151,7 +164,14 @@ def _told(claim: Claim, numbers: Sequence[Number], allowed: Tolerance) -> Row:
 
 
 def _value(claim: Claim, numbers: Sequence[Number], allowed: Tolerance) -> Row:
-    return stated(claim.says, claim.value, numbers[0].value, allowed, exact=numbers[0].of.startswith(FROZEN))
+    row = stated(claim.says, claim.value, numbers[0].value, allowed, exact=numbers[0].exact)
+    return replace(row, source=claim.source or row.source)
+
+
+def _range(claim: Claim, numbers: Sequence[Number], allowed: Tolerance) -> Row:
+    found, value = numbers[0], numbers[0].value
+    unit = "" if value is None or value.unit == "1" else value.unit
+    return held(claim.says, claim.source, mean(value, found.exact), claim.between, claim.tolerance, unit)
 
 
 def _bounded(claim: Claim, numbers: Sequence[Number], allowed: Tolerance) -> Row:
@@ -162,7 +182,7 @@ def _bounded(claim: Claim, numbers: Sequence[Number], allowed: Tolerance) -> Row
         "not before": (claim.value - allowed.within, inf),
     }[claim.compare]
     value = numbers[0].value
-    found = mean(value)
+    found = mean(value, numbers[0].exact)
     verdict = Verdict.CANNOT_TELL if found is None else found.lies(low, high)
     if claim.compare == "not before" and found is None and value is not None:
         verdict = mostly(len(value.worlds), len(value.worlds))
@@ -237,6 +257,7 @@ def _scatters(claim: Claim, numbers: Sequence[Number], allowed: Tolerance) -> Ro
 KINDS = {
     "told": _told,
     "value": _value,
+    "range": _range,
     "at least": _bounded,
     "at most": _bounded,
     "not before": _bounded,

@@ -6,7 +6,7 @@ function that draws its figure (`by`), or the one that tells all of it (`tell`).
 
 from collections.abc import Callable, Mapping, Sequence
 
-from lab.measures.value import Value
+from lab.measures.value import Value, over_worlds
 from lab.studies.reproduce import figures
 from lab.studies.reproduce.experiment import Found, Row, Told
 from lab.studies.reproduce.grains import beds, outlines, stack
@@ -14,7 +14,19 @@ from lab.studies.reproduce.runs import Outcome
 from lab.studies.reproduce.ships import capsizes, damping, low_sides, rolls, section
 from lab.studies.reproduce.water import dam_break, damper, impact, prismatic, waves
 
-DERIVED: Mapping[str, Callable[[Sequence[Outcome], float | None], Value]] = {
+
+def _alone(unit: str, number: Callable[[Outcome, object], float]) -> Callable[[Sequence[Outcome], object], Value]:
+    return lambda outcomes, given: over_worlds([number(outcomes[0], given)], unit)
+
+
+# Numbers of single runs without scatter from bed to bed; NaN where a run has none.
+OF_ONE_RUN = {
+    name: _alone(*number)
+    for numbers in (impact.NUMBERS, dam_break.NUMBERS, waves.NUMBERS, damper.NUMBERS, prismatic.NUMBERS)
+    for name, number in numbers.items()
+}
+DERIVED: Mapping[str, Callable[[Sequence[Outcome], object], Value]] = {
+    **OF_ONE_RUN,
     "spill_lag": beds.spill_lag,
     "onset": beds.onset,
     "early_shift": outlines.early_shift,
@@ -36,6 +48,12 @@ FIGURES: Mapping[str, Callable] = {
     "courses": outlines.courses,
     "memory": beds.memory,
     "rolls": rolls.rolls_figure,
+    "impacts": impact.figure,
+    "dam break": dam_break.figure,
+    "sway beat": waves.beat,
+    "pitch": waves.swings,
+    "damper": damper.figure,
+    "pressures at P1": prismatic.figure,
 }
 TELLS: Mapping[str, Callable[[Found], Told]] = {
     "section": section.tell,
@@ -43,11 +61,5 @@ TELLS: Mapping[str, Callable[[Found], Told]] = {
     "capsizes": capsizes.tell,
     "low sides": low_sides.tell,
     "map": low_sides.tell_map,
-    "impact": impact.tell,
-    "dam break": dam_break.tell,
-    "sway beat": waves.sway_beat,
-    "pitch": waves.pitch,
-    "damper": damper.tell,
     "convergence": prismatic.convergence,
-    "roof": prismatic.contact,
 }

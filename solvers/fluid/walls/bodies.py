@@ -9,7 +9,7 @@ from solvers.fluid.given import Water
 from solvers.fluid.state import UNUSED, Particles, Shares
 from solvers.fluid.walls.sight import COSINE, RATE, SINE, V_Y, V_Z, Sight, Y, Z
 from solvers.fluid.walls.solids import Solids
-from solvers.machine.state import Axis, State
+from solvers.machine.state import Axis, State, padded, roomy
 from solvers.motion.moved import motions_of
 from solvers.motion.poses import AT_START, Poses
 from solvers.motion.prescribed import Prescribed
@@ -17,6 +17,7 @@ from solvers.space.axes import dot
 from solvers.tank.parts import Part
 from solvers.tank.tank import Tank
 
+USUAL = 4096  # dummies of bodies for which there is room at least
 AT_END = 2  # of a step, beside its start and its middle
 
 
@@ -40,7 +41,7 @@ class Bodies:
         self.solids = Solids(parts, water, lanes)
         self.rows = len(self.solids.places)
         self.sight = Sight(arrays, parts, water, tank, worlds)
-        self.arms = [max(float(np.hypot(*point)) for point in part.points) for part in parts]
+        self.farthest = [max(float(np.hypot(*point)) for point in part.points) for part in parts]
         self.fastest = max((part.fastest() for part in parts), default=0.0)
         self.carriers = [
             Prescribed(arrays.under(f"parts.{k}"), [motions_of(part)] * worlds, 0.0, 0.0)
@@ -53,12 +54,14 @@ class Bodies:
     def _declare(self, own: State) -> None:
         """Make the arrays."""
         self.exact = own.exact
-        kept = {"kind": own.place}
+        places, self.room = self.solids.places, roomy(self.rows, USUAL // self.lanes)
+        room = self.room
         self.rest = [
-            own.holding(f"rest_{n}", self.solids.places[..., a], "row lane", **kept) for a, n in enumerate("yz")
+            own.holding(f"rest_{n}", padded(places[..., a], room), "row lane", own.place) for a, n in enumerate("yz")
         ]
-        self.radius = own.holding("radius", self.solids.radius, "row")
-        self.owner = own.holding("owner", self.solids.owner, "row", ti.i32)
+        self.radius = own.holding("radius", padded(self.solids.radius, room), "row")
+        self.owner = own.holding("owner", padded(self.solids.owner, room), "row", ti.i32)
+        self.arms = own.holding("arms", np.array(self.farthest), "part", own.exact)
         self.ends = own.holding("ends", self.solids.ends, "end", ti.i32)
         world, part = Axis("world", self.worlds), Axis("part", self.count)
         (self.pose,) = own.reals((world, part, Axis("number", 21)), "pose", kind=own.exact, kept=False)
@@ -68,9 +71,10 @@ class Bodies:
     def join(self, arrays: State, particles: Particles, shares: Shares, poses: Poses, units) -> None:
         """Take the `particles` among which the dummies are, and the tank's `poses`; count for these `units`."""
         self.particles, self.shares, self.poses, self.units = particles, shares, poses, units
-        self.first = particles.dry - self.rows  # of the dry blocks
-        self.sight.join(arrays, particles, self.solids.owner, self.first)
         if self.count:
+            first = np.array([particles.walls - self.rows])  # of the dry blocks
+            self.first = arrays.under("bodies").holding("first", first, "one", ti.i32)
+            self.sight.join(arrays, particles, padded(self.solids.owner, self.room), self.first)
             own, each = arrays.under("bodies"), (units.axis, Axis("part", self.count))
             names = "impulse_y", "impulse_z", "impulse_turn", "work"
             *self.impulse, self.work = own.reals(each, *names, kind=own.exact)
@@ -80,7 +84,7 @@ class Bodies:
     @ti.func
     def row(self, b):
         """The row of a block among the bodies' ones; below zero for any other block."""
-        return b % self.particles.stride - (self.particles.wet + self.first)
+        return b % self.particles.stride - (self.particles.wet + self.first[0])
 
     @ti.func
     def note(self, w, t, dt):
@@ -110,7 +114,7 @@ class Bodies:
         p, at = self.particles, ti.static(7 * part)
         w = self.units.world(u)
         first, end = self.shares.dry(u)
-        for b in range(ti.max(first, w * p.stride + p.wet + self.first), end):
+        for b in range(ti.max(first, w * p.stride + p.wet + self.first[0]), end):
             row = self.row(b)
             k = self.owner[row]
             cos, sin = self.pose[w, k, at + COSINE], self.pose[w, k, at + SINE]
@@ -155,7 +159,7 @@ class Bodies:
         """Note where a unit's dummies of parts are as its lists are built."""
         p = self.particles
         first, end = self.shares.dry(u)
-        for b in range(ti.max(first, self.units.world(u) * p.stride + p.wet + self.first), end):
+        for b in range(ti.max(first, self.units.world(u) * p.stride + p.wet + self.first[0]), end):
             for lane in range(p.lanes):
                 for a in ti.static(range(p.axes)):
                     p.built[a][b, lane] = p.place[a][b, lane]
@@ -166,7 +170,7 @@ class Bodies:
         p = self.particles
         first, end = self.shares.dry(u)
         farthest = ti.cast(0.0, p.real)
-        for b in range(ti.max(first, self.units.world(u) * p.stride + p.wet + self.first), end):
+        for b in range(ti.max(first, self.units.world(u) * p.stride + p.wet + self.first[0]), end):
             for lane in range(p.lanes):
                 if p.number[b, lane] != UNUSED:
                     way = [ti.cast(p.place[a][b, lane] - p.built[a][b, lane], p.real) for a in ti.static(range(p.axes))]

@@ -4,6 +4,7 @@ import numpy as np
 import taichi as ti
 
 from solvers.fluid.lists import Medium
+from solvers.fluid.state import DRY
 from solvers.fluid.walls.behind import OF_NONE
 from solvers.machine.state import Axis, State
 from solvers.motion.poses import AT_START
@@ -15,7 +16,7 @@ class Edges:
     """The force (y, z; N) on each edge in each world, as mean since it was last taken.
 
     A dummy bears minus what it does to the water (`Forces`), the drag of water that sticks excepted, and belongs to the
-    nearest edge. Together the edges bear the load on the tank.
+    nearest edge. Together the edges bear the load on the tank; each without the pressure of the background.
     """
 
     def __init__(self, arrays: State, medium: Medium, edges: tuple[int, ...], owner: np.ndarray, thickness: float):
@@ -62,6 +63,8 @@ class Edges:
             push = p.pressure[jb, lane]
             if ti.static(not c.full):
                 push = ti.max(push, 0.0)
+            if ti.static(c.pressed):
+                push = push - 2.0 * c.get("background")
             along = p.volume[jb, lane] * ((pressure + push) * weight + c.hardness(square, firm))
             for a in ti.static(range(p.axes)):
                 force[a] += along * apart[a]
@@ -72,7 +75,7 @@ class Edges:
     def add(self, w, t, kick, dt):
         """Add the forces on a world's dummies to the impulses of their edges."""
         p, during = self.particles, ti.cast(dt, self.particles.exact)
-        for slot in range(p.dry * p.lanes):
+        for slot in range(p.sizes[DRY] * p.lanes):
             edge = self.owner[slot]
             if edge != OF_NONE:
                 b = w * p.stride + p.wet + slot // p.lanes

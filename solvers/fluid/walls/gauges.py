@@ -3,10 +3,12 @@
 import numpy as np
 import taichi as ti
 
+from solvers.fluid.constants import Constants
 from solvers.fluid.given import Gauge
 from solvers.fluid.state import Particles
-from solvers.machine.state import Axis, State
+from solvers.machine.state import Axis, State, padded, roomy
 
+USUAL = 8  # gauges, and probes of each, for which there is room at least
 DRY = 0.5  # of what water can cover of a probe's kernel: half of it in a plane wall, a quarter in a corner
 
 
@@ -25,28 +27,32 @@ def probes(gauge: Gauge, outline: np.ndarray, spacing: float) -> np.ndarray:
 class Gauges:
     """What the pressure gauges of each world show (W, gauges), Pa, and the highest since it was last taken.
 
-    A probe's pressure is extrapolated to the wall as a dummy's is; where water covers less than DRY of the `open` part
-    of its kernel (of each probe, what dummies leave) it is zero. A gauge
-    with the time constant τ follows by 1 − exp(−Δt/τ) of the difference in each step.
+    A probe's pressure is extrapolated to the wall as a dummy's is, less that of the background; where water covers less
+    than DRY of the `open` part of its kernel (of each probe, what dummies leave) it is zero. A gauge with the time
+    constant τ follows by 1 − exp(−Δt/τ) of the difference in each step.
     """
 
     def __init__(
         self,
         arrays: State,
         particles: Particles,
+        constants: Constants,
         gauges: tuple[Gauge, ...],
         slots: list[np.ndarray],
         open_part: list[np.ndarray],
     ):
-        self.particles, self.count = particles, len(gauges)
-        own, each = arrays.under("gauges"), (Axis("world", particles.worlds), Axis("gauge", max(1, self.count)))
+        self.particles, self.constants, self.count = particles, constants, len(gauges)
+        own, each = arrays.under("gauges"), (Axis("world", particles.worlds), Axis("gauge", roomy(self.count, USUAL)))
         self.shown, self.peak = own.reals(each, "shown", "peak", kind=own.exact)
         if self.count:
-            ends = np.cumsum([0, *(len(slot) for slot in slots)])
-            self.slots = own.holding("slots", np.concatenate(slots), "probe", ti.i32)
-            self.open = own.holding("open", np.concatenate(open_part), "probe")
-            self.ends = own.holding("ends", ends, "end", ti.i32)
-            self.response = own.holding("response", np.array([gauge.response for gauge in gauges]), "gauge", own.exact)
+            ends, room = np.cumsum([0, *(len(slot) for slot in slots)]), each[1].length
+            probes = roomy(int(ends[-1]), USUAL * room)
+            self.number = own.holding("number", np.array([self.count]), "one", ti.i32)
+            self.slots = own.holding("slots", padded(np.concatenate(slots), probes), "probe", ti.i32)
+            self.open = own.holding("open", padded(np.concatenate(open_part), probes), "probe")
+            self.ends = own.holding("ends", padded(ends, room + 1), "end", ti.i32)
+            response = padded(np.array([gauge.response for gauge in gauges]), room)
+            self.response = own.holding("response", response, "gauge", own.exact)
 
     def forget(self) -> None:
         """Show nothing, as before the first step."""
@@ -57,12 +63,14 @@ class Gauges:
     def measure(self, w, t, kick, dt):
         """Let the gauges of a world follow the pressures of their probes."""
         p = self.particles
-        for gauge in range(self.count):
+        for gauge in range(self.number[0]):
             total = ti.cast(0.0, p.exact)
             for k in range(self.ends[gauge], self.ends[gauge + 1]):
                 b, lane = w * p.stride + self.slots[k] // p.lanes, self.slots[k] % p.lanes
                 if p.span[b, lane] > DRY * self.open[k]:
                     total += ti.cast(p.pressure[b, lane], p.exact)
+                    if ti.static(self.constants.pressed):
+                        total -= ti.cast(self.constants.get("background"), p.exact)
             mean = total / (self.ends[gauge + 1] - self.ends[gauge])
             follows = ti.cast(1.0, p.exact)
             if self.response[gauge] > 0.0:

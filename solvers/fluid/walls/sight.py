@@ -16,6 +16,7 @@ from solvers.tank.tank import Tank
 
 Y, Z, COSINE, SINE, V_Y, V_Z, RATE = range(7)  # a pose in the tank: its origin (m), its turn, its velocities
 LINE_Y, LINE_Z, ALONG_Y, ALONG_Z, LOW, HIGH = range(6)  # a plate: a point (m), its direction, its ends (m) from there
+REACH, TOUCH = range(2)  # of `lengths`
 TOUCHES = 0.25  # spacings between a plate's end and a wall from which on no water passes between them
 
 
@@ -29,19 +30,21 @@ class Sight:
     """
 
     def __init__(self, arrays: State, parts: Sequence[Part], water: Water, tank: Tank, worlds: int):
-        self.exact, self.worlds, self.reach, self.touches = arrays.exact, worlds, water.reach, TOUCHES * water.spacing
+        self.exact, self.worlds = arrays.exact, worlds
         self.plates = tuple(k for k, part in enumerate(parts) if not is_solid(part))
         if self.plates:
             own = arrays.under("sight")
             lines = np.array([[*parts[k].points[0], *parts[k].points[1]] for k in self.plates])
+            lengths = np.array([water.reach, TOUCHES * water.spacing])
+            self.lengths = own.holding("lengths", lengths, "length", own.exact)
             self.drawn = own.holding("drawn", lines, "plate number", own.exact)
             edges = np.column_stack([tank.outline, np.roll(tank.outline, -1, axis=0)])
             self.edges, self.outline = len(edges), own.holding("outline", edges, "edge number", own.exact)
             each = Axis("world", worlds), Axis("plate", len(self.plates)), Axis("number", 12)
             (self.line,) = own.reals(each, "line", kept=False)
 
-    def join(self, arrays: State, particles: Particles, owner: np.ndarray, first: int) -> None:
-        """Take the `particles`, of whose dry blocks those from the `first` on belong to the parts `owner`."""
+    def join(self, arrays: State, particles: Particles, owner: np.ndarray, first: ti.Field) -> None:
+        """Take the `particles`, of whose dry blocks those from `first` (1,) on belong to the parts `owner`."""
         self.particles, self.first = particles, first
         if self.plates:
             plate = [self.plates.index(k) if k in self.plates else UNUSED for k in owner]
@@ -65,8 +68,8 @@ class Sight:
         values = [y[0], z[0], (y[1] - y[0]) / length, (z[1] - z[0]) / length]
         for n in ti.static(range(4)):
             self.line[w, q, first + n] = ti.cast(values[n], self.particles.real)
-        low = ti.select(self.touching(y[0], z[0]), 0.0 - self.reach, 0.0)
-        high = ti.select(self.touching(y[1], z[1]), length + self.reach, length)
+        low = ti.select(self.touching(y[0], z[0]), 0.0 - self.lengths[REACH], 0.0)
+        high = ti.select(self.touching(y[1], z[1]), length + self.lengths[REACH], length)
         self.line[w, q, first + LOW] = ti.cast(low, self.particles.real)
         self.line[w, q, first + HIGH] = ti.cast(high, self.particles.real)
 
@@ -79,7 +82,7 @@ class Sight:
             along, up, off_y, off_z = self.outline[k, 2] - a_y, b_z - a_z, y - a_y, z - a_z
             share = ti.max(0.0, ti.min(1.0, (off_y * along + off_z * up) / (along * along + up * up)))
             off = [off_y - share * along, off_z - share * up]
-            if dot(off, off) < self.touches * self.touches:
+            if dot(off, off) < self.lengths[TOUCH] * self.lengths[TOUCH]:
                 near = True
             if (a_z > z) != (b_z > z) and off_y < off_z * along / up:
                 inside = not inside
@@ -92,15 +95,15 @@ class Sight:
         `apart` are the places of the block less the other one's.
         """
         p = self.particles
-        before = p.wet + self.first
+        before = p.wet + self.first[0]
         w, own, other = b // p.stride, b % p.stride - before, jb % p.stride - before
-        far = p.zeros()
+        far, reach = p.zeros(), ti.cast(self.lengths[REACH], p.real)
         for q in ti.static(range(len(self.plates))):
             first = ti.static(6 * part)
             t_y, t_z = self.line[w, q, first + ALONG_Y], self.line[w, q, first + ALONG_Z]
             y, z = place[0] - self.line[w, q, first + LINE_Y], place[1] - self.line[w, q, first + LINE_Z]
             across = t_y * z - t_z * y
-            if across * across < 4.0 * self.reach * self.reach:
+            if across * across < 4.0 * reach * reach:
                 its = ti.cast(0.0, p.real)  # 1 where one of the two is a dummy of this plate
                 if own >= 0:
                     its = ti.select(self.plate[own] == q, 1.0, its)

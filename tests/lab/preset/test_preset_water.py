@@ -124,6 +124,15 @@ FAULTS = {
         {"water__full": True},
         "water.full: the water is 100 mm deep in a tank 500 mm high; it must fill a tank with a lid.",
     ),
+    "a background at a surface": (
+        {"water__background_pressure": "5 Pa"},
+        "water.background_pressure: goes with water.full; a free surface would be blown apart.",
+    ),
+    "a heavy background": (
+        {"water__depth": "500 mm", "water__full": True, "water__background_pressure": "1 MPa"},
+        "water.background_pressure: 1 MPa is more than a tenth of ρ c² at 22.15 m/s; take at most 49.05 kPa, or raise "
+        "water.sound_speed.",
+    ),
     "wide particles": (
         {"water__spacing": "120 mm"},
         "water.spacing: particles of 120 mm are larger than the water, which is 100 mm deep.",

@@ -35,8 +35,10 @@ def test_a_finer_run_that_is_farther_off_differs():
 
 @pytest.mark.parametrize(("highest", "verdict"), [(207.0, Verdict.AGREES), (208.0, Verdict.DIFFERS)])
 def test_water_within_a_spacing_of_the_roof_touches_it(highest, verdict):
-    told = prismatic.contact({"25 %, roll": swayed(2.4, 0.0, highest, "sloshing/source-p-25-roll")})
+    found = {"25 %, roll": swayed(2.4, 0.0, highest, "sloshing/source-p-25-roll")}
+    told = experiments("water")["prismatic-roof"].tell(found)
     assert [row.verdict for row in told.rows] == [verdict]
+    assert dict(zip(*told.table, strict=True))["highest water"] == f"{highest:.0f} mm"
 
 
 def test_all_runs_of_the_study_are_of_presets_that_exist():

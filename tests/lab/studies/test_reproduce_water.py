@@ -1,5 +1,6 @@
 """Water beside experiments: what is read off a run, measured series from files that are not shipped, and slow runs."""
 
+import tomllib
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -12,6 +13,8 @@ import lab
 from lab.base.errors import LabError
 from lab.preset.find import load
 from lab.studies.reproduce import experiments
+from lab.studies.reproduce.claims import FOLDER, Source, spread
+from lab.studies.reproduce.compare import Claim
 from lab.studies.reproduce.estimates import Verdict
 from lab.studies.reproduce.runs import Outcome, carry_out, outcomes
 from lab.studies.reproduce.water import dam_break, impact, measured, waves
@@ -31,6 +34,23 @@ def ran(preset: str, changes: dict | None = None, **series: np.ndarray) -> Outco
     return one
 
 
+def judged(name: str, label: str, one: Outcome) -> dict[str, Verdict]:
+    """The verdicts on the rows of an experiment whose only run this is; its figure is drawn and its table made."""
+    told = experiments("water")[name].tell({label: [one]})
+    assert told.figure is not None and len(told.table) == 2 and len(told.table[0]) == len(told.table[1])
+    return {row.quantity.removesuffix(f", {label}"): row.verdict for row in told.rows}
+
+
+def claimed(name: str) -> dict[str, list[Claim]]:
+    """The claims of an experiment by the number that they look at."""
+    source = Source.model_validate(tomllib.loads((FOLDER / "water.toml").read_text(encoding="utf-8")))
+    (stated,) = (one for one in source.experiment if one.name == name)
+    found: dict[str, list[Claim]] = {}
+    for claim in (Claim.model_validate(row) for raw in stated.rows for row in spread(raw)):
+        found.setdefault(claim.of, []).append(claim)
+    return found
+
+
 def test_an_impact_has_the_arrival_peak_and_impulse_of_its_pressure():
     """A jump to 5 kPa that falls off linearly within 40 ms, on 0.5 kPa that stays."""
     time = np.arange(0.0, 5.0, 5e-4)
@@ -47,17 +67,27 @@ def test_both_impacts_are_judged_by_arrival_impulse_and_peak():
     """One that comes 30 ms late, twice as high and with the right impulse differs in two of them."""
     time = np.arange(0.0, 5.0, 5e-4)
     pressure = np.zeros((len(time), 1, 1))
-    for one in impact.EXPERIMENT:
-        since = time - one.arrival - 0.03
-        pressure[:, 0, 0] += np.where((since >= 0.0) & (since < one.impulse / 8000.0), 8000.0, 0.0)
-    rows = impact.tell(
-        {"15 layers": [ran("sloshing/impact", time=time, gauge_pressure=pressure, gauge_peak=pressure)]}
-    ).rows
-    verdicts = {row.quantity: row.verdict for row in rows}
+    for arrival, impulse in ((2.3738, 179.0), (4.047, 187.0)):
+        since = time - arrival - 0.03
+        pressure[:, 0, 0] += np.where((since >= 0.0) & (since < impulse / 8000.0), 8000.0, 0.0)
+    one = ran("sloshing/impact", time=time, gauge_pressure=pressure, gauge_peak=pressure)
+    verdicts = judged("roll-impact", "15 layers", one)
     for order in ("first", "second"):
-        assert verdicts[f"{order} impact arrives at, 15 layers"] is Verdict.DIFFERS
-        assert verdicts[f"{order} impact peak, 15 layers"] is Verdict.DIFFERS
-        assert verdicts[f"{order} impact impulse, 15 layers"] is Verdict.AGREES
+        assert verdicts[f"{order} impact arrives at"] is Verdict.DIFFERS
+        assert verdicts[f"{order} impact peak"] is Verdict.DIFFERS
+        assert verdicts[f"{order} impact impulse"] is Verdict.AGREES
+
+
+def test_only_the_last_run_is_judged_and_all_are_in_the_table():
+    """A run without an impact first: its cells say so, and no row is about it."""
+    time = np.arange(0.0, 5.0, 5e-4)
+    still = ran(
+        "sloshing/impact", time=time, gauge_pressure=np.zeros((len(time), 1, 1)), gauge_peak=np.zeros((len(time), 1, 1))
+    )
+    told = experiments("water")["roll-impact"].tell({"a": [still], "b": [still]})
+    assert {row.quantity.rsplit(", ", 1)[1] for row in told.rows} == {"b"}
+    assert {row.verdict for row in told.rows} == {Verdict.CANNOT_TELL}
+    assert [row[0] for row in told.table] == ["run", "a", "b"] and told.table[1][5:] == ["none"] * 8
 
 
 def test_a_dam_breaks_front_has_the_speed_of_its_foremost_particle_before_the_wall():
@@ -80,9 +110,9 @@ def test_a_dam_breaks_front_has_the_speed_of_its_foremost_particle_before_the_wa
     assert found.arrival == pytest.approx(2.4, abs=0.01)
     assert (found.peak, found.mean, found.plateau) == pytest.approx((2.5, 2.5, 1.0))
     assert found.wall == pytest.approx((0.999 * 1.01 / 0.3 - 0.02) / 1.7, abs=0.03)
-    verdicts = {row.quantity: row.verdict for row in dam_break.tell({"30 layers": [one]}).rows}
-    assert verdicts["mean from 3.5 to 4.5 at sensor 1, ρgH, 30 layers"] is Verdict.DIFFERS
-    assert verdicts["that mean beside inviscid codes, 30 layers"] is Verdict.AGREES
+    verdicts = judged("dam-break", "30 layers", one)
+    assert verdicts["mean from 3.5 to 4.5 at sensor 1, ρgH"] is Verdict.DIFFERS
+    assert verdicts["that mean beside inviscid codes"] is Verdict.AGREES
 
 
 def test_what_a_run_that_was_stopped_did_not_reach_is_not_judged():
@@ -91,22 +121,23 @@ def test_what_a_run_that_was_stopped_did_not_reach_is_not_judged():
     places = np.full((110, 1, 2, 2), -0.21)
     frames = {"frames_time": np.arange(0.0, 0.55, 0.005), "frames_water_place": places}
     one = ran("validation/dam-break", time=time, gauge_pressure=still, gauge_peak=still, **frames)
-    rows = dam_break.tell({"30 layers": [one]}).rows
+    rows = experiments("water")["dam-break"].tell({"30 layers": [one]}).rows
     assert {(row.ours, row.verdict) for row in rows} == {("not found", Verdict.CANNOT_TELL)}
 
 
 def test_turns_of_a_wave_are_found_near_the_measured_ones():
     """A curve through the measured turns, 0.05 s late and 1.2 times as high."""
-    times = np.array([0.0, *waves.TURNS, 10.0])
-    sizes = 1.2 * np.array([0.0, *waves.TURNS.values(), 0.0])
+    sizes = {1.93: -88.0, 2.57: 142.1, 3.27: -92.5, 4.04: 109.3, 7.0: -66.8, 7.71: 124.8, 8.3: -82.5, 9.16: 141.4}
+    times = np.array([0.0, *sizes, 10.0])
     time = np.arange(0.0, 10.0, 0.002)
-    rise = PchipInterpolator(times + 0.05, sizes, extrapolate=True)(time)
-    found = waves.turns(time, rise)
-    assert [late for late, _ in found] == pytest.approx([0.05] * len(found), abs=0.003)
+    rise = PchipInterpolator(times + 0.05, 1.2 * np.array([0.0, *sizes.values(), 0.0]), extrapolate=True)(time)
     depth = np.zeros((len(time), 1, 2))
     depth[..., waves.GAUGE] = 0.6 + 1e-3 * rise[:, None]
-    rows = waves.sway_beat({"20 layers": [ran("sloshing/sway-quick", time=time, level_depth=depth)]}).rows
-    assert [row.verdict for row in rows] == [Verdict.DIFFERS] * 4 + [Verdict.AGREES, Verdict.DIFFERS]
+    one = ran("sloshing/sway-quick", time=time, level_depth=depth)
+    found = [waves.turn(one, when, size) for when, size in sizes.items()]
+    assert [late for late, _ in found] == pytest.approx([0.05] * len(found), abs=0.003)
+    verdicts = [*judged("sway-beat", "20 layers", one).values()]
+    assert verdicts == [Verdict.DIFFERS] * 4 + [Verdict.AGREES, Verdict.DIFFERS]
 
 
 def test_the_swing_of_a_pressure_is_that_of_its_sine():
@@ -116,7 +147,7 @@ def test_the_swing_of_a_pressure_is_that_of_its_sine():
     pressure = 1e3 * np.stack([3.2 + sine, 3.2 - sine], axis=-1)[:, None, :]
     one = ran("sloshing/pitch", time=time, gauge_pressure=pressure)
     assert waves.swing(one) == pytest.approx((0.36, -6.0, 3.2), rel=2e-3)
-    verdicts = [row.verdict for row in waves.pitch({"30 layers": [one]}).rows]
+    verdicts = [*judged("pitch", "30 layers", one).values()]
     assert verdicts == [Verdict.AGREES, Verdict.DIFFERS, Verdict.AGREES, Verdict.AGREES]  # it is not linear theory's
 
 
@@ -155,34 +186,38 @@ def test_the_numbers_of_the_impacts_are_those_of_the_record():
     time, pressure = measured.series(impact.MEASURED)
     often = np.arange(0.0, 5.0, 1e-4)
     even = np.interp(often, time, pressure)
-    for stated in impact.EXPERIMENT:
-        found = impact.find_impact(often, even, even, stated.arrival)
-        assert found.arrival == pytest.approx(stated.arrival, abs=1e-3)
-        assert (found.peak, found.mean, found.impulse) == pytest.approx(
-            (stated.peak, stated.mean, stated.impulse), 0.015
-        )
+    parts = {"impact_arrival": 1.0, "impact_peak": 1e-3, "impact_mean": 1e-3, "impact_impulse": 1.0}
+    for order in (0, 1):
+        wanted = {of: claims[order] for of, claims in claimed("roll-impact").items()}
+        found = impact.find_impact(often, even, even, wanted["impact_arrival"].given)
+        ours = [factor * getattr(found, of.removeprefix("impact_")) for of, factor in parts.items()]
+        stated = [wanted[of].value or float(wanted[of].source.split()[0]) for of in parts]
+        assert ours[0] == pytest.approx(stated[0], abs=1e-3) and ours[1:] == pytest.approx(stated[1:], rel=0.015)
 
 
 @given
 def test_the_numbers_of_the_waves_are_those_of_the_read_off_series():
     time, rise = measured.series(waves.SWAY)
-    turned = [float(np.interp(when, time, 1e3 * rise)) for when in waves.TURNS]
-    assert turned == pytest.approx([*waves.TURNS.values()], abs=3.0)
+    crests = {claim.given: claim.value for claim in claimed("sway-beat")["crest"]}
+    turned = [float(np.interp(when, time, 1e3 * rise)) for when in crests]
+    assert turned == pytest.approx([*crests.values()], abs=3.0)
     time, pressure = measured.series(waves.PITCH)
     terms = np.stack([np.ones_like(time), np.sin(2.0 * time), np.cos(2.0 * time)], axis=1)
     mean, ahead, across = np.linalg.lstsq(terms, pressure, rcond=None)[0]
-    assert (np.hypot(ahead, across), np.degrees(np.arctan2(across, ahead)), mean) == pytest.approx(
-        waves.SWING, rel=0.01
-    )
+    stated = claimed("pitch")
+    assert np.hypot(ahead, across) == pytest.approx(stated["pressure_swing"][0].value, rel=0.01)
+    assert mean == pytest.approx(stated["pressure_mean"][0].value, rel=0.01)
+    assert np.degrees(np.arctan2(across, ahead)) == pytest.approx(-6.2, rel=0.01)
 
 
 @given
 def test_the_band_of_the_dam_breaks_pressure_is_that_of_the_repeats():
     time, low, middle, high = measured.series(dam_break.PRESSURES)
     late = (time > dam_break.PLATEAU[0]) & (time < dam_break.PLATEAU[1])
-    assert (low[late].mean(), high[late].mean()) == pytest.approx(dam_break.NUMBERS["plateau"][2], abs=0.01)
-    assert (low.max(), high.max()) == pytest.approx(dam_break.NUMBERS["peak"][2], abs=0.01)
-    assert middle.max() == pytest.approx(float(dam_break.NUMBERS["peak"][1]), abs=0.01)
+    stated = {of: claims[0] for of, claims in claimed("dam-break").items()}
+    assert (low[late].mean(), high[late].mean()) == pytest.approx(stated["break_plateau"].between, abs=0.01)
+    assert (low.max(), high.max()) == pytest.approx(stated["break_peak"].between, abs=0.01)
+    assert middle.max() == pytest.approx(float(stated["break_peak"].source), abs=0.01)
 
 
 @pytest.mark.slow

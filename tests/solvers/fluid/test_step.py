@@ -133,3 +133,13 @@ def test_other_ways_of_running_give_the_same_water(run, changes):
     spacing = other.scene.water.spacing
     tight = {"f64": 1e-9, "mixed": 2e-5, "f32": 5e-4}[other.scene.precision]
     np.testing.assert_allclose(place[1], place[0], atol=tight * spacing)
+
+
+def test_tanks_of_other_sizes_share_compiled_kernels(run):
+    """All arrays of a tank twice as fine, wider and half as deep have the same shapes, for which kernels are made."""
+    scene = still(2.0 * WIDTH, HEIGHT, 0.5 * DEPTH, 2 * ROWS // 3, gauges=GAUGES[:1], levels=(), edges=(0,))
+    other = Simulation(scene, threads=1, arch="cpu")
+    shapes = [{name: array.shape for name, array in one.arrays.arrays.items()} for one in (run, other)]
+    assert shapes[0] == shapes[1]
+    assert other.scene.particles != run.scene.particles
+    other.close()

@@ -40,6 +40,7 @@ def check_water(preset: Whole) -> None:
         _check_region(water, tank)
     _check_spacing(preset)
     _check_sound(preset)
+    _check_background(preset)
     _check_gauges(preset.gauges, tank)
 
 
@@ -131,6 +132,19 @@ def _check_sound(preset: Whole) -> None:
         raise LabError(
             f"water.sound_speed: at {show(sound, 'm/s')} the water's weight would compress it by more than "
             f"{100.0 * COMPRESSED:g} %; take at least {least}, better ten times the speed of the water."
+        )
+
+
+def _check_background(preset: Whole) -> None:
+    """Raise LabError for a background pressure at a free surface, or one that compresses the water visibly."""
+    pressure, sound = preset.water.background_pressure, liquid.liquid(preset).sound_speed
+    if pressure and not preset.water.full:
+        raise LabError("water.background_pressure: goes with water.full; a free surface would be blown apart.")
+    most = COMPRESSED * preset.water.density * sound**2
+    if pressure > most:
+        raise LabError(
+            f"water.background_pressure: {show(pressure, 'Pa')} is more than a tenth of ρ c² at "
+            f"{show(sound, 'm/s')}; take at most {show(most, 'Pa')}, or raise water.sound_speed."
         )
 
 

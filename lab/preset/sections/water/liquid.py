@@ -51,6 +51,7 @@ def liquid(preset: Wet) -> given.Water:
         kinematic=water.kinematic_viscosity or 0.0,
         slip=water.slip,
         full=water.full,
+        background=water.background_pressure,
         shifting=water.shifting,
         speed=expected_speed(preset),
         start=water.start,

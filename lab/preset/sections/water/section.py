@@ -74,6 +74,12 @@ class Water:
     ] = None
     slip: Annotated[bool, Doc("Whether water slides along walls; else it sticks to them.")] = True
     full: Annotated[bool, Doc("Whether the water fills the whole tank, so that walls may pull at it.")] = False
+    background_pressure: Annotated[
+        float,
+        Unit("Pa"),
+        Interval(ge=0),
+        Doc("Pressure that all of the water in a full tank bears besides, so that none of it is torn apart."),
+    ] = 0.0
     shifting: Annotated[Literal[*SHIFTING], Doc("How particles are shifted to even their distances.")] = "none"
     start: Annotated[
         Literal[*STARTS],

@@ -5,6 +5,7 @@ in the folder `work` and not run again, so that an interrupted study can be cont
 """
 
 from lab.studies.bench.accuracy import (
+    asked,
     collisions,
     creep,
     laws,
@@ -29,6 +30,7 @@ STUDIES = {
     "creep": creep.study,
     "repeats": repeats.study,
     "skin": skin.study,
+    "asked": asked.study,
     "levels": levels.study,
 }
 BENCH = Bench("accuracy", "Speed against error", STUDIES)

@@ -4,7 +4,8 @@ Lobovský et al. (2014), J. Fluids Struct. 48, 407: a column of H = 300 mm, 2 H 
 pressures in ρ g H. Our column has no gate: it is free at once.
 """
 
-from dataclasses import astuple, dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, fields
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -12,11 +13,9 @@ from matplotlib.figure import Figure
 
 from lab.preset.sections.water.liquid import spacing
 from lab.report.plots import BELOW, BLUE, GREEN, GREY, VERMILION, canvas
-from lab.studies.reproduce.estimates import Estimate
-from lab.studies.reproduce.experiment import Found, Row, Told, held
+from lab.studies.reproduce.experiment import Found
 from lab.studies.reproduce.figures import SIZE
 from lab.studies.reproduce.runs import Outcome
-from lab.studies.reproduce.water.costs import beside
 from lab.studies.reproduce.water.measured import drawn
 
 FITTED = 1.0, 3.3  # H beyond the column, of the line through the front; the wall is at 3.37
@@ -27,17 +26,6 @@ WALL = 1010.0 / 300.0  # H from the column's end
 FIRST = 0.6  # √(H/g) after the arrival in which the first peak is sought
 FRONTS, PRESSURES = "dam_break_fronts/front_lobovsky_H0.300m.csv", "lobovsky_dam_break/pressure_sensor1.csv"
 COLOURS = BLUE, VERMILION, GREEN
-NUMBERS = {  # our number, what is stated, the range that agrees, its origin
-    "front": ("front's speed, √(gH)", "1.6 to 1.8", (1.6, 1.8), "line fits to experiments with H of 0.2 m or more"),
-    "wall": ("front at the wall at, √(H/g)", "2.42", (0.97 * 2.42, 1.03 * 2.42), "3 %"),
-    "arrival": ("pressure at sensor 1 from, √(H/g)", "2.42", (0.97 * 2.42, 1.03 * 2.42), "3 %"),
-    "peak": ("first peak at sensor 1, ρgH", "2.66", (2.1, 3.7), "2.1 to 3.7: 95 % of a hundred repeats"),
-    "second": ("first peak at sensor 2, ρgH", "1.87", (1.77, 2.02), "1.77 to 2.02: 95 % of a hundred repeats"),
-    "mean": ("largest mean over 10 ms at sensor 1, ρgH", "2.44", (1.99, 3.28), "1.99 to 3.28: 95 % of the repeats"),
-    "second_mean": ("the same at sensor 2, ρgH", "1.86", (1.73, 1.98), "1.73 to 1.98: 95 % of the repeats"),
-    "plateau": ("mean from 3.5 to 4.5 at sensor 1, ρgH", "0.72", (0.60, 0.91), "0.60 to 0.91: 95 % of the repeats"),
-    "codes": ("that mean beside inviscid codes", "0.95 to 1.02", (0.90, 1.07), "5 % about the codes with 80 layers"),
-}
 
 
 @dataclass(frozen=True)
@@ -112,45 +100,39 @@ def _first(time: np.ndarray, reached: np.ndarray) -> float:
     return float(time[np.argmax(reached)]) if reached.any() else np.nan
 
 
-def tell(found: Found) -> Told:
-    """The numbers of the collapse beside the experiments'."""
-    heads = ("front", "at the wall", "at sensor 1", "peak 1", "peak 2", "10 ms mean 1", "10 ms mean 2", "plateau")
-    return beside(found, heads, lambda one: [f"{each:.3g}" for each in astuple(find_break(one))], _rows, _figure)
+def _part(name: str) -> Callable[[Outcome, object], float]:
+    return lambda one, _: getattr(find_break(one), name)
 
 
-def _rows(label: str, one: Outcome) -> list[Row]:
-    rows, ours = [], find_break(one)
-    for name, (says, stated, between, origin) in NUMBERS.items():
-        number = ours.plateau if name == "codes" else getattr(ours, name)
-        estimate = None if np.isnan(number) else Estimate.exact(number)
-        rows.append(held(f"{says}, {label}", stated, estimate, between, origin))
-    return rows
+NUMBERS = {f"break_{one.name}": ("1", _part(one.name)) for one in fields(Break)}
 
 
-def _figure(runs: dict[str, Outcome]) -> Figure:
-    figure, (fronts, pressures) = canvas((SIZE[0] + 0.8, 3.6), 1, 2)
-    _draw_fronts(fronts, runs)
-    _draw_pressures(pressures, runs)
+def figure(found: Found, speeds: Sequence[float], plateau: Sequence[float]) -> Figure:
+    """Fronts beside lines of `speeds`, √(gH), and the pressure at sensor 1 beside the range of its `plateau`, ρgH."""
+    runs = {label: outcomes[0] for label, outcomes in found.items()}
+    drawing, (fronts, pressures) = canvas((SIZE[0] + 0.8, 3.6), 1, 2)
+    _draw_fronts(fronts, runs, speeds)
+    _draw_pressures(pressures, runs, plateau)
     handles, labels = fronts.get_legend_handles_labels()
     more = pressures.get_legend_handles_labels()
-    figure.legend([*handles, more[0][0]], [*labels, more[1][0]], loc=BELOW, ncols=3)
-    return figure
+    drawing.legend([*handles, more[0][0]], [*labels, more[1][0]], loc=BELOW, ncols=3)
+    return drawing
 
 
-def _draw_fronts(axes: Axes, runs: dict[str, Outcome]) -> None:
+def _draw_fronts(axes: Axes, runs: dict[str, Outcome], speeds: Sequence[float]) -> None:
     for (label, one), colour in zip(runs.items(), COLOURS, strict=False):
         time, place = front_course(one)
         axes.plot(time[place <= FITTED[1]], place[place <= FITTED[1]], color=colour, label=label)
     middle = np.array([1.2, 2.6])
-    for speed, style in ((1.6, ":"), (1.8, "--")):
+    for speed, style in zip(speeds, (":", "--"), strict=False):
         axes.plot(middle, 0.6 + speed * (middle - middle[0]), color="0.5", ls=style, lw=1.0, label=f"{speed} √(gH)")
     if (measured := drawn(axes, FRONTS)) is not None:
         axes.plot(*measured, "o", ms=2.5, color="black", label="measured")
     axes.set(xlabel="t √(g/H)", ylabel="front beyond the column (H)", xlim=(0.0, 3.0), ylim=(0.0, 4.2))
 
 
-def _draw_pressures(axes: Axes, runs: dict[str, Outcome]) -> None:
-    axes.axhspan(*NUMBERS["plateau"][2], color=GREY, alpha=0.3, lw=0, label="95 % of the repeats from 3.5 to 4.5")
+def _draw_pressures(axes: Axes, runs: dict[str, Outcome], plateau: Sequence[float]) -> None:
+    axes.axhspan(*plateau, color=GREY, alpha=0.3, lw=0, label="95 % of the repeats from 3.5 to 4.5")
     for (_, one), colour in zip(runs.items(), COLOURS, strict=False):
         series, unit = one.recording.series, Scales(one)
         axes.plot(series["time"] / unit.time, series["gauge_pressure"][:, 0, 0] / unit.pressure, color=colour, lw=0.8)

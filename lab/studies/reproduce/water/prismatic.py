@@ -87,24 +87,25 @@ def _falls(runs: Mapping[str, Outcome], pressures: Mapping[str, Pressure], fines
 
 def roof(one: Outcome) -> str:
     """How high the water comes, in words."""
-    highest = one["highest_water"].value
-    within = 1e3 * spacing(one.recording.preset)  # as the measure has it
-    return f"{highest:.0f} mm{', the roof' if highest >= ROOF - within else ''}"
+    return f"{one['highest_water'].value:.0f} mm{', the roof' if below_roof(one, ROOF) <= 0.0 else ''}"
 
 
-def contact(found: Found) -> Told:
-    """Whether one-phase water touches the roof, by run; the source says it of a quarter full tank that rolls."""
-    runs = {label: outcomes[0] for label, outcomes in found.items()}
-    pressures = {label: pressure(one) for label, one in runs.items()}
-    rows, cells = [], []
-    for label, one in runs.items():
-        own, highest = pressures[label], roof(one)
-        if label.startswith("25 %, roll"):
-            verdict = Verdict.DIFFERS if "the roof" in highest else Verdict.AGREES
-            rows.append(observed(f"highest water, {label}", "less than the roof's 210 mm", highest, verdict))
-        cells.append([*cost(label, one), f"{own.value.mean():.0f} Pa", f"{own.mean_peak:.0f} Pa", highest])
-    heads = [*COSTS, "mean at P1", f"mean peak of {CYCLES} cycles", "highest water"]
-    return Told(rows, _figure(pressures), [heads, *cells])
+def below_roof(one: Outcome, height: float) -> float:
+    """How far (mm) the highest water is below a roof at a height (mm), less a spacing: at or below zero it touches."""
+    return height - 1e3 * spacing(one.recording.preset) - one["highest_water"].value
+
+
+NUMBERS = {
+    "below_roof": ("mm", below_roof),
+    "highest_water_alone": ("mm", lambda one, _: one["highest_water"].value),
+    "p1_mean": ("Pa", lambda one, _: float(pressure(one).value.mean())),
+    "p1_mean_peak": ("Pa", lambda one, _: pressure(one).mean_peak),
+}
+
+
+def figure(found: Found) -> Figure:
+    """The pressure at P1 of all runs."""
+    return _figure({label: pressure(outcomes[0]) for label, outcomes in found.items()})
 
 
 def _figure(pressures: Mapping[str, Pressure]) -> Figure:

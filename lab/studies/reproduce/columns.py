@@ -1,0 +1,34 @@
+"""The further table of an experiment: a row a run, what it cost, and numbers of it."""
+
+from collections.abc import Mapping, Sequence
+
+from pydantic import BaseModel, ConfigDict
+
+from lab.studies.reproduce.compare import number_of
+from lab.studies.reproduce.runs import Outcome
+from lab.studies.reproduce.water.costs import COSTS, cost
+
+
+class Column(BaseModel):
+    """A number of every run under a `head`: which (`of`, `given`) as in a claim, and how it is written."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+    head: str
+    of: str
+    given: float | list[float] | None = None
+    shows: str = ""
+
+
+def table(columns: Sequence[Column], found: Mapping[str, Sequence[Outcome]]) -> list[list[str]]:
+    """The table of runs of water, its heads first; "none" for a number that a run has not."""
+    made = [[*COSTS, *(one.head for one in columns)]]
+    for run, outcomes in found.items():
+        made.append([*cost(run, outcomes[0]), *(_cell(one, run, outcomes) for one in columns)])
+    return made
+
+
+def _cell(column: Column, run: str, outcomes: Sequence[Outcome]) -> str:
+    number = number_of(run, column.of, outcomes, column.given)
+    if number.value is None or number.value.value is None:
+        return "none"
+    return column.shows.format(number.value.value) if column.shows else number.text()
