@@ -11,7 +11,7 @@ from lab.assembly.ship import make_vessel
 from lab.assembly.water import most_drops, water_aboard, water_of
 from lab.preset.accuracy import LEVELS, check_forced
 from lab.preset.schema import Preset
-from lab.preset.sections.tanks import further_tanks
+from lab.preset.sections.water.tanks import further_tanks
 from solvers.motion.steered import Steered
 from solvers.scene import Scene
 from solvers.ship.vessel import Vessel

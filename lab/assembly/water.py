@@ -6,8 +6,8 @@ import numpy as np
 
 from lab.base.errors import LabError
 from lab.preset.schema import Preset
-from lab.preset.sections.tanks import Pool, pools
 from lab.preset.sections.water.liquid import bounds, liquid
+from lab.preset.sections.water.tanks import Pool, pools
 from solvers.fluid.given import EXCESS, VOLUME, Y, Z
 from solvers.fluid.start.packing import below
 from solvers.fluid.start.parts import clear_of, free_share, surfaces

@@ -148,7 +148,7 @@ class Film:
     def _plot_box(self, count: int) -> tuple[int, int, int, int]:
         """Left, top, right, bottom of so many plots, above the colour bar if there is one."""
         left, right = self._column()
-        top, bar = (12.0, 4.6 + 2.2) if count == 1 else (9.6, 4.6 + 1.2)
+        top, bar = (12.0, 4.6 + 2.2) if count == 1 or self._beds[0].footage.sea else (9.6, 4.6 + 1.2)
         lowest = self._look.height - self._u(MARGIN + (bar if self._bar or count == 1 else 0.0))
         return left, self._u(top), right, min(lowest, self._u(top + 16.0 * count))
 

@@ -10,9 +10,9 @@ import numpy as np
 
 from lab.base.errors import LabError, Unusable
 from lab.base.trust import BEYOND
-from lab.paint.basins import basins_of
 from lab.paint.painter import Edges
 from lab.paint.sea import Rail, Sea
+from lab.paint.water.basins import basins_of
 from lab.paint.water.pool import Pool
 from lab.recording import Recording, open_recording
 from lab.recording.ship_end import ends

@@ -27,11 +27,11 @@ from lab.preset.sections.shapes import Shape, ShapeClass, by_number
 from lab.preset.sections.ship import Ship
 from lab.preset.sections.ship_checks import check_ship
 from lab.preset.sections.tank import FurtherTank, Tank, check_tank
-from lab.preset.sections.tanks import check_tanks
 from lab.preset.sections.video import Record, Video, check_video
 from lab.preset.sections.water.checks import check_water
 from lab.preset.sections.water.section import Gauge, Water
 from lab.preset.sections.water.solids import check_solids
+from lab.preset.sections.water.tanks import check_tanks
 from solvers.grains.bed.sizes import Sizes
 from solvers.grains.materials import Material
 from solvers.machine.marks import Cheap, Doc, Interval

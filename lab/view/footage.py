@@ -9,10 +9,10 @@ import numpy as np
 
 from lab.assembly.scene import vessels
 from lab.assembly.water import volumes_of
-from lab.paint.basins import basins_of
 from lab.paint.footage import NO_GRAINS, Bed
 from lab.paint.painter import Edges
 from lab.paint.sea import Sea
+from lab.paint.water.basins import basins_of
 from lab.paint.water.pool import Pool
 from lab.preset.find import LoadedPreset
 from lab.preset.schema import Preset

@@ -52,7 +52,8 @@ class Water:
     which space repeats itself with the tank's width or height, so that it has no walls there. `start`: the name of how
     water at rest is laid, "packed" or as a "lattice". `fills`: how many particles are in each tank of a world, by their
     numbers one after the other; (): all are in the first. Water of different tanks never meets, though they may overlap
-    in the plane.
+    in the plane. `model`: "sph", or "linear" or "frozen", for which see `solvers.liquid`: then waves have the share
+    `swing_damping` of the critical damping.
     """
 
     spacing: float
@@ -79,6 +80,8 @@ class Water:
     edges: tuple[int, ...] = ()
     start: str = "packed"
     fills: tuple[int, ...] = ()
+    model: str = "sph"
+    swing_damping: float = 0.0
 
     @property
     def length(self) -> float:

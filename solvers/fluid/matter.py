@@ -10,7 +10,6 @@ from solvers.fluid.checks import LEAST, check_water, refuse_scene, refuse_state,
 from solvers.fluid.constants import Constants
 from solvers.fluid.continuity import Continuity
 from solvers.fluid.forces import Forces
-from solvers.fluid.frozen import frozen
 from solvers.fluid.given import VELOCITY_Y, VELOCITY_Z, VOLUME, Water
 from solvers.fluid.grid import grid_round
 from solvers.fluid.lists import Lists, Medium
@@ -27,7 +26,7 @@ from solvers.machine.phase import Phase
 from solvers.machine.state import Axes
 from solvers.motion.carrier import per_slab
 from solvers.motion.poses import Poses
-from solvers.ship.body import Body
+from solvers.ship.body import Body, frozen
 from solvers.tank.matter import Matter
 from solvers.tank.setting import Setting
 
@@ -294,7 +293,7 @@ class WaterMatter(Matter):
 
 def make_water(scene, setting: Setting) -> WaterMatter | None:
     """The water of a scene (`solvers.scene.Scene`); None where it has none. Raises Unavailable."""
-    if scene.water is None:
+    if scene.water is None or scene.water.model != "sph":
         return None
     refuse_scene(scene.fills, len(scene.parts), bool(scene.radius.size))
     return WaterMatter(scene, setting)

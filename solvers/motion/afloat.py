@@ -28,17 +28,13 @@ from solvers.motion.frame import turned
 from solvers.motion.harmonic import soft_start
 from solvers.motion.hold import APART, Hold, apart
 from solvers.ship.body import Body
+from solvers.ship.potential.memory import padded
 from solvers.ship.vessel import Vessel
 from solvers.tank.load import Load
 
 POSE, VELOCITY, MEMORY = 0, 3, 6  # first entries of these parts of a state
 WORKS = 3  # last entries of a state: work (J/m) of the waves, against radiation, against viscosity
 STAGES = 4  # of the Runge–Kutta method
-
-
-def steps_an_interval(vessels: Sequence[Vessel], interval: float | None, dt: float) -> int:
-    """Number of steps of dt (s) in an interval H, which is the given one (s) or the shortest that any ship needs."""
-    return max(1, round((interval or min(vessel.interval for vessel in vessels)) / dt))
 
 
 @ti.data_oriented
@@ -54,6 +50,7 @@ class Afloat:
 
     def __init__(self, arrays: State, vessels: Sequence[Vessel], gravity: float, every: int, wet: bool = False):
         self.exact, self.real, self.vessels, self.loads = arrays.exact, arrays.real, tuple(vessels), ()
+        self.pressed = False
         self.phases = (Phase(self.follow),)
         worlds = len(self.vessels)
         self.hulls = Hulls(arrays, [v.ship for v in self.vessels], [v.openings for v in self.vessels])
@@ -81,10 +78,10 @@ class Afloat:
         self.release = table("release", [vessel.release for vessel in self.vessels])
         self.limits = table("limits", [np.clip(vessel.limits, -1e9, 1e9) for vessel in self.vessels], "number")
         if self.states:
-            matrix = [self._padded(m, "matrix", (self.states, self.states)) for m in memories]
+            matrix = [padded(m, "matrix", (self.states, self.states)) for m in memories]
             self.matrix = table("matrix", matrix, "state state")
-            self.entry = table("entry", [self._padded(m, "entry", (self.states, 3)) for m in memories], "state motion")
-            self.exit = table("exit", [self._padded(m, "exit", (3, self.states)) for m in memories], "motion state")
+            self.entry = table("entry", [padded(m, "entry", (self.states, 3)) for m in memories], "state motion")
+            self.exit = table("exit", [padded(m, "exit", (3, self.states)) for m in memories], "motion state")
         # Mass, centre from P (y, z) and inertia of the hull alone; the pose upright, and at the release
         (self.body,) = own.reals((world, Axis("number", 4)), "body", kind=own.exact)
         self.upright, self.heeled = own.reals((world, Axis("motion", 3)), "upright", "heeled", kind=own.exact)
@@ -115,17 +112,10 @@ class Afloat:
         """Numbers of states of the radiation memory, corners of a section, and wave components."""
         return self.states, self.hulls.corners, self.hulls.waves
 
-    @staticmethod
-    def _padded(memory, name: str, shape: tuple[int, int]) -> np.ndarray:
-        whole = np.zeros(shape)
-        if memory is not None:
-            part = getattr(memory, name)
-            whole[: part.shape[0], : part.shape[1]] = part
-        return whole
-
     def bear(self, loads: Sequence[Load]) -> None:
         """Respond to these loads from now on, those of all matters in the tank."""
         self.loads = tuple(loads)
+        self.pressed = any(load.pressed for load in loads)
 
     def begin(self, cargo: Callable[[], Sequence[Body]]) -> None:
         """Hold the ships at rest, upright in equilibrium; `cargo` returns theirs (W,), per metre in the tank's axes.
@@ -252,6 +242,13 @@ class Afloat:
                 steady = 0.5 * (steady + self.vector(self.steady_before, w))
                 mean = 0.5 * (mean + self.vector(self.mean_before, w))
         acceleration = share * (steady + self.accelerated(w, pose[2], force - mean))
+        if ti.static(self.pressed):
+            rate = before[2] + 0.5 * step * self.last[w, 2]
+            answer, force = self.answer(w, pose[2], rate, force)
+            matrix = self.inertia(w, pose[2]) + answer
+            more = self.solved(w, matrix, force - answer @ steady - mean)
+            acceleration = share * (steady + more)
+            force -= answer @ (steady + more)
         velocity = before + 0.5 * step * acceleration
         if first:
             velocity = before
@@ -361,13 +358,31 @@ class Afloat:
     @ti.func
     def accelerated(self, w, roll, force):
         """Accelerations of P and of roll under a force and moment about P, M(φ)⁻¹ F; zero where not free."""
+        return self.solved(w, self.inertia(w, roll), force)
+
+    @ti.func
+    def answer(self, w, roll, rate, force):
+        """What the matters answer to accelerations of P, matrix (3, 3), and their load while P is not accelerated."""
+        matrix = ti.Matrix.zero(self.exact, 3, 3)
+        for k in ti.static(range(len(self.loads))):
+            if ti.static(self.loads[k].pressed):
+                matrix += self.loads[k].inertia_of(w)
+        return self.hold.answer(w, roll, rate, matrix, force)
+
+    @ti.func
+    def inertia(self, w, roll):
+        """Inertia matrix of the hull about P."""
         mass, arm = self.body[w, 0], turned(self.body[w, 1], self.body[w, 2], roll)
         turning = self.body[w, 3] + mass * (arm[0] * arm[0] + arm[1] * arm[1])
         zero = ti.cast(0.0, self.exact)
-        inertia = ti.Matrix(
+        return ti.Matrix(
             [[mass, zero, -mass * arm[1]], [zero, mass, mass * arm[0]], [-mass * arm[1], mass * arm[0], turning]]
         )
-        right = force
+
+    @ti.func
+    def solved(self, w, matrix, force):
+        """Accelerations of an inertia `matrix` (3, 3), with the added mass, under a force; zero where not free."""
+        inertia, right = matrix, force
         for i in ti.static(range(3)):
             right[i] = self.free[w, i] * right[i]
             for j in ti.static(range(3)):

@@ -6,11 +6,16 @@ import numpy as np
 
 from solvers.machine.limit import Limit
 from solvers.machine.state import State
-from solvers.motion.afloat import Afloat, steps_an_interval
+from solvers.motion.afloat import Afloat
 from solvers.motion.axle import Axle, OnAxle
 from solvers.motion.prescribed import Prescribed
 from solvers.ship.vessel import Vessel
 from solvers.tank.tank import Tank
+
+
+def steps_an_interval(vessels: Sequence[Vessel], interval: float | None, dt: float) -> int:
+    """Number of steps of dt (s) in an interval H, which is the given one (s) or the shortest that any ship needs."""
+    return max(1, round((interval or min(vessel.interval for vessel in vessels)) / dt))
 
 
 def make_carrier(arrays: State, scene, dt: float) -> Prescribed | Afloat | OnAxle:

@@ -40,6 +40,24 @@ class Hold:
         return turned(self.place[w, 0], self.place[w, 1], roll)
 
     @ti.func
+    def answer(self, w, roll, rate, matrix, force):
+        """An inertia about the tank's origin, `matrix` (3, 3), as seen from P in the earth's axes.
+
+        And the load `force` about P with what that inertia answers to the rotation alone.
+        """
+        square, way = rate * rate, self.way(w, roll)
+        turning = ti.Vector([square * self.place[w, 0], square * self.place[w, 1], 0.0 * rate])
+        return way.transpose() @ matrix @ way, force + way.transpose() @ (matrix @ turning)
+
+    @ti.func
+    def way(self, w, roll):
+        """The matrix (3, 3) from accelerations of P in the earth's axes to those of the tank's origin in its own."""
+        c, s, arm = ti.cos(roll), ti.sin(roll), self.arm(w, roll)
+        turned_y, turned_z = s * arm[0] - c * arm[1], c * arm[0] + s * arm[1]
+        zero = ti.cast(0.0, self.exact)
+        return ti.Matrix([[c, s, turned_y], [-s, c, turned_z], [zero, zero, 1.0 + zero]])
+
+    @ti.func
     def feel(self, w, gravity, pose, velocity, acceleration, share):
         """Set the frame that the grains feel, with `share` of the ship's acceleration."""
         a = self.carried(w, pose[2], velocity[2], acceleration)

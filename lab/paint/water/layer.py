@@ -15,8 +15,8 @@ from lab.paint.water.grid import Grid, sampled
 from lab.paint.water.surface import Paints, paint_surface
 
 if TYPE_CHECKING:
-    from lab.paint.basins import Basin
     from lab.paint.footage import Bed
+    from lab.paint.water.basins import Basin
 
 LIT, DEEP, EDGE, FOAM = (118, 178, 222), (44, 106, 168), (22, 72, 124), (208, 228, 243)
 SPRAY = (150, 196, 230)  # of drops in the air, which foam would let vanish before the empty tank

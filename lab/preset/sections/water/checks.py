@@ -7,10 +7,10 @@ import numpy as np
 from lab.base.errors import LabError
 from lab.preset.outline import Point, area, simple_polygon, stands_out
 from lab.preset.sections.tank import Tank
-from lab.preset.sections.tanks import pools
 from lab.preset.sections.water import liquid
 from lab.preset.sections.water.schemes import SCHEMES
 from lab.preset.sections.water.section import Gauge, Water
+from lab.preset.sections.water.tanks import pools
 from lab.preset.units import needed, show
 
 MOST_PARTICLES = 20e6  # in a tank; what fits into the memory is checked as a scene is built

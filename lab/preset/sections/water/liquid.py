@@ -13,9 +13,9 @@ from lab.preset.sections.motion import MotionGroup
 from lab.preset.sections.parts import PartGroup
 from lab.preset.sections.run import Run
 from lab.preset.sections.tank import Tank
-from lab.preset.sections.tanks import Tanked, pools
 from lab.preset.sections.water.schemes import SCHEMES, Scheme
 from lab.preset.sections.water.section import Gauge, Water
+from lab.preset.sections.water.tanks import Tanked, pools
 from solvers.fluid import given
 from solvers.fluid.walls.layers import edge_of
 
@@ -55,6 +55,8 @@ def liquid(preset: Wet) -> given.Water:
         shifting=water.shifting,
         speed=expected_speed(preset),
         start=water.start,
+        model=water.model,
+        swing_damping=water.swing_damping,
         gauges=tuple(given.Gauge(gauge.place, gauge.length, gauge.response) for gauge in pressure.values()),
         levels=tuple(given.Level(gauge.y) for gauge in level.values()),
         edges=tuple(_edge(gauge, preset.tank) for gauge in force.values()),

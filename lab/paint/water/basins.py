@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from lab.preset.schema import Preset
-from lab.preset.sections.tanks import further_tanks, pools
+from lab.preset.sections.water.tanks import further_tanks, pools
 from solvers.fluid.start.packing import area_of, below
 
 GAP = 0.08  # of a tank's height, between tanks that are drawn one above the other

@@ -13,6 +13,8 @@ that all together turn as the liquid does under a lid,
 
 The weight of the displaced masses makes the free surface's loss of stability: Σ m_n g²/ω_n² = ρ g l³/12.
 
+Its answer at a frequency is that of `potential.sloshing.SloshingLiquid`, which has it from the potential itself.
+
 Limits: waves of small height; vertical walls; even modes, which neither sway nor roll moves, are left out.
 """
 
@@ -28,17 +30,12 @@ SERIES = 200  # terms of the sum for the moment of inertia
 
 @dataclass(frozen=True)
 class BoxLiquid:
-    """Liquid of a `density` (kg/m³) in a tank `width` (m) wide and `depth` (m) deep, per metre of its length.
-
-    Its floor's middle is at `place` (m) from a ship's axis. `damping` is that of each mode, a fraction of the critical.
-    """
+    """Liquid of a `density` (kg/m³) in a tank `width` (m) wide and `depth` (m) deep, per metre of its length."""
 
     width: float
     depth: float
     density: float
     gravity: float
-    place: tuple[float, float] = (0.0, 0.0)
-    damping: float = 0.0
 
     @property
     def mass(self) -> float:
@@ -80,19 +77,3 @@ class BoxLiquid:
     def solid_turning(self) -> float:
         """Moment of inertia (kg m) of the frozen liquid about its centre."""
         return self.mass * (self.width**2 + self.depth**2) / 12.0
-
-    def impedance(self, frequency: np.ndarray) -> np.ndarray:
-        """What the liquid adds to the impedance (n, 3, 3) about the axis of a ship whose body has it frozen.
-
-        At frequencies (n,) rad/s, for e^(−iωt), as `linear.impedance`: the masses' motion relative to the tank, and the
-        moment of inertia, which is less than that of the frozen liquid.
-        """
-        omega = np.asarray(frequency, dtype=float)
-        added = np.zeros((len(omega), 3, 3), complex)
-        added[:, 2, 2] = -(omega**2) * (self.turning - self.solid_turning)
-        for mass, height, own in zip(self.masses, self.heights, self.frequencies, strict=True):
-            way = np.zeros((len(omega), 3))
-            way[:, 0], way[:, 2] = 1.0, -(self.place[1] + height + self.gravity / omega**2)
-            answer = mass * omega**4 / (own**2 - omega**2 - 2j * self.damping * omega * own)
-            added -= answer[:, None, None] * way[:, :, None] * way[:, None, :]
-        return added
