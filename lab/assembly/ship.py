@@ -18,6 +18,7 @@ from solvers.ship.loads import Floating, floating_in_waves
 from solvers.ship.motion import Radiation, Rig, RollDamping, Ship, frozen_at, remembered, start
 from solvers.ship.openings import immersion_angle
 from solvers.ship.potential.memory import fit_memory
+from solvers.ship.potential.radiation import Hydrodynamics
 from solvers.ship.section import Section
 from solvers.ship.vessel import Vessel
 from solvers.ship.water import Water
@@ -132,6 +133,12 @@ def _with_rig(ship: Ship, given: ships.Rig) -> Ship:
         np.array([ship.about[0], 0.0, 0.0]),
     )
     return replace(ship, rig=rig)
+
+
+def hull_table(given: ships.Ship, sea: seas.Sea, gravity: float) -> Hydrodynamics:
+    """The hull's coefficients in calm water, about her axis."""
+    water = make_water(sea, gravity)
+    return stored_table(Section(given.corners), water, given.heave, _frequencies(given, water, None), given.about)
 
 
 def _frequencies(given: ships.Ship, water: Water, waves: Waves | None) -> np.ndarray:

@@ -11,7 +11,7 @@ from lab.studies.reproduce import figures
 from lab.studies.reproduce.experiment import Found, Row, Told
 from lab.studies.reproduce.grains import beds, outlines, stack
 from lab.studies.reproduce.runs import Outcome
-from lab.studies.reproduce.ships import capsizes, damping, low_sides, rolls, section
+from lab.studies.reproduce.ships import capsizes, coupled, damping, low_sides, rolls, section
 from lab.studies.reproduce.water import dam_break, damper, impact, prismatic, waves
 
 
@@ -22,7 +22,14 @@ def _alone(unit: str, number: Callable[[Outcome, object], float]) -> Callable[[S
 # Numbers of single runs without scatter from bed to bed; NaN where a run has none.
 OF_ONE_RUN = {
     name: _alone(*number)
-    for numbers in (impact.NUMBERS, dam_break.NUMBERS, waves.NUMBERS, damper.NUMBERS, prismatic.NUMBERS)
+    for numbers in (
+        impact.NUMBERS,
+        dam_break.NUMBERS,
+        waves.NUMBERS,
+        damper.NUMBERS,
+        prismatic.NUMBERS,
+        coupled.NUMBERS,
+    )
     for name, number in numbers.items()
 }
 DERIVED: Mapping[str, Callable[[Sequence[Outcome], object], Value]] = {
@@ -54,6 +61,7 @@ FIGURES: Mapping[str, Callable] = {
     "pitch": waves.swings,
     "damper": damper.figure,
     "pressures at P1": prismatic.figure,
+    "coupled response": coupled.figure,
 }
 TELLS: Mapping[str, Callable[[Found], Told]] = {
     "section": section.tell,
