@@ -17,6 +17,7 @@ from solvers.fluid.mover import Mover
 from solvers.fluid.order import Order, Tanks
 from solvers.fluid.shifting import SHIFTING
 from solvers.fluid.state import LANES, UNUSED, Particles, Shares
+from solvers.fluid.walls.answer import Answer
 from solvers.fluid.walls.behind import OF_NONE, Behind
 from solvers.fluid.walls.bodies import Bodies
 from solvers.fluid.walls.edges import Edges
@@ -81,7 +82,8 @@ class WaterMatter(Matter):
         self.thickness = tank.thickness
         mass = water.density * scene.drops[..., VOLUME].sum(axis=1).max() * tank.thickness
         self.least = 0.5 * mass * (LEAST * water.sound_speed) ** 2  # J
-        self.before, self.between = self._before(), (Phase(self.note_passage),)
+        self.answer = Answer(arrays, medium, self.forces, setting.carrier)
+        self.before, self.between = self._before(), (Phase(self.note_passage), *self.answer.corrected)
         self.after = (
             Phase(self.mover.kick, units),
             Phase(self.continuity.expand, units),
@@ -89,15 +91,16 @@ class WaterMatter(Matter):
         )
 
     def _before(self) -> tuple[Phase, ...]:
-        phases = [
+        return (
             Phase(self.note_poses),
             Phase(self.forces.publish, self.units),
             *([Phase(self.extrapolation.press, self.units)] if self.particles.dry else ()),
             *([Phase(self.gauges.measure)] if self.gauges.count else ()),
             *([Phase(self.edges.bear, self.units), Phase(self.edges.add)] if self.edges.wanted else ()),
+            *self.answer.noted,
             Phase(self.forces.push, self.units),
-        ]
-        return tuple(phases)
+            *self.answer.offered,
+        )
 
     @property
     def extent(self) -> float:
@@ -210,9 +213,8 @@ class WaterMatter(Matter):
         # Height over the earth: gravity points down, and `height` is the tank's own.
         down = np.stack(now[3:5], axis=1) / max(self.scene.gravity, 1e-300)
         potential = mass * self.scene.gravity * (now[5] - (centre * down).sum(axis=1)) + sums["pulled"]
-        worlds = self.particles.worlds
         spent = [
-            field.to_numpy().reshape(worlds, -1).sum(axis=1)
+            field.to_numpy().reshape(self.particles.worlds, -1).sum(axis=1)
             for field in (self.forces.lost, self.continuity.lost, self.forces.work, self.forces.held)
         ]
         rows = {
@@ -234,8 +236,7 @@ class WaterMatter(Matter):
             **self.edges.take(),
             **self.bodies.take(thick),
         }
-        fresh = np.isnan(self.start)
-        self.start[fresh] = residual(rows, 0.0)[fresh]
+        np.copyto(self.start, residual(rows, 0.0), where=np.isnan(self.start))
         return rows
 
     def check(self, rows: dict[str, np.ndarray], time: float) -> None:

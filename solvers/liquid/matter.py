@@ -96,7 +96,8 @@ class LiquidMatter(Matter):
                 across -= m
                 slant += m * high
                 turning -= m * high * high
-            entries = ti.Vector([across, 0.0 * mass, mass, slant, mass * y, turning])
+            none = 0.0 * mass
+            entries = ti.Vector([across, none, slant, none, mass, mass * y, slant, mass * y, turning])
             for n in ti.static(range(len(ENTRIES))):
                 self.load.inertia[u, self.piece[k], n] = entries[n]
             self.load.book(u, self.piece[k], ti.Vector([force_y, force_z, moment]), dt)

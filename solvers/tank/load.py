@@ -12,7 +12,7 @@ from solvers.machine.state import Axis, Scope
 from solvers.machine.units import APART, Units
 
 NAMES = ("y", "z", "moment")
-ENTRIES = ((0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2, 2))  # of a symmetric matrix
+ENTRIES = tuple((i, j) for i in range(3) for j in range(3))  # of a matrix, row by row
 
 
 @ti.data_oriented
@@ -23,7 +23,7 @@ class Load:
     carrier responds to. None: no carrier responds. The load of a matter that acts `every` few steps stands in between.
 
     A matter that is `pressed` answers an acceleration a of the tank's origin (y, z, roll; tank's axes) at once, by the
-    load F − A a. Its present load is F, that of a tank at rest, and A (symmetric, about the origin) its `inertia`.
+    load F − A a. Its present load is F, that of a tank that is not accelerated, and A (about the origin) its `inertia`.
     """
 
     pressed = False
@@ -56,10 +56,7 @@ class Load:
             for piece in range(self.pieces):
                 for k in ti.static(range(len(ENTRIES))):
                     i, j = ti.static(ENTRIES[k])
-                    value = self.shares[w, piece] * self.inertia[u, piece, k]
-                    matrix[i, j] += value
-                    if ti.static(i != j):
-                        matrix[j, i] += value
+                    matrix[i, j] += self.shares[w, piece] * self.inertia[u, piece, k]
         return matrix
 
     def forget(self) -> None:
