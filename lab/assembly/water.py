@@ -8,7 +8,8 @@ from lab.base.errors import LabError
 from lab.preset.schema import Preset
 from lab.preset.sections.water.liquid import bounds, liquid
 from lab.preset.sections.water.tanks import Pool, pools
-from solvers.fluid.given import EXCESS, VOLUME, Y, Z
+from solvers.fluid.given import EXCESS, GAS, VOLUME, Water, Y, Z
+from solvers.fluid.start.air import air_above, air_round, with_air
 from solvers.fluid.start.packing import below
 from solvers.fluid.start.parts import clear_of, free_share, surfaces
 from solvers.fluid.start.rest import at_rest, hydrostatic_excess
@@ -32,9 +33,19 @@ def drops_of(preset: Preset, pool: Pool) -> np.ndarray:
         water = replace(water, start="lattice")
     try:
         drops = at_rest(pool.polygon, pool.level, water, preset.run.gravity)
+        if water.air:
+            return with_air(drops, _air_of(preset, water))
     except ValueError as error:
         raise LabError(f"water.spacing: {error}; take smaller particles.") from None
     return _beside_parts(preset, drops) if preset.parts else drops
+
+
+def _air_of(preset: Preset, water: Water) -> np.ndarray:
+    """The particles (n, 7) of the air, which fills what the water leaves of the tank."""
+    tank, (polygon, level) = np.array(preset.tank.corners), bounds(preset)
+    if preset.water.region is None:
+        return air_above(tank, level, water, preset.run.gravity)
+    return air_round(tank, polygon, water, preset.run.gravity)
 
 
 def _beside_parts(preset: Preset, drops: np.ndarray) -> np.ndarray:
@@ -66,9 +77,12 @@ def water_aboard(preset: Preset) -> Body:
 
 
 def most_drops(preset: Preset) -> int:
-    """Number of particles of water in a world, rounded up, before any is made; 0 without water."""
+    """Number of particles of water and air in a world, rounded up, before any is made; 0 without water."""
     if preset.water is None:
         return 0
+    if preset.air is not None:
+        size = np.ptp(np.array(preset.tank.corners), axis=0) / liquid(preset).spacing
+        return int(np.prod(np.ceil(size + 1.0)))
     size, count = liquid(preset).spacing, 0
     for pool in pools(preset):
         count += int(np.ceil(np.ptp(pool.polygon[:, 0]) / size + 1.0) * np.ceil(pool.depth / size + 1.0))
@@ -76,10 +90,20 @@ def most_drops(preset: Preset) -> int:
 
 
 def volumes_of(drops: np.ndarray | None, worlds: int) -> np.ndarray:
-    """Volumes (W, n) m² of the particles of a scene in the plane; n is 0 without water."""
-    return np.zeros((worlds, 0)) if drops is None else drops[..., VOLUME]
+    """Volumes (W, n) m² of the particles of water of a scene in the plane; n is 0 without water."""
+    return np.zeros((worlds, 0)) if drops is None else drops[:, : _wet(drops), VOLUME]
+
+
+def air_volumes_of(drops: np.ndarray | None, worlds: int) -> np.ndarray:
+    """As `volumes_of`, of the particles of air."""
+    return np.zeros((worlds, 0)) if drops is None else drops[:, _wet(drops) :, VOLUME]
+
+
+def _wet(drops: np.ndarray) -> int:
+    """How many of the particles (W, n, 6 or 7) of each world are water; they come first."""
+    return drops.shape[1] - (int(drops[0, :, GAS].sum()) if drops.shape[2] > GAS else 0)
 
 
 def particles(scene: Scene) -> int:
-    """Number of grains and of particles of water in a world."""
+    """Number of grains and of particles of water and air in a world."""
     return scene.radius.shape[1] + scene.particles

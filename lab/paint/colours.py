@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lab.base.errors import LabError
-from lab.preset.sections.video import OF_WATER
+from lab.preset.sections.video import OF_AIR, OF_WATER
 
 if TYPE_CHECKING:
     from lab.paint.footage import Bed
@@ -137,7 +137,7 @@ def colouring(name: str, beds: Sequence[Bed]) -> Colouring | None:
 
     Where the name is one of a colour of water, grains show their speed.
     """
-    if name not in MODES and name not in OF_WATER:
+    if name not in MODES and name not in (*OF_WATER, *OF_AIR):
         raise LabError(f"Unknown colour '{name}': choose one of {', '.join(MODES)}.")
     filled = [bed for bed in beds if not bed.empty]
     return MODES.get(name, speed)(filled) if filled else None

@@ -47,7 +47,7 @@ class Footage:
         self.centre_of_mass, self.spilled = series.get("centre_of_mass"), series.get("spilled")
         self.radius, self.outline, self.kind = recording.radius, recording.outline, recording.kind
         self.matters, self._series = recording.preset.matters, series
-        self.water = Pool.of(recording.preset, recording.volume)
+        self.water = Pool.of(recording.preset, recording.volume, recording.air_volume)
         self.basins = basins_of(recording.preset, recording.outline, recording.open_edges, recording.volume)
         self.kinds = ["the rest", *recording.preset.kinds]
         self.shapes = recording.shapes

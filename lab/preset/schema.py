@@ -28,6 +28,8 @@ from lab.preset.sections.ship import Ship
 from lab.preset.sections.ship_checks import check_ship
 from lab.preset.sections.tank import FurtherTank, Tank, check_tank
 from lab.preset.sections.video import Record, Video, check_video
+from lab.preset.sections.water.air import Air
+from lab.preset.sections.water.air_checks import check_air
 from lab.preset.sections.water.checks import check_water
 from lab.preset.sections.water.section import Gauge, Water
 from lab.preset.sections.water.solids import check_solids
@@ -38,7 +40,7 @@ from solvers.machine.marks import Cheap, Doc, Interval
 from solvers.tank.tank import BARE_THICKNESS
 
 FORMAT = 3
-MATTERS = ("grains", "water")  # the keys of the matters that a tank may hold
+MATTERS = ("grains", "water", "air")  # the keys of the matters that a tank may hold; air is water's second phase
 
 
 @dataclass(frozen=True)
@@ -71,6 +73,7 @@ class Preset:
     shapes: Annotated[dict[str, Shape], Of("grains"), Doc("Classes of irregular grains.")] = field(default_factory=dict)
     contact: Annotated[Contact, Of("grains"), Doc("The contact laws.")] = field(default_factory=Contact)
     water: Annotated[Water | None, Doc("The water in the tank.")] = None
+    air: Annotated[Air | None, Of("water"), Doc("The air over the water, in a closed tank; nothing without it.")] = None
     gauges: Annotated[dict[str, Gauge], Of("water"), Doc("Gauges of the water's pressure and level.")] = field(
         default_factory=dict
     )
@@ -175,6 +178,7 @@ def check(preset: Preset) -> None:
     check_ship(preset.ship, preset.waves, bool(preset.motion.parts), preset.tank.corners)
     check_tanks(preset)
     check_water(preset)
+    check_air(preset)
     duration = duration_of(preset.run, preset.motion)
     check_axle(preset.axle, preset.ship is not None, bool(preset.motion.parts), bool(preset.matters), duration)
     if preset.water is not None:

@@ -12,6 +12,7 @@ from lab.base.trust import attribute_words
 from lab.preset.schema import MATTERS, Preset
 from lab.preset.sections.water.liquid import parted
 from solvers.fluid import quantities as water
+from solvers.fluid.phases import quantities as air
 from solvers.grains import quantities as grains
 from solvers.machine.quantity import OWNERS, Quantity
 from solvers.ship import quantities as ship
@@ -42,7 +43,7 @@ CHECKS = "checks"  # the group of the checksums
 FLUSHED_ROWS = "rows"  # its attribute with the number of rows of the table at the last flush
 COLUMNS = "columns"  # its attribute with the names of the data sets, in the order of the checksums in a row
 
-OF_MATTERS = {"grains": grains, "water": water}  # what each matter is recorded by
+OF_MATTERS = {"grains": grains, "water": water, "air": air}  # what each matter is recorded by
 
 CHUNK_BYTES = 2**19  # approximate size of a chunk
 CHUNK_ROWS = 1024
@@ -75,16 +76,18 @@ def gauges_of(preset: Preset) -> dict[str, int]:
     return {"gauge": len(pressure), "level": len(level), "edge": len(force)}
 
 
-def sizes_of(preset: Preset, radius: np.ndarray, volume: np.ndarray | None, parts: int) -> dict[str, int]:
-    """How many worlds, grains, particles of water, parts and gauges there are, by the owners of quantities."""
+def sizes_of(
+    preset: Preset, radius: np.ndarray, volume: np.ndarray | None, parts: int, air: np.ndarray | None = None
+) -> dict[str, int]:
+    """How many worlds, grains, particles of water and air, parts and gauges there are, by the owners of quantities."""
     worlds, count = radius.shape
-    drops = 0 if volume is None else volume.shape[1]
-    return {"world": worlds, "grain": count, "drop": drops, "part": parts, **gauges_of(preset)}
+    drops, puffs = (0 if volumes is None else volumes.shape[1] for volumes in (volume, air))
+    return {"world": worlds, "grain": count, "drop": drops, "puff": puffs, "part": parts, **gauges_of(preset)}
 
 
 def dtype_of(quantity: Quantity) -> str:
     """The data type in which a quantity is stored: 32 bits for values per particle, 64 bits for all others."""
-    return DTYPES.get(quantity.name, "<f4" if quantity.per in ("grain", "drop") else "<f8")
+    return DTYPES.get(quantity.name, "<f4" if quantity.per in ("grain", "drop", "puff") else "<f8")
 
 
 def rows_of(quantities: Iterable[Quantity], sizes: Mapping[str, int]) -> dict[str, tuple[tuple[int, ...], str]]:

@@ -27,6 +27,7 @@ SIZES = {
     "grain": 3,
     "part": 5,
     "drop": 7,
+    "puff": 19,
     "gauge": 11,
     "level": 13,
     "edge": 17,
@@ -40,7 +41,7 @@ class Recording:
     path, folder; name: of the preset; given: its TOML text; preset: the Preset itself, in SI;
     status, created, versions, machine, step (s), wall_s, grain_steps;
     radius (W, n) m, n is 0 without grains; kind (W, n): 0 for the preset's material, then the preset's kinds in order;
-    volume (W, n) m² of the particles of water in the plane, n is 0 without water;
+    volume (W, n) m² of the particles of water in the plane, air_volume (W, n) of those of air, n is 0 without any;
     outline (m, 2) m; fixed (k, 3): y, z, radius m; open_edges; parts: polylines (m, 2) m by name;
     shapes: the Outlines of irregular grains, None if all are discs.
     series: "time" (T,) s and the other quantities by name, whole arrays (T, W, ...).
@@ -70,7 +71,7 @@ class Recording:
             self.given = self._stored("preset/given", text)
             self.preset = from_table(json.loads(self._stored("preset/resolved", text)))
             self.radius, self.kind = self._grains()
-            self.volume = self._volumes()
+            self.volume, self.air_volume = self._volumes("water"), self._volumes("air")
             self.outline, self.fixed = self._stored("tank/outline"), self._stored("tank/fixed")
             self.open_edges = tuple(int(edge) for edge in self._stored("tank/open_edges"))
             self.parts = {name: self._stored(f"tank/parts/{name}") for name in self._file["tank/parts"]}
@@ -101,15 +102,16 @@ class Recording:
         none = self.preset.run.repeats, 0
         return np.zeros(none), np.zeros(none, dtype=np.uint8)
 
-    def _volumes(self) -> np.ndarray:
-        """Volumes (W, n), m², of the particles of water; n is 0 without water."""
-        if "water" in self.preset.matters:
-            return self._stored("water/volume")
+    def _volumes(self, phase: str) -> np.ndarray:
+        """Volumes (W, n), m², of the particles of water or air; n is 0 without it."""
+        if phase in self.preset.matters:
+            return self._stored(f"{phase}/volume")
         return np.zeros((len(self.radius), 0))
 
     def _tables(self) -> dict[str, Frames]:
         """The tables by name. Raises ValueError or KeyError if one is not as the lab writes it."""
-        sizes, is_older = sizes_of(self.preset, self.radius, self.volume, len(self.parts)), older.is_older(self.form)
+        volumes, is_older = (self.volume, len(self.parts), self.air_volume), older.is_older(self.form)
+        sizes = sizes_of(self.preset, self.radius, *volumes)
         wanted = tables_of(self.preset, "steering" in self._file)
         found = {}
         for name, known in wanted.items():
@@ -133,7 +135,8 @@ class Recording:
             "preset/resolved": some == (self.preset.material is not None),
             "grains/radius": _finite(self.radius, 2) and (self.radius.size > 0) == some and (self.radius > 0.0).all(),
             "water/volume": _finite(self.volume, 2) and (self.volume.size > 0) == wet and (self.volume > 0.0).all(),
-            "the number of worlds": len(self.volume) == len(self.radius),
+            "air/volume": _finite(self.air_volume, 2) and (self.air_volume > 0.0).all(),
+            "the number of worlds": len(self.volume) == len(self.air_volume) == len(self.radius),
             "grains/kind": self.kind.shape == worlds_and_grains and self.kind.dtype == np.uint8,
             "shapes/which": self.shapes is None or self.shapes.which.shape == worlds_and_grains,
             "tank/outline": _finite(self.outline, 2, columns=2) and len(self.outline) > 2 and _wide(self.outline),

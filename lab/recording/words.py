@@ -8,6 +8,7 @@ COUNTED = {  # what each axis counts, and the preset key that sets its size
     "part": "parts (parts.NAME)",
     "grain": "grains (grains.count)",
     "drop": "particles of water (water.spacing)",
+    "puff": "particles of air (water.spacing)",
     "gauge": "gauges of pressure (gauges.NAME)",
     "level": "gauges of level (gauges.NAME)",
     "edge": "gauges of force (gauges.NAME)",
@@ -19,6 +20,8 @@ def recorded_by(name: object) -> str:
     if name == WAVES.name:
         return "; `cargolab view` records it, of a ship in waves."
     of_water = {quantity.name: quantity for quantity in (*OF_MATTERS["water"].SERIES, *OF_MATTERS["water"].FRAMES)}
+    if name in _names((*OF_MATTERS["air"].SERIES, *OF_MATTERS["air"].FRAMES)):
+        return "; a preset with a table [air] records it."
     if name in of_water:
         table = "gauges.NAME" if of_water[name].per in ("gauge", "level", "edge") else "water"
         return f"; a preset with a table [{table}] records it."

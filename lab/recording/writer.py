@@ -53,6 +53,7 @@ def new_recording(
     outline: np.ndarray,
     step: float,
     volume: np.ndarray | None = None,
+    air: np.ndarray | None = None,
     kind: np.ndarray | None = None,
     fixed: np.ndarray = (),
     open_edges: Sequence[int] = (),
@@ -63,20 +64,18 @@ def new_recording(
 ) -> Path:
     """Create the recording of a run, without rows yet; returns its file.
 
-    folder: of the new recording.h5, created if missing; preset: its name; given: its TOML text; resolved: the
-    preset itself; radius (W, n) m, n is 0 without grains; outline (m, 2) m; step: the time step, s;
-    volume (W, n) m²: of the particles of water, None without water; kind (W, n): numbers of the kinds of grains, 0 for
-    the preset's material, None if all are 0; fixed (k, 3): y, z, radius m of the fixed grains; open_edges: outline
-    edges without a wall; parts: moving parts by name, polylines at rest (m, 2) m; shapes: outlines of irregular
-    grains, None if all are discs; machine: the device and threads, added to the data found here; steered: whether the
-    user steers the run.
+    folder: of the new recording.h5, created if missing; preset: its name; given: its TOML text; resolved: the preset
+    itself; radius (W, n) m, n is 0 without grains; outline (m, 2) m; step: the time step, s; volume, air (W, n) m²: of
+    the particles of water and air, None without; kind (W, n): numbers of the kinds of grains, 0 for the preset's
+    material, None if all are 0; fixed (k, 3): y, z, radius m of the fixed grains; open_edges: outline edges without a
+    wall; parts: moving parts by name, polylines at rest (m, 2) m; shapes: outlines of irregular grains, None if all
+    are discs; machine: device and threads, added to the data found here; steered: whether the user steers the run.
 
     The file gets its name only when it is complete, so it is readable from then on. Raises LabError if the folder
     cannot be written, is full, or already holds a recording.
     """
     path = Path(folder) / FILE_NAME
-    radius, parts = np.asarray(radius, dtype=float), parts or {}
-    tables = outline_tables(shapes) if shapes else {}
+    radius, parts, tables = np.asarray(radius, dtype=float), parts or {}, outline_tables(shapes) if shapes else {}
     attributes = {
         "format": fixed_text(FORMAT),
         "preset": fixed_text(preset),
@@ -103,8 +102,9 @@ def new_recording(
                 store(file, "grains/radius", radius)
                 kind = np.zeros(radius.shape) if kind is None else kind
                 store(file, "grains/kind", np.asarray(kind, dtype="u1"))
-            if volume is not None and volume.size:
-                store(file, "water/volume", np.asarray(volume, dtype=float))
+            for phase, of_phase in {"water": volume, "air": air}.items():
+                if of_phase is not None and of_phase.size:
+                    store(file, f"{phase}/volume", np.asarray(of_phase, dtype=float))
             store(file, "tank/outline", np.asarray(outline, dtype=float))
             store(file, "tank/fixed", np.asarray(fixed, dtype=float).reshape(-1, 3))
             store(file, "tank/open_edges", np.asarray(open_edges, dtype=int))
@@ -113,7 +113,7 @@ def new_recording(
                 store(file, f"tank/parts/{name}", np.asarray(line, dtype=float))
             for name, table in tables.items():
                 store(file, f"{GROUP}/{name}", table)
-            create_tables(file, tables_of(resolved, steered), sizes_of(resolved, radius, volume, len(parts)))
+            create_tables(file, tables_of(resolved, steered), sizes_of(resolved, radius, volume, len(parts), air))
         _publish(path)
     return path
 

@@ -26,6 +26,7 @@ class Points(NamedTuple):
 OF_MATTERS = {
     "grains": Points("grain", "position", "grains/radius"),
     "water": Points("drop", "water_place", "water/volume"),
+    "air": Points("puff", "air_place", "air/volume"),
 }
 
 

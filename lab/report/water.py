@@ -11,6 +11,7 @@ from lab.measures.gauges import pressure_gauges
 from lab.measures.water_residual import residual
 from lab.preset.accuracy import LEVELS
 from lab.preset.schema import Preset
+from lab.preset.sections.water.air import REAL_SOUND
 from lab.preset.sections.water.liquid import depth, expected_speed, layers, liquid, parted
 from lab.preset.units import show
 from lab.recording import Recording
@@ -21,6 +22,7 @@ from solvers.machine.limit import Limit
 from solvers.scene import Scene
 
 COMPRESSED = 0.03  # of the density: more is said
+SOFT = 1.5  # times: the air's softness from which it is told
 UNEXPLAINED = 0.05  # of the energy exchanged: more is said
 Rows = list[tuple[str, str]]
 
@@ -32,6 +34,8 @@ def described(preset: Preset, scene: Scene) -> Rows:
         ("water", f"{scene.particles} particles in each tank, {_size(preset, scene.water)}"),
         ("sound", _sound(preset, scene.water)),
     ]
+    if scene.water.air:
+        rows.append(("air", _air(scene)))
     if preset.gauges:
         kinds = zip(("pressure", "level", "force"), (pressure, level, force), strict=True)
         names = [f"{name} of {kind}" for kind, gauges in kinds for name in gauges]
@@ -49,6 +53,7 @@ def models(scene: Scene) -> Rows:
         ("diffusion", f"{water.diffusion}, δ {water.delta:g}" if water.diffusion != "none" else "none"),
         ("viscosity", f"{water.viscosity}{strength}: that of {kinematic(water):.3g} m²/s"),
         ("shifting", water.shifting),
+        *([("surface", water.air.interface)] if water.air else []),
         ("at walls", f"{'free slip' if water.slip else 'no slip'}{', no free surface' if water.full else ''}"),
     ]
 
@@ -69,6 +74,8 @@ def in_tank(recording: Recording) -> Iterator[str]:
     worlds, count = recording.volume.shape
     yield f"{count_of(worlds, 'tank')} with {count} particles of water, {_size(preset, water)}"
     yield _sound(preset, water)
+    if water.air:
+        yield f"over it {recording.air_volume.shape[1]} particles of air, as far apart"
     yield f"{_steps(recording)} steps of {show(recording.step, 's')}"
     yield from (f"limit of the step, {show(limit.step, 's')}: {limit.reason}" for limit in _limits(preset))
     if preset.water.scheme != "lab":
@@ -100,6 +107,13 @@ def cautions(recording: Recording) -> Iterator[str]:
     """What a reader must know about how the water was computed."""
     series = recording.series
     dense = series["water_dense"].max(initial=0.0)
+    water = liquid(recording.preset)
+    softer = (REAL_SOUND / water.air.sound_speed) ** 2 if water.air else 1.0
+    if softer > SOFT:
+        yield (
+            f"The air is {softer:.0f} times softer than real air: pressures of trapped air, and of impacts on it, are "
+            'not those of real air; set air.sound_speed = "real" for these.'
+        )
     if dense > COMPRESSED:
         yield (
             f"Up to {100.0 * dense:.2g} % of the water was off its density by more than 3 %; raise water.sound_speed, "
@@ -122,6 +136,19 @@ def _sound(preset: Preset, water: given.Water) -> str:
     fast = expected_speed(preset)
     times = f"{water.sound_speed / fast:.3g} times the expected {show(fast, 'm/s')}"
     return f"speed of sound {show(water.sound_speed, 'm/s')}, {times}"
+
+
+def _air(scene: Scene) -> str:
+    """The air of a scene in words, with how much softer than real air it is, and what it costs in steps."""
+    air, water = scene.water.air, scene.water
+    count = int(scene.drops[0, :, given.GAS].sum())
+    text = f"{count} of these particles, {show(air.density, 'kg/m^3')}, speed of sound {show(air.sound_speed, 'm/s')}"
+    softer = (REAL_SOUND / air.sound_speed) ** 2
+    if softer > SOFT:
+        text += f": {softer:.0f} times softer than real air where it is trapped"
+    if air.sound_speed > water.sound_speed:
+        text += f", for which steps are {air.sound_speed / water.sound_speed:.3g} times shorter than the water's"
+    return text
 
 
 def _steps(recording: Recording) -> int:

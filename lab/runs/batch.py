@@ -14,7 +14,7 @@ import numpy as np
 
 from lab.assembly.drawn import classes
 from lab.assembly.scene import LONGEST_STRIDE, build, stretch
-from lab.assembly.water import particles, volumes_of
+from lab.assembly.water import air_volumes_of, particles, volumes_of
 from lab.base.errors import Unusable
 from lab.base.interrupt import Interrupt
 from lab.base.progress import Progress
@@ -91,6 +91,7 @@ class Run:
             outline=scene.outline,
             step=scene.step,
             volume=volumes_of(scene.drops, scene.worlds),
+            air=air_volumes_of(scene.drops, scene.worlds),
             kind=scene.kind,
             fixed=scene.fixed,
             open_edges=scene.open_edges,

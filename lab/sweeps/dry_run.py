@@ -13,7 +13,7 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 from lab.assembly.scene import build
-from lab.assembly.water import volumes_of
+from lab.assembly.water import air_volumes_of, volumes_of
 from lab.measures import measure_all
 from lab.measures.value import Value
 from lab.preset.find import LoadedPreset
@@ -43,7 +43,7 @@ def available_measures(loaded: LoadedPreset) -> dict[str, Value]:
 def _record(folder: Path, loaded: LoadedPreset, preset: Preset, scene: Scene, position: np.ndarray) -> None:
     """Write the recording of the dry run."""
     count, parts = min(GRAINS, scene.radius.shape[1]), {name: part.line for name, part in preset.parts.items()}
-    volume = volumes_of(scene.drops, 1)[:, :GRAINS]
+    volume, air = (of(scene.drops, 1)[:, :GRAINS] for of in (volumes_of, air_volumes_of))
     new_recording(
         folder,
         preset=loaded.name,
@@ -53,11 +53,12 @@ def _record(folder: Path, loaded: LoadedPreset, preset: Preset, scene: Scene, po
         outline=scene.outline,
         step=scene.step,
         volume=volume,
+        air=air,
         fixed=scene.fixed,
         open_edges=scene.open_edges,
         parts=parts,
     )
-    rate, sizes = preset.record.series_rate, sizes_of(preset, scene.radius[:, :count], volume, len(parts))
+    rate, sizes = preset.record.series_rate, sizes_of(preset, scene.radius[:, :count], volume, len(parts), air)
     a_frame = max(1, round(rate / preset.record.picture_rate))
     tables = tables_of(preset, steered=False)
     series, frames = tables["series"], tables["frames"]
@@ -67,7 +68,7 @@ def _record(folder: Path, loaded: LoadedPreset, preset: Preset, scene: Scene, po
     if preset.grains:
         frame["position"] = position[:, :count]
     if preset.water:
-        frame["water_place"] = scene.drops[:, :GRAINS, :2]
+        frame["water_place"] = scene.drops[:, : volume.shape[1], :2]
     times = np.arange(max(1, round(preset.duration * rate)) + 1) / rate
     with Recorder(folder) as recorder:
         for k, (time, pose) in enumerate(zip(times, _poses(preset, scene, position, times), strict=True)):

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from lab.assembly.scene import vessels
-from lab.assembly.water import volumes_of
+from lab.assembly.water import air_volumes_of, volumes_of
 from lab.paint.footage import NO_GRAINS, Bed
 from lab.paint.painter import Edges
 from lab.paint.sea import Sea
@@ -53,7 +53,7 @@ class Scenery:
         lines = {name: np.array(part.line) for name, part in preset.parts.items()}
         bounds = scene.outline, tuple(scene.open_edges), scene.fixed
         shapes = outlines_of(preset, scene)
-        pool = Pool.of(preset, volumes_of(scene.drops, scene.worlds))
+        pool = Pool.of(preset, *(of(scene.drops, scene.worlds) for of in (volumes_of, air_volumes_of)))
         return cls(preset, loaded.name, folder, scene.radius, kind, *bounds, lines, shapes, simulation.dt, pool)
 
     def for_filling(self, top: float) -> "Scenery":

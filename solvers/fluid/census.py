@@ -9,6 +9,7 @@ import taichi as ti
 from solvers.fluid import quantities
 from solvers.fluid.constants import Constants
 from solvers.fluid.order import Order
+from solvers.fluid.phases import quantities as of_air
 from solvers.fluid.state import UNUSED, Particles
 from solvers.machine.quantity import places
 from solvers.machine.state import Axis, State, padded, roomy
@@ -22,7 +23,15 @@ NEVER = -1.0
 USUAL = 8  # level gauges for which there is room at least
 SUMS = (
     *("mass", "moment_y", "moment_z", "momentum_y", "momentum_z", "moving", "flowing", "pulled", "elastic", "dense"),
-    *("excess", "escaped"),  # largest values, not sums
+    *(
+        "air_mass",
+        "air_y",
+        "air_z",
+        "air_flowing",
+        "air_pressed",
+        "air_volume",
+    ),  # of two phases: the air's part of these
+    *("excess", "escaped", "air_excess"),  # largest values, not sums
 )
 
 
@@ -60,7 +69,7 @@ class Census:
         self.particles, self.constants, self.carrier = particles, constants, carrier
         self.walls, self.order, self.first = pool.walls, pool.order, pool.first
         self.exact, self.closed = arrays.exact, pool.closed
-        self.quantities = (*quantities.SERIES, quantities.ESCAPED)
+        self.quantities = (*quantities.SERIES, *(of_air.SERIES if particles.two else ()), quantities.ESCAPED)
         self.at = SimpleNamespace(**{name: k for k, name in enumerate(SUMS)})
         self.columns = places(self.quantities)
         own, world = arrays.under("water.census"), Axis("world", particles.worlds)
@@ -83,8 +92,24 @@ class Census:
         """Sums of every world at `time` (s), (W, …) by the names of `SUMS`, for a tank of `thickness` (m)."""
         self.count(time)
         found = {name: field.to_numpy() for name, field in zip(SUMS, self.sums, strict=True)}
-        extreme = {name: found.pop(name).max(axis=1) for name in ("excess", "escaped")}
+        extreme = {name: found.pop(name).max(axis=1) for name in ("excess", "escaped", "air_excess")}
         return {name: values.sum(axis=1) * thickness for name, values in found.items()} | extreme
+
+    def of_water(self, sums: dict[str, np.ndarray], mass: np.ndarray, centre: np.ndarray) -> dict[str, np.ndarray]:
+        """Centre and dense share of the water alone, and what is known of the air, of sums and both phases' centre."""
+        if not self.particles.two:
+            return {"water_centre": centre, "water_dense": sums["dense"] / mass}
+        of_air = np.stack([sums["air_y"], sums["air_z"]], axis=1)
+        water, air = mass - sums["air_mass"], np.maximum(sums["air_mass"], 1e-300)
+        return {
+            "water_centre": (centre * mass[:, None] - of_air) / water[:, None],
+            "water_dense": sums["dense"] / water,
+            "air_centre": of_air / air[:, None],
+            "air_kinetic": sums["air_flowing"],
+            "air_mean_pressure": sums["air_pressed"] / np.maximum(sums["air_volume"], 1e-300),
+            "air_volume": sums["air_volume"],
+            "air_excess": sums["air_excess"],
+        }
 
     @ti.kernel
     def count(self, time: ti.f64):
@@ -143,21 +168,48 @@ class Census:
                     if ti.static(c.pulled):
                         out = [r[0] - c.get("pull_y"), r[1] - c.get("pull_z")]
                         sums[self.at.pulled] += 0.5 * m * c.get("pull") * dot(out, out)
-                    sums[self.at.elastic] += m * sound * c.state.energy(s)
                     if ti.static(c.pressed):
-                        sums[self.at.elastic] += m * (c.get("background") / c.get("density")) * (s / (1.0 + s))
-                    sums[self.at.dense] += ti.select(ti.abs(s) > DENSE, m, 0.0)
-                    sums[self.at.excess] = ti.max(sums[self.at.excess], ti.abs(s))
-                    if ti.static(self.closed):  # noqa: SIM102 (compiled only where no water may leave)
-                        if self.is_out(w, self.order.layer(b), p.place[0][b, lane], p.place[1][b, lane]):
+                        self.add_background(sums, m, s, p.gas_at(b, lane))
+                    is_water = p.gas_at(b, lane) < 0.5
+                    if ti.static(p.two):  # noqa: SIM102 (compiled only where there is air)
+                        if not is_water:
+                            self.add_air(sums, [m, s], r, v)
+                    if is_water:
+                        sums[self.at.elastic] += m * sound * c.state.energy(s)
+                        sums[self.at.dense] += ti.select(ti.abs(s) > DENSE, m, 0.0)
+                        sums[self.at.excess] = ti.max(sums[self.at.excess], ti.abs(s))
+                    if ti.static(self.closed):
+                        dent = 0.5 + p.gas_at(b, lane)  # spacings: water may squeeze air into a wall
+                        if self.is_out(w, self.order.layer(b), [p.place[0][b, lane], p.place[1][b, lane]], dent):
                             sums[self.at.escaped] = ti.max(sums[self.at.escaped], p.number[b, lane])
         for k in ti.static(range(len(SUMS))):
             self.sums[k][w, chunk] = sums[k]
 
     @ti.func
-    def is_out(self, w, tank, y, z):
-        """Whether a point is outside its tank by more than half a spacing: in an impact water may dent a wall."""
-        near, out = 0.5 * self.constants.get("spacing"), False
+    def add_air(self, sums: ti.template(), held: ti.template(), r: ti.template(), v: ti.template()):
+        """Add a particle of air, of the mass (kg/m) and excess of density `held`, at r (m) and v (m/s) in the tank."""
+        c, m, s = self.constants, held[0], held[1]
+        stiffness = ti.cast(c.get("air_stiffness"), self.exact)
+        volume = m / ((1.0 + s) * c.get("air_density"))
+        sums[self.at.elastic] += m * stiffness / c.get("air_density") * c.gas.energy(s)
+        sums[self.at.air_mass] += m
+        sums[self.at.air_y] += m * r[0]
+        sums[self.at.air_z] += m * r[1]
+        sums[self.at.air_flowing] += 0.5 * m * dot(v, v)
+        sums[self.at.air_volume] += volume
+        sums[self.at.air_pressed] += volume * stiffness * c.gas.share(s)
+        sums[self.at.air_excess] = ti.max(sums[self.at.air_excess], ti.abs(s))
+
+    @ti.func
+    def add_background(self, sums: ti.template(), m, s, gas):
+        """Add −p_b (V − V0), what the background pressure holds of a particle's compression."""
+        light = self.constants.get("background") / self.constants.of("density", gas)
+        sums[self.at.elastic] += m * light * (s / (1.0 + s))
+
+    @ti.func
+    def is_out(self, w, tank, place: ti.template(), dent):
+        """Whether a place is outside its tank by more than `dent` spacings: in an impact water may dent a wall."""
+        near, y, z, out = dent * self.constants.get("spacing"), place[0], place[1], False
         if ti.static(self.order.layers > 1):
             out = self.walls.is_off(tank, y, z, near)
         elif not self.walls.holds(y, z):
@@ -188,7 +240,7 @@ class Census:
             for lane in range(p.lanes):
                 if p.number[b, lane] != UNUSED and self.order.layer(b) == self.first:
                     t = 1.0 - ti.abs(ti.cast(p.place[0][b, lane], self.exact) - y) / reach
-                    if t > 0.0:
+                    if t > 0.0 and p.gas_at(b, lane) < 0.5:
                         total += ti.cast(p.volume[b, lane], self.exact) * t * t * (3.0 - 2.0 * t)
         left, right = (y - self.level_sides[0]) / reach, (self.level_sides[1] - y) / reach
         self.level_depth[w, level] = ti.cast(total / (reach * (self.covered(left) + self.covered(right))), p.real)

@@ -6,13 +6,18 @@ import taichi as ti
 from solvers.fluid.diffusion import DIFFUSION
 from solvers.fluid.given import Water
 from solvers.fluid.kernels import KERNELS
+from solvers.fluid.phases.adiabatic import Adiabatic
+from solvers.fluid.phases.numbers import of_air
 from solvers.fluid.shifting import SHIFTING
 from solvers.fluid.states import STATES
 from solvers.fluid.viscosity import VISCOSITY
+from solvers.fluid.walls.layers import FIRM
 from solvers.machine.state import State
 
 FLOOR = 1e-6  # of h², added to squared distances that are divided by
 FASTEST = 0.5  # Mach number at which a run is stopped
+AIR = "air_"  # how names of the air's constants begin
+PULL = 1e20  # Pa, with which walls may hold air: without bound
 # Of c0/Δx, frequency of a particle behind the face of a wall: at a tenth of the speed of sound, the highest that water
 # is to have, it comes half a spacing deep.
 HARD = 0.2
@@ -55,7 +60,14 @@ class Constants:
             "pull_y": pull.centre[0] if pull else 0.0,
             "pull_z": pull.centre[1] if pull else 0.0,
         }
+        self.two, self.gas = water.air is not None, Adiabatic()
+        self.tense = self.two and water.air.tension > 0.0
+        if self.two:
+            numbers |= of_air(water, gravity, numbers, self.viscosity)
+            self.viscous = self.viscous or numbers["air_strength"] > 0.0
+        self.numbers = numbers
         self.at = {name: place for place, name in enumerate(numbers)}
+        self.at_air = {name[len(AIR) :]: place for name, place in self.at.items() if name.startswith(AIR)}
         self.pulled = pull is not None
         self.values = arrays.under("water").holding("constants", np.array(list(numbers.values())), "number")
 
@@ -71,10 +83,56 @@ class Constants:
         return self.values[ti.static(self.at[name])]
 
     @ti.func
-    def hardness(self, square, firm):
+    def of(self, name: ti.template(), gas: ti.template()):
+        """The constant of that name: of particles of water where `gas` is 0, of air where it is 1."""
+        if ti.static(self.two):
+            return (1.0 - gas) * self.get(name) + gas * self.values[ti.static(self.at_air[name])]
+        else:
+            return self.get(name)
+
+    @ti.func
+    def strength(self):
+        """The factor (Pa s) of the pairs' viscous sums; of two phases each pair has its own."""
+        return 1.0 if ti.static(self.two) else self.get("strength")
+
+    @ti.func
+    def drag(self, gas: ti.template(), there):
+        """The strength of viscosity (Pa s) between particles with these numbers of their phases, 0 or 1."""
+        other = gas - there
+        return (
+            (1.0 - gas) * (1.0 - there) * self.get("strength")
+            + gas * there * self.get("air_strength")
+            + other * other * self.get("both_strength")
+        )
+
+    @ti.func
+    def clipped(self, pressure: ti.template(), gas: ti.template()):
+        """The pressure (Pa) with which walls may push: not below zero where there is a free surface."""
+        if ti.static(self.full):
+            return pressure
+        elif ti.static(self.two):
+            return ti.max(pressure, gas * (0.0 - PULL))
+        else:
+            return ti.max(pressure, 0.0)
+
+    def pressures(self, excess: np.ndarray, gas: np.ndarray) -> np.ndarray:
+        """Pressures (Pa) over that of the surroundings, for excesses of density and phases of the same shape."""
+        water = self.numbers["stiffness"] * self.state.pressure(excess)
+        if not self.two:
+            return water
+        return np.where(gas > 0.5, self.numbers["air_stiffness"] * self.gas.pressure(np.maximum(excess, -0.999)), water)
+
+    @ti.func
+    def hardness(self, square, firm, gas: ti.template()):
         """What a dummy adds at the squared distance (m²), per volume, so that a thin layer does not pass the wall.
 
         A spring up to the distance `firm` (m), that of the dummy from its wall's face, for pressure alone does not hold
-        water that parts along a wall it nears.
+        water that parts along a wall it nears. With air, `firm` is the depth of each layer: all of them hold air.
         """
-        return self.get("hard") * ti.max(firm / ti.sqrt(square + self.get("floor")) - 1.0, 0.0)
+        away = ti.sqrt(square + self.get("floor"))
+        if ti.static(self.two):
+            layer = firm / self.get("spacing") - (0.5 + FIRM)
+            for_water = ti.select(layer * layer < 0.0625, firm, 0.0 * firm)
+            return self.of("hard", gas) * ti.max(((1.0 - gas) * for_water + gas * firm) / away - 1.0, 0.0)
+        else:
+            return self.get("hard") * ti.max(firm / away - 1.0, 0.0)

@@ -12,6 +12,8 @@ from solvers.space.axes import dot
 class Continuity:
     """dρ_i/dt = −ρ_i Σ V_j (u_j − u_i)·∇W + δ h c0 Σ V_j ψ·∇W (Antuono et al. 2010, eq. 6); the second sum over water.
 
+    Of two phases, the second sum is over the own phase, and pairs of both have the weight of `solvers.fluid.phases`.
+
     `lost` (units,) J is the energy that diffusion has taken: −Σ m_i p_i/ρ_i² times its share of the rate (Antuono,
     Marrone, Colagrossi & Bouscasse 2015, eq. 22). The momentum that shifts carry is summed up over the same pairs.
     """
@@ -43,7 +45,8 @@ class Continuity:
         speed = [p.load(p.velocity[a], b) for a in ti.static(range(p.axes))]
         slope = [p.load(p.slope[a], b) for a in ti.static(range(p.axes))]
         s, shrink = p.load(p.excess, b), c.get("shrink")
-        rest = [c.get("hydrostatic") * self.down(w, a) for a in ti.static(range(p.axes))]
+        gas = p.gases(b)
+        rest = [c.of("hydrostatic", gas) * self.down(w, a) for a in ti.static(range(p.axes))]
         opened, evened, walled = p.zeros(), p.zeros(), p.zeros()
         carried = [p.zeros() for _ in ti.static(range(p.axes))]
         shift = [p.zeros() for _ in ti.static(range(p.axes))]
@@ -57,7 +60,11 @@ class Continuity:
             apart = lists.apart(b, own, origin, j, AT_MIDDLE)
             weight = p.volume[jb, lane] * c.kernel.slope(ti.max(1.0 - ti.sqrt(dot(apart, apart)) * shrink, 0.0))
             nearing = [p.velocity[a][jb, lane] - speed[a] for a in ti.static(range(p.axes))]
-            opened += weight * dot(nearing, apart)
+            other = gas - p.gas_at(jb, lane)
+            if ti.static(c.two):
+                opened += (1.0 + c.get("lean_of_speed") * other) * weight * dot(nearing, apart)
+            else:
+                opened += weight * dot(nearing, apart)
             if ti.static(c.shifting.carries):
                 away = (weight * (1.0 + s)) * dot(shift, apart)
                 shift_there = [p.shift[a][jb, lane] for a in ti.static(range(p.axes))]
@@ -72,6 +79,8 @@ class Continuity:
                     more += dot(both, apart)
                 elif ti.static(c.diffusion.dynamic):
                     more += 2.0 * dot(rest, apart)
+                if ti.static(c.two):
+                    more *= 1.0 - other * other
                 evened += weight * more
         if ti.static(p.dry > 0):
             pieces = lists.pieces
@@ -83,18 +92,22 @@ class Continuity:
                 nearing = [p.velocity[a][jb, lane] - speed[a] for a in ti.static(range(p.axes))]
                 walled += weight * dot(nearing, apart)
         factor = c.get("slope")
-        evened *= factor * c.get("spread")
+        evened *= factor * c.of("spread", gas)
         p.store(p.rate, b, (1.0 + s) * (factor * opened) + evened)
         p.store(p.rate_of_walls, b, (1.0 + s) * (factor * walled))
         if ti.static(c.shifting.carries):
             flux = p.load(p.volume, b) * (factor * c.get("density"))
             for a in ti.static(range(p.axes)):
                 p.store(p.carried[a], b, flux * carried[a])
-        share = c.state.share(s)
-        if ti.static(c.pressed):
-            share += p.filled(b) * (c.get("background") / c.get("stiffness"))
-        taken = evened * share * p.load(p.mass, b) / ((1.0 + s) * (1.0 + s))
-        return 0.0 - ti.cast(taken.sum() * (c.get("stiffness") / c.get("density")), p.exact)
+        if ti.static(c.two):
+            taken = evened * p.load(p.pressure, b) * p.load(p.mass, b) / ((1.0 + s) * (1.0 + s) * c.of("density", gas))
+            return 0.0 - ti.cast(taken.sum(), p.exact)
+        else:
+            share = c.state.share(s)
+            if ti.static(c.pressed):
+                share += p.filled(b) * (c.get("background") / c.get("stiffness"))
+            taken = evened * share * p.load(p.mass, b) / ((1.0 + s) * (1.0 + s))
+            return 0.0 - ti.cast(taken.sum() * (c.get("stiffness") / c.get("density")), p.exact)
 
     @ti.func
     def tank_speed(self, w, axis: ti.template()):

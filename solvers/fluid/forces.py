@@ -4,14 +4,17 @@ import numpy as np
 import taichi as ti
 
 from solvers.fluid.lists import Medium
+from solvers.fluid.phases.tension import Tension
 from solvers.fluid.state import INSIDE, SPRAY
 from solvers.fluid.walls.extrapolation import Extrapolation
+from solvers.fluid.walls.push import WallPush
 from solvers.machine.state import State
 from solvers.motion.poses import AT_START
 from solvers.space.axes import dot
 from solvers.tank.load import Load
 
 SINGULAR = 0.05  # least eigenvalue of Σ V_j r_ji ⊗ ∇W down to which it is inverted: spray has no gradient
+NEAR = 1e-3  # of (2 h)² times the squared gradient of the phase: from there on the other phase is near
 
 
 @ti.data_oriented
@@ -27,10 +30,11 @@ class Forces:
     def __init__(self, arrays: State, medium: Medium, walls: Extrapolation, load: Load, thickness: float):
         self.units, self.particles, self.shares = medium.units, medium.particles, medium.shares
         self.lists, self.constants, self.poses = medium.lists, medium.constants, medium.poses
-        self.walls, self.load, self.bodies = walls, load, medium.lists.bodies
+        self.beside, self.load, self.bodies = WallPush(medium, walls), load, medium.lists.bodies
         own = arrays.under("water.forces")
         self.lost, self.held, self.work = own.reals((medium.units.axis,), "lost", "held", "work", kind=own.exact)
         self.order, self.outlines = medium.lists.order, medium.lists.order.layers
+        self.tension = Tension(medium.particles, medium.constants)
         self.gradients = medium.constants.diffusion.renormalised
         self.thick = arrays.under("water").holding("thickness", np.array([thickness]), "one", own.exact)
 
@@ -42,13 +46,26 @@ class Forces:
         density, stiffness = c.get("density"), c.get("stiffness")
         for b in range(first, end):
             s = p.load(p.excess, b)
-            p.store(p.volume, b, p.load(p.mass, b) / (density * (1.0 + s)))
-            pressure = stiffness * c.state.share(s)
-            if ti.static(c.pressed):
-                pressure += p.filled(b) * c.get("background")
-            p.store(p.pressure, b, pressure)
+            if ti.static(c.two):
+                self.publish_both(b, s)
+            else:
+                p.store(p.volume, b, p.load(p.mass, b) / (density * (1.0 + s)))
+                pressure = stiffness * c.state.share(s)
+                if ti.static(c.pressed):
+                    pressure += p.filled(b) * c.get("background")
+                p.store(p.pressure, b, pressure)
             if ti.static(c.shifting.acts):
                 p.store(p.span_before, b, p.load(p.span, b))
+
+    @ti.func
+    def publish_both(self, b, s):
+        """As `publish`, for a block of two phases; pressures have the background's on top."""
+        p, c = self.particles, self.constants
+        p.store(p.volume, b, p.load(p.mass, b) / (c.of("density", p.load(p.gas, b)) * (1.0 + s)))
+        p.store(p.pressure, b, c.get("stiffness") * c.state.share(s) + c.get("background"))
+        for lane in range(p.lanes):
+            if p.gas[b, lane] > 0.5:
+                p.pressure[b, lane] = c.get("air_stiffness") * c.gas.share(p.excess[b, lane]) + c.get("background")
 
     @ti.func
     def push(self, u, t, kick, dt):
@@ -100,14 +117,17 @@ class Forces:
         origin = [p.place[a][b, 0] for a in ti.static(range(p.axes))]
         own = [p.offset(b, origin[a], a) for a in ti.static(range(p.axes))]
         speed = [p.load(p.velocity[a], b) for a in ti.static(range(p.axes))]
-        pressure, s = p.load(p.pressure, b), p.load(p.excess, b)
-        shrink, floor, strength = c.get("shrink"), c.get("floor"), c.get("strength")
+        pressure, s, gas = p.load(p.pressure, b), p.load(p.excess, b), p.gases(b)
+        shrink, floor, strength = c.get("shrink"), c.get("floor"), c.strength()
         push = [p.zeros() for _ in ti.static(range(p.axes))]
         wall = [p.zeros() for _ in ti.static(range(p.axes))]
         own_push = [p.zeros() for _ in ti.static(range(p.axes))]  # of the dummies' own pressures
         slope = [p.zeros() for _ in ti.static(range(p.axes))]
         shift = [p.zeros() for _ in ti.static(range(p.axes))]
         inwards = [p.zeros() for _ in ti.static(range(p.axes))]
+        stress = [p.zeros() for _ in ti.static(range(3))]
+        if ti.static(c.tense):
+            stress = self.tension.load(b)
         span, least = p.ones(), p.ones()
         if ti.static(c.shifting.acts):
             span = p.load(p.span_before, b)
@@ -123,24 +143,35 @@ class Forces:
                 crowded = weight * c.shifting.crowded(c.get("shift_scale") * c.kernel.value(t))
                 for a in ti.static(range(p.axes)):
                     shift[a] += crowded * apart[a]
-                if ti.static(not c.full):
+                if ti.static(not (c.full or c.two)):
                     deeper = p.span_before[jb, lane] - span
                     least = ti.min(least, ti.select(t > 0.0, p.ones() * p.span_before[jb, lane], p.ones()))
                     for a in ti.static(range(p.axes)):
                         inwards[a] = inwards[a] - (deeper * weight) * apart[a]
             along = (pressure + p.pressure[jb, lane]) * weight
+            other, heavy = gas - p.gas_at(jb, lane), weight  # `heavy`: as strong as the viscosity of the two
+            if ti.static(c.two):
+                along += (c.get("lean_of_pressure") * other) * (pressure - p.pressure[jb, lane]) * weight
+                heavy = weight * c.drag(gas, p.gas[jb, lane])
+                if ti.static(c.tense):
+                    self.tension.add(stress, jb, lane, weight, apart, push)
+                if ti.static(c.shifting.acts or c.tense):
+                    for a in ti.static(range(p.axes)):
+                        inwards[a] += (other * weight) * apart[a]
             if ti.static(c.viscous):
                 nearing = [p.velocity[a][jb, lane] - speed[a] for a in ti.static(range(p.axes))]
                 if ti.static(c.viscosity.central):
                     closing = dot(nearing, apart)
-                    drag = weight * c.viscosity.pull(closing, square + floor)
+                    drag = heavy * c.viscosity.pull(closing, square + floor)
                     along += strength * drag
                     lost += drag * closing
                 else:
                     for a in ti.static(range(p.axes)):
-                        push[a] += (strength * weight) * nearing[a]
-                    lost += weight * dot(nearing, nearing)
-            weighted = [weight * apart[a] for a in ti.static(range(p.axes))]
+                        push[a] += (strength * heavy) * nearing[a]
+                    lost += heavy * dot(nearing, nearing)
+            if ti.static(c.two):  # from here on within a phase
+                weight *= 1.0 - other * other
+            weighted = [(weight * apart[a]) for a in ti.static(range(p.axes))]
             for a in ti.static(range(p.axes)):
                 push[a] += along * apart[a]
             if ti.static(self.gradients):
@@ -155,19 +186,19 @@ class Forces:
             begin = listed * lists.pieces
             if ti.static(lists.pieces == 1):
                 ends = [lists.beside.first[u, begin], lists.beside.first[u, begin + 1]]
-                self.push_off(u, b, ends, own, origin, speed, pressure, wall, own_push, shift, [lost, held])
+                self.beside.push_off(u, b, ends, own, origin, speed, pressure, wall, own_push, shift, [lost, held])
             else:
                 for piece in range(lists.pieces):
                     ends = [lists.beside.first[u, begin + piece], lists.beside.first[u, begin + piece + 1]]
                     off = [p.zeros() for _ in ti.static(range(p.axes))]
-                    self.push_off(u, b, ends, own, origin, speed, pressure, off, own_push, shift, [lost, held])
+                    self.beside.push_off(u, b, ends, own, origin, speed, pressure, off, own_push, shift, [lost, held])
                     for a in ti.static(range(p.axes)):
                         wall[a] += off[a]
                     if piece > 0 and ends[0] < ends[1]:
                         force = p.load(p.volume, b) * c.get("slope")
-                        load = self.on_walls(b, origin, own, [force * off[a] for a in ti.static(range(p.axes))])
+                        load = self.beside.on_walls(b, origin, own, [force * off[a] for a in ti.static(range(p.axes))])
                         self.bodies.bear(u, piece - 1, load)
-        factor, density = c.get("slope"), c.get("density")
+        factor, density = c.get("slope"), c.of("density", gas)
         lightness = (p.filled(b) * factor) / (density * (1.0 + s))
         for a in ti.static(range(p.axes)):
             acceleration = lightness * (push[a] + wall[a])
@@ -175,68 +206,16 @@ class Forces:
             # Velocities are half a kick behind the places at which the dummies push.
             gain = acceleration + p.filled(b) * ti.cast(self.poses.felt[a][self.units.world(u)], p.real)
             held = held - own_push[a] * (speed[a] + (0.5 * kick) * gain)
+        if ti.static(c.tense):
+            self.tension.note(b, [factor * inwards[a] for a in ti.static(range(p.axes))])
         if ti.static(c.shifting.acts):
             self.note_shift(b, shift, inwards, least, span)
         self.note_span(b, factor * yy, factor * yz, factor * zz, [factor * slope[a] for a in ti.static(range(p.axes))])
         volume = p.load(p.volume, b) * factor
-        total = self.on_walls(b, origin, own, [volume * wall[a] for a in ti.static(range(p.axes))])
+        total = self.beside.on_walls(b, origin, own, [volume * wall[a] for a in ti.static(range(p.axes))])
         total[3] = ti.cast((strength * volume * lost).sum(), p.exact)
         total[4] = ti.cast((volume * held).sum(), p.exact)
         return total
-
-    @ti.func
-    def push_off(
-        self,
-        u,
-        b,
-        ends: ti.template(),
-        own: ti.template(),
-        origin: ti.template(),
-        speed: ti.template(),
-        pressure: ti.template(),
-        wall: ti.template(),
-        own_push: ti.template(),
-        shift: ti.template(),
-        taken: ti.template(),
-    ):
-        """Add what the dummies of the entries between two `ends` of a list do to a block.
-
-        `taken` are the powers that viscosity and dummies take."""
-        p, c, lists = self.particles, self.constants, self.lists
-        shrink, floor, strength = c.get("shrink"), c.get("floor"), c.get("strength")
-        for k in range(ends[0], ends[1]):
-            j = lists.beside.slots[u, k]
-            jb, lane = lists.block_of(j), lists.lane_of(j)
-            apart = lists.apart(b, own, origin, j, AT_START)
-            square = dot(apart, apart)
-            t = ti.max(1.0 - ti.sqrt(square) * shrink, 0.0)
-            weight = p.volume[jb, lane] * c.kernel.slope(t)
-            if ti.static(c.shifting.acts):
-                crowded = weight * c.shifting.crowded(c.get("shift_scale") * c.kernel.value(t))
-                for a in ti.static(range(p.axes)):
-                    shift[a] += crowded * apart[a]
-            along = p.pressure[jb, lane] + (pressure if ti.static(c.full) else ti.max(pressure, 0.0))
-            along = along * weight + p.volume[jb, lane] * c.hardness(square, p.firm[jb, lane])
-            more = along - pressure * weight
-            for a in ti.static(range(p.axes)):
-                own_push[a] += more * apart[a]
-            if ti.static(self.poses.moving or self.bodies.moving):
-                taken[1] += more * dot([p.velocity[a][jb, lane] for a in ti.static(range(p.axes))], apart)
-            if ti.static(self.walls.sticks):
-                slides = [self.walls.mirrored[a][jb, lane] - speed[a] for a in ti.static(range(p.axes))]
-                # What the drag takes is its power on the wall less that on the water.
-                lags = [p.velocity[a][jb, lane] - speed[a] for a in ti.static(range(p.axes))]
-                if ti.static(c.viscosity.central):
-                    closing = dot(slides, apart)
-                    drag = weight * c.viscosity.pull(closing, square + floor)
-                    along += strength * drag
-                    taken[0] += drag * dot(lags, apart)
-                else:
-                    for a in ti.static(range(p.axes)):
-                        wall[a] += (strength * weight) * slides[a]
-                    taken[0] += weight * dot(slides, lags)
-            for a in ti.static(range(p.axes)):
-                wall[a] += along * apart[a]
 
     @ti.func
     def note_shift(self, b, shift: ti.template(), inwards: ti.template(), least, span):
@@ -246,8 +225,11 @@ class Forces:
         """
         p, c = self.particles, self.constants
         along, lasting = p.zeros(), p.filled(b)
-        if ti.static(not c.full):
-            steep = ti.max(dot(inwards, inwards), 1e-30)
+        steep = ti.max(dot(inwards, inwards), 1e-30)
+        if ti.static(c.two):  # `inwards` is the gradient of the phase: there is a surface where there are two
+            near = c.get("slope") * c.get("reach")
+            along = ti.select(steep * (near * near) > NEAR, dot(shift, inwards) / steep, p.zeros())
+        elif ti.static(not c.full):
             along = ti.select(least < INSIDE, dot(shift, inwards) / steep, p.zeros())
             lasting = ti.select(span < SPRAY, p.zeros(), lasting)
             if ti.static(c.shifting.carries):
@@ -272,15 +254,3 @@ class Forces:
             along_z = (yy * slope[1] - yz * slope[0]) / determinant
             p.store(p.slope[0], b, ti.select(regular, along_y, p.zeros()))
             p.store(p.slope[1], b, ti.select(regular, along_z, p.zeros()))
-
-    @ti.func
-    def on_walls(self, b, origin: ti.template(), own: ti.template(), wall: ti.template()):
-        """Minus the walls' force on a block, and its moment about the tank's origin; the last two entries are zero."""
-        p = self.particles
-        total = ti.Vector([ti.cast(0.0, p.exact) for _ in ti.static(range(5))])
-        turning = own[0] * wall[1] - own[1] * wall[0]
-        force = [ti.cast(wall[a].sum(), p.exact) for a in ti.static(range(p.axes))]
-        y, z = ti.cast(origin[0], p.exact), ti.cast(origin[1], p.exact)
-        total[0], total[1] = 0.0 - force[0], 0.0 - force[1]
-        total[2] = 0.0 - (ti.cast(turning.sum(), p.exact) + y * force[1] - z * force[0])
-        return total

@@ -6,8 +6,9 @@ from typing import Annotated
 from solvers.machine.marks import Doc, Interval, Unit
 
 # Columns of `Scene.drops` (W, n, 6): place (m) and velocity over the earth (m/s) in the tank's axes, relative excess of
-# density s = ρ/ρ0 − 1, and volume (m²) in the plane. A motion that starts abruptly finds the water at rest.
-Y, Z, VELOCITY_Y, VELOCITY_Z, EXCESS, VOLUME = range(6)
+# density s = ρ/ρ0 − 1, and volume (m²) in the plane. A motion that starts abruptly finds the water at rest. With air
+# there is a seventh column: 0 for particles of water, 1 for those of air, which come last.
+Y, Z, VELOCITY_Y, VELOCITY_Z, EXCESS, VOLUME, GAS = range(7)
 
 
 @dataclass(frozen=True)
@@ -38,6 +39,23 @@ class Pull:
 
 
 @dataclass(frozen=True)
+class Air:
+    """The air in a tank with water, the second phase of its fluid; SI units.
+
+    `density` ρ_a (kg/m³) of air that is not compressed, `sound_speed` c_a (m/s), `alpha` the strength of its artificial
+    viscosity or `kinematic` ν (m²/s) that of laminar flow, `tension` (N/m) of the surface between the phases;
+    `interface`: the name of what acts between them.
+    """
+
+    density: float = 1.2
+    sound_speed: float = 10.0
+    alpha: float = 0.01
+    kinematic: float = 0.0
+    tension: float = 0.0
+    interface: str = "weighted"
+
+
+@dataclass(frozen=True)
 class Water:
     """The liquid of a scene and the models that compute it; SI units.
 
@@ -45,15 +63,15 @@ class Water:
     compressible liquid. `kernel`, `state`, `diffusion` and `viscosity` are names of the registries. `delta` is the
     strength δ of the diffusion of density; `alpha` that of the artificial viscosity, or `kinematic` ν (m²/s) that of
     laminar flow. `slip`: water slides freely along walls, else it sticks to them. `full`: the tank has no free surface,
-    so that walls may pull, and `background` is the pressure (Pa) that all of the water bears besides (Adami, Hu & Adams
+    so that walls may pull, and `background` is the pressure (Pa) that all of the fluid bears besides (Adami, Hu & Adams
     2012, eq. 6: χ). `shifting`: the name of how particles are shifted to even their distances, for water of up to the
     `speed` (m/s). `walls`: whether the tank's outline holds the water; without, it moves freely in space.
     `edges`: those of the outline, by their first corners, whose force is told. `periodic`: axes, "y" or "z", along
     which space repeats itself with the tank's width or height, so that it has no walls there. `start`: the name of how
-    water at rest is laid, "packed" or as a "lattice". `fills`: how many particles are in each tank of a world, by their
-    numbers one after the other; (): all are in the first. Water of different tanks never meets, though they may overlap
-    in the plane. `model`: "sph", or "linear" or "frozen", for which see `solvers.liquid`: then waves have the share
-    `swing_damping` of the critical damping.
+    water at rest is laid, "packed" or as a "lattice". `air`: what fills the tank besides, None: nothing. `fills`: how
+    many particles are in each tank of a world, by their numbers one after the other; (): all are in the first. Water of
+    different tanks never meets, though they may overlap in the plane. `model`: "sph", or "linear" or "frozen", for
+    which see `solvers.liquid`: then waves have the share `swing_damping` of the critical damping.
     """
 
     spacing: float
@@ -82,6 +100,7 @@ class Water:
     fills: tuple[int, ...] = ()
     model: str = "sph"
     swing_damping: float = 0.0
+    air: Air | None = None
 
     @property
     def length(self) -> float:

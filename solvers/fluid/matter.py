@@ -10,7 +10,7 @@ from solvers.fluid.checks import LEAST, check_water, refuse_scene, refuse_state,
 from solvers.fluid.constants import Constants
 from solvers.fluid.continuity import Continuity
 from solvers.fluid.forces import Forces
-from solvers.fluid.given import VELOCITY_Y, VELOCITY_Z, VOLUME, Water
+from solvers.fluid.given import GAS, VELOCITY_Y, VELOCITY_Z, VOLUME, Water
 from solvers.fluid.grid import grid_round
 from solvers.fluid.lists import Lists, Medium
 from solvers.fluid.mover import Mover
@@ -52,7 +52,10 @@ class WaterMatter(Matter):
         self.nearing = self.bodies.fastest
         walls = (len(blocks) + self.bodies.rows) * lanes
         self.drops = scene.drops
-        self.particles = p = Particles(arrays, worlds, count, lanes, walls, grid.strips, SHIFTING[water.shifting])
+        self.gas = scene.drops[..., GAS] if water.air else np.zeros(scene.drops.shape[:2])
+        self.puffs = int(self.gas[0].sum())  # particles of air, which come last
+        shifting = SHIFTING[water.shifting]
+        self.particles = p = Particles(arrays, worlds, count, lanes, walls, grid.strips, shifting, water.air)
         self.units = units = setting.units(p.wet)
         self.load = setting.load(arrays.under("water"), units)
         self.dummies = dummy, blocks, behind.volumes, behind.firm
@@ -65,14 +68,8 @@ class WaterMatter(Matter):
         self.extrapolation = Extrapolation(arrays, medium)
         self.forces = Forces(arrays, medium, self.extrapolation, self.load, tank.thickness)
         self.continuity, self.mover = Continuity(arrays, medium), Mover(arrays, medium, self.extrapolation)
-        self.gauges = Gauges(
-            arrays,
-            p,
-            self.constants,
-            water.gauges,
-            [dummy[slot] + p.wet * lanes for slot in behind.probes],
-            behind.open,
-        )
+        probes = [dummy[slot] + p.wet * lanes for slot in behind.probes]
+        self.gauges = Gauges(arrays, p, self.constants, water.gauges, probes, behind.open)
         pool = Pool.of(scene, setting.walls, self.order)
         owner = np.full(p.dry * lanes, OF_NONE)
         owner[dummy] = np.where(behind.tanks == pool.first, behind.edges, OF_NONE)
@@ -207,10 +204,9 @@ class WaterMatter(Matter):
     def observe(self, time: float) -> dict[str, np.ndarray]:
         """The quantities of every world at its time (s): (W, *shape) of each by name."""
         sums, thick = self.census.take(time, self.thickness), self.thickness
-        mass = np.maximum(sums["mass"], 1e-300)
+        mass = np.maximum(sums["mass"], 1e-300)  # of both phases
         centre = np.stack([sums["moment_y"], sums["moment_z"]], axis=1) / mass[:, None]
         now = [field.to_numpy() for field in self.census.now]
-        # Height over the earth: gravity points down, and `height` is the tank's own.
         down = np.stack(now[3:5], axis=1) / max(self.scene.gravity, 1e-300)
         potential = mass * self.scene.gravity * (now[5] - (centre * down).sum(axis=1)) + sums["pulled"]
         spent = [
@@ -218,7 +214,7 @@ class WaterMatter(Matter):
             for field in (self.forces.lost, self.continuity.lost, self.forces.work, self.forces.held)
         ]
         rows = {
-            "water_centre": centre,
+            **self.census.of_water(sums, mass, centre),
             "water_momentum": np.stack([sums["momentum_y"], sums["momentum_z"]], axis=1),
             "water_kinetic": sums["flowing"],
             "water_potential": potential,
@@ -229,7 +225,6 @@ class WaterMatter(Matter):
             "water_work": (spent[2] + self.bodies.given()) * thick,
             "water_held": spent[3] * thick,
             "water_excess": sums["excess"],
-            "water_dense": sums["dense"] / mass,
             "level_depth": self.census.level_depth.to_numpy()[:, : self.census.levels],
             "water_escaped": sums["escaped"],
             **self.gauges.take(),
@@ -241,7 +236,8 @@ class WaterMatter(Matter):
 
     def check(self, rows: dict[str, np.ndarray], time: float) -> None:
         """Raise BadState if the quantities at `time` (s) show an unphysical state."""
-        known = np.nan if self.water.periodic else self.start  # a particle that goes round falls for ever
+        # A particle that goes round falls for ever; the energy of a surface under tension is not known.
+        known = np.nan if self.water.periodic or self.constants.tense else self.start
         check_water(rows, known, time, self.least)
 
     def refuse(self, world: int, time: float, dt: float) -> None:
@@ -261,18 +257,22 @@ class WaterMatter(Matter):
         """Places, velocities relative to the tank (W, n, 2) and pressures (W, n) at `time` (s), which must be now."""
         p = self.particles
         found = p.read(*p.place, *p.velocity, *p.acceleration, p.excess)
-        stiffness = self.water.density * self.water.sound_speed**2
-        return {
-            "water_place": np.stack(found[0:2], axis=-1),
-            "water_velocity": self.census.relative(time, found[0:2], found[2:4], found[4:6]),
-            "water_pressure": stiffness * self.constants.state.pressure(found[6]),
-            **self.bodies.places(time),
+        told = {
+            "place": np.stack(found[0:2], axis=-1),
+            "velocity": self.census.relative(time, found[0:2], found[2:4], found[4:6]),
+            "pressure": self.constants.pressures(found[6], self.gas),
         }
+        phases = {"water": slice(0, p.count - self.puffs), "air": slice(p.count - self.puffs, None)}
+        names = ("water", "air") if p.two else ("water",)
+        rows = {f"{phase}_{name}": values[:, phases[phase]] for phase in names for name, values in told.items()}
+        return rows | self.bodies.places(time)
 
     def alter(self, scene) -> None:
         """Go on with another gravity; the account of energy begins anew."""
         self.scene = scene
         self.constants.set("hydrostatic", scene.gravity / self.water.sound_speed**2)
+        if self.particles.two:
+            self.constants.set("air_hydrostatic", scene.gravity / self.water.air.sound_speed**2)
         self.start[:] = np.nan
 
     def fields(self) -> list[ti.Field]:

@@ -3,7 +3,7 @@
 import taichi as ti
 
 from solvers.fluid.lists import Medium
-from solvers.fluid.state import DENSEST, DENSEST_SPRAY, INSIDE, SPRAY
+from solvers.fluid.state import DENSEST, DENSEST_AIR, DENSEST_SPRAY, INSIDE, SPRAY, THINNEST
 from solvers.fluid.walls.bodies import AT_END
 from solvers.fluid.walls.extrapolation import Extrapolation
 from solvers.machine.state import State
@@ -60,22 +60,31 @@ class Mover:
         p, c = self.particles, self.constants
         w = self.units.world(u)
         first, end = self.shares.wet(u)
-        farthest, deviation, tame = p.zeros(), p.zeros(), p.zeros()
+        farthest, deviation, tame, paced = p.zeros(), p.zeros(), p.zeros(), p.zeros()
         for b in range(first, end):
             filled = p.filled(b)
-            spray, step = p.load(p.span, b) < SPRAY, dt * filled
+            gas = p.gases(b)
+            spray, step = p.load(p.span, b) + gas < SPRAY, dt * filled  # air is never spray
             s = self.floored(spray, p.load(p.excess, b) + step * p.load(p.rate, b))
             # Walls come last: spray that parts is still pushed off a wall that it nears.
             s = self.floored(spray, s + step * p.load(p.rate_of_walls, b))
+            if ti.static(c.two):
+                s = ti.max(s, (1.0 - gas) * (-1.0) + gas * THINNEST)
             p.store(p.excess, b, s)
             if ti.static(c.shifting.carries):
                 share = step / (p.load(p.mass, b) + (1.0 - filled))
                 for a in ti.static(range(p.axes)):
                     p.store(p.velocity[a], b, p.load(p.velocity[a], b) + share * p.load(p.carried[a], b))
             loose = ti.select(p.load(p.span, b) < INSIDE, p.ones() * (DENSEST / DENSEST_SPRAY), p.ones())
+            if ti.static(c.two):
+                loose = (1.0 - gas) * loose + gas * (DENSEST / DENSEST_AIR)
             deviation = ti.max(deviation, (loose * s) * (loose * s))
             tame += s
-            farthest = ti.max(farthest, self.drift(w, b, filled, 0.5 * dt, AT_MIDDLE))
+            gone = self.drift(w, b, filled, 0.5 * dt, AT_MIDDLE)
+            farthest = ti.max(farthest, gone)
+            if ti.static(c.two):
+                pace = (1.0 - gas) + gas * c.get("air_pace")
+                paced = ti.max(paced, gone * (pace * pace))
         second, deviated = ti.sqrt(self.largest(farthest)), ti.sqrt(self.largest(deviation))
         whole = self.lists.last[u] + second
         if ti.static(self.bodies.moving):
@@ -84,6 +93,8 @@ class Mover:
         self.lists.last[u] = whole
         self.lists.travel[u] = self.lists.travel[u] + whole
         self.fastest[u], self.deviation[u] = 2.0 * second / dt, deviated
+        if ti.static(c.two):
+            self.fastest[u] = 2.0 * ti.sqrt(self.largest(paced)) / dt
         if not tame.sum() < 1e30:  # largest values may pass over what is no number, sums do not
             self.deviation[u] = tame.sum()
         return self.fastest[u] < c.get("fastest") and self.deviation[u] < DENSEST

@@ -4,14 +4,25 @@ from solvers.machine.quantity import FREEDOMS, PLANE, Quantity
 
 SERIES = (
     Quantity("water_centre", "m", PLANE, "centre of mass of the water in the tank"),
-    Quantity("water_momentum", "N s", PLANE, "momentum of the water over the earth, in the tank's axes"),
-    Quantity("water_kinetic", "J", label="kinetic energy of the water, relative to the tank"),
-    Quantity("water_potential", "J", label="potential energy of the water above the earth's origin"),
-    Quantity("water_elastic", "J", label="elastic energy of the water's compression"),
-    Quantity("water_total", "J", label="energy of the water over the earth: kinetic, potential and elastic"),
+    Quantity(
+        "water_momentum",
+        "N s",
+        PLANE,
+        "momentum of the water, and of the air with it, over the earth, in the tank's axes",
+    ),
+    Quantity("water_kinetic", "J", label="kinetic energy of the water, and of the air with it, relative to the tank"),
+    Quantity(
+        "water_potential", "J", label="potential energy of the water, and of the air with it, above the earth's origin"
+    ),
+    Quantity("water_elastic", "J", label="elastic energy of compression"),
+    Quantity(
+        "water_total",
+        "J",
+        label="energy of the water, and of the air with it, over the earth: kinetic, potential and elastic",
+    ),
     Quantity("water_viscous", "J", label="energy that viscosity has taken since the start"),
     Quantity("water_diffusive", "J", label="energy that diffusion of density has taken since the start"),
-    Quantity("water_work", "J", label="work of the walls on the water since the start"),
+    Quantity("water_work", "J", label="work of the walls on the water, and on the air, since the start"),
     Quantity("water_held", "J", label="energy that the walls' dummy particles hold, since the start"),
     Quantity("water_excess", "1", label="largest deviation of the density from that at rest"),
     Quantity("water_dense", "1", label="share of the water whose density deviates by more than 3 %"),

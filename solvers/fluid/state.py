@@ -3,7 +3,7 @@
 import numpy as np
 import taichi as ti
 
-from solvers.fluid.given import EXCESS, VOLUME, Water
+from solvers.fluid.given import EXCESS, GAS, VOLUME, Air, Water
 from solvers.machine.state import Axis, State, roomy
 from solvers.machine.units import Units
 from solvers.space.axes import PLANE, named
@@ -16,6 +16,8 @@ COUNT, WET, DRY = range(3)  # of the numbers that differ between tanks: particle
 FAR = 1e6  # m, where unused lanes are
 DENSEST = 0.2  # deviation of the density within the water at which a run is stopped
 DENSEST_SPRAY = 0.5  # that of drops, and of the surface: a drop that hits a wall at Mach 0.2 is compressed by a fifth
+DENSEST_AIR = 30.0  # that of air, which a slow speed of sound makes soft: trapped under an impact it all but vanishes
+THINNEST = -0.8  # excess of density of air down to which it is drawn out; a particle cannot stand for a larger void
 INSIDE = 0.75  # least eigenvalue above which no surface is near (Marrone, Colagrossi, Le Touzé & Graziani 2010)
 SPRAY = 0.2  # least eigenvalue below which water is spray, never less dense than at rest (Marrone et al. 2010)
 UNUSED = -1  # number of an unused lane
@@ -36,13 +38,26 @@ class Particles:
     block. `volume` (m²) and `pressure` (Pa) are published at the start of a step. `rate` and `rate_of_walls` (1/s) are
     those of s; `acceleration` (m/s²) is that of the last kick; `slope` (1/m) the renormalised gradient of s; `span` the
     least eigenvalue of Σ V_j r_ji ⊗ ∇W, 1 within water; `carried` (N/m) the momentum that shifts bring (`shifting`).
+    Of two phases, `gas` is 1 for particles of air, 0 for those of water, `span` is of the own phase, and dummies have
+    the pressure that water sees in `pressure`, that which air sees in `pressure_of_air`, and the water's `share` of
+    what they see.
 
     With `lanes` 1, for processors that move each particle by a thread of its own, a block is a particle.
     """
 
     axes = PLANE
 
-    def __init__(self, arrays: State, worlds: int, count: int, lanes: int, walls: int, strips: int, shifting):
+    def __init__(
+        self,
+        arrays: State,
+        worlds: int,
+        count: int,
+        lanes: int,
+        walls: int,
+        strips: int,
+        shifting,
+        air: Air | None = None,
+    ):
         self.worlds, self.count, self.lanes = worlds, count, lanes
         self.real, self.exact, self.where = arrays.real, arrays.exact, arrays.place
         sizes = count, count if lanes == 1 else int(SPARE * -(-count // lanes)) + 2 * strips, -(-walls // lanes)
@@ -67,6 +82,12 @@ class Particles:
         if shifting.carries:
             self.carried = own.wide(each, *named("carried", self.axes), kept=False)
         self.slope = own.wide(each, *named("slope", self.axes))
+        self.two = air is not None
+        if air and air.tension > 0.0:
+            self.stress = own.wide(each, "stress_yy", "stress_yz", "stress_zz")
+        if self.two:
+            (self.gas,) = own.wide(each, "gas")
+            self.pressure_of_air, self.share = own.wide(each, "pressure_of_air", "share", kept=False)
         self.built = own.wide(each, *named("built", self.axes), kind=own.place)
         self.each_world = Axis("world", worlds)
         (self.used,) = own.integers((self.each_world,), "used", below=self.wet + 1)
@@ -74,7 +95,8 @@ class Particles:
     @property
     def moved(self) -> list[ti.Field]:
         """The arrays that belong to particles and are carried from block to block."""
-        return [*self.place, *self.velocity, self.excess, self.mass, self.number]
+        always = [*self.place, *self.velocity, self.excess, self.mass, self.number]
+        return [*always, self.gas] if self.two else always
 
     def fields(self) -> list[ti.Field]:
         """All arrays that a step changes."""
@@ -82,10 +104,14 @@ class Particles:
 
     def put(self, drops: np.ndarray, velocity: np.ndarray, water: Water) -> None:
         """Fill the blocks in the order of the numbers with `drops` (W, n, 6) that have a `velocity` over the earth."""
-        mass = water.density * (1.0 + drops[..., EXCESS]) * drops[..., VOLUME]
+        density = water.density
+        if self.two:
+            density = np.where(drops[..., GAS] > 0.5, water.air.density, water.density)
+        mass = density * (1.0 + drops[..., EXCESS]) * drops[..., VOLUME]
         columns = [drops[..., 0], drops[..., 1], velocity[..., 0], velocity[..., 1], drops[..., EXCESS], mass]
-        columns += [np.broadcast_to(np.arange(self.count), mass.shape), drops[..., VOLUME]]
-        fills = [FAR, FAR, 0.0, 0.0, 0.0, 0.0, UNUSED, 0.0]
+        columns += [np.broadcast_to(np.arange(self.count), mass.shape), *([drops[..., GAS]] if self.two else [])]
+        columns += [drops[..., VOLUME]]
+        fills = [FAR, FAR, 0.0, 0.0, 0.0, 0.0, UNUSED, *([0.0] if self.two else []), 0.0]
         for field, values, fill in zip([*self.moved, self.volume], columns, fills, strict=True):
             whole = self.by_world(field.to_numpy())
             whole[:, : self.wet * self.lanes] = fill
@@ -139,6 +165,22 @@ class Particles:
         """1 in lanes in use, 0 in others."""
         mass = self.load(self.mass, b)
         return ti.select(mass > 0.0, self.ones(), self.zeros())
+
+    @ti.func
+    def gases(self, b):
+        """1 in lanes with air, 0 in those with water."""
+        if ti.static(self.two):
+            return self.load(self.gas, b)
+        else:
+            return self.zeros()
+
+    @ti.func
+    def gas_at(self, b, lane):
+        """1 for a particle of air, 0 for one of water."""
+        if ti.static(self.two):
+            return self.gas[b, lane]
+        else:
+            return ti.cast(0.0, self.real)
 
     @ti.func
     def zeros(self):

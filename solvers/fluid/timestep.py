@@ -1,14 +1,16 @@
 """The time step derived from a scene's water: sound, acceleration, viscosity, diffusion of density and motion."""
 
-from math import inf, sqrt
+from dataclasses import replace
+from math import inf, pi, sqrt
 
-from solvers.fluid.given import VELOCITY_Y, VELOCITY_Z
+from solvers.fluid.given import VELOCITY_Y, VELOCITY_Z, Water
 from solvers.machine.limit import Limit
 
 COURANT = 0.8  # of the time in which sound and water cross h; 1.4 is the largest stable one (standing wave)
 FORCED = 0.25  # of √(h/a) (Monaghan 1992, eq. 10.2)
 SPREAD = 0.125  # of h²/ν (Morris, Fox & Zhu 1997, eq. 21)
 EVENED = 2.0 / 7.0  # of h/(δ c0): the diffusion of density is explicit, with 2 Σ V η = 7/h² over all neighbours
+SURFACE = 0.25  # of √((ρ_w + ρ_a) h³/(2 π σ)) (Brackbill, Kothe & Zemach 1992, eq. 61; Hu & Adams 2006, eq. 26)
 TRAVELLED = 0.02  # of the shortest period of the tank's motion
 SLOW = 1e-9
 
@@ -16,7 +18,8 @@ SLOW = 1e-9
 def limits_of_water(scene) -> list[Limit]:
     """Bounds on the step of the water of a `solvers.scene.Scene`, for the speeds and accelerations to be expected."""
     water = scene.water
-    length, sound, speed = water.length, water.sound_speed, water_speed(scene)
+    length, speed = water.length, water_speed(scene)
+    sound = max(water.sound_speed, water.air.sound_speed if water.air else 0.0)
     bounds = [
         Limit(
             COURANT * length / (sound + speed),
@@ -29,16 +32,25 @@ def limits_of_water(scene) -> list[Limit]:
     pushed += sum(_shaken(motion, scene.span) for motion in scene.motions[0])
     if pushed > SLOW:
         bounds.append(Limit(FORCED * sqrt(length / pushed), f"{FORCED:g} √(h/a) at {pushed:.3g} m/s²", firm=True))
-    viscosity = kinematic(water)
+    viscosity = max(kinematic(water), kinematic(of_air(water)) if water.air else 0.0)
     if viscosity > 0.0:
         bounds.append(Limit(SPREAD * length**2 / viscosity, f"{SPREAD:g} h²/ν at {viscosity:.3g} m²/s", firm=True))
     if water.delta > 0.0 and water.diffusion != "none":
         longest = EVENED * length / (water.delta * sound)
         bounds.append(Limit(longest, "the diffusion of density", firm=True))
+    if water.air and water.air.tension > 0.0:
+        crossed = SURFACE * sqrt((water.density + water.air.density) * length**3 / (2.0 * pi * water.air.tension))
+        bounds.append(Limit(crossed, f"{SURFACE:g} of the time of the shortest ripple", firm=True))
     shortest = min((1.0 / motion.frequency for motion in scene.motions[0] if hasattr(motion, "frequency")), default=inf)
     if shortest < inf:
         bounds.append(Limit(TRAVELLED * shortest, f"{TRAVELLED:g} of the shortest period of the motion"))
     return bounds
+
+
+def of_air(water: Water) -> Water:
+    """The air beside a water, as if it were one."""
+    air = water.air
+    return replace(water, density=air.density, sound_speed=air.sound_speed, alpha=air.alpha, kinematic=air.kinematic)
 
 
 def kinematic(water) -> float:

@@ -16,6 +16,7 @@ OWNERS = {
     "grain": ("world", "grain"),
     "part": ("world", "part"),
     "drop": ("world", "drop"),
+    "puff": ("world", "puff"),
     "gauge": ("world", "gauge"),
     "level": ("world", "level"),
     "edge": ("world", "edge"),

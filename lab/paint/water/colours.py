@@ -24,7 +24,7 @@ FEW = 15  # frames for the scale of what takes time to compute
 
 def pressure(beds: Sequence[Bed]) -> Colouring:
     """Pressure over that of the air, from zero, or from the largest suction if there is some."""
-    low, high = _ends(beds, lambda bed, frame: bed.drops("water_pressure", frame))
+    low, high = ends(beds, lambda bed, frame: bed.drops("water_pressure", frame))
     high = round_up(max(high, 1.0))
     low = -round_up(-low) if low < -LEAST * high else 0.0
     factor, unit = (1e-6, "MPa") if high >= 1e6 else (1e-3, "kPa") if high >= 1e3 else (1.0, "Pa")
@@ -41,7 +41,7 @@ def speed(beds: Sequence[Bed]) -> Colouring:
     def speeds(bed: Bed, frame: int) -> np.ndarray:
         return np.hypot(*bed.drops("water_velocity", frame).T)
 
-    top = round_up(max(_ends(beds, speeds)[1], beds[0].footage.water.spacing))
+    top = round_up(max(ends(beds, speeds)[1], beds[0].footage.water.spacing))
     factor, unit = (1.0, "m/s") if top >= 1.0 else (1e3, "mm/s")
 
     def values(bed: Bed, frame: int) -> np.ndarray:
@@ -56,7 +56,7 @@ def turning(beds: Sequence[Bed]) -> Colouring:
     def values(bed: Bed, frame: int) -> np.ndarray:
         return vorticity(bed.water_place(frame), bed.drops("water_velocity", frame), bed.footage.water.spacing)
 
-    top = round_up(max(_ends(beds, lambda bed, frame: np.abs(values(bed, frame)), FEW)[1], 1e-2))
+    top = round_up(max(ends(beds, lambda bed, frame: np.abs(values(bed, frame)), FEW)[1], 1e-2))
     return Colouring("vorticity in the tank (1/s)", -top, top, table("coolwarm", low=0.02), values)
 
 
@@ -73,7 +73,7 @@ def field(name: str, beds: Sequence[Bed]) -> Colouring | None:
     return FIELDS[name](beds) if name in FIELDS else None
 
 
-def _ends(
+def ends(
     beds: Sequence[Bed], values: Callable[[Bed, int], np.ndarray], frames: int = SAMPLED_FRAMES
 ) -> tuple[float, float]:
     """The ends of a scale on which nearly all values of all sampled frames lie; 0 and 0 if no water is left.

@@ -10,6 +10,7 @@ import numpy as np
 from lab.paint import palette
 from lab.paint.colours import Colouring
 from lab.paint.painter import Camera, paint_grains, to_discs
+from lab.paint.water.air import BY_ITSELF, colouring_of_air, paint_air
 from lab.paint.water.colours import field
 from lab.paint.water.grid import Grid, sampled
 from lab.paint.water.surface import Paints, paint_surface
@@ -40,6 +41,10 @@ class WaterLayer:
         wet = [bed for bed in beds if bed.footage.water]
         self._discs = colour == "particles"
         self.colouring: Colouring | None = field(colour, wet) if wet else None
+        self._air = colouring_of_air(colour, wet, self.colouring) if wet else None
+        if colour == BY_ITSELF:
+            self.colouring = self._air
+        self._plain = colour == BY_ITSELF or not self.colouring  # water looks like water
         self._line = max(1.0, LINE * unit)
         self._grids: dict[tuple[Bed, Basin], Grid] = {}
 
@@ -67,10 +72,12 @@ class WaterLayer:
             _paint_discs(picture, camera, place, size, self.colouring.colours(bed, frame)[there])
             return
         grid = self._grid(bed, basin, camera)
+        if self._air and bed.footage.water.air.size:
+            paint_air(picture, camera, grid, bed, frame, self._air, under)
         sums = grid.sums(place, volume)
         level = grid.level(sums)
         reached = sampled(level, grid.nodes(place))
-        if self.colouring:
+        if not self._plain:
             share = np.clip(np.nan_to_num(self.colouring.shares(bed, frame)[there]), 0.0, 1.0)
             colour = self.colouring.colours(bed, frame)[there]
         else:
@@ -90,7 +97,7 @@ class WaterLayer:
         return kept
 
     def _paints(self, under: tuple) -> Paints:
-        if self.colouring:
+        if not self._plain:
             return Paints(self.colouring.table, LIT, DEEP, FIELD_EDGE, under, self._line, STRONG, False)
         return Paints(np.array([FOAM]), LIT, DEEP, EDGE, under, self._line, STRONG, True)
 

@@ -1,6 +1,6 @@
 """What a picture needs to know of the water in a recording besides its particles: their volume, and the gauges."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -11,19 +11,21 @@ from solvers.fluid.given import Gauge, Level
 
 @dataclass(frozen=True)
 class Pool:
-    """volume (W, n): of the particles in the plane, m²; gauges of pressure and of depth, by name."""
+    """volume (W, n): of the particles in the plane, m²; gauges of pressure and of depth, by name; air: as volume."""
 
     volume: np.ndarray
     gauges: dict[str, Gauge]
     levels: dict[str, Level]
+    air: np.ndarray = field(default_factory=lambda: np.zeros((1, 0)))
 
     @classmethod
-    def of(cls, preset: Preset, volume: np.ndarray) -> "Pool | None":
-        """The water of a preset with the volumes (W, n) m² of its particles; None without water."""
+    def of(cls, preset: Preset, volume: np.ndarray, air: np.ndarray) -> "Pool | None":
+        """The water of a preset with the volumes (W, n) m² of its particles, and of air's; None without water."""
         if preset.water is None:
             return None
         water, (gauges, levels, _) = liquid(preset), parted(preset.gauges)
-        return cls(volume, dict(zip(gauges, water.gauges, strict=True)), dict(zip(levels, water.levels, strict=True)))
+        of_gauges = dict(zip(gauges, water.gauges, strict=True)), dict(zip(levels, water.levels, strict=True))
+        return cls(volume, *of_gauges, air)
 
     @property
     def spacing(self) -> float:

@@ -10,8 +10,9 @@ from solvers.machine.marks import Doc, Interval, Unit
 
 OF_GRAINS = ("speed", "displacement", "layer", "size", "kind", "shape", "spin")  # what `lab.paint.colours` paints
 OF_WATER = ("water", "pressure", "speed", "vorticity", "particles")  # what `lab.paint.water` paints
-COLOURS = (*OF_GRAINS, *(colour for colour in OF_WATER if colour not in OF_GRAINS))
-OF_MATTERS = {"grains": OF_GRAINS, "water": OF_WATER}
+OF_AIR = ("air",)  # the air's pressure, and water as it is
+COLOURS = (*OF_GRAINS, *(colour for colour in OF_WATER if colour not in OF_GRAINS), *OF_AIR)
+OF_MATTERS = {"grains": OF_GRAINS, "water": OF_WATER, "air": OF_AIR}
 
 Rate = Annotated[float, Unit("Hz"), Interval(gt=0, le=1e6)]
 
@@ -53,7 +54,7 @@ def check_video(video: Video, matters: Collection[str]) -> None:
     """Raise LabError for a colour of what is not there, and for picture sizes that the video codec cannot encode."""
     fitting = [name for name, words in OF_MATTERS.items() if video.colour in words]
     if video.colour and not set(fitting) & set(matters):
-        said = f"{' or '.join(fitting)}, and there {'is' if fitting == ['water'] else 'are'} none"
+        said = f"{' or '.join(fitting)}, and there {'are' if 'grains' in fitting else 'is'} none"
         raise LabError(f"video.colour: goes with {said}; add a table [{fitting[0]}], or leave this out.")
     for name in ("width", "height"):
         if getattr(video, name) % 2:

@@ -31,7 +31,8 @@ class Behind:
         for number in wet if water.walls else ():
             points, volumes, depths = _round(water, tanks[number])
             self._add(points, volumes, edge_of(points, tanks[number].outline), number)
-            self.firm = np.append(self.firm, firm(depths, water.spacing))
+            hold = depths if water.air else firm(depths, water.spacing)  # each layer holds air, see `Constants`
+            self.firm = np.append(self.firm, hold)
         if not len(self.points):
             return
         first = tanks[wet[0]].outline

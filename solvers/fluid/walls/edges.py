@@ -60,12 +60,16 @@ class Edges:
             apart = lists.apart(b, own, origin, j, AT_START)
             square = dot(apart, apart)
             weight = c.kernel.slope(ti.max(1.0 - ti.sqrt(square) * c.get("shrink"), 0.0))
-            push = p.pressure[jb, lane]
-            if ti.static(not c.full):
-                push = ti.max(push, 0.0)
+            gas = p.gas_at(jb, lane)
+            push = c.clipped(p.pressure[jb, lane], gas)
             if ti.static(c.pressed):
                 push = push - 2.0 * c.get("background")
-            along = p.volume[jb, lane] * ((pressure + push) * weight + c.hardness(square, firm))
+            along = pressure + push
+            spring = c.hardness(square, firm, gas)
+            if ti.static(c.two):
+                along = (1.0 - gas) * pressure + gas * p.load(p.pressure_of_air, b) + push
+                spring *= 1.0 + gas * p.excess[jb, lane]
+            along = p.volume[jb, lane] * (along * weight + spring)
             for a in ti.static(range(p.axes)):
                 force[a] += along * apart[a]
         for a in ti.static(range(p.axes)):

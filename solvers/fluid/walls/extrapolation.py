@@ -16,7 +16,8 @@ class Extrapolation:
 
     Weighted with volumes, which are nearly equal. Walls do not pull (p_w ≥ 0) unless the tank is full: a clip is needed
     where there is a free surface, which would stick to a wall. Where water sticks (no slip), its mean velocity ũ at the
-    dummy gives the velocity 2 u_w − ũ for the viscous force (eq. 23).
+    dummy gives the velocity 2 u_w − ũ for the viscous force (eq. 23). Of two phases, each sees a pressure of its own,
+    extrapolated from itself, for their gradients differ by their densities; walls may pull at air.
     """
 
     def __init__(self, arrays: State, medium: Medium):
@@ -47,6 +48,8 @@ class Extrapolation:
         shrink = c.get("shrink")
         seen, pressed = p.zeros(), p.zeros()
         lever = [p.zeros() for _ in ti.static(range(p.axes))]
+        airy, pressed_by_air = p.zeros(), p.zeros()  # of two phases, what of both is the air's
+        lever_of_air = [p.zeros() for _ in ti.static(range(p.axes))]
         moved = [p.zeros() for _ in ti.static(range(p.axes))]
         for k in range(begin, end):
             j = self.lists.facing.slots[u, k]
@@ -54,23 +57,37 @@ class Extrapolation:
             apart = self.lists.apart(b, own, origin, j, AT_START)
             weight = c.kernel.value(ti.max(1.0 - ti.sqrt(dot(apart, apart)) * shrink, 0.0))
             volume = p.volume[jb, lane]
+            massive = weight * p.mass[jb, lane]
+            if ti.static(self.sticks):
+                for a in ti.static(range(p.axes)):
+                    moved[a] += weight * (volume * p.velocity[a][jb, lane])
+            if ti.static(p.two):
+                airy += weight * (volume * p.gas[jb, lane])
+                pressed_by_air += weight * (volume * p.gas[jb, lane] * p.pressure[jb, lane])
+                for a in ti.static(range(p.axes)):
+                    lever_of_air[a] += (massive * p.gas[jb, lane]) * apart[a]
+                weight *= 1.0 - p.gas[jb, lane]
+                massive *= 1.0 - p.gas[jb, lane]
             seen += weight * volume
             pressed += weight * (volume * p.pressure[jb, lane])
-            massive = weight * p.mass[jb, lane]
             for a in ti.static(range(p.axes)):
                 lever[a] += massive * apart[a]
-                if ti.static(self.sticks):
-                    moved[a] += weight * (volume * p.velocity[a][jb, lane])
         pull = self.felt(w, b)
-        pressure = (pressed + dot(pull, lever)) / ti.max(seen, 1e-30)
-        wet = seen * c.get("value")
-        if ti.static(not c.full):
-            pressure = ti.max(pressure, 0.0)
-        p.store(p.pressure, b, ti.select(wet > SEEN, pressure, p.zeros()))
+        wet = (seen + airy) * c.get("value")
+        if ti.static(p.two):
+            pressure = ti.max((pressed + dot(pull, lever)) / ti.max(seen, 1e-30), 0.0)
+            p.store(p.pressure, b, pressure)
+            p.store(p.pressure_of_air, b, (pressed_by_air + dot(pull, lever_of_air)) / ti.max(airy, 1e-30))
+            p.store(p.share, b, seen / ti.max(seen + airy, 1e-30))
+        else:
+            pressure = (pressed + dot(pull, lever)) / ti.max(seen, 1e-30)
+            if ti.static(not c.full):
+                pressure = ti.max(pressure, 0.0)
+            p.store(p.pressure, b, ti.select(wet > SEEN, pressure, p.zeros()))
         p.store(p.span, b, wet)
         if ti.static(self.sticks):
             for a in ti.static(range(p.axes)):
-                mean = moved[a] / ti.max(seen, 1e-30)
+                mean = moved[a] / ti.max(seen + airy, 1e-30)
                 p.store(self.mirrored[a], b, 2.0 * p.load(p.velocity[a], b) - mean)
 
     @ti.func

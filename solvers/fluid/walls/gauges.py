@@ -68,7 +68,7 @@ class Gauges:
             for k in range(self.ends[gauge], self.ends[gauge + 1]):
                 b, lane = w * p.stride + self.slots[k] // p.lanes, self.slots[k] % p.lanes
                 if p.span[b, lane] > DRY * self.open[k]:
-                    total += ti.cast(p.pressure[b, lane], p.exact)
+                    total += ti.cast(self.at(b, lane), p.exact)
                     if ti.static(self.constants.pressed):
                         total -= ti.cast(self.constants.get("background"), p.exact)
             mean = total / (self.ends[gauge + 1] - self.ends[gauge])
@@ -77,6 +77,16 @@ class Gauges:
                 follows = 1.0 - ti.exp(0.0 - ti.cast(dt, p.exact) / self.response[gauge])
             self.shown[w, gauge] = self.shown[w, gauge] + follows * (mean - self.shown[w, gauge])
             self.peak[w, gauge] = ti.max(self.peak[w, gauge], self.shown[w, gauge])
+
+    @ti.func
+    def at(self, b, lane):
+        """The pressure (Pa) of a probe; of two phases the mean of what each shows, by its share of what is seen."""
+        p = self.particles
+        if ti.static(p.two):
+            share = p.share[b, lane]
+            return share * p.pressure[b, lane] + (1.0 - share) * p.pressure_of_air[b, lane]
+        else:
+            return p.pressure[b, lane]
 
     def take(self) -> dict[str, np.ndarray]:
         """What the gauges show, and their peaks (W, gauges), which begin anew from here."""

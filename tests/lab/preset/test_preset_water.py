@@ -126,7 +126,7 @@ FAULTS = {
     ),
     "a background at a surface": (
         {"water__background_pressure": "5 Pa"},
-        "water.background_pressure: goes with water.full; a free surface would be blown apart.",
+        "water.background_pressure: goes with water.full or [air]; a free surface would be blown apart.",
     ),
     "a heavy background": (
         {"water__depth": "500 mm", "water__full": True, "water__background_pressure": "1 MPa"},

@@ -54,6 +54,8 @@ def _check_company(preset: Whole) -> None:
     if preset.water.model != "sph" and preset.ship is None:
         named = preset.water.model
         raise LabError(f'water.model: "{named}" is for tanks in a ship; add a table [ship], or take "sph".')
+    if preset.air is not None and preset.ship is not None:
+        raise LabError("air: air in a ship's tanks is not computed yet; leave out [air] or [ship].")
     if preset.water.region and preset.ship is not None:
         raise LabError("water.region: a ship starts with level water; give a depth.")
     if preset.run.repeats > 1 and preset.grains is None:
@@ -138,8 +140,8 @@ def _check_sound(preset: Whole) -> None:
 def _check_background(preset: Whole) -> None:
     """Raise LabError for a background pressure at a free surface, or one that compresses the water visibly."""
     pressure, sound = preset.water.background_pressure, liquid.liquid(preset).sound_speed
-    if pressure and not preset.water.full:
-        raise LabError("water.background_pressure: goes with water.full; a free surface would be blown apart.")
+    if pressure and not (preset.water.full or preset.air):
+        raise LabError("water.background_pressure: goes with water.full or [air]; a free surface would be blown apart.")
     most = COMPRESSED * preset.water.density * sound**2
     if pressure > most:
         raise LabError(

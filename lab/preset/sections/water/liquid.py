@@ -13,6 +13,7 @@ from lab.preset.sections.motion import MotionGroup
 from lab.preset.sections.parts import PartGroup
 from lab.preset.sections.run import Run
 from lab.preset.sections.tank import Tank
+from lab.preset.sections.water.air import Air, sound_of_air
 from lab.preset.sections.water.schemes import SCHEMES, Scheme
 from lab.preset.sections.water.section import Gauge, Water
 from lab.preset.sections.water.tanks import Tanked, pools
@@ -26,6 +27,7 @@ class Wet(Tanked, Protocol):
     """The sections of a preset that the water follows from."""
 
     water: Water
+    air: Air | None
     gauges: dict[str, Gauge]
     tank: Tank
     motion: MotionGroup
@@ -60,6 +62,20 @@ def liquid(preset: Wet) -> given.Water:
         gauges=tuple(given.Gauge(gauge.place, gauge.length, gauge.response) for gauge in pressure.values()),
         levels=tuple(given.Level(gauge.y) for gauge in level.values()),
         edges=tuple(_edge(gauge, preset.tank) for gauge in force.values()),
+        air=_air(preset, scheme) if preset.air is not None else None,
+    )
+
+
+def _air(preset: Wet, scheme: Scheme) -> given.Air:
+    """The air of a preset as the solver takes it."""
+    air, alpha = preset.air, scheme.alpha if preset.water.alpha is None else preset.water.alpha
+    return given.Air(
+        density=air.density,
+        sound_speed=sound_of_air(air, sound_speed(preset, scheme)),
+        alpha=alpha if air.alpha is None else air.alpha,
+        kinematic=air.kinematic_viscosity or 0.0,
+        tension=air.surface_tension,
+        interface=air.interface,
     )
 
 

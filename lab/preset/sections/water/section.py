@@ -81,7 +81,7 @@ class Water:
         float,
         Unit("Pa"),
         Interval(ge=0),
-        Doc("Pressure that all of the water in a full tank bears besides, so that none of it is torn apart."),
+        Doc("Pressure that water in a full tank, or water and air, bear besides, so that nothing is torn apart."),
     ] = 0.0
     shifting: Annotated[Literal[*SHIFTING], Doc("How particles are shifted to even their distances.")] = "none"
     start: Annotated[

@@ -1,0 +1,49 @@
+"""Consistency checks of the air in a preset; each error is one sentence that names the key."""
+
+import numpy as np
+
+from lab.base.errors import LabError
+from lab.preset.sections.water.air import sound_of_air
+from lab.preset.sections.water.liquid import Wet, depth, liquid
+from lab.preset.units import needed, show
+from solvers.fluid.phases.adiabatic import GAMMA
+
+SLOWEST = 0.5  # of the air's speed of sound: what its own weight may lift over its height, √(0.4 g H)
+
+
+def check_air(preset: Wet) -> None:
+    """Raise LabError for air that cannot be: in an open tank, over water that leaves it no room, beside parts."""
+    air, water, tank = preset.air, preset.water, preset.tank
+    if air is None:
+        return
+    if tank.open_edges:
+        raise LabError("air: it fills closed tanks; give the tank a lid (tank.lid = true), or leave out [air].")
+    if water.full:
+        raise LabError("air: the water fills the tank (water.full), so that there is none; leave out either.")
+    if preset.parts:
+        raise LabError("air: parts in water with air are not computed yet; leave out [parts] or [air].")
+    if water.shifting == "delta-plus-momentum":
+        raise LabError(
+            'water.shifting: "delta-plus-momentum" is for water alone; take "delta-plus", or leave out [air].'
+        )
+    laminar = liquid(preset).viscosity == "laminar"
+    if laminar and air.kinematic_viscosity is None:
+        raise LabError(f'air.kinematic_viscosity: missing for water.viscosity = "laminar"; {needed("m^2/s")}.')
+    if air.kinematic_viscosity is not None and not laminar:
+        raise LabError('air.kinematic_viscosity: goes with water.viscosity = "laminar"; leave out either.')
+    if laminar and air.alpha is not None:
+        raise LabError('air.alpha: goes with an artificial viscosity, not with water.viscosity = "laminar".')
+    if air.density > water.density:
+        raise LabError(f"air.density: {show(air.density, 'kg/m^3')} is more than that of the water; take less.")
+    room = tank.extent[1] - (depth(preset) if water.region is None else 0.0)
+    if room < liquid(preset).spacing:
+        raise LabError(
+            "air: the water leaves it no room of a particle's height; take less water, or smaller particles."
+        )
+    slow = float(np.sqrt((GAMMA - 1.0) * preset.run.gravity * room)) / SLOWEST
+    sound = sound_of_air(air, liquid(preset).sound_speed)
+    if sound < slow:
+        raise LabError(
+            f"air.sound_speed: air of {show(sound, 'm/s')} would be compressed by its own weight; take at least "
+            f"{show(slow, 'm/s')}."
+        )

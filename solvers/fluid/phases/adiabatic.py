@@ -1,0 +1,45 @@
+"""The equation of state of air."""
+
+import numpy as np
+import taichi as ti
+
+GAMMA = 1.4  # ratio of the specific heats of air
+
+
+class Adiabatic:
+    """p = p_a ((ρ/ρ_a)^1.4 − 1), p_a = ρ_a c²/1.4 (Laplace 1816): air that exchanges no heat, over its pressure p_a.
+
+    The real air has p_a = 1.0e5 Pa and c = 343 m/s; air with a lower speed of sound is as much softer as (c/343)².
+
+    Limits: no heat, no vapour; a bubble of millimetres exchanges heat within milliseconds and is nearer to ρ/ρ_a.
+
+    Units: p and p_a Pa, c m/s, ρ and ρ_a kg/m³.
+    """
+
+    @staticmethod
+    @ti.func
+    def share(s):
+        """p/(ρ_a c²) for the excess of density s = ρ/ρ_a − 1, a single number."""
+        return (ti.pow(1.0 + s, GAMMA) - 1.0) / GAMMA
+
+    @staticmethod
+    def pressure(s: np.ndarray) -> np.ndarray:
+        """As `share`, of an array."""
+        return np.expm1(GAMMA * np.log1p(np.asarray(s, dtype=float))) / GAMMA
+
+    @staticmethod
+    def excess(share: np.ndarray) -> np.ndarray:
+        """The excess of density s at which p/(ρ_a c²) is `share`."""
+        return np.expm1(np.log1p(GAMMA * np.asarray(share, dtype=float)) / GAMMA)
+
+    @staticmethod
+    @ti.func
+    def energy(s):
+        """Elastic energy per mass in units of c², ∫ p/(ρ² c²) dρ = ((1 + s)^0.4/0.4 + 1/(1 + s) − 3.5)/1.4.
+
+        By its series where s is small, since the terms cancel.
+        """
+        energy = (ti.pow(1.0 + s, GAMMA - 1.0) / (GAMMA - 1.0) + 1.0 / (1.0 + s) - GAMMA / (GAMMA - 1.0)) / GAMMA
+        if ti.abs(s) < 1e-2:
+            energy = s * s * (0.5 - s * (0.6 - s * (0.64 - s * 0.6608)))
+        return energy

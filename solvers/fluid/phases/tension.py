@@ -1,0 +1,49 @@
+"""Tension of the surface between water and air, as a stress (continuum surface force)."""
+
+import taichi as ti
+
+from solvers.fluid.constants import Constants
+from solvers.fluid.state import Particles
+from solvers.space.axes import dot
+
+FAINT = 0.02  # of 1/(2 h): a smaller gradient of the phase is no surface
+
+
+@ti.data_oriented
+class Tension:
+    """m_i du_i/dt += Σ V_i V_j (Π_i + Π_j)·∇W, Π = σ (|∇C| I/2 − ∇C ∇C/|∇C|) (Hu & Adams 2006, eqs. 20 to 22).
+
+    C is 0 in water and 1 in air, ∇C_i = Σ V_j (C_j − C_i) ∇W. Forces are equal and opposite. The stress is that of the
+    step before. Dummies have no phase of their own: the surface stands on walls at a right angle.
+
+    Limits: the surface is two smoothing lengths thick; the energy of the surface is in no account. Units: σ N/m.
+    """
+
+    def __init__(self, particles: Particles, constants: Constants):
+        self.particles, self.constants = particles, constants
+
+    @ti.func
+    def load(self, b):
+        """The stresses (N/m) of a block: yy, yz, zz."""
+        return [self.particles.load(self.particles.stress[k], b) for k in ti.static(range(3))]
+
+    @ti.func
+    def add(self, own: ti.template(), jb, lane, weight, apart: ti.template(), push: ti.template()):
+        """Add what the stresses of a block, `own`, and of a neighbour do to the block's sums `push`."""
+        p = self.particles
+        yy = own[0] + p.stress[0][jb, lane]
+        yz = own[1] + p.stress[1][jb, lane]
+        zz = own[2] + p.stress[2][jb, lane]
+        push[0] = push[0] - weight * (yy * apart[0] + yz * apart[1])
+        push[1] = push[1] - weight * (yz * apart[0] + zz * apart[1])
+
+    @ti.func
+    def note(self, b, slope: ti.template()):
+        """Store the stresses of a block from its gradient ∇C (1/m), for the next step."""
+        p, c = self.particles, self.constants
+        size = ti.sqrt(dot(slope, slope))
+        strength = ti.select(size * c.get("reach") > FAINT, p.ones() * c.get("tension"), p.zeros())
+        least = ti.max(size, 1e-20)
+        p.store(p.stress[0], b, strength * (0.5 * size - slope[0] * slope[0] / least))
+        p.store(p.stress[1], b, strength * (slope[0] * slope[1] / least) * (-1.0))
+        p.store(p.stress[2], b, strength * (0.5 * size - slope[1] * slope[1] / least))

@@ -1,0 +1,58 @@
+"""Air at rest over water at rest: its particles, under their own hydrostatic pressure."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from solvers.fluid.given import EXCESS, GAS, VOLUME, Water, Y, Z
+from solvers.fluid.phases.adiabatic import GAMMA
+from solvers.fluid.start.lattice import lattice
+from solvers.fluid.start.packing import packed
+
+
+def hydrostatic_air(height: np.ndarray, gravity: float, sound: float) -> np.ndarray:
+    """Relative excess of density s = ρ/ρ_a − 1 of air at rest at heights (m) over where its pressure is that outside.
+
+    dp/dz = −ρ g with p = p_a ((ρ/ρ_a)^1.4 − 1) gives (ρ/ρ_a)^0.4 = 1 − 0.4 g z/c². Raises ValueError where no air of
+    so low a speed of sound can be that high.
+    """
+    share = 1.0 - (GAMMA - 1.0) * gravity * np.asarray(height, dtype=float) / sound**2
+    if (share <= 0.0).any():
+        raise ValueError(f"air with a speed of sound of {sound:.3g} m/s cannot be so high")
+    return share ** (1.0 / (GAMMA - 1.0)) - 1.0
+
+
+def air_above(polygon: np.ndarray, level: float, water: Water, gravity: float) -> np.ndarray:
+    """The particles (n, 7) of the air at rest that fills a polygon (m, 2) m over a `level` (m).
+
+    At the level its pressure is that outside. Columns as of `Scene.drops`. Raises ValueError if no particle fits in.
+    """
+    upside_down = np.array(polygon, dtype=float)[::-1] * [1.0, -1.0]
+    if water.start == "lattice":
+        points, volume = lattice(upside_down, -level, water.spacing)
+    else:
+        packing = packed(upside_down, -level, water)
+        points, volume = packing.points, packing.volume
+    drops = np.zeros((len(points), 7))
+    drops[:, [Y, Z]], drops[:, VOLUME], drops[:, GAS] = points * [1.0, -1.0], volume, 1.0
+    drops[:, EXCESS] = hydrostatic_air(drops[:, Z] - level, gravity, water.air.sound_speed)
+    return drops
+
+
+def air_round(polygon: np.ndarray, region: np.ndarray, water: Water, gravity: float) -> np.ndarray:
+    """As `air_above`, of the air that fills a polygon apart from the `region` (k, 2) m of the water.
+
+    Its pressure is that outside at the region's top.
+    """
+    whole = replace(water, start="packed")
+    level, top = float(region[:, 1].max()), float(polygon[:, 1].max())
+    packing = packed(polygon, top, whole, [region])
+    drops = np.zeros((len(packing.points), 7))
+    drops[:, [Y, Z]], drops[:, VOLUME], drops[:, GAS] = packing.points, packing.volume, 1.0
+    drops[:, EXCESS] = hydrostatic_air(drops[:, Z] - level, gravity, water.air.sound_speed)
+    return drops
+
+
+def with_air(of_water: np.ndarray, of_air: np.ndarray) -> np.ndarray:
+    """The particles (n, 7) of both phases, those of water (k, 6) first."""
+    return np.concatenate([np.column_stack([of_water, np.zeros(len(of_water))]), of_air])

@@ -1,0 +1,101 @@
+"""What walls do to the water beside them: pressure, drag of water that sticks, and the load that they bear for it."""
+
+import taichi as ti
+
+from solvers.fluid.lists import Medium
+from solvers.fluid.walls.extrapolation import Extrapolation
+from solvers.motion.poses import AT_START
+from solvers.space.axes import dot
+
+
+@ti.data_oriented
+class WallPush:
+    """Forces of dummies on blocks of water, −Σ V_i V_w (p_i + p_w) ∇W and drag, whose reactions are the walls' load."""
+
+    def __init__(self, medium: Medium, walls: Extrapolation):
+        self.particles, self.lists, self.constants = medium.particles, medium.lists, medium.constants
+        self.poses, self.bodies, self.walls = medium.poses, medium.lists.bodies, walls
+
+    @ti.func
+    def push_off(
+        self,
+        u,
+        b,
+        ends: ti.template(),
+        own: ti.template(),
+        origin: ti.template(),
+        speed: ti.template(),
+        pressure: ti.template(),
+        wall: ti.template(),
+        own_push: ti.template(),
+        shift: ti.template(),
+        taken: ti.template(),
+    ):
+        """Add what the dummies of the entries between two `ends` of a list do to a block.
+
+        `taken` are the powers that viscosity and dummies take."""
+        p, c, lists = self.particles, self.constants, self.lists
+        shrink, floor, strength, gas = c.get("shrink"), c.get("floor"), c.strength(), p.gases(b)
+        squeezed = 1.0 + gas * p.load(p.excess, b)  # of air as heavy as before in less volume
+        for k in range(ends[0], ends[1]):
+            j = lists.beside.slots[u, k]
+            jb, lane = lists.block_of(j), lists.lane_of(j)
+            apart = lists.apart(b, own, origin, j, AT_START)
+            square = dot(apart, apart)
+            t = ti.max(1.0 - ti.sqrt(square) * shrink, 0.0)
+            weight = p.volume[jb, lane] * c.kernel.slope(t)
+            if ti.static(c.shifting.acts):
+                crowded = weight * c.shifting.crowded(c.get("shift_scale") * c.kernel.value(t))
+                for a in ti.static(range(p.axes)):
+                    shift[a] += crowded * apart[a]
+            along = self.wall_pressure(jb, lane, gas) + c.clipped(pressure, gas)
+            spring = p.volume[jb, lane] * c.hardness(square, p.firm[jb, lane], gas)
+            if ti.static(c.two):
+                spring *= squeezed
+            along = along * weight + spring
+            more = along - pressure * weight
+            for a in ti.static(range(p.axes)):
+                own_push[a] += more * apart[a]
+            if ti.static(self.poses.moving or self.bodies.moving):
+                taken[1] += more * dot([p.velocity[a][jb, lane] for a in ti.static(range(p.axes))], apart)
+            if ti.static(self.walls.sticks):
+                slides = [self.walls.mirrored[a][jb, lane] - speed[a] for a in ti.static(range(p.axes))]
+                # What the drag takes is its power on the wall less that on the water.
+                lags = [p.velocity[a][jb, lane] - speed[a] for a in ti.static(range(p.axes))]
+                if ti.static(c.viscosity.central):
+                    closing = dot(slides, apart)
+                    drag = weight * c.viscosity.pull(closing, square + floor)
+                    if ti.static(c.two):
+                        drag *= c.of("strength", gas)
+                    along += strength * drag
+                    taken[0] += drag * dot(lags, apart)
+                else:
+                    heavy = weight
+                    if ti.static(c.two):
+                        heavy *= c.of("strength", gas)
+                    for a in ti.static(range(p.axes)):
+                        wall[a] += (strength * heavy) * slides[a]
+                    taken[0] += heavy * dot(slides, lags)
+            for a in ti.static(range(p.axes)):
+                wall[a] += along * apart[a]
+
+    @ti.func
+    def wall_pressure(self, b, lane, gas: ti.template()):
+        """The pressure (Pa) of a dummy, as particles of these phases see it."""
+        p = self.particles
+        if ti.static(p.two):
+            return (1.0 - gas) * p.pressure[b, lane] + gas * p.pressure_of_air[b, lane]
+        else:
+            return p.pressure[b, lane]
+
+    @ti.func
+    def on_walls(self, b, origin: ti.template(), own: ti.template(), wall: ti.template()):
+        """Minus the walls' force on a block, and its moment about the tank's origin; the last two entries are zero."""
+        p = self.particles
+        total = ti.Vector([ti.cast(0.0, p.exact) for _ in ti.static(range(5))])
+        turning = own[0] * wall[1] - own[1] * wall[0]
+        force = [ti.cast(wall[a].sum(), p.exact) for a in ti.static(range(p.axes))]
+        y, z = ti.cast(origin[0], p.exact), ti.cast(origin[1], p.exact)
+        total[0], total[1] = 0.0 - force[0], 0.0 - force[1]
+        total[2] = 0.0 - (ti.cast(turning.sum(), p.exact) + y * force[1] - z * force[0])
+        return total

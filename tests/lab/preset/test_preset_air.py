@@ -1,0 +1,103 @@
+"""Air in presets: what follows from its keys, how it lies over the water, and one sentence for what cannot be."""
+
+import tomllib
+
+import numpy as np
+import pytest
+
+from lab.assembly.water import air_volumes_of, drops_of, volumes_of
+from lab.preset.merge import merged, nested
+from lab.preset.recorded import from_table, to_table
+from lab.preset.schema import Preset, resolve
+from lab.preset.sections.water.liquid import liquid
+from solvers.fluid.given import EXCESS, GAS, VOLUME, Y, Z
+from solvers.fluid.phases.adiabatic import Adiabatic
+from solvers.fluid.start.air import hydrostatic_air
+from tests.oracles.presets import error_of
+
+TANK = """
+format = 3
+title = "a closed tank"
+[tank]
+width = "400 mm"
+height = "200 mm"
+[water]
+depth = "100 mm"
+spacing = "10 mm"
+[air]
+[run]
+duration = "1 s"
+"""
+COLUMN = [["-200 mm", "0 mm"], ["-100 mm", "0 mm"], ["-100 mm", "150 mm"], ["-200 mm", "150 mm"]]
+
+
+def airy(**overrides) -> Preset:
+    """The tank with dotted keys (double underscores for dots) over it."""
+    dotted = {key.replace("__", "."): value for key, value in overrides.items()}
+    return resolve(merged(tomllib.loads(TANK), nested(dotted)))
+
+
+def fault(**overrides) -> str:
+    return error_of(lambda: airy(**overrides))
+
+
+def test_the_air_has_the_sound_of_the_water_or_its_own():
+    water = liquid(airy())
+    assert water.air.sound_speed == water.sound_speed and water.air.density == 1.2
+    assert liquid(airy(air__sound_speed="real")).air.sound_speed == 343.0
+    assert liquid(airy(air__sound_speed="50 m/s")).air.sound_speed == 50.0
+    assert liquid(airy(air=False)).air is None
+    assert liquid(airy(water__alpha=0.03)).air.alpha == 0.03
+
+
+def test_a_preset_with_air_comes_back_from_its_table():
+    preset = airy(air__sound_speed="real", water__background_pressure="20 Pa", air__surface_tension="0.072 N/m")
+    assert from_table(to_table(preset)) == preset
+    assert preset.matters == ("water", "air")
+
+
+def test_air_fills_what_the_water_leaves():
+    """Both phases have their areas, each particle a place within its own, and masses by the pressure there."""
+    drops = drops_of(airy())[None]
+    water, air = volumes_of(drops, 1), air_volumes_of(drops, 1)
+    assert water.sum() == pytest.approx(0.04) and air.sum() == pytest.approx(0.04)
+    gas = drops[0, :, GAS] > 0.5
+    assert (np.diff(gas.astype(int)) >= 0).all()  # the water first
+    assert (drops[0, ~gas, Z] < 0.1).all() and (drops[0, gas, Z] > 0.1).all()
+    assert (drops[0, ~gas, EXCESS] > 0.0).all() and (drops[0, gas, EXCESS] < 0.0).all()
+
+
+def test_air_lies_round_a_column():
+    drops = drops_of(airy(water__region=COLUMN))
+    gas, inside = drops[:, GAS] > 0.5, (drops[:, Y] < -0.1) & (drops[:, Z] < 0.15)
+    np.testing.assert_array_equal(inside, ~gas)
+    assert drops[gas, VOLUME].sum() == pytest.approx(0.4 * 0.2 - 0.1 * 0.15)
+
+
+def test_air_at_rest_is_in_balance_with_its_weight():
+    """dp/dz = −ρ g, by differences."""
+    height, sound, state = np.linspace(0.0, 0.3, 301), 5.0, Adiabatic()
+    s = hydrostatic_air(height, 9.81, sound)
+    slope = np.gradient(sound**2 * state.pressure(s), height)[1:-1]
+    np.testing.assert_allclose(slope, -9.81 * (1.0 + s)[1:-1], rtol=1e-4)
+    np.testing.assert_allclose(state.excess(state.pressure(s)), s, atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("overrides", "key"),
+    [
+        ({"tank__lid": False}, "air"),
+        ({"water__depth": "200 mm", "water__full": True}, "air"),
+        ({"parts__gate": {"points": [["0 mm", "0 mm"], ["0 mm", "50 mm"]]}}, "air"),
+        ({"water__shifting": "delta-plus-momentum"}, "water.shifting"),
+        ({"water__viscosity": "laminar", "water__kinematic_viscosity": "1e-5 m^2/s"}, "air.kinematic_viscosity"),
+        ({"air__kinematic_viscosity": "1e-5 m^2/s"}, "air.kinematic_viscosity"),
+        ({"air__density": "2000 kg/m^3"}, "air.density"),
+        ({"air__sound_speed": "0.5 m/s"}, "air.sound_speed"),
+        ({"air__sound_speed": "fast"}, "air.sound_speed"),
+        ({"water": False}, "air"),
+    ],
+)
+def test_what_cannot_be_is_one_sentence_with_its_key(overrides, key):
+    said = fault(**overrides)
+    assert said.startswith(f"{key}:") and said.count("\n") == 0

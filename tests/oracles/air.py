@@ -1,0 +1,109 @@
+"""Water and air in plain numpy: scenes of both, and a step by double sums over all particles."""
+
+import numpy as np
+
+from solvers.fluid.given import EXCESS, GAS, VOLUME, Air, Water, Y, Z
+from solvers.fluid.start.air import air_above, with_air
+from solvers.fluid.start.rest import at_rest
+from solvers.scene import Scene
+from tests.oracles.water import GRAVITY, PlainWater, box, kernel
+
+
+def both(width: float, height: float, depth: float, rows: int, **changes) -> Scene:
+    """A closed tank with `rows` layers of water at rest and air over it; changes of the scene, water or air."""
+    spacing, sound = depth / rows, changes.pop("sound_speed", 10.0 * np.sqrt(GRAVITY * depth))
+    of_air = changes.pop("air", {})
+    of_water = {name: changes.pop(name) for name in list(changes) if name in Water.__dataclass_fields__}
+    water = Water(
+        **{"spacing": spacing, "sound_speed": sound, "air": Air(**{"sound_speed": sound} | of_air)} | of_water
+    )
+    outline = box(width, height)
+    drops = with_air(at_rest(outline, depth, water, GRAVITY), air_above(outline, depth, water, GRAVITY))
+    given = {"radius": np.zeros((1, 0)), "outline": outline, "gravity": GRAVITY}
+    return Scene(**{**given, "water": water, "drops": drops[None], **changes})
+
+
+def filled(places: np.ndarray, gas: np.ndarray, volume: float, excess: np.ndarray | float = 0.0) -> np.ndarray:
+    """Drops (1, n, 7) at places (n, 2) m of equal volumes (m²), the water first; gas (n,) is 1 for air."""
+    order = np.argsort(gas, kind="stable")
+    drops = np.zeros((1, len(places), 7))
+    drops[0, :, [Y, Z]], drops[0, :, GAS], drops[0, :, VOLUME] = places[order].T, gas[order], volume
+    drops[0, :, EXCESS] = np.broadcast_to(excess, gas.shape)[order]
+    return drops
+
+
+class PlainBoth(PlainWater):
+    """The equations of a tank at rest with free slip, linear water and adiabatic air, weighted by their densities."""
+
+    def __init__(self, scene: Scene):
+        super().__init__(scene)
+        water, air = scene.water, scene.water.air
+        self.gas = scene.drops[0, :, GAS]
+
+        def of(of_water: float, of_air: float) -> np.ndarray:
+            return np.where(self.gas > 0.5, of_air, of_water)
+
+        self.density, self.sound = of(water.density, air.density), of(water.sound_speed, air.sound_speed)
+        mu = of(water.alpha * water.density * water.sound_speed, air.alpha * air.density * air.sound_speed)
+        self.strength = water.length * 2.0 * mu[:, None] * mu / (mu[:, None] + mu)
+        self.other = self.gas[:, None] - self.gas
+        self.lean = (water.density - air.density) / (water.density + air.density)
+
+    def volume(self, mass, s):
+        """V = m/ρ."""
+        return mass / (self.density * (1.0 + s))
+
+    def pressure(self, s):
+        """Linear of water; ρ c²/1.4 ((1 + s)^1.4 − 1) of air; and the background's."""
+        of_air = self.density * self.sound**2 * ((1.0 + s) ** 1.4 - 1.0) / 1.4
+        alone = np.where(self.gas > 0.5, of_air, self.density * self.sound**2 * s)
+        return alone + self.water.background
+
+    def wall_pressure(self, r, mass, s, gas: float):
+        """The dummies' pressures that one phase sees: Adami, Hu & Adams (2012), eq. 27, over that phase alone."""
+        of, volume = self.gas == gas, self.volume(mass, s)
+        apart, _, value, _ = self.between(self.wall, r)
+        weight = (value * volume)[:, of]
+        lever = -(apart[:, of] @ self.gravity) * (mass / volume)[of] + self.pressure(s)[of]
+        found = (weight * lever).sum(axis=1) / np.maximum(weight.sum(axis=1), 1e-30)
+        return found if gas else np.maximum(found, 0.0)
+
+    def push(self, r, u, s, mass):
+        """Accelerations without gravity, renormalised gradients of s within a phase, and the walls' forces."""
+        volume, pressure, same = self.volume(mass, s), self.pressure(s), self.other == 0.0
+        apart, square, _, gradient = self.between(r, r)
+        between = pressure[:, None] + pressure + self.lean * self.other * (pressure[:, None] - pressure)
+        pi = ((u[None] - u[:, None]) * apart).sum(axis=2) / (square + 1e-6 * self.water.length**2)
+        pairs = (self.strength * pi - between) * volume[:, None] * volume
+        force = (pairs[..., None] * gradient).sum(axis=1)
+        _, _, _, at_wall = self.between(r, self.wall)
+        seen = np.where(self.gas[:, None] > 0.5, *(self.wall_pressure(r, mass, s, gas)[None] for gas in (1.0, 0.0)))
+        own = np.where(self.gas > 0.5, pressure, np.maximum(pressure, 0.0))
+        walls = -(((own[:, None] + seen) * volume[:, None] * self.wall_volume)[..., None] * at_wall).sum(axis=1)
+        matrix = np.einsum("ij,j,ija,ijb->iab", same, volume, apart, gradient)
+        raw = np.einsum("ij,j,ij,ija->ia", same, volume, s[None] - s[:, None], gradient)
+        self.span = np.linalg.eigvalsh(matrix)[:, 0]
+        regular = self.span > 0.05
+        slope = np.zeros_like(r)
+        slope[regular] = np.linalg.solve(matrix[regular], raw[regular][..., None])[..., 0]
+        return (force + walls) / mass[:, None], slope, walls
+
+    def later(self, r, u, s, mass, slope, dt):
+        """The excess of density after a step, from its middle; water with few of its kind about is never less dense."""
+        spray = (self.span < 0.2) & (self.gas < 0.5)
+        for rate in self.rates(r, u, s, mass, slope):
+            s = s + dt * rate
+            s = np.where(spray, np.maximum(s, 0.0), s)
+        return s
+
+    def rates(self, r, u, s, mass, slope):
+        """Rates of s in the middle of a step, by the particles and by the walls."""
+        water, volume, same = self.water, self.volume(mass, s), self.other == 0.0
+        apart, _, _, gradient = self.between(r, r)
+        flow = ((1.0 + self.lean * self.other) * ((u[None] - u[:, None]) * gradient).sum(axis=2)) @ volume
+        _, _, _, at_wall = self.between(r, self.wall)
+        walled = (-u[:, None] * at_wall).sum(axis=2) @ self.wall_volume
+        more = 2.0 * (s[None] - s[:, None]) - ((slope[:, None] + slope[None]) * apart).sum(axis=2)
+        eta = -kernel(np.linalg.norm(apart, axis=2), water.length)[1]
+        evened = water.delta * water.length * self.sound * ((same * more * eta) @ volume)
+        return evened - (1.0 + s) * flow, -(1.0 + s) * walled

@@ -1,0 +1,108 @@
+"""Water and air as one fluid of two phases: a step against double sums, what is kept, rest, and closed air."""
+
+import numpy as np
+import pytest
+
+from solvers.fluid.given import GAS, VELOCITY_Y, VELOCITY_Z, Gauge, Level
+from solvers.simulation import Simulation
+from tests.oracles.air import PlainBoth, both
+from tests.oracles.water import GRAVITY
+
+WIDTH, HEIGHT, DEPTH, ROWS = 0.32, 0.32, 0.16, 8
+TOLD = {"gauges": (Gauge((0.16, 0.0), 0.02), Gauge((-0.16, 0.28), 0.02)), "levels": (Level(0.0),), "edges": (0, 2)}
+
+
+def scene(**changes):
+    return both(WIDTH, HEIGHT, DEPTH, ROWS, **TOLD | changes)
+
+
+def held(run: Simulation) -> list[np.ndarray]:
+    """Places, velocities, s, masses, accelerations and slopes of all particles, by their numbers."""
+    p = run.water.particles
+    y, z, v, w, s, m, *rest = p.read(*p.place, *p.velocity, p.excess, p.mass, *p.acceleration, *p.slope)
+    pairs = [np.stack(pair, axis=-1)[0] for pair in ((y, z), (v, w), rest[0:2], rest[2:4])]
+    return [*pairs[:2], s[0], m[0], *pairs[2:]]
+
+
+@pytest.fixture(scope="module")
+def run() -> Simulation:
+    """Both phases displaced and set in motion at random, the air slower than the water's sound."""
+    made = scene(air={"sound_speed": 9.0, "alpha": 0.03}, background=20.0)
+    random, drops = np.random.default_rng(1), made.drops
+    drops[..., :2] += 0.1 * made.water.spacing * random.uniform(-1.0, 1.0, drops[..., :2].shape)
+    drops[..., [VELOCITY_Y, VELOCITY_Z]] = 0.2 * random.uniform(-1.0, 1.0, drops[..., :2].shape)
+    return Simulation(made, threads=1, arch="cpu")
+
+
+def test_a_step_equals_double_sums(run):
+    plain, dt = PlainBoth(run.scene), run.dt
+    run.advance(7)
+    r, u, s, m, *_ = held(run)
+    run.advance(1)
+    push, slope, _ = plain.push(r, u, s, m)
+    u = u + dt * (push + plain.gravity)
+    middle = r + 0.5 * dt * u
+    s = plain.later(middle, u, s, m, slope, dt)
+    found = held(run)
+    np.testing.assert_allclose(found[4], push, atol=1e-9 * np.abs(push).max())
+    np.testing.assert_allclose(found[5], slope, atol=1e-8 * np.abs(slope).max())
+    np.testing.assert_allclose(found[2], s, atol=1e-9 * np.abs(s).max())
+    np.testing.assert_allclose(found[0], middle + 0.5 * dt * u, atol=1e-12)
+
+
+def test_the_load_is_what_both_phases_lose(run):
+    """The momentum of water and air changes by their weight and by minus the load on the tank, to rounding."""
+    run.observe()
+    _, before, _, mass, *_ = held(run)
+    steps = 50
+    run.advance(steps)
+    load = run.observe()["wall_force"][0, :2]
+    change = mass @ (held(run)[1] - before)
+    weight = np.array([0.0, -GRAVITY * mass.sum()])
+    scale = steps * run.dt * np.abs(load).max()
+    np.testing.assert_allclose(change, steps * run.dt * (weight - load), atol=1e-12 * scale)
+
+
+def test_energy_is_accounted_for(run):
+    """What both phases lose goes to viscosity, diffusion and dummies: pairs of water and air make and take none."""
+    start = run.observe()
+    run.advance(400)
+    end = run.observe()
+    lost = start["water_total"] - end["water_total"]
+    taken = sum(end[name] - start[name] for name in ("water_viscous", "water_diffusive", "water_held"))
+    assert lost > 0.0
+    np.testing.assert_allclose(taken, lost, rtol=0.03)
+
+
+def test_water_rests_under_air():
+    """From hydrostatic rest in both: pressures stay, the surface keeps its place to a quarter of a spacing."""
+    run = Simulation(scene(), threads=1, arch="cpu")
+    run.observe()
+    run.advance(1500)
+    rows, state, spacing = run.observe(), run.snapshot(), run.scene.water.spacing
+    gas, mass = run.scene.drops[0, :, GAS] > 0.5, held(run)[3]
+    np.testing.assert_allclose(rows["wall_force"][0, 1], -GRAVITY * mass.sum(), rtol=3e-3)
+    np.testing.assert_allclose(rows["gauge_pressure"][0, 0], 1000.0 * GRAVITY * DEPTH, rtol=0.03)
+    weight_of_air = 1.2 * GRAVITY * 0.12
+    np.testing.assert_allclose(rows["gauge_pressure"][0, 1], -weight_of_air, atol=2.0 * weight_of_air)
+    np.testing.assert_allclose(rows["level_depth"][0], DEPTH, atol=0.25 * spacing)
+    assert rows["air_volume"][0] == pytest.approx(WIDTH * (HEIGHT - DEPTH), rel=0.01)
+    middle = 0.5 * (state["water_place"][0, :, 1].max() + state["air_place"][0, :, 1].min())
+    assert abs(middle - DEPTH) < 0.5 * spacing
+    assert state["air_place"].shape[1] == gas.sum()
+
+
+@pytest.mark.parametrize("changes", [{"precision": "mixed"}, {"schedule": "per-grain", "precision": "f32"}])
+def test_other_ways_of_running_give_the_same(changes):
+    """Numbers of 32 bits, and particles one by one: the same course, to the rounding of each."""
+    place = []
+    for more in ({}, changes):
+        made = scene(**more)
+        made.drops[..., VELOCITY_Y] = 0.1
+        other = Simulation(made, threads=1, arch="cpu")
+        other.advance(60)
+        state = other.snapshot()
+        place.append(np.concatenate([state["water_place"][0], state["air_place"][0]]))
+        other.close()
+    tight = {"mixed": 5e-4, "f32": 3e-3}[changes["precision"]]
+    np.testing.assert_allclose(place[1], place[0], atol=tight * made.water.spacing)
