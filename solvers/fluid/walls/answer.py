@@ -98,8 +98,9 @@ class Answer:
     @ti.func
     def acceleration(self, w):
         """The acceleration that the dummies' pressures were found with, in the tank's axes."""
-        felt, down = self.poses.felt, [self.poses.felt[0][w], self.poses.felt[1][w]]
-        return ti.Vector([down[0] - felt[2][w], down[1] - felt[3][w], felt[5][w]])
+        a_y = self.poses.felt[0][w] - self.poses.felt[2][w]
+        a_z = self.poses.felt[1][w] - self.poses.felt[3][w]
+        return ti.Vector([a_y, a_z, self.poses.felt[5][w]])
 
     @ti.func
     def offer(self, u, t, kick, dt):
@@ -114,11 +115,10 @@ class Answer:
     @ti.func
     def note_change(self, w, t, kick, dt):
         """Note by how much the tank of a world is accelerated more than the pressures knew."""
-        frame, before = self.carrier.hold.felt, self.acceleration(w)
-        down = [self.poses.felt[0][w], self.poses.felt[1][w]]
-        self.change[0][w] = down[0] - frame[w, 0] - before[0]
-        self.change[1][w] = down[1] - frame[w, 1] - before[1]
-        self.change[2][w] = frame[w, 3] - before[2]
+        before = self.acceleration(w)
+        self.change[0][w] = self.poses.felt[0][w] - self.carrier.hold.felt[w, 0] - before[0]
+        self.change[1][w] = self.poses.felt[1][w] - self.carrier.hold.felt[w, 1] - before[1]
+        self.change[2][w] = self.carrier.hold.felt[w, 3] - before[2]
 
     @ti.func
     def press(self, u, t, kick, dt):

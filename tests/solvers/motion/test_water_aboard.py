@@ -8,6 +8,7 @@ import pytest
 from solvers.fluid.given import VOLUME
 from solvers.fluid.start.packing import area_of
 from solvers.machine.errors import Unavailable
+from solvers.motion.staggered import BOSSAK, growth, lagrange
 from solvers.ship.body import Body, bolted
 from solvers.ship.loads import Floating
 from solvers.ship.motion import Radiation, Ship, sail, start
@@ -212,3 +213,30 @@ def test_grains_and_water_share_no_tank():
 
     with pytest.raises(Unavailable, match="give them tanks of their own"):
         refuse_scene((10,), 0, True)
+
+
+def test_a_load_that_is_extrapolated_drives_a_light_ship():
+    """The staggered scheme of the source is stable up to (1 − 2 b)/31 of her mass, whatever its steps."""
+    assert lagrange() == pytest.approx([5.0, -10.0, 10.0, -5.0, 1.0])
+    for bossak in (0.0, BOSSAK):
+        limit = (1.0 - 2.0 * bossak) / 31.0
+        assert growth(0.99 * limit, bossak=bossak) < 1.0 < growth(1.01 * limit, bossak=bossak)
+    factors = [growth(ratio) for ratio in (0.1, 0.3, 1.0, 3.0)]
+    assert factors == sorted(factors)
+    assert factors[0] > 1.3
+
+
+@pytest.mark.parametrize("ratio", [0.1, 3.0])
+def test_ours_bears_any_mass_in_the_tanks(ratio):
+    """Frozen water of 0.1 to 3 times the hull's mass: she rolls as the rigid body that she is with it."""
+    water = 1000.0 * 0.5 * WIDE * DEEP
+    hull_alone = Body(water / ratio, (0.0, 0.05), 0.02 * water / ratio)
+    vessel = ship()
+    vessel = replace(vessel, ship=replace(vessel.ship, body=hull_alone, radiation=Radiation(0.01 * ADDED, DAMPED)))
+    time, found = roll(aboard(vessel, "frozen", step=1e-3), 1.5)
+    frozen = Body(water, (HOLD[0], HOLD[1] + 0.5 * DEEP), water * (WIDE**2 + DEEP**2) / 12.0)
+    whole = replace(vessel.ship, body=bolted(hull_alone, frozen))
+    begin = start(whole, replace(vessel, ship=whole).heave(Body(0.0, (0.0, 0.0), 0.0), 0.02), 0.02)
+    voyage = sail(whole, begin, 0.001, 1.3, begin=0.3)
+    free = time > 0.3
+    assert found[free] == pytest.approx(np.interp(time, voyage.time, voyage.roll)[free], abs=1e-3 * 0.02)
