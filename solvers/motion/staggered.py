@@ -1,9 +1,9 @@
 """Staggered coupling of a ship with what is in her tanks: how errors grow from step to step.
 
-In the scheme `as_K` (Serván-Camas, Cercós-Pita, Colom-Cobb, García-Espinosa & Souto-Iglesias 2016, section 4) a ship takes
-long steps with a load that is extrapolated from those of the last steps (Lagrange). Her equation of motion is weighted
-after Bossak, (1 − b) M a' + b M a = F*, and the contents follow her motion in short steps of their own. In `motion.afloat`
-she takes the load of the instant instead, with what of it answers her acceleration on her own side of the equation.
+In the scheme `as_K` (Serván-Camas, Cercós-Pita, Colom-Cobb, García-Espinosa & Souto-Iglesias 2016, section 4) a ship
+takes long steps with a load that is extrapolated from those of the last steps (Lagrange). Her equation of motion is
+weighted after Bossak, (1 − b) M a' + b M a = F*, and the contents follow her in short steps of their own. In
+`motion.afloat` she takes the load of the instant instead, with what of it answers her acceleration on her own side.
 """
 
 from math import comb
@@ -23,9 +23,9 @@ def growth(ratio: float, points: int = POINTS, bossak: float = BOSSAK) -> float:
     """Largest factor by which an error of the acceleration grows in a step, for contents that answer at once.
 
     Contents of `ratio` times the mass of the ship, added mass included, push back with −ratio · M a. So the errors e of
-    accelerations obey (1 − b) e' + b e + ratio Σ w_k e_k = 0, and the factor is the largest root of that equation. Above
-    1 the scheme is unstable with steps of any length (added-mass instability; Causin, Gerbeau & Nobile 2005). With five
-    points it is stable up to a ratio of (1 − 2 b)/31. Own derivation.
+    accelerations obey (1 − b) e' + b e + ratio Σ w_k e_k = 0, and the factor is the largest root of this. Above 1 the
+    scheme is unstable with steps of any length (added-mass instability; Causin, Gerbeau & Nobile 2005). With five points
+    it is stable up to a ratio of (1 − 2 b)/31. Own derivation.
     """
     polynomial = np.zeros(points + 1)
     polynomial[0] = 1.0 - bossak
