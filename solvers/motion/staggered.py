@@ -24,8 +24,8 @@ def growth(ratio: float, points: int = POINTS, bossak: float = BOSSAK) -> float:
 
     Contents of `ratio` times the mass of the ship, added mass included, push back with −ratio · M a. So the errors e of
     accelerations obey (1 − b) e' + b e + ratio Σ w_k e_k = 0, and the factor is the largest root of this. Above 1 the
-    scheme is unstable with steps of any length (added-mass instability; Causin, Gerbeau & Nobile 2005). With five points
-    it is stable up to a ratio of (1 − 2 b)/31. Own derivation.
+    scheme is unstable with steps of any length (added-mass instability; Causin, Gerbeau & Nobile 2005). Five points are
+    stable up to a ratio of (1 − 2 b)/31. Own derivation.
     """
     polynomial = np.zeros(points + 1)
     polynomial[0] = 1.0 - bossak
