@@ -244,9 +244,9 @@ class Afloat:
         acceleration = share * (steady + self.accelerated(w, pose[2], force - mean))
         if ti.static(self.pressed):
             rate = before[2] + 0.5 * step * self.last[w, 2]
-            answer, force = self.answer(w, pose[2], rate, force)
-            matrix = self.inertia(w, pose[2]) + answer
-            more = self.solved(w, matrix, force - answer @ steady - mean)
+            force = self.answer(w, pose[2], rate, force)
+            answer = self.hold.inertia(w)
+            more = self.solved(w, self.inertia(w, pose[2]) + answer, force - answer @ steady - mean)
             acceleration = share * (steady + more)
             force -= answer @ (steady + more)
         velocity = before + 0.5 * step * acceleration
@@ -362,12 +362,13 @@ class Afloat:
 
     @ti.func
     def answer(self, w, roll, rate, force):
-        """What the matters answer to accelerations of P, matrix (3, 3), and their load while P is not accelerated."""
-        matrix = ti.Matrix.zero(self.exact, 3, 3)
+        """Note what the matters answer to accelerations of P; returns their load while P is not accelerated."""
+        for entry in ti.static(range(9)):
+            self.hold.reply[w, entry] = 0.0
         for k in ti.static(range(len(self.loads))):
             if ti.static(self.loads[k].pressed):
-                matrix += self.loads[k].inertia_of(w)
-        return self.hold.answer(w, roll, rate, matrix, force)
+                self.loads[k].add_inertia(w, self.hold.reply)
+        return self.hold.answer(w, roll, rate, force)
 
     @ti.func
     def inertia(self, w, roll):

@@ -32,7 +32,9 @@ class Hold:
         self.place = own.holding("hold", places, "world direction", own.exact, kept=True)
         still = apart([[0.0, -gravity, 0.0, 0.0]] * len(places))
         self.felt = own.holding("felt", still, "world number", own.exact, kept=True)
-        (self.tank,) = own.reals((Axis("world", len(places)), Axis("number", APART)), "tank", kind=own.exact)
+        row = Axis("world", len(places)), Axis("number", APART)
+        (self.tank,) = own.reals(row, "tank", kind=own.exact)
+        self.reply, self.seen = own.reals(row, "reply", "seen", kind=own.exact, kept=False)
 
     @ti.func
     def arm(self, w, roll):
@@ -40,22 +42,35 @@ class Hold:
         return turned(self.place[w, 0], self.place[w, 1], roll)
 
     @ti.func
-    def answer(self, w, roll, rate, matrix, force):
-        """An inertia about the tank's origin, `matrix` (3, 3), as seen from P in the earth's axes.
+    def answer(self, w, roll, rate, force):
+        """Turn what matters answer to the tank's acceleration, `reply`, into an inertia about P, `seen`.
 
-        And the load `force` about P with what that inertia answers to the rotation alone.
+        Both are matrices (3, 3) row by row, the first about the tank's origin in its axes, the second in the earth's.
+        Returns the load `force` about P with what the matters answer to the rotation alone. Written out in numbers:
+        matrices may be real vectors here, which cannot be transposed.
         """
-        square, way = rate * rate, self.way(w, roll)
-        turning = ti.Vector([square * self.place[w, 0], square * self.place[w, 1], 0.0 * rate])
-        return way.transpose() @ matrix @ way, force + way.transpose() @ (matrix @ turning)
+        c, s, arm, square = ti.cos(roll), ti.sin(roll), self.arm(w, roll), rate * rate
+        # From accelerations of P to those of the tank's origin
+        way = [c, s, s * arm[0] - c * arm[1], 0.0 - s, c, c * arm[0] + s * arm[1], 0.0 * c, 0.0 * c, 1.0 + 0.0 * c]
+        for i in ti.static(range(3)):
+            for j in ti.static(range(3)):
+                total = 0.0 * c
+                for m in ti.static(range(3)):
+                    for n in ti.static(range(3)):
+                        total += way[3 * m + i] * self.reply[w, 3 * m + n] * way[3 * n + j]
+                self.seen[w, 3 * i + j] = total
+        found = force
+        for i in ti.static(range(3)):
+            for m in ti.static(range(3)):
+                turned_by = self.reply[w, 3 * m] * self.place[w, 0] + self.reply[w, 3 * m + 1] * self.place[w, 1]
+                found[i] = found[i] + square * way[3 * m + i] * turned_by
+        return found
 
     @ti.func
-    def way(self, w, roll):
-        """The matrix (3, 3) from accelerations of P in the earth's axes to those of the tank's origin in its own."""
-        c, s, arm = ti.cos(roll), ti.sin(roll), self.arm(w, roll)
-        turned_y, turned_z = s * arm[0] - c * arm[1], c * arm[0] + s * arm[1]
-        zero = ti.cast(0.0, self.exact)
-        return ti.Matrix([[c, s, turned_y], [-s, c, turned_z], [zero, zero, 1.0 + zero]])
+    def inertia(self, w):
+        """The inertia `seen` (3, 3)."""
+        rows = [[self.seen[w, 3 * i + j] for j in ti.static(range(3))] for i in ti.static(range(3))]
+        return ti.Matrix(rows)
 
     @ti.func
     def feel(self, w, gravity, pose, velocity, acceleration, share):

@@ -49,15 +49,12 @@ class Load:
         (self.inertia,) = arrays.under("load").reals((self.units.axis, *piece), "inertia", kind=self.exact, kept=False)
 
     @ti.func
-    def inertia_of(self, w):
-        """The matrix A (3, 3) of a world that its carrier responds to, summed over units and pieces."""
-        matrix = ti.Matrix.zero(self.exact, 3, 3)
+    def add_inertia(self, w, matrix: ti.template()):
+        """Add the matrix A of a world to a row of `matrix`, summed over units and pieces with the shares."""
         for u in range(w * self.units.a_world, (w + 1) * self.units.a_world):
             for piece in range(self.pieces):
                 for k in ti.static(range(len(ENTRIES))):
-                    i, j = ti.static(ENTRIES[k])
-                    matrix[i, j] += self.shares[w, piece] * self.inertia[u, piece, k]
-        return matrix
+                    matrix[w, k] = matrix[w, k] + self.shares[w, piece] * self.inertia[u, piece, k]
 
     def forget(self) -> None:
         """Set all loads to zero."""
