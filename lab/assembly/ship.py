@@ -97,7 +97,7 @@ def _vessel(given: ships.Ship, water: Water, sea: seas.Waves | None, wet: Body) 
     return Vessel(
         ship,
         given.hold,
-        given.length or 1.0,
+        length=given.length or 1.0,
         laden=True,
         heel=given.heel,
         release=given.release,

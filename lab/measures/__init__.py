@@ -25,8 +25,10 @@ from lab.measures import (
     gauge_peaks,
     heap_angle,
     hysteresis,
+    liquid_mass,
     run_up,
     ship_frozen,
+    ship_grain,
     ship_power,
     ship_roll,
     ship_stability,
@@ -49,6 +51,7 @@ MEASURES = (
     ship_roll,
     ship_frozen,
     ship_stability,
+    ship_grain,
     ship_power,
     axle_roll,
     heap_angle,
@@ -70,6 +73,7 @@ MEASURES = (
     gauge_impulse,
     run_up,
     sloshing_frequency,
+    liquid_mass,
     water_residual,
 )
 

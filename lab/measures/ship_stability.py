@@ -57,7 +57,7 @@ def levers(recording: Recording) -> tuple[np.ndarray, np.ndarray, np.ndarray | N
         return heel, frozen, None
     if "grains" not in recording.preset.matters:
         return heel, frozen, _with_level_water(recording.preset, vessel, heel)
-    cargo = float(grain_mass(recording).sum(axis=1).mean()) / recording.preset.thickness
+    cargo = float(grain_mass(recording).sum(axis=1).mean()) * recording.preset.a_metre
     repose = recording.preset.ship.repose
     try:
         hold = Section(recording.outline)

@@ -54,9 +54,6 @@ class Ship:
         float, Unit("m"), Doc("Height of the centre of gravity of ship and cargo above the hull's origin.")
     ]
     breadth: Annotated[Length | None, Doc("Breadth of a box.")] = None
-    length: Annotated[
-        Length | None, Doc("Length of the ship; tanks that are not as long as she count by their share of it.")
-    ] = None
     height: Annotated[Length | None, Doc("Depth of a box, from keel to deck.")] = None
     outline: Annotated[
         Points | None, Doc("Corners of the hull in its own axes, y and z each, in place of breadth and height.")
@@ -71,6 +68,10 @@ class Ship:
         bool,
         Doc("Whether `gravity_height` and `gyradius` are hers without the water in her tanks; her draught is with it."),
     ] = False
+    length: Annotated[
+        Length | None,
+        Doc("How many metres of her section displace what she does; beside it counts the length of her hold."),
+    ] = None
     hold: Annotated[Point, Doc("Where the tank's origin is in the hull's axes, y and z.")] = (0.0, 0.0)
     axis: Annotated[
         Point | None, Doc("The ship's point of reference in the hull's axes; the middle of the waterline without it.")

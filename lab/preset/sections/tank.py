@@ -29,7 +29,7 @@ class Shell:
     outline: Annotated[Outline | None, Doc("Corners of the tank, y and z each, in place of width and height.")] = None
     lid: Annotated[bool, Doc("Whether the tank is closed at the top.")] = True
     length: Annotated[
-        Thickness | None, Doc("Length along the ship, for a tank in one; as long as the ship without it.")
+        Length | None, Doc("Length of a hold along its ship, which carries no more of it; the ship's own without it.")
     ] = None
 
     @cached_property

@@ -21,14 +21,14 @@ COARSE = {"water.spacing": "38 mm"}
         (TWO, {"tanks.deep.place": ["0.3 m", "300 mm"]}, "tanks.deep.place: the tank stands out of the hull"),
         (TWO, {"tanks.deep.depth": "560 mm"}, "tanks.deep.depth: 560 mm is not less than the tank's height"),
         (TWO, {"tanks.deep.width": False}, "tanks.deep.width: missing"),
-        (TWO, {"tank.length": "4 m"}, "tank.length: is more than the ship's, 3 m"),
-        (TWO, {"ship.length": False}, "tank.length: is a share of the ship's"),
+        (TWO, {"tank.length": "4 m"}, "tank.length: the hold is longer than the ship, 3 m"),
+        (TWO, {"ship.length": False}, "ship.length: missing; the hold has a length"),
         (TWO, {"ship.damping": 0.1}, "ship.linear_damping: give either"),
         (TWO, {"ship.gyradius": False, "ship.roll_period": "1 s"}, "ship.roll_period: is that of ship and cargo"),
         (TWO, {"air.density": "1.2 kg/m^3"}, "air: air in a ship's tanks is not computed yet"),
         (BOTH, {"water.depth": "20 mm"}, "water: grains and water in one tank are not computed yet"),
         ("sloshing/quick", {"water.model": "linear"}, 'water.model: "linear" is for tanks in a ship'),
-        ("sloshing/quick", {"tank.length": "1 m"}, "tank.length: goes with a ship"),
+        ("sloshing/quick", {"tank.length": "1 m"}, "tank.length: is that of a hold in a ship"),
     ],
 )
 def test_errors_name_key_and_remedy(name, changes, words):

@@ -73,15 +73,14 @@ def check_tanks(preset: Tanked) -> None:
         raise LabError(f"tanks: at most {MOST_TANKS - 1} further tanks are possible (got {len(preset.tanks)}).")
     ship = preset.ship
     if ship is None:
-        for key, given in (("tanks", preset.tanks), ("tank.length", preset.tank.length)):
-            if given:
-                raise LabError(f"{key}: goes with a ship; add a table [ship], or leave this out.")
+        if preset.tanks:
+            raise LabError("tanks: go with a ship; add a table [ship], or leave them out.")
         return
-    for key, tank in {"tank": preset.tank, **{f"tanks.{name}": one for name, one in preset.tanks.items()}}.items():
+    for name, tank in preset.tanks.items():
         if tank.length and not ship.length:
-            raise LabError(f"{key}.length: is a share of the ship's; give ship.length as well.")
+            raise LabError(f"tanks.{name}.length: is a share of the ship's; give ship.length as well.")
         if tank.length and tank.length > ship.length:
-            raise LabError(f"{key}.length: is more than the ship's, {show(ship.length, 'm')}.")
+            raise LabError(f"tanks.{name}.length: is more than the ship's, {show(ship.length, 'm')}.")
     for name, tank in preset.tanks.items():
         _check_further(preset, name, tank)
 
