@@ -17,7 +17,6 @@ from solvers.fluid.mover import Mover
 from solvers.fluid.order import Order, Tanks
 from solvers.fluid.shifting import SHIFTING
 from solvers.fluid.state import LANES, UNUSED, Particles, Shares
-from solvers.fluid.walls.answer import Answer
 from solvers.fluid.walls.behind import OF_NONE, Behind
 from solvers.fluid.walls.bodies import Bodies
 from solvers.fluid.walls.edges import Edges
@@ -79,8 +78,7 @@ class WaterMatter(Matter):
         self.thickness = tank.thickness
         mass = water.density * scene.drops[..., VOLUME].sum(axis=1).max() * tank.thickness
         self.least = 0.5 * mass * (LEAST * water.sound_speed) ** 2  # J
-        self.answer = Answer(arrays, medium, self.forces, setting.carrier)
-        self.before, self.between = self._before(), (Phase(self.note_passage), *self.answer.corrected)
+        self.before, self.between = self._before(), (Phase(self.note_passage),)
         self.after = (
             Phase(self.mover.kick, units),
             Phase(self.continuity.expand, units),
@@ -94,9 +92,7 @@ class WaterMatter(Matter):
             *([Phase(self.extrapolation.press, self.units)] if self.particles.dry else ()),
             *([Phase(self.gauges.measure)] if self.gauges.count else ()),
             *([Phase(self.edges.bear, self.units), Phase(self.edges.add)] if self.edges.wanted else ()),
-            *self.answer.noted,
             Phase(self.forces.push, self.units),
-            *self.answer.offered,
         )
 
     @property

@@ -45,7 +45,7 @@ class Afloat:
     ship are per metre of length, and so is the load from `Load.of_world`.
     """
 
-    rotating = moving = answers = takes_inertia = True
+    rotating = moving = answers = True
     paced = False  # the ship's leapfrog needs steps of one length
 
     def __init__(self, arrays: State, vessels: Sequence[Vessel], gravity: float, every: int, wet: bool = False):

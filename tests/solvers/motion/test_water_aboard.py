@@ -170,24 +170,6 @@ def test_water_and_ship_work_on_each_other():
     assert abs(missing) < 0.01 * (np.abs(row["water_work"]) + row["water_viscous"] + row["water_kinetic"])[0]
 
 
-def test_a_hull_lighter_than_the_layer_of_water_at_her_walls():
-    """Her acceleration is solved with the water's own answer, so that they do not drive each other."""
-    vessel = ship(heel=0.01)
-    light = Body(0.4, BARE.centre, 0.01)
-    bare = replace(vessel.ship, body=light, radiation=Radiation(0.01 * ADDED, DAMPED))
-    run = Simulation(aboard(replace(vessel, ship=bare)), threads=1, arch="cpu")
-    run.advance(round(1.3 / run.dt))
-    row = run.observe()
-    inertia = run.water.load.inertia.to_numpy()[0, 0].reshape(3, 3)
-    run.close()
-    layer = 0.3 * 1000.0 * run.water.water.length * WIDE  # kg/m, as a rule
-    assert inertia[1, 1] == pytest.approx(layer, rel=0.5)
-    assert inertia[1, 1] > light.mass
-    assert np.abs(inertia - inertia.T).max() < 0.1 * np.abs(inertia).max()
-    assert np.abs(row["pose"][0, 2]) < 0.02
-    assert row["water_kinetic"][0] < 0.1
-
-
 def test_tanks_one_behind_the_other():
     """Two halves of a tank in the same place of the plane act as the whole, and their waters do not meet."""
     whole = aboard(ship())
