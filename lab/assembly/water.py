@@ -26,8 +26,9 @@ def water_of(preset: Preset) -> dict:
     return {"water": water, "drops": np.tile(np.concatenate([*drops.values()]), (preset.run.repeats, 1, 1))}
 
 
-def drops_of(preset: Preset, pool: Pool) -> np.ndarray:
-    """The particles (n, 6) of the water in a tank. Raises LabError if none fits in."""
+def drops_of(preset: Preset, pool: Pool | None = None) -> np.ndarray:
+    """The particles (n, 6) of the water in a tank, by default the first. Raises LabError if none fits in."""
+    pool = pool or pools(preset)[0]
     water = liquid(preset)
     if preset.parts:  # which a lattice is cut off at; a packing knows nothing of them
         water = replace(water, start="lattice")
