@@ -39,4 +39,5 @@ SUITE = Suite(
     CASES,
     """The references do not use the solver. A tolerance, to either side, is what the physics and the scheme at its step
     allow, not what came out.""",
+    water.TEXTS,
 )

@@ -14,12 +14,20 @@ AHEAD = 200  # steps before the first timing: compiling
 class Worker(Aside):
     """A simulation of a case in a process of its own."""
 
-    def __init__(self, case: Case, threads: int = 1, **of_water: object):
-        super().__init__(_Pool, case, threads, of_water)
+    def __init__(self, case: Case, threads: int = 1, ahead: int = AHEAD, **of_scene: object):
+        super().__init__(_Pool, case, threads, ahead, of_scene)
 
     def run(self, seconds: float, wall: float) -> PoolRun:
         """From the start for `seconds`, over and over until `wall` seconds have gone by."""
         return self.ask("timed", seconds, wall)
+
+    def memory(self) -> int:
+        """Bytes of the arrays."""
+        return self.ask("bytes")
+
+    def step(self) -> float:
+        """The time step (s)."""
+        return self.ask("step")
 
     def frames(self, times: Sequence[float]) -> list[Frame]:
         """The particles at these times (s), from the start."""
@@ -29,9 +37,15 @@ class Worker(Aside):
 class _Pool:
     """The simulation in the process of a worker."""
 
-    def __init__(self, case: Case, threads: int, of_water: Mapping[str, object]):
-        self.run = Simulation(case.scene(**of_water), threads=threads, arch="cpu")
-        self.run.advance(AHEAD)
+    def __init__(self, case: Case, threads: int, ahead: int, of_scene: Mapping[str, object]):
+        self.run = Simulation(case.scene(**of_scene), threads=threads, arch="cpu")
+        self.run.advance(ahead)
+
+    def bytes(self) -> int:
+        return self.run.arrays.bytes
+
+    def step(self) -> float:
+        return self.run.dt
 
     def restart(self) -> None:
         self.run.place(self.run.scene.radius.reshape(1, 0, 1) * [0.0, 0.0])
@@ -39,7 +53,7 @@ class _Pool:
 
     def timed(self, seconds: float, wall: float) -> PoolRun:
         run, steps, done, spent, busy = self.run, round(seconds / self.run.dt), 0, 0.0, 0.0
-        while spent < wall:
+        while done == 0 or spent < wall:
             self.restart()
             begun, before = time.perf_counter(), time.process_time()
             run.advance(steps)

@@ -56,7 +56,8 @@ def turned(count: int, shifting: str = "delta-plus-momentum") -> Patch:
     with simulated(scene(water, drops, box(4.0, 4.0), 0.0)) as run:
         mass = run.water.particles.read(run.water.particles.mass)[0][0]
         for time in looks(run, (0.0, *TIMES)):
-            place, velocity, pressed = (values[0] for values in run.snapshot().values())
+            now = run.snapshot()
+            place, velocity, pressed = (now[f"water_{name}"][0] for name in ("place", "velocity", "pressure"))
             turning.append(mass @ (place[:, 0] * velocity[:, 1] - place[:, 1] * velocity[:, 0]))
             if time > 0.0:
                 places.append(place)
