@@ -71,4 +71,4 @@ def test_model_and_ship_roll_alike(tmp_path):
     assert len(roll) == len(little)
     assert np.degrees(np.abs(roll).max()) > 3.0
     assert little[first] == pytest.approx(roll[first], abs=1e-4)
-    assert SCALE * small[first] == pytest.approx(centre[first], abs=2e-3)
+    assert SCALE * small[first] == pytest.approx(centre[first], abs=0.01 * 0.886)  # a hundredth of a grain

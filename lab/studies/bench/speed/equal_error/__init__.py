@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from shutil import rmtree
 
 import numpy as np
 
@@ -78,6 +79,7 @@ def study(page: Page, work: Path, fast: bool) -> None:
     page.table([*heads, "lab: times as fast"], rows)
     if not fast:  # too few turns to be kept
         processors.keep(page.folder, found)
+    rmtree(kept, ignore_errors=True)  # asked for again, all is timed again
 
 
 def say_how(page: Page, effort: Effort) -> None:
