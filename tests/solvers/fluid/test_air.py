@@ -76,7 +76,7 @@ def test_energy_is_accounted_for(run):
 
 def test_water_rests_under_air():
     """From hydrostatic rest in both: pressures stay, the surface keeps its place to a quarter of a spacing."""
-    run = Simulation(scene(), threads=1, arch="cpu")
+    run = Simulation(scene(background=1.0), threads=1, arch="cpu")  # as above: one kernel
     run.observe()
     run.advance(1500)
     rows, state, spacing = run.observe(), run.snapshot(), run.scene.water.spacing
@@ -92,6 +92,7 @@ def test_water_rests_under_air():
     assert state["air_place"].shape[1] == gas.sum()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("changes", [{"precision": "mixed"}, {"schedule": "per-grain", "precision": "f32"}])
 def test_other_ways_of_running_give_the_same(changes):
     """Numbers of 32 bits, and particles one by one: the same course, to the rounding of each."""
