@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from solvers.fluid.given import GAS, VELOCITY_Y, VELOCITY_Z, Gauge, Level
+from solvers.fluid.given import EXCESS, GAS, VELOCITY_Y, VELOCITY_Z, Gauge, Level
 from solvers.simulation import Simulation
 from tests.oracles.air import PlainBoth, both
 from tests.oracles.water import GRAVITY
@@ -107,3 +107,21 @@ def test_other_ways_of_running_give_the_same(changes):
         other.close()
     tight = {"mixed": 5e-4, "f32": 3e-3}[changes["precision"]]
     np.testing.assert_allclose(place[1], place[0], atol=tight * made.water.spacing)
+
+
+def test_air_flows_out_through_a_vent():
+    """From 2 % of overpressure: √p falls linearly, d√p/dt = −C_d A c² √(2 ρ)/(2 V), and ends at the pressure outside."""
+    made = scene(background=1.0, air={"vent": 2e-3})
+    air, drops = made.water.air, made.drops
+    drops[..., EXCESS] += 0.02 * drops[..., GAS]
+    run = Simulation(made, threads=1, arch="cpu")
+    found, start = [], run.observe()["air_mean_pressure"][0]
+    for _ in range(6):
+        run.advance(8)
+        found.append((run.time, run.observe()["air_mean_pressure"][0]))
+    time, pressure = np.array(found).T
+    slope = 0.6 * air.vent * air.sound_speed**2 * np.sqrt(2.0 * air.density) / (2.0 * WIDTH * (HEIGHT - DEPTH))
+    wanted = (np.sqrt(start) - slope * time) ** 2
+    np.testing.assert_allclose(pressure, wanted, atol=0.06 * start)
+    run.advance(round(3.0 * np.sqrt(start) / slope / run.dt))
+    assert abs(run.observe()["air_mean_pressure"][0]) < 0.05 * start
