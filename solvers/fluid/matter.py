@@ -51,8 +51,7 @@ class WaterMatter(Matter):
         self.drops = scene.drops
         count = scene.drops.shape[1]
         self.gas = scene.drops[..., GAS] if water.air else np.zeros(scene.drops.shape[:2])
-        self.puffs = int(self.gas[0].sum())  # particles of air, which come last
-        shifting = SHIFTING[water.shifting]
+        self.puffs, shifting = int(self.gas[0].sum()), SHIFTING[water.shifting]  # particles of air, which come last
         self.particles = p = Particles(arrays, worlds, count, lanes, walls, grid.strips, shifting, water.air)
         self.units = units = setting.units(p.wet)
         self.load = setting.load(arrays.under("water"), units)

@@ -55,7 +55,7 @@ class Vent:
         over = pressed / room
         gain = c.get("vent") * ti.sqrt(2.0 * ti.abs(over) * mass / room) * dt / mass
         gain = ti.min(gain, MOST * ti.abs(over) / c.get("air_stiffness"))
-        self.gain[w] = ti.select(over > 0.0, -gain, gain)
+        self.gain[w] = ti.select(over > 0.0, 0.0 - gain, gain)
 
     @ti.func
     def pass_through(self, w, b, gas: ti.template(), s: ti.template()):

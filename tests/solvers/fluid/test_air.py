@@ -110,7 +110,7 @@ def test_other_ways_of_running_give_the_same(changes):
 
 
 def test_air_flows_out_through_a_vent():
-    """From 2 % of overpressure: √p falls linearly, d√p/dt = −C_d A c² √(2 ρ)/(2 V), and ends at the pressure outside."""
+    """From air 2 % too dense: √p falls linearly, d√p/dt = −C_d A c² √(2 ρ)/(2 V), to the pressure outside."""
     made = scene(background=1.0, air={"vent": 2e-3})
     air, drops = made.water.air, made.drops
     drops[..., EXCESS] += 0.02 * drops[..., GAS]

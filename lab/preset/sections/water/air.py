@@ -39,9 +39,7 @@ class Air:
     ] = 0.0
     vent_area: Annotated[
         Annotated[float, Unit("m^2"), Interval(ge=0)],
-        Doc(
-            "Area of openings through which air comes and goes, of the whole thickness; the tank is closed without it."
-        ),
+        Doc("Area of openings through which air comes and goes; the tank is closed without it."),
     ] = 0.0
     interface: Annotated[
         Literal[*INTERFACES], Doc("What acts between water and air, see `solvers.fluid.phases.interfaces`.")

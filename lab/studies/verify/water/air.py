@@ -187,7 +187,7 @@ def balance(_: bool) -> Found:
     drops[0, :, [Y, Z]] = (place[order] + 0.005 * random.uniform(-1.0, 1.0, place.shape)).T
     drops[0, :, VOLUME], drops[0, :, GAS] = 0.05**2, gas[order]
     set_going(drops, lambda where: 0.2 * random.uniform(-1.0, 1.0, where.shape))
-    with simulated(scene(water, drops, box(1.0, 1.0), 0.0)) as run:
+    with simulated(scene(water, drops, box(1.0, 1.0), 0.0, step=1e-3)) as run:
         start = run.observe()
         _, before, mass = kept(run)
         run.advance(200)
@@ -203,7 +203,7 @@ def balance(_: bool) -> Found:
                 taken / lost,
                 1.0,
                 "balance",
-                0.03,
+                0.01,
                 "the step",
             ),
         ]
