@@ -106,4 +106,4 @@ class PlainBoth(PlainWater):
         more = 2.0 * (s[None] - s[:, None]) - ((slope[:, None] + slope[None]) * apart).sum(axis=2)
         eta = -kernel(np.linalg.norm(apart, axis=2), water.length)[1]
         evened = water.delta * water.length * self.sound * ((same * more * eta) @ volume)
-        return evened - (1.0 + s) * flow, -(1.0 + s) * walled
+        return evened - (1.0 + s) * flow, -(1.0 + s) * (1.0 + self.lean * self.gas) * walled
