@@ -12,8 +12,8 @@ class Weighted:
     accelerated alike; u* = (ρ_i u_i + ρ_j u_j)/(ρ_i + ρ_j) is the velocity that goes with it, so that what one gains in
     kinetic energy the other loses in elastic energy, pair by pair (own derivation). They are those of a linear Riemann
     problem with equal speeds of sound, without its dissipation (Rezavand, Zhang & Hu 2020). Water hardly sees how air
-    moves, air sees water as a wall, and walls likewise: there the weight is 1 + λ. By symmetry of both sides air between
-    walls then changes its volume as they move, however coarse it is; with a weight of 1 half a spacing of it is missed
+    moves, air sees water as a wall, and walls likewise: there its weight is 1 + λ. By symmetry of both sides, the
+    volume of air between walls then follows them, however coarse it is; with a weight of 1 half a spacing is missed
     (own derivation).
 
     Limits: a flow with strain along the surface opens and closes air there a little.
