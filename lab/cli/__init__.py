@@ -5,7 +5,7 @@ import click
 from lab import __version__
 from lab.cli.benches import bench
 from lab.cli.errors import Commands
-from lab.cli.pictures import render, view
+from lab.cli.pictures import beside, poster, render, sheet, view
 from lab.cli.presets import schema
 from lab.cli.runs import explain, resume, run
 from lab.cli.studies import gallery, list_presets, reproduce, verify
@@ -29,15 +29,18 @@ def main() -> None:
 
 for command in (
     bench,
+    beside,
     calibrate,
     explain,
     gallery,
     list_presets,
+    poster,
     render,
     reproduce,
     resume,
     run,
     schema,
+    sheet,
     sweep,
     verify,
     view,

@@ -1,5 +1,6 @@
-"""The commands for pictures: view, a window in which an experiment runs, and render, a video."""
+"""The commands for pictures: view, a window in which an experiment runs; render, a video; poster, sheet and beside."""
 
+from collections.abc import Callable
 from pathlib import Path
 
 import click
@@ -50,18 +51,38 @@ def _pixels(text: str) -> tuple[int, int]:
     return int(width), int(height)
 
 
+STYLE = {
+    "frame": "Frame of reference: tank or earth.",
+    "theme": "Colours of the page: light or dark.",
+    "cargo": "What the grains look like: wheat, iron-ore, coal …",
+    "overlay": "What is drawn over the grains: none or trails.",
+    "inset": "What is shown larger beside the tank: none, surface or impact.",
+}
+
+
+def style_options(command: Callable) -> Callable:
+    """The options of all commands that paint: colour, size, and the style of [video]."""
+    for name, says in reversed(STYLE.items()):
+        command = click.option(f"--{name}", help=says)(command)
+    for name in ("height", "width"):
+        command = click.option(f"--{name}", type=int, help=f"{name.capitalize()} in pixels.")(command)
+    return click.option("--colour", cls=ColourOption)(command)
+
+
 @click.command()
 @click.argument("recordings", type=click.Path(path_type=Path), nargs=-1, required=True)
 @click.option(
     "--out",
     type=click.Path(path_type=Path),
     metavar="PLACE",
-    help="An .mp4 file, or with --png a folder; of several recordings a folder.  [default: beside each recording]",
+    help="An .mp4, .gif or .webp file, or with --png a folder; of several recordings a folder.  "
+    "[default: beside each recording]",
 )
-@click.option("--colour", cls=ColourOption)
-@click.option("--frame", help="Frame of reference: tank or earth.")
-@click.option("--width", type=int, help="Width in pixels.")
-@click.option("--height", type=int, help="Height in pixels.")
+@style_options
+@click.option("--speed", type=float, help="Playback speed; 1 is as in nature.")
+@click.option(
+    "--hero", is_flag=True, help="1920x1080 at 60 pictures a second, slow at the event, ends with the result."
+)
 @click.option("--world", type=int, help="One of the repeats, from 0.  [default: side by side]")
 @click.option("--png/--mp4", default=False, help="Single pictures, or a video (the default).")
 @click.option("--sound", is_flag=True, help="Paint a damaged recording up to the damage.")
@@ -72,6 +93,8 @@ def render(recordings: tuple[Path, ...], out: Path | None, **wishes: object) -> 
     cargolab render renders/tilting/quick --colour displacement --out shift.mp4
     cargolab render renders/tilting/quick --frame earth --world 2
     cargolab render renders/tilting/quick --png --out pictures
+    cargolab render renders/ship/capsize-map --hero --theme dark
+    cargolab render renders/sloshing/quick --out waves.webp --width 480 --height 480
     cargolab render renders/shaking/sway-sweep --out films          each point of a sweep
     cargolab render "renders/**/barge*" --width 1920 --height 1080  all that match
     Several are painted side by side, one process a core. Run again, it leaves out videos that are newer than their
@@ -117,3 +140,64 @@ def _render_many(found: list[Path], empty: dict[Path, str], out: Path | None, wi
         click.echo(sentence, err=True)
     if failed:
         raise LabError(f"{len(failed)} of {len(jobs) + len(empty)} were not painted: see above.")
+
+
+@click.command()
+@click.argument("recording", type=click.Path(path_type=Path))
+@click.option("--out", type=click.Path(path_type=Path), help="A .png file.  [default: poster.png beside the recording]")
+@click.option("--time", type=float, help="Time in s.  [default: the end]")
+@click.option("--event", is_flag=True, help="The moment at which most happens.")
+@click.option("--world", type=int, help="One of the repeats, from 0.  [default: side by side]")
+@style_options
+def poster(recording: Path, out: Path | None, event: bool, **wishes: object) -> None:
+    """Paint one picture of RECORDING.
+
+    \b
+    cargolab poster renders/ship/capsize-map --theme dark --width 3840 --height 2160
+    cargolab poster renders/sloshing/quick --event --inset impact
+    """
+    from lab.paint.video import poster as paint
+    from lab.paint.video import telling_time
+
+    if event:
+        wishes["time"] = telling_time(recording, wishes["world"])
+    click.echo(paint(recording, out, **wishes))
+
+
+@click.command()
+@click.argument("recording", type=click.Path(path_type=Path))
+@click.option("--out", type=click.Path(path_type=Path), help="A .png file.  [default: sheet.png beside the recording]")
+@click.option("--world", type=int, help="One of the repeats, from 0.")
+@style_options
+def sheet(recording: Path, out: Path | None, **wishes: object) -> None:
+    """Paint six telling moments of RECORDING, and its whole curve, in one picture.
+
+    \b
+    cargolab sheet renders/tilting/quick
+    cargolab sheet renders/ship/capsize-map --width 1080 --height 1080 --out sheet.png
+    """
+    from lab.paint.video import contact_sheet
+
+    click.echo(contact_sheet(recording, out, **wishes))
+
+
+@click.command()
+@click.argument("recordings", type=click.Path(path_type=Path), nargs=-1, required=True)
+@click.option(
+    "--out", type=click.Path(path_type=Path), required=True, help="An .mp4, .gif or .webp file, or .png: the end alone."
+)
+@click.option("--caption", multiple=True, help="A name for each recording, in turn.  [default: those of the folders]")
+@click.option("--title", help="Title of the picture.  [default: that of the first recording]")
+@click.option("--speed", type=float, help="Playback speed; 1 is as in nature.")
+@style_options
+def beside(recordings: tuple[Path, ...], out: Path, caption: tuple[str, ...], **wishes: object) -> None:
+    """Film RECORDINGS side by side, such as variants of one experiment, in one scale and one time.
+
+    \b
+    cargolab beside renders/ship/barge-3dof renders/ship/barge-empty --caption loose --caption empty --out both.mp4
+    """
+    from lab.paint.video import render_grid
+
+    if caption and len(caption) != len(recordings):
+        raise LabError(f"--caption: {len(caption)} for {len(recordings)} recordings; give one for each, or none.")
+    click.echo(render_grid(recordings, caption or [path.name for path in recordings], out, **wishes))

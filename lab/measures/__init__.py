@@ -25,6 +25,7 @@ from lab.measures import (
     gauge_peaks,
     heap_angle,
     hysteresis,
+    liquid_mass,
     run_up,
     ship_frozen,
     ship_power,
@@ -70,6 +71,7 @@ MEASURES = (
     gauge_impulse,
     run_up,
     sloshing_frequency,
+    liquid_mass,
     water_residual,
 )
 

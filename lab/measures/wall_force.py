@@ -29,13 +29,13 @@ from collections.abc import Mapping
 import numpy as np
 
 from lab.measures.drawing import BLUE, DRIVE, GREEN, GREY, PERIODS, VERMILION, Sheet, band, close_up, level
+from lab.measures.driven_load import between, transfer, with_halves
 from lab.measures.motion import HARMONIC, driving
-from lab.measures.steady import BLOCKS, SHORT, Steady, amplitude_value, averaged, harmonics, phase_value, steady_part
+from lab.measures.steady import BLOCKS, SHORT, Steady, amplitude_value, averaged, phase_value, steady_part
 from lab.measures.value import Value, over_worlds
 from lab.recording import Recording
 
 OF = "grains"
-ALONG = {"sway": 0, "heave": 1}  # the column of wall_force that a motion works against
 SHEET = "of a sheet one grain thick"
 EMPTY = "no grain is left in the tank"
 LEAST_SAMPLES = 2 * BLOCKS
@@ -84,13 +84,8 @@ def grain_mass(recording: Recording) -> np.ndarray:
 
 def _vertical(recording: Recording) -> np.ndarray:
     """Upward force on the tank (T, W) in the earth frame, N."""
-    force, angle = recording.series["wall_force"], _between(recording.series["pose"][..., 2])
+    force, angle = recording.series["wall_force"], between(recording.series["pose"][..., 2])
     return np.sin(angle) * force[..., 0] + np.cos(angle) * force[..., 1]
-
-
-def _between(values: np.ndarray) -> np.ndarray:
-    """Values (T, W) in the middle of each sampling interval, where the mean over that interval belongs."""
-    return np.concatenate([values[:1], 0.5 * (values[1:] + values[:-1])])
 
 
 def _driven(recording: Recording, steady: Steady | None, weight: np.ndarray) -> dict[str, Value]:
@@ -101,7 +96,7 @@ def _driven(recording: Recording, steady: Steady | None, weight: np.ndarray) -> 
     shape = 3, recording.worlds
     force, ratio = np.full(shape, np.nan, dtype=complex), np.full(shape, np.nan, dtype=complex)
     if steady is not None:
-        force, ratio = np.moveaxis([_transfer(recording, part) for part in steady.parts], 0, 1)
+        force, ratio = np.moveaxis([transfer(recording, part) for part in steady.parts], 0, 1)
     answer = np.abs(force) * np.exp(1j * np.angle(ratio))
     found = {
         f"{kind}_amplitude": amplitude_value(1e3 * answer, unit, note=SHEET, missing=SHORT),
@@ -109,35 +104,9 @@ def _driven(recording: Recording, steady: Steady | None, weight: np.ndarray) -> 
     }
     if name != "roll":
         mass = np.where(weight[-1] > 0, weight[-1], np.nan) / recording.preset.run.gravity
-        found["effective_mass"] = _with_halves(ratio.real / omega**2 / mass, "1", SHORT)
-    found["cargo_damping"] = _with_halves(-ratio.imag / omega, per, SHORT, SHEET)
+        found["effective_mass"] = with_halves(ratio.real / omega**2 / mass, "1", SHORT)
+    found["cargo_damping"] = with_halves(-ratio.imag / omega, per, SHORT, SHEET)
     return found
-
-
-def _transfer(recording: Recording, part: slice) -> np.ndarray:
-    """Complex amplitudes (2, W) of the force along the motion, and of it over the motion's."""
-    name, settings = driving(recording)
-    time, frequency = recording.series["time"], settings.frequency
-    middles = _between(time[:, None])[part, 0]
-    force = harmonics(middles, _along_motion(recording)[part], frequency, (1, 2))[0]
-    moved = harmonics(time[part], recording.series["pose"][part, :, HARMONIC[name]], frequency, (1, 2))[0]
-    return np.stack([force, force / moved])
-
-
-def _along_motion(recording: Recording) -> np.ndarray:
-    """The force (T, W), N, along the motion; for roll the moment about its centre, N m."""
-    name, settings = driving(recording)
-    force = recording.series["wall_force"]
-    if name != "roll":
-        return force[..., ALONG[name]]
-    across, up = settings.centre
-    return force[..., 2] + up * force[..., 0] - across * force[..., 1]
-
-
-def _with_halves(numbers: np.ndarray, unit: str, missing: str, note: str = "") -> Value:
-    """Numbers (3, W) of the whole part and its halves."""
-    errors = np.abs(numbers[1] - numbers[2]) / 2
-    return over_worlds(numbers[0], unit, uncertainties=errors, kind="halves", note=note, missing=missing)
 
 
 def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> None:

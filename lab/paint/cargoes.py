@@ -8,23 +8,16 @@ from PIL import Image, ImageDraw
 
 from lab.paint import decorations as deco
 from lab.paint import palette
-from lab.paint.colours import mark_colours
+from lab.paint.cargo.looks import UNKNOWN, Stowage, looks
+from lab.paint.colours import colouring
 from lab.paint.footage import Bed, open_footage
 from lab.paint.painter import Camera, paint_grains, paint_tank, to_discs
 from solvers.machine.runtime import initialise
 
 COLOURS = {
-    "wheat": (222, 184, 105),
-    "rice": (236, 228, 203),
-    "corn": (241, 190, 62),
-    "sunflower": (88, 84, 92),
-    "beans": (156, 62, 48),
-    "soybeans": (226, 203, 148),
-    "sand": (201, 168, 120),
-    "chickpeas": (224, 188, 128),
+    name: looks()[name].colour
+    for name in ("wheat", "rice", "corn", "sunflower", "beans", "soybeans", "sand", "chickpeas")
 }
-PLAIN = (150, 160, 172)  # of any other cargo
-SHADES = 0.12  # variation of brightness among the grains of one cargo
 COLUMNS, CELL, EDGE, TEXT = 2, (640, 292), 24, 22  # number; the others in pixels
 ABOVE = 1.25  # height of the part of the tank that is shown, relative to the bed's height
 WALL = 5.0  # pixels
@@ -37,6 +30,7 @@ def paint_cargoes(folders: Mapping[str, Path], out: Path) -> Path:
     image = Image.new("RGB", (COLUMNS * (CELL[0] + EDGE) + EDGE, rows * (CELL[1] + EDGE) + EDGE), palette.PAPER)
     for k, (name, folder) in enumerate(folders.items()):
         with open_footage(folder) as footage:
+            footage.cargo = Stowage(name if name in looks() else UNKNOWN)
             cell = _cell(name, Bed(footage, 0, name))
         image.paste(cell, (EDGE + k % COLUMNS * (CELL[0] + EDGE), EDGE + k // COLUMNS * (CELL[1] + EDGE)))
     image.quantize(256).save(out, optimize=True)  # a third of the bytes
@@ -52,9 +46,9 @@ def _cell(name: str, bed: Bed) -> Image.Image:
     camera = Camera(scale, (0.5 * wide - scale * (low[0] + 0.5 * size[0]), high - WALL + scale * low[1]))
     picture = np.tile(np.array(palette.PAPER, dtype=np.uint8), (high, wide, 1))
     paint_tank(picture, camera, bed.footage.outline, WALL, palette.WALL, palette.HOLD, bed.footage.open_edges)
-    shade = 1.0 + SHADES * np.random.default_rng(0).uniform(-1.0, 1.0, (len(place), 1))
-    colour = np.clip(shade * COLOURS.get(name, PLAIN), 0.0, 255.0)
-    paint_grains(picture, to_discs(camera, place, bed.radius, bed.angle(0)), colour, mark_colours(colour), bed.edges)
+    scale_of = colouring("cargo", [bed])
+    colour = scale_of.colours(bed, 0)
+    paint_grains(picture, to_discs(camera, place, bed.radius, bed.angle(0)), colour, *scale_of.dress(bed, colour))
     picture[:head] = palette.PAPER
     image = Image.fromarray(picture)
     draw = ImageDraw.Draw(image)

@@ -7,12 +7,14 @@ presets. Matplotlib is imported only with the first picture.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from lab.base.errors import LabError
+from lab.paint.cargo.dress import CargoColours, aboard_of
+from lab.paint.cargo.looks import looks
 from lab.preset.sections.video import OF_AIR, OF_WATER
 
 if TYPE_CHECKING:
@@ -22,6 +24,18 @@ SAMPLED_FRAMES = 100  # frames of a bed sampled to set the ends of a scale
 PERCENTILE = 98.0  # a scale ends at this percentile of the values in the frame where it is largest
 LIGHT, DARK = (255.0, 255.0, 255.0), (25.0, 30.0, 40.0)  # spin marks
 MOST_LAYERS = 8
+# Scales from the grey of what is at rest to a dark colour, so that what moves stands out; lightness falls all along.
+EMBERS = (206, 211, 217), (248, 196, 76), (216, 92, 36), (112, 20, 56)
+DEEPS = (208, 213, 218), (126, 200, 190), (36, 124, 164), (26, 40, 100)
+ORCHID = (210, 212, 218), (228, 156, 194), (152, 64, 152), (66, 20, 88)
+APART = (  # of a few kinds, for the colour-blind (Okabe and Ito 2008)
+    *((86, 180, 233), (230, 159, 0), (0, 158, 115), (204, 121, 167), (240, 228, 66), (213, 94, 0)),
+)
+ON_DARK = {  # the same on dark paper, where lightness rises
+    "speed": ((60, 68, 78), (176, 62, 44), (244, 160, 58), (255, 244, 190)),
+    "displacement": ((60, 68, 78), (34, 116, 150), (96, 200, 188), (226, 252, 240)),
+    "spin": ((60, 68, 78), (146, 70, 150), (226, 140, 196), (255, 232, 244)),
+}
 
 
 @dataclass(frozen=True)
@@ -29,7 +43,8 @@ class Colouring:
     """A colour scale that is fixed through the film, and the value of each grain on it.
 
     label: with its unit; low, high: ends of the scale; table: its colours (k, 3) in 0..255;
-    values: function from bed and frame to numbers (n,); ticks: positions and texts (None: round numbers).
+    values: function from bed and frame to numbers (n,); ticks: positions and texts (None: round numbers);
+    look: of cargo in its own colours, of which the table has one each.
     """
 
     label: str
@@ -38,6 +53,7 @@ class Colouring:
     table: np.ndarray
     values: Callable[[Bed, int], np.ndarray]
     ticks: dict[float, str] | None = field(default=None)
+    look: CargoColours | None = None
 
     def shares(self, bed: Bed, frame: int) -> np.ndarray:
         """How far along the scale the values (n,) are, 0 to 1 on it."""
@@ -45,8 +61,29 @@ class Colouring:
 
     def colours(self, bed: Bed, frame: int) -> np.ndarray:
         """Colours (n, 3) of the grains in 0..255."""
+        if self.look:
+            return self.look.colours(bed, frame)
         index = np.nan_to_num(self.shares(bed, frame) * len(self.table))
         return self.table[np.clip(index, 0, len(self.table) - 1).astype(int)]
+
+    def dress(self, bed: Bed, colour: np.ndarray) -> tuple:
+        """The rest that `paint_grains` needs of grains of this colour (n, 3): marks, edges and finish."""
+        if self.look:
+            return self.look.marks(bed), bed.edges, self.look.finish(bed)
+        return mark_colours(colour), bed.edges, None
+
+
+def cargo(beds: Sequence[Bed]) -> Colouring:
+    """The cargo as it looks; the table has a colour for each of those aboard."""
+    look = CargoColours(beds)
+    own = np.array([looks()[name].colour for name in look.names], dtype=float)
+
+    def values(bed: Bed, frame: int) -> np.ndarray:
+        number = {name: k + 0.5 for k, name in enumerate(look.names)}
+        return np.array([number[name] for name in aboard_of(bed)])
+
+    ticks = {k + 0.5: name.replace("-", " ") for k, name in enumerate(look.names)}
+    return Colouring("cargo", 0.0, len(look.names), own, values, ticks, look)
 
 
 def speed(beds: Sequence[Bed]) -> Colouring:
@@ -57,7 +94,7 @@ def speed(beds: Sequence[Bed]) -> Colouring:
     def values(bed: Bed, frame: int) -> np.ndarray:
         return factor * bed.speed(frame)
 
-    return Colouring(f"speed in the tank ({unit})", 0.0, factor * top, table("viridis"), values)
+    return Colouring(f"speed in the tank ({unit})", 0.0, factor * top, ramp(EMBERS), values)
 
 
 def spin(beds: Sequence[Bed]) -> Colouring:
@@ -67,7 +104,7 @@ def spin(beds: Sequence[Bed]) -> Colouring:
         return np.abs(bed.spin(frame)) / (2 * np.pi)
 
     top = round_up(max(_largest(beds, values), 0.1))
-    return Colouring("spin in the tank (turns a second)", 0.0, top, table("magma", low=0.3), values)
+    return Colouring("spin in the tank (turns a second)", 0.0, top, ramp(ORCHID), values)
 
 
 def displacement(beds: Sequence[Bed]) -> Colouring:
@@ -79,7 +116,7 @@ def displacement(beds: Sequence[Bed]) -> Colouring:
         return np.hypot(*moved.T) / bed.diameter
 
     top = round_up(max(_largest(beds, values), 1.0))
-    return Colouring("displacement (diameters)", 0.0, top, table("plasma"), values)
+    return Colouring("displacement (diameters)", 0.0, top, ramp(DEEPS), values)
 
 
 def layer(beds: Sequence[Bed]) -> Colouring:
@@ -122,6 +159,7 @@ def shape(beds: Sequence[Bed]) -> Colouring:
 
 
 MODES: dict[str, Callable[[Sequence[Bed]], Colouring]] = {
+    "cargo": cargo,
     "speed": speed,
     "displacement": displacement,
     "layer": layer,
@@ -132,15 +170,16 @@ MODES: dict[str, Callable[[Sequence[Bed]], Colouring]] = {
 }
 
 
-def colouring(name: str, beds: Sequence[Bed]) -> Colouring | None:
+def colouring(name: str, beds: Sequence[Bed], dark: bool = False) -> Colouring | None:
     """The colouring of that name, one scale for all beds, None without grains; raises LabError for an unknown one.
 
-    Where the name is one of a colour of water, grains show their speed.
+    dark: for dark paper. Where the name is one of a colour of water, grains look like their cargo.
     """
     if name not in MODES and name not in (*OF_WATER, *OF_AIR):
         raise LabError(f"Unknown colour '{name}': choose one of {', '.join(MODES)}.")
     filled = [bed for bed in beds if not bed.empty]
-    return MODES.get(name, speed)(filled) if filled else None
+    found = MODES.get(name, cargo)(filled) if filled else None
+    return replace(found, table=ramp(ON_DARK[name])) if found and dark and name in ON_DARK else found
 
 
 def mark_colours(colours: np.ndarray) -> np.ndarray:
@@ -164,7 +203,8 @@ def _named(label: str, names: Sequence[str], number: Callable[[Bed], np.ndarray]
         return number(bed) + 0.5
 
     ticks = {k + 0.5: name for k, name in enumerate(names)}
-    return Colouring(label, 0.0, len(names), table("viridis", len(names)), values, ticks)
+    apart = np.array(APART, dtype=float)[: len(names)] if len(names) <= len(APART) else table("viridis", len(names))
+    return Colouring(label, 0.0, len(names), apart, values, ticks)
 
 
 def _largest(beds: Sequence[Bed], values: Callable[[Bed, int], np.ndarray]) -> float:
@@ -185,6 +225,12 @@ def table(name: str, size: int = 256, low: float = 0.06) -> np.ndarray:
     from matplotlib import colormaps
 
     return 255.0 * colormaps[name](np.linspace(low, 0.98, size))[:, :3]
+
+
+def ramp(stops: Sequence[tuple], size: int = 256) -> np.ndarray:
+    """Colours (size, 3) in 0..255 that run evenly through these stops."""
+    places = np.linspace(0.0, 1.0, len(stops))
+    return np.column_stack([np.interp(np.linspace(0.0, 1.0, size), places, part) for part in np.array(stops).T])
 
 
 def round_up(value: float) -> float:

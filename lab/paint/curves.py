@@ -34,11 +34,14 @@ class Plot:
         self.names += [(name, colour)] if name else []
 
 
-def plots(beds: Sequence[Bed], hues: Sequence[tuple]) -> list[Plot]:
-    """What is drawn of some beds, the first of which are shown and have these hues: one plot, or two."""
+def plots(beds: Sequence[Bed], hues: Sequence[tuple], series: Sequence[tuple] = palette.SERIES) -> list[Plot]:
+    """What is drawn of some beds, the first of which are shown and have these hues: one plot, or two.
+
+    series: the colours of curves of the gauges of a single bed.
+    """
     hue = dict(zip(beds, hues, strict=False))  # of the beds that are shown
     wet = [bed for bed in beds if bed.footage.water]
-    of_gauges = _of_gauges(wet, hue) if wet else []
+    of_gauges = _of_gauges(wet, hue, series) if wet else []
     carried = any(bed.footage.sea or bed.footage.rail for bed in beds)
     moved = [_of_motion(beds, hues)] if not wet or carried else []
     return (moved + of_gauges)[:MOST_PLOTS] or [_of_the_centre(wet, hue)]
@@ -48,7 +51,7 @@ def _of_motion(beds: Sequence[Bed], hues: Sequence[tuple]) -> Plot:
     """The main quantity of beds of grains, of empty tanks and of ships, against time or a steady tilt."""
     afloat = any(bed.footage.sea for bed in beds)
     still = afloat or any(bed.empty for bed in beds)
-    steady = not still and all(_monotonic(bed.footage.series_pose[:, bed.world, 2]) for bed in beds)
+    steady = not still and all(monotonic(bed.footage.series_pose[:, bed.world, 2]) for bed in beds)
     label, measured = _quantity(beds)
     plot = Plot(("tilt φ (°)" if steady else "time (s)", label))
     for k in reversed(range(len(beds))):  # the beds that are shown on top
@@ -63,7 +66,7 @@ def _of_motion(beds: Sequence[Bed], hues: Sequence[tuple]) -> Plot:
     return plot
 
 
-def _of_gauges(beds: Sequence[Bed], hue: Mapping[Bed, tuple]) -> list[Plot]:
+def _of_gauges(beds: Sequence[Bed], hue: Mapping[Bed, tuple], series: Sequence[tuple]) -> list[Plot]:
     """The pressure and the depth at the gauges: all those of one bed, or the first one of several beds."""
     found = []
     for quantity, of in (("gauge_pressure", "gauges"), ("level_depth", "levels")):
@@ -74,8 +77,8 @@ def _of_gauges(beds: Sequence[Bed], hue: Mapping[Bed, tuple]) -> list[Plot]:
         label, scale = _pressures(largest) if of == "gauges" else _depths(largest)
         plot = Plot(("time (s)", label))
         if len(beds) == 1:
-            names, colours = getattr(there[0].footage.water, of), hues_of(there[0].footage.water)
-            for k, name in reversed(list(enumerate(names))[: len(palette.SERIES)]):
+            names, colours = getattr(there[0].footage.water, of), hues_of(there[0].footage.water, series)
+            for k, name in reversed(list(enumerate(names))[: len(series)]):
                 plot.add(there[0], scale * _measured(there[0], quantity)[:, k], colours[name], name)
             plot.names.reverse()
         else:
@@ -147,7 +150,7 @@ def _coordinate(axis: int) -> tuple[str, Callable[[Bed], np.ndarray]]:
     return label, lambda bed: scale * bed.footage.series_pose[:, bed.world, axis]
 
 
-def _monotonic(tilt: np.ndarray) -> bool:
+def monotonic(tilt: np.ndarray) -> bool:
     """Whether tilt (T,) in rad is monotonic and changes by more than half a degree."""
     steps = np.diff(tilt)
     one_way = bool((steps >= -TOLERANCE).all() or (steps <= TOLERANCE).all())

@@ -10,7 +10,7 @@ from matplotlib.ticker import MaxNLocator
 from PIL import Image, ImageDraw, ImageFont
 
 from lab.paint.colours import Colouring
-from lab.paint.palette import GRID, HOLD, INK, LINE, LOST, PAPER, QUIET
+from lab.paint.page.theme import LIGHT, Theme
 
 SMALLER = 0.65  # smallest size of a text relative to its normal size; a longer text is cut
 FINER = 3  # the plot and the dial are drawn this many times larger and then reduced, for smooth lines
@@ -82,35 +82,43 @@ def round_length(longest: float) -> float:
     return float(power * max(step for step in (1, 2, 5) if step <= longest / power + 1e-9))
 
 
-def draw_scale_bar(draw: ImageDraw.ImageDraw, corner: tuple, longest: float, scale: float, size: float) -> None:
-    """A bar of a round length with its length to the right.
+def draw_scale_bar(
+    draw: ImageDraw.ImageDraw, corner: tuple, longest: float, scale: float, size: float, colour: tuple = LIGHT.ink
+) -> tuple:
+    """A bar of a round length with its length to the right; returns the box of both.
 
     corner: its lower left, longest: its length at most (pixels); scale: pixels a metre.
     """
     length = round_length(longest / scale)
     left, bottom = corner
     right, tick, thick = left + length * scale, 0.3 * size, max(1, round(size / 9))
-    draw.line([(left, bottom - tick), (right, bottom - tick)], fill=INK, width=thick)
+    draw.line([(left, bottom - tick), (right, bottom - tick)], fill=colour, width=thick)
     for end in (left, right):
-        draw.line([(end, bottom - 2 * tick), (end, bottom)], fill=INK, width=thick)
+        draw.line([(end, bottom - 2 * tick), (end, bottom)], fill=colour, width=thick)
     text = f"{plain(length)} m" if length >= 1 else f"{plain(1000 * length)} mm"
-    draw.text((right + 0.6 * size, bottom - tick), text, INK, font(size), anchor="lm")
+    place = right + 0.6 * size, bottom - tick
+    draw.text(place, text, colour, font(size), anchor="lm")
+    written = draw.textbbox(place, text, font(size), anchor="lm")
+    return left, min(bottom - 2 * tick, written[1]), written[2], max(bottom, written[3])
 
 
-def draw_band(draw: ImageDraw.ImageDraw, box: tuple, text: str, size: float) -> None:
+def draw_band(draw: ImageDraw.ImageDraw, box: tuple, text: str, size: float, theme: Theme = LIGHT) -> None:
     """A prominent sentence: white on a coloured bar, in the middle of a box (left, top, right, bottom)."""
     left, top, right, bottom = (round(edge) for edge in box)
-    draw.rectangle((left, top, right, bottom), fill=LOST)
+    draw.rectangle((left, top, right, bottom), fill=theme.lost)
     words, face = fitted(text, right - left - size, size, bold=True)
-    draw.text((0.5 * (left + right), 0.5 * (top + bottom)), words, PAPER, face, anchor="mm")
+    draw.text((0.5 * (left + right), 0.5 * (top + bottom)), words, theme.on_lost, face, anchor="mm")
 
 
-def draw_colour_bar(image: Image.Image, box: tuple, colouring: Colouring, size: float) -> None:
-    """Label, bar and ticks inside the box (left, top, right, bottom) of pixels."""
+def draw_colour_bar(image: Image.Image, box: tuple, colouring: Colouring, size: float, theme: Theme = LIGHT) -> None:
+    """Label, bar and ticks inside the box (left, top, right, bottom) of pixels; of cargo, dots with its names."""
     left, top, right, _ = (round(edge) for edge in box)
     draw = ImageDraw.Draw(image)
     label, face = fitted(colouring.label, right - left, size)
-    draw.text((left, top), label, INK, face, anchor="la")
+    draw.text((left, top), label, theme.ink, face, anchor="la")
+    if colouring.look:
+        _draw_dots(draw, (left, top + 1.8 * size, right), colouring, size, theme)
+        return
     upper, lower = round(top + 1.7 * size), round(top + 2.5 * size)
     columns = np.arange(right - left) * len(colouring.table) // (right - left)
     bar = np.tile(colouring.table[columns].astype(np.uint8), (lower - upper, 1, 1))
@@ -121,14 +129,26 @@ def draw_colour_bar(image: Image.Image, box: tuple, colouring: Colouring, size: 
         x = left + (right - left) * (place - low) / (high - low)
         half = font(size).getlength(text) / 2
         x_text = min(max(x, left + half), right - half)
-        draw.line([(x, lower), (x, lower + 0.3 * size)], fill=QUIET)
-        draw.text((x_text, lower + 0.5 * size), text, QUIET, font(size), anchor="ma")
+        draw.line([(x, lower), (x, lower + 0.3 * size)], fill=theme.quiet)
+        draw.text((x_text, lower + 0.5 * size), text, theme.quiet, font(size), anchor="ma")
 
 
-def gravity_dial(diameter: int, tilt: float) -> Image.Image:
+def _draw_dots(draw: ImageDraw.ImageDraw, line: tuple, colouring: Colouring, size: float, theme: Theme) -> None:
+    """A dot and a name for each colour of a table, from the left of a line (left, top, right) on; at most what fits."""
+    x, top, right = line
+    for colour, name in zip(colouring.table, colouring.ticks.values(), strict=True):
+        text, face = fitted(name, right - x - 1.6 * size, size)
+        if right - x < 4.0 * size:
+            break
+        draw.ellipse((x, top, x + 1.1 * size, top + 1.1 * size), fill=tuple(colour.astype(int)), outline=theme.quiet)
+        draw.text((x + 1.6 * size, top + 0.55 * size), text, theme.quiet, face, anchor="lm")
+        x += 2.8 * size + face.getlength(text)
+
+
+def gravity_dial(diameter: int, tilt: float, theme: Theme = LIGHT) -> Image.Image:
     """A dial with an arrow in the direction of gravity in the tank's frame (tilt in rad)."""
     size = FINER * diameter
-    image = Image.new("RGB", (size, size), PAPER)
+    image = Image.new("RGB", (size, size), theme.panel)
     draw = ImageDraw.Draw(image)
     middle, radius, thick = size / 2, 0.48 * size, max(FINER, size // 60)
     down = np.array([-np.sin(tilt), np.cos(tilt)])  # R(-phi) (0, -1), the picture's rows downwards
@@ -138,11 +158,11 @@ def gravity_dial(diameter: int, tilt: float) -> Image.Image:
         return tuple(middle + radius * (along * down + across * level))
 
     rim = (middle - radius, middle - radius, middle + radius, middle + radius)
-    draw.ellipse(rim, fill=HOLD, outline=LINE, width=thick)
-    draw.line([place(0, -0.96), place(0, 0.96)], fill=LINE, width=thick)
-    draw.line([place(-0.55, 0), place(0.45, 0)], fill=INK, width=2 * thick)
-    draw.polygon([place(0.8, 0), place(0.35, 0.2), place(0.35, -0.2)], fill=INK)
-    draw.text(place(-0.3, 0.35), "g", INK, font(0.24 * size), anchor="mm")
+    draw.ellipse(rim, fill=theme.hold, outline=theme.line, width=thick)
+    draw.line([place(0, -0.96), place(0, 0.96)], fill=theme.line, width=thick)
+    draw.line([place(-0.55, 0), place(0.45, 0)], fill=theme.ink, width=2 * thick)
+    draw.polygon([place(0.8, 0), place(0.35, 0.2), place(0.35, -0.2)], fill=theme.ink)
+    draw.text(place(-0.3, 0.35), "g", theme.ink, font(0.24 * size), anchor="mm")
     return image.reduce(FINER)
 
 
@@ -194,10 +214,11 @@ class LivePlot:
         text: float,
         names: Sequence = (),
         indent: float = 0.0,
+        theme: Theme = LIGHT,
     ) -> None:
-        self._text, self._names = FINER * text, names
+        self._text, self._names, self._theme = FINER * text, names, theme
         width, height = (FINER * round(side) for side in size)
-        self._image = Image.new("RGB", (width, height), PAPER)
+        self._image = Image.new("RGB", (width, height), self._theme.panel)
         self._low, self._high = _limits(curves)
         top, bottom = 1.7 * self._text, height - (3.1 if labels[0] else 1.9) * self._text
         room = int((bottom - top) / (1.6 * self._text))  # number of labels that fit without touching
@@ -221,7 +242,7 @@ class LivePlot:
             end = curve.draw(image, count)
             if end is not None:
                 x, y = end
-                draw.ellipse((x - dot, y - dot, x + dot, y + dot), fill=curve.colour, outline=PAPER)
+                draw.ellipse((x - dot, y - dot, x + dot, y + dot), fill=curve.colour, outline=self._theme.panel)
         return image.reduce(FINER)
 
     def _place(self, points: np.ndarray) -> np.ndarray:
@@ -233,8 +254,8 @@ class LivePlot:
         draw = ImageDraw.Draw(self._image)
         face, thin = font(self._text), FINER
         left, top, right, bottom = self._box
-        draw.text((0, 0), labels[1], INK, face, anchor="la")
-        draw.text((right, self._image.height), labels[0], INK, face, anchor="rd")
+        draw.text((0, 0), labels[1], self._theme.ink, face, anchor="la")
+        draw.text((right, self._image.height), labels[0], self._theme.ink, face, anchor="rd")
         x, strong = float(self._image.width), font(self._text, bold=True)
         gap, widths = 0.55 * self._text, [strong.getlength(name) for name, _ in self._names]
         ends = np.cumsum(np.add(widths, gap))
@@ -244,14 +265,14 @@ class LivePlot:
             x -= width + gap
         for value in self._levels:
             y = self._place(np.array([[self._low[0], value]]))[0, 1]
-            draw.line([(left, y), (right, y)], fill=GRID, width=thin)
-            draw.text((left - 0.4 * self._text, y), plain(value), QUIET, face, anchor="rm")
+            draw.line([(left, y), (right, y)], fill=self._theme.grid, width=thin)
+            draw.text((left - 0.4 * self._text, y), plain(value), self._theme.quiet, face, anchor="rm")
         for value in clear_ticks(self._low[0], self._high[0], right - left, face):
             x, half = self._place(np.array([[value, self._low[1]]]))[0, 0], face.getlength(plain(value)) / 2
-            draw.line([(x, bottom), (x, bottom + 0.3 * self._text)], fill=LINE, width=thin)
+            draw.line([(x, bottom), (x, bottom + 0.3 * self._text)], fill=self._theme.line, width=thin)
             text_x = min(x, self._image.width - half)
-            draw.text((text_x, bottom + 0.5 * self._text), plain(value), QUIET, face, anchor="ma")
-        draw.line([(left, top), (left, bottom), (right, bottom)], fill=LINE, width=thin)
+            draw.text((text_x, bottom + 0.5 * self._text), plain(value), self._theme.quiet, face, anchor="ma")
+        draw.line([(left, top), (left, bottom), (right, bottom)], fill=self._theme.line, width=thin)
 
 
 def _limits(curves: list) -> tuple[np.ndarray, np.ndarray]:

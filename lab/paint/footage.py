@@ -10,13 +10,17 @@ import numpy as np
 
 from lab.base.errors import LabError, Unusable
 from lab.base.trust import BEYOND
+from lab.paint.cargo.looks import Stowage
 from lab.paint.painter import Edges
+from lab.paint.scenery.drive import drive_text
 from lab.paint.sea import Rail, Sea
 from lab.paint.water.pool import Pool
 from lab.recording import Recording, open_recording
 from lab.recording.ship_end import ends
 from solvers.grains.quantities import FRAMES
 
+RATES = {"position": "velocity", "water_place": "water_velocity"}  # rates of change among the recorded quantities
+LEAST = 1e-9  # share of the time between two frames
 NO_GRAINS = {quantity.name: np.zeros((0, *quantity.shape)) for quantity in FRAMES}  # of an empty tank
 
 
@@ -30,7 +34,7 @@ class Footage:
     their displacements, m;
     matters: the keys of what the tank holds; water: its particles' volume and gauges, None without water;
     sea: the ship and her waves if the tank is a ship's hold, rail: that of a tank on an axle, else None;
-    ends: the loss of each ship, None if not lost;
+    ends: the loss of each ship, None if not lost; cargo: which one each grain is; drive: what moves the tank, in words;
     settings: the preset's [video]; title. Raises LabError when there is no frame or no sample.
     """
 
@@ -47,6 +51,7 @@ class Footage:
         self.radius, self.outline, self.kind = recording.radius, recording.outline, recording.kind
         self.matters, self._series = recording.preset.matters, series
         self.water = Pool.of(recording.preset, recording.volume, recording.air_volume)
+        self.cargo = Stowage.of(recording.preset)
         self.kinds = ["the rest", *recording.preset.kinds]
         self.shapes = recording.shapes
         self.shape_names = list(recording.preset.shapes) if self.shapes else ["disc"]
@@ -55,11 +60,11 @@ class Footage:
         if recording.preset.axle:
             self.rail = Rail(recording.preset.axle, np.ptp(self.outline[:, 0]), self.series_time, series["axle_slide"])
         self.ends = ends(series)
-        self.settings = recording.preset.video
+        self.drive, self.settings = drive_text(recording.preset), recording.preset.video
         self.title = recording.preset.title or recording.name
         self.part_turn = frames["part_turn"][:] if "part_turn" in frames else np.zeros(self.part.shape[:-1])
         self._frames, self._waves = frames, frames["waves"][:] if "waves" in frames else None
-        self._read: dict[str, tuple[int, np.ndarray]] = {}  # the frame last read of each quantity
+        self._read: dict[str, dict[int, np.ndarray]] = {}  # the frames last read of each quantity
 
     @property
     def protrudes(self) -> bool:
@@ -85,11 +90,26 @@ class Footage:
         """The values (n,) or (n, 2) of a quantity for each grain in a frame."""
         return self.drops(name, frame, world) if self.radius.size else NO_GRAINS[name]
 
-    def drops(self, name: str, frame: int, world: int) -> np.ndarray:
-        """The values (n,) or (n, 2) of a quantity for each particle of water in a frame."""
-        if self._read.get(name, (None,))[0] != frame:
-            self._read[name] = frame, self._frames[name][frame].astype(float)
-        return self._read[name][1][world]
+    def drops(self, name: str, frame: float, world: int) -> np.ndarray:
+        """The values (n,) or (n, 2) of a quantity for each particle of water in a frame, or between two frames."""
+        first = int(frame)
+        share = frame - first
+        if share < LEAST or first + 1 >= len(self.time):
+            return self._row(name, first)[world]
+        one, two = self._row(name, first)[world], self._row(name, first + 1)[world]
+        if name not in RATES:
+            return one + share * (two - one)
+        rates = [self._row(RATES[name], row)[world] for row in (first, first + 1)]
+        return on_the_way(one, two, *rates, share, self.time[first + 1] - self.time[first])
+
+    def _row(self, name: str, frame: int) -> np.ndarray:
+        """All values of a quantity in a frame; the last two that were asked for are kept."""
+        kept = self._read.setdefault(name, {})
+        if frame not in kept:
+            if len(kept) > 1:
+                kept.pop(next(iter(kept)))
+            kept[frame] = self._frames[name][frame].astype(float)
+        return kept[frame]
 
 
 @dataclass(frozen=True, eq=False)
@@ -167,13 +187,35 @@ class Bed:
         near = (place >= outline.min(axis=0) - size) & (place <= outline.max(axis=0) + size)
         return np.where(near.all(axis=1, keepdims=True), place, np.nan)
 
+    def _between(self, values: np.ndarray, frame: float) -> np.ndarray:
+        """What values (F, W, ...) are in a frame, or between two frames."""
+        first = int(frame)
+        after, share = min(first + 1, len(values) - 1), frame - first
+        return (1.0 - share) * values[first, self.world] + share * values[after, self.world]
+
     def plates(self, frame: int) -> list[np.ndarray]:
         """The moving parts, and a sliding mass, as polylines (m, 2) m in the tank frame at their places in a frame."""
-        moved, turn = self.footage.part[frame, self.world], self.footage.part_turn[frame, self.world]
+        moved, turn = (self._between(values, frame) for values in (self.footage.part, self.footage.part_turn))
         parts = zip(self.footage.parts.values(), moved, np.cos(turn), np.sin(turn), strict=True)
         lines = [shift + line @ np.array([[c, s], [-s, c]]) for line, shift, c, s in parts]
         rail = self.footage.rail
-        return lines + (rail.lines(self.world, self.footage.time[frame]) if rail else [])
+        return lines + (
+            rail.lines(self.world, float(np.interp(frame, np.arange(self.frames), self.footage.time))) if rail else []
+        )
+
+
+def on_the_way(
+    one: np.ndarray, two: np.ndarray, rate_one: np.ndarray, rate_two: np.ndarray, share: float, time: float
+) -> np.ndarray:
+    """Places between two frames `time` (s) apart, by the cubic with the places and rates of both (Hermite 1878).
+
+    It leaves the straight way by half of that way at most, since the rates of grains that collide meanwhile mislead.
+    """
+    straight = one + share * (two - one)
+    rise = share * (1.0 - share) ** 2 * time * rate_one - share**2 * (1.0 - share) * time * rate_two
+    bend = rise - share * (1.0 - share) * (1.0 - 2.0 * share) * (two - one)
+    way, size = np.linalg.norm(two - one, axis=-1, keepdims=True), np.linalg.norm(bend, axis=-1, keepdims=True)
+    return straight + bend * np.minimum(1.0, 0.5 * way / np.maximum(size, 1e-30))
 
 
 @contextmanager

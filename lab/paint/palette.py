@@ -10,11 +10,11 @@ HOLD = (246, 247, 249)
 LOST = (190, 60, 20)
 FIXED = (158, 166, 175)
 PART = (128, 70, 27)
-SERIES = (  # curves and names of the beds: Okabe and Ito's colour-blind-safe palette, darkened
-    (0, 114, 178),
-    (213, 94, 0),
-    (0, 138, 100),
-    (180, 90, 145),
-    (176, 126, 0),
-    (60, 140, 190),
+SERIES = (  # curves and names of the beds: Okabe and Ito's colour-blind-safe palette, darkened to a contrast of 4.5
+    (0, 108, 170),
+    (186, 76, 0),
+    (0, 118, 86),
+    (160, 72, 128),
+    (134, 94, 0),
+    (84, 94, 106),
 )

@@ -10,16 +10,17 @@ from functools import cached_property
 import numpy as np
 
 from lab.assembly.ship import make_water, make_waves
-from lab.paint import palette
-from lab.paint.painter import Camera, paint_tank
+from lab.paint.page.theme import LIGHT, Theme
+from lab.paint.painter import Camera
+from lab.paint.scenery.backdrop import paint_sea
+from lab.paint.scenery.ship import paint_hull, paint_superstructure
 from lab.preset.schema import Preset
 from lab.preset.sections.axle import Axle
 from solvers.ship.waves import Waves, soft_start
 
-WATER, SURFACE = (214, 230, 243), (70, 130, 180)
 LINE = 0.12  # thickness of the surface's line, in the units of a page
-HATCH = 4  # the edge of a box's outline that its hatch leaves open: see `Ship.corners`
-AROUND = np.array([0.45, 0.2])  # width of the sea shown beside, and above and below the hull, relative to her size
+GRAVITY = 9.81  # m/s², for the wave number
+AROUND = np.array([0.06, 0.03])  # room beside, and above and below the hull, relative to her size
 BEYOND = 1.3  # of the farthest place of the mass: half the rail's length
 BLOCK = 0.18  # of half the rail: half the mass's side
 PIVOT = 0.012  # of the tank's width: half the axle's size
@@ -44,12 +45,18 @@ class Sea:
         """The hull's outline (m, 2) in the tank's frame, m."""
         return self.ship.corners - np.array(self.ship.hold)
 
-    def paint_hull(self, picture: np.ndarray, camera: Camera, thick: float) -> None:
-        """Paint the hull with walls `thick` pixels thick and an open hatch; the camera is that of the tank's points."""
-        paint_tank(picture, camera, self.hull, thick, palette.WALL, palette.LINE, (HATCH,) if self.ship.hatch else ())
-        if self.ship.hatch:
-            inside = self.hull[[HATCH + 2, HATCH - 1, HATCH, HATCH + 1]]
-            paint_tank(picture, camera, inside, thick, palette.WALL, palette.HOLD, (0, 2))
+    def paint_hull(
+        self, picture: np.ndarray, camera: Camera, thick: float, theme: Theme = LIGHT, unit: float = 0.0
+    ) -> None:
+        """Paint the hull with plates `thick` pixels thick and an open hatch; the camera is that of the tank's points.
+
+        unit: pixels of a page's unit; without it, only the plates.
+        """
+        paint_hull(picture, camera, self.ship, thick, theme, unit)
+
+    def paint_superstructure(self, picture: np.ndarray, camera: Camera, theme: Theme = LIGHT) -> None:
+        """Paint the silhouette of her superstructure; the camera is that of the tank's points."""
+        paint_superstructure(picture, camera, self.ship, theme)
 
     @property
     def soft_start(self) -> float:
@@ -73,32 +80,39 @@ class Sea:
             return height * self._of_height_one.elevation(y, time)
         return height * soft_start(time, self.soft_start) * np.cos(number * y - frequency * time)
 
+    @property
+    def _decay(self) -> float:
+        """Wave number (1/m) of the main frequency over deep water, ω²/g; 0 without waves."""
+        frequency = self._sea.frequency if self._sea else 0.0
+        if self.waves is not None and np.isfinite(self.waves).all():
+            frequency = float(self.waves[1])
+        return frequency**2 / GRAVITY
+
     def ground(self, hulls: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Lower and upper corner (m) of the part that is shown, from all positions (k, 2) m of the hull's corners."""
         room = AROUND * np.ptp(self.hull, axis=0).max()
-        return hulls.min(axis=0) - room, hulls.max(axis=0) + room * (1.0, 0.5)
+        return hulls.min(axis=0) - room, hulls.max(axis=0) + room
 
-    def paint(self, picture: np.ndarray, camera: Camera, ground: tuple, time: float, thick: float) -> None:
-        """Paint the water into the ground's box of a picture, in place."""
-        height, width, _ = picture.shape
+    def paint(
+        self, picture: np.ndarray, camera: Camera, ground: tuple, time: float, thick: float, theme: Theme = LIGHT
+    ) -> None:
+        """Paint the water into the ground's box (m) of a picture, in place."""
         (left, bottom), (right, top) = camera.pixels(np.array(ground))
-        columns = np.arange(max(0, round(left)), min(width, round(right)))
-        rows = np.arange(max(0, round(top)), min(height, round(bottom)))
-        y = (columns + 0.5 - camera.offset[0]) / camera.scale
-        surface = camera.offset[1] - camera.scale * self.elevation(y, time)
-        if not len(rows) or not len(columns):
+        self.paint_box(picture, camera, (round(left), round(top), round(right), round(bottom)), time, thick, theme)
+
+    def paint_box(
+        self, picture: np.ndarray, camera: Camera, box: tuple, time: float, thick: float, theme: Theme = LIGHT
+    ) -> None:
+        """Paint the water into a box (left, top, right, bottom) of pixels, in place; camera: of the earth's points."""
+        height, width, _ = picture.shape
+        left, right = max(0, box[0]), min(width, box[2])
+        top, bottom = max(0, box[1]), min(height, box[3])
+        if left >= right or top >= bottom:
             return
-        # Above the highest and below the lowest point of the surface all pixels of a row are equal.
-        first = int(np.clip(np.floor(surface.min() - thick - 2.0), rows[0], rows[-1] + 1))
-        last = int(np.clip(np.ceil(surface.max() + thick + 2.0), first, rows[-1] + 1))
-        picture[last : rows[-1] + 1, columns[0] : columns[-1] + 1] = WATER
-        box = picture[first:last, columns[0] : columns[-1] + 1].astype(float)
-        row = np.arange(first, last)[:, None]
-        below = np.clip(row + 1.0 - surface, 0.0, 1.0)[..., None]
-        box += below * (np.array(WATER) - box)
-        line = np.clip(0.5 * thick + 0.5 - np.abs(row + 0.5 - surface), 0.0, 1.0)[..., None]
-        box += line * (np.array(SURFACE) - box)
-        picture[first:last, columns[0] : columns[-1] + 1] = np.round(box).astype(np.uint8)
+        y = (np.arange(left, right) + 0.5 - camera.offset[0]) / camera.scale
+        surface = camera.offset[1] - camera.scale * self.elevation(y, time)
+        decay = self._decay / camera.scale
+        paint_sea(picture, (left, top, right, bottom), camera.offset[1], surface, thick, theme, decay)
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,12 +13,18 @@ from PIL.PngImagePlugin import PngInfo
 
 from lab import __version__
 from lab.base.errors import LabError
+from lab.paint.decorations import number
 from lab.paint.encoder import says, write_video
 from lab.paint.film import Film, choose_beds, choose_look
 from lab.paint.footage import open_footage
+from lab.paint.reel.animation import FORMATS, stride_of, write_animation
+from lab.paint.reel.course import RATE, hero_course
+from lab.paint.reel.event import find_event, telling_moments
 from solvers.machine.runtime import initialise
 
-MOST_IN_GRID = 24
+MOST_IN_GRID, MOMENTS = 24, 6  # beds of a grid; moments of a contact sheet
+HERO = 1920, 1080  # pixels
+AFTER, LATE = 0.15, 0.85  # s after an event, and the share of a film without one, of the moment that tells most
 SLOWEST, FASTEST = 0.01, 60.0  # pictures per second of a video
 USUAL = 0.04  # s between pictures if the frames' times do not define it
 HELD = 3.0  # s for which the last picture is held if a ship is lost
@@ -38,21 +44,28 @@ def render_recording(
     world: int | None = None,
     png: bool = False,
     sound: bool = False,
+    hero: bool = False,
     progress: Progress | None = None,
+    **style: str | None,
 ) -> Path:
     """Paint a recording (its file or its run's folder); returns the path of the video or folder.
 
-    out: an .mp4 file (default: video.mp4 beside the recording), or with png a folder for PNG files (default: pictures).
-    Options that are None are taken from the preset's [video]. world: one bed, counted from 0; None: up to six side by
-    side. sound: only the rows before the first damaged one. progress(done, total) is called after each picture. Raises
-    LabError.
+    out: an .mp4, .gif or .webp file (default: video.mp4 beside the recording), or with png a folder for PNG files
+    (default: pictures). hero: 60 pictures a second, 1920 x 1080 where no size is given, in slow motion at the event,
+    with the result on the last still. style: theme, cargo, overlay and inset of [video]. Options that are None are
+    taken from the preset's [video]. world: one bed, counted from 0; None: up to six side by side. sound: only the rows
+    before the first damaged one. progress(done, total) is called after each picture. Raises LabError.
     """
     initialise()
-    wishes = {"colour": colour, "frame": frame, "width": width, "height": height, "speed": speed}
+    wishes = {"colour": colour, "frame": frame, "width": width, "height": height, "speed": speed, **style}
+    comment = made_with(**wishes, world=world, sound=sound, hero=hero)
+    if hero:
+        wishes |= {"width": width or HERO[0], "height": height or HERO[1]}
     with open_footage(path, sound) as footage:
         beds, look = choose_beds(footage, world), choose_look(footage, **wishes)
-        target, comment = target_of(path, out, png), made_with(**wishes, world=world, sound=sound)
-        return _write(_made(target), Film(beds, look), look.speed, png, progress, comment)
+        course = hero_course(beds[0], look.speed) if hero else None
+        film = Film(beds, look, course=course)
+        return _write(_made(target_of(path, out, png)), film, look.speed, png, progress, comment)
 
 
 def target_of(path: Path | str, out: Path | str | None, png: bool) -> Path:
@@ -93,13 +106,14 @@ def render_grid(
     height: int | None = None,
     speed: float | None = None,
     progress: Progress | None = None,
+    **style: str | None,
 ) -> Path:
     """Paint up to 24 beds of one or several recordings in one grid, such as the points of a sweep; returns `out`.
 
     beds: recordings (file or folder), or pairs of a recording and one of its worlds (else its first); captions: one
-    each; out: an .mp4 file, or a .png file for the last picture alone. All are drawn to one scale, at the same times
-    and with one colour scale; a recording that ends sooner keeps its last frame. Title and options that are None are
-    taken from the first recording. Raises LabError.
+    each; out: an .mp4, .gif or .webp file, or a .png file for the last picture alone. All are drawn to one scale, at
+    the same times and with one colour scale; a recording that ends sooner keeps its last frame. Title and options that
+    are None are taken from the first recording. Raises LabError.
     """
     if not 1 <= len(beds) <= MOST_IN_GRID:
         raise LabError(f"A grid has room for 1 to {MOST_IN_GRID} beds (got {len(beds)}): choose some of them.")
@@ -114,7 +128,7 @@ def render_grid(
             (bed,) = choose_beds(footages[path], world)
             shown.append(replace(bed, name=caption))
         first = shown[0].footage
-        look = choose_look(first, colour=colour, frame=frame, width=width, height=height, speed=speed)
+        look = choose_look(first, colour=colour, frame=frame, width=width, height=height, speed=speed, **style)
         film = Film(shown, look, title, MOST_IN_GRID)
         out = _made(Path(out))
         if out.suffix == ".png":
@@ -134,6 +148,7 @@ def poster(
     width: int | None = None,
     height: int | None = None,
     world: int | None = None,
+    **style: str | None,
 ) -> Path:
     """Paint one picture of a recording as a PNG file (default: poster.png beside it).
 
@@ -142,7 +157,7 @@ def poster(
     initialise()
     with open_footage(path) as footage:
         beds = choose_beds(footage, world)
-        look = choose_look(footage, colour=colour, frame=frame, width=width, height=height)
+        look = choose_look(footage, colour=colour, frame=frame, width=width, height=height, **style)
         if time is None:
             time = footage.time[0] + fraction * (footage.time[-1] - footage.time[0])
         nearest = int(np.abs(footage.time - time).argmin())
@@ -150,6 +165,32 @@ def poster(
         if out.suffix != ".png":
             raise LabError(f"{out} cannot be written: a poster is a .png file.")
         Image.fromarray(Film(beds, look).picture(nearest)).save(out)
+        return out
+
+
+def telling_time(path: Path | str, world: int | None = None) -> float:
+    """When one picture of a bed tells most (s): just after its event, else late in the film."""
+    with open_footage(path) as footage:
+        (bed,) = choose_beds(footage, world or 0)
+        event, first, last = find_event(bed), footage.time[0], footage.time[-1]
+        return float(min(event.time + AFTER, last) if event else first + LATE * (last - first))
+
+
+def contact_sheet(
+    path: Path | str, out: Path | str | None = None, *, world: int | None = None, count: int = MOMENTS, **wishes: object
+) -> Path:
+    """Paint telling moments of one bed, and its whole curve, into a PNG file (default: sheet.png beside the recording).
+
+    wishes: fields of a `Look`. The moments are closer together where the contents move faster. Raises LabError.
+    """
+    initialise()
+    with open_footage(path) as footage:
+        (bed,) = choose_beds(footage, world or 0)
+        look = choose_look(footage, **wishes)
+        times = telling_moments(bed, count)
+        beds = [replace(bed, name=f"{number(time, 2)} s") for time in times]
+        out = _made(_target(path, out, "sheet.png"))
+        Image.fromarray(Film(beds, look, most=count, moments=times).picture(0)).save(out)
         return out
 
 
@@ -164,11 +205,16 @@ def playback(time: np.ndarray, speed: float) -> tuple[float, int]:
 
 
 def _write(out: Path, film: Film, speed: float, png: bool, progress: Progress | None, comment: str = "") -> Path:
-    rate, stride = playback(film.time, speed)
+    rate, stride = (RATE, 1) if film.held else playback(film.time, speed)
+    if out.suffix in FORMATS and not png:
+        stride *= (less := stride_of(out.suffix, rate))
+        pictures = _counted(film, range(0, len(film.time), stride), progress)
+        still = round(HELD * rate / less) if film.lost and not film.held else 0
+        return write_animation(out, _held(pictures, still), rate / less)
     pictures = _counted(film, range(0, len(film.time), stride), progress)
     if png:
         return _write_folder(out, pictures, -(-len(film.time) // stride), comment)
-    return write_video(out, _held(pictures, round(HELD * rate) if film.lost else 0), rate, comment)
+    return write_video(out, _held(pictures, round(HELD * rate) if film.lost and not film.held else 0), rate, comment)
 
 
 def _held(pictures: Iterator[np.ndarray], times: int) -> Iterator[np.ndarray]:

@@ -14,10 +14,9 @@ from lab.base.errors import LabError
 from lab.base.progress import Progress
 from lab.measures.value import read_values
 from lab.paint.cargoes import COLOURS, paint_cargoes
-from lab.paint.video import poster, render_recording
+from lab.paint.video import poster, render_recording, telling_time
 from lab.preset.find import QUICK, names
 from lab.recording import Recording, open_recording
-from lab.recording.ship_end import ends
 from lab.report.numbers import number
 from lab.report.page import render
 from lab.report.summary import TELLING
@@ -26,7 +25,6 @@ from solvers.machine.errors import BadState
 
 WIDTH, HEIGHT = 640, 360  # pixels
 LONGEST = 8.0  # s of a clip
-MOMENT = 0.85  # fraction of the film that the poster shows; of a ship that is lost, the end
 UNITS = {"deg": "°", "d": "diameters"}
 MOST_NUMBERS = 4
 CARGOES = "cargoes.png"
@@ -73,8 +71,8 @@ def _show(name: str, out: Path, beds: int) -> None:
         pass
     with open_recording(folder) as recording:
         lasts, speed = float(recording.series["time"][-1]), recording.preset.video.speed
-        made, lost = _made(recording), any(ends(recording.series))
-    poster(folder, out / f"{_plain(name)}.png", fraction=1.0 if lost else MOMENT, width=WIDTH, height=HEIGHT)
+        made = _made(recording)
+    poster(folder, out / f"{_plain(name)}.png", time=telling_time(folder), width=WIDTH, height=HEIGHT)
     summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
     told = json.dumps({**_telling(summary), **made}, indent=1)
     (out / f"{_plain(name)}.json").write_text(told + "\n", encoding="utf-8")

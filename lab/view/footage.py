@@ -9,6 +9,7 @@ import numpy as np
 
 from lab.assembly.scene import vessels
 from lab.assembly.water import air_volumes_of, volumes_of
+from lab.paint.cargo.looks import Stowage
 from lab.paint.footage import NO_GRAINS, Bed
 from lab.paint.painter import Edges
 from lab.paint.sea import Sea
@@ -73,6 +74,7 @@ class LiveFootage:
         for name in ("radius", "kind", "water", "outline", "open_edges", "fixed", "parts", "shapes"):
             setattr(self, name, getattr(scenery, name))
         self.matters = scenery.preset.matters
+        self.cargo = Stowage.of(scenery.preset)
         self.kinds = ["the rest", *scenery.preset.kinds]
         self.shape_names = list(scenery.preset.shapes) if self.shapes else ["disc"]
         self.sea = Sea(scenery.preset) if scenery.preset.ship else None

@@ -11,7 +11,7 @@ from PIL import Image, ImageDraw, ImageOps
 
 from lab.paint import decorations as deco
 from lab.paint import palette
-from lab.paint.colours import Colouring, colouring, mark_colours
+from lab.paint.colours import Colouring, colouring
 from lab.paint.painter import Camera, paint_grains, paint_plate, paint_strokes, paint_tank, to_discs
 from lab.paint.sea import LINE
 from lab.paint.water.gauges import Marks, hues_of
@@ -233,7 +233,7 @@ class Page:
         if shown.look.overlay == "forces":
             colour = 0.25 * colour + 0.75 * np.array(palette.PAPER)
         discs = to_discs(camera, bed.position(frame), bed.radius, bed.angle(frame))
-        paint_grains(stage, discs, colour, mark_colours(colour), bed.edges)
+        paint_grains(stage, discs, colour, *scale.dress(bed, colour))
 
     def _lost(self, end: End) -> Image.Image:
         """The band across the foot of the stage with the text on how the ship was lost."""

@@ -49,7 +49,7 @@ class Session(Shown):
         from lab.preset.find import load
 
         preset = load(self.name, self.overrides).resolved
-        self.look = Look(preset.video.colour or colours_of(preset.matters)[0], preset.video.frame)
+        self.look = Look(preset.video.colour or colours_of(preset.matters)[0], preset.video.frame or "tank")
         self.page = Page(self.size)
         self._grip, self._shape = None, "disc"
         self._restart(self.overrides)

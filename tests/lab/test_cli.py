@@ -200,15 +200,34 @@ def test_a_bug_is_not_hidden(monkeypatch):
 def test_render_passes_on_all_options(monkeypatch):
     calls = stand_in(monkeypatch, "lab.paint.video", "render_recording", Path("out.mp4"))
     done = call("render", "there", "--out", "out.mp4", "--colour", "layer", "--frame", "earth",
-                "--width", "640", "--height", "360", "--world", "2")  # fmt: skip
+                "--width", "640", "--height", "360", "--world", "2", "--theme", "dark", "--cargo", "coal",
+                "--overlay", "trails", "--inset", "surface", "--speed", "0.5", "--hero")  # fmt: skip
     assert done.exit_code == 0 and done.stdout == "out.mp4\n"
     (arguments, options), = calls  # fmt: skip
     assert arguments == (Path("there"), Path("out.mp4"))
     assert callable(options.pop("progress"))
     look = {"colour": "layer", "frame": "earth", "width": 640, "height": 360, "world": 2}
-    assert options == {**look, "png": False, "sound": False}
+    style = {"theme": "dark", "cargo": "coal", "overlay": "trails", "inset": "surface"}
+    assert options == {**look, **style, "speed": 0.5, "hero": True, "png": False, "sound": False}
     call("render", "there", "--png")
     assert calls[1][0] == (Path("there"), None) and calls[1][1]["png"] is True
+
+
+def test_poster_sheet_and_beside_pass_on_their_options(monkeypatch):
+    painted, fake = {}, ModuleType("lab.paint.video")
+    made = {"poster": "p.png", "contact_sheet": "s.png", "render_grid": "b.mp4", "telling_time": 2.5}
+    for name, act in made.items():
+        painted[name] = stand_in(monkeypatch, "lab.paint.video", name, act)
+        setattr(fake, name, getattr(sys.modules["lab.paint.video"], name))
+    monkeypatch.setitem(sys.modules, "lab.paint.video", fake)
+    posters, sheets, grids = painted["poster"], painted["contact_sheet"], painted["render_grid"]
+    assert call("poster", "there", "--event", "--theme", "dark").stdout == "p.png\n"
+    assert posters[0][0] == (Path("there"), None) and posters[0][1]["time"] == 2.5 and posters[0][1]["theme"] == "dark"
+    assert call("sheet", "there", "--world", "1").stdout == "s.png\n" and sheets[0][1]["world"] == 1
+    assert call("beside", "a/one", "a/two", "--out", "b.mp4").stdout == "b.mp4\n"
+    assert grids[0][0] == ((Path("a/one"), Path("a/two")), ["one", "two"], Path("b.mp4"))
+    refused = call("beside", "a", "b", "--out", "b.mp4", "--caption", "one")
+    assert refused.exit_code and "1 for 2 recordings" in refused.output
 
 
 def test_explain_gets_the_loaded_preset(monkeypatch):

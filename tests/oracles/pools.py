@@ -55,7 +55,7 @@ class MadeFootage:
         levels = {f"L{k}": level for k, level in enumerate(self.levels, start=1)}
         self.water = Pool(np.full((1, 1), self.spacing**2), gauges, levels)
         self.matters, self.worlds, self.sea, self.ends = ("water",), 1, None, [None]
-        self.rail, self.protrudes = None, bool(self.open_edges)
+        self.rail, self.protrudes, self.drive = None, bool(self.open_edges), ""
         self.radius, self.kind, self.kinds = np.zeros((1, 0)), np.zeros((1, 0), dtype=int), ["the rest"]
         self.shapes, self.shape_names, self.fixed, self.parts = None, ["disc"], np.zeros((0, 3)), {}
         self.part, self.part_turn = np.zeros((len(self.time), 1, 0, 2)), np.zeros((len(self.time), 1, 0))

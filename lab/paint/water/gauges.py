@@ -1,6 +1,6 @@
 """Gauges where they are: a dot on the wall for one of pressure, a dashed line with the level on it for one of depth."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -24,12 +24,16 @@ OF_TANK = 0.04  # largest u, over the larger side of the tank in the picture
 
 @dataclass(frozen=True)
 class Marks:
-    """The gauges of one tank in a picture; unit: a page's unit, pixels; hues: of the gauges by name, 0..255."""
+    """The gauges of one tank in a picture; unit: a page's unit, pixels; hues: of the gauges by name, 0..255.
+
+    paper: the colour around them.
+    """
 
     outline: np.ndarray
     pool: Pool
     hues: Mapping[str, tuple]
     unit: float
+    paper: tuple = palette.PAPER
 
     def paint(self, picture: np.ndarray, camera: Camera, depths: Mapping[str, float]) -> None:
         """Paint the gauges over a picture, in place; camera: of the tank's points; depths (m) of those of depth."""
@@ -81,7 +85,7 @@ class Marks:
         tries = (at + step * along for step in TRIES)
         at = next((one for one in tries if not any((abs(one - m) < 0.95 * (half + h)).all() for m, h in written)), at)
         written.append((at, half))
-        draw.text(tuple(at), name, self.hues[name], face, "mm", stroke_width=2, stroke_fill=palette.PAPER)
+        draw.text(tuple(at), name, self.hues[name], face, "mm", stroke_width=2, stroke_fill=self.paper)
 
     def _paint_sensor(self, picture: np.ndarray, camera: Camera, gauge: Gauge, hue: tuple, u: float) -> None:
         along, outwards = self._wall(gauge)
@@ -110,10 +114,10 @@ class Marks:
         return (min(heights), max(heights)) if heights else tuple(self.outline[:, 1][[0, 0]])
 
 
-def hues_of(pool: Pool) -> dict[str, tuple]:
-    """A colour for each gauge, by name."""
+def hues_of(pool: Pool, series: Sequence[tuple] = palette.SERIES) -> dict[str, tuple]:
+    """A colour of a series for each gauge, by name."""
     names = (*pool.gauges, *pool.levels)
-    return {name: palette.SERIES[k % len(palette.SERIES)] for k, name in enumerate(names)}
+    return {name: series[k % len(series)] for k, name in enumerate(names)}
 
 
 def _paint_dot(picture: np.ndarray, at: np.ndarray, hue: tuple, u: float) -> None:

@@ -8,9 +8,22 @@ from lab.base.errors import LabError
 from lab.preset.fields import Alike, Of
 from solvers.machine.marks import Doc, Interval, Unit
 
-OF_GRAINS = ("speed", "displacement", "layer", "size", "kind", "shape", "spin")  # what `lab.paint.colours` paints
+OF_GRAINS = (
+    "cargo",
+    "speed",
+    "displacement",
+    "layer",
+    "size",
+    "kind",
+    "shape",
+    "spin",
+)  # what `lab.paint.colours` paints
 OF_WATER = ("water", "pressure", "speed", "vorticity", "particles")  # what `lab.paint.water` paints
 OF_AIR = ("air",)  # the air's pressure, and water as it is
+CARGOES = (  # whose looks are in `lab.paint.cargo`
+    *("wheat", "rice", "corn", "sunflower", "beans", "soybeans", "chickpeas", "sand"),
+    *("acetate", "coal", "iron-ore", "copper-ore", "gold-ore", "aluminium", "stone"),
+)
 COLOURS = (*OF_GRAINS, *(colour for colour in OF_WATER if colour not in OF_GRAINS), *OF_AIR)
 OF_MATTERS = {"grains": OF_GRAINS, "water": OF_WATER, "air": OF_AIR}
 
@@ -39,9 +52,25 @@ class Video:
     height: Annotated[int, Interval(ge=180, le=4320), Doc("Height of the picture in pixels, an even number.")] = 720
     colour: Annotated[
         Literal[*COLOURS] | None,
-        Doc("What the colour of the grains or of the water shows; by default the speed of grains, and water as it is."),
+        Doc("What the colour of the grains or of the water shows; by default they look like what they are."),
     ] = None
-    frame: Annotated[Literal["tank", "earth"], Doc("Whether the camera moves with the tank or stands still.")] = "tank"
+    cargo: Annotated[
+        Literal[*CARGOES] | None,
+        Of("grains"),
+        Doc("What the grains look like; by default the cargo of their outlines, or of their density."),
+    ] = None
+    frame: Annotated[
+        Literal["tank", "earth"] | None,
+        Doc("Whether the camera moves with the tank or stands still, as it does by default where the tank moves."),
+    ] = None
+    theme: Annotated[Literal["light", "dark"], Doc("Colours of the page.")] = "light"
+    overlay: Annotated[
+        Literal["none", "trails"], Doc("What is drawn over the grains: nothing, or the ways that they have come.")
+    ] = "none"
+    inset: Annotated[
+        Literal["none", "surface", "impact"],
+        Doc("What is shown larger beside the tank: nothing, the surface where it flows, or the gauge that is hit."),
+    ] = "none"
     speed: Annotated[float, Interval(gt=0), Doc("Playback speed; 1 is as in nature.")] = 1.0
 
 

@@ -12,7 +12,7 @@ from lab.studies.reproduce.experiment import Found, Row, Told
 from lab.studies.reproduce.grains import beds, outlines, stack
 from lab.studies.reproduce.runs import Outcome
 from lab.studies.reproduce.ships import capsizes, damping, low_sides, rolls, section
-from lab.studies.reproduce.water import dam_break, damper, impact, prismatic, waves
+from lab.studies.reproduce.water import dam_break, damper, drag, impact, prismatic, sinking, surfaces, waves
 
 
 def _alone(unit: str, number: Callable[[Outcome, object], float]) -> Callable[[Sequence[Outcome], object], Value]:
@@ -22,8 +22,8 @@ def _alone(unit: str, number: Callable[[Outcome, object], float]) -> Callable[[S
 # Numbers of single runs without scatter from bed to bed; NaN where a run has none.
 OF_ONE_RUN = {
     name: _alone(*number)
-    for numbers in (impact.NUMBERS, dam_break.NUMBERS, waves.NUMBERS, damper.NUMBERS, prismatic.NUMBERS)
-    for name, number in numbers.items()
+    for of in (impact, dam_break, waves, damper, prismatic, drag, sinking, surfaces)
+    for name, number in of.NUMBERS.items()
 }
 DERIVED: Mapping[str, Callable[[Sequence[Outcome], object], Value]] = {
     **OF_ONE_RUN,
@@ -53,6 +53,10 @@ FIGURES: Mapping[str, Callable] = {
     "sway beat": waves.beat,
     "pitch": waves.swings,
     "damper": damper.figure,
+    "drag": drag.figure,
+    "sinking": sinking.figure,
+    "profiles": surfaces.profiles,
+    "waves": surfaces.waves,
     "pressures at P1": prismatic.figure,
 }
 TELLS: Mapping[str, Callable[[Found], Told]] = {

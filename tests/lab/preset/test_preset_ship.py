@@ -12,8 +12,9 @@ from lab.assembly.ship import make_vessel, make_water, make_waves, natural_roll
 from lab.assembly.ship_tables import stored_table
 from lab.base.errors import LabError
 from lab.measures import measure_all, ship_frozen, ship_stability
+from lab.paint.page.theme import LIGHT
 from lab.paint.painter import Camera
-from lab.paint.sea import SURFACE, WATER, Sea
+from lab.paint.sea import Sea
 from lab.preset.find import load
 from lab.preset.recorded import from_table, to_table
 from lab.preset.sections.sea import Sea as Seas
@@ -215,7 +216,7 @@ SHIP = {
 
 
 def test_the_sea_in_a_picture():
-    """Water below the wave that passes, its line on it, paper above; the hull stands about the tank."""
+    """Water below the wave that passes, deeper blue farther down, its line on it; the hull stands about the tank."""
     waves = {"frequency": OMEGA, "amplitude": 0.02, "kind": "regular"}
     sea = Sea(from_table({**preset(), "ship": SHIP, "waves": waves}))
     assert sea.hull.min(axis=0) == pytest.approx([-0.17, -0.02])
@@ -225,8 +226,10 @@ def test_the_sea_in_a_picture():
     k = OMEGA**2 / 9.81
     for column in (5, 150, 290):
         top = 100.0 - 500.0 * 0.02 * np.cos(k * (column + 0.5 - 150.0) / 500.0)
-        assert tuple(picture[int(top) + 4, column]) == WATER and tuple(picture[int(top) - 4, column]) == (255,) * 3
-        assert np.abs(picture[int(top), column].astype(int) - SURFACE).max() < 60
+        near, deep = picture[int(top) + 4, column].astype(int), picture[-1, column].astype(int)
+        assert np.abs(near - LIGHT.sea[0]).max() < 40 and np.abs(deep - LIGHT.sea[1]).max() < 3
+        assert tuple(picture[int(top) - 4, column]) == (255,) * 3
+        assert np.abs(picture[int(top), column].astype(int) - LIGHT.surface).max() < 60
     calm = Sea(from_table({**preset(), "ship": SHIP}))
     assert np.array_equal(calm.elevation(np.zeros(3), 1.0), np.zeros(3))
 

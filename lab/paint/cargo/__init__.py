@@ -1,0 +1,1 @@
+"""How cargoes look."""

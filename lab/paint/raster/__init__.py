@@ -1,0 +1,1 @@
+"""Pixels: grains, water and lines in a numpy array."""

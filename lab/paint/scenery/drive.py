@@ -1,0 +1,69 @@
+"""What drives a tank: the arrow from its place at rest to its place now, and a line of text."""
+
+import numpy as np
+
+from lab.paint.painter import Camera, paint_strokes, paint_tank
+from lab.preset.schema import Preset
+
+AWAY, HALF, HEAD, WIDE = (
+    0.9,
+    0.1,
+    1.1,
+    0.42,
+)  # in u: distance off the tank, half thickness, length and half width of the head
+LEAST = 1.2  # u; shorter ways have no arrow
+STEPS = 24  # pieces of a way
+
+
+def paint_arrow(
+    picture: np.ndarray, camera: Camera, outline: np.ndarray, pose: np.ndarray, unit: float, colour: tuple
+) -> None:
+    """Paint the way of a tank's upper corner from rest to a pose (Y, Z, φ), outside the tank, with a head at its end.
+
+    camera: of the earth's points. The coordinates of the pose grow alike along the way.
+    """
+    corner = outline[np.argmax(outline @ [1.0, 2.0])]
+    out = corner - outline.mean(axis=0)
+    start = corner + AWAY * unit / camera.scale * np.sign(out)
+    way = np.concatenate([camera.carried(s * pose).pixels(start[None]) for s in np.linspace(0.0, 1.0, STEPS + 1)])
+    pieces = np.hypot(*np.diff(way, axis=0).T)
+    if pieces.sum() < LEAST * unit:
+        return
+    end = way[-1]
+    shaft = np.cumsum(pieces[::-1])[::-1] > 0.8 * HEAD * unit  # pieces that end before the head begins
+    half = np.full((STEPS, 1), HALF * unit)
+    paint_strokes(picture, np.hstack([way[:-1], half, way[1:], half])[shaft], colour)
+    back = way[int(shaft.sum())]
+    along = (end - back) / max(np.linalg.norm(end - back), 1e-9)
+    foot, side = end - HEAD * unit * along, WIDE * unit * np.array([-along[1], along[0]])
+    head = np.array([end, foot + side, foot - side]) * [1.0, -1.0]
+    paint_tank(picture, Camera(1.0, (0.0, 0.0)), head, 0.0, colour, colour)
+
+
+def drive_text(preset: Preset) -> str:
+    """What drives the tank in a few words: the waves, or the motions by amplitude and frequency."""
+    if preset.ship:
+        return _waves_text(preset)
+    return ", ".join(text for name, part in preset.motion.parts.items() if (text := _motion_text(name, part)))
+
+
+def _waves_text(preset: Preset) -> str:
+    waves = preset.waves
+    height = 0.0 if waves is None else waves.height or 2.0 * (waves.amplitude or 0.0)
+    if not height or not waves.frequency:
+        return ""
+    size = f"{height:.3g} m" if height >= 1.0 else f"{1e3 * height:.3g} mm"
+    kind = "waves" if waves.kind == "regular" else "irregular waves"
+    return f"{kind} of {size}, {2.0 * np.pi / waves.frequency:.3g} s"
+
+
+def _motion_text(name: str, part: object) -> str:
+    turns = name in ("roll", "tilt")
+    amplitude, frequency = getattr(part, "amplitude", None), getattr(part, "frequency", None)
+    if amplitude is not None and frequency is not None:
+        size = f"{np.degrees(amplitude):.3g}°" if turns else f"{1e3 * amplitude:.3g} mm"
+        return f"{name} ±{size} at {frequency:.3g} Hz"
+    rate = getattr(part, "rate", None)
+    if rate is not None and turns:
+        return f"{name} at {np.degrees(rate):.3g}°/s"
+    return ""

@@ -1,0 +1,86 @@
+"""A part of the tank, larger, beside it: the surface where it flows most, or the gauge that is hit hardest."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from lab.paint.colours import spread
+from lab.paint.footage import Bed
+from lab.paint.page.layout import Box, Layout
+from lab.paint.page.theme import Theme
+from lab.paint.painter import Camera, paint_strokes
+from lab.paint.scenery.stage import Stage
+
+SHARE = 0.3  # of the tank's width that is shown
+LARGER = 1.6  # times the stage's scale at least
+HALF = 0.08  # half thickness in u of the frames around the part and its picture
+
+
+@dataclass(frozen=True)
+class Inset:
+    """A part of the first bed: its middle (2,) m in the tank's axes, the box of its picture, pixels a metre, a unit."""
+
+    stage: Stage
+    middle: np.ndarray
+    box: Box
+    scale: float
+    unit: float
+
+    @classmethod
+    def of(cls, stage: Stage, bed: Bed, what: str, layout: Layout) -> Inset | None:
+        """The inset of this kind, None if there is none to show."""
+        if what == "none" or "inset" not in layout.boxes:
+            return None
+        middle = _hardest_hit(bed) if what == "impact" else None
+        middle = _liveliest(bed) if middle is None else middle
+        if middle is None:
+            return None
+        box = layout["inset"]
+        width = SHARE * float(np.ptp(bed.footage.outline[:, 0]))
+        scale = max((box[2] - box[0]) / width, LARGER * stage.cameras[0].scale)
+        return cls(stage, middle, box, scale, layout.unit)
+
+    def paint(self, picture: np.ndarray, frame: int, theme: Theme) -> None:
+        """Paint the part into its box, and its frame onto the tank, in place."""
+        left, top, right, bottom = self.box
+        size = np.array([right - left, bottom - top])
+        moved = self.stage.tank_camera(0, frame)
+        turned = Camera(self.scale, (0.0, 0.0), moved.turn)
+        offset = 0.5 * size - turned.pixels(self.middle[None])[0]
+        part = np.empty((size[1], size[0], 3), dtype=np.uint8)
+        part[:] = theme.paper
+        self.stage.paint_part(part, 0, frame, Camera(self.scale, tuple(offset), moved.turn))
+        picture[top:bottom, left:right] = part
+        half, at = HALF * self.unit, moved.pixels(self.middle[None])[0]
+        reach = 0.5 * size * moved.scale / self.scale
+        _paint_frame(picture, np.array([left, top]) + half, np.array([right, bottom]) - half, half, theme.accent)
+        _paint_frame(picture, at - reach, at + reach, half, theme.accent)
+
+
+def _paint_frame(picture: np.ndarray, low: np.ndarray, high: np.ndarray, half: float, colour: tuple) -> None:
+    corners = np.array([low, (high[0], low[1]), high, (low[0], high[1]), low])
+    thick = np.full((4, 1), half)
+    paint_strokes(picture, np.hstack([corners[:-1], thick, corners[1:], thick]), colour)
+
+
+def _liveliest(bed: Bed) -> np.ndarray | None:
+    """Where grains at the surface move most over the whole film, in the tank's axes; None without grains."""
+    if bed.empty:
+        return None
+    frames = [frame for _, frame in spread([bed], 25)]
+    speeds = np.array([bed.speed(frame) for frame in frames])
+    last = bed.position(frames[int(np.nanargmax(np.nanpercentile(speeds, 95.0, axis=1)))])
+    row = np.nanargmax(np.nanpercentile(speeds, 95.0, axis=1))
+    fast = speeds[row] >= np.nanpercentile(speeds[row], 90.0)
+    return np.nanmedian(last[fast], axis=0)
+
+
+def _hardest_hit(bed: Bed) -> np.ndarray | None:
+    """The place of the gauge with the highest pressure; None without gauges."""
+    pool = bed.footage.water
+    if pool is None or not pool.gauges:
+        return None
+    highest = np.nanmax(bed.footage.measured("gauge_pressure")[:, bed.world], axis=0)
+    return np.array(list(pool.gauges.values())[int(np.argmax(highest))].place)

@@ -1,0 +1,288 @@
+"""The stage of a picture: the beds side by side in one scale, with all that stands around them."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from PIL import Image, ImageDraw
+
+from lab.paint import decorations as deco
+from lab.paint.colours import Colouring, spread
+from lab.paint.footage import Bed
+from lab.paint.page.layout import Box
+from lab.paint.page.theme import Theme
+from lab.paint.painter import Camera, Edges, paint_grains, paint_plate, paint_tank, to_discs
+from lab.paint.scenery.backdrop import paint_sky
+from lab.paint.scenery.drive import paint_arrow
+from lab.paint.scenery.ship import silhouette
+from lab.paint.scenery.trails import paint_trails
+from lab.paint.sea import LINE
+from lab.paint.water.gauges import Marks, hues_of
+from lab.paint.water.layer import WaterLayer
+
+WALL, PLATE = 0.36, 0.3  # thickness in u
+THICKEST = 0.04  # largest wall thickness relative to the tank's smaller side
+ROOM = 0.3  # largest margin around an open tank relative to its larger side; smaller for many tanks
+ARROW, LABEL = 1.4, 2.3  # u, room for the arrow of the drive and for names of gauges
+NAME = 1.8  # u, for the name of a bed
+HOUSE = 0.5, 0.7  # of the superstructure's height that has room in the stage, of one ship alone and of several
+TRAILS = 6  # frames that a trail goes back
+
+
+@dataclass(frozen=True)
+class Setting:
+    """How a stage is painted: its box and the canvas around it in pixels, pixels a unit, theme, frame and overlay."""
+
+    box: Box
+    canvas: Box
+    unit: float
+    theme: Theme
+    frame: str
+    overlay: str = "none"
+
+
+class Stage:
+    """Beds in one scale; rows (K, F): of their frames, maybe between two, pose (F, K, 3): at the pictures' times."""
+
+    def __init__(
+        self, beds: Sequence[Bed], setting: Setting, rows: np.ndarray, pose: np.ndarray, time: np.ndarray
+    ) -> None:
+        self.beds, self.setting, self._unit, self._theme = list(beds), setting, setting.unit, setting.theme
+        self._rows, self._pose, self._time = rows, pose, time
+        self._earth = setting.frame == "earth"
+        self._named = any(bed.name for bed in beds)
+        self._sorts = _sort_by_shape(beds)
+        self.grounds = [self._ground(bed) for bed in beds]
+        self.cameras, self.names_at, self.name_width = self._place_beds()
+        self.marks: dict[int, Marks] = {}
+
+    def dress(self, grains: Colouring | None, water: WaterLayer, hues: Sequence[tuple]) -> None:
+        """Say what the colours show; hues: of the beds."""
+        self._colouring, self._water = grains, water
+        for k, bed in enumerate(self.beds):
+            if pool := bed.footage.water:
+                own = hues_of(pool, self._theme.series) if len(hues) == 1 else None
+                named = own or dict.fromkeys((*pool.gauges, *pool.levels), hues[k])
+                self.marks[k] = Marks(bed.footage.outline, pool, named, self._unit, self._theme.paper)
+
+    # What stays the same
+
+    def paint_backdrop(self, page: np.ndarray) -> None:
+        """Paint what does not move: the sky, tanks that the camera moves with, and the ghosts of tanks at rest."""
+        theme = self._theme
+        for k, (bed, camera) in enumerate(zip(self.beds, self.cameras, strict=True)):
+            if bed.footage.sea and self._earth:
+                paint_sky(page, self._sea_box(k), camera.offset[1], theme)
+            elif self._earth:
+                self._paint_tank(page, bed, camera, theme.ghost, theme.paper)
+            else:
+                self._paint_tank(page, bed, camera, theme.wall, theme.hold)
+                self._paint_fixed(page, bed, camera)
+
+    def _sea_box(self, k: int) -> Box:
+        """The pixels that sky and sea of bed k fill: of a single one all around the stage."""
+        if len(self.beds) == 1:
+            return self.setting.canvas
+        (left, bottom), (right, top) = self.cameras[k].pixels(np.array(self.grounds[k]))
+        return round(left), round(top), round(right), round(bottom)
+
+    # What moves
+
+    def paint(self, picture: np.ndarray, frame: int) -> None:
+        """Paint the beds at the time of a picture, in place."""
+        grains, theme = {}, self._theme
+        for k in range(len(self.beds)):
+            if self._earth:
+                self._paint_around(picture, k, frame)
+            grains |= self._paint_inside(picture, k, frame, self.tank_camera(k, frame))
+        self._paint_grains(picture, grains)
+        for k, bed in enumerate(self.beds):
+            if self.setting.overlay == "trails" and not bed.empty:
+                rows = [self._rows[k][max(frame - back, 0)] for back in range(TRAILS)]
+                paint_trails(picture, self.tank_camera(k, frame), bed, rows, self._theme.ink)
+            self._paint_marks(picture, k, frame)
+            if self._earth and not bed.footage.sea:
+                unit = self._unit / np.sqrt(len(self.beds))
+                paint_arrow(picture, self.cameras[k], bed.footage.outline, self._pose[frame, k], unit, theme.accent)
+
+    def paint_part(self, picture: np.ndarray, k: int, frame: int, camera: Camera) -> None:
+        """Paint a part of bed k alone, larger, in place; camera: of the tank's points."""
+        bed = self.beds[k]
+        self._paint_tank(picture, bed, camera, self._theme.wall, self._theme.hold)
+        self._paint_fixed(picture, bed, camera)
+        self._paint_grains(picture, self._paint_inside(picture, k, frame, camera, part=True))
+        self._paint_marks(picture, k, frame, camera)
+
+    def tank_camera(self, k: int, frame: int) -> Camera:
+        """The camera for points of the tank of bed k."""
+        camera = self.cameras[k]
+        return camera.carried(self._pose[frame, k]) if self._earth else camera
+
+    def write_names(self, image: Image.Image, frame: int) -> None:
+        """Write the names of the gauges beside them."""
+        for k, marks in self.marks.items():
+            marks.name(image, self.tank_camera(k, frame))
+
+    def draw_ends(self, image: Image.Image, frame: int) -> None:
+        """Draw a band with the text on the loss of each ship lost so far, at the foot of her cell."""
+        draw = ImageDraw.Draw(image)
+        for bed, camera, ground in zip(self.beds, self.cameras, self.grounds, strict=True):
+            end = bed.footage.ends[bed.world]
+            if end and end.time <= self._time[frame] + 1e-9:
+                (left, bottom), (right, _) = camera.pixels(np.array(ground))
+                height = min(2.6 * self._unit, 0.25 * (right - left))
+                box = left, bottom - height, right, bottom
+                deco.draw_band(draw, box, f"She {end.words}", min(1.45 * self._unit, 0.6 * height), self._theme)
+
+    def _paint_around(self, picture: np.ndarray, k: int, frame: int) -> None:
+        """Sea and hull, or the tank."""
+        bed, camera, theme, unit = self.beds[k], self.cameras[k], self._theme, self._unit
+        carried = self.tank_camera(k, frame)
+        if bed.footage.sea:
+            left, top, right, bottom = self._sea_box(k)
+            part = np.ascontiguousarray(picture[top:bottom, left:right])
+            moved, still = carried.shifted(left, top), camera.shifted(left, top)
+            sea = bed.footage.sea_of(round(float(self._rows[k][frame])))
+            sea.paint_superstructure(part, moved, theme)
+            sea.paint_box(part, still, (0, 0, right - left, bottom - top), self._time[frame], LINE * unit, theme)
+            sea.paint_hull(part, moved, self._thick(sea.hull, camera), theme, unit)
+            picture[top:bottom, left:right] = part
+        self._paint_tank(picture, bed, carried, theme.wall, theme.hold)
+        self._paint_fixed(picture, bed, carried)
+
+    def _paint_inside(self, picture: np.ndarray, k: int, frame: int, camera: Camera, part: bool = False) -> dict:
+        """Water and parts; returns what the grains of the bed need to be painted."""
+        bed, row, found = self.beds[k], self._rows[k][frame], {}
+        self._water.paint(picture, camera, bed, row, self._theme.hold)
+        if not bed.empty:
+            place = bed.position(row)
+            place = place if part else self._on_ground(k, place, self._pose[frame, k])
+            colour = self._colouring.colours(bed, row)
+            found[k] = to_discs(camera, place, bed.radius, bed.angle(row)), colour, self._colouring.dress(bed, colour)
+        for line in bed.plates(row):
+            paint_plate(picture, camera, line, PLATE * self._unit, self._theme.part)
+        return found
+
+    def _paint_grains(self, picture: np.ndarray, grains: dict) -> None:
+        for painted, edges in self._sorts:
+            here = [k for k in painted if k in grains]
+            if not here:
+                continue
+            dressed = [grains[k] for k in here]
+            if edges is not None and len(here) < len(painted):
+                edges = Edges.joined([self.beds[k].edges for k in here])
+            discs, colour = (np.concatenate([one[part] for one in dressed]) for part in (0, 1))
+            marks = np.concatenate([one[2][0] for one in dressed])
+            finish = None if dressed[0][2][2] is None else np.concatenate([one[2][2] for one in dressed])
+            paint_grains(picture, discs, colour, marks, edges, finish)
+
+    def _on_ground(self, k: int, position: np.ndarray, pose: np.ndarray) -> np.ndarray:
+        """Grain positions (n, 2), NaN for those outside the box that is shown for bed k."""
+        low, high = self.grounds[k]
+        radius = self.beds[k].radius[:, None]
+        seen = self._seen(position, pose)
+        off = (seen < low - radius) | (seen > high + radius)
+        return np.where(off.any(axis=1, keepdims=True), np.nan, position)
+
+    def _paint_marks(self, picture: np.ndarray, k: int, frame: int, camera: Camera | None = None) -> None:
+        """The gauges of bed k, with the levels at the time of a frame."""
+        if k not in self.marks:
+            return
+        marks, footage, world = self.marks[k], self.beds[k].footage, self.beds[k].world
+        depths = {}
+        for level, name in enumerate(marks.pool.levels):
+            measured = footage.measured("level_depth")[:, world, level]
+            depths[name] = float(np.interp(self._time[frame], footage.series_time, measured))
+        marks.paint(picture, camera or self.tank_camera(k, frame), depths)
+
+    def _thick(self, outline: np.ndarray, camera: Camera) -> float:
+        return min(WALL * self._unit, max(1.0, THICKEST * camera.scale * np.ptp(outline, axis=0).min()))
+
+    def _paint_tank(self, picture: np.ndarray, bed: Bed, camera: Camera, wall: tuple, hold: tuple) -> None:
+        footage, thick = bed.footage, self._thick(bed.footage.outline, camera)
+        paint_tank(picture, camera, footage.outline, thick, wall, hold, footage.open_edges)
+
+    def _paint_fixed(self, picture: np.ndarray, bed: Bed, camera: Camera) -> None:
+        """The fixed grains of a rough wall, grey and without marks."""
+        fixed = bed.footage.fixed
+        colour = np.tile(self._theme.fixed, (len(fixed), 1))
+        paint_grains(picture, to_discs(camera, fixed[:, :2], fixed[:, 2], np.zeros(len(fixed))), colour, colour)
+
+    # Where the beds stand
+
+    def _ground(self, bed: Bed) -> tuple[np.ndarray, np.ndarray]:
+        """Lower and upper corner (m) of the box around a tank, its parts and, up to a limit, its grains."""
+        footage = bed.footage
+        if footage.sea and self._earth:
+            low, high = footage.sea.ground(self._seen(footage.sea.hull, bed.pose).reshape(-1, 2))
+            house = silhouette(footage.sea.ship)
+            above = 0.0 if house is None else HOUSE[len(self.beds) > 1] * np.ptp(house[:, 1])
+            return low, high + np.array([0.0, above])
+        tank = self._seen(footage.outline, bed.pose).reshape(-1, 2)
+        corners = [tank.min(axis=0), tank.max(axis=0)]
+        if self._earth:
+            corners += list(footage.outline)
+        if footage.protrudes:
+            for _, frame in spread([bed]):
+                places = bed.plates(frame)
+                if footage.open_edges and not bed.empty:
+                    places.append(bed.position(frame))
+                for points in places:
+                    seen = self._seen(points, bed.pose[frame])
+                    corners += [np.fmin.reduce(seen), np.fmax.reduce(seen)]
+        room = ROOM / np.sqrt(len(self.beds)) * np.ptp(footage.outline, axis=0).max()
+        around = np.clip(corners, corners[0] - room, corners[1] + room)
+        return np.nanmin(around, axis=0), np.nanmax(around, axis=0)
+
+    def _seen(self, points: np.ndarray, pose: np.ndarray) -> np.ndarray:
+        """Points of the tank in the frame of reference that is drawn."""
+        return carried(points, pose) if self._earth else np.asarray(points)
+
+    def _place_beds(self) -> tuple[list[Camera], list[tuple[float, float]], float]:
+        """Camera and place of the name of each bed, in the grid that shows them largest; the width of a cell."""
+        left, top, right, bottom = self.setting.box
+        stage = np.array([right - left, bottom - top])
+        afloat = self._earth and self.beds[0].footage.sea is not None
+        room = max(ARROW * (self._earth and not afloat), LABEL * any(bed.footage.water for bed in self.beds))
+        wall, gap = (WALL + room / np.sqrt(len(self.beds))) * self._unit, 1.5 * self._unit
+        name = NAME * self._unit if self._named else 0.0
+        around = np.array([2 * wall, 2 * wall + name])
+        extent = np.max([high - low for low, high in self.grounds], axis=0)
+        count = len(self.beds)
+
+        def grid(columns: int) -> np.ndarray:
+            return np.array([columns, -(-count // columns)])
+
+        def scale(columns: int) -> float:
+            cell = (stage - gap * (grid(columns) - 1)) / grid(columns)
+            return float(((cell - around) / extent).min())
+
+        columns = max(range(1, count + 1), key=scale)
+        largest = scale(columns)
+        pitch = largest * extent + around + gap
+        start = np.array([left, top]) + (stage - pitch * grid(columns) + gap) / 2
+        cells = [start + pitch * (k % columns, k // columns) for k in range(count)]
+        cameras = []
+        for cell, (low, high) in zip(cells, self.grounds, strict=True):
+            spare = largest * (extent - (high - low)) * (0.5, 1.0)  # a smaller tank is centred, at the bottom
+            inner = np.array([wall, wall + name]) + spare + largest * np.array([-low[0], high[1]])
+            cameras.append(Camera(largest, tuple(cell + inner)))
+        names = [(x, y + name - 0.5 * self._unit) for x, y in cells]
+        return cameras, names, float(pitch[0] - 0.5 * gap)
+
+
+def carried(points: np.ndarray, pose: np.ndarray) -> np.ndarray:
+    """Earth-frame places (..., m, 2) of tank points (m, 2): (Y, Z) + R(phi) r, pose (..., 3)."""
+    cosine, sine = np.cos(pose[..., 2, None]), np.sin(pose[..., 2, None])
+    y, z = np.asarray(points).T
+    across = pose[..., 0, None] + cosine * y - sine * z
+    up = pose[..., 1, None] + sine * y + cosine * z
+    return np.stack([across, up], axis=-1)
+
+
+def _sort_by_shape(beds: Sequence[Bed]) -> list[tuple[list[int], Edges | None]]:
+    """Indices of the beds of discs, and of the beds of irregular grains with their edges; without empty groups."""
+    round_ones = [k for k, bed in enumerate(beds) if bed.edges is None and not bed.empty]
+    others = [k for k, bed in enumerate(beds) if bed.edges is not None]
+    groups = [(round_ones, None)] if round_ones else []
+    return [*groups, (others, Edges.joined([beds[k].edges for k in others]))] if others else groups
