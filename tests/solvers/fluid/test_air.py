@@ -83,8 +83,9 @@ def test_water_rests_under_air():
     gas, mass = run.scene.drops[0, :, GAS] > 0.5, held(run)[3]
     np.testing.assert_allclose(rows["wall_force"][0, 1], -GRAVITY * mass.sum(), rtol=3e-3)
     np.testing.assert_allclose(rows["gauge_pressure"][0, 0], 1000.0 * GRAVITY * DEPTH, rtol=0.03)
-    weight_of_air = 1.2 * GRAVITY * 0.12
-    np.testing.assert_allclose(rows["gauge_pressure"][0, 1], -weight_of_air, atol=2.0 * weight_of_air)
+    # The surface settles by a part of a spacing, which squeezes the air of eight layers by some per cent.
+    over, stiff = rows["gauge_pressure"][0, 1] + 1.2 * GRAVITY * 0.12, 1.2 * run.scene.water.air.sound_speed**2
+    assert abs(over) < 0.03 * stiff
     np.testing.assert_allclose(rows["level_depth"][0], DEPTH, atol=0.25 * spacing)
     assert rows["air_volume"][0] == pytest.approx(WIDTH * (HEIGHT - DEPTH), rel=0.01)
     middle = 0.5 * (state["water_place"][0, :, 1].max() + state["air_place"][0, :, 1].min())
@@ -109,6 +110,7 @@ def test_other_ways_of_running_give_the_same(changes):
     np.testing.assert_allclose(place[1], place[0], atol=tight * made.water.spacing)
 
 
+@pytest.mark.slow
 def test_air_flows_out_through_a_vent():
     """From air half as dense again: its pressure follows dM/dt = −C_d A √(2 ρ p), p of M/V, to that outside."""
     made = scene(background=1.0, air={"vent": 2e-2})
