@@ -28,7 +28,7 @@ FLOORS = {  # from the ground up: a room imports those before it
         "simulation",
     ),
     "lab": (
-        *("base", "preset", "assembly", "recording", "measures", "paint", "report"),
+        *("base", "preset", "assembly", "naval", "recording", "measures", "paint", "report"),
         *("runs", "sweeps", "view", "studies", "cli"),
     ),
 }

@@ -46,6 +46,7 @@ def build(preset: Preset, hands: Sequence[Steered] | None = None) -> tuple[Scene
         vessels=vessels(preset) * worlds,
         axles=[preset.axle.solved] * worlds if preset.axle else (),
         thickness=preset.thickness,
+        length=preset.tank.length,
         precision=preset.run.precision,
         schedule=preset.run.schedule,
     )

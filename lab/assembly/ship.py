@@ -91,6 +91,7 @@ def _vessel(given: ships.Ship, water: Water, sea: seas.Waves | None) -> Vessel:
     return Vessel(
         ship,
         given.hold,
+        length=given.length or 1.0,
         laden=True,
         heel=given.heel,
         release=given.release,

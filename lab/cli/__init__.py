@@ -5,6 +5,7 @@ import click
 from lab import __version__
 from lab.cli.benches import bench
 from lab.cli.errors import Commands
+from lab.cli.naval import hull, report, stability
 from lab.cli.pictures import beside, poster, render, sheet, view
 from lab.cli.presets import schema
 from lab.cli.runs import explain, resume, run
@@ -22,6 +23,7 @@ def main() -> None:
     cargolab run tilting/quick       run one, with video, plot and summary
     cargolab view tilting/quick      run one live in a window and steer it
     cargolab explain tilting/quick   show what it simulates and what it will cost
+    cargolab stability SHIP          judge her by the codes, without a run
     cargolab sweep shaking/sway ...  run one for many values of its keys
     cargolab resume DIR              continue an interrupted run or sweep
     """
@@ -33,14 +35,17 @@ for command in (
     calibrate,
     explain,
     gallery,
+    hull,
     list_presets,
     poster,
     render,
+    report,
     reproduce,
     resume,
     run,
     schema,
     sheet,
+    stability,
     sweep,
     verify,
     view,

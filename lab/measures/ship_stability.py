@@ -50,7 +50,7 @@ def levers(recording: Recording) -> tuple[np.ndarray, np.ndarray, np.ndarray | N
     frozen = righting_levers(load.section, loading, load.water, heel)
     if not recording.preset.matters:
         return heel, frozen, None
-    cargo = float(grain_mass(recording).sum(axis=1).mean()) / recording.preset.thickness
+    cargo = float(grain_mass(recording).sum(axis=1).mean()) * recording.preset.a_metre
     repose = recording.preset.ship.repose
     try:
         hold = Section(recording.outline)

@@ -10,6 +10,8 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Annotated
 
+import numpy as np
+
 from lab.base.errors import LabError
 from lab.preset.accuracy import LEVELS
 from lab.preset.fields import Of, defaults_of, join, walk
@@ -20,6 +22,7 @@ from lab.preset.sections.contact import Contact
 from lab.preset.sections.grains import Grains, check_grains, check_room
 from lab.preset.sections.materials import Kind, Wall, check_cohesion, check_dissipation, check_kinds
 from lab.preset.sections.motion import Motion, check_motion
+from lab.preset.sections.naval.stability import Stability, check_stability
 from lab.preset.sections.parts import Part, check_parts
 from lab.preset.sections.run import Run, duration_of
 from lab.preset.sections.sea import Sea, Waves
@@ -37,6 +40,7 @@ from solvers.grains.bed.sizes import Sizes
 from solvers.grains.materials import Material
 from solvers.machine.marks import Cheap, Doc, Interval
 from solvers.tank.tank import BARE_THICKNESS
+from solvers.tank.tank import Tank as SlabTank
 
 FORMAT = 3
 MATTERS = ("grains", "water", "air")  # the keys of the matters that a tank may hold; air is water's second phase
@@ -81,6 +85,9 @@ class Preset:
         field(default_factory=dict)
     )
     ship: Annotated[Ship | None, Doc("The ship whose hold the tank is.")] = None
+    stability: Annotated[Stability, Doc("What criteria of stability need to know of the whole ship.")] = field(
+        default_factory=Stability
+    )
     axle: Annotated[Axle | None, Doc("The axle about which the tank rolls freely.")] = None
     sea: Annotated[Sea, Doc("The sea outside the ship.")] = field(default_factory=Sea)
     waves: Annotated[Waves | None, Doc("The waves of the sea, which travel to starboard.")] = None
@@ -151,6 +158,12 @@ class Preset:
         """Thickness (m) of the slab: the tank's, else the grains' mean diameter, without grains one metre."""
         return self.tank.thickness or (self.mean_diameter if self.grains else BARE_THICKNESS)
 
+    @property
+    def a_metre(self) -> float:
+        """Factor (1/m) from what is in the slab to what a metre of the ship carries of it."""
+        ship = self.ship.length if self.ship and self.ship.length else 1.0
+        return SlabTank(np.zeros((0, 2)), self.thickness, length=self.tank.length).share(ship)
+
 
 def resolve(table: Mapping) -> Preset:
     """The preset of a table, with its base and overrides already merged in.
@@ -177,7 +190,8 @@ def check(preset: Preset) -> None:
     check_axle(preset.axle, preset.ship is not None, bool(preset.motion.parts), bool(preset.matters), duration)
     if preset.water is not None:
         check_solids(preset)
-    check_ship(preset.ship, preset.waves, bool(preset.motion.parts), preset.tank.corners)
+    check_ship(preset.ship, preset.waves, bool(preset.motion.parts), preset.tank)
+    check_stability(preset.stability, preset.ship)
     check_video(preset.video, preset.matters)
 
 

@@ -12,7 +12,7 @@ from lab.preset.fields import join, taken_by
 from lab.preset.find import LoadedPreset
 from lab.preset.schema import Preset
 from lab.preset.units import show
-from lab.report import axle, grains, water
+from lab.report import axle, coarse, grains, water
 from lab.report.ship import describe
 from solvers.machine.runtime import available_cores, choose_arch
 from solvers.simulation import Simulation
@@ -60,6 +60,7 @@ def explain(loaded: LoadedPreset) -> str:
         f"{preset.title}  ({loaded.name})",
         _section("Scene", _scene(preset, scene)),
         *_ship(preset, simulation),
+        *([_section("Coarse grains", rows)] if preset.grains and (rows := coarse.described(preset)) else []),
         *([_section("Axle", axle.described(preset))] if preset.axle else []),
         *([_section("Accuracy", grains.accuracy(preset))] if preset.grains else []),
         *([_section("Accuracy", water.accuracy(preset))] if preset.water else []),
@@ -121,7 +122,7 @@ def _ship(preset, simulation: Simulation) -> list[str]:
     if not preset.ship:
         return []
     every = int(simulation.carrier.every[0]) * simulation.dt
-    slab = simulation.scene.tanks[0].thickness if preset.matters else None
+    slab = (preset.thickness, preset.a_metre) if preset.matters else None
     return [_section("Ship", describe(preset.ship, simulation.scene.vessels[0], preset.waves, slab, every))]
 
 

@@ -54,6 +54,11 @@ def render(path: Path, template: str, **data: object) -> Path:
     return path
 
 
+def render_text(template: str, **data: object) -> str:
+    """A page by one of the templates as text. Raises jinja2's UndefinedError for data it lacks."""
+    return _environment().get_template(template).render(data)
+
+
 def table(header: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
     """A table in Markdown."""
     return _environment().get_template("macros.md.j2").module.table(header, rows).strip()

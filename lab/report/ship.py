@@ -1,12 +1,19 @@
-"""The section of `cargolab explain` on a ship: her balance, her roll and the forces of the water."""
+"""What is said of a ship: by `cargolab explain` her balance, roll and forces, in reports the sheet of criteria."""
 
+from collections.abc import Iterator
 from math import pi
 
 from lab.assembly.ship import flooding_angles
+from lab.base.errors import LabError
+from lab.measures import ship_grain
+from lab.measures.ship import has_ship, vessel_of
+from lab.naval import sheet
+from lab.naval.condition import condition
 from lab.preset.sections import ship as ships
 from lab.preset.sections.sea import Waves
 from lab.preset.sections.ship import axis_place
 from lab.preset.units import show
+from lab.recording import Recording
 from solvers.ship.hydrostatics import metacentric_height
 from solvers.ship.vessel import Vessel
 from solvers.ship.water import Water
@@ -14,20 +21,21 @@ from solvers.ship.waves import froude_factors
 
 
 def describe(
-    given: ships.Ship, vessel: Vessel, waves: Waves | None, thickness: float | None, every: float
+    given: ships.Ship, vessel: Vessel, waves: Waves | None, slab: tuple[float, float] | None, every: float
 ) -> list[tuple[str, str]]:
     """Rows on a ship, each a name and a text: balance, roll, forces of the water.
 
-    thickness: of the slab that her cargo is (m), None if her hold is empty; every: the water's forces' step (s).
+    slab: thickness (m) of the slab that her cargo is, and how many of them a metre of her carries (1/m); None if her
+    hold is empty. every: the step (s) of the water's forces.
     """
     ship, body = vessel.ship, vessel.ship.body
     water, memory = ship.load.water, ship.radiation.memory
     height = metacentric_height(ship.load.section, body.loading, water)
     floats = f"{body.mass:.4g} kg/m, GM {show(height, 'm')}, gyradius {show(body.gyradius, 'm')}"
     rows = [("empty", floats)]
-    if thickness is not None:
-        slab = f"a slab {show(thickness, 'm')} thick: its load counts {1.0 / thickness:.4g} times a metre"
-        rows = [("with her cargo", floats), ("cargo", slab)]
+    if slab is not None:
+        thick = f"a slab {show(slab[0], 'm')} thick: its load counts {slab[1]:.4g} times a metre"
+        rows = [("with her cargo", floats), ("cargo", thick)]
     rows += [
         ("free in", given.freedom.replace("-", ", ") + f", about her axis, {axis_place(given)}"),
         (
@@ -35,7 +43,7 @@ def describe(
             f"{ship.damping.linear:.3g} N s φ̇ and {ship.damping.quadratic:.3g} N s^2 φ̇|φ̇|, a metre",
         ),
         ("radiation", _radiated(given, memory)),
-        ("water's forces", f"every {show(every, 's')}" + "; the cargo's at each step" * (thickness is not None)),
+        ("water's forces", f"every {show(every, 's')}" + "; the cargo's at each step" * (slab is not None)),
     ]
     if waves is not None:
         rows += [("excitation", given.excitation), ("waves", _sea(waves, water))]
@@ -46,7 +54,7 @@ def describe(
         for name, angle in flooding_angles(given, vessel).items()
         if angle is not None
     ]
-    if thickness is not None:
+    if slab is not None:
         rows.append(("her cargo's repose", f"{show(given.repose, 'rad')}, in the curve of righting levers alone"))
     if given.scale:
         rows.append((f"full scale 1:{given.scale:g}", _full_scale(given, waves)))
@@ -76,3 +84,36 @@ def _full_scale(given: ships.Ship, waves: Waves | None) -> str:
         words.append(f"waves of {show(size * factor['length'], 'm')}")
         words.append(f"every {show(2.0 * pi / waves.frequency * factor['time'], 's')}")
     return ", ".join(words)
+
+
+def judged(recording: Recording) -> tuple[list[sheet.Row], list[tuple[str, str]]]:
+    """Sheet and condition of a recording's ship; both empty without one that can be judged."""
+    if not has_ship(recording):
+        return [], []
+    found = ship_grain.shift(recording)
+    if found is not None:
+        arm = found.lying(ship_grain.end_of(found, recording))
+        return sheet.rows(found.condition, arm), sheet.facts(found.condition)
+    vessel = vessel_of(recording.path)
+    if vessel is None:
+        return [], []
+    try:
+        alone = condition(recording.preset, vessel)
+    except LabError:
+        return [], []
+    return sheet.rows(alone), sheet.facts(alone)
+
+
+def criteria(recording: Recording) -> Iterator[str]:
+    """The sheet of criteria of a recording's ship as a table in Markdown; nothing without one that can be judged."""
+    rows, _ = judged(recording)
+    if not rows:
+        return
+    yield "\n## Criteria\n"
+    yield "| rule | criterion | required | attained | unit | verdict |\n|---|---|---|---|---|---|"
+    for row in rows:
+        one = row.criterion
+        what = f"{one.what} ({row.shift})" if row.shift else one.what
+        numbers = f"{one.kind} {one.limit:.4g}", f"{one.attained:.4g}", one.unit, one.verdict
+        yield f"| {' | '.join((one.rule, what, *numbers))} |"
+    yield "\nIn calm water; heel is positive starboard down. `cargolab report` puts it on one page for the file."

@@ -15,7 +15,7 @@ from lab.preset.fields import taken_of
 from lab.preset.sections.ship import axis_place
 from lab.preset.units import show
 from lab.recording import Recording, ship_end
-from lab.report import grains, water
+from lab.report import grains, ship, water
 from lab.report.numbers import RULE, count_of, number, own
 from solvers.motion import MOTIONS
 
@@ -29,6 +29,8 @@ TELLING = (
     "frozen_significant_roll",
     "roll_period",
     "largest_roll",
+    "largest_shifted_share",
+    "list_as_it_lies",
     "heap_angle",
     "flow_rate",
     "clogged",
@@ -75,7 +77,7 @@ def write_summary(
     Raises LabError when the folder cannot be written.
     """
     folder = Path(folder)
-    warnings = [*warnings, *_cautions(recording)]
+    warnings = [*warnings, *cautions(recording)]
     links = {name: Path(os.path.relpath(path, folder)).as_posix() for name, path in files.items()}
     page = "\n".join(_page(recording, values, links, warnings, notes, costs))
     data = _data(recording, values, links, warnings) | {"notes": list(notes)}
@@ -102,14 +104,14 @@ def terminal_summary(
     rows = {name.replace("_", " "): f"{number(value)}{_remark(value)}" for name, value in told.items()}
     made = {name.replace("_", " "): os.path.relpath(path) for name, path in files.items()}
     lost = ship_end.losses_sentence(ship_end.ends(recording.series))
-    title = f"{recording.preset.title} ({recording.name}): {_status(recording)}{f'. {lost}' if lost else ''}"
+    title = f"{recording.preset.title} ({recording.name}): {status_of(recording)}{f'. {lost}' if lost else ''}"
     lines = [one_line(title)]
     lines += _aligned(rows)
     if len(told) < len(values):
         lines.append(f"  and {count_of(len(values) - len(told), 'more number')} in the summary")
     lines += ["", f"  {_cost(recording)}", *([f"  {in_words(costs)}"] if costs else [])]
     lines += _aligned(made)
-    lines += [f"  warning: {one_line(text)}" for text in (*warnings, *_cautions(recording))]
+    lines += [f"  warning: {one_line(text)}" for text in (*warnings, *cautions(recording))]
     return printable("\n".join(lines))
 
 
@@ -140,7 +142,7 @@ def _page(
         yield f"**{lost}**\n"
     for name, value in headlines(values, HEADLINES).items():
         yield f"- {name.replace('_', ' ')}: **{number(value)}**{_remark(value)}"
-    yield f"\nThe run {code(recording.name)} of {inline(recording.created[:10])} is {inline(_status(recording))}."
+    yield f"\nThe run {code(recording.name)} of {inline(recording.created[:10])} is {inline(status_of(recording))}."
     yield from (f"\n**Warning:** {inline(text)}" for text in warnings)
     yield from (f"\n{paragraphs(text)}" for text in notes)
     pictures = {name: link for name, link in links.items() if link.endswith(".png")}
@@ -155,7 +157,9 @@ def _page(
     yield from (_row(name, value) for name, value in values.items())
     unit = " d is the mean grain diameter." * bool(preset.grains)
     yield f"\n{RULE}{unit} `lab/measures` defines each measure."
-    yield f"\n## What it cost\n\n{_cost(recording)}, on {inline(_machine(recording))}."
+    if preset.ship and preset.grains:
+        yield from ship.criteria(recording)
+    yield f"\n## What it cost\n\n{_cost(recording)}, on {inline(machine_of(recording))}."
     yield f"\n{in_words(costs)}." if costs else ""
     yield "\n## Files\n"
     yield from (f"- [{name.replace('_', ' ')}]({link})" for name, link in links.items())
@@ -230,18 +234,18 @@ def _settings(motion: object) -> str:
     return ", ".join(shown)
 
 
-def _status(recording: Recording) -> str:
+def status_of(recording: Recording) -> str:
     if recording.status == "running":
         return "unfinished: it is still running or was killed"
     return recording.status.rstrip(".")
 
 
-def _cautions(recording: Recording) -> Iterator[str]:
+def cautions(recording: Recording) -> Iterator[str]:
     """What a reader must know about the run and cannot see from the numbers."""
     if recording.preset.quick:
         yield f"A quick variant: {recording.preset.quick}."
     if not recording.complete:
-        yield f"The run is {_status(recording)}; the numbers cover what was recorded until then."
+        yield f"The run is {status_of(recording)}; the numbers cover what was recorded until then."
     if recording.preset.grains:
         yield from grains.cautions(recording)
     if recording.preset.water:
@@ -261,7 +265,7 @@ def _duration(seconds: float) -> str:
     return f"{minutes} min {rest} s" if minutes else f"{seconds:.1f} s"
 
 
-def _machine(recording: Recording) -> str:
+def machine_of(recording: Recording) -> str:
     """The computer that ran it, as far as the recording knows it."""
     machine = recording.machine
     cores, arch = count_of(machine.get("cores") or 0, "core"), machine.get("arch", "cpu")

@@ -132,33 +132,46 @@ class Particles:
         wet = slice(0, self.wet * self.lanes)
         return [np.take_along_axis(self.by_world(field.to_numpy())[:, wet], order, axis=1) for field in fields]
 
+    # Lanes are gone through in loops, which LLVM unrolls: 16 accesses for each load, written out, would make Taichi's
+    # compilation, whose time grows as the square of a kernel's length, take more than twice as long.
+
     @ti.func
     def load(self, field: ti.template(), b):
         """The lanes of a block as a vector."""
-        return ti.Vector([field[b, lane] for lane in ti.static(range(self.lanes))])
+        values = ti.Vector([ti.cast(0.0, field.dtype) for _ in ti.static(range(self.lanes))])
+        for lane in range(self.lanes):
+            values[lane] = field[b, lane]
+        return values
 
     @ti.func
     def store(self, field: ti.template(), b, values):
         """Write the lanes of a block."""
-        for lane in ti.static(range(self.lanes)):
+        for lane in range(self.lanes):
             field[b, lane] = values[lane]
 
     @ti.func
     def offset(self, b, origin: ti.template(), axis: ti.template()):
         """Places of a block along an axis less the number `origin`, in the precision of `real`."""
-        return ti.Vector(
-            [ti.cast(self.place[axis][b, lane] - origin, self.real) for lane in ti.static(range(self.lanes))]
-        )
+        values = self.zeros()
+        for lane in range(self.lanes):
+            values[lane] = ti.cast(self.place[axis][b, lane] - origin, self.real)
+        return values
 
     @ti.func
     def long(self, values):
         """Lanes of `real` numbers with the digits of places; lane by lane, since whole vectors cannot be cast."""
-        return ti.Vector([ti.cast(values[lane], self.where) for lane in ti.static(range(self.lanes))])
+        whole = ti.Vector([ti.cast(0.0, self.where) for _ in ti.static(range(self.lanes))])
+        for lane in range(self.lanes):
+            whole[lane] = ti.cast(values[lane], self.where)
+        return whole
 
     @ti.func
     def short(self, values):
         """Lanes of places with the digits of `real`."""
-        return ti.Vector([ti.cast(values[lane], self.real) for lane in ti.static(range(self.lanes))])
+        part = self.zeros()
+        for lane in range(self.lanes):
+            part[lane] = ti.cast(values[lane], self.real)
+        return part
 
     @ti.func
     def filled(self, b):

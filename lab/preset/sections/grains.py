@@ -36,6 +36,10 @@ class Grains:
         Usual(1e-3, 1e-2, "mm"),
         Doc("Mean diameter; of shapes, that of the disc of equal area."),
     ] = None
+    stands_for: Annotated[
+        Length | None,
+        Doc("Diameter of the real grains that each grain of a coarse model stands for; it changes only texts."),
+    ] = None
     spread: Annotated[float, Interval(ge=0, le=0.5), Doc("Relative spread of the diameters.")] = 0.0
     distribution: Annotated[Literal["uniform", "normal", "table"], Doc("How the diameters are distributed.")] = (
         "uniform"

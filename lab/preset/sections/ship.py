@@ -64,6 +64,10 @@ class Ship:
     roll_period: Annotated[
         Annotated[float, Unit("s"), Interval(gt=0)] | None, Doc("Natural period of roll, in place of `gyradius`.")
     ] = None
+    length: Annotated[
+        Length | None,
+        Doc("How many metres of her section displace what she does; beside it counts the length of her hold."),
+    ] = None
     hold: Annotated[Point, Doc("Where the tank's origin is in the hull's axes, y and z.")] = (0.0, 0.0)
     axis: Annotated[
         Point | None, Doc("The ship's point of reference in the hull's axes; the middle of the waterline without it.")

@@ -6,6 +6,7 @@ from lab.base.errors import LabError
 from lab.preset.outline import stands_out
 from lab.preset.sections.sea import Waves
 from lab.preset.sections.ship import Ship
+from lab.preset.sections.tank import Tank
 from lab.preset.units import show
 from solvers.machine.errors import Unavailable
 from solvers.ship.section import Section
@@ -21,8 +22,9 @@ NEEDS = {
 }
 
 
-def check_ship(ship: Ship | None, waves: Waves | None, moves: bool, hold: np.ndarray) -> None:
-    """Raise LabError for settings that contradict each other; `hold` is the tank's outline (m, 2), m."""
+def check_ship(ship: Ship | None, waves: Waves | None, moves: bool, hold: Tank) -> None:
+    """Raise LabError for settings that contradict each other; `hold` is the tank."""
+    _check_hold_length(ship, hold.length)
     if ship is None:
         if waves is not None:
             raise LabError("waves: there is no ship in them; add a table [ship], or leave the waves out.")
@@ -44,7 +46,7 @@ def check_ship(ship: Ship | None, waves: Waves | None, moves: bool, hold: np.nda
         raise LabError(f"ship.draught: must be less than the hull's height, {show(depth, 'm')}.")
     _check_lengths(ship, box)
     _check_openings(ship, box)
-    _check_hold(ship, hold)
+    _check_hold(ship, np.array(hold.corners))
     if ship.release < 0.1 and ship.heel:
         raise LabError('ship.release: she is heeled until then, and not at a blow; give at least "0.1 s".')
     if waves is None:
@@ -54,6 +56,18 @@ def check_ship(ship: Ship | None, waves: Waves | None, moves: bool, hold: np.nda
     for name in NEEDS[waves.kind]:
         if getattr(waves, name) is None:
             raise LabError(f'waves.{name}: missing; waves.kind = "{waves.kind}" needs it.')
+
+
+def _check_hold_length(ship: Ship | None, length: float | None) -> None:
+    """Raise LabError for the length of a hold without a ship, or longer than she is."""
+    if length is None:
+        return
+    if ship is None:
+        raise LabError("tank.length: is that of a hold in a ship; add a table [ship], or leave this out.")
+    if ship.length is None:
+        raise LabError("ship.length: missing; the hold has a length, so give the ship's too.")
+    if length > ship.length:
+        raise LabError(f"tank.length: the hold is longer than the ship, {show(ship.length, 'm')}; make it shorter.")
 
 
 def _check_lengths(ship: Ship, box: bool) -> None:

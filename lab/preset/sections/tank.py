@@ -41,6 +41,9 @@ class Tank:
         Thickness | None,
         Doc("Thickness of the slab that the plane stands for; the grains' mean diameter without it, 1 m if empty."),
     ] = None
+    length: Annotated[
+        Length | None, Doc("Length of a hold along its ship, which carries no more of it; the ship's own without it.")
+    ] = None
 
     @cached_property
     def corners(self) -> tuple[Point, ...]:

@@ -57,7 +57,7 @@ def test_parse(text, symbol, number):
         (0, "m", "has no unit"),
         ("3 mmm", "m", "unknown unit"),
         ("5 Pas", "Pa", "unknown unit"),
-        ("3 Mm mm", "m", "another kind"),
+        ("3 Mm mm", "m", "is an area"),
         ("0,3 mm", "m", "cannot be read"),
         ("mm", "m", "cannot be read"),
         ("", "m", "cannot be read"),

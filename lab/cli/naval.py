@@ -1,0 +1,78 @@
+"""The naval architect's commands: stability, hull, report."""
+
+from pathlib import Path
+
+import click
+
+from lab.cli.options import out_option, quiet_option, set_option
+
+
+@click.command()
+@click.argument("preset")
+@set_option
+@out_option("for figure, tables and page", "renders/stability/PRESET")
+@quiet_option
+def stability(preset: str, overrides: dict, out: Path | None, quiet: bool) -> None:
+    """Judge the ship of PRESET by the International Grain Code and the 2008 IS Code, without a simulation.
+
+    \b
+    cargolab stability ship/handysize-grain
+    cargolab stability ship/handysize-grain --set ship.gravity_height="9.6 m" --out limit
+    """
+    from lab.preset.find import load
+    from lab.report.stability import judge
+
+    text, folder = judge(load(preset, overrides), out)
+    if not quiet:
+        click.echo(text)
+    click.echo(folder)
+
+
+@click.command()
+@click.argument("file", type=click.Path(path_type=Path, dir_okay=False))
+@click.option(
+    "--weights", type=click.Path(path_type=Path, dir_okay=False), metavar="CSV", help="Weights that she carries."
+)
+@click.option(
+    "--density", type=click.FloatRange(500, 2000), default=1025.0, show_default=True, help="Of the water, kg/m3."
+)
+@click.option(
+    "--stations", type=click.IntRange(3, 1001), default=41, show_default=True, help="Cuts of a surface, ends included."
+)
+@click.option(
+    "--scale", type=click.FloatRange(1e-4, 1e4), default=1.0, show_default=True, help="Metres in a surface's unit."
+)
+@click.option(
+    "--at", type=float, metavar="X", help="Also print the section at X (m) as the outline of a preset's ship."
+)
+@out_option("for tables and figure", "renders/hull/NAME")
+def hull(file: Path, weights, density: float, stations: int, scale: float, at: float | None, out: Path | None) -> None:
+    """Hydrostatics and cross curves of the hull in FILE; with --weights her draughts, levers and criteria.
+
+    FILE is a CSV of station, z, half_breadth in m (x forward from the aft perpendicular, z from the keel, rows of a
+    station from the keel up), or a closed surface as STL (x forward, y to starboard, z up).
+
+    \b
+    cargolab hull wigley.csv
+    cargolab hull barge.stl --scale 0.001 --weights weights.csv
+    """
+    from lab.report.hull import examine
+
+    folder = out or Path("renders/hull") / file.stem
+    click.echo(examine(file, folder, density, stations, scale, weights, at))
+    click.echo(folder)
+
+
+@click.command()
+@click.argument("folder", type=click.Path(path_type=Path))
+@click.option("--pdf", is_flag=True, help="Write it as PDF, too; needs WeasyPrint (the extra `pdf`).")
+def report(folder: Path, pdf: bool) -> None:
+    """Write one self-contained page on the run in FOLDER for the file: report.html, to be printed on A4.
+
+    \b
+    cargolab report renders/ship/handysize-grain --pdf
+    """
+    from lab.report.file import write_report
+
+    for path in write_report(folder, pdf):
+        click.echo(path)

@@ -1,0 +1,173 @@
+"""How far the grain in a ship's hold has shifted, beside what the International Grain Code assumes.
+
+The cargo's centre has moved aside by s (m, in the hold) since it settled. Its volumetric heeling moment is V s, V the
+level filling of the settled bed; `assumed_moment` is that of a surface turned to 15 or 25 deg (`solvers.ship.naval`),
+without the factor for the vertical part. Both are of the whole hold, at the full scale if the preset has one.
+
+shifted_moment: the mean over the last tenth of the run, positive to starboard. Error: half the difference between the
+two halves of that time. largest_shifted_moment: the largest to either side. shifted_share: `shifted_moment`, whatever
+its side, over `assumed_moment`; largest_shifted_share: of the largest.
+list_as_it_lies, area_as_it_lies: heel of equilibrium and residual area (Grain Code A 7.1) in calm water with the cargo
+as it lies at the end, G moved aside and up with it. assumed_list, assumed_area: with the assumed shift; these follow
+from the preset and the settled bed alone.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from lab.base.errors import LabError
+from lab.measures.drawing import BLUE, GREEN, GREY, VERMILION, Sheet, band, mean_label
+from lab.measures.naval_levers import draw_levers
+from lab.measures.ship import has_ship, vessel_of
+from lab.measures.value import Value, over_worlds
+from lab.measures.wall_force import grain_mass
+from lab.naval import sheet
+from lab.naval.condition import Condition, condition
+from lab.recording import Recording
+from solvers.machine.errors import Unavailable
+from solvers.ship.cargo import ONE, level_area
+from solvers.ship.hydrostatics import Loading, balanced_heave
+from solvers.ship.naval.grain_code import ASSUMED, residual
+from solvers.ship.section import Section
+
+OF = "grains"
+LAST = 0.1  # of a run: over it the final shift is averaged
+FULL = 0.999  # of a hold: more than this is no level filling any more
+NONE = "no angle of equilibrium"
+
+
+@dataclass(frozen=True, eq=False)
+class Shift:
+    """A ship's condition with her settled bed, the cargo's way aside and up (T, W, 2) m at the full scale.
+
+    `share`: mass of the cargo over that of the whole ship.
+    """
+
+    condition: Condition
+    way: np.ndarray
+    share: float
+
+    @property
+    def moment(self) -> np.ndarray:
+        """Volumetric moment (T, W) m⁴, positive to starboard."""
+        return self.condition.cargo.volume * self.way[..., 0]
+
+    def lying(self, way: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
+        """The heeling arm (m) of the cargo moved by a way (2,), towards the side that it lies on."""
+        return sheet.shifted(self.share * abs(float(way[0])), self.share * float(way[1]))
+
+    def last(self, time: np.ndarray) -> slice:
+        """The rows of the last tenth of the time (T,)."""
+        return slice(int(np.searchsorted(time, time[-1] - LAST * (time[-1] - time[0]))), None)
+
+
+def applies(recording: Recording) -> bool:
+    """There is a ship with grains that settled as a level filling, and she can be judged."""
+    return has_ship(recording) and shift(recording) is not None
+
+
+def measure(recording: Recording) -> dict[str, Value]:
+    """Moments (m⁴), shares (%), lists (deg) and residual areas (m rad)."""
+    found, time = shift(recording), recording.series["time"]
+    rows = found.last(time)
+    moment = found.moment[rows]
+    half = len(moment) // 2
+    errors = np.abs(moment[:half].mean(axis=0) - moment[half:].mean(axis=0)) / 2.0
+    final, largest = moment.mean(axis=0), np.abs(found.moment).max(axis=0)
+    assumed = found.condition.assumed_moment
+    levers, flooding = found.condition.levers, found.condition.flooding
+    ends = [residual(levers, found.lying(way), flooding) for way in found.way[rows].mean(axis=0)]
+    code = residual(levers, sheet.assumed_line(found.condition), flooding)
+    return {
+        "shifted_moment": over_worlds(final, "m^4", uncertainties=errors, kind="halves", note="positive to starboard"),
+        "largest_shifted_moment": over_worlds(largest, "m^4"),
+        "assumed_moment": over_worlds([assumed], "m^4", note=_surface(found.condition)),
+        "shifted_share": over_worlds(100.0 * np.abs(final) / assumed, "%", note="of the assumed moment"),
+        "largest_shifted_share": over_worlds(100.0 * largest / assumed, "%", note="of the assumed moment"),
+        "list_as_it_lies": over_worlds([_degrees(end.heel) for end in ends], "deg", missing=NONE),
+        "assumed_list": over_worlds([_degrees(code.heel)], "deg", missing=NONE),
+        "area_as_it_lies": over_worlds([end.area for end in ends], "m rad"),
+        "assumed_area": over_worlds([code.area], "m rad"),
+    }
+
+
+def _degrees(angle: float) -> float:
+    return float(np.degrees(angle)) if np.isfinite(angle) else np.nan
+
+
+def _surface(found: Condition) -> str:
+    assumed = ASSUMED[found.given.filling]
+    return f"surface at {np.degrees(assumed.surface):.0f} deg; the code adds a factor of {assumed.factor:.2f}"
+
+
+def shift(recording: Recording) -> Shift | None:
+    """The shift of a recording's cargo; None where the bed is no level filling or the ship cannot be judged."""
+    return _shift(str(recording.path), len(recording.series["time"])) if recording.preset.grains else None
+
+
+@lru_cache(maxsize=4)
+def _shift(path: str, _rows: int) -> Shift | None:
+    from lab.recording import open_recording
+
+    with open_recording(path) as recording:
+        preset, vessel = recording.preset, vessel_of(recording.path)
+        centre = np.array(recording.series["centre_of_mass"], dtype=float)
+        if vessel is None or not len(centre):
+            return None
+        mass = float(grain_mass(recording).sum(axis=1).mean())
+        hold = Section(recording.outline)
+    try:
+        area = level_area(hold, float(centre[0, :, 1].mean()))
+        if area > FULL * hold.area:
+            return None
+        level = -balanced_heave(hold, Loading(area, (0.0, 0.0)), ONE, 0.0)
+        found = condition(preset, vessel, level, mass)
+    except (Unavailable, LabError):
+        return None
+    return Shift(found, (centre - centre[0]) * found.scale, found.cargo.mass / found.displacement)
+
+
+def draw_moment(sheet_: Sheet, recording: Recording, values: Mapping[str, Value]) -> None:
+    """Heel of the ship and volumetric moment of her cargo against time, positive to starboard.
+
+    Level lines: the assumed shift to either side, of 15 and 25 deg, and that of the preset with its factor.
+    """
+    found, series = shift(recording), recording.series
+    heel, moment = sheet_.panels(heights=(1, 1.4))[:, 0]
+    band(heel, series["time"], -np.degrees(series["pose"][..., 2]), GREY, None)
+    heel.set_ylabel("heel to\nstarboard (deg)")
+    band(moment, series["time"], found.moment, BLUE, f"moment of the shift, {mean_label(recording.worlds)}")
+    ship = found.condition
+    given = ASSUMED[ship.given.filling]
+    lines = {
+        "filled": (GREEN, ":", 1.0),
+        "partly-filled": (VERMILION, "--", 1.0),
+        ship.given.filling: (VERMILION, "-", given.factor),
+    }
+    for name, (colour, style, factor) in lines.items():
+        size = ship.hold.volumetric_moment(ship.cargo.volume, ASSUMED[name].surface) * factor
+        angle = f"{np.degrees(ASSUMED[name].surface):.0f} deg" + (f" x {factor:.2f}" if factor != 1.0 else "")
+        for side in (1.0, -1.0):
+            label = f"assumed, {angle}: {size:.4g} m$^4$" if side > 0.0 else None
+            moment.axhline(side * size, color=colour, ls=style, lw=1.0, label=label)
+    moment.set_ylabel("volumetric moment (m$^4$)")
+    moment.set_xlabel("time (s)")
+
+
+def draw_criteria(sheet_: Sheet, recording: Recording, values: Mapping[str, Value]) -> None:
+    """Righting levers with the heeling arms of the assumed shift and of the cargo as it lies at the end."""
+    ((axes,),) = sheet_.panels(columns=1)
+    found = shift(recording)
+    draw_levers(axes, found.condition, found.lying(end_of(found, recording)))
+
+
+def end_of(found: Shift, recording: Recording) -> np.ndarray:
+    """The mean way (2,) m of the cargo at the end: of the world that lies farthest aside."""
+    ways = found.way[found.last(recording.series["time"])].mean(axis=0)
+    return ways[int(np.argmax(np.abs(ways[:, 0])))]
+
+
+FIGURES = {"shifted-moment": draw_moment, "criteria": draw_criteria}

@@ -1,0 +1,188 @@
+"""The condition of a preset's ship as a loading manual states it, at the full scale if the preset has one."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from lab.assembly.grains import grain_count
+from lab.assembly.ship import flooding_angles
+from lab.base.errors import LabError
+from lab.preset.schema import Preset
+from lab.preset.sections.naval.stability import Stability
+from solvers.machine.errors import Unavailable
+from solvers.ship.naval.curve import Levers
+from solvers.ship.naval.form import TONNE, Form, Hydrostatics, prism
+from solvers.ship.naval.grain_code import ASSUMED, heeling_arm
+from solvers.ship.naval.holds import Hold
+from solvers.ship.naval.weather import Exposed
+from solvers.ship.section import Section
+from solvers.ship.vessel import Vessel
+from solvers.ship.water import Water
+
+HEELS = np.radians(np.arange(-60.0, 91.0))
+
+
+@dataclass(frozen=True, eq=False)
+class Cargo:
+    """The grain in the hold: level of its surface above the keel (m), volume (m³), mass (t)."""
+
+    level: float
+    volume: float
+    mass: float
+
+    @property
+    def stowage(self) -> float:
+        """Stowage factor (m³/t) of the bed."""
+        return self.volume / self.mass
+
+
+@dataclass(frozen=True, eq=False)
+class Condition:
+    """A ship in calm water: form, displacement (t), centre of gravity (m), angles (rad) of deck edge and flooding.
+
+    All lengths are `scale` times those of the preset; `gravity_height` is KG without free surfaces, whose moment (t m)
+    is apart. `hold` and `cargo` are None without grain.
+    """
+
+    form: Form
+    water: Water
+    draught: float
+    displacement: float
+    gravity_height: float
+    free_surface: float
+    deck: float | None
+    flooding: float | None
+    length: float
+    scale: float
+    given: Stability
+    hold: Hold | None = None
+    cargo: Cargo | None = None
+
+    @cached_property
+    def hydrostatics(self) -> Hydrostatics:
+        """Particulars at her draught."""
+        return self.form.hydrostatics(self.draught, self.water)
+
+    @property
+    def fluid_height(self) -> float:
+        """KG (m) raised by the free surfaces: KG + moment / Δ."""
+        return self.gravity_height + self.free_surface / self.displacement
+
+    @property
+    def metacentric_height(self) -> float:
+        """GM (m) after correction for free surfaces."""
+        return self.hydrostatics.km - self.fluid_height
+
+    @cached_property
+    def levers(self) -> Levers:
+        """Righting levers (m) over `HEELS`, corrected for free surfaces."""
+        return Levers(HEELS, self.form.righting_levers(self.displacement, self.water, HEELS, (0.0, self.fluid_height)))
+
+    @property
+    def block(self) -> float:
+        """Block coefficient with her length in the waterline, at most 1."""
+        return min(1.0, self.hydrostatics.volume / (self.length * self.hydrostatics.breadth * self.draught))
+
+    @property
+    def exposed(self) -> Exposed | None:
+        """What the weather criterion needs; None without area and lever of the wind."""
+        if self.given.wind_area is None:
+            return None
+        return Exposed(
+            self.length,
+            self.hydrostatics.breadth,
+            self.draught,
+            self.fluid_height,
+            self.displacement,
+            self.block,
+            self.metacentric_height,
+            self.given.wind_area * self.scale**2,
+            self.given.wind_lever * self.scale,
+            self.given.keel_area * self.scale**2,
+            self.given.sharp_bilges,
+            self.water.gravity,
+        )
+
+    @property
+    def stowage(self) -> float:
+        """Stowage factor (m³/t): as given, else as the bed stows."""
+        return self.given.stowage * TONNE if self.given.stowage else self.cargo.stowage
+
+    @property
+    def assumed_moment(self) -> float:
+        """Volumetric heeling moment (m⁴) of the assumed shift in the hold, without the factor for its vertical part."""
+        return self.hold.volumetric_moment(self.cargo.volume, ASSUMED[self.given.filling].surface)
+
+    @property
+    def assumed_arm(self) -> float:
+        """λ0 (m) of the assumed shift, that in other holds included."""
+        moment = self.assumed_moment * ASSUMED[self.given.filling].factor + self.given.other_moment * self.scale**4
+        return heeling_arm(moment, self.stowage, self.displacement)
+
+
+def condition(preset: Preset, vessel: Vessel, level: float | None = None, mass: float | None = None) -> Condition:
+    """The condition of a preset's ship, `vessel`, at the full scale.
+
+    level: height (m, the tank's axes) of the level filling, mass: of the grain in the slab (kg); as the preset says
+    without them. Raises LabError for a ship that cannot be judged.
+    """
+    ship, given, scale = preset.ship, preset.stability, preset.ship.scale or 1.0
+    load = vessel.ship.load
+    section = Section(load.section.outline * scale)
+    try:
+        form = prism(section, (ship.length or 1.0) * scale)
+        angles = flooding_angles(ship, vessel)
+        hold, cargo = _stowed(preset, form, scale, level, mass)
+    except Unavailable as error:
+        raise LabError(f"stability: {error}") from None
+    keel = float(load.section.outline[:, 1].min())
+    mass_a_metre = vessel.ship.body.mass * scale**2
+    return Condition(
+        form,
+        load.water,
+        ship.draught * scale,
+        mass_a_metre * float(form.x[-1]) / TONNE,
+        (ship.gravity_height - keel) * scale,
+        given.free_surface * scale**4 / TONNE,
+        angles["deck_immersion_angle"],
+        angles["downflooding_angle"],
+        (given.length or ship.length or 1.0) * scale,
+        scale,
+        given,
+        hold,
+        cargo,
+    )
+
+
+def _stowed(preset: Preset, form: Form, scale: float, level: float | None, mass: float | None):
+    """The hold, its heights from the keel, and the grain in it; None and None without grain."""
+    if preset.grains is None:
+        return None, None
+    keel = float(preset.ship.corners[:, 1].min())
+    shift = np.array(preset.ship.hold) - [0.0, keel]
+    hold = Hold(
+        Section((np.array(preset.tank.corners) + shift) * scale),
+        (preset.tank.length or preset.ship.length or 1.0) * scale,
+    )
+    level = level_of(preset) if level is None else level
+    if level is None:
+        return None, None
+    mass = slab_mass(preset) if mass is None else mass
+    filling = hold.filled_to((level + shift[1]) * scale)
+    volume = min(filling.volume, hold.volume * (1.0 - 1e-9))
+    whole = mass / preset.thickness * scale**2 * hold.length / TONNE
+    return hold, Cargo(filling.level, volume, whole)
+
+
+def level_of(preset: Preset) -> float | None:
+    """Height (m, the tank's axes) of the level filling that the preset asks for; None where only a run tells it."""
+    if preset.grains.depth is None:
+        return None
+    return float(np.array(preset.tank.corners)[:, 1].min()) + preset.grains.depth
+
+
+def slab_mass(preset: Preset) -> float:
+    """Mass (kg) of the preset's grains, spheres of the mean cube of their diameters."""
+    mean_cube = preset.mean_diameter**3 * (1.0 + preset.grains.spread**2)  # of a uniform spread
+    return grain_count(preset) * np.pi / 6.0 * preset.material.density * mean_cube

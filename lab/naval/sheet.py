@@ -1,0 +1,101 @@
+"""The sheet of criteria of a condition: with the shift that the codes assume, and with the cargo as it lies."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from math import inf
+
+import numpy as np
+
+from lab.naval.condition import Cargo, Condition
+from solvers.ship.naval import grain_code, intact, weather
+from solvers.ship.naval.criteria import Criterion
+
+ASSUMED, AS_IT_LIES = "assumed shift", "as it lies"
+
+
+@dataclass(frozen=True)
+class Row:
+    """A criterion of a sheet, and with which shift of the cargo it was judged, "" where that does not matter."""
+
+    shift: str
+    criterion: Criterion
+
+
+def rows(condition: Condition, lying: Callable[[np.ndarray], np.ndarray] | None = None) -> list[Row]:
+    """All criteria that the condition can be judged by; `lying`: the heeling arm (m) of the cargo as it lies."""
+    given = condition.levers, condition.metacentric_height
+    ends = condition.deck, condition.flooding
+    found = []
+    arms = {ASSUMED: assumed_line(condition)} if condition.cargo else {}
+    if lying is not None:
+        arms[AS_IT_LIES] = lying
+    for name, arm in arms.items():
+        judged = grain_code.criteria(given[0], arm, given[1], *ends)
+        found += [Row(name, criterion) for criterion in (judged if name == ASSUMED else judged[:2])]
+    found += [Row("", criterion) for criterion in intact.criteria(*given, condition.flooding)]
+    if condition.exposed is not None and condition.metacentric_height > 0.0:
+        found += [Row("", criterion) for criterion in weather.criteria(given[0], condition.exposed, *ends)]
+    return found
+
+
+def assumed_line(condition: Condition) -> Callable[[np.ndarray], np.ndarray]:
+    """The heeling arm (m) of the shift that the Grain Code assumes."""
+    return grain_code.straight_line(condition.assumed_arm)
+
+
+def shifted(aside: float, up: float) -> Callable[[np.ndarray], np.ndarray]:
+    """The heeling arm (m) of a centre of gravity that has moved (m) to the side that goes down and upwards.
+
+    It is exact for cargo that lies still: G moves from (0, KG) to (aside, KG + up), so GZ loses aside cos φ + up sin φ.
+    """
+    return lambda heel: aside * np.cos(heel) + up * np.sin(heel)
+
+
+def unjudged(condition: Condition) -> Iterator[str]:
+    """What could not be judged and why, a sentence each."""
+    if condition.exposed is None:
+        yield "The weather criterion was not judged: give stability.wind_area and stability.wind_lever."
+    if condition.cargo is None:
+        yield "The Grain Code was not judged: the preset says no level of grain (grains.depth)."
+    if condition.scale == 1.0 and condition.hydrostatics.breadth < 5.0:
+        yield "A model's levers are judged as if a ship were so small; give ship.scale for those of the full scale."
+
+
+def facts(condition: Condition) -> list[tuple[str, str]]:
+    """The condition in rows of a name and a text."""
+    h = condition.hydrostatics
+    rows = [
+        ("displacement", f"{condition.displacement:.5g} t, by {condition.form.perpendiculars:.5g} m of her section"),
+        ("draught", f"{condition.draught:.4g} m, breadth {h.breadth:.4g} m, block coefficient {condition.block:.3f}"),
+        ("KB, BM, KM", f"{h.kb:.3f}, {h.bm:.3f}, {h.km:.3f} m"),
+        (
+            "KG, free surfaces, GM",
+            f"{condition.gravity_height:.3f}, {condition.fluid_height - condition.gravity_height:.3f}, "
+            f"{condition.metacentric_height:.3f} m",
+        ),
+        ("deck edge, flooding", f"{degrees(condition.deck)}, {degrees(condition.flooding)}"),
+        ("levers vanish", degrees(condition.levers.vanishing, "beyond 90 deg")),
+    ]
+    if condition.cargo is None:
+        return rows
+    return [*rows, *_loaded(condition, condition.cargo)]
+
+
+def _loaded(condition: Condition, cargo: Cargo) -> list[tuple[str, str]]:
+    """Rows on the hold and the grain in it."""
+    hold, given, assumed = condition.hold, condition.given, grain_code.ASSUMED[condition.given.filling]
+    stows = f"{cargo.volume:.5g} m3, {cargo.mass:.5g} t; stowage factor {condition.stowage:.3f} m3/t"
+    angle, moment = np.degrees(assumed.surface), condition.assumed_moment
+    return [
+        ("hold", f"{hold.length:.4g} m long, {hold.volume:.5g} m3, {given.filling} to {cargo.level:.3f} m"),
+        ("grain", stows + (f" (the bed's {cargo.stowage:.3f})" if given.stowage else "")),
+        (
+            "assumed shift",
+            f"surface {angle:.0f} deg, {moment:.5g} m4 x {assumed.factor:.2f}, arm {condition.assumed_arm:.3f} m",
+        ),
+    ]
+
+
+def degrees(angle: float | None, never: str = "never") -> str:
+    """An angle (rad) in degrees; `never` for None."""
+    return never if angle is None or angle == inf else f"{np.degrees(angle):.1f} deg"

@@ -1,0 +1,125 @@
+"""Tables of the naval architect as CSV, in the columns and units that stability programs use."""
+
+import csv
+from collections.abc import Sequence
+from io import StringIO
+from pathlib import Path
+
+import numpy as np
+
+from lab.base.errors import LabError
+from lab.naval.condition import Condition
+from lab.naval.sheet import Row, assumed_line
+from solvers.ship.naval.form import Form
+from solvers.ship.naval.grain_code import ASSUMED
+from solvers.ship.water import Water
+
+KN_HEELS = (5.0, 10.0, 12.0, 15.0, 20.0, 30.0, 40.0, 50.0, 60.0)  # deg
+LEVELS = 20  # rows of a hold's table
+DRAUGHTS = 11  # rows of a table of hydrostatics
+
+Table = tuple[Sequence[str], Sequence[Sequence[object]]]
+
+HYDROSTATICS = {
+    "T m": ("draught", 3),
+    "volume m3": ("volume", 1),
+    "displacement t": ("displacement", 1),
+    "LCB m": ("lcb", 3),
+    "KB m": ("kb", 3),
+    "BM m": ("bm", 3),
+    "KM m": ("km", 3),
+    "TPC t/cm": ("tpc", 3),
+    "MCT t m/cm": ("mct", 2),
+    "LCF m": ("lcf", 3),
+    "Cb": ("block", 4),
+    "Cm": ("midship", 4),
+    "Cp": ("prismatic", 4),
+    "Cw": ("plane", 4),
+}
+
+
+def criteria(rows: Sequence[Row]) -> Table:
+    """The sheet of criteria."""
+    header = "rule", "criterion", "shift", "required", "limit", "attained", "unit", "margin", "verdict", "note"
+    lines = []
+    for row in rows:
+        one = row.criterion
+        numbers = (f"{one.limit:.4g}", f"{one.attained:.4g}", one.unit, f"{one.margin:.4g}", one.verdict, one.note)
+        lines.append((one.rule, one.what, row.shift, one.kind, *numbers))
+    return header, lines
+
+
+def levers(condition: Condition, lying=None) -> Table:
+    """GZ and the heeling arms, heel positive starboard down."""
+    heel = condition.levers.heel[condition.levers.heel >= 0.0]
+    columns = {"heel deg": np.degrees(heel), "GZ m": condition.levers.at(heel)}
+    if condition.cargo:
+        columns["assumed grain arm m"] = assumed_line(condition)(heel)
+    if lying is not None:
+        columns["arm as it lies m"] = lying(heel)
+    return tuple(columns), [tuple(f"{value:.4f}" for value in row) for row in zip(*columns.values(), strict=True)]
+
+
+def hydrostatics(form: Form, water: Water, deepest: float, count: int = DRAUGHTS) -> Table:
+    """Hydrostatics at equal steps of draught (m) up to the deepest."""
+    lines = []
+    for draught in deepest * np.arange(1, count + 1) / count:
+        found = form.hydrostatics(float(draught), water)
+        lines.append(tuple(f"{getattr(found, name):.{digits}f}" for name, digits in HYDROSTATICS.values()))
+    return tuple(HYDROSTATICS), lines
+
+
+def cross_curves(form: Form, water: Water, deepest: float, count: int = DRAUGHTS) -> Table:
+    """KN = GZ + KG sin(heel) at the displacements of equal steps of draught (m), the keel level."""
+    lines = []
+    for draught in deepest * np.arange(1, count + 1) / count:
+        displacement = form.hydrostatics(float(draught), water).displacement
+        levers = form.cross_curves(displacement, water, np.radians(KN_HEELS))
+        lines.append((f"{displacement:.1f}", *(f"{lever:.3f}" for lever in levers)))
+    return ("displacement t", *(f"KN {heel:g} deg m" for heel in KN_HEELS)), lines
+
+
+def hold(condition: Condition) -> Table:
+    """Level, volume, KG and volumetric moments of the hold, heights above the keel."""
+    low, high = condition.hold.section.outline[:, 1].min(), condition.hold.section.outline[:, 1].max()
+    levels = low + (high - low) * np.arange(1, LEVELS + 1) / LEVELS
+    surfaces = tuple(ASSUMED[name].surface for name in ("filled", "partly-filled"))
+    lines = [
+        (f"{level:.3f}", f"{volume:.1f}", f"{centre:.3f}", *(f"{moment:.1f}" for moment in moments))
+        for level, volume, centre, *moments in condition.hold.table(levels, surfaces)
+    ]
+    return ("level m", "volume m3", "KG m", "moment at 15 deg m4", "moment at 25 deg m4"), lines
+
+
+def all_of(condition: Condition, rows: Sequence[Row], lying=None) -> dict[str, Table]:
+    """Every table of a condition by the name of its file."""
+    deepest = 0.999 * condition.form.depth
+    found = {
+        "criteria": criteria(rows),
+        "righting-levers": levers(condition, lying),
+        "hydrostatics": hydrostatics(condition.form, condition.water, deepest),
+        "cross-curves": cross_curves(condition.form, condition.water, deepest),
+    }
+    if condition.hold is not None:
+        found["hold"] = hold(condition)
+    return found
+
+
+def text(table: Table) -> str:
+    """A table as CSV."""
+    out = StringIO()
+    csv.writer(out, lineterminator="\n").writerows([table[0], *table[1]])
+    return out.getvalue()
+
+
+def write(tables: dict[str, Table], folder: Path) -> dict[str, Path]:
+    """Write tables as NAME.csv into a folder; returns the files by name. Raises LabError when it cannot be written."""
+    written = {}
+    for name, table in tables.items():
+        written[name] = folder / f"{name}.csv"
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            written[name].write_text(text(table), encoding="utf-8")
+        except OSError as error:
+            raise LabError(f"{folder} cannot be written ({error.strerror}): choose another folder.") from error
+    return written

@@ -1,0 +1,1 @@
+"""What a preset says of a whole ship, for the naval architect."""

@@ -1,0 +1,230 @@
+"""A whole hull by its stations: displacement, hydrostatics and righting levers in calm water.
+
+Each station is a section (`solvers.ship.section`), cut at x (m) forward from the aft perpendicular; z is from the keel.
+Along the ship Simpson's rule is used, in its form for unequal distances. A ship that is known by one section alone is a
+prism of three equal stations, for which the rule is exact.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from solvers.machine.errors import Unavailable
+from solvers.ship.section import Section
+from solvers.ship.water import Water
+
+TONNE = 1000.0  # kg
+CENTIMETRES = 100.0  # in a metre
+
+
+@dataclass(frozen=True)
+class Hydrostatics:
+    """Hydrostatic particulars at a draught, upright: lengths in m, displacement in t, TPC in t/cm, MCT in t m/cm.
+
+    lcb and lcf are forward from the aft perpendicular, kb, km and kml above the keel. The coefficients are of length
+    and breadth of this waterline, except `block`, which has the length between perpendiculars if that is given.
+    """
+
+    draught: float
+    volume: float
+    displacement: float
+    lcb: float
+    kb: float
+    bm: float
+    km: float
+    bml: float
+    kml: float
+    tpc: float
+    mct: float
+    lcf: float
+    waterplane: float
+    length: float
+    breadth: float
+    block: float
+    midship: float
+    prismatic: float
+    plane: float
+
+
+@dataclass(frozen=True, eq=False)
+class Form:
+    """Stations x (n,) m that rise, and a section at each, None where the hull has shrunk to a point or a line.
+
+    `length` (m) is that between perpendiculars; the distance of the outermost stations without it.
+    """
+
+    x: np.ndarray
+    sections: Sequence[Section | None]
+    length: float | None = None
+
+    def __post_init__(self):
+        x = np.asarray(self.x, dtype=float)
+        object.__setattr__(self, "x", x)
+        if len(x) < 3 or len(x) != len(self.sections):
+            raise Unavailable("a hull needs at least three stations.")
+        if not (np.diff(x) > 0.0).all():
+            raise Unavailable("the hull's stations must rise from aft to forward, none of them twice.")
+        if not any(self.sections):
+            raise Unavailable("the hull has no station with an area.")
+
+    @property
+    def perpendiculars(self) -> float:
+        """Length (m) that trimming moments and coefficients are of."""
+        return self.length or float(np.ptp(self.x))
+
+    @cached_property
+    def weights(self) -> np.ndarray:
+        """Weights (n,) m with which values at the stations are summed along the ship."""
+        from scipy.integrate import simpson  # slow to import
+
+        return simpson(np.eye(len(self.x)), x=self.x)
+
+    @cached_property
+    def depth(self) -> float:
+        """Height (m) of the lowest top of all stations above the keel: up to it the stations are closed."""
+        return min(float(section.outline[:, 1].max()) for section in self.sections if section is not None)
+
+    @cached_property
+    def volume(self) -> float:
+        """Volume (m³) of the whole hull."""
+        return float(sum(w * s.area for w, s in zip(self.weights, self.sections, strict=True) if s is not None))
+
+    def _along(self, level: np.ndarray, roll: float, plane: bool = False) -> np.ndarray:
+        """Of each station (n, 3): area and moments of its immersed part, or breadth and moments of its waterline.
+
+        level (n,): height (m) of the water above the stations' origin; y and depth from there, in the earth's axes.
+        """
+        found = np.zeros((len(self.x), 3))
+        for k, section in enumerate(self.sections):
+            if section is None:
+                continue
+            if plane:
+                line = section.waterplane(-level[k], roll)
+                found[k] = line.breadth, line.moment, line.second_moment
+            else:
+                wet = section.immersion(-level[k], roll)
+                found[k] = wet.area, wet.moment, wet.depth_moment
+        return found
+
+    def displaced(self, level: np.ndarray, roll: float = 0.0) -> tuple[float, np.ndarray]:
+        """Volume (m³) below water, and its centre x, y, z (m): y and z from the keel's point K, in the earth's axes."""
+        wet = self._along(level, roll)
+        volume = float(self.weights @ wet[:, 0])
+        if volume <= 0.0:
+            return 0.0, np.zeros(3)
+        moments = self.x * wet[:, 0], wet[:, 1], level * wet[:, 0] - wet[:, 2]
+        return volume, np.array([self.weights @ moment for moment in moments]) / volume
+
+    def hydrostatics(self, draught: float, water: Water) -> Hydrostatics:
+        """Particulars at an even draught (m). Raises `Unavailable` for one above the stations' tops, or a dry hull."""
+        if not 0.0 < draught <= self.depth:
+            raise Unavailable(
+                f"the draught of {draught:.4g} m must be above 0 and at most the {self.depth:.4g} m of the stations."
+            )
+        level = np.full(len(self.x), draught)
+        volume, centre = self.displaced(level)
+        areas, plane = self._along(level, 0.0)[:, 0], self._along(level, 0.0, plane=True)
+        breadths = plane[:, 0]
+        surface = float(self.weights @ breadths)
+        if volume <= 0.0 or surface <= 0.0:
+            raise Unavailable(f"at a draught of {draught:.4g} m the hull displaces nothing.")
+        lcf = float(self.weights @ (self.x * breadths)) / surface
+        bm = float(self.weights @ plane[:, 2]) / volume
+        bml = (float(self.weights @ (self.x**2 * breadths)) - lcf**2 * surface) / volume
+        length, breadth = self._waterline(breadths), float(breadths.max())
+        displacement, full = water.density * volume / TONNE, float(areas.max())
+        between = self.perpendiculars
+        return Hydrostatics(
+            draught=draught,
+            volume=volume,
+            displacement=displacement,
+            lcb=float(centre[0]),
+            kb=float(centre[2]),
+            bm=bm,
+            km=float(centre[2]) + bm,
+            bml=bml,
+            kml=float(centre[2]) + bml,
+            tpc=water.density * surface / TONNE / CENTIMETRES,
+            mct=displacement * bml / (CENTIMETRES * between),
+            lcf=lcf,
+            waterplane=surface,
+            length=length,
+            breadth=breadth,
+            block=volume / (between * breadth * draught),
+            midship=full / (breadth * draught),
+            prismatic=volume / (between * full),
+            plane=surface / (between * breadth),
+        )
+
+    def _waterline(self, breadths: np.ndarray) -> float:
+        """Length (m) of the waterline: to the stations where it ends, or where it is wet last."""
+        wet = np.flatnonzero(breadths > 0.0)
+        ends = max(wet[0] - 1, 0), min(wet[-1] + 1, len(self.x) - 1)
+        return float(self.x[ends[1]] - self.x[ends[0]])
+
+    def floating(self, displacement: float, water: Water, roll: float = 0.0, lcg: float | None = None) -> np.ndarray:
+        """Heights (n,) m of the water above the keel at the stations, in vertical balance with a displacement (t).
+
+        With `lcg` (m) she also trims freely until her buoyancy is under it; without it her keel stays level.
+        Raises `Unavailable` for a weight that the hull cannot carry, or a centre of gravity beyond its buoyancy.
+        """
+        needed = displacement * TONNE / water.density
+        if not 0.0 < needed < self.volume:
+            most = self.volume * water.density / TONNE
+            raise Unavailable(
+                f"the weight of {displacement:.5g} t does not float: it must be above 0 and below the {most:.5g} t "
+                "that the whole hull displaces."
+            )
+        if lcg is None:
+            return self._level(needed, roll, 0.0)
+        from scipy.optimize import brentq
+
+        surplus = lambda slope: self.displaced(self._level(needed, roll, slope), roll)[1][0] - lcg  # noqa: E731
+        steepest = 2.0 * self.depth / self.perpendiculars
+        if surplus(-steepest) * surplus(steepest) > 0.0:
+            raise Unavailable(f"the weights' centre {lcg:.4g} m forward is beyond what the hull can trim to carry.")
+        return self._level(needed, roll, brentq(surplus, -steepest, steepest, xtol=1e-12))
+
+    def _level(self, needed: float, roll: float, slope: float) -> np.ndarray:
+        """Heights (n,) m of the water at the stations for a volume (m³), rising forward by a slope."""
+        from scipy.optimize import brentq
+
+        tilt = slope * (self.x - 0.5 * (self.x[0] + self.x[-1]))
+        size = max(section.size for section in self.sections if section is not None)
+        reach = 2.0 * size + float(np.abs(tilt).max())
+        surplus = lambda level: float(self.weights @ self._along(level + tilt, roll)[:, 0]) - needed  # noqa: E731
+        return brentq(surplus, -reach, reach, xtol=1e-12 * size, rtol=1e-15) + tilt
+
+    def cross_curves(
+        self, displacement: float, water: Water, heels: np.ndarray, lcg: float | None = None
+    ) -> np.ndarray:
+        """Levers KN (m) about the keel at heels (rad) to port: KN = GZ + KG sin φ with G amidships."""
+        return np.array(
+            [
+                -self.displaced(self.floating(displacement, water, h, lcg), h)[1][1]
+                for h in np.asarray(heels, dtype=float)
+            ]
+        )
+
+    def righting_levers(
+        self,
+        displacement: float,
+        water: Water,
+        heels: np.ndarray,
+        gravity: tuple[float, float],
+        lcg: float | None = None,
+    ) -> np.ndarray:
+        """Levers GZ (m) at heels (rad) to port, with the centre of gravity y, z (m) of `gravity`, y to starboard."""
+        heels = np.asarray(heels, dtype=float)
+        return (
+            self.cross_curves(displacement, water, heels, lcg) - gravity[1] * np.sin(heels) + gravity[0] * np.cos(heels)
+        )
+
+
+def prism(section: Section, length: float) -> Form:
+    """A ship of one section all along a length (m); her section's lowest point is her keel."""
+    keel = float(section.outline[:, 1].min())
+    above = Section(section.outline - [0.0, keel]) if keel else section
+    return Form(np.array([0.0, 0.5 * length, length]), (above, above, above))

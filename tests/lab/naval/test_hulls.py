@@ -1,0 +1,251 @@
+"""Hulls from offsets and surfaces: closed forms, published hulls, one against the other, and what is refused."""
+
+import struct
+from math import pi
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from lab.cli.naval import hull
+from lab.naval.offsets import from_offsets, read_offsets, rows_of
+from lab.naval.surface import read_surface
+from lab.naval.weights import read_weights
+from lab.report.hull import outline_at
+from solvers.machine.errors import Unavailable
+from solvers.ship.naval.form import prism
+from solvers.ship.section import box
+from solvers.ship.water import Water
+from tests.oracles.presets import error_of
+
+SEA, FRESH = Water(1025.0), Water(1000.0)
+LENGTH, BREADTH, DRAUGHT = 100.0, 10.0, 6.25  # m, of Wigley's hull
+DATA = Path(__file__).parents[2] / "data"
+
+
+def wigley(stations: int = 41, levels: int = 81) -> np.ndarray:
+    """Offsets (n, 3) of Wigley's hull (1942), y = B/2 (1 − ξ²)(1 − ζ²), its sides upright above the water."""
+    rows = []
+    for xi in np.linspace(-1.0, 1.0, stations):
+        z = DRAUGHT * np.linspace(0.0, 1.0, levels)
+        y = 0.5 * BREADTH * (1.0 - xi**2) * (1.0 - (1.0 - z / DRAUGHT) ** 2)
+        rows += [(0.5 * LENGTH * (1.0 + xi), *pair) for pair in zip(z, y, strict=True)]
+        rows.append((0.5 * LENGTH * (1.0 + xi), 1.3 * DRAUGHT, y[-1]))
+    return np.array(rows)
+
+
+def of(rows: np.ndarray):
+    return from_offsets(*np.array(rows, dtype=float).T)
+
+
+def test_box_has_the_closed_forms():
+    form, heel = prism(box(27.0, 14.0), 130.0), np.radians([5.0, 10.0, 15.0])
+    found = form.hydrostatics(9.7, SEA)
+    expected = {
+        "volume": 27.0 * 9.7 * 130.0,
+        "displacement": 1.025 * 27.0 * 9.7 * 130.0,
+        "kb": 9.7 / 2.0,
+        "bm": 27.0**2 / (12.0 * 9.7),
+        "bml": 130.0**2 / (12.0 * 9.7),
+        "lcb": 65.0,
+        "lcf": 65.0,
+        "tpc": 1.025 * 27.0 * 130.0 / 100.0,
+        "mct": 1.025 * 27.0 * 130.0**2 / 1200.0,
+        "block": 1.0,
+        "plane": 1.0,
+    }
+    assert {name: getattr(found, name) for name in expected} == pytest.approx(expected, rel=1e-6)
+    levers = form.righting_levers(found.displacement, SEA, heel, (0.0, found.km - 2.0))
+    wall_sided = np.sin(heel) * (2.0 + 0.5 * found.bm * np.tan(heel) ** 2)  # Scribanti
+    assert levers == pytest.approx(wall_sided, rel=1e-6)
+
+
+def test_box_trims_by_its_longitudinal_metacentre():
+    """A centre of gravity 1 m aft of amidships: tan(trim) = 1 m / (GM_L), KG at KB so that GM_L is BM_L, exactly."""
+    form = prism(box(27.0, 14.0), 130.0)
+    displacement = form.hydrostatics(7.0, SEA).displacement
+    level = form.floating(displacement, SEA, lcg=64.0)
+    assert (level[0] - level[-1]) / 130.0 == pytest.approx(1.0 * 12.0 * 7.0 / 130.0**2, rel=1e-6)
+    assert level.mean() == pytest.approx(7.0, rel=1e-9)
+
+
+def test_wigley_has_its_closed_forms():
+    found = of(wigley()).hydrostatics(DRAUGHT, FRESH)
+    volume = 4.0 / 9.0 * LENGTH * BREADTH * DRAUGHT
+    expected = {
+        "volume": volume,
+        "kb": 0.625 * DRAUGHT,
+        "bm": 4.0 / 105.0 * BREADTH**3 * LENGTH / volume,
+        "bml": BREADTH * LENGTH**3 / 30.0 / volume,
+        "lcb": LENGTH / 2.0,
+        "lcf": LENGTH / 2.0,
+        "block": 4.0 / 9.0,
+        "midship": 2.0 / 3.0,
+        "prismatic": 2.0 / 3.0,
+        "plane": 2.0 / 3.0,
+    }
+    assert {name: getattr(found, name) for name in expected} == pytest.approx(expected, rel=2e-4)
+
+
+def test_wigley_converges_with_its_waterlines():
+    """Straight lines between waterlines: of second order."""
+    exact = 4.0 / 9.0 * LENGTH * BREADTH * DRAUGHT
+    off = [abs(of(wigley(41, n + 1)).hydrostatics(DRAUGHT, FRESH).volume - exact) for n in (10, 20)]
+    assert off[0] / off[1] == pytest.approx(4.0, rel=0.02)
+
+
+def test_series_60_has_its_published_coefficients():
+    """Todd (1963), parent of block 0.70: L/B 7.0, B/T 2.5, Cb 0.70, Cm 0.986, Cp 0.710, Cw 0.785, LCB 0.5 % forward."""
+    form = read_offsets(DATA / "series60-cb70.csv")
+    length, draught = 30.48, 30.48 / 7.0 / 2.5
+    found = form.hydrostatics(draught, FRESH)
+    assert found.volume / (length * found.breadth * draught) == pytest.approx(0.70, rel=0.01)
+    assert found.midship == pytest.approx(0.986, rel=0.01)
+    assert found.waterplane / (length * found.breadth) == pytest.approx(0.785, rel=0.01)
+    assert 100.0 * (found.lcb / length - 0.5) == pytest.approx(0.5, abs=0.15)
+
+
+def tube(points: np.ndarray) -> np.ndarray:
+    """Triangles (n, 3, 3) of a closed surface from rings of points (stations, k, 3)."""
+    ahead, beside = points[1:], np.roll(points, -1, axis=1)
+    sides = [(points[:-1], ahead, beside[:-1]), (beside[:-1], ahead, beside[1:])]
+    found = [np.stack(side, axis=2).reshape(-1, 3, 3) for side in sides]
+    for ring in (points[0], points[-1]):
+        middle = np.broadcast_to(ring.mean(axis=0), ring.shape)
+        found.append(np.stack([ring, np.roll(ring, -1, axis=0), middle], axis=1))
+    return np.concatenate(found)
+
+
+def stl(path: Path, triangles: np.ndarray) -> Path:
+    """A binary STL file."""
+    body = b"".join(struct.pack("<12fH", 0, 0, 0, *map(float, t.ravel()), 0) for t in triangles)
+    path.write_bytes(b" " * 80 + struct.pack("<I", len(triangles)) + body)
+    return path
+
+
+def cylinder(corners: int) -> np.ndarray:
+    """Rings (21, k, 3) of a round barge of 5 m radius, 40 m long."""
+    angle = 2.0 * pi * (np.arange(corners) + 0.5) / corners
+    x = np.linspace(0.0, 40.0, 21)[:, None] * np.ones(corners)
+    return np.stack(
+        [x, np.broadcast_to(5.0 * np.cos(angle), x.shape), np.broadcast_to(5.0 + 5.0 * np.sin(angle), x.shape)], axis=-1
+    )
+
+
+def test_surface_and_offsets_are_the_same_hull(tmp_path):
+    """A round barge's volume converges to π r² L/2 at half depth, and its offsets, written out, give it again."""
+    off = []
+    for corners in (32, 64):
+        form = read_surface(stl(tmp_path / "barge.stl", tube(cylinder(corners))), 11)
+        found = form.hydrostatics(0.5 * form.depth, FRESH)
+        off.append(abs(found.volume - 0.5 * pi * 25.0 * 40.0) / (0.5 * pi * 25.0 * 40.0))
+        again = of(list(rows_of(form))).hydrostatics(0.5 * form.depth, FRESH)
+        assert vars(again) == pytest.approx(vars(found), rel=1e-5)
+    assert off[1] < 0.002 and off[0] / off[1] == pytest.approx(4.0, rel=0.1)
+
+
+def test_wigley_as_a_surface(tmp_path):
+    rings, given = [], wigley(31, 21)
+    for x in np.unique(given[1:-1, 0])[1:-1]:
+        z, y = given[given[:, 0] == x][1:, 1:].T
+        keel = [[x, 0.0, 0.0]]
+        starboard = np.column_stack([np.full_like(z, x), y, z])
+        rings.append(np.concatenate([keel, starboard, (starboard * [1, -1, 1])[::-1]]))
+    form = read_surface(stl(tmp_path / "wigley.stl", tube(np.array(rings))), 29)
+    same = of(given[(given[:, 0] > 0.0) & (given[:, 0] < LENGTH)])
+    one, other = (hull.hydrostatics(DRAUGHT, FRESH) for hull in (form, same))
+    assert (one.volume, one.km, one.bml) == pytest.approx((other.volume, other.km, other.bml), rel=1e-5)
+
+
+def test_text_surface_and_scale(tmp_path):
+    lines = ["solid hull"]
+    for triangle in tube(1000.0 * cylinder(16)):
+        corners = "".join(f"vertex {x:.6e} {y:.6e} {z:.6e}\n" for x, y, z in triangle)
+        lines.append(f"facet normal 0 0 0\nouter loop\n{corners}endloop\nendfacet")
+    (tmp_path / "hull.stl").write_text("\n".join([*lines, "endsolid"]))
+    form = read_surface(tmp_path / "hull.stl", 5, scale=0.001)
+    assert form.volume == pytest.approx(40.0 * 0.5 * 16 * 25.0 * np.sin(2.0 * pi / 16), rel=1e-5)
+
+
+def test_command_with_weights(tmp_path):
+    """A box of 27 × 14 × 130 m as offsets carries what a hand calculation says."""
+    rows = "".join(f"{x},{z},13.5\n" for x in (0, 65, 130) for z in (0, 14))
+    (tmp_path / "box.csv").write_text("station,z,half_breadth\n" + rows)
+    (tmp_path / "weights.csv").write_text(
+        "name,mass,lcg,tcg,vcg,fsm\nlightship,10000,65,0,9,\ncargo,20000,65,0,8,\nfuel,1000,65,0,2,1550\n"
+    )
+    total, _ = read_weights(tmp_path / "weights.csv")
+    assert (total.mass, total.vcg, total.fluid_vcg) == pytest.approx((31e3, 252e3 / 31e3, 252e3 / 31e3 + 0.05))
+    given = [
+        str(tmp_path / "box.csv"),
+        "--weights",
+        str(tmp_path / "weights.csv"),
+        "--out",
+        str(tmp_path / "out"),
+        "--at",
+        "0",
+    ]
+    answer = CliRunner().invoke(hull, given)
+    assert answer.exit_code == 0, answer.output
+    draught = 31e3 / (1.025 * 27.0 * 130.0)
+    gm = draught / 2 + 27.0**2 / (12 * draught) - total.fluid_vcg
+    assert f"aft {draught:.3f}, forward {draught:.3f} m" in answer.output and f"{gm:.3f} m; heel" in answer.output
+    assert {path.name for path in (tmp_path / "out").iterdir()} == {
+        *(f"{name}.csv" for name in ("hydrostatics", "cross-curves", "criteria", "righting-levers", "weights")),
+        "righting-levers.png",
+    }
+    assert '["13.5 m", "14 m"]' in answer.output
+
+
+def test_weight_off_the_middle_lists_her_to_starboard(tmp_path):
+    """tcg to starboard: starboard down, positive in naval output, by tan φ = tcg / GM while she is wall-sided."""
+    (tmp_path / "box.csv").write_text(
+        "station,z,half_breadth\n0,0,13.5\n0,14,13.5\n65,0,13.5\n65,14,13.5\n130,0,13.5\n130,14,13.5\n"
+    )
+    (tmp_path / "weights.csv").write_text("name,mass,lcg,tcg,vcg\nall,31000,65,0.1,9\n")
+    answer = CliRunner().invoke(
+        hull, [str(tmp_path / "box.csv"), "--weights", str(tmp_path / "weights.csv"), "--out", str(tmp_path / "out")]
+    )
+    draught = 31e3 / (1.025 * 27.0 * 130.0)
+    gm = draught / 2 + 27.0**2 / (12 * draught) - 9.0
+    heel = float(answer.output.split("heel ")[1].split(" deg to starboard")[0])
+    assert heel == pytest.approx(np.degrees(0.1 / gm), abs=0.06)
+    first = (tmp_path / "out" / "righting-levers.csv").read_text().splitlines()[:2]
+    assert first == ["heel to starboard deg,GZ m", "0.0,-0.1000"]  # upright she is pulled to starboard
+
+
+def test_offsets_that_bound_no_hull():
+    good = [(0, 0, 1), (0, 2, 1), (5, 0, 1), (5, 2, 1), (9, 0, 1), (9, 2, 1)]
+    assert "station 9 m crosses itself" in error_of(of, [*good[:4], (9, 2, 1), (9, 0, 1)])
+    assert "half_breadth below 0" in error_of(of, [*good[:5], (9, 2, -1)])
+    assert "three stations" in error_of(of, good[:2])
+    assert "no station with an area" in error_of(of, [(x, z, 0) for x in (0, 5, 9) for z in (0, 2)])
+
+
+def test_surfaces_that_are_no_hull(tmp_path):
+    whole = tube(cylinder(12))
+    assert "has holes, 3 of its edges" in error_of(read_surface, stl(tmp_path / "a.stl", whole[1:]), 5)
+    (tmp_path / "b.stl").write_text("nothing of the kind")
+    assert "no STL file" in error_of(read_surface, tmp_path / "b.stl", 5)
+    twins = np.concatenate([whole, whole + np.array([0.0, 30.0, 0.0])])
+    assert "several pieces" in error_of(read_surface, stl(tmp_path / "c.stl", twins), 5)
+    assert "cannot be read" in error_of(read_surface, tmp_path / "none.stl", 5)
+
+
+def test_weights_that_are_none(tmp_path):
+    path = tmp_path / "w.csv"
+    path.write_text("name,mass,lcg,tcg,vcg\nship,many,1,1,1\n")
+    assert "row 1 (ship) needs a number for mass" in error_of(read_weights, path)
+    path.write_text("name,mass\nship,5\n")
+    assert "columns name, mass, lcg, tcg, vcg" in error_of(read_weights, path)
+    form = prism(box(10.0, 5.0), 50.0)
+    with pytest.raises(Unavailable, match="does not float"):
+        form.floating(3000.0, SEA)
+    with pytest.raises(Unavailable, match="beyond what the hull can trim"):
+        form.floating(1000.0, SEA, lcg=60.0)
+
+
+def test_section_at_a_station():
+    text = outline_at(of(wigley(5, 3)), 52.0)
+    assert text.startswith("# the section at 50 m\n[ship]\noutline = [[")

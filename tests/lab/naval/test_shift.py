@@ -1,0 +1,111 @@
+"""Where the cargo of a run lies beside what the code assumes, and the page of a run for the file."""
+
+import re
+from hashlib import sha256
+
+import numpy as np
+import pytest
+
+from lab.base.errors import LabError
+from lab.measures import ship_grain
+from lab.preset.find import load
+from lab.preset.recorded import to_table
+from lab.recording import open_recording
+from lab.report import coarse, file, plots
+from solvers.ship.cargo import filling_centre
+from solvers.ship.hydrostatics import Loading, equilibrium
+from solvers.ship.naval.holds import Hold
+from solvers.ship.section import Section
+from tests.oracles.synthetic import frame, of_a_ship, recorder, sample
+
+SHIP = "ship/handysize-grain"
+COUNT, LASTS = 2312, 100.0
+ASIDE, UP, MOST = 0.3, 0.02, 0.5  # m: where the cargo lies at last, and the farthest aside on the way
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory):
+    """A run of the Handysize whose cargo goes 0.5 m to port, then to 0.3 m to starboard, and stays there."""
+    folder = tmp_path_factory.mktemp("shift")
+    preset = load(SHIP).resolved
+    outline = np.array(preset.tank.corners)
+    settled = filling_centre(Section(outline), 150.0, 0.0)
+    with recorder(
+        folder, count=COUNT, preset=SHIP, resolved=to_table(preset), outline=outline, radius=np.full((1, COUNT), 0.125)
+    ) as writer:
+        for now in np.linspace(0.0, LASTS, 201):
+            aside = np.interp(now, [0.0, 30.0, 60.0, LASTS], [0.0, -MOST, ASIDE, ASIDE])
+            up = np.interp(now, [0.0, 60.0, LASTS], [0.0, UP, UP])
+            pose = np.array([[0.0, 0.0, -0.1 * np.sin(now)]])
+            writer.sample(sample(now, pose=pose, centre_of_mass=np.add(settled, [[aside, up]]), **of_a_ship()))
+        writer.frame(frame(0.0, count=COUNT))
+        writer.close("complete")
+    return folder
+
+
+@pytest.fixture(scope="module")
+def measured(run):
+    with open_recording(run) as recording:
+        return ship_grain.measure(recording), ship_grain.shift(recording)
+
+
+def test_volumetric_moment_is_volume_times_way(measured):
+    values, found = measured
+    assert found.condition.cargo.volume == pytest.approx(150.0 * 25.0, rel=1e-6)
+    assert values["shifted_moment"].value == pytest.approx(3750.0 * ASIDE, rel=1e-6)  # to starboard: positive
+    assert values["largest_shifted_moment"].value == pytest.approx(3750.0 * MOST, rel=1e-2)
+    assumed = Hold(found.condition.hold.section, 25.0).volumetric_moment(3750.0, np.radians(25.0))
+    assert values["assumed_moment"].value == pytest.approx(assumed, rel=1e-6)
+    assert values["shifted_share"].value == pytest.approx(100.0 * 3750.0 * ASIDE / assumed, rel=1e-6)
+
+
+def test_list_is_that_of_the_moved_centre_of_gravity(measured):
+    """By the hydrostatics of the section with G of ship and cargo moved, to the side of the lab's negative roll."""
+    values, found = measured
+    condition = found.condition
+    share = COUNT * np.pi / 6.0 * 0.25**3 * 1400.0 / 0.25 * 25.0 / (condition.displacement * 1000.0)
+    assert found.share == pytest.approx(share, rel=1e-9)
+    section = condition.form.sections[0]
+    mass = condition.displacement * 1000.0 / 130.7
+    loading = Loading(mass, (share * ASIDE, condition.gravity_height + share * UP))
+    roll = np.degrees(equilibrium(section, loading, condition.water)[1])
+    assert roll < 0.0 and values["list_as_it_lies"].value == pytest.approx(-roll, rel=1e-4)
+    assert values["area_as_it_lies"].value > values["assumed_area"].value
+
+
+def test_figures_are_drawn(run, measured):
+    with open_recording(run) as recording:
+        for draw in ship_grain.FIGURES.values():
+            sheet = plots.Sheet(recording)
+            draw(sheet, recording, measured[0])
+            labels = " ".join(text.get_text() for text in sheet.finished().legends[0].get_texts())
+            assert "assumed" in labels
+
+
+def test_page_for_the_file_is_whole_and_signed(run):
+    (path,) = file.write_report(run)
+    page = path.read_text(encoding="utf-8")
+    assert sha256((run / "recording.h5").read_bytes()).hexdigest() in page
+    assert not re.findall(r"(?:src|href)=\"(?!data:)", page)  # nothing outside of it
+    assert page.count("Grain Code A 7.1.2") == 2 and "(as it lies)" in page and "starboard down" in page
+    assert page.count("data:image/png;base64,") >= 2
+
+
+def test_without_the_library_of_pdf_the_remedy_is_said(run, monkeypatch):
+    monkeypatch.setitem(__import__("sys").modules, "weasyprint", None)
+    with pytest.raises(LabError, match=r"--pdf: needs WeasyPrint .* print report.html"):
+        file.write_report(run, pdf=True)
+
+
+def test_coarse_grains_side_by_side():
+    rows = dict(coarse.described(load(SHIP, {"grains.stands_for": "5 mm"}).resolved))
+    assert rows["grain"] == "250 mm; 5 mm, s = 50" and rows["across the tank"] == "106; 5320, 1/s"
+    assert coarse.described(load("tilting/quick").resolved) == []
+    wet = {
+        "contact.cohesion": "humid",
+        "material.humidity": "70 %",
+        "contact.tangential": "haff-werner",
+        "material.shear_damping": "25 N s/m",
+    }
+    rows = dict(coarse.described(load(SHIP, {"grains.stands_for": "5 mm", **wet}).resolved))
+    assert rows["shear damping"].startswith("25 N s/m; 0.01 N s/m, s^2")
