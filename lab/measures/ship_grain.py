@@ -7,9 +7,9 @@ without the factor for the vertical part. Both are of the whole hold, at the ful
 shifted_moment: the mean over the last tenth of the run, positive to starboard. Error: half the difference between the
 two halves of that time. largest_shifted_moment: the largest to either side. shifted_share: `shifted_moment`, whatever
 its side, over `assumed_moment`; largest_shifted_share: of the largest.
-list_as_it_lies, area_as_it_lies: heel of equilibrium and residual area (Grain Code A 7.1) in calm water with the cargo
-as it lies at the end, G moved aside and up with it. assumed_list, assumed_area: with the assumed shift; these follow
-from the preset and the settled bed alone.
+list_as_it_lay, area_as_it_lay: heel of equilibrium and residual area (Grain Code A 7.1) in calm water with the cargo as
+it lay when it was farthest aside, G moved aside and up with it: the worst of the run. assumed_list, assumed_area: with
+the assumed shift; these follow from the preset and the settled bed alone.
 """
 
 from collections.abc import Callable, Mapping
@@ -59,6 +59,12 @@ class Shift:
         """The heeling arm (m) of the cargo moved by a way (2,), towards the side that it lies on."""
         return sheet.shifted(self.share * abs(float(way[0])), self.share * float(way[1]))
 
+    @property
+    def farthest(self) -> np.ndarray:
+        """The way (W, 2) m of the cargo when it was farthest aside."""
+        rows = np.abs(self.way[..., 0]).argmax(axis=0)
+        return self.way[rows, np.arange(self.way.shape[1])]
+
     def last(self, time: np.ndarray) -> slice:
         """The rows of the last tenth of the time (T,)."""
         return slice(int(np.searchsorted(time, time[-1] - LAST * (time[-1] - time[0]))), None)
@@ -79,7 +85,7 @@ def measure(recording: Recording) -> dict[str, Value]:
     final, largest = moment.mean(axis=0), np.abs(found.moment).max(axis=0)
     assumed = found.condition.assumed_moment
     levers, flooding = found.condition.levers, found.condition.flooding
-    ends = [residual(levers, found.lying(way), flooding) for way in found.way[rows].mean(axis=0)]
+    ends = [residual(levers, found.lying(way), flooding) for way in found.farthest]
     code = residual(levers, sheet.assumed_line(found.condition), flooding)
     return {
         "shifted_moment": over_worlds(final, "m^4", uncertainties=errors, kind="halves", note="positive to starboard"),
@@ -87,9 +93,9 @@ def measure(recording: Recording) -> dict[str, Value]:
         "assumed_moment": over_worlds([assumed], "m^4", note=_surface(found.condition)),
         "shifted_share": over_worlds(100.0 * np.abs(final) / assumed, "%", note="of the assumed moment"),
         "largest_shifted_share": over_worlds(100.0 * largest / assumed, "%", note="of the assumed moment"),
-        "list_as_it_lies": over_worlds([_degrees(end.heel) for end in ends], "deg", missing=NONE),
+        "list_as_it_lay": over_worlds([_degrees(end.heel) for end in ends], "deg", missing=NONE),
         "assumed_list": over_worlds([_degrees(code.heel)], "deg", missing=NONE),
-        "area_as_it_lies": over_worlds([end.area for end in ends], "m rad"),
+        "area_as_it_lay": over_worlds([end.area for end in ends], "m rad"),
         "assumed_area": over_worlds([code.area], "m rad"),
     }
 
@@ -158,16 +164,15 @@ def draw_moment(sheet_: Sheet, recording: Recording, values: Mapping[str, Value]
 
 
 def draw_criteria(sheet_: Sheet, recording: Recording, values: Mapping[str, Value]) -> None:
-    """Righting levers with the heeling arms of the assumed shift and of the cargo as it lies at the end."""
+    """Righting levers with the heeling arms of the assumed shift and of the cargo as it lay farthest aside."""
     ((axes,),) = sheet_.panels(columns=1)
     found = shift(recording)
-    draw_levers(axes, found.condition, found.lying(end_of(found, recording)))
+    draw_levers(axes, found.condition, found.lying(worst(found)))
 
 
-def end_of(found: Shift, recording: Recording) -> np.ndarray:
-    """The mean way (2,) m of the cargo at the end: of the world that lies farthest aside."""
-    ways = found.way[found.last(recording.series["time"])].mean(axis=0)
-    return ways[int(np.argmax(np.abs(ways[:, 0])))]
+def worst(found: Shift) -> np.ndarray:
+    """The way (2,) m of the cargo when it was farthest aside, of the world in which that was most."""
+    return found.farthest[int(np.argmax(np.abs(found.farthest[:, 0])))]
 
 
 FIGURES = {"shifted-moment": draw_moment, "criteria": draw_criteria}

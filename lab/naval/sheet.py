@@ -1,4 +1,4 @@
-"""The sheet of criteria of a condition: with the shift that the codes assume, and with the cargo as it lies."""
+"""The sheet of criteria of a condition: with the shift that the codes assume, and with the cargo as it lay in a run."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -10,7 +10,7 @@ from lab.naval.condition import Cargo, Condition
 from solvers.ship.naval import grain_code, intact, weather
 from solvers.ship.naval.criteria import Criterion
 
-ASSUMED, AS_IT_LIES = "assumed shift", "as it lies"
+ASSUMED, AS_IT_LIES = "assumed shift", "as it lay farthest aside"
 
 
 @dataclass(frozen=True)
@@ -22,7 +22,7 @@ class Row:
 
 
 def rows(condition: Condition, lying: Callable[[np.ndarray], np.ndarray] | None = None) -> list[Row]:
-    """All criteria that the condition can be judged by; `lying`: the heeling arm (m) of the cargo as it lies."""
+    """All criteria that the condition can be judged by; `lying`: the heeling arm (m) of the cargo as it lay."""
     given = condition.levers, condition.metacentric_height
     ends = condition.deck, condition.flooding
     found = []

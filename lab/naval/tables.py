@@ -56,7 +56,7 @@ def levers(condition: Condition, lying=None) -> Table:
     if condition.cargo:
         columns["assumed grain arm m"] = assumed_line(condition)(heel)
     if lying is not None:
-        columns["arm as it lies m"] = lying(heel)
+        columns["arm as it lay m"] = lying(heel)
     return tuple(columns), [tuple(f"{value:.4f}" for value in row) for row in zip(*columns.values(), strict=True)]
 
 

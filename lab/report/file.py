@@ -14,6 +14,7 @@ import matplotlib
 
 from lab.base.errors import LabError
 from lab.measures import measure_all
+from lab.preset.units import show
 from lab.recording import Recording, open_recording
 from lab.report.numbers import number
 from lab.report.page import render_text
@@ -85,12 +86,14 @@ def _assumptions(recording: Recording, judged: bool) -> Iterator[str]:
     preset = recording.preset
     yield "All happens in a plane across the tank; what is in it is a slab, whose forces count per metre of length."
     if preset.grains:
-        yield "Grains are spheres that move in the plane, or outlines of that mass; each grain stands for itself."
+        real = preset.grains.stands_for
+        stands = f"many of {show(real, 'm')}: coarse grains" if real else "itself"
+        yield f"Grains are spheres that move in the plane, or outlines of that mass; each grain stands for {stands}."
     if preset.ship:
         yield "The hull is a prism of one section in beam waves of linear theory, with viscous roll damping as given."
     if judged:
         yield "Criteria are those of calm water; the levers of the whole ship are those of her section."
-        yield "As it lies: the cargo's centre has moved aside and up as in the mean over the last tenth of the run."
+        yield "As it lay farthest aside: the cargo's centre as the run's worst moment had it, as if it then lay still."
         yield SIGNS
 
 

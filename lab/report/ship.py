@@ -92,7 +92,7 @@ def judged(recording: Recording) -> tuple[list[sheet.Row], list[tuple[str, str]]
         return [], []
     found = ship_grain.shift(recording)
     if found is not None:
-        arm = found.lying(ship_grain.end_of(found, recording))
+        arm = found.lying(ship_grain.worst(found))
         return sheet.rows(found.condition, arm), sheet.facts(found.condition)
     vessel = vessel_of(recording.path)
     if vessel is None:

@@ -30,7 +30,7 @@ TELLING = (
     "roll_period",
     "largest_roll",
     "largest_shifted_share",
-    "list_as_it_lies",
+    "list_as_it_lay",
     "heap_angle",
     "flow_rate",
     "clogged",

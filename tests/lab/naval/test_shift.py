@@ -60,17 +60,17 @@ def test_volumetric_moment_is_volume_times_way(measured):
 
 
 def test_list_is_that_of_the_moved_centre_of_gravity(measured):
-    """By the hydrostatics of the section with G of ship and cargo moved, to the side of the lab's negative roll."""
+    """By the hydrostatics of the section with G as when the cargo lay farthest, to port: the lab's positive roll."""
     values, found = measured
     condition = found.condition
     share = COUNT * np.pi / 6.0 * 0.25**3 * 1400.0 / 0.25 * 25.0 / (condition.displacement * 1000.0)
     assert found.share == pytest.approx(share, rel=1e-9)
     section = condition.form.sections[0]
     mass = condition.displacement * 1000.0 / 130.7
-    loading = Loading(mass, (share * ASIDE, condition.gravity_height + share * UP))
+    loading = Loading(mass, (-share * MOST, condition.gravity_height + share * 0.5 * UP))
     roll = np.degrees(equilibrium(section, loading, condition.water)[1])
-    assert roll < 0.0 and values["list_as_it_lies"].value == pytest.approx(-roll, rel=1e-4)
-    assert values["area_as_it_lies"].value > values["assumed_area"].value
+    assert roll > 0.0 and values["list_as_it_lay"].value == pytest.approx(roll, rel=1e-4)
+    assert values["area_as_it_lay"].value > values["assumed_area"].value
 
 
 def test_figures_are_drawn(run, measured):
@@ -87,7 +87,7 @@ def test_page_for_the_file_is_whole_and_signed(run):
     page = path.read_text(encoding="utf-8")
     assert sha256((run / "recording.h5").read_bytes()).hexdigest() in page
     assert not re.findall(r"(?:src|href)=\"(?!data:)", page)  # nothing outside of it
-    assert page.count("Grain Code A 7.1.2") == 2 and "(as it lies)" in page and "starboard down" in page
+    assert page.count("Grain Code A 7.1.2") == 2 and "(as it lay farthest aside)" in page and "starboard down" in page
     assert page.count("data:image/png;base64,") >= 2
 
 
