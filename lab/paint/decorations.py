@@ -223,6 +223,8 @@ class LivePlot:
         top, bottom = 1.7 * self._text, height - (3.1 if labels[0] else 1.9) * self._text
         room = int((bottom - top) / (1.6 * self._text))  # number of labels that fit without touching
         self._levels = ticks(self._low[1], self._high[1], min(4, max(1, room)))
+        while len(self._levels) > max(2, room):  # a locator gives more than it is asked for
+            self._levels = self._levels[::2]
         widest = max(font(self._text).getlength(plain(level)) for level in self._levels)
         self.indent = max(widest + 0.5 * self._text, indent)
         left, right = self.indent, width - 0.4 * self._text

@@ -28,7 +28,7 @@ class Level:
 
 
 LEVELS = {
-    "draft": Level(1e-3, 1.6, DRAFT_RESTITUTION, "softer beds slide up to 4 deg later", 20),
+    "draft": Level(1e-3, 1.6, DRAFT_RESTITUTION, "beds may run out 3 % faster", 20),
     "standard": Level(1e-2, 1.0, RESTITUTION, "no error of the softness found among 12 beds", 40),
     "reference": Level(1.0, 1.0, RESTITUTION, "the material's own stiffness", 80),
 }

@@ -34,14 +34,25 @@ class Made:
         return ", ".join([f"version {self.version}", *filter(None, (self.date, self.processor))])
 
 
-def processor() -> str:
-    """The processor by its maker's name."""
+def processor(listed: Path = Path("/proc/cpuinfo")) -> str:
+    """The processor by its maker's name, of AMD's with the generation, which their names leave out."""
     try:
-        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
+        lines = listed.read_text(encoding="utf-8").splitlines()
     except OSError:
         return platform.processor() or platform.machine()
-    names = [line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")]
-    return names[0] if names else platform.machine()
+    fields = dict(tuple(part.strip() for part in line.split(":", 1)) for line in reversed(lines) if ":" in line)
+    name = fields.get("model name", "")
+    generation = "" if "Zen" in name else _generation(fields.get("cpu family", ""), fields.get("model", ""))
+    return ", ".join(filter(None, (name or platform.machine(), generation if name.startswith("AMD") else "")))
+
+
+def _generation(family: str, model: str) -> str:
+    """AMD's generation by family and model, as its Processor Programming References number them; "" if not known."""
+    if not (family.isdigit() and model.isdigit()):
+        return ""
+    if family == "25":
+        return "Zen 4" if 0x10 <= int(model) < 0x20 or int(model) >= 0x60 else "Zen 3"
+    return {"23": "Zen 2" if int(model) >= 0x30 else "Zen", "26": "Zen 5"}.get(family, "")
 
 
 def read(path: Path) -> dict[str, dict]:

@@ -14,6 +14,7 @@ from lab.assembly.water import most_drops
 from lab.base.errors import LabError
 from lab.preset.find import LoadedPreset, load
 from lab.preset.recorded import resolved_from, to_table
+from lab.sweeps.alike import alike
 from lab.sweeps.axes import values
 
 FORMAT = "cargo-shift-lab sweep 1"
@@ -43,9 +44,10 @@ class Sweep:
         return preset.duration * preset.run.repeats * max(1, grain_count(preset) + most_drops(preset))
 
     def same_as(self, other: "Sweep") -> bool:
-        """Whether the other sweep has the same points."""
-        mine, others = ((s.name, s.axes, [point.resolved for point in s.points]) for s in (self, other))
-        return mine == others
+        """Whether the other sweep has the same points, be it of an earlier version, which wrote what it derived."""
+        if (self.name, self.axes) != (other.name, other.axes):
+            return False
+        return all(alike(one.resolved, two.resolved) for one, two in zip(self.points, other.points, strict=True))
 
     def write(self, folder: Path) -> None:
         """Write the definition to the sweep's folder. Raises LabError."""

@@ -14,6 +14,7 @@ from lab.paint.painter import Camera, paint_strokes
 from lab.paint.scenery.stage import Stage
 
 SHARE = 0.3  # of the tank's width that is shown
+OUTSIDE = 0.08  # of the part's size that may lie outside the tank
 LARGER = 1.6  # times the stage's scale at least
 HALF = 0.08  # half thickness in u of the frames around the part and its picture
 
@@ -40,7 +41,8 @@ class Inset:
         box = layout["inset"]
         width = SHARE * float(np.ptp(bed.footage.outline[:, 0]))
         scale = max((box[2] - box[0]) / width, LARGER * stage.cameras[0].scale)
-        return cls(stage, middle, box, scale, layout.unit)
+        size = np.array([box[2] - box[0], box[3] - box[1]]) / scale
+        return cls(stage, _moved_inside(middle, size, bed.footage.outline), box, scale, layout.unit)
 
     def paint(self, picture: np.ndarray, frame: int, theme: Theme) -> None:
         """Paint the part into its box, and its frame onto the tank, in place."""
@@ -63,6 +65,13 @@ def _paint_frame(picture: np.ndarray, low: np.ndarray, high: np.ndarray, half: f
     corners = np.array([low, (high[0], low[1]), high, (low[0], high[1]), low])
     thick = np.full((4, 1), half)
     paint_strokes(picture, np.hstack([corners[:-1], thick, corners[1:], thick]), colour)
+
+
+def _moved_inside(middle: np.ndarray, size: np.ndarray, outline: np.ndarray) -> np.ndarray:
+    """The middle (2,) of a part of this size (m), moved so that little of the part lies outside the tank."""
+    edge = OUTSIDE * size
+    low, high = outline.min(axis=0) - edge + 0.5 * size, outline.max(axis=0) + edge - 0.5 * size
+    return np.where(low <= high, np.clip(middle, low, high), 0.5 * (low + high))
 
 
 def _liveliest(bed: Bed) -> np.ndarray | None:

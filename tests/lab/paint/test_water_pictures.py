@@ -68,15 +68,17 @@ def area(made, camera=None):
 @pytest.mark.parametrize("turn", [0.0, 0.3])
 @pytest.mark.parametrize("spacing", [0.02, 0.01, 0.004, 0.002])
 def test_the_painted_area_of_still_water_is_its_volume(spacing, turn):
+    """Within 1 %; beside slanted walls this measure leaves out the pixels that wall and water share, half a row."""
     made = still(spacing=spacing)
-    assert area(made, camera_of(turn)) == pytest.approx(len(made.place[0]) * spacing**2, rel=0.02)
+    shared = 0.5 * (0.9 + 2.0 * 0.2) / SCALE if turn else 0.0
+    assert area(made, camera_of(turn)) + shared == pytest.approx(len(made.place[0]) * spacing**2, rel=0.01)
 
 
 def test_the_painted_area_of_a_drop_and_of_spray_is_their_volume():
     drop = filled(lambda p: np.hypot(p[:, 0], p[:, 1] - 0.3) < 0.1, tank(), SPACING, rough=0.1)
-    assert area(footage(drop)) == pytest.approx(len(drop) * SPACING**2, rel=0.02)
+    assert area(footage(drop)) == pytest.approx(len(drop) * SPACING**2, rel=0.01)
     apart = filled(lambda p: p[:, 1] > 0.1, tank(), 0.06, rough=0.2)
-    assert area(footage(apart)) == pytest.approx(len(apart) * SPACING**2, rel=0.02)
+    assert area(footage(apart)) == pytest.approx(len(apart) * SPACING**2, rel=0.01)
 
 
 def chamfered():

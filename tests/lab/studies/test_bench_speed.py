@@ -276,4 +276,18 @@ def test_ratios_to_other_codes_stand_by_processor_the_smallest_first(tmp_path, m
     assert least == sorted(least) and len(rows) > 2
     assert all(row[6] and row[7] for row in rows)
     manual = [line for line in processors.overview(tmp_path).splitlines() if "a trial processor" in line]
-    assert len(manual) == 1 and manual[0].startswith("| a trial processor | 2.25 (2 to 2.5), at rest |  | the lab, ")
+    assert len(manual) == 1
+    assert manual[0].startswith("| a trial processor | grain-steps | at rest | 2.25 (2 to 2.5) |  | the lab, ")
+
+
+def test_simulated_seconds_stand_after_grain_steps_a_row_a_bed(tmp_path, monkeypatch):
+    """At one error of the restitution, at rest and in flow, beside grain-steps."""
+    monkeypatch.setattr(processors, "processor", lambda: "a trial processor")
+    unit = "simulated seconds at 1 % of restitution"
+    what = [("in flow", unit, 2.5), ("at rest", unit, 6.0), ("at rest", processors.GRAIN_STEPS, 5.0)]
+    ratios = [processors.Ratio("LAMMPS", *processors.SPRINGS, bed, how, x, x, x) for bed, how, x in what]
+    processors.keep(tmp_path, ratios)
+    rows = [line for line in processors.overview(tmp_path).splitlines() if "a trial processor" in line]
+    assert [row.split(" | ")[1:3] for row in rows] == [
+        ["grain-steps", "at rest"], [unit, "at rest"], [unit, "in flow"]
+    ]  # fmt: skip

@@ -7,7 +7,7 @@ import pytest
 from matplotlib.figure import Figure
 
 from lab.base.errors import LabError
-from lab.report.kept import Made, plain
+from lab.report.kept import Made, plain, processor
 from lab.studies.engine import Bench, Kept, choose
 
 
@@ -119,3 +119,13 @@ def test_what_is_not_known_of_a_result_is_left_out_of_its_words():
     assert Made("0.1.0").words == "version 0.1.0"
     assert Made("0.2.0", "2026-11-23", "AMD EPYC").words == "version 0.2.0, 2026-11-23, AMD EPYC"
     assert plain({"a": (1.0, np.inf, np.int64(3))}) == {"a": [1.0, None, 3]}
+
+
+@pytest.mark.parametrize(
+    ("family", "model", "name"), [("25", "1", "Zen 3"), ("25", "17", "Zen 4"), ("26", "2", "Zen 5"), ("99", "1", None)]
+)
+def test_a_processor_is_told_with_its_generation(family, model, name, tmp_path):
+    """AMD calls all its server processors EPYC; the first of several cores is read."""
+    core = f"processor : 0\ncpu family : {family}\nmodel : {model}\nmodel name : AMD EPYC\nflags : fpu\n\n"
+    (tmp_path / "cpuinfo").write_text(core + core.replace(family, "1"))
+    assert processor(tmp_path / "cpuinfo") == ("AMD EPYC" if name is None else f"AMD EPYC, {name}")

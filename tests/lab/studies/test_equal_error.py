@@ -5,8 +5,9 @@ import pytest
 
 from lab.base.errors import LabError
 from lab.studies.bench.peers import lammps, liggghts, peer
-from lab.studies.bench.speed import equal_error, processors
-from lab.studies.bench.speed.equal_error import PAIRS, SPEED, duration, longest_step, meeting, parted
+from lab.studies.bench.speed import beds, equal_error, processors, workers
+from lab.studies.bench.speed.equal_error import situations, steps
+from lab.studies.bench.speed.equal_error.steps import PAIRS, SPEED, duration, longest_step, meeting, parted
 
 
 def erring(order: float, at_thirty: float):
@@ -54,7 +55,7 @@ def test_peers_are_told_velocities_and_the_tilt(code, run, monkeypatch, tmp_path
     bed, velocity, _ = meeting(1e-5)
     how = {"velocity": velocity, "tilt": np.radians(30.0), "workdir": tmp_path}
     with pytest.raises(LabError, match="stop"):
-        run(peer.Task(bed.position, bed.radius, bed.width, 0.2, equal_error.SOFT, 1e-5, 10, **how))
+        run(peer.Task(bed.position, bed.radius, bed.width, 0.2, steps.SOFT, 1e-5, 10, **how))
     rows = (tmp_path / peer.BED).read_text().split("Velocities\n\n")[1].splitlines()
     np.testing.assert_allclose(np.array([row.split() for row in rows], dtype=float)[:, [1, 3]], velocity)
     ramp = (tmp_path / peer.DECK).read_text().split("equal ramp(")[1].split(")")[0]
@@ -63,7 +64,7 @@ def test_peers_are_told_velocities_and_the_tilt(code, run, monkeypatch, tmp_path
 
 @pytest.mark.slow
 def test_the_lab_rebounds_with_the_restitution_asked_for():
-    np.testing.assert_allclose(equal_error.rebounds_here(duration() / 100), 0.6 * SPEED, rtol=1e-3)
+    np.testing.assert_allclose(steps.rebounds_here(duration() / 100), 0.6 * SPEED, rtol=1e-3)
 
 
 def test_ratios_of_one_kind_stay_when_others_are_measured(tmp_path):
@@ -73,3 +74,38 @@ def test_ratios_of_one_kind_stay_when_others_are_measured(tmp_path):
         processors.keep(tmp_path, ratios)
     kept = next(iter(processors.RECORDS.validate_python(processors.read(tmp_path / "speed-peers.json")).values()))
     assert {one.what for one in kept.ratios} == {by_steps.what, at_error.what}
+
+
+@pytest.mark.parametrize(("code", "run"), [(lammps, lammps.run_lammps), (liggghts, liggghts.run_liggghts)])
+def test_a_flying_grain_is_shaken_as_in_a_swaying_tank(code, run):
+    """y = A (sin ω since + ω cos(ω since) t − sin ω (since + t)) in the tank's axes; no gravity."""
+    if code.available() is None:
+        pytest.skip(f"{code.NAME} is not installed")
+    amplitude, omega, since, end = 0.01, 30.0, 0.04, 0.05
+    shaking = peer.Shaking(amplitude * omega**2, omega, since)
+    grain = np.array([[0.0, 0.1]]), np.array([1.5e-3])
+    found = run(peer.Task(*grain, 0.2, 0.2, steps.SOFT, end / 5000, 5000, gravity=1e-9, shaking=shaking))
+    lag = np.sin(omega * since) + omega * np.cos(omega * since) * end - np.sin(omega * (since + end))
+    np.testing.assert_allclose(found.position[0], [amplitude * lag, 0.1], atol=2e-6)
+
+
+@pytest.mark.slow
+def test_every_turn_moves_the_bed_alike(tmp_path):
+    """A swayed bed of 500, followed twice from the same places, speeds and phase of the motion."""
+    one = situations.every_situation(beds.usual_bed(tmp_path, 500), tmp_path)["swayed"]
+    how = {"material": steps.GRAINS, "schedule": "per-world", **one.scene}
+    turned = workers._Timed(one.bed, 1, 1, "cpu", 1, one.since, how)
+    places = []
+    for _ in range(2):
+        assert turned.course(2e-3, one.velocity) > 0.0
+        places.append(turned.run.snapshot()["position"][0])
+    turned.run.close()
+    moved = np.abs(places[0] - one.bed.position).max()
+    assert np.abs(places[1] - places[0]).max() < 1e-9 < 1e-5 < moved
+
+
+def test_copies_of_a_moving_bed_move_as_it_does():
+    bed = beds.Bed(np.full(2, 1.5e-3), np.array([[0.0, 0.01], [0.01, 0.02]]), 0.1)
+    two = situations.Situation(bed, np.array([[1.0, 2.0], [3.0, 4.0]])).times(2)
+    assert two.bed.count == 4 and two.velocity.tolist() == [[1.0, 2.0], [3.0, 4.0]] * 2
+    assert situations.Situation(bed).times(2).velocity is None

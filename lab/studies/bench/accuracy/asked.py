@@ -21,7 +21,7 @@ from lab.studies.reproduce.estimates import difference
 from lab.studies.reproduce.runs import Batch, Outcome, carry_out, outcomes
 
 SCALE, LEVEL, PRECISION = "contact.stiffness_scale", "run.accuracy", "run.precision"
-BEDS = 16
+BEDS = 12
 USUAL = "derived steps"
 FORCED = {"half the derived step": 0.5, "the derived step, never doubled": 1.0, "twice the derived step": 2.0}
 CHOICES: dict[str, dict[str, object]] = {
@@ -76,7 +76,7 @@ def study(page: Page, work: Path, fast: bool) -> None:
         of 6 mm that run out of a funnel: {BEDS} beds a row. The first row has a thousandth of the material's stiffness,
         the derived step, twice that while grains are slow, and 64 bits; each other row differs from it in one thing.
         Differences are from the first row. In brackets: 95 % intervals. Cost: grain-steps, relative to the first
-        row.""")
+        row, steps that are doubled while grains are slow counted as two.""")
     chosen = dict(list(CHOICES.items())[:2]) if fast else CHOICES
     for question in QUESTIONS[:1] if fast else QUESTIONS:
         found = {name: answered(question, name, work / "asked", fast) for name in chosen}
@@ -90,7 +90,8 @@ def answered(question: Question, choice: str, folder: Path, fast: bool = False) 
     changes = {**question.changes, **(HASTY if fast else {}), **CHOICES[choice]}
     if choice in FORCED:
         scene, _ = build(load(question.preset, {**changes, "run.repeats": 1}).resolved)
-        changes |= {"run.step": 0.999 * FORCED[choice] * scene.longest_step(1.0), "run.force_step": True}
+        step = 0.999 * FORCED[choice] * scene.longest_step(1.0)
+        changes |= {"run.step": f"{step:.6g} s", "run.force_step": True}
     where = folder / f"{question.name}-{list(CHOICES).index(choice)}"
     print(f"asked: {question.name}, {choice}", flush=True)
     carry_out(Batch(question.preset, changes), where, quiet=True)
@@ -109,10 +110,11 @@ def rows(found: Mapping[str, Outcome], measure: str) -> list[list[str]]:
 
 
 def with_interval(value: Value | None) -> str:
-    """A mean over beds with its interval; "none" where no bed has one."""
+    """A mean over beds with its interval, and their number where some have none; "none" where no bed has one."""
     if value is None or value.value is None:
         return "none"
-    return mean_within(value.value, value.interval, 2)
+    few = f" ({value.n} of {len(value.worlds)} beds)" if value.n < len(value.worlds) else ""
+    return mean_within(value.value, value.interval, 2) + few
 
 
 def plotted(found: Mapping[str, Outcome], question: Question) -> Figure:

@@ -29,6 +29,7 @@ HEADER = 9  # lines of a dump before its rows
 MOTION = """\
 variable chute equal ramp({lean:.17g},{chute:.17g})
 fix gravity all gravity {gravity:.17g} chute v_chute
+{shaking}
 fix motion all nve/sphere
 timestep {dt:.17g}
 
@@ -44,6 +45,24 @@ run {steps}
 
 
 @dataclass(frozen=True)
+class Shaking:
+    """A sideways acceleration of the grains in their tank's axes: peak · sin(omega (since + t)).
+
+    It is what grains feel in a tank at y = A sin(ω t) with peak = A ω² (m/s²), omega = ω (rad/s), since in s.
+    """
+
+    peak: float
+    omega: float
+    since: float = 0.0
+
+    @property
+    def lines(self) -> str:
+        """The lines of a deck."""
+        phase = f"{self.omega:.17g}*({self.since:.17g}+step*dt)"
+        return f"variable shake equal {self.peak:.17g}*sin({phase})\nfix shake all gravity v_shake vector 1 0 0"
+
+
+@dataclass(frozen=True)
 class Task:
     """A bed at rest that remembers no earlier contact, and the steps that a peer is to take from it.
 
@@ -54,6 +73,7 @@ class Task:
     dt, steps: time step (s), and how many.
     tilt, tilt_rate: tilt of the tank at the start (rad) and its constant rate (rad/s), counter-clockwise positive.
     velocity: (n, 2) of the grains at the start (m/s); None for grains at rest.
+    shaking: sideways acceleration in time; None for a tank that stands still.
     gravity: (m/s^2).
     tangential: "history" is spring, dashpot and slider; "no_history" dashpot and slider.
     sample_every: steps from one sample of the trace to the next, the first being t = 0.
@@ -73,6 +93,7 @@ class Task:
     tilt: float = 0.0
     tilt_rate: float = 0.0
     velocity: np.ndarray | None = None
+    shaking: Shaking | None = None
     gravity: float = 9.81
     tangential: Literal["history", "no_history"] = "history"
     sample_every: int = 1000
@@ -98,6 +119,7 @@ class Task:
             lean=-degrees(self.tilt),
             chute=-degrees(self.tilt + self.tilt_rate * self.steps * self.dt),
             gravity=self.gravity,
+            shaking="" if self.shaking is None else self.shaking.lines,
             dt=self.dt,
             every=min(self.sample_every, self.steps),
             steps=self.steps,

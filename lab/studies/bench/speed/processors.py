@@ -84,18 +84,20 @@ def known(folder: Path) -> dict[str, Record]:
 
 
 def overview(folder: Path) -> str:
-    """A table in Markdown: a row a processor, the lowest ratios first, of springs with history in both codes."""
-    found = {}
-    for name, record in known(folder).items():
-        ratios = {one.code: one for one in record.ratios if (one.law, one.ours, one.unit) == (*SPRINGS, GRAIN_STEPS)}
-        least = min((one.least for one in ratios.values()), default=np.inf)
-        found[name] = (least, ratios, record)
-    codes = sorted({code for _, ratios, _ in found.values() for code in ratios})
+    """A table in Markdown of springs with history in both codes: a row a processor, bed and unit, grain-steps first."""
+    found: dict[tuple[str, str, str], dict[str, Ratio]] = {}
+    records = known(folder)
+    for name, record in records.items():
+        for one in record.ratios:
+            if (one.law, one.ours) == SPRINGS:
+                found.setdefault((name, one.unit, one.bed), {})[one.code] = one
+    codes = sorted({code for ratios in found.values() for code in ratios})
+    order = sorted(found, key=lambda what: (what[1] != GRAIN_STEPS, what[1], what[0], what[2]))
     rows = [
-        [name, *(f"{ratios[code].words}, {ratios[code].bed}" if code in ratios else "" for code in codes), who(record)]
-        for name, (_, ratios, record) in sorted(found.items(), key=lambda one: one[1][0])
+        [*what, *(found[what][one].words if one in found[what] else "" for one in codes), who(records[what[0]])]
+        for what in order
     ]
-    return table(["processor", *codes, "measured by"], rows)
+    return table(["processor", "counted in", "bed", *codes, "measured by"], rows)
 
 
 def write_page(folder: Path) -> Path:

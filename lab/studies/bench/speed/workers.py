@@ -17,7 +17,7 @@ Speeds = dict[Hashable, np.ndarray]
 class Worker(Aside):
     """A simulation of a bed in as many equal worlds, in a process of its own.
 
-    `how` goes to the scene; `arch`, `threads` and `stretch` to the simulation, whose motions have ended if `ended`.
+    `how` goes to the scene; `arch`, `threads` and `stretch` to the simulation, whose motions began `origin` (s) ago.
     """
 
     def __init__(
@@ -27,29 +27,31 @@ class Worker(Aside):
         worlds: int = 1,
         arch: str = "cpu",
         stretch: int = 1,
-        ended: bool = False,
+        origin: float = 0.0,
         **how: object,
     ):
-        super().__init__(_Timed, bed, threads, worlds, arch, stretch, ended, how)
+        super().__init__(_Timed, bed, threads, worlds, arch, stretch, origin, how)
         self.dt = self.ask("step")
 
     def speed(self, seconds: float) -> float:
         """Grain-steps per second, measured over about `seconds` seconds."""
         return self.ask("speed", seconds)
 
-    def course(self, duration: float) -> float:
-        """Grain-steps per second over the first `duration` (s, of model time) from where the bed was at first."""
-        return self.ask("course", duration)
+    def course(self, duration: float, velocity: np.ndarray | None = None) -> float:
+        """Grain-steps per second over the first `duration` (s, of model time) from where the bed was at first.
+
+        velocity: (n, 2) of the grains there (m/s); None for grains at rest.
+        """
+        return self.ask("course", duration, velocity)
 
 
 class _Timed:
     """The simulation in the process of a worker."""
 
-    def __init__(self, bed: Bed, threads: int, worlds: int, arch: str, stretch: int, ended: bool, how: Mapping):
+    def __init__(self, bed: Bed, threads: int, worlds: int, arch: str, stretch: int, origin: float, how: Mapping):
         self.places = bed.places(worlds)
         self.run = Simulation(bed.scene(worlds, **how), self.places, threads, arch=arch, stretch=stretch)
-        if ended:
-            self.run.origin = max(motion.duration() for motion in self.run.scene.motions[0])
+        self.origin = self.run.origin = origin
         self.last = self.warmed()
 
     def step(self) -> float:
@@ -59,10 +61,12 @@ class _Timed:
         self.last = timed(self.run, max(FEWEST, round(seconds * self.last / self.run.scene.radius.size)))
         return self.last
 
-    def course(self, duration: float) -> float:
-        self.run.place(self.places)
+    def course(self, duration: float, velocity: np.ndarray | None) -> float:
+        velocity = None if velocity is None else np.tile(velocity, (len(self.places), 1, 1))
+        self.run.place(self.places, velocity)
         self.warmed()
-        self.run.place(self.places)
+        self.run.place(self.places, velocity)
+        self.run.origin = self.origin - self.run.time  # the motion goes by time, which goes on
         return timed(self.run, max(FEWEST, round(duration / self.run.dt)))
 
     def warmed(self) -> float:

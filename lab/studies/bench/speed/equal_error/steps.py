@@ -1,0 +1,114 @@
+"""The step that each code takes: the same for all, or the longest that holds an error of the restitution.
+
+The error is found by measurement: pairs of grains meet head-on, their contacts beginning at moments spread over a step,
+and rebound with a speed that is compared with that at FINEST steps a collision. So each code is compared with the limit
+of its own law.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+
+from lab.base.errors import LabError
+from lab.preset.accuracy import LEVELS
+from lab.studies.bench.peers import lammps, liggghts
+from lab.studies.bench.peers.peer import Task
+from lab.studies.bench.speed.beds import ACETATE, DIAMETER, HEIGHT, SCALE, Bed
+from solvers.simulation import Simulation
+
+RUNS = {liggghts: liggghts.run_liggghts, lammps: lammps.run_lammps}
+LAB = "the lab"
+SAME = "the lab's at standard"  # what all codes' steps are set by where they are equal
+LEVEL_OF = {0.01: "draft", 0.001: "standard"}  # error of the restitution, the largest over the moments of onset
+SPEED, PAIRS = 0.3, 24  # m/s; meeting pairs, each beginning 1/PAIRS of a step later than the one before
+STEPS = 8, 10, 12, 15, 19, 24, 30, 38, 48, 60, 75, 95, 120, 150, 190, 240, 300, 380, 480  # a collision, of those tried
+FINEST = 3000
+GRAINS = replace(ACETATE, restitution_speed=SPEED)
+SOFT = replace(GRAINS, young=GRAINS.young * SCALE)  # as a peer is told the material
+
+
+def steps_taken(codes: Mapping[str, Callable]) -> dict[str, dict[str, float]]:
+    """The step (s) of each code, by the rule that it follows from."""
+    found = {SAME: dict.fromkeys(codes, derived_step("standard"))}
+    for error, level in LEVEL_OF.items():
+        longest = {name: longest_step(code, error) for name, code in codes.items()}
+        found[f"{100.0 * error:g} % of restitution"] = longest | {LAB: min(longest[LAB], derived_step(level))}
+    return found
+
+
+def duration() -> float:
+    """Time (s) that two of the grains touch as they meet at SPEED, losses aside (Hertz; Timoshenko & Goodier 1951)."""
+    mass = 0.5 * SOFT.density * np.pi / 6.0 * DIAMETER**3
+    young = SOFT.young / (2.0 * (1.0 - SOFT.poisson**2))
+    return 2.87 * (mass**2 / (0.25 * DIAMETER * young**2 * SPEED)) ** 0.2
+
+
+def longest_step(rebounds: Callable[[float], np.ndarray], error: float) -> float:
+    """The longest step (s) of those tried at which, and at all shorter ones, rebounds err by at most `error`.
+
+    Raises LabError if they err by more at the shortest.
+    """
+    limit, found = float(np.mean(rebounds(duration() / FINEST))), 0.0
+    for share in reversed(STEPS):
+        if np.abs(rebounds(duration() / share) / limit - 1.0).max() > error:
+            break
+        found = duration() / share
+    if not found:
+        raise LabError(f"a code's restitution errs by more than {error:g} at {STEPS[-1]} steps a collision.")
+    return found
+
+
+def derived_step(level: str) -> float:
+    """The step (s) that the lab derives at a level of accuracy for collisions at SPEED."""
+    pair = Bed(np.full(2, 0.5 * DIAMETER), np.zeros((2, 2)), HEIGHT)
+    scene = pair.scene(material=GRAINS, gravity=0.0, start_speed=SPEED)
+    return scene.longest_step(LEVELS[level].longer_steps)
+
+
+def colliders() -> dict[str, Callable[[float], np.ndarray]]:
+    """How pairs rebound (PAIRS,), m/s, at a step (s) of each code that is installed."""
+    found: dict[str, Callable[[float], np.ndarray]] = {LAB: rebounds_here}
+    for peer, run in RUNS.items():
+        if peer.available() is not None:
+            found[peer.NAME] = partial(rebounds_there, run)
+    return found
+
+
+def meeting(dt: float) -> tuple[Bed, np.ndarray, int]:
+    """Pairs in a row that meet at SPEED, their velocities (n, 2) m/s, and steps of dt (s) until they have parted."""
+    apart = 4.0 * DIAMETER
+    left = apart * (np.arange(PAIRS) - 0.5 * PAIRS)
+    gap = SPEED * dt * (2.0 + np.arange(PAIRS) / PAIRS)
+    position = np.full((PAIRS, 2, 2), 0.5 * HEIGHT)
+    position[:, 0, 0], position[:, 1, 0] = left, left + DIAMETER + gap
+    velocity = np.zeros((PAIRS, 2, 2))
+    velocity[:, 0, 0] = SPEED
+    bed = Bed(np.full(2 * PAIRS, 0.5 * DIAMETER), position.reshape(-1, 2), apart * (PAIRS + 2))
+    return bed, velocity.reshape(-1, 2), round(4.0 * duration() / dt) + 10
+
+
+def parted(velocity: np.ndarray) -> np.ndarray:
+    """Speeds (PAIRS,) at which the pairs part, from the velocities (n, 2) of all grains, m/s."""
+    pairs = velocity.reshape(PAIRS, 2, 2)[..., 0]
+    return pairs[:, 1] - pairs[:, 0]
+
+
+def rebounds_here(dt: float) -> np.ndarray:
+    """The lab's rebounds."""
+    bed, velocity, steps = meeting(dt)
+    scene = bed.scene(material=GRAINS, gravity=0.0, step=dt, start_speed=SPEED)
+    run = Simulation(scene, bed.places(), threads=1, arch="cpu")
+    run.launch(velocity[None])
+    run.advance(steps)
+    found = parted(run.snapshot()["velocity"][0])
+    run.close()
+    return found
+
+
+def rebounds_there(run: Callable, dt: float) -> np.ndarray:
+    """A peer's rebounds."""
+    bed, velocity, steps = meeting(dt)
+    task = Task(bed.position, bed.radius, bed.width, HEIGHT, SOFT, dt, steps, velocity=velocity, gravity=0.0)
+    return parted(run(task).velocity)
