@@ -2,5 +2,6 @@
 
 from solvers.fluid.matter import make_water
 from solvers.grains.matter import make_grains
+from solvers.liquid.matter import make_liquid
 
-MATTERS = (make_grains, make_water)
+MATTERS = (make_grains, make_water, make_liquid)

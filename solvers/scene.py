@@ -118,19 +118,20 @@ class Scene:
         return (Tank(self.outline, thickness, tuple(self.open_edges), self.length), *self.more_tanks)
 
     @property
+    def fills(self) -> tuple[int, ...]:
+        """How many particles of water are in each tank."""
+        return self.water.in_tanks(self.particles, len(self.tanks)) if self.water else (0,) * len(self.tanks)
+
+    @property
+    def apart(self) -> list[int]:
+        """The tanks of water, by their numbers, beside others of grains, which do not feel their walls."""
+        return [number for number, fill in enumerate(self.fills) if fill] if self.radius.size else []
+
+    @property
     def shares(self) -> np.ndarray | None:
         """Factors (W, pieces) from each piece's load to that which a carrier answers to; None if none does."""
         more = len(self.parts) + bool(len(self.fixed))
         return answered_shares(self.tanks, self.vessels, self.axles, more)
-
-    def per_metre(self, position: np.ndarray) -> np.ndarray:
-        """Factors (W, n), 1/m, from masses at `position` (W, n, 2) m to masses per metre of ship, by their tanks."""
-        factor = np.empty(position.shape[:2])
-        for w, vessel in enumerate(self.vessels):
-            factor[w] = self.tanks[0].share(vessel.length)
-            for tank in self.more_tanks:
-                factor[w][tank.holds(position[w])] = tank.share(vessel.length)
-        return factor
 
     @property
     def kinds(self) -> int:

@@ -78,7 +78,7 @@ class Simulation:
         """Make the arrays and the objects whose kernels work on them."""
         scene, worlds = self.scene, self.scene.worlds
         self.arrays = arrays = State(scene.precision)
-        self.walls = Walls(arrays, scene.tanks, scene.parts)
+        self.walls = Walls(arrays, scene.tanks, scene.parts, scene.apart)
         self.carrier = make_carrier(arrays, scene, self.dt)
         cut = self.units_a_world, self.schedule_name == "per-grain"
         pieces = len(scene.tanks) + len(scene.parts) + bool(len(scene.fixed))
@@ -281,7 +281,7 @@ class Simulation:
 
     def cargo(self) -> list[Body]:
         """All matters of each world as one rigid body, per metre of the ship's length, in the tank's frame."""
-        bodies = [matter.bodies() for matter in self.matters.values()]
+        bodies = [matter.as_rigid() for matter in self.matters.values()]
         return [bolted(*(of_matter[w] for of_matter in bodies)) for w in range(self.scene.worlds)]
 
     def snapshot(self) -> dict[str, np.ndarray]:

@@ -22,6 +22,7 @@ FLOORS = {  # from the ground up: a room imports those before it
         "motion",
         "grains",
         "fluid",
+        "liquid",
         "matters",
         "time",
         "scene",

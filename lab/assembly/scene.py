@@ -8,9 +8,10 @@ import numpy as np
 from lab.assembly.grains import check_softness, grain_count, grains_of
 from lab.assembly.room import check_room
 from lab.assembly.ship import make_vessel
-from lab.assembly.water import most_drops, water_of
+from lab.assembly.water import most_drops, water_aboard, water_of
 from lab.preset.accuracy import LEVELS, check_forced
 from lab.preset.schema import Preset
+from lab.preset.sections.water.tanks import further_tanks
 from solvers.motion.steered import Steered
 from solvers.scene import Scene
 from solvers.ship.vessel import Vessel
@@ -33,7 +34,7 @@ def build(preset: Preset, hands: Sequence[Steered] | None = None) -> tuple[Scene
     given, position = {"radius": np.zeros((worlds, 0))}, np.zeros((worlds, 0, 2))
     if preset.grains:
         given, position = grains_of(preset)
-    elif preset.water:
+    if preset.water:
         given |= water_of(preset)
     scene = Scene(
         **given,
@@ -47,6 +48,7 @@ def build(preset: Preset, hands: Sequence[Steered] | None = None) -> tuple[Scene
         axles=[preset.axle.solved] * worlds if preset.axle else (),
         thickness=preset.thickness,
         length=preset.tank.length,
+        more_tanks=further_tanks(preset, preset.thickness),
         precision=preset.run.precision,
         schedule=preset.run.schedule,
     )
@@ -62,7 +64,7 @@ def vessels(preset: Preset) -> list[Vessel]:
     """The ship whose hold is the tank, if there is one. Raises LabError if she does not float."""
     if preset.ship is None:
         return []
-    return [make_vessel(preset.ship, preset.sea, preset.waves, preset.run.gravity)]
+    return [make_vessel(preset.ship, preset.sea, preset.waves, preset.run.gravity, water_aboard(preset))]
 
 
 def stretch(preset: Preset) -> int:

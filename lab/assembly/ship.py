@@ -11,13 +11,14 @@ from lab.base.errors import LabError
 from lab.preset.sections import sea as seas
 from lab.preset.sections import ship as ships
 from solvers.machine.errors import Unavailable
-from solvers.ship.body import Body
+from solvers.ship.body import NOTHING, Body, bolted
 from solvers.ship.hydrostatics import metacentric_height
 from solvers.ship.linear import impedance, inertia_for_roll, require_damped
 from solvers.ship.loads import Floating, floating_in_waves
 from solvers.ship.motion import Radiation, Rig, RollDamping, Ship, frozen_at, remembered, start
 from solvers.ship.openings import immersion_angle
 from solvers.ship.potential.memory import fit_memory
+from solvers.ship.potential.radiation import Hydrodynamics
 from solvers.ship.section import Section
 from solvers.ship.vessel import Vessel
 from solvers.ship.water import Water
@@ -49,18 +50,23 @@ def make_water(given: seas.Sea, gravity: float) -> Water:
 
 
 @lru_cache(maxsize=8)
-def make_vessel(given: ships.Ship, water: seas.Sea, waves: seas.Waves | None, gravity: float) -> Vessel:
-    """The ship as she floats with her cargo at the start. Raises LabError if she cannot float so."""
+def make_vessel(
+    given: ships.Ship, water: seas.Sea, waves: seas.Waves | None, gravity: float, wet: Body = NOTHING
+) -> Vessel:
+    """The ship as she floats with her cargo at the start; `wet` is the water in her tanks, as if it were frozen.
+
+    Raises LabError if she cannot float so.
+    """
     try:
-        return _vessel(given, make_water(water, gravity), waves)
+        return _vessel(given, make_water(water, gravity), waves, wet)
     except Unavailable as error:
         raise LabError(f"ship: {error}") from None
 
 
-def _vessel(given: ships.Ship, water: Water, sea: seas.Waves | None) -> Vessel:
+def _vessel(given: ships.Ship, water: Water, sea: seas.Waves | None, wet: Body) -> Vessel:
     section, about = Section(given.corners), given.about
     mass = water.density * float(section.immersion(given.heave, 0.0).area)
-    body = Body(mass, (0.0, given.gravity_height), mass * (given.gyradius or 0.3 * section.size) ** 2)
+    body = _body(given, section, mass, wet)
     if metacentric_height(section, body.loading, water) <= 0.0:
         raise LabError("ship.gravity_height: so high she does not float upright; lower it.")
     waves = make_waves(sea, water)
@@ -100,6 +106,17 @@ def _vessel(given: ships.Ship, water: Water, sea: seas.Waves | None) -> Vessel:
     )
 
 
+def _body(given: ships.Ship, section: Section, mass: float, wet: Body) -> Body:
+    """Ship and cargo of a `mass` (kg/m) together. Raises Unavailable if the water is heavier."""
+    gyradius, centre = given.gyradius or 0.3 * section.size, (0.0, given.gravity_height)
+    if not given.bare:
+        return Body(mass, centre, mass * gyradius**2)
+    own = mass - wet.mass
+    if own <= 0.0:
+        raise Unavailable(f"the water of {wet.mass:.4g} kg/m is heavier than the whole ship of {mass:.4g} kg/m.")
+    return bolted(Body(own, centre, own * gyradius**2), wet)
+
+
 def _by_slope(load: Floating, table, body: Body) -> Floating:
     """Replace the Froude–Krylov roll moment by W GM ∂ζ/∂y: eq. 7.1 of Spandonidis (2016) with r = 1."""
     righting = body.mass * load.water.gravity * metacentric_height(load.section, body.loading, load.water)
@@ -116,6 +133,12 @@ def _with_rig(ship: Ship, given: ships.Rig) -> Ship:
         np.array([ship.about[0], 0.0, 0.0]),
     )
     return replace(ship, rig=rig)
+
+
+def hull_table(given: ships.Ship, sea: seas.Sea, gravity: float) -> Hydrodynamics:
+    """The hull's coefficients in calm water, about her axis."""
+    water = make_water(sea, gravity)
+    return stored_table(Section(given.corners), water, given.heave, _frequencies(given, water, None), given.about)
 
 
 def _frequencies(given: ships.Ship, water: Water, waves: Waves | None) -> np.ndarray:
@@ -151,6 +174,8 @@ def natural_roll(ship: Ship, heave: float, table) -> tuple[float, float]:
 
 def _damping(given: ships.Ship, ship: Ship, water: Water, table) -> RollDamping:
     frequency, inertia = natural_roll(ship, given.heave, table)
+    if given.linear_damping is not None:
+        return RollDamping(given.linear_damping, given.quadratic_damping * inertia)
     return RollDamping(2.0 * given.damping * frequency * inertia, given.quadratic_damping * inertia)
 
 

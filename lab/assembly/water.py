@@ -7,25 +7,33 @@ import numpy as np
 from lab.base.errors import LabError
 from lab.preset.schema import Preset
 from lab.preset.sections.water.liquid import bounds, liquid
+from lab.preset.sections.water.tanks import Pool, pools
 from solvers.fluid.given import EXCESS, GAS, VOLUME, Water, Y, Z
 from solvers.fluid.start.air import air_above, air_round, with_air
+from solvers.fluid.start.packing import below
 from solvers.fluid.start.parts import clear_of, free_share, surfaces
 from solvers.fluid.start.rest import at_rest, hydrostatic_excess
 from solvers.scene import Scene
+from solvers.ship.body import Body, bolted
+from solvers.tank.outline import moments
 
 
 def water_of(preset: Preset) -> dict:
     """What a scene says of the water, by its fields; it is the same in all repeats. Raises LabError."""
-    return {"water": liquid(preset), "drops": np.tile(drops_of(preset), (preset.run.repeats, 1, 1))}
+    drops = {pool.number: drops_of(preset, pool) for pool in pools(preset)}
+    fills = tuple(len(drops.get(number, ())) for number in range(1 + len(preset.tanks)))
+    water = replace(liquid(preset), fills=fills if len(fills) > 1 else ())
+    return {"water": water, "drops": np.tile(np.concatenate([*drops.values()]), (preset.run.repeats, 1, 1))}
 
 
-def drops_of(preset: Preset) -> np.ndarray:
-    """The particles (n, 6) of a world. Raises LabError if none fits in."""
+def drops_of(preset: Preset, pool: Pool | None = None) -> np.ndarray:
+    """The particles (n, 6) of the water in a tank, by default the first. Raises LabError if none fits in."""
+    pool = pool or pools(preset)[0]
     water = liquid(preset)
     if preset.parts:  # which a lattice is cut off at; a packing knows nothing of them
         water = replace(water, start="lattice")
     try:
-        drops = at_rest(*bounds(preset), water, preset.run.gravity)
+        drops = at_rest(pool.polygon, pool.level, water, preset.run.gravity)
         if water.air:
             return with_air(drops, _air_of(preset, water))
     except ValueError as error:
@@ -56,17 +64,30 @@ def _beside_parts(preset: Preset, drops: np.ndarray) -> np.ndarray:
     return drops
 
 
+def water_aboard(preset: Preset) -> Body:
+    """The water in a ship's tanks as if it were frozen, per metre of her length, in the hull's axes."""
+    bodies = []
+    for pool in pools(preset) if preset.water and preset.ship else ():
+        tank = [preset.tank, *preset.tanks.values()][pool.number]
+        share = tank.length / preset.ship.length if tank.length else 1.0
+        area, centre, turning = moments(below(pool.polygon, pool.level))
+        mass = share * preset.water.density * area
+        place = np.add(centre, preset.ship.hold)
+        bodies.append(Body(mass, (float(place[0]), float(place[1])), mass * turning / area))
+    return bolted(*bodies)
+
+
 def most_drops(preset: Preset) -> int:
     """Number of particles of water and air in a world, rounded up, before any is made; 0 without water."""
     if preset.water is None:
         return 0
-    polygon, level = bounds(preset)
-    low, size = polygon.min(axis=0), liquid(preset).spacing
     if preset.air is not None:
-        tank = np.array(preset.tank.corners)
-        low, level, polygon = tank.min(axis=0), tank[:, 1].max(), tank
-    wide, deep = polygon[:, 0].max() - low[0], level - low[1]
-    return int(np.ceil(wide / size + 1.0) * np.ceil(deep / size + 1.0))
+        size = np.ptp(np.array(preset.tank.corners), axis=0) / liquid(preset).spacing
+        return int(np.prod(np.ceil(size + 1.0)))
+    size, count = liquid(preset).spacing, 0
+    for pool in pools(preset):
+        count += int(np.ceil(np.ptp(pool.polygon[:, 0]) / size + 1.0) * np.ceil(pool.depth / size + 1.0))
+    return count
 
 
 def volumes_of(drops: np.ndarray | None, worlds: int) -> np.ndarray:

@@ -45,7 +45,7 @@ def verify(cases: tuple[str, ...], out: Path, fast: bool, page_only: bool) -> No
 
 
 @click.command()
-@click.argument("what", metavar="REPORT", type=click.Choice(["granular", "shapes", "ship", "water"]))
+@click.argument("what", metavar="REPORT", type=click.Choice(["granular", "shapes", "ship", "water", "coupled"]))
 @click.argument("experiments", nargs=-1)
 @click.option("--quick", is_flag=True, help="Fewer beds, faster tilts, draft accuracy: under 20 minutes on two cores.")
 @out_option("of the report and of its runs", default=Path("renders/reproduce"))
@@ -64,6 +64,7 @@ def reproduce(
     cargolab reproduce shapes --quick           those with irregular grains
     cargolab reproduce ship --quick             those with ships in waves
     cargolab reproduce water --quick            those with water in tanks
+    cargolab reproduce coupled --quick          those with water in the tanks of ships
     cargolab reproduce granular --cluster tcp://node1:8786
     """
     from lab.studies.reproduce import reproduce as reproduced

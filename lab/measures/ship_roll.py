@@ -146,9 +146,10 @@ def draw_roll(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -
         band(panels[1, 0], time, 1e3 * moved[..., 1], GREEN, "heave of the axis")
         panels[1, 0].set_ylabel("sway, heave\n(mm)")
     if laden:
-        centre = 1e3 * recording.series["centre_of_mass"][..., 0]
+        cargo = "centre_of_mass" if "grains" in laden else "water_centre"
+        centre = 1e3 * recording.series[cargo][..., 0]
         band(lower, time, centre - centre[0], VERMILION)
-        lower.set_ylabel("shift of the\ncargo (mm)")
+        lower.set_ylabel(f"shift of the\n{'cargo' if 'grains' in laden else 'water'} (mm)")
     lower.set_xlabel(f"time (s); axis: {axis_place(recording.preset.ship)}")
     lower.set_xlim(time[0], time[-1] + (MARGIN * np.ptp(time) if any(ends(recording.series)) else 0.0))
 

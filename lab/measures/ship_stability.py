@@ -14,11 +14,16 @@ from lab.measures.drawing import BLUE, GREEN, GREY, VERMILION, Sheet, mark
 from lab.measures.ship import has_ship, vessel_of
 from lab.measures.value import Value, over_worlds
 from lab.measures.wall_force import grain_mass
+from lab.preset.schema import Preset
+from lab.preset.sections.water.tanks import outline_of, pools
 from lab.recording import Recording
+from solvers.fluid.start.packing import below
 from solvers.machine.errors import Unavailable
-from solvers.ship.cargo import level_area, relaxed_levers
-from solvers.ship.hydrostatics import righting_levers
+from solvers.ship.cargo import filling_centre, level_area, relaxed_levers
+from solvers.ship.hydrostatics import Loading, righting_lever, righting_levers
 from solvers.ship.section import Section
+from solvers.ship.vessel import Vessel
+from solvers.tank.outline import moments
 
 HEELS = 91  # of the curve of righting levers
 ANGLES = {  # how they are drawn
@@ -50,6 +55,8 @@ def levers(recording: Recording) -> tuple[np.ndarray, np.ndarray, np.ndarray | N
     frozen = righting_levers(load.section, loading, load.water, heel)
     if not recording.preset.matters:
         return heel, frozen, None
+    if "grains" not in recording.preset.matters:
+        return heel, frozen, _with_level_water(recording.preset, vessel, heel)
     cargo = float(grain_mass(recording).sum(axis=1).mean()) * recording.preset.a_metre
     repose = recording.preset.ship.repose
     try:
@@ -61,6 +68,30 @@ def levers(recording: Recording) -> tuple[np.ndarray, np.ndarray, np.ndarray | N
     return heel, frozen, relaxed
 
 
+def _with_level_water(preset: Preset, vessel: Vessel, heels: np.ndarray) -> np.ndarray | None:
+    """Righting levers (n,) m with the water in all tanks level; None where she does not float."""
+    load, loading = vessel.ship.load, vessel.ship.body.loading
+    moved, tanks = np.zeros((len(heels), 2)), [preset.tank, *preset.tanks.values()]
+    outlines = [np.array(preset.tank.corners), *(outline_of(preset, tank) for tank in preset.tanks.values())]
+    try:
+        for pool in pools(preset):
+            along = tanks[pool.number].length
+            share = along / preset.ship.length if along else 1.0
+            hold, area = Section(outlines[pool.number]), moments(below(pool.polygon, pool.level))[0]
+            upright = filling_centre(hold, area, 0.0)
+            shifts = [filling_centre(hold, area, heel) - upright for heel in heels]
+            moved += share * preset.water.density * area / loading.mass * np.array(shifts)
+        centres = np.add(loading.centre, moved).tolist()
+        return np.array(
+            [
+                righting_lever(load.section, Loading(loading.mass, tuple(centre)), load.water, heel)
+                for centre, heel in zip(centres, heels, strict=True)
+            ]
+        )
+    except Unavailable:
+        return None
+
+
 def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> None:
     """Righting lever of a ship against her heel, her cargo frozen as it lay at the start, or slid to its repose.
 
@@ -70,8 +101,10 @@ def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> Non
     heel, lever, relaxed = levers(recording)
     axes.plot(np.degrees(heel), 1e3 * lever, color=GREY, label="cargo frozen" if recording.preset.matters else "empty")
     if relaxed is not None:
-        steep = np.degrees(recording.preset.ship.repose)
-        axes.plot(np.degrees(heel), 1e3 * relaxed, color=BLUE, label=f"cargo slid to a repose of {steep:.3g} deg")
+        label = f"cargo slid to a repose of {np.degrees(recording.preset.ship.repose):.3g} deg"
+        if "grains" not in recording.preset.matters:
+            label = "water level in the tanks"
+        axes.plot(np.degrees(heel), 1e3 * relaxed, color=BLUE, label=label)
     axes.axhline(0, color=GREY, lw=0.8)
     mark(sheet, axes, values.get("largest_roll"), "largest roll of the run", GREY, ":")
     for name, style in ANGLES.items():

@@ -14,6 +14,7 @@ from lab.paint.cargo.looks import Stowage
 from lab.paint.painter import Edges
 from lab.paint.scenery.drive import drive_text
 from lab.paint.sea import Rail, Sea
+from lab.paint.water.basins import basins_of
 from lab.paint.water.pool import Pool
 from lab.recording import Recording, open_recording
 from lab.recording.ship_end import ends
@@ -51,6 +52,7 @@ class Footage:
         self.radius, self.outline, self.kind = recording.radius, recording.outline, recording.kind
         self.matters, self._series = recording.preset.matters, series
         self.water = Pool.of(recording.preset, recording.volume, recording.air_volume)
+        self.basins = basins_of(recording.preset, recording.outline, recording.open_edges, recording.volume)
         self.cargo = Stowage.of(recording.preset)
         self.kinds = ["the rest", *recording.preset.kinds]
         self.shapes = recording.shapes
@@ -70,6 +72,11 @@ class Footage:
     def protrudes(self) -> bool:
         """Whether anything that is drawn may stand out of the tank."""
         return bool(self.open_edges or self.parts or self.rail)
+
+    @property
+    def afloat(self) -> np.ndarray:
+        """The corners (k, 2) m of a ship's hull and of all tanks as they are drawn."""
+        return np.concatenate([self.sea.hull, *(basin.drawn for basin in self.basins)])
 
     @property
     def worlds(self) -> int:
@@ -182,7 +189,8 @@ class Bed:
 
     def water_place(self, frame: int) -> np.ndarray:
         """Places (n, 2) of the water in the tank frame, m; NaN for what is as far away from the tank as it is large."""
-        place, outline = self.drops("water_place", frame), self.footage.outline
+        place = self.drops("water_place", frame)
+        outline = np.concatenate([basin.outline for basin in self.footage.basins])
         size = np.ptp(outline, axis=0).max()
         near = (place >= outline.min(axis=0) - size) & (place <= outline.max(axis=0) + size)
         return np.where(near.all(axis=1, keepdims=True), place, np.nan)

@@ -29,13 +29,14 @@ from lab.preset.sections.sea import Sea, Waves
 from lab.preset.sections.shapes import Shape, ShapeClass, by_number
 from lab.preset.sections.ship import Ship
 from lab.preset.sections.ship_checks import check_ship
-from lab.preset.sections.tank import Tank, check_tank
+from lab.preset.sections.tank import FurtherTank, Tank, check_tank
 from lab.preset.sections.video import Record, Video, check_video
 from lab.preset.sections.water.air import Air
 from lab.preset.sections.water.air_checks import check_air
 from lab.preset.sections.water.checks import check_water
 from lab.preset.sections.water.section import Gauge, Water
 from lab.preset.sections.water.solids import check_solids
+from lab.preset.sections.water.tanks import check_tanks
 from solvers.grains.bed.sizes import Sizes
 from solvers.grains.materials import Material
 from solvers.machine.marks import Cheap, Doc, Interval
@@ -85,6 +86,9 @@ class Preset:
         field(default_factory=dict)
     )
     ship: Annotated[Ship | None, Doc("The ship whose hold the tank is.")] = None
+    tanks: Annotated[dict[str, FurtherTank], Doc("Further tanks of the ship, beside [tank].")] = field(
+        default_factory=dict
+    )
     stability: Annotated[Stability, Doc("What criteria of stability need to know of the whole ship.")] = field(
         default_factory=Stability
     )
@@ -184,13 +188,14 @@ def check(preset: Preset) -> None:
         _check_of_grains(preset)
     check_motion(preset.motion)
     check_parts(preset.parts, preset.tank.corners, preset.water is not None)
+    check_ship(preset.ship, preset.waves, bool(preset.motion.parts), preset.tank)
+    check_tanks(preset)
     check_water(preset)
     check_air(preset)
     duration = duration_of(preset.run, preset.motion)
     check_axle(preset.axle, preset.ship is not None, bool(preset.motion.parts), bool(preset.matters), duration)
     if preset.water is not None:
         check_solids(preset)
-    check_ship(preset.ship, preset.waves, bool(preset.motion.parts), preset.tank)
     check_stability(preset.stability, preset.ship)
     check_video(preset.video, preset.matters)
 

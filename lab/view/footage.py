@@ -13,6 +13,7 @@ from lab.paint.cargo.looks import Stowage
 from lab.paint.footage import NO_GRAINS, Bed
 from lab.paint.painter import Edges
 from lab.paint.sea import Sea
+from lab.paint.water.basins import basins_of
 from lab.paint.water.pool import Pool
 from lab.preset.find import LoadedPreset
 from lab.preset.schema import Preset
@@ -74,6 +75,8 @@ class LiveFootage:
         for name in ("radius", "kind", "water", "outline", "open_edges", "fixed", "parts", "shapes"):
             setattr(self, name, getattr(scenery, name))
         self.matters = scenery.preset.matters
+        volume = self.water.volume if self.water else np.zeros((1, 0))
+        self.basins = basins_of(scenery.preset, scenery.outline, scenery.open_edges, volume)
         self.cargo = Stowage.of(scenery.preset)
         self.kinds = ["the rest", *scenery.preset.kinds]
         self.shape_names = list(scenery.preset.shapes) if self.shapes else ["disc"]

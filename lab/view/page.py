@@ -256,9 +256,9 @@ class Page:
                 faint = self._wall(camera, footage.outline)
                 paint_tank(stage, camera, footage.outline, faint, palette.GRID, palette.PAPER, footage.open_edges)
         thick = self._wall(camera, footage.outline)
-        paint_tank(stage, moved, footage.outline, thick, palette.WALL, palette.HOLD, footage.open_edges)
-        fixed = footage.fixed
-        if len(fixed):
+        for basin in footage.basins:
+            paint_tank(stage, moved, basin.drawn, thick, palette.WALL, palette.HOLD, basin.open_edges)
+        if len(fixed := footage.fixed):
             grey = np.tile(palette.FIXED, (len(fixed), 1))
             paint_grains(stage, to_discs(moved, fixed[:, :2], fixed[:, 2], np.zeros(len(fixed))), grey, grey)
         return stage

@@ -1,5 +1,6 @@
 """The census of the water: sums over its particles, taken in one order on any number of threads."""
 
+from dataclasses import dataclass
 from types import SimpleNamespace
 
 import numpy as np
@@ -7,6 +8,7 @@ import taichi as ti
 
 from solvers.fluid import quantities
 from solvers.fluid.constants import Constants
+from solvers.fluid.order import Order
 from solvers.fluid.phases import quantities as of_air
 from solvers.fluid.state import UNUSED, Particles
 from solvers.machine.quantity import places
@@ -33,6 +35,28 @@ SUMS = (
 )
 
 
+@dataclass(frozen=True)
+class Pool:
+    """The tanks of the water: their walls, whose water is whose, and whether it may leave none of them (`closed`).
+
+    Of the first with water its number and the places `sides` (m) of its corners along y.
+    """
+
+    walls: Walls
+    order: Order
+    closed: bool
+    first: int
+    sides: np.ndarray
+
+    @classmethod
+    def of(cls, scene, walls: Walls, order: Order) -> "Pool":
+        """The tanks of a scene (`solvers.scene.Scene`)."""
+        wet = [number for number, fill in enumerate(scene.fills) if fill]
+        shut = scene.water.walls and not any(scene.tanks[number].open_edges for number in wet)
+        sides = scene.tanks[wet[0]].outline[:, 0]
+        return cls(walls, order, shut and not scene.water.periodic, wet[0], sides)
+
+
 @ti.data_oriented
 class Census:
     """Sums over a world's particles, and what each particle's velocity is now, relative to the tank.
@@ -41,11 +65,10 @@ class Census:
     `behind` (W,) s is by how much velocities are behind places.
     """
 
-    def __init__(
-        self, arrays: State, particles: Particles, walls: Walls, constants: Constants, carrier, closed: bool, levels
-    ):
-        self.particles, self.walls, self.constants, self.carrier = particles, walls, constants, carrier
-        self.exact, self.closed = arrays.exact, closed
+    def __init__(self, arrays: State, particles: Particles, constants: Constants, carrier, pool: Pool, levels):
+        self.particles, self.constants, self.carrier = particles, constants, carrier
+        self.walls, self.order, self.first = pool.walls, pool.order, pool.first
+        self.exact, self.closed = arrays.exact, pool.closed
         self.quantities = (*quantities.SERIES, *(of_air.SERIES if particles.two else ()), quantities.ESCAPED)
         self.at = SimpleNamespace(**{name: k for k, name in enumerate(SUMS)})
         self.columns = places(self.quantities)
@@ -61,7 +84,7 @@ class Census:
         places_y = padded(np.array([level.y for level in levels]), room)
         self.level_number = own.holding("level_number", np.array([self.levels]), "one", ti.i32)
         self.level_y = own.holding("level_y", places_y, "level", arrays.exact)
-        sides = walls.outline[:, 0].min(), walls.outline[:, 0].max()
+        sides = pool.sides.min(), pool.sides.max()
         self.level_sides = own.holding("level_sides", np.array(sides), "side", arrays.exact)
         (self.level_depth,) = own.reals((world, Axis("level", room)), "level_depth", kept=False)
 
@@ -128,6 +151,7 @@ class Census:
             for lane in range(p.lanes):
                 if p.number[b, lane] != UNUSED:
                     m, s = ti.cast(p.mass[b, lane], self.exact), ti.cast(p.excess[b, lane], self.exact)
+                    m *= self.order.weight(b)
                     r = [ti.cast(p.place[a][b, lane], self.exact) for a in ti.static(range(p.axes))]
                     u = self.velocity_now(w, b, lane)
                     v = [
@@ -156,7 +180,7 @@ class Census:
                         sums[self.at.excess] = ti.max(sums[self.at.excess], ti.abs(s))
                     if ti.static(self.closed):
                         dent = 0.5 + p.gas_at(b, lane)  # spacings: water may squeeze air into a wall
-                        if self.is_out(w, p.place[0][b, lane], p.place[1][b, lane], dent):
+                        if self.is_out(w, self.order.layer(b), [p.place[0][b, lane], p.place[1][b, lane]], dent):
                             sums[self.at.escaped] = ti.max(sums[self.at.escaped], p.number[b, lane])
         for k in ti.static(range(len(SUMS))):
             self.sums[k][w, chunk] = sums[k]
@@ -183,11 +207,14 @@ class Census:
         sums[self.at.elastic] += m * light * (s / (1.0 + s))
 
     @ti.func
-    def is_out(self, w, y, z, dent):
-        """Whether a point is outside the tank by more than `dent` spacings: in an impact water may dent a wall."""
-        out = not self.walls.holds(y, z)
-        if out:
-            shift, near = self.walls.shift(w, 0.0), dent * self.constants.get("spacing")
+    def is_out(self, w, tank, place: ti.template(), dent):
+        """Whether a place is outside its tank by more than `dent` spacings: in an impact water may dent a wall."""
+        near, y, z, out = dent * self.constants.get("spacing"), place[0], place[1], False
+        if ti.static(self.order.layers > 1):
+            out = self.walls.is_off(tank, y, z, near)
+        elif not self.walls.holds(y, z):
+            out = True
+            shift = self.walls.shift(w, 0.0)
             for feature in range(self.walls.features):
                 if self.walls.near(feature, shift, y, z, near):
                     out = False
@@ -211,7 +238,7 @@ class Census:
         total = ti.cast(0.0, self.exact)
         for b in range(w * p.stride, w * p.stride + p.used[w]):
             for lane in range(p.lanes):
-                if p.number[b, lane] != UNUSED:
+                if p.number[b, lane] != UNUSED and self.order.layer(b) == self.first:
                     t = 1.0 - ti.abs(ti.cast(p.place[0][b, lane], self.exact) - y) / reach
                     if t > 0.0 and p.gas_at(b, lane) < 0.5:
                         total += ti.cast(p.volume[b, lane], self.exact) * t * t * (3.0 - 2.0 * t)

@@ -1,5 +1,7 @@
 """State checks of water: errors that name the time, the place and the remedy."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from solvers.fluid.constants import FASTEST
@@ -51,11 +53,12 @@ def residual(rows: dict[str, np.ndarray], start: np.ndarray | float) -> np.ndarr
     return rows["water_total"] + taken - rows["water_work"] - start
 
 
-def refuse_scene(tanks: int, vessels: bool, grains: bool) -> None:
-    """Raise Unavailable, one sentence, for a scene in which water cannot be computed."""
-    if vessels:
-        raise Unavailable("water: water in a ship's hold is not computed yet; leave out [ship] or [water].")
-    if tanks > 1:
-        raise Unavailable("water: tanks of water stand alone; leave out the other tanks or [water].")
-    if grains:
-        raise Unavailable("water: grains in water are not computed yet; leave out [grains] or [water].")
+def refuse_scene(fills: Sequence[int], parts: int, grains: bool) -> None:
+    """Raise Unavailable, one sentence, for a scene in which water cannot be computed.
+
+    `fills`: how many particles of water are in each tank; grains are in the first.
+    """
+    if grains and fills[0]:
+        raise Unavailable("water: grains in water are not computed yet; give them tanks of their own.")
+    if parts and len(fills) > 1:
+        raise Unavailable("parts: a tank of water with parts in it stands alone; leave out parts or other tanks.")

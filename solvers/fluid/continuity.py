@@ -30,7 +30,7 @@ class Continuity:
         first, end = self.shares.wet(u)
         lost = ti.cast(0.0, self.particles.exact)
         for b in range(first, end):
-            lost += self.expand_block(u, b, b - first)
+            lost += self.lists.order.weight(b) * self.expand_block(u, b, b - first)
         self.lost[u] = self.lost[u] + lost * ti.cast(dt, self.particles.exact)
         return True
 

@@ -15,7 +15,6 @@ from solvers.tank.load import Load
 
 SINGULAR = 0.05  # least eigenvalue of Σ V_j r_ji ⊗ ∇W down to which it is inverted: spray has no gradient
 NEAR = 1e-3  # of (2 h)² times the squared gradient of the phase: from there on the other phase is near
-OUTLINE = 0  # number of the piece of the tank that all dummies belong to
 
 
 @ti.data_oriented
@@ -34,6 +33,7 @@ class Forces:
         self.beside, self.load, self.bodies = WallPush(medium, walls), load, medium.lists.bodies
         own = arrays.under("water.forces")
         self.lost, self.held, self.work = own.reals((medium.units.axis,), "lost", "held", "work", kind=own.exact)
+        self.order, self.outlines = medium.lists.order, medium.lists.order.layers
         self.tension = Tension(medium.particles, medium.constants)
         self.gradients = medium.constants.diffusion.renormalised
         self.thick = arrays.under("water").holding("thickness", np.array([thickness]), "one", own.exact)
@@ -73,23 +73,38 @@ class Forces:
         self.load.begin(u)
         first, end = self.shares.wet(u)
         total = ti.Vector([ti.cast(0.0, self.particles.exact) for _ in ti.static(range(5))])
+        tank, before, shown = 0, total, total  # `shown`: each tank as long as it is
+        if first < end:
+            tank = self.order.layer(first)
         for b in range(first, end):
-            total += self.push_block(u, b, b - first, kick)
+            found = self.push_block(u, b, b - first, kick)
+            if ti.static(self.order.layers > 1):  # noqa: SIM102 (blocks are in the order of the tanks)
+                if self.order.layer(b) != tank:
+                    self.book(u, tank, total - before, dt)
+                    tank, before = self.order.layer(b), total
+            total += found
+            shown += self.order.weight(b) * found
         thick, during = self.thick[0], ti.cast(kick, self.particles.exact)
-        self.lost[u] = self.lost[u] + total[3] * during
-        self.held[u] = self.held[u] + total[4] * during
+        self.lost[u] = self.lost[u] + shown[3] * during
+        self.held[u] = self.held[u] + shown[4] * during
         if ti.static(self.poses.moving):
             w = self.units.world(u)
-            power = dot([total[0], total[1], total[2]], [self.poses.walls[3 + k][w] for k in ti.static(range(3))])
+            power = dot([shown[0], shown[1], shown[2]], [self.poses.walls[3 + k][w] for k in ti.static(range(3))])
             self.work[u] = self.work[u] - power * during
         if ti.static(self.bodies.count > 0):
             for k in range(self.bodies.count):
                 load = [self.bodies.force[n][u, k] for n in ti.static(range(3))]
-                self.load.book(u, 1 + OUTLINE + k, ti.Vector([thick * load[n] for n in ti.static(range(3))]), dt)
+                self.load.book(u, self.outlines + k, ti.Vector([thick * load[n] for n in ti.static(range(3))]), dt)
                 for n in ti.static(range(3)):
-                    total[n] -= load[n]
+                    before[n] += load[n]  # parts stand in a tank that is alone
             self.bodies.book(u, kick, dt)
-        self.load.book(u, OUTLINE, ti.Vector([total[0] * thick, total[1] * thick, total[2] * thick]), dt)
+        self.book(u, tank, total - before, dt)
+
+    @ti.func
+    def book(self, u, tank, total, dt):
+        """Book the load on a tank: force (y, z; N/m) and moment (N)."""
+        thick = self.thick[0]
+        self.load.book(u, tank, ti.Vector([total[0] * thick, total[1] * thick, total[2] * thick]), dt)
 
     @ti.func
     def push_block(self, u, b, listed, kick):

@@ -70,7 +70,10 @@ class Water:
     `speed` (m/s). `walls`: whether the tank's outline holds the water; without, it moves freely in space.
     `edges`: those of the outline, by their first corners, whose force is told. `periodic`: axes, "y" or "z", along
     which space repeats itself with the tank's width or height, so that it has no walls there. `start`: the name of how
-    water at rest is laid, "packed" or as a "lattice". `air`: what fills the tank besides, None: nothing.
+    water at rest is laid, "packed" or as a "lattice". `air`: what fills the tank besides, None: nothing. `fills`: how
+    many particles are in each tank of a world, by their numbers one after the other; (): all are in the first. Water of
+    different tanks never meets, though they may overlap in the plane. `model`: "sph", or "linear" or "frozen", for
+    which see `solvers.liquid`: then waves have the share `swing_damping` of the critical damping.
     """
 
     spacing: float
@@ -96,12 +99,19 @@ class Water:
     levels: tuple[Level, ...] = ()
     edges: tuple[int, ...] = ()
     start: str = "packed"
+    fills: tuple[int, ...] = ()
+    model: str = "sph"
+    swing_damping: float = 0.0
     air: Air | None = None
 
     @property
     def length(self) -> float:
         """Smoothing length h (m)."""
         return self.smoothing * self.spacing
+
+    def in_tanks(self, count: int, tanks: int) -> tuple[int, ...]:
+        """How many of `count` particles are in each of so many tanks."""
+        return self.fills or (count, *[0] * (tanks - 1))
 
     @property
     def reach(self) -> float:

@@ -1,5 +1,6 @@
 """The grid that orders particles: strips along y, cut into bins. Its key numbers strip by strip, bin by bin."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -7,6 +8,7 @@ import numpy as np
 from solvers.fluid.given import Water
 from solvers.fluid.state import FAR
 from solvers.space.axes import NAMES
+from solvers.tank.tank import Tank
 
 BIN = 0.5  # length of a bin, in spacings
 ROOM = 2.0  # supports of the kernel by which the grid reaches beyond the tank's box
@@ -17,7 +19,8 @@ class Grid:
     """Strips of the height √lanes Δx and bins of half a spacing over a box from `lower` to `upper` (m).
 
     A block of particles at rest in a strip is about a square. Points outside the box belong to its outermost cells.
-    Space may repeat itself along an axis with a period (m), from the `origin` on; 0: it does not.
+    Space may repeat itself along an axis with a period (m), from the `origin` on; 0: it does not. Tanks may overlap in
+    the plane, as they stand one behind the other in a ship: each of `layers` has strips of its own.
     """
 
     lower: tuple[float, float]
@@ -26,6 +29,7 @@ class Grid:
     lanes: int
     periods: tuple[float, float] = (0.0, 0.0)
     origin: tuple[float, float] = (0.0, 0.0)
+    layers: int = 1
 
     @property
     def height(self) -> float:
@@ -38,9 +42,14 @@ class Grid:
         return BIN * self.spacing
 
     @property
-    def strips(self) -> int:
-        """Number of strips."""
+    def rows(self) -> int:
+        """Number of strips of a layer."""
         return int((self.upper[1] - self.lower[1]) / self.height) + 1
+
+    @property
+    def strips(self) -> int:
+        """Number of strips of all layers."""
+        return self.layers * self.rows
 
     @property
     def bins(self) -> int:
@@ -57,18 +66,18 @@ class Grid:
         """What `Order` computes keys from: lower corner (m), bins and strips per metre, periods, their origin (m)."""
         return np.array([*self.lower, 1.0 / self.bin, 1.0 / self.height, *self.periods, *self.origin])
 
-    def key(self, points: np.ndarray) -> np.ndarray:
-        """Keys (n,) of points (n, 2) m."""
+    def key(self, points: np.ndarray, layer: np.ndarray | int = 0) -> np.ndarray:
+        """Keys (n,) of points (n, 2) m, each in its layer."""
         along = np.clip(((points[:, 0] - self.lower[0]) / self.bin).astype(int), 0, self.bins - 1)
-        strip = np.clip(((points[:, 1] - self.lower[1]) / self.height).astype(int), 0, self.strips - 1)
-        return strip * self.bins + along
+        strip = np.clip(((points[:, 1] - self.lower[1]) / self.height).astype(int), 0, self.rows - 1)
+        return (layer * self.rows + strip) * self.bins + along
 
-    def arranged(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def arranged(self, points: np.ndarray, layer: np.ndarray | int = 0) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Points (n, 2) that do not move, in blocks: slot of each (n,), lanes (blocks, lanes, 2), first slots by key.
 
         Each strip begins a new block. The slots of key k are from first[k] to first[k + 1] − 1, some of them unused.
         """
-        key = self.key(points)
+        key = self.key(points, layer)
         order = np.argsort(key, kind="stable")
         counts = np.bincount(key, minlength=self.strips * self.bins)
         first = np.zeros(len(counts) + 1, dtype=np.int32)
@@ -89,9 +98,9 @@ class Grid:
 
 
 def grid_round(
-    water: Water, drops: np.ndarray, outline: np.ndarray, bounds: tuple[np.ndarray, np.ndarray], lanes: int
+    water: Water, drops: np.ndarray, tanks: Sequence[Tank], bounds: tuple[np.ndarray, np.ndarray], lanes: int
 ) -> Grid:
-    """The grid round a tank with an `outline` (m, 2) m, in which water stays within `bounds`.
+    """The grid round `tanks`, in which water stays within `bounds`.
 
     Where it has no walls, the grid is round the water itself, with as much space on all sides.
     """
@@ -101,7 +110,8 @@ def grid_round(
         place = drops[..., :2].reshape(-1, 2)
         lower, upper = place.min(axis=0), place.max(axis=0)
         margin = float(np.ptp(place, axis=0).max())
+    outline = tanks[0].outline
     sides = zip(NAMES, np.ptp(outline, axis=0), strict=False)
     periods = tuple(float(side) if name in water.periodic else 0.0 for name, side in sides)
     corners = tuple(lower - margin), tuple(upper + margin)
-    return Grid(*corners, water.spacing, lanes, periods, tuple(outline.min(axis=0)))
+    return Grid(*corners, water.spacing, lanes, periods, tuple(outline.min(axis=0)), len(tanks))

@@ -7,7 +7,7 @@ import numpy as np
 import taichi as ti
 
 from solvers.fluid.constants import Constants
-from solvers.fluid.order import BINS, Order
+from solvers.fluid.order import BINS, ROWS, Order
 from solvers.fluid.state import UNUSED, Listing, Particles, Shares
 from solvers.fluid.walls.bodies import Bodies
 from solvers.machine.state import State, padded
@@ -29,8 +29,8 @@ class Lists:
 
     An entry is a slot in all blocks of all worlds, and where space is periodic the image in which it is seen. `travel`
     (units,) m bounds how far any particle of a unit has moved since the lists were built, `last` (m) how far in the
-    last step; `skin` (units,) m was allowed for. `walls` are the first slots of the dummies by key. In `beside` those
-    of the tank are followed by those of each part (`Bodies`), with a beginning for each of these pieces.
+    last step; `skin` (units,) m was allowed for. `walls` are the dummies' first slots by key. In `beside` those of the
+    tank are followed by those of each part (`Bodies`), with a beginning for each of these pieces.
     """
 
     def __init__(
@@ -156,7 +156,7 @@ class Lists:
     def search(self, u, b, reach, found, listing: ti.template(), image: ti.template(), walls: ti.template()):
         """List the water, or the walls, within `reach` (m) of a block's box, as seen in an image of periodic space.
 
-        Returns the number listed up to there.
+        Returns the number listed up to there. Each tank has strips of its own.
         """
         p, order = self.particles, self.order
         w = self.units.world(u)
@@ -167,7 +167,8 @@ class Lists:
         start = w * p.stride * p.lanes
         if ti.static(walls):
             start += p.wet * p.lanes
-        for strip in range(order.strip_of(lower[1] - far), order.strip_of(upper[1] + far) + 1):
+        base = order.layer(b) * order.sizes[ROWS]
+        for strip in range(base + order.strip_of(lower[1] - far), base + order.strip_of(upper[1] + far) + 1):
             begin = self.at(w, strip * order.sizes[BINS] + left, walls)
             end = self.at(w, strip * order.sizes[BINS] + right + 1, walls)
             for k in range(start + begin, start + end):

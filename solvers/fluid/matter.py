@@ -5,7 +5,7 @@ from typing import ClassVar
 import numpy as np
 import taichi as ti
 
-from solvers.fluid.census import Census
+from solvers.fluid.census import Census, Pool
 from solvers.fluid.checks import LEAST, check_water, refuse_scene, refuse_state, residual
 from solvers.fluid.constants import Constants
 from solvers.fluid.continuity import Continuity
@@ -14,7 +14,7 @@ from solvers.fluid.given import GAS, VELOCITY_Y, VELOCITY_Z, VOLUME, Water
 from solvers.fluid.grid import grid_round
 from solvers.fluid.lists import Lists, Medium
 from solvers.fluid.mover import Mover
-from solvers.fluid.order import Order
+from solvers.fluid.order import Order, Tanks
 from solvers.fluid.phases.vent import Vent
 from solvers.fluid.shifting import SHIFTING
 from solvers.fluid.state import LANES, UNUSED, Particles, Shares
@@ -25,7 +25,9 @@ from solvers.fluid.walls.extrapolation import Extrapolation
 from solvers.fluid.walls.gauges import Gauges
 from solvers.machine.phase import Phase
 from solvers.machine.state import Axes
+from solvers.motion.carrier import per_slab
 from solvers.motion.poses import Poses
+from solvers.ship.body import Body, frozen
 from solvers.tank.matter import Matter
 from solvers.tank.setting import Setting
 
@@ -40,16 +42,16 @@ class WaterMatter(Matter):
     def __init__(self, scene, setting: Setting):
         water: Water = scene.water
         self.scene, self.water = scene, water
-        arrays, worlds, tank = setting.arrays, setting.worlds, scene.tanks[0]
+        arrays, worlds, tank, count = setting.arrays, setting.worlds, scene.tanks[0], scene.drops.shape[1]
         lanes = 1 if setting.per_particle else LANES
         self.wide = lanes > 1
-        behind, grid = Behind(water, tank), grid_round(water, scene.drops, tank.outline, setting.walls.bounds, lanes)
-        dummy, blocks, first = grid.arranged(behind.points)
+        behind = Behind(water, scene.tanks, scene.fills)
+        grid = grid_round(water, scene.drops, scene.tanks, setting.walls.bounds, lanes)
+        dummy, blocks, first = grid.arranged(behind.points, behind.tanks)
         self.bodies = Bodies(arrays, scene.parts, water, tank, worlds, lanes)
         self.nearing = self.bodies.fastest
         walls = (len(blocks) + self.bodies.rows) * lanes
         self.drops = scene.drops
-        count = scene.drops.shape[1]
         self.gas = scene.drops[..., GAS] if water.air else np.zeros(scene.drops.shape[:2])
         self.puffs, shifting = int(self.gas[0].sum()), SHIFTING[water.shifting]  # particles of air, which come last
         self.particles = p = Particles(arrays, worlds, count, lanes, walls, grid.strips, shifting, water.air)
@@ -58,7 +60,7 @@ class WaterMatter(Matter):
         self.dummies = dummy, blocks, behind.volumes, behind.firm
         shares, self.constants = Shares(p, units), Constants(arrays, water, scene.gravity)
         self.poses = Poses(arrays, setting.carrier, worlds)
-        self.order = Order(arrays, p, grid)
+        self.order = Order(arrays, p, grid, Tanks.of(scene, p, dummy, behind.tanks))
         self.bodies.join(arrays, p, shares, self.poses, units)
         self.lists = Lists(arrays, units, self.order, shares, self.constants, first, self.bodies, setting.room)
         medium = Medium(units, p, shares, self.lists, self.constants, self.poses)
@@ -68,11 +70,11 @@ class WaterMatter(Matter):
         self.mover = Mover(arrays, medium, self.extrapolation, self.vent)
         probes = [dummy[slot] + p.wet * lanes for slot in behind.probes]
         self.gauges = Gauges(arrays, p, self.constants, water.gauges, probes, behind.open)
+        pool = Pool.of(scene, setting.walls, self.order)
         owner = np.full(p.dry * lanes, OF_NONE)
-        owner[dummy] = behind.edges
+        owner[dummy] = np.where(behind.tanks == pool.first, behind.edges, OF_NONE)
         self.edges = Edges(arrays, medium, water.edges, owner, tank.thickness)
-        closed = water.walls and not tank.open_edges and not water.periodic
-        self.census = Census(arrays, p, setting.walls, self.constants, setting.carrier, closed, water.levels)
+        self.census = Census(arrays, p, self.constants, setting.carrier, pool, water.levels)
         self.start = np.full(worlds, np.nan)  # J, energy at the first look
         self.thickness = tank.thickness
         mass = water.density * scene.drops[..., VOLUME].sum(axis=1).max() * tank.thickness
@@ -85,7 +87,7 @@ class WaterMatter(Matter):
         )
 
     def _before(self) -> tuple[Phase, ...]:
-        phases = [
+        return (
             Phase(self.note_poses),
             Phase(self.forces.publish, self.units),
             *([Phase(self.vent.sum, self.units), Phase(self.vent.flow)] if self.vent.acts else ()),
@@ -93,8 +95,7 @@ class WaterMatter(Matter):
             *([Phase(self.gauges.measure)] if self.gauges.count else ()),
             *([Phase(self.edges.bear, self.units), Phase(self.edges.add)] if self.edges.wanted else ()),
             Phase(self.forces.push, self.units),
-        ]
-        return tuple(phases)
+        )
 
     @property
     def extent(self) -> float:
@@ -166,6 +167,12 @@ class WaterMatter(Matter):
             fits = self.lists.rebuild(u)
         return fits
 
+    def as_rigid(self) -> list[Body]:
+        """The water of each world as one rigid body, per metre of the ship's length, in the tank's frame."""
+        p = self.particles
+        y, z, mass, volume = p.read(*p.place, p.mass, p.volume)
+        return [frozen(*one) for one in zip(y, z, per_slab(self.scene) * mass, volume, strict=True)]
+
     def place(self) -> None:
         """Place the particles as the scene says, and the dummies; all that was noted is forgotten."""
         p = self.particles
@@ -181,14 +188,8 @@ class WaterMatter(Matter):
             whole = field.to_numpy().reshape(p.worlds, p.stride, p.lanes)
             whole[:, p.wet : p.wet + p.walls] = values
             field.from_numpy(whole.reshape(-1, p.lanes))
-        for field in (
-            self.forces.lost,
-            self.forces.held,
-            self.forces.work,
-            self.continuity.lost,
-            self.census.behind,
-            self.lists.last,
-        ):
+        sums = self.forces.lost, self.forces.held, self.forces.work, self.continuity.lost
+        for field in (*sums, self.census.behind, self.lists.last):
             field.fill(0.0)
         self.bodies.forget()
         self.lists.skin.fill(0.0)
@@ -204,12 +205,10 @@ class WaterMatter(Matter):
         mass = np.maximum(sums["mass"], 1e-300)  # of both phases
         centre = np.stack([sums["moment_y"], sums["moment_z"]], axis=1) / mass[:, None]
         now = [field.to_numpy() for field in self.census.now]
-        # Height over the earth's origin: gravity points down, and `height` is the tank's own.
         down = np.stack(now[3:5], axis=1) / max(self.scene.gravity, 1e-300)
         potential = mass * self.scene.gravity * (now[5] - (centre * down).sum(axis=1)) + sums["pulled"]
-        worlds = self.particles.worlds
         spent = [
-            field.to_numpy().reshape(worlds, -1).sum(axis=1)
+            field.to_numpy().reshape(self.particles.worlds, -1).sum(axis=1)
             for field in (self.forces.lost, self.continuity.lost, self.forces.work, self.forces.held)
         ]
         rows = {
@@ -230,8 +229,7 @@ class WaterMatter(Matter):
             **self.edges.take(),
             **self.bodies.take(thick),
         }
-        fresh = np.isnan(self.start)
-        self.start[fresh] = residual(rows, 0.0)[fresh]
+        np.copyto(self.start, residual(rows, 0.0), where=np.isnan(self.start))
         return rows
 
     def check(self, rows: dict[str, np.ndarray], time: float) -> None:
@@ -294,7 +292,7 @@ class WaterMatter(Matter):
 
 def make_water(scene, setting: Setting) -> WaterMatter | None:
     """The water of a scene (`solvers.scene.Scene`); None where it has none. Raises Unavailable."""
-    if scene.water is None:
+    if scene.water is None or scene.water.model != "sph":
         return None
-    refuse_scene(len(scene.tanks), bool(scene.vessels), bool(scene.radius.size))
+    refuse_scene(scene.fills, len(scene.parts), bool(scene.radius.size))
     return WaterMatter(scene, setting)

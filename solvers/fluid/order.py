@@ -3,6 +3,9 @@
 Neighbours lie in one block or in few, so that a block's lanes need nearly the same neighbours.
 """
 
+from collections.abc import Sequence
+from dataclasses import dataclass
+
 import numpy as np
 import taichi as ti
 
@@ -11,22 +14,51 @@ from solvers.fluid.state import COUNT, FAR, UNUSED, WET, Particles
 from solvers.machine.state import Axis, State, roomy
 
 CHUNK = 256  # keys that one thread sums up
-STRIPS, BINS, LONGEST, KEYS = range(4)  # what of the grid is kept in `sizes`
+STRIPS, BINS, LONGEST, KEYS, ROWS = range(5)  # what of the grid is kept in `sizes`
+
+
+@dataclass(frozen=True)
+class Tanks:
+    """The tanks of a world: how many particles are in each (`fills`), and its length over that of the first with water.
+
+    `standing` is the tank (dry blocks,) of each block of dummies.
+    """
+
+    fills: Sequence[int]
+    weights: np.ndarray
+    standing: np.ndarray
+
+    @classmethod
+    def of(cls, scene, particles: Particles, slots: np.ndarray, tanks: np.ndarray) -> "Tanks":
+        """Those of a scene, whose dummies are in these slots of the dry blocks, of these `tanks`; parts are in 0."""
+        first = next(number for number, fill in enumerate(scene.fills) if fill)
+        lengths = np.array([tank.along for tank in scene.tanks])
+        standing = np.zeros(max(1, particles.dry), dtype=int)
+        standing[slots // particles.lanes] = tanks
+        return cls(scene.fills, lengths / lengths[first], standing)
 
 
 @ti.data_oriented
 class Order:
-    """Sorts the particles of a world. `first` (W, keys) are the keys' first slots; slot = lanes · block + lane."""
+    """Sorts the particles of a world. `first` (W, keys) are the keys' first slots; slot = lanes · block + lane.
 
-    def __init__(self, arrays: State, particles: Particles, grid: Grid):
+    Each tank is a layer of the grid, with strips and so with blocks of its own.
+    """
+
+    def __init__(self, arrays: State, particles: Particles, grid: Grid, tanks: Tanks):
         self.particles, self.grid = particles, grid
-        sizes = grid.strips, grid.bins, grid.longest, grid.strips * grid.bins
+        self.layers = grid.layers
+        sizes = grid.strips, grid.bins, grid.longest, grid.strips * grid.bins, grid.rows
         # A particle of a full tank takes two keys, and there is room for twice as many.
         self.keys = roomy(sizes[KEYS] + 1, 2 * particles.wet * particles.lanes)
         self.chunks = -(-self.keys // CHUNK)
         own = arrays.under("water.order")
         self.sizes = own.holding("sizes", np.array(sizes), "size", ti.i32)
         self.numbers = own.holding("numbers", grid.numbers, "number", own.place)
+        if self.layers > 1:
+            self.ends = own.holding("ends", np.cumsum(tanks.fills), "layer", ti.i32)
+            self.standing = own.holding("standing", tanks.standing, "block", ti.i32)
+            self.weights = own.holding("weights", tanks.weights, "layer", own.exact)
         world = Axis("world", particles.worlds)
         keys = world, Axis("key", self.chunks * CHUNK)
         (self.first,) = own.integers(keys, "first", below=particles.wet * particles.lanes + 1)
@@ -46,13 +78,44 @@ class Order:
     @ti.func
     def strip_of(self, z):
         """The strip of a height z (m)."""
-        return ti.max(0, ti.min(self.sizes[STRIPS] - 1, ti.cast((z - self.numbers[1]) * self.numbers[3], ti.i32)))
+        return ti.max(0, ti.min(self.sizes[ROWS] - 1, ti.cast((z - self.numbers[1]) * self.numbers[3], ti.i32)))
 
     @ti.func
     def find(self, b, lane):
         """The key of a particle."""
         p = self.particles
-        return self.strip_of(p.place[1][b, lane]) * self.sizes[BINS] + self.bin_of(p.place[0][b, lane])
+        strip = self.strip_of(p.place[1][b, lane])
+        if ti.static(self.layers > 1):
+            strip += self.layer_of(p.number[b, lane]) * self.sizes[ROWS]
+        return strip * self.sizes[BINS] + self.bin_of(p.place[0][b, lane])
+
+    @ti.func
+    def layer_of(self, number):
+        """The tank of a particle, by its number."""
+        layer = 0
+        for k in range(self.layers - 1):
+            layer += ti.select(number >= self.ends[k], 1, 0)
+        return layer
+
+    @ti.func
+    def layer(self, b):
+        """The tank that a block is in: one of water that is in use, or one of dummies."""
+        found = 0
+        if ti.static(self.layers > 1):
+            row = b % self.particles.stride
+            if row < self.particles.wet:
+                found = self.layer_of(self.particles.number[b, 0])
+            else:
+                found = self.standing[row - self.particles.wet]
+        return found
+
+    @ti.func
+    def weight(self, b):
+        """The length of the tank that a block is in, over that of the first with water."""
+        weight = ti.cast(1.0, self.particles.exact)
+        if ti.static(self.layers > 1):
+            weight = self.weights[self.layer(b)]
+        return weight
 
     @ti.func
     def wrap(self, b, lane):

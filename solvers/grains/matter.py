@@ -23,6 +23,7 @@ from solvers.grains.shapes.rules.lists import ShapedNeighbours
 from solvers.grains.state import Grains
 from solvers.machine.phase import Phase
 from solvers.machine.state import Axes
+from solvers.motion.carrier import per_metre
 from solvers.ship.body import Body
 from solvers.space.axes import dot
 from solvers.tank.load import Load
@@ -233,10 +234,10 @@ class GrainMatter(Matter):
         """Restore what `state` returned."""
         self.numbering.restore(state)
 
-    def bodies(self) -> list[Body]:
+    def as_rigid(self) -> list[Body]:
         """The grains of each world as one rigid body, per metre of the ship's length, in the tank's frame."""
         place, mass = self.grains.read()["position"], self.numbering.in_solver_order(self.grains.mass)
-        share = self.scene.per_metre(place)
+        share = per_metre(self.scene, place)
         own = share / self.grains.inverse_inertia.to_numpy()[:, : mass.shape[1]]
         mass = share * mass
         total = mass.sum(axis=1)

@@ -26,25 +26,15 @@ from solvers.machine.state import Axis, State
 from solvers.motion.buoyancy import Hulls
 from solvers.motion.frame import turned
 from solvers.motion.harmonic import soft_start
+from solvers.motion.hold import APART, Hold, apart
 from solvers.ship.body import Body
+from solvers.ship.potential.memory import padded
 from solvers.ship.vessel import Vessel
 from solvers.tank.load import Load
 
 POSE, VELOCITY, MEMORY = 0, 3, 6  # first entries of these parts of a state
 WORKS = 3  # last entries of a state: work (J/m) of the waves, against radiation, against viscosity
-APART = 16  # row length of arrays that are written for each ship at each step
 STAGES = 4  # of the Runge–Kutta method
-
-
-def steps_an_interval(vessels: Sequence[Vessel], interval: float | None, dt: float) -> int:
-    """Number of steps of dt (s) in an interval H, which is the given one (s) or the shortest that any ship needs."""
-    return max(1, round((interval or min(vessel.interval for vessel in vessels)) / dt))
-
-
-def _apart(rows: Sequence[Sequence[float]]) -> np.ndarray:
-    """Rows (W, k) padded to length APART, so that no two worlds write to one cache line."""
-    values = np.array(rows, dtype=float)
-    return np.pad(values, ((0, 0), (0, APART - values.shape[1])))
 
 
 @ti.data_oriented
@@ -58,8 +48,9 @@ class Afloat:
     rotating = moving = answers = True
     paced = False  # the ship's leapfrog needs steps of one length
 
-    def __init__(self, arrays: State, vessels: Sequence[Vessel], gravity: float, every: int):
+    def __init__(self, arrays: State, vessels: Sequence[Vessel], gravity: float, every: int, wet: bool = False):
         self.exact, self.real, self.vessels, self.loads = arrays.exact, arrays.real, tuple(vessels), ()
+        self.pressed = False
         self.phases = (Phase(self.follow),)
         worlds = len(self.vessels)
         self.hulls = Hulls(arrays, [v.ship for v in self.vessels], [v.openings for v in self.vessels])
@@ -82,28 +73,27 @@ class Afloat:
         self.dashpot = table("dashpot", [ship.rig.damping for ship in ships], "motion")
         self.spring = table("spring", [ship.rig.spring for ship in ships], "motion")
         self.rest = table("rest", [ship.rig.rest for ship in ships], "motion")
-        self.hold = table("hold", [np.subtract(vessel.hold, vessel.ship.about) for vessel in self.vessels], "direction")
+        self.hold = Hold(own, self._places(), gravity, wet)
         self.heel = table("heel", [vessel.heel for vessel in self.vessels])
         self.release = table("release", [vessel.release for vessel in self.vessels])
         self.limits = table("limits", [np.clip(vessel.limits, -1e9, 1e9) for vessel in self.vessels], "number")
         if self.states:
-            matrix = [self._padded(m, "matrix", (self.states, self.states)) for m in memories]
+            matrix = [padded(m, "matrix", (self.states, self.states)) for m in memories]
             self.matrix = table("matrix", matrix, "state state")
-            self.entry = table("entry", [self._padded(m, "entry", (self.states, 3)) for m in memories], "state motion")
-            self.exit = table("exit", [self._padded(m, "exit", (3, self.states)) for m in memories], "motion state")
+            self.entry = table("entry", [padded(m, "entry", (self.states, 3)) for m in memories], "state motion")
+            self.exit = table("exit", [padded(m, "exit", (3, self.states)) for m in memories], "motion state")
         # Mass, centre from P (y, z) and inertia of the hull alone; the pose upright, and at the release
         (self.body,) = own.reals((world, Axis("number", 4)), "body", kind=own.exact)
         self.upright, self.heeled = own.reals((world, Axis("motion", 3)), "upright", "heeled", kind=own.exact)
         states = own.reals((world, Axis("state", self.size)), "state", "trial", "slope", "total", kind=own.exact)
         self.state, self.trial, self.slope, self.total = states
         # Pose at the beginning of the next step and velocity half a step before; mean acceleration, drift and mean load
-        # of this interval, and of the previous one; sum of the load so far; last acceleration; motion of the tank.
+        # of this interval, and of the previous one; sum of the load so far; last acceleration.
         names = "pose", "velocity", "steady", "steady_before", "drift", "mean", "mean_before", "load"
         row = world, Axis("number", APART)
-        for name in (*names, "last", "tank"):
+        for name in (*names, "last"):
             (field,) = own.reals(row, name, kind=own.exact)
             setattr(self, name, field)
-        self.felt = table("felt", _apart([[0.0, -gravity, 0.0, 0.0]] * worlds), "number")
         (self.done,) = own.integers(row, "done")
         # Times (s) of capsize and of flooding, or −1; the cargo's work on the ship (J/m)
         self.capsized = table("capsized", np.full(worlds, -1.0))
@@ -122,17 +112,10 @@ class Afloat:
         """Numbers of states of the radiation memory, corners of a section, and wave components."""
         return self.states, self.hulls.corners, self.hulls.waves
 
-    @staticmethod
-    def _padded(memory, name: str, shape: tuple[int, int]) -> np.ndarray:
-        whole = np.zeros(shape)
-        if memory is not None:
-            part = getattr(memory, name)
-            whole[: part.shape[0], : part.shape[1]] = part
-        return whole
-
     def bear(self, loads: Sequence[Load]) -> None:
         """Respond to these loads from now on, those of all matters in the tank."""
         self.loads = tuple(loads)
+        self.pressed = any(load.pressed for load in loads)
 
     def begin(self, cargo: Callable[[], Sequence[Body]]) -> None:
         """Hold the ships at rest, upright in equilibrium; `cargo` returns theirs (W,), per metre in the tank's axes.
@@ -154,9 +137,12 @@ class Afloat:
         self.given.fill(0.0)
         self.done.fill(0)
         self.state.fill(0.0)
-        holds = [np.subtract(vessel.hold, vessel.ship.about) for vessel in self.vessels]
-        still = [[*np.add(pose[:2], hold), *[0.0] * 7] for pose, hold in zip(upright, holds, strict=True)]
-        self.tank.from_numpy(self._typed(_apart(still)))
+        still = [[*np.add(pose[:2], place), *[0.0] * 7] for pose, place in zip(upright, self._places(), strict=True)]
+        self.hold.tank.from_numpy(self._typed(apart(still)))
+
+    def _places(self) -> np.ndarray:
+        """The tank's origin (W, 2) m from P, in the hulls' axes."""
+        return np.array([np.subtract(vessel.hold, vessel.ship.about) for vessel in self.vessels], dtype=float)
 
     def _typed(self, values) -> np.ndarray:
         return np.array(values, dtype=np.float64 if self.exact is ti.f64 else np.float32)
@@ -174,12 +160,17 @@ class Afloat:
     @ti.func
     def frame(self, w, t):
         """The tank's frame for the cargo: (b_y, b_z, φ̇, φ̈), with the body force per mass b = R(−φ)(g − P̈)."""
-        return ti.cast(ti.Vector([self.felt[w, k] for k in ti.static(range(4))]), self.real)
+        return ti.cast(ti.Vector([self.hold.felt[w, k] for k in ti.static(range(4))]), self.real)
 
     @ti.func
     def kinematics(self, w, time):
         """Pose (Y, Z, φ) of the tank's origin now, its velocity and its acceleration in the earth frame."""
-        return ti.Vector([self.tank[w, k] for k in ti.static(range(9))])
+        return self.hold.kinematics(w)
+
+    @ti.func
+    def passage(self, w, t, dt):
+        """Pose and velocity in the middle of the step of dt (s) that begins at t (s), and the pose at its end."""
+        return self.hold.passage(w)
 
     @ti.func
     def pace(self, w):
@@ -208,6 +199,17 @@ class Afloat:
     @ti.func
     def hold_still(self, w, t, step):
         """Prescribed motion before the release: upright before the start, then turned to the initial heel."""
+        pose, velocity, acceleration = self.held(w, t)
+        self.hold.feel(w, self.gravity[0], pose, velocity, acceleration, 1.0)
+        if ti.static(self.hold.wet):
+            middle, speed, _ = self.held(w, t + 0.5 * step)
+            self.hold.note_middle(w, middle, speed)
+            pose, velocity, acceleration = self.held(w, t + step)
+        self.hold.note(w, pose, velocity, acceleration)
+
+    @ti.func
+    def held(self, w, t):
+        """Pose, velocity and acceleration of P at a time (s) before the release."""
         d = soft_start(t, self.release[w])
         pose, velocity, acceleration = self.vector(self.upright, w), self.nothing(), self.nothing()
         for k in ti.static(range(3)):
@@ -215,8 +217,7 @@ class Afloat:
             pose[k] = pose[k] + d[0] * way
             velocity[k] = d[1] * way
             acceleration[k] = d[2] * way
-        self.feel(w, pose, velocity, acceleration, 1.0)
-        self.note(w, pose, velocity, acceleration)
+        return pose, velocity, acceleration
 
     @ti.func
     def move(self, w, t, step, kick, load):
@@ -241,19 +242,28 @@ class Afloat:
                 steady = 0.5 * (steady + self.vector(self.steady_before, w))
                 mean = 0.5 * (mean + self.vector(self.mean_before, w))
         acceleration = share * (steady + self.accelerated(w, pose[2], force - mean))
+        if ti.static(self.pressed):
+            rate = before[2] + 0.5 * step * self.last[w, 2]
+            force = self.answer(w, pose[2], rate, force)
+            answer = self.hold.inertia(w)
+            more = self.solved(w, self.inertia(w, pose[2]) + answer, force - answer @ steady - mean)
+            acceleration = share * (steady + more)
+            force -= answer @ (steady + more)
         velocity = before + 0.5 * step * acceleration
         if first:
             velocity = before
-        self.feel(w, pose, velocity, acceleration, step / kick)
+        self.hold.feel(w, self.gravity[0], pose, velocity, acceleration, step / kick)
         after = before + step * acceleration
         self.given[w, 0] = self.given[w, 0] + step * share * force.dot(0.5 * (before + after))
         self.put(self.velocity, w, after)
         self.put(self.last, w, acceleration / share)
         self.put(self.load, w, self.vector(self.load, w) + force)
-        pose = pose + step * (after + self.vector(self.drift, w))
+        whole = after + self.vector(self.drift, w)
+        self.hold.note_middle(w, pose + 0.5 * step * whole, whole)
+        pose = pose + step * whole
         self.put(self.pose, w, pose)
         self.done[w, 0] = self.done[w, 0] + 1
-        self.note(w, pose, after + 0.5 * step * acceleration / share, acceleration / share)
+        self.hold.note(w, pose, after + 0.5 * step * acceleration / share, acceleration / share)
         if not (self.limits[w, 0] < pose[2] < self.limits[w, 1]):
             self.capsized[w] = t + step
 
@@ -348,13 +358,32 @@ class Afloat:
     @ti.func
     def accelerated(self, w, roll, force):
         """Accelerations of P and of roll under a force and moment about P, M(φ)⁻¹ F; zero where not free."""
+        return self.solved(w, self.inertia(w, roll), force)
+
+    @ti.func
+    def answer(self, w, roll, rate, force):
+        """Note what the matters answer to accelerations of P; returns their load while P is not accelerated."""
+        for entry in ti.static(range(9)):
+            self.hold.reply[w, entry] = 0.0
+        for k in ti.static(range(len(self.loads))):
+            if ti.static(self.loads[k].pressed):
+                self.loads[k].add_inertia(w, self.hold.reply)
+        return self.hold.answer(w, roll, rate, force)
+
+    @ti.func
+    def inertia(self, w, roll):
+        """Inertia matrix of the hull about P."""
         mass, arm = self.body[w, 0], turned(self.body[w, 1], self.body[w, 2], roll)
         turning = self.body[w, 3] + mass * (arm[0] * arm[0] + arm[1] * arm[1])
         zero = ti.cast(0.0, self.exact)
-        inertia = ti.Matrix(
+        return ti.Matrix(
             [[mass, zero, -mass * arm[1]], [zero, mass, mass * arm[0]], [-mass * arm[1], mass * arm[0], turning]]
         )
-        right = force
+
+    @ti.func
+    def solved(self, w, matrix, force):
+        """Accelerations of an inertia `matrix` (3, 3), with the added mass, under a force; zero where not free."""
+        inertia, right = matrix, force
         for i in ti.static(range(3)):
             right[i] = self.free[w, i] * right[i]
             for j in ti.static(range(3)):
@@ -367,39 +396,9 @@ class Afloat:
     def aboard(self, w, roll, load):
         """The cargo's force and moment per metre about P in the earth's axes, from those in the tank's."""
         force = turned(load[0], load[1], roll)
-        arm = turned(self.hold[w, 0], self.hold[w, 1], roll)
+        arm = self.hold.arm(w, roll)
         moment = load[2] + arm[0] * force[1] - arm[1] * force[0]
         return ti.Vector([force[0], force[1], moment])
-
-    @ti.func
-    def feel(self, w, pose, velocity, acceleration, share):
-        """Set the frame that the grains feel, with `share` of the ship's acceleration."""
-        a = self.carried(w, pose[2], velocity[2], acceleration)
-        b = turned(-share * a[0], -self.gravity[0] - share * a[1], -pose[2])
-        self.felt[w, 0], self.felt[w, 1] = b[0], b[1]
-        self.felt[w, 2], self.felt[w, 3] = velocity[2], share * acceleration[2]
-
-    @ti.func
-    def carried(self, w, roll, rate, acceleration):
-        """Acceleration of the tank's origin: that of P and that of the rotation about P."""
-        arm = turned(self.hold[w, 0], self.hold[w, 1], roll)
-        return ti.Vector(
-            [
-                acceleration[0] - acceleration[2] * arm[1] - rate * rate * arm[0],
-                acceleration[1] + acceleration[2] * arm[0] - rate * rate * arm[1],
-            ]
-        )
-
-    @ti.func
-    def note(self, w, pose, velocity, acceleration):
-        """Store the motion of the tank's origin, for `kinematics`."""
-        arm = turned(self.hold[w, 0], self.hold[w, 1], pose[2])
-        a = self.carried(w, pose[2], velocity[2], acceleration)
-        self.tank[w, 0], self.tank[w, 1], self.tank[w, 2] = pose[0] + arm[0], pose[1] + arm[1], pose[2]
-        self.tank[w, 3] = velocity[0] - velocity[2] * arm[1]
-        self.tank[w, 4] = velocity[1] + velocity[2] * arm[0]
-        self.tank[w, 5] = velocity[2]
-        self.tank[w, 6], self.tank[w, 7], self.tank[w, 8] = a[0], a[1], acceleration[2]
 
     @ti.func
     def vector(self, field: ti.template(), w):

@@ -6,18 +6,23 @@ import numpy as np
 
 from solvers.machine.limit import Limit
 from solvers.machine.state import State
-from solvers.motion.afloat import Afloat, steps_an_interval
+from solvers.motion.afloat import Afloat
 from solvers.motion.axle import Axle, OnAxle
 from solvers.motion.prescribed import Prescribed
 from solvers.ship.vessel import Vessel
 from solvers.tank.tank import Tank
 
 
+def steps_an_interval(vessels: Sequence[Vessel], interval: float | None, dt: float) -> int:
+    """Number of steps of dt (s) in an interval H, which is the given one (s) or the shortest that any ship needs."""
+    return max(1, round((interval or min(vessel.interval for vessel in vessels)) / dt))
+
+
 def make_carrier(arrays: State, scene, dt: float) -> Prescribed | Afloat | OnAxle:
     """The carrier of a scene (`solvers.scene.Scene`) with steps of dt (s)."""
     if scene.vessels:
         every = steps_an_interval(scene.vessels, scene.interval, dt)
-        return Afloat(arrays, scene.vessels, scene.gravity, every)
+        return Afloat(arrays, scene.vessels, scene.gravity, every, scene.water is not None)
     if scene.axles:
         return OnAxle(arrays, scene.axles, scene.gravity, scene.tanks[0].thickness)
     return Prescribed(arrays, scene.motions, scene.soft_start, scene.gravity)
@@ -41,3 +46,19 @@ def limits_of_carrier(vessels: Sequence[Vessel], axles: Sequence[Axle], gravity:
     bounds = [Limit(*min(bounds, key=lambda bound: bound[0]), firm=True) for bounds in of_ships]
     of_axles = [axle.step_limit(gravity) for axle in axles]
     return [*bounds, *sorted(of_axles, key=lambda limit: limit.step)[:1]]
+
+
+def per_metre(scene, position: np.ndarray) -> np.ndarray:
+    """Factors (W, n), 1/m, from masses at `position` (W, n, 2) m to masses per metre of ship, by their tanks."""
+    factor = np.empty(position.shape[:2])
+    for w, vessel in enumerate(scene.vessels):
+        factor[w] = scene.tanks[0].share(vessel.length)
+        for tank in scene.more_tanks:
+            factor[w][tank.holds(position[w])] = tank.share(vessel.length)
+    return factor
+
+
+def per_slab(scene) -> np.ndarray:
+    """Factors (W, n) from masses of particles of water per metre of slab to those per metre of ship, by their tanks."""
+    rows = [[tank.thickness * tank.share(ship.length) for tank in scene.tanks] for ship in scene.vessels]
+    return np.repeat(np.array(rows), scene.fills, axis=1)

@@ -12,6 +12,7 @@ from solvers.machine.state import Axis, Scope
 from solvers.machine.units import APART, Units
 
 NAMES = ("y", "z", "moment")
+ENTRIES = tuple((i, j) for i in range(3) for j in range(3))  # of a matrix, row by row
 
 
 @ti.data_oriented
@@ -20,7 +21,12 @@ class Load:
 
     With `shares` (W, pieces) the present load is kept as well; summed over the pieces with these factors it is what a
     carrier responds to. None: no carrier responds. The load of a matter that acts `every` few steps stands in between.
+
+    A matter that is `pressed` answers an acceleration a of the tank's origin (y, z, roll; tank's axes) at once, by the
+    load F − A a. Its present load is F, that of a tank that is not accelerated, and A (about the origin) its `inertia`.
     """
+
+    pressed = False
 
     def __init__(self, arrays: Scope, units: Units, pieces: int, shares: np.ndarray | None = None, every: int = 1):
         self.units, self.pieces, self.answered = units, pieces, shares is not None
@@ -35,6 +41,20 @@ class Load:
         if self.answered:
             self.instant = declared("instant", every > 1)
             self.shares = own.holding("shares", shares, "world piece", own.exact)
+
+    def answer(self, arrays: Scope) -> None:
+        """Take an inertia of each piece as well."""
+        self.pressed = True
+        piece = Axis("piece", self.pieces), Axis("entry", len(ENTRIES))
+        (self.inertia,) = arrays.under("load").reals((self.units.axis, *piece), "inertia", kind=self.exact, kept=False)
+
+    @ti.func
+    def add_inertia(self, w, matrix: ti.template()):
+        """Add the matrix A of a world to a row of `matrix`, summed over units and pieces with the shares."""
+        for u in range(w * self.units.a_world, (w + 1) * self.units.a_world):
+            for piece in range(self.pieces):
+                for k in ti.static(range(len(ENTRIES))):
+                    matrix[w, k] = matrix[w, k] + self.shares[w, piece] * self.inertia[u, piece, k]
 
     def forget(self) -> None:
         """Set all loads to zero."""

@@ -53,7 +53,7 @@ class Matter:
         """How far from rest each world is by its quantities, (W,): `Simulation.settle` waits until it is small."""
         return np.zeros(self.units.worlds)
 
-    def bodies(self) -> list[Body]:
+    def as_rigid(self) -> list[Body]:
         """The matter of each world as one rigid body, per metre of the ship's length, in the tank's frame."""
         raise NotImplementedError
 

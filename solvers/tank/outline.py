@@ -38,6 +38,21 @@ def area_below(outline: np.ndarray, depth: float) -> float:
     return float(0.5 * abs(y @ np.roll(z, -1) - z @ np.roll(y, -1)))
 
 
+def moments(polygon: np.ndarray) -> tuple[float, tuple[float, float], float]:
+    """Area (m²), centroid (m) and polar second moment of area about it (m⁴) of a polygon (m, 2), counter-clockwise.
+
+    By Green's theorem, exactly.
+    """
+    y, z = (polygon - polygon.mean(axis=0)).T
+    y1, z1 = np.roll(y, -1), np.roll(z, -1)
+    cross = y * z1 - y1 * z
+    area = 0.5 * cross.sum()
+    centre = np.array([((y + y1) * cross).sum(), ((z + z1) * cross).sum()]) / (6.0 * area)
+    polar = ((y * y + y * y1 + y1 * y1 + z * z + z * z1 + z1 * z1) * cross).sum() / 12.0
+    place = polygon.mean(axis=0) + centre
+    return float(area), (float(place[0]), float(place[1])), float(polar - area * (centre @ centre))
+
+
 def free_area(outline: np.ndarray, depth: float, fixed: np.ndarray) -> float:
     """Area (m²) up to `depth` (m) that a lining of half-sunk grains `fixed` (k, 3) leaves free for the bed."""
     low = fixed[:, 1] - outline[:, 1].min() < depth

@@ -21,6 +21,11 @@ class Tank:
     open_edges: tuple[int, ...] = ()
     length: float | None = None
 
+    @property
+    def along(self) -> float:
+        """Its length along the ship (m), 1 if it is as long as she."""
+        return 1.0 if self.length is None else self.length
+
     def share(self, whole: float) -> float:
         """Factor (1/m) from a force on the slab (N) to force per metre of a ship `whole` m long (N/m)."""
         return (1.0 if self.length is None else self.length / whole) / self.thickness

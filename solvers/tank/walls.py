@@ -24,15 +24,17 @@ class Walls:
     Features are segments and corners. A grain touches a segment only if its centre projects onto it, and a corner only
     beyond the ends of both of the corner's segments, so no contact counts twice. The walls of a closed tank act on the
     inside only, and only its re-entrant corners count. The walls of an open tank and the parts are plates without
-    thickness, which act on both sides and round their edges.
+    thickness, which act on both sides and round their edges. Tanks `apart`, by their numbers, are not among these: they
+    hold no grains, and may overlap with those that do.
     """
 
-    def __init__(self, arrays: State, tanks: Sequence[Tank], parts: Sequence[Part] = ()):
+    def __init__(self, arrays: State, tanks: Sequence[Tank], parts: Sequence[Part] = (), apart: Sequence[int] = ()):
         self.tanks = len(tanks)
         self.outline = np.concatenate([tank.outline for tank in tanks])
-        self.open = any(tank.open_edges for tank in tanks)
         self.parts, self.pieces = len(parts), len(tanks) + len(parts)
-        plates = [_shell(tank, number) for number, tank in enumerate(tanks)]
+        joint = {number: tank for number, tank in enumerate(tanks) if number not in apart}
+        self.open = any(tank.open_edges for tank in joint.values())
+        plates = [_shell(tank, number) for number, tank in joint.items()]
         plates += [_plate(part, number) for number, part in enumerate(parts)]
         segments = [row for plate in plates for row in plate.segments]
         corners = [row for plate in plates for row in plate.corners]
@@ -47,10 +49,13 @@ class Walls:
         self.programmes = own.holding("programmes", rows, "part number", own.exact)
         places = Axis("part", max(1, len(parts))), Axis("direction", 2)
         (self.places,) = own.reals(places, "places", kept=False)  # displacements (m) when last noted
-        mouths = [_with_chimneys(tank.outline, tank.open_edges) for tank in tanks]
-        edges = np.concatenate([np.column_stack([mouth, np.roll(mouth, -1, axis=0)]) for mouth in mouths])
+        edges = _edges([_with_chimneys(tank.outline, tank.open_edges) for tank in joint.values()])
         self.mouth_edges = len(edges)
         self.mouth = own.holding("mouth", edges, "edge number", own.place)
+        if self.tanks > 1:
+            ends = np.cumsum([0, *(len(tank.outline) for tank in tanks)])
+            self.ends = own.holding("ends", ends, "end", ti.i32)
+            self.sides = own.holding("sides", _edges([tank.outline for tank in tanks]), "side number", own.place)
         self.real = arrays.real
         self.edge = own.holding("edge", np.concatenate(self.bounds), "number", own.place)
 
@@ -167,9 +172,30 @@ class Walls:
         return inside
 
     @ti.func
+    def is_off(self, tank, y, z, near):
+        """Whether a point is outside one of several tanks, and farther than `near` (m) from its walls."""
+        inside, beside = False, False
+        for k in range(self.ends[tank], self.ends[tank + 1]):
+            ay, az, by, bz = self.sides[k, 0], self.sides[k, 1], self.sides[k, 2], self.sides[k, 3]
+            if (az > z) != (bz > z) and y < ay + (z - az) / (bz - az) * (by - ay):
+                inside = not inside
+            along_y, along_z = by - ay, bz - az
+            share = ((y - ay) * along_y + (z - az) * along_z) / (along_y * along_y + along_z * along_z)
+            share = ti.max(0.0, ti.min(1.0, share))
+            off_y, off_z = y - ay - share * along_y, z - az - share * along_z
+            if off_y * off_y + off_z * off_z < near * near:
+                beside = True
+        return not inside and not beside
+
+    @ti.func
     def follows(self, y, z):
         """Whether a point lies in the box in which grains that have left the tank are followed."""
         return self.edge[0] <= y <= self.edge[2] and self.edge[1] <= z <= self.edge[3]
+
+
+def _edges(outlines: Sequence[np.ndarray]) -> np.ndarray:
+    """All edges of polygons (m, 2) m: both ends (k, 4) m of each."""
+    return np.concatenate([np.column_stack([one, np.roll(one, -1, axis=0)]) for one in outlines])
 
 
 class _Features:

@@ -33,7 +33,7 @@ class Weight(Matter):
         self.y.fill(y)
         self.z.fill(z)
 
-    def bodies(self) -> list[Body]:
+    def as_rigid(self) -> list[Body]:
         """Nothing: a hull given without cargo is the hull alone."""
         return [Body(1e-12, self.middle, 1e-12) for _ in range(self.units.worlds)]
 

@@ -200,7 +200,8 @@ class Stage:
 
     def _paint_tank(self, picture: np.ndarray, bed: Bed, camera: Camera, wall: tuple, hold: tuple) -> None:
         footage, thick = bed.footage, self._thick(bed.footage.outline, camera)
-        paint_tank(picture, camera, footage.outline, thick, wall, hold, footage.open_edges)
+        for basin in footage.basins:
+            paint_tank(picture, camera, basin.drawn, thick, wall, hold, basin.open_edges)
 
     def _paint_fixed(self, picture: np.ndarray, bed: Bed, camera: Camera) -> None:
         """The fixed grains of a rough wall, grey and without marks."""
@@ -214,7 +215,7 @@ class Stage:
         """Lower and upper corner (m) of the box around a tank, its parts and, up to a limit, its grains."""
         footage = bed.footage
         if footage.sea and self._earth:
-            low, high = footage.sea.ground(self._seen(footage.sea.hull, bed.pose).reshape(-1, 2))
+            low, high = footage.sea.ground(self._seen(footage.afloat, bed.pose).reshape(-1, 2))
             house = silhouette(footage.sea.ship)
             above = 0.0 if house is None else HOUSE[len(self.beds) > 1] * np.ptp(house[:, 1])
             return low, high + np.array([0.0, above])

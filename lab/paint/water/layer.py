@@ -17,6 +17,7 @@ from lab.paint.water.surface import Paints, paint_surface
 
 if TYPE_CHECKING:
     from lab.paint.footage import Bed
+    from lab.paint.water.basins import Basin
 
 LIT, DEEP, EDGE, FOAM = (118, 178, 222), (44, 106, 168), (22, 72, 124), (208, 228, 243)
 SPRAY = (150, 196, 230)  # of drops in the air, which foam would let vanish before the empty tank
@@ -45,21 +46,32 @@ class WaterLayer:
             self.colouring = self._air
         self._plain = colour == BY_ITSELF or not self.colouring  # water looks like water
         self._line = max(1.0, LINE * unit)
-        self._grids: dict[Bed, Grid] = {}
+        self._grids: dict[tuple[Bed, Basin], Grid] = {}
 
     def paint(self, picture: np.ndarray, camera: Camera, bed: Bed, frame: int, under: tuple = palette.HOLD) -> None:
         """Paint a bed's water over a picture, in place; camera: of the tank's points; under: colour of the tank."""
         if not bed.footage.water:
             return
+        for basin in bed.footage.basins:
+            lifted = camera.carried(np.array([0.0, basin.lift, 0.0])) if basin.lift else camera
+            self._paint_basin(picture, lifted, bed, frame, basin, under)
+
+    def _paint_basin(
+        self, picture: np.ndarray, camera: Camera, bed: Bed, frame: int, basin: Basin, under: tuple
+    ) -> None:
+        """Paint the water of one tank."""
         place = bed.water_place(frame)
-        there = np.isfinite(place).all(axis=1)
+        there = np.zeros(len(place), dtype=bool)
+        there[basin.drops] = np.isfinite(place[basin.drops]).all(axis=1)
+        if not there.any():
+            return
         place = place[there]
         volume = np.broadcast_to(bed.footage.water.volume[bed.world], there.shape)[there]
         if self._discs:
             size = np.full(len(place), DISC * bed.footage.water.spacing)
             _paint_discs(picture, camera, place, size, self.colouring.colours(bed, frame)[there])
             return
-        grid = self._grid(bed, camera)
+        grid = self._grid(bed, basin, camera)
         if self._air and bed.footage.water.air.size:
             paint_air(picture, camera, grid, bed, frame, self._air, under)
         sums = grid.sums(place, volume)
@@ -76,13 +88,13 @@ class WaterLayer:
         _paint_discs(picture, camera, place[drops], (apart * np.sqrt(volume / np.pi))[drops], colour[drops])
         paint_surface(picture, camera, grid, level, _toned(grid, sums, place, volume, share), self._paints(under))
 
-    def _grid(self, bed: Bed, camera: Camera) -> Grid:
+    def _grid(self, bed: Bed, basin: Basin, camera: Camera) -> Grid:
         """The grid over a bed's tank, kept as long as the picture's scale stays."""
-        footage = bed.footage
-        made = Grid.over(footage.outline, footage.open_edges, footage.water.spacing, 1.0 / camera.scale)
-        if bed not in self._grids or self._grids[bed].distance != made.distance:
-            self._grids[bed] = made
-        return self._grids[bed]
+        made = Grid.over(basin.outline, basin.open_edges, bed.footage.water.spacing, 1.0 / camera.scale)
+        kept = self._grids.get((bed, basin))
+        if kept is None or kept.distance != made.distance:
+            self._grids[bed, basin] = kept = made
+        return kept
 
     def _paints(self, under: tuple) -> Paints:
         if not self._plain:

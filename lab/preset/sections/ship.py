@@ -64,6 +64,10 @@ class Ship:
     roll_period: Annotated[
         Annotated[float, Unit("s"), Interval(gt=0)] | None, Doc("Natural period of roll, in place of `gyradius`.")
     ] = None
+    bare: Annotated[
+        bool,
+        Doc("Whether `gravity_height` and `gyradius` are hers without the water in her tanks; her draught is with it."),
+    ] = False
     length: Annotated[
         Length | None,
         Doc("How many metres of her section displace what she does; beside it counts the length of her hold."),
@@ -82,6 +86,10 @@ class Ship:
     damping: Annotated[
         float, Interval(ge=0, le=1), Doc("Viscous roll damping ζ as a fraction of the critical damping.")
     ] = 0.0
+    linear_damping: Annotated[
+        Annotated[float, Unit("N s"), Interval(ge=0)] | None,
+        Doc("Linear roll damping, moment over rate per metre of length, in place of `damping`."),
+    ] = None
     quadratic_damping: Annotated[float, Interval(ge=0), Doc("Quadratic roll damping b, per rad.")] = 0.0
     heel: Annotated[float, Unit("rad"), Interval(ge=-pi, le=pi), Doc("Heel at the start, positive to port.")] = 0.0
     release: Annotated[float, Unit("s"), Interval(ge=0), Doc("When she is let go, heeled slowly until then.")] = 0.0

@@ -36,6 +36,10 @@ def check_ship(ship: Ship | None, waves: Waves | None, moves: bool, hold: Tank) 
         raise LabError("ship.breadth: give breadth and height, or an outline.")
     if (ship.gyradius is None) == (ship.roll_period is None):
         raise LabError("ship.gyradius: give exactly one of gyradius and roll_period.")
+    if ship.bare and ship.roll_period is not None:
+        raise LabError("ship.roll_period: is that of ship and cargo together; give a gyradius, or leave out bare.")
+    if ship.linear_damping is not None and ship.damping:
+        raise LabError("ship.linear_damping: give either damping or linear_damping, not both.")
     _check_hatch(ship, box)
     try:
         Section(ship.corners)

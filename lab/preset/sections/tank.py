@@ -10,7 +10,7 @@ from lab.base.errors import LabError
 from lab.preset.fields import Of
 from lab.preset.outline import Point, rectangle, simple_polygon
 from lab.preset.units import show
-from solvers.machine.marks import Doc, Interval, Unit
+from solvers.machine.marks import Doc, Interval, Unit, Usual
 from solvers.tank.outline import top_edges
 
 MOST_LINING = 20_000  # grains that line a tank
@@ -21,26 +21,13 @@ Outline = Annotated[tuple[tuple[float, float], ...], Unit("m")]
 
 
 @dataclass(frozen=True)
-class Tank:
-    """A tank: width and height, or an outline; whether it has a lid and a lining of fixed grains.
-
-    The plane stands for a slab of this `thickness`: forces are those on the slab, and a ship carries as many slabs as
-    fit into a metre.
-    """
+class Shell:
+    """The walls of a tank: a width and a height, or an outline; whether it has a lid; its length along a ship."""
 
     width: Annotated[Length | None, Doc("Width of a rectangular tank, its origin in the middle of its floor.")] = None
     height: Annotated[Length | None, Doc("Height of a rectangular tank.")] = None
     outline: Annotated[Outline | None, Doc("Corners of the tank, y and z each, in place of width and height.")] = None
     lid: Annotated[bool, Doc("Whether the tank is closed at the top.")] = True
-    roughness: Annotated[
-        Length | None,
-        Of("grains"),
-        Doc("Diameter of fixed grains that line floor and sides; they are smooth without it."),
-    ] = None
-    thickness: Annotated[
-        Thickness | None,
-        Doc("Thickness of the slab that the plane stands for; the grains' mean diameter without it, 1 m if empty."),
-    ] = None
     length: Annotated[
         Length | None, Doc("Length of a hold along its ship, which carries no more of it; the ship's own without it.")
     ] = None
@@ -73,12 +60,43 @@ class Tank:
         return max(y) - min(y), max(z) - min(z)
 
 
-def check_tank(tank: Tank) -> None:
+@dataclass(frozen=True)
+class Tank(Shell):
+    """A tank: width and height, or an outline; whether it has a lid and a lining of fixed grains.
+
+    The plane stands for a slab of this `thickness`: forces are those on the slab, and a ship carries as many slabs as
+    fit into a metre of the tank's `length`.
+    """
+
+    roughness: Annotated[
+        Length | None,
+        Of("grains"),
+        Doc("Diameter of fixed grains that line floor and sides; they are smooth without it."),
+    ] = None
+    thickness: Annotated[
+        Thickness | None,
+        Doc("Thickness of the slab that the plane stands for; the grains' mean diameter without it, 1 m if empty."),
+    ] = None
+
+
+@dataclass(frozen=True)
+class FurtherTank(Shell):
+    """A further tank of a ship, beside [tank]. Tanks may overlap in the plane: they stand one behind the other."""
+
+    place: Annotated[
+        tuple[float, float], Unit("m"), Doc("Where its origin is in the hull's axes, y and z, as `ship.hold` is.")
+    ] = (0.0, 0.0)
+    depth: Annotated[
+        Length | None, Usual(0.02, 1.0, "mm"), Doc("Depth of the water in it; it is empty without it.")
+    ] = None
+
+
+def check_tank(tank: Shell) -> None:
     """Raise LabError for an invalid outline, a lid that cannot be left out, or a lining that does not fit."""
     if not tank.lid and not tank.open_edges:
         raise LabError("tank.lid: this outline has no edge along its top to leave open; leave lid out.")
     outline = np.array(tank.corners)
-    if tank.roughness is None:
+    if getattr(tank, "roughness", None) is None:
         return
     size = show(tank.roughness, "m")
     around = float(np.hypot(*(outline - np.roll(outline, 1, axis=0)).T).sum())

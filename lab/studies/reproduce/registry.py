@@ -11,7 +11,7 @@ from lab.studies.reproduce import figures
 from lab.studies.reproduce.experiment import Found, Row, Told
 from lab.studies.reproduce.grains import beds, outlines, stack
 from lab.studies.reproduce.runs import Outcome
-from lab.studies.reproduce.ships import capsizes, damping, low_sides, rolls, section
+from lab.studies.reproduce.ships import capsizes, coupled, damping, low_sides, rolls, section
 from lab.studies.reproduce.water import dam_break, damper, drag, impact, prismatic, sinking, surfaces, waves
 
 
@@ -58,6 +58,7 @@ FIGURES: Mapping[str, Callable] = {
     "profiles": surfaces.profiles,
     "waves": surfaces.waves,
     "pressures at P1": prismatic.figure,
+    "coupled response": coupled.figure,
 }
 TELLS: Mapping[str, Callable[[Found], Told]] = {
     "section": section.tell,

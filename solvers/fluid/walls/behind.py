@@ -1,4 +1,6 @@
-"""What stands behind the walls of a tank for its water: dummies, and the probes of gauges among them."""
+"""What stands behind the walls of tanks for their water: dummies, and the probes of gauges among them."""
+
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -13,35 +15,52 @@ OF_NONE = -1  # the edge of probes, which are no part of a wall
 
 
 class Behind:
-    """Dummies and probes of a tank: `points` (n, 2) m, `volumes` (n,) m² and `edges` (n,) of each.
+    """Dummies and probes of tanks: `points` (n, 2) m, `volumes` (n,) m², `edges` and `tanks` (n,) of each.
 
     An edge is named by its first corner; probes have no volume and no edge. `probes` are each gauge's, by their
-    numbers, `open` what dummies leave of their kernels.
+    numbers, `open` what dummies leave of their kernels. Gauges are in the first tank that has water. `fills` are the
+    numbers of particles in each tank; none stands behind a dry one.
     """
 
-    def __init__(self, water: Water, tank: Tank):
+    def __init__(self, water: Water, tanks: Sequence[Tank], fills: Sequence[int]):
         self.probes: list[np.ndarray] = []
         self.open: list[np.ndarray] = []
-        if not water.walls:
-            self.points, self.volumes, self.firm = np.zeros((0, 2)), np.zeros(0), np.zeros(0)
-            self.edges = np.zeros(0, dtype=int)
+        self.points, self.volumes, self.firm = np.zeros((0, 2)), np.zeros(0), np.zeros(0)
+        self.edges, self.tanks = np.zeros(0, dtype=int), np.zeros(0, dtype=int)
+        wet = [number for number, fill in enumerate(fills) if fill]
+        for number in wet if water.walls else ():
+            points, volumes, depths = _round(water, tanks[number])
+            self._add(points, volumes, edge_of(points, tanks[number].outline), number)
+            hold = depths if water.air else firm(depths, water.spacing)  # each layer holds air, see `Constants`
+            self.firm = np.append(self.firm, hold)
+        if not len(self.points):
             return
-        rows = int(np.ceil(water.reach / water.spacing - 1e-9))
-        points, volumes, depths = layers(tank.outline, water.spacing, rows, tank.open_edges)
-        for axis, (low, high) in enumerate(zip(tank.outline.min(axis=0), tank.outline.max(axis=0), strict=True)):
-            if NAMES[axis] in water.periodic:
-                kept = (points[:, axis] >= low) & (points[:, axis] < high)
-                points, volumes, depths = points[kept], volumes[kept], depths[kept]
-        edges = edge_of(points, tank.outline)
+        first = tanks[wet[0]].outline
+        own = slice(0, np.count_nonzero(self.tanks == wet[0]))
+        points, volumes = self.points[own], self.volumes[own]
         for gauge in water.gauges:
-            of_gauge = probes(gauge, tank.outline, water.spacing)
-            self.probes.append(len(points) + np.arange(len(of_gauge)))
-            points, volumes = np.concatenate([points, of_gauge]), np.append(volumes, np.zeros(len(of_gauge)))
-            depths = np.append(depths, np.zeros(len(of_gauge)))
-            edges = np.append(edges, np.full(len(of_gauge), OF_NONE))
-        self.points, self.volumes, self.edges = points, volumes, edges
-        self.firm = depths if water.air else firm(depths, water.spacing)  # each layer holds air, see `Constants`
-        self.open = [1.0 - covered(points[probe], points, volumes, water) for probe in self.probes]
+            of_gauge = probes(gauge, first, water.spacing)
+            self.probes.append(len(self.points) + np.arange(len(of_gauge)))
+            self.open.append(1.0 - covered(of_gauge, points, volumes, water))
+            none = np.zeros(len(of_gauge))
+            self._add(of_gauge, none, np.full(len(of_gauge), OF_NONE), wet[0])
+            self.firm = np.append(self.firm, none)
+
+    def _add(self, points: np.ndarray, volumes: np.ndarray, edges: np.ndarray, tank: int) -> None:
+        self.points, self.volumes = np.concatenate([self.points, points]), np.append(self.volumes, volumes)
+        self.edges = np.append(self.edges, edges)
+        self.tanks = np.append(self.tanks, np.full(len(points), tank))
+
+
+def _round(water: Water, tank: Tank) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Dummies round a tank, see `layers`, without those beyond the ends of periodic space."""
+    rows = int(np.ceil(water.reach / water.spacing - 1e-9))
+    points, volumes, depths = layers(tank.outline, water.spacing, rows, tank.open_edges)
+    for axis, (low, high) in enumerate(zip(tank.outline.min(axis=0), tank.outline.max(axis=0), strict=True)):
+        if NAMES[axis] in water.periodic:
+            kept = (points[:, axis] >= low) & (points[:, axis] < high)
+            points, volumes, depths = points[kept], volumes[kept], depths[kept]
+    return points, volumes, depths
 
 
 def covered(places: np.ndarray, points: np.ndarray, volumes: np.ndarray, water: Water) -> np.ndarray:

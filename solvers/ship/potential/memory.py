@@ -74,6 +74,15 @@ class Memory:
         return np.einsum("is,ts,sj->tij", left, decay, right).real
 
 
+def padded(memory: "Memory | None", name: str, shape: tuple[int, int]) -> np.ndarray:
+    """The array of a memory of that name, with zeros up to a shape; all zeros without a memory."""
+    whole = np.zeros(shape)
+    if memory is not None:
+        part = getattr(memory, name)
+        whole[: part.shape[0], : part.shape[1]] = part
+    return whole
+
+
 def fit_memory(table: Hydrodynamics, order: int, deep: bool = True) -> Memory:
     """Fit a system of `order` states per mode to a table's retardation, by least squares.
 

@@ -205,9 +205,13 @@ FAULTS = {
     ),
     "grains in it": (
         GRAINS,
-        "water: grains and water in one tank are not computed yet; leave out [grains] or [water].",
+        "water: grains and water in one tank are not computed yet; leave out [grains] or [water], or give the water a "
+        "tank of its own, [tanks.NAME].",
     ),
-    "a ship": ({"ship": SHIP}, "water: water in a ship's hold is not computed yet; the sea outside is [sea]."),
+    "no ship": (
+        {"water__model": "linear"},
+        'water.model: "linear" is for tanks in a ship; add a table [ship], or take "sph".',
+    ),
     "a bent plate": (
         {"parts__gate": {"points": [["0 mm", "0 mm"], ["0 mm", "50 mm"], ["10 mm", "90 mm"]]}},
         "parts.gate.points: a plate in water is straight (got 3 points); give two points, or set closed = true for a "

@@ -138,8 +138,11 @@ def test_the_command_says_so_in_a_sentence(tmp_path):
 
 @pytest.mark.parametrize("head", ["format = 3\n", ""])
 def test_water_of_the_present_format_is_not_the_sea(head, tmp_path):
-    with pytest.raises(LabError, match=r"^water: water in a ship's hold is not computed yet; .* is \[sea\]"):
-        load(written(tmp_path, f"{head}{BARGE}"), {"water.depth": "1 m"})
+    preset = load(
+        written(tmp_path, f"{head}{BARGE}"), {"water.depth": "30 mm", "grains": False, "material": False}
+    ).resolved
+    assert preset.water.depth == 0.03
+    assert preset.sea.depth is None
 
 
 def test_presets_of_two_formats_are_not_based_on_each_other(tmp_path):

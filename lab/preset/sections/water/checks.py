@@ -10,6 +10,7 @@ from lab.preset.sections.tank import Tank
 from lab.preset.sections.water import liquid
 from lab.preset.sections.water.schemes import SCHEMES
 from lab.preset.sections.water.section import Gauge, Water
+from lab.preset.sections.water.tanks import pools
 from lab.preset.units import needed, show
 
 MOST_PARTICLES = 20e6  # in a tank; what fits into the memory is checked as a scene is built
@@ -32,12 +33,10 @@ def check_water(preset: Whole) -> None:
         return
     _check_company(preset)
     _check_models(water)
-    if (water.depth is None) == (water.region is None):
-        got = "neither" if water.depth is None else "both"
-        raise LabError(f"water.depth: give exactly one of depth and region (got {got}).")
-    if water.region is None:
+    _check_given(preset)
+    if water.depth is not None:
         _check_depth(water, tank)
-    else:
+    elif water.region is not None:
         _check_region(water, tank)
     _check_spacing(preset)
     _check_sound(preset)
@@ -47,12 +46,29 @@ def check_water(preset: Whole) -> None:
 
 def _check_company(preset: Whole) -> None:
     """Raise LabError for what is in the tank beside water, or carries it, and the solver cannot compute."""
-    if preset.ship is not None:
-        raise LabError("water: water in a ship's hold is not computed yet; the sea outside is [sea].")
-    if preset.grains is not None:
-        raise LabError("water: grains and water in one tank are not computed yet; leave out [grains] or [water].")
-    if preset.run.repeats > 1:
+    if preset.grains is not None and (preset.water.depth or preset.water.region):
+        raise LabError(
+            "water: grains and water in one tank are not computed yet; leave out [grains] or [water], or give the "
+            "water a tank of its own, [tanks.NAME]."
+        )
+    if preset.water.model != "sph" and preset.ship is None:
+        named = preset.water.model
+        raise LabError(f'water.model: "{named}" is for tanks in a ship; add a table [ship], or take "sph".')
+    if preset.air is not None and preset.ship is not None:
+        raise LabError("air: air in a ship's tanks is not computed yet; leave out [air] or [ship].")
+    if preset.water.region and preset.ship is not None:
+        raise LabError("water.region: a ship starts with level water; give a depth.")
+    if preset.run.repeats > 1 and preset.grains is None:
         raise LabError("run.repeats: water starts without chance, so that all repeats would be the same; take one.")
+
+
+def _check_given(preset: Whole) -> None:
+    """Raise LabError unless it is said where the water is."""
+    depth, region = preset.water.depth, preset.water.region
+    elsewhere = any(tank.depth is not None for tank in preset.tanks.values())
+    if (depth is not None and region is not None) or (depth is None and region is None and not elsewhere):
+        got = "neither" if depth is None else "both"
+        raise LabError(f"water.depth: give exactly one of depth and region (got {got}).")
 
 
 def _check_models(water: Water) -> None:
@@ -103,7 +119,7 @@ def _check_spacing(preset: Whole) -> None:
         )
     of_all = area([tuple(point) for point in polygon.tolist()])
     if water.region is None:
-        of_all *= min(1.0, deep / preset.tank.extent[1])
+        of_all *= min(1.0, deep / float(np.ptp(polygon[:, 1])))
     size = deep if water.spacing == "auto" else water.spacing
     if of_all > MOST_PARTICLES * size**2:
         raise LabError(f"water.spacing: particles of {show(size, 'm')} are too small for so much water.")
@@ -111,7 +127,7 @@ def _check_spacing(preset: Whole) -> None:
 
 def _check_sound(preset: Whole) -> None:
     """Raise LabError for a speed of sound at which the water's own weight would compress it visibly."""
-    head = preset.run.gravity * liquid.depth(preset)
+    head = preset.run.gravity * max(pool.depth for pool in pools(preset))
     sound = liquid.liquid(preset).sound_speed
     if head > COMPRESSED * sound**2:
         least = show((head / COMPRESSED) ** 0.5, "m/s")

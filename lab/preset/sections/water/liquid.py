@@ -9,7 +9,6 @@ from typing import Protocol
 import numpy as np
 
 from lab.preset.accuracy import LEVELS
-from lab.preset.outline import simple_polygon
 from lab.preset.sections.motion import MotionGroup
 from lab.preset.sections.parts import PartGroup
 from lab.preset.sections.run import Run
@@ -17,13 +16,14 @@ from lab.preset.sections.tank import Tank
 from lab.preset.sections.water.air import Air, sound_of_air
 from lab.preset.sections.water.schemes import SCHEMES, Scheme
 from lab.preset.sections.water.section import Gauge, Water
+from lab.preset.sections.water.tanks import Tanked, pools
 from solvers.fluid import given
 from solvers.fluid.walls.layers import edge_of
 
 FRONT = 2.0  # √(gH): the front of a column that collapses (Ritter 1892)
 
 
-class Wet(Protocol):
+class Wet(Tanked, Protocol):
     """The sections of a preset that the water follows from."""
 
     water: Water
@@ -58,6 +58,8 @@ def liquid(preset: Wet) -> given.Water:
         shifting=water.shifting,
         speed=expected_speed(preset),
         start=water.start,
+        model=water.model,
+        swing_damping=water.swing_damping,
         gauges=tuple(given.Gauge(gauge.place, gauge.length, gauge.response) for gauge in pressure.values()),
         levels=tuple(given.Level(gauge.y) for gauge in level.values()),
         edges=tuple(_edge(gauge, preset.tank) for gauge in force.values()),
@@ -92,18 +94,14 @@ def _edge(gauge: Gauge, tank: Tank) -> int:
 
 
 def bounds(preset: Wet) -> tuple[np.ndarray, float]:
-    """The polygon (m, 2) m, counter-clockwise, that the water fills up to a level (m), and this level."""
-    water, tank = preset.water, np.array(preset.tank.corners)
-    if water.region is None:
-        return tank, float(tank[:, 1].min()) + water.depth
-    region = np.array(simple_polygon(water.region))
-    return region, float(region[:, 1].max())
+    """The polygon (m, 2) m, counter-clockwise, that the first tank's water fills up to a level (m), and this level."""
+    first = pools(preset)[0]
+    return first.polygon, first.level
 
 
 def depth(preset: Wet) -> float:
-    """Depth (m) of the water, or height of its region."""
-    polygon, level = bounds(preset)
-    return level - float(polygon[:, 1].min())
+    """Depth (m) of the first tank's water, or height of its region."""
+    return pools(preset)[0].depth
 
 
 def layers(preset: Wet) -> int:
@@ -120,10 +118,11 @@ def spacing(preset: Wet) -> float:
 def expected_speed(preset: Wet) -> float:
     """The highest speed (m/s) to be expected: of long waves, √(gH), of a column that collapses, 2 √(gH), of the tank.
 
-    H is the height of the water's surface over the tank's lowest point.
+    H is the height of the water's surface over the tank's lowest point, that of the deepest tank.
     """
-    floor = min(z for _, z in preset.tank.corners)
-    height = bounds(preset)[1] - floor
+    height = max(pool.depth for pool in pools(preset))
+    if preset.water.region is not None:
+        height = max(height, bounds(preset)[1] - min(z for _, z in preset.tank.corners))
     wave = sqrt(preset.run.gravity * height) * (1.0 if preset.water.region is None else FRONT)
     return max([wave, tank_speed(preset), *(part.wet.fastest() for part in preset.parts.values())])
 

@@ -25,8 +25,17 @@ class Water:
     """
 
     depth: Annotated[
-        Length | None, Usual(0.02, 1.0, "mm"), Doc("Depth of the water over the tank's lowest point; or give `region`.")
+        Length | None,
+        Usual(0.02, 1.0, "mm"),
+        Doc("Depth of the water over the tank's lowest point; or give `region`. [tanks.NAME] have their own."),
     ] = None
+    model: Annotated[
+        Literal["sph", "linear", "frozen"],
+        Doc("How water moves in a ship: as particles, by linear potential theory in box-shaped tanks, or not at all."),
+    ] = "sph"
+    swing_damping: Annotated[
+        float, Interval(ge=0, le=1), Doc('Damping of each wave, a fraction of the critical, for model = "linear".')
+    ] = 0.0
     region: Annotated[
         Annotated[tuple[tuple[float, float], ...], Unit("m")] | None,
         Doc("Corners, y and z each, of the part of the tank that is filled with water, in place of `depth`."),

@@ -1,0 +1,105 @@
+"""All tanks of a preset: where they are in the plane, and the water in them."""
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from lab.base.errors import LabError
+from lab.preset.outline import simple_polygon, stands_out
+from lab.preset.sections.ship import Ship
+from lab.preset.sections.tank import FurtherTank, Tank, check_tank
+from lab.preset.sections.water.section import Water
+from lab.preset.units import show
+from solvers.tank import tank as solved
+
+MOST_TANKS = 20
+
+
+class Tanked(Protocol):
+    """The sections of a preset that its tanks follow from."""
+
+    tank: Tank
+    tanks: dict[str, FurtherTank]
+    ship: Ship | None
+    water: Water | None
+    grains: object | None
+
+
+@dataclass(frozen=True, eq=False)
+class Pool:
+    """The water of the tank of this `number`: the polygon (m, 2) m that it fills up to a `level` (m)."""
+
+    number: int
+    polygon: np.ndarray
+    level: float
+
+    @property
+    def depth(self) -> float:
+        """Depth (m) of the water, or height of its region."""
+        return self.level - float(self.polygon[:, 1].min())
+
+
+def pools(preset: Tanked) -> list[Pool]:
+    """The water of each tank that has some, in the axes of the first tank; the first tank's is first."""
+    water, outline, found = preset.water, np.array(preset.tank.corners), []
+    if water.region is not None:
+        region = np.array(simple_polygon(water.region))
+        found.append(Pool(0, region, float(region[:, 1].max())))
+    elif water.depth is not None:
+        found.append(Pool(0, outline, float(outline[:, 1].min()) + water.depth))
+    for number, tank in enumerate(preset.tanks.values(), start=1):
+        if tank.depth is not None:
+            outline = outline_of(preset, tank)
+            found.append(Pool(number, outline, float(outline[:, 1].min()) + tank.depth))
+    return found
+
+
+def outline_of(preset: Tanked, tank: FurtherTank) -> np.ndarray:
+    """The outline (m, 2) m of a further tank in the axes of the first one."""
+    return np.array(tank.corners) + np.subtract(tank.place, preset.ship.hold)
+
+
+def further_tanks(preset: Tanked, thickness: float) -> tuple[solved.Tank, ...]:
+    """The further tanks as the solver takes them, of a `thickness` (m)."""
+    return tuple(
+        solved.Tank(outline_of(preset, tank), thickness, tank.open_edges, tank.length) for tank in preset.tanks.values()
+    )
+
+
+def check_tanks(preset: Tanked) -> None:
+    """Raise LabError for further tanks without a ship, out of her hull, too long, or with water that does not fit."""
+    if len(preset.tanks) >= MOST_TANKS:
+        raise LabError(f"tanks: at most {MOST_TANKS - 1} further tanks are possible (got {len(preset.tanks)}).")
+    ship = preset.ship
+    if ship is None:
+        if preset.tanks:
+            raise LabError("tanks: go with a ship; add a table [ship], or leave them out.")
+        return
+    for name, tank in preset.tanks.items():
+        if tank.length and not ship.length:
+            raise LabError(f"tanks.{name}.length: is a share of the ship's; give ship.length as well.")
+        if tank.length and tank.length > ship.length:
+            raise LabError(f"tanks.{name}.length: is more than the ship's, {show(ship.length, 'm')}.")
+    for name, tank in preset.tanks.items():
+        _check_further(preset, name, tank)
+
+
+def _check_further(preset: Tanked, name: str, tank: FurtherTank) -> None:
+    """Raise LabError for a further tank."""
+    key = f"tanks.{name}"
+    try:
+        check_tank(tank)
+    except LabError as error:
+        raise LabError(str(error).replace("tank.", f"{key}.", 1)) from None
+    out = stands_out(np.array(tank.corners) + np.array(tank.place), preset.ship.corners)
+    if out is not None:
+        place = f"[{show(float(out[0]), 'm')}, {show(float(out[1]), 'm')}]"
+        raise LabError(f"{key}.place: the tank stands out of the hull at {place}; move it, or change hull or tank.")
+    if tank.depth is None:
+        return
+    if preset.water is None:
+        raise LabError(f"{key}.depth: goes with water; add a table [water], or leave this out.")
+    if tank.depth >= tank.extent[1]:
+        high = show(tank.extent[1], "m")
+        raise LabError(f"{key}.depth: {show(tank.depth, 'm')} is not less than the tank's height, {high}.")

@@ -1,0 +1,34 @@
+"""Staggered coupling of a ship with what is in her tanks: how errors grow from step to step.
+
+In the scheme `as_K` (Serván-Camas, Cercós-Pita, Colom-Cobb, García-Espinosa & Souto-Iglesias 2016, section 4) a ship
+takes long steps with a load that is extrapolated from those of the last steps (Lagrange). Her equation of motion is
+weighted after Bossak, (1 − b) M a' + b M a = F*, and the contents follow her in short steps of their own. In
+`motion.afloat` she takes the load of the instant instead, with what of it answers her acceleration on her own side.
+"""
+
+from math import comb
+
+import numpy as np
+
+BOSSAK = -0.1  # b: the source does not say; usual values are −0.3 to 0 (Wood, Bossak & Zienkiewicz 1980)
+POINTS = 5
+
+
+def lagrange(points: int = POINTS) -> np.ndarray:
+    """Weights (points,) of the last equidistant values, newest first, in the next one: 5, −10, 10, −5, 1 of five."""
+    return np.array([(-1.0) ** k * comb(points, k + 1) for k in range(points)])
+
+
+def growth(ratio: float, points: int = POINTS, bossak: float = BOSSAK) -> float:
+    """Largest factor by which an error of the acceleration grows in a step, for contents that answer at once.
+
+    Contents of `ratio` times the mass of the ship, added mass included, push back with −ratio · M a. So the errors e of
+    accelerations obey (1 − b) e' + b e + ratio Σ w_k e_k = 0, and the factor is the largest root of this. Above 1 the
+    scheme is unstable with steps of any length (added-mass instability; Causin, Gerbeau & Nobile 2005). Five points are
+    stable up to a ratio of (1 − 2 b)/31. Own derivation.
+    """
+    polynomial = np.zeros(points + 1)
+    polynomial[0] = 1.0 - bossak
+    polynomial[1:] = ratio * lagrange(points)
+    polynomial[1] += bossak
+    return float(np.abs(np.roots(polynomial)).max())
