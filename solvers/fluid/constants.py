@@ -133,6 +133,8 @@ class Constants:
         if ti.static(self.two):
             layer = firm / self.get("spacing") - (0.5 + FIRM)
             for_water = ti.select(layer * layer < 0.0625, firm, 0.0 * firm)
-            return self.of("hard", gas) * ti.max(((1.0 - gas) * for_water + gas * firm) / away - 1.0, 0.0)
+            spring = ti.max(((1.0 - gas) * for_water + gas * firm) / away - 1.0, 0.0)
+            # Air that is driven deep comes near to dummies, which must not throw it back at many times its speed.
+            return self.of("hard", gas) * ti.min(spring, 1.0 + (1.0 - gas) * PULL)
         else:
             return self.get("hard") * ti.max(firm / away - 1.0, 0.0)

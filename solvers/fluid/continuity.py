@@ -91,6 +91,8 @@ class Continuity:
                 weight = p.volume[jb, lane] * c.kernel.slope(ti.max(1.0 - ti.sqrt(dot(apart, apart)) * shrink, 0.0))
                 nearing = [p.velocity[a][jb, lane] - speed[a] for a in ti.static(range(p.axes))]
                 walled += weight * dot(nearing, apart)
+        if ti.static(c.two):  # a wall is to air as water is, see `solvers.fluid.phases.interfaces`
+            walled *= 1.0 + gas * c.get("lean_of_speed")
         factor = c.get("slope")
         evened *= factor * c.of("spread", gas)
         p.store(p.rate, b, (1.0 + s) * (factor * opened) + evened)

@@ -127,7 +127,7 @@ class Forces:
         inwards = [p.zeros() for _ in ti.static(range(p.axes))]
         stress = [p.zeros() for _ in ti.static(range(3))]
         if ti.static(c.tense):
-            stress = self.tension.load(b)
+            self.tension.load(b, stress)
         span, least = p.ones(), p.ones()
         if ti.static(c.shifting.acts):
             span = p.load(p.span_before, b)

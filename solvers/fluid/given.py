@@ -44,7 +44,8 @@ class Air:
 
     `density` ρ_a (kg/m³) of air that is not compressed, `sound_speed` c_a (m/s), `alpha` the strength of its artificial
     viscosity or `kinematic` ν (m²/s) that of laminar flow, `tension` (N/m) of the surface between the phases;
-    `interface`: the name of what acts between them.
+    `vent`: the area (m²) of openings to the outside, a metre of thickness; `interface`: the name of what acts between
+    the phases.
     """
 
     density: float = 1.2
@@ -52,6 +53,7 @@ class Air:
     alpha: float = 0.01
     kinematic: float = 0.0
     tension: float = 0.0
+    vent: float = 0.0
     interface: str = "weighted"
 
 

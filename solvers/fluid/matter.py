@@ -15,6 +15,7 @@ from solvers.fluid.grid import grid_round
 from solvers.fluid.lists import Lists, Medium
 from solvers.fluid.mover import Mover
 from solvers.fluid.order import Order, Tanks
+from solvers.fluid.phases.vent import Vent
 from solvers.fluid.shifting import SHIFTING
 from solvers.fluid.state import LANES, UNUSED, Particles, Shares
 from solvers.fluid.walls.behind import OF_NONE, Behind
@@ -52,8 +53,7 @@ class WaterMatter(Matter):
         walls = (len(blocks) + self.bodies.rows) * lanes
         self.drops = scene.drops
         self.gas = scene.drops[..., GAS] if water.air else np.zeros(scene.drops.shape[:2])
-        self.puffs = int(self.gas[0].sum())  # particles of air, which come last
-        shifting = SHIFTING[water.shifting]
+        self.puffs, shifting = int(self.gas[0].sum()), SHIFTING[water.shifting]  # particles of air, which come last
         self.particles = p = Particles(arrays, worlds, count, lanes, walls, grid.strips, shifting, water.air)
         self.units = units = setting.units(p.wet)
         self.load = setting.load(arrays.under("water"), units)
@@ -66,7 +66,8 @@ class WaterMatter(Matter):
         medium = Medium(units, p, shares, self.lists, self.constants, self.poses)
         self.extrapolation = Extrapolation(arrays, medium)
         self.forces = Forces(arrays, medium, self.extrapolation, self.load, tank.thickness)
-        self.continuity, self.mover = Continuity(arrays, medium), Mover(arrays, medium, self.extrapolation)
+        self.continuity, self.vent = Continuity(arrays, medium), Vent(arrays, medium, water.air)
+        self.mover = Mover(arrays, medium, self.extrapolation, self.vent)
         probes = [dummy[slot] + p.wet * lanes for slot in behind.probes]
         self.gauges = Gauges(arrays, p, self.constants, water.gauges, probes, behind.open)
         pool = Pool.of(scene, setting.walls, self.order)
@@ -89,6 +90,7 @@ class WaterMatter(Matter):
         return (
             Phase(self.note_poses),
             Phase(self.forces.publish, self.units),
+            *([Phase(self.vent.sum, self.units), Phase(self.vent.flow)] if self.vent.acts else ()),
             *([Phase(self.extrapolation.press, self.units)] if self.particles.dry else ()),
             *([Phase(self.gauges.measure)] if self.gauges.count else ()),
             *([Phase(self.edges.bear, self.units), Phase(self.edges.add)] if self.edges.wanted else ()),
@@ -232,8 +234,8 @@ class WaterMatter(Matter):
 
     def check(self, rows: dict[str, np.ndarray], time: float) -> None:
         """Raise BadState if the quantities at `time` (s) show an unphysical state."""
-        # A particle that goes round falls for ever; the energy of a surface under tension is not known.
-        known = np.nan if self.water.periodic or self.constants.tense else self.start
+        # A particle that goes round falls for ever; what a surface under tension holds, and vents take, is not known.
+        known = np.nan if self.water.periodic or self.constants.tense or self.vent.acts else self.start
         check_water(rows, known, time, self.least)
 
     def refuse(self, world: int, time: float, dt: float) -> None:

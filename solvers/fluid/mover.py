@@ -3,6 +3,7 @@
 import taichi as ti
 
 from solvers.fluid.lists import Medium
+from solvers.fluid.phases.vent import Vent
 from solvers.fluid.state import DENSEST, DENSEST_AIR, DENSEST_SPRAY, INSIDE, SPRAY, THINNEST
 from solvers.fluid.walls.bodies import AT_END
 from solvers.fluid.walls.extrapolation import Extrapolation
@@ -20,10 +21,10 @@ class Mover:
     (units,) m/s and `deviation` (units,), of the density, where DENSEST is the most, tell why a world was stopped.
     """
 
-    def __init__(self, arrays: State, medium: Medium, walls: Extrapolation):
+    def __init__(self, arrays: State, medium: Medium, walls: Extrapolation, vent: Vent):
         self.units, self.particles, self.shares = medium.units, medium.particles, medium.shares
         self.lists, self.constants, self.poses = medium.lists, medium.constants, medium.poses
-        self.walls, self.bodies = walls, medium.lists.bodies
+        self.walls, self.bodies, self.vent = walls, medium.lists.bodies, vent
         own = arrays.under("water.mover")
         self.fastest, self.deviation = own.reals((medium.units.axis,), "fastest", "deviation", kept=False)
 
@@ -68,6 +69,8 @@ class Mover:
             s = self.floored(spray, p.load(p.excess, b) + step * p.load(p.rate, b))
             # Walls come last: spray that parts is still pushed off a wall that it nears.
             s = self.floored(spray, s + step * p.load(p.rate_of_walls, b))
+            if ti.static(self.vent.acts):
+                s = self.vent.pass_through(w, b, gas, s)
             if ti.static(c.two):
                 s = ti.max(s, (1.0 - gas) * (-1.0) + gas * THINNEST)
             p.store(p.excess, b, s)

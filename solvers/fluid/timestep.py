@@ -7,6 +7,7 @@ from solvers.fluid.given import VELOCITY_Y, VELOCITY_Z, Water
 from solvers.machine.limit import Limit
 
 COURANT = 0.8  # of the time in which sound and water cross h; 1.4 is the largest stable one (standing wave)
+OF_AIR = 0.5  # likewise of air, which is faster than its sound where water squeezes it out
 FORCED = 0.25  # of √(h/a) (Monaghan 1992, eq. 10.2)
 SPREAD = 0.125  # of h²/ν (Morris, Fox & Zhu 1997, eq. 21)
 EVENED = 2.0 / 7.0  # of h/(δ c0): the diffusion of density is explicit, with 2 Σ V η = 7/h² over all neighbours
@@ -18,8 +19,7 @@ SLOW = 1e-9
 def limits_of_water(scene) -> list[Limit]:
     """Bounds on the step of the water of a `solvers.scene.Scene`, for the speeds and accelerations to be expected."""
     water = scene.water
-    length, speed = water.length, water_speed(scene)
-    sound = max(water.sound_speed, water.air.sound_speed if water.air else 0.0)
+    length, sound, speed = water.length, water.sound_speed, water_speed(scene)
     bounds = [
         Limit(
             COURANT * length / (sound + speed),
@@ -28,6 +28,11 @@ def limits_of_water(scene) -> list[Limit]:
             firm=True,
         )
     ]
+    if water.air:
+        longest = OF_AIR * length / (water.air.sound_speed + speed)
+        bounds.append(
+            Limit(longest, f"{OF_AIR:g} of that of sound in the air, {water.air.sound_speed:.3g} m/s", firm=True)
+        )
     pushed = max(scene.gravity, scene.water.pull.rate**2 * scene.span if scene.water.pull else 0.0)
     pushed += sum(_shaken(motion, scene.span) for motion in scene.motions[0])
     if pushed > SLOW:

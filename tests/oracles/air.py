@@ -77,7 +77,7 @@ class PlainBoth(PlainWater):
         pairs = (self.strength * pi - between) * volume[:, None] * volume
         force = (pairs[..., None] * gradient).sum(axis=1)
         _, _, _, at_wall = self.between(r, self.wall)
-        seen = np.where(self.gas[:, None] > 0.5, *(self.wall_pressure(r, mass, s, gas)[None] for gas in (1.0, 0.0)))
+        seen = np.where(self.gas[:, None] > 0.5, pressure[:, None], self.wall_pressure(r, mass, s, 0.0)[None])
         own = np.where(self.gas > 0.5, pressure, np.maximum(pressure, 0.0))
         walls = -(((own[:, None] + seen) * volume[:, None] * self.wall_volume)[..., None] * at_wall).sum(axis=1)
         matrix = np.einsum("ij,j,ija,ijb->iab", same, volume, apart, gradient)
@@ -106,4 +106,4 @@ class PlainBoth(PlainWater):
         more = 2.0 * (s[None] - s[:, None]) - ((slope[:, None] + slope[None]) * apart).sum(axis=2)
         eta = -kernel(np.linalg.norm(apart, axis=2), water.length)[1]
         evened = water.delta * water.length * self.sound * ((same * more * eta) @ volume)
-        return evened - (1.0 + s) * flow, -(1.0 + s) * walled
+        return evened - (1.0 + s) * flow, -(1.0 + s) * (1.0 + self.lean * self.gas) * walled

@@ -4,12 +4,18 @@ import numpy as np
 import taichi as ti
 
 GAMMA = 1.4  # ratio of the specific heats of air
+FULL = 2.4 ** (1.0 / GAMMA) - 1.0  # excess of density at which p = ρ_a c², beyond which air resists no further
+HELD = (
+    (1.0 + FULL) ** (GAMMA - 1.0) / (GAMMA - 1.0) + 1.0 / (1.0 + FULL) - GAMMA / (GAMMA - 1.0)
+) / GAMMA  # energy there
 
 
 class Adiabatic:
     """p = p_a ((ρ/ρ_a)^1.4 − 1), p_a = ρ_a c²/1.4 (Laplace 1816): air that exchanges no heat, over its pressure p_a.
 
     The real air has p_a = 1.0e5 Pa and c = 343 m/s; air with a lower speed of sound is as much softer as (c/343)².
+    p is at most ρ_a c², at 1.87 ρ_a: soft air under an impact is squeezed to nothing then, and does not burst out at
+    several times its speed of sound.
 
     Limits: no heat, no vapour; a bubble of millimetres exchanges heat within milliseconds and is nearer to ρ/ρ_a.
 
@@ -20,12 +26,12 @@ class Adiabatic:
     @ti.func
     def share(s):
         """p/(ρ_a c²) for the excess of density s = ρ/ρ_a − 1, a single number."""
-        return (ti.pow(1.0 + s, GAMMA) - 1.0) / GAMMA
+        return ti.min((ti.pow(1.0 + s, GAMMA) - 1.0) / GAMMA, 1.0)
 
     @staticmethod
     def pressure(s: np.ndarray) -> np.ndarray:
         """As `share`, of an array."""
-        return np.expm1(GAMMA * np.log1p(np.asarray(s, dtype=float))) / GAMMA
+        return np.minimum(np.expm1(GAMMA * np.log1p(np.asarray(s, dtype=float))) / GAMMA, 1.0)
 
     @staticmethod
     def excess(share: np.ndarray) -> np.ndarray:
@@ -42,4 +48,6 @@ class Adiabatic:
         energy = (ti.pow(1.0 + s, GAMMA - 1.0) / (GAMMA - 1.0) + 1.0 / (1.0 + s) - GAMMA / (GAMMA - 1.0)) / GAMMA
         if ti.abs(s) < 1e-2:
             energy = s * s * (0.5 - s * (0.6 - s * (0.64 - s * 0.6608)))
+        if s > FULL:
+            energy = HELD + 1.0 / (1.0 + FULL) - 1.0 / (1.0 + s)
         return energy

@@ -5,6 +5,7 @@ from dataclasses import replace
 from solvers.fluid.given import Water
 from solvers.fluid.phases.interfaces import INTERFACES
 
+CONTRACTED = 0.6  # discharge coefficient of a sharp-edged opening
 FASTEST = 0.5, 2.0  # Mach numbers of water and air at which a run is stopped: impacts squeeze air out
 
 # Times the spring behind a wall's face for its mass, beside water's: air may be as fast as its sound, and water presses
@@ -33,5 +34,6 @@ def of_air(water: Water, gravity: float, numbers: dict[str, float], viscosity) -
         "lean_of_pressure": lean_of_pressure,
         "lean_of_speed": lean_of_speed,
         "tension": air.tension,
+        "vent": CONTRACTED * air.vent,
         "air_pace": FASTEST[0] * water.sound_speed / (FASTEST[1] * air.sound_speed),
     }

@@ -23,9 +23,10 @@ class Tension:
         self.particles, self.constants = particles, constants
 
     @ti.func
-    def load(self, b):
-        """The stresses (N/m) of a block: yy, yz, zz."""
-        return [self.particles.load(self.particles.stress[k], b) for k in ti.static(range(3))]
+    def load(self, b, stress: ti.template()):
+        """Add the stresses (N/m) of a block, yy, yz and zz, to `stress`."""
+        for k in ti.static(range(3)):
+            stress[k] += self.particles.load(self.particles.stress[k], b)
 
     @ti.func
     def add(self, own: ti.template(), jb, lane, weight, apart: ti.template(), push: ti.template()):

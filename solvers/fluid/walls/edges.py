@@ -67,7 +67,7 @@ class Edges:
             along = pressure + push
             spring = c.hardness(square, firm, gas)
             if ti.static(c.two):
-                along = (1.0 - gas) * pressure + gas * p.load(p.pressure_of_air, b) + push
+                along = (1.0 - gas) * pressure + gas * p.pressure[jb, lane] + push
                 spring *= 1.0 + gas * p.excess[jb, lane]
             along = p.volume[jb, lane] * (along * weight + spring)
             for a in ti.static(range(p.axes)):

@@ -16,8 +16,8 @@ class Extrapolation:
 
     Weighted with volumes, which are nearly equal. Walls do not pull (p_w ≥ 0) unless the tank is full: a clip is needed
     where there is a free surface, which would stick to a wall. Where water sticks (no slip), its mean velocity ũ at the
-    dummy gives the velocity 2 u_w − ũ for the viscous force (eq. 23). Of two phases, each sees a pressure of its own,
-    extrapolated from itself, for their gradients differ by their densities; walls may pull at air.
+    dummy gives the velocity 2 u_w − ũ for the viscous force (eq. 23). Of two phases, water sees a pressure
+    that is extrapolated from water alone, and air its own, see `solvers.fluid.phases.interfaces`; gauges see both.
     """
 
     def __init__(self, arrays: State, medium: Medium):

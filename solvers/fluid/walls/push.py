@@ -48,12 +48,14 @@ class WallPush:
                 crowded = weight * c.shifting.crowded(c.get("shift_scale") * c.kernel.value(t))
                 for a in ti.static(range(p.axes)):
                     shift[a] += crowded * apart[a]
-            along = self.wall_pressure(jb, lane, gas) + c.clipped(pressure, gas)
+            along = self.wall_pressure(jb, lane, gas, pressure) + c.clipped(pressure, gas)
             spring = p.volume[jb, lane] * c.hardness(square, p.firm[jb, lane], gas)
             if ti.static(c.two):
                 spring *= squeezed
             along = along * weight + spring
             more = along - pressure * weight
+            if ti.static(c.two):
+                more = along - (pressure * weight) * (1.0 + gas * c.get("lean_of_speed"))
             for a in ti.static(range(p.axes)):
                 own_push[a] += more * apart[a]
             if ti.static(self.poses.moving or self.bodies.moving):
@@ -80,11 +82,11 @@ class WallPush:
                 wall[a] += along * apart[a]
 
     @ti.func
-    def wall_pressure(self, b, lane, gas: ti.template()):
-        """The pressure (Pa) of a dummy, as particles of these phases see it."""
+    def wall_pressure(self, b, lane, gas: ti.template(), pressure: ti.template()):
+        """The pressure (Pa) of a dummy, as particles of these phases and pressures see it: air its own."""
         p = self.particles
         if ti.static(p.two):
-            return (1.0 - gas) * p.pressure[b, lane] + gas * p.pressure_of_air[b, lane]
+            return (1.0 - gas) * p.pressure[b, lane] + gas * pressure
         else:
             return p.pressure[b, lane]
 

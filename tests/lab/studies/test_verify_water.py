@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lab.studies.verify.water import CASES, balance, drops, patch, rest, sloshing, vortices, waves
+from lab.studies.verify.water import CASES, air, balance, bubbles, drops, patch, rest, sloshing, vortices, waves
 from lab.studies.verify.water.laplace import first_mode
 from lab.studies.verify.water.scenes import Swing, box, chamfered, order, order_line, swing
 from lab.studies.verify.water.vorticity import middle_pressure
@@ -138,3 +138,21 @@ def test_water_that_starts_packed_sloshes_as_water_and_a_lattice_faster(monkeypa
     monkeypatch.setitem(STARTS, "packed", STARTS["lattice"])
     assert abs(packed) < 0.005
     assert 0.004 < sloshing.slosh(pool, 12) / pool.rate - 1.0 - packed < 0.012
+
+
+def test_references_of_water_and_air():
+    """Without air the wave's rate is that of water alone; under its own density there is none. A circle is round."""
+    alone = np.sqrt(9.81 * np.pi * np.tanh(np.pi))
+    assert air.Between(1e-9).rate == pytest.approx(alone, rel=1e-9)
+    assert air.Between(1.2).rate == pytest.approx(alone * np.sqrt(998.8 / 1001.2), rel=1e-9)
+    place = np.array([[0.1, 0.3], [-0.2, 1.5]])
+    below, above = (air.mode(np.array([[0.2, 1.0 + off]]))[0, 1] for off in (-1e-9, 1e-9))
+    assert below == pytest.approx(above)  # neither parts from the other
+    assert (air.mode(place)[:, 0] * [1.0, -1.0] > 0.0).all()
+    corners = bubbles.circle(0.25, (0.0, 0.5))
+    y, z = corners.T
+    assert 0.5 * abs(y @ np.roll(z, -1) - z @ np.roll(y, -1)) == pytest.approx(np.pi * 0.25**2, rel=1e-12)
+    grid = np.stack(np.meshgrid(*[np.arange(-0.3, 0.3, 0.01)] * 2), axis=-1).reshape(-1, 2)
+    assert bubbles.roundness(grid[np.hypot(*grid.T) < 0.2], 0.01) == pytest.approx(1.0, abs=0.02)
+    long = grid[np.hypot(grid[:, 0] / 0.28, grid[:, 1] / 0.14) < 1.0]
+    assert bubbles.roundness(long, 0.01) == pytest.approx(0.917, abs=0.03)  # an ellipse of 2 to 1, by Ramanujan

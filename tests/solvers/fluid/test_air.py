@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from solvers.fluid.given import GAS, VELOCITY_Y, VELOCITY_Z, Gauge, Level
+from solvers.fluid.given import EXCESS, GAS, VELOCITY_Y, VELOCITY_Z, Gauge, Level
 from solvers.simulation import Simulation
 from tests.oracles.air import PlainBoth, both
 from tests.oracles.water import GRAVITY
@@ -52,6 +52,7 @@ def test_a_step_equals_double_sums(run):
 
 def test_the_load_is_what_both_phases_lose(run):
     """The momentum of water and air changes by their weight and by minus the load on the tank, to rounding."""
+    run.advance(1)  # the first kick is half a step long
     run.observe()
     _, before, _, mass, *_ = held(run)
     steps = 50
@@ -76,22 +77,24 @@ def test_energy_is_accounted_for(run):
 
 def test_water_rests_under_air():
     """From hydrostatic rest in both: pressures stay, the surface keeps its place to a quarter of a spacing."""
-    run = Simulation(scene(), threads=1, arch="cpu")
+    run = Simulation(scene(background=1.0), threads=1, arch="cpu")  # as above: one kernel
     run.observe()
     run.advance(1500)
     rows, state, spacing = run.observe(), run.snapshot(), run.scene.water.spacing
     gas, mass = run.scene.drops[0, :, GAS] > 0.5, held(run)[3]
     np.testing.assert_allclose(rows["wall_force"][0, 1], -GRAVITY * mass.sum(), rtol=3e-3)
     np.testing.assert_allclose(rows["gauge_pressure"][0, 0], 1000.0 * GRAVITY * DEPTH, rtol=0.03)
-    weight_of_air = 1.2 * GRAVITY * 0.12
-    np.testing.assert_allclose(rows["gauge_pressure"][0, 1], -weight_of_air, atol=2.0 * weight_of_air)
+    # The surface settles by a part of a spacing, which squeezes the air of eight layers by some per cent.
+    over, stiff = rows["gauge_pressure"][0, 1] + 1.2 * GRAVITY * 0.12, 1.2 * run.scene.water.air.sound_speed**2
+    assert abs(over) < 0.03 * stiff
     np.testing.assert_allclose(rows["level_depth"][0], DEPTH, atol=0.25 * spacing)
-    assert rows["air_volume"][0] == pytest.approx(WIDTH * (HEIGHT - DEPTH), rel=0.01)
+    assert rows["air_volume"][0] == pytest.approx(WIDTH * (HEIGHT - DEPTH), rel=0.02)
     middle = 0.5 * (state["water_place"][0, :, 1].max() + state["air_place"][0, :, 1].min())
     assert abs(middle - DEPTH) < 0.5 * spacing
     assert state["air_place"].shape[1] == gas.sum()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("changes", [{"precision": "mixed"}, {"schedule": "per-grain", "precision": "f32"}])
 def test_other_ways_of_running_give_the_same(changes):
     """Numbers of 32 bits, and particles one by one: the same course, to the rounding of each."""
@@ -106,3 +109,22 @@ def test_other_ways_of_running_give_the_same(changes):
         other.close()
     tight = {"mixed": 5e-4, "f32": 3e-3}[changes["precision"]]
     np.testing.assert_allclose(place[1], place[0], atol=tight * made.water.spacing)
+
+
+@pytest.mark.slow
+def test_air_flows_out_through_a_vent():
+    """From air half as dense again: its pressure follows dM/dt = −C_d A √(2 ρ p), p of M/V, to that outside."""
+    made = scene(background=1.0, air={"vent": 2e-2})
+    air, drops = made.water.air, made.drops
+    drops[..., EXCESS] = np.where(drops[..., GAS] > 0.5, 0.5, drops[..., EXCESS])
+    run = Simulation(made, threads=1, arch="cpu")
+    room, dense, stiff = WIDTH * (HEIGHT - DEPTH), 1.5, air.density * air.sound_speed**2
+    run.observe()
+    for _ in range(8):
+        run.advance(8)
+        for _ in range(800):
+            pressure = stiff * (dense**1.4 - 1.0) / 1.4
+            dense -= 0.6 * air.vent * np.sqrt(2.0 * pressure / (air.density * dense)) * dense / room * 0.01 * run.dt
+        assert run.observe()["air_mean_pressure"][0] == pytest.approx(pressure, abs=0.08 * stiff)
+    run.advance(400)
+    assert abs(run.observe()["air_mean_pressure"][0]) < 0.03 * stiff

@@ -30,6 +30,7 @@ class Wet(Tanked, Protocol):
     air: Air | None
     gauges: dict[str, Gauge]
     tank: Tank
+    thickness: float
     motion: MotionGroup
     parts: dict[str, PartGroup]
     run: Run
@@ -75,6 +76,7 @@ def _air(preset: Wet, scheme: Scheme) -> given.Air:
         alpha=alpha if air.alpha is None else air.alpha,
         kinematic=air.kinematic_viscosity or 0.0,
         tension=air.surface_tension,
+        vent=air.vent_area / preset.thickness,
         interface=air.interface,
     )
 
