@@ -53,7 +53,8 @@ def test_every_table_of_laws_is_in_the_manual():
 
 
 def test_every_module_of_a_ships_physics_is_in_the_manual():
-    asked = " ".join(path.read_text(encoding="utf-8") for path in sorted((DOCS / "physics").glob("*.md")))
+    pages = [path for folder in ("physics", "naval") for path in sorted((DOCS / folder).glob("*.md"))]
+    asked = " ".join(path.read_text(encoding="utf-8") for path in pages)
     modules = [path for path in (DOCS.parent / "solvers" / "ship").rglob("*.py") if path.name != "__init__.py"]
     plain = {"panels", "quantities", "vessel"}  # what they say is no physics
     missing = [path.stem for path in modules if not re.search(rf"\.{path.stem}\b", asked)]

@@ -16,7 +16,7 @@ from lab.paint.page.theme import LIGHT
 from lab.paint.video import playback, poster, render_grid, render_recording
 from lab.paint.water.colours import FIELDS
 from lab.preset.fields import taken_of
-from lab.preset.sections.video import Video, colours_of
+from lab.preset.sections.video import OF_AIR, Video, colours_of
 from solvers.machine.runtime import initialise
 from tests.oracles.synthetic import box, frame, recorder, sample
 from tests.oracles.tampering import sealed
@@ -185,9 +185,11 @@ def test_spin_is_coloured_in_turns_a_second(tmp_path):
 
 
 def test_a_preset_may_name_every_colour_and_no_other():
-    assert taken_of(Video)["colour"].words == (*MODES, *(name for name in ("water", *FIELDS) if name not in MODES))
+    water = [name for name in ("water", *FIELDS) if name not in MODES]
+    assert taken_of(Video)["colour"].words == (*MODES, *water, *OF_AIR)
     assert colours_of(("grains",)) == tuple(MODES)
     assert colours_of(("water",)) == ("water", *FIELDS)
+    assert set(colours_of(("water", "air"))) >= set(OF_AIR)
 
 
 def test_the_curves_grow_with_the_film(four_beds):

@@ -23,6 +23,7 @@ from lab.base.errors import LabError
 from lab.cli import main
 from lab.preset.fields import walk
 from lab.preset.find import load, names
+from lab.preset.formats import OldFormat
 from lab.preset.schema import Preset
 from lab.preset.units import NUMBER
 from lab.recording import Recorder
@@ -127,6 +128,8 @@ TABLES = {
     "standing-wave.csv": "time,sway\n" + "".join(f"{0.1 * k:.1f},{k * k * (30 - 2 * k)}e-3\n" for k in range(11)),
     "moving-square.csv": "time,sway\n" + "".join(f"{k},{k * k * (30 - 2 * k)}e-3\n" for k in range(11)),
     "wave-flume.csv": "time,sway\n" + "".join(f"{2 * k},{k * k * (30 - 2 * k)}e-5\n" for k in range(11)),
+    "ciemito-flume.csv": "time,sway\n" + "".join(f"{4 * k},{k * k * (30 - 2 * k)}e-5\n" for k in range(11)),
+    "sinking-cylinder.csv": "time,heave\n" + "".join(f"{0.1 * k:.1f},{-k * k}e-3\n" for k in range(11)),
     "impact.csv": "time,roll\n" + "".join(f"{0.1 * k:.1f},{k * k * (30 - 2 * k)}e-3\n" for k in range(11)),
     "stack-fall.csv": "y,z,radius\n-0.006,0.0007,0.0007\n0,0.0007,0.0007\n0.003,0.003,0.0007\n",
 }
@@ -209,6 +212,7 @@ def tried(path: Path, overrides: dict | None = None) -> bool:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("error")  # arithmetic that fails is said on the screen, too
+            warnings.simplefilter("ignore", OldFormat)  # a sentence, where a mangled preset does not say its format
             preset = load(path, overrides).resolved
             if preset.run.repeats < 50 and grain_count(preset) < MOST_GRAINS and most_drops(preset) < MOST_DROPS:
                 build(preset)
