@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from lab.paint.footage import NO_GRAINS, Bed
+from lab.paint.water.basins import Basin
 from lab.paint.water.pool import Pool
 from lab.preset.sections.video import Video
 from solvers.fluid.given import Gauge, Level
@@ -54,6 +55,7 @@ class MadeFootage:
         gauges = {f"P{k}": gauge for k, gauge in enumerate(self.gauges, start=1)}
         levels = {f"L{k}": level for k, level in enumerate(self.levels, start=1)}
         self.water = Pool(np.full((1, 1), self.spacing**2), gauges, levels)
+        self.basins = [Basin(self.outline, self.open_edges, slice(None))]
         self.matters, self.worlds, self.sea, self.ends = ("water",), 1, None, [None]
         self.rail, self.protrudes, self.drive = None, bool(self.open_edges), ""
         self.radius, self.kind, self.kinds = np.zeros((1, 0)), np.zeros((1, 0), dtype=int), ["the rest"]

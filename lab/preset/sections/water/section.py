@@ -27,7 +27,7 @@ class Water:
     depth: Annotated[
         Length | None,
         Usual(0.02, 1.0, "mm"),
-        Doc("Depth of the water over the tank's lowest point; or give `region`. [tanks.NAME] have their own."),
+        Doc("Depth of the water over the tank's lowest point; or give `region`. Further tanks have their own."),
     ] = None
     model: Annotated[
         Literal["sph", "linear", "frozen"],
