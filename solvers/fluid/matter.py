@@ -235,7 +235,9 @@ class WaterMatter(Matter):
     def check(self, rows: dict[str, np.ndarray], time: float) -> None:
         """Raise BadState if the quantities at `time` (s) show an unphysical state."""
         # A particle that goes round falls for ever; what a surface under tension holds, and vents take, is not known.
-        known = np.nan if self.water.periodic or self.constants.tense or self.vent.acts else self.start
+        # At time zero no work is done yet, but velocities may have half a kick: m (g Δt/2)²/2 of what nothing bears yet.
+        unknown = time == 0.0 or self.water.periodic or self.constants.tense or self.vent.acts
+        known = np.nan if unknown else self.start
         check_water(rows, known, time, self.least)
 
     def refuse(self, world: int, time: float, dt: float) -> None:
