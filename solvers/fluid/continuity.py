@@ -15,28 +15,32 @@ class Continuity:
     Of two phases, the second sum is over the own phase, and pairs of both have the weight of `solvers.fluid.phases`.
 
     `lost` (units,) J is the energy that diffusion has taken: −Σ m_i p_i/ρ_i² times its share of the rate (Antuono,
-    Marrone, Colagrossi & Bouscasse 2015, eq. 22). The momentum that shifts carry is summed up over the same pairs.
+    Marrone, Colagrossi & Bouscasse 2015, eq. 22), `returned` (units,) that which the walls' dummies have given back by
+    compressing the water before them (`Closing`). Both by the density in the middle of the step. The momentum that
+    shifts carry is summed up over the same pairs.
     """
 
     def __init__(self, arrays: State, medium: Medium):
         self.units, self.particles, self.shares = medium.units, medium.particles, medium.shares
         self.lists, self.constants, self.poses = medium.lists, medium.constants, medium.poses
         own = arrays.under("water.continuity")
-        (self.lost,) = own.reals((medium.units.axis,), "lost", kind=own.exact)
+        self.counts = own.reals((medium.units.axis,), "lost", "returned", kind=own.exact)
+        self.lost, self.returned = self.counts
 
     @ti.func
     def expand(self, u, frame, kick, dt):
         """The rates of density of a unit's particles in the middle of the step; returns that all is well."""
         first, end = self.shares.wet(u)
-        lost = ti.cast(0.0, self.particles.exact)
+        taken = ti.Vector([ti.cast(0.0, self.particles.exact) for _ in ti.static(range(2))])
         for b in range(first, end):
-            lost += self.lists.order.weight(b) * self.expand_block(u, b, b - first)
-        self.lost[u] = self.lost[u] + lost * ti.cast(dt, self.particles.exact)
+            taken += self.lists.order.weight(b) * self.expand_block(u, b, b - first, dt)
+        self.lost[u] = self.lost[u] - taken[0] * ti.cast(dt, self.particles.exact)
+        self.returned[u] = self.returned[u] + taken[1] * ti.cast(dt, self.particles.exact)
         return True
 
     @ti.func
-    def expand_block(self, u, b, listed):
-        """As `expand`, for a block; returns the power (W/m) that diffusion takes."""
+    def expand_block(self, u, b, listed, dt):
+        """As `expand`, for a block; returns the powers (W/m) that diffusion and that dummies give."""
         p, c = self.particles, self.constants
         lists = self.lists
         w = self.units.world(u)
@@ -47,7 +51,7 @@ class Continuity:
         s, shrink = p.load(p.excess, b), c.get("shrink")
         gas = p.gases(b)
         rest = [c.of("hydrostatic", gas) * self.down(w, a) for a in ti.static(range(p.axes))]
-        opened, evened, walled = p.zeros(), p.zeros(), p.zeros()
+        opened, evened, walled, closed = p.zeros(), p.zeros(), p.zeros(), p.zeros()
         carried = [p.zeros() for _ in ti.static(range(p.axes))]
         shift = [p.zeros() for _ in ti.static(range(p.axes))]
         if ti.static(c.shifting.carries):
@@ -88,28 +92,34 @@ class Continuity:
                 j = lists.beside.slots[u, k]
                 jb, lane = lists.block_of(j), lists.lane_of(j)
                 apart = lists.apart(b, own, origin, j, AT_MIDDLE)
-                weight = p.volume[jb, lane] * c.kernel.slope(ti.max(1.0 - ti.sqrt(dot(apart, apart)) * shrink, 0.0))
+                t = ti.max(1.0 - ti.sqrt(dot(apart, apart)) * shrink, 0.0)
+                weight = p.volume[jb, lane] * c.kernel.slope(t)
                 nearing = [p.velocity[a][jb, lane] - speed[a] for a in ti.static(range(p.axes))]
                 walled += weight * dot(nearing, apart)
+                closed += (p.volume[jb, lane] * p.rate[jb, lane]) * c.kernel.value(t)
+            closed *= c.get("value")
         if ti.static(c.two):  # a wall is to air as water is, see `solvers.fluid.phases.interfaces`
             walled *= 1.0 + gas * c.get("lean_of_speed")
+            closed *= 1.0 - gas
         factor = c.get("slope")
         evened *= factor * c.of("spread", gas)
-        p.store(p.rate, b, (1.0 + s) * (factor * opened) + evened)
-        p.store(p.rate_of_walls, b, (1.0 + s) * (factor * walled))
+        rate, rate_of_walls = (1.0 + s) * (factor * opened) + evened, (1.0 + s) * (factor * walled + closed)
+        p.store(p.rate, b, rate)
+        p.store(p.rate_of_walls, b, rate_of_walls)
         if ti.static(c.shifting.carries):
             flux = p.load(p.volume, b) * (factor * c.get("density"))
             for a in ti.static(range(p.axes)):
                 p.store(p.carried[a], b, flux * carried[a])
-        if ti.static(c.two):
-            taken = evened * p.load(p.pressure, b) * p.load(p.mass, b) / ((1.0 + s) * (1.0 + s) * c.of("density", gas))
-            return 0.0 - ti.cast(taken.sum(), p.exact)
-        else:
-            share = c.state.share(s)
+        pressure = p.load(p.pressure, b)
+        if ti.static(not c.two):
+            pressure = c.get("stiffness") * c.state.share(s + (0.5 * dt) * (rate + rate_of_walls))
             if ti.static(c.pressed):
-                share += p.filled(b) * (c.get("background") / c.get("stiffness"))
-            taken = evened * share * p.load(p.mass, b) / ((1.0 + s) * (1.0 + s))
-            return 0.0 - ti.cast(taken.sum() * (c.get("stiffness") / c.get("density")), p.exact)
+                pressure += c.get("background")
+        power = pressure * p.load(p.mass, b) / ((1.0 + s) * (1.0 + s) * c.of("density", gas))
+        by_walls = (1.0 + s) * closed
+        given = ti.Vector([ti.cast(0.0, p.exact) for _ in ti.static(range(2))])
+        given[0], given[1] = ti.cast((evened * power).sum(), p.exact), ti.cast((by_walls * power).sum(), p.exact)
+        return given
 
     @ti.func
     def tank_speed(self, w, axis: ti.template()):

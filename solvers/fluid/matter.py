@@ -20,6 +20,7 @@ from solvers.fluid.shifting import SHIFTING
 from solvers.fluid.state import LANES, UNUSED, Particles, Shares
 from solvers.fluid.walls.behind import OF_NONE, Behind
 from solvers.fluid.walls.bodies import Bodies
+from solvers.fluid.walls.closing import Closing
 from solvers.fluid.walls.edges import Edges
 from solvers.fluid.walls.extrapolation import Extrapolation
 from solvers.fluid.walls.gauges import Gauges
@@ -75,13 +76,13 @@ class WaterMatter(Matter):
         owner[dummy] = np.where(behind.tanks == pool.first, behind.edges, OF_NONE)
         self.edges = Edges(arrays, medium, water.edges, owner, tank.thickness)
         self.census = Census(arrays, p, self.constants, setting.carrier, pool, water.levels)
-        self.start = np.full(worlds, np.nan)  # J, energy at the first look
-        self.thickness = tank.thickness
+        self.start, self.thickness = np.full(worlds, np.nan), tank.thickness  # J, energy at the first look; m
         mass = water.density * scene.drops[..., VOLUME].sum(axis=1).max() * tank.thickness
         self.least = 0.5 * mass * (LEAST * water.sound_speed) ** 2  # J
         self.before, self.between = self._before(), (Phase(self.note_passage),)
         self.after = (
             Phase(self.mover.kick, units),
+            *([Phase(Closing(medium).close, units)] if p.dry else ()),
             Phase(self.continuity.expand, units),
             Phase(self.finish, units),
         )
@@ -188,8 +189,7 @@ class WaterMatter(Matter):
             whole = field.to_numpy().reshape(p.worlds, p.stride, p.lanes)
             whole[:, p.wet : p.wet + p.walls] = values
             field.from_numpy(whole.reshape(-1, p.lanes))
-        sums = self.forces.lost, self.forces.held, self.forces.work, self.continuity.lost
-        for field in (*sums, self.census.behind, self.lists.last):
+        for field in (*self.forces.counts, *self.continuity.counts, self.census.behind, self.lists.last):
             field.fill(0.0)
         self.bodies.forget()
         self.lists.skin.fill(0.0)
@@ -207,10 +207,10 @@ class WaterMatter(Matter):
         now = [field.to_numpy() for field in self.census.now]
         down = np.stack(now[3:5], axis=1) / max(self.scene.gravity, 1e-300)
         potential = mass * self.scene.gravity * (now[5] - (centre * down).sum(axis=1)) + sums["pulled"]
-        spent = [
-            field.to_numpy().reshape(self.particles.worlds, -1).sum(axis=1)
-            for field in (self.forces.lost, self.continuity.lost, self.forces.work, self.forces.held)
-        ]
+        counts = *self.forces.counts, *self.continuity.counts
+        viscous, held, work, diffusive, returned = (
+            count.to_numpy().reshape(self.particles.worlds, -1).sum(axis=1) for count in counts
+        )
         rows = {
             **self.census.of_water(sums, mass, centre),
             "water_momentum": np.stack([sums["momentum_y"], sums["momentum_z"]], axis=1),
@@ -218,10 +218,10 @@ class WaterMatter(Matter):
             "water_potential": potential,
             "water_elastic": sums["elastic"],
             "water_total": sums["moving"] + potential + sums["elastic"],
-            "water_viscous": spent[0] * thick,
-            "water_diffusive": spent[1] * thick,
-            "water_work": (spent[2] + self.bodies.given()) * thick,
-            "water_held": spent[3] * thick,
+            "water_viscous": viscous * thick,
+            "water_diffusive": diffusive * thick,
+            "water_work": (work + self.bodies.given()) * thick,
+            "water_held": (held - returned) * thick,
             "water_excess": sums["excess"],
             "level_depth": self.census.level_depth.to_numpy()[:, : self.census.levels],
             "water_escaped": sums["escaped"],
@@ -235,7 +235,7 @@ class WaterMatter(Matter):
     def check(self, rows: dict[str, np.ndarray], time: float) -> None:
         """Raise BadState if the quantities at `time` (s) show an unphysical state."""
         # A particle that goes round falls for ever; what a surface under tension holds, and vents take, is not known.
-        # At time zero no work is done yet, but velocities may have half a kick: m (g Δt/2)²/2 of what nothing bears yet.
+        # At time zero no work is done yet, but velocities may have half a kick: m (g Δt/2)²/2 that nothing has given.
         unknown = time == 0.0 or self.water.periodic or self.constants.tense or self.vent.acts
         known = np.nan if unknown else self.start
         check_water(rows, known, time, self.least)

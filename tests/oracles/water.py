@@ -94,13 +94,22 @@ class PlainWater:
         slope[regular] = np.linalg.solve(matrix[regular], raw[regular][..., None])[..., 0]
         return (force + walls) / mass[:, None], slope, walls
 
-    def rate(self, r, u, s, mass, slope) -> np.ndarray:
-        """Rate of s, in the middle of a step."""
+    def closing(self, r, u, s, mass, pressed) -> np.ndarray:
+        """Minus what dummies that are `pressed` add to the divergence: the adjoint of their pressures' forces."""
+        volume = self.volume(mass, s)
+        _, _, value, gradient = self.between(r, self.wall)
+        seen = volume @ value
+        closed = np.where(pressed & (seen > 0.0), volume @ (u[:, None] * gradient).sum(axis=2), 0.0)
+        return value @ (self.wall_volume * closed / np.maximum(seen, 1e-30))
+
+    def rate(self, r, u, s, mass, slope, pressed) -> np.ndarray:
+        """Rate of s, in the middle of a step at whose start dummies were `pressed`."""
         water, volume = self.water, self.volume(mass, s)
         apart, _, _, gradient = self.between(r, r)
         flow = ((u[None] - u[:, None]) * gradient).sum(axis=2) @ volume
         _, _, _, at_wall = self.between(r, self.wall)
         flow += (-u[:, None] * at_wall).sum(axis=2) @ self.wall_volume
+        flow -= self.closing(r, u, s, mass, pressed)
         more = 2.0 * (s[None] - s[:, None]) - ((slope[:, None] + slope[None]) * apart).sum(axis=2)
         eta = -kernel(np.linalg.norm(apart, axis=2), water.length)[1]
         return -(1.0 + s) * flow + water.delta * water.length * water.sound_speed * (more * eta) @ volume
