@@ -16,8 +16,8 @@ class Continuity:
 
     `lost` (units,) J is the energy that diffusion has taken: −Σ m_i p_i/ρ_i² times its share of the rate (Antuono,
     Marrone, Colagrossi & Bouscasse 2015, eq. 22), `returned` (units,) that which the walls' dummies have given back by
-    compressing the water before them (`Closing`). Both by the density in the middle of the step. The momentum that
-    shifts carry is summed up over the same pairs.
+    compressing the water before them (`Closing`); both by the water's pressure in the middle of the step. The momentum
+    that shifts carry is summed up over the same pairs.
     """
 
     def __init__(self, arrays: State, medium: Medium):
@@ -110,11 +110,11 @@ class Continuity:
             flux = p.load(p.volume, b) * (factor * c.get("density"))
             for a in ti.static(range(p.axes)):
                 p.store(p.carried[a], b, flux * carried[a])
-        pressure = p.load(p.pressure, b)
-        if ti.static(not c.two):
-            pressure = c.get("stiffness") * c.state.share(s + (0.5 * dt) * (rate + rate_of_walls))
-            if ti.static(c.pressed):
-                pressure += c.get("background")
+        pressure, more = p.load(p.pressure, b), (0.5 * dt) * (rate + rate_of_walls)
+        if ti.static(c.two):
+            pressure += (1.0 - gas) * (c.get("stiffness") * more)
+        else:
+            pressure += c.get("stiffness") * (c.state.share(s + more) - c.state.share(s))
         power = pressure * p.load(p.mass, b) / ((1.0 + s) * (1.0 + s) * c.of("density", gas))
         by_walls = (1.0 + s) * closed
         given = ti.Vector([ti.cast(0.0, p.exact) for _ in ti.static(range(2))])

@@ -50,6 +50,8 @@ def kernel(distance: np.ndarray, length: float) -> tuple[np.ndarray, np.ndarray]
 class PlainWater:
     """The equations of a tank at rest with free slip, linear state, Antuono's diffusion and artificial viscosity."""
 
+    liquid: np.ndarray | float = 1.0  # 1 for water, 0 for air
+
     def __init__(self, scene: Scene):
         self.water, self.gravity = scene.water, np.array([0.0, -scene.gravity])
         rows = int(np.ceil(scene.water.reach / scene.water.spacing))
@@ -96,11 +98,11 @@ class PlainWater:
 
     def closing(self, r, u, s, mass, pressed) -> np.ndarray:
         """Minus what dummies that are `pressed` add to the divergence: the adjoint of their pressures' forces."""
-        volume = self.volume(mass, s)
+        volume = self.volume(mass, s) * self.liquid
         _, _, value, gradient = self.between(r, self.wall)
         seen = volume @ value
         closed = np.where(pressed & (seen > 0.0), volume @ (u[:, None] * gradient).sum(axis=2), 0.0)
-        return value @ (self.wall_volume * closed / np.maximum(seen, 1e-30))
+        return self.liquid * (value @ (self.wall_volume * closed / np.maximum(seen, 1e-30)))
 
     def rate(self, r, u, s, mass, slope, pressed) -> np.ndarray:
         """Rate of s, in the middle of a step at whose start dummies were `pressed`."""
