@@ -82,7 +82,7 @@ class WaterMatter(Matter):
         self.before, self.between = self._before(), (Phase(self.note_passage),)
         self.after = (
             Phase(self.mover.kick, units),
-            *([Phase(Closing(medium).close, units)] if p.dry else ()),
+            *([Phase(Closing(arrays, medium, behind, dummy).close, units)] if p.dry else ()),
             Phase(self.continuity.expand, units),
             Phase(self.finish, units),
         )

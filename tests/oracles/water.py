@@ -56,6 +56,9 @@ class PlainWater:
         self.water, self.gravity = scene.water, np.array([0.0, -scene.gravity])
         rows = int(np.ceil(scene.water.reach / scene.water.spacing))
         self.wall, self.wall_volume, _ = layers(scene.outline, scene.water.spacing, rows)
+        low, high = scene.outline.min(axis=0), scene.outline.max(axis=0)  # of a box
+        beside = (self.wall < low) | (self.wall > high)
+        self.along = np.where(beside.sum(axis=1, keepdims=True) == 1, ~beside, False).astype(float)
 
     def volume(self, mass: np.ndarray, s: np.ndarray) -> np.ndarray:
         """V = m/ρ."""
@@ -97,11 +100,16 @@ class PlainWater:
         return (force + walls) / mass[:, None], slope, walls
 
     def closing(self, r, u, s, mass, pressed) -> np.ndarray:
-        """Minus what dummies that are `pressed` add to the divergence: the adjoint of their pressures' forces."""
+        """Minus what dummies that are `pressed` add to the divergence: the adjoint of their pressures' forces.
+
+        They slide with the mean velocity of the water along the face before them, at corners not.
+        """
         volume = self.volume(mass, s) * self.liquid
         _, _, value, gradient = self.between(r, self.wall)
         seen = volume @ value
-        closed = np.where(pressed & (seen > 0.0), volume @ (u[:, None] * gradient).sum(axis=2), 0.0)
+        mean = (volume * value.T) @ u / np.maximum(seen, 1e-30)[:, None]
+        over = u[:, None] - (mean * self.along).sum(axis=1, keepdims=True) * self.along
+        closed = np.where(pressed & (seen > 0.0), volume @ (over * gradient).sum(axis=2), 0.0)
         return self.liquid * (value @ (self.wall_volume * closed / np.maximum(seen, 1e-30)))
 
     def rate(self, r, u, s, mass, slope, pressed) -> np.ndarray:

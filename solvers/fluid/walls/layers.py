@@ -70,6 +70,20 @@ def distance(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
     return nearest
 
 
+def faces(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
+    """Unit vectors (n, 2) along the edges of a polygon (m, 2) that are nearest to points (n, 2) m.
+
+    They are zero where a corner is nearest, to which no edge is square.
+    """
+    edges = np.roll(corners, -1, axis=0) - corners
+    nearest = edge_of(points, corners)
+    along, away = edges[nearest], points - corners[nearest]
+    length = np.linalg.norm(along, axis=1)
+    share = (away * along).sum(axis=1) / length**2
+    before_it = (share > -1e-9) & (share < 1.0 + 1e-9)
+    return np.where(before_it[:, None], along / length[:, None], 0.0)
+
+
 def edge_of(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
     """The edge (n,) of a polygon (m, 2) that is nearest to each point (n, 2) m, by its first corner."""
     edges = np.roll(corners, -1, axis=0) - corners
