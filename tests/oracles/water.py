@@ -56,9 +56,8 @@ class PlainWater:
         self.water, self.gravity = scene.water, np.array([0.0, -scene.gravity])
         rows = int(np.ceil(scene.water.reach / scene.water.spacing))
         self.wall, self.wall_volume, _ = layers(scene.outline, scene.water.spacing, rows)
-        low, high = scene.outline.min(axis=0), scene.outline.max(axis=0)  # of a box
-        beside = (self.wall < low) | (self.wall > high)
-        self.along = np.where(beside.sum(axis=1, keepdims=True) == 1, ~beside, False).astype(float)
+        off = self.wall - np.clip(self.wall, scene.outline.min(axis=0), scene.outline.max(axis=0))  # of a box
+        self.along = np.stack([-off[:, 1], off[:, 0]], axis=1) / np.linalg.norm(off, axis=1)[:, None]
 
     def volume(self, mass: np.ndarray, s: np.ndarray) -> np.ndarray:
         """V = m/ρ."""
@@ -102,7 +101,7 @@ class PlainWater:
     def closing(self, r, u, s, mass, pressed) -> np.ndarray:
         """Minus what dummies that are `pressed` add to the divergence: the adjoint of their pressures' forces.
 
-        They slide with the mean velocity of the water along the face before them, at corners not.
+        They slide with the mean velocity of the water, square to the shortest line to the tank.
         """
         volume = self.volume(mass, s) * self.liquid
         _, _, value, gradient = self.between(r, self.wall)

@@ -22,9 +22,9 @@ class Closing:
     layers, and with Antuono's diffusion it grows.
 
     Deviation: U_w also slides with the water, by the mean of its velocity along the face, Σ V_f u_f W / Σ V_f W. Else
-    water that rises along a wall would be compressed near its surface, where the sum of ∇W leans. At corners of the
-    outline it does not slide. A dummy whose pressure is cut off compresses nothing. Air has a wall pressure of its own,
-    2 p_i, whose adjoint is in the weight of the wall's velocity, see `solvers.fluid.phases.interfaces`.
+    water that rises along a wall would be compressed near its surface, where the sum of ∇W leans. A dummy whose
+    pressure is cut off compresses nothing. Air has a wall pressure of its own, 2 p_i, whose adjoint is in the weight of
+    the wall's velocity, see `solvers.fluid.phases.interfaces`.
 
     Limits: the compression is right in sum over the layers before a wall; in a single particle, a flow against a wall
     gives a divergence that is off by 1.7 % of its strain. What gravity adds to p_w has no adjoint and stays in `held`.
@@ -78,7 +78,7 @@ class Closing:
                 moved[a] += weight * nearing[a]
                 steep[a] += slope * apart[a]
         few = 1.0 / ti.max(seen, 1e-30)
-        # Unit vectors along the faces before the dummies, in the tank's axes; zero at corners.
+        # Unit vectors along the faces before the dummies, in the tank's axes.
         along = [p.load(self.along[a], b % p.stride - p.wet) for a in ti.static(range(p.axes))]
         if ti.static(self.bodies.moving):
             self.bodies.turn(b, along)

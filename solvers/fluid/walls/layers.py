@@ -71,17 +71,16 @@ def distance(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
 
 
 def faces(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
-    """Unit vectors (n, 2) along the edges of a polygon (m, 2) that are nearest to points (n, 2) m.
+    """Unit vectors (n, 2) along a polygon (m, 2) where it is nearest to points (n, 2) m off it.
 
-    They are zero where a corner is nearest, to which no edge is square.
+    They are square to the shortest line from there to the point, at a corner as well.
     """
     edges = np.roll(corners, -1, axis=0) - corners
     nearest = edge_of(points, corners)
     along, away = edges[nearest], points - corners[nearest]
-    length = np.linalg.norm(along, axis=1)
-    share = (away * along).sum(axis=1) / length**2
-    before_it = (share > -1e-9) & (share < 1.0 + 1e-9)
-    return np.where(before_it[:, None], along / length[:, None], 0.0)
+    share = (away * along).sum(axis=1) / (along**2).sum(axis=1)
+    behind = away - np.clip(share, 0.0, 1.0)[:, None] * along
+    return np.stack([-behind[:, 1], behind[:, 0]], axis=1) / np.linalg.norm(behind, axis=1)[:, None]
 
 
 def edge_of(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
