@@ -7,6 +7,7 @@ class Fourtakas:
     The hydrostatic difference is taken off, which costs less than gradients.
 
     Limits: the linear equation of state, and gravity alone: water at rest in an accelerated tank is diffused a little.
+    Waves are damped more than with gradients: a standing wave of 20 layers by a further 0.3 % of the critical damping.
 
     Units: ψ kg/m⁴, ρ kg/m³, r m.
     """
