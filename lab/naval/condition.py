@@ -48,7 +48,7 @@ class Condition:
 
     All lengths are `scale` times those of the preset; `gravity_height` is KG without free surfaces, whose moment (t m)
     is apart: `tanks`, as large as in the preset, are in it. G lies `aside` (m) of the middle, towards the `side` that
-    she is judged on. `hold` and `cargo` are None without grain.
+    she is judged on. `repose` (rad) is the cargo's. `hold` and `cargo` are None without grain.
     """
 
     form: Form
@@ -65,6 +65,7 @@ class Condition:
     length: float
     scale: float
     given: Stability
+    repose: float
     hold: Hold | None = None
     cargo: Cargo | None = None
 
@@ -175,6 +176,7 @@ def condition(preset: Preset, vessel: Vessel, level: float | None = None, mass: 
         (given.length or ship.length or 1.0) * scale,
         scale,
         given,
+        ship.repose,
         hold,
         cargo,
     )

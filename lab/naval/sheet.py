@@ -8,7 +8,7 @@ from typing import Protocol
 import numpy as np
 
 from lab.naval.condition import Cargo, Condition
-from solvers.ship.naval import grain_code, intact, weather
+from solvers.ship.naval import grain_code, intact, trimming, weather
 from solvers.ship.naval.criteria import Criterion
 from solvers.ship.naval.curve import Levers
 from solvers.ship.naval.form import TONNE
@@ -72,6 +72,9 @@ def unjudged(condition: Condition) -> Iterator[str]:
         yield "The weather criterion was not judged: give stability.wind_area and stability.wind_lever."
     if condition.cargo is None:
         yield "The Grain Code was not judged: there is no grain, or the preset says no level of it (grains.depth)."
+    if condition.cargo is not None and trimming.unevenness_limit(condition.repose, 1.0) is not None:
+        angle = f"{np.degrees(condition.repose):.0f} deg of repose"
+        yield f"A cargo of {angle} is no grain: the Grain Code's rows show what its shift would do, none is a rule."
     if condition.scale == 1.0 and condition.hydrostatics.breadth < 5.0:
         yield "A model's levers are judged as if a ship were so small; give ship.scale for those of the full scale."
 
