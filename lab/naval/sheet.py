@@ -9,6 +9,9 @@ import numpy as np
 from lab.naval.condition import Cargo, Condition
 from solvers.ship.naval import grain_code, intact, weather
 from solvers.ship.naval.criteria import Criterion
+from solvers.ship.naval.form import TONNE
+
+DIGITS = {"m": 3, "m rad": 4, "deg": 2, "1": 3}  # after the point
 
 ASSUMED, AS_IT_LIES = "assumed shift", "as it lay farthest aside"
 
@@ -30,8 +33,10 @@ def rows(condition: Condition, lying: Callable[[np.ndarray], np.ndarray] | None 
     if lying is not None:
         arms[AS_IT_LIES] = lying
     for name, arm in arms.items():
-        judged = grain_code.criteria(given[0], arm, given[1], *ends)
-        found += [Row(name, criterion) for criterion in (judged if name == ASSUMED else judged[:2])]
+        *shifted_so, height = grain_code.criteria(given[0], arm, given[1], *ends)
+        found += [Row(name, criterion) for criterion in shifted_so]
+    if arms:
+        found.append(Row("", height))
     found += [Row("", criterion) for criterion in intact.criteria(*given, condition.flooding)]
     if condition.exposed is not None and condition.metacentric_height > 0.0:
         found += [Row("", criterion) for criterion in weather.criteria(given[0], condition.exposed, *ends)]
@@ -56,7 +61,7 @@ def unjudged(condition: Condition) -> Iterator[str]:
     if condition.exposed is None:
         yield "The weather criterion was not judged: give stability.wind_area and stability.wind_lever."
     if condition.cargo is None:
-        yield "The Grain Code was not judged: the preset says no level of grain (grains.depth)."
+        yield "The Grain Code was not judged: there is no grain, or the preset says no level of it (grains.depth)."
     if condition.scale == 1.0 and condition.hydrostatics.breadth < 5.0:
         yield "A model's levers are judged as if a ship were so small; give ship.scale for those of the full scale."
 
@@ -68,17 +73,35 @@ def facts(condition: Condition) -> list[tuple[str, str]]:
         ("displacement", f"{condition.displacement:.5g} t, by {condition.form.perpendiculars:.5g} m of her section"),
         ("draught", f"{condition.draught:.4g} m, breadth {h.breadth:.4g} m, block coefficient {condition.block:.3f}"),
         ("KB, BM, KM", f"{h.kb:.3f}, {h.bm:.3f}, {h.km:.3f} m"),
-        (
-            "KG, free surfaces, GM",
-            f"{condition.gravity_height:.3f}, {condition.fluid_height - condition.gravity_height:.3f}, "
-            f"{condition.metacentric_height:.3f} m",
-        ),
-        ("deck edge, flooding", f"{degrees(condition.deck)}, {degrees(condition.flooding)}"),
+        *_gravity(condition),
+        ("deck edge under", degrees(condition.deck) if condition.deck else "no deck is given"),
+        ("downflooding", degrees(condition.flooding) if condition.flooding else "no opening is given"),
         ("levers vanish", degrees(condition.levers.vanishing, "beyond 90 deg")),
     ]
     if condition.cargo is None:
         return rows
     return [*rows, *_loaded(condition, condition.cargo)]
+
+
+def _gravity(condition: Condition) -> list[tuple[str, str]]:
+    """Rows on the centre of gravity, the free surfaces of tanks, and GM solid and fluid."""
+    rise = condition.fluid_height - condition.gravity_height
+    rows = []
+    for tank in condition.tanks:
+        breadth, length = (condition.scale * size for size in (tank.breadth, tank.length))
+        moment = tank.moment * condition.scale**4 / TONNE
+        rows.append(
+            (f"free surface, {tank.tank}", f"{breadth:.5g} m broad, {length:.5g} m long, rho i = {moment:.4g} t m")
+        )
+    if condition.aside > 0.0:
+        rows.append(("G aside", f"{condition.aside:.3f} m to {condition.side}, the side that she is judged on"))
+    return [
+        *rows,
+        ("KG solid, fluid", f"{condition.gravity_height:.3f}, {condition.fluid_height:.3f} m"),
+        ("GM solid", f"{condition.solid:.3f} m"),
+        ("free surfaces", f"{condition.free_surface:.4g} t m / {condition.displacement:.5g} t = {rise:.3f} m"),
+        ("GM fluid", f"{condition.metacentric_height:.3f} m"),
+    ]
 
 
 def _loaded(condition: Condition, cargo: Cargo) -> list[tuple[str, str]]:
@@ -94,6 +117,13 @@ def _loaded(condition: Condition, cargo: Cargo) -> list[tuple[str, str]]:
             f"surface {angle:.0f} deg, {moment:.5g} m4 x {assumed.factor:.2f}, arm {condition.assumed_arm:.3f} m",
         ),
     ]
+
+
+def shown(value: float, unit: str) -> str:
+    """A number of a sheet as surveyors round it: millimetres, hundredths of a degree, tenths of a mm rad."""
+    if value == inf:
+        return "none"
+    return f"{value:.{DIGITS.get(unit, 3)}f}"
 
 
 def degrees(angle: float | None, never: str = "never") -> str:

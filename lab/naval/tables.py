@@ -9,7 +9,7 @@ import numpy as np
 
 from lab.base.errors import LabError
 from lab.naval.condition import Condition
-from lab.naval.sheet import Row, assumed_line
+from lab.naval.sheet import Row, assumed_line, shown
 from solvers.ship.naval.form import Form
 from solvers.ship.naval.grain_code import ASSUMED
 from solvers.ship.water import Water
@@ -44,7 +44,8 @@ def criteria(rows: Sequence[Row]) -> Table:
     lines = []
     for row in rows:
         one = row.criterion
-        numbers = (f"{one.limit:.4g}", f"{one.attained:.4g}", one.unit, f"{one.margin:.4g}", one.verdict, one.note)
+        attained, margin = shown(one.attained, one.unit), shown(one.margin, one.unit)
+        numbers = (f"{one.limit:.4g}", attained, one.unit, margin, one.verdict, one.note)
         lines.append((one.rule, one.what, row.shift, one.kind, *numbers))
     return header, lines
 

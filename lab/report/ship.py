@@ -114,6 +114,6 @@ def criteria(recording: Recording) -> Iterator[str]:
     for row in rows:
         one = row.criterion
         what = f"{one.what} ({row.shift})" if row.shift else one.what
-        numbers = f"{one.kind} {one.limit:.4g}", f"{one.attained:.4g}", one.unit, one.verdict
+        numbers = f"{one.kind} {one.limit:.4g}", sheet.shown(one.attained, one.unit), one.unit, one.verdict
         yield f"| {' | '.join((one.rule, what, *numbers))} |"
     yield "\nIn calm water; heel is positive starboard down. `cargolab report` puts it on one page for the file."
