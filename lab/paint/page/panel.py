@@ -8,6 +8,7 @@ from PIL import Image
 from lab.paint import decorations as deco
 from lab.paint.curves import TOLERANCE, Plot
 from lab.paint.page.layout import CLOCK, READING, TEXT, Layout
+from lab.paint.page.live_plot import LivePlot
 from lab.paint.page.texts import Texts
 from lab.paint.page.theme import Theme
 
@@ -20,7 +21,7 @@ class Panel:
     def __init__(self, layout: Layout, theme: Theme, time: np.ndarray, moved: np.ndarray, together: bool) -> None:
         self._layout, self._theme, self._time, self._moved = layout, theme, time, moved
         self._together, self._in_metres = together, bool(np.abs(moved[..., :2]).max() >= LONG)
-        self._plots: list[tuple[deco.LivePlot, list[np.ndarray], tuple[int, int]]] = []
+        self._plots: list[tuple[LivePlot, list[np.ndarray], tuple[int, int]]] = []
 
     def prepare(self, drawn: Sequence[Plot]) -> None:
         """Lay out the plots one above the other, their axes below each other."""
@@ -32,7 +33,7 @@ class Panel:
         for plot in (*drawn, *drawn):  # twice, for the indent
             last = plot is drawn[-1]
             labels, size = (plot.labels[0] if last else "", plot.labels[1]), (right - left, height + last * below)
-            live = deco.LivePlot(size, plot.curves, plot.colours, labels, text, plot.names, indent, self._theme)
+            live = LivePlot(size, plot.curves, plot.colours, labels, text, plot.names, indent, self._theme)
             found.append((live, plot.samples, (left, top + (len(found) % len(drawn)) * (height + gap))))
             indent = max(indent, live.indent)
         self._plots = found[len(drawn) :]

@@ -227,6 +227,8 @@ class Stage:
     def _paint_fixed(self, picture: np.ndarray, bed: Bed, camera: Camera) -> None:
         """The fixed grains of a rough wall, grey and without marks."""
         fixed = bed.footage.fixed
+        if not len(fixed):
+            return
         colour = np.tile(self._theme.fixed, (len(fixed), 1))
         paint_grains(picture, to_discs(camera, fixed[:, :2], fixed[:, 2], np.zeros(len(fixed))), colour, colour)
 
