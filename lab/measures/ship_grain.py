@@ -86,7 +86,7 @@ def measure(recording: Recording) -> dict[str, Value]:
     assumed = found.condition.assumed_moment
     levers, flooding = found.condition.levers, found.condition.flooding
     ends = [residual(levers, found.lying(way), flooding) for way in found.farthest]
-    code = residual(levers, sheet.assumed_line(found.condition), flooding)
+    code = residual(levers, found.condition.assumed, flooding)
     return {
         "shifted_moment": over_worlds(final, "m^4", uncertainties=errors, kind="halves", note="positive to starboard"),
         "largest_shifted_moment": over_worlds(largest, "m^4"),

@@ -1,5 +1,6 @@
 """The condition of a preset's ship as a loading manual states it, at the full scale if the preset has one."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from math import inf
@@ -15,7 +16,7 @@ from lab.preset.sections.naval.stability import Stability
 from solvers.machine.errors import Unavailable
 from solvers.ship.naval.curve import Levers
 from solvers.ship.naval.form import TONNE, Form, Hydrostatics, prism
-from solvers.ship.naval.grain_code import ASSUMED, heeling_arm
+from solvers.ship.naval.grain_code import ASSUMED, heeling_arm, straight_line
 from solvers.ship.naval.holds import Hold
 from solvers.ship.naval.weather import Exposed
 from solvers.ship.section import Section
@@ -134,6 +135,11 @@ class Condition:
         """λ0 (m) of the assumed shift, that in other holds included."""
         moment = self.assumed_moment * ASSUMED[self.given.filling].factor + self.given.other_moment * self.scale**4
         return heeling_arm(moment, self.stowage, self.displacement)
+
+    @property
+    def assumed(self) -> Callable[[np.ndarray], np.ndarray] | None:
+        """The heeling arm (m) of the shift that the Grain Code assumes; None without grain."""
+        return straight_line(self.assumed_arm) if self.cargo else None
 
 
 def condition(preset: Preset, vessel: Vessel, level: float | None = None, mass: float | None = None) -> Condition:

@@ -97,6 +97,15 @@ def test_without_the_library_of_pdf_the_remedy_is_said(run, monkeypatch):
         file.write_report(run, pdf=True)
 
 
+def test_page_as_pdf(run):
+    """Where WeasyPrint is installed the page is laid out on sheets of A4, its figures in it."""
+    pytest.importorskip("weasyprint", reason="WeasyPrint is not installed: pip install 'cargo-shift-lab[pdf]'")
+    page, pdf = file.write_report(run, pdf=True)
+    data = pdf.read_bytes()
+    assert pdf.name == "report.pdf" and data.startswith(b"%PDF-") and data.rstrip().endswith(b"%%EOF")
+    assert len(data) > 0.2 * len(page.read_bytes())  # figures are most of either
+
+
 def test_coarse_grains_side_by_side():
     rows = dict(coarse.described(load(SHIP, {"grains.stands_for": "5 mm"}).resolved))
     assert rows["grain"] == "250 mm; 5 mm, s = 50" and rows["across the tank"] == "106; 5320, 1/s"
