@@ -101,7 +101,9 @@ class Ship:
         float,
         Unit("rad"),
         Interval(ge=0, le=0.5 * pi),
-        Doc("The cargo's angle of repose, used only in the curve of righting levers with relaxed cargo."),
+        Doc(
+            "The cargo's angle of repose, for the curve of righting levers with relaxed cargo and the IMSBC Code alone."
+        ),
     ] = radians(25.0)
     scale: Annotated[
         Annotated[float, Interval(gt=0)] | None,
