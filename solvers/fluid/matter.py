@@ -43,7 +43,8 @@ class WaterMatter(Matter):
         water: Water = scene.water
         self.scene, self.water = scene, water
         arrays, worlds, tank, count = setting.arrays, setting.worlds, scene.tanks[0], scene.drops.shape[1]
-        lanes = 1 if setting.per_particle else LANES
+        alone = not scene.radius.shape[1]  # kernels that hold grains' as well cannot be on real vectors: Taichi aborts
+        lanes = LANES if alone and not setting.per_particle else 1
         self.wide = lanes > 1
         behind = Behind(water, scene.tanks, scene.fills)
         grid = grid_round(water, scene.drops, scene.tanks, setting.walls.bounds, lanes)

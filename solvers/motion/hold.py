@@ -33,7 +33,9 @@ class Hold:
         still = apart([[0.0, -gravity, 0.0, 0.0]] * len(places))
         self.felt = own.holding("felt", still, "world number", own.exact, kept=True)
         row = Axis("world", len(places)), Axis("number", APART)
-        (self.tank,) = own.reals(row, "tank", kind=own.exact)
+        # Where it stands while matters settle, before the ship floats: water notices every jump of the tank
+        standing = apart([[*place, *[0.0] * 7] for place in places])
+        self.tank = own.holding("tank", standing, "world number", own.exact, kept=True)
         self.reply, self.seen = own.reals(row, "reply", "seen", kind=own.exact, kept=False)
 
     @ti.func
