@@ -16,15 +16,15 @@ class Continuity:
     Of two phases, the second sum is over the own phase, and pairs of both have the weight of `solvers.fluid.phases`.
 
     `lost` (units,) J is the energy that diffusion has taken: −Σ m_i p_i/ρ_i² times its share of the rate (Antuono,
-    Marrone, Colagrossi & Bouscasse 2015, eq. 22). `held` (units,) J is what images of water take, see `Sliding`. The
-    momentum that shifts carry is summed up over the same pairs.
+    Marrone, Colagrossi & Bouscasse 2015, eq. 22). What images of water take, see `Sliding`, goes to
+    `held` (units,) J. The momentum that shifts carry is summed up over the same pairs.
     """
 
-    def __init__(self, arrays: State, medium: Medium, sliding: Sliding):
+    def __init__(self, arrays: State, medium: Medium, sliding: Sliding, held: ti.Field):
         self.units, self.particles, self.shares = medium.units, medium.particles, medium.shares
         self.lists, self.constants, self.poses = medium.lists, medium.constants, medium.poses
-        own, self.sliding = arrays.under("water.continuity"), sliding
-        self.lost, self.held = own.reals((medium.units.axis,), "lost", "held", kind=own.exact)
+        own, self.sliding, self.held = arrays.under("water.continuity"), sliding, held
+        (self.lost,) = own.reals((medium.units.axis,), "lost", kind=own.exact)
 
     @ti.func
     def expand(self, u, frame, kick, dt):

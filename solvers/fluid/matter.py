@@ -67,10 +67,8 @@ class WaterMatter(Matter):
         medium = Medium(units, p, shares, self.lists, self.constants, self.poses)
         self.extrapolation = Extrapolation(arrays, medium)
         self.forces = Forces(arrays, medium, self.extrapolation, self.load, tank.thickness)
-        self.continuity, self.vent = (
-            Continuity(arrays, medium, self.extrapolation.sliding),
-            Vent(arrays, medium, water.air),
-        )
+        self.continuity = Continuity(arrays, medium, self.extrapolation.sliding, self.forces.held)
+        self.vent = Vent(arrays, medium, water.air)
         self.mover = Mover(arrays, medium, self.extrapolation, self.vent)
         probes = [dummy[slot] + p.wet * lanes for slot in behind.probes]
         self.gauges = Gauges(arrays, p, self.constants, water.gauges, probes, behind.open)
@@ -192,7 +190,7 @@ class WaterMatter(Matter):
             whole = field.to_numpy().reshape(p.worlds, p.stride, p.lanes)
             whole[:, p.wet : p.wet + p.walls] = values
             field.from_numpy(whole.reshape(-1, p.lanes))
-        sums = self.forces.lost, self.forces.held, self.forces.work, self.continuity.lost, self.continuity.held
+        sums = self.forces.lost, self.forces.held, self.forces.work, self.continuity.lost
         for field in (*sums, self.census.behind, self.lists.last):
             field.fill(0.0)
         self.bodies.forget()
@@ -211,10 +209,9 @@ class WaterMatter(Matter):
         now = [field.to_numpy() for field in self.census.now]
         down = np.stack(now[3:5], axis=1) / max(self.scene.gravity, 1e-300)
         potential = mass * self.scene.gravity * (now[5] - (centre * down).sum(axis=1)) + sums["pulled"]
-        held = self.forces.held, self.continuity.held
         spent = [
             field.to_numpy().reshape(self.particles.worlds, -1).sum(axis=1)
-            for field in (self.forces.lost, self.continuity.lost, self.forces.work, *held)
+            for field in (self.forces.lost, self.continuity.lost, self.forces.work, self.forces.held)
         ]
         rows = {
             **self.census.of_water(sums, mass, centre),
@@ -226,7 +223,7 @@ class WaterMatter(Matter):
             "water_viscous": spent[0] * thick,
             "water_diffusive": spent[1] * thick,
             "water_work": (spent[2] + self.bodies.given()) * thick,
-            "water_held": (spent[3] + spent[4]) * thick,
+            "water_held": spent[3] * thick,
             "water_excess": sums["excess"],
             "level_depth": self.census.level_depth.to_numpy()[:, : self.census.levels],
             "water_escaped": sums["escaped"],
