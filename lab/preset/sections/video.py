@@ -12,6 +12,7 @@ OF_GRAINS = (
     "cargo",
     "speed",
     "displacement",
+    "pressure",
     "layer",
     "size",
     "kind",
@@ -65,7 +66,8 @@ class Video:
     ] = None
     theme: Annotated[Literal["light", "dark"], Doc("Colours of the page.")] = "light"
     overlay: Annotated[
-        Literal["none", "trails"], Doc("What is drawn over the grains: nothing, or the ways that they have come.")
+        Literal["none", "trails", "forces"],
+        Doc("What is drawn over the grains: nothing, the ways that they have come, or the forces between them."),
     ] = "none"
     inset: Annotated[
         Literal["none", "surface", "impact"],
