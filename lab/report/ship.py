@@ -5,16 +5,17 @@ from math import pi
 
 from lab.assembly.ship import flooding_angles
 from lab.base.errors import LabError
-from lab.measures import ship_grain
+from lab.measures import ship_grain, ship_unevenness
 from lab.measures.ship import has_ship, vessel_of
 from lab.naval import sheet
-from lab.naval.condition import condition
+from lab.naval.condition import Condition, condition
 from lab.preset.sections import ship as ships
 from lab.preset.sections.sea import Waves
 from lab.preset.sections.ship import axis_place
 from lab.preset.units import show
 from lab.recording import Recording
 from solvers.ship.hydrostatics import metacentric_height
+from solvers.ship.naval import trimming
 from solvers.ship.vessel import Vessel
 from solvers.ship.water import Water
 from solvers.ship.waves import froude_factors
@@ -93,7 +94,8 @@ def judged(recording: Recording) -> tuple[list[sheet.Row], list[tuple[str, str]]
     found = ship_grain.shift(recording)
     if found is not None:
         arm = found.lying(ship_grain.worst(found))
-        return sheet.rows(found.condition, arm), sheet.facts(found.condition)
+        trimmed = _trimming(recording, found.condition)
+        return [*sheet.rows(found.condition, arm), *trimmed], sheet.facts(found.condition)
     vessel = vessel_of(recording.path)
     if vessel is None:
         return [], []
@@ -102,6 +104,20 @@ def judged(recording: Recording) -> tuple[list[sheet.Row], list[tuple[str, str]]
     except LabError:
         return [], []
     return sheet.rows(alone), sheet.facts(alone)
+
+
+def _trimming(recording: Recording, found: Condition) -> list[sheet.Row]:
+    """The IMSBC Code's criterion of a cargo that is no grain, as she was loaded and as it lay at the end."""
+    if not ship_unevenness.applies(recording):
+        return []
+    measured = ship_unevenness.measure(recording)
+    rows = []
+    for shift, name in {"as loaded": "unevenness", "as it lay at the end": "final_unevenness"}.items():
+        height = max((world for world in measured[name].worlds if world is not None), default=None)
+        if height is not None:
+            one = trimming.criterion(height, recording.preset.ship.repose, found.hydrostatics.breadth)
+            rows += [sheet.Row(shift, one)] if one else []
+    return rows
 
 
 def criteria(recording: Recording) -> Iterator[str]:
