@@ -1,5 +1,6 @@
 """The commands for one run: run, resume, explain."""
 
+from contextlib import ExitStack
 from pathlib import Path
 
 import click
@@ -61,13 +62,17 @@ def run(
         return
     if preset is None:
         raise LabError("run: which preset? `cargolab list` shows all.")
-    with importing():
-        from lab.preset.find import load
+    with ExitStack() as stack:
+        with importing():
+            from lab.preset.find import load
 
-        load(preset, overrides)  # before the slow imports, so that a typing error is reported at once
-        from lab.runs.runner import run_preset
+            load(preset, overrides)  # before the slow imports, so that a typing error is reported at once
+            from lab.paint.beside import cores_here, second_process
 
-    show(run_preset(preset, overrides, out, video=not no_video, quiet=quiet), quiet)
+            beside = None if no_video else stack.enter_context(second_process(cores_here()))
+            from lab.runs.runner import run_preset
+
+        show(run_preset(preset, overrides, out, video=not no_video, quiet=quiet, beside=beside), quiet)
 
 
 @click.command()

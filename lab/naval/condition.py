@@ -1,19 +1,22 @@
 """The condition of a preset's ship as a loading manual states it, at the full scale if the preset has one."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from math import inf
 
 import numpy as np
 
 from lab.assembly.grains import grain_count
 from lab.assembly.ship import flooding_angles
 from lab.base.errors import LabError
+from lab.naval.free_surfaces import FreeSurface, free_surfaces
 from lab.preset.schema import Preset
 from lab.preset.sections.naval.stability import Stability
 from solvers.machine.errors import Unavailable
 from solvers.ship.naval.curve import Levers
 from solvers.ship.naval.form import TONNE, Form, Hydrostatics, prism
-from solvers.ship.naval.grain_code import ASSUMED, heeling_arm
+from solvers.ship.naval.grain_code import ASSUMED, heeling_arm, straight_line
 from solvers.ship.naval.holds import Hold
 from solvers.ship.naval.weather import Exposed
 from solvers.ship.section import Section
@@ -41,8 +44,11 @@ class Cargo:
 class Condition:
     """A ship in calm water: form, displacement (t), centre of gravity (m), angles (rad) of deck edge and flooding.
 
+    The angles are infinite for points that never go under, None where the preset gives no points.
+
     All lengths are `scale` times those of the preset; `gravity_height` is KG without free surfaces, whose moment (t m)
-    is apart. `hold` and `cargo` are None without grain.
+    is apart: `tanks`, as large as in the preset, are in it. G lies `aside` (m) of the middle, towards the `side` that
+    she is judged on. `repose` (rad) is the cargo's. `hold` and `cargo` are None without grain.
     """
 
     form: Form
@@ -50,12 +56,16 @@ class Condition:
     draught: float
     displacement: float
     gravity_height: float
+    aside: float
+    side: str
     free_surface: float
+    tanks: list[FreeSurface]
     deck: float | None
     flooding: float | None
     length: float
     scale: float
     given: Stability
+    repose: float
     hold: Hold | None = None
     cargo: Cargo | None = None
 
@@ -70,14 +80,21 @@ class Condition:
         return self.gravity_height + self.free_surface / self.displacement
 
     @property
+    def solid(self) -> float:
+        """GM (m) as if all that is liquid were frozen."""
+        return self.hydrostatics.km - self.gravity_height
+
+    @property
     def metacentric_height(self) -> float:
-        """GM (m) after correction for free surfaces."""
+        """GM (m) after correction for free surfaces, "fluid"."""
         return self.hydrostatics.km - self.fluid_height
 
     @cached_property
     def levers(self) -> Levers:
-        """Righting levers (m) over `HEELS`, corrected for free surfaces."""
-        return Levers(HEELS, self.form.righting_levers(self.displacement, self.water, HEELS, (0.0, self.fluid_height)))
+        """Righting levers (m) over `HEELS` to the `side` that she is judged on, corrected for free surfaces."""
+        way = 1.0 if self.side == "port" else -1.0  # the hull's own heels are positive to port
+        gravity = -way * self.aside, self.fluid_height
+        return Levers(HEELS, way * self.form.righting_levers(self.displacement, self.water, way * HEELS, gravity))
 
     @property
     def block(self) -> float:
@@ -120,6 +137,11 @@ class Condition:
         moment = self.assumed_moment * ASSUMED[self.given.filling].factor + self.given.other_moment * self.scale**4
         return heeling_arm(moment, self.stowage, self.displacement)
 
+    @property
+    def assumed(self) -> Callable[[np.ndarray], np.ndarray] | None:
+        """The heeling arm (m) of the shift that the Grain Code assumes; None without grain."""
+        return straight_line(self.assumed_arm) if self.cargo else None
+
 
 def condition(preset: Preset, vessel: Vessel, level: float | None = None, mass: float | None = None) -> Condition:
     """The condition of a preset's ship, `vessel`, at the full scale.
@@ -137,22 +159,32 @@ def condition(preset: Preset, vessel: Vessel, level: float | None = None, mass: 
     except Unavailable as error:
         raise LabError(f"stability: {error}") from None
     keel = float(load.section.outline[:, 1].min())
-    mass_a_metre = vessel.ship.body.mass * scale**2
+    body, tanks = vessel.ship.body, free_surfaces(preset)
+    moment = given.free_surface + sum(tank.moment for tank in tanks)
     return Condition(
         form,
         load.water,
         ship.draught * scale,
-        mass_a_metre * float(form.x[-1]) / TONNE,
-        (ship.gravity_height - keel) * scale,
-        given.free_surface * scale**4 / TONNE,
-        angles["deck_immersion_angle"],
-        angles["downflooding_angle"],
+        body.mass * scale**2 * float(form.x[-1]) / TONNE,
+        (body.centre[1] - keel) * scale,
+        abs(body.centre[0]) * scale,
+        "port" if body.centre[0] < 0.0 else "starboard",
+        moment * scale**4 / TONNE,
+        tanks,
+        _angle(angles["deck_immersion_angle"], ship.deck_edges),
+        _angle(angles["downflooding_angle"], ship.flooding_points),
         (given.length or ship.length or 1.0) * scale,
         scale,
         given,
+        ship.repose,
         hold,
         cargo,
     )
+
+
+def _angle(found: float | None, points: tuple) -> float | None:
+    """The angle (rad) at which points go under: infinite for never, None without points."""
+    return (inf if found is None else found) if points else None
 
 
 def _stowed(preset: Preset, form: Form, scale: float, level: float | None, mass: float | None):

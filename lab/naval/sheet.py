@@ -3,13 +3,19 @@
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from math import inf
+from typing import Protocol
 
 import numpy as np
 
 from lab.naval.condition import Cargo, Condition
-from solvers.ship.naval import grain_code, intact, weather
+from solvers.ship.naval import grain_code, intact, trimming, weather
 from solvers.ship.naval.criteria import Criterion
+from solvers.ship.naval.curve import Levers
+from solvers.ship.naval.form import TONNE
 
+DIGITS = {"m": 3, "m rad": 4, "deg": 2, "1": 3}  # after the point
+
+NO_PERIOD = "The weather criterion was not judged: without a positive GM she has no period of roll."
 ASSUMED, AS_IT_LIES = "assumed shift", "as it lay farthest aside"
 
 
@@ -21,26 +27,36 @@ class Row:
     criterion: Criterion
 
 
-def rows(condition: Condition, lying: Callable[[np.ndarray], np.ndarray] | None = None) -> list[Row]:
-    """All criteria that the condition can be judged by; `lying`: the heeling arm (m) of the cargo as it lay."""
-    given = condition.levers, condition.metacentric_height
-    ends = condition.deck, condition.flooding
-    found = []
-    arms = {ASSUMED: assumed_line(condition)} if condition.cargo else {}
-    if lying is not None:
-        arms[AS_IT_LIES] = lying
-    for name, arm in arms.items():
-        judged = grain_code.criteria(given[0], arm, given[1], *ends)
-        found += [Row(name, criterion) for criterion in (judged if name == ASSUMED else judged[:2])]
-    found += [Row("", criterion) for criterion in intact.criteria(*given, condition.flooding)]
-    if condition.exposed is not None and condition.metacentric_height > 0.0:
-        found += [Row("", criterion) for criterion in weather.criteria(given[0], condition.exposed, *ends)]
+class Judged(Protocol):
+    """What a ship is judged by: levers to a side, GM (m), angles (rad) of deck edge and flooding, wind, grain's arm."""
+
+    side: str
+    levers: Levers
+    metacentric_height: float
+    deck: float | None
+    flooding: float | None
+    exposed: weather.Exposed | None
+    assumed: Callable[[np.ndarray], np.ndarray] | None
+
+
+def rows(ship: Judged, lying: Callable[[np.ndarray], np.ndarray] | None = None) -> list[Row]:
+    """All criteria that the ship can be judged by; `lying`: the heeling arm (m) of the cargo as it lay."""
+    levers, height, ends, found = ship.levers, ship.metacentric_height, (ship.deck, ship.flooding), []
+    for name, arm in arms(ship, lying).items():
+        *shifted_so, least = grain_code.criteria(levers, arm, height, *ends)
+        found += [Row(name, criterion) for criterion in shifted_so]
+    if found:
+        found.append(Row("", least))
+    found += [Row("", criterion) for criterion in intact.criteria(levers, height, ship.flooding)]
+    if ship.exposed is not None and height > 0.0:
+        found += [Row("", criterion) for criterion in weather.criteria(levers, ship.exposed, *ends)]
     return found
 
 
-def assumed_line(condition: Condition) -> Callable[[np.ndarray], np.ndarray]:
-    """The heeling arm (m) of the shift that the Grain Code assumes."""
-    return grain_code.straight_line(condition.assumed_arm)
+def arms(ship: Judged, lying: Callable | None = None) -> dict[str, Callable[[np.ndarray], np.ndarray]]:
+    """Heeling arms (m) of the cargo by name: with the assumed shift, and as it lay in a run."""
+    found = {ASSUMED: ship.assumed, AS_IT_LIES: lying}
+    return {name: arm for name, arm in found.items() if arm is not None}
 
 
 def shifted(aside: float, up: float) -> Callable[[np.ndarray], np.ndarray]:
@@ -55,8 +71,13 @@ def unjudged(condition: Condition) -> Iterator[str]:
     """What could not be judged and why, a sentence each."""
     if condition.exposed is None:
         yield "The weather criterion was not judged: give stability.wind_area and stability.wind_lever."
+    if condition.exposed is not None and not condition.metacentric_height > 0.0:
+        yield NO_PERIOD
     if condition.cargo is None:
-        yield "The Grain Code was not judged: the preset says no level of grain (grains.depth)."
+        yield "The Grain Code was not judged: there is no grain, or the preset says no level of it (grains.depth)."
+    if condition.cargo is not None and trimming.unevenness_limit(condition.repose, 1.0) is not None:
+        angle = f"{np.degrees(condition.repose):.0f} deg of repose"
+        yield f"A cargo of {angle} is no grain: the Grain Code's rows show what its shift would do, none is a rule."
     if condition.scale == 1.0 and condition.hydrostatics.breadth < 5.0:
         yield "A model's levers are judged as if a ship were so small; give ship.scale for those of the full scale."
 
@@ -68,17 +89,35 @@ def facts(condition: Condition) -> list[tuple[str, str]]:
         ("displacement", f"{condition.displacement:.5g} t, by {condition.form.perpendiculars:.5g} m of her section"),
         ("draught", f"{condition.draught:.4g} m, breadth {h.breadth:.4g} m, block coefficient {condition.block:.3f}"),
         ("KB, BM, KM", f"{h.kb:.3f}, {h.bm:.3f}, {h.km:.3f} m"),
-        (
-            "KG, free surfaces, GM",
-            f"{condition.gravity_height:.3f}, {condition.fluid_height - condition.gravity_height:.3f}, "
-            f"{condition.metacentric_height:.3f} m",
-        ),
-        ("deck edge, flooding", f"{degrees(condition.deck)}, {degrees(condition.flooding)}"),
-        ("levers vanish", degrees(condition.levers.vanishing, "beyond 90 deg")),
+        *_gravity(condition),
+        ("deck edge under", degrees(condition.deck) if condition.deck else "no deck is given"),
+        ("downflooding", degrees(condition.flooding) if condition.flooding else "no opening is given"),
+        ("levers vanish", vanishing(condition.levers)),
     ]
     if condition.cargo is None:
         return rows
     return [*rows, *_loaded(condition, condition.cargo)]
+
+
+def _gravity(condition: Condition) -> list[tuple[str, str]]:
+    """Rows on the centre of gravity, the free surfaces of tanks, and GM solid and fluid."""
+    rise = condition.fluid_height - condition.gravity_height
+    rows = []
+    for tank in condition.tanks:
+        breadth, length = (condition.scale * size for size in (tank.breadth, tank.length))
+        moment = tank.moment * condition.scale**4 / TONNE
+        rows.append(
+            (f"free surface, {tank.tank}", f"{breadth:.5g} m broad, {length:.5g} m long, rho i = {moment:.4g} t m")
+        )
+    if condition.aside > 0.0:
+        rows.append(("G aside", f"{condition.aside:.3f} m to {condition.side}, the side that she is judged on"))
+    return [
+        *rows,
+        ("KG solid, fluid", f"{condition.gravity_height:.3f}, {condition.fluid_height:.3f} m"),
+        ("GM solid", f"{condition.solid:.3f} m"),
+        ("free surfaces", f"{condition.free_surface:.4g} t m / {condition.displacement:.5g} t = {rise:.3f} m"),
+        ("GM fluid", f"{condition.metacentric_height:.3f} m"),
+    ]
 
 
 def _loaded(condition: Condition, cargo: Cargo) -> list[tuple[str, str]]:
@@ -94,6 +133,20 @@ def _loaded(condition: Condition, cargo: Cargo) -> list[tuple[str, str]]:
             f"surface {angle:.0f} deg, {moment:.5g} m4 x {assumed.factor:.2f}, arm {condition.assumed_arm:.3f} m",
         ),
     ]
+
+
+def shown(value: float, unit: str) -> str:
+    """A number of a sheet as surveyors round it: millimetres, hundredths of a degree, tenths of a mm rad."""
+    if value == inf:
+        return "none"
+    return f"{value:.{DIGITS.get(unit, 3)}f}"
+
+
+def vanishing(levers: Levers) -> str:
+    """The angle of vanishing stability."""
+    if float(levers.at(levers.highest(0.0, float(levers.heel[-1])))) <= 0.0:
+        return "she has none"
+    return degrees(levers.vanishing, f"beyond {np.degrees(levers.heel[-1]):.0f} deg")
 
 
 def degrees(angle: float | None, never: str = "never") -> str:

@@ -1,6 +1,5 @@
-"""Parts of a picture other than grains and walls: scale bar, colour bar, gravity dial, growing plot."""
+"""Parts of a picture other than grains and walls: scale bar, colour bar, gravity dial."""
 
-from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
 
@@ -13,7 +12,7 @@ from lab.paint.colours import Colouring
 from lab.paint.page.theme import LIGHT, Theme
 
 SMALLER = 0.65  # smallest size of a text relative to its normal size; a longer text is cut
-FINER = 3  # the plot and the dial are drawn this many times larger and then reduced, for smooth lines
+FINER = 3  # a plot and the dial are drawn this many times larger and then reduced, for smooth lines
 
 
 @cache
@@ -43,6 +42,11 @@ def fitted(text: str, width: float, size: float, bold: bool = False) -> tuple[st
         whole = whole[:-1].rstrip()
         text = whole + "…"
     return text, face
+
+
+def fits(text: str, width: float, size: float, bold: bool = False) -> bool:
+    """Whether `fitted` leaves a text whole."""
+    return fitted(text, width, size, bold)[0] == text
 
 
 def wrapped(text: str, width: float, size: float, most: int) -> list[str]:
@@ -164,124 +168,3 @@ def gravity_dial(diameter: int, tilt: float, theme: Theme = LIGHT) -> Image.Imag
     draw.polygon([place(0.8, 0), place(0.35, 0.2), place(0.35, -0.2)], fill=theme.ink)
     draw.text(place(-0.3, 0.35), "g", theme.ink, font(0.24 * size), anchor="mm")
     return image.reduce(FINER)
-
-
-class _Growing:
-    """A curve that is drawn on as it grows, since a long curve takes more time than all else on a picture.
-
-    points (T, 2): in pixels, not all finite; size: of the picture; thick: of the line, pixels.
-    """
-
-    def __init__(self, points: np.ndarray, colour: tuple, size: tuple[int, int], thick: int) -> None:
-        finite = np.isfinite(points).all(axis=1)
-        self._points = [tuple(point) for point in points[finite].tolist()]
-        self._finite = np.concatenate([[0], np.cumsum(finite)])
-        self._size, self._thick, self.colour = size, thick, colour
-        self._clear()
-
-    def _clear(self) -> None:
-        self._drawn, self._mask = 0, Image.new("1", self._size)
-
-    def draw(self, image: Image.Image, count: int) -> tuple[float, float] | None:
-        """Draw the first `count` samples on an image; returns the last point, None if there is none yet."""
-        shown = int(self._finite[min(count, len(self._finite) - 1)])
-        if shown < self._drawn:
-            self._clear()
-        if shown > max(self._drawn, 1):
-            # Two points back, since the joint at the last point needs the segments on both of its sides.
-            new = self._points[max(0, self._drawn - 2) : shown]
-            ImageDraw.Draw(self._mask).line(new, fill=1, width=self._thick, joint="curve")
-            self._drawn = shown
-        if self._drawn and (box := self._mask.getbbox()):
-            image.paste(self.colour, box, self._mask.crop(box))
-        return self._points[shown - 1] if shown else None
-
-
-class LivePlot:
-    """Curves that grow with the film; the axes are drawn once.
-
-    size: (width, height) in pixels; curves: pairs of arrays x, y; colours: one each;
-    labels: of x and y; text: height of the letters in pixels; names: texts and colours, at the upper right;
-    indent: least distance of the axis from the left, for plots that stand one above the other.
-    """
-
-    def __init__(
-        self,
-        size: tuple,
-        curves: list,
-        colours: list,
-        labels: tuple[str, str],
-        text: float,
-        names: Sequence = (),
-        indent: float = 0.0,
-        theme: Theme = LIGHT,
-    ) -> None:
-        self._text, self._names, self._theme = FINER * text, names, theme
-        width, height = (FINER * round(side) for side in size)
-        self._image = Image.new("RGB", (width, height), self._theme.panel)
-        self._low, self._high = _limits(curves)
-        top, bottom = 1.7 * self._text, height - (3.1 if labels[0] else 1.9) * self._text
-        room = int((bottom - top) / (1.6 * self._text))  # number of labels that fit without touching
-        self._levels = ticks(self._low[1], self._high[1], min(4, max(1, room)))
-        while len(self._levels) > max(2, room):  # a locator gives more than it is asked for
-            self._levels = self._levels[::2]
-        widest = max(font(self._text).getlength(plain(level)) for level in self._levels)
-        self.indent = max(widest + 0.5 * self._text, indent)
-        left, right = self.indent, width - 0.4 * self._text
-        self._box = (left, top, right, bottom)
-        placed = [self._place(np.column_stack(curve)) for curve in curves]
-        self._curves = [
-            _Growing(points, colour, self._image.size, round(0.16 * self._text))
-            for points, colour in zip(placed, colours, strict=True)
-        ]
-        self._draw_axes(labels)
-
-    def picture(self, counts: Sequence[int]) -> Image.Image:
-        """The plot with the first `counts` samples of each curve; quick if they are those of the last one or more."""
-        image = self._image.copy()
-        draw, dot = ImageDraw.Draw(image), 0.32 * self._text
-        for curve, count in zip(self._curves, counts, strict=True):
-            end = curve.draw(image, count)
-            if end is not None:
-                x, y = end
-                draw.ellipse((x - dot, y - dot, x + dot, y + dot), fill=curve.colour, outline=self._theme.panel)
-        return image.reduce(FINER)
-
-    def _place(self, points: np.ndarray) -> np.ndarray:
-        left, top, right, bottom = self._box
-        share = (points - self._low) / (self._high - self._low)
-        return np.array([left, bottom]) + share * np.array([right - left, top - bottom])
-
-    def _draw_axes(self, labels: tuple[str, str]) -> None:
-        draw = ImageDraw.Draw(self._image)
-        face, thin = font(self._text), FINER
-        left, top, right, bottom = self._box
-        draw.text((0, 0), labels[1], self._theme.ink, face, anchor="la")
-        draw.text((right, self._image.height), labels[0], self._theme.ink, face, anchor="rd")
-        x, strong = float(self._image.width), font(self._text, bold=True)
-        gap, widths = 0.55 * self._text, [strong.getlength(name) for name, _ in self._names]
-        ends = np.cumsum(np.add(widths, gap))
-        fitting = int((ends < x - face.getlength(labels[1])).sum())  # of many names the last ones are left out
-        for (name, colour), width in list(zip(self._names, widths, strict=True))[:fitting][::-1]:
-            draw.text((x, 0), name, colour, strong, anchor="ra")
-            x -= width + gap
-        for value in self._levels:
-            y = self._place(np.array([[self._low[0], value]]))[0, 1]
-            draw.line([(left, y), (right, y)], fill=self._theme.grid, width=thin)
-            draw.text((left - 0.4 * self._text, y), plain(value), self._theme.quiet, face, anchor="rm")
-        for value in clear_ticks(self._low[0], self._high[0], right - left, face):
-            x, half = self._place(np.array([[value, self._low[1]]]))[0, 0], face.getlength(plain(value)) / 2
-            draw.line([(x, bottom), (x, bottom + 0.3 * self._text)], fill=self._theme.line, width=thin)
-            text_x = min(x, self._image.width - half)
-            draw.text((text_x, bottom + 0.5 * self._text), plain(value), self._theme.quiet, face, anchor="ma")
-        draw.line([(left, top), (left, bottom), (right, bottom)], fill=self._theme.line, width=thin)
-
-
-def _limits(curves: list) -> tuple[np.ndarray, np.ndarray]:
-    """Lower and upper end of both axes: x as given, y with a margin."""
-    x, y = (np.concatenate([np.asarray(curve[k], dtype=float) for curve in curves]) for k in (0, 1))
-    y = y[np.isfinite(y)] if np.isfinite(y).any() else np.zeros(1)
-    low, high = y.min(), y.max()
-    air = max(0.06 * (high - low), 0.05)
-    near, far = np.nanmin(x), np.nanmax(x)
-    return np.array([near, low - air]), np.array([far if far > near else near + 1.0, high + air])

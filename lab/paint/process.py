@@ -103,7 +103,7 @@ def get_ready(cores: int) -> None:
     """Do what comes before the first picture: import, start Taichi, and load the kernels that most videos need."""
     import numpy as np
 
-    from lab.paint.painter import Camera, paint_grains, paint_tank
+    from lab.paint.painter import Camera, paint_grains, paint_strokes, paint_tank
     from lab.paint.video import render_recording  # noqa: F401 (imports all that paints)
     from solvers.machine.errors import Unavailable
     from solvers.machine.runtime import initialise, use_cores
@@ -114,6 +114,7 @@ def get_ready(cores: int) -> None:
         picture, disc = np.zeros((32, 32, 3), np.uint8), np.array([[9.0, 9.0, 5.0, 1.0, 0.0]])
         paint_tank(picture, Camera(1.0, (0.0, 32.0)), np.array([[2.0, 2.0], [20.0, 2.0], [9.0, 20.0]]), 1.0, INK, INK)
         paint_grains(picture, disc, np.array([INK]), np.array([INK]))
+        paint_strokes(picture, np.array([[2.0, 2.0, 1.0, 20.0, 20.0, 1.0]]), INK)
 
 
 def _paint(job: dict[str, object], answer) -> None:

@@ -14,6 +14,7 @@ import matplotlib
 
 from lab.base.errors import LabError
 from lab.measures import measure_all
+from lab.naval import sheet
 from lab.preset.units import show
 from lab.recording import Recording, open_recording
 from lab.report.numbers import number
@@ -68,6 +69,7 @@ def _data(recording: Recording) -> dict[str, object]:
         "created": recording.created,
         "status": status_of(recording),
         "warnings": list(cautions(recording)),
+        "shown": sheet.shown,
         "condition": facts,
         "criteria": rows,
         "assumptions": list(_assumptions(recording, bool(rows))),

@@ -52,7 +52,14 @@ def aligned(rows: list[sheet.Row]) -> list[str]:
         what = f"{one.what} ({row.shift})" if row.shift else one.what
         unit = "" if one.unit == "1" else f" {one.unit}"
         cells.append(
-            (one.rule, what, f"{one.kind} {one.limit:.4g}{unit}", f"{one.attained:.4g}", one.verdict, one.note)
+            (
+                one.rule,
+                what,
+                f"{one.kind} {one.limit:.4g}{unit}",
+                sheet.shown(one.attained, one.unit),
+                one.verdict,
+                one.note,
+            )
         )
     widths = [max(len(line[k]) for line in cells) for k in range(len(cells[0]))]
     return [

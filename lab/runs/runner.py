@@ -7,13 +7,13 @@ from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from lab.base.errors import LabError, Unusable
 from lab.base.lock import only_one
 from lab.base.progress import Progress
 from lab.measures import measure_all
 from lab.measures.value import Value
+from lab.paint.beside import Beside, second_process
 from lab.preset.find import LoadedPreset, load
 from lab.preset.recorded import checked
 from lab.recording import FILE_NAME, Recording, open_recording, versions
@@ -24,9 +24,6 @@ from lab.runs.belongs import check_belongs
 from lab.runs.checkpoint import FILE_NAME as CHECKPOINT
 from lab.runs.checkpoint import Checkpoint, read_checkpoint, remove_checkpoint
 from solvers.machine.runtime import available_cores
-
-if TYPE_CHECKING:
-    from lab.paint.beside import Beside
 
 RENDERS = Path("renders")
 
@@ -53,20 +50,22 @@ def run_preset(
     video: bool = True,
     plots: bool = True,
     quiet: bool = False,
+    beside: Beside | None = None,
 ) -> Result:
     """Run a preset and write recording, plots, video and summary to a folder (default: renders/NAME).
 
+    beside: a second process that films it, if one has been started already.
     Raises LabError for errors that the user can correct, BadState if the watch stopped the run, and KeyboardInterrupt;
     the recording so far is kept, with its summary and the checkpoint for `resume_run`.
     """
     loaded = load(name, overrides)
     folder = Path(out) if out is not None else free_folder(RENDERS / loaded.name)
-    with Progress(quiet) as progress, hint(folder):
+    with Progress(quiet) as progress, hint(folder), _second_process(video, beside) as beside:
         with progress.costs.of("settle"):
             run = prepare(loaded, folder)
         with only_one(folder):
             run.make_recording()
-            return _complete(run, None, progress, video, plots)
+            return _complete(run, None, progress, plots, video, beside)
 
 
 def resume_run(folder: Path | str, *, video: bool = True, plots: bool = True, quiet: bool = False) -> Result:
@@ -90,10 +89,11 @@ def resume_run(folder: Path | str, *, video: bool = True, plots: bool = True, qu
             raise LabError(f"{folder} has no checkpoint to resume from: start the run again, in another folder.")
         if changed:
             progress.warn("The run was begun with other versions of the lab or its libraries than it continues with.")
-        with progress.costs.of("settle"):
-            run = prepare(loaded, folder)
-        check_belongs(run)
-        return _complete(run, kept, progress, video, plots)
+        with _second_process(video) as beside:
+            with progress.costs.of("settle"):
+                run = prepare(loaded, folder)
+            check_belongs(run)
+            return _complete(run, kept, progress, plots, video, beside)
 
 
 def recorded_preset(recording: Recording) -> LoadedPreset:
@@ -112,7 +112,7 @@ def report(
     video: bool,
     plots: bool = True,
     costs: bool = False,
-    beside: "Beside | None" = None,
+    beside: Beside | None = None,
 ) -> Result:
     """Measure, plot and film the recording, and write the summary; with the `costs` if all were of this run.
 
@@ -162,34 +162,27 @@ def hint(folder: Path, begun: str = FILE_NAME) -> Iterator[None]:
         raise LabError(f"{str(error).removesuffix('.')}; continue with: {resume}") from error
 
 
-def _complete(run: Run, kept: Checkpoint | None, progress: Progress, video: bool, plots: bool) -> Result:
+def _complete(
+    run: Run, kept: Checkpoint | None, progress: Progress, plots: bool, video: bool, beside: Beside | None
+) -> Result:
     """Run, or continue, to the end and report."""
-    with _second_process(run) if video else nullcontext() as beside:
-        try:
-            stopped = run_batch([run], run.folder, progress, kept)
-        except KeyboardInterrupt:
-            report(run.folder, progress, video=False, plots=plots, costs=True)
-            raise
-        result = report(run.folder, progress, video=video and not stopped, plots=plots, costs=True, beside=beside)
+    try:
+        stopped = run_batch([run], run.folder, progress, kept)
+    except KeyboardInterrupt:
+        report(run.folder, progress, video=False, plots=plots, costs=True)
+        raise
+    result = report(run.folder, progress, video=video and not stopped, plots=plots, costs=True, beside=beside)
     for error in stopped.values():
         raise error
     return result
 
 
-def _second_process(run: Run) -> "AbstractContextManager[Beside | None]":
-    """A process that films the run, if the run leaves it a core; it would only slow down one that takes them all."""
-    device, cores = run.device(), available_cores()
-    if device.get("threads", 1) >= cores:
-        return nullcontext()
-    from lab.paint.beside import Beside
-
-    try:
-        return Beside(cores)
-    except (OSError, RuntimeError):  # a limit on processes or threads
-        return nullcontext()
+def _second_process(video: bool, given: Beside | None = None) -> AbstractContextManager[Beside | None]:
+    """The process that films a run: the given one, else a new one; None without a video, or on a single core."""
+    return second_process(available_cores()) if video and given is None else nullcontext(given)
 
 
-def _film(folder: Path, progress: Progress, beside: "Beside | None") -> Path:
+def _film(folder: Path, progress: Progress, beside: Beside | None) -> Path:
     progress.start("painting", None)
     path = beside and beside.finish(progress.count)
     if path is None:

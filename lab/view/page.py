@@ -12,6 +12,8 @@ from PIL import Image, ImageDraw, ImageOps
 from lab.paint import decorations as deco
 from lab.paint import palette
 from lab.paint.colours import Colouring, colouring
+from lab.paint.forces.chains import newtons
+from lab.paint.page.live_plot import LivePlot
 from lab.paint.painter import Camera, paint_grains, paint_plate, paint_strokes, paint_tank, to_discs
 from lab.paint.sea import LINE
 from lab.paint.water.gauges import Marks, hues_of
@@ -21,7 +23,6 @@ from lab.view.footage import LiveFootage
 from lab.view.overlays import force_strokes, ring, velocity_strokes
 from lab.view.panel.controls import CONTROLS, RESTARTS
 from lab.view.panel.curves import CURVES
-from lab.view.panel.forces import newtons
 from lab.view.panel.help import draw_help
 from lab.view.panel.readings import clock, readings
 from lab.view.shown import Shown
@@ -333,12 +334,10 @@ class Page:
 
         def drawn() -> Image.Image:
             drawing = CURVES[shown.curve](shown.footage, shown.frame)
-            labels, colours = (
-                (drawing.across, drawing.upwards),
-                drawing.colours or palette.SERIES[: len(drawing.curves)],
-            )
+            labels, colours = (drawing.across, drawing.upwards), drawing.colours
+            colours = colours or palette.SERIES[: len(drawing.curves)]
             edge, size = self.u(0.5), (self.u(PLOT[0] - 1.5), self.u(PLOT[1] - 1.5))
-            plot = deco.LivePlot(size, drawing.curves, colours, labels, 0.9 * TEXT * self.unit, drawing.names)
+            plot = LivePlot(size, drawing.curves, colours, labels, 0.9 * TEXT * self.unit, drawing.names)
             return ImageOps.expand(plot.picture(drawing.counts), edge, palette.PAPER)
 
         return self._still("plot", (shown.curve, shown.footage, shown.playhead), drawn, CURVE_UPDATE)

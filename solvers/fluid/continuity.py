@@ -2,6 +2,7 @@
 
 import taichi as ti
 
+from solvers.fluid.forces import Forces
 from solvers.fluid.lists import Medium
 from solvers.machine.state import State
 from solvers.motion.poses import AT_MIDDLE
@@ -15,32 +16,31 @@ class Continuity:
     Of two phases, the second sum is over the own phase, and pairs of both have the weight of `solvers.fluid.phases`.
 
     `lost` (units,) J is the energy that diffusion has taken: −Σ m_i p_i/ρ_i² times its share of the rate (Antuono,
-    Marrone, Colagrossi & Bouscasse 2015, eq. 22), `returned` (units,) that which the walls' dummies have given back by
-    compressing the water before them (`Closing`); both by the water's pressure in the middle of the step. The momentum
-    that shifts carry is summed up over the same pairs.
+    Marrone, Colagrossi & Bouscasse 2015, eq. 22), by the water's pressure in the middle of the step. What the water
+    before dummies takes (`Closing`), and what images of water take from air (`Sliding`), goes to `held` (units,) J. The
+    momentum that shifts carry is summed up over the same pairs.
     """
 
-    def __init__(self, arrays: State, medium: Medium):
+    def __init__(self, arrays: State, medium: Medium, forces: Forces):
         self.units, self.particles, self.shares = medium.units, medium.particles, medium.shares
         self.lists, self.constants, self.poses = medium.lists, medium.constants, medium.poses
-        own = arrays.under("water.continuity")
-        self.counts = own.reals((medium.units.axis,), "lost", "returned", kind=own.exact)
-        self.lost, self.returned = self.counts
+        own, self.sliding, self.held = arrays.under("water.continuity"), forces.beside.walls.sliding, forces.held
+        (self.lost,) = own.reals((medium.units.axis,), "lost", kind=own.exact)
 
     @ti.func
     def expand(self, u, frame, kick, dt):
         """The rates of density of a unit's particles in the middle of the step; returns that all is well."""
         first, end = self.shares.wet(u)
-        taken = ti.Vector([ti.cast(0.0, self.particles.exact) for _ in ti.static(range(2))])
+        given = ti.Vector([ti.cast(0.0, self.particles.exact) for _ in ti.static(range(2))])
         for b in range(first, end):
-            taken += self.lists.order.weight(b) * self.expand_block(u, b, b - first, dt)
-        self.lost[u] = self.lost[u] - taken[0] * ti.cast(dt, self.particles.exact)
-        self.returned[u] = self.returned[u] + taken[1] * ti.cast(dt, self.particles.exact)
+            given += self.lists.order.weight(b) * self.expand_block(u, b, b - first, dt)
+        self.lost[u] = self.lost[u] - given[0] * ti.cast(dt, self.particles.exact)
+        self.held[u] = self.held[u] - given[1] * ti.cast(dt, self.particles.exact)
         return True
 
     @ti.func
     def expand_block(self, u, b, listed, dt):
-        """As `expand`, for a block; returns the powers (W/m) that diffusion and that dummies give."""
+        """As `expand`, for a block; returns the powers (W/m) that diffusion gives, and walls but for their motion."""
         p, c = self.particles, self.constants
         lists = self.lists
         w = self.units.world(u)
@@ -52,6 +52,7 @@ class Continuity:
         gas = p.gases(b)
         rest = [c.of("hydrostatic", gas) * self.down(w, a) for a in ti.static(range(p.axes))]
         opened, evened, walled, closed = p.zeros(), p.zeros(), p.zeros(), p.zeros()
+        slid = p.zeros()
         carried = [p.zeros() for _ in ti.static(range(p.axes))]
         shift = [p.zeros() for _ in ti.static(range(p.axes))]
         if ti.static(c.shifting.carries):
@@ -97,10 +98,12 @@ class Continuity:
                 nearing = [p.velocity[a][jb, lane] - speed[a] for a in ti.static(range(p.axes))]
                 walled += weight * dot(nearing, apart)
                 closed += (p.volume[jb, lane] * p.rate[jb, lane]) * c.kernel.value(t)
+                if ti.static(self.sliding.acts):
+                    slid += weight * self.sliding.given(jb, lane, apart)
             closed *= c.get("value")
-        if ti.static(c.two):  # a wall is to air as water is, see `solvers.fluid.phases.interfaces`
-            walled *= 1.0 + gas * c.get("lean_of_speed")
-            closed *= 1.0 - gas
+        if ti.static(c.two):  # air meets its mirror image at walls, see `solvers.fluid.phases.interfaces`
+            walled *= 1.0 + gas
+            closed = (1.0 - gas) * closed + gas * (c.get("slope") * slid)
         factor = c.get("slope")
         evened *= factor * c.of("spread", gas)
         rate, rate_of_walls = (1.0 + s) * (factor * opened) + evened, (1.0 + s) * (factor * walled + closed)

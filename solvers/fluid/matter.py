@@ -18,6 +18,7 @@ from solvers.fluid.order import Order, Tanks
 from solvers.fluid.phases.vent import Vent
 from solvers.fluid.shifting import SHIFTING
 from solvers.fluid.state import LANES, UNUSED, Particles, Shares
+from solvers.fluid.walls.answer import answer_at_rest
 from solvers.fluid.walls.behind import OF_NONE, Behind
 from solvers.fluid.walls.bodies import Bodies
 from solvers.fluid.walls.closing import Closing
@@ -44,7 +45,8 @@ class WaterMatter(Matter):
         water: Water = scene.water
         self.scene, self.water = scene, water
         arrays, worlds, tank, count = setting.arrays, setting.worlds, scene.tanks[0], scene.drops.shape[1]
-        lanes = 1 if setting.per_particle else LANES
+        alone = not scene.radius.shape[1]  # kernels that hold grains' as well cannot be on real vectors: Taichi aborts
+        lanes = LANES if alone and not setting.per_particle else 1
         self.wide = lanes > 1
         behind = Behind(water, scene.tanks, scene.fills)
         grid = grid_round(water, scene.drops, scene.tanks, setting.walls.bounds, lanes)
@@ -58,6 +60,7 @@ class WaterMatter(Matter):
         self.particles = p = Particles(arrays, worlds, count, lanes, walls, grid.strips, shifting, water.air)
         self.units = units = setting.units(p.wet)
         self.load = setting.load(arrays.under("water"), units)
+        self.load.lag(answer_at_rest(scene, behind), water.added_mass == "layer")
         self.dummies = dummy, blocks, behind.volumes, behind.firm
         shares, self.constants = Shares(p, units), Constants(arrays, water, scene.gravity)
         self.poses = Poses(arrays, setting.carrier, worlds)
@@ -67,7 +70,7 @@ class WaterMatter(Matter):
         medium = Medium(units, p, shares, self.lists, self.constants, self.poses)
         self.extrapolation = Extrapolation(arrays, medium)
         self.forces = Forces(arrays, medium, self.extrapolation, self.load, tank.thickness)
-        self.continuity, self.vent = Continuity(arrays, medium), Vent(arrays, medium, water.air)
+        self.continuity, self.vent = Continuity(arrays, medium, self.forces), Vent(arrays, medium, water.air)
         self.mover = Mover(arrays, medium, self.extrapolation, self.vent)
         probes = [dummy[slot] + p.wet * lanes for slot in behind.probes]
         self.gauges = Gauges(arrays, p, self.constants, water.gauges, probes, behind.open)
@@ -189,7 +192,7 @@ class WaterMatter(Matter):
             whole = field.to_numpy().reshape(p.worlds, p.stride, p.lanes)
             whole[:, p.wet : p.wet + p.walls] = values
             field.from_numpy(whole.reshape(-1, p.lanes))
-        for field in (*self.forces.counts, *self.continuity.counts, self.census.behind, self.lists.last):
+        for field in (*self.forces.counts, self.continuity.lost, self.census.behind, self.lists.last):
             field.fill(0.0)
         self.bodies.forget()
         self.lists.skin.fill(0.0)
@@ -207,10 +210,8 @@ class WaterMatter(Matter):
         now = [field.to_numpy() for field in self.census.now]
         down = np.stack(now[3:5], axis=1) / max(self.scene.gravity, 1e-300)
         potential = mass * self.scene.gravity * (now[5] - (centre * down).sum(axis=1)) + sums["pulled"]
-        counts = *self.forces.counts, *self.continuity.counts
-        viscous, held, work, diffusive, returned = (
-            count.to_numpy().reshape(self.particles.worlds, -1).sum(axis=1) for count in counts
-        )
+        counts = *self.forces.counts, self.continuity.lost
+        viscous, held, work, diffusive = (count.to_numpy().reshape(len(mass), -1).sum(axis=1) for count in counts)
         rows = {
             **self.census.of_water(sums, mass, centre),
             "water_momentum": np.stack([sums["momentum_y"], sums["momentum_z"]], axis=1),
@@ -221,7 +222,7 @@ class WaterMatter(Matter):
             "water_viscous": viscous * thick,
             "water_diffusive": diffusive * thick,
             "water_work": (work + self.bodies.given()) * thick,
-            "water_held": (held - returned) * thick,
+            "water_held": held * thick,
             "water_excess": sums["excess"],
             "level_depth": self.census.level_depth.to_numpy()[:, : self.census.levels],
             "water_escaped": sums["escaped"],
@@ -237,8 +238,7 @@ class WaterMatter(Matter):
         # A particle that goes round falls for ever; what a surface under tension holds, and vents take, is not known.
         # At time zero no work is done yet, but velocities may have half a kick: m (g Δt/2)²/2 that nothing has given.
         unknown = time == 0.0 or self.water.periodic or self.constants.tense or self.vent.acts
-        known = np.nan if unknown else self.start
-        check_water(rows, known, time, self.least)
+        check_water(rows, np.nan if unknown else self.start, time, self.least)
 
     def refuse(self, world: int, time: float, dt: float) -> None:
         """Raise BadState for a world that was stopped at `time` (s)."""

@@ -33,7 +33,9 @@ class Hold:
         still = apart([[0.0, -gravity, 0.0, 0.0]] * len(places))
         self.felt = own.holding("felt", still, "world number", own.exact, kept=True)
         row = Axis("world", len(places)), Axis("number", APART)
-        (self.tank,) = own.reals(row, "tank", kind=own.exact)
+        # Where it stands while matters settle, before the ship floats: water notices every jump of the tank
+        standing = apart([[*place, *[0.0] * 7] for place in places])
+        self.tank = own.holding("tank", standing, "world number", own.exact, kept=True)
         self.reply, self.seen = own.reals(row, "reply", "seen", kind=own.exact, kept=False)
 
     @ti.func
@@ -67,10 +69,13 @@ class Hold:
         return found
 
     @ti.func
-    def inertia(self, w):
-        """The inertia `seen` (3, 3)."""
-        rows = [[self.seen[w, 3 * i + j] for j in ti.static(range(3))] for i in ti.static(range(3))]
-        return ti.Matrix(rows)
+    def answered(self, w, acceleration):
+        """What matters push against an acceleration of P (m/s², rad/s²), by the inertia `seen`."""
+        found = acceleration
+        for i in ti.static(range(3)):
+            pushed = self.seen[w, 3 * i] * acceleration[0] + self.seen[w, 3 * i + 1] * acceleration[1]
+            found[i] = pushed + self.seen[w, 3 * i + 2] * acceleration[2]
+        return found
 
     @ti.func
     def feel(self, w, gravity, pose, velocity, acceleration, share):

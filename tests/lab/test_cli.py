@@ -4,6 +4,7 @@ import errno
 import re
 import subprocess
 import sys
+from contextlib import nullcontext
 from pathlib import Path
 from types import ModuleType, SimpleNamespace
 
@@ -41,6 +42,7 @@ def stand_in(monkeypatch, module: str, name: str, act):
 @pytest.fixture
 def runner(monkeypatch):
     result = SimpleNamespace(summary_text="12.3 deg", folder=Path("renders/tilting/quick"))
+    monkeypatch.setattr("lab.paint.beside.second_process", nullcontext)
     return stand_in(monkeypatch, "lab.runs.runner", "run_preset", result)
 
 
@@ -77,7 +79,7 @@ def test_run_passes_on_all_options(runner):
         "motion.tilt.reverse": True,
         "title": "4 = four",
     }
-    expected = ("tilting/quick", overrides, Path("there")), {"video": False, "quiet": False}
+    expected = ("tilting/quick", overrides, Path("there")), {"video": False, "quiet": False, "beside": None}
     assert runner == [expected]
 
 
@@ -106,7 +108,8 @@ def test_resume_passes_on_the_folder(monkeypatch):
 
 def test_quiet_prints_only_the_folder(runner):
     assert call("run", "tilting/quick", "--quiet").stdout == "renders/tilting/quick\n"
-    assert runner == [(("tilting/quick", {}, None), {"video": True, "quiet": True})]
+    (how,) = (keys for _, keys in runner)
+    assert how["video"] and how["quiet"] and how["beside"]  # the number of cores, by the stand-in
 
 
 @pytest.mark.parametrize(
@@ -284,6 +287,7 @@ def test_the_module_is_the_command():
 @settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.lists(st.text() | st.sampled_from(["run", "explain", "--set", "tilting/quick"]), max_size=5))
 def test_any_command_line_ends_cleanly(monkeypatch, arguments):
+    monkeypatch.setattr("lab.paint.beside.second_process", nullcontext)
     stand_in(monkeypatch, "lab.runs.runner", "run_preset", SimpleNamespace(summary_text="", folder=""))
     stand_in(monkeypatch, "lab.report.explain", "explain", "")
     stand_in(monkeypatch, "lab.paint.video", "render_recording", "")

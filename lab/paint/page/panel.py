@@ -8,8 +8,11 @@ from PIL import Image
 from lab.paint import decorations as deco
 from lab.paint.curves import TOLERANCE, Plot
 from lab.paint.page.layout import CLOCK, READING, TEXT, Layout
+from lab.paint.page.live_plot import LivePlot
 from lab.paint.page.texts import Texts
 from lab.paint.page.theme import Theme
+
+LONG = 1.0  # m: where sway or heave are ever as large, both are told in metres
 
 
 class Panel:
@@ -17,8 +20,8 @@ class Panel:
 
     def __init__(self, layout: Layout, theme: Theme, time: np.ndarray, moved: np.ndarray, together: bool) -> None:
         self._layout, self._theme, self._time, self._moved = layout, theme, time, moved
-        self._together = together
-        self._plots: list[tuple[deco.LivePlot, list[np.ndarray], tuple[int, int]]] = []
+        self._together, self._in_metres = together, bool(np.abs(moved[..., :2]).max() >= LONG)
+        self._plots: list[tuple[LivePlot, list[np.ndarray], tuple[int, int]]] = []
 
     def prepare(self, drawn: Sequence[Plot]) -> None:
         """Lay out the plots one above the other, their axes below each other."""
@@ -30,7 +33,7 @@ class Panel:
         for plot in (*drawn, *drawn):  # twice, for the indent
             last = plot is drawn[-1]
             labels, size = (plot.labels[0] if last else "", plot.labels[1]), (right - left, height + last * below)
-            live = deco.LivePlot(size, plot.curves, plot.colours, labels, text, plot.names, indent, self._theme)
+            live = LivePlot(size, plot.curves, plot.colours, labels, text, plot.names, indent, self._theme)
             found.append((live, plot.samples, (left, top + (len(found) % len(drawn)) * (height + gap))))
             indent = max(indent, live.indent)
         self._plots = found[len(drawn) :]
@@ -64,16 +67,16 @@ class Panel:
         moves = moving(self._moved)
         told = [
             ("φ =", f"{deco.number(np.degrees(tilt), 1)}°"),
-            ("sway", _length(sway)),
-            ("heave", _length(heave)),
+            ("sway", self._length(sway)),
+            ("heave", self._length(heave)),
         ]
         return [reading for reading, moves_so in zip(told, moves, strict=True) if moves_so]
+
+    def _length(self, metres: float) -> str:
+        """A sway or a heave, in the same unit throughout."""
+        return f"{deco.number(metres, 2)} m" if self._in_metres else f"{deco.number(1000 * metres, 1)} mm"
 
 
 def moving(moved: np.ndarray) -> np.ndarray:
     """Whether roll, sway and heave (3,) ever differ from rest, of sway, heave and roll (F, K, 3)."""
     return (np.abs(moved) > TOLERANCE).any(axis=(0, 1))[[2, 0, 1]]
-
-
-def _length(metres: float) -> str:
-    return f"{deco.number(metres, 2)} m" if abs(metres) >= 10.0 else f"{deco.number(1000 * metres, 1)} mm"

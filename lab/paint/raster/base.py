@@ -53,12 +53,12 @@ class Camera:
         return Camera(self.scale, (origin[0], origin[1]), self.turn + float(pose[2]))
 
 
-def box_around(picture: np.ndarray, corners: np.ndarray, reach: float) -> ti.Vector:
+def box_around(picture: np.ndarray, corners: np.ndarray, reach: float) -> tuple[int, int, int, int]:
     """The pixels (left, top, right, bottom) of a picture that lie within reach of the corners."""
     height, width, _ = picture.shape
-    left, top = np.clip(np.floor(corners.min(0) - reach - 1), 0, [width, height]).astype(int)
-    right, bottom = np.clip(np.ceil(corners.max(0) + reach + 1), 0, [width, height]).astype(int)
-    return ti.Vector([left, top, right, bottom])
+    left, top = np.clip(np.floor(corners.min(0) - reach - 1), 0, [width, height]).astype(int).tolist()
+    right, bottom = np.clip(np.ceil(corners.max(0) + reach + 1), 0, [width, height]).astype(int).tolist()
+    return left, top, right, bottom
 
 
 def sort_into_bands(y: np.ndarray, reach: np.ndarray, height: int) -> tuple:
@@ -91,6 +91,11 @@ def mix(picture: ti.template(), row, column, change):
 @ti.func
 def colour_of(picture: ti.template(), row, column):
     return ti.Vector([ti.cast(picture[row, column, c], ti.f64) for c in ti.static(range(3))])
+
+
+@ti.func
+def row_of(colours: ti.template(), k):
+    return ti.Vector([colours[k, c] for c in ti.static(range(3))])
 
 
 @ti.func

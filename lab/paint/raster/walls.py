@@ -9,7 +9,6 @@ from lab.paint.raster.base import (
     BAND,
     PER_TASK,
     Camera,
-    Colour,
     Index,
     Picture,
     Shares,
@@ -17,9 +16,12 @@ from lab.paint.raster.base import (
     box_around,
     colour_of,
     mix,
+    row_of,
     sort_into_bands,
     whole,
 )
+
+FACE, LEAST_PANE = 0.3, 4.5  # of a pane's thickness: each face; pixels: a thinner wall is of one colour
 
 
 def paint_tank(
@@ -30,17 +32,21 @@ def paint_tank(
     wall_colour: tuple,
     inner_colour: tuple,
     open_edges: Sequence[int] = (),
+    core: tuple | None = None,
 ) -> None:
     """Paint the inside of a polygon, outline (m, 2) in m, and a wall (pixels thick) around it.
 
-    open_edges: edges k, from corner k to the next, without a wall.
+    open_edges: edges k, from corner k to the next, without a wall. core: colour of the wall between its two faces, as
+    a pane has; None: that of the wall. Thin walls have one colour.
     """
     corners = camera.pixels(outline)
     walled = np.ones(len(corners), dtype=np.int32)
     walled[list(open_edges)] = 0
     box = box_around(picture, corners, wall)
     if box[0] < box[2] and box[1] < box[3]:
-        _paint_walls(picture, corners, walled, box, wall, Colour(wall_colour), Colour(inner_colour))
+        core = core if wall > LEAST_PANE else None
+        colours = _rows(wall_colour, inner_colour, core or wall_colour)
+        _paint_walls(picture, corners, walled, _whole(box), wall, FACE * wall if core else wall, colours)
 
 
 def paint_plate(picture: np.ndarray, camera: Camera, line: np.ndarray, thickness: float, colour: tuple) -> None:
@@ -48,7 +54,7 @@ def paint_plate(picture: np.ndarray, camera: Camera, line: np.ndarray, thickness
     corners = camera.pixels(line)
     box = box_around(picture, corners, thickness)
     if box[0] < box[2] and box[1] < box[3]:
-        _paint_line(picture, corners, box, 0.5 * thickness, Colour(colour))
+        _paint_line(picture, corners, _whole(box), 0.5 * thickness, _rows(colour))
 
 
 def paint_strokes(picture: np.ndarray, strokes: np.ndarray, colour: tuple) -> None:
@@ -60,7 +66,7 @@ def paint_strokes(picture: np.ndarray, strokes: np.ndarray, colour: tuple) -> No
     if not len(strokes):
         return
     box = box_around(picture, strokes.reshape(-1, 3)[:, :2], float(strokes[:, [2, 5]].max()))
-    left, top, right, bottom = (int(edge) for edge in box)
+    left, top, right, bottom = box
     part = np.ascontiguousarray(picture[top:bottom, left:right])
     strokes -= [left, top, 0.0, left, top, 0.0]
     low, high = strokes[:, [1, 4]].min(axis=1), strokes[:, [1, 4]].max(axis=1)
@@ -68,8 +74,18 @@ def paint_strokes(picture: np.ndarray, strokes: np.ndarray, colour: tuple) -> No
     starts, members = sort_into_bands(0.5 * (low + high), reach, len(part))
     if len(members) and part.size:
         covered = np.zeros(part.shape[:2], dtype=np.float32)
-        _paint_strokes(part, covered, starts, members, strokes, Colour(colour))
+        _paint_strokes(part, covered, starts, members, strokes, _rows(colour))
         picture[top:bottom, left:right] = part
+
+
+def _whole(box: tuple[int, int, int, int]) -> np.ndarray:
+    """A box as an argument of a kernel; Taichi takes arrays far more quickly than vectors."""
+    return np.array(box, dtype=np.int32)
+
+
+def _rows(*colours: tuple) -> np.ndarray:
+    """Colours (k, 3) as an argument of a kernel."""
+    return np.array(colours, dtype=float)
 
 
 @ti.func
@@ -119,13 +135,7 @@ def _off_walls(x, y, corners: ti.template(), walled: ti.template(), wall):
 
 @ti.kernel
 def _paint_walls(
-    picture: Picture,
-    corners: Table,
-    walled: Index,
-    box: ti.types.vector(4, ti.i32),
-    wall: ti.f64,
-    wall_colour: Colour,
-    inner_colour: Colour,
+    picture: Picture, corners: Table, walled: Index, box: Index, wall: ti.f64, face: ti.f64, colours: Table
 ):
     # The distances change by at most one per pixel, so far from the edges many pixels in a row are equal.
     for row in range(box[1], box[3]):
@@ -137,7 +147,11 @@ def _paint_walls(
             stop = ti.min(column + ti.max(ti.cast(alike, ti.i32), 1), box[2])
             if alike < 0.0 or outside < 0.0:
                 inside = ti.math.clamp(0.5 - outside, 0.0, 1.0)
-                reached = (1.0 - inside) * ti.math.clamp(wall - _off_walls(x, y, corners, walled, wall) + 0.5, 0.0, 1.0)
+                off = _off_walls(x, y, corners, walled, wall)
+                reached = (1.0 - inside) * ti.math.clamp(wall - off + 0.5, 0.0, 1.0)
+                core = ti.math.clamp(ti.min(off, wall - off) - face + 0.5, 0.0, 1.0)
+                face_colour, inner_colour = row_of(colours, 0), row_of(colours, 1)
+                wall_colour = face_colour + core * (row_of(colours, 2) - face_colour)
                 for pixel in range(column, stop):
                     under = colour_of(picture, row, pixel)
                     mix(picture, row, pixel, reached * (wall_colour - under) + inside * (inner_colour - under))
@@ -145,14 +159,14 @@ def _paint_walls(
 
 
 @ti.kernel
-def _paint_line(picture: Picture, corners: Table, box: ti.types.vector(4, ti.i32), reach: ti.f64, colour: Colour):
+def _paint_line(picture: Picture, corners: Table, box: Index, reach: ti.f64, colours: Table):
     for row, column in ti.ndrange((box[1], box[3]), (box[0], box[2])):
         nearest = 1e30
         for k in range(corners.shape[0] - 1):
             nearest = ti.min(nearest, _past(column + 0.5, row + 0.5, corners, k, k + 1)[0])
         share = ti.math.clamp(reach - nearest + 0.5, 0.0, 1.0)
         if share > 0.0:
-            mix(picture, row, column, share * (colour - colour_of(picture, row, column)))
+            mix(picture, row, column, share * (row_of(colours, 0) - colour_of(picture, row, column)))
 
 
 @ti.func
@@ -173,7 +187,7 @@ def _paint_stroke(covered: ti.template(), first, along, half, growth, top, botto
 
 
 @ti.kernel
-def _paint_strokes(picture: Picture, covered: Shares, starts: Index, members: Index, strokes: Table, colour: Colour):
+def _paint_strokes(picture: Picture, covered: Shares, starts: Index, members: Index, strokes: Table, colours: Table):
     for k in range((starts.shape[0] - 1) * PER_TASK):
         if k % PER_TASK == 0:
             band = k // PER_TASK
@@ -183,6 +197,7 @@ def _paint_strokes(picture: Picture, covered: Shares, starts: Index, members: In
                 first = ti.Vector([strokes[i, 0], strokes[i, 1]])
                 along = ti.Vector([strokes[i, 3], strokes[i, 4]]) - first
                 _paint_stroke(covered, first, along, strokes[i, 2], strokes[i, 5] - strokes[i, 2], top, bottom)
+            colour = row_of(colours, 0)
             for row in range(top, bottom):
                 for column in range(picture.shape[1]):
                     share = covered[row, column]

@@ -25,7 +25,7 @@ def paint_arrow(
     corner = outline[np.argmax(outline @ [1.0, 2.0])]
     out = corner - outline.mean(axis=0)
     start = corner + AWAY * unit / camera.scale * np.sign(out)
-    way = np.concatenate([camera.carried(s * pose).pixels(start[None]) for s in np.linspace(0.0, 1.0, STEPS + 1)])
+    way = _carried(camera, start, np.linspace(0.0, 1.0, STEPS + 1)[:, None] * pose)
     pieces = np.hypot(*np.diff(way, axis=0).T)
     if pieces.sum() < LEAST * unit:
         return
@@ -38,6 +38,14 @@ def paint_arrow(
     foot, side = end - HEAD * unit * along, WIDE * unit * np.array([-along[1], along[0]])
     head = np.array([end, foot + side, foot - side]) * [1.0, -1.0]
     paint_tank(picture, Camera(1.0, (0.0, 0.0)), head, 0.0, colour, colour)
+
+
+def _carried(camera: Camera, point: np.ndarray, poses: np.ndarray) -> np.ndarray:
+    """Pixels (k, 2) of a tank's point (m) at poses (k, 3); camera: of the earth's points."""
+    turn = camera.turn + poses[:, 2]
+    cosine, sine, (y, z) = np.cos(turn), np.sin(turn), point
+    turned = np.column_stack([cosine * y - sine * z, -sine * y - cosine * z])  # a picture's rows run downwards
+    return camera.pixels(poses[:, :2]) + camera.scale * turned
 
 
 def drive_text(preset: Preset) -> str:

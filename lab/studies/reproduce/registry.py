@@ -22,7 +22,7 @@ def _alone(unit: str, number: Callable[[Outcome, object], float]) -> Callable[[S
 # Numbers of single runs without scatter from bed to bed; NaN where a run has none.
 OF_ONE_RUN = {
     name: _alone(*number)
-    for of in (impact, dam_break, waves, damper, prismatic, drag, sinking, surfaces)
+    for of in (impact, dam_break, waves, damper, prismatic, drag, sinking, surfaces, coupled)
     for name, number in of.NUMBERS.items()
 }
 DERIVED: Mapping[str, Callable[[Sequence[Outcome], object], Value]] = {

@@ -85,6 +85,8 @@ def criteria(
     found = residual(levers, arm, flooding)
     steepest = STEEPEST if deck is None else min(STEEPEST, deck)
     why = "deck edge" if steepest < STEEPEST else ""
+    named = found.end == inf or found.ends_at == "40 deg"
+    reach = f"up to {found.ends_at}" + ("" if named else f", {np.degrees(found.end):.1f} deg")
     return (
         Criterion(
             "Grain Code A 7.1.1",
@@ -94,8 +96,8 @@ def criteria(
             "deg",
             why,
         ),
+        Criterion("Grain Code A 7.1.2", "residual area", "at least", LEAST_AREA, found.area, "m rad", reach),
         Criterion(
-            "Grain Code A 7.1.2", "residual area", "at least", LEAST_AREA, found.area, "m rad", f"up to {found.ends_at}"
+            "Grain Code A 7.1.3", "GM, corrected for free surfaces", "at least", LEAST_GM, metacentric_height, "m"
         ),
-        Criterion("Grain Code A 7.1.3", "GM, free surfaces off", "at least", LEAST_GM, metacentric_height, "m"),
     )

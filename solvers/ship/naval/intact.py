@@ -34,5 +34,5 @@ def criteria(levers: Levers, metacentric_height: float, flooding: float | None =
         Criterion(
             "IS Code A 2.2.3", "heel of the largest righting lever", "at least", 25.0, float(np.degrees(top)), "deg"
         ),
-        Criterion("IS Code A 2.2.4", "GM, free surfaces off", "at least", 0.15, metacentric_height, "m"),
+        Criterion("IS Code A 2.2.4", "GM, corrected for free surfaces", "at least", 0.15, metacentric_height, "m"),
     )

@@ -25,14 +25,6 @@ def made(folder, frames=3):
     return folder
 
 
-class OneThread:
-    """A run on one thread."""
-
-    def device(self):
-        """Its device."""
-        return {"arch": "cpu", "threads": 1}
-
-
 def filmed(folder, beside):
     """The bytes of the video in the report on a run."""
     with Progress(quiet=True) as progress:
@@ -61,10 +53,11 @@ def test_what_cannot_be_filmed_is_one_sentence(tmp_path):
 
 
 @pytest.mark.parametrize(("cores", "apart"), [(2, True), (1, False)])
-def test_a_run_that_takes_all_cores_gets_no_second_process(cores, apart, monkeypatch):
+def test_a_single_core_gets_no_second_process(cores, apart, monkeypatch):
     monkeypatch.setattr(runner, "available_cores", lambda: cores)
     monkeypatch.setattr("lab.paint.beside.Painter", lambda *_, **__: None)
-    assert isinstance(runner._second_process(OneThread()), Beside) == apart
+    assert isinstance(runner._second_process(True), Beside) == apart
+    assert not isinstance(runner._second_process(False), Beside)
 
 
 def test_a_run_goes_on_without_a_second_process_where_there_is_no_room_for_one(monkeypatch):
@@ -73,5 +66,5 @@ def test_a_run_goes_on_without_a_second_process_where_there_is_no_room_for_one(m
 
     monkeypatch.setattr(runner, "available_cores", lambda: 2)
     monkeypatch.setattr("lab.paint.beside.Painter", full)
-    with runner._second_process(OneThread()) as beside:
+    with runner._second_process(True) as beside:
         assert beside is None

@@ -3,7 +3,7 @@
 import numpy as np
 from PIL import ImageChops
 
-from lab.paint.decorations import LivePlot
+from lab.paint.page.live_plot import LivePlot
 
 
 def plot_of(curves):

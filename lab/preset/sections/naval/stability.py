@@ -37,7 +37,10 @@ class Stability:
         Doc("Volumetric heeling moment of grain in her other holds, factors included."),
     ] = 0.0
     free_surface: Annotated[
-        float, Unit("kg m"), Interval(ge=0), Doc("Moment of the free surfaces of her tanks, taken off GM and levers.")
+        float,
+        Unit("kg m"),
+        Interval(ge=0),
+        Doc("Moment of free surfaces besides those of the tanks with water in the preset, taken off GM and levers."),
     ] = 0.0
     wind_area: Annotated[Area | None, Doc("Area above the water that the wind strikes from abeam.")] = None
     wind_lever: Annotated[Length | None, Doc("Height of that area's centre above half the draught.")] = None

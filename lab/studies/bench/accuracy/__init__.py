@@ -31,6 +31,7 @@ STUDIES = {
     "repeats": repeats.study,
     "skin": skin.study,
     "asked": asked.study,
+    "asked-ship": asked.study_ship,
     "levels": levels.study,
 }
 BENCH = Bench("accuracy", "Speed against error", STUDIES)

@@ -4,7 +4,7 @@ Each choice differs from USUAL in one thing. A difference is told with its inter
 could have told, the half of that interval: an error that is smaller than this is not excluded.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -38,12 +38,13 @@ CHOICES: dict[str, dict[str, object]] = {
 
 @dataclass(frozen=True)
 class Question:
-    """What is asked of a preset with some changes: measures by the words for them."""
+    """What is asked of a preset with some changes: measures by the words for them, and the choices to compare."""
 
     name: str
     preset: str
     changes: Mapping[str, object]
     measures: Mapping[str, str]
+    choices: Sequence[str] = tuple(CHOICES)
 
 
 QUESTIONS = (
@@ -66,6 +67,13 @@ QUESTIONS = (
         {"response_amplitude": "sway (mm)"},
     ),
 )
+SHIP = Question(
+    "ship",
+    "ship/barge-roll",
+    {**STIFF, "grains.diameter": "8 mm", "run.duration": "20 s", "run.repeats": BEDS},
+    {"roll_amplitude": "roll amplitude (deg)", "roll_bias": "mean roll (deg)", "largest_roll": "largest roll (deg)"},
+    (USUAL, "the steps of draft", "stiffness × 10: standard", "stiffness × 100"),
+)
 HASTY = {"run.repeats": 2, "grains.depth": "9 mm", LEVEL: "draft"}
 
 
@@ -77,12 +85,27 @@ def study(page: Page, work: Path, fast: bool) -> None:
         the derived step, twice that while grains are slow, and 64 bits; each other row differs from it in one thing.
         Differences are from the first row. In brackets: 95 % intervals. Cost: grain-steps, relative to the first
         row, steps that are doubled while grains are slow counted as two.""")
-    chosen = dict(list(CHOICES.items())[:2]) if fast else CHOICES
     for question in QUESTIONS[:1] if fast else QUESTIONS:
-        found = {name: answered(question, name, work / "asked", fast) for name in chosen}
-        for measure, words in question.measures.items():
-            page.table([words, "mean", "difference", "cost"], rows(found, measure))
-        page.figure(f"asked-{question.name}", plotted(found, question), f"The answers of the {question.name} by choice")
+        tell(page, question, work, fast)
+
+
+def study_ship(page: Page, work: Path, fast: bool) -> None:
+    """Add the section on a ship to the page."""
+    page.section("What is asked of a ship, and what it takes")
+    page.say(f"""A barge with loose cargo in regular beam waves of 10 mm, free to roll, as `{SHIP.preset}` has it, with
+        grains of 8 mm for 3 mm and 20 s for 40 s: {BEDS} beds a row; the amplitude and the mean are those of the last
+        ten periods, the largest roll that of the whole run. Rows, differences and cost are as above. The steps of a
+        ship never double.""")
+    tell(page, SHIP, work, fast)
+
+
+def tell(page: Page, question: Question, work: Path, fast: bool) -> None:
+    """Add a table for each measure of a question, and its figure."""
+    chosen = question.choices[:2] if fast else question.choices
+    found = {name: answered(question, name, work / "asked", fast) for name in chosen}
+    for measure, words in question.measures.items():
+        page.table([words, "mean", "difference", "cost"], rows(found, measure))
+    page.figure(f"asked-{question.name}", plotted(found, question), f"The answers of the {question.name} by choice")
 
 
 def answered(question: Question, choice: str, folder: Path, fast: bool = False) -> Outcome:

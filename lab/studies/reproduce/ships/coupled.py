@@ -11,7 +11,7 @@ from lab.assembly.scene import vessels
 from lab.assembly.ship import hull_table, make_water, make_waves
 from lab.preset.schema import Preset
 from lab.preset.sections.water.tanks import pools
-from lab.report.plots import BELOW, BLUE, GREY, VERMILION, canvas
+from lab.report.plots import BELOW, BLUE, GREEN, GREY, VERMILION, canvas
 from lab.studies.reproduce.experiment import Found
 from lab.studies.reproduce.figures import SIZE
 from lab.studies.reproduce.runs import Outcome
@@ -22,14 +22,20 @@ ROLL = 2
 HALVES = 3e-2  # least amplitude of a packet's components, of the largest, at which a response is told
 FINER = 8  # zeros after a record, in its lengths, so that a peak lies between its lines
 LOW, HIGH, STEP = 2.5, 8.5, 0.005  # rad/s, of the linear response
+CYCLES = 10
 APART = 0.1  # of a peak's frequency: nearer to a higher one it does not count
 ROLL_UNIT = "rad/m"
 
 
 def roll_per_wave(one: Outcome, _: object) -> float:
-    """Amplitude of roll at the waves' frequency over that of the waves, rad/m; NaN where there is none."""
-    found = one["roll_fundamental"]
-    return np.nan if found is None else float(np.radians(found.value) / one.recording.preset.waves.amplitude)
+    """Amplitude of roll over that of the waves, rad/m: √2 times the standard deviation over the last CYCLES waves.
+
+    Not the component at the waves' frequency: a ship that is free drifts along, and meets them less often.
+    """
+    waves, series = one.recording.preset.waves, one.recording.series
+    time, roll = series["time"], series["pose"][:, 0, ROLL]
+    last = time > time[-1] - CYCLES * 2.0 * np.pi / waves.frequency
+    return float(np.sqrt(2.0) * roll[last].std() / waves.amplitude)
 
 
 def response(one: Outcome) -> tuple[np.ndarray, np.ndarray]:
@@ -119,15 +125,15 @@ NUMBERS = {
 
 
 def figure(found: Found) -> Figure:
-    """Roll for each metre of wave against frequency: runs in packets, and linear theory."""
+    """Roll for each metre of wave against frequency: runs in packets, and linear theory, dashed."""
     drawn, axes = canvas(SIZE)
-    for colour, (label, outcomes) in zip((BLUE, VERMILION), found.items(), strict=False):
+    for colour, (label, outcomes) in zip((BLUE, GREEN, VERMILION, GREY), found.items(), strict=False):
         one = outcomes[0]
         if one.recording.preset.waves.kind == "packet":
             axes.plot(*response(one), color=colour, lw=1.3, label=label)
-            axes.plot(*linear_response(one.recording.preset), color=GREY, lw=1.0, label="linear theory")
+            axes.plot(*linear_response(one.recording.preset), color=colour, lw=1.0, ls="--")
     axes.set_xlabel("wave frequency (rad/s)")
     axes.set_ylabel("roll per metre of wave (rad/m)")
     axes.set_xlim(LOW, HIGH)
-    drawn.legend(loc=BELOW, ncols=3)
+    drawn.legend(loc=BELOW, ncols=2)
     return drawn
