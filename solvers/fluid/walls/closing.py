@@ -23,8 +23,8 @@ class Closing:
 
     Deviation: U_w also slides with the water, by the mean of its velocity along the face, Σ V_f u_f W / Σ V_f W. Else
     water that rises along a wall would be compressed near its surface, where the sum of ∇W leans. A dummy whose
-    pressure is cut off compresses nothing. Air has a wall pressure of its own, 2 p_i, whose adjoint is in the weight of
-    the wall's velocity, see `solvers.fluid.phases.interfaces`.
+    pressure is cut off compresses nothing. Air has a wall pressure of its own, 2 p_i, and a wall's velocity of weight 2
+    as its adjoint, see `solvers.fluid.phases.interfaces`.
 
     Limits: the compression is right in sum over the layers before a wall; in a single particle, a flow against a wall
     gives a divergence that is off by 1.7 % of its strain. What gravity adds to p_w has no adjoint and stays in `held`.
