@@ -75,7 +75,7 @@ class WaterMatter(Matter):
         pool = Pool.of(scene, setting.walls, self.order)
         owner = np.full(p.dry * lanes, OF_NONE)
         owner[dummy] = np.where(behind.tanks == pool.first, behind.edges, OF_NONE)
-        self.edges = Edges(arrays, medium, water.edges, owner, tank.thickness)
+        self.edges = Edges(arrays, medium, self.extrapolation, water.edges, owner, tank.thickness)
         self.census = Census(arrays, p, self.constants, setting.carrier, pool, water.levels)
         self.start = np.full(worlds, np.nan)  # J, energy at the first look
         self.thickness = tank.thickness
