@@ -62,6 +62,7 @@ def liquid(preset: Wet) -> given.Water:
         start=water.start,
         model=water.model,
         swing_damping=water.swing_damping,
+        added_mass=water.added_mass,
         gauges=tuple(given.Gauge(gauge.place, gauge.length, gauge.response) for gauge in pressure.values()),
         levels=tuple(given.Level(gauge.y) for gauge in level.values()),
         edges=tuple(_edge(gauge, preset.tank) for gauge in force.values()),

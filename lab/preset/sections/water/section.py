@@ -36,6 +36,13 @@ class Water:
     swing_damping: Annotated[
         float, Interval(ge=0, le=1), Doc('Damping of each wave, a fraction of the critical, for model = "linear".')
     ] = 0.0
+    added_mass: Annotated[
+        Literal["none", "layer"],
+        Doc(
+            "Whether a ship has the mass of the layer of water before her tanks' walls on her own side: for water that "
+            "is far heavier than she is."
+        ),
+    ] = "none"
     region: Annotated[
         Annotated[tuple[tuple[float, float], ...], Unit("m")] | None,
         Doc("Corners, y and z each, of the part of the tank that is filled with water, in place of `depth`."),
