@@ -16,8 +16,8 @@ from solvers.space.axes import dot, named
 from solvers.space.cells import Cells
 from solvers.tank.walls import Walls
 
-# Pairs per pass of the force loop: two AVX2 registers of 64-bit numbers, a fifth faster than one; on real vectors two of
-# AVX-512, a seventh faster than one, since the processor looks ahead by more pairs.
+# Pairs a pass of the force loop: two AVX2 registers of 64-bit numbers, a fifth faster than one; on real vectors two of
+# AVX-512, a seventh faster than one.
 LANES, WIDE = 8, 16
 # Initial capacity of a unit's lists of pairs and of wall contacts: (contacts per grain, and more). A unit of a single
 # grain lists all of its neighbours (full list).

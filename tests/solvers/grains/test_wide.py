@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from solvers.grains.laws import NORMAL, ROLLING, TANGENTIAL
 from solvers.machine import wide
 from tests.oracles.scenes import box, material, simulation
 
@@ -23,20 +22,16 @@ def thrown(pays, threads=1, **models):
     """What two worlds of 42 grains thrown at each other and at a rough floor have become."""
     patched = pytest.MonkeyPatch()
     patched.setattr(wide, "pays", lambda: pays)
-    rows, columns = 6, 7
-    place = np.array(
-        [[(c - 3) * 3.1e-3 + 0.4e-3 * (r % 2), 3.1e-3 + 2.95e-3 * r] for r in range(rows) for c in range(columns)]
-    )
+    row, column = np.divmod(np.arange(42), 7)
+    place = np.column_stack([3.1e-3 * (column - 3) + 0.4e-3 * (row % 2), 3.1e-3 + 2.95e-3 * row])
     rng = np.random.default_rng(1)
     velocity, spin = rng.normal(0.0, 0.2, (2, len(place), 2)), rng.normal(0.0, 30.0, (2, len(place)))
     velocity[..., 1] -= 0.3
-    laws = {"normal": NORMAL, "tangential": TANGENTIAL, "rolling": ROLLING}
-    chosen = {key: laws[key][name]() if key in laws else name for key, name in models.items()}
     grain = material(rolling_friction=0.1, shear_damping=20.0)
     radius = RADIUS * rng.uniform(0.9, 1.0, len(place))
     run = simulation(
         np.stack([place, place]), radius, box(WIDE, 40e-3), grain, velocity=velocity, spin=spin, threads=threads,
-        fixed=LINING, **chosen,
+        fixed=LINING, **models,
     )  # fmt: skip
     patched.undo()
     assert run.wide == pays
