@@ -139,16 +139,21 @@ class Contacts:
     @ti.func
     def geometry(self, g: ti.template(), i, j, reach, count: ti.template()):
         """Normals (towards the first grains), distances (m) and overlaps (m; negative: gaps) of `count` pairs."""
-        apart = self.differences(g.place, i, j, count)
         if ti.static(g.mixed):
-            # The difference of squares in 64 bits: an overlap of 1e-7 m then has full 32-bit precision.
-            whole = ti.cast(reach, ti.f64)
-            square = dot(apart, apart)
-            distance = ti.sqrt(ti.cast(square, g.real))
+            # The difference of squares in 64 bits: an overlap of 1e-7 m then has full 32-bit precision. Lane by lane,
+            # since real vectors cannot change their precision.
+            lanes = ti.static(range(count))
+            axes = ti.static(range(g.axes))
+            apart = [[g.place[a][0, i[k]] - g.place[a][0, j[k]] for a in axes] for k in lanes]
+            square = [dot(apart[k], apart[k]) for k in lanes]
+            whole = [ti.cast(reach[k], ti.f64) for k in lanes]
+            distance = ti.sqrt(ti.Vector([ti.cast(square[k], g.real) for k in lanes]))
             inverse = 1.0 / distance
-            approach = ti.cast(whole * whole - square, g.real) / (reach + distance)
-            return [ti.cast(apart[a], g.real) * inverse for a in ti.static(range(g.axes))], distance, approach
+            more = ti.Vector([ti.cast(whole[k] * whole[k] - square[k], g.real) for k in lanes])
+            along = [ti.Vector([ti.cast(apart[k][a], g.real) for k in lanes]) for a in axes]
+            return [along[a] * inverse for a in axes], distance, more / (reach + distance)
         else:
+            apart = self.differences(g.place, i, j, count)
             distance = ti.sqrt(dot(apart, apart))
             inverse = 1.0 / distance
             return [apart[a] * inverse for a in ti.static(range(g.axes))], distance, reach - distance

@@ -260,9 +260,9 @@ def make_grains(scene, setting: Setting) -> GrainMatter | None:
     given = scene.radius, scene.density, scene.fixed, units.ghosts, may_leave, scene.kind
     integrator = INTEGRATORS[scene.integrator]()
     laws = ChosenLaws(arrays, units, *scene.laws, scene.interfaces_of, scene.kinds, integrator)
-    # Kernels that hold water's as well cannot be on real vectors (Taichi aborts), nor such as change precision in them.
+    # Kernels that hold water's as well cannot be on real vectors: Taichi aborts.
     discs_alone = scene.shapes is None and not units.single and scene.water is None
-    laws.wide = wide.pays() and laws.fit and discs_alone and arrays.real is arrays.place
+    laws.wide = wide.pays() and laws.fit and discs_alone
     moduli = np.array([[between.young_modulus for between in world] for world in scene.interfaces_of])
     bridges = scene.longest_bridge
     early = 0.5 * setting.stretch * scene.time_step() * scene.credible_speed()

@@ -6,7 +6,7 @@ import pytest
 from solvers.machine import wide
 from tests.oracles.scenes import box, material, simulation
 
-RADIUS, WIDE, STEPS = 1.5e-3, 24e-3, 700
+RADIUS, WIDE, STEPS = 1.5e-3, 24e-3, 1500
 LINING = np.array([[y, 0.0, 1e-3] for y in np.arange(-WIDE / 2, WIDE / 2 + 1e-4, 3e-3)])
 OTHERS = [
     {"tangential": "coulomb", "rolling": "constant-torque"},
@@ -14,7 +14,7 @@ OTHERS = [
     {"normal": "hertz-dashpot", "tangential": "haff-werner"},
     {"normal": "hysteretic", "tangential": "viscous", "precision": "f32"},
     {"normal": "hertz", "tangential": "none", "integrator": "symplectic-euler"},
-    {"tangential": "mindlin", "integrator": "gear"},
+    {"tangential": "mindlin", "integrator": "gear", "precision": "mixed"},
 ]
 
 
@@ -31,7 +31,7 @@ def thrown(pays, threads=1, **models):
     radius = RADIUS * rng.uniform(0.9, 1.0, len(place))
     run = simulation(
         np.stack([place, place]), radius, box(WIDE, 40e-3), grain, velocity=velocity, spin=spin, threads=threads,
-        fixed=LINING, **models,
+        fixed=LINING, stiffness_scale=1e-2, gravity=100.0, **models,
     )  # fmt: skip
     patched.undo()
     assert run.wide == pays
@@ -56,7 +56,7 @@ def test_real_vectors_move_grains_as_scalars_do():
 @pytest.mark.parametrize("models", OTHERS, ids=str)
 def test_every_law_and_integrator_is_right_on_real_vectors(models):
     one, other = thrown(False, **models), thrown(True, **models)
-    if models.get("precision") == "f32":
+    if "precision" in models:
         np.testing.assert_allclose(other["position"], one["position"], atol=0.02 * RADIUS)
     else:
         agree(one, other)
