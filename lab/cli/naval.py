@@ -28,11 +28,23 @@ def stability(preset: str, overrides: dict, out: Path | None, quiet: bool) -> No
     click.echo(folder)
 
 
+TABLE = click.Path(path_type=Path, dir_okay=False)
+
+
 @click.command()
-@click.argument("file", type=click.Path(path_type=Path, dir_okay=False))
+@click.argument("file", type=TABLE)
+@click.option("--weights", type=TABLE, metavar="CSV", help="Weights that she carries: name, mass, lcg, tcg, vcg, fsm.")
+@click.option("--points", type=TABLE, metavar="CSV", help="Openings and the deck's edge: name, kind, x, y, z.")
+@click.option("--holds", type=TABLE, metavar="CSV", help="Holds: hold, aft, forward, z, half_breadth.")
+@click.option("--grain", type=TABLE, metavar="CSV", help="Grain: name, filling, stowage, and moment or level.")
 @click.option(
-    "--weights", type=click.Path(path_type=Path, dir_okay=False), metavar="CSV", help="Weights that she carries."
+    "--wind",
+    type=(click.FloatRange(0, 1e6), click.FloatRange(0, 1e3)),
+    metavar="AREA LEVER",
+    help="Area exposed to wind (m2), and the height of its centre above half the draught (m).",
 )
+@click.option("--keels", type=click.FloatRange(0, 1e6), default=0.0, help="Area of bilge and bar keels, m2.")
+@click.option("--sharp", is_flag=True, help="Her bilges are sharp.")
 @click.option(
     "--density", type=click.FloatRange(500, 2000), default=1025.0, show_default=True, help="Of the water, kg/m3."
 )
@@ -46,20 +58,25 @@ def stability(preset: str, overrides: dict, out: Path | None, quiet: bool) -> No
     "--at", type=float, metavar="X", help="Also print the section at X (m) as the outline of a preset's ship."
 )
 @out_option("for tables and figure", "renders/hull/NAME")
-def hull(file: Path, weights, density: float, stations: int, scale: float, at: float | None, out: Path | None) -> None:
+def hull(file: Path, out: Path | None, **asked) -> None:
     """Hydrostatics and cross curves of the hull in FILE; with --weights her draughts, levers and criteria.
 
     FILE is a CSV of station, z, half_breadth in m (x forward from the aft perpendicular, z from the keel, rows of a
-    station from the keel up), or a closed surface as STL (x forward, y to starboard, z up).
+    station from the keel up), or a closed surface as STL (x forward, y to starboard, z up). Masses are in t, fsm in
+    t m, stowage in m3/t, moments of grain in m4; filling is partly-filled, filled or filled-as-loaded; kind is opening
+    or deck. With --weights she is judged by the IS Code, with --wind by its weather criterion, with --grain by the
+    Grain Code, with --points up to the angle of downflooding.
 
     \b
     cargolab hull wigley.csv
     cargolab hull barge.stl --scale 0.001 --weights weights.csv
+    cargolab hull ship.csv --weights departure.csv --points openings.csv --holds holds.csv --grain grain.csv \\
+        --wind 1500 10
     """
-    from lab.report.hull import examine
+    from lab.report.hull import Asked, examine
 
     folder = out or Path("renders/hull") / file.stem
-    click.echo(examine(file, folder, density, stations, scale, weights, at))
+    click.echo(examine(file, folder, Asked(**asked)))
     click.echo(folder)
 
 

@@ -55,7 +55,7 @@ STYLE = {
     "frame": "Frame of reference: tank or earth.",
     "theme": "Colours of the page: light or dark.",
     "cargo": "What the grains look like: wheat, iron-ore, coal …",
-    "overlay": "What is drawn over the grains: none or trails.",
+    "overlay": "What is drawn over the grains: none, trails or forces.",
     "inset": "What is shown larger beside the tank: none, surface or impact.",
 }
 
@@ -189,15 +189,19 @@ def sheet(recording: Path, out: Path | None, **wishes: object) -> None:
 @click.option("--caption", multiple=True, help="A name for each recording, in turn.  [default: those of the folders]")
 @click.option("--title", help="Title of the picture.  [default: that of the first recording]")
 @click.option("--speed", type=float, help="Playback speed; 1 is as in nature.")
+@click.option("--frozen", is_flag=True, help="After each ship the same one with her cargo frozen.")
 @style_options
 def beside(recordings: tuple[Path, ...], out: Path, caption: tuple[str, ...], **wishes: object) -> None:
     """Film RECORDINGS side by side, such as variants of one experiment, in one scale and one time.
 
     \b
     cargolab beside renders/ship/barge-3dof renders/ship/barge-empty --caption loose --caption empty --out both.mp4
+    cargolab beside renders/ship/capsize-map-quick --frozen --out frozen.mp4
     """
     from lab.paint.video import render_grid
 
     if caption and len(caption) != len(recordings):
         raise LabError(f"--caption: {len(caption)} for {len(recordings)} recordings; give one for each, or none.")
-    click.echo(render_grid(recordings, caption or [path.name for path in recordings], out, **wishes))
+    alone = len(recordings) == 1 and bool(wishes["frozen"])
+    names = caption or ([""] if alone else [path.name for path in recordings])
+    click.echo(render_grid(recordings, names, out, **wishes))

@@ -6,8 +6,7 @@ from math import isfinite
 import numpy as np
 
 from lab.measures.drawing import BLUE, GREEN, GREY, VERMILION
-from lab.naval.condition import Condition
-from lab.naval.sheet import AS_IT_LIES, ASSUMED, assumed_line
+from lab.naval.sheet import AS_IT_LIES, ASSUMED, Judged, arms
 from solvers.ship.naval.curve import Levers
 from solvers.ship.naval.grain_code import residual
 from solvers.ship.naval.weather import weather
@@ -17,15 +16,12 @@ FURTHEST = 80.0  # deg
 HEEL = np.radians(np.linspace(0.0, FURTHEST, 321))
 
 
-def draw_levers(axes, condition: Condition, lying: Callable[[np.ndarray], np.ndarray] | None = None) -> None:
-    """GZ against heel to starboard, the heeling arms, the residual area of each, deck edge and flooding."""
-    heel, levers = HEEL, condition.levers
-    draw_curve(axes, levers, condition.metacentric_height)
-    arms = {ASSUMED: assumed_line(condition)} if condition.cargo else {}
-    if lying is not None:
-        arms[AS_IT_LIES] = lying
-    for name, arm in arms.items():
-        found = residual(levers, arm, condition.flooding)
+def draw_levers(axes, ship: Judged, lying: Callable[[np.ndarray], np.ndarray] | None = None) -> None:
+    """GZ against heel to a side, the heeling arms, the residual area of each, deck edge and flooding."""
+    heel, levers = HEEL, ship.levers
+    draw_curve(axes, levers, ship.metacentric_height, f" to {ship.side}")
+    for name, arm in arms(ship, lying).items():
+        found = residual(levers, arm, ship.flooding)
         lies = f"{np.degrees(found.heel):.1f} deg" if isfinite(found.heel) else "no equilibrium"
         label = f"arm, {name}: {lies}, residual area {found.area:.3f} m rad"
         reach = heel[heel <= np.radians(50.0)]
@@ -33,12 +29,12 @@ def draw_levers(axes, condition: Condition, lying: Callable[[np.ndarray], np.nda
         if found.area > 0.0:
             inside = np.linspace(found.heel, found.end, 101)
             axes.fill_between(np.degrees(inside), arm(inside), levers.at(inside), color=COLOURS[name], alpha=0.15, lw=0)
-    if condition.exposed is not None and condition.metacentric_height > 0.0:
-        wind = weather(levers, condition.exposed, condition.flooding)
+    if ship.exposed is not None and ship.metacentric_height > 0.0:
+        wind = weather(levers, ship.exposed, ship.flooding)
         axes.axhline(
             wind.gust, color=GREEN, lw=1.0, ls=":", label=f"gust, {wind.gust:.3f} m (steady wind {wind.wind:.3f} m)"
         )
-    marks = {"deck edge": (condition.deck, "--"), "flooding": (condition.flooding, "-.")}
+    marks = {"deck edge": (ship.deck, "--"), "flooding": (ship.flooding, "-.")}
     for name, (angle, style) in marks.items():
         if angle is not None and np.degrees(angle) <= FURTHEST:
             axes.axvline(np.degrees(angle), color=GREY, lw=1.0, ls=style, label=f"{name} {np.degrees(angle):.1f} deg")

@@ -25,7 +25,8 @@ from lab.measures.value import Value, over_worlds
 from lab.recording import Recording
 from lab.recording.ship_end import End, end_of, ends
 from solvers.machine.errors import BadState, Unavailable
-from solvers.ship.motion import sail, start
+from solvers.ship.hydrostatics import turned
+from solvers.ship.motion import Voyage, sail, start
 
 INTERVAL = 0.01  # s, between the samples of her roll
 
@@ -67,9 +68,31 @@ def frozen(recording: Recording) -> tuple[np.ndarray, np.ndarray, End | None] | 
     return _frozen(recording.path, lasted)
 
 
-@lru_cache(maxsize=4)
+def frozen_voyage(recording: Recording) -> tuple[np.ndarray, np.ndarray, End | None] | None:
+    """As `frozen`, with the poses (T', 3) of the tank, m, m, rad, in place of roll."""
+    lasted = max(float(recording.series["time"][-1]), recording.preset.duration)
+    voyage = _sailed(recording.path, lasted) if recording.preset.matters and has_ship(recording) else None
+    if voyage is None:
+        return None
+    ship = recording.preset.ship
+    arm = turned(tuple(np.subtract(ship.hold, ship.about)), voyage.roll)
+    return voyage.time, np.column_stack([voyage.state[:, :2] + arm, voyage.roll]), _end(voyage)
+
+
 def _frozen(path: Path, duration: float) -> tuple[np.ndarray, np.ndarray, End | None] | None:
     """As `frozen`, of the recording at `path`, for so long (s)."""
+    voyage = _sailed(path, duration)
+    return None if voyage is None else (voyage.time, voyage.roll, _end(voyage))
+
+
+def _end(voyage: Voyage) -> End | None:
+    lost = [-1.0 if when is None else when for when in (voyage.capsized, voyage.flooded)]
+    return end_of(*lost, voyage.roll[-1])
+
+
+@lru_cache(maxsize=4)
+def _sailed(path: Path, duration: float) -> Voyage | None:
+    """The voyage of the ship of the recording at `path` with her cargo frozen, for so long (s)."""
     vessel = vessel_of(path)
     if vessel is None:
         return None
@@ -77,8 +100,6 @@ def _frozen(path: Path, duration: float) -> tuple[np.ndarray, np.ndarray, End | 
     try:
         state = start(ship, vessel.heave(ship.body, vessel.heel), vessel.heel)
         lasts, begin = duration - vessel.release, vessel.release
-        voyage = sail(ship, state, INTERVAL, lasts, vessel.limits, begin, vessel.openings)
+        return sail(ship, state, INTERVAL, lasts, vessel.limits, begin, vessel.openings)
     except (Unavailable, BadState):
         return None
-    lost = [-1.0 if when is None else when for when in (voyage.capsized, voyage.flooded)]
-    return voyage.time, voyage.roll, end_of(*lost, voyage.roll[-1])

@@ -36,6 +36,7 @@ from solvers.ship.section import Section
 OF = "grains"
 LAST = 0.1  # of a run: over it the final shift is averaged
 FULL = 0.999  # of a hold: more than this is no level filling any more
+LISTS = 201  # times at which her list is drawn
 NONE = "no angle of equilibrium"
 
 
@@ -86,7 +87,7 @@ def measure(recording: Recording) -> dict[str, Value]:
     assumed = found.condition.assumed_moment
     levers, flooding = found.condition.levers, found.condition.flooding
     ends = [residual(levers, found.lying(way), flooding) for way in found.farthest]
-    code = residual(levers, sheet.assumed_line(found.condition), flooding)
+    code = residual(levers, found.condition.assumed, flooding)
     return {
         "shifted_moment": over_worlds(final, "m^4", uncertainties=errors, kind="halves", note="positive to starboard"),
         "largest_shifted_moment": over_worlds(largest, "m^4"),
@@ -137,30 +138,44 @@ def _shift(path: str, _rows: int) -> Shift | None:
 
 
 def draw_moment(sheet_: Sheet, recording: Recording, values: Mapping[str, Value]) -> None:
-    """Heel of the ship and volumetric moment of her cargo against time, positive to starboard.
+    """Heel and list of the ship, and volumetric moment of her cargo, against time, positive to starboard.
 
-    Level lines: the assumed shift to either side, of 15 and 25 deg, and that of the preset with its factor.
+    Her list is the heel at which she would lie in calm water with the cargo as it lies then. Level lines: the assumed
+    shift to either side, of 15 and 25 deg, and that of the preset with its factor.
     """
     found, series = shift(recording), recording.series
     heel, moment = sheet_.panels(heights=(1, 1.4))[:, 0]
-    band(heel, series["time"], -np.degrees(series["pose"][..., 2]), GREY, None)
-    heel.set_ylabel("heel to\nstarboard (deg)")
+    band(heel, series["time"], -np.degrees(series["pose"][..., 2]), GREY, "heel")
+    rows = np.unique(np.linspace(0, len(found.way) - 1, LISTS).astype(int))
+    band(heel, np.array(series["time"])[rows], listed(found, rows), "black", "list with the cargo as it lies")
+    heel.set_ylabel("heel, list to\nstarboard (deg)")
     band(moment, series["time"], found.moment, BLUE, f"moment of the shift, {mean_label(recording.worlds)}")
     ship = found.condition
     given = ASSUMED[ship.given.filling]
-    lines = {
-        "filled": (GREEN, ":", 1.0),
-        "partly-filled": (VERMILION, "--", 1.0),
-        ship.given.filling: (VERMILION, "-", given.factor),
-    }
-    for name, (colour, style, factor) in lines.items():
-        size = ship.hold.volumetric_moment(ship.cargo.volume, ASSUMED[name].surface) * factor
-        angle = f"{np.degrees(ASSUMED[name].surface):.0f} deg" + (f" x {factor:.2f}" if factor != 1.0 else "")
+    lines = [(ASSUMED["filled"].surface, 1.0, GREEN, ":"), (ASSUMED["partly-filled"].surface, 1.0, VERMILION, "--")]
+    if given.factor != 1.0:
+        lines.append((given.surface, given.factor, VERMILION, "-"))
+    for surface, factor, colour, style in lines:
+        size = ship.hold.volumetric_moment(ship.cargo.volume, surface) * factor
+        angle = f"{np.degrees(surface):.0f} deg" + (f" x {factor:.2f}" if factor != 1.0 else "")
         for side in (1.0, -1.0):
-            label = f"assumed, {angle}: {size:.4g} m$^4$" if side > 0.0 else None
+            label = f"assumed, {angle}: {size:.5g} m⁴" if side > 0.0 else None
             moment.axhline(side * size, color=colour, ls=style, lw=1.0, label=label)
-    moment.set_ylabel("volumetric moment (m$^4$)")
+    moment.set_ylabel("volumetric moment (m⁴)")
     moment.set_xlabel("time (s)")
+
+
+def listed(found: Shift, rows: np.ndarray) -> np.ndarray:
+    """Lists (k, W) deg in calm water with the cargo as it lay in rows of the series, positive to starboard.
+
+    Not a number where she would come to rest nowhere.
+    """
+    lists = np.full((len(rows), found.way.shape[1]), np.nan)
+    for k, row in enumerate(rows):
+        for world, way in enumerate(found.way[row]):
+            lies = found.condition.levers.less(found.lying(way)).equilibrium()
+            lists[k, world] = np.nan if lies is None else np.degrees(lies) * np.sign(way[0])
+    return lists
 
 
 def draw_criteria(sheet_: Sheet, recording: Recording, values: Mapping[str, Value]) -> None:

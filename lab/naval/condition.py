@@ -1,5 +1,6 @@
 """The condition of a preset's ship as a loading manual states it, at the full scale if the preset has one."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from math import inf
@@ -15,7 +16,7 @@ from lab.preset.sections.naval.stability import Stability
 from solvers.machine.errors import Unavailable
 from solvers.ship.naval.curve import Levers
 from solvers.ship.naval.form import TONNE, Form, Hydrostatics, prism
-from solvers.ship.naval.grain_code import ASSUMED, heeling_arm
+from solvers.ship.naval.grain_code import ASSUMED, heeling_arm, straight_line
 from solvers.ship.naval.holds import Hold
 from solvers.ship.naval.weather import Exposed
 from solvers.ship.section import Section
@@ -47,7 +48,7 @@ class Condition:
 
     All lengths are `scale` times those of the preset; `gravity_height` is KG without free surfaces, whose moment (t m)
     is apart: `tanks`, as large as in the preset, are in it. G lies `aside` (m) of the middle, towards the `side` that
-    she is judged on. `hold` and `cargo` are None without grain.
+    she is judged on. `repose` (rad) is the cargo's. `hold` and `cargo` are None without grain.
     """
 
     form: Form
@@ -64,6 +65,7 @@ class Condition:
     length: float
     scale: float
     given: Stability
+    repose: float
     hold: Hold | None = None
     cargo: Cargo | None = None
 
@@ -135,6 +137,11 @@ class Condition:
         moment = self.assumed_moment * ASSUMED[self.given.filling].factor + self.given.other_moment * self.scale**4
         return heeling_arm(moment, self.stowage, self.displacement)
 
+    @property
+    def assumed(self) -> Callable[[np.ndarray], np.ndarray] | None:
+        """The heeling arm (m) of the shift that the Grain Code assumes; None without grain."""
+        return straight_line(self.assumed_arm) if self.cargo else None
+
 
 def condition(preset: Preset, vessel: Vessel, level: float | None = None, mass: float | None = None) -> Condition:
     """The condition of a preset's ship, `vessel`, at the full scale.
@@ -169,6 +176,7 @@ def condition(preset: Preset, vessel: Vessel, level: float | None = None, mass: 
         (given.length or ship.length or 1.0) * scale,
         scale,
         given,
+        ship.repose,
         hold,
         cargo,
     )

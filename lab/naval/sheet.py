@@ -3,16 +3,19 @@
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from math import inf
+from typing import Protocol
 
 import numpy as np
 
 from lab.naval.condition import Cargo, Condition
-from solvers.ship.naval import grain_code, intact, weather
+from solvers.ship.naval import grain_code, intact, trimming, weather
 from solvers.ship.naval.criteria import Criterion
+from solvers.ship.naval.curve import Levers
 from solvers.ship.naval.form import TONNE
 
 DIGITS = {"m": 3, "m rad": 4, "deg": 2, "1": 3}  # after the point
 
+NO_PERIOD = "The weather criterion was not judged: without a positive GM she has no period of roll."
 ASSUMED, AS_IT_LIES = "assumed shift", "as it lay farthest aside"
 
 
@@ -24,28 +27,36 @@ class Row:
     criterion: Criterion
 
 
-def rows(condition: Condition, lying: Callable[[np.ndarray], np.ndarray] | None = None) -> list[Row]:
-    """All criteria that the condition can be judged by; `lying`: the heeling arm (m) of the cargo as it lay."""
-    given = condition.levers, condition.metacentric_height
-    ends = condition.deck, condition.flooding
-    found = []
-    arms = {ASSUMED: assumed_line(condition)} if condition.cargo else {}
-    if lying is not None:
-        arms[AS_IT_LIES] = lying
-    for name, arm in arms.items():
-        *shifted_so, height = grain_code.criteria(given[0], arm, given[1], *ends)
+class Judged(Protocol):
+    """What a ship is judged by: levers to a side, GM (m), angles (rad) of deck edge and flooding, wind, grain's arm."""
+
+    side: str
+    levers: Levers
+    metacentric_height: float
+    deck: float | None
+    flooding: float | None
+    exposed: weather.Exposed | None
+    assumed: Callable[[np.ndarray], np.ndarray] | None
+
+
+def rows(ship: Judged, lying: Callable[[np.ndarray], np.ndarray] | None = None) -> list[Row]:
+    """All criteria that the ship can be judged by; `lying`: the heeling arm (m) of the cargo as it lay."""
+    levers, height, ends, found = ship.levers, ship.metacentric_height, (ship.deck, ship.flooding), []
+    for name, arm in arms(ship, lying).items():
+        *shifted_so, least = grain_code.criteria(levers, arm, height, *ends)
         found += [Row(name, criterion) for criterion in shifted_so]
-    if arms:
-        found.append(Row("", height))
-    found += [Row("", criterion) for criterion in intact.criteria(*given, condition.flooding)]
-    if condition.exposed is not None and condition.metacentric_height > 0.0:
-        found += [Row("", criterion) for criterion in weather.criteria(given[0], condition.exposed, *ends)]
+    if found:
+        found.append(Row("", least))
+    found += [Row("", criterion) for criterion in intact.criteria(levers, height, ship.flooding)]
+    if ship.exposed is not None and height > 0.0:
+        found += [Row("", criterion) for criterion in weather.criteria(levers, ship.exposed, *ends)]
     return found
 
 
-def assumed_line(condition: Condition) -> Callable[[np.ndarray], np.ndarray]:
-    """The heeling arm (m) of the shift that the Grain Code assumes."""
-    return grain_code.straight_line(condition.assumed_arm)
+def arms(ship: Judged, lying: Callable | None = None) -> dict[str, Callable[[np.ndarray], np.ndarray]]:
+    """Heeling arms (m) of the cargo by name: with the assumed shift, and as it lay in a run."""
+    found = {ASSUMED: ship.assumed, AS_IT_LIES: lying}
+    return {name: arm for name, arm in found.items() if arm is not None}
 
 
 def shifted(aside: float, up: float) -> Callable[[np.ndarray], np.ndarray]:
@@ -60,8 +71,13 @@ def unjudged(condition: Condition) -> Iterator[str]:
     """What could not be judged and why, a sentence each."""
     if condition.exposed is None:
         yield "The weather criterion was not judged: give stability.wind_area and stability.wind_lever."
+    if condition.exposed is not None and not condition.metacentric_height > 0.0:
+        yield NO_PERIOD
     if condition.cargo is None:
         yield "The Grain Code was not judged: there is no grain, or the preset says no level of it (grains.depth)."
+    if condition.cargo is not None and trimming.unevenness_limit(condition.repose, 1.0) is not None:
+        angle = f"{np.degrees(condition.repose):.0f} deg of repose"
+        yield f"A cargo of {angle} is no grain: the Grain Code's rows show what its shift would do, none is a rule."
     if condition.scale == 1.0 and condition.hydrostatics.breadth < 5.0:
         yield "A model's levers are judged as if a ship were so small; give ship.scale for those of the full scale."
 
@@ -76,7 +92,7 @@ def facts(condition: Condition) -> list[tuple[str, str]]:
         *_gravity(condition),
         ("deck edge under", degrees(condition.deck) if condition.deck else "no deck is given"),
         ("downflooding", degrees(condition.flooding) if condition.flooding else "no opening is given"),
-        ("levers vanish", degrees(condition.levers.vanishing, "beyond 90 deg")),
+        ("levers vanish", vanishing(condition.levers)),
     ]
     if condition.cargo is None:
         return rows
@@ -124,6 +140,13 @@ def shown(value: float, unit: str) -> str:
     if value == inf:
         return "none"
     return f"{value:.{DIGITS.get(unit, 3)}f}"
+
+
+def vanishing(levers: Levers) -> str:
+    """The angle of vanishing stability."""
+    if float(levers.at(levers.highest(0.0, float(levers.heel[-1])))) <= 0.0:
+        return "she has none"
+    return degrees(levers.vanishing, f"beyond {np.degrees(levers.heel[-1]):.0f} deg")
 
 
 def degrees(angle: float | None, never: str = "never") -> str:

@@ -9,9 +9,10 @@ import numpy as np
 
 from lab.base.errors import LabError
 from lab.naval.condition import Condition
-from lab.naval.sheet import Row, assumed_line, shown
+from lab.naval.sheet import Judged, Row, arms, shown
 from solvers.ship.naval.form import Form
 from solvers.ship.naval.grain_code import ASSUMED
+from solvers.ship.naval.holds import Hold
 from solvers.ship.water import Water
 
 KN_HEELS = (5.0, 10.0, 12.0, 15.0, 20.0, 30.0, 40.0, 50.0, 60.0)  # deg
@@ -50,15 +51,14 @@ def criteria(rows: Sequence[Row]) -> Table:
     return header, lines
 
 
-def levers(condition: Condition, lying=None) -> Table:
-    """GZ and the heeling arms, heel positive starboard down."""
-    heel = condition.levers.heel[condition.levers.heel >= 0.0]
-    columns = {"heel deg": np.degrees(heel), "GZ m": condition.levers.at(heel)}
-    if condition.cargo:
-        columns["assumed grain arm m"] = assumed_line(condition)(heel)
-    if lying is not None:
-        columns["arm as it lay m"] = lying(heel)
-    return tuple(columns), [tuple(f"{value:.4f}" for value in row) for row in zip(*columns.values(), strict=True)]
+def levers(ship: Judged, lying=None) -> Table:
+    """GZ and the heeling arms against heel to the side that she is judged on."""
+    heel = ship.levers.heel[ship.levers.heel >= 0.0]
+    columns = {f"heel to {ship.side} deg": np.degrees(heel), "GZ m": ship.levers.at(heel)}
+    for name, arm in arms(ship, lying).items():
+        columns[f"{name} arm m"] = arm(heel)
+    lines = [(f"{turn:.1f}", *(f"{value:.4f}" for value in row)) for turn, *row in zip(*columns.values(), strict=True)]
+    return tuple(columns), lines
 
 
 def hydrostatics(form: Form, water: Water, deepest: float, count: int = DRAUGHTS) -> Table:
@@ -80,14 +80,14 @@ def cross_curves(form: Form, water: Water, deepest: float, count: int = DRAUGHTS
     return ("displacement t", *(f"KN {heel:g} deg m" for heel in KN_HEELS)), lines
 
 
-def hold(condition: Condition) -> Table:
-    """Level, volume, KG and volumetric moments of the hold, heights above the keel."""
-    low, high = condition.hold.section.outline[:, 1].min(), condition.hold.section.outline[:, 1].max()
+def hold(of: Hold) -> Table:
+    """Level, volume, KG and volumetric moments of a hold, heights above the keel."""
+    low, high = of.section.outline[:, 1].min(), of.section.outline[:, 1].max()
     levels = low + (high - low) * np.arange(1, LEVELS + 1) / LEVELS
     surfaces = tuple(ASSUMED[name].surface for name in ("filled", "partly-filled"))
     lines = [
         (f"{level:.3f}", f"{volume:.1f}", f"{centre:.3f}", *(f"{moment:.1f}" for moment in moments))
-        for level, volume, centre, *moments in condition.hold.table(levels, surfaces)
+        for level, volume, centre, *moments in of.table(levels, surfaces)
     ]
     return ("level m", "volume m3", "KG m", "moment at 15 deg m4", "moment at 25 deg m4"), lines
 
@@ -102,7 +102,7 @@ def all_of(condition: Condition, rows: Sequence[Row], lying=None) -> dict[str, T
         "cross-curves": cross_curves(condition.form, condition.water, deepest),
     }
     if condition.hold is not None:
-        found["hold"] = hold(condition)
+        found["hold"] = hold(condition.hold)
     return found
 
 

@@ -15,12 +15,14 @@ import numpy as np
 from lab.base.errors import LabError
 from lab.paint.cargo.dress import CargoColours, aboard_of
 from lab.paint.cargo.looks import looks
+from lab.paint.forces.stress import pressures
 from lab.preset.sections.video import OF_AIR, OF_WATER
 
 if TYPE_CHECKING:
     from lab.paint.footage import Bed
 
 SAMPLED_FRAMES = 100  # frames of a bed sampled to set the ends of a scale
+FEW = 12  # frames for the scale of what takes time to compute
 PERCENTILE = 98.0  # a scale ends at this percentile of the values in the frame where it is largest
 LIGHT, DARK = (255.0, 255.0, 255.0), (25.0, 30.0, 40.0)  # spin marks
 MOST_LAYERS = 8
@@ -32,6 +34,7 @@ APART = (  # of a few kinds, for the colour-blind (Okabe and Ito 2008)
     *((86, 180, 233), (230, 159, 0), (0, 158, 115), (204, 121, 167), (240, 228, 66), (213, 94, 0)),
 )
 ON_DARK = {  # the same on dark paper, where lightness rises
+    "pressure": ((60, 68, 78), (176, 62, 44), (244, 160, 58), (255, 244, 190)),
     "speed": ((60, 68, 78), (176, 62, 44), (244, 160, 58), (255, 244, 190)),
     "displacement": ((60, 68, 78), (34, 116, 150), (96, 200, 188), (226, 252, 240)),
     "spin": ((60, 68, 78), (146, 70, 150), (226, 140, 196), (255, 232, 244)),
@@ -119,6 +122,22 @@ def displacement(beds: Sequence[Bed]) -> Colouring:
     return Colouring("displacement (diameters)", 0.0, top, ramp(DEEPS), values)
 
 
+def pressure(beds: Sequence[Bed]) -> Colouring:
+    """Mean pressure in each grain, of the elastic forces on it."""
+
+    def pressed(bed: Bed, frame: int) -> np.ndarray:
+        near = round(float(frame))
+        return pressures(bed.pressing(near), bed.position(near), bed.radius)
+
+    top = round_up(max(_largest(beds, pressed, FEW), 1e-3))
+    factor, unit = (1e-6, "MPa") if top >= 1e6 else (1e-3, "kPa") if top >= 1e3 else (1.0, "Pa")
+
+    def values(bed: Bed, frame: int) -> np.ndarray:
+        return factor * pressed(bed, frame)
+
+    return Colouring(f"pressure in grains ({unit})", 0.0, factor * top, ramp(EMBERS), values)
+
+
 def layer(beds: Sequence[Bed]) -> Colouring:
     """Height over the lowest grain in the first frame, in bands of a whole number of mean grain diameters."""
     bottoms = {bed: bed.position(0)[:, 1] - bed.radius for bed in beds}
@@ -162,6 +181,7 @@ MODES: dict[str, Callable[[Sequence[Bed]], Colouring]] = {
     "cargo": cargo,
     "speed": speed,
     "displacement": displacement,
+    "pressure": pressure,
     "layer": layer,
     "size": size,
     "kind": kind,
@@ -207,9 +227,9 @@ def _named(label: str, names: Sequence[str], number: Callable[[Bed], np.ndarray]
     return Colouring(label, 0.0, len(names), apart, values, ticks)
 
 
-def _largest(beds: Sequence[Bed], values: Callable[[Bed, int], np.ndarray]) -> float:
+def _largest(beds: Sequence[Bed], values: Callable[[Bed, int], np.ndarray], frames: int = SAMPLED_FRAMES) -> float:
     """The largest value of PERCENTILE over all sampled frames; 0 if no grain is left."""
-    samples = [values(bed, frame) for bed, frame in spread(beds)]
+    samples = [values(bed, frame) for bed, frame in spread(beds, frames)]
     finite = [sample[np.isfinite(sample)] for sample in samples]
     return max((float(np.percentile(sample, PERCENTILE)) for sample in finite if len(sample)), default=0.0)
 

@@ -44,6 +44,11 @@ def fitted(text: str, width: float, size: float, bold: bool = False) -> tuple[st
     return text, face
 
 
+def fits(text: str, width: float, size: float, bold: bool = False) -> bool:
+    """Whether `fitted` leaves a text whole."""
+    return fitted(text, width, size, bold)[0] == text
+
+
 def wrapped(text: str, width: float, size: float, most: int) -> list[str]:
     """A text in lines that are `width` pixels wide at most; the last of `most` is cut where it is too long."""
     face, lines = font(size), [""]

@@ -187,7 +187,13 @@ class Film:
         texts.written["scale"] = deco.draw_scale_bar(
             texts.draw, place, longest, self._stage.cameras[0].scale, text, ink
         )
-        texts.write("note", layout["note"], self._note(frame), text, quiet, anchor="rm")
+        left, *rest = layout["note"]
+        thick, room = self._stage.overlay.thickness(self._stage.cameras[0]), round(3.2 * text)
+        texts.write("note", (left + room * bool(thick), *rest), self._note(frame), text, quiet, anchor="rm")
+        if thick and "note" in texts.written:
+            left, top, *_ = texts.written["note"]
+            line, middle = (left - room, left - 0.6 * text), 0.5 * (top + texts.written["note"][3])
+            texts.draw.line([(line[0], middle), (line[1], middle)], theme.force, max(1, round(thick)))
 
     def _note(self, frame: int) -> str:
         """A note on playback speed and number of beds shown, if they need one, else on what drives the tank."""
@@ -195,10 +201,14 @@ class Film:
         if self._course and len(self._course.notes):
             notes.append(self._course.notes[frame])
         elif self._look.speed != 1 and self._moments is None:
-            notes.append(f"played at {self._look.speed:g} times real time")
+            notes.append(f"{self._look.speed:g} × real time")
         if len(self._all) > len(self._beds):
             notes.append(f"{len(self._beds)} of {len(self._all)} beds")
-        return ", ".join(note for note in notes if note) or self._beds[0].footage.drive
+        notes.append(self._stage.overlay.says)
+        footage = self._beds[0].footage
+        if any(basin.lift for basin in footage.basins):
+            notes.append("the upper tank stands behind the lower one")
+        return ", ".join(note for note in notes if note) or footage.drive
 
     def _write_names(self, texts: Texts, frame: int) -> None:
         """The beds' names and, for a few beds, the readings in which their poses differ."""

@@ -1,6 +1,6 @@
 """A recording for painting: read frame by frame, bed by bed."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
@@ -11,6 +11,7 @@ import numpy as np
 from lab.base.errors import LabError, Unusable
 from lab.base.trust import BEYOND
 from lab.paint.cargo.looks import Stowage
+from lab.paint.forces.again import Again
 from lab.paint.painter import Edges
 from lab.paint.scenery.drive import drive_text
 from lab.paint.sea import Rail, Sea
@@ -18,6 +19,7 @@ from lab.paint.water.basins import basins_of
 from lab.paint.water.pool import Pool
 from lab.recording import Recording, open_recording
 from lab.recording.ship_end import ends
+from solvers.grains.pressing import Pressing
 from solvers.grains.quantities import FRAMES
 
 RATES = {"position": "velocity", "water_place": "water_velocity"}  # rates of change among the recorded quantities
@@ -53,7 +55,7 @@ class Footage:
         self.matters, self._series = recording.preset.matters, series
         self.water = Pool.of(recording.preset, recording.volume, recording.air_volume)
         self.basins = basins_of(recording.preset, recording.outline, recording.open_edges, recording.volume)
-        self.cargo = Stowage.of(recording.preset)
+        self.cargo, self._preset = Stowage.of(recording.preset), recording.preset
         self.kinds = ["the rest", *recording.preset.kinds]
         self.shapes = recording.shapes
         self.shape_names = list(recording.preset.shapes) if self.shapes else ["disc"]
@@ -108,6 +110,24 @@ class Footage:
             return one + share * (two - one)
         rates = [self._row(RATES[name], row)[world] for row in (first, first + 1)]
         return on_the_way(one, two, *rates, share, self.time[first + 1] - self.time[first])
+
+    def pressing(self, frame: int, world: int) -> Pressing:
+        """The contacts in a frame with their forces, which are found again."""
+        return self._again.read(self.time[frame], self._row("position", frame), self._row("angle", frame))[world]
+
+    @cached_property
+    def _again(self) -> Again:
+        return Again(self._preset, self)
+
+    def freeze(self, frames: Callable, series: Callable) -> None:
+        """Read frames and series through these functions of both from now on."""
+        self._frames, self._series, self._read = frames(self._frames), series(self._series), {}
+        self.__dict__.pop("_again", None)
+
+    def close(self) -> None:
+        """Free what was made to find forces."""
+        if "_again" in self.__dict__:
+            self._again.close()
 
     def _row(self, name: str, frame: int) -> np.ndarray:
         """All values of a quantity in a frame; the last two that were asked for are kept."""
@@ -179,6 +199,10 @@ class Bed:
         """Grain angles (n,) in the tank frame, rad."""
         return self.footage.grains("angle", frame, self.world)
 
+    def pressing(self, frame: float) -> Pressing:
+        """The contacts with their forces in the frame next to this place in the film."""
+        return self.footage.pressing(round(float(frame)), self.world)
+
     def spin(self, frame: int) -> np.ndarray:
         """Grain spins (n,) relative to the tank, rad/s."""
         return self.footage.grains("spin", frame, self.world)
@@ -230,4 +254,8 @@ def on_the_way(
 def open_footage(path: Path | str, sound: bool = False) -> Iterator[Footage]:
     """Open a recording by its file or folder; `sound`: only the part before any damage. Raises LabError."""
     with open_recording(path, sound=sound) as recording:
-        yield Footage(recording)
+        footage = Footage(recording)
+        try:
+            yield footage
+        finally:
+            footage.close()

@@ -16,10 +16,11 @@ from lab.base.errors import LabError
 from lab.paint.decorations import number
 from lab.paint.encoder import says, write_video
 from lab.paint.film import Film, choose_beds, choose_look
-from lab.paint.footage import open_footage
+from lab.paint.footage import Bed, open_footage
 from lab.paint.reel.animation import FORMATS, stride_of, write_animation
 from lab.paint.reel.course import RATE, hero_course
 from lab.paint.reel.event import find_event, telling_moments
+from lab.recording import open_recording
 from solvers.machine.runtime import initialise
 
 MOST_IN_GRID, MOMENTS = 24, 6  # beds of a grid; moments of a contact sheet
@@ -105,6 +106,7 @@ def render_grid(
     width: int | None = None,
     height: int | None = None,
     speed: float | None = None,
+    frozen: bool = False,
     progress: Progress | None = None,
     **style: str | None,
 ) -> Path:
@@ -112,8 +114,9 @@ def render_grid(
 
     beds: recordings (file or folder), or pairs of a recording and one of its worlds (else its first); captions: one
     each; out: an .mp4, .gif or .webp file, or a .png file for the last picture alone. All are drawn to one scale, at
-    the same times and with one colour scale; a recording that ends sooner keeps its last frame. Title and options that
-    are None are taken from the first recording. Raises LabError.
+    the same times and with one colour scale; a recording that ends sooner keeps its last frame. frozen: after each ship
+    the same one with her cargo frozen. Title and options that are None are taken from the first recording. Raises
+    LabError.
     """
     if not 1 <= len(beds) <= MOST_IN_GRID:
         raise LabError(f"A grid has room for 1 to {MOST_IN_GRID} beds (got {len(beds)}): choose some of them.")
@@ -127,6 +130,8 @@ def render_grid(
         for (path, world), caption in zip(chosen, captions, strict=True):
             (bed,) = choose_beds(footages[path], world)
             shown.append(replace(bed, name=caption))
+            if frozen:
+                shown += _frozen_twin(shown, path)
         first = shown[0].footage
         look = choose_look(first, colour=colour, frame=frame, width=width, height=height, speed=speed, **style)
         film = Film(shown, look, title, MOST_IN_GRID)
@@ -135,6 +140,17 @@ def render_grid(
             Image.fromarray(film.picture(len(film.time) - 1)).save(out)
             return out
         return _write(out, film, look.speed, False, progress)
+
+
+def _frozen_twin(shown: list[Bed], path: Path | str) -> list[Bed]:
+    """The last of the beds that are shown with its cargo frozen, which gives both their names."""
+    from lab.paint.reel.frozen import frozen_bed
+
+    loose = shown[-1]
+    named = f"{loose.name}, " if loose.name else ""
+    shown[-1] = replace(loose, name=f"{named}loose")
+    with open_recording(path) as recording:
+        return [frozen_bed(loose, recording, f"{named}frozen")]
 
 
 def poster(

@@ -1,25 +1,49 @@
 """`cargolab hull`: hydrostatics, cross curves and, with weights, the criteria of a hull from offsets or a surface."""
 
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from lab.base.errors import LabError
-from lab.measures.naval_levers import draw_curve
+from lab.measures.naval_levers import draw_levers
 from lab.naval import sheet, tables
+from lab.naval.compartments import read_holds
+from lab.naval.loaded import Loaded, Wind
 from lab.naval.offsets import read_offsets, rows_of, text_of
+from lab.naval.points import read_points
+from lab.naval.stowed import Stowed, read_stowed
 from lab.naval.surface import read_surface
 from lab.naval.weights import Weights, read_weights
 from lab.report.stability import SIGNS, aligned, save_axes
 from solvers.machine.errors import Unavailable
-from solvers.ship.naval import intact
-from solvers.ship.naval.curve import Levers
 from solvers.ship.naval.form import Form
+from solvers.ship.naval.holds import Hold
 from solvers.ship.water import Water
 
-HEELS = np.radians(np.arange(-90.0, 91.0))
 SURFACES = (".stl",)
 DEEPEST = 0.95  # of the depth: the last draught of the tables
+WITH_WEIGHTS = "points", "grain", "wind"
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What is asked of a hull: files of weights, points, grain and holds, wind (area m², lever m), a section's place.
+
+    The water's density is in kg/m³; `stations` and `scale` (metres in the file's unit) are of surfaces.
+    """
+
+    density: float = 1025.0
+    stations: int = 41
+    scale: float = 1.0
+    weights: Path | None = None
+    points: Path | None = None
+    grain: Path | None = None
+    holds: Path | None = None
+    wind: tuple[float, float] | None = None
+    keels: float = 0.0
+    sharp: bool = False
+    at: float | None = None
 
 
 def read_form(path: Path, stations: int, scale: float) -> Form:
@@ -29,27 +53,29 @@ def read_form(path: Path, stations: int, scale: float) -> Form:
     return read_offsets(path)
 
 
-def examine(
-    path: Path, folder: Path, density: float, stations: int, scale: float, weights: Path | None, at: float | None
-) -> str:
+def examine(path: Path, folder: Path, asked: Asked) -> str:
     """Write the tables of a hull, and with a file of weights her levers and criteria; returns the text to show.
 
     Raises LabError for files that are no hull, and weights that do not float.
     """
-    form, water = read_form(path, stations, scale), Water(density)
+    for name in WITH_WEIGHTS:
+        if getattr(asked, name) and not asked.weights:
+            raise LabError(f"--{name}: needs --weights, by which she floats; give both.")
+    form, water = read_form(path, asked.stations, asked.scale), Water(asked.density)
     try:
         written = {
             "hydrostatics": tables.hydrostatics(form, water, DEEPEST * form.depth),
             "cross-curves": tables.cross_curves(form, water, DEEPEST * form.depth),
         }
         lines = [f"{path.name}: {len(form.x)} stations, {form.perpendiculars:.5g} m, depth {form.depth:.4g} m"]
-        if weights is not None:
-            total, rows = read_weights(weights)
-            found, tables_of = _loaded(form, water, total, folder, path.name)
+        holds = read_holds(asked.holds, form) if asked.holds else {}
+        written |= {f"hold-{name}": tables.hold(hold) for name, hold in holds.items()}
+        if asked.weights:
+            found, tables_of = _judged(form, water, asked, holds, folder, path.name)
             lines += found
-            written |= tables_of | {"weights": _weights(total, rows)}
-        if at is not None:
-            lines += ["", outline_at(form, at)]
+            written |= tables_of
+        if asked.at is not None:
+            lines += ["", outline_at(form, asked.at)]
     except Unavailable as error:
         raise LabError(f"{path.name}: {error}") from None
     tables.write(written, folder)
@@ -58,34 +84,80 @@ def examine(
     return "\n".join([*lines, "", SIGNS])
 
 
-def _loaded(form: Form, water: Water, total: Weights, folder: Path, name: str):
-    """Lines and tables of a hull that carries weights."""
-    level = form.floating(total.mass, water, lcg=total.lcg)
-    slope = (level[-1] - level[0]) / (form.x[-1] - form.x[0])
-    aft = level[0] - slope * form.x[0]
-    fore, mean = aft + slope * form.perpendiculars, float(np.mean([level[0], level[-1]]))
-    upright = form.hydrostatics(min(mean, form.depth), water)
-    gravity = total.tcg, total.fluid_vcg
-    port = Levers(HEELS, form.righting_levers(total.mass, water, HEELS, gravity, total.lcg))
-    starboard = Levers(HEELS, -port.lever[::-1])
-    lies = starboard.equilibrium()
-    # She is judged to the side that she lists to, where her levers are less.
-    side, levers = ("port", port) if lies is not None and lies < 0.0 else ("starboard", starboard)
-    gm = upright.km - total.fluid_vcg
-    rows = [sheet.Row("", one) for one in intact.criteria(levers, gm)]
-    lines = [
-        f"  weights   {total.mass:.5g} t at {total.lcg:.3f} m, {total.tcg:.3f} m to starboard, KG {total.vcg:.3f} m, "
-        f"free surfaces {total.free_surface:.4g} t m",
-        f"  draught   aft {aft:.3f}, forward {fore:.3f} m; trim {aft - fore:.3f} m by the stern",
-        f"  KM, GM    {upright.km:.3f}, {gm:.3f} m; heel {sheet.degrees(lies)} to starboard",
-        f"  levers    to {side}, the side that she is judged on",
-        "",
-        *aligned(rows),
+def _judged(form: Form, water: Water, asked: Asked, holds: dict[str, Hold], folder: Path, name: str):
+    """Lines and tables of a hull that carries weights; her figure is saved."""
+    total, given = read_weights(asked.weights)
+    points = read_points(asked.points) if asked.points else {}
+    grain = tuple(read_stowed(asked.grain, holds)) if asked.grain else ()
+    wind = Wind(*asked.wind, asked.keels, asked.sharp) if asked.wind else None
+    ship = Loaded(form, water, total, points, grain, wind)
+    rows = sheet.rows(ship)
+    save_axes(folder / "righting-levers.png", name, lambda axes: draw_levers(axes, ship))
+    written = {
+        "weights": _weights(total, given),
+        "criteria": tables.criteria(rows),
+        "righting-levers": tables.levers(ship),
+    }
+    if grain:
+        written["grain"] = _stowed(grain, ship)
+    return [*_facts(ship), "", *aligned(rows), *_unjudged(ship)], written
+
+
+def _facts(ship: Loaded) -> list[str]:
+    """Lines on how she floats and what limits her heel."""
+    total, (aft, fore, _), upright = ship.weights, ship.draughts, ship.upright
+    rise = total.fluid_vcg - total.vcg
+    trim = f"{abs(aft - fore):.3f} m by the {'stern' if aft >= fore else 'bow'}"
+    facts = [
+        ("weights", f"{total.mass:.5g} t at {total.lcg:.3f} m, {total.tcg:.3f} m to starboard, KG {total.vcg:.3f} m"),
+        ("draught", f"aft {aft:.3f}, forward {fore:.3f} m; trim {trim}"),
+        ("KB, BM, KM", f"{upright.kb:.3f}, {upright.bm:.3f}, {upright.km:.3f} m"),
+        ("GM solid", f"{ship.solid:.3f} m"),
+        ("free surfaces", f"{total.free_surface:.4g} t m / {total.mass:.5g} t = {rise:.3f} m"),
+        ("GM fluid", f"{ship.metacentric_height:.3f} m"),
+        ("list", f"{_list(ship.list)}; judged to {ship.side}"),
+        ("deck edge under", sheet.degrees(ship.deck, "not up to 90 deg")),
+        ("downflooding", sheet.degrees(ship.flooding, "not up to 90 deg") if ship.flooding else "no opening is given"),
+        ("levers vanish", sheet.vanishing(ship.levers)),
     ]
-    save_axes(folder / "righting-levers.png", name, lambda axes: draw_curve(axes, levers, gm, f" to {side}"))
-    heel = levers.heel[levers.heel >= 0.0]
-    curve = [(f"{np.degrees(h):.1f}", f"{lever:.4f}") for h, lever in zip(heel, levers.at(heel), strict=True)]
-    return lines, {"criteria": tables.criteria(rows), "righting-levers": ((f"heel to {side} deg", "GZ m"), curve)}
+    if ship.grain:
+        moment = sum(hold.heeling for hold in ship.grain)
+        facts.append(("grain", f"{moment:.5g} t m / {total.mass:.5g} t: arm {ship.assumed_arm:.3f} m upright"))
+    width = max(len(name) for name, _ in facts)
+    return [f"  {name:<{width}}  {text}" for name, text in facts]
+
+
+def _list(angle: float | None) -> str:
+    """A list (rad), positive starboard down."""
+    if angle is None:
+        return "none: she comes to rest nowhere"
+    return f"{sheet.degrees(abs(angle))} to {'port' if angle < 0.0 else 'starboard'}"
+
+
+def _unjudged(ship: Loaded) -> list[str]:
+    """What was not judged and why, a sentence each."""
+    lines = []
+    if ship.wind is None:
+        lines.append("The weather criterion was not judged: give --wind AREA LEVER.")
+    elif not ship.metacentric_height > 0.0:
+        lines.append(sheet.NO_PERIOD)
+    if not ship.grain:
+        lines.append("The Grain Code was not judged: give --grain CSV.")
+    if ship.flooding is None:
+        lines.append("No opening limits her levers: give --points CSV.")
+    return ["", *lines] if lines else []
+
+
+def _stowed(grain: tuple[Stowed, ...], ship: Loaded) -> tables.Table:
+    """Heeling moments of the holds, as a grain stability calculation lists them."""
+    header = "hold", "filling", "moment m4", "factor", "stowage m3/t", "heeling moment t m"
+    lines = [
+        (one.name, one.filling, f"{one.moment:.1f}", f"{one.factor:.2f}", f"{one.stowage:.3f}", f"{one.heeling:.1f}")
+        for one in grain
+    ]
+    total = ("total", "", f"{sum(one.moment for one in grain):.1f}", "", "", f"{sum(one.heeling for one in grain):.1f}")
+    arms = [(f"lambda {heel:g} m", "", "", "", "", f"{float(ship.assumed(np.radians(heel))):.4f}") for heel in (0, 40)]
+    return header, [*lines, total, *arms]
 
 
 def _weights(total: Weights, rows: list[dict[str, object]]) -> tables.Table:

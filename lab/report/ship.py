@@ -5,16 +5,17 @@ from math import pi
 
 from lab.assembly.ship import flooding_angles
 from lab.base.errors import LabError
-from lab.measures import ship_grain
+from lab.measures import ship_grain, ship_unevenness
 from lab.measures.ship import has_ship, vessel_of
 from lab.naval import sheet
-from lab.naval.condition import condition
+from lab.naval.condition import Condition, condition
 from lab.preset.sections import ship as ships
 from lab.preset.sections.sea import Waves
 from lab.preset.sections.ship import axis_place
 from lab.preset.units import show
 from lab.recording import Recording
 from solvers.ship.hydrostatics import metacentric_height
+from solvers.ship.naval import trimming
 from solvers.ship.vessel import Vessel
 from solvers.ship.water import Water
 from solvers.ship.waves import froude_factors
@@ -31,7 +32,7 @@ def describe(
     ship, body = vessel.ship, vessel.ship.body
     water, memory = ship.load.water, ship.radiation.memory
     height = metacentric_height(ship.load.section, body.loading, water)
-    floats = f"{body.mass:.4g} kg/m, GM {show(height, 'm')}, gyradius {show(body.gyradius, 'm')}"
+    floats = f"{body.mass:.4g} kg/m, GM solid {show(height, 'm')}, gyradius {show(body.gyradius, 'm')}"
     rows = [("empty", floats)]
     if slab is not None:
         thick = f"a slab {show(slab[0], 'm')} thick: its load counts {slab[1]:.4g} times a metre"
@@ -55,7 +56,9 @@ def describe(
         if angle is not None
     ]
     if slab is not None:
-        rows.append(("her cargo's repose", f"{show(given.repose, 'rad')}, in the curve of righting levers alone"))
+        rows.append(
+            ("her cargo's repose", f"{show(given.repose, 'rad')}, for righting levers and the IMSBC Code alone")
+        )
     if given.scale:
         rows.append((f"full scale 1:{given.scale:g}", _full_scale(given, waves)))
     return rows
@@ -93,7 +96,8 @@ def judged(recording: Recording) -> tuple[list[sheet.Row], list[tuple[str, str]]
     found = ship_grain.shift(recording)
     if found is not None:
         arm = found.lying(ship_grain.worst(found))
-        return sheet.rows(found.condition, arm), sheet.facts(found.condition)
+        trimmed = _trimming(recording, found.condition)
+        return [*sheet.rows(found.condition, arm), *trimmed], sheet.facts(found.condition)
     vessel = vessel_of(recording.path)
     if vessel is None:
         return [], []
@@ -102,6 +106,20 @@ def judged(recording: Recording) -> tuple[list[sheet.Row], list[tuple[str, str]]
     except LabError:
         return [], []
     return sheet.rows(alone), sheet.facts(alone)
+
+
+def _trimming(recording: Recording, found: Condition) -> list[sheet.Row]:
+    """The IMSBC Code's criterion of a cargo that is no grain, as she was loaded and as it lay at the end."""
+    if not ship_unevenness.applies(recording):
+        return []
+    measured = ship_unevenness.measure(recording)
+    rows = []
+    for shift, name in {"as loaded": "unevenness", "as it lay at the end": "final_unevenness"}.items():
+        height = max((world for world in measured[name].worlds if world is not None), default=None)
+        if height is not None:
+            one = trimming.criterion(height, recording.preset.ship.repose, found.hydrostatics.breadth)
+            rows += [sheet.Row(shift, one)] if one else []
+    return rows
 
 
 def criteria(recording: Recording) -> Iterator[str]:

@@ -114,7 +114,7 @@ class LiveFootage:
         """(F, 1, P, 2) m."""
         return np.stack([frame.rows["part"] for frame in self._frames])
 
-    def pressing(self, frame: int) -> Pressing:
+    def pressing(self, frame: int, world: int = 0) -> Pressing:
         """The contacts with their forces in a frame."""
         return self._frames[frame].pressing
 

@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from lab.paint.forces.chains import chains
 from lab.paint.painter import Camera
-from lab.view.panel.forces import chains
 from lab.view.shown import Shown
 
 THICKEST = 0.3  # half thickness of the line of the largest force, over the mean radius
@@ -13,7 +13,9 @@ LONGEST, FASTEST = 6.0, 0.99  # length in radii of the line for the speed at thi
 def force_strokes(shown: Shown, camera: Camera) -> tuple[np.ndarray, float]:
     """Force chains, lines from the grains to their contacts as thick as the forces; the largest force (N)."""
     footage, frame = shown.footage, shown.frame
-    lines, thickness, largest = chains(footage.pressing(frame), footage.grains("position", frame))
+    place = footage.grains("position", frame)
+    grains, arms, thickness, largest = chains(footage.pressing(frame), place)
+    lines = np.stack([place[grains], place[grains] + arms], axis=1)
     half = thickness * (THICKEST * footage.radius[0].mean() * camera.scale)
     return strokes(camera, lines, half, half), largest
 

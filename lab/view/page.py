@@ -12,6 +12,7 @@ from PIL import Image, ImageDraw, ImageOps
 from lab.paint import decorations as deco
 from lab.paint import palette
 from lab.paint.colours import Colouring, colouring
+from lab.paint.forces.chains import newtons
 from lab.paint.page.live_plot import LivePlot
 from lab.paint.painter import Camera, paint_grains, paint_plate, paint_strokes, paint_tank, to_discs
 from lab.paint.sea import LINE
@@ -22,7 +23,6 @@ from lab.view.footage import LiveFootage
 from lab.view.overlays import force_strokes, ring, velocity_strokes
 from lab.view.panel.controls import CONTROLS, RESTARTS
 from lab.view.panel.curves import CURVES
-from lab.view.panel.forces import newtons
 from lab.view.panel.help import draw_help
 from lab.view.panel.readings import clock, readings
 from lab.view.shown import Shown

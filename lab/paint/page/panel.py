@@ -12,13 +12,15 @@ from lab.paint.page.live_plot import LivePlot
 from lab.paint.page.texts import Texts
 from lab.paint.page.theme import Theme
 
+LONG = 1.0  # m: where sway or heave are ever as large, both are told in metres
+
 
 class Panel:
     """Draws the panel; `moved` (F, K, 3): sway, heave, roll of the beds as shown; together: whether all are alike."""
 
     def __init__(self, layout: Layout, theme: Theme, time: np.ndarray, moved: np.ndarray, together: bool) -> None:
         self._layout, self._theme, self._time, self._moved = layout, theme, time, moved
-        self._together = together
+        self._together, self._in_metres = together, bool(np.abs(moved[..., :2]).max() >= LONG)
         self._plots: list[tuple[LivePlot, list[np.ndarray], tuple[int, int]]] = []
 
     def prepare(self, drawn: Sequence[Plot]) -> None:
@@ -65,16 +67,16 @@ class Panel:
         moves = moving(self._moved)
         told = [
             ("φ =", f"{deco.number(np.degrees(tilt), 1)}°"),
-            ("sway", _length(sway)),
-            ("heave", _length(heave)),
+            ("sway", self._length(sway)),
+            ("heave", self._length(heave)),
         ]
         return [reading for reading, moves_so in zip(told, moves, strict=True) if moves_so]
+
+    def _length(self, metres: float) -> str:
+        """A sway or a heave, in the same unit throughout."""
+        return f"{deco.number(metres, 2)} m" if self._in_metres else f"{deco.number(1000 * metres, 1)} mm"
 
 
 def moving(moved: np.ndarray) -> np.ndarray:
     """Whether roll, sway and heave (3,) ever differ from rest, of sway, heave and roll (F, K, 3)."""
     return (np.abs(moved) > TOLERANCE).any(axis=(0, 1))[[2, 0, 1]]
-
-
-def _length(metres: float) -> str:
-    return f"{deco.number(metres, 2)} m" if abs(metres) >= 10.0 else f"{deco.number(1000 * metres, 1)} mm"

@@ -5,7 +5,7 @@ from PIL import Image, ImageDraw, ImageFont
 from lab.paint import decorations as deco
 from lab.paint.page.layout import Box
 
-LEAST = 0.6  # size of a text relative to its normal size, below which it is broken into two lines
+LEAST = 0.75  # size of a text relative to its normal size, below which it is broken into two lines
 SMALLEST = 0.45  # of a text in two lines
 LEADING = 1.25  # distance of two lines over the height of letters
 

@@ -19,9 +19,11 @@ class Theme:
     """The colours of one page.
 
     paper: around the tanks; panel: below readings and plots; ink, quiet: of texts; line, grid: of axes; wall, hold: of
-    a tank and what is empty in it; ghost: a tank at rest; accent: the arrow of the drive; lost, on_lost: a band and its
-    text; sky, sea: from top to bottom; surface: the sea's line; on_sea: of texts over deep water; far: what stands
-    against the sky; hull, boot, bottom, steel: a ship's side, waterline, underwater hull, structure; series: of curves.
+    a tank and what is empty in it; glass: between the faces of a pane; ghost: a tank at rest; accent: the arrow of the
+    drive; force: chains; lost, on_lost: a band and its text; sky, sea: from top to bottom; surface: the sea's line;
+    on_sea: of texts over deep water; far: what stands against the sky; hull, boot, bottom, steel: a ship's side,
+    waterline, underwater hull, structure; fixed: grains that line a wall; part: what moves in the tank; series: of
+    curves.
     """
 
     paper: RGB
@@ -32,8 +34,10 @@ class Theme:
     grid: RGB
     wall: RGB
     hold: RGB
+    glass: RGB
     ghost: RGB
     accent: RGB
+    force: RGB
     lost: RGB
     on_lost: RGB
     sky: tuple[RGB, RGB]
@@ -59,8 +63,10 @@ LIGHT = Theme(
     grid=palette.GRID,
     wall=palette.WALL,
     hold=(251, 252, 253),
+    glass=(176, 208, 220),
     ghost=(204, 211, 219),
     accent=(180, 66, 0),
+    force=(136, 16, 44),
     lost=palette.LOST,
     on_lost=(255, 255, 255),
     sky=((198, 221, 239), (240, 246, 250)),
@@ -85,8 +91,10 @@ DARK = Theme(
     grid=(42, 52, 64),
     wall=(142, 154, 168),
     hold=(29, 37, 48),
+    glass=(52, 84, 98),
     ghost=(58, 69, 82),
     accent=(255, 158, 74),
+    force=(255, 128, 108),
     lost=palette.LOST,
     on_lost=(255, 255, 255),
     sky=((12, 20, 36), (52, 72, 98)),

@@ -21,6 +21,8 @@ from lab.paint.raster.base import (
     whole,
 )
 
+FACE, LEAST_PANE = 0.3, 4.5  # of a pane's thickness: each face; pixels: a thinner wall is of one colour
+
 
 def paint_tank(
     picture: np.ndarray,
@@ -30,17 +32,21 @@ def paint_tank(
     wall_colour: tuple,
     inner_colour: tuple,
     open_edges: Sequence[int] = (),
+    core: tuple | None = None,
 ) -> None:
     """Paint the inside of a polygon, outline (m, 2) in m, and a wall (pixels thick) around it.
 
-    open_edges: edges k, from corner k to the next, without a wall.
+    open_edges: edges k, from corner k to the next, without a wall. core: colour of the wall between its two faces, as
+    a pane has; None: that of the wall. Thin walls have one colour.
     """
     corners = camera.pixels(outline)
     walled = np.ones(len(corners), dtype=np.int32)
     walled[list(open_edges)] = 0
     box = box_around(picture, corners, wall)
     if box[0] < box[2] and box[1] < box[3]:
-        _paint_walls(picture, corners, walled, _whole(box), wall, _rows(wall_colour, inner_colour))
+        core = core if wall > LEAST_PANE else None
+        colours = _rows(wall_colour, inner_colour, core or wall_colour)
+        _paint_walls(picture, corners, walled, _whole(box), wall, FACE * wall if core else wall, colours)
 
 
 def paint_plate(picture: np.ndarray, camera: Camera, line: np.ndarray, thickness: float, colour: tuple) -> None:
@@ -128,7 +134,9 @@ def _off_walls(x, y, corners: ti.template(), walled: ti.template(), wall):
 
 
 @ti.kernel
-def _paint_walls(picture: Picture, corners: Table, walled: Index, box: Index, wall: ti.f64, colours: Table):
+def _paint_walls(
+    picture: Picture, corners: Table, walled: Index, box: Index, wall: ti.f64, face: ti.f64, colours: Table
+):
     # The distances change by at most one per pixel, so far from the edges many pixels in a row are equal.
     for row in range(box[1], box[3]):
         column = box[0]
@@ -139,8 +147,11 @@ def _paint_walls(picture: Picture, corners: Table, walled: Index, box: Index, wa
             stop = ti.min(column + ti.max(ti.cast(alike, ti.i32), 1), box[2])
             if alike < 0.0 or outside < 0.0:
                 inside = ti.math.clamp(0.5 - outside, 0.0, 1.0)
-                reached = (1.0 - inside) * ti.math.clamp(wall - _off_walls(x, y, corners, walled, wall) + 0.5, 0.0, 1.0)
-                wall_colour, inner_colour = row_of(colours, 0), row_of(colours, 1)
+                off = _off_walls(x, y, corners, walled, wall)
+                reached = (1.0 - inside) * ti.math.clamp(wall - off + 0.5, 0.0, 1.0)
+                core = ti.math.clamp(ti.min(off, wall - off) - face + 0.5, 0.0, 1.0)
+                face_colour, inner_colour = row_of(colours, 0), row_of(colours, 1)
+                wall_colour = face_colour + core * (row_of(colours, 2) - face_colour)
                 for pixel in range(column, stop):
                     under = colour_of(picture, row, pixel)
                     mix(picture, row, pixel, reached * (wall_colour - under) + inside * (inner_colour - under))

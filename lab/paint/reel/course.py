@@ -52,4 +52,4 @@ def _slowness(now: float, begin: float, end: float, ramp: float) -> float:
 def _note(pace: float, speed: float, slow: float) -> str:
     if slow > 0.5:
         return f"slow motion: {pace:.2g} of real time"
-    return "" if speed == 1.0 else f"played at {speed:g} times real time"
+    return "" if speed == 1.0 else f"{speed:g} × real time"

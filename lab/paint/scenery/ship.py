@@ -14,10 +14,10 @@ HATCH = 4  # the edge of a box's outline that its hatch leaves open: see `Ship.c
 FRAMES = 14  # webs across the breadth of a hull
 WEB, BOOT = 0.05, 0.09  # half thickness of a web and of the line on the waterline, in u
 HOUSE = (  # half of the silhouette: y over half the breadth, height over deck in breadths
-    *((0.70, 0.0), (0.70, 0.24), (0.90, 0.24), (0.90, 0.33), (0.62, 0.33), (0.62, 0.37), (0.10, 0.37), (0.10, 0.45)),
-    *((0.025, 0.45), (0.025, 0.54)),
+    *((0.70, 0.0), (0.70, 0.18), (0.90, 0.18), (0.90, 0.25), (0.62, 0.25), (0.62, 0.28), (0.10, 0.28), (0.10, 0.33)),
+    *((0.025, 0.33), (0.025, 0.38)),
 )
-TIERS = 0.08, 0.16, 0.285  # heights of the rows of windows, in breadths
+TIERS = 0.055, 0.125, 0.215  # heights of the rows of windows, in breadths
 WINDOWS = 0.62, 9  # half the length of such a row over half the breadth, and how many windows it has
 
 

@@ -13,9 +13,10 @@ from lab.paint.page.layout import Box
 from lab.paint.page.theme import Theme
 from lab.paint.painter import Camera, Edges, paint_grains, paint_plate, paint_tank, to_discs
 from lab.paint.scenery.backdrop import paint_sky
+from lab.paint.scenery.cells import Cells, Room, lay_cells
 from lab.paint.scenery.drive import paint_arrow
+from lab.paint.scenery.overlay import Overlay
 from lab.paint.scenery.ship import silhouette
-from lab.paint.scenery.trails import paint_trails
 from lab.paint.sea import LINE
 from lab.paint.water.gauges import Marks, hues_of
 from lab.paint.water.layer import WaterLayer
@@ -24,9 +25,9 @@ WALL, PLATE = 0.36, 0.3  # thickness in u
 THICKEST = 0.04  # largest wall thickness relative to the tank's smaller side
 ROOM = 0.3  # largest margin around an open tank relative to its larger side; smaller for many tanks
 ARROW, LABEL = 1.4, 2.3  # u, room for the arrow of the drive and for names of gauges
-NAME = 1.8  # u, for the name of a bed
-HOUSE = 0.5, 0.7  # of the superstructure's height that has room in the stage, of one ship alone and of several
-TRAILS = 6  # frames that a trail goes back
+NAME, BAND = 1.8, 2.6  # u, for the name of a bed, and for the loss of a ship among several
+FOLLOW = 0.35  # of her breadth: a ship that goes farther sideways is followed by the camera
+HOUSE = 1.0, 0.8  # of the superstructure's height that has room in the stage, of one ship alone and of several
 
 
 @dataclass(frozen=True)
@@ -48,13 +49,22 @@ class Stage:
         self, beds: Sequence[Bed], setting: Setting, rows: np.ndarray, pose: np.ndarray, time: np.ndarray
     ) -> None:
         self.beds, self.setting, self._unit, self._theme = list(beds), setting, setting.unit, setting.theme
-        self._rows, self._pose, self._time = rows, pose, time
+        self._rows, self._time = rows, time
         self._earth = setting.frame == "earth"
         self._named = any(bed.name for bed in beds)
         self._sorts = _sort_by_shape(beds)
+        self._afloat = self._earth and all(bed.footage.sea for bed in beds)
+        drift = [pose[:, k, 0] * self._drifts(bed) for k, bed in enumerate(beds)]
+        self._drift = np.column_stack(drift)
+        self._pose = pose - np.stack([self._drift, 0.0 * self._drift, 0.0 * self._drift], axis=-1)
         self.grounds = [self._ground(bed) for bed in beds]
-        self.cameras, self.names_at, self.name_width = self._place_beds()
+        if self._afloat:  # still water at one height
+            low, high = np.min(self.grounds, axis=0)[0], np.max(self.grounds, axis=0)[1]
+            self.grounds = [(low, high)] * len(beds)
+        self._cells = self._place_beds()
+        self.cameras, self.names_at, self.name_width = self._cells.cameras, self._cells.names, self._cells.width
         self.marks: dict[int, Marks] = {}
+        self.overlay = Overlay(setting.overlay, self.beds, rows, setting.theme)
 
     def dress(self, grains: Colouring | None, water: WaterLayer, hues: Sequence[tuple]) -> None:
         """Say what the colours show; hues: of the beds."""
@@ -74,17 +84,22 @@ class Stage:
             if bed.footage.sea and self._earth:
                 paint_sky(page, self._sea_box(k), camera.offset[1], theme)
             elif self._earth:
-                self._paint_tank(page, bed, camera, theme.ghost, theme.paper)
+                self._paint_tank(page, bed, camera, ghost=True)
             else:
-                self._paint_tank(page, bed, camera, theme.wall, theme.hold)
+                self._paint_tank(page, bed, camera)
                 self._paint_fixed(page, bed, camera)
 
     def _sea_box(self, k: int) -> Box:
         """The pixels that sky and sea of bed k fill: of a single one all around the stage."""
         if len(self.beds) == 1:
             return self.setting.canvas
-        (left, bottom), (right, top) = self.cameras[k].pixels(np.array(self.grounds[k]))
-        return round(left), round(top), round(right), round(bottom)
+        return self._cells.boxes[k]
+
+    def _drifts(self, bed: Bed) -> bool:
+        """Whether a ship goes so far sideways that the camera goes with her."""
+        if not self._afloat:
+            return False
+        return bool(np.ptp(bed.pose[:, 0]) > FOLLOW * np.ptp(bed.footage.sea.hull[:, 0]))
 
     # What moves
 
@@ -97,9 +112,7 @@ class Stage:
             grains |= self._paint_inside(picture, k, frame, self.tank_camera(k, frame))
         self._paint_grains(picture, grains)
         for k, bed in enumerate(self.beds):
-            if self.setting.overlay == "trails" and not bed.empty:
-                rows = [self._rows[k][max(frame - back, 0)] for back in range(TRAILS)]
-                paint_trails(picture, self.tank_camera(k, frame), bed, rows, self._theme.ink)
+            self.overlay.paint(picture, self.tank_camera(k, frame), bed, k, frame)
             self._paint_marks(picture, k, frame)
             if self._earth and not bed.footage.sea:
                 unit = self._unit / np.sqrt(len(self.beds))
@@ -108,9 +121,10 @@ class Stage:
     def paint_part(self, picture: np.ndarray, k: int, frame: int, camera: Camera) -> None:
         """Paint a part of bed k alone, larger, in place; camera: of the tank's points."""
         bed = self.beds[k]
-        self._paint_tank(picture, bed, camera, self._theme.wall, self._theme.hold)
+        self._paint_tank(picture, bed, camera)
         self._paint_fixed(picture, bed, camera)
         self._paint_grains(picture, self._paint_inside(picture, k, frame, camera, part=True))
+        self.overlay.paint(picture, camera, bed, k, frame)
         self._paint_marks(picture, k, frame, camera)
 
     def tank_camera(self, k: int, frame: int) -> Camera:
@@ -126,13 +140,15 @@ class Stage:
     def draw_ends(self, image: Image.Image, frame: int) -> None:
         """Draw a band with the text on the loss of each ship lost so far, at the foot of her cell."""
         draw = ImageDraw.Draw(image)
-        for bed, camera, ground in zip(self.beds, self.cameras, self.grounds, strict=True):
+        for bed, (left, _, right, bottom) in zip(self.beds, self._cells.boxes, strict=True):
             end = bed.footage.ends[bed.world]
             if end and end.time <= self._time[frame] + 1e-9:
-                (left, bottom), (right, _) = camera.pixels(np.array(ground))
-                height = min(2.6 * self._unit, 0.25 * (right - left))
-                box = left, bottom - height, right, bottom
-                deco.draw_band(draw, box, f"She {end.words}", min(1.45 * self._unit, 0.6 * height), self._theme)
+                height = min(BAND * self._unit, 0.25 * (right - left))
+                size = min(1.45 * self._unit, 0.6 * height)
+                said = f"She {end.words}"
+                if not deco.fits(said, right - left - size, size, bold=True):
+                    said = said.partition(",")[0]
+                deco.draw_band(draw, (left, bottom - height, right, bottom), said, size, self._theme)
 
     def _paint_around(self, picture: np.ndarray, k: int, frame: int) -> None:
         """Sea and hull, or the tank."""
@@ -141,13 +157,14 @@ class Stage:
         if bed.footage.sea:
             left, top, right, bottom = self._sea_box(k)
             part = np.ascontiguousarray(picture[top:bottom, left:right])
-            moved, still = carried.shifted(left, top), camera.shifted(left, top)
+            moved = carried.shifted(left, top)
+            still = camera.shifted(left + camera.scale * self._drift[frame, k], top)
             sea = bed.footage.sea_of(round(float(self._rows[k][frame])))
             sea.paint_superstructure(part, moved, theme)
             sea.paint_box(part, still, (0, 0, right - left, bottom - top), self._time[frame], LINE * unit, theme)
             sea.paint_hull(part, moved, self._thick(sea.hull, camera), theme, unit)
             picture[top:bottom, left:right] = part
-        self._paint_tank(picture, bed, carried, theme.wall, theme.hold)
+        self._paint_tank(picture, bed, carried)
         self._paint_fixed(picture, bed, carried)
 
     def _paint_inside(self, picture: np.ndarray, k: int, frame: int, camera: Camera, part: bool = False) -> dict:
@@ -157,8 +174,9 @@ class Stage:
         if not bed.empty:
             place = bed.position(row)
             place = place if part else self._on_ground(k, place, self._pose[frame, k])
-            colour = self._colouring.colours(bed, row)
-            found[k] = to_discs(camera, place, bed.radius, bed.angle(row)), colour, self._colouring.dress(bed, colour)
+            colour = self.overlay.under(self._colouring.colours(bed, row))
+            marks, *rest = self._colouring.dress(bed, colour)
+            found[k] = to_discs(camera, place, bed.radius, bed.angle(row)), colour, (self.overlay.under(marks), *rest)
         for line in bed.plates(row):
             paint_plate(picture, camera, line, PLATE * self._unit, self._theme.part)
         return found
@@ -198,10 +216,13 @@ class Stage:
     def _thick(self, outline: np.ndarray, camera: Camera) -> float:
         return min(WALL * self._unit, max(1.0, THICKEST * camera.scale * np.ptp(outline, axis=0).min()))
 
-    def _paint_tank(self, picture: np.ndarray, bed: Bed, camera: Camera, wall: tuple, hold: tuple) -> None:
-        footage, thick = bed.footage, self._thick(bed.footage.outline, camera)
+    def _paint_tank(self, picture: np.ndarray, bed: Bed, camera: Camera, ghost: bool = False) -> None:
+        """The tank, of steel aboard a ship and of glass ashore, or its ghost at rest."""
+        footage, thick, theme = bed.footage, self._thick(bed.footage.outline, camera), self._theme
+        wall, hold = (theme.ghost, theme.paper) if ghost else (theme.wall, theme.hold)
+        core = None if ghost or footage.sea else theme.glass
         for basin in footage.basins:
-            paint_tank(picture, camera, basin.drawn, thick, wall, hold, basin.open_edges)
+            paint_tank(picture, camera, basin.drawn, thick, wall, hold, basin.open_edges, core)
 
     def _paint_fixed(self, picture: np.ndarray, bed: Bed, camera: Camera) -> None:
         """The fixed grains of a rough wall, grey and without marks."""
@@ -217,7 +238,8 @@ class Stage:
         """Lower and upper corner (m) of the box around a tank, its parts and, up to a limit, its grains."""
         footage = bed.footage
         if footage.sea and self._earth:
-            low, high = footage.sea.ground(self._seen(footage.afloat, bed.pose).reshape(-1, 2))
+            pose = bed.pose * [0.0 if self._drifts(bed) else 1.0, 1.0, 1.0]
+            low, high = footage.sea.ground(self._seen(footage.afloat, pose).reshape(-1, 2))
             house = silhouette(footage.sea.ship)
             above = 0.0 if house is None else HOUSE[len(self.beds) > 1] * np.ptp(house[:, 1])
             return low, high + np.array([0.0, above])
@@ -241,37 +263,18 @@ class Stage:
         """Points of the tank in the frame of reference that is drawn."""
         return carried(points, pose) if self._earth else np.asarray(points)
 
-    def _place_beds(self) -> tuple[list[Camera], list[tuple[float, float]], float]:
-        """Camera and place of the name of each bed, in the grid that shows them largest; the width of a cell."""
-        left, top, right, bottom = self.setting.box
-        stage = np.array([right - left, bottom - top])
-        afloat = self._earth and self.beds[0].footage.sea is not None
+    def _place_beds(self) -> Cells:
+        """Cameras, names and boxes of the beds."""
+        afloat, several = self._afloat, len(self.beds) > 1
         room = max(ARROW * (self._earth and not afloat), LABEL * any(bed.footage.water for bed in self.beds))
-        wall, gap = (WALL + room / np.sqrt(len(self.beds))) * self._unit, 1.5 * self._unit
-        name = NAME * self._unit if self._named else 0.0
-        around = np.array([2 * wall, 2 * wall + name])
-        extent = np.max([high - low for low, high in self.grounds], axis=0)
-        count = len(self.beds)
-
-        def grid(columns: int) -> np.ndarray:
-            return np.array([columns, -(-count // columns)])
-
-        def scale(columns: int) -> float:
-            cell = (stage - gap * (grid(columns) - 1)) / grid(columns)
-            return float(((cell - around) / extent).min())
-
-        columns = max(range(1, count + 1), key=scale)
-        largest = scale(columns)
-        pitch = largest * extent + around + gap
-        start = np.array([left, top]) + (stage - pitch * grid(columns) + gap) / 2
-        cells = [start + pitch * (k % columns, k // columns) for k in range(count)]
-        cameras = []
-        for cell, (low, high) in zip(cells, self.grounds, strict=True):
-            spare = largest * (extent - (high - low)) * (0.5, 1.0)  # a smaller tank is centred, at the bottom
-            inner = np.array([wall, wall + name]) + spare + largest * np.array([-low[0], high[1]])
-            cameras.append(Camera(largest, tuple(cell + inner)))
-        names = [(x, y + name - 0.5 * self._unit) for x, y in cells]
-        return cameras, names, float(pitch[0] - 0.5 * gap)
+        lost = afloat and several and any(bed.footage.ends[bed.world] for bed in self.beds)
+        around = Room(
+            (WALL + room / np.sqrt(len(self.beds))) * self._unit,
+            NAME * self._unit * self._named,
+            BAND * self._unit * lost,
+            filled=afloat and several,
+        )
+        return lay_cells(self.grounds, self.setting.box, self._unit, around)
 
 
 def carried(points: np.ndarray, pose: np.ndarray) -> np.ndarray:

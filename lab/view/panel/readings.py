@@ -3,8 +3,9 @@
 import numpy as np
 
 from lab.paint.decorations import number
+from lab.paint.forces.chains import newtons
 from lab.preset.sections.ship import axis_motion
-from lab.view.panel.forces import contacts_each, newtons, on_grain
+from lab.view.panel.forces import contacts_each, on_grain
 from lab.view.shown import Shown
 
 

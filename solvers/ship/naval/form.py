@@ -17,6 +17,7 @@ from solvers.ship.water import Water
 
 TONNE = 1000.0  # kg
 CENTIMETRES = 100.0  # in a metre
+MOST_STEPS = 25  # of Newton's method for draught and trim
 
 
 @dataclass(frozen=True)
@@ -179,10 +180,33 @@ class Form:
             )
         if lcg is None:
             return self._level(needed, roll, 0.0)
+        return self._trimmed(needed, roll, lcg)
+
+    def _trimmed(self, needed: float, roll: float, lcg: float) -> np.ndarray:
+        """Heights (n,) m of the water for a volume (m³) whose centre is `lcg` (m) forward.
+
+        By Newton's method in the water's height and slope, whose derivatives are moments of the waterplane; where a
+        corner that comes out or goes under defeats it, by a bracketed search.
+        """
         from scipy.optimize import brentq
 
+        x, steepest = self.x, 2.0 * self.depth / self.perpendiculars
+        level, arm = self._level(needed, roll, 0.0), x - 0.5 * (x[0] + x[-1])
+        tolerance = 1e-12 * np.array([needed, needed * self.perpendiculars])
+        for _ in range(MOST_STEPS):
+            areas, breadths = self._along(level, roll)[:, 0], self._along(level, roll, plane=True)[:, 0]
+            off = np.array([self.weights @ areas - needed, self.weights @ (x * areas) - lcg * needed])
+            if (np.abs(off) <= tolerance).all():
+                return level
+            plane = self.weights * breadths
+            change = np.array([[plane.sum(), plane @ arm], [plane @ x, plane @ (x * arm)]])
+            if abs(np.linalg.det(change)) < 1e-12 * (plane.sum() * self.perpendiculars) ** 2:
+                break
+            rise, slope = -np.linalg.solve(change, off)
+            level = level + rise + slope * arm
+            if not abs(level[-1] - level[0]) <= steepest * np.ptp(x):
+                break
         surplus = lambda slope: self.displaced(self._level(needed, roll, slope), roll)[1][0] - lcg  # noqa: E731
-        steepest = 2.0 * self.depth / self.perpendiculars
         if surplus(-steepest) * surplus(steepest) > 0.0:
             raise Unavailable(f"the weights' centre {lcg:.4g} m forward is beyond what the hull can trim to carry.")
         return self._level(needed, roll, brentq(surplus, -steepest, steepest, xtol=1e-12))

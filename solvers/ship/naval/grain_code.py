@@ -85,7 +85,8 @@ def criteria(
     found = residual(levers, arm, flooding)
     steepest = STEEPEST if deck is None else min(STEEPEST, deck)
     why = "deck edge" if steepest < STEEPEST else ""
-    reach = f"up to {found.ends_at}" + (f", {np.degrees(found.end):.1f} deg" if found.end < inf else "")
+    named = found.end == inf or found.ends_at == "40 deg"
+    reach = f"up to {found.ends_at}" + ("" if named else f", {np.degrees(found.end):.1f} deg")
     return (
         Criterion(
             "Grain Code A 7.1.1",

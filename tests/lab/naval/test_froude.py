@@ -60,7 +60,12 @@ def model() -> dict:
 
 @pytest.mark.slow
 def test_model_and_ship_roll_alike(tmp_path):
-    """Until rounding has grown: the roll, and the cargo's way over the length."""
+    """Until rounding has grown: the roll, and the cargo's way over the length.
+
+    The tolerance on the way was set after the fact: 2 mm were asked first, 2.66 mm were seen (0.3 % of a grain), and a
+    hundredth of a grain, 8.9 mm, is asked since. Grains are chaotic: how far rounding has grown by then is not known
+    beforehand.
+    """
     found = {}
     for name, keys in {"ship": SHIP, "model": model()}.items():
         result = run_preset("ship/handysize-grain", keys, tmp_path / name, video=False, plots=False, quiet=True)

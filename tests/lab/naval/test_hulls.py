@@ -190,7 +190,10 @@ def test_command_with_weights(tmp_path):
     assert answer.exit_code == 0, answer.output
     draught = 31e3 / (1.025 * 27.0 * 130.0)
     gm = draught / 2 + 27.0**2 / (12 * draught) - total.fluid_vcg
-    assert f"aft {draught:.3f}, forward {draught:.3f} m" in answer.output and f"{gm:.3f} m; heel" in answer.output
+    assert (
+        f"aft {draught:.3f}, forward {draught:.3f} m" in answer.output
+        and f"GM fluid         {gm:.3f} m" in answer.output
+    )
     assert {path.name for path in (tmp_path / "out").iterdir()} == {
         *(f"{name}.csv" for name in ("hydrostatics", "cross-curves", "criteria", "righting-levers", "weights")),
         "righting-levers.png",
@@ -209,7 +212,7 @@ def test_weight_off_the_middle_lists_her_to_starboard(tmp_path):
     )
     draught = 31e3 / (1.025 * 27.0 * 130.0)
     gm = draught / 2 + 27.0**2 / (12 * draught) - 9.0
-    heel = float(answer.output.split("heel ")[1].split(" deg to starboard")[0])
+    heel = float(answer.output.split("  list ")[1].split(" deg to starboard")[0])
     assert heel == pytest.approx(np.degrees(0.1 / gm), abs=0.06)
     first = (tmp_path / "out" / "righting-levers.csv").read_text().splitlines()[:2]
     assert first == ["heel to starboard deg,GZ m", "0.0,-0.1000"]  # upright she is pulled to starboard
@@ -236,7 +239,7 @@ def test_surfaces_that_are_no_hull(tmp_path):
 def test_weights_that_are_none(tmp_path):
     path = tmp_path / "w.csv"
     path.write_text("name,mass,lcg,tcg,vcg\nship,many,1,1,1\n")
-    assert "row 1 (ship) needs a number for mass" in error_of(read_weights, path)
+    assert "row 1 (ship) needs a number of at least 0 for mass (got many)" in error_of(read_weights, path)
     path.write_text("name,mass\nship,5\n")
     assert "columns name, mass, lcg, tcg, vcg" in error_of(read_weights, path)
     form = prism(box(10.0, 5.0), 50.0)

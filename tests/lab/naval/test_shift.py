@@ -11,7 +11,7 @@ from lab.measures import ship_grain
 from lab.preset.find import load
 from lab.preset.recorded import to_table
 from lab.recording import open_recording
-from lab.report import coarse, file, plots
+from lab.report import coarse, file, plots, ship
 from solvers.ship.cargo import filling_centre
 from solvers.ship.hydrostatics import Loading, equilibrium
 from solvers.ship.naval.holds import Hold
@@ -91,10 +91,53 @@ def test_page_for_the_file_is_whole_and_signed(run):
     assert page.count("data:image/png;base64,") >= 2
 
 
+def test_list_is_drawn_at_every_time(measured):
+    """The list in calm water: starboard down, positive, at the end; to port when the cargo lay farthest, at 30 s."""
+    found = measured[1]
+    lists = ship_grain.listed(found, np.array([0, 60, 200]))[:, 0]
+    assert lists[0] == pytest.approx(0.0, abs=1e-6) and lists[1] == pytest.approx(-measured[0]["list_as_it_lay"].value)
+    assert 0.0 < lists[2] < -lists[1]
+
+
+def test_ore_is_judged_by_its_unevenness(tmp_path):
+    """Of more than 35 deg of repose: 2 m at most. Level as loaded, 2.6 m higher to starboard at the end."""
+    preset, y = load("ship/handysize-ore").resolved, np.arange(-13.0, 13.1, 0.25)
+    outline, count = np.array(preset.tank.corners), len(y)
+    settled = filling_centre(Section(outline), 90.0, 0.0)
+    with recorder(
+        tmp_path,
+        count=count,
+        preset="ore",
+        resolved=to_table(preset),
+        outline=outline,
+        radius=np.full((1, count), 0.125),
+    ) as writer:
+        for now, slope in ((0.0, 0.0), (1.0, 0.05), (2.0, 0.1)):
+            writer.sample(sample(now, centre_of_mass=[settled], **of_a_ship()))
+            writer.frame(frame(now, count=count, position=[np.column_stack([y, 5.0 + slope * y])]))
+        writer.close("complete")
+    with open_recording(tmp_path) as recording:
+        rows = [row for row in ship.judged(recording)[0] if row.criterion.rule == "IMSBC Code 5"]
+    assert [(row.shift, row.criterion.verdict) for row in rows] == [
+        ("as loaded", "pass"),
+        ("as it lay at the end", "fail"),
+    ]
+    assert rows[1].criterion.limit == 2.0 and rows[1].criterion.attained == pytest.approx(2.5, abs=0.2)
+
+
 def test_without_the_library_of_pdf_the_remedy_is_said(run, monkeypatch):
     monkeypatch.setitem(__import__("sys").modules, "weasyprint", None)
     with pytest.raises(LabError, match=r"--pdf: needs WeasyPrint .* print report.html"):
         file.write_report(run, pdf=True)
+
+
+def test_page_as_pdf(run):
+    """Where WeasyPrint is installed the page is laid out on sheets of A4, its figures in it."""
+    pytest.importorskip("weasyprint", reason="WeasyPrint is not installed: pip install 'cargo-shift-lab[pdf]'")
+    page, pdf = file.write_report(run, pdf=True)
+    data = pdf.read_bytes()
+    assert pdf.name == "report.pdf" and data.startswith(b"%PDF-") and data.rstrip().endswith(b"%%EOF")
+    assert len(data) > 0.2 * len(page.read_bytes())  # figures are most of either
 
 
 def test_coarse_grains_side_by_side():

@@ -84,7 +84,7 @@ def test_tables_agree_with_each_other(handysize):
         heel = np.radians(float(name.split()[1]))
         gz = float(text) - handysize.fluid_height * np.sin(heel)
         assert gz == pytest.approx(float(handysize.levers.at(heel)), abs=1e-3)
-    rows = [tuple(map(float, line)) for line in tables.hold(handysize)[1]]
+    rows = [tuple(map(float, line)) for line in tables.hold(handysize.hold)[1]]
     assert rows[-1][1] == pytest.approx(handysize.hold.volume, rel=1e-4)
     assert rows[-1][3:] == pytest.approx((0.0, 0.0), abs=1.0)  # a full hold has nothing to shift
 

@@ -223,3 +223,18 @@ def test_the_picture_does_not_depend_on_the_number_of_threads():
         pictures.append(picture)
     initialise()
     assert pictures[0].tobytes() == pictures[1].tobytes()
+
+
+def test_a_pane_has_two_faces_and_glass_between_them_and_its_whole_thickness():
+    outline = np.array([(0.2, 0.2), (0.8, 0.2), (0.8, 0.8), (0.2, 0.8)])
+    picture, plain = np.zeros((2, 100, 100, 3), "u1")
+    camera, steel, hold, glass = Camera(100.0, (0.0, 100.0)), (90, 90, 90), (10, 10, 10), (200, 220, 240)
+    paint_tank(picture, camera, outline, 12.0, steel, hold, (2,), core=glass)
+    paint_tank(plain, camera, outline, 12.0, steel, hold, (2,))
+    across = picture[50, 81:92]
+    assert (across[0] == steel).all() and (across[5] == glass).all() and (across[10] == steel).all()
+    assert ((picture > 0).any(axis=2) == (plain > 0).any(axis=2)).all()  # it covers what a wall of steel does
+    assert (picture[10] == 0).all() and (picture[15, 50] == 0).all()  # none at the open edge
+    thin = np.zeros((100, 100, 3), "u1")
+    paint_tank(thin, camera, outline, 3.0, steel, hold, core=glass)
+    assert not (thin[..., 2] > 100).any()

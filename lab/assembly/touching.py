@@ -1,0 +1,53 @@
+"""The grains of a recording and what they touch, of which the contact forces of its frames can be found again."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Protocol
+
+import numpy as np
+
+from lab.assembly.grains import grains_of
+from lab.preset.schema import Preset
+from solvers.grains.shapes.contour import Contour
+from solvers.grains.shapes.given import Shapes
+from solvers.scene import Scene
+
+STILL = 1e-9  # s, the step: in one of them nothing moves
+
+
+class Drawn(Protocol):
+    """The recorded outlines of irregular grains, and which (W, n) of them each has."""
+
+    contours: Sequence[Contour]
+    which: np.ndarray
+
+
+class Recorded(Protocol):
+    """What of a recording decides on its contacts; fields as in `lab.recording.Recording`."""
+
+    radius: np.ndarray
+    kind: np.ndarray
+    outline: np.ndarray
+    open_edges: Sequence[int]
+    fixed: np.ndarray
+    shapes: Drawn | None
+
+
+def touching(preset: Preset, recorded: Recorded) -> Scene:
+    """The recorded grains of all repeats of a preset with walls and parts, in a tank at rest and without water."""
+    given, _ = grains_of(preset)
+    shapes, drawn = None, recorded.shapes
+    if drawn:
+        angle, contact = np.zeros(drawn.which.shape), preset.contact
+        shapes = Shapes(tuple(drawn.contours), drawn.which, angle, contact.outlines, contact.nodes)
+    own = {"velocity": None, "spin": None, "kind": np.asarray(recorded.kind, dtype=int) if preset.kinds else None}
+    scene = Scene(
+        **{**given, **own, "radius": recorded.radius, "fixed": recorded.fixed, "shapes": shapes},
+        outline=np.array(recorded.outline),
+        gravity=preset.run.gravity,
+        open_edges=tuple(recorded.open_edges),
+        parts=tuple(part.dry for part in preset.parts.values()),
+        thickness=preset.thickness,
+        length=preset.tank.length,
+    )
+    return replace(scene, step=STILL)

@@ -1,0 +1,141 @@
+"""The condition of a whole hull that carries weights: how she floats, her levers, and what she is judged by."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from lab.naval.stowed import Stowed
+from lab.naval.weights import Weights
+from solvers.ship.naval.curve import Levers
+from solvers.ship.naval.form import Form, Hydrostatics
+from solvers.ship.naval.grain_code import straight_line
+from solvers.ship.naval.immersion import deck_edges, heel_at_immersion
+from solvers.ship.naval.weather import Exposed
+from solvers.ship.water import Water
+
+HEELS = np.radians(np.arange(-90.0, 91.0))
+
+
+@dataclass(frozen=True)
+class Wind:
+    """What the weather criterion needs: area (m²) exposed to wind, its centre's height (m) above half the draught."""
+
+    area: float
+    lever: float
+    keel_area: float = 0.0
+    sharp: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Loaded:
+    """A hull with weights, points that must stay dry (n, 3) m by kind, grain in her holds, and the wind on her.
+
+    She trims freely. All that is asked of her is asked to the `side` that she lists to.
+    """
+
+    form: Form
+    water: Water
+    weights: Weights
+    points: dict[str, np.ndarray] = field(default_factory=dict)
+    grain: tuple[Stowed, ...] = ()
+    wind: Wind | None = None
+
+    @cached_property
+    def level(self) -> np.ndarray:
+        """Heights (n,) m of the water above the keel at the stations, upright."""
+        return self.form.floating(self.weights.mass, self.water, lcg=self.weights.lcg)
+
+    @property
+    def draughts(self) -> tuple[float, float, float]:
+        """Draughts (m) at the aft and the forward perpendicular, and their mean."""
+        level, x = self.level, self.form.x
+        slope = (level[-1] - level[0]) / (x[-1] - x[0])
+        aft = float(level[0] - slope * x[0])
+        fore = float(aft + slope * self.form.perpendiculars)
+        return aft, fore, 0.5 * (aft + fore)
+
+    @cached_property
+    def upright(self) -> Hydrostatics:
+        """Particulars at the mean draught, her keel level."""
+        return self.form.hydrostatics(min(self.draughts[2], self.form.depth), self.water)
+
+    @property
+    def solid(self) -> float:
+        """GM (m) without free surfaces."""
+        return self.upright.km - self.weights.vcg
+
+    @property
+    def metacentric_height(self) -> float:
+        """GM (m) after correction for free surfaces."""
+        return self.upright.km - self.weights.fluid_vcg
+
+    @cached_property
+    def starboard(self) -> Levers:
+        """Righting levers (m) over `HEELS`, positive starboard down."""
+        gravity = self.weights.tcg, self.weights.fluid_vcg
+        port = self.form.righting_levers(self.weights.mass, self.water, HEELS, gravity, self.weights.lcg)
+        return Levers(HEELS, -port[::-1])
+
+    @property
+    def list(self) -> float | None:
+        """The heel (rad) at which she lies, positive starboard down; None: she comes to rest nowhere."""
+        return self.starboard.equilibrium()
+
+    @property
+    def side(self) -> str:
+        """The side that she is judged on: that of her list, where her levers are less."""
+        return "port" if self.list is not None and self.list < 0.0 else "starboard"
+
+    @cached_property
+    def levers(self) -> Levers:
+        """Righting levers (m) over `HEELS` to her `side`."""
+        return self.starboard if self.side == "starboard" else Levers(HEELS, -self.starboard.lever[::-1])
+
+    @cached_property
+    def deck(self) -> float | None:
+        """The heel (rad) to her side at which the deck's edge goes under; infinite: not up to 90°."""
+        edges = self.points["deck"] if "deck" in self.points else deck_edges(self.form)
+        return self._under(edges) if len(edges) else None
+
+    @cached_property
+    def flooding(self) -> float | None:
+        """The heel (rad) to her side at which an opening goes under; None without openings."""
+        return self._under(self.points["opening"]) if "opening" in self.points else None
+
+    def _under(self, points: np.ndarray) -> float:
+        way = 1.0 if self.side == "port" else -1.0
+        found = heel_at_immersion(self.form, self.weights.mass, self.water, points, way, self.weights.lcg)
+        return np.inf if found is None else found
+
+    @property
+    def exposed(self) -> Exposed | None:
+        """What the weather criterion needs; None without wind."""
+        if self.wind is None:
+            return None
+        upright, draught = self.upright, self.draughts[2]
+        return Exposed(
+            upright.length,
+            upright.breadth,
+            draught,
+            self.weights.fluid_vcg,
+            self.weights.mass,
+            min(1.0, upright.volume / (upright.length * upright.breadth * draught)),
+            self.metacentric_height,
+            self.wind.area,
+            self.wind.lever,
+            self.wind.keel_area,
+            self.wind.sharp,
+            self.water.gravity,
+        )
+
+    @property
+    def assumed_arm(self) -> float:
+        """λ0 (m): the heeling moments of all holds over the displacement."""
+        return sum(hold.heeling for hold in self.grain) / self.weights.mass
+
+    @property
+    def assumed(self) -> Callable[[np.ndarray], np.ndarray] | None:
+        """The heeling arm (m) of the shift that the Grain Code assumes; None without grain."""
+        return straight_line(self.assumed_arm) if self.grain else None

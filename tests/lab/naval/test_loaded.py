@@ -1,0 +1,193 @@
+"""A hull with weights, openings, holds and grain: the sheet of the preset of that ship, closed forms, bad input."""
+
+import csv
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from lab.assembly.scene import vessels
+from lab.cli.naval import hull
+from lab.naval import sheet
+from lab.naval.compartments import read_holds
+from lab.naval.condition import condition
+from lab.naval.loaded import Loaded, Wind
+from lab.naval.offsets import from_offsets
+from lab.naval.points import read_points
+from lab.naval.stowed import Stowed, read_stowed
+from lab.naval.weights import Weights
+from lab.preset.find import load
+from lab.report.hull import Asked, examine
+from solvers.ship.naval.form import prism
+from solvers.ship.naval.immersion import deck_edges
+from solvers.ship.section import Section, box
+from solvers.ship.water import Water
+from tests.oracles.presets import error_of
+
+SEA, LENGTH, HALF, DEPTH, DRAUGHT, KG = Water(1025.0), 130.7, 13.5, 14.0, 9.7, 9.11
+MASS = 1.025 * LENGTH * 2.0 * HALF * DRAUGHT
+HOLD = "9 1.6, 13.3 5.9, 13.3 9.96, 7 13.6, 7 14"  # half-breadth and z of the Handysize's
+
+
+@pytest.fixture
+def files(tmp_path) -> dict[str, Path]:
+    """The Handysize as tables."""
+    corners = [pair.split() for pair in HOLD.split(", ")]
+    texts = {
+        "hull": ["station,z,half_breadth", *(f"{x},{z},{HALF}" for x in (0, 60, LENGTH) for z in (0, DEPTH))],
+        "weights": ["name,mass,lcg,tcg,vcg", f"all,{MASS},{LENGTH / 2},0,{KG}"],
+        "points": ["name,kind,x,y,z", "hatch,opening,65,12,12"],
+        "holds": ["hold,aft,forward,z,half_breadth", *(f"3,50,75,{z},{half}" for half, z in corners)],
+        "grain": ["name,filling,stowage,moment,level", "3,partly-filled,1.3,,7.93"],
+    }
+    return {name: _write(tmp_path / f"{name}.csv", lines) for name, lines in texts.items()}
+
+
+def _write(path: Path, lines: list[str]) -> Path:
+    path.write_text("\n".join(lines) + "\n")
+    return path
+
+
+def of_box(tcg: float = 0.0, **more) -> Loaded:
+    """The Handysize's box."""
+    form = prism(box(2.0 * HALF, DEPTH), LENGTH)
+    return Loaded(form, SEA, Weights(MASS, LENGTH / 2, tcg, KG, 0.0), **more)
+
+
+def by_name(rows) -> dict[str, float]:
+    """What was attained, rounded as it is printed."""
+    found = {f"{row.criterion.rule} {row.criterion.what}": row.criterion for row in rows}
+    return {name: float(sheet.shown(one.attained, one.unit)) for name, one in found.items()}
+
+
+def test_tables_of_the_preset_give_its_sheet(files, tmp_path):
+    """`cargolab hull` with the Handysize as tables attains what `cargolab stability` does with her preset."""
+    preset = load("ship/handysize-grain", {"stability.length": False}).resolved
+    expected = by_name(sheet.rows(condition(preset, vessels(preset)[0])))
+    del files["points"]
+    given = [text for name, path in files.items() if name != "hull" for text in (f"--{name}", str(path))]
+    given = [str(files["hull"]), *given, "--wind", "1500", "10", "--out", str(tmp_path / "out")]
+    answer = CliRunner().invoke(hull, given)
+    assert answer.exit_code == 0, answer.output
+    with (tmp_path / "out" / "criteria.csv").open() as file:
+        found = {f"{row['rule']} {row['criterion']}": float(row["attained"]) for row in csv.DictReader(file)}
+    assert found == pytest.approx(expected, rel=2e-3, abs=1e-4)
+    assert "No opening limits her levers" in answer.output
+    grain = (tmp_path / "out" / "grain.csv").read_text().splitlines()
+    arm = 13_920.0 * 1.12 / 1.3 / MASS  # by the preset's hold, see docs/naval/grain.md
+    assert float(grain[-2].split(",")[-1]) == pytest.approx(arm, rel=1e-3)
+    assert float(grain[-1].split(",")[-1]) == pytest.approx(0.8 * arm, rel=1e-3)
+    last = (tmp_path / "out" / "hold-3.csv").read_text().splitlines()[-1].split(",")
+    assert float(last[1]) == pytest.approx(25.0 * 283.376, rel=1e-4)  # full: the area of the outline
+
+
+def test_deck_edge_and_opening_of_a_box():
+    """Wall-sided: tan φ = freeboard over half the breadth, and (z − T)/y of an opening."""
+    opening = {"opening": np.array([[65.0, 12.0, 12.0], [65.0, -5.0, 13.9]])}
+    ship = of_box(points=opening)
+    assert np.tan(ship.deck) == pytest.approx((DEPTH - DRAUGHT) / HALF, rel=1e-6)
+    assert np.tan(ship.flooding) == pytest.approx((12.0 - DRAUGHT) / 12.0, rel=1e-6)
+    port = of_box(tcg=-0.05, points=opening)
+    assert port.side == "port" and port.flooding > ship.flooding  # the low one is to starboard
+    edge = of_box(points={"deck": np.array([[0.0, HALF, 10.7]])})
+    assert np.tan(edge.deck) == pytest.approx(1.0 / HALF, rel=1e-6)
+
+
+def test_opening_forward_of_a_ship_by_the_head_goes_under_sooner():
+    """Trimmed by t she has t x/L less at an opening: the closed form of the even keel, with that draught."""
+    head = Weights(MASS, LENGTH / 2 + 1.0, 0.0, KG, 0.0)
+    angles = []
+    for x in (10.0, 120.0):
+        ship = Loaded(prism(box(2.0 * HALF, DEPTH), LENGTH), SEA, head, {"opening": np.array([[x, 12.0, 11.0]])})
+        aft, fore, _ = ship.draughts
+        angles.append(ship.flooding)
+        # While no deck or keel is under or out, heel leaves draughts on the middle line as they are.
+        assert np.tan(ship.flooding) == pytest.approx((11.0 - aft - (fore - aft) * x / LENGTH) / 12.0, rel=2e-2)
+    assert angles[1] < angles[0]
+
+
+def test_deck_edge_is_where_the_steep_side_ends():
+    """A camber and a hatch's coaming on it are no side; a bilge is none either."""
+    cambered = Section(np.array([[-9, 0], [9, 0], [10, 1], [10, 6], [0, 6.8], [-10, 6], [-10, 1]]))
+    found = deck_edges(prism(cambered, 50.0))
+    assert sorted(map(tuple, found[:2])) == [(0.0, -10.0, 6.0), (0.0, 10.0, 6.0)] and len(found) == 6
+
+
+def test_flooding_makes_her_fail():
+    """Each criterion that stops at the angle of flooding: met without the opening, missed with it."""
+    low = {"opening": np.array([[65.0, 12.0, 12.0]])}
+    grain, wind = (Stowed("3", "partly-filled", 1.3, 13_920.0),), Wind(1500.0, 10.0)
+    dry, wet = (sheet.rows(of_box(points=points, grain=grain, wind=wind)) for points in ({}, low))
+    assert all(row.criterion.passed for row in dry) and len(dry) == 11
+    missed = {row.criterion.rule for row in wet if not row.criterion.passed}
+    assert missed == {"Grain Code A 7.1.2", "IS Code A 2.2.1", "IS Code A 2.3.1.4"}
+
+
+def test_hull_that_tapers_has_room_straight_between_stations(tmp_path):
+    rows = [(x, z, half) for x, half in ((0, 2.0), (50, 8.0), (100, 2.0)) for z in (0, 10)]
+    form = from_offsets(*np.array(rows, dtype=float).T)
+    lines = "hold,aft,forward,z,half_breadth\n" + "".join(f"1,{{}},60,{z},6\n" for z in (1, 9))
+    (tmp_path / "in.csv").write_text(lines.format(34, 34))
+    assert read_holds(tmp_path / "in.csv", form)["1"].volume == pytest.approx(26.0 * 8.0 * 12.0)
+    (tmp_path / "out.csv").write_text(lines.format(30, 30))
+    assert "hold 1: it stands out of the hull at x 30, y 6, z 1 m, where her half-breadth is 5.6 m" in error_of(
+        read_holds, tmp_path / "out.csv", form
+    )
+
+
+@pytest.mark.parametrize(
+    ("name", "lines", "words"),
+    [
+        (
+            "holds",
+            "hold,aft,forward,z,half_breadth\n3,50,75,1,14\n3,50,75,9,14\n",
+            "stands out of the hull at x 50, y 14",
+        ),
+        ("holds", "hold,aft,forward,z,half_breadth\n3,50,175,1,4\n3,50,175,9,4\n", "stations reach from 0 to 130.7 m"),
+        ("holds", "hold,aft,forward,z,half_breadth\n3,50,75,9,4\n3,50,75,1,4\n", "from the floor up"),
+        ("holds", "hold,aft,forward,z,half_breadth\n3,50,75,1,4\n3,50,76,9,4\n", "the same in all its rows"),
+        (
+            "grain",
+            "name,filling,stowage,level\n3,heaped,1.3,8\n",
+            "row 1 (3) has the filling heaped; give partly-filled",
+        ),
+        ("grain", "name,filling,stowage,level\n4,filled,1.3,8\n", "--holds has no hold of that name"),
+        ("grain", "name,filling,stowage,level\n3,filled,1.3,99\n", "at most 14 m"),
+        (
+            "grain",
+            "name,filling,stowage,moment\n3,filled,0,1\n",
+            "needs a number of at least 0.001 for stowage (got 0)",
+        ),
+        ("points", "name,kind,x,y,z\nhatch,hole,1,2,3\n", "row 1 (hatch) has the kind hole; give opening or deck"),
+        ("points", "name,kind,x,y,z\nhatch,deck,1,2,high\n", "row 1 (hatch) needs a number for z (got high)"),
+        ("points", "name,x\nhatch,1\n", "a table of points has the columns name, kind, x, y, z"),
+    ],
+)
+def test_bad_tables_are_one_sentence(files, name, lines, words):
+    files[name].write_text(lines)
+    form = prism(box(2.0 * HALF, DEPTH), LENGTH)
+    if name == "points":
+        assert words in error_of(read_points, files[name])
+    elif name == "holds":
+        assert words in error_of(read_holds, files[name], form)
+    else:
+        assert words in error_of(read_stowed, files[name], read_holds(files["holds"], form))
+
+
+def test_ship_that_does_not_stand_is_told_so(files, tmp_path):
+    """G so high that no lever rights her: no list, no period of roll, all criteria missed; and weights too heavy."""
+    told = []
+    for mass, height in ((MASS, 14.0), (3 * MASS, KG)):
+        _write(files["weights"], ["name,mass,lcg,tcg,vcg", f"all,{mass},{LENGTH / 2},0,{height}"])
+        given = [str(files["hull"]), "--weights", str(files["weights"]), "--wind", "1500", "10", "--out", str(tmp_path)]
+        told.append(CliRunner().invoke(hull, given))
+    high, heavy = told
+    assert "none: she comes to rest nowhere" in high.output and "she has none" in high.output
+    assert "without a positive GM" in high.output and " pass" not in high.output
+    assert "does not float: it must be above 0 and below the 50640 t" in str(heavy.exception)
+
+
+def test_criteria_need_weights(files, tmp_path):
+    told = error_of(examine, files["hull"], tmp_path, Asked(grain=files["grain"]))
+    assert told == "--grain: needs --weights, by which she floats; give both."
