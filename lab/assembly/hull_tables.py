@@ -1,8 +1,8 @@
 """Hydrodynamic tables of whole hulls, per metre of the ship's length: by strips, or in space by Capytaine.
 
 In space the table is of the hull's mesh up to FINEST √(g/draught), with panels a sixth of the shortest wave there.
-Above, where waves are short beside the hull and strips are exact in the limit, damping and excitation are those of strips, and
-added mass is theirs less their limit at infinite frequency plus that in space.
+Above, where waves are short beside the hull and strips are exact in the limit, damping and excitation are those of
+strips, and added mass is theirs less their limit at infinite frequency plus that in space.
 """
 
 from dataclasses import fields

@@ -89,8 +89,8 @@ class Lewis:
     def fast(self) -> np.ndarray:
         """Added mass (3, 3) over the water's density, of sway, heave and roll, for ω → ∞.
 
-        In m², m³ and m⁴. The surface is one of zero potential there, φ = Σ b_m r^(−2m) sin 2mθ of sway and roll; of heave
-        it is π M² ((1 + a₁)² + 3a₃²)/2 (Lewis 1929).
+        In m², m³ and m⁴. The surface is one of zero potential there, φ = Σ b_m r^(−2m) sin 2mθ of sway and roll; of
+        heave it is π M² ((1 + a₁)² + 3a₃²)/2 (Lewis 1929).
         """
         scale, first, third = self.map
         found = np.zeros((3, 3))

@@ -20,7 +20,7 @@ from solvers.ship.water import Water
 
 MODES = "surge", "sway", "heave", "roll", "pitch", "yaw"
 ABEAM = (1, 2, 3)  # those of a section's plane
-PANELS = 60
+PANELS = 80
 LEAST = 1e-4  # of the largest immersed area: smaller sections count as dry
 
 

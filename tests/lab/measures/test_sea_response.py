@@ -23,13 +23,13 @@ def sea(seed):
 
 
 def test_an_oscillator_is_found_again():
-    """Its own transfer function to 5 % beside the bias of the window at the peak, in phase, and all coherent."""
+    """Its own transfer function to 5 %, in phase to 0.1 rad, and all coherent."""
     wave, answer = sea(1)
     found = transfer(TIME, wave, answer)
     exact = oscillator(found.frequency)
     kept = found.strong
     assert np.abs(np.abs(found.ratio[kept]) / np.abs(exact[kept]) - 1.0).max() < 0.05
-    assert np.abs(np.angle(found.ratio[kept] / exact[kept].conj())).max() < 0.05  # e^(−iωt) against e^(iωt)
+    assert np.abs(np.angle(found.ratio[kept] / exact[kept].conj())).max() < 0.1  # e^(−iωt) against e^(iωt)
     assert found.coherence[kept].min() > 0.99
 
 
