@@ -5,12 +5,13 @@ from pathlib import Path
 
 import numpy as np
 
+from lab.assembly.ship import MEMORY_ORDER
 from lab.base.errors import LabError
 from lab.naval.linear_water import by, linear_motion, peaks, table_in_calm
 from lab.naval.tables import write
 from lab.preset.find import LoadedPreset
 from lab.preset.schema import Preset
-from solvers.ship.potential.memory import retardation
+from solvers.ship.potential.memory import fit_memory, retardation
 from solvers.ship.potential.radiation import Hydrodynamics
 
 KINDS = {"section": "section, in the plane", "strips": "strips of the hull", "hull": "hull in space"}
@@ -20,6 +21,21 @@ QUANTITIES = "added mass", "damping", "excitation"
 SHOWN = 2.0  # √(g/draught): up to there coefficients are drawn
 STEP = 0.002  # √(g/draught), of the response
 STRONG = 0.05  # of the largest excitation of a mode: where Haskind's relation is judged
+PAGE = """# Coefficients of {name}: section, strips, hull in space
+
+Written by `cargolab hydrodynamics {name}`. All are for each metre of her length, in waves from abeam. Haskind's \
+relation gives the excitation from the waves that she makes: the largest difference, of the excitation, where \
+this is more than a twentieth of its largest. The memory's error is that of the linear system that the time loop \
+steps.
+
+| coefficients of | roll peaks by linear theory | Haskind's relation | error of the memory |
+| --- | --- | --- | --- |
+{rows}
+
+![Added mass, damping and excitation](coefficients.png)
+
+![Roll for each metre of wave, and the retardation function](response.png)
+"""
 SIZE, LOW = (8.4, 7.6), (7.4, 4.0)
 
 
@@ -34,7 +50,7 @@ def compare(loaded: LoadedPreset, out: Path | None) -> tuple[str, Path]:
     if preset.ship.length is None:
         raise LabError("ship.length: missing; strips and a hull need it.")
     folder = out or Path("renders/hydrodynamics") / loaded.name
-    tables, lines = {}, []
+    tables, lines, rows = {}, [], []
     for kind in KINDS:
         try:
             tables[kind] = table_in_calm(by(preset, kind))
@@ -43,13 +59,23 @@ def compare(loaded: LoadedPreset, out: Path | None) -> tuple[str, Path]:
     omega = _frequencies(preset, tables["section"])
     moves = {kind: linear_motion(by(preset, kind), omega) for kind in tables}
     for kind, table in tables.items():
-        found = [f"{at:.3g} rad/s ({high:.3g} rad/m)" for at, high in peaks(omega, np.abs(moves[kind][:, 2]))]
+        found = [f"{at:.3f} rad/s ({high:.3g} rad/m)" for at, high in peaks(omega, np.abs(moves[kind][:, 2]))]
         haskind = ", ".join(f"{mode} {100.0 * miss:.2g} %" for mode, miss in _haskind(table).items())
-        lines += [f"{KINDS[kind]}: roll peaks at {', '.join(found) or 'none'}", f"  Haskind's relation: {haskind}"]
+        fitted = ", ".join(f"{mode} {100.0 * miss:.2g} %" for mode, miss in _fit(preset, table).items())
+        lines += [f"{KINDS[kind]}: roll peaks at {', '.join(found) or 'none'}"]
+        lines += [f"  Haskind's relation within {haskind}", f"  memory's rms error {fitted}"]
+        rows.append(f"| {KINDS[kind]} | {'; '.join(found)} | {haskind} | {fitted} |")
     write({f"hydrodynamics-{kind}": _columns(table) for kind, table in tables.items()}, folder)
     write({"responses": _responses(omega, moves)}, folder)
     _draw(folder, loaded.name, preset, tables, (omega, moves))
+    (folder / "hydrodynamics.md").write_text(PAGE.format(name=loaded.name, rows="\n".join(rows)), encoding="utf-8")
     return "\n".join(lines), folder
+
+
+def _fit(preset: Preset, table: Hydrodynamics) -> dict[str, float]:
+    """The rms error of the fitted memory of each mode, of its rms."""
+    memory = fit_memory(table, MEMORY_ORDER, preset.sea.depth is None)
+    return dict(zip(MODES, memory.error.diagonal(), strict=True))
 
 
 def _frequencies(preset: Preset, table: Hydrodynamics) -> np.ndarray:
