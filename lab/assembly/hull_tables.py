@@ -10,7 +10,7 @@ from math import sqrt
 
 import numpy as np
 
-from lab.assembly import hull_flow
+from lab.assembly import hull_flow, ship_tables
 from lab.assembly.offsets import from_offsets
 from lab.assembly.ship_tables import SOLVED_BY, kept
 from lab.base.errors import LabError
@@ -59,18 +59,22 @@ def whole_table(given: ships.Ship, water: Water, frequency: np.ndarray) -> Hydro
     Raises LabError for a hull that she cannot have, or without Capytaine; `Unavailable` as the solvers do.
     """
     form, height = whole_form(given), given.about[1] - float(given.corners[:, 1].min())
-    numbers = [water.density, water.depth, water.gravity, given.draught, height, given.hydrodynamics == "hull"]
+    numbers = [water.density, water.depth, water.gravity, given.draught, height, ship_tables.PANELS]
     outlines = [np.zeros((0, 2)) if one is None else one.outline for one in form.sections]
     sizes = np.array([len(one) for one in outlines], dtype=float)
     values = form.x, sizes, *outlines, np.array(numbers), frequency
     if given.hydrodynamics == "strips":
-        return kept(values, OF_STRIPS, lambda: strips(form, given.draught, water, frequency, height))
+        return kept(values, OF_STRIPS, lambda: _by_strips(form, given.draught, water, frequency, height))
     return kept(values, IN_SPACE, lambda: _in_space(form, given.draught, water, frequency, height))
 
 
 def hull_table_of(given: ships.Ship, water: Water, frequency: np.ndarray) -> Hydrodynamics:
     """The same for sway, heave and roll, for each metre of the ship's length."""
     return abeam(whole_table(given, water, frequency), given.length)
+
+
+def _by_strips(form: Form, draught: float, water: Water, frequency: np.ndarray, height: float) -> Hydrodynamics:
+    return strips(form, draught, water, frequency, height, ship_tables.PANELS)
 
 
 def _in_space(form: Form, draught: float, water: Water, frequency: np.ndarray, height: float) -> Hydrodynamics:
@@ -84,7 +88,7 @@ def _in_space(form: Form, draught: float, water: Water, frequency: np.ndarray, h
     low = flow.table(solved)
     if len(solved) == len(frequency):
         return low
-    high = strips(form, draught, water, frequency[len(solved) :], height)
+    high = _by_strips(form, draught, water, frequency[len(solved) :], height)
     found = {}
     for one in fields(low):
         lower, upper = getattr(low, one.name), getattr(high, one.name)

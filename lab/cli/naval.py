@@ -116,7 +116,7 @@ def hydrodynamics(preset: str, overrides: dict, out: Path | None) -> None:
     cargolab hydrodynamics ship/barge-two-tanks
     """
     from lab.preset.find import load
-    from lab.report.hydrodynamics import compare
+    from lab.studies.hydrodynamics import compare
 
     text, folder = compare(load(preset, overrides), out)
     click.echo(text)

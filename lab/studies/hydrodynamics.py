@@ -20,12 +20,12 @@ UNITS = (("kg/m", "kg/m", "kg m"), ("kg/(m s)", "kg/(m s)", "kg m/s"), ("kPa", "
 QUANTITIES = "added mass", "damping", "excitation"
 SHOWN = 2.0  # √(g/draught): up to there coefficients are drawn
 STEP = 0.002  # √(g/draught), of the response
-STRONG = 0.05  # of the largest excitation of a mode: where Haskind's relation is judged
+STRONG = 0.1  # of the largest excitation of a mode: where Haskind's relation is judged
 PAGE = """# Coefficients of {name}: section, strips, hull in space
 
 Written by `cargolab hydrodynamics {name}`. All are for each metre of her length, in waves from abeam. Haskind's \
 relation gives the excitation from the waves that she makes: the largest difference, of the excitation, where \
-this is more than a twentieth of its largest. The memory's error is that of the linear system that the time loop \
+this is more than a tenth of its largest. The memory's error is that of the linear system that the time loop \
 steps.
 
 | coefficients of | roll peaks by linear theory | Haskind's relation | error of the memory |
@@ -60,7 +60,7 @@ def compare(loaded: LoadedPreset, out: Path | None) -> tuple[str, Path]:
     moves = {kind: linear_motion(by(preset, kind), omega) for kind in tables}
     for kind, table in tables.items():
         found = [f"{at:.3f} rad/s ({high:.3g} rad/m)" for at, high in peaks(omega, np.abs(moves[kind][:, 2]))]
-        haskind = ", ".join(f"{mode} {100.0 * miss:.2g} %" for mode, miss in _haskind(table).items())
+        haskind = ", ".join(f"{mode} {100.0 * miss:.2g} %" for mode, miss in _haskind(table, omega[-1]).items())
         fitted = ", ".join(f"{mode} {100.0 * miss:.2g} %" for mode, miss in _fit(preset, table).items())
         lines += [f"{KINDS[kind]}: roll peaks at {', '.join(found) or 'none'}"]
         lines += [f"  Haskind's relation within {haskind}", f"  memory's rms error {fitted}"]
@@ -84,8 +84,9 @@ def _frequencies(preset: Preset, table: Hydrodynamics) -> np.ndarray:
     return np.arange(table.frequency[0], min(SHOWN * unit, table.frequency[-1]), STEP * unit)
 
 
-def _haskind(table: Hydrodynamics) -> dict[str, float]:
-    """The largest difference of both excitations of each mode, of its size there, where it is strong."""
+def _haskind(table: Hydrodynamics, highest: float) -> dict[str, float]:
+    """The largest difference of both excitations of each mode, of its size, where it is strong, up to a rate (rad/s)."""
+    table = table.at(table.frequency[table.frequency <= highest])
     size = np.abs(table.excitation)
     strong = size > STRONG * size.max(axis=0)
     miss = np.abs(table.haskind - table.excitation) / np.where(strong, size, np.inf)
