@@ -47,7 +47,6 @@ LONG = {  # too long, and not to become longer
     "lab/view/page.py": 437,
     "lab/view/session.py": 360,
     "solvers/grains/shapes/rules/continuous.py": 408,
-    "solvers/motion/afloat.py": 415,
     "solvers/simulation.py": 335,
 }
 

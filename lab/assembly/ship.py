@@ -105,6 +105,7 @@ def _vessel(given: ships.Ship, water: Water, sea: seas.Waves | None, wet: Body) 
         heel=given.heel,
         release=given.release,
         limits=limits,
+        handover=given.coupling_step if given.coupling == "as_K" else None,
         openings=openings,
     )
 

@@ -74,6 +74,7 @@ class Water:
     many particles are in each tank of a world, by their numbers one after the other; (): all are in the first. Water of
     different tanks never meets, though they may overlap in the plane. `model`: "sph", or "linear" or "frozen", for
     which see `solvers.liquid`: then waves have the share `swing_damping` of the critical damping.
+    `added_mass`: "layer" or "none", whether a ship has the answer of the walls' dummies on her own side.
     """
 
     spacing: float
@@ -102,6 +103,7 @@ class Water:
     fills: tuple[int, ...] = ()
     model: str = "sph"
     swing_damping: float = 0.0
+    added_mass: str = "none"
     air: Air | None = None
 
     @property

@@ -18,6 +18,7 @@ from solvers.fluid.order import Order, Tanks
 from solvers.fluid.phases.vent import Vent
 from solvers.fluid.shifting import SHIFTING
 from solvers.fluid.state import LANES, UNUSED, Particles, Shares
+from solvers.fluid.walls.answer import answer_at_rest
 from solvers.fluid.walls.behind import OF_NONE, Behind
 from solvers.fluid.walls.bodies import Bodies
 from solvers.fluid.walls.edges import Edges
@@ -58,6 +59,7 @@ class WaterMatter(Matter):
         self.particles = p = Particles(arrays, worlds, count, lanes, walls, grid.strips, shifting, water.air)
         self.units = units = setting.units(p.wet)
         self.load = setting.load(arrays.under("water"), units)
+        self.load.lag(answer_at_rest(scene, behind), water.added_mass == "layer")
         self.dummies = dummy, blocks, behind.volumes, behind.firm
         shares, self.constants = Shares(p, units), Constants(arrays, water, scene.gravity)
         self.poses = Poses(arrays, setting.carrier, worlds)
@@ -67,7 +69,8 @@ class WaterMatter(Matter):
         medium = Medium(units, p, shares, self.lists, self.constants, self.poses)
         self.extrapolation = Extrapolation(arrays, medium)
         self.forces = Forces(arrays, medium, self.extrapolation, self.load, tank.thickness)
-        self.continuity, self.vent = Continuity(arrays, medium), Vent(arrays, medium, water.air)
+        self.continuity = Continuity(arrays, medium, self.extrapolation.sliding, self.forces.held)
+        self.vent = Vent(arrays, medium, water.air)
         self.mover = Mover(arrays, medium, self.extrapolation, self.vent)
         probes = [dummy[slot] + p.wet * lanes for slot in behind.probes]
         self.gauges = Gauges(arrays, p, self.constants, water.gauges, probes, behind.open)
@@ -76,8 +79,7 @@ class WaterMatter(Matter):
         owner[dummy] = np.where(behind.tanks == pool.first, behind.edges, OF_NONE)
         self.edges = Edges(arrays, medium, water.edges, owner, tank.thickness)
         self.census = Census(arrays, p, self.constants, setting.carrier, pool, water.levels)
-        self.start = np.full(worlds, np.nan)  # J, energy at the first look
-        self.thickness = tank.thickness
+        self.start, self.thickness = np.full(worlds, np.nan), tank.thickness  # J, energy at the first look; m
         mass = water.density * scene.drops[..., VOLUME].sum(axis=1).max() * tank.thickness
         self.least = 0.5 * mass * (LEAST * water.sound_speed) ** 2  # J
         self.before, self.between = self._before(), (Phase(self.note_passage),)

@@ -56,6 +56,7 @@ class LiquidMatter(Matter):
         each = Axis("world", worlds), Axis("tank", self.tanks), Axis("mode", max(1, self.swings))
         self.way, self.speed_of = own.reals(each, "way", "speed", kind=own.exact)
         (self.rise,) = own.reals(each, "rise", kind=own.exact)
+        self.pull = own.reals(each[:1], "pull_y", "pull_z", kind=own.exact, kept=False)  # gravity, in the tank's axes
         self.before = (Phase(self.push, self.units),)
         self.after = (Phase(self.swing, self.units),)
 
@@ -80,6 +81,7 @@ class LiquidMatter(Matter):
         motion = self.carrier.kinematics(w, t)
         c, s = ti.cos(motion[2]), ti.sin(motion[2])
         g, square = self.carrier.gravity[0], motion[5] * motion[5]
+        self.pull[0][w], self.pull[1][w] = 0.0 - g * s, 0.0 - g * c
         during = ti.cast(dt, self.exact)
         for k in range(self.tanks):
             mass, y, z = self.rigid[k, MASS], self.rigid[k, CENTRE_Y], self.rigid[k, CENTRE_Z]
@@ -104,9 +106,12 @@ class LiquidMatter(Matter):
 
     @ti.func
     def swing(self, u, frame, kick, dt):
-        """Move the masses; returns that all is well."""
+        """Move the masses, and book what the tank's acceleration adds to the load; returns that all is well."""
         w = self.units.world(u)
         b, rate, up = ti.cast(frame[0], self.exact), ti.cast(frame[2], self.exact), ti.cast(frame[3], self.exact)
+        gains = ti.Vector([self.pull[0][w] - b, self.pull[1][w] - ti.cast(frame[1], self.exact), up])
+        for piece in range(self.load.pieces):
+            self.load.book_answer(u, piece, gains, dt)
         during, whole = ti.cast(kick, self.exact), ti.cast(dt, self.exact)
         sound = True
         for k in range(self.tanks):

@@ -7,6 +7,7 @@ import numpy as np
 from solvers.machine.limit import Limit
 from solvers.machine.state import State
 from solvers.motion.afloat import Afloat
+from solvers.motion.as_k import AsK
 from solvers.motion.axle import Axle, OnAxle
 from solvers.motion.prescribed import Prescribed
 from solvers.ship.vessel import Vessel
@@ -18,11 +19,12 @@ def steps_an_interval(vessels: Sequence[Vessel], interval: float | None, dt: flo
     return max(1, round((interval or min(vessel.interval for vessel in vessels)) / dt))
 
 
-def make_carrier(arrays: State, scene, dt: float) -> Prescribed | Afloat | OnAxle:
+def make_carrier(arrays: State, scene, dt: float) -> Prescribed | Afloat | AsK | OnAxle:
     """The carrier of a scene (`solvers.scene.Scene`) with steps of dt (s)."""
     if scene.vessels:
         every = steps_an_interval(scene.vessels, scene.interval, dt)
-        return Afloat(arrays, scene.vessels, scene.gravity, every, scene.water is not None)
+        kind = AsK if scene.vessels[0].handover else Afloat
+        return kind(arrays, scene.vessels, scene.gravity, every, scene.water is not None)
     if scene.axles:
         return OnAxle(arrays, scene.axles, scene.gravity, scene.tanks[0].thickness)
     return Prescribed(arrays, scene.motions, scene.soft_start, scene.gravity)

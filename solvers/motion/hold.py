@@ -69,10 +69,13 @@ class Hold:
         return found
 
     @ti.func
-    def inertia(self, w):
-        """The inertia `seen` (3, 3)."""
-        rows = [[self.seen[w, 3 * i + j] for j in ti.static(range(3))] for i in ti.static(range(3))]
-        return ti.Matrix(rows)
+    def answered(self, w, acceleration):
+        """What matters push against an acceleration of P (m/s², rad/s²), by the inertia `seen`."""
+        found = acceleration
+        for i in ti.static(range(3)):
+            pushed = self.seen[w, 3 * i] * acceleration[0] + self.seen[w, 3 * i + 1] * acceleration[1]
+            found[i] = pushed + self.seen[w, 3 * i + 2] * acceleration[2]
+        return found
 
     @ti.func
     def feel(self, w, gravity, pose, velocity, acceleration, share):

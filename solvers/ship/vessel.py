@@ -25,7 +25,8 @@ class Vessel:
     `release` (s). Until then it is heeled smoothly to `heel` (rad) about its axis, which moves only in heave, and only
     if the ship is free to heave. The ship has capsized when its roll leaves `limits` (rad), and floods when one of its
     `openings` (m, hull's frame) is below the local water surface. `height` (m) is that of the hull's origin when
-    upright, None: as the ship floats in equilibrium.
+    upright, None: as the ship floats in equilibrium. With a `handover` (s) she takes steps of that length with a load
+    that is extrapolated (`motion.as_k`); None: she answers to the load of each instant (`motion.afloat`).
     """
 
     ship: Ship
@@ -36,11 +37,14 @@ class Vessel:
     release: float = 0.0
     limits: tuple[float, float] = (-inf, inf)
     height: float | None = None
+    handover: float | None = None
     openings: tuple[tuple[float, float], ...] = ()
 
     @property
     def interval(self) -> float:
         """Longest interval (s) for the water's forces: set by the fastest state of the memory, at most 1 ms."""
+        if self.handover:
+            return self.handover
         memory = self.ship.radiation.memory
         fastest = 0.0 if memory is None else np.abs(np.linalg.eigvals(memory.matrix)).max()
         return min(LONGEST_INTERVAL, SHORTEST_MEMORY / max(fastest, 1e-9))
@@ -71,6 +75,24 @@ class Vessel:
         if inertia <= 0.0:
             raise Unavailable("the cargo has more moment of inertia than the whole ship; give her a larger one.")
         return replace(bare, inertia=inertia)
+
+    def refuse_light(self, hull: Body, late: np.ndarray) -> None:
+        """Raise Unavailable if a `hull` and water that answers her last acceleration, (3, 3), would drive each other.
+
+        Then an error of her acceleration grows from step to step, by the largest eigenvalue of M⁻¹ A.
+        """
+        free = np.array(self.ship.free)
+        own = replace(self.ship, body=hull).inertia(0.0)
+        way = np.eye(3)
+        arm = np.subtract(self.hold, self.ship.about)
+        way[0, 2], way[1, 2] = -arm[1], arm[0]
+        answer = (way.T @ late @ way)[np.ix_(free, free)]
+        growth = float(np.abs(np.linalg.eigvals(np.linalg.solve(own[np.ix_(free, free)], answer))).max(initial=0.0))
+        if growth > 1.0:
+            raise Unavailable(
+                f"the layer of water before the walls of her tanks is {growth:.2g} times as heavy as she is without "
+                'water, and the two would drive each other: take water.added_mass = "layer".'
+            )
 
     def whole(self, cargo: Body) -> Body:
         """Hull and cargo as one body."""

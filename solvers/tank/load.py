@@ -24,9 +24,12 @@ class Load:
 
     A matter that is `pressed` answers an acceleration a of the tank's origin (y, z, roll; tank's axes) at once, by the
     load F − A a. Its present load is F, that of a tank that is not accelerated, and A (about the origin) its `inertia`.
+    One that answers the acceleration of the last step has a `late` inertia (W, 3, 3), which is zero if none is known;
+    the carrier takes it on its own side if the load is `eased`.
     """
 
-    pressed = False
+    pressed = eased = False
+    late = None
 
     def __init__(self, arrays: Scope, units: Units, pieces: int, shares: np.ndarray | None = None, every: int = 1):
         self.units, self.pieces, self.answered = units, pieces, shares is not None
@@ -47,6 +50,10 @@ class Load:
         self.pressed = True
         piece = Axis("piece", self.pieces), Axis("entry", len(ENTRIES))
         (self.inertia,) = arrays.under("load").reals((self.units.axis, *piece), "inertia", kind=self.exact, kept=False)
+
+    def lag(self, late: np.ndarray, eased: bool) -> None:
+        """Have a `late` inertia (W, 3, 3), about the tank's origin, per metre of the carrier's length."""
+        self.late, self.eased = late, eased and len(late) > 0
 
     @ti.func
     def add_inertia(self, w, matrix: ti.template()):
@@ -80,6 +87,15 @@ class Load:
             self.impulse[k][u, piece] = self.impulse[k][u, piece] + pushed * dt
             if ti.static(self.answered):
                 self.instant[k][u, piece] = self.instant[k][u, piece] + pushed
+
+    @ti.func
+    def book_answer(self, u, piece, gains, dt):
+        """Add −A a of a unit's inertia on a piece, for an acceleration a of the tank's origin, to what is told."""
+        for i in ti.static(range(3)):
+            pushed = ti.cast(0.0, self.exact)
+            for j in ti.static(range(3)):
+                pushed += self.inertia[u, piece, 3 * i + j] * gains[j]
+            self.impulse[i][u, piece] = self.impulse[i][u, piece] - pushed * dt
 
     @ti.func
     def note(self, u, piece, load):

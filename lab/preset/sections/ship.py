@@ -81,6 +81,13 @@ class Ship:
         Point | None, Doc("The ship's point of reference in the hull's axes; the middle of the waterline without it.")
     ] = None
     freedom: Annotated[Literal[*FREEDOM], Doc("In which directions she is free to move.")] = "sway-heave-roll"
+    coupling: Annotated[
+        Literal["instant", "as_K"],
+        Doc("Whether she answers to the load of each instant, or takes steps with an extrapolated load, see `as_K`."),
+    ] = "instant"
+    coupling_step: Annotated[float, Unit("s"), Interval(ge=1e-4, le=0.1), Doc('Her step with coupling = "as_K".')] = (
+        0.01
+    )
     radiation: Annotated[Literal["memory", "at-frequency", "none"], Doc("How the waves that she makes act on her.")] = (
         "memory"
     )
@@ -117,7 +124,9 @@ class Ship:
         float,
         Unit("rad"),
         Interval(ge=0, le=0.5 * pi),
-        Doc("The cargo's angle of repose, used only in the curve of righting levers with relaxed cargo."),
+        Doc(
+            "The cargo's angle of repose, for the curve of righting levers with relaxed cargo and the IMSBC Code alone."
+        ),
     ] = radians(25.0)
     scale: Annotated[
         Annotated[float, Interval(gt=0)] | None,

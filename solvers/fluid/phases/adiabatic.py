@@ -8,6 +8,15 @@ FULL = 2.4 ** (1.0 / GAMMA) - 1.0  # excess of density at which p = ρ_a c², be
 HELD = (
     (1.0 + FULL) ** (GAMMA - 1.0) / (GAMMA - 1.0) + 1.0 / (1.0 + FULL) - GAMMA / (GAMMA - 1.0)
 ) / GAMMA  # energy there
+BORNE = 0.3  # of p_a: suction that air bears without being torn apart
+
+
+def background(density: float, sound: float) -> float:
+    """The pressure (Pa) that both phases bear besides, so that air may be under as much suction.
+
+    For air of a density (kg/m³) and a speed of sound (m/s). From 0.7 p_a on it would stir air at rest.
+    """
+    return BORNE * density * sound**2 / GAMMA
 
 
 class Adiabatic:

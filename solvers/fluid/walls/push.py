@@ -55,7 +55,7 @@ class WallPush:
             along = along * weight + spring
             more = along - pressure * weight
             if ti.static(c.two):
-                more = along - (pressure * weight) * (1.0 + gas * c.get("lean_of_speed"))
+                more = along - (pressure * weight) * (1.0 + gas)
             for a in ti.static(range(p.axes)):
                 own_push[a] += more * apart[a]
             if ti.static(self.poses.moving or self.bodies.moving):

@@ -175,6 +175,19 @@ def test_bad_tables_are_one_sentence(files, name, lines, words):
         assert words in error_of(read_stowed, files[name], read_holds(files["holds"], form))
 
 
+def test_ship_that_does_not_stand_is_told_so(files, tmp_path):
+    """G so high that no lever rights her: no list, no period of roll, all criteria missed; and weights too heavy."""
+    told = []
+    for mass, height in ((MASS, 14.0), (3 * MASS, KG)):
+        _write(files["weights"], ["name,mass,lcg,tcg,vcg", f"all,{mass},{LENGTH / 2},0,{height}"])
+        given = [str(files["hull"]), "--weights", str(files["weights"]), "--wind", "1500", "10", "--out", str(tmp_path)]
+        told.append(CliRunner().invoke(hull, given))
+    high, heavy = told
+    assert "none: she comes to rest nowhere" in high.output and "she has none" in high.output
+    assert "without a positive GM" in high.output and " pass" not in high.output
+    assert "does not float: it must be above 0 and below the 50640 t" in str(heavy.exception)
+
+
 def test_criteria_need_weights(files, tmp_path):
     told = error_of(examine, files["hull"], tmp_path, Asked(grain=files["grain"]))
     assert told == "--grain: needs --weights, by which she floats; give both."

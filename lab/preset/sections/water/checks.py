@@ -15,7 +15,6 @@ from lab.preset.units import needed, show
 
 MOST_PARTICLES = 20e6  # in a tank; what fits into the memory is checked as a scene is built
 MOST_GAUGES = 100
-COMPRESSED = 0.1  # most that water is compressed by its own weight, g H/c0²
 NEAR = 1e-3  # of the tank's larger side: how far a gauge may be from the wall that it is in
 
 
@@ -129,20 +128,20 @@ def _check_sound(preset: Whole) -> None:
     """Raise LabError for a speed of sound at which the water's own weight would compress it visibly."""
     head = preset.run.gravity * max(pool.depth for pool in pools(preset))
     sound = liquid.liquid(preset).sound_speed
-    if head > COMPRESSED * sound**2:
-        least = show((head / COMPRESSED) ** 0.5, "m/s")
+    if head > liquid.COMPRESSED * sound**2:
+        least = show((head / liquid.COMPRESSED) ** 0.5, "m/s")
         raise LabError(
             f"water.sound_speed: at {show(sound, 'm/s')} the water's weight would compress it by more than "
-            f"{100.0 * COMPRESSED:g} %; take at least {least}, better ten times the speed of the water."
+            f"{100.0 * liquid.COMPRESSED:g} %; take at least {least}, better ten times the speed of the water."
         )
 
 
 def _check_background(preset: Whole) -> None:
     """Raise LabError for a background pressure at a free surface, or one that compresses the water visibly."""
-    pressure, sound = preset.water.background_pressure, liquid.liquid(preset).sound_speed
+    pressure, sound = preset.water.background_pressure or 0.0, liquid.liquid(preset).sound_speed
     if pressure and not (preset.water.full or preset.air):
         raise LabError("water.background_pressure: goes with water.full or [air]; a free surface would be blown apart.")
-    most = COMPRESSED * preset.water.density * sound**2
+    most = liquid.COMPRESSED * preset.water.density * sound**2
     if pressure > most:
         raise LabError(
             f"water.background_pressure: {show(pressure, 'Pa')} is more than a tenth of ρ c² at "

@@ -18,8 +18,10 @@ from lab.preset.sections.water.schemes import SCHEMES, Scheme
 from lab.preset.sections.water.section import Gauge, Water
 from lab.preset.sections.water.tanks import Tanked, pools
 from solvers.fluid import given
+from solvers.fluid.phases.adiabatic import background
 from solvers.fluid.walls.layers import edge_of
 
+COMPRESSED = 0.1  # most that water may be compressed by its own weight, g H/c0², or by a background pressure
 FRONT = 2.0  # √(gH): the front of a column that collapses (Ritter 1892)
 
 
@@ -54,12 +56,13 @@ def liquid(preset: Wet) -> given.Water:
         kinematic=water.kinematic_viscosity or 0.0,
         slip=water.slip,
         full=water.full,
-        background=water.background_pressure,
+        background=background_pressure(preset, scheme),
         shifting=water.shifting,
         speed=expected_speed(preset),
         start=water.start,
         model=water.model,
         swing_damping=water.swing_damping,
+        added_mass=water.added_mass,
         gauges=tuple(given.Gauge(gauge.place, gauge.length, gauge.response) for gauge in pressure.values()),
         levels=tuple(given.Level(gauge.y) for gauge in level.values()),
         edges=tuple(_edge(gauge, preset.tank) for gauge in force.values()),
@@ -79,6 +82,14 @@ def _air(preset: Wet, scheme: Scheme) -> given.Air:
         vent=air.vent_area / preset.thickness,
         interface=air.interface,
     )
+
+
+def background_pressure(preset: Wet, scheme: Scheme) -> float:
+    """The pressure (Pa) that both phases bear besides: as given, or what the air needs and the water can bear."""
+    water, air, sound = preset.water, preset.air, sound_speed(preset, scheme)
+    if water.background_pressure is not None or air is None:
+        return water.background_pressure or 0.0
+    return min(background(air.density, sound_of_air(air, sound)), COMPRESSED * water.density * sound**2)
 
 
 def parted(gauges: dict[str, Gauge]) -> tuple[dict[str, Gauge], dict[str, Gauge], dict[str, Gauge]]:

@@ -36,6 +36,13 @@ class Water:
     swing_damping: Annotated[
         float, Interval(ge=0, le=1), Doc('Damping of each wave, a fraction of the critical, for model = "linear".')
     ] = 0.0
+    added_mass: Annotated[
+        Literal["none", "layer"],
+        Doc(
+            "Whether a ship has the mass of the layer of water before her tanks' walls on her own side: for water that "
+            "is far heavier than she is."
+        ),
+    ] = "none"
     region: Annotated[
         Annotated[tuple[tuple[float, float], ...], Unit("m")] | None,
         Doc("Corners, y and z each, of the part of the tank that is filled with water, in place of `depth`."),
@@ -78,11 +85,12 @@ class Water:
     slip: Annotated[bool, Doc("Whether water slides along walls; else it sticks to them.")] = True
     full: Annotated[bool, Doc("Whether the water fills the whole tank, so that walls may pull at it.")] = False
     background_pressure: Annotated[
-        float,
-        Unit("Pa"),
-        Interval(ge=0),
-        Doc("Pressure that water in a full tank, or water and air, bear besides, so that nothing is torn apart."),
-    ] = 0.0
+        Annotated[float, Unit("Pa"), Interval(ge=0)] | None,
+        Doc(
+            "Pressure that water in a full tank, or water and air, bear besides, so that suction tears nothing apart; "
+            "without it 0.3 of the air's own pressure, and none where there is no air."
+        ),
+    ] = None
     shifting: Annotated[Literal[*SHIFTING], Doc("How particles are shifted to even their distances.")] = "none"
     start: Annotated[
         Literal[*STARTS],

@@ -5,7 +5,7 @@ import pytest
 
 from solvers.fluid.checks import residual
 from solvers.fluid.given import EXCESS, GAS, VELOCITY_Z, VOLUME, Air, Water, Y, Z
-from solvers.fluid.phases.adiabatic import Adiabatic
+from solvers.fluid.phases.adiabatic import Adiabatic, background
 from solvers.fluid.start.air import air_above, air_round, with_air
 from solvers.fluid.start.rest import at_rest
 from solvers.motion import Sway, Tilt
@@ -20,7 +20,7 @@ WIDTH, HEIGHT, SPACING, SOUND = 0.4, 0.3, 0.01, 14.0  # m, m, m, m/s
 def filled(region: np.ndarray | None = None, level: float = 0.15, **changes) -> Scene:
     """A closed box with water up to a level (m) or in a region, the rest of it with air."""
     outline, air = box(WIDTH, HEIGHT), Air(sound_speed=changes.pop("air_sound", SOUND))
-    water = Water(SPACING, SOUND, air=air)
+    water = Water(SPACING, SOUND, background=background(air.density, air.sound_speed), air=air)
     if region is None:
         drops = with_air(at_rest(outline, level, water, GRAVITY), air_above(outline, level, water, GRAVITY))
     else:

@@ -1,0 +1,64 @@
+"""What walls' dummies answer at once to an acceleration of their tank: the mass of the layer of water before them."""
+
+from itertools import pairwise
+
+import numpy as np
+
+from solvers.fluid.given import EXCESS, VOLUME, Water, Y, Z
+from solvers.fluid.kernels import KERNELS
+from solvers.fluid.walls.behind import Behind
+from solvers.motion.carrier import per_slab
+
+TINY = 1e-6  # of a smoothing length: half the step of a difference
+
+
+def answer_at_rest(scene, behind: Behind) -> np.ndarray:
+    """A (W, 3, 3) of the load F − A a of water as it lies at the start of a scene, per metre of its ships' lengths.
+
+    a is the acceleration of the tanks' origin (y, z, roll). A dummy w feels it by p_w = … − q_w·a_w with q_w = Σ m_f W
+    (r_w − r_f)/Σ V_f W (see `Extrapolation`), and loads the wall by p_w g_w, g_w = V_w Σ V_f (−W'/r)(r_w − r_f). So
+
+        A = Σ_w (g_w; r_w × g_w) ⊗ (q_w; r_w × q_w),
+
+    exactly (own derivation): some 0.3 ρ h S of a wetted side S. Not clipped: at rest all dummies that see water push.
+    """
+    found = np.zeros((len(scene.vessels), 3, 3))
+    if not len(found):
+        return found
+    factor, ends = per_slab(scene), np.cumsum([0, *scene.fills])
+    for w in range(len(found)):
+        for tank, (first, end) in enumerate(pairwise(ends)):
+            own = (behind.tanks == tank) & (behind.volumes > 0.0)
+            if end > first:
+                of_tank = _answer(scene.water, scene.drops[w, first:end], behind.points[own], behind.volumes[own])
+                found[w] += factor[w, first] * of_tank
+    return found
+
+
+def _answer(water: Water, drops: np.ndarray, points: np.ndarray, volumes: np.ndarray) -> np.ndarray:
+    """A (3, 3) of the dummies of a tank at `points` (n, 2) m, per metre of slab."""
+    from scipy.spatial import cKDTree  # slow to import
+
+    pairs = cKDTree(points).sparse_distance_matrix(cKDTree(drops[:, [Y, Z]]), water.reach, output_type="ndarray")
+    w, f, away = pairs["i"], pairs["j"], pairs["v"]
+    kernel, step = KERNELS[water.kernel], TINY * water.length
+    near = np.minimum(away + step, water.reach), np.maximum(away - step, 0.0)
+    value = kernel.printed(away, water.length)
+    steep = (kernel.printed(near[1], water.length) - kernel.printed(near[0], water.length)) / (near[0] - near[1]) / away
+    way, volume = points[w] - drops[f][:, [Y, Z]], drops[f, VOLUME]
+    heavy = water.density * (1.0 + drops[f, EXCESS]) * volume
+    seen = np.maximum(np.bincount(w, volume * value, len(points)), 1e-30)
+    lever = _summed(w, (heavy * value)[:, None] * way, len(points)) / seen[:, None]
+    push = _summed(w, (volume * steep)[:, None] * way, len(points)) * volumes[:, None]
+    return _turning(points, push).T @ _turning(points, lever)
+
+
+def _summed(owner: np.ndarray, values: np.ndarray, count: int) -> np.ndarray:
+    """Sums (count, 2) of vectors (n, 2) by their owners."""
+    return np.stack([np.bincount(owner, values[:, axis], count) for axis in range(2)], axis=1)
+
+
+def _turning(points: np.ndarray, vectors: np.ndarray) -> np.ndarray:
+    """Vectors (n, 2) with their moments about the origin, (n, 3)."""
+    moment = points[:, 0] * vectors[:, 1] - points[:, 1] * vectors[:, 0]
+    return np.concatenate([vectors, moment[:, None]], axis=1)

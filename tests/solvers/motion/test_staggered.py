@@ -1,0 +1,69 @@
+"""Ways to couple a ship with what is in her tanks: load of the instant, extrapolated load, mass on her own side."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from solvers.machine.errors import Unavailable
+from solvers.motion.staggered import growth
+from solvers.ship.body import Body
+from solvers.ship.motion import Radiation
+from solvers.simulation import Simulation
+from tests.solvers.motion.test_water_aboard import ADDED, DAMPED, DEEP, LENGTH, WIDE, aboard, roll, ship
+
+LITTLE = 0.05  # of her length: a tank whose water as_K bears
+
+
+def of_mass(water: float, **changes):
+    """The barge, with a hull of that many kg/m as far as her water says, and no added mass."""
+    vessel = ship(release=0.05, **changes)
+    own = Body(1000.0 * 0.5 * WIDE * DEEP / water, (0.0, 0.05), 20.0 * 0.5 * WIDE * DEEP / water)
+    return replace(vessel, ship=replace(vessel.ship, body=own, radiation=Radiation(0.0 * ADDED, 0.2 * DAMPED)))
+
+
+def little(handover: float | None, model: str = "linear"):
+    """A short tank with linear water in a ship that rolls freely."""
+    return replace(aboard(ship(release=0.05, handover=handover), model, step=1e-3), length=LITTLE * LENGTH)
+
+
+def test_an_extrapolated_load_is_of_second_order():
+    """Against the load of each instant the error falls by four as the ship's step is halved."""
+    _, exact = roll(little(None), 2.0)
+    errors = [np.abs(roll(little(step), 2.0)[1] - exact).max() / np.abs(exact).max() for step in (0.02, 0.01, 0.005)]
+    assert errors[0] < 0.06
+    assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.15)
+    assert errors[1] / errors[2] == pytest.approx(4.0, rel=0.15)
+
+
+def test_an_extrapolated_load_drives_a_light_ship_as_predicted():
+    """A ship that heaves with rigid contents diverges by the factor of `growth` from each of her steps to the next."""
+    vessel, handover = ship(release=0.05, heel=0.02, handover=0.005), 0.005
+    vessel = replace(vessel, ship=replace(vessel.ship, free=(False, True, False)))
+    scene = aboard(vessel, "frozen", step=1e-3)
+    inertia = vessel.ship.body.mass + ADDED[1, 1]
+    run = Simulation(scene, threads=1, arch="cpu")
+    run.advance(round(0.35 / run.dt))
+    speed = []
+    for _ in range(18):
+        run.advance(round(handover / run.dt))
+        speed.append(run.observe()["pose_rate"][0, 1])
+    run.close()
+    factors = np.abs(np.array(speed[1:]) / np.array(speed[:-1]))
+    assert factors[-3:] == pytest.approx(growth(1000.0 * 0.5 * WIDE * DEEP / inertia), rel=0.01)
+
+
+def test_water_far_heavier_than_the_ship_is_refused_or_eased():
+    """Explicit coupling is refused in one sentence; with the layer's mass on her own side she rolls and stays whole."""
+    with pytest.raises(Unavailable, match=r'times as heavy as she is.*take water\.added_mass = "layer"'):
+        roll(aboard(of_mass(100.0)), 0.1)
+    time, found = roll(aboard(of_mass(100.0), added_mass="layer"), 0.6)
+    assert time[-1] == pytest.approx(0.6, abs=0.02)
+    assert np.abs(found).max() < 0.03
+
+
+def test_the_mass_of_the_layer_changes_nothing_that_is_seen():
+    """Where both couplings are stable she rolls the same."""
+    (_, plain), (_, eased) = roll(aboard(of_mass(1.0)), 0.6), roll(aboard(of_mass(1.0), added_mass="layer"), 0.6)
+    assert np.ptp(plain) > 0.02
+    assert eased == pytest.approx(plain, abs=0.01 * np.ptp(plain))
