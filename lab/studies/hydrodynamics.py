@@ -85,7 +85,7 @@ def _frequencies(preset: Preset, table: Hydrodynamics) -> np.ndarray:
 
 
 def _haskind(table: Hydrodynamics, highest: float) -> dict[str, float]:
-    """The largest difference of both excitations of each mode, of its size, where it is strong, up to `highest` rad/s."""
+    """The largest difference of both excitations, of their size, where it is strong, up to `highest` rad/s."""
     table = table.at(table.frequency[table.frequency <= highest])
     size = np.abs(table.excitation)
     strong = size > STRONG * size.max(axis=0)
