@@ -30,7 +30,7 @@ def test_lewis_writes_a_hull_that_the_lab_reads(tmp_path):
         ({"plane": 0.7}, "give either KB or the waterplane coefficient"),
         ({"depth": 9.0}, "--depth: must be more than the draught"),
         ({"breadth": -1.0}, "--breadth: must be above 0"),
-        ({"block": 0.99}, "must be below that of the midship section"),
+        ({"block": 0.999}, "must be below that of the midship section"),
     ],
 )
 def test_what_no_lewis_hull_has_is_told(changes, words, tmp_path):
