@@ -5,12 +5,12 @@ from pathlib import Path
 
 import numpy as np
 
+from lab.assembly.offsets import read_offsets, rows_of, text_of
 from lab.base.errors import LabError
 from lab.measures.naval_levers import draw_levers
 from lab.naval import sheet, tables
 from lab.naval.compartments import read_holds
 from lab.naval.loaded import Loaded, Wind
-from lab.naval.offsets import read_offsets, rows_of, text_of
 from lab.naval.points import read_points
 from lab.naval.stowed import Stowed, read_stowed
 from lab.naval.surface import read_surface

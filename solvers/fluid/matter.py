@@ -77,18 +77,15 @@ class WaterMatter(Matter):
         pool = Pool.of(scene, setting.walls, self.order)
         owner = np.full(p.dry * lanes, OF_NONE)
         owner[dummy] = np.where(behind.tanks == pool.first, behind.edges, OF_NONE)
-        self.edges = Edges(arrays, medium, water.edges, owner, tank.thickness)
+        self.edges = Edges(arrays, medium, self.extrapolation, water.edges, owner, tank.thickness)
         self.census = Census(arrays, p, self.constants, setting.carrier, pool, water.levels)
         self.start, self.thickness = np.full(worlds, np.nan), tank.thickness  # J, energy at the first look; m
         mass = water.density * scene.drops[..., VOLUME].sum(axis=1).max() * tank.thickness
         self.least = 0.5 * mass * (LEAST * water.sound_speed) ** 2  # J
         self.before, self.between = self._before(), (Phase(self.note_passage),)
-        self.after = (
-            Phase(self.mover.kick, units),
-            *([Phase(Closing(arrays, medium, behind, dummy).close, units)] if p.dry else ()),
-            Phase(self.continuity.expand, units),
-            Phase(self.finish, units),
-        )
+        closing = [Closing(arrays, medium, behind, dummy).close] if p.dry else []
+        acts = self.mover.kick, *closing, self.continuity.expand, self.finish
+        self.after = tuple(Phase(act, units) for act in acts)
 
     def _before(self) -> tuple[Phase, ...]:
         return (

@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
+from lab.assembly.offsets import from_offsets
 from lab.assembly.scene import vessels
 from lab.cli.naval import hull
 from lab.naval import sheet
 from lab.naval.compartments import read_holds
 from lab.naval.condition import condition
 from lab.naval.loaded import Loaded, Wind
-from lab.naval.offsets import from_offsets
 from lab.naval.points import read_points
 from lab.naval.stowed import Stowed, read_stowed
 from lab.naval.weights import Weights
