@@ -22,7 +22,7 @@ from solvers.ship.potential.radiation import Hydrodynamics
 from solvers.ship.section import Section
 from solvers.ship.vessel import Vessel
 from solvers.ship.water import Water
-from solvers.ship.waves import Waves, jonswap, packet, pierson_moskowitz, random_sea, regular
+from solvers.ship.waves import Waves, jonswap, packet, pierson_moskowitz, random_sea, regular, white
 
 SLOWEST, FASTEST, FREQUENCIES = 0.08, 3.5, 48  # range of the hydrodynamic table in √(g/draught), and its length
 MEMORY_ORDER = 8  # states per mode
@@ -39,6 +39,8 @@ def make_waves(given: seas.Waves | None, water: Water) -> Waves | None:
         return packet(given.amplitude, frequency, given.spread, water, given.time)
     if given.kind == "jonswap":
         density = jonswap(given.height, frequency, given.peakedness)
+    elif given.kind == "white":
+        density = white(given.height, frequency, given.spread)
     else:
         density = pierson_moskowitz(given.height, frequency)
     return random_sea(density, frequency, water, given.seed, start)

@@ -82,6 +82,7 @@ KINDS = {
     "cycles": "standard error of a mean over cycles, from their scatter",
     "halves": "half the difference between the two halves of the time looked at",
     "resolution": "half the distance to the next value that the samples can tell apart",
+    "spectral": "standard error of a ratio of spectra, from their coherence and the number of segments",
     "creep": "how far the bed still moves where the number is read",
 }
 

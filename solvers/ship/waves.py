@@ -107,6 +107,12 @@ def jonswap(height: float, frequency: float, peakedness: float = 3.3) -> Callabl
     return lambda omega: factor * developed(omega) * shape(omega)
 
 
+def white(height: float, frequency: float, spread: float) -> Callable[[np.ndarray], np.ndarray]:
+    """Spectrum S(ω) (m² s) of white noise between frequency ± spread (rad/s), ∫S dω = H_s²/16."""
+    level = height**2 / 16.0 / (2.0 * spread)
+    return lambda omega: np.where(np.abs(omega - frequency) <= spread, level, 0.0)
+
+
 def random_sea(
     density: Callable[[np.ndarray], np.ndarray],
     frequency: float,

@@ -19,6 +19,7 @@ NEEDS = {
     "packet": ("amplitude", "spread", "time"),
     "jonswap": ("height",),
     "pierson-moskowitz": ("height",),
+    "white": ("height", "spread"),
 }
 
 
@@ -60,6 +61,8 @@ def check_ship(ship: Ship | None, waves: Waves | None, moves: bool, hold: Tank) 
     for name in NEEDS[waves.kind]:
         if getattr(waves, name) is None:
             raise LabError(f'waves.{name}: missing; waves.kind = "{waves.kind}" needs it.')
+    if waves.kind == "white" and waves.spread > 0.5 * waves.frequency:
+        raise LabError("waves.spread: of white noise is at most half of waves.frequency; make it smaller.")
 
 
 def _check_hold_length(ship: Ship | None, length: float | None) -> None:
