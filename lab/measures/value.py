@@ -81,8 +81,8 @@ KINDS = {
     "averaging": "standard error of a mean over time, from the means of blocks of it",
     "cycles": "standard error of a mean over cycles, from their scatter",
     "halves": "half the difference between the two halves of the time looked at",
+    "coherence": "standard error of a transfer function, from its coherence and the number of independent pieces",
     "resolution": "half the distance to the next value that the samples can tell apart",
-    "spectral": "standard error of a ratio of spectra, from their coherence and the number of segments",
     "creep": "how far the bed still moves where the number is read",
 }
 

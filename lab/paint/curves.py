@@ -11,6 +11,7 @@ from lab.paint.water.gauges import hues_of
 
 MOST_SAMPLES = 800  # points per curve of the plot
 MOST_PLOTS = 2
+BODY = 0.05  # of its size: a body that goes less far has no plot
 TOLERANCE = 1e-9  # poses that differ by less (m, rad) count as equal
 
 
@@ -44,7 +45,7 @@ def plots(beds: Sequence[Bed], hues: Sequence[tuple], series: Sequence[tuple] = 
     of_gauges = _of_gauges(wet, hue, series) if wet else []
     carried = any(bed.footage.sea or bed.footage.rail for bed in beds)
     moved = [_of_motion(beds, hues)] if not wet or carried else []
-    return (moved + of_gauges)[:MOST_PLOTS] or [_of_the_centre(wet, hue)]
+    return (moved + of_gauges)[:MOST_PLOTS] or [_of_a_body(wet, hue) or _of_the_centre(wet, hue)]
 
 
 def _of_motion(beds: Sequence[Bed], hues: Sequence[tuple]) -> Plot:
@@ -86,6 +87,24 @@ def _of_gauges(beds: Sequence[Bed], hue: Mapping[Bed, tuple], series: Sequence[t
                 plot.add(bed, scale * _measured(bed, quantity)[:, 0], hue.get(bed, palette.LINE))
         found.append(plot)
     return found
+
+
+def _of_a_body(beds: Sequence[Bed], hue: Mapping[Bed, tuple]) -> Plot | None:
+    """The way of the first solid body in the water that moves, along the axis on which it goes farther."""
+    for number, (name, line) in enumerate(beds[0].footage.parts.items()):
+        way = np.ptp(beds[0].footage.part[:, beds[0].world, number], axis=0)
+        if len(line) < 4 or not np.allclose(line[0], line[-1]) or way.max() < BODY * np.ptp(line, axis=0).max():
+            continue
+        axis = int(np.argmax(way))
+        factor, unit = (1.0, "m") if way.max() >= 1.0 else (1e3, "mm")
+        plot = Plot(("time (s)", f"{name} Δ{'yz'[axis]} ({unit})"))
+        for bed in reversed(beds):
+            moved = bed.footage.part[:, bed.world, number, axis]
+            plot.curves.append((bed.footage.time, factor * (moved - moved[0])))
+            plot.colours.append(hue.get(bed, palette.LINE))
+            plot.samples.append(bed.footage.time)
+        return plot
+    return None
 
 
 def _of_the_centre(beds: Sequence[Bed], hue: Mapping[Bed, tuple]) -> Plot:

@@ -3,6 +3,7 @@
 import taichi as ti
 
 from solvers.fluid.lists import Medium
+from solvers.fluid.walls.sliding import Sliding
 from solvers.machine.state import State
 from solvers.motion.poses import AT_MIDDLE
 from solvers.space.axes import dot
@@ -15,28 +16,30 @@ class Continuity:
     Of two phases, the second sum is over the own phase, and pairs of both have the weight of `solvers.fluid.phases`.
 
     `lost` (units,) J is the energy that diffusion has taken: −Σ m_i p_i/ρ_i² times its share of the rate (Antuono,
-    Marrone, Colagrossi & Bouscasse 2015, eq. 22). The momentum that shifts carry is summed up over the same pairs.
+    Marrone, Colagrossi & Bouscasse 2015, eq. 22). What images of water take, see `Sliding`, goes to
+    `held` (units,) J. The momentum that shifts carry is summed up over the same pairs.
     """
 
-    def __init__(self, arrays: State, medium: Medium):
+    def __init__(self, arrays: State, medium: Medium, sliding: Sliding, held: ti.Field):
         self.units, self.particles, self.shares = medium.units, medium.particles, medium.shares
         self.lists, self.constants, self.poses = medium.lists, medium.constants, medium.poses
-        own = arrays.under("water.continuity")
+        own, self.sliding, self.held = arrays.under("water.continuity"), sliding, held
         (self.lost,) = own.reals((medium.units.axis,), "lost", kind=own.exact)
 
     @ti.func
     def expand(self, u, frame, kick, dt):
         """The rates of density of a unit's particles in the middle of the step; returns that all is well."""
         first, end = self.shares.wet(u)
-        lost = ti.cast(0.0, self.particles.exact)
+        spent = ti.Vector([ti.cast(0.0, self.particles.exact) for _ in ti.static(range(2))])
         for b in range(first, end):
-            lost += self.lists.order.weight(b) * self.expand_block(u, b, b - first)
-        self.lost[u] = self.lost[u] + lost * ti.cast(dt, self.particles.exact)
+            spent += self.lists.order.weight(b) * self.expand_block(u, b, b - first)
+        self.lost[u] = self.lost[u] + spent[0] * ti.cast(dt, self.particles.exact)
+        self.held[u] = self.held[u] + spent[1] * ti.cast(dt, self.particles.exact)
         return True
 
     @ti.func
     def expand_block(self, u, b, listed):
-        """As `expand`, for a block; returns the power (W/m) that diffusion takes."""
+        """As `expand`, for a block; returns the powers (W/m) that diffusion takes, and images of water."""
         p, c = self.particles, self.constants
         lists = self.lists
         w = self.units.world(u)
@@ -47,7 +50,7 @@ class Continuity:
         s, shrink = p.load(p.excess, b), c.get("shrink")
         gas = p.gases(b)
         rest = [c.of("hydrostatic", gas) * self.down(w, a) for a in ti.static(range(p.axes))]
-        opened, evened, walled = p.zeros(), p.zeros(), p.zeros()
+        opened, evened, walled, given = p.zeros(), p.zeros(), p.zeros(), p.zeros()
         carried = [p.zeros() for _ in ti.static(range(p.axes))]
         shift = [p.zeros() for _ in ti.static(range(p.axes))]
         if ti.static(c.shifting.carries):
@@ -91,8 +94,11 @@ class Continuity:
                 weight = p.volume[jb, lane] * c.kernel.slope(ti.max(1.0 - ti.sqrt(dot(apart, apart)) * shrink, 0.0))
                 nearing = [p.velocity[a][jb, lane] - speed[a] for a in ti.static(range(p.axes))]
                 walled += weight * dot(nearing, apart)
-        if ti.static(c.two):  # a wall is to air as water is, see `solvers.fluid.phases.interfaces`
-            walled *= 1.0 + gas * c.get("lean_of_speed")
+                if ti.static(self.sliding.acts):
+                    given += weight * self.sliding.given(jb, lane, apart)
+        given *= gas
+        if ti.static(c.two):  # air meets its mirror image at walls, see `solvers.fluid.phases.interfaces`
+            walled = walled * (1.0 + gas) + given
         factor = c.get("slope")
         evened *= factor * c.of("spread", gas)
         p.store(p.rate, b, (1.0 + s) * (factor * opened) + evened)
@@ -101,15 +107,18 @@ class Continuity:
             flux = p.load(p.volume, b) * (factor * c.get("density"))
             for a in ti.static(range(p.axes)):
                 p.store(p.carried[a], b, flux * carried[a])
+        spent = ti.Vector([ti.cast(0.0, p.exact) for _ in ti.static(range(2))])
         if ti.static(c.two):
-            taken = evened * p.load(p.pressure, b) * p.load(p.mass, b) / ((1.0 + s) * (1.0 + s) * c.of("density", gas))
-            return 0.0 - ti.cast(taken.sum(), p.exact)
+            room = p.load(p.pressure, b) * p.load(p.mass, b) / ((1.0 + s) * (1.0 + s) * c.of("density", gas))
+            spent[0] = 0.0 - ti.cast((evened * room).sum(), p.exact)
+            spent[1] = 0.0 - ti.cast((given * (factor * (1.0 + s)) * room).sum(), p.exact)
         else:
             share = c.state.share(s)
             if ti.static(c.pressed):
                 share += p.filled(b) * (c.get("background") / c.get("stiffness"))
             taken = evened * share * p.load(p.mass, b) / ((1.0 + s) * (1.0 + s))
-            return 0.0 - ti.cast(taken.sum() * (c.get("stiffness") / c.get("density")), p.exact)
+            spent[0] = 0.0 - ti.cast(taken.sum() * (c.get("stiffness") / c.get("density")), p.exact)
+        return spent
 
     @ti.func
     def tank_speed(self, w, axis: ti.template()):

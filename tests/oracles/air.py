@@ -68,16 +68,29 @@ class PlainBoth(PlainWater):
         found = (weight * lever).sum(axis=1) / np.maximum(weight.sum(axis=1), 1e-30)
         return found if gas else np.maximum(found, 0.0)
 
+    def image(self, r, u, volume):
+        """What air sees of dummies: the flow of water along their walls, by its share and the weight of the pair."""
+        apart, _, value, _ = self.between(self.wall, r)
+        seen, water = value * volume, value * volume * (1.0 - self.gas)
+        inward = (seen[..., None] * apart).sum(axis=1)
+        across = inward / np.maximum(np.linalg.norm(inward, axis=1), 1e-30)[:, None]
+        flow = (water @ u) / np.maximum(water.sum(axis=1), 1e-30)[:, None]
+        flow = flow - (flow * across).sum(axis=1)[:, None] * across
+        share = water.sum(axis=1) / np.maximum(seen.sum(axis=1), 1e-30)
+        return ((1.0 + self.lean) * share)[:, None] * flow
+
     def push(self, r, u, s, mass):
         """Accelerations without gravity, renormalised gradients of s within a phase, and the walls' forces."""
         volume, pressure, same = self.volume(mass, s), self.pressure(s), self.other == 0.0
+        self.flow = self.image(r, u, volume)
         apart, square, _, gradient = self.between(r, r)
         between = pressure[:, None] + pressure + self.lean * self.other * (pressure[:, None] - pressure)
         pi = ((u[None] - u[:, None]) * apart).sum(axis=2) / (square + 1e-6 * self.water.length**2)
         pairs = (self.strength * pi - between) * volume[:, None] * volume
         force = (pairs[..., None] * gradient).sum(axis=1)
-        _, _, _, at_wall = self.between(r, self.wall)
-        seen = np.where(self.gas[:, None] > 0.5, pressure[:, None], self.wall_pressure(r, mass, s, 0.0)[None])
+        to_wall, _, _, at_wall = self.between(r, self.wall)
+        heavier = pressure[:, None] + (mass / volume)[:, None] * (to_wall @ self.gravity)
+        seen = np.where(self.gas[:, None] > 0.5, heavier, self.wall_pressure(r, mass, s, 0.0)[None])
         own = np.where(self.gas > 0.5, pressure, np.maximum(pressure, 0.0))
         walls = -(((own[:, None] + seen) * volume[:, None] * self.wall_volume)[..., None] * at_wall).sum(axis=1)
         matrix = np.einsum("ij,j,ija,ijb->iab", same, volume, apart, gradient)
@@ -102,8 +115,9 @@ class PlainBoth(PlainWater):
         apart, _, _, gradient = self.between(r, r)
         flow = ((1.0 + self.lean * self.other) * ((u[None] - u[:, None]) * gradient).sum(axis=2)) @ volume
         _, _, _, at_wall = self.between(r, self.wall)
-        walled = (-u[:, None] * at_wall).sum(axis=2) @ self.wall_volume
+        gas = self.gas[:, None, None]
+        walled = ((gas * self.flow - (1.0 + gas) * u[:, None]) * at_wall).sum(axis=2) @ self.wall_volume
         more = 2.0 * (s[None] - s[:, None]) - ((slope[:, None] + slope[None]) * apart).sum(axis=2)
         eta = -kernel(np.linalg.norm(apart, axis=2), water.length)[1]
         evened = water.delta * water.length * self.sound * ((same * more * eta) @ volume)
-        return evened - (1.0 + s) * flow, -(1.0 + s) * (1.0 + self.lean * self.gas) * walled
+        return evened - (1.0 + s) * flow, -(1.0 + s) * walled

@@ -13,6 +13,7 @@ from lab.preset.units import quoted
 
 WORDS = {name: taken_of(Video)[name].words for name in ("frame", "theme", "overlay", "inset", "cargo")}
 SMALLEST, LARGEST = (180, 180), (7680, 4320)  # pixels
+LONG = 5.5  # width over height of a tank whose surface is shown larger
 LEAST_SIDE = 320  # pixels, of the longer side
 MOVES = 1e-6  # m, rad: a tank that moves by less stands still
 
@@ -29,7 +30,7 @@ class Look:
     cargo: str | None = None
     theme: str = "light"
     overlay: str = "none"
-    inset: str = "none"
+    inset: str | None = None
 
 
 def choose_look(footage: Footage, **options: object) -> Look:
@@ -42,6 +43,8 @@ def choose_look(footage: Footage, **options: object) -> Look:
     if look.frame is None:
         moves = np.ptp(footage.pose, axis=0).max() > MOVES
         look = replace(look, frame="earth" if moves else "tank")
+    if look.inset is None:
+        look = replace(look, inset="surface" if _is_flume(footage) else "none")
     _check_size(look)
     if look.colour not in words:
         raise LabError(f"Unknown colour '{quoted(str(look.colour))[1:-1]}': choose one of {', '.join(words)}.")
@@ -52,6 +55,12 @@ def choose_look(footage: Footage, **options: object) -> Look:
     if not isinstance(look.speed, int | float) or not 0 < look.speed < math.inf:
         raise LabError(f"The playback speed {quoted(look.speed)} cannot be used: choose one above 0.")
     return look
+
+
+def _is_flume(footage: Footage) -> bool:
+    """Whether a recording is of one long low tank ashore with water."""
+    wide, high = np.ptp(footage.outline, axis=0)
+    return bool(footage.water and not footage.sea and footage.worlds == 1 and wide > LONG * high)
 
 
 def _check_size(look: Look) -> None:

@@ -15,6 +15,7 @@ from lab.paint.scenery.stage import Stage
 
 SHARE = 0.3  # of the tank's width that is shown
 OUTSIDE = 0.08  # of the part's size that may lie outside the tank
+TALL = 0.75  # of the inset's height: a long low tank is shown as large
 LARGER = 1.6  # times the stage's scale at least
 HALF = 0.08  # half thickness in u of the frames around the part and its picture
 
@@ -39,7 +40,8 @@ class Inset:
         if middle is None:
             return None
         box = layout["inset"]
-        width = SHARE * float(np.ptp(bed.footage.outline[:, 0]))
+        wide, high = np.ptp(bed.footage.outline, axis=0)
+        width = float(min(SHARE * wide, high / TALL * (box[2] - box[0]) / (box[3] - box[1])))
         scale = max((box[2] - box[0]) / width, LARGER * stage.cameras[0].scale)
         size = np.array([box[2] - box[0], box[3] - box[1]]) / scale
         return cls(stage, _moved_inside(middle, size, bed.footage.outline), box, scale, layout.unit)
@@ -75,15 +77,19 @@ def _moved_inside(middle: np.ndarray, size: np.ndarray, outline: np.ndarray) -> 
 
 
 def _liveliest(bed: Bed) -> np.ndarray | None:
-    """Where grains at the surface move most over the whole film, in the tank's axes; None without grains."""
-    if bed.empty:
+    """Where grains, or the water, move most over the whole film, in the tank's axes; None if it is empty."""
+    if bed.empty and bed.footage.water is None:
         return None
     frames = [frame for _, frame in spread([bed], 25)]
-    speeds = np.array([bed.speed(frame) for frame in frames])
-    last = bed.position(frames[int(np.nanargmax(np.nanpercentile(speeds, 95.0, axis=1)))])
-    row = np.nanargmax(np.nanpercentile(speeds, 95.0, axis=1))
+    speeds = [_speed(bed, frame) for frame in frames]
+    row = int(np.nanargmax([np.nanpercentile(speed, 95.0) for speed in speeds]))
+    place = bed.water_place(frames[row]) if bed.empty else bed.position(frames[row])
     fast = speeds[row] >= np.nanpercentile(speeds[row], 90.0)
-    return np.nanmedian(last[fast], axis=0)
+    return np.nanmedian(place[fast], axis=0)
+
+
+def _speed(bed: Bed, frame: int) -> np.ndarray:
+    return np.hypot(*bed.drops("water_velocity", frame).T) if bed.empty else bed.speed(frame)
 
 
 def _hardest_hit(bed: Bed) -> np.ndarray | None:

@@ -12,6 +12,7 @@ from lab.paint.colours import Colouring
 from lab.paint.painter import Camera, paint_grains, to_discs
 from lab.paint.water.air import BY_ITSELF, colouring_of_air, paint_air
 from lab.paint.water.colours import field
+from lab.paint.water.foam import foam, ramp
 from lab.paint.water.grid import Grid, sampled
 from lab.paint.water.surface import Paints, paint_surface
 
@@ -19,15 +20,12 @@ if TYPE_CHECKING:
     from lab.paint.footage import Bed
     from lab.paint.water.basins import Basin
 
-LIT, DEEP, EDGE, FOAM = (118, 178, 222), (44, 106, 168), (22, 72, 124), (208, 228, 243)
+LIT, DEEP, EDGE, FOAM = (118, 178, 222), (44, 106, 168), (22, 72, 124), (222, 238, 248)
 SPRAY = (150, 196, 230)  # of drops in the air, which foam would let vanish before the empty tank
 FIELD_EDGE = (40, 46, 56)  # of the line around a field
 LINE = 0.085  # thickness of the line along the surface, in units of a page
 STRONG = 0.85  # of that line
 WITHIN, APART = 0.62, 0.46  # levels at a particle: above, it is part of the surface; below, it is a drop of its own
-FOAMING = 0.7, 0.5  # levels at a particle between which foam begins and is full
-FAST = 0.2, 0.6  # speeds over that of a fall through the tank's height between which foam begins and is full
-GRAVITY = 9.81  # m/s², for the speed of that fall
 DISC = 0.46  # radius of a particle painted as a disc, over the distance of the particles
 
 
@@ -81,9 +79,10 @@ class WaterLayer:
             share = np.clip(np.nan_to_num(self.colouring.shares(bed, frame)[there]), 0.0, 1.0)
             colour = self.colouring.colours(bed, frame)[there]
         else:
-            share = _foam(bed, frame, reached, there)
-            colour = np.array(LIT) + _ramp(reached, (WITHIN, APART))[:, None] * (np.array(SPRAY) - LIT)
-        apart = np.sqrt(_ramp(reached, (WITHIN, APART)))
+            velocity, pool = bed.drops("water_velocity", frame)[there], bed.footage.water
+            share = foam(place, velocity, reached, pool.spacing, float(np.ptp(basin.outline[:, 1])))
+            colour = np.array(LIT) + ramp(reached, (WITHIN, APART))[:, None] * (np.array(SPRAY) - LIT)
+        apart = np.sqrt(ramp(reached, (WITHIN, APART)))
         drops = apart > 0.0
         _paint_discs(picture, camera, place[drops], (apart * np.sqrt(volume / np.pi))[drops], colour[drops])
         paint_surface(picture, camera, grid, level, _toned(grid, sums, place, volume, share), self._paints(under))
@@ -105,18 +104,6 @@ class WaterLayer:
 def _paint_discs(picture: np.ndarray, camera: Camera, place: np.ndarray, size: np.ndarray, colour: np.ndarray) -> None:
     """Paint discs (n) of these radii (m) and colours (n, 3), without marks."""
     paint_grains(picture, to_discs(camera, place, size, np.zeros(len(place))), colour, colour)
-
-
-def _foam(bed: Bed, frame: int, reached: np.ndarray, there: np.ndarray) -> np.ndarray:
-    """How far each particle (n,) is foam, 0 to 1: fast, and with few neighbours."""
-    speed = np.hypot(*bed.drops("water_velocity", frame)[there].T)
-    fall = np.sqrt(2.0 * GRAVITY * np.ptp(bed.footage.outline[:, 1]))
-    return _ramp(reached, FOAMING) * _ramp(speed / fall, FAST)
-
-
-def _ramp(value: np.ndarray, ends: tuple[float, float]) -> np.ndarray:
-    """0 at the first end, 1 at the second, linear between them."""
-    return np.clip((value - ends[0]) / (ends[1] - ends[0]), 0.0, 1.0)
 
 
 def _toned(grid: Grid, sums: np.ndarray, place: np.ndarray, volume: np.ndarray, share: np.ndarray) -> np.ndarray:

@@ -28,16 +28,24 @@ def vorticity(place: np.ndarray, velocity: np.ndarray, spacing: float) -> np.nda
     if not len(there):
         return found
     reach = max(REACH * spacing, FINEST * float(np.ptp(place[there], axis=0).max()))
-    cell = np.floor((place[there] - place[there].min(axis=0)) / reach).astype(int) + 1
+    order, number, starts, columns = in_cells(place[there], reach)
+    turning = np.zeros(len(there))
+    sorted_state = np.column_stack([place[there], velocity[there]])[order]
+    _curl(turning, np.ascontiguousarray(sorted_state), number, starts, columns, reach)
+    found[there[order]] = turning
+    return found
+
+
+def in_cells(place: np.ndarray, reach: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, int]:
+    """The order of places (n, 2) m by square cells of side `reach` (m), the cell of each in that order, the first of
+    each cell, and the number of columns of cells; the outermost cells are empty.
+    """
+    cell = np.floor((place - place.min(axis=0)) / reach).astype(int) + 1
     columns, rows = cell.max(axis=0) + 2
     number = cell[:, 1] * columns + cell[:, 0]
     order = np.argsort(number, kind="stable")
     starts = np.searchsorted(number[order], np.arange(columns * rows + 1)).astype(np.int32)
-    turning = np.zeros(len(there))
-    sorted_state = np.column_stack([place[there], velocity[there]])[order]
-    _curl(turning, np.ascontiguousarray(sorted_state), number[order].astype(np.int32), starts, int(columns), reach)
-    found[there[order]] = turning
-    return found
+    return order, number[order].astype(np.int32), starts, int(columns)
 
 
 @ti.kernel

@@ -70,9 +70,12 @@ class Video:
         Doc("What is drawn over the grains: nothing, the ways that they have come, or the forces between them."),
     ] = "none"
     inset: Annotated[
-        Literal["none", "surface", "impact"],
-        Doc("What is shown larger beside the tank: nothing, the surface where it flows, or the gauge that is hit."),
-    ] = "none"
+        Literal["none", "surface", "impact"] | None,
+        Doc(
+            "What is shown larger beside the tank: nothing, the surface where it flows, or the gauge that is hit. "
+            "By default the surface in a long low tank."
+        ),
+    ] = None
     speed: Annotated[float, Interval(gt=0), Doc("Playback speed; 1 is as in nature.")] = 1.0
 
 

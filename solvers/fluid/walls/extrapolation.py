@@ -3,6 +3,7 @@
 import taichi as ti
 
 from solvers.fluid.lists import Medium
+from solvers.fluid.walls.sliding import Sliding
 from solvers.machine.state import Axis, State
 from solvers.motion.poses import AT_START
 from solvers.space.axes import dot, named
@@ -29,6 +30,7 @@ class Extrapolation:
         self.lists, self.constants, self.poses = medium.lists, medium.constants, medium.poses
         self.bodies = medium.lists.bodies
         self.sticks = medium.constants.viscous and not medium.constants.slip
+        self.sliding = Sliding(arrays, medium)
         if self.sticks:
             own = arrays.under("water")
             p = self.particles
@@ -55,6 +57,7 @@ class Extrapolation:
         airy, pressed_by_air = p.zeros(), p.zeros()  # of two phases, what of both is the air's
         lever_of_air = [p.zeros() for _ in ti.static(range(p.axes))]
         moved = [p.zeros() for _ in ti.static(range(p.axes))]
+        flow, inward = [p.zeros() for _ in ti.static(range(p.axes))], [p.zeros() for _ in ti.static(range(p.axes))]
         for k in range(begin, end):
             j = self.lists.facing.slots[u, k]
             jb, lane = self.lists.block_of(j), self.lists.lane_of(j)
@@ -70,7 +73,10 @@ class Extrapolation:
                 pressed_by_air += weight * (volume * p.gas[jb, lane] * p.pressure[jb, lane])
                 for a in ti.static(range(p.axes)):
                     lever_of_air[a] += (massive * p.gas[jb, lane]) * apart[a]
+                    inward[a] = inward[a] - (weight * volume) * apart[a]
                 weight *= 1.0 - p.gas[jb, lane]
+                for a in ti.static(range(p.axes)):
+                    flow[a] += weight * (volume * p.velocity[a][jb, lane])
                 massive *= 1.0 - p.gas[jb, lane]
             seen += weight * volume
             pressed += weight * (volume * p.pressure[jb, lane])
@@ -89,6 +95,8 @@ class Extrapolation:
                 pressure = ti.max(pressure, 0.0)
             p.store(p.pressure, b, ti.select(wet > SEEN, pressure, p.zeros()))
         p.store(p.span, b, wet)
+        if ti.static(self.sliding.acts):
+            self.sliding.note(b, seen, flow, inward)
         if ti.static(self.sticks):
             for a in ti.static(range(p.axes)):
                 mean = moved[a] / ti.max(seen + airy, 1e-30)

@@ -10,7 +10,9 @@ from lab.paint.curves import MOST_SAMPLES, plots
 from lab.paint.film import Film, choose_look
 from lab.paint.painter import Camera
 from lab.paint.water.colours import FIELDS, field
+from lab.paint.water.foam import foam, trapped
 from lab.paint.water.gauges import hues_of
+from lab.paint.water.grid import REACH
 from lab.paint.water.layer import DEEP, LIT, SPRAY, WaterLayer
 from lab.paint.water.vorticity import vorticity
 from solvers.fluid.given import Gauge, Level
@@ -345,6 +347,60 @@ def test_beds_in_one_film_have_their_own_hues_and_one_scale():
 def test_without_gauges_the_shift_of_the_water_is_drawn():
     (plot,) = plots([still().bed], [palette.INK])
     assert plot.labels[1] == "shift Δy (mm)"
+
+
+def test_the_way_of_a_body_in_the_water_is_drawn():
+    made = still()
+    made.time = np.array([0.0, 1.0])
+    square = 0.1 * np.array([[0, 0], [1, 0], [1, 1], [0, 1], [0, 0]])
+    made.parts = {"gate": np.array([[0.2, 0.0], [0.2, 0.3]]), "square": square}
+    made.part = np.zeros((2, 1, 2, 2))
+    made.part[1, 0] = (0.0, 0.4), (0.01, -0.05)
+    (plot,) = plots([made.bed], [palette.INK])
+    assert plot.labels[1] == "square Δz (mm)"
+    assert plot.curves[0][1] == pytest.approx([0.0, -50.0])
+    made.part[1, 0, 1] = (1e-4, 0.0)  # as good as fixed
+    assert plots([made.bed], [palette.INK])[0].labels[1] == "shift Δy (mm)"
+
+
+def test_air_is_trapped_where_water_meets_and_not_where_it_moves_as_one_or_parts():
+    """Of two particles I is 2 |v| (1 − r/R) as they meet, and 0 as they part (Ihmsen 2012, eq. 2)."""
+    place = np.array([[0.0, 0.0], [SPACING, 0.0], [1.0, 0.0]])
+    towards = np.array([[1.0, 0.0], [-2.0, 0.0], [5.0, 5.0]])
+    near = 1.0 - 1.0 / REACH
+    assert trapped(place, towards, SPACING) == pytest.approx([6.0 * near, 6.0 * near, 0.0])
+    assert trapped(place, -towards, SPACING) == pytest.approx(0.0, abs=1e-12)
+    across = np.array([[0.0, 1.0], [0.0, -2.0], [0.0, 0.0]])
+    assert trapped(place, across, SPACING) == pytest.approx([3.0 * near, 3.0 * near, 0.0])
+    alike = np.tile([3.0, 4.0], (3, 1))
+    assert not trapped(place, alike, SPACING).any()
+
+
+def test_a_breaking_surface_foams_and_a_gravity_wave_does_not():
+    place = filled(lambda p: p[:, 1] < DEPTH, tank(), SPACING, rough=0.1)
+    surface = DEPTH - place[:, 1] < 3.0 * SPACING
+    jostled = np.where(surface[:, None], np.random.default_rng(0).normal(0.0, 1.0, place.shape), 0.0)
+    level = np.where(surface, 0.8, 1.0)
+    assert foam(place, jostled, level, SPACING, 0.5)[surface].mean() > 0.3
+    assert not foam(place, jostled, level, SPACING, 0.5)[~surface].any()
+    wave = standing_wave()
+    for frame in range(len(wave.time)):
+        velocity, at = wave.velocity[frame], wave.place[frame]
+        assert foam(at, velocity, np.full(len(at), 0.8), wave.spacing, float(np.ptp(wave.outline[:, 1]))).max() < 0.1
+
+
+def test_a_long_low_tank_shows_its_surface_larger_unless_told_otherwise():
+    flume = np.array([[-1.0, 0.0], [1.0, 0.0], [1.0, 0.2], [-1.0, 0.2]])
+    place = filled(lambda p: p[:, 1] < 0.1, flume, 0.02)
+    made = footage(place, flume, velocity=np.where(np.abs(place[:, :1] - 0.4) < 0.1, 1.0, 0.0), spacing=0.02)
+    film = Film([made.bed], choose_look(made, width=640, height=360))
+    left, top, right, bottom = film.layout["inset"]
+    part = film.picture(0)[top + 4 : bottom - 4, left + 4 : right - 4].astype(int)
+    blue = (part[..., 2] - part[..., 0] > 60).mean()
+    assert 0.25 < blue < 0.5  # the water is half of the tank, which is three quarters of the inset
+    assert film._inset.middle[0] == pytest.approx(0.4, abs=0.05)
+    assert choose_look(made, width=640, height=360, inset="none").inset == "none"
+    assert choose_look(still(), width=640, height=360).inset == "none"
 
 
 def test_a_level_outside_of_the_tank_and_a_tank_that_is_small_do_no_harm():

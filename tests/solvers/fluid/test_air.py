@@ -5,7 +5,7 @@ import pytest
 
 from solvers.fluid.given import EXCESS, GAS, VELOCITY_Y, VELOCITY_Z, Gauge, Level
 from solvers.simulation import Simulation
-from tests.oracles.air import PlainBoth, both
+from tests.oracles.air import PlainBoth, both, filled
 from tests.oracles.water import GRAVITY
 
 WIDTH, HEIGHT, DEPTH, ROWS = 0.32, 0.32, 0.16, 8
@@ -92,6 +92,26 @@ def test_water_rests_under_air():
     middle = 0.5 * (state["water_place"][0, :, 1].max() + state["air_place"][0, :, 1].min())
     assert abs(middle - DEPTH) < 0.5 * spacing
     assert state["air_place"].shape[1] == gas.sum()
+
+
+def test_closed_air_follows_water_and_walls():
+    """Water flies at closed air and takes a fifth of it: the pressures of both sides follow p V^1.4 to 1 %."""
+    made, long = scene(background=40.0), 0.5 * (HEIGHT - 0.08)
+    spacing, sound = made.water.spacing, made.water.air.sound_speed
+    places = (np.indices((round(WIDTH / spacing), round(HEIGHT / spacing))).reshape(2, -1).T + 0.5) * spacing
+    places[:, 0] -= 0.5 * WIDTH
+    made.drops = filled(places, (np.abs(places[:, 1] - 0.5 * HEIGHT) > 0.04).astype(float), spacing**2)
+    high, at_rest = made.drops[0, :, 1], 1.2 * sound**2 / 1.4
+    made.drops[0, :, VELOCITY_Z] = 0.18 * np.minimum(1.0, np.minimum(high, HEIGHT - high) / long)
+    made.gravity = 0.0
+    run = Simulation(made, threads=1, arch="cpu")
+    upper = high[made.drops[0, :, GAS] > 0.5] > 0.5 * HEIGHT
+    run.advance(200)
+    rows, pressure = run.observe(), run.snapshot()["air_pressure"][0]
+    way = rows["water_centre"][0, 1] - 0.5 * HEIGHT
+    assert 0.1 * long < way < 0.3 * long
+    for part, side in ((upper, 1.0), (~upper, -1.0)):
+        assert 1.0 + pressure[part].mean() / at_rest == pytest.approx((1.0 - side * way / long) ** -1.4, rel=0.01)
 
 
 @pytest.mark.slow

@@ -15,7 +15,6 @@ from lab.preset.units import needed, show
 
 MOST_PARTICLES = 20e6  # in a tank; what fits into the memory is checked as a scene is built
 MOST_GAUGES = 100
-COMPRESSED = 0.1  # most that water is compressed by its own weight, g H/c0²
 NEAR = 1e-3  # of the tank's larger side: how far a gauge may be from the wall that it is in
 
 
@@ -24,6 +23,9 @@ class Whole(liquid.Wet):
 
     grains: object | None
     ship: object | None
+
+
+COMPRESSED = 0.1  # most that water is compressed by its own weight, g H/c0²
 
 
 def check_water(preset: Whole) -> None:
@@ -139,7 +141,7 @@ def _check_sound(preset: Whole) -> None:
 
 def _check_background(preset: Whole) -> None:
     """Raise LabError for a background pressure at a free surface, or one that compresses the water visibly."""
-    pressure, sound = preset.water.background_pressure, liquid.liquid(preset).sound_speed
+    pressure, sound = preset.water.background_pressure or 0.0, liquid.liquid(preset).sound_speed
     if pressure and not (preset.water.full or preset.air):
         raise LabError("water.background_pressure: goes with water.full or [air]; a free surface would be blown apart.")
     most = COMPRESSED * preset.water.density * sound**2

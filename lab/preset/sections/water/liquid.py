@@ -3,6 +3,7 @@
 These need the tank, gravity and the motions, so that they are functions of whole presets.
 """
 
+from dataclasses import replace
 from math import sqrt
 from typing import Protocol
 
@@ -18,6 +19,7 @@ from lab.preset.sections.water.schemes import SCHEMES, Scheme
 from lab.preset.sections.water.section import Gauge, Water
 from lab.preset.sections.water.tanks import Tanked, pools
 from solvers.fluid import given
+from solvers.fluid.phases.adiabatic import background
 from solvers.fluid.walls.layers import edge_of
 
 FRONT = 2.0  # √(gH): the front of a column that collapses (Ritter 1892)
@@ -40,7 +42,7 @@ def liquid(preset: Wet) -> given.Water:
     """The water of a preset as the solver takes it."""
     water, scheme = preset.water, SCHEMES[preset.water.scheme]
     pressure, level, force = parted(preset.gauges)
-    return given.Water(
+    made = given.Water(
         spacing=spacing(preset),
         sound_speed=sound_speed(preset, scheme),
         density=water.density,
@@ -54,7 +56,7 @@ def liquid(preset: Wet) -> given.Water:
         kinematic=water.kinematic_viscosity or 0.0,
         slip=water.slip,
         full=water.full,
-        background=water.background_pressure,
+        background=water.background_pressure or 0.0,
         shifting=water.shifting,
         speed=expected_speed(preset),
         start=water.start,
@@ -66,6 +68,9 @@ def liquid(preset: Wet) -> given.Water:
         edges=tuple(_edge(gauge, preset.tank) for gauge in force.values()),
         air=_air(preset, scheme) if preset.air is not None else None,
     )
+    if made.air is not None and water.background_pressure is None:
+        made = replace(made, background=background(made.air, made))
+    return made
 
 
 def _air(preset: Wet, scheme: Scheme) -> given.Air:

@@ -85,11 +85,12 @@ class Water:
     slip: Annotated[bool, Doc("Whether water slides along walls; else it sticks to them.")] = True
     full: Annotated[bool, Doc("Whether the water fills the whole tank, so that walls may pull at it.")] = False
     background_pressure: Annotated[
-        float,
-        Unit("Pa"),
-        Interval(ge=0),
-        Doc("Pressure that water in a full tank, or water and air, bear besides, so that nothing is torn apart."),
-    ] = 0.0
+        Annotated[float, Unit("Pa"), Interval(ge=0)] | None,
+        Doc(
+            "Pressure that water in a full tank, or water and air, bear besides, so that suction tears nothing apart; "
+            "without it 0.3 of the air's own pressure, and none where there is no air."
+        ),
+    ] = None
     shifting: Annotated[Literal[*SHIFTING], Doc("How particles are shifted to even their distances.")] = "none"
     start: Annotated[
         Literal[*STARTS],

@@ -1,8 +1,9 @@
 """Water and air: a still tank, the wave between them, air in a closed column, and what pairs of both must keep."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.integrate import quad
 
 from lab.studies.case import Case, Found, Line
 from lab.studies.verify.water.scenes import (
@@ -19,11 +20,11 @@ from lab.studies.verify.water.scenes import (
     swing,
 )
 from solvers.fluid.given import EXCESS, GAS, VOLUME, Air, Water, Y, Z
+from solvers.fluid.phases.adiabatic import GAMMA, background
 from solvers.fluid.start.air import air_above, with_air
 from solvers.fluid.start.rest import at_rest
 from solvers.scene import Scene
 from solvers.simulation import Simulation
-from solvers.tank.parts import Body
 
 SECTION = "Water and air"
 WIDTH, DEPTH, HEIGHT = 0.3, 0.15, 0.3  # m, of the still tank
@@ -31,14 +32,19 @@ REST, ROWS = 20.0, (8, 16)  # s, layers
 K = np.pi  # 1/m, of the wave in a box of 1 m, half filled with 1 m of water
 WAVED, STEEP, VISCOSITY = (20, 40), 0.03, np.sqrt(G) / 500.0  # layers; k times the largest rise; m²/s
 PERIODS, A_PERIOD = 5.0, 20
-COLUMN, PRESSED, POOL = 0.15, 0.03, 0.05  # m: height of the closed air, how much of it a piston takes, the water below
-SQUEEZE = 0.3  # s, how long the piston moves
+COLUMN, PRESSED, POOL = 0.15, 0.03, 0.05  # m: length of each cushion of air, how much of it is taken, the water between
+CUSHIONS = (8, 16, 32)  # particles over its length
 REAL = 343.0  # m/s
 
 
 def of_both(water: Water, outline: np.ndarray, depth: float) -> Scene:
     """A closed tank with a depth (m) of water and air over it, at rest."""
     return scene(water, with_air(at_rest(outline, depth, water, G), air_above(outline, depth, water, G))[None], outline)
+
+
+def bearing(water: Water) -> Water:
+    """A water with the background pressure that presets have."""
+    return replace(water, background=background(water.air, water))
 
 
 def rested(rows: int, duration: float) -> tuple[float, float, float]:
@@ -48,7 +54,7 @@ def rested(rows: int, duration: float) -> tuple[float, float, float]:
     half of the time (s).
     """
     sound = 10.0 * np.sqrt(G * DEPTH)
-    water = Water(DEPTH / rows, sound, air=Air(sound_speed=sound))
+    water = bearing(Water(DEPTH / rows, sound, air=Air(sound_speed=sound)))
     off, pressed, bins = [], [], np.linspace(-0.5 * WIDTH, 0.5 * WIDTH, max(2, rows // 2))
     with simulated(of_both(water, box(WIDTH, HEIGHT), DEPTH)) as run:
         for time in looks(run, np.arange(1.0, duration + 0.5)):
@@ -106,7 +112,7 @@ class Between:
         """The oscillation of the mode's momentum, from a level surface, with so many layers of each fluid."""
         spacing, sound = 1.0 / rows, 10.0 * np.sqrt(G)
         alpha = 8.0 * VISCOSITY / (2.0 * spacing * sound)
-        water = Water(spacing, sound, alpha=alpha, air=Air(self.density, sound, alpha))
+        water = bearing(Water(spacing, sound, alpha=alpha, air=Air(self.density, sound, alpha)))
         made = of_both(water, box(1.0, 2.0), 1.0)
         set_going(made.drops, lambda place: STEEP / K * self.rate * mode(place))
         times, found = np.arange(1, round(PERIODS * A_PERIOD)) * 2.0 * np.pi / (self.rate * A_PERIOD), []
@@ -147,36 +153,91 @@ def waves(fast: bool) -> Found:
     return Found(lines, notes=notes)
 
 
-def squeezed(sound: float, rows: int) -> tuple[float, float]:
-    """Mean pressure (Pa) of a closed column of air after a piston took a fifth of it, and that of p V^1.4."""
-    spacing, width = COLUMN / rows, 8.0 * COLUMN / rows
-    of_water = max(10.0 * np.sqrt(G * POOL), sound / 7.4)
-    water = Water(spacing, of_water, air=Air(sound_speed=sound, alpha=0.1))
-    top, outline = POOL + COLUMN, box(width, POOL + 1.3 * COLUMN)
-    closed = box(width, top)
-    drops = with_air(at_rest(closed, POOL, water, G), air_above(closed, POOL, water, G))[None]
-    speed = 1.5 * PRESSED / SQUEEZE
-    lid = Body(
-        ((-0.6 * width, top), (0.6 * width, top)), (0.0, -PRESSED), speed=speed, acceleration=4.5 * PRESSED / SQUEEZE**2
-    )
-    with simulated(scene(water, drops, outline, parts=(lid,))) as run:
-        list(looks(run, [SQUEEZE + 0.1]))
-        found, start = [], run.time
-        for _ in looks(run, start + np.arange(1, 11) * 0.02):
-            found.append(run.observe()["air_mean_pressure"][0])
-    at_rest_pressure = 1.2 * sound**2 / 1.4
-    return float(np.mean(found)), at_rest_pressure * ((COLUMN / (COLUMN - PRESSED)) ** 1.4 - 1.0)
+@dataclass(frozen=True)
+class Slug:
+    """Water between two cushions of air in a column with walls, without gravity, that squeezes one by a fifth.
+
+    Without losses d²x/dt² = −p_a [(L/(L − x))^1.4 − (L/(L + x))^1.4]/(ρ d): Bagnold's (1939) piston with air on both
+    sides. `sound` (m/s) of the air; `rows` particles over the length L of each cushion, of as many in its width.
+    """
+
+    sound: float
+    rows: int
+
+    @property
+    def spacing(self) -> float:
+        """Distance (m) of the particles."""
+        return COLUMN / self.rows
+
+    @property
+    def thick(self) -> float:
+        """How thick (m) the water is."""
+        return round(POOL / self.spacing) * self.spacing
+
+    @property
+    def at_rest(self) -> float:
+        """The pressure p_a (Pa) of the air at rest."""
+        return 1.2 * self.sound**2 / GAMMA
+
+    def excess(self, way: float) -> float:
+        """The difference (Pa) of both pressures where the water has gone a way (m)."""
+        return self.at_rest * ((COLUMN / (COLUMN - way)) ** GAMMA - (COLUMN / (COLUMN + way)) ** GAMMA)
+
+    def made(self) -> Scene:
+        """The water set going, and air that is squeezed evenly."""
+        of_water = max(10.0 * np.sqrt(G * POOL), self.sound / 7.4)
+        water = bearing(Water(self.spacing, of_water, air=Air(sound_speed=self.sound, alpha=0.1)))
+        high = 2.0 * COLUMN + self.thick
+        place = grid(COLUMN, high, self.spacing) - [0.5 * COLUMN, 0.0]
+        gas = (np.abs(place[:, 1] - 0.5 * high) > 0.5 * self.thick).astype(float)
+        order = np.argsort(gas, kind="stable")
+        drops = np.zeros((1, len(place), 7))
+        drops[0, :, [Y, Z]], drops[0, :, GAS], drops[..., VOLUME] = place[order].T, gas[order], self.spacing**2
+        speed = np.sqrt(2.0 * quad(self.excess, 0.0, PRESSED)[0] / (water.density * self.thick))
+        set_going(
+            drops, lambda at: np.outer(speed * np.minimum(1.0, np.minimum(at[:, 1], high - at[:, 1]) / COLUMN), UP)
+        )
+        return scene(water, drops, box(COLUMN, high), 0.0)
+
+    def squeezed(self) -> tuple[float, float, float]:
+        """p/p_a of the squeezed cushion, (V_0/V)^1.4, and the same of the other, where the water turns back.
+
+        The volumes follow from the water's centre and how much thinner it is, being squeezed itself.
+        """
+        made, found = self.made(), []
+        rate = np.sqrt(2.0 * GAMMA * self.at_rest / (COLUMN * made.water.density * self.thick))
+        upper = made.drops[0, made.drops[0, :, GAS] > 0.5, Z] > COLUMN
+        with simulated(made) as run:
+            for _ in looks(run, np.linspace(1.2, 2.0, 17) / rate):
+                state = run.snapshot()
+                pressure = state["air_pressure"][0]
+                way = state["water_place"][0][:, 1].mean() - COLUMN - 0.5 * self.thick
+                thinner = state["water_pressure"][0].mean() / (1000.0 * made.water.sound_speed**2) * self.thick
+                shares = [1.0 + pressure[part].mean() / self.at_rest for part in (upper, ~upper)]
+                volumes = [1.0 - (side * way - 0.5 * thinner) / COLUMN for side in (1.0, -1.0)]
+                found.append((way, *(share * volume**GAMMA for share, volume in zip(shares, volumes, strict=True))))
+        return max(found)
+
+
+UP = np.array([0.0, 1.0])
 
 
 def column(fast: bool) -> Found:
     """Closed air at a fifth less volume, for a slow and for the real speed of sound."""
-    lines = []
+    lines, notes, rows = [], [], CUSHIONS[:1] if fast else CUSHIONS
     for name, sound in (("equal", 10.0 * np.sqrt(G * POOL)), *(() if fast else (("real", REAL),))):
-        found, wanted = squeezed(sound, 8 if fast else 16)
-        share = 1.2 * sound**2 / 1.4
-        value, exact = (1.0 + pressure / share for pressure in (found, wanted))
-        lines.append(Line(f"p/p_a, {name} speed of sound", value, exact, "p V^1.4", 0.01, "1 % at a fifth less volume"))
-    return Found(lines)
+        found = [Slug(sound, count).squeezed() for count in rows]
+        way, squeezed, drawn = found[-1]
+        for what, value in (("squeezed", squeezed), ("drawn out", drawn)):
+            line = f"p V^1.4 of air that is {what}, of that at rest, {name} speed of sound"
+            lines.append(
+                Line(line, value, 1.0, "adiabatic", 0.01, f"1 % at {100.0 * way / COLUMN:.0f} % of the length")
+            )
+        shown = "; ".join(
+            f"{n}: {100 * (a - 1):+.2f}, {100 * (b - 1):+.2f} %" for n, (_, a, b) in zip(rows, found, strict=True)
+        )
+        notes.append(f"{name}, particles over the length: squeezed, drawn out: {shown}.")
+    return Found(lines, notes=notes)
 
 
 def balance(_: bool) -> Found:

@@ -1,11 +1,13 @@
 """Water and air in hard cases at the step that the lab derives: each runs to its end, keeps its water and its air."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from solvers.fluid.checks import residual
 from solvers.fluid.given import EXCESS, GAS, VELOCITY_Z, VOLUME, Air, Water, Y, Z
-from solvers.fluid.phases.adiabatic import Adiabatic
+from solvers.fluid.phases.adiabatic import Adiabatic, background
 from solvers.fluid.start.air import air_above, air_round, with_air
 from solvers.fluid.start.rest import at_rest
 from solvers.motion import Sway, Tilt
@@ -21,6 +23,7 @@ def filled(region: np.ndarray | None = None, level: float = 0.15, **changes) -> 
     """A closed box with water up to a level (m) or in a region, the rest of it with air."""
     outline, air = box(WIDTH, HEIGHT), Air(sound_speed=changes.pop("air_sound", SOUND))
     water = Water(SPACING, SOUND, air=air)
+    water = replace(water, background=background(air, water))
     if region is None:
         drops = with_air(at_rest(outline, level, water, GRAVITY), air_above(outline, level, water, GRAVITY))
     else:
