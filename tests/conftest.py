@@ -8,7 +8,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # numpy reads it when it is 
 import numpy as np
 import pytest
 
-from solvers.machine import runtime
+from solvers.machine import runtime, wide
 from solvers.simulation import Simulation
 
 ROUNDING = """stand in for a processor that rounds otherwise, in this process alone: strict compiles without fast-math;
@@ -29,6 +29,7 @@ def pytest_configure(config):
     if not config.getoption("--as-shipped"):
         merge = runtime.merge_repeats
         runtime.merge_repeats = lambda wanted: merge(False)
+        wide.pays = lambda: False  # they take twice as long to compile, too
     rounding = config.getoption("--rounding")
     if rounding == "strict":
         start = runtime._start

@@ -35,6 +35,7 @@ SHOWN = {  # pages that lie elsewhere, and the pages here that show them
     "renders/gallery/granular/granular": "results/granular",
     "renders/gallery/shapes/shapes": "results/shapes",
     "renders/gallery/ship/ship": "results/ship",
+    "renders/gallery/hydrodynamics/hydrodynamics": "results/hydrodynamics",
     "renders/gallery/water/water": "results/water",
 }
 

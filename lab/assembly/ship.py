@@ -6,6 +6,7 @@ from math import inf, pi, sqrt
 
 import numpy as np
 
+from lab.assembly.hull_tables import hull_table_of
 from lab.assembly.ship_tables import stored_table
 from lab.base.errors import LabError
 from lab.preset.sections import sea as seas
@@ -22,7 +23,7 @@ from solvers.ship.potential.radiation import Hydrodynamics
 from solvers.ship.section import Section
 from solvers.ship.vessel import Vessel
 from solvers.ship.water import Water
-from solvers.ship.waves import Waves, jonswap, packet, pierson_moskowitz, random_sea, regular
+from solvers.ship.waves import Waves, jonswap, packet, pierson_moskowitz, random_sea, regular, white_noise
 
 SLOWEST, FASTEST, FREQUENCIES = 0.08, 3.5, 48  # range of the hydrodynamic table in √(g/draught), and its length
 MEMORY_ORDER = 8  # states per mode
@@ -37,6 +38,8 @@ def make_waves(given: seas.Waves | None, water: Water) -> Waves | None:
         return regular(given.amplitude, frequency, water, start)
     if given.kind == "packet":
         return packet(given.amplitude, frequency, given.spread, water, given.time)
+    if given.kind == "white-noise":
+        return white_noise(given.height, frequency, given.spread, water, given.seed, start)
     if given.kind == "jonswap":
         density = jonswap(given.height, frequency, given.peakedness)
     else:
@@ -70,7 +73,7 @@ def _vessel(given: ships.Ship, water: Water, sea: seas.Waves | None, wet: Body) 
     if metacentric_height(section, body.loading, water) <= 0.0:
         raise LabError("ship.gravity_height: so high she does not float upright; lower it.")
     waves = make_waves(sea, water)
-    table = stored_table(section, water, given.heave, _frequencies(given, water, waves), about)
+    table = table_of(given, water, _frequencies(given, water, waves))
     load = Floating(section, water, about)
     if waves is not None:
         rest, scattered = (given.heave, 0.0), given.excitation == "diffraction"
@@ -139,7 +142,14 @@ def _with_rig(ship: Ship, given: ships.Rig) -> Ship:
 def hull_table(given: ships.Ship, sea: seas.Sea, gravity: float) -> Hydrodynamics:
     """The hull's coefficients in calm water, about her axis."""
     water = make_water(sea, gravity)
-    return stored_table(Section(given.corners), water, given.heave, _frequencies(given, water, None), given.about)
+    return table_of(given, water, _frequencies(given, water, None))
+
+
+def table_of(given: ships.Ship, water: Water, frequency: np.ndarray) -> Hydrodynamics:
+    """Coefficients per metre at frequencies (n,) rad/s, of her section or of her whole hull. Raises as those do."""
+    if given.hydrodynamics == "section":
+        return stored_table(Section(given.corners), water, given.heave, frequency, given.about)
+    return hull_table_of(given, water, frequency)
 
 
 def _frequencies(given: ships.Ship, water: Water, waves: Waves | None) -> np.ndarray:

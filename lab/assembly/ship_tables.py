@@ -1,13 +1,15 @@
-"""A cache of hydrodynamic tables, so that each section is solved only once.
+"""A cache of hydrodynamic tables, so that each section and each hull is solved only once.
 
 It is the folder `hydrodynamics` in the user's cache, or in the folder that CARGOLAB_CACHE names. A file that cannot be
 read counts as missing.
 """
 
 import hashlib
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from pathlib import Path
 from tempfile import NamedTemporaryFile
+from types import ModuleType
 
 import numpy as np
 
@@ -36,21 +38,27 @@ def stored_table(
     hull: Section, sea: Water, heave: float, frequency: np.ndarray, about: tuple[float, float]
 ) -> Hydrodynamics:
     """`hydrodynamics` of an upright section, from the cache if possible. Raises Unavailable as `hydrodynamics`."""
-    path = cache_folder() / "hydrodynamics" / f"{_key(hull, sea, heave, frequency, about)}.npz"
+    numbers = [sea.density, sea.depth, sea.gravity, heave, *about, PANELS]
+    values = hull.outline, np.array(numbers), np.asarray(frequency)
+    return kept(values, SOLVED_BY, lambda: hydrodynamics(hull, sea, heave, frequency, about=about, count=PANELS))
+
+
+def kept(values: Sequence[np.ndarray], solved_by: Sequence[ModuleType], make: Callable[[], Hydrodynamics]):
+    """The table that `make` solves for from `values` by the code of some modules, from the cache if it has it."""
+    path = cache_folder() / "hydrodynamics" / f"{_key(values, solved_by)}.npz"
     found = _load(path)
     if found is None:
-        found = hydrodynamics(hull, sea, heave, frequency, about=about, count=PANELS)
+        found = make()
         _save(path, found)
     return found
 
 
-def _key(hull: Section, sea: Water, heave: float, frequency: np.ndarray, about: tuple[float, float]) -> str:
+def _key(values: Sequence[np.ndarray], solved_by: Sequence[ModuleType]) -> str:
     digest = hashlib.blake2b(digest_size=16)
-    for module in SOLVED_BY:
+    for module in solved_by:
         digest.update(Path(module.__file__).read_bytes())
-    numbers = [sea.density, sea.depth, sea.gravity, heave, *about, PANELS]
-    for values in (hull.outline, np.array(numbers), np.asarray(frequency)):
-        digest.update(np.ascontiguousarray(values, dtype=float).tobytes())
+    for one in values:
+        digest.update(np.ascontiguousarray(one, dtype=float).tobytes())
     digest.update(FORMAT.encode())
     return digest.hexdigest()
 

@@ -5,7 +5,7 @@ import click
 from lab import __version__
 from lab.cli.benches import bench
 from lab.cli.errors import Commands
-from lab.cli.naval import hull, report, stability
+from lab.cli.naval import hull, hydrodynamics, lewis, report, stability
 from lab.cli.pictures import beside, poster, render, sheet, view
 from lab.cli.presets import schema
 from lab.cli.runs import explain, resume, run
@@ -36,6 +36,8 @@ for command in (
     explain,
     gallery,
     hull,
+    hydrodynamics,
+    lewis,
     list_presets,
     poster,
     render,

@@ -1,4 +1,4 @@
-"""The naval architect's commands: stability, hull, report."""
+"""The naval architect's commands: stability, hull, lewis, hydrodynamics, report."""
 
 from pathlib import Path
 
@@ -77,6 +77,49 @@ def hull(file: Path, out: Path | None, **asked) -> None:
 
     folder = out or Path("renders/hull") / file.stem
     click.echo(examine(file, folder, Asked(**asked)))
+    click.echo(folder)
+
+
+@click.command()
+@click.argument("file", type=click.Path(path_type=Path, dir_okay=False))
+@click.option("--length", type=float, required=True, help="Between perpendiculars, m.")
+@click.option("--breadth", type=float, required=True, help="Moulded, m.")
+@click.option("--draught", type=float, required=True, help="Even, m.")
+@click.option("--depth", type=float, required=True, help="From keel to deck, m.")
+@click.option("--block", type=float, required=True, help="Block coefficient.")
+@click.option("--kb", type=float, help="Centre of buoyancy above the keel, m; or --plane.")
+@click.option("--plane", type=float, help="Waterplane coefficient, in place of --kb.")
+@click.option("--midship", type=float, help="Midship coefficient; without it by Kerlen.")
+def lewis(file: Path, **particulars: float | None) -> None:
+    """Write a hull of Lewis sections with a ship's particulars to FILE, a CSV of offsets, where no lines are free.
+
+    \b
+    cargolab lewis s175.csv --length 175 --breadth 25.4 --draught 9.5 --depth 15.4 --block 0.569 --kb 5.207
+    cargolab hull s175.csv
+    """
+    from lab.naval.lewis import write_lewis
+
+    click.echo(write_lewis(file, particulars))
+
+
+@click.command()
+@click.argument("preset")
+@set_option
+@out_option("for tables and figures", "renders/hydrodynamics/PRESET")
+def hydrodynamics(preset: str, overrides: dict, out: Path | None) -> None:
+    """Compare the hydrodynamic coefficients of PRESET's ship: of her section, of strips, of her hull in space.
+
+    Added mass, damping and excitation in beam waves for each metre of her length, with the checks of Haskind and of
+    energy, and her roll by linear theory with the water in her tanks. In space with the extra ship3d.
+
+    \b
+    cargolab hydrodynamics ship/barge-two-tanks
+    """
+    from lab.preset.find import load
+    from lab.studies.hydrodynamics import compare
+
+    text, folder = compare(load(preset, overrides), out)
+    click.echo(text)
     click.echo(folder)
 
 

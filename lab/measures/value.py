@@ -81,6 +81,7 @@ KINDS = {
     "averaging": "standard error of a mean over time, from the means of blocks of it",
     "cycles": "standard error of a mean over cycles, from their scatter",
     "halves": "half the difference between the two halves of the time looked at",
+    "coherence": "standard error of a transfer function, from its coherence and the number of independent pieces",
     "resolution": "half the distance to the next value that the samples can tell apart",
     "creep": "how far the bed still moves where the number is read",
 }

@@ -15,6 +15,7 @@ from solvers.ship.naval.form import TONNE
 
 DIGITS = {"m": 3, "m rad": 4, "deg": 2, "1": 3}  # after the point
 
+NO_PERIOD = "The weather criterion was not judged: without a positive GM she has no period of roll."
 ASSUMED, AS_IT_LIES = "assumed shift", "as it lay farthest aside"
 
 
@@ -70,6 +71,8 @@ def unjudged(condition: Condition) -> Iterator[str]:
     """What could not be judged and why, a sentence each."""
     if condition.exposed is None:
         yield "The weather criterion was not judged: give stability.wind_area and stability.wind_lever."
+    if condition.exposed is not None and not condition.metacentric_height > 0.0:
+        yield NO_PERIOD
     if condition.cargo is None:
         yield "The Grain Code was not judged: there is no grain, or the preset says no level of it (grains.depth)."
     if condition.cargo is not None and trimming.unevenness_limit(condition.repose, 1.0) is not None:
@@ -89,7 +92,7 @@ def facts(condition: Condition) -> list[tuple[str, str]]:
         *_gravity(condition),
         ("deck edge under", degrees(condition.deck) if condition.deck else "no deck is given"),
         ("downflooding", degrees(condition.flooding) if condition.flooding else "no opening is given"),
-        ("levers vanish", degrees(condition.levers.vanishing, "beyond 90 deg")),
+        ("levers vanish", vanishing(condition.levers)),
     ]
     if condition.cargo is None:
         return rows
@@ -137,6 +140,13 @@ def shown(value: float, unit: str) -> str:
     if value == inf:
         return "none"
     return f"{value:.{DIGITS.get(unit, 3)}f}"
+
+
+def vanishing(levers: Levers) -> str:
+    """The angle of vanishing stability."""
+    if float(levers.at(levers.highest(0.0, float(levers.heel[-1])))) <= 0.0:
+        return "she has none"
+    return degrees(levers.vanishing, f"beyond {np.degrees(levers.heel[-1]):.0f} deg")
 
 
 def degrees(angle: float | None, never: str = "never") -> str:

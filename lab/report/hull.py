@@ -5,12 +5,12 @@ from pathlib import Path
 
 import numpy as np
 
+from lab.assembly.offsets import read_offsets, rows_of, text_of
 from lab.base.errors import LabError
 from lab.measures.naval_levers import draw_levers
 from lab.naval import sheet, tables
 from lab.naval.compartments import read_holds
 from lab.naval.loaded import Loaded, Wind
-from lab.naval.offsets import read_offsets, rows_of, text_of
 from lab.naval.points import read_points
 from lab.naval.stowed import Stowed, read_stowed
 from lab.naval.surface import read_surface
@@ -115,10 +115,10 @@ def _facts(ship: Loaded) -> list[str]:
         ("GM solid", f"{ship.solid:.3f} m"),
         ("free surfaces", f"{total.free_surface:.4g} t m / {total.mass:.5g} t = {rise:.3f} m"),
         ("GM fluid", f"{ship.metacentric_height:.3f} m"),
-        ("list", f"{sheet.degrees(ship.list, 'none: she comes to rest nowhere')} to starboard; judged to {ship.side}"),
+        ("list", f"{_list(ship.list)}; judged to {ship.side}"),
         ("deck edge under", sheet.degrees(ship.deck, "not up to 90 deg")),
         ("downflooding", sheet.degrees(ship.flooding, "not up to 90 deg") if ship.flooding else "no opening is given"),
-        ("levers vanish", sheet.degrees(ship.levers.vanishing, "beyond 90 deg")),
+        ("levers vanish", sheet.vanishing(ship.levers)),
     ]
     if ship.grain:
         moment = sum(hold.heeling for hold in ship.grain)
@@ -127,11 +127,20 @@ def _facts(ship: Loaded) -> list[str]:
     return [f"  {name:<{width}}  {text}" for name, text in facts]
 
 
+def _list(angle: float | None) -> str:
+    """A list (rad), positive starboard down."""
+    if angle is None:
+        return "none: she comes to rest nowhere"
+    return f"{sheet.degrees(abs(angle))} to {'port' if angle < 0.0 else 'starboard'}"
+
+
 def _unjudged(ship: Loaded) -> list[str]:
     """What was not judged and why, a sentence each."""
     lines = []
     if ship.wind is None:
         lines.append("The weather criterion was not judged: give --wind AREA LEVER.")
+    elif not ship.metacentric_height > 0.0:
+        lines.append(sheet.NO_PERIOD)
     if not ship.grain:
         lines.append("The Grain Code was not judged: give --grain CSV.")
     if ship.flooding is None:

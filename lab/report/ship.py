@@ -32,7 +32,7 @@ def describe(
     ship, body = vessel.ship, vessel.ship.body
     water, memory = ship.load.water, ship.radiation.memory
     height = metacentric_height(ship.load.section, body.loading, water)
-    floats = f"{body.mass:.4g} kg/m, GM {show(height, 'm')}, gyradius {show(body.gyradius, 'm')}"
+    floats = f"{body.mass:.4g} kg/m, GM solid {show(height, 'm')}, gyradius {show(body.gyradius, 'm')}"
     rows = [("empty", floats)]
     if slab is not None:
         thick = f"a slab {show(slab[0], 'm')} thick: its load counts {slab[1]:.4g} times a metre"
@@ -56,7 +56,9 @@ def describe(
         if angle is not None
     ]
     if slab is not None:
-        rows.append(("her cargo's repose", f"{show(given.repose, 'rad')}, in the curve of righting levers alone"))
+        rows.append(
+            ("her cargo's repose", f"{show(given.repose, 'rad')}, for righting levers and the IMSBC Code alone")
+        )
     if given.scale:
         rows.append((f"full scale 1:{given.scale:g}", _full_scale(given, waves)))
     return rows

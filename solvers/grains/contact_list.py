@@ -6,6 +6,7 @@ import taichi as ti
 from solvers.grains.laws.chosen import ChosenLaws
 from solvers.machine.state import Axis, State
 from solvers.machine.units import Units
+from solvers.machine.wide import enter, entry
 
 
 @ti.data_oriented
@@ -34,7 +35,8 @@ class ContactList:
         more: tuple[str, ...] = (),
         fleeting: tuple[str, ...] = (),
     ):
-        self.units, self.lanes, self.stride = units, lanes, stride
+        self.units, self.lanes, self.stride, self.wide = units, lanes, stride, laws.wide
+        ways = {"across": units.single, "wide": self.wide}
         blocks, across = -(-room // lanes), units.single
         self.capacity = blocks * lanes
         self.arrays, self.lane = arrays, Axis("lane", lanes)
@@ -42,32 +44,32 @@ class ContactList:
         self.each = (units.axis, contacts, Axis("one", 1))
         (self.length,) = arrays.integers((units.axis,), "length", below=self.capacity + 1)
         base = stride * (np.arange(units.count) // units.a_world)
-        (self.grain,) = arrays.integer_vectors(axes, "grain", across=across, base=base, below=places[0])
-        (self.mate,) = arrays.integer_vectors(axes, "mate", across=across, base=base, below=places[1])
+        (self.grain,) = arrays.integer_vectors(axes, "grain", base=base, below=places[0], **ways)
+        (self.mate,) = arrays.integer_vectors(axes, "mate", base=base, below=places[1], **ways)
         self.has_targets = not (units.whole or units.single)
         self.target = self.mate
         if self.has_targets:
-            (self.target,) = arrays.integer_vectors(axes, "target", base=base, below=places[1])
+            (self.target,) = arrays.integer_vectors(axes, "target", base=base, below=places[1], wide=self.wide)
         constants = "stiffness", "reach", "share"
-        self.stiffness, self.reach, self.share = arrays.vectors(axes, *constants, across=across)
+        self.stiffness, self.reach, self.share = arrays.vectors(axes, *constants, **ways)
         if laws.kinds > 1:
             rows = laws.kinds * (laws.kinds + 1)
-            (self.row,) = arrays.integer_vectors(axes, "row", across=across, below=rows)  # row of the interface
+            (self.row,) = arrays.integer_vectors(axes, "row", below=rows, **ways)  # row of the interface
         self.kinds = laws.kinds
-        self.constants = arrays.under("constant").vectors(axes, *laws.constants, across=across)
+        self.constants = arrays.under("constant").vectors(axes, *laws.constants, **ways)
         memory, remembered = (*laws.memory, *more), arrays.under("memory")
-        self.memory = remembered.vectors(axes, *laws.memory, across=across)
-        self.memory += remembered.vectors(self.each, *more, across=across)
+        self.memory = remembered.vectors(axes, *laws.memory, **ways)
+        self.memory += remembered.vectors(self.each, *more, **ways)
         for name, field in zip((*laws.constants, *memory), (*self.constants, *self.memory), strict=True):
             setattr(self, name, field)
         self.memories = len(self.memory)
-        for name, field in zip(fleeting, arrays.under("fleeting").vectors(axes, *fleeting, across=across), strict=True):
+        for name, field in zip(fleeting, arrays.under("fleeting").vectors(axes, *fleeting, **ways), strict=True):
             setattr(self, name, field)
         old, starts = arrays.under("old"), (units.axis, Axis("start", units.size + 1))
         (self.first,) = arrays.integers(starts, "first", across=across, below=self.capacity + 1)
         (self.old_first,) = old.integers(starts, "first", across=across, kept=False)
         (self.old_mate,) = old.integers((units.axis, contacts), "mate", across=across, kept=False)
-        self.old_memory = old.under("memory").vectors(self.each, *memory, across=across, kept=False)
+        self.old_memory = old.under("memory").vectors(self.each, *memory, kept=False, **ways)
         for name, field in zip(memory, self.old_memory, strict=True):
             setattr(self, f"old_{name}", field)
 
@@ -84,24 +86,24 @@ class ContactList:
     @ti.func
     def first_of(self, u, p):
         """The first grain of contact p, by its number within its world."""
-        return self.grain[u, p // self.lanes][p % self.lanes] - self.units.world(u) * self.stride
+        return entry(self.grain, u, p // self.lanes, p % self.lanes) - self.units.world(u) * self.stride
 
     @ti.func
     def second_of(self, u, p):
         """The other grain (by its number within its world), or the wall feature, of contact p."""
-        return self.mate[u, p // self.lanes][p % self.lanes] - self.units.world(u) * self.stride
+        return entry(self.mate, u, p // self.lanes, p % self.lanes) - self.units.world(u) * self.stride
 
     @ti.func
     def remembered(self, which: ti.template(), u, p):
         """The memory of contact p with number `which`."""
-        field = ti.static(self.memory[which])
-        return field[u, p // field.n][p % field.n]
+        lanes = ti.static(self.memory[which].n)
+        return entry(self.memory[which], u, p // lanes, p % lanes)
 
     @ti.func
     def remember(self, which: ti.template(), u, p, value):
         """Set the memory of contact p with number `which`."""
-        field = ti.static(self.memory[which])
-        field[u, p // field.n][p % field.n] = value
+        lanes = ti.static(self.memory[which].n)
+        enter(self.memory[which], u, p // lanes, p % lanes, value)
 
     @ti.func
     def set_aside(self, u):
@@ -122,9 +124,9 @@ class ContactList:
     def keep_old(self, u, p):
         """Copy contact p to its place in the old list."""
         block, lane = p // self.lanes, p % self.lanes
-        self.old_mate[u, p] = self.mate[u, block][lane]
+        self.old_mate[u, p] = entry(self.mate, u, block, lane)
         for k in ti.static(range(self.memories)):
-            self.old_memory[k][u, p][0] = self.remembered(k, u, p)
+            enter(self.old_memory[k], u, p, 0, self.remembered(k, u, p))
 
     @ti.func
     def put_back(self, u):
@@ -136,19 +138,19 @@ class ContactList:
         for k in range(self.units.size):
             for p in range(self.old_first[u, k], self.old_first[u, k + 1]):
                 block, lane = p // self.lanes, p % self.lanes
-                self.grain[u, block][lane] = start + k
-                self.mate[u, block][lane] = self.old_mate[u, p]
+                enter(self.grain, u, block, lane, start + k)
+                enter(self.mate, u, block, lane, self.old_mate[u, p])
                 for m in ti.static(range(self.memories)):
-                    self.remember(m, u, p, self.old_memory[m][u, p][0])
+                    self.remember(m, u, p, entry(self.old_memory[m], u, p, 0))
 
     @ti.func
     def write(self, u, p, i, mate, target):
         """Write contact p between grain i and its mate, without memory."""
         block, lane, before = p // self.lanes, p % self.lanes, self.units.world(u) * self.stride
-        self.grain[u, block][lane] = before + i
-        self.mate[u, block][lane] = before + mate
+        enter(self.grain, u, block, lane, before + i)
+        enter(self.mate, u, block, lane, before + mate)
         if ti.static(self.has_targets):
-            self.target[u, block][lane] = before + target
+            enter(self.target, u, block, lane, before + target)
         self.clear(u, p)
 
     @ti.func
@@ -170,7 +172,7 @@ class ContactList:
     def recall(self, u, p, q):
         """Copy the memory of contact q of the old list to contact p."""
         for m in ti.static(range(self.memories)):
-            self.remember(m, u, p, self.old_memory[m][u, q][0])
+            self.remember(m, u, p, entry(self.old_memory[m], u, q, 0))
 
     @ti.func
     def add_new(self, u, p, i, mate, target, row, stiffness, reach, share):
@@ -178,10 +180,10 @@ class ContactList:
         self.write(u, p, i, mate, target)
         block, lane = p // self.lanes, p % self.lanes
         if ti.static(self.kinds > 1):
-            self.row[u, block][lane] = row
-        self.stiffness[u, block][lane] = stiffness
-        self.reach[u, block][lane] = reach
-        self.share[u, block][lane] = share
+            enter(self.row, u, block, lane, row)
+        enter(self.stiffness, u, block, lane, stiffness)
+        enter(self.reach, u, block, lane, reach)
+        enter(self.share, u, block, lane, share)
 
     @ti.func
     def pad(self, u):
@@ -190,5 +192,5 @@ class ContactList:
         for p in range(self.length[u], self.blocks(u) * self.lanes):
             self.write(u, p, i, ghost, ghost)
             if ti.static(self.kinds > 1):
-                self.row[u, p // self.lanes][p % self.lanes] = 0
-            self.reach[u, p // self.lanes][p % self.lanes] = 0.0
+                enter(self.row, u, p // self.lanes, p % self.lanes, 0)
+            enter(self.reach, u, p // self.lanes, p % self.lanes, 0.0)

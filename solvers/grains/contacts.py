@@ -8,6 +8,7 @@ from solvers.grains.neighbours import Neighbours
 from solvers.grains.state import FAR, Grains
 from solvers.machine.state import Axis, State
 from solvers.machine.units import Units
+from solvers.machine.wide import minus
 from solvers.space import tangent
 from solvers.space.axes import dot, named
 from solvers.tank.load import Load
@@ -68,13 +69,13 @@ class Contacts:
             spin_i, spin_j = gathered(g.spin_now, i, pairs.lanes), gathered(g.spin_now, j, pairs.lanes)
             lever_i = share * (reach + overlap) - overlap
             lever_j = distance - lever_i
-            rate = -dot(velocity, normal)
+            rate = minus(dot(velocity, normal))
             slip = tangent.slip(velocity, normal, lever_i * spin_i + lever_j * spin_j)
             fn, ft, roll = self.laws.forces(PAIR, pairs, u, block, approach, rate, slip, spin_i - spin_j, dt)
             if ti.static(self.laws.cohesive):
                 fn = fn - self.laws.pull(pairs, u, block, approach, rate, dt)
             force = tangent.force(normal, fn, ft)
-            turn_i, turn_j = tangent.torque(lever_i, ft, roll), tangent.torque(lever_j, ft, -roll)
+            turn_i, turn_j = tangent.torque(lever_i, ft, roll), tangent.torque(lever_j, ft, minus(roll))
             self.push_both(g, pairs, u, block, i, force, turn_i, turn_j)
             if ti.static(self.lined):
                 load += self.on_lining(g, pairs, u, i, j, force, turn_i)
@@ -84,7 +85,7 @@ class Contacts:
     @ti.func
     def push_both(self, g: ti.template(), pairs: ti.template(), u, block, i, force: ti.template(), turn_i, turn_j):
         """Apply forces (N) to grains i, the reactions to their mates, and torques (N m) to both."""
-        if ti.static(not self.units.single):
+        if ti.static(not self.units.single and not pairs.wide):
             at = GIVEN_APART * u
             for a in ti.static(range(g.axes)):
                 self.given[a][at] = force[a]
@@ -100,8 +101,10 @@ class Contacts:
     def on_lining(self, g: ti.template(), pairs: ti.template(), u, i, j, force: ti.template(), turn):
         """Load of a block of pairs on its fixed grains; `force` (N) and `turn` (N m) are those on grains i."""
         start = self.units.world(u) * pairs.stride
-        fixed = ti.select(j - start >= g.mobile, ti.cast(-1.0, g.real), ti.cast(0.0, g.real))
-        place = [ti.cast(gathered(g.place[a], i, pairs.lanes), g.real) for a in ti.static(range(g.axes))]
+        lanes = ti.static(range(pairs.lanes))
+        off, on = ti.cast(0.0, g.real), ti.cast(-1.0, g.real)
+        fixed = ti.Vector([ti.select(j[k] - start >= g.mobile, on, off) for k in lanes])
+        place = [ti.Vector([ti.cast(g.place[a][0, i[k]], g.real) for k in lanes]) for a in ti.static(range(g.axes))]
         moment = fixed * (tangent.moment(place, force) + turn)
         return ti.Vector([(fixed * force[a]).sum() for a in ti.static(range(g.axes))] + [moment.sum()])
 
@@ -136,16 +139,21 @@ class Contacts:
     @ti.func
     def geometry(self, g: ti.template(), i, j, reach, count: ti.template()):
         """Normals (towards the first grains), distances (m) and overlaps (m; negative: gaps) of `count` pairs."""
-        apart = self.differences(g.place, i, j, count)
         if ti.static(g.mixed):
-            # The difference of squares in 64 bits: an overlap of 1e-7 m then has full 32-bit precision.
-            whole = ti.cast(reach, ti.f64)
-            square = dot(apart, apart)
-            distance = ti.sqrt(ti.cast(square, g.real))
+            # The difference of squares in 64 bits: an overlap of 1e-7 m then has full 32-bit precision. Lane by lane,
+            # since real vectors cannot change their precision.
+            lanes = ti.static(range(count))
+            axes = ti.static(range(g.axes))
+            apart = [[g.place[a][0, i[k]] - g.place[a][0, j[k]] for a in axes] for k in lanes]
+            square = [dot(apart[k], apart[k]) for k in lanes]
+            whole = [ti.cast(reach[k], ti.f64) for k in lanes]
+            distance = ti.sqrt(ti.Vector([ti.cast(square[k], g.real) for k in lanes]))
             inverse = 1.0 / distance
-            approach = ti.cast(whole * whole - square, g.real) / (reach + distance)
-            return [ti.cast(apart[a], g.real) * inverse for a in ti.static(range(g.axes))], distance, approach
+            more = ti.Vector([ti.cast(whole[k] * whole[k] - square[k], g.real) for k in lanes])
+            along = [ti.Vector([ti.cast(apart[k][a], g.real) for k in lanes]) for a in axes]
+            return [along[a] * inverse for a in axes], distance, more / (reach + distance)
         else:
+            apart = self.differences(g.place, i, j, count)
             distance = ti.sqrt(dot(apart, apart))
             inverse = 1.0 / distance
             return [apart[a] * inverse for a in ti.static(range(g.axes))], distance, reach - distance

@@ -21,6 +21,7 @@ from solvers.grains.shapes.rules.continuous import Continuous
 from solvers.grains.shapes.rules.discrete import Discrete
 from solvers.grains.shapes.rules.lists import ShapedNeighbours
 from solvers.grains.state import Grains
+from solvers.machine import wide
 from solvers.machine.phase import Phase
 from solvers.machine.state import Axes
 from solvers.motion.carrier import per_metre
@@ -52,6 +53,7 @@ class GrainMatter(Matter):
         arrays, walls, units = setting.arrays, setting.walls, load.units
         self.scene, self.units, self.load, self.grains, self.lists = scene, units, load, grains, lists
         self.contacts, self.mover, self.mass = contacts, mover, grains.mass
+        self.wide = lists.pairs.wide
         # Contact history of outlines depends on the order of the two grains' numbers, so these are not renumbered.
         self.numbering = Numbering(arrays, grains, lists, 2.0 * scene.mean_radius, scene.shapes is None)
         self.census = Census(arrays, units, grains, walls, lists, contacts, setting.carrier)
@@ -258,6 +260,9 @@ def make_grains(scene, setting: Setting) -> GrainMatter | None:
     given = scene.radius, scene.density, scene.fixed, units.ghosts, may_leave, scene.kind
     integrator = INTEGRATORS[scene.integrator]()
     laws = ChosenLaws(arrays, units, *scene.laws, scene.interfaces_of, scene.kinds, integrator)
+    # Kernels that hold water's as well cannot be on real vectors: Taichi aborts.
+    discs_alone = scene.shapes is None and not units.single and scene.water is None
+    laws.wide = wide.pays() and laws.fit and discs_alone
     moduli = np.array([[between.young_modulus for between in world] for world in scene.interfaces_of])
     bridges = scene.longest_bridge
     early = 0.5 * setting.stretch * scene.time_step() * scene.credible_speed()

@@ -17,6 +17,7 @@ import numpy as np
 import taichi as ti
 
 from solvers.machine import memory, runtime
+from solvers.machine.wide import Lanes
 
 OF_WORLDS = ("world", "unit", "block")
 
@@ -58,7 +59,7 @@ class Array:
 
     across: the first axis is contiguous. kept: the field is part of a simulation's saved state. base (length of the
     first axis,): `read` subtracts it and `write` adds it. below: the entries are indices less than this. blocks: the
-    two axes are declared to Taichi one by one.
+    last axis is declared to Taichi by itself.
     """
 
     field: ti.Field
@@ -117,8 +118,12 @@ class Scope:
             self._declare(name, Array(ti.field(ti.i32), axes, across, kept, below=below)) for name in self._free(names)
         ]
 
-    def vectors(self, axes: Axes, *names: str, across: bool = False, kept: bool = True) -> list[ti.Field]:
-        """Fields of vectors of reals, with the components along the last axis."""
+    def vectors(
+        self, axes: Axes, *names: str, across: bool = False, kept: bool = True, wide: bool = False
+    ) -> list[ti.Field | Lanes]:
+        """Fields of vectors of reals, with the components along the last axis; `wide`: for kernels on real vectors."""
+        if wide:
+            return [Lanes(field) for field in self.wide(axes, *names, kept=kept)]
         size = axes[-1].length
         return [
             self._declare(name, Array(ti.Vector.field(size, self.real), axes, across, kept))
@@ -126,21 +131,21 @@ class Scope:
         ]
 
     def wide(self, axes: Axes, *names: str, kind=None, kept: bool = True) -> list[ti.Field]:
-        """Fields (blocks, lanes) of floats stored block by block, for kernels on real vectors (`machine.wide`)."""
+        """Fields (…, lanes) of floats stored block by block, for kernels on real vectors (`machine.wide`)."""
         return [
             self._declare(name, Array(ti.field(kind or self.real), axes, kept=kept, blocks=True))
             for name in self._free(names)
         ]
 
     def integer_vectors(
-        self, axes: Axes, *names: str, across: bool = False, base: np.ndarray | None = None, below: int | None = None
-    ) -> list[ti.Field]:
+        self, axes: Axes, *names: str, across=False, base: np.ndarray | None = None, below=None, wide=False
+    ) -> list[ti.Field | Lanes]:
         """Fields of vectors of 32-bit integers; `read` and `write` count from `base`, one number per row."""
-        size = axes[-1].length
-        return [
-            self._declare(name, Array(ti.Vector.field(size, ti.i32), axes, across, True, base, below))
-            for name in self._free(names)
-        ]
+        found = []
+        for name in self._free(names):
+            field = ti.field(ti.i32) if wide else ti.Vector.field(axes[-1].length, ti.i32)
+            found.append(self._declare(name, Array(field, axes, across and not wide, True, base, below, wide)))
+        return [Lanes(field) for field in found] if wide else found
 
     def holding(self, name: str, values: np.ndarray, axes: str = "", kind=None, kept: bool = False) -> ti.Field:
         """A field with these initial values, of type `real` or of another `kind`; `axes` are the axes' names."""
@@ -196,7 +201,8 @@ class State(Scope):
         if array.across:
             self._builder.dense(ti.j, shape[1]).dense(ti.i, shape[0]).place(array.field)
         elif array.blocks:
-            self._builder.dense(ti.i, shape[0]).dense(ti.j, shape[1]).place(array.field)
+            first, last = ((ti.i, ti.j), (ti.ij, ti.k))[len(shape) - 2]
+            self._builder.dense(first, shape[:-1]).dense(last, shape[-1]).place(array.field)
         else:
             self._builder.dense((ti.i, ti.ij, ti.ijk)[len(shape) - 1], shape).place(array.field)
         self.arrays[name] = array
@@ -249,7 +255,7 @@ class State(Scope):
         places, below = np.ascontiguousarray(values + array.offset), array.below
         if below is None or not places.size or 0 <= places.min() <= places.max() < below:
             return places
-        if not hasattr(array.field, "n"):
+        if not hasattr(array.field, "n") and not array.blocks:
             raise ValueError(f"array {name} has numbers that are no places")
         return np.where((places >= 0) & (places < below), places, 0).astype(places.dtype)
 

@@ -7,9 +7,14 @@ a = a - v, and use no abs, exp, sin, casts or real powers of vectors: most of th
 """
 
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
+from functools import cache
+from pathlib import Path
 
 import taichi as ti
+from taichi.lang.expr import Expr
+from taichi.lang.impl import subscript
+from taichi.lang.matrix import make_matrix
 
 
 @contextmanager
@@ -22,3 +27,80 @@ def real_vectors(wanted: bool = True) -> Iterator[None]:
         yield
     finally:
         config.real_matrix_scalarize = before
+
+
+@cache
+def pays() -> bool:
+    """Whether the processor has registers of 512 bits (AVX-512), for which blocks of pairs of grains are made."""
+    with suppress(OSError):
+        return "avx512f" in Path("/proc/cpuinfo").read_text(encoding="utf-8", errors="replace").split()
+    return False
+
+
+def on_real_vectors() -> bool:
+    """Whether the kernel that is being compiled keeps its vectors whole."""
+    return not ti.lang.impl.current_cfg().real_matrix_scalarize
+
+
+class Lanes:
+    """A scalar field (…, lanes) for kernels on real vectors, in which field[row, block] is the vector of a block.
+
+    It can be read and assigned to as that of a field of vectors. One lane of it is `entry(field, row, block, lane)`.
+    """
+
+    def __init__(self, field: ti.Field):
+        self.field, self.n = field, field.shape[-1]
+
+    def __getattr__(self, name: str) -> object:
+        return getattr(self.field, name)
+
+    def __getitem__(self, where: tuple) -> Expr:
+        return _Block([subscript(None, self.field, *where, lane) for lane in range(self.n)])
+
+
+class _Block(Expr):
+    """The vector of a block's lanes, read when it is used in an expression, and assigned to lane by lane."""
+
+    def __init__(self, lanes: list[Expr]):
+        super().__init__(make_matrix(lanes).ptr)
+        self._lanes = lanes
+
+    def _assign(self, value: Expr) -> None:
+        for k, lane in enumerate(self._lanes):
+            lane._assign(subscript(None, value, k))
+
+
+@ti.func
+def entry(field: ti.template(), row, block, lane):
+    """One lane of a block in a field of vectors or of `Lanes`."""
+    if ti.static(isinstance(field, Lanes)):
+        return field.field[row, block, lane]
+    else:
+        return field[row, block][lane]
+
+
+@ti.func
+def enter(field: ti.template(), row, block, lane, value):
+    """Set one lane of a block."""
+    if ti.static(isinstance(field, Lanes)):
+        field.field[row, block, lane] = value
+    else:
+        field[row, block][lane] = value
+
+
+@ti.func
+def minus(x):
+    """−x, which for vectors has to be written differently on real ones."""
+    if ti.static(on_real_vectors()):
+        return 0.0 - x
+    else:
+        return -x
+
+
+@ti.func
+def size(x):
+    """|x|, which for vectors has to be written differently on real ones."""
+    if ti.static(on_real_vectors()):
+        return ti.select(x > 0.0, x, 0.0 - x)
+    else:
+        return ti.abs(x)

@@ -120,8 +120,24 @@ def random_sea(
     The range from 0.5 to 5 times the peak is cut into bands. Each band has one component with all of its energy, at a
     random frequency in the band, so that the sea does not recur, and with a random phase.
     """
-    random = np.random.default_rng(seed)
-    edges = frequency * np.geomspace(*SEA_RANGE, count + 1)
+    return _of_bands(density, frequency * np.geomspace(*SEA_RANGE, count + 1), water, seed, soft_start)
+
+
+def white_noise(
+    height: float, frequency: float, spread: float, water: Water, seed: int, soft_start: float = 0.0, count: int = 200
+) -> Waves:
+    """A sea of even density S = (H_s²/16)/2s from ω − s to ω + s, ω the middle `frequency` and s the `spread` (rad/s).
+
+    Components as of `random_sea`, in bands of one breadth.
+    """
+    level = height**2 / 32.0 / spread
+    edges = np.linspace(frequency - spread, frequency + spread, count + 1)
+    return _of_bands(lambda omega: np.full_like(omega, level), edges, water, seed, soft_start)
+
+
+def _of_bands(density: Callable, edges: np.ndarray, water: Water, seed: int, soft_start: float) -> Waves:
+    """A component for each band between edges (rad/s), at a random place in it."""
+    random, count = np.random.default_rng(seed), len(edges) - 1
     fine = edges[:-1, None] + np.diff(edges)[:, None] * (np.arange(FINE) + 0.5) / FINE
     energy = density(fine).mean(axis=1) * np.diff(edges)
     omega = edges[:-1] + np.diff(edges) * random.uniform(size=count)

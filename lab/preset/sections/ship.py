@@ -6,11 +6,14 @@ from typing import Annotated, Literal
 
 import numpy as np
 
+from lab.preset.fields import Columns, Table
 from lab.preset.outline import at_height, box_hull
 from lab.preset.units import show
 from solvers.machine.marks import Doc, Interval, Unit
 from solvers.ship.hydrostatics import turned
 
+OFFSETS = "station", "z", "half_breadth"  # columns of her hull's file
+MOST_OFFSETS = 100_000  # rows
 FREEDOM = {"roll": (False, False, True), "heave-roll": (False, True, True), "sway-heave-roll": (True, True, True)}
 
 Length = Annotated[float, Unit("m"), Interval(ge=1e-3, le=1e3)]  # of a model or a ship
@@ -45,8 +48,9 @@ class Ship:
     in the hull's own axes. A box may have a `hatch`: its coaming keeps water out as sides do, and its upper edges are
     openings. Sway and heave are the motions of her axis from its position at rest (`axis_motion`), in equations,
     recordings, figures and pictures; she is heeled about it. `damping` and `quadratic_damping` are those of
-    φ̈ + 2 ζ ω₀ φ̇ + b φ̇|φ̇| + ω₀² φ. The default of `repose` is that of the source's acetate, the first of the
-    critical angles that it found by tilting (Spandonidis 2016, section 7.1).
+    φ̈ + 2 ζ ω₀ φ̇ + b φ̇|φ̇| + ω₀² φ. `hydrodynamics` changes what is linear in waves and motion alone: buoyancy is
+    her section's, times `length`, which must displace what her whole hull does. The default of `repose` is that of
+    the source's acetate, the first of the critical angles that it found by tilting (Spandonidis 2016, section 7.1).
     """
 
     draught: Annotated[Length, Doc("Draught with her cargo aboard.")]
@@ -87,6 +91,18 @@ class Ship:
     radiation: Annotated[Literal["memory", "at-frequency", "none"], Doc("How the waves that she makes act on her.")] = (
         "memory"
     )
+    hydrodynamics: Annotated[
+        Literal["section", "strips", "hull"],
+        Doc(
+            "What waves that meet her and that she makes are computed of: her section, in the plane; strips across her "
+            "whole hull; or that hull in space, by Capytaine (the extra ship3d)."
+        ),
+    ] = "section"
+    offsets: Annotated[
+        Table | None,
+        Columns(OFFSETS, most=MOST_OFFSETS),
+        Doc("A CSV file of her hull's offsets; without it her hull is a prism, her section all along `length`."),
+    ] = None
     excitation: Annotated[
         Literal["diffraction", "froude-krylov", "wave-slope"], Doc("How the waves that meet her act on her.")
     ] = "diffraction"
@@ -108,7 +124,9 @@ class Ship:
         float,
         Unit("rad"),
         Interval(ge=0, le=0.5 * pi),
-        Doc("The cargo's angle of repose, used only in the curve of righting levers with relaxed cargo."),
+        Doc(
+            "The cargo's angle of repose, for the curve of righting levers with relaxed cargo and the IMSBC Code alone."
+        ),
     ] = radians(25.0)
     scale: Annotated[
         Annotated[float, Interval(gt=0)] | None,

@@ -14,11 +14,14 @@ from solvers.ship.section import Section
 MOST_FLAT = 200.0  # largest ratio of breadth and draught, either way; the panels do not resolve flatter sections
 FARTHEST = 10.0  # times the hull's size: largest distance of a ship's points from the origin
 
+NARROW = 0.98  # of the middle frequency: half the breadth of white noise is less
+
 NEEDS = {
     "regular": ("amplitude",),
     "packet": ("amplitude", "spread", "time"),
     "jonswap": ("height",),
     "pierson-moskowitz": ("height",),
+    "white-noise": ("height", "spread"),
 }
 
 
@@ -40,6 +43,7 @@ def check_ship(ship: Ship | None, waves: Waves | None, moves: bool, hold: Tank) 
         raise LabError("ship.roll_period: is that of ship and cargo together; give a gyradius, or leave out bare.")
     if ship.linear_damping is not None and ship.damping:
         raise LabError("ship.linear_damping: give either damping or linear_damping, not both.")
+    _check_whole(ship)
     _check_hatch(ship, box)
     try:
         Section(ship.corners)
@@ -60,6 +64,9 @@ def check_ship(ship: Ship | None, waves: Waves | None, moves: bool, hold: Tank) 
     for name in NEEDS[waves.kind]:
         if getattr(waves, name) is None:
             raise LabError(f'waves.{name}: missing; waves.kind = "{waves.kind}" needs it.')
+    if waves.kind == "white-noise" and not waves.spread < NARROW * waves.frequency:
+        most = show(NARROW * waves.frequency, "rad/s")
+        raise LabError(f"waves.spread: must be below {most}, so that the band of white noise stays above zero.")
 
 
 def _check_hold_length(ship: Ship | None, length: float | None) -> None:
@@ -72,6 +79,16 @@ def _check_hold_length(ship: Ship | None, length: float | None) -> None:
         raise LabError("ship.length: missing; the hold has a length, so give the ship's too.")
     if length > ship.length:
         raise LabError(f"tank.length: the hold is longer than the ship, {show(ship.length, 'm')}; make it shorter.")
+
+
+def _check_whole(ship: Ship) -> None:
+    """Raise LabError for a whole hull without a length, or offsets that nothing asks for."""
+    if ship.hydrodynamics != "section" and ship.length is None:
+        raise LabError(f'ship.length: missing; ship.hydrodynamics = "{ship.hydrodynamics}" needs it.')
+    if ship.hydrodynamics == "section" and ship.offsets is not None:
+        raise LabError('ship.offsets: is not used by a section; set ship.hydrodynamics to "strips" or "hull".')
+    if ship.hydrodynamics != "section" and ship.about[0] != 0.0:
+        raise LabError("ship.axis: must be amidships, y = 0, with a whole hull.")
 
 
 def _check_lengths(ship: Ship, box: bool) -> None:

@@ -12,7 +12,7 @@ from solvers.ship.vessel import Vessel
 EASE = 0.5  # s
 CALM = 1e-4  # m: below this amplitude the frequency may change
 STEADY = 1e-7  # m and m/s: within this distance the goal counts as reached
-RANDOM = "jonswap", "pierson-moskowitz"
+RANDOM = "jonswap", "pierson-moskowitz", "white-noise"
 
 
 class RegularSwell:

@@ -7,6 +7,7 @@ from solvers.grains.integrators.verlet import Verlet
 from solvers.grains.laws.extremes import greater
 from solvers.machine.state import State
 from solvers.machine.units import Units
+from solvers.machine.wide import enter, entry
 
 PAIR, WALL = 0, 1  # rows of the interfaces if all grains are of one kind
 NEAR = 0.01  # of an overlap: step of the difference quotient of its energy
@@ -20,7 +21,11 @@ class ChosenLaws:
     K `kinds`. Contacts come in blocks of lanes (`ContactList`), and a law returns a vector of lanes for a block. With
     one kind of grains a law's coefficients are numbers, with several they are vectors of lanes. Laws know the
     `integrator`: the step that `prepare` gets is divided by its `damping`, which keeps dampers stable under it.
+
+    `fit`: whether all laws can be compiled for real vectors (`solvers.machine.wide`); `wide`: whether they are.
     """
+
+    wide = False
 
     def __init__(
         self,
@@ -41,6 +46,7 @@ class ChosenLaws:
         for law in laws:
             law.integrator = integrator
         self.laws = laws
+        self.fit = all(getattr(law, "wide", False) for law in laws)
         own, names = arrays.under("laws"), ("normal", "tangential", "rolling", "cohesion")[: len(laws)]
         self.tables = [
             own.holding(name, self.tabulate(law, interfaces), "world row coefficient")
@@ -96,7 +102,7 @@ class ChosenLaws:
         table = ti.static(self.tables[which])
         row = kind
         if ti.static(self.kinds > 1):
-            row = contacts.row[u, block][lane]
+            row = entry(contacts.row, u, block, lane)
         return [table[self.units.world(u), row, k] for k in ti.static(range(table.shape[2]))]
 
     @ti.func
@@ -129,9 +135,9 @@ class ChosenLaws:
         """Compute one law's constants, which are stored from number `first` on."""
         if ti.static(self.counts[which] > 0):
             c = self.coefficients_of_one(which, u, kind, contacts, block, lane)
-            values = law.prepare(c, contacts.stiffness[u, block][lane], mass, radius, dt / self.damping)
+            values = law.prepare(c, entry(contacts.stiffness, u, block, lane), mass, radius, dt / self.damping)
             for k in ti.static(range(self.counts[which])):
-                contacts.constants[first + k][u, block][lane] = values[k]
+                enter(contacts.constants[first + k], u, block, lane, values[k])
 
     @ti.func
     def forces(self, kind: ti.template(), contacts: ti.template(), u, block, approach, rate, slip, turning, dt):

@@ -5,6 +5,7 @@ import taichi as ti
 from solvers.grains.laws.extremes import greater, lesser, within
 from solvers.grains.laws.splitting import AT_ONCE, FOLLOWING, lagging
 from solvers.grains.materials import Interface
+from solvers.machine.wide import minus
 
 TURNING = 1e-3  # rad/s, where the ramp ends: under the full torque a 3 mm grain creeps 5 mm an hour
 SMALLEST_TORQUE = 1e-30  # N m; keeps the division finite in contacts without normal force
@@ -23,6 +24,7 @@ class ConstantTorque:
     Units: M N m, R_eff m, F_n N, ω rad/s, c N m s, μ_r a pure number.
     """
 
+    wide = True
     constants = ("rolling_radius", "rolling_limit")
     memory = ("rolling_followed",)
 
@@ -48,7 +50,7 @@ class ConstantTorque:
         at_once = lesser(damping, AT_ONCE * limit)
         lag = lagging(damping - at_once, share, turning, contacts.rolling_followed[w, block], cap)
         contacts.rolling_followed[w, block] = lag
-        return within(-lag - at_once * turning, cap)
+        return within(minus(lag) - at_once * turning, cap)
 
     @ti.func
     def energy(self, contacts: ti.template(), w, block, lane):

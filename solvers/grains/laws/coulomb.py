@@ -5,6 +5,7 @@ import taichi as ti
 from solvers.grains.laws.extremes import greater, lesser, within
 from solvers.grains.laws.splitting import AT_ONCE, FOLLOWING, lagging, settled
 from solvers.grains.materials import Interface
+from solvers.machine.wide import minus, size
 
 SLIP = 1e-6  # m/s, where the ramp ends: creep of 4 mm an hour under a load at the Coulomb cap
 SMALLEST_FORCE = 1e-30  # N; keeps the division finite in contacts without normal force
@@ -22,6 +23,7 @@ class Coulomb:
     Units: F_t and F_n N, u_s m/s, γ N s/m, μ a pure number.
     """
 
+    wide = True
     constants = ("limit",)
     memory = ("followed",)
 
@@ -46,10 +48,10 @@ class Coulomb:
         damping = cap * (1.0 / SLIP)
         at_once = lesser(damping, AT_ONCE * limit)
         fast, before = at_once * slip, contacts.followed[w, block]
-        room = greater(cap - ti.abs(fast), 0.0)
+        room = greater(cap - size(fast), 0.0)
         lag = lagging(damping - at_once, share, slip, before, room)
         contacts.followed[w, block] = lag
-        return within(-lag - fast, cap)
+        return within(minus(lag) - fast, cap)
 
     @ti.func
     def energy(self, c: ti.template(), contacts: ti.template(), w, block, lane, root):

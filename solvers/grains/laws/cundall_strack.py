@@ -7,6 +7,7 @@ from solvers.grains.laws.history import M_T, STIFFEST, stiffening
 from solvers.grains.laws.linear_spring import spring_coefficient, spring_stiffness
 from solvers.grains.laws.splitting import AT_ONCE, shear_limit, spring_limit
 from solvers.grains.materials import Interface, hertz_stiffness
+from solvers.machine.wide import entry, minus
 
 
 @ti.data_oriented
@@ -25,6 +26,7 @@ class CundallStrack:
     Units: F_t, F_n and S N, u_s m/s, k_t and k_l N/m, γ_t N s/m, A s, μ a pure number.
     """
 
+    wide = True
     constants = ("shear_spring", "shear_dashpot")
     memory = ("stretched", "ahead")
 
@@ -64,11 +66,11 @@ class CundallStrack:
         held = within(contacts.stretched[w, block] + spring * come, cap)
         contacts.stretched[w, block] = held + spring * behind
         contacts.ahead[w, block] = ahead
-        return within(-held - contacts.shear_dashpot[w, block] * slip, cap)
+        return within(minus(held) - contacts.shear_dashpot[w, block] * slip, cap)
 
     @ti.func
     def energy(self, c: ti.template(), contacts: ti.template(), w, block, lane, root):
         """Elastic energy S²/(2 k_t) (J) of one contact."""
-        spring = contacts.shear_spring[w, block][lane]
-        held = contacts.stretched[w, block][lane] - spring * contacts.ahead[w, block][lane]
+        spring = entry(contacts.shear_spring, w, block, lane)
+        held = entry(contacts.stretched, w, block, lane) - spring * entry(contacts.ahead, w, block, lane)
         return 0.5 * held * held / spring

@@ -8,6 +8,7 @@ from solvers.grains.laws.extremes import within
 from solvers.grains.laws.linear_spring import spring_coefficient, spring_stiffness
 from solvers.grains.laws.splitting import AT_ONCE, spring_limit
 from solvers.grains.materials import Interface, hertz_stiffness
+from solvers.machine.wide import entry, minus
 
 
 @ti.data_oriented
@@ -26,6 +27,7 @@ class ElasticPlastic:
     Units: M and S N m, ω rad/s, k_r N m, C_r N m s, I_r kg m², R_eff m, F_n N, μ_r and η_r pure numbers.
     """
 
+    wide = True
     constants = ("rolling_radius", "rolling_spring", "rolling_dashpot")
     memory = ("wound",)
 
@@ -57,12 +59,12 @@ class ElasticPlastic:
         wound = contacts.wound[w, block] + contacts.rolling_spring[w, block] * turning * dt
         wound = within(wound, cap)
         contacts.wound[w, block] = wound
-        return within(-wound - contacts.rolling_dashpot[w, block] * turning, cap)
+        return within(minus(wound) - contacts.rolling_dashpot[w, block] * turning, cap)
 
     @ti.func
     def energy(self, contacts: ti.template(), w, block, lane):
         """Elastic energy S²/(2 k_r) (J) of one contact; none without rolling friction."""
-        wound, spring = contacts.wound[w, block][lane], contacts.rolling_spring[w, block][lane]
+        wound, spring = entry(contacts.wound, w, block, lane), entry(contacts.rolling_spring, w, block, lane)
         stored = 0.0
         if spring > 0.0:
             stored = 0.5 * wound * wound / spring

@@ -6,6 +6,8 @@ comparison with NaN is false, so the second argument is taken.
 
 import taichi as ti
 
+from solvers.machine.wide import minus
+
 
 @ti.func
 def lesser(a, b):
@@ -22,4 +24,4 @@ def greater(a, b):
 @ti.func
 def within(value, most):
     """The value, clamped to between −most and most."""
-    return greater(lesser(value, most), -most)
+    return greater(lesser(value, most), minus(most))

@@ -16,6 +16,7 @@ class Frictionless:
     Units: F_t N.
     """
 
+    wide = True
     constants = ()
     memory = ()
 

@@ -5,6 +5,7 @@ import taichi as ti
 from solvers.grains.laws.extremes import greater, lesser, within
 from solvers.grains.laws.splitting import AT_ONCE, FOLLOWING, lagging, settled
 from solvers.grains.materials import Interface
+from solvers.machine.wide import minus, size
 
 
 @ti.data_oriented
@@ -20,6 +21,7 @@ class HaffWerner:
     Units: F_t and F_n N, u_s m/s, γ_s N s/m, m_eff kg, μ a pure number.
     """
 
+    wide = True
     constants = ("limit",)
     memory = ("followed",)
 
@@ -44,10 +46,10 @@ class HaffWerner:
         share = lesser(c[2] * limit, 1.0) * settled(root, rate, dt)
         at_once = lesser(AT_ONCE * limit, c[1])
         fast, before = at_once * slip, contacts.followed[w, block]
-        room = greater(cap - ti.abs(fast), 0.0)
+        room = greater(cap - size(fast), 0.0)
         lag = lagging(c[1] - at_once, share, slip, before, room)
         contacts.followed[w, block] = lag
-        return within(-lag - fast, cap)
+        return within(minus(lag) - fast, cap)
 
     @ti.func
     def energy(self, c: ti.template(), contacts: ti.template(), w, block, lane, root):

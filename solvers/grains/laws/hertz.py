@@ -3,6 +3,7 @@
 import taichi as ti
 
 from solvers.grains.materials import Interface, hertz_stiffness
+from solvers.machine.wide import entry
 
 # Per collision, with Verlet's scheme and contacts that begin anywhere in a step. An elastic collision then keeps its
 # speed to 0.03 %, and the speed along a wall after an oblique one is right to 0.5 % (with 18: to 0.1 % and 2 %).
@@ -26,6 +27,7 @@ class Hertz:
     Units: F_n N, ξ m, k N/m^(3/2), E* Pa, R_eff m.
     """
 
+    wide = True
     constants = ()
     memory = ()
 
@@ -50,4 +52,4 @@ class Hertz:
     @ti.func
     def energy(self, contacts: ti.template(), w, block, lane, overlap, root):
         """Elastic energy (2/5) k ξ^(5/2) (J) of one contact."""
-        return 0.4 * contacts.stiffness[w, block][lane] * overlap * overlap * root
+        return 0.4 * entry(contacts.stiffness, w, block, lane) * overlap * overlap * root

@@ -7,6 +7,7 @@ import taichi as ti
 from solvers.grains.laws.extremes import greater
 from solvers.grains.laws.linear_spring import spring_coefficient, spring_stiffness
 from solvers.grains.materials import Interface, hertz_stiffness
+from solvers.machine.wide import entry
 
 STEPS = 36.0  # per half period of the stiffer, unloading spring; restitution 0.02 … 1 is right to 0.1 %
 
@@ -26,6 +27,7 @@ class Hysteretic:
     Units: F_n N, ξ and ξ₀ m, k₁ and k₂ N/m, e a pure number.
     """
 
+    wide = True
     constants = ("unloading",)
     memory = ("plastic",)
 
@@ -62,5 +64,5 @@ class Hysteretic:
     @ti.func
     def energy(self, contacts: ti.template(), w, block, lane, overlap, root):
         """Recoverable energy k₂ (ξ − ξ₀)²/2 (J) of one contact."""
-        elastic = ti.max(0.0, overlap - contacts.plastic[w, block][lane])
-        return 0.5 * contacts.unloading[w, block][lane] * elastic * elastic
+        elastic = ti.max(0.0, overlap - entry(contacts.plastic, w, block, lane))
+        return 0.5 * entry(contacts.unloading, w, block, lane) * elastic * elastic

@@ -10,6 +10,7 @@ longer matters. The spring keeps its value at the middle, so that it stays a for
 import taichi as ti
 
 from solvers.grains.laws.extremes import greater, lesser
+from solvers.machine.wide import minus
 
 
 @ti.func
@@ -31,5 +32,5 @@ def cut_at_zero(spring, damper, rise):
     division; over all moments at which a contact may end both come to the same impulse, (2/3) δ². δ is at most what the
     damper pulls, so that a spring alone keeps its potential.
     """
-    force, fall = spring + damper, lesser(greater(-rise, 0.0), greater(-damper, 0.0))
+    force, fall = spring + damper, lesser(greater(minus(rise), 0.0), greater(minus(damper), 0.0))
     return greater(greater(force, 0.25 * (force + fall)), 0.0)

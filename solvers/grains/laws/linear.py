@@ -9,6 +9,7 @@ from solvers.grains.laws.linear_spring import spring_coefficient, spring_stiffne
 from solvers.grains.laws.splitting import felt_rate
 from solvers.grains.materials import Interface, hertz_stiffness
 from solvers.grains.restitution import damping_ratio_for
+from solvers.machine.wide import entry
 
 # Steps per half undamped period, at least and times ζ: measured with `felt_rate`, restitution 0.02 … 1 right to 0.1 %.
 STEPS, DAMPED_STEPS = 52.0, 240.0
@@ -28,6 +29,7 @@ class Linear:
     Units: F_n N, ξ m, ξ̇ m/s, k_l N/m, γ_n N s/m, m_eff kg, ζ a pure number.
     """
 
+    wide = True
     constants = ("spring", "dashpot")
     memory = ()
 
@@ -63,4 +65,4 @@ class Linear:
     @ti.func
     def energy(self, contacts: ti.template(), w, block, lane, overlap, root):
         """Elastic energy k_l ξ²/2 (J) of one contact."""
-        return 0.5 * contacts.spring[w, block][lane] * overlap * overlap
+        return 0.5 * entry(contacts.spring, w, block, lane) * overlap * overlap

@@ -8,6 +8,7 @@ from solvers.grains.laws.extremes import greater, lesser, within
 from solvers.grains.laws.history import M_T, STIFFEST, stiffening
 from solvers.grains.laws.splitting import AT_ONCE, shear_limit
 from solvers.grains.materials import Interface, hertz_stiffness
+from solvers.machine.wide import entry, minus
 
 RESOLVED = 0.036  # (ω_t Δt)², for a slip right to 1.2 %
 SMALLEST_ROOT = 1e-12  # √m; keeps ratios finite: an overlap of 1e-24 m counts as none
@@ -31,6 +32,7 @@ class Mindlin:
     Units: F_t, F_n and S N, u_s m/s, k_t N/m, G* Pa, R_eff and ξ m, A s, μ a pure number.
     """
 
+    wide = True
     constants = ("shear_limit", "shear_stiffer")
     memory = ("stretched", "ahead", "root_before")
 
@@ -69,9 +71,9 @@ class Mindlin:
         begins = root * root < rate * dt
         deeper = greater(root - before, 0.0)
         more = ti.select(begins, root * root, deeper * deeper)
-        more /= ti.select(begins, 1.5 * rate * dt, 6.0 * now * (now + before))
+        more = more / ti.select(begins, 1.5 * rate * dt, 6.0 * now * (now + before))
         if ti.static(self.integrator.ahead == 0.0):
-            more -= ti.select(begins, 0.0 * root, 0.5 * deeper / now)  # the step ends here: √ξ of its middle
+            more = more - ti.select(begins, 0.0 * root, 0.5 * deeper / now)  # the step ends here: √ξ of its middle
         way = slip * dt
         ahead = self.integrator.ahead * way
         behind = ti.select(begins, ahead, contacts.ahead[w, block])
@@ -81,12 +83,12 @@ class Mindlin:
         contacts.ahead[w, block] = ti.select(root > 0.0, ahead, 0.0 * ahead)
         contacts.root_before[w, block] = root
         dashpot = lesser(c[2] * spring, greater(contacts.shear_limit[w, block] - stiff * dt, 0.0))
-        return within(-held - dashpot * slip, cap)
+        return within(minus(held) - dashpot * slip, cap)
 
     @ti.func
     def energy(self, c: ti.template(), contacts: ti.template(), w, block, lane, root):
         """Elastic energy S²/(2 k_t) (J) of one contact."""
-        spring = c[1] * contacts.stiffness[w, block][lane] * root
-        spring += spring * within(contacts.shear_stiffer[w, block][lane] * spring, STIFFEST)
-        held = contacts.stretched[w, block][lane] - spring * contacts.ahead[w, block][lane]
+        spring = c[1] * entry(contacts.stiffness, w, block, lane) * root
+        spring += spring * within(entry(contacts.shear_stiffer, w, block, lane) * spring, STIFFEST)
+        held = entry(contacts.stretched, w, block, lane) - spring * entry(contacts.ahead, w, block, lane)
         return 0.5 * held * held / spring

@@ -16,6 +16,7 @@ class NoRolling:
     Units: M N m.
     """
 
+    wide = True
     constants = ()
     memory = ()
 

@@ -5,6 +5,7 @@ from math import inf, sqrt
 import taichi as ti
 
 from solvers.grains.laws.extremes import greater, lesser, within
+from solvers.machine.wide import size
 
 # Shares of a single contact's m/Δt (damper) and m/Δt² (spring) that stay stable if a grain touches all its neighbours.
 # The contact network's largest eigenvalue is 4.3 for six equal spheres around one in a plane, and the scheme, with
@@ -32,7 +33,7 @@ def shear_limit(stiffness: float, inertia: float, time: float) -> float:
 @ti.func
 def settled(root, rate, dt):
     """1 for contacts at rest along the normal, from √ξ (√m) and ξ̇ (m/s), and 0 in collisions but for their turning."""
-    return ti.select(root * root > SETTLED * dt * ti.abs(rate), 1.0 + 0.0 * root, 0.0 * root)
+    return ti.select(root * root > SETTLED * dt * size(rate), 1.0 + 0.0 * root, 0.0 * root)
 
 
 @ti.func

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
+from lab.assembly.offsets import from_offsets, read_offsets, rows_of
 from lab.cli.naval import hull
-from lab.naval.offsets import from_offsets, read_offsets, rows_of
 from lab.naval.surface import read_surface
 from lab.naval.weights import read_weights
 from lab.report.hull import outline_at

@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
+from lab.assembly.offsets import from_offsets
 from lab.assembly.scene import vessels
 from lab.cli.naval import hull
 from lab.naval import sheet
 from lab.naval.compartments import read_holds
 from lab.naval.condition import condition
 from lab.naval.loaded import Loaded, Wind
-from lab.naval.offsets import from_offsets
 from lab.naval.points import read_points
 from lab.naval.stowed import Stowed, read_stowed
 from lab.naval.weights import Weights
@@ -173,6 +173,19 @@ def test_bad_tables_are_one_sentence(files, name, lines, words):
         assert words in error_of(read_holds, files[name], form)
     else:
         assert words in error_of(read_stowed, files[name], read_holds(files["holds"], form))
+
+
+def test_ship_that_does_not_stand_is_told_so(files, tmp_path):
+    """G so high that no lever rights her: no list, no period of roll, all criteria missed; and weights too heavy."""
+    told = []
+    for mass, height in ((MASS, 14.0), (3 * MASS, KG)):
+        _write(files["weights"], ["name,mass,lcg,tcg,vcg", f"all,{mass},{LENGTH / 2},0,{height}"])
+        given = [str(files["hull"]), "--weights", str(files["weights"]), "--wind", "1500", "10", "--out", str(tmp_path)]
+        told.append(CliRunner().invoke(hull, given))
+    high, heavy = told
+    assert "none: she comes to rest nowhere" in high.output and "she has none" in high.output
+    assert "without a positive GM" in high.output and " pass" not in high.output
+    assert "does not float: it must be above 0 and below the 50640 t" in str(heavy.exception)
 
 
 def test_criteria_need_weights(files, tmp_path):

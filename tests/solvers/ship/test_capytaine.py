@@ -36,7 +36,7 @@ def of_barge(capytaine, length: float, across: int) -> tuple[np.ndarray, ...]:
 @pytest.fixture(scope="module")
 def quotients():
     """Ratios of the barge's values per metre to our section's: added mass, damping, force, by panels across."""
-    capytaine = pytest.importorskip("capytaine", reason="needs Capytaine: pip install -e '.[check]'")
+    capytaine = pytest.importorskip("capytaine", reason="needs Capytaine: pip install -e '.[ship3d]'")
     section = hydrodynamics(box(BREADTH, 0.3), WATER, -DRAUGHT, [FREQUENCY], about=(0.0, DRAUGHT), count=120)
     ours = section.added_mass[0], section.damping[0], np.abs(section.excitation[0])
     found = {}

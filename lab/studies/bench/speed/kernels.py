@@ -9,8 +9,8 @@ import taichi as ti
 
 from solvers.grains.contacts import gathered
 from solvers.grains.laws.chosen import PAIR
-from solvers.grains.neighbours import LANES
 from solvers.machine.state import State
+from solvers.machine.wide import real_vectors
 from solvers.simulation import Simulation
 from solvers.space.axes import dot
 
@@ -26,7 +26,19 @@ class Parts:
         matter = simulation.grains
         self.real, self.grains, self.neighbours = matter.grains.real, matter.grains, matter.lists
         self.carrier, self.contacts, self.mover = simulation.carrier, matter.contacts, matter.mover
-        self.sink = ti.field(self.real, shape=LANES)
+        self.lanes = self.neighbours.pairs.lanes
+        self.sink = ti.field(self.real, shape=self.lanes)
+        with real_vectors(simulation.wide):  # they are compiled at their first call
+            for part in (
+                self.pair_forces,
+                self.wall_forces,
+                self.move,
+                self.build,
+                self.gather,
+                self.laws,
+                self.scatter,
+            ):
+                part(0, 0.0)
 
     @ti.kernel
     def pair_forces(self, times: ti.i32, step: ti.f64):
@@ -112,12 +124,12 @@ class Parts:
 
     @ti.func
     def nothing(self):
-        return ti.Vector([ti.cast(0.0, self.real) for _ in ti.static(range(LANES))])
+        return ti.Vector([ti.cast(0.0, self.real) for _ in ti.static(range(self.lanes))])
 
     @ti.func
     def keep(self, total):
         """Write a result, without which the compiler would leave out what led to it."""
-        for k in ti.static(range(LANES)):
+        for k in ti.static(range(self.lanes)):
             self.sink[k] = total[k]
 
 

@@ -7,23 +7,19 @@ one equation at each frequency, with the same damping.
 import numpy as np
 from matplotlib.figure import Figure
 
-from lab.assembly.scene import vessels
-from lab.assembly.ship import hull_table, make_water, make_waves
+from lab.assembly.ship import make_water, make_waves
+from lab.naval.linear_water import linear_motion, peaks
 from lab.preset.schema import Preset
-from lab.preset.sections.water.tanks import pools
 from lab.report.plots import BELOW, BLUE, GREEN, GREY, VERMILION, canvas
 from lab.studies.reproduce.experiment import Found
 from lab.studies.reproduce.figures import SIZE
 from lab.studies.reproduce.runs import Outcome
-from solvers.ship.linear import impedance
-from solvers.ship.potential.sloshing import SloshingLiquid
 
 ROLL = 2
 HALVES = 3e-2  # least amplitude of a packet's components, of the largest, at which a response is told
 FINER = 8  # zeros after a record, in its lengths, so that a peak lies between its lines
 LOW, HIGH, STEP = 2.5, 8.5, 0.005  # rad/s, of the linear response
 CYCLES = 10
-APART = 0.1  # of a peak's frequency: nearer to a higher one it does not count
 ROLL_UNIT = "rad/m"
 
 
@@ -57,46 +53,8 @@ def response(one: Outcome) -> tuple[np.ndarray, np.ndarray]:
 
 def linear_response(preset: Preset) -> tuple[np.ndarray, np.ndarray]:
     """Frequencies (n,) rad/s and roll over wave amplitude (n,) rad/m of a preset's ship by linear theory."""
-    vessel = vessels(preset)[0]
-    ship, given = vessel.ship, preset.ship
     omega = np.arange(LOW, HIGH, STEP)
-    table = hull_table(given, preset.sea, preset.run.gravity).at(omega)
-    whole = impedance(ship, ship.load.section, ship.load.water, given.heave, table)
-    tanks = [preset.tank, *preset.tanks.values()]
-    for pool in pools(preset):
-        along = tanks[pool.number].length
-        share = along / given.length if along else 1.0
-        low, high = pool.polygon.min(axis=0), pool.polygon.max(axis=0)
-        place = np.add([0.5 * (low[0] + high[0]), pool.level], np.subtract(given.hold, given.about))
-        density = share * preset.water.density
-        liquid = SloshingLiquid(float(high[0] - low[0]), pool.depth, tuple(place), density, preset.run.gravity)
-        loose = -(omega[:, None, None] ** 2) * liquid.added_mass(omega) + liquid.stiffness()
-        whole = whole + loose - _solid(liquid, omega)
-    force = table.excitation
-    moved = np.linalg.solve(whole, force[..., None])[..., 0]
-    return omega, np.abs(moved[:, ROLL])
-
-
-def _solid(liquid: SloshingLiquid, omega: np.ndarray) -> np.ndarray:
-    """What the same liquid adds to the impedance (n, 3, 3) if it is frozen."""
-    mass, (y, z) = liquid.mass, np.subtract(liquid.centre, (0.0, 0.5 * liquid.depth))
-    turning = mass * ((liquid.width**2 + liquid.depth**2) / 12.0 + y * y + z * z)
-    inertia = np.array([[mass, 0.0, -mass * z], [0.0, mass, mass * y], [-mass * z, mass * y, turning]])
-    spring = np.zeros((3, 3))
-    spring[2, 2] = -mass * liquid.gravity * z
-    return -(omega[:, None, None] ** 2) * inertia + spring
-
-
-def peaks(omega: np.ndarray, size: np.ndarray, least: float = 0.15) -> list[tuple[float, float]]:
-    """Frequencies (rad/s) and heights of the peaks of a response that are at least `least` of the highest, in order."""
-    inner = np.flatnonzero((size[1:-1] > size[:-2]) & (size[1:-1] >= size[2:])) + 1
-    found: list[tuple[float, float]] = []
-    for k in sorted(inner, key=lambda k: -size[k]):
-        if size[k] >= least * size.max() and all(abs(omega[k] - one) > APART * one for one, _ in found):
-            a, b, c = size[k - 1 : k + 2]
-            shift = 0.5 * (a - c) / (a - 2.0 * b + c)
-            found.append((float(omega[k] + shift * (omega[1] - omega[0])), float(b)))
-    return sorted(found)
+    return omega, np.abs(linear_motion(preset, omega)[:, ROLL])
 
 
 def nearest_peak(one: Outcome, wanted: float) -> float:

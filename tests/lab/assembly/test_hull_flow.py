@@ -1,0 +1,140 @@
+"""Potential flow about whole hulls in space against closed forms, energy, Haskind, strips; and what is refused."""
+
+import sys
+from dataclasses import replace
+from math import pi
+
+import numpy as np
+import pytest
+
+from lab.assembly.hull_flow import Flow
+from lab.assembly.ship import hull_table
+from lab.preset.find import load
+from solvers.ship.naval.form import Form, prism
+from solvers.ship.potential.mesh import hull_mesh
+from solvers.ship.section import Section, box
+from solvers.ship.water import Water
+from tests.oracles.presets import error_of
+
+WATER = Water()
+LENGTH, BREADTH, DRAUGHT = 1.0, 0.34, 0.11
+BARGE = prism(box(BREADTH, 0.3), LENGTH)
+RADIUS = 0.5
+NEEDED = "needs Capytaine: pip install -e '.[ship3d]'"
+
+
+@pytest.fixture(scope="module")
+def library():
+    return pytest.importorskip("capytaine", reason=NEEDED)
+
+
+def hemisphere(stations: int = 21, corners: int = 40) -> Form:
+    """A sphere floating half under water, with an upright collar above."""
+    along = -np.cos(np.pi * np.arange(stations) / (stations - 1))
+    sections = []
+    for xi in along:
+        r = RADIUS * np.sqrt(max(0.0, 1.0 - xi**2))
+        if r < 1e-6:
+            sections.append(None)
+            continue
+        turn = np.linspace(0.0, 0.5 * np.pi, corners)
+        side = np.column_stack([r * np.sin(turn), RADIUS - r * np.cos(turn)])
+        side = np.vstack([side, [r, 1.5 * RADIUS]])
+        sections.append(Section(np.vstack([side, (side[1:] * [-1.0, 1.0])[::-1]])))
+    return Form(RADIUS * (1.0 + along), tuple(sections))
+
+
+def test_mesh_is_closed_and_holds_the_displacement():
+    for form, draught, volume in ((BARGE, DRAUGHT, LENGTH * BREADTH * DRAUGHT), (hemisphere(), RADIUS, None)):
+        mesh = hull_mesh(form, draught, 0.05)
+        corners = mesh.corners[mesh.panels]
+        area = 0.5 * np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
+        middle = corners.mean(axis=1)
+        wanted, close = (volume, 1e-9) if volume else (2.0 / 3.0 * pi * RADIUS**3, 0.02)
+        for axis in (0, 2):
+            assert 2.0 * (area[:, axis] * middle[:, axis]).sum() == pytest.approx(wanted, rel=close)
+        assert area[:, 0].sum() == pytest.approx(0.0, abs=1e-9)
+        flat = corners[0, 0, 2] * 0.0 + mesh.lid(0.02)[0][:, 2]
+        assert flat == pytest.approx(-0.02)
+
+
+def test_hemisphere_is_that_of_hulme(library):
+    """Sway: A and B over the displaced mass and ω at Ka = 0.5, 1 (Hulme 1982, J. Fluid Mech. 121, table 2).
+
+    For ω → ∞ in heave exactly 1/2, half of a sphere in unbounded water, and 0.2732 in sway, to which panels at the
+    waterline converge slowly: 0.30 here.
+    """
+    mass, number = WATER.density * 2.0 / 3.0 * pi * RADIUS**3, np.array([0.5, 1.0])
+    flow = Flow(hull_mesh(hemisphere(), RADIUS, 0.1), 0.0, WATER)
+    table = flow.table(np.sqrt(number * WATER.gravity / RADIUS))
+    assert table.added_mass[:, 1, 1] / mass == pytest.approx([0.6439, 0.5740], rel=0.03)
+    assert table.damping[:, 1, 1] / mass / table.frequency == pytest.approx([0.0987, 0.3535], rel=0.05)
+    added = table.infinite_added_mass / mass
+    assert added[[0, 1], [0, 1]] == pytest.approx(0.2732, rel=0.1)
+    assert added[2, 2] == pytest.approx(0.5, rel=0.03)
+    assert np.abs(added[3:, 3:]).max() < 2e-3  # it turns without moving water
+
+
+def test_damping_is_the_energy_of_the_waves_made(library):
+    """b = k/(8π ρ g c_g) ∫|X|² dβ over all headings (Newman 1962): the far field against pressures on the hull.
+
+    By the barge's two planes of symmetry a quarter of the headings is enough.
+    """
+    flow, omega = Flow(hull_mesh(BARGE, DRAUGHT, 0.06), 0.0, WATER), 6.0
+    place, weight = np.polynomial.legendre.leggauss(6)
+    heading = 0.25 * pi * (1.0 + place)
+    force = np.array([flow.excitation(omega, beta) for beta in heading])
+    whole = 4.0 * 0.25 * pi * weight @ np.abs(force) ** 2
+    k = omega**2 / WATER.gravity
+    far = k / (8.0 * pi * WATER.density * WATER.gravity * WATER.group_speed(omega)) * whole
+    table = flow.table([omega])
+    near = table.damping[0].diagonal()
+    assert far[[1, 2, 4]] == pytest.approx(near[[1, 2, 4]], rel=0.05)
+    miss = np.abs(table.haskind[0] - table.excitation[0])[[1, 2]] / np.abs(table.excitation[0])[[1, 2]]
+    assert miss.max() < 0.03
+    assert table.added_mass[0] == pytest.approx(table.added_mass[0].T, abs=0.01 * np.abs(table.added_mass[0]).max())
+
+
+def test_lid_takes_irregular_frequencies_away(library):
+    """Above √(g/T) a box without a lid has a heave damping that jumps, even below zero; with it, it falls evenly."""
+    flow, frequency = Flow(hull_mesh(BARGE, DRAUGHT, 0.06), 0.0, WATER), (9.8, 10.2, 10.6)
+    damping = flow.table(frequency).damping[:, 2, 2]
+    assert (damping > 0.0).all()
+    assert (np.diff(damping) < 0.0).all()
+
+
+def test_a_missing_library_is_told_in_one_sentence(monkeypatch):
+    monkeypatch.setitem(sys.modules, "capytaine", None)
+    preset = load("ship/barge-two-tanks", {"ship.hydrodynamics": "hull", "ship.draught": "107 mm"}).resolved
+    told = error_of(lambda: hull_table(preset.ship, preset.sea, preset.run.gravity))
+    assert told.startswith("ship.hydrodynamics: needs Capytaine")
+    assert "ship3d" in told
+
+
+def test_strips_of_a_prism_change_nothing():
+    preset = load("ship/barge-two-tanks").resolved
+    section = hull_table(preset.ship, preset.sea, preset.run.gravity)
+    strips = hull_table(replace(preset.ship, hydrodynamics="strips"), preset.sea, preset.run.gravity)
+    assert strips.damping == pytest.approx(section.damping, abs=1e-6 * np.abs(section.damping).max())
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"ship.hydrodynamics": "strips", "ship.length": False, "tank.length": False}, "ship.length: missing"),
+        ({"ship.offsets": "OFFSETS"}, "ship.offsets: is not used"),
+        ({"ship.hydrodynamics": "strips", "ship.offsets": "OFFSETS"}, "ship.length: 3 m of her section displace"),
+        ({"ship.hydrodynamics": "boat"}, "ship.hydrodynamics: 'boat' is unknown"),
+    ],
+)
+def test_wrong_hulls_are_told(changes, words, tmp_path):
+    file = tmp_path / "small.csv"
+    rows = [f"{x},{z},{0.4}" for x in (0, 1, 2) for z in (0, 0.9)]
+    file.write_text("\n".join(["station,z,half_breadth", *rows]))
+    changes = {key: str(file) if value == "OFFSETS" else value for key, value in changes.items()}
+
+    def build():
+        preset = load("ship/barge-two-tanks", changes).resolved
+        return hull_table(preset.ship, preset.sea, preset.run.gravity)
+
+    assert words.replace("'", '"') in error_of(build).replace("'", '"')

@@ -1,0 +1,69 @@
+"""Kernels on real vectors compute what the others do, up to rounding."""
+
+import numpy as np
+import pytest
+
+from solvers.machine import wide
+from tests.oracles.scenes import box, material, simulation
+
+RADIUS, WIDE, STEPS = 1.5e-3, 24e-3, 1500
+LINING = np.array([[y, 0.0, 1e-3] for y in np.arange(-WIDE / 2, WIDE / 2 + 1e-4, 3e-3)])
+OTHERS = [
+    {"tangential": "coulomb", "rolling": "constant-torque"},
+    {"normal": "linear", "tangential": "cundall-strack", "rolling": "elastic-plastic"},
+    {"normal": "hertz-dashpot", "tangential": "haff-werner"},
+    {"normal": "hysteretic", "tangential": "viscous", "precision": "f32"},
+    {"normal": "hertz", "tangential": "none", "integrator": "symplectic-euler"},
+    {"tangential": "mindlin", "integrator": "gear", "precision": "mixed"},
+]
+
+
+def thrown(pays, threads=1, **models):
+    """What two worlds of 42 grains thrown at each other and at a rough floor have become."""
+    patched = pytest.MonkeyPatch()
+    patched.setattr(wide, "pays", lambda: pays)
+    row, column = np.divmod(np.arange(42), 7)
+    place = np.column_stack([3.1e-3 * (column - 3) + 0.4e-3 * (row % 2), 3.1e-3 + 2.95e-3 * row])
+    rng = np.random.default_rng(1)
+    velocity, spin = rng.normal(0.0, 0.2, (2, len(place), 2)), rng.normal(0.0, 30.0, (2, len(place)))
+    velocity[..., 1] -= 0.3
+    grain = material(rolling_friction=0.1, shear_damping=20.0)
+    radius = RADIUS * rng.uniform(0.9, 1.0, len(place))
+    run = simulation(
+        np.stack([place, place]), radius, box(WIDE, 40e-3), grain, velocity=velocity, spin=spin, threads=threads,
+        fixed=LINING, stiffness_scale=1e-2, gravity=100.0, **models,
+    )  # fmt: skip
+    patched.undo()
+    assert run.wide == pays
+    run.advance(STEPS)
+    found = {**run.snapshot(), **run.observe()}
+    run.close()
+    return found
+
+
+def agree(one, other):
+    """Whether all that was found is the same but for rounding, which collisions have made grow."""
+    assert one["contacts"].min() > 10
+    for name, values in one.items():
+        np.testing.assert_allclose(other[name], values, atol=1e-7 * np.abs(values).max(), rtol=1e-6, err_msg=name)
+
+
+def test_real_vectors_move_grains_as_scalars_do():
+    agree(thrown(False, tangential="mindlin"), thrown(True, tangential="mindlin"))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("models", OTHERS, ids=str)
+def test_every_law_and_integrator_is_right_on_real_vectors(models):
+    one, other = thrown(False, **models), thrown(True, **models)
+    if "precision" in models:
+        np.testing.assert_allclose(other["position"], one["position"], atol=0.02 * RADIUS)
+    else:
+        agree(one, other)
+
+
+@pytest.mark.slow
+def test_real_vectors_give_the_same_bits_on_any_number_of_threads():
+    one, two = (thrown(True, threads, tangential="mindlin") for threads in (1, 2))
+    for name, values in one.items():
+        np.testing.assert_array_equal(two[name], values, err_msg=name)
