@@ -20,7 +20,6 @@ from solvers.ship.vessel import Vessel
 from solvers.ship.water import Water
 from solvers.ship.waves import froude_factors
 
-
 OF = {"section": "", "strips": "; by strips of her hull", "hull": "; of her hull in space"}
 
 
