@@ -26,6 +26,7 @@ class Continuity:
         self.lists, self.constants, self.poses = medium.lists, medium.constants, medium.poses
         own, self.sliding, self.held = arrays.under("water.continuity"), forces.beside.walls.sliding, forces.held
         (self.lost,) = own.reals((medium.units.axis,), "lost", kind=own.exact)
+        self.closes = medium.particles.dry > 0 and not medium.constants.full
 
     @ti.func
     def expand(self, u, frame, kick, dt):
@@ -97,7 +98,8 @@ class Continuity:
                 weight = p.volume[jb, lane] * c.kernel.slope(t)
                 nearing = [p.velocity[a][jb, lane] - speed[a] for a in ti.static(range(p.axes))]
                 walled += weight * dot(nearing, apart)
-                closed += (p.volume[jb, lane] * p.rate[jb, lane]) * c.kernel.value(t)
+                if ti.static(self.closes):
+                    closed += (p.volume[jb, lane] * p.rate[jb, lane]) * c.kernel.value(t)
                 if ti.static(self.sliding.acts):
                     slid += weight * self.sliding.given(jb, lane, apart)
             closed *= c.get("value")

@@ -83,7 +83,7 @@ class WaterMatter(Matter):
         mass = water.density * scene.drops[..., VOLUME].sum(axis=1).max() * tank.thickness
         self.least = 0.5 * mass * (LEAST * water.sound_speed) ** 2  # J
         self.before, self.between = self._before(), (Phase(self.note_passage),)
-        closing = [Closing(arrays, medium, behind, dummy).close] if p.dry else []
+        closing = [Closing(arrays, medium, behind, dummy).close] if self.continuity.closes else []
         acts = self.mover.kick, *closing, self.continuity.expand, self.finish
         self.after = tuple(Phase(act, units) for act in acts)
 

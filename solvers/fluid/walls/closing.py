@@ -28,6 +28,9 @@ class Closing:
 
     Limits: the compression is right in sum over the layers before a wall; in a single particle, a flow against a wall
     gives a divergence that is off by 1.7 % of its strain. What gravity adds to p_w has no adjoint and stays in `held`.
+    Tanks without a free surface (`full`) do without: in one that was swayed for 20 000 steps particles crept by up to
+    four spacings with it. Waves lose more, since walls feed them less: a standing wave of 20 layers decays too fast by
+    15 % instead of 8 %, with 40 by 8 % instead of 6 %.
     """
 
     def __init__(self, arrays: State, medium: Medium, behind: Behind, slots: np.ndarray):
