@@ -162,7 +162,7 @@ class Batch:
                 check_state(kept.state, *self._simulation.scene.radius.shape)
                 self._simulation.restore(kept.state)
             except (KeyError, ValueError, TypeError, IndexError) as error:
-                raise Unusable(f"{self.home}: its checkpoint is of another scene or processor: start anew.") from error
+                raise Unusable(f"{self.home}: its checkpoint is of another scene: start the run again.") from error
             return
         while self.runs and self._simulation is None:
             try:
