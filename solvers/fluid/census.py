@@ -168,6 +168,9 @@ class Census:
                     if ti.static(c.pulled):
                         out = [r[0] - c.get("pull_y"), r[1] - c.get("pull_z")]
                         sums[self.at.pulled] += 0.5 * m * c.get("pull") * dot(out, out)
+                    if ti.static(c.tense):
+                        tension = p.stress[0][b, lane] ** 2 + p.stress[1][b, lane] ** 2
+                        sums[self.at.elastic] += 2.0 * self.order.weight(b) * p.volume[b, lane] * ti.sqrt(tension)
                     if ti.static(c.pressed):
                         self.add_background(sums, m, s, p.gas_at(b, lane))
                     is_water = p.gas_at(b, lane) < 0.5

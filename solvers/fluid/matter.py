@@ -69,25 +69,21 @@ class WaterMatter(Matter):
         medium = Medium(units, p, shares, self.lists, self.constants, self.poses)
         self.extrapolation = Extrapolation(arrays, medium)
         self.forces = Forces(arrays, medium, self.extrapolation, self.load, tank.thickness)
-        self.continuity = Continuity(arrays, medium, self.extrapolation.sliding, self.forces.held)
-        self.vent = Vent(arrays, medium, water.air)
+        sliding, self.vent = self.extrapolation.sliding, Vent(arrays, medium, water.air)
+        self.continuity = Continuity(arrays, medium, sliding, self.forces.held)
         self.mover = Mover(arrays, medium, self.extrapolation, self.vent)
         probes = [dummy[slot] + p.wet * lanes for slot in behind.probes]
         self.gauges = Gauges(arrays, p, self.constants, water.gauges, probes, behind.open)
         pool = Pool.of(scene, setting.walls, self.order)
         owner = np.full(p.dry * lanes, OF_NONE)
         owner[dummy] = np.where(behind.tanks == pool.first, behind.edges, OF_NONE)
-        self.edges = Edges(arrays, medium, water.edges, owner, tank.thickness)
+        self.edges = Edges(arrays, medium, self.extrapolation, water.edges, owner, tank.thickness)
         self.census = Census(arrays, p, self.constants, setting.carrier, pool, water.levels)
         self.start, self.thickness = np.full(worlds, np.nan), tank.thickness  # J, energy at the first look; m
         mass = water.density * scene.drops[..., VOLUME].sum(axis=1).max() * tank.thickness
         self.least = 0.5 * mass * (LEAST * water.sound_speed) ** 2  # J
         self.before, self.between = self._before(), (Phase(self.note_passage),)
-        self.after = (
-            Phase(self.mover.kick, units),
-            Phase(self.continuity.expand, units),
-            Phase(self.finish, units),
-        )
+        self.after = tuple(Phase(act, units) for act in (self.mover.kick, self.continuity.expand, self.finish))
 
     def _before(self) -> tuple[Phase, ...]:
         return (
@@ -237,7 +233,7 @@ class WaterMatter(Matter):
 
     def check(self, rows: dict[str, np.ndarray], time: float) -> None:
         """Raise BadState if the quantities at `time` (s) show an unphysical state."""
-        # A particle that goes round falls for ever; what a surface under tension holds, and vents take, is not known.
+        # Not known: what a surface under tension loses, what vents take; a particle that goes round falls for ever.
         known = np.nan if self.water.periodic or self.constants.tense or self.vent.acts else self.start
         check_water(rows, known, time, self.least)
 

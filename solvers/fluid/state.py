@@ -83,8 +83,12 @@ class Particles:
             self.carried = own.wide(each, *named("carried", self.axes), kept=False)
         self.slope = own.wide(each, *named("slope", self.axes))
         self.two = air is not None
+        self.noted: list[ti.Field] = (
+            [self.span] if shifting.acts else []
+        )  # of the step before, as the next one needs it
         if air and air.tension > 0.0:
             self.stress = own.wide(each, "stress_yy", "stress_yz", "stress_zz")
+            self.noted += self.stress
         if self.two:
             (self.gas,) = own.wide(each, "gas")
             self.pressure_of_air, self.share = own.wide(each, "pressure_of_air", "share", kept=False)
@@ -95,6 +99,11 @@ class Particles:
     @property
     def moved(self) -> list[ti.Field]:
         """The arrays that belong to particles and are carried from block to block."""
+        return [*self.given, *self.noted]
+
+    @property
+    def given(self) -> list[ti.Field]:
+        """Those of them that a scene tells."""
         always = [*self.place, *self.velocity, self.excess, self.mass, self.number]
         return [*always, self.gas] if self.two else always
 
@@ -112,7 +121,7 @@ class Particles:
         columns += [np.broadcast_to(np.arange(self.count), mass.shape), *([drops[..., GAS]] if self.two else [])]
         columns += [drops[..., VOLUME]]
         fills = [FAR, FAR, 0.0, 0.0, 0.0, 0.0, UNUSED, *([0.0] if self.two else []), 0.0]
-        for field, values, fill in zip([*self.moved, self.volume], columns, fills, strict=True):
+        for field, values, fill in zip([*self.given, self.volume], columns, fills, strict=True):
             whole = self.by_world(field.to_numpy())
             whole[:, : self.wet * self.lanes] = fill
             whole[:, : self.count] = values

@@ -88,8 +88,9 @@ class PlainBoth(PlainWater):
         pi = ((u[None] - u[:, None]) * apart).sum(axis=2) / (square + 1e-6 * self.water.length**2)
         pairs = (self.strength * pi - between) * volume[:, None] * volume
         force = (pairs[..., None] * gradient).sum(axis=1)
-        _, _, _, at_wall = self.between(r, self.wall)
-        seen = np.where(self.gas[:, None] > 0.5, pressure[:, None], self.wall_pressure(r, mass, s, 0.0)[None])
+        to_wall, _, _, at_wall = self.between(r, self.wall)
+        heavier = pressure[:, None] + (mass / volume)[:, None] * (to_wall @ self.gravity)
+        seen = np.where(self.gas[:, None] > 0.5, heavier, self.wall_pressure(r, mass, s, 0.0)[None])
         own = np.where(self.gas > 0.5, pressure, np.maximum(pressure, 0.0))
         walls = -(((own[:, None] + seen) * volume[:, None] * self.wall_volume)[..., None] * at_wall).sum(axis=1)
         matrix = np.einsum("ij,j,ija,ijb->iab", same, volume, apart, gradient)

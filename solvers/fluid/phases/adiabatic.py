@@ -3,20 +3,24 @@
 import numpy as np
 import taichi as ti
 
+from solvers.fluid.given import Air, Water
+
 GAMMA = 1.4  # ratio of the specific heats of air
 FULL = 2.4 ** (1.0 / GAMMA) - 1.0  # excess of density at which p = ρ_a c², beyond which air resists no further
 HELD = (
     (1.0 + FULL) ** (GAMMA - 1.0) / (GAMMA - 1.0) + 1.0 / (1.0 + FULL) - GAMMA / (GAMMA - 1.0)
 ) / GAMMA  # energy there
 BORNE = 0.3  # of p_a: suction that air bears without being torn apart
+SHAKEN = 0.02  # of ρ c² of the water: from about 0.1 on a background pressure stirs it
 
 
-def background(density: float, sound: float) -> float:
-    """The pressure (Pa) that both phases bear besides, so that air may be under as much suction.
+def background(air: Air, water: Water) -> float:
+    """The pressure (Pa) that air and water bear besides: the air is then torn apart by no suction up to that.
 
-    For air of a density (kg/m³) and a speed of sound (m/s). From 0.7 p_a on it would stir air at rest.
+    At 0.7 p_a it would stir air at rest, at 0.1 ρ c² water.
     """
-    return BORNE * density * sound**2 / GAMMA
+    own = air.density * air.sound_speed**2 / GAMMA
+    return min(BORNE * own, SHAKEN * water.density * water.sound_speed**2)
 
 
 class Adiabatic:

@@ -16,7 +16,10 @@ class Tension:
     C is 0 in water and 1 in air, ∇C_i = Σ V_j (C_j − C_i) ∇W. Forces are equal and opposite. The stress is that of the
     step before. Dummies have no phase of their own: the surface stands on walls at a right angle.
 
-    Limits: the surface is two smoothing lengths thick; the energy of the surface is in no account. Units: σ N/m.
+    The energy of the surface is σ Σ V_i |∇C_i|, twice the larger eigenvalue of Π_i each, since Π has no trace: the
+    isotropic part of the stress that follows from this energy is left to the pressure.
+
+    Limits: the surface is two smoothing lengths thick. Units: σ N/m.
     """
 
     def __init__(self, particles: Particles, constants: Constants):

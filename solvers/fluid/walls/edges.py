@@ -6,6 +6,7 @@ import taichi as ti
 from solvers.fluid.lists import Medium
 from solvers.fluid.state import DRY
 from solvers.fluid.walls.behind import OF_NONE
+from solvers.fluid.walls.extrapolation import Extrapolation
 from solvers.machine.state import Axis, State
 from solvers.motion.poses import AT_START
 from solvers.space.axes import dot, named
@@ -19,9 +20,17 @@ class Edges:
     nearest edge. Together the edges bear the load on the tank; each without the pressure of the background.
     """
 
-    def __init__(self, arrays: State, medium: Medium, edges: tuple[int, ...], owner: np.ndarray, thickness: float):
+    def __init__(
+        self,
+        arrays: State,
+        medium: Medium,
+        walls: Extrapolation,
+        edges: tuple[int, ...],
+        owner: np.ndarray,
+        thickness: float,
+    ):
         self.particles, self.lists, self.constants = medium.particles, medium.lists, medium.constants
-        self.units, self.shares = medium.units, medium.shares
+        self.units, self.shares, self.walls = medium.units, medium.shares, walls
         self.wanted, self.thickness, p = list(edges), thickness, medium.particles
         self.count = int(owner.max(initial=0)) + 1
         if edges:
@@ -53,7 +62,11 @@ class Edges:
         origin = [p.place[a][b, 0] for a in ti.static(range(p.axes))]
         own = [p.offset(b, origin[a], a) for a in ti.static(range(p.axes))]
         pressure, volume, firm = p.load(p.pressure, b), p.load(p.volume, b), p.load(p.firm, b)
-        force = [p.zeros() for _ in ti.static(range(p.axes))]
+        force, felt = [p.zeros() for _ in ti.static(range(p.axes))], [p.zeros() for _ in ti.static(range(p.axes))]
+        if ti.static(c.two):
+            found = self.walls.felt(self.units.world(u), b)
+            for a in ti.static(range(p.axes)):
+                felt[a] += found[a]
         for k in range(begin, end):
             j = lists.facing.slots[u, k]
             jb, lane = lists.block_of(j), lists.lane_of(j)
@@ -69,6 +82,7 @@ class Edges:
             if ti.static(c.two):
                 along = (1.0 - gas) * pressure + gas * p.pressure[jb, lane] + push
                 spring *= 1.0 + gas * p.excess[jb, lane]
+                along += (gas * (1.0 + p.excess[jb, lane]) * c.get("air_density")) * dot(felt, apart)
             along = p.volume[jb, lane] * (along * weight + spring)
             for a in ti.static(range(p.axes)):
                 force[a] += along * apart[a]

@@ -37,6 +37,11 @@ class WallPush:
         p, c, lists = self.particles, self.constants, self.lists
         shrink, floor, strength, gas = c.get("shrink"), c.get("floor"), c.strength(), p.gases(b)
         squeezed = 1.0 + gas * p.load(p.excess, b)  # of air as heavy as before in less volume
+        weighs = [p.zeros() for _ in ti.static(range(p.axes))]
+        if ti.static(c.two):
+            felt = self.walls.felt(self.lists.units.world(u), b)
+            for a in ti.static(range(p.axes)):
+                weighs[a] += (gas * squeezed * c.get("air_density")) * felt[a]
         for k in range(ends[0], ends[1]):
             j = lists.beside.slots[u, k]
             jb, lane = lists.block_of(j), lists.lane_of(j)
@@ -52,6 +57,7 @@ class WallPush:
             spring = p.volume[jb, lane] * c.hardness(square, p.firm[jb, lane], gas)
             if ti.static(c.two):
                 spring *= squeezed
+                along = along - dot(weighs, apart)
             along = along * weight + spring
             more = along - pressure * weight
             if ti.static(c.two):

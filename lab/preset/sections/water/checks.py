@@ -25,6 +25,9 @@ class Whole(liquid.Wet):
     ship: object | None
 
 
+COMPRESSED = 0.1  # most that water is compressed by its own weight, g H/c0²
+
+
 def check_water(preset: Whole) -> None:
     """Raise LabError for water that cannot be: in company, of contradictory keys, too much, or outside of the tank."""
     water, tank = preset.water, preset.tank
@@ -128,11 +131,11 @@ def _check_sound(preset: Whole) -> None:
     """Raise LabError for a speed of sound at which the water's own weight would compress it visibly."""
     head = preset.run.gravity * max(pool.depth for pool in pools(preset))
     sound = liquid.liquid(preset).sound_speed
-    if head > liquid.COMPRESSED * sound**2:
-        least = show((head / liquid.COMPRESSED) ** 0.5, "m/s")
+    if head > COMPRESSED * sound**2:
+        least = show((head / COMPRESSED) ** 0.5, "m/s")
         raise LabError(
             f"water.sound_speed: at {show(sound, 'm/s')} the water's weight would compress it by more than "
-            f"{100.0 * liquid.COMPRESSED:g} %; take at least {least}, better ten times the speed of the water."
+            f"{100.0 * COMPRESSED:g} %; take at least {least}, better ten times the speed of the water."
         )
 
 
@@ -141,7 +144,7 @@ def _check_background(preset: Whole) -> None:
     pressure, sound = preset.water.background_pressure or 0.0, liquid.liquid(preset).sound_speed
     if pressure and not (preset.water.full or preset.air):
         raise LabError("water.background_pressure: goes with water.full or [air]; a free surface would be blown apart.")
-    most = liquid.COMPRESSED * preset.water.density * sound**2
+    most = COMPRESSED * preset.water.density * sound**2
     if pressure > most:
         raise LabError(
             f"water.background_pressure: {show(pressure, 'Pa')} is more than a tenth of ρ c² at "

@@ -3,6 +3,7 @@
 These need the tank, gravity and the motions, so that they are functions of whole presets.
 """
 
+from dataclasses import replace
 from math import sqrt
 from typing import Protocol
 
@@ -21,7 +22,6 @@ from solvers.fluid import given
 from solvers.fluid.phases.adiabatic import background
 from solvers.fluid.walls.layers import edge_of
 
-COMPRESSED = 0.1  # most that water may be compressed by its own weight, g H/c0², or by a background pressure
 FRONT = 2.0  # √(gH): the front of a column that collapses (Ritter 1892)
 
 
@@ -42,7 +42,7 @@ def liquid(preset: Wet) -> given.Water:
     """The water of a preset as the solver takes it."""
     water, scheme = preset.water, SCHEMES[preset.water.scheme]
     pressure, level, force = parted(preset.gauges)
-    return given.Water(
+    made = given.Water(
         spacing=spacing(preset),
         sound_speed=sound_speed(preset, scheme),
         density=water.density,
@@ -56,7 +56,7 @@ def liquid(preset: Wet) -> given.Water:
         kinematic=water.kinematic_viscosity or 0.0,
         slip=water.slip,
         full=water.full,
-        background=background_pressure(preset, scheme),
+        background=water.background_pressure or 0.0,
         shifting=water.shifting,
         speed=expected_speed(preset),
         start=water.start,
@@ -68,6 +68,9 @@ def liquid(preset: Wet) -> given.Water:
         edges=tuple(_edge(gauge, preset.tank) for gauge in force.values()),
         air=_air(preset, scheme) if preset.air is not None else None,
     )
+    if made.air is not None and water.background_pressure is None:
+        made = replace(made, background=background(made.air, made))
+    return made
 
 
 def _air(preset: Wet, scheme: Scheme) -> given.Air:
@@ -82,14 +85,6 @@ def _air(preset: Wet, scheme: Scheme) -> given.Air:
         vent=air.vent_area / preset.thickness,
         interface=air.interface,
     )
-
-
-def background_pressure(preset: Wet, scheme: Scheme) -> float:
-    """The pressure (Pa) that both phases bear besides: as given, or what the air needs and the water can bear."""
-    water, air, sound = preset.water, preset.air, sound_speed(preset, scheme)
-    if water.background_pressure is not None or air is None:
-        return water.background_pressure or 0.0
-    return min(background(air.density, sound_of_air(air, sound)), COMPRESSED * water.density * sound**2)
 
 
 def parted(gauges: dict[str, Gauge]) -> tuple[dict[str, Gauge], dict[str, Gauge], dict[str, Gauge]]:

@@ -1,6 +1,6 @@
 """Water and air: a still tank, the wave between them, air in a closed column, and what pairs of both must keep."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.integrate import quad
@@ -42,6 +42,11 @@ def of_both(water: Water, outline: np.ndarray, depth: float) -> Scene:
     return scene(water, with_air(at_rest(outline, depth, water, G), air_above(outline, depth, water, G))[None], outline)
 
 
+def bearing(water: Water) -> Water:
+    """A water with the background pressure that presets have."""
+    return replace(water, background=background(water.air, water))
+
+
 def rested(rows: int, duration: float) -> tuple[float, float, float]:
     """How far the surface came off its place in spacings, r.m.s., error of the pressure in ρ g H, and of the energy.
 
@@ -49,7 +54,7 @@ def rested(rows: int, duration: float) -> tuple[float, float, float]:
     half of the time (s).
     """
     sound = 10.0 * np.sqrt(G * DEPTH)
-    water = Water(DEPTH / rows, sound, background=background(1.2, sound), air=Air(sound_speed=sound))
+    water = bearing(Water(DEPTH / rows, sound, air=Air(sound_speed=sound)))
     off, pressed, bins = [], [], np.linspace(-0.5 * WIDTH, 0.5 * WIDTH, max(2, rows // 2))
     with simulated(of_both(water, box(WIDTH, HEIGHT), DEPTH)) as run:
         for time in looks(run, np.arange(1.0, duration + 0.5)):
@@ -107,7 +112,7 @@ class Between:
         """The oscillation of the mode's momentum, from a level surface, with so many layers of each fluid."""
         spacing, sound = 1.0 / rows, 10.0 * np.sqrt(G)
         alpha = 8.0 * VISCOSITY / (2.0 * spacing * sound)
-        water = Water(spacing, sound, alpha=alpha, air=Air(self.density, sound, alpha))
+        water = bearing(Water(spacing, sound, alpha=alpha, air=Air(self.density, sound, alpha)))
         made = of_both(water, box(1.0, 2.0), 1.0)
         set_going(made.drops, lambda place: STEEP / K * self.rate * mode(place))
         times, found = np.arange(1, round(PERIODS * A_PERIOD)) * 2.0 * np.pi / (self.rate * A_PERIOD), []
@@ -181,8 +186,7 @@ class Slug:
     def made(self) -> Scene:
         """The water set going, and air that is squeezed evenly."""
         of_water = max(10.0 * np.sqrt(G * POOL), self.sound / 7.4)
-        air = Air(sound_speed=self.sound, alpha=0.1)
-        water = Water(self.spacing, of_water, background=background(air.density, air.sound_speed), air=air)
+        water = bearing(Water(self.spacing, of_water, air=Air(sound_speed=self.sound, alpha=0.1)))
         high = 2.0 * COLUMN + self.thick
         place = grid(COLUMN, high, self.spacing) - [0.5 * COLUMN, 0.0]
         gas = (np.abs(place[:, 1] - 0.5 * high) > 0.5 * self.thick).astype(float)

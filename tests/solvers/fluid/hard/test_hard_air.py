@@ -1,5 +1,7 @@
 """Water and air in hard cases at the step that the lab derives: each runs to its end, keeps its water and its air."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -20,7 +22,8 @@ WIDTH, HEIGHT, SPACING, SOUND = 0.4, 0.3, 0.01, 14.0  # m, m, m, m/s
 def filled(region: np.ndarray | None = None, level: float = 0.15, **changes) -> Scene:
     """A closed box with water up to a level (m) or in a region, the rest of it with air."""
     outline, air = box(WIDTH, HEIGHT), Air(sound_speed=changes.pop("air_sound", SOUND))
-    water = Water(SPACING, SOUND, background=background(air.density, air.sound_speed), air=air)
+    water = Water(SPACING, SOUND, air=air)
+    water = replace(water, background=background(air, water))
     if region is None:
         drops = with_air(at_rest(outline, level, water, GRAVITY), air_above(outline, level, water, GRAVITY))
     else:
