@@ -187,7 +187,7 @@ def bed_key(simulation: Simulation, world: int, position: np.ndarray, how: Settl
     """Hash of all that determines the bed of one world: scene, start (n, 2) m, settling, and the solver's code."""
     scene = simulation.scene
     parts = [FORMAT, _engine(), repr(how), position, simulation.dt]
-    parts += [simulation.arch, simulation.schedule_name, simulation.units_a_world, simulation.skin, simulation.wide]
+    parts += [simulation.arch, simulation.schedule_name, simulation.units_a_world, simulation.skin]
     parts += [(type(motion).__name__, motion.coordinate) for motion in scene.motions[world]]
     if scene.vessels:
         parts.append(simulation.carrier.sizes)  # of its arrays, and with them of the bed's
