@@ -20,6 +20,8 @@ from solvers.ship.vessel import Vessel
 from solvers.ship.water import Water
 from solvers.ship.waves import froude_factors
 
+OF = {"section": "", "strips": "; by strips of her hull", "hull": "; of her hull in space"}
+
 
 def describe(
     given: ships.Ship, vessel: Vessel, waves: Waves | None, slab: tuple[float, float] | None, every: float
@@ -43,7 +45,7 @@ def describe(
             "viscous roll damping",
             f"{ship.damping.linear:.3g} N s φ̇ and {ship.damping.quadratic:.3g} N s^2 φ̇|φ̇|, a metre",
         ),
-        ("radiation", _radiated(given, memory)),
+        ("radiation", _radiated(given, memory) + OF[given.hydrodynamics]),
         ("water's forces", f"every {show(every, 's')}" + "; the cargo's at each step" * (slab is not None)),
     ]
     if waves is not None:
