@@ -2,9 +2,11 @@
 
 In space the table is of the hull's mesh up to FINEST √(g/draught), with panels a sixth of the shortest wave there.
 Above, where waves are short beside the hull and strips are exact in the limit, damping and excitation are those of
-strips, and added mass is theirs less their limit at infinite frequency plus that in space.
+strips, and added mass is theirs less their limit at infinite frequency plus that in space. What is left of the
+difference where they join falls with the fourth power of the frequency.
 """
 
+import sys
 from dataclasses import fields
 from math import sqrt
 
@@ -29,9 +31,10 @@ from solvers.ship.water import Water
 FINEST = 1.2  # √(g/draught): the highest frequency that is solved in space
 PANEL = 0.65  # of the draught: a sixth of the length of waves of that frequency is 0.73
 MOST_PANELS = 2500.0  # of the half hull, on its bottom
+FADING = 4.0  # power of the frequency with which the difference of hull and strips at the join falls
 SAME = 0.02  # of the displacement, by which section and hull may differ
 OF_STRIPS = (*SOLVED_BY, by_strips, forms)
-IN_SPACE = (*OF_STRIPS, meshes, hull_flow)
+IN_SPACE = (*OF_STRIPS, meshes, hull_flow, sys.modules[__name__])
 
 
 def whole_form(given: ships.Ship) -> Form:
@@ -88,11 +91,19 @@ def _in_space(form: Form, draught: float, water: Water, frequency: np.ndarray, h
     low = flow.table(solved)
     if len(solved) == len(frequency):
         return low
-    high = _by_strips(form, draught, water, frequency[len(solved) :], height)
+    high = _by_strips(form, draught, water, frequency[len(solved) - 1 :], height)
+    return _joined(low, high)
+
+
+def _joined(low: Hydrodynamics, high: Hydrodynamics) -> Hydrodynamics:
+    """A table in space and that of strips, which begins at its last frequency."""
+    fading = ((low.frequency[-1] / high.frequency) ** FADING)[:, None, None]
     found = {}
     for one in fields(low):
         lower, upper = getattr(low, one.name), getattr(high, one.name)
         if one.name == "added_mass":
             upper = upper + low.infinite_added_mass - high.infinite_added_mass
-        found[one.name] = lower if one.name == "infinite_added_mass" else np.concatenate([lower, upper])
+        if one.name in ("added_mass", "damping"):
+            upper = upper + fading * (lower[-1] - upper[0])
+        found[one.name] = lower if one.name == "infinite_added_mass" else np.concatenate([lower, upper[1:]])
     return Hydrodynamics(**found)

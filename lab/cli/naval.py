@@ -97,7 +97,7 @@ def lewis(file: Path, **particulars: float | None) -> None:
     cargolab lewis s175.csv --length 175 --breadth 25.4 --draught 9.5 --depth 15.4 --block 0.569 --kb 5.207
     cargolab hull s175.csv
     """
-    from lab.report.hull import write_lewis
+    from lab.naval.lewis import write_lewis
 
     click.echo(write_lewis(file, particulars))
 

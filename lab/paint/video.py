@@ -19,7 +19,7 @@ from lab.paint.film import Film, choose_beds, choose_look
 from lab.paint.footage import Bed, open_footage
 from lab.paint.reel.animation import FORMATS, stride_of, write_animation
 from lab.paint.reel.course import RATE, hero_course
-from lab.paint.reel.event import find_event, telling_moments
+from lab.paint.reel.event import find_event, half_poured, telling_moments
 from lab.recording import open_recording
 from solvers.machine.runtime import initialise
 
@@ -185,10 +185,12 @@ def poster(
 
 
 def telling_time(path: Path | str, world: int | None = None) -> float:
-    """When one picture of a bed tells most (s): just after its event, else late in the film."""
+    """When one picture of a bed tells most (s): just after its event, as half the grains have poured, else late."""
     with open_footage(path) as footage:
         (bed,) = choose_beds(footage, world or 0)
         event, first, last = find_event(bed), footage.time[0], footage.time[-1]
+        if event is None and (poured := half_poured(bed)) is not None:
+            return poured
         return float(min(event.time + AFTER, last) if event else first + LATE * (last - first))
 
 

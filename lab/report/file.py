@@ -60,7 +60,7 @@ def _pdf(text: str, path: Path) -> Path:
 def _data(recording: Recording) -> dict[str, object]:
     """What the template shows."""
     values = measure_all(recording)
-    rows, facts = judged(recording)
+    rows, facts, notes = judged(recording)
     with recording.path.open("rb") as file:
         signature = file_digest(file, "sha256").hexdigest()
     return {
@@ -72,7 +72,7 @@ def _data(recording: Recording) -> dict[str, object]:
         "shown": sheet.shown,
         "condition": facts,
         "criteria": rows,
-        "assumptions": list(_assumptions(recording, bool(rows))),
+        "assumptions": [*_assumptions(recording, bool(rows)), *notes],
         "figures": [{"name": name, "data": data} for name, data in _pictures(recording, values)],
         "measures": [(name.replace("_", " "), number(value), value.note) for name, value in values.items()],
         "given": recording.given,

@@ -21,7 +21,6 @@ from solvers.ship.naval.form import Form
 from solvers.ship.naval.holds import Hold
 from solvers.ship.water import Water
 
-LARGEST = 1000.0  # m, or of a coefficient
 SURFACES = (".stl",)
 DEEPEST = 0.95  # of the depth: the last draught of the tables
 WITH_WEIGHTS = "points", "grain", "wind"

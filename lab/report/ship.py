@@ -20,6 +20,8 @@ from solvers.ship.vessel import Vessel
 from solvers.ship.water import Water
 from solvers.ship.waves import froude_factors
 
+OF = {"section": "", "strips": "; by strips of her hull", "hull": "; of her hull in space"}
+
 
 def describe(
     given: ships.Ship, vessel: Vessel, waves: Waves | None, slab: tuple[float, float] | None, every: float
@@ -43,7 +45,7 @@ def describe(
             "viscous roll damping",
             f"{ship.damping.linear:.3g} N s φ̇ and {ship.damping.quadratic:.3g} N s^2 φ̇|φ̇|, a metre",
         ),
-        ("radiation", _radiated(given, memory)),
+        ("radiation", _radiated(given, memory) + OF[given.hydrodynamics]),
         ("water's forces", f"every {show(every, 's')}" + "; the cargo's at each step" * (slab is not None)),
     ]
     if waves is not None:
@@ -89,23 +91,22 @@ def _full_scale(given: ships.Ship, waves: Waves | None) -> str:
     return ", ".join(words)
 
 
-def judged(recording: Recording) -> tuple[list[sheet.Row], list[tuple[str, str]]]:
-    """Sheet and condition of a recording's ship; both empty without one that can be judged."""
+def judged(recording: Recording) -> tuple[list[sheet.Row], list[tuple[str, str]], list[str]]:
+    """Sheet and condition of a recording's ship, and what was not judged; all empty without one that can be judged."""
     if not has_ship(recording):
-        return [], []
+        return [], [], []
     found = ship_grain.shift(recording)
     if found is not None:
-        arm = found.lying(ship_grain.worst(found))
-        trimmed = _trimming(recording, found.condition)
-        return [*sheet.rows(found.condition, arm), *trimmed], sheet.facts(found.condition)
+        ship, arm = found.condition, found.lying(ship_grain.worst(found))
+        return [*sheet.rows(ship, arm), *_trimming(recording, ship)], sheet.facts(ship), list(sheet.unjudged(ship))
     vessel = vessel_of(recording.path)
     if vessel is None:
-        return [], []
+        return [], [], []
     try:
         alone = condition(recording.preset, vessel)
     except LabError:
-        return [], []
-    return sheet.rows(alone), sheet.facts(alone)
+        return [], [], []
+    return sheet.rows(alone), sheet.facts(alone), list(sheet.unjudged(alone))
 
 
 def _trimming(recording: Recording, found: Condition) -> list[sheet.Row]:
@@ -124,7 +125,7 @@ def _trimming(recording: Recording, found: Condition) -> list[sheet.Row]:
 
 def criteria(recording: Recording) -> Iterator[str]:
     """The sheet of criteria of a recording's ship as a table in Markdown; nothing without one that can be judged."""
-    rows, _ = judged(recording)
+    rows, _, notes = judged(recording)
     if not rows:
         return
     yield "\n## Criteria\n"
@@ -134,4 +135,5 @@ def criteria(recording: Recording) -> Iterator[str]:
         what = f"{one.what} ({row.shift})" if row.shift else one.what
         numbers = f"{one.kind} {one.limit:.4g}", sheet.shown(one.attained, one.unit), one.unit, one.verdict
         yield f"| {' | '.join((one.rule, what, *numbers))} |"
+    yield from ("", *notes)
     yield "\nIn calm water; heel is positive starboard down. `cargolab report` puts it on one page for the file."

@@ -6,16 +6,18 @@ one, in the folder `runs`; runs that are done are not repeated.
 
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import fields, replace
 from math import ceil
 from pathlib import Path
+
+from PIL import Image
 
 from lab.base.errors import LabError
 from lab.base.progress import Progress
 from lab.measures.value import read_values
 from lab.paint.cargoes import COLOURS, paint_cargoes
 from lab.paint.video import poster, render_recording, telling_time
-from lab.preset.find import QUICK, names
+from lab.preset.find import QUICK, load, names
 from lab.recording import Recording, open_recording
 from lab.report.numbers import number
 from lab.report.page import render
@@ -27,6 +29,7 @@ WIDTH, HEIGHT = 640, 360  # pixels
 LONGEST = 8.0  # s of a clip
 UNITS = {"deg": "°", "d": "diameters"}
 MOST_NUMBERS = 4
+COLOURS_LEFT = 256  # in a poster
 CARGOES = "cargoes.png"
 TOLD = {"status": str, "numbers": dict, "accuracy": str, "beds": int, "version": str, "date": str}
 
@@ -66,17 +69,41 @@ def _show(name: str, out: Path, beds: int) -> None:
         elif (folder / "recording.h5").exists():
             resume_run(folder, video=False, plots=False, quiet=True)
         else:
-            run_preset(_cheapest(name, names()), {"run.repeats": beds}, folder, video=False, plots=False, quiet=True)
+            cheapest = _cheapest(name, names())
+            number = max(beds, repeats_of_twin(cheapest))
+            run_preset(cheapest, {"run.repeats": number}, folder, video=False, plots=False, quiet=True)
     except BadState:  # its page says so
         pass
     with open_recording(folder) as recording:
         lasts, speed = float(recording.series["time"][-1]), recording.preset.video.speed
         made = _made(recording)
-    poster(folder, out / f"{_plain(name)}.png", time=telling_time(folder), width=WIDTH, height=HEIGHT)
+    card = poster(folder, out / f"{_plain(name)}.png", time=telling_time(folder), width=WIDTH, height=HEIGHT)
+    lighten(card)
     summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
     told = json.dumps({**_telling(summary), **made}, indent=1)
     (out / f"{_plain(name)}.json").write_text(told + "\n", encoding="utf-8")
     render_recording(folder, clip, width=WIDTH, height=HEIGHT, speed=max(speed, ceil(10.0 * lasts / LONGEST) / 10.0))
+
+
+def lighten(picture: Path) -> None:
+    """Leave 256 colours in a PNG file: half of the bytes."""
+    with Image.open(picture) as image:
+        lean = image.convert("RGB").quantize(COLOURS_LEFT)
+    lean.save(picture, optimize=True)
+
+
+def repeats_of_twin(name: str) -> int:
+    """The repeats of a preset that differs from the one it is based on by these alone; of others 1."""
+    one = load(name).resolved
+    quick = name.endswith(QUICK)
+    base = f"{one.based_on}{QUICK}" if quick else one.based_on
+    if not one.based_on or base not in names():
+        return 1
+    other = load(base).resolved
+    said = {"title", "source", "reports", "based_on", "quick", "run"}
+    alike = all(getattr(one, key.name) == getattr(other, key.name) for key in fields(one) if key.name not in said)
+    same_run = replace(one.run, repeats=1) == replace(other.run, repeats=1)
+    return one.run.repeats if alike and same_run else 1
 
 
 def _show_cargoes(out: Path) -> None:

@@ -11,6 +11,7 @@ from lab.paint.footage import Bed
 SMOOTH = 0.1  # s over which the rate of the shift is smoothed
 STRONG = 2.0  # times the mean rate of a shift, or the median of a pressure: what counts as an event
 LIVELY = 0.7  # weight of the contents' way over that of time, for the moments of a contact sheet
+POURED = 1.0  # mean grain diameters that the centre of grains comes down which pour
 LEAST = 0.1  # mean grain diameters: a smaller shift of the centre of mass is none
 
 
@@ -61,6 +62,17 @@ def _avalanche(bed: Bed) -> Event | None:
     if way < LEAST * bed.diameter or rate[row] < STRONG * rate.mean():
         return None
     return Event(float(time[row]), f"Avalanche at {number(abs(np.degrees(tilt[row])), 1)}°, {number(time[row], 2)} s")
+
+
+def half_poured(bed: Bed) -> float | None:
+    """When (s) the grains' centre has come down half of its way, where they pour out of something that stands still."""
+    footage = bed.footage
+    if bed.empty or not footage.parts or np.ptp(bed.pose, axis=0).any():
+        return None
+    down = footage.centre_of_mass[0, bed.world, 1] - footage.centre_of_mass[:, bed.world, 1]
+    if not down[-1] > POURED * bed.diameter:
+        return None
+    return float(footage.series_time[np.argmax(down >= 0.5 * down[-1])])
 
 
 def telling_moments(bed: Bed, count: int) -> np.ndarray:

@@ -52,7 +52,14 @@ def drive_text(preset: Preset) -> str:
     """What drives the tank in a few words: the waves, or the motions by amplitude and frequency."""
     if preset.ship:
         return _waves_text(preset)
-    return ", ".join(text for name, part in preset.motion.parts.items() if (text := _motion_text(name, part)))
+    moved = [text for name, part in preset.motion.parts.items() if (text := _motion_text(name, part))]
+    return ", ".join(moved) or _raised_text(preset)
+
+
+def _raised_text(preset: Preset) -> str:
+    """How fast a pair of plates is raised, as a funnel is."""
+    speeds = [part.speed for part in preset.parts.values() if part.move[1] > 0.0 and not part.move[0] and part.speed]
+    return f"raised at {1e3 * speeds[0]:.3g} mm/s" if preset.grains and len(speeds) == 2 else ""
 
 
 def _waves_text(preset: Preset) -> str:

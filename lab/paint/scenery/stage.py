@@ -26,7 +26,7 @@ THICKEST = 0.04  # largest wall thickness relative to the tank's smaller side
 ROOM = 0.3  # largest margin around an open tank relative to its larger side; smaller for many tanks
 ARROW, LABEL = 1.4, 2.3  # u, room for the arrow of the drive and for names of gauges
 NAME, BAND = 1.8, 2.6  # u, for the name of a bed, and for the loss of a ship among several
-FOLLOW = 0.35  # of her breadth: a ship that goes farther sideways is followed by the camera
+FOLLOW = 0.35  # of her breadth and height: a ship that goes farther sideways or up is followed by the camera
 HOUSE = 1.0, 0.8  # of the superstructure's height that has room in the stage, of one ship alone and of several
 
 
@@ -54,9 +54,8 @@ class Stage:
         self._named = any(bed.name for bed in beds)
         self._sorts = _sort_by_shape(beds)
         self._afloat = self._earth and all(bed.footage.sea for bed in beds)
-        drift = [pose[:, k, 0] * self._drifts(bed) for k, bed in enumerate(beds)]
-        self._drift = np.column_stack(drift)
-        self._pose = pose - np.stack([self._drift, 0.0 * self._drift, 0.0 * self._drift], axis=-1)
+        self._drift = pose * np.array([self._drifts(bed) for bed in beds])
+        self._pose = pose - self._drift
         self.grounds = [self._ground(bed) for bed in beds]
         if self._afloat:  # still water at one height
             low, high = np.min(self.grounds, axis=0)[0], np.max(self.grounds, axis=0)[1]
@@ -95,11 +94,11 @@ class Stage:
             return self.setting.canvas
         return self._cells.boxes[k]
 
-    def _drifts(self, bed: Bed) -> bool:
-        """Whether a ship goes so far sideways that the camera goes with her."""
+    def _drifts(self, bed: Bed) -> np.ndarray:
+        """Whether (3,) a ship goes so far in sway, or in heave, that the camera goes with her; never in roll."""
         if not self._afloat:
-            return False
-        return bool(np.ptp(bed.pose[:, 0]) > FOLLOW * np.ptp(bed.footage.sea.hull[:, 0]))
+            return np.zeros(3, dtype=bool)
+        return np.append(np.ptp(bed.pose[:, :2], axis=0) > FOLLOW * np.ptp(bed.footage.sea.hull, axis=0), False)
 
     # What moves
 
@@ -158,7 +157,8 @@ class Stage:
             left, top, right, bottom = self._sea_box(k)
             part = np.ascontiguousarray(picture[top:bottom, left:right])
             moved = carried.shifted(left, top)
-            still = camera.shifted(left + camera.scale * self._drift[frame, k], top)
+            across, up, _ = camera.scale * self._drift[frame, k]
+            still = camera.shifted(left + across, top - up)
             sea = bed.footage.sea_of(round(float(self._rows[k][frame])))
             sea.paint_superstructure(part, moved, theme)
             sea.paint_box(part, still, (0, 0, right - left, bottom - top), self._time[frame], LINE * unit, theme)
@@ -238,7 +238,7 @@ class Stage:
         """Lower and upper corner (m) of the box around a tank, its parts and, up to a limit, its grains."""
         footage = bed.footage
         if footage.sea and self._earth:
-            pose = bed.pose * [0.0 if self._drifts(bed) else 1.0, 1.0, 1.0]
+            pose = np.where(self._drifts(bed), 0.0, bed.pose)
             low, high = footage.sea.ground(self._seen(footage.afloat, pose).reshape(-1, 2))
             house = silhouette(footage.sea.ship)
             above = 0.0 if house is None else HOUSE[len(self.beds) > 1] * np.ptp(house[:, 1])

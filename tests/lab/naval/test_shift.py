@@ -117,7 +117,9 @@ def test_ore_is_judged_by_its_unevenness(tmp_path):
             writer.frame(frame(now, count=count, position=[np.column_stack([y, 5.0 + slope * y])]))
         writer.close("complete")
     with open_recording(tmp_path) as recording:
-        rows = [row for row in ship.judged(recording)[0] if row.criterion.rule == "IMSBC Code 5"]
+        judged, _, notes = ship.judged(recording)
+    rows = [row for row in judged if row.criterion.rule == "IMSBC Code 5"]
+    assert any("36 deg of repose is no grain" in note for note in notes)
     assert [(row.shift, row.criterion.verdict) for row in rows] == [
         ("as loaded", "pass"),
         ("as it lay at the end", "fail"),

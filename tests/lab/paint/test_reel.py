@@ -11,7 +11,7 @@ from lab.paint.footage import on_the_way, open_footage
 from lab.paint.reel.animation import write_animation
 from lab.paint.reel.course import HELD, RATE, SLOWER, hero_course
 from lab.paint.reel.event import find_event, telling_moments
-from lab.paint.video import contact_sheet, render_recording
+from lab.paint.video import contact_sheet, render_recording, telling_time
 from lab.preset.sections.video import CARGOES
 from solvers.machine.runtime import initialise
 from tests.oracles.pools import standing_wave
@@ -88,6 +88,16 @@ def test_places_between_frames_are_exact_for_steady_acceleration():
         np.testing.assert_allclose(found, place(0.1 * share), atol=1e-14)
     still = np.array([[1.0, 1.0]])
     np.testing.assert_array_equal(on_the_way(still, still, rate(0.0), -rate(0.0), 0.5, 0.1), still)
+
+
+def test_a_funnel_is_shown_as_half_of_its_grains_have_come_down(tmp_path):
+    line = np.array([[-0.02, 0.05], [-0.01, 0.02]])
+    with recorder(tmp_path, parts={"left": line}) as run:
+        for now in np.linspace(0.0, 4.0, 41):
+            down = 0.03 * min(now / 2.0, 1.0) ** 2  # m: half of it at 1.41 s
+            run.sample(sample(now, centre_of_mass=[[0.0, 0.05 - down]]))
+            run.frame(frame(now, part=np.zeros((1, 1, 2))))
+    assert telling_time(tmp_path) == pytest.approx(1.5, abs=0.11)
 
 
 def test_moments_are_closer_together_where_more_happens(slide):

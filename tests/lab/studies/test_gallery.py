@@ -9,7 +9,7 @@ from lab import __version__
 from lab.base.errors import LabError
 from lab.preset.find import names
 from lab.studies import gallery
-from lab.studies.gallery import make_gallery
+from lab.studies.gallery import make_gallery, repeats_of_twin
 
 
 @pytest.mark.parametrize("clip", ["tilting-quick.mp4", None])
@@ -41,6 +41,14 @@ def test_numbers_are_written_for_readers():
         "critical_angle": "28.500° (1 bed; fit 0.03°)",
         "final_shift": "−2.470 diameters (1 bed; fit 0.03 diameters)",
     }
+
+
+def test_presets_that_differ_by_their_repeats_alone_are_run_with_these():
+    """Else their pictures would be those of the presets on which they are based."""
+    found = {name: repeats_of_twin(name) for name in ("shaking/roll-quick", "shaking/roll-centre-200-quick")}
+    assert found == {"shaking/roll-quick": 1, "shaking/roll-centre-200-quick": 1}
+    assert repeats_of_twin("shaking/roll-centre-500-quick") == 2
+    assert repeats_of_twin("shaking/heave-materials-b-quick") == 2
 
 
 def test_a_name_that_matches_no_preset_is_refused(tmp_path):

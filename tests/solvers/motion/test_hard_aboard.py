@@ -1,0 +1,74 @@
+"""Hard cases of ships with water: as heavy as the hull, and in resonance without damping."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from solvers.scene import Scene
+from solvers.ship.body import Body
+from solvers.ship.loads import Floating
+from solvers.ship.motion import Radiation, Ship
+from solvers.ship.section import box as hull
+from solvers.ship.vessel import Vessel
+from solvers.ship.water import Water as Sea
+from solvers.ship.waves import regular
+from solvers.simulation import Simulation
+from tests.oracles.water import GRAVITY, still
+
+pytestmark = pytest.mark.slow
+AXIS, HOLD = (0.0, 0.11), (0.0, 0.02)  # m
+WIDE, HIGH, ROWS = 0.4, 0.2, 10
+HALF = 0.5 * HIGH
+WATER = 1000.0 * WIDE * HALF  # kg/m
+ADDED = np.diag([40.0, 52.0, 0.2])
+
+
+def barge(body: Body, push: float = 0.0, omega: float = 5.0, damped: float = 1.0, **changes) -> Vessel:
+    """A barge, in waves that push her by so many N/m for each metre of their height, or in calm water."""
+    sea = Sea()
+    waves = regular(0.01 if push else 0.0, omega, sea, 1.0)
+    load = Floating(hull(0.6, 0.40), sea, AXIS, waves, push * np.array([[1.0, 1.0j, 0.03]]))
+    return Vessel(Ship(body, load, Radiation(ADDED, damped * np.diag([20.0, 100.0, 0.1])), AXIS), HOLD, **changes)
+
+
+def half_full(vessel: Vessel, **changes) -> Scene:
+    """A half-full tank as long as she is."""
+    scene = still(WIDE, HIGH, HALF, ROWS, vessels=[vessel], length=vessel.length, **changes)
+    return replace(scene, step=scene.time_step())
+
+
+def rows_of(scene: Scene, lasts: float, every: float = 0.05) -> list[dict[str, np.ndarray]]:
+    """What is observed on the way; the checks of the water's state raise if it is not physical."""
+    run, rows = Simulation(scene, threads=1, arch="cpu"), []
+    while run.time < lasts and not (rows and (rows[-1]["capsized"] >= 0.0).all()):
+        run.advance(max(1, round(every / run.dt)))
+        rows.append(run.observe())
+    run.close()
+    return rows
+
+
+def test_a_half_full_tank_as_heavy_as_the_hull():
+    """In waves she rolls as with water by linear theory, which is small here, to a fifth of it."""
+    vessel = barge(Body(WATER, (0.0, 0.06), 0.04 * WATER), push=1000.0)
+    rolls = []
+    for model in ("sph", "linear"):
+        scene = half_full(vessel, model=model, **({"swing_damping": 0.02} if model == "linear" else {}))
+        scene = replace(scene, step=1e-3) if model == "linear" else scene
+        rolls.append(np.array([row["pose"][0, 2] for row in rows_of(scene, 6.0)]))
+    print([np.sqrt(2.0) * roll[-60:].std() for roll in rolls])
+    assert rolls[1][-60:].std() > 2e-3
+    assert rolls[0][-60:].std() == pytest.approx(rolls[1][-60:].std(), rel=0.2)
+
+
+def test_resonance_without_damping():
+    """Undamped, in waves of the tank's first period: the water takes the energy, and she stays within her limits."""
+    omega = np.sqrt(GRAVITY * np.pi / WIDE * np.tanh(np.pi * HALF / WIDE))
+    vessel = barge(Body(2.0 * WATER, (0.0, 0.06), 0.06 * WATER), push=1500.0, omega=float(omega), damped=0.0)
+    rows = rows_of(half_full(vessel), 10.0)
+    roll, spent = np.array([row["pose"][0, 2] for row in rows]), rows[-1]["water_viscous"] + rows[-1]["water_diffusive"]
+    print(np.abs(roll).max(), rows[-1]["ship_works"], spent)
+    assert np.isfinite(roll).all()
+    assert np.abs(roll).max() < 1.0
+    assert rows[-1]["ship_works"][0, 0] > 0.0
+    assert spent[0] > 0.0
