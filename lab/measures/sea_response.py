@@ -1,10 +1,11 @@
 """How a ship answers a random sea: transfer functions of her motions, with coherence and confidence bands.
 
-By Welch's (1967) method, after the soft start: cross- and autospectra S of the waves ζ at her place at rest and of each
-motion x of her axis, means over SEGMENTS pieces of the record that overlap by half, each with a Hann window. With them
-the transfer function |H| = |S_ζx|/S_ζζ, roll per metre of wave (RAO), and the coherence γ² = |S_ζx|²/(S_ζζ S_xx), the
-share of the motion's power that is linear in the waves. The standard error of |H| is √((1 − γ²)/(2 n γ²)) of it, n the
-number of independent pieces (Bendat & Piersol 2010, section 9.2.4); that of S_xx is 1/√n.
+By Welch's (1967) method, after the soft start: cross- and autospectra S of the waves ζ at her axis, wherever she has
+drifted to, and of each motion x of that axis, means over SEGMENTS pieces of the record that overlap by half, each
+with a Hann window. With them the transfer function |H| = |S_ζx|/S_ζζ, roll per metre of wave (RAO), and the coherence
+γ² = |S_ζx|²/(S_ζζ S_xx), the share of the motion's power that is linear in the waves. The standard error of |H| is
+√((1 − γ²)/(2 n γ²)) of it, n the number of independent pieces (Bendat & Piersol 2010, section 9.2.4); that of S_xx is
+1/√n.
 
 rao_peak: the largest |H| of roll (rad/m) where the sea has a twentieth or more of its highest density. Error: that of
 the formula. rao_peak_frequency: where that is; error: half the distance of two lines. rao_coherence: γ² there.
@@ -99,14 +100,15 @@ def measure(recording: Recording) -> dict[str, Value]:
 
 
 def _of(recording: Recording, world: int, mode: int) -> Transfer:
-    """From the waves at the ship's place at rest to sway, heave (m) or roll (rad) of her axis."""
+    """From the waves that meet her axis to sway, heave (m) or roll (rad) of her axis."""
     from lab.assembly.ship import make_water, make_waves
 
     preset, time = recording.preset, recording.series["time"]
     rows = time >= preset.waves.soft_start
     waves = make_waves(preset.waves, make_water(preset.sea, preset.run.gravity))
-    rise = waves.elevation(np.full(int(rows.sum()), preset.ship.about[0]), time[rows])
-    return transfer(time[rows], rise, moved_axis(recording, rows)[:, world, mode])
+    moved = moved_axis(recording, rows)[:, world]
+    rise = waves.elevation(preset.ship.about[0] + moved[:, 0], time[rows])
+    return transfer(time[rows], rise, moved[:, mode])
 
 
 def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> None:

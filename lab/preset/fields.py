@@ -49,6 +49,9 @@ class Table:
     name: str
     columns: dict[str, tuple[float, ...]]
 
+    def __hash__(self) -> int:
+        return hash((self.name, tuple(self.columns.items())))
+
 
 @dataclass(frozen=True)
 class Taken:

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from lab.assembly.hull_flow import Flow
+from lab.assembly.scene import vessels
 from lab.assembly.ship import hull_table
 from lab.preset.find import load
 from solvers.ship.naval.form import Form, prism
@@ -116,6 +117,16 @@ def test_strips_of_a_prism_change_nothing():
     section = hull_table(preset.ship, preset.sea, preset.run.gravity)
     strips = hull_table(replace(preset.ship, hydrodynamics="strips"), preset.sea, preset.run.gravity)
     assert strips.damping == pytest.approx(section.damping, abs=1e-6 * np.abs(section.damping).max())
+
+
+def test_a_hull_from_offsets_floats_in_waves(tmp_path):
+    """The barge once more, by a file of her offsets: the same vessel."""
+    file = tmp_path / "barge.csv"
+    file.write_text("\n".join(["station,z,half_breadth", *(f"{x},{z},0.5" for x in (0, 1.5, 3) for z in (0, 0.9))]))
+    changes = {"ship.hydrodynamics": "strips", "ship.offsets": str(file)}
+    offsets, prism_of = (vessels(load("ship/barge-two-tanks", c).resolved)[0].ship for c in (changes, {}))
+    assert offsets.radiation.added_mass == pytest.approx(prism_of.radiation.added_mass, rel=1e-6, abs=1e-6)
+    assert offsets.load.excess == pytest.approx(prism_of.load.excess, rel=1e-4, abs=1e-3)
 
 
 @pytest.mark.parametrize(
