@@ -109,3 +109,6 @@ def test_cells_lie_in_the_stage_and_show_all_to_one_scale(count, filled):
         assert box[0] <= left and right <= box[2] and box[1] <= top and bottom <= box[3] - 20
         assert stage[0] - 1 <= box[0] and box[2] <= stage[2] + 1 and box[3] <= stage[3] + 1
         assert not any(overlap(box, other) for other in cells.boxes[:k])
+    edges = np.array(cells.boxes)
+    reached = *edges[:, :1].min(axis=0), *edges[:, 2:].max(axis=0)
+    assert (reached == (stage[0], *stage[2:])) == filled or count == 1  # those of ships leave none of the stage empty
