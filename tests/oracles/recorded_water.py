@@ -57,7 +57,6 @@ def record_pool(
         resolved=preset,
         radius=np.zeros((1, 0)),
         volume=volume,
-        air_volume=volume[:, :0],
         outline=box(1.0, 0.5),
         step=1e-3,
         **options,
