@@ -2,8 +2,8 @@
 
 import taichi as ti
 
+from solvers.fluid.forces import Forces
 from solvers.fluid.lists import Medium
-from solvers.fluid.walls.sliding import Sliding
 from solvers.machine.state import State
 from solvers.motion.poses import AT_MIDDLE
 from solvers.space.axes import dot
@@ -16,30 +16,32 @@ class Continuity:
     Of two phases, the second sum is over the own phase, and pairs of both have the weight of `solvers.fluid.phases`.
 
     `lost` (units,) J is the energy that diffusion has taken: −Σ m_i p_i/ρ_i² times its share of the rate (Antuono,
-    Marrone, Colagrossi & Bouscasse 2015, eq. 22). What images of water take, see `Sliding`, goes to
-    `held` (units,) J. The momentum that shifts carry is summed up over the same pairs.
+    Marrone, Colagrossi & Bouscasse 2015, eq. 22), by the water's pressure in the middle of the step. What the water
+    before dummies takes (`Closing`), and what images of water take from air (`Sliding`), goes to `held` (units,) J. The
+    momentum that shifts carry is summed up over the same pairs.
     """
 
-    def __init__(self, arrays: State, medium: Medium, sliding: Sliding, held: ti.Field):
+    def __init__(self, arrays: State, medium: Medium, forces: Forces):
         self.units, self.particles, self.shares = medium.units, medium.particles, medium.shares
         self.lists, self.constants, self.poses = medium.lists, medium.constants, medium.poses
-        own, self.sliding, self.held = arrays.under("water.continuity"), sliding, held
+        own, self.sliding, self.held = arrays.under("water.continuity"), forces.beside.walls.sliding, forces.held
         (self.lost,) = own.reals((medium.units.axis,), "lost", kind=own.exact)
+        self.closes = medium.particles.dry > 0 and not medium.constants.full
 
     @ti.func
     def expand(self, u, frame, kick, dt):
         """The rates of density of a unit's particles in the middle of the step; returns that all is well."""
         first, end = self.shares.wet(u)
-        spent = ti.Vector([ti.cast(0.0, self.particles.exact) for _ in ti.static(range(2))])
+        given = ti.Vector([ti.cast(0.0, self.particles.exact) for _ in ti.static(range(2))])
         for b in range(first, end):
-            spent += self.lists.order.weight(b) * self.expand_block(u, b, b - first)
-        self.lost[u] = self.lost[u] + spent[0] * ti.cast(dt, self.particles.exact)
-        self.held[u] = self.held[u] + spent[1] * ti.cast(dt, self.particles.exact)
+            given += self.lists.order.weight(b) * self.expand_block(u, b, b - first, dt)
+        self.lost[u] = self.lost[u] - given[0] * ti.cast(dt, self.particles.exact)
+        self.held[u] = self.held[u] - given[1] * ti.cast(dt, self.particles.exact)
         return True
 
     @ti.func
-    def expand_block(self, u, b, listed):
-        """As `expand`, for a block; returns the powers (W/m) that diffusion takes, and images of water."""
+    def expand_block(self, u, b, listed, dt):
+        """As `expand`, for a block; returns the powers (W/m) that diffusion gives, and walls but for their motion."""
         p, c = self.particles, self.constants
         lists = self.lists
         w = self.units.world(u)
@@ -50,7 +52,8 @@ class Continuity:
         s, shrink = p.load(p.excess, b), c.get("shrink")
         gas = p.gases(b)
         rest = [c.of("hydrostatic", gas) * self.down(w, a) for a in ti.static(range(p.axes))]
-        opened, evened, walled, given = p.zeros(), p.zeros(), p.zeros(), p.zeros()
+        opened, evened, walled, closed = p.zeros(), p.zeros(), p.zeros(), p.zeros()
+        slid = p.zeros()
         carried = [p.zeros() for _ in ti.static(range(p.axes))]
         shift = [p.zeros() for _ in ti.static(range(p.axes))]
         if ti.static(c.shifting.carries):
@@ -91,34 +94,37 @@ class Continuity:
                 j = lists.beside.slots[u, k]
                 jb, lane = lists.block_of(j), lists.lane_of(j)
                 apart = lists.apart(b, own, origin, j, AT_MIDDLE)
-                weight = p.volume[jb, lane] * c.kernel.slope(ti.max(1.0 - ti.sqrt(dot(apart, apart)) * shrink, 0.0))
+                t = ti.max(1.0 - ti.sqrt(dot(apart, apart)) * shrink, 0.0)
+                weight = p.volume[jb, lane] * c.kernel.slope(t)
                 nearing = [p.velocity[a][jb, lane] - speed[a] for a in ti.static(range(p.axes))]
                 walled += weight * dot(nearing, apart)
+                if ti.static(self.closes):
+                    closed += (p.volume[jb, lane] * p.rate[jb, lane]) * c.kernel.value(t)
                 if ti.static(self.sliding.acts):
-                    given += weight * self.sliding.given(jb, lane, apart)
-        given *= gas
+                    slid += weight * self.sliding.given(jb, lane, apart)
+            closed *= c.get("value")
         if ti.static(c.two):  # air meets its mirror image at walls, see `solvers.fluid.phases.interfaces`
-            walled = walled * (1.0 + gas) + given
+            walled *= 1.0 + gas
+            closed = (1.0 - gas) * closed + gas * (c.get("slope") * slid)
         factor = c.get("slope")
         evened *= factor * c.of("spread", gas)
-        p.store(p.rate, b, (1.0 + s) * (factor * opened) + evened)
-        p.store(p.rate_of_walls, b, (1.0 + s) * (factor * walled))
+        rate, rate_of_walls = (1.0 + s) * (factor * opened) + evened, (1.0 + s) * (factor * walled + closed)
+        p.store(p.rate, b, rate)
+        p.store(p.rate_of_walls, b, rate_of_walls)
         if ti.static(c.shifting.carries):
             flux = p.load(p.volume, b) * (factor * c.get("density"))
             for a in ti.static(range(p.axes)):
                 p.store(p.carried[a], b, flux * carried[a])
-        spent = ti.Vector([ti.cast(0.0, p.exact) for _ in ti.static(range(2))])
+        pressure, more = p.load(p.pressure, b), (0.5 * dt) * (rate + rate_of_walls)
         if ti.static(c.two):
-            room = p.load(p.pressure, b) * p.load(p.mass, b) / ((1.0 + s) * (1.0 + s) * c.of("density", gas))
-            spent[0] = 0.0 - ti.cast((evened * room).sum(), p.exact)
-            spent[1] = 0.0 - ti.cast((given * (factor * (1.0 + s)) * room).sum(), p.exact)
+            pressure += (1.0 - gas) * (c.get("stiffness") * more)
         else:
-            share = c.state.share(s)
-            if ti.static(c.pressed):
-                share += p.filled(b) * (c.get("background") / c.get("stiffness"))
-            taken = evened * share * p.load(p.mass, b) / ((1.0 + s) * (1.0 + s))
-            spent[0] = 0.0 - ti.cast(taken.sum() * (c.get("stiffness") / c.get("density")), p.exact)
-        return spent
+            pressure += c.get("stiffness") * (c.state.share(s + more) - c.state.share(s))
+        power = pressure * p.load(p.mass, b) / ((1.0 + s) * (1.0 + s) * c.of("density", gas))
+        by_walls = (1.0 + s) * closed
+        given = ti.Vector([ti.cast(0.0, p.exact) for _ in ti.static(range(2))])
+        given[0], given[1] = ti.cast((evened * power).sum(), p.exact), ti.cast((by_walls * power).sum(), p.exact)
+        return given
 
     @ti.func
     def tank_speed(self, w, axis: ti.template()):

@@ -23,8 +23,7 @@ class Forces:
 
     Forces between pairs of particles are equal and opposite; those of dummies are booked on the tank. `lost` (units,)
     is the energy that viscosity has taken, `held` that which dummies have, `work` that which the walls have given, J
-    per metre of thickness. Dummies take and give energy since their pressures push, but are not worked on in return:
-    only p_i is in the balance of the particle's own density (Cercos-Pita, Antuono, Colagrossi & Souto-Iglesias 2017).
+    per metre of thickness. What dummies have, they give back by compressing the water before them, see `Continuity`.
     """
 
     def __init__(self, arrays: State, medium: Medium, walls: Extrapolation, load: Load, thickness: float):
@@ -32,7 +31,8 @@ class Forces:
         self.lists, self.constants, self.poses = medium.lists, medium.constants, medium.poses
         self.beside, self.load, self.bodies = WallPush(medium, walls), load, medium.lists.bodies
         own = arrays.under("water.forces")
-        self.lost, self.held, self.work = own.reals((medium.units.axis,), "lost", "held", "work", kind=own.exact)
+        self.counts = own.reals((medium.units.axis,), "lost", "held", "work", kind=own.exact)
+        self.lost, self.held, self.work = self.counts
         self.order, self.outlines = medium.lists.order, medium.lists.order.layers
         self.tension = Tension(medium.particles, medium.constants)
         self.gradients = medium.constants.diffusion.renormalised

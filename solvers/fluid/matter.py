@@ -21,6 +21,7 @@ from solvers.fluid.state import LANES, UNUSED, Particles, Shares
 from solvers.fluid.walls.answer import answer_at_rest
 from solvers.fluid.walls.behind import OF_NONE, Behind
 from solvers.fluid.walls.bodies import Bodies
+from solvers.fluid.walls.closing import Closing
 from solvers.fluid.walls.edges import Edges
 from solvers.fluid.walls.extrapolation import Extrapolation
 from solvers.fluid.walls.gauges import Gauges
@@ -69,8 +70,7 @@ class WaterMatter(Matter):
         medium = Medium(units, p, shares, self.lists, self.constants, self.poses)
         self.extrapolation = Extrapolation(arrays, medium)
         self.forces = Forces(arrays, medium, self.extrapolation, self.load, tank.thickness)
-        sliding, self.vent = self.extrapolation.sliding, Vent(arrays, medium, water.air)
-        self.continuity = Continuity(arrays, medium, sliding, self.forces.held)
+        self.continuity, self.vent = Continuity(arrays, medium, self.forces), Vent(arrays, medium, water.air)
         self.mover = Mover(arrays, medium, self.extrapolation, self.vent)
         probes = [dummy[slot] + p.wet * lanes for slot in behind.probes]
         self.gauges = Gauges(arrays, p, self.constants, water.gauges, probes, behind.open)
@@ -83,7 +83,9 @@ class WaterMatter(Matter):
         mass = water.density * scene.drops[..., VOLUME].sum(axis=1).max() * tank.thickness
         self.least = 0.5 * mass * (LEAST * water.sound_speed) ** 2  # J
         self.before, self.between = self._before(), (Phase(self.note_passage),)
-        self.after = tuple(Phase(act, units) for act in (self.mover.kick, self.continuity.expand, self.finish))
+        closing = [Closing(arrays, medium, behind, dummy).close] if self.continuity.closes else []
+        acts = self.mover.kick, *closing, self.continuity.expand, self.finish
+        self.after = tuple(Phase(act, units) for act in acts)
 
     def _before(self) -> tuple[Phase, ...]:
         return (
@@ -187,8 +189,7 @@ class WaterMatter(Matter):
             whole = field.to_numpy().reshape(p.worlds, p.stride, p.lanes)
             whole[:, p.wet : p.wet + p.walls] = values
             field.from_numpy(whole.reshape(-1, p.lanes))
-        sums = self.forces.lost, self.forces.held, self.forces.work, self.continuity.lost
-        for field in (*sums, self.census.behind, self.lists.last):
+        for field in (*self.forces.counts, self.continuity.lost, self.census.behind, self.lists.last):
             field.fill(0.0)
         self.bodies.forget()
         self.lists.skin.fill(0.0)
@@ -206,10 +207,8 @@ class WaterMatter(Matter):
         now = [field.to_numpy() for field in self.census.now]
         down = np.stack(now[3:5], axis=1) / max(self.scene.gravity, 1e-300)
         potential = mass * self.scene.gravity * (now[5] - (centre * down).sum(axis=1)) + sums["pulled"]
-        spent = [
-            field.to_numpy().reshape(self.particles.worlds, -1).sum(axis=1)
-            for field in (self.forces.lost, self.continuity.lost, self.forces.work, self.forces.held)
-        ]
+        counts = *self.forces.counts, self.continuity.lost
+        viscous, held, work, diffusive = (count.to_numpy().reshape(len(mass), -1).sum(axis=1) for count in counts)
         rows = {
             **self.census.of_water(sums, mass, centre),
             "water_momentum": np.stack([sums["momentum_y"], sums["momentum_z"]], axis=1),
@@ -217,10 +216,10 @@ class WaterMatter(Matter):
             "water_potential": potential,
             "water_elastic": sums["elastic"],
             "water_total": sums["moving"] + potential + sums["elastic"],
-            "water_viscous": spent[0] * thick,
-            "water_diffusive": spent[1] * thick,
-            "water_work": (spent[2] + self.bodies.given()) * thick,
-            "water_held": spent[3] * thick,
+            "water_viscous": viscous * thick,
+            "water_diffusive": diffusive * thick,
+            "water_work": (work + self.bodies.given()) * thick,
+            "water_held": held * thick,
             "water_excess": sums["excess"],
             "level_depth": self.census.level_depth.to_numpy()[:, : self.census.levels],
             "water_escaped": sums["escaped"],
@@ -233,9 +232,10 @@ class WaterMatter(Matter):
 
     def check(self, rows: dict[str, np.ndarray], time: float) -> None:
         """Raise BadState if the quantities at `time` (s) show an unphysical state."""
-        # Not known: what a surface under tension loses, what vents take; a particle that goes round falls for ever.
-        known = np.nan if self.water.periodic or self.constants.tense or self.vent.acts else self.start
-        check_water(rows, known, time, self.least)
+        # A particle that goes round falls for ever; what a surface under tension holds, and vents take, is not known.
+        # At time zero no work is done yet, but velocities may have half a kick: m (g Δt/2)²/2 that nothing has given.
+        unknown = time == 0.0 or self.water.periodic or self.constants.tense or self.vent.acts
+        check_water(rows, np.nan if unknown else self.start, time, self.least)
 
     def refuse(self, world: int, time: float, dt: float) -> None:
         """Raise BadState for a world that was stopped at `time` (s)."""

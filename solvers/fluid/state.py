@@ -36,11 +36,11 @@ class Particles:
     Fields (W · stride, lanes), in the tank's axes. `place` (m); `velocity` (m/s), over the earth; `excess` s = ρ/ρ0 −
     1; `mass` (kg per metre of thickness) and `number` belong to a particle for good and move with it from block to
     block. `volume` (m²) and `pressure` (Pa) are published at the start of a step. `rate` and `rate_of_walls` (1/s) are
-    those of s; `acceleration` (m/s²) is that of the last kick; `slope` (1/m) the renormalised gradient of s; `span` the
-    least eigenvalue of Σ V_j r_ji ⊗ ∇W, 1 within water; `carried` (N/m) the momentum that shifts bring (`shifting`).
-    Of two phases, `gas` is 1 for particles of air, 0 for those of water, `span` is of the own phase, and dummies have
-    the pressure that water sees in `pressure`, that which air sees in `pressure_of_air`, and the water's `share` of
-    what they see.
+    those of s, and the `rate` of dummies how fast water closes on them (`Closing`); `acceleration` (m/s²) is that of
+    the last kick; `slope` (1/m) the renormalised gradient of s; `span` the least eigenvalue of Σ V_j r_ji ⊗ ∇W, 1
+    within water; `carried` (N/m) the momentum that shifts bring (`shifting`). Of two phases, `gas` is 1 for particles
+    of air, 0 for those of water, `span` is of the own phase, and dummies have the pressure that water sees in
+    `pressure`, that which air sees in `pressure_of_air`, and the water's `share` of what they see.
 
     With `lanes` 1, for processors that move each particle by a thread of its own, a block is a particle.
     """

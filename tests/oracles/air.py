@@ -39,6 +39,7 @@ class PlainBoth(PlainWater):
         super().__init__(scene)
         water, air = scene.water, scene.water.air
         self.gas = scene.drops[0, :, GAS]
+        self.liquid = 1.0 - self.gas
 
         def of(of_water: float, of_air: float) -> np.ndarray:
             return np.where(self.gas > 0.5, of_air, of_water)
@@ -101,15 +102,15 @@ class PlainBoth(PlainWater):
         slope[regular] = np.linalg.solve(matrix[regular], raw[regular][..., None])[..., 0]
         return (force + walls) / mass[:, None], slope, walls
 
-    def later(self, r, u, s, mass, slope, dt):
+    def later(self, r, u, s, mass, slope, pressed, dt):
         """The excess of density after a step, from its middle; water with few of its kind about is never less dense."""
         spray = (self.span < 0.2) & (self.gas < 0.5)
-        for rate in self.rates(r, u, s, mass, slope):
+        for rate in self.rates(r, u, s, mass, slope, pressed):
             s = s + dt * rate
             s = np.where(spray, np.maximum(s, 0.0), s)
         return s
 
-    def rates(self, r, u, s, mass, slope):
+    def rates(self, r, u, s, mass, slope, pressed):
         """Rates of s in the middle of a step, by the particles and by the walls."""
         water, volume, same = self.water, self.volume(mass, s), self.other == 0.0
         apart, _, _, gradient = self.between(r, r)
@@ -120,4 +121,5 @@ class PlainBoth(PlainWater):
         more = 2.0 * (s[None] - s[:, None]) - ((slope[:, None] + slope[None]) * apart).sum(axis=2)
         eta = -kernel(np.linalg.norm(apart, axis=2), water.length)[1]
         evened = water.delta * water.length * self.sound * ((same * more * eta) @ volume)
+        walled = walled - self.closing(r, u, s, mass, pressed)
         return evened - (1.0 + s) * flow, -(1.0 + s) * walled

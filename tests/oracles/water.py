@@ -50,10 +50,14 @@ def kernel(distance: np.ndarray, length: float) -> tuple[np.ndarray, np.ndarray]
 class PlainWater:
     """The equations of a tank at rest with free slip, linear state, Antuono's diffusion and artificial viscosity."""
 
+    liquid: np.ndarray | float = 1.0  # 1 for water, 0 for air
+
     def __init__(self, scene: Scene):
         self.water, self.gravity = scene.water, np.array([0.0, -scene.gravity])
         rows = int(np.ceil(scene.water.reach / scene.water.spacing))
         self.wall, self.wall_volume, _ = layers(scene.outline, scene.water.spacing, rows)
+        off = self.wall - np.clip(self.wall, scene.outline.min(axis=0), scene.outline.max(axis=0))  # of a box
+        self.along = np.stack([-off[:, 1], off[:, 0]], axis=1) / np.linalg.norm(off, axis=1)[:, None]
 
     def volume(self, mass: np.ndarray, s: np.ndarray) -> np.ndarray:
         """V = m/ρ."""
@@ -94,13 +98,27 @@ class PlainWater:
         slope[regular] = np.linalg.solve(matrix[regular], raw[regular][..., None])[..., 0]
         return (force + walls) / mass[:, None], slope, walls
 
-    def rate(self, r, u, s, mass, slope) -> np.ndarray:
-        """Rate of s, in the middle of a step."""
+    def closing(self, r, u, s, mass, pressed) -> np.ndarray:
+        """Minus what dummies that are `pressed` add to the divergence: the adjoint of their pressures' forces.
+
+        They slide with the mean velocity of the water, square to the shortest line to the tank.
+        """
+        volume = self.volume(mass, s) * self.liquid
+        _, _, value, gradient = self.between(r, self.wall)
+        seen = volume @ value
+        mean = (volume * value.T) @ u / np.maximum(seen, 1e-30)[:, None]
+        over = u[:, None] - (mean * self.along).sum(axis=1, keepdims=True) * self.along
+        closed = np.where(pressed & (seen > 0.0), volume @ (over * gradient).sum(axis=2), 0.0)
+        return self.liquid * (value @ (self.wall_volume * closed / np.maximum(seen, 1e-30)))
+
+    def rate(self, r, u, s, mass, slope, pressed) -> np.ndarray:
+        """Rate of s, in the middle of a step at whose start dummies were `pressed`."""
         water, volume = self.water, self.volume(mass, s)
         apart, _, _, gradient = self.between(r, r)
         flow = ((u[None] - u[:, None]) * gradient).sum(axis=2) @ volume
         _, _, _, at_wall = self.between(r, self.wall)
         flow += (-u[:, None] * at_wall).sum(axis=2) @ self.wall_volume
+        flow -= self.closing(r, u, s, mass, pressed)
         more = 2.0 * (s[None] - s[:, None]) - ((slope[:, None] + slope[None]) * apart).sum(axis=2)
         eta = -kernel(np.linalg.norm(apart, axis=2), water.length)[1]
         return -(1.0 + s) * flow + water.delta * water.length * water.sound_speed * (more * eta) @ volume

@@ -10,8 +10,6 @@ class Antuono:
     Limits: G is half a step old, and zero in spray, where its matrix is singular; it costs a third of a pass over
     pairs. G_i is the gradient that fits the neighbours' densities best, weighted with V_j |∇W|/r, and the power that is
     taken goes with Σ_i V_i Σ_j V_j (ρ_j − ρ_i − G_i·r_ji)² |∇W|/r: never negative, but next to nothing of smooth waves.
-    So sound that walls feed, see `Extrapolation`, grows by 9 to 13 % a second in columns of forty layers at rest, where
-    `fourtakas` damps it.
 
     Units: ψ kg/m⁴, ρ kg/m³, r m.
     """

@@ -11,7 +11,7 @@ from solvers.fluid.walls.sight import COSINE, RATE, SINE, V_Y, V_Z, Sight, Y, Z
 from solvers.fluid.walls.solids import Solids
 from solvers.machine.state import Axis, State, padded, roomy
 from solvers.motion.moved import motions_of
-from solvers.motion.poses import AT_START, Poses
+from solvers.motion.poses import AT_MIDDLE, AT_START, Poses
 from solvers.motion.prescribed import Prescribed
 from solvers.space.axes import dot
 from solvers.tank.parts import Part
@@ -131,6 +131,17 @@ class Bodies:
                     p.place[1][b, lane] = ti.cast(o_z + arm_z, p.where)
                     p.velocity[0][b, lane] = ti.cast(v_y - rate * arm_z - turn * (o_z + arm_z), p.real)
                     p.velocity[1][b, lane] = ti.cast(v_z + rate * arm_y + turn * (o_y + arm_y), p.real)
+
+    @ti.func
+    def turn(self, b, vector: ti.template()):
+        """Turn the vectors of a block of dummies, as their part is drawn, as it is in the middle of the step."""
+        row = self.row(b)
+        if row >= 0:
+            w, k, at = b // self.particles.stride, self.owner[row], ti.static(7 * AT_MIDDLE)
+            cos = ti.cast(self.pose[w, k, at + COSINE], self.particles.real)
+            sin = ti.cast(self.pose[w, k, at + SINE], self.particles.real)
+            y, z = vector[0], vector[1]
+            vector[0], vector[1] = cos * y - sin * z, sin * y + cos * z
 
     @ti.func
     def hold_back(self, w, b, felt: ti.template()):

@@ -20,9 +20,7 @@ class Extrapolation:
     dummy gives the velocity 2 u_w − ũ for the viscous force (eq. 23). Of two phases, water sees a pressure
     that is extrapolated from water alone, and air its own, see `solvers.fluid.phases.interfaces`; gauges see both.
 
-    Limits: dummies push with the water's pressure but move with the wall, not with the water's mirror image, so that
-    their force is not the adjoint of the divergence, and they take or give energy (`held`). A column's sound is too
-    slow by 5 % at 40 layers, and with a diffusion that lets densities near the floor lag, they feed it.
+    Limits: the mean is of first order; what its push does to the energy is given back by `Closing`.
     """
 
     def __init__(self, arrays: State, medium: Medium):

@@ -70,6 +70,19 @@ def distance(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
     return nearest
 
 
+def faces(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
+    """Unit vectors (n, 2) along a polygon (m, 2) where it is nearest to points (n, 2) m off it.
+
+    They are square to the shortest line from there to the point, at a corner as well.
+    """
+    edges = np.roll(corners, -1, axis=0) - corners
+    nearest = edge_of(points, corners)
+    along, away = edges[nearest], points - corners[nearest]
+    share = (away * along).sum(axis=1) / (along**2).sum(axis=1)
+    behind = away - np.clip(share, 0.0, 1.0)[:, None] * along
+    return np.stack([-behind[:, 1], behind[:, 0]], axis=1) / np.linalg.norm(behind, axis=1)[:, None]
+
+
 def edge_of(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
     """The edge (n,) of a polygon (m, 2) that is nearest to each point (n, 2) m, by its first corner."""
     edges = np.roll(corners, -1, axis=0) - corners

@@ -6,7 +6,7 @@ import numpy as np
 
 from solvers.fluid.given import Water
 from solvers.fluid.state import FAR, UNUSED
-from solvers.fluid.walls.layers import firm, layers
+from solvers.fluid.walls.layers import faces, firm, layers
 from solvers.tank.parts import Part
 
 STRIP = 4.0  # spacings: height of the strips by which the dummies of a body are cut into blocks
@@ -45,8 +45,9 @@ class Solids:
     """The dummies of all parts in blocks of `lanes`, each block of one part.
 
     `places` (blocks, lanes, 2) m as drawn, `volumes` (blocks, lanes) m², `firm` (blocks, lanes) m, the distances within
-    which they push water back, `numbers` (blocks, lanes), UNUSED in lanes without a dummy, of which the first lane is
-    none; `owner` (blocks,) is the part, `radius` (blocks,) m how far a block's dummies are from its first one.
+    which they push water back, `along` (blocks, lanes, 2) unit vectors along the faces before them, `numbers` (blocks,
+    lanes), UNUSED in lanes without a dummy, of which the first lane is none; `owner` (blocks,) is the part, `radius`
+    (blocks,) m how far a block's dummies are from its first one.
     """
 
     def __init__(self, parts: Sequence[Part], water: Water, lanes: int):
@@ -56,8 +57,9 @@ class Solids:
         self.ends = np.cumsum([0, *(len(place) for place in places)])
         blocks = int(self.ends[-1])
         self.places = np.concatenate([*places, np.zeros((0, lanes, 2))])
-        self.volumes = np.concatenate([*(volume for _, volume, _ in found), np.zeros((0, lanes))])
-        self.firm = np.concatenate([*(held for *_, held in found), np.zeros((0, lanes))])
+        self.volumes = np.concatenate([*(volume for _, volume, *_ in found), np.zeros((0, lanes))])
+        self.firm = np.concatenate([*(held for _, _, held, _ in found), np.zeros((0, lanes))])
+        self.along = np.concatenate([*(along for *_, along in found), np.zeros((0, lanes, 2))])
         self.owner = np.repeat(np.arange(len(parts)), np.diff(self.ends))
         used = self.volumes > 0.0
         self.numbers = np.where(used, np.arange(blocks * lanes).reshape(blocks, lanes), UNUSED)
@@ -65,16 +67,19 @@ class Solids:
         self.radius = np.where(used, away, 0.0).max(axis=1, initial=0.0)
 
     @staticmethod
-    def _part(part: Part, spacing: float, rows: int, lanes: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Places (blocks, lanes, 2), volumes and `firm` (blocks, lanes) of the dummies of one part."""
+    def _part(part: Part, spacing: float, rows: int, lanes: int) -> tuple[np.ndarray, ...]:
+        """Places (blocks, lanes, 2), volumes, `firm` (blocks, lanes) and `along` of the dummies of one part."""
         if is_solid(part):
-            points, volumes, depths = layers(counter_clockwise(part.points)[::-1], spacing, rows)
+            corners = counter_clockwise(part.points)
+            points, volumes, depths = layers(corners[::-1], spacing, rows)
+            along = faces(points, corners)
         else:
             points, volumes, depths = sheet(part.points, spacing, rows)
+            way = np.subtract(part.points[1], part.points[0])
+            along = np.tile(way / np.hypot(*way), (len(points), 1))
         strip = np.floor((points[:, 1] - points[:, 1].min()) / (STRIP * spacing))
         order = np.lexsort((points[:, 0], strip))
-        blocks = -(-len(points) // lanes)
-        places, sizes, held = np.full((blocks * lanes, 2), FAR), np.zeros(blocks * lanes), np.zeros(blocks * lanes)
-        places[: len(points)], sizes[: len(points)] = points[order], volumes[order]
-        held[: len(points)] = firm(depths, spacing)[order]
-        return places.reshape(blocks, lanes, 2), sizes.reshape(blocks, lanes), held.reshape(blocks, lanes)
+        more = -len(points) % lanes
+        columns = (points, FAR), (volumes, 0.0), (firm(depths, spacing), 0.0), (along, 0.0)
+        filled = (np.concatenate([one[order], np.full((more, *one.shape[1:]), fill)]) for one, fill in columns)
+        return tuple(one.reshape(-1, lanes, *one.shape[1:]) for one in filled)

@@ -48,10 +48,15 @@ def test_the_stiffness_of_weight_and_surface_is_no_added_inertia(tmp_path):
 @pytest.mark.slow
 @pytest.mark.parametrize("share", [0.7, 1.4])
 def test_swayed_water_has_the_added_mass_of_linear_theory(tmp_path, share):
-    """Below and above the first natural frequency, where it is negative; to 3 % of the mass of the water."""
+    """Below and above the first natural frequency, where it is negative; to 3 % of the mass of the water.
+
+    The start leaves free sloshing of the first mode, and a fit over finite time takes part of it for the response. The
+    mode alone, q'' + 2 ζ ω₁ q' + ω₁² q = −Y'', with this soft start and fit at 0.7 ω₁ and ζ = 0 to 0.01, is off by 7 to
+    18 % after 8 s of start and 24 s in all, by less than 1 % after 24 s and 48 s; at 1.4 ω₁ by less than 1 % in both.
+    """
     first = float(SloshingLiquid(1.0, 0.2).rates[0]) / (2.0 * np.pi)
-    motion = f'[motion]\nsoft_start = "8 s"\n[motion.sway]\namplitude = "4 mm"\nfrequency = "{share * first} Hz"\n'
-    preset = POOL.replace("10 s", "24 s").replace("20 mm", "16.7 mm") + motion
+    motion = f'[motion]\nsoft_start = "24 s"\n[motion.sway]\namplitude = "4 mm"\nfrequency = "{share * first} Hz"\n'
+    preset = POOL.replace("10 s", "48 s").replace("20 mm", "16.7 mm") + motion
     (tmp_path / "pool.toml").write_text(preset, encoding="utf-8")
     run_preset(tmp_path / "pool.toml", {}, tmp_path / "run", video=False, plots=False, quiet=True)
     with open_recording(tmp_path / "run") as recording:
