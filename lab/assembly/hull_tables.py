@@ -4,6 +4,9 @@ In space the table is of the hull's mesh up to FINEST √(g/draught), with panel
 Above, where waves are short beside the hull and strips are exact in the limit, damping and excitation are those of
 strips, and added mass is theirs less their limit at infinite frequency plus that in space. What is left of the
 difference where they join falls with the fourth power of the frequency.
+
+Limits: with these panels roll of a round hull, a small difference of large pressures, is the least exact; Haskind's
+relation as `cargolab hydrodynamics` prints it tells how exact.
 """
 
 import sys

@@ -17,6 +17,7 @@ from solvers.ship.section import Section
 
 KNUCKLE = np.radians(30.0)  # a sharper turn of the outline is kept as an edge between panels
 LEAST_PANELS = 4  # between two knuckles
+ROUND = 12  # panels in a right angle of a bilge: its roll is a small difference of large pressures
 SYMMETRIC = 1e-6  # of the hull's breadth
 
 
@@ -115,7 +116,9 @@ def _shares(half: np.ndarray, size: float) -> np.ndarray:
     edges = np.concatenate([[0.0], girth[1:-1][turn > KNUCKLE], [1.0]])
     parts = []
     for k, (begin, end) in enumerate(pairwise(edges)):
-        count = max(LEAST_PANELS, round((end - begin) * whole / size))
+        inside = (girth[1:-1] > begin) & (girth[1:-1] < end)
+        bent = turn[inside].sum() / (0.5 * np.pi)
+        count = max(LEAST_PANELS, round(ROUND * bent), round((end - begin) * whole / size))
         parts.append(begin + (end - begin) * _spaced(count, k > 0, k < len(edges) - 2)[:-1])
     return np.concatenate([*parts, [1.0]])
 

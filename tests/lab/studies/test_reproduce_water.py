@@ -28,7 +28,7 @@ def ran(preset: str, changes: dict | None = None, **series: np.ndarray) -> Outco
     """A run with these series and frames."""
     frames = {name[7:]: series.pop(name) for name in [*series] if name.startswith("frames_")}
     recording = SimpleNamespace(preset=load(preset, changes or {}).resolved, series=series, frames=frames, worlds=1)
-    recording.volume = np.zeros((1, 100))
+    recording.volume, recording.air_volume = np.zeros((1, 100)), np.zeros((1, 0))
     one = Outcome({}, None, "complete", {}, {"wall_s": 1.0, "grain_steps": 1e5})
     one.__dict__["recording"] = recording
     return one

@@ -1,4 +1,4 @@
-"""Hard cases of ships with water: as heavy as the hull, and in resonance without damping."""
+"""Hard cases of ships with water: heavy water, resonance without damping, turning over, a tank that runs dry."""
 
 from dataclasses import replace
 
@@ -72,3 +72,29 @@ def test_resonance_without_damping():
     assert np.abs(roll).max() < 1.0
     assert rows[-1]["ship_works"][0, 0] > 0.0
     assert spent[0] > 0.0
+
+
+def test_a_ship_that_turns_over_with_her_water():
+    """Top-heavy she goes round to 180 degrees; the water lies on the roof then, and none has left."""
+    vessel = barge(Body(1.5 * WATER, (0.0, 0.40), 0.08 * WATER), heel=0.05, release=0.1, damped=10.0)
+    rows = rows_of(half_full(vessel, alpha=0.05, sound_speed=40.0), 8.0)
+    roll = np.array([row["pose"][0, 2] for row in rows])
+    print(np.degrees(roll[::20]), rows[-1]["water_centre"])
+    assert np.degrees(np.abs(roll[-20:].mean())) == pytest.approx(180.0, abs=25.0)
+    assert rows[-1]["water_centre"][0, 1] > 0.6 * HIGH
+    assert rows[-1]["water_escaped"][0] < 0.0  # never
+
+
+def test_a_tank_that_runs_dry():
+    """Heeled to 100 degrees, a tank without a roof pours its water out and weighs nothing any more.
+
+    Not for longer: the watch takes water that has left for too fast as it falls, and as the tank turns.
+    """
+    vessel = barge(Body(1.5 * WATER, (0.0, 0.05), 0.05 * WATER), heel=1.75, release=3.0)
+    scene = half_full(vessel, open_edges=(2,), sound_speed=160.0)  # what has left falls fast
+    rows = rows_of(scene, 2.95, 0.05)
+    load = np.array([np.abs(row["wall_force"][0, :2]).max() for row in rows])
+    print(load[:3], load[-6:], rows[-1]["pose"])
+    assert load[0] > 0.9 * WATER * GRAVITY
+    assert load[-3:].max() < 0.02 * WATER * GRAVITY
+    assert np.isfinite(rows[-1]["pose"]).all()

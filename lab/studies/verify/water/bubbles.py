@@ -7,6 +7,7 @@ from matplotlib.figure import Figure
 
 from lab.report.plots import BLUE, GREY, VERMILION, canvas
 from lab.studies.case import Case, Found, Line, Picture
+from lab.studies.verify.water.air import bearing
 from lab.studies.verify.water.scenes import box, looks, order_line, scene, simulated
 from solvers.fluid.given import EXCESS, GAS, VOLUME, Air, Water, Y, Z
 from solvers.fluid.phases.adiabatic import Adiabatic
@@ -59,7 +60,7 @@ def pressed(drops: np.ndarray, water: Water, pressure: np.ndarray) -> None:
 def drop_at_rest(rows: int) -> float:
     """The pressure in a round drop over that round it, of σ/R."""
     air = Air(100.0, STIFFER * DROP_SOUND, alpha=0.2, tension=TENSION)
-    water = Water(SIDE / rows, DROP_SOUND, alpha=0.2, periodic=("y", "z"), air=air)
+    water = bearing(Water(SIDE / rows, DROP_SOUND, alpha=0.2, periodic=("y", "z"), air=air))
     drops = of_both(box(SIDE, SIDE), circle(RADIUS, (0.0, 0.5 * SIDE)), water, gas_inside=False)
     inside = drops[0, :, GAS] < 0.5
     pressed(drops, water, np.where(inside, TENSION / RADIUS, 0.0))
