@@ -62,6 +62,7 @@ def test_water_far_heavier_than_the_ship_is_refused_or_eased():
     assert np.abs(found).max() < 0.03
 
 
+@pytest.mark.slow
 def test_the_mass_of_the_layer_changes_nothing_that_is_seen():
     """Where both couplings are stable she rolls the same."""
     (_, plain), (_, eased) = roll(aboard(of_mass(1.0)), 0.6), roll(aboard(of_mass(1.0), added_mass="layer"), 0.6)
