@@ -4,12 +4,16 @@ Summaries, reports, figures and the terminal take the text of a number with its 
 """
 
 from collections.abc import Sequence
+from dataclasses import replace
 from math import floor, isfinite, isinf, log10
 
 from lab.measures.value import LEVEL, Value
 
 SMALL = 1e-3  # smaller numbers are written with a power of ten
 MOST_DIGITS = 6  # after the point
+# Units of grains that grow too small for ships: of each a thousand times the one before
+LADDERS = [["mN", "N", "kN", "MN", "GN"], ["µJ", "mJ", "J", "kJ", "MJ", "GJ"], ["mN m", "N m", "kN m", "MN m", "GN m"]]
+LONG = 1e5  # larger numbers are written in the next unit of a ladder
 ROUNDING = 1e-9  # of the value: a smaller scatter is rounding error
 RULE = (
     "± is the standard deviation over beds, whose number is in brackets; a single bed has none. A measure's own "
@@ -23,6 +27,7 @@ def number(value: Value) -> str:
     """A value, written as RULE says: "25.0 ± 1.3 deg (4 beds)", "24.96 deg (1 bed; detector 0.25 deg)"."""
     if value.value is None:
         return "none"
+    value = _readable(value)
     unit = _unit(value.unit)
     if value.std is not None:
         return f"{plus_minus(value.value, value.std)}{unit}{_beds(value)}"
@@ -74,6 +79,16 @@ def mean_within(mean: float, ends: Sequence[float] | None, digits: int) -> str:
 def count_of(count: int, noun: str) -> str:
     """A number of things in words: "3 grains"."""
     return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
+
+
+def _readable(value: Value) -> Value:
+    """The same number in the unit of its ladder in which it is not too long to read."""
+    ladder = next((ladder for ladder in LADDERS if value.unit in ladder), None)
+    while ladder and abs(value.value) >= LONG and value.unit != ladder[-1]:
+        parts = {name: getattr(value, name) for name in ("value", "std", "uncertainty")}
+        less = {name: None if part is None else 1e-3 * part for name, part in parts.items()}
+        value = replace(value, unit=ladder[ladder.index(value.unit) + 1], **less)
+    return value
 
 
 def _digits(error: float) -> int:
