@@ -20,7 +20,7 @@ TEXTS = {
         (see rest), walls feed the wave: it then decays too fast by 4.4 % with 60 layers instead of 6.2 %, at an order
         of 0.6. The lines stay.""",
     air.SECTION: """What fails is the surface where both fluids are dense or under tension. Below a fluid of half its
-        density the wave decays four times too fast, and its rate is off by +0.9 and +15 % at 20 and 40 layers with the
+        density the wave decays four times too fast, and its rate is off by +1.4 and +17 % at 20 and 40 layers with the
         background pressure of presets, by −26 and −36 % without: both fluids slide along each other there, and a cause
         beyond that is not known. A drop of twelve particles over its radius has 3 % too little pressure with that
         background pressure, five times its own, and loses a third without, where its surroundings are under suction
