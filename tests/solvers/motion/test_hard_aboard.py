@@ -56,7 +56,6 @@ def test_a_half_full_tank_as_heavy_as_the_hull():
         scene = half_full(vessel, model=model, **({"swing_damping": 0.02} if model == "linear" else {}))
         scene = replace(scene, step=1e-3) if model == "linear" else scene
         rolls.append(np.array([row["pose"][0, 2] for row in rows_of(scene, 6.0)]))
-    print([np.sqrt(2.0) * roll[-60:].std() for roll in rolls])
     assert rolls[1][-60:].std() > 2e-3
     assert rolls[0][-60:].std() == pytest.approx(rolls[1][-60:].std(), rel=0.2)
 
@@ -67,7 +66,6 @@ def test_resonance_without_damping():
     vessel = barge(Body(2.0 * WATER, (0.0, 0.06), 0.06 * WATER), push=1500.0, omega=float(omega), damped=0.0)
     rows = rows_of(half_full(vessel), 10.0)
     roll, spent = np.array([row["pose"][0, 2] for row in rows]), rows[-1]["water_viscous"] + rows[-1]["water_diffusive"]
-    print(np.abs(roll).max(), rows[-1]["ship_works"], spent)
     assert np.isfinite(roll).all()
     assert np.abs(roll).max() < 1.0
     assert rows[-1]["ship_works"][0, 0] > 0.0
@@ -79,7 +77,6 @@ def test_a_ship_that_turns_over_with_her_water():
     vessel = barge(Body(1.5 * WATER, (0.0, 0.40), 0.08 * WATER), heel=0.05, release=0.1, damped=10.0)
     rows = rows_of(half_full(vessel, alpha=0.05, sound_speed=40.0), 8.0)
     roll = np.array([row["pose"][0, 2] for row in rows])
-    print(np.degrees(roll[::20]), rows[-1]["water_centre"])
     assert np.degrees(np.abs(roll[-20:].mean())) == pytest.approx(180.0, abs=25.0)
     assert rows[-1]["water_centre"][0, 1] > 0.6 * HIGH
     assert rows[-1]["water_escaped"][0] < 0.0  # never
@@ -94,7 +91,6 @@ def test_a_tank_that_runs_dry():
     scene = half_full(vessel, open_edges=(2,), sound_speed=160.0)  # what has left falls fast
     rows = rows_of(scene, 2.95, 0.05)
     load = np.array([np.abs(row["wall_force"][0, :2]).max() for row in rows])
-    print(load[:3], load[-6:], rows[-1]["pose"])
     assert load[0] > 0.9 * WATER * GRAVITY
     assert load[-3:].max() < 0.02 * WATER * GRAVITY
     assert np.isfinite(rows[-1]["pose"]).all()
