@@ -47,6 +47,7 @@ def test_a_free_drop_keeps_its_momentum_and_turning():
     np.testing.assert_allclose(after[2], before[2], atol=1e-3 * turning)
 
 
+@pytest.mark.slow
 def test_the_axes_that_a_drop_is_seen_from_do_not_matter():
     """In a tank that rolls, sways and heaves round it without touching, a drop moves over the earth as without."""
     still_run, alone = positions(drop(1.0), 100)

@@ -53,6 +53,7 @@ def test_an_extrapolated_load_drives_a_light_ship_as_predicted():
     assert factors[-3:] == pytest.approx(growth(1000.0 * 0.5 * WIDE * DEEP / inertia), rel=0.01)
 
 
+@pytest.mark.slow
 def test_water_far_heavier_than_the_ship_is_refused_or_eased():
     """Explicit coupling is refused in one sentence; with the layer's mass on her own side she rolls and stays whole."""
     with pytest.raises(Unavailable, match=r'times as heavy as she is.*take water\.added_mass = "layer"'):

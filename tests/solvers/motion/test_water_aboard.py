@@ -101,7 +101,7 @@ def test_masses_on_springs_answer_as_the_potential_does():
     assert np.abs((found - wanted) / (size[:, :, None] * size[:, None, :])).max() < 2e-3
 
 
-@pytest.mark.parametrize("model", ["linear", "sph"])
+@pytest.mark.parametrize("model", ["linear", pytest.param("sph", marks=pytest.mark.slow)])
 def test_a_free_surface_takes_stability(model):
     """At a fixed heel the water's moment beyond that of a rigid weight is ρ g l³/12 tan φ: its surface is level."""
     heel = 0.03
@@ -170,6 +170,7 @@ def test_water_and_ship_work_on_each_other():
     assert abs(missing) < 0.01 * (np.abs(row["water_work"]) + row["water_viscous"] + row["water_kinetic"])[0]
 
 
+@pytest.mark.slow
 def test_tanks_one_behind_the_other():
     """Two halves of a tank in the same place of the plane act as the whole, and their waters do not meet."""
     whole = aboard(ship())
