@@ -37,19 +37,19 @@ class Flow:
     """The flow about a hull's mesh that turns about a point `height` (m) above calm water."""
 
     def __init__(self, mesh: HullMesh, height: float, water: Water, key: str = "ship.hydrodynamics"):
-        self.library, self.water = capytaine(key), water
+        self.capytaine, self.water = capytaine(key), water
         sides = self._sides(mesh.corners, mesh.panels)
-        dofs = self.library.rigid_body_dofs(rotation_center=(0.0, 0.0, height))
+        dofs = self.capytaine.rigid_body_dofs(rotation_center=(0.0, 0.0, height))
         self.hull, self.dofs = mesh, dofs
-        self.bare = self.library.FloatingBody(mesh=sides, dofs=dofs)
-        self.solver = self.library.BEMSolver()
+        self.bare = self.capytaine.FloatingBody(mesh=sides, dofs=dofs)
+        self.solver = self.capytaine.BEMSolver()
         self.names = [name.capitalize() for name in MODES]
         turned = np.cross(sides.faces_centers - [0.0, 0.0, height], sides.faces_normals)
         self.normals = np.vstack([sides.faces_normals.T, turned.T])  # normal velocities of unit motion in each mode
 
     def _sides(self, corners: np.ndarray, panels: np.ndarray):
-        half = self.library.Mesh(vertices=corners, faces=panels)
-        return self.library.ReflectionSymmetricMesh(half, plane="xOz")
+        half = self.capytaine.Mesh(vertices=corners, faces=panels)
+        return self.capytaine.ReflectionSymmetricMesh(half, plane="xOz")
 
     def table(self, frequency: Sequence[float]) -> Hydrodynamics:
         """Coefficients (n, 6) at frequencies (n,) rad/s in waves to starboard; kg, kg m, kg m² and so on."""
@@ -59,13 +59,13 @@ class Flow:
 
     def excitation(self, omega: float, heading: float = TO_STARBOARD) -> np.ndarray:
         """Force and moment (6,) per metre of amplitude in waves of a heading (rad), π/2 to starboard."""
-        problem = self.library.DiffractionProblem(wave_direction=heading, **self._how(omega))
+        problem = self.capytaine.DiffractionProblem(wave_direction=heading, **self._how(omega))
         return self._named(self.solver.solve(problem, **QUIET).forces) + self._passing(problem)
 
     def _at(self, omega: float):
         """Added mass, damping, excitation, its Froude–Krylov part, and excitation by Haskind's relation."""
         added, damping, potential = self._radiated(omega)
-        problem = self.library.DiffractionProblem(wave_direction=TO_STARBOARD, **self._how(omega))
+        problem = self.capytaine.DiffractionProblem(wave_direction=TO_STARBOARD, **self._how(omega))
         passing = self._passing(problem)
         scattered = self._named(self.solver.solve(problem, **QUIET).forces)
         return added, damping, passing + scattered, passing, self._haskind(problem, potential)
@@ -74,7 +74,7 @@ class Flow:
         """Added mass and damping (6, 6), and the potentials (6, n) on the panels for unit velocities."""
         how, added, damping, potential = self._how(omega), [], [], []
         for name in self.names:
-            solved = self.solver.solve(self.library.RadiationProblem(radiating_dof=name, **how), **QUIET)
+            solved = self.solver.solve(self.capytaine.RadiationProblem(radiating_dof=name, **how), **QUIET)
             added.append(self._named(solved.added_masses).real)
             damping.append(self._named(solved.radiation_dampings).real)
             potential.append(solved.potential[how["body"].hull_mask])
@@ -82,11 +82,11 @@ class Flow:
         return np.array(added).T, np.array(damping).T, np.array(potential) / factor
 
     def _passing(self, problem) -> np.ndarray:
-        return self._named(self.library.bem.airy_waves.froude_krylov_force(problem))
+        return self._named(self.capytaine.bem.airy_waves.froude_krylov_force(problem))
 
     def _haskind(self, problem, potential: np.ndarray) -> np.ndarray:
         """X = −iωρ ∫ (φ_I n_j − φ_j ∂φ_I/∂n) dS (Haskind 1957) from the radiated potentials φ_j."""
-        waves, mesh = self.library.bem.airy_waves, self.bare.mesh
+        waves, mesh = self.capytaine.bem.airy_waves, self.bare.mesh
         incident = waves.airy_waves_potential(mesh.faces_centers, problem)
         slope = np.sum(waves.airy_waves_velocity(mesh.faces_centers, problem) * mesh.faces_normals, axis=1)
         whole = (self.normals * incident - potential * slope) @ mesh.faces_areas
@@ -110,7 +110,7 @@ class Flow:
             return self.bare
         depth = LID * min(draught, self.water.gravity / omega**2)
         lid = self._sides(*self.hull.lid(depth))
-        return self.library.FloatingBody(mesh=self.bare.mesh, lid_mesh=lid, dofs=self.dofs)
+        return self.capytaine.FloatingBody(mesh=self.bare.mesh, lid_mesh=lid, dofs=self.dofs)
 
     def _named(self, values) -> np.ndarray:
         return np.array([values[name] for name in self.names])
