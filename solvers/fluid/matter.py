@@ -25,6 +25,7 @@ from solvers.fluid.walls.closing import Closing
 from solvers.fluid.walls.edges import Edges
 from solvers.fluid.walls.extrapolation import Extrapolation
 from solvers.fluid.walls.gauges import Gauges
+from solvers.fluid.walls.lean import Lean
 from solvers.machine.phase import Phase
 from solvers.machine.state import Axes
 from solvers.motion.carrier import per_slab
@@ -68,7 +69,8 @@ class WaterMatter(Matter):
         self.bodies.join(arrays, p, shares, self.poses, units)
         self.lists = Lists(arrays, units, self.order, shares, self.constants, first, self.bodies, setting.room)
         medium = Medium(units, p, shares, self.lists, self.constants, self.poses)
-        self.extrapolation = Extrapolation(arrays, medium)
+        lean = Lean(arrays, medium, behind.straight, dummy)
+        self.extrapolation = Extrapolation(arrays, medium, lean)
         self.forces = Forces(arrays, medium, self.extrapolation, self.load, tank.thickness)
         self.continuity, self.vent = Continuity(arrays, medium, self.forces), Vent(arrays, medium, water.air)
         self.mover = Mover(arrays, medium, self.extrapolation, self.vent)
