@@ -6,7 +6,7 @@ import numpy as np
 import taichi as ti
 
 from solvers.fluid.census import Census, Pool
-from solvers.fluid.checks import LEAST, check_water, refuse_scene, refuse_state, residual
+from solvers.fluid.checks import LEAST, check_water, outside, refuse_scene, refuse_state, residual
 from solvers.fluid.constants import Constants
 from solvers.fluid.continuity import Continuity
 from solvers.fluid.forces import Forces
@@ -57,7 +57,8 @@ class WaterMatter(Matter):
         walls = (len(blocks) + self.bodies.rows) * lanes
         self.drops = scene.drops
         self.gas = scene.drops[..., GAS] if water.air else np.zeros(scene.drops.shape[:2])
-        self.puffs, shifting = int(self.gas[0].sum()), SHIFTING[water.shifting]  # particles of air, which come last
+        of_air, shifting = count - int(self.gas[0].sum()), SHIFTING[water.shifting]  # particles of air come last
+        self.phases = {"water": slice(0, of_air)} | ({"air": slice(of_air, None)} if water.air else {})
         self.particles = p = Particles(arrays, worlds, count, lanes, walls, grid.strips, shifting, water.air)
         self.units = units = setting.units(p.wet)
         self.load = setting.load(arrays.under("water"), units)
@@ -244,8 +245,10 @@ class WaterMatter(Matter):
         p = self.particles
         found = p.read(*p.place, *p.velocity, *p.acceleration, p.excess, p.span)
         velocity = self.census.relative(time, found[0:2], found[2:4], found[4:6])[world]
+        place, open_top = np.stack(found[0:2], axis=-1)[world], self.water.walls and not self.census.closed
         particles = {
-            "place": np.stack([found[0][world], found[1][world]], axis=1),
+            "place": place,
+            "spilled": outside(place, self.scene.tanks, self.water.reach) & open_top,
             "speed": np.linalg.norm(velocity, axis=1),
             "excess": found[6][world],
             "span": found[7][world],
@@ -261,9 +264,7 @@ class WaterMatter(Matter):
             "velocity": self.census.relative(time, found[0:2], found[2:4], found[4:6]),
             "pressure": self.constants.pressures(found[6], self.gas),
         }
-        phases = {"water": slice(0, p.count - self.puffs), "air": slice(p.count - self.puffs, None)}
-        names = ("water", "air") if p.two else ("water",)
-        rows = {f"{phase}_{name}": values[:, phases[phase]] for phase in names for name, values in told.items()}
+        rows = {f"{phase}_{name}": told[name][:, part] for phase, part in self.phases.items() for name in told}
         return rows | self.bodies.places(time)
 
     def alter(self, scene) -> None:

@@ -84,7 +84,7 @@ class Closing:
         # Unit vectors along the faces before the dummies, in the tank's axes.
         along = [p.load(self.along[a], b % p.stride - p.wet) for a in ti.static(range(p.axes))]
         if ti.static(self.bodies.moving):
-            self.bodies.turn(b, along)
+            self.bodies.turn(b, along, AT_MIDDLE)
         closed = closed - (few * dot(moved, along)) * dot(along, steep)
         # A pressure that is cut off, or of a dummy that sees no water, is exactly zero.
         pressure = p.load(p.pressure, b)
