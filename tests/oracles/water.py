@@ -58,9 +58,8 @@ class PlainWater:
         self.wall, self.wall_volume, _ = layers(scene.outline, scene.water.spacing, rows)
         off = self.wall - np.clip(self.wall, scene.outline.min(axis=0), scene.outline.max(axis=0))  # of a box
         self.along = np.stack([-off[:, 1], off[:, 0]], axis=1) / np.linalg.norm(off, axis=1)[:, None]
-        _, _, _, gradient = self.between(self.wall, self.wall)
-        leans = ((self.wall_volume[:, None] * gradient).sum(axis=1) * self.along).sum(axis=1)
-        self.straight = self.along * (np.abs(leans) * scene.water.length < 0.02)[:, None]
+        away = np.linalg.norm(self.wall[:, None] - scene.outline, axis=2).min(axis=1)
+        self.straight = self.along * (away > 1.5 * scene.water.reach)[:, None]
 
     def volume(self, mass: np.ndarray, s: np.ndarray) -> np.ndarray:
         """V = m/ρ."""

@@ -35,12 +35,15 @@ class Behind:
         for number in wet if water.walls else ():
             points, volumes, depths = _round(water, tanks[number])
             self._add(points, volumes, edge_of(points, tanks[number].outline), number)
-            self.along = np.concatenate([self.along, faces(points, tanks[number].outline)])
+            along = faces(points, tanks[number].outline)
+            straight = straight_of(points, along, tanks[number].outline, water)
+            self.along, self.straight = (
+                np.concatenate(pair) for pair in ((self.along, along), (self.straight, straight))
+            )
             hold = depths if water.air else firm(depths, water.spacing)  # each layer holds air, see `Constants`
             self.firm = np.append(self.firm, hold)
         if not len(self.points):
             return
-        self.straight = straight_of(self.tanks, self.points, self.volumes, self.along, water)
         first = tanks[wet[0]].outline
         own = slice(0, np.count_nonzero(self.tanks == wet[0]))
         points, volumes = self.points[own], self.volumes[own]

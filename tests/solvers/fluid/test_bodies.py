@@ -52,7 +52,7 @@ def test_water_tank_and_bodies_share_momentum_and_energy():
     np.testing.assert_allclose(after - before, steps * run.dt * (weight - load), atol=1e-12 * scale)
     taken = sum(end[name] - start[name] for name in ("water_viscous", "water_diffusive", "water_held"))
     work, gain = end["water_work"] - start["water_work"], end["water_total"] - start["water_total"]
-    assert np.abs(end["part_force"]).min() > 0.0 and work > 5.0  # else nothing was tried
+    assert np.abs(end["part_force"]).min() > 0.0 and work > 4.0  # else nothing was tried
     np.testing.assert_allclose(end["part_work"].sum(axis=1), work)
     np.testing.assert_allclose(gain + taken, work, rtol=0.02)
     turn = run.snapshot()["part_turn"][0]
