@@ -9,7 +9,7 @@ import numpy as np
 from solvers.fluid.matter import WaterMatter
 from solvers.grains.matter import GrainMatter
 from solvers.grains.pressing import UNTOUCHED, Pressing
-from solvers.machine import runtime
+from solvers.machine import runtime, wide
 from solvers.machine.errors import Unavailable
 from solvers.machine.state import Axes, Axis, State
 from solvers.machine.wide import real_vectors
@@ -64,7 +64,7 @@ class Simulation:
         # Per grain all worlds share a step, and one would depend on the others.
         alone = self.arch == "cpu" and (self.schedule_name != "per-grain" or worlds == 1)
         self.stretch = stretch if alone else 1
-        self.steps, self.room = 0, 1
+        self.steps, self.room, self.vectors = 0, 1, wide.pays()
         self.simple = scene.shapes is None and scene.water is None  # short kernels
         self.origin, self.unkicked = 0.0, 0  # time (s) of the tank's motion at step 0; the first step since the launch
         self._build()
@@ -82,7 +82,7 @@ class Simulation:
         self.carrier = make_carrier(arrays, scene, self.dt)
         cut = self.units_a_world, self.schedule_name == "per-grain"
         pieces = len(scene.tanks) + len(scene.parts) + bool(len(scene.fixed))
-        lists = self.skin, self.room, self.stretch
+        lists = self.skin, self.room, self.stretch, self.vectors
         setting = Setting(arrays, worlds, *cut, self.walls, pieces, scene.shares, self.carrier, *lists)
         made = (make(scene, setting) for make in MATTERS)
         self.matters = {matter.name: matter for matter in made if matter}
@@ -304,7 +304,8 @@ class Simulation:
     def state(self) -> dict[str, np.ndarray]:
         """The complete state, from which `restore` continues bit for bit."""
         schedule = list(SCHEDULES).index(self.schedule_name)
-        numbers = self.steps, self.room, self.unkicked, self.observed, self.units_a_world, schedule
+        cut = self.units_a_world, schedule, self.vectors
+        numbers = self.steps, self.room, self.unkicked, self.observed, *cut
         own = {"numbers": np.array(numbers), "origin": np.array(self.origin)}
         return own | self._of_matters() | self.means | self.arrays.read()
 
@@ -312,18 +313,20 @@ class Simulation:
         """The axes of all that `state` tells, by its names."""
         world = Axis("world", self.scene.worlds)
         means = {name: (world, *(Axis("component", size) for size in m.shape[1:])) for name, m in self.means.items()}
-        own = {"numbers": (Axis("number", 6),), "origin": (), **means}
+        own = {"numbers": (Axis("number", 7),), "origin": (), **means}
         for matter in self.matters.values():
             own |= matter.axes()
         return own | self.arrays.axes()
 
     def restore(self, state: dict[str, np.ndarray]) -> None:
-        """Restore what `state` returned in a simulation of the same scene."""
-        self.steps, room, self.unkicked, self.observed, units, schedule = (int(number) for number in state["numbers"])
+        """Restore what `state` returned in a simulation of the same scene, on whatever processor."""
+        self.steps, room, self.unkicked, self.observed, *cut = (int(number) for number in state["numbers"])
+        units, schedule, vectors = cut if len(cut) == 3 else (*cut, self.vectors)  # older states do not tell the last
         self.origin, self.means = float(state["origin"]), {name: np.array(state[name]) for name in self.means}
-        if (room, units) != (self.room, self.units_a_world):
+        if (room, units, bool(vectors)) != (self.room, self.units_a_world, self.vectors):
             self.arrays.release()
             self.room, self.units_a_world, self.schedule_name = room, units, list(SCHEDULES)[schedule]
+            self.vectors = bool(vectors)
             self._build()
         self.arrays.write(state)
         for matter in self.matters.values():

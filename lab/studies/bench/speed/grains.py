@@ -19,7 +19,7 @@ COLOURS = {ONE: BLUE, BANDS: VERMILION}
 
 def study(page: Page, work: Path, fast: bool) -> None:
     """Add the section to the page."""
-    sizes, turns, seconds = (SIZES[:3], 3, 0.1) if fast else (SIZES, 9, 0.4)
+    sizes, turns, seconds = (SIZES[:3], 3, 0.1) if fast else (SIZES, 5, 0.4)
     page.section("Grains")
     page.say(f"""One world of {COUNT} settled, touching grains and as many copies of it side by side as it takes, in 64
         bits, with friction that has a history: on one core, and cut into bands on {available_cores()}.""")
