@@ -298,15 +298,13 @@ class Simulation:
 
     def part_places(self) -> np.ndarray:
         """Displacements (W, P, 2) m of the scene's parts at the last `observe`; they are the same in every world."""
-        places = self.walls.places.to_numpy()[: len(self.scene.parts)].astype(float)
-        return np.tile(places, (self.scene.worlds, 1, 1))
+        return np.tile(self.walls.places.to_numpy()[: len(self.scene.parts)].astype(float), (self.scene.worlds, 1, 1))
 
     def state(self) -> dict[str, np.ndarray]:
         """The complete state, from which `restore` continues bit for bit."""
-        schedule = list(SCHEDULES).index(self.schedule_name)
-        cut = self.units_a_world, schedule, self.vectors
-        numbers = self.steps, self.room, self.unkicked, self.observed, *cut
-        own = {"numbers": np.array(numbers), "origin": np.array(self.origin)}
+        cut = self.units_a_world, list(SCHEDULES).index(self.schedule_name), self.vectors
+        numbers = np.array([self.steps, self.room, self.unkicked, self.observed, *cut])
+        own = {"numbers": numbers, "origin": np.array(self.origin)}
         return own | self._of_matters() | self.means | self.arrays.read()
 
     def axes(self) -> dict[str, Axes]:
@@ -314,19 +312,18 @@ class Simulation:
         world = Axis("world", self.scene.worlds)
         means = {name: (world, *(Axis("component", size) for size in m.shape[1:])) for name, m in self.means.items()}
         own = {"numbers": (Axis("number", 7),), "origin": (), **means}
-        for matter in self.matters.values():
-            own |= matter.axes()
+        own |= {name: axes for matter in self.matters.values() for name, axes in matter.axes().items()}
         return own | self.arrays.axes()
 
     def restore(self, state: dict[str, np.ndarray]) -> None:
         """Restore what `state` returned in a simulation of the same scene, on whatever processor."""
         self.steps, room, self.unkicked, self.observed, *cut = (int(number) for number in state["numbers"])
-        units, schedule, vectors = cut if len(cut) == 3 else (*cut, self.vectors)  # older states do not tell the last
+        units, schedule, vectors = (*cut, self.vectors)[:3]  # older states lack the last
         self.origin, self.means = float(state["origin"]), {name: np.array(state[name]) for name in self.means}
-        if (room, units, bool(vectors)) != (self.room, self.units_a_world, self.vectors):
+        if (room, units, vectors) != (self.room, self.units_a_world, self.vectors):
             self.arrays.release()
-            self.room, self.units_a_world, self.schedule_name = room, units, list(SCHEDULES)[schedule]
-            self.vectors = bool(vectors)
+            self.room, self.units_a_world, self.vectors = room, units, bool(vectors)
+            self.schedule_name = list(SCHEDULES)[schedule]
             self._build()
         self.arrays.write(state)
         for matter in self.matters.values():

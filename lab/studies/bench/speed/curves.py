@@ -90,14 +90,15 @@ def study(page: Page, work: Path, fast: bool) -> None:
 
 def study_slow(page: Page, work: Path, fast: bool) -> None:
     """Add the section on slow tilts to the page: whether the codes' shifts differ by more than chance."""
-    how = Tilting(2, 100, 0.06, 100.0, 26.0) if fast else Tilting(12, rate=5.0, angle=26.0)
+    how = Tilting(2, 100, 0.06, 100.0, 26.0) if fast else Tilting(12, 150, 0.06, 5.0, 26.0)
     page.section("Slow tilts beside other codes")
     codes = {**followers(), DOUBLED: partial(followed_here, stretch=2)}
     beds = [settled_bed(work, how.count, how.width, seed) for seed in range(1, how.beds + 1)]
     found = all_kept(work, codes, how, beds)
-    page.say(f"""As above, but {how.beds} beds tilted at {how.rate:g} deg/s. The shift of the centre of mass, in
-        thousandths of a diameter, less that of the lab in the same bed with the same step; means over the beds with
-        their [95 % intervals]. The first column is the lab's shift itself.""")
+    page.say(f"""As above, but {how.beds} beds of {how.count} grains in a tank {1e3 * how.width:g} mm wide, tilted at
+        {how.rate:g} deg/s. The shift of the centre of mass, in thousandths of a diameter, less that of the lab in the
+        same bed with the same step; means over the beds with their [95 % intervals]. The first column is the lab's
+        shift itself.""")
     page.table(["tilt (deg)", *(f"{name}{' less the lab' * (name != LAB)}" for name in codes)], _apart(found))
 
 

@@ -11,7 +11,7 @@ from lab.studies.bench.speed.drawing import draw_with_range
 from lab.studies.bench.speed.workers import Speeds, Worker, compared, millions, ratio
 from solvers.machine.runtime import available_cores
 
-WORLDS = (1, 2, 4, 8, 16, 64, 256)
+WORLDS = (1, 2, 4, 16, 64, 256)
 THREADS = {1: BLUE, 2: VERMILION}
 
 
