@@ -38,6 +38,7 @@ ROWS: Mapping[str, Callable[[Found], list[Row]]] = {
     "memory_effects": beds.memory_effects,
     "largest_rolls": rolls.largest_rolls,
     "section_amplitudes": section.section_amplitudes,
+    "order of roll": coupled.order_of_roll,
 }
 FIGURES: Mapping[str, Callable] = {
     "shift": figures.shift,

@@ -11,7 +11,7 @@ from lab.assembly.ship import make_water, make_waves
 from lab.naval.linear_water import linear_motion, peaks
 from lab.preset.schema import Preset
 from lab.report.plots import BELOW, BLUE, GREEN, GREY, VERMILION, canvas
-from lab.studies.reproduce.experiment import Found
+from lab.studies.reproduce.experiment import Found, Row
 from lab.studies.reproduce.figures import SIZE
 from lab.studies.reproduce.runs import Outcome
 
@@ -21,6 +21,9 @@ FINER = 8  # zeros after a record, in its lengths, so that a peak lies between i
 LOW, HIGH, STEP = 2.5, 8.5, 0.005  # rad/s, of the linear response
 CYCLES = 10
 ROLL_UNIT = "rad/m"
+LATER = 30.0  # s, some three of the vessel's own periods of roll
+LEAST_SPACINGS = 3
+ORDERS = np.arange(0.25, 4.01, 0.01)
 
 
 def roll_per_wave(one: Outcome, _: object) -> float:
@@ -37,8 +40,9 @@ def roll_per_wave(one: Outcome, _: object) -> float:
 def response(one: Outcome) -> tuple[np.ndarray, np.ndarray]:
     """Frequencies (n,) rad/s and roll over wave amplitude (n,) rad/m of a run in a packet of waves.
 
-    The ratio of the Fourier transforms of roll and of the waves at the ship's place at rest, where the packet has at
-    least HALVES of its largest amplitude.
+    The ratio of the Fourier transforms of roll and of the waves at the ship's place at rest, y = 0, where the packet
+    has at least HALVES of its largest amplitude. A place further on turns the phases alone; a ship that a mooring
+    holds stays within some hundredths of a wavelength.
     """
     preset, series = one.recording.preset, one.recording.series
     time, roll = series["time"], series["pose"][:, 0, ROLL]
@@ -74,7 +78,41 @@ def linear_roll(one: Outcome, _: object) -> float:
     return float(np.interp(one.recording.preset.waves.frequency, *linear_response(one.recording.preset)))
 
 
+def roll_left(one: Outcome, _: object) -> float:
+    """Largest roll LATER (s) and more after the release, over that at the release."""
+    preset, series = one.recording.preset, one.recording.series
+    time, roll = series["time"], series["pose"][:, 0, ROLL]
+    let_go = preset.ship.release
+    return float(np.abs(roll[time > let_go + LATER]).max() / np.abs(roll[np.searchsorted(time, let_go)]))
+
+
+def order_of_roll(found: Found) -> list[Row]:
+    """How roll changes with the particles' spacing: limit and order of r = r₀ − C Δx^p; through three runs exactly."""
+    alike = [one for name, (one,) in found.items() if name.endswith(" mm") and "," not in name]
+    runs = [(one.recording.preset, roll_per_wave(one, None)) for one in alike]
+    spacing = np.array([preset.water.spacing for preset, _ in runs])
+    rolls = np.array([roll for _, roll in runs])
+    if len(runs) < LEAST_SPACINGS:
+        return []
+    limit, order = limit_and_order(spacing, rolls)
+    ours = f"{limit:.3f} rad/m, order {order:.2f}"
+    return [Row("roll as the spacing goes to nothing, and order", "2.7 rad/m", ours, "", "", None)]
+
+
+def limit_and_order(spacing: np.ndarray, value: np.ndarray) -> tuple[float, float]:
+    """r₀ and p of r = r₀ − C Δx^p (Roache 1998, section 5.10) by least squares of several spacings; p within ORDERS."""
+
+    def fit(order: float) -> tuple[np.ndarray, float]:
+        columns = np.stack([np.ones(len(spacing)), -(spacing**order)], axis=1)
+        numbers = np.linalg.lstsq(columns, value, rcond=None)[0]
+        return numbers, float(((columns @ numbers - value) ** 2).sum())
+
+    order = min(ORDERS, key=lambda one: fit(one)[1])
+    return float(fit(order)[0][0]), float(order)
+
+
 NUMBERS = {
+    "roll_left": ("", roll_left),
     "roll_per_wave": (ROLL_UNIT, roll_per_wave),
     "linear_roll": (ROLL_UNIT, linear_roll),
     "roll_peak": ("rad/s", nearest_peak),
