@@ -32,3 +32,12 @@ def growth(ratio: float, points: int = POINTS, bossak: float = BOSSAK) -> float:
     polynomial[1:] = ratio * lagrange(points)
     polynomial[1] += bossak
     return float(np.abs(np.roots(polynomial)).max())
+
+
+def elongation(angle: float, bossak: float = BOSSAK) -> float:
+    """Share by which steps after Newmark and Bossak lengthen a period 2π/ω, for `angle` = ω H (rad), to second order.
+
+    (ω H)² (β − 1/12)/2 with β = (1 − b)²/4; 1/12 (ω H)² of the trapezoidal rule, b = 0 (Hughes 1987, section 9.1). Own
+    expansion with b; an exact load has it, too. After a time t motion is off by this share of ω t, of its amplitude.
+    """
+    return 0.5 * angle**2 * (0.25 * (1.0 - bossak) ** 2 - 1.0 / 12.0)
