@@ -61,6 +61,7 @@ FIGURES: Mapping[str, Callable] = {
     "waves": surfaces.waves,
     "pressures at P1": prismatic.figure,
     "coupled response": coupled.figure,
+    "coupled spectra": coupled.spectra,
     "tank tuning": tuning.figure,
 }
 TELLS: Mapping[str, Callable[[Found], Told]] = {

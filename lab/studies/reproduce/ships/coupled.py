@@ -8,6 +8,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from lab.assembly.ship import make_water, make_waves
+from lab.measures.sea_response import MANY, met
+from lab.measures.value import half_width
 from lab.naval.linear_water import linear_motion, peaks
 from lab.preset.schema import Preset
 from lab.report.plots import BELOW, BLUE, GREEN, GREY, VERMILION, canvas
@@ -55,9 +57,9 @@ def response(one: Outcome) -> tuple[np.ndarray, np.ndarray]:
     return omega[kept], answer[kept] / driven[kept]
 
 
-def linear_response(preset: Preset) -> tuple[np.ndarray, np.ndarray]:
+def linear_response(preset: Preset, low: float = LOW, high: float = HIGH) -> tuple[np.ndarray, np.ndarray]:
     """Frequencies (n,) rad/s and roll over wave amplitude (n,) rad/m of a preset's ship by linear theory."""
-    omega = np.arange(LOW, HIGH, STEP)
+    omega = np.arange(low, high, STEP)
     return omega, np.abs(linear_motion(preset, omega)[:, ROLL])
 
 
@@ -132,4 +134,27 @@ def figure(found: Found) -> Figure:
     axes.set_ylabel("roll per metre of wave (rad/m)")
     axes.set_xlim(LOW, HIGH)
     drawn.legend(loc=BELOW, ncols=2)
+    return drawn
+
+
+def spectra(found: Found) -> Figure:
+    """Roll for each metre of wave in a random sea with its 95 % band, and its coherence.
+
+    The frequency domain (dashed) is drawn for the ship whose water is by linear theory in the run, too.
+    """
+    drawn, (upper, lower) = canvas((SIZE[0], 1.5 * SIZE[1]), 2, 1, sharex=True, height_ratios=(2, 1))
+    for colour, (label, (one, *_)) in zip((GREY, BLUE, VERMILION), found.items(), strict=False):
+        heard = met(one.recording, 0, ROLL)
+        omega, size, error = (values[heard.strong] for values in (heard.frequency, np.abs(heard.ratio), heard.error))
+        upper.plot(omega, size, color=colour, lw=1.3, label=label)
+        wide = half_width(1.0, MANY) * error
+        upper.fill_between(omega, np.maximum(size - wide, 0.0), size + wide, color=colour, alpha=0.2, lw=0)
+        lower.plot(omega, heard.coherence[heard.strong], color=colour)
+        if one.recording.preset.water.model == "linear":
+            upper.plot(*linear_response(one.recording.preset, omega[0], omega[-1]), color=colour, lw=1.0, ls="--")
+    upper.set_ylabel("roll per metre of wave\n(rad/m)")
+    lower.set_ylabel("coherence")
+    lower.set_ylim(0.0, 1.05)
+    lower.set_xlabel("wave frequency (rad/s)")
+    drawn.legend(loc=BELOW, ncols=3)
     return drawn
