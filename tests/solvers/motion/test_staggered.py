@@ -37,7 +37,7 @@ def test_an_extrapolated_load_is_of_second_order():
     steps = (0.02, 0.01, 0.005)
     rolls = [roll(little(step), 2.0)[1] for step in steps]
     errors = [np.abs(found - exact).max() / np.abs(exact).max() for found in rolls]
-    assert errors[0] < 0.06
+    assert errors[0] < 0.04
     assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.15)
     assert errors[1] / errors[2] == pytest.approx(4.0, rel=0.15)
     free = time > 0.1
@@ -46,8 +46,7 @@ def test_an_extrapolated_load_is_of_second_order():
     late = (time - 0.05)[free] * np.gradient(exact, time)[free]
     for step, found in zip(steps, rolls, strict=True):
         longer = -((found - exact)[free] @ late) / (late @ late)
-        print(step, rate, errors, longer / elongation(rate * step))
-        assert longer == pytest.approx(elongation(rate * step), rel=0.1)
+        assert longer == pytest.approx(elongation(rate * step), rel=0.15)
 
 
 def test_an_extrapolated_load_drives_a_light_ship_as_predicted():
