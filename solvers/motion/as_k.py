@@ -11,7 +11,7 @@ with Newmark's averages of γ = ½ − b and β = (1 − b)²/4 (Wood, Bossak & 
 for the print lost it). Accelerations are iterated with Aitken's relaxation (Irons & Tuck 1969). Between the poses is
 a cubic. The contents' load is that of the ship's acceleration at the instant, (1 − b) a_(n+1) + b a_n.
 
-Limits: unstable with contents that answer at once and have more than some 4 % of the ship's mass, added mass included,
+Limits: unstable with contents that answer at once and have more than some 3 % of the ship's mass, added mass included,
 see `motion.staggered`; it is here to be compared. The memory of radiation goes by the trapezoidal rule.
 """
 
