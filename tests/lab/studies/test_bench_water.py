@@ -48,8 +48,8 @@ def test_errors_of_a_made_up_wave():
         for t in np.linspace(0.0, 2.0 * np.pi / omega, 17)
     ]
     fast, lost = wave_errors(frames)
-    assert fast == pytest.approx(0.01, abs=1e-3)
-    assert lost == pytest.approx(0.1, abs=2e-3)
+    assert fast == pytest.approx(0.01, abs=1e-6)
+    assert lost == pytest.approx(0.1, abs=1e-6)
 
 
 def test_the_mode_fits_the_tank():

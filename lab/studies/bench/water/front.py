@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, NullLocator, StrMethodFormatter
 
 from lab.preset.sections.water.schemes import SCHEMES
 from lab.report.page import Page
@@ -124,11 +125,16 @@ def front(points: list[tuple[float, float]]) -> list[bool]:
 def figure(found: Mapping[tuple[str, int], Mapping[str, float]], best: list[bool]) -> Figure:
     """Simulated seconds a second against both errors of the wave, a label at the right for each way."""
     drawn, panels = canvas((7.2, 4.2), 1, len(ERRORS), sharey=True)
+    plain = StrMethodFormatter("{x:g}")
     for axes, (name, words) in zip(panels, ERRORS.items(), strict=True):
         for one, on in zip(found.values(), best, strict=True):
             x = max(abs(one[name]), LEAST)
             axes.loglog(x, one["seconds"], "o", ms=5, color=BLUE if on else GREY, mfc=BLUE if on else "white")
         axes.set(xlabel=words)
+        for axis in (axes.xaxis, axes.yaxis):
+            axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+            axis.set_minor_locator(NullLocator())
+            axis.set_major_formatter(plain)
     panels[0].set_ylabel("simulated seconds in a second of one core")
     last, name = panels[-1], list(ERRORS)[-1]
     low, high = np.log(last.get_ylim())
