@@ -15,7 +15,7 @@ from lab.studies.bench.water.errors import front_speed, pressure_error, wave_err
 from lab.studies.bench.water.speed import OURS
 from lab.studies.bench.water.workers import Worker
 
-ROWS, FEW = 50, 25
+ROWS, FEW = 25, 15
 STILL, FRONT = 0.5, 2.6  # s at rest; t √(g/H) of the collapse
 FRAMES = 16
 KEPT, LOST = 0.99, "water lost"  # share of the particles that must be there in the end
