@@ -32,7 +32,7 @@ WAVES = "frequencies to {} %, waves at a Reynolds number of 500 damped {} % too 
 LEVELS = {
     "draft": Level(1e-3, 1.6, DRAFT_RESTITUTION, "beds may run out 3 % faster", 20, WAVES.format(1, 16, 0.7)),
     "standard": Level(
-        1e-2, 1.0, RESTITUTION, "no error of the softness found among 12 beds", 40, WAVES.format("X", "Y", "Z")
+        1e-2, 1.0, RESTITUTION, "no error of the softness found among 12 beds", 40, WAVES.format(0.4, 8, 0.3)
     ),
     "reference": Level(1.0, 1.0, RESTITUTION, "the material's own stiffness", 80, WAVES.format("X", "Y", "Z")),
 }
