@@ -34,7 +34,7 @@ LEVELS = {
     "standard": Level(
         1e-2, 1.0, RESTITUTION, "no error of the softness found among 12 beds", 40, WAVES.format(0.4, 8, 0.3)
     ),
-    "reference": Level(1.0, 1.0, RESTITUTION, "the material's own stiffness", 80, WAVES.format("X", "Y", "Z")),
+    "reference": Level(1.0, 1.0, RESTITUTION, "the material's own stiffness", 80, WAVES.format(0.3, 5, 0.3)),
 }
 DEFAULT = "standard"
 
