@@ -72,4 +72,5 @@ TELLS: Mapping[str, Callable[[Found], Told]] = {
     "map": low_sides.tell_map,
     "map with a tank": low_sides.tell_tank,
     "convergence": prismatic.convergence,
+    "thirty seconds": prismatic.thirty_seconds,
 }
