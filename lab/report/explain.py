@@ -181,11 +181,16 @@ def _cost(preset, scene, simulation: Simulation) -> list[tuple[str, str]]:
             * bool(count)
         ),
         *([("steps", f"{steps:.3g}")] if not preset.grains else []),
-        ("memory", f"{worlds * simulation.arrays.bytes / 2**20:.1f} MiB"),
+        ("memory", f"{worlds * simulation.arrays.bytes / 2**20:.1f} MiB{_each(simulation.arrays.bytes, count, what)}"),
         ("recording", f"{frames * worlds * count * 24 / 2**20:.0f} MiB"),
         ("run time", f"about {_span(sum(seconds.values()))} on {cores} core(s): {parts}"),
         *([("", settling)] if preset.run.settle and preset.grains else []),
     ]
+
+
+def _each(size: int, count: int, what: str) -> str:
+    """The memory (bytes) of a world for each of its particles."""
+    return f", {size / count:.0f} bytes a {what}" if count else ""
 
 
 def cost_in_seconds(preset, scene, simulation: Simulation) -> dict[str, float]:

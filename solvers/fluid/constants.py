@@ -46,6 +46,7 @@ class Constants:
             "density": water.density,
             "stiffness": water.density * sound**2,  # ρ0 c0², Pa
             "background": water.background,
+            "thinnest": float(self.state.excess(-water.background / (water.density * sound**2))),
             "spread": water.delta * length * sound,  # δ h c0, m²/s
             "strength": strength,
             "hydrostatic": gravity / sound**2,  # g/c0², 1/m

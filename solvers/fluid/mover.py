@@ -104,10 +104,16 @@ class Mover:
 
     @ti.func
     def floored(self, spray, s):
-        """The excess of density, of spray at least zero; in a full tank there is no spray."""
-        found = s
-        if ti.static(not self.constants.full):
-            found = ti.select(spray, ti.max(s, 0.0), s)
+        """The excess of density, of spray at least that at which it bears no pressure; a full tank has no spray.
+
+        With the background's pressure p_b that is below the density at rest. There the elastic energy ∫ (p + p_b)/ρ² dρ
+        is least, so that what is floored gains none (own derivation); at ρ0 each step would give it p_b times the
+        volume by which it has spread.
+        """
+        found, c = s, self.constants
+        if ti.static(not c.full):
+            least = c.get("thinnest") if ti.static(c.pressed) else ti.cast(0.0, self.particles.real)
+            found = ti.select(spray, ti.max(s, least), s)
         return found
 
     @ti.func

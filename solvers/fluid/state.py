@@ -19,7 +19,7 @@ DENSEST_SPRAY = 0.5  # that of drops, and of the surface: a drop that hits a wal
 DENSEST_AIR = 30.0  # that of air, which a slow speed of sound makes soft: trapped under an impact it all but vanishes
 THINNEST = -0.8  # excess of density of air down to which it is drawn out; a particle cannot stand for a larger void
 INSIDE = 0.75  # least eigenvalue above which no surface is near (Marrone, Colagrossi, Le Touzé & Graziani 2010)
-SPRAY = 0.2  # least eigenvalue below which water is spray, never less dense than at rest (Marrone et al. 2010)
+SPRAY = 0.2  # least eigenvalue below which water is spray, which bears no suction (Marrone et al. 2010)
 UNUSED = -1  # number of an unused lane
 
 

@@ -103,11 +103,12 @@ class PlainBoth(PlainWater):
         return (force + walls) / mass[:, None], slope, walls
 
     def later(self, r, u, s, mass, slope, pressed, dt):
-        """The excess of density after a step, from its middle; water with few of its kind about is never less dense."""
+        """The excess of density after a step, from its middle; water with few of its kind about bears no suction."""
         spray = (self.span < 0.2) & (self.gas < 0.5)
+        least = -self.water.background / (self.water.density * self.water.sound_speed**2)
         for rate in self.rates(r, u, s, mass, slope, pressed):
             s = s + dt * rate
-            s = np.where(spray, np.maximum(s, 0.0), s)
+            s = np.where(spray, np.maximum(s, least), s)
         return s
 
     def rates(self, r, u, s, mass, slope, pressed):

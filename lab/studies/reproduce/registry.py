@@ -67,4 +67,5 @@ TELLS: Mapping[str, Callable[[Found], Told]] = {
     "low sides": low_sides.tell,
     "map": low_sides.tell_map,
     "convergence": prismatic.convergence,
+    "thirty seconds": prismatic.thirty_seconds,
 }
