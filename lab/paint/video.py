@@ -274,7 +274,7 @@ def _made(out: Path) -> Path:
 
 
 def _write_folder(folder: Path, pictures: Iterator[np.ndarray], count: int, comment: str) -> Path:
-    """Write `count` pictures into a folder; the last one keeps the comment, so it tells that all are there."""
+    """Write `count` pictures into a folder; the last one keeps a comment, so it tells that all are there."""
     folder.mkdir(exist_ok=True)
     for old in folder.glob("picture_*.png"):
         old.unlink()
@@ -283,6 +283,6 @@ def _write_folder(folder: Path, pictures: Iterator[np.ndarray], count: int, comm
     for k, picture in enumerate(pictures):
         image, last = Image.fromarray(picture), k == count - 1
         part = folder / "picture.part"  # renamed when it is whole
-        image.save(part, "PNG", pnginfo=kept if last else None)
+        image.save(part, "PNG", pnginfo=kept if last and comment else None)
         part.replace(folder / f"picture_{k:05d}.png")
     return folder
