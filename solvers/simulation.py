@@ -9,7 +9,7 @@ import numpy as np
 from solvers.fluid.matter import WaterMatter
 from solvers.grains.matter import GrainMatter
 from solvers.grains.pressing import UNTOUCHED, Pressing
-from solvers.machine import runtime
+from solvers.machine import runtime, wide
 from solvers.machine.errors import Unavailable
 from solvers.machine.state import Axes, Axis, State
 from solvers.machine.wide import real_vectors
@@ -64,7 +64,7 @@ class Simulation:
         # Per grain all worlds share a step, and one would depend on the others.
         alone = self.arch == "cpu" and (self.schedule_name != "per-grain" or worlds == 1)
         self.stretch = stretch if alone else 1
-        self.steps, self.room = 0, 1
+        self.steps, self.room, self.vectors = 0, 1, wide.pays()
         self.simple = scene.shapes is None and scene.water is None  # short kernels
         self.origin, self.unkicked = 0.0, 0  # time (s) of the tank's motion at step 0; the first step since the launch
         self._build()
@@ -82,7 +82,7 @@ class Simulation:
         self.carrier = make_carrier(arrays, scene, self.dt)
         cut = self.units_a_world, self.schedule_name == "per-grain"
         pieces = len(scene.tanks) + len(scene.parts) + bool(len(scene.fixed))
-        lists = self.skin, self.room, self.stretch
+        lists = self.skin, self.room, self.stretch, self.vectors
         setting = Setting(arrays, worlds, *cut, self.walls, pieces, scene.shares, self.carrier, *lists)
         made = (make(scene, setting) for make in MATTERS)
         self.matters = {matter.name: matter for matter in made if matter}
@@ -298,32 +298,32 @@ class Simulation:
 
     def part_places(self) -> np.ndarray:
         """Displacements (W, P, 2) m of the scene's parts at the last `observe`; they are the same in every world."""
-        places = self.walls.places.to_numpy()[: len(self.scene.parts)].astype(float)
-        return np.tile(places, (self.scene.worlds, 1, 1))
+        return np.tile(self.walls.places.to_numpy()[: len(self.scene.parts)].astype(float), (self.scene.worlds, 1, 1))
 
     def state(self) -> dict[str, np.ndarray]:
         """The complete state, from which `restore` continues bit for bit."""
-        schedule = list(SCHEDULES).index(self.schedule_name)
-        numbers = self.steps, self.room, self.unkicked, self.observed, self.units_a_world, schedule
-        own = {"numbers": np.array(numbers), "origin": np.array(self.origin)}
+        cut = self.units_a_world, list(SCHEDULES).index(self.schedule_name), self.vectors
+        numbers = np.array([self.steps, self.room, self.unkicked, self.observed, *cut])
+        own = {"numbers": numbers, "origin": np.array(self.origin)}
         return own | self._of_matters() | self.means | self.arrays.read()
 
     def axes(self) -> dict[str, Axes]:
         """The axes of all that `state` tells, by its names."""
         world = Axis("world", self.scene.worlds)
         means = {name: (world, *(Axis("component", size) for size in m.shape[1:])) for name, m in self.means.items()}
-        own = {"numbers": (Axis("number", 6),), "origin": (), **means}
-        for matter in self.matters.values():
-            own |= matter.axes()
+        own = {"numbers": (Axis("number", 7),), "origin": (), **means}
+        own |= {name: axes for matter in self.matters.values() for name, axes in matter.axes().items()}
         return own | self.arrays.axes()
 
     def restore(self, state: dict[str, np.ndarray]) -> None:
-        """Restore what `state` returned in a simulation of the same scene."""
-        self.steps, room, self.unkicked, self.observed, units, schedule = (int(number) for number in state["numbers"])
+        """Restore what `state` returned in a simulation of the same scene, on whatever processor."""
+        self.steps, room, self.unkicked, self.observed, *cut = (int(number) for number in state["numbers"])
+        units, schedule, vectors = (*cut, self.vectors)[:3]  # older states lack the last
         self.origin, self.means = float(state["origin"]), {name: np.array(state[name]) for name in self.means}
-        if (room, units) != (self.room, self.units_a_world):
+        if (room, units, vectors) != (self.room, self.units_a_world, self.vectors):
             self.arrays.release()
-            self.room, self.units_a_world, self.schedule_name = room, units, list(SCHEDULES)[schedule]
+            self.room, self.units_a_world, self.vectors = room, units, bool(vectors)
+            self.schedule_name = list(SCHEDULES)[schedule]
             self._build()
         self.arrays.write(state)
         for matter in self.matters.values():

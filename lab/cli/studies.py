@@ -6,6 +6,7 @@ from pathlib import Path
 import click
 
 from lab.cli.options import cluster_option, fast_option, out_option, page_only_option, page_option, quiet_option
+from lab.preset.accuracy import LEVELS
 
 
 @click.command("list")
@@ -27,20 +28,25 @@ def list_presets() -> None:
 
 @click.command()
 @click.argument("cases", nargs=-1)
+@click.option("--level", type=click.Choice(list(LEVELS)), help="Cases of grains at the steps of a level of accuracy.")
 @page_option
 @fast_option
 @page_only_option
-def verify(cases: tuple[str, ...], out: Path, fast: bool, page_only: bool) -> None:
+def verify(cases: tuple[str, ...], level: str | None, out: Path, fast: bool, page_only: bool) -> None:
     """Compare small scenes with closed forms, independent integrations and published numbers.
 
     \b
     cargolab verify                     all CASES, and a page with a table and figures; run again, it continues
     cargolab verify --fast
     cargolab verify oblique incline     those whose names begin with these
+    cargolab verify --level draft       a page of its own
     """
-    from lab.studies.verify import SUITE
+    from lab.studies.verify import SUITE, suite_at
+    from lab.studies.verify.scenes import at_level
 
-    if not SUITE.run(cases, out, fast, page_only):
+    with at_level(level or "reference"):
+        passed = (suite_at(level) if level else SUITE).run(cases, out, fast, page_only)
+    if not passed:
         sys.exit(1)
 
 

@@ -85,7 +85,7 @@ def measure(recording: Recording) -> dict[str, Value]:
     numbers = np.full((recording.worlds, 4), np.nan)
     lost = [end is not None for end in ends(recording.series)]
     for world in np.flatnonzero(np.logical_not(lost)):
-        found = _of(recording, int(world), ROLL)
+        found = met(recording, int(world), ROLL)
         k = int(np.argmax(np.where(found.strong, np.abs(found.ratio), 0.0)))
         numbers[world] = np.abs(found.ratio[k]), found.error[k], found.frequency[k], found.coherence[k]
         spacing = float(found.frequency[1] - found.frequency[0])
@@ -99,7 +99,7 @@ def measure(recording: Recording) -> dict[str, Value]:
     }
 
 
-def _of(recording: Recording, world: int, mode: int) -> Transfer:
+def met(recording: Recording, world: int, mode: int) -> Transfer:
     """From the waves that meet her axis to sway, heave (m) or roll (rad) of her axis."""
     from lab.assembly.ship import make_water, make_waves
 
@@ -115,7 +115,7 @@ def draw(sheet: Sheet, recording: Recording, values: Mapping[str, Value]) -> Non
     """Density of waves and roll, roll per metre of wave with its 95 % band, and coherence, of the first ship."""
     if ends(recording.series)[0] is not None:
         return
-    found = _of(recording, 0, ROLL)
+    found = met(recording, 0, ROLL)
     upper, middle, lower = sheet.panels(heights=(2, 2, 1), columns=3)[:, 0]
     omega, kept = found.frequency, found.strong
     band = half_width(1.0, MANY)

@@ -33,6 +33,7 @@ SAMPLE = 0.25e-3  # to stop and observe all worlds
 # For each computation of the water's forces on a ship: at least, for each pair of states of its memory, for each wave
 LOOK, LOOK_PAIR, LOOK_WAVE = 0.4e-6, 1.6e-9, 0.07e-6
 FROZEN = 0.37e-3  # for each interval of the ship with her cargo frozen
+LARGE = 500.0  # MiB, of a recording
 REPORTING, PICTURE = 2.5, 0.026  # measures and figures; a picture and its place in the video
 
 PRECISIONS = {
@@ -181,11 +182,22 @@ def _cost(preset, scene, simulation: Simulation) -> list[tuple[str, str]]:
             * bool(count)
         ),
         *([("steps", f"{steps:.3g}")] if not preset.grains else []),
-        ("memory", f"{worlds * simulation.arrays.bytes / 2**20:.1f} MiB"),
-        ("recording", f"{frames * worlds * count * 24 / 2**20:.0f} MiB"),
+        ("memory", f"{worlds * simulation.arrays.bytes / 2**20:.1f} MiB{_each(simulation.arrays.bytes, count, what)}"),
+        ("recording", _size(frames * worlds * count * 24 / 2**20)),
         ("run time", f"about {_span(sum(seconds.values()))} on {cores} core(s): {parts}"),
         *([("", settling)] if preset.run.settle and preset.grains else []),
     ]
+
+
+def _size(kept: float) -> str:
+    """The size of a recording (MiB); of a large one, what would make it smaller."""
+    pictures = "; nearly all of it pictures, of which a lower record.picture_rate keeps fewer" if kept > LARGE else ""
+    return f"{kept:.0f} MiB{pictures}"
+
+
+def _each(size: int, count: int, what: str) -> str:
+    """The memory (bytes) of a world for each of its particles."""
+    return f", {size / count:.0f} bytes a {what}" if count else ""
 
 
 def cost_in_seconds(preset, scene, simulation: Simulation) -> dict[str, float]:

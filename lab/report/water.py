@@ -60,13 +60,23 @@ def models(scene: Scene) -> Rows:
 
 
 def accuracy(preset: Preset) -> Rows:
-    """The level of accuracy, and the spacing that follows from it unless the preset has its own."""
+    """The level of accuracy, the spacing that follows from it unless the preset has its own, and what error that is."""
     own = "; the preset's own" if preset.water.spacing != "auto" else ""
-    level = f"{LEVELS[preset.run.accuracy].layers} particles over the depth"
+    count = layers(preset)
     return [
-        ("level", f"{preset.run.accuracy}: {level}; what error that is, only finer runs of the same tank tell"),
-        ("spacing", f"{layers(preset)} particles over {show(depth(preset), 'm')}{own}"),
+        ("level", f"{preset.run.accuracy}: {LEVELS[preset.run.accuracy].layers} particles over the depth"),
+        ("spacing", f"{count} particles over {show(depth(preset), 'm')}{own}"),
+        ("error", f"{_error(count)}; of water that breaks only finer runs of the same tank tell"),
     ]
+
+
+def _error(count: int) -> str:
+    """The error of gentle water with so many layers of particles: that of the finest level that has no more."""
+    known = [level for level in LEVELS.values() if level.layers <= count]
+    if not known:
+        return f"larger than with {LEVELS['draft'].layers} layers, where gentle water has {LEVELS['draft'].of_water}"
+    best = max(known, key=lambda level: level.layers)
+    return f"gentle water with {best.layers} layers has {best.of_water}"
 
 
 def in_tank(recording: Recording) -> Iterator[str]:

@@ -24,7 +24,7 @@ SMALLEST, LARGEST = 1e-6, 1e6  # shares of the tolerance; what lies beyond is dr
 
 @dataclass(frozen=True)
 class Suite:
-    """Cases under the name of the command that runs them, whose last word names the files.
+    """Cases under the name of the command that runs them, whose last word names the files unless `file` does.
 
     `about` stands above them on the page, `texts` under the headings of sections.
     """
@@ -34,11 +34,12 @@ class Suite:
     cases: Sequence[Case]
     about: str
     texts: Mapping[str, str] = field(default_factory=dict)
+    file: str = ""
 
     @property
     def name(self) -> str:
         """Of the results NAME.json, the page NAME.md and the figures NAME-FIGURE.png."""
-        return self.command.split()[-1]
+        return self.file or self.command.split()[-1]
 
     def run(self, names: Sequence[str], out: Path | str, fast: bool, page_only: bool = False) -> bool:
         """Run the cases that begin with any of `names`, or without names all that are not kept; whether all passed.

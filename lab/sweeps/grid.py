@@ -14,7 +14,7 @@ from lab.assembly.water import most_drops
 from lab.base.errors import LabError
 from lab.preset.find import LoadedPreset, load
 from lab.preset.recorded import resolved_from, to_table
-from lab.sweeps.alike import alike
+from lab.sweeps.alike import alike, apart
 from lab.sweeps.axes import values
 
 FORMAT = "cargo-shift-lab sweep 1"
@@ -43,11 +43,17 @@ class Sweep:
         preset = self.points[number].resolved
         return preset.duration * preset.run.repeats * max(1, grain_count(preset) + most_drops(preset))
 
-    def same_as(self, other: "Sweep") -> bool:
-        """Whether the other sweep has the same points, be it of an earlier version, which wrote what it derived."""
-        if (self.name, self.axes) != (other.name, other.axes):
-            return False
-        return all(alike(one.resolved, two.resolved) for one, two in zip(self.points, other.points, strict=True))
+    def differs_from(self, other: "Sweep") -> str:
+        """In what the other sweep has other points, in words; "" where in nothing.
+
+        Be it of an earlier version, which wrote what it derived.
+        """
+        if self.name != other.name:
+            return f"of {self.name}"
+        if self.axes != other.axes:
+            return f"of other values of {', '.join(self.axes)}"
+        pairs = [(one.resolved, two.resolved) for one, two in zip(self.points, other.points, strict=True)]
+        return next((f"with another {apart(*pair)}" for pair in pairs if not alike(*pair)), "")
 
     def write(self, folder: Path) -> None:
         """Write the definition to the sweep's folder. Raises LabError."""

@@ -88,8 +88,11 @@ def point_folder(folder: Path, number: int) -> Path:
 def _check_folder(sweep: Sweep, folder: Path) -> None:
     """Raise LabError if the folder holds another sweep or a run."""
     if (folder / FILE_NAME).exists():
-        if not read_sweep(folder).same_as(sweep):
-            raise LabError(f"{folder} holds another sweep than the requested one: choose another folder.")
+        if differs := read_sweep(folder).differs_from(sweep):
+            raise LabError(
+                f"{folder} holds another sweep than the requested one ({differs}): choose another folder, or remove "
+                "it to run anew."
+            )
     elif (folder / RECORDING).exists():
         raise LabError(f"{folder} holds a recording: choose another folder.")
 

@@ -9,9 +9,9 @@ and the contents follow in short steps of their own on the way between the two p
 
 with Newmark's averages of γ = ½ − b and β = (1 − b)²/4 (Wood, Bossak & Zienkiewicz 1980; b = −0.1, not in the source
 for the print lost it). Accelerations are iterated with Aitken's relaxation (Irons & Tuck 1969). Between the poses is
-a cubic.
+a cubic. The contents' load is that of the ship's acceleration at the instant, (1 − b) a_(n+1) + b a_n.
 
-Limits: unstable with contents that answer at once and have more than some 4 % of the ship's mass, added mass included,
+Limits: unstable with contents that answer at once and have more than some 3 % of the ship's mass, added mass included,
 see `motion.staggered`; it is here to be compared. The memory of radiation goes by the trapezoidal rule.
 """
 
@@ -38,8 +38,9 @@ class AsK(Ships):
     def __init__(self, arrays: State, vessels: Sequence[Vessel], gravity: float, every: int, wet: bool = False):
         super().__init__(arrays, vessels, gravity, every, wet)
         # Pose and velocity at the end of the present interval, and the load that the contents have at its beginning;
-        # `pose`, `velocity` and `last` are of its beginning. The last POINTS loads, newest first.
-        self._declare("ahead_pose", "ahead_velocity", "ahead_last", "past")
+        # `pose`, `velocity` and `last` are of its beginning. The acceleration in Bossak's equation is that of −b H
+        # earlier; `ahead_now` is that of the end itself. The last POINTS loads, newest first.
+        self._declare("ahead_pose", "ahead_velocity", "ahead_last", "ahead_now", "past")
 
     @ti.func
     def move(self, w, t, step, kick, load):
@@ -82,17 +83,18 @@ class AsK(Ships):
     @ti.func
     def begin_interval(self, w, t, length, load):
         """Take the present load, and find where the ship is at the end of the interval."""
-        first = self.done[w, 0] == 0
+        first, now = self.done[w, 0] == 0, self.vector(self.ahead_now, w)
         for k in ti.static(range(3)):
             self.pose[w, k], self.velocity[w, k] = self.ahead_pose[w, k], self.ahead_velocity[w, k]
             self.last[w, k] = self.ahead_last[w, k]
             if first:
                 self.pose[w, k], self.velocity[w, k], self.last[w, k] = self.heeled[w, k], 0.0, 0.0
-        pose, velocity, last = self.vector(self.pose, w), self.vector(self.velocity, w), self.vector(self.last, w)
+                now[k] = 0.0
+        pose, velocity = self.vector(self.pose, w), self.vector(self.velocity, w)
         if ti.static(self.hulls.openings > 0):  # noqa: SIM102 (compiled only for ships that have some)
             if self.hulls.floods(w, pose, t):
                 self.flooded[w] = t
-        force = self.felt(w, pose, velocity, last, load)
+        force = self.felt(w, pose, velocity, now, load)
         for k in ti.static(range(3)):
             self.state[w, POSE + k], self.state[w, VELOCITY + k] = pose[k], velocity[k]
             for n in ti.static(range(POINTS - 1, 0, -1)):
@@ -138,6 +140,7 @@ class AsK(Ships):
         for k in ti.static(range(3)):
             self.ahead_pose[w, k], self.ahead_velocity[w, k] = self.state[w, POSE + k], self.state[w, VELOCITY + k]
             self.ahead_last[w, k] = after[k]
+            self.ahead_now[w, k] = (1.0 - BOSSAK) * after[k] + BOSSAK * before[k]
 
     @ti.func
     def try_ahead(self, w, length, before, after):

@@ -11,7 +11,7 @@ from lab.studies.reproduce import figures
 from lab.studies.reproduce.experiment import Found, Row, Told
 from lab.studies.reproduce.grains import beds, outlines, stack
 from lab.studies.reproduce.runs import Outcome
-from lab.studies.reproduce.ships import capsizes, coupled, damping, low_sides, rolls, section
+from lab.studies.reproduce.ships import capsizes, coupled, damping, low_sides, rolls, section, tuning
 from lab.studies.reproduce.water import dam_break, damper, drag, impact, prismatic, sinking, surfaces, waves
 
 
@@ -38,6 +38,8 @@ ROWS: Mapping[str, Callable[[Found], list[Row]]] = {
     "memory_effects": beds.memory_effects,
     "largest_rolls": rolls.largest_rolls,
     "section_amplitudes": section.section_amplitudes,
+    "order of roll": coupled.order_of_roll,
+    "tank tuning": tuning.rows,
 }
 FIGURES: Mapping[str, Callable] = {
     "shift": figures.shift,
@@ -59,6 +61,8 @@ FIGURES: Mapping[str, Callable] = {
     "waves": surfaces.waves,
     "pressures at P1": prismatic.figure,
     "coupled response": coupled.figure,
+    "coupled spectra": coupled.spectra,
+    "tank tuning": tuning.figure,
 }
 TELLS: Mapping[str, Callable[[Found], Told]] = {
     "section": section.tell,
@@ -66,5 +70,7 @@ TELLS: Mapping[str, Callable[[Found], Told]] = {
     "capsizes": capsizes.tell,
     "low sides": low_sides.tell,
     "map": low_sides.tell_map,
+    "map with a tank": low_sides.tell_tank,
     "convergence": prismatic.convergence,
+    "thirty seconds": prismatic.thirty_seconds,
 }

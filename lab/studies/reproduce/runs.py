@@ -11,7 +11,7 @@ from lab.measures.value import Value
 from lab.preset.find import load
 from lab.recording import FILE_NAME, Recording, open_recording
 from lab.runs.runner import recorded_preset, resume_run, run_preset
-from lab.sweeps.alike import alike
+from lab.sweeps.alike import alike, apart
 from lab.sweeps.cluster import Errand
 from lab.sweeps.grid import FILE_NAME as SWEEP
 from lab.sweeps.grid import read_sweep
@@ -69,8 +69,12 @@ def carry_out(batch: Batch, folder: Path, quiet: bool) -> None:
             return
         with open_recording(folder) as recording:
             recorded = recorded_preset(recording).resolved
-        if not alike(recorded, load(batch.preset, batch.changes).resolved):
-            raise LabError(f"{folder} holds another run than this experiment asks for: remove it.")
+        asked = load(batch.preset, batch.changes).resolved
+        if not alike(recorded, asked):
+            raise LabError(
+                f"{folder} holds another run than this experiment asks for, with another {apart(recorded, asked)}: "
+                "remove that folder to run it anew."
+            )
         if state_of(folder) != "done":
             resume_run(folder, video=False, plots=False, quiet=quiet)
     except BadState:  # the recording and the report say so

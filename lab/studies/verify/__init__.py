@@ -3,6 +3,9 @@
 A case is a function in a module of this package that returns its results, and a line in that module's CASES.
 """
 
+from dataclasses import replace
+
+from lab.preset.accuracy import LEVELS
 from lab.studies.case import Case
 from lab.studies.suite import Suite
 from lab.studies.verify import (
@@ -41,3 +44,14 @@ SUITE = Suite(
     allow, not what came out.""",
     water.TEXTS,
 )
+# Cases whose step is a preset's: those of `impacts` have steps of draft beside the derived ones in any case.
+BY_LEVEL = tuple(case for module in MODULES if module not in (*MODULES[:3], water) for case in module.CASES)
+
+
+def suite_at(level: str) -> Suite:
+    """The cases whose step a level of accuracy sets, with a page of their own."""
+    longer = LEVELS[level].longer_steps
+    about = f"""With the steps of the level {level}, {longer:g} times the derived ones. Tolerances are those of the
+    derived steps: what is due to the step may be {longer**2:.2g} times as large here, and its line then fails."""
+    named = {"command": f"verify --level {level}", "title": f"The physics at the level {level}"}
+    return replace(SUITE, **named, cases=BY_LEVEL, about=about, texts={}, file=f"verify-{level}")

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from contextvars import ContextVar
 from dataclasses import dataclass, field
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -21,13 +22,25 @@ G = 9.81  # m/s²
 ACETATE = {"density": 1319.0, "young": 3.2e9, "poisson": 0.28, "friction": 0.25, "restitution": 0.6}
 WEIGHTLESS = 1e-15  # m/s²: a preset wants some gravity, and takes no less
 
+_level: ContextVar[str] = ContextVar("level of accuracy", default="reference")
+
+
+@contextmanager
+def at_level(name: str) -> Iterator[None]:
+    """Build setups with the steps of a level of accuracy; their stiffness stays what the references know it to be."""
+    before = _level.set(name)
+    try:
+        yield
+    finally:
+        _level.reset(before)
+
 
 @dataclass(frozen=True)
 class Setup:
     """A preset's tables in SI numbers, and its grains one by one: rows y, z, radius (m), v_y, v_z (m/s), ω (rad/s).
 
-    Unless they say otherwise nothing settles, and the accuracy is the reference's: the material's own stiffness at
-    the derived step.
+    Unless they say otherwise nothing settles, the stiffness is the material's own, and the step that of `at_level`: the
+    reference's, which is the derived one.
     """
 
     grains: np.ndarray
@@ -41,7 +54,8 @@ class Setup:
     def build(self) -> tuple[Scene, np.ndarray]:
         """The scene and the grains' places (1, n, 2) m, as `cargolab run` makes them of a preset and its files."""
         tables = {name: getattr(self, name) for name in ("material", "tank", "wall", "contact", "motion")}
-        run = {"accuracy": "reference", "settle": False, "duration": 1.0, **self.run}
+        tables["contact"] = {"stiffness_scale": 1.0, **self.contact}
+        run = {"accuracy": _level.get(), "settle": False, "duration": 1.0, **self.run}
         written = {"title": "verification", **tables, "run": run, "grains": {"bed": "bed.csv"}}
         with TemporaryDirectory() as folder:
             preset = Path(folder) / "case.toml"

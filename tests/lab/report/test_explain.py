@@ -5,7 +5,9 @@ import re
 import pytest
 
 from lab.assembly.scene import build
+from lab.preset.accuracy import LEVELS
 from lab.preset.find import load
+from lab.report import water
 from lab.report.explain import cost_in_seconds, explain
 from solvers.simulation import Simulation
 
@@ -60,3 +62,14 @@ def test_it_says_when_steps_are_longer_and_when_they_never_are():
     slow = r"slow grains +steps are 2 times as long while no two grains may meet faster than \d"
     assert re.search(slow, explain(load("tilting/quick", FEW)))
     assert "slow grains" not in explain(load("tilting/quick", FEW | {"run.step": "1 us"}))
+
+
+@pytest.mark.parametrize(
+    ("spacing", "level", "said"),
+    [("4 mm", "draft", "larger than"), ("2.6 mm", "draft", ""), ("1.3 mm", "standard", "")],
+)
+def test_the_error_of_water_is_that_of_the_layers_it_has(spacing, level, said):
+    """Of 52.5 mm: 13 layers are worse than a draft, 20 are one, 40 are the standard, whatever the level's name."""
+    rows = dict(water.accuracy(load("sloshing/source-p-25", {"water.spacing": spacing}).resolved))
+    assert LEVELS[level].of_water in rows["error"]
+    assert said in rows["error"] and ("larger than" in rows["error"]) is bool(said)

@@ -170,7 +170,7 @@ def test_without_the_other_codes_the_page_says_so(tmp_path, monkeypatch):
 
 
 def test_an_unknown_study_is_reported(tmp_path):
-    with pytest.raises(LabError, match=r"there is no study colour; there are grains, .*peers, equal-error, curves\.$"):
+    with pytest.raises(LabError, match=r"there is no study colour; there are grains, .*curves, slow-tilts\.$"):
         run_page(["colour"], tmp_path, fast=True)
 
 
@@ -186,14 +186,22 @@ def test_curves_report_the_first_diameter_and_where_they_diverge():
     assert len(curves.plotted({curves.LAB: [one, other]}).axes) == 2
 
 
+def test_shifts_of_slow_tilts_are_compared_bed_by_bed():
+    tilt = np.linspace(0.0, 26.0, 261)
+    beds = [Curve(tilt, slope * tilt) for slope in (0.01, 0.03)]
+    others = [Curve(one.tilt, one.shift + 0.004) for one in beds]
+    rows = curves._apart({curves.LAB: beds, "LAMMPS": others})
+    assert [row[0] for row in rows] == ["5", "15", "25"]
+    assert rows[0][1].startswith("100.0 [") and rows[0][2] == "4.0 [4.0, 4.0]"  # beds differ, the codes alike in each
+
+
 @pytest.mark.slow
-def test_a_tilted_bed_shifts_downhill_and_its_curve_is_kept(tmp_path, bed, monkeypatch):
+def test_a_tilted_bed_shifts_downhill_and_its_curve_is_kept(tmp_path, bed):
     how = Tilting(beds=1, count=COUNT, width=WIDTH, rate=200.0, angle=45.0)
-    curve = curves.kept(tmp_path, curves.LAB, how, bed, 1)
+    curve = curves.kept(tmp_path, curves.LAB, how, bed, 1, curves.followed_here)
     assert curve.tilt[-1] == pytest.approx(how.angle, abs=1.0)
     assert curve.shift[0] == 0.0 and curve.shift[-1] > 0.2
-    monkeypatch.setattr(curves, "followed_here", None)
-    np.testing.assert_array_equal(curves.kept(tmp_path, curves.LAB, how, bed, 1).shift, curve.shift)
+    np.testing.assert_array_equal(curves.kept(tmp_path, curves.LAB, how, bed, 1, None).shift, curve.shift)
 
 
 def told_to_lammps(monkeypatch, bed, **how) -> str:

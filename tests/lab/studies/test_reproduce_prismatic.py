@@ -43,4 +43,11 @@ def test_water_within_a_spacing_of_the_roof_touches_it(highest, verdict):
 
 def test_all_runs_of_the_study_are_of_presets_that_exist():
     names = {name: one.batches(False) for name, one in experiments("water").items()}
-    assert [len(names[f"prismatic-{one}"]) for one in ("sway", "fine", "roof", "half")] == [3, 6, 2, 2]
+    assert [len(names[f"prismatic-{one}"]) for one in ("sway", "sound", "fine", "cost", "roof", "half")] == [
+        4,
+        4,
+        4,
+        3,
+        2,
+        2,
+    ]

@@ -11,6 +11,7 @@ from lab.studies.case import Line
 from lab.studies.verify.impacts.law import Bodies, Impact, Normal, Shear
 from lab.studies.verify.plain import Tank
 from lab.studies.verify.references import viscoelastic_rebound
+from lab.studies.verify.scenes import ACETATE, Setup, at_level, grain
 
 PICTURES = (
     *("errors", "chung-ooi-1-2", "chung-ooi-5", "restitution", "oblique-mindlin", "orders"),
@@ -95,3 +96,15 @@ def test_plain_tank_holds_its_grain_still():
     place, velocity, angle, spin = tank.run(start, 2e-5, 200)
     assert np.abs(place - start).max() < 1e-15
     assert max(np.abs(velocity).max(), np.abs(angle).max(), np.abs(spin).max()) < 1e-12
+
+
+def test_a_level_sets_the_steps_of_setups_and_not_their_stiffness():
+    setup = Setup(np.array([grain(0.0, 0.01, 1.5e-3)]), ACETATE, {"width": 0.1, "height": 0.02})
+    derived, _ = setup.build()
+    with at_level("draft"):
+        draft, _ = setup.build()
+    assert draft.step == pytest.approx(1.6 * derived.step, rel=1e-3)
+    assert draft.stiffness_scale == derived.stiffness_scale == 1.0
+    suite = verify.suite_at("draft")
+    assert suite.name == "verify-draft" and suite.command == "verify --level draft"
+    assert {"friction-cap", "incline"} <= {case.name for case in suite.cases} < {case.name for case in verify.CASES}

@@ -6,7 +6,7 @@ import pytest
 
 from lab.preset.find import load
 from lab.preset.recorded import resolved_from, to_table
-from lab.sweeps.alike import alike
+from lab.sweeps.alike import alike, apart
 
 
 def test_what_an_earlier_version_wrote_down_of_derived_values_makes_no_difference():
@@ -20,6 +20,20 @@ def test_what_an_earlier_version_wrote_down_of_derived_values_makes_no_differenc
     table["video"]["colour"] = "speed"
     table |= {"title": "Another", "based_on": ""}
     assert alike(preset, resolved_from(table))
+
+
+def test_no_background_pressure_is_none_where_there_is_no_air():
+    """Earlier versions kept 0 Pa for it."""
+    preset = load("sloshing/quick").resolved
+    table = to_table(preset)
+    table["water"]["background_pressure"] = 0.0
+    assert alike(preset, resolved_from(table))
+
+
+def test_keys_that_make_another_run_are_named():
+    preset = load("sloshing/quick").resolved
+    other = replace(preset, water=replace(preset.water, spacing=0.01, depth=0.02), run=replace(preset.run, seed=7))
+    assert apart(preset, other) == "water.depth, water.spacing, run.seed"
 
 
 @pytest.mark.parametrize(

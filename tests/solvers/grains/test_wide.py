@@ -20,6 +20,21 @@ OTHERS = [
 
 def thrown(pays, threads=1, **models):
     """What two worlds of 42 grains thrown at each other and at a rough floor have become."""
+    run = throw(pays, threads, **models)
+    assert run.wide == pays
+    return ended(run, STEPS)
+
+
+def ended(run, steps):
+    """What is found so many steps later, when the run is closed."""
+    run.advance(steps)
+    found = {**run.snapshot(), **run.observe()}
+    run.close()
+    return found
+
+
+def throw(pays, threads=1, **models):
+    """The grains as they are thrown, on a processor for which vectors pay or do not."""
     patched = pytest.MonkeyPatch()
     patched.setattr(wide, "pays", lambda: pays)
     row, column = np.divmod(np.arange(42), 7)
@@ -34,11 +49,7 @@ def thrown(pays, threads=1, **models):
         fixed=LINING, stiffness_scale=1e-2, gravity=100.0, **models,
     )  # fmt: skip
     patched.undo()
-    assert run.wide == pays
-    run.advance(STEPS)
-    found = {**run.snapshot(), **run.observe()}
-    run.close()
-    return found
+    return run
 
 
 def agree(one, other):
@@ -67,3 +78,21 @@ def test_real_vectors_give_the_same_bits_on_any_number_of_threads():
     one, two = (thrown(True, threads, tangential="mindlin") for threads in (1, 2))
     for name, values in one.items():
         np.testing.assert_array_equal(two[name], values, err_msg=name)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("pays", [True, False])
+def test_a_state_goes_on_with_the_same_bits_on_another_kind_of_processor(pays):
+    """It tells whether it is of vectors; one that does not, as older ones, is taken for the processor's own."""
+    run = throw(pays, tangential="mindlin")
+    run.advance(STEPS // 2)
+    state, rest = run.state(), STEPS - STEPS // 2
+    found = ended(run, rest)
+    elsewhere = throw(not pays, tangential="mindlin")
+    elsewhere.restore(state)
+    assert elsewhere.wide == pays
+    for name, values in ended(elsewhere, rest).items():
+        np.testing.assert_array_equal(values, found[name], err_msg=name)
+    alike = throw(pays, tangential="mindlin")
+    alike.restore(state | {"numbers": state["numbers"][:-1]})
+    np.testing.assert_array_equal(ended(alike, rest)["position"], found["position"])

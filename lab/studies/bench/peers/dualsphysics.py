@@ -9,7 +9,9 @@ equation of state with γ = 7 and the same speed of sound. Time step by its own 
 crosses h; Verlet's scheme, one force evaluation a step.
 
 Walls: `dbc`, its dynamic boundary particles, in one layer half a spacing behind the wall: the cheapest that it can, and
-what its users take first. `mdbc` extrapolates pressure to as many layers as the kernel reaches, and slips freely.
+what its users take first. `mdbc`, its modified ones (English et al. 2022), extrapolates density to as many layers as
+the kernel reaches, at rest. Walls of later versions that slip freely are other templates, which not every build
+has; a build without them lets water fall freely.
 
 Its time is the `Simulation Runtime` it prints, without loading; its processor time is the whole process's, in the
 same proportion.
@@ -156,7 +158,7 @@ def _write_xml(path: Path, pool: Pool, bound: int, walls: str) -> None:
         "DensityDT": 3,
         "DensityDTvalue": pool.delta,
         "Boundary": {"dbc": 1, "mdbc": 2}[walls],
-        "SlipMode": 3 if walls == "mdbc" else 1,
+        "SlipMode": 1,
         "TimeMax": pool.seconds,
         "TimeOut": pool.every,
         "SavePosDouble": 1,

@@ -18,7 +18,9 @@ STUDIES = {
     "parts": parts.study,
     "peers": peers.study,
     "equal-error": equal_error.study,
+    "equal-large": equal_error.study_large,
     "curves": curves.study,
+    "slow-tilts": curves.study_slow,
 }
 ABOUT = """All times are of runs taken in turn, so that a machine whose speed drifts slows all alike: medians, and of
 the ratios of runs of the same turn the median, with the smallest and the largest in brackets. M stands for a million

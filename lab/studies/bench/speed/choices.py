@@ -17,7 +17,7 @@ ROLLING = ("none", "constant-torque", "elastic-plastic")
 
 def study(page: Page, work: Path, fast: bool) -> None:
     """Add the section to the page."""
-    count, turns, seconds = (500, 3, 0.1) if fast else (2000, 9, 0.4)
+    count, turns, seconds = (500, 3, 0.1) if fast else (2000, 7, 0.4)
     bed, cores = usual_bed(work, count), available_cores()
     threads = {"per-world": 1, "per-band": cores, "per-grain": cores}
     page.section("Precision, schedule and law")

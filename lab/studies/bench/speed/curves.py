@@ -8,7 +8,8 @@ from pathlib import Path
 import numpy as np
 from matplotlib.figure import Figure
 
-from lab.report.numbers import plus_minus
+from lab.measures.value import over_worlds
+from lab.report.numbers import mean_within, plus_minus
 from lab.report.page import Page
 from lab.report.plots import BELOW, BLUE, GREEN, VERMILION
 from lab.studies.bench.peers import lammps, liggghts
@@ -23,7 +24,9 @@ IMPACT = 0.1  # m/s, of grains in a slide: where all codes have the same restitu
 GRAINS = replace(ACETATE, restitution_speed=IMPACT)
 LAB = "the lab"
 COLOURS = {LAB: BLUE, liggghts.NAME: VERMILION, lammps.NAME: GREEN}
+DOUBLED = "the lab, steps doubled while slow"  # as its runs have it, and not as the other codes
 EVERY = 0.05  # deg, of tilt between two samples
+LOOKED_AT = 5.0, 15.0, 25.0  # deg, of slow tilts
 APART = 0.1  # d: where two curves have parted
 
 
@@ -50,6 +53,10 @@ class Curve:
         beyond = np.flatnonzero(self.shift >= 1.0)
         return float(self.tilt[beyond[0]]) if len(beyond) else float("nan")
 
+    def at(self, angle: float) -> float:
+        """The shift at a tilt (deg)."""
+        return float(np.interp(angle, self.tilt, self.shift))
+
     def parts_from(self, other: "Curve") -> float:
         """The tilt (deg) from which the two shifts are more than APART apart; the last one if they never are."""
         apart = np.abs(self.shift - np.interp(self.tilt, other.tilt, other.shift))
@@ -66,7 +73,7 @@ def study(page: Page, work: Path, fast: bool) -> None:
         if name not in codes:
             page.say(f"{name} is not installed here: its curves are left out.")
     beds = [settled_bed(work, how.count, how.width, seed) for seed in range(1, how.beds + 1)]
-    found = {name: [kept(work, name, how, bed, k) for k, bed in enumerate(beds, start=1)] for name in codes}
+    found = all_kept(work, codes, how, beds)
     page.say(f"""{how.beds} beds of {how.count} grains, 3 mm ± 10 %, in a tank {1e3 * how.width:g} mm wide, tilted at
         {how.rate:g} deg/s, with the history law and {SCALE:g} of the stiffness, from the same settled places without
         contact history, at the same step. The lab turns the tank, and eases its rate in over {Tilt.ease:g} s; in the
@@ -81,6 +88,31 @@ def study(page: Page, work: Path, fast: bool) -> None:
     page.figure("curves", plotted(found), "Shift of the centre of mass against the tilt, by code and bed")
 
 
+def study_slow(page: Page, work: Path, fast: bool) -> None:
+    """Add the section on slow tilts to the page: whether the codes' shifts differ by more than chance."""
+    how = Tilting(2, 100, 0.06, 100.0, 26.0) if fast else Tilting(12, 150, 0.06, 5.0, 26.0)
+    page.section("Slow tilts beside other codes")
+    codes = {**followers(), DOUBLED: partial(followed_here, stretch=2)}
+    beds = [settled_bed(work, how.count, how.width, seed) for seed in range(1, how.beds + 1)]
+    found = all_kept(work, codes, how, beds)
+    page.say(f"""As above, but {how.beds} beds of {how.count} grains in a tank {1e3 * how.width:g} mm wide, tilted at
+        {how.rate:g} deg/s. The shift of the centre of mass, in thousandths of a diameter, less that of the lab in the
+        same bed with the same step; means over the beds with their [95 % intervals]. The first column is the lab's
+        shift itself.""")
+    page.table(["tilt (deg)", *(f"{name}{' less the lab' * (name != LAB)}" for name in codes)], _apart(found))
+
+
+def _apart(found: Mapping[str, list[Curve]]) -> list[list[str]]:
+    """A row an angle: the lab's shift, and how much more each other code shifts, over the beds."""
+    rows = []
+    for angle in LOOKED_AT:
+        shift = {name: 1e3 * np.array([one.at(angle) for one in curves]) for name, curves in found.items()}
+        told = [values if name == LAB else values - shift[LAB] for name, values in shift.items()]
+        means = (over_worlds(values, "1") for values in told)
+        rows.append([f"{angle:g}", *(mean_within(one.value, one.interval, 1) for one in means)])
+    return rows
+
+
 def followers() -> dict[str, Callable[..., Curve]]:
     """How each code that is installed follows a bed."""
     found: dict[str, Callable[..., Curve]] = {LAB: followed_here}
@@ -90,18 +122,26 @@ def followers() -> dict[str, Callable[..., Curve]]:
     return found
 
 
-def kept(work: Path, name: str, how: Tilting, bed: Bed, number: int) -> Curve:
+def kept(work: Path, name: str, how: Tilting, bed: Bed, number: int, follow: Callable[..., Curve]) -> Curve:
     """The curve of a code and a bed from the folder `work`, where it is put once it is done."""
     path = work / f"curve-{name.replace(' ', '-')}-{how.count}-{how.rate:g}-{how.angle:g}-{number}.npz"
-    return Curve(**remembered(path, f"curves: {name}, bed {number}", lambda: vars(followers()[name](how, bed))))
+    return Curve(**remembered(path, f"curves: {name}, bed {number}", lambda: vars(follow(how, bed))))
 
 
-def followed_here(how: Tilting, bed: Bed) -> Curve:
-    """The lab's curve."""
+def all_kept(work: Path, codes: Mapping[str, Callable], how: Tilting, beds: list[Bed]) -> dict[str, list[Curve]]:
+    """The curves of all beds by code."""
+    return {
+        name: [kept(work, name, how, bed, k, follow) for k, bed in enumerate(beds, start=1)]
+        for name, follow in codes.items()
+    }
+
+
+def followed_here(how: Tilting, bed: Bed, stretch: int = 1) -> Curve:
+    """The lab's curve; while grains are slow its steps may be `stretch` times as long."""
     # On beyond the angle, so that the rate is not eased out before it.
     tilt = Tilt(np.radians(how.rate), np.radians(how.angle + how.rate * Tilt.ease))
     scene = bed.scene(material=GRAINS, schedule="per-world", motions=[(tilt,)])
-    run = Simulation(scene, bed.places(), threads=1, arch="cpu")
+    run = Simulation(scene, bed.places(), threads=1, arch="cpu", stretch=stretch)
     angle, centre = [], []
     duration = how.angle / how.rate + 0.5 * Tilt.ease
     for _ in range(1 + round(duration * how.rate / EVERY)):

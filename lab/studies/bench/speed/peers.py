@@ -27,7 +27,7 @@ Timing = Callable[[], float]
 
 def study(page: Page, work: Path, fast: bool) -> None:
     """Add the section to the page."""
-    count, turns, seconds, work_of_one = (500, 3, 0.1, 1e6) if fast else (2000, 9, 0.4, GRAIN_STEPS)
+    count, turns, seconds, work_of_one = (500, 3, 0.1, 1e6) if fast else (2000, 5, 0.4, GRAIN_STEPS)
     page.section("Beside other codes")
     page.say("By processor, also of earlier measurements and of others: [speed-peers.md](speed-peers.md).")
     missing = [peer.NAME for peer in RUNS if peer.available() is None]

@@ -38,7 +38,7 @@ class Worker(Aside):
         return self.ask("speed", seconds)
 
     def course(self, duration: float, velocity: np.ndarray | None = None) -> float:
-        """Grain-steps per second over the first `duration` (s, of model time) from where the bed was at first.
+        """Grain-steps per second over about the first `duration` (s, of model time) from where the bed was at first.
 
         velocity: (n, 2) of the grains there (m/s); None for grains at rest.
         """
@@ -67,6 +67,7 @@ class _Timed:
         self.warmed()
         self.run.place(self.places, velocity)
         self.run.origin = self.origin - self.run.time  # the motion goes by time, which goes on
+        self.run.advance(2 * FEWEST)  # makes the lists, which other codes do not time either
         return timed(self.run, max(FEWEST, round(duration / self.run.dt)))
 
     def warmed(self) -> float:
@@ -102,10 +103,10 @@ def compared(made: Mapping[Hashable, Callable[[], Worker]], turns: int, seconds:
         return in_turn({name: lambda w=worker: w.speed(seconds) for name, worker in found.items()}, turns)
 
 
-def in_turn(timings: Mapping[Hashable, Callable[[], float]], turns: int) -> Speeds:
-    """What each timing gives (turns,), all of them once a turn in their order, after a turn to warm up."""
-    rows = [[timing() for timing in timings.values()] for _ in range(turns + 1)]
-    return dict(zip(timings, np.array(rows[1:]).T, strict=True))
+def in_turn(timings: Mapping[Hashable, Callable[[], float]], turns: int, warming: int = 1) -> Speeds:
+    """What each timing gives (turns,), all of them once a turn in their order, after turns to warm up."""
+    rows = [[timing() for timing in timings.values()] for _ in range(turns + warming)]
+    return dict(zip(timings, np.array(rows[warming:]).T, strict=True))
 
 
 def ratio(speeds: np.ndarray, others: np.ndarray) -> str:

@@ -11,13 +11,13 @@ from lab.studies.bench.speed.drawing import draw_with_range
 from lab.studies.bench.speed.workers import Speeds, Worker, compared, millions, ratio
 from solvers.machine.runtime import available_cores
 
-WORLDS = (1, 2, 4, 8, 16, 32, 64, 128, 256)
+WORLDS = (1, 2, 4, 16, 64, 256)
 THREADS = {1: BLUE, 2: VERMILION}
 
 
 def study(page: Page, work: Path, fast: bool) -> None:
     """Add the section to the page."""
-    counts, worlds, turns, seconds = ([500], WORLDS[:4], 3, 0.1) if fast else (list(WIDTHS), WORLDS, 9, 0.4)
+    counts, worlds, turns, seconds = ([500], WORLDS[:4], 3, 0.1) if fast else (list(WIDTHS), WORLDS, 5, 0.4)
     page.section("Worlds")
     if available_cores() < 2:
         page.say("Only one core is there: what a second thread gives is unmeasured.")

@@ -4,10 +4,17 @@ Each study is a function `study(page, work, fast)` that adds a section to the pa
 JSON.
 """
 
-from lab.studies.bench.water import accuracy, front, sizes, speed
+from lab.studies.bench.water import accuracy, front, levels, sizes, speed, vector
 from lab.studies.engine import Bench
 
-STUDIES = {"speed": speed.study, "accuracy": accuracy.study, "front": front.study, "sizes": sizes.study}
+STUDIES = {
+    "speed": speed.study,
+    "accuracy": accuracy.study,
+    "levels": levels.study,
+    "front": front.study,
+    "sizes": sizes.study,
+    "vector": vector.study,
+}
 ABOUT = """Times are of runs taken in turn, so that a machine whose speed drifts slows all alike: medians, and of the
 ratios of runs of the same turn the median, with the smallest and the largest in brackets. M stands for a million
 particle-steps a second, of particles of water alone; a step is one evaluation of the forces. Other processes may have

@@ -56,12 +56,15 @@ class Case:
         )
 
 
-def gentle(rows: int, steep: float = STEEP) -> Case:
-    """A tank of 2 m with 1 m of water in `rows`, at the instant when its first standing wave is flat; c0 = 10 √(gH)."""
-    drops = _block(GENTLE, DEPTH, rows, 10.0, -0.5 * GENTLE)
+def gentle(rows: int, steep: float = STEEP, mach: float = 10.0, state: str = "linear") -> Case:
+    """A tank of 2 m with 1 m of water in `rows`, at the instant when its first standing wave is flat.
+
+    c0 = mach √(gH); the water bears its own weight by the equation of `state` of that name.
+    """
+    drops = _block(GENTLE, DEPTH, rows, mach, -0.5 * GENTLE, state)
     place = drops[:, [Y, Z]]
     drops[:, [VELOCITY_Y, VELOCITY_Z]] = steep * DEPTH * frequency() * mode(place)
-    return Case(drops, GENTLE, LID, DEPTH / rows, 10.0 * np.sqrt(GRAVITY * DEPTH))
+    return Case(drops, GENTLE, LID, DEPTH / rows, mach * np.sqrt(GRAVITY * DEPTH))
 
 
 def dam(rows: int) -> Case:
@@ -85,12 +88,12 @@ def mode(place: np.ndarray) -> np.ndarray:
     return shape / np.sinh(k * DEPTH)
 
 
-def _block(width: float, depth: float, rows: int, mach: float, left: float) -> np.ndarray:
+def _block(width: float, depth: float, rows: int, mach: float, left: float, state: str = "linear") -> np.ndarray:
     spacing, sound = depth / rows, mach * np.sqrt(GRAVITY * depth)
     y = left + (np.arange(round(width / spacing)) + 0.5) * spacing
     z = (np.arange(rows) + 0.5) * spacing
     grid = np.stack(np.meshgrid(y, z, indexing="ij"), axis=-1).reshape(-1, 2)
     drops = np.zeros((len(grid), 6))
     drops[:, [Y, Z]], drops[:, VOLUME] = grid, spacing**2
-    drops[:, EXCESS] = hydrostatic_excess(depth - grid[:, 1], GRAVITY, sound, "linear")
+    drops[:, EXCESS] = hydrostatic_excess(depth - grid[:, 1], GRAVITY, sound, state)
     return drops

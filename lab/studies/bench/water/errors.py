@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 import numpy as np
+from scipy.optimize import least_squares
 
 from lab.studies.bench.peers.pool import Frame
 from lab.studies.bench.water.cases import COLUMN, DENSITY, DEPTH, GRAVITY, HIGH, Case, frequency, mode
@@ -25,11 +26,16 @@ def wave_errors(frames: Sequence[Frame]) -> tuple[float, float]:
     time = np.array([frame.time for frame in frames])
     shares = [(frame.velocity * mode(frame.position)).sum() / (mode(frame.position) ** 2).sum() for frame in frames]
     start, omega = shares[0], frequency()
-    rates, losses = np.linspace(0.9, 1.1, 401) * omega, np.linspace(-0.1, 0.6, 351)
+    rates, losses = np.linspace(0.9, 1.1, 101) * omega, np.linspace(-0.1, 0.6, 71)
     waves = np.cos(rates[:, None, None] * time) * np.exp(-losses[None, :, None] * time)
     miss = ((waves - np.array(shares) / start) ** 2).sum(axis=2)
     best, lost = np.unravel_index(miss.argmin(), miss.shape)
-    return float(rates[best] / omega - 1.0), float(1.0 - np.exp(-losses[lost] * 2.0 * np.pi / omega))
+
+    def off(fit: np.ndarray) -> np.ndarray:
+        return np.cos(fit[0] * time) * np.exp(-fit[1] * time) - np.array(shares) / start
+
+    rate, loss = least_squares(off, [rates[best], losses[lost]]).x
+    return float(rate / omega - 1.0), float(1.0 - np.exp(-loss * 2.0 * np.pi / omega))
 
 
 def front_speed(case: Case, frames: Sequence[Frame]) -> tuple[float, float]:

@@ -29,6 +29,10 @@ class Worker(Aside):
         """The time step (s)."""
         return self.ask("step")
 
+    def listed(self) -> int:
+        """Neighbours in the lists of all blocks, walls left out."""
+        return self.ask("neighbours")
+
     def frames(self, times: Sequence[float]) -> list[Frame]:
         """The particles at these times (s), from the start."""
         return self.ask("followed", list(times))
@@ -46,6 +50,9 @@ class _Pool:
 
     def step(self) -> float:
         return self.run.dt
+
+    def neighbours(self) -> int:
+        return int(self.run.water.lists.near.first.to_numpy().max())
 
     def restart(self) -> None:
         self.run.place(self.run.scene.radius.reshape(1, 0, 1) * [0.0, 0.0])

@@ -8,10 +8,12 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from lab.assembly.ship import make_water, make_waves
+from lab.measures.sea_response import MANY, met
+from lab.measures.value import half_width
 from lab.naval.linear_water import linear_motion, peaks
 from lab.preset.schema import Preset
 from lab.report.plots import BELOW, BLUE, GREEN, GREY, VERMILION, canvas
-from lab.studies.reproduce.experiment import Found
+from lab.studies.reproduce.experiment import Found, Row
 from lab.studies.reproduce.figures import SIZE
 from lab.studies.reproduce.runs import Outcome
 
@@ -21,6 +23,9 @@ FINER = 8  # zeros after a record, in its lengths, so that a peak lies between i
 LOW, HIGH, STEP = 2.5, 8.5, 0.005  # rad/s, of the linear response
 CYCLES = 10
 ROLL_UNIT = "rad/m"
+LATER = 30.0  # s, some three of the vessel's own periods of roll
+LEAST_SPACINGS = 3
+ORDERS = np.arange(0.25, 4.01, 0.01)
 
 
 def roll_per_wave(one: Outcome, _: object) -> float:
@@ -37,8 +42,9 @@ def roll_per_wave(one: Outcome, _: object) -> float:
 def response(one: Outcome) -> tuple[np.ndarray, np.ndarray]:
     """Frequencies (n,) rad/s and roll over wave amplitude (n,) rad/m of a run in a packet of waves.
 
-    The ratio of the Fourier transforms of roll and of the waves at the ship's place at rest, where the packet has at
-    least HALVES of its largest amplitude.
+    The ratio of the Fourier transforms of roll and of the waves at the ship's place at rest, y = 0, where the packet
+    has at least HALVES of its largest amplitude. A place further on turns the phases alone; a ship that a mooring
+    holds stays within some hundredths of a wavelength.
     """
     preset, series = one.recording.preset, one.recording.series
     time, roll = series["time"], series["pose"][:, 0, ROLL]
@@ -51,9 +57,9 @@ def response(one: Outcome) -> tuple[np.ndarray, np.ndarray]:
     return omega[kept], answer[kept] / driven[kept]
 
 
-def linear_response(preset: Preset) -> tuple[np.ndarray, np.ndarray]:
+def linear_response(preset: Preset, low: float = LOW, high: float = HIGH) -> tuple[np.ndarray, np.ndarray]:
     """Frequencies (n,) rad/s and roll over wave amplitude (n,) rad/m of a preset's ship by linear theory."""
-    omega = np.arange(LOW, HIGH, STEP)
+    omega = np.arange(low, high, STEP)
     return omega, np.abs(linear_motion(preset, omega)[:, ROLL])
 
 
@@ -74,7 +80,41 @@ def linear_roll(one: Outcome, _: object) -> float:
     return float(np.interp(one.recording.preset.waves.frequency, *linear_response(one.recording.preset)))
 
 
+def roll_left(one: Outcome, _: object) -> float:
+    """Largest roll LATER (s) and more after the release, over that at the release."""
+    preset, series = one.recording.preset, one.recording.series
+    time, roll = series["time"], series["pose"][:, 0, ROLL]
+    let_go = preset.ship.release
+    return float(np.abs(roll[time > let_go + LATER]).max() / np.abs(roll[np.searchsorted(time, let_go)]))
+
+
+def order_of_roll(found: Found) -> list[Row]:
+    """How roll changes with the particles' spacing: limit and order of r = r₀ − C Δx^p; through three runs exactly."""
+    alike = [one for name, (one,) in found.items() if name.endswith(" mm") and "," not in name]
+    runs = [(one.recording.preset, roll_per_wave(one, None)) for one in alike]
+    spacing = np.array([preset.water.spacing for preset, _ in runs])
+    rolls = np.array([roll for _, roll in runs])
+    if len(runs) < LEAST_SPACINGS:
+        return []
+    limit, order = limit_and_order(spacing, rolls)
+    ours = f"{limit:.3f} rad/m, order {order:.2f}"
+    return [Row("roll as the spacing goes to nothing, and order", "2.7 rad/m", ours, "", "", None)]
+
+
+def limit_and_order(spacing: np.ndarray, value: np.ndarray) -> tuple[float, float]:
+    """r₀ and p of r = r₀ − C Δx^p (Roache 1998, section 5.10) by least squares of several spacings; p within ORDERS."""
+
+    def fit(order: float) -> tuple[np.ndarray, float]:
+        columns = np.stack([np.ones(len(spacing)), -(spacing**order)], axis=1)
+        numbers = np.linalg.lstsq(columns, value, rcond=None)[0]
+        return numbers, float(((columns @ numbers - value) ** 2).sum())
+
+    order = min(ORDERS, key=lambda one: fit(one)[1])
+    return float(fit(order)[0][0]), float(order)
+
+
 NUMBERS = {
+    "roll_left": ("", roll_left),
     "roll_per_wave": (ROLL_UNIT, roll_per_wave),
     "linear_roll": (ROLL_UNIT, linear_roll),
     "roll_peak": ("rad/s", nearest_peak),
@@ -94,4 +134,27 @@ def figure(found: Found) -> Figure:
     axes.set_ylabel("roll per metre of wave (rad/m)")
     axes.set_xlim(LOW, HIGH)
     drawn.legend(loc=BELOW, ncols=2)
+    return drawn
+
+
+def spectra(found: Found) -> Figure:
+    """Roll for each metre of wave in a random sea with its 95 % band, and its coherence.
+
+    The frequency domain (dashed) is drawn for the ship whose water is by linear theory in the run, too.
+    """
+    drawn, (upper, lower) = canvas((SIZE[0], 1.5 * SIZE[1]), 2, 1, sharex=True, height_ratios=(2, 1))
+    for colour, (label, (one, *_)) in zip((GREY, BLUE, VERMILION), found.items(), strict=False):
+        heard = met(one.recording, 0, ROLL)
+        omega, size, error = (values[heard.strong] for values in (heard.frequency, np.abs(heard.ratio), heard.error))
+        upper.plot(omega, size, color=colour, lw=1.3, label=label)
+        wide = half_width(1.0, MANY) * error
+        upper.fill_between(omega, np.maximum(size - wide, 0.0), size + wide, color=colour, alpha=0.2, lw=0)
+        lower.plot(omega, heard.coherence[heard.strong], color=colour)
+        if one.recording.preset.water.model == "linear":
+            upper.plot(*linear_response(one.recording.preset, omega[0], omega[-1]), color=colour, lw=1.0, ls="--")
+    upper.set_ylabel("roll per metre of wave\n(rad/m)")
+    lower.set_ylabel("coherence")
+    lower.set_ylim(0.0, 1.05)
+    lower.set_xlabel("wave frequency (rad/s)")
+    drawn.legend(loc=BELOW, ncols=3)
     return drawn

@@ -14,7 +14,7 @@ from lab.assembly.scene import vessels
 from lab.preset.find import load
 from lab.report.plots import BELOW, BLUE, canvas
 from lab.studies.reproduce.estimates import chance, surely
-from lab.studies.reproduce.experiment import EXACT, Told, counted, observed
+from lab.studies.reproduce.experiment import EXACT, Row, Told, counted, observed
 from lab.studies.reproduce.figures import SIZE, leading_number
 from lab.studies.reproduce.runs import Outcome
 from lab.studies.reproduce.ships.capsizes import CARGO, NATURAL, REPOSES, scan, swung
@@ -29,6 +29,7 @@ PRESET = "ship/capsize-map"
 FREQUENCY = 4.4  # rad/s, the source's and the preset's
 SAYS = {"19 mm": "capsizes", "17 mm": "capsizes at 4.5 rad/s", "15 mm": "does not"}  # the source of its barge, loose
 CURVE = np.arange(10.0, 31.0, 1.0)  # mm
+WIDE = (8.0, 3.6)  # inches
 # Of the map: waves (mm, rad/s) that a heap meets.
 FINE = np.linspace(10.0, 35.0, 26), np.linspace(3.8, 5.4, 17)
 
@@ -89,17 +90,52 @@ def _frozen(one: Outcome) -> str:
 
 def tell_map(found: Mapping[str, Sequence[Outcome]]) -> Told:
     """From which amplitude on she is lost with loose cargo, at each frequency; and with frozen cargo."""
-    runs, rows = found["low sides"], []
-    for omega in sorted({leading_number(one.setting[WAVES]) for one in runs}):
-        there = [one for one in runs if leading_number(one.setting[WAVES]) == omega]
-        lost = [leading_number(one.setting[AMPLITUDE]) for one in there if _lost(one)[0] > 0]
-        stands = [size for one in there if (size := leading_number(one.setting[AMPLITUDE])) not in lost]
-        rows.append(observed(f"{omega:g} rad/s: lost with loose cargo", "", _from(lost, stands), None))
+    runs = found["low sides"]
+    rows = _edge(runs, "lost with loose cargo")
     alone = [leading_number(one.setting[AMPLITUDE]) for one in runs if _frozen(one) != "stands"]
     says = f"in {len(alone)} of {len(runs)} waves" + (f", from {min(alone):g} mm on" if alone else "")
     alike = surely(not alone or min(alone) > 19.0)
     rows.append(observed("lost with frozen cargo", "not in 17 and 19 mm", says, alike, EXACT))
     return Told(rows, _map_figure(runs))
+
+
+def tell_tank(found: Mapping[str, Sequence[Outcome]]) -> Told:
+    """From which amplitude on she is lost, at each frequency, with the water in her tank loose and frozen."""
+    rows = [row for name, runs in found.items() for row in _edge(runs, f"lost, {name}")]
+    figure, panels = canvas(WIDE, 1, len(found), sharey=True, squeeze=False)
+    for axes, (name, runs) in zip(panels[0], found.items(), strict=True):
+        for one in runs:
+            filled = "full" if _lost(one)[0] else "none"
+            place = leading_number(one.setting[WAVES]), leading_number(one.setting[AMPLITUDE])
+            axes.plot(*place, "o", ms=11, color=BLUE, fillstyle=filled)
+            if when := _when(one):
+                axes.annotate(f"{when:.0f} s", place, (0, 9), textcoords="offset points", ha="center", fontsize=8)
+        axes.set_title(name)
+        axes.set_xlabel("frequency of the waves (rad/s)")
+        axes.margins(0.15)
+        axes.grid(False)
+    panels[0][0].set_ylabel("amplitude of the waves (mm)")
+    for label, filled in {"stands": "none", "lost, and when": "full"}.items():
+        panels[0][0].plot([], [], "o", color=BLUE, fillstyle=filled, label=label)
+    figure.legend(loc=BELOW, ncols=2)
+    return Told(rows, figure)
+
+
+def _when(one: Outcome) -> float | None:
+    """When she was lost with the first bed (s)."""
+    times = [one["capsized_at"].worlds[0], one["flooded_at"].worlds[0]]
+    return min((time for time in times if time is not None), default=None)
+
+
+def _edge(runs: Sequence[Outcome], says: str) -> list[Row]:
+    """A row for each frequency: in which waves she is lost."""
+    rows = []
+    for omega in sorted({leading_number(one.setting[WAVES]) for one in runs}):
+        there = [one for one in runs if leading_number(one.setting[WAVES]) == omega]
+        lost = [leading_number(one.setting[AMPLITUDE]) for one in there if _lost(one)[0] > 0]
+        stands = [size for one in there if (size := leading_number(one.setting[AMPLITUDE])) not in lost]
+        rows.append(observed(f"{omega:g} rad/s: {says}", "", _from(lost, stands), None))
+    return rows
 
 
 def _from(lost: Sequence[float], stands: Sequence[float]) -> str:

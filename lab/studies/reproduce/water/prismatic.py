@@ -22,7 +22,9 @@ from lab.studies.reproduce.water.costs import COSTS, cost
 CYCLES = 9  # the last of a run, as in the source
 AVERAGE = 0.010  # s
 ROOF = 210.0  # mm
+THIRTY, HOURS = 30.0, 9.0  # s of motion, and h that they took the source with one phase in the plane
 FALLS = "it falls with the spacing, as the source's does from 119 to 57 Pa"
+RISES = "it falls as sound gets faster: of four speeds the highest is best"
 COLOURS = (*(GREY,) * 3, GREEN, VERMILION, BLUE)
 
 
@@ -59,10 +61,11 @@ def pressure(one: Outcome) -> Pressure:
 
 
 def convergence(found: Found) -> Told:
-    """Runs by spacing, the last the finest, and by speed of sound, beside the finest."""
+    """Runs by spacing, or by speed of sound, beside the finest, with the fastest sound."""
     runs = {label: outcomes[0] for label, outcomes in found.items()}
     pressures = {label: pressure(one) for label, one in runs.items()}
-    finest = min(runs, key=lambda label: (spacing(runs[label].recording.preset), label))
+    presets = {label: one.recording.preset for label, one in runs.items()}
+    finest = min(runs, key=lambda label: (spacing(presets[label]), -presets[label].water.sound_speed))
     cells = []
     for label, one in runs.items():
         own = pressures[label]
@@ -73,16 +76,32 @@ def convergence(found: Found) -> Told:
 
 
 def _falls(runs: Mapping[str, Outcome], pressures: Mapping[str, Pressure], finest: str) -> list[Row]:
-    """Whether the difference from the finest falls with the spacing, at one speed of sound."""
-    sound = runs[finest].recording.preset.water.sound_speed
-    alike = [label for label, one in runs.items() if one.recording.preset.water.sound_speed == sound]
-    alike = sorted(set(alike) - {finest}, key=lambda label: -spacing(runs[label].recording.preset))
-    if len(alike) < 2:
-        return []
-    off = [pressures[label].off(pressures[finest]) for label in alike]
-    ours = ", ".join(f"{value:.0f} Pa at {label}" for label, value in zip(alike, off, strict=True))
-    verdict = Verdict.AGREES if off == sorted(off, reverse=True) else Verdict.DIFFERS
-    return [observed(f"difference at P1 from {finest}", FALLS, ours, verdict, "each finer run is nearer")]
+    """Whether the difference from the finest falls with the spacing at one speed of sound, and as sound gets faster."""
+    presets = {label: one.recording.preset for label, one in runs.items()}
+    sizes = {label: spacing(preset) for label, preset in presets.items()}
+    sounds = {label: preset.water.sound_speed for label, preset in presets.items()}
+    others = [label for label in runs if label != finest]
+    finer = sorted((one for one in others if sounds[one] == sounds[finest]), key=lambda one: -sizes[one])
+    faster = sorted((one for one in others if sizes[one] == sizes[finest]), key=lambda one: sounds[one])
+    rows = []
+    for alike, said, read in ((finer, FALLS, "each finer run is nearer"), (faster, RISES, "each faster one is nearer")):
+        if len(alike) > 1:
+            off = [pressures[label].off(pressures[finest]) for label in alike]
+            ours = ", ".join(f"{value:.0f} Pa at {label}" for label, value in zip(alike, off, strict=True))
+            verdict = Verdict.AGREES if off == sorted(off, reverse=True) else Verdict.DIFFERS
+            rows.append(observed(f"difference at P1 from {finest}", said, ours, verdict, read))
+    return rows
+
+
+def thirty_seconds(found: Found) -> Told:
+    """What THIRTY seconds would cost, by runs of a part of a second, beside the source's hours."""
+    cells = []
+    for label, outcomes in found.items():
+        one = outcomes[0]
+        whole = THIRTY * one.cost["seconds"]["run"] / float(one.recording.series["time"][-1])
+        times = f"{3600.0 * HOURS / whole:.1f}"
+        cells.append([*cost(label, one), f"{whole / 60.0:.0f} min", times])
+    return Told([], None, [[*COSTS, f"{THIRTY:.0f} s would take", f"the source's {HOURS:g} h over that"], *cells])
 
 
 def roof(one: Outcome) -> str:

@@ -2,11 +2,13 @@
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from shutil import rmtree
 
 import numpy as np
 
+from lab.preset.accuracy import FURTHEST
 from lab.report.page import Page
 from lab.studies.bench.remembered import remembered
 from lab.studies.bench.speed import processors
@@ -16,13 +18,13 @@ from lab.studies.bench.speed.equal_error.situations import (
     LONGEST_STRIDE,
     MIXED,
     SWAY,
-    Situation,
     every_situation,
     timed,
 )
 from lab.studies.bench.speed.equal_error.steps import (
     FINEST,
     LAB,
+    LONGEST,
     PAIRS,
     SAME,
     SPEED,
@@ -30,18 +32,19 @@ from lab.studies.bench.speed.equal_error.steps import (
     duration,
     steps_taken,
 )
-from lab.studies.bench.speed.workers import Speeds, ratio
+from lab.studies.bench.speed.workers import ratio
 from lab.studies.engine import code
 
-OWN = LAB, MIXED
+OWN = LAB, MIXED, LONGEST
+HEADS = "grains", "step by", "bed", "code", "steps a collision", "step (µs)", "simulated s a wall s"
 
 
 @dataclass(frozen=True)
 class Effort:
     """What the study takes: grains of a bed, copies of it in the large one, turns of either.
 
-    At rest a code takes as many steps as make `grain_steps`, of the large bed too; what moves is followed for a
-    `course` (s).
+    At rest a code takes as many steps as make `grain_steps`; what moves is followed for a `course` (s). In the large
+    bed each code takes `few_steps`.
     """
 
     count: int = 2000
@@ -49,37 +52,56 @@ class Effort:
     turns: int = 5
     few: int = 3
     grain_steps: float = 5e6
-    large: float = 2e7
     course: float = 0.02
+    few_steps: int = 100
+
+    def steps(self, dt: float) -> float:
+        """How long (s) the large bed is followed with steps of dt (s)."""
+        return self.few_steps * dt
 
 
-HASTY = Effort(500, 4, 2, 1, 2e5, 2e5, 2e-3)
+HASTY = Effort(500, 4, 2, 1, 2e5, 2e-3, 20)
 
 
 def study(page: Page, work: Path, fast: bool) -> None:
-    """Add the section to the page."""
-    codes, effort = colliders(), HASTY if fast else Effort()
+    """Add the section on a bed of usual size to the page."""
+    effort = HASTY if fast else Effort()
     page.section("Beside other codes at equal error")
+    say_how(page, effort)
+    tell(page, work, effort, 1, fast)
+
+
+def study_large(page: Page, work: Path, fast: bool) -> None:
+    """Add the section on a large bed to the page."""
+    effort = HASTY if fast else Effort()
+    page.section("Beside other codes at equal error, a large bed")
+    page.say(f"""As above, but {effort.copies} copies of the small bed side by side in one tank, for {effort.few_steps}
+        steps of each code from the same places and speeds.""")
+    tell(page, work, effort, effort.copies, fast)
+
+
+def tell(page: Page, work: Path, effort: Effort, copies: int, fast: bool) -> None:
+    """Time what is not timed yet, and add the table; or say that there is nobody to compare with."""
+    codes = colliders()
     if len(codes) == 1:
         page.say("No other code is installed here: the comparison is left out.")
         return
-    say_how(page, effort)
     rows, found = [], []
-    kept = work / f"equal-error-{code()[:12]}"
-    for grains, rule, where, dts, speeds in measured(codes, work, kept, effort):
+    kept = work / f"equal-error-{copies}-{code()[:12]}"
+    for grains, rule, where, dts, speeds in measured(codes, work, kept, effort, copies):
         for name, values in speeds.items():
-            dt = dts[LAB] if name in OWN else dts[name]
+            dt = dts[LAB] if name == MIXED else dts[name]
             share, step = f"{duration() / dt:.0f}", f"{1e6 * dt:.2f}"
-            times = "" if name == LAB else ratio(speeds[LAB], values)
-            rows.append([f"{grains:,}", rule, where, name, share, step, f"{np.median(values):.3g}", times])
+            times = ["" if own not in speeds or name == own else ratio(speeds[own], values) for own in (LAB, LONGEST)]
+            rows.append([f"{grains:,}", rule, where, name, share, step, f"{np.median(values):.3g}", *times])
             if name not in OWN:
-                bed = where if grains == effort.count else f"{where}, {grains:,} grains"
-                found.append(kept_ratio(name, rule, bed, speeds[LAB] / values))
-    heads = "grains", "step by", "bed", "code", "steps a collision", "step (µs)", "simulated s a wall s"
-    page.table([*heads, "lab: times as fast"], rows)
+                bed = where if copies == 1 else f"{where}, {grains:,} grains"
+                ours = [own for own in (LAB, LONGEST) if own in speeds]
+                found += [kept_ratio(name, rule, bed, speeds[own] / values, own) for own in ours]
+    page.table([*HEADS, *(f"{own}: times as fast" for own in (LAB, LONGEST))], rows)
     if not fast:  # too few turns to be kept
         processors.keep(page.folder, found)
-    rmtree(kept, ignore_errors=True)  # asked for again, all is timed again
+        rmtree(kept, ignore_errors=True)  # asked for again, all is timed again
 
 
 def say_how(page: Page, effort: Effort) -> None:
@@ -88,50 +110,43 @@ def say_how(page: Page, effort: Effort) -> None:
         {SCALE:g} of their stiffness, springs with history. All codes take the same step; or each the longest of the
         tried steps at which, and at all shorter ones, the restitution (0.6 at {SPEED:g} m/s) errs by no more than the
         error named: the largest over {PAIRS} moments of onset within a step, against the same code at {FINEST} steps a
-        collision. There the lab takes no longer steps than it derives for such collisions at the levels draft (1 %) and
-        standard (0.1 %), although this collision would allow them; while grains are slow, they are up to
-        {LONGEST_STRIDE} times as long, as in its runs. In flow the tank leans by {np.degrees(LEAN):g} deg; swayed it
-        goes to and fro by {1e3 * SWAY.amplitude:g} mm at {SWAY.frequency:g} Hz. All codes begin with the same moving
-        bed, and follow it for {effort.course:g} s, each turn anew. The large bed is {effort.copies} copies of the small
-        one side by side in one tank.""")
+        collision. There "{LAB}" takes no longer steps than it derives for such collisions at the levels draft (1 %) and
+        standard (0.1 %), since the slip of an undamped contact is to be right, too; "{LONGEST}" does, up to the
+        {FURTHEST:g} derived steps of standard that may be forced. While grains are slow, both are up to
+        {LONGEST_STRIDE} times as long, as in the lab's runs. In flow the tank leans by {np.degrees(LEAN):g} deg; swayed
+        it goes to and fro by {1e3 * SWAY.amplitude:g} mm at {SWAY.frequency:g} Hz. All codes begin with the same moving
+        bed and new lists, and follow it for {effort.course:g} s, each turn anew.""")
 
 
-def measured(codes: Mapping[str, Callable], work: Path, kept: Path, effort: Effort) -> Iterator[tuple]:
+def measured(codes: Mapping[str, Callable], work: Path, kept: Path, effort: Effort, copies: int) -> Iterator[tuple]:
     """What was timed: (grains, rule, bed, steps (s) by code, speeds); `kept` is the folder that spares timing again."""
-    found = remembered(kept / "steps.npz", "equal error: steps", lambda: _packed(steps_taken(codes)))
-    taken = {rule: dict(zip(codes, values, strict=True)) for rule, values in found.items()}
+    steps = work / f"longest-steps-{code()[:12]}.npz"
+    found = remembered(steps, "equal error: steps", lambda: _packed(steps_taken(codes)))
+    taken = {rule: dict(zip([*codes, LONGEST], values, strict=True)) for rule, values in found.items()}
     beds = every_situation(usual_bed(work, effort.count), work)
     for rule, dts in taken.items():
         for where, one in beds.items():
-            course = _course(where, effort.grain_steps / effort.count, effort.course)
-            yield effort.count, rule, where, dts, _timed(kept, one, (rule, where), dts, effort.turns, course)
-    rule = next(rule for rule in taken if rule != SAME)
-    for where in ("at rest", "in flow"):
-        one = beds[where].times(effort.copies)
-        course = _course("at rest", effort.large / one.bed.count, 0.0)
-        speeds = _timed(kept, one, (rule, where), taken[rule], effort.few, course)
-        yield one.bed.count, rule, where, taken[rule], speeds
+            many = one.times(copies)
+            turns, course = (effort.turns, _course(where, effort)) if copies == 1 else (effort.few, effort.steps)
+            said = f"equal error: {many.bed.count} grains {where}, {rule}"
+            path = kept / f"{said.removeprefix('equal error: ').replace(' ', '-').replace('%', 'percent')}.npz"
+            speeds = remembered(path, said, partial(timed, many, rule, dts, turns, course))
+            yield many.bed.count, rule, where, dts, speeds
 
 
-def _course(where: str, steps: float, moving: float) -> float | Callable[[float], float]:
-    """How long (s) a bed is followed: for so many steps of the code's own, or for a time if it moves."""
-    return (lambda dt: steps * dt) if where == "at rest" else moving
+def _course(where: str, effort: Effort) -> float | Callable[[float], float]:
+    """How long (s) a small bed is followed: for so many steps of the code's own, or for a time if it moves."""
+    steps = effort.grain_steps / effort.count
+    return (lambda dt: steps * dt) if where == "at rest" else effort.course
 
 
 def _packed(taken: Mapping[str, Mapping[str, float]]) -> dict[str, np.ndarray]:
     return {rule: np.array([*dts.values()]) for rule, dts in taken.items()}
 
 
-def _timed(kept: Path, one: Situation, named: tuple, dts: Mapping[str, float], turns: int, course: object) -> Speeds:
-    rule, where = named
-    stretch = 1 if rule == SAME else LONGEST_STRIDE
-    said = f"equal error: {one.bed.count} grains {where}, {rule}"
-    path = kept / f"{said.removeprefix('equal error: ').replace(' ', '-').replace('%', 'percent')}.npz"
-    return remembered(path, said, lambda: timed(one, dts, turns, course, stretch))
-
-
-def kept_ratio(name: str, rule: str, where: str, ratios: np.ndarray) -> processors.Ratio:
-    """What is kept of a comparison with a code."""
+def kept_ratio(name: str, rule: str, where: str, ratios: np.ndarray, own: str = LAB) -> processors.Ratio:
+    """What is kept of a comparison of our own step, or LONGEST, with a code."""
     unit = processors.GRAIN_STEPS if rule == SAME else f"simulated seconds at {rule}"
+    unit += ", the lab's longest step" if own == LONGEST else ""
     least, most, median = (float(f"{pick(ratios):.3g}") for pick in (np.min, np.max, np.median))
     return processors.Ratio(name, *processors.SPRINGS, where, unit, least, most, median)

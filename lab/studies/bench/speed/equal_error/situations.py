@@ -14,7 +14,7 @@ import numpy as np
 from lab.studies.bench.peers.peer import Shaking, Task
 from lab.studies.bench.remembered import remembered
 from lab.studies.bench.speed.beds import HEIGHT, Bed
-from lab.studies.bench.speed.equal_error.steps import GRAINS, LAB, RUNS, SOFT
+from lab.studies.bench.speed.equal_error.steps import GRAINS, LAB, LONGEST, RUNS, SAME, SOFT
 from lab.studies.bench.speed.workers import Speeds, Worker, in_turn, workers
 from solvers.motion import Sway, Tilt
 from solvers.simulation import Simulation
@@ -76,19 +76,22 @@ def moved(bed: Bed, motion: Tilt | Sway, since: float, course: float, path: Path
     return replace(bed, position=found["position"]), found["velocity"]
 
 
-def timed(one: Situation, dts: Mapping[str, float], turns: int, course: float, stretch: int = 1) -> Speeds:
+def timed(one: Situation, rule: str, dts: Mapping[str, float], turns: int, course: float | Callable) -> Speeds:
     """Simulated seconds a wall second (turns,) of each code over a `course` (s), each at its step of `dts` (s).
 
-    `course` may be a function of the step. `stretch`: how many times as long the lab's steps may be.
+    `course` may be a function of the step. Where all take the SAME step the lab's never double.
     """
     timings = peers_on(one, dts, course)
-    ours = {LAB: {}, MIXED: {"precision": "mixed"}}
-    how = {"material": GRAINS, "schedule": "per-world", "step": dts[LAB], "stretch": stretch, **one.scene}
-    made = {name: partial(Worker, one.bed, origin=one.since, **how, **less) for name, less in ours.items()}
-    with workers(made) as own:
-        for name, worker in own.items():
-            timings[name] = partial(_seconds, worker, one, length(course, dts[LAB]), dts[LAB])
-        return in_turn(timings, turns)
+    stretch = 1 if rule == SAME else LONGEST_STRIDE
+    how = {"material": GRAINS, "schedule": "per-world", "stretch": stretch, "origin": one.since, **one.scene}
+    ours = {LAB: {"step": dts[LAB]}, MIXED: {"step": dts[LAB], "precision": "mixed"}}
+    if rule != SAME:
+        ours[LONGEST] = {"step": dts[LONGEST]}
+    with workers({name: partial(Worker, one.bed, **how, **own) for name, own in ours.items()}) as made:
+        for name, worker in made.items():
+            dt = ours[name]["step"]
+            timings[name] = partial(_seconds, worker, one, length(course, dt), dt)
+        return in_turn(timings, turns, warming=0)  # workers are warm, and peers begin anew each time
 
 
 def _seconds(worker: Worker, one: Situation, course: float, dt: float) -> float:
