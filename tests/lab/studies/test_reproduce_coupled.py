@@ -1,0 +1,41 @@
+"""Numbers of the report on water in ships: an order of convergence, the tuning of an anti-roll tank."""
+
+import numpy as np
+import pytest
+
+from lab.preset.find import load
+from lab.studies.reproduce.ships.coupled import limit_and_order
+from lab.studies.reproduce.ships.tuning import Swing, closed_form, tuned
+
+
+def test_limit_and_order_of_a_made_convergence():
+    spacing = np.array([19.0, 13.4, 8.9])
+    assert limit_and_order(spacing, 2.7 - 4e-3 * spacing**1.5) == pytest.approx((2.7, 1.5), rel=1e-6)
+
+
+def test_a_tanks_tuning_and_damping_are_found_before_it_is_settled():
+    """Moments of ẍ + 2 ζ ω ẋ + ω² x = ω² φ by the Runge–Kutta method, driven from rest at two frequencies."""
+    own, damping, time, swings = 0.74, 0.03, np.arange(0.0, 60.0, 0.1), []
+    for omega in (0.65, 0.8):
+
+        def slope(x, v, t, omega=omega):
+            push = np.sin(omega * t) * min(t / 15.0, 1.0)
+            return v, own**2 * (push - x) - 2.0 * damping * own * v
+
+        x = v = 0.0
+        way = []
+        for t in time:
+            way.append(x)
+            for k in range(10):
+                half = slope(x + 0.005 * v, v + 0.005 * slope(x, v, t + 0.01 * k)[1], t + 0.01 * k + 0.005)
+                x, v = x + 0.01 * half[0], v + 0.01 * half[1]
+        swings.append(Swing(time, np.sin(omega * time) * np.minimum(time / 15.0, 1.0), 5e4 * np.array(way), omega))
+    found = tuned(swings, 0.7)
+    assert found[:2] == pytest.approx((own, damping), rel=0.02)
+    assert found[2] < 1e-4
+
+
+def test_closed_forms_of_the_tanks():
+    """√(2 g/37.2 m) of the U-tube; 0.777 rad/s of the first wave in 13.7 m of water 1.2 m deep."""
+    assert closed_form(load("ship/u-tube").resolved) == pytest.approx(0.726, abs=1e-3)
+    assert closed_form(load("ship/anti-roll-tank").resolved) == pytest.approx(0.777, abs=1e-3)
