@@ -34,8 +34,8 @@ def study(page: Page, work: Path, fast: bool) -> None:
     tilted = _points(TILTED, TILT, levels, work / "levels-tilt", fast)
     swayed = _points(SWAYED, SWAY, levels, work / "levels-sway", fast)
     if not fast:  # by itself, since it takes far longer than the others
-        few = {**TILT, "run.repeats": FEW}
-        tilted += _points(TILTED, few, ["reference"], work / "levels-reference", fast)
+        few = {**_by_level(TILT), KEY: "reference", "run.repeats": FEW}
+        tilted += sweep(TILTED, {}, few, work / "levels-reference", fast)
     page.section("Levels of accuracy")
     page.say(f"""What `accuracy` says in a preset. Cost is the number of grain-steps of the tilt, relative to the first;
         the sway is not run at the full stiffness. Means of the beds with their [95 % intervals]; of the reference there
@@ -70,5 +70,9 @@ def study(page: Page, work: Path, fast: bool) -> None:
 
 
 def _points(preset: str, overrides: dict, levels: list[str], folder: Path, fast: bool) -> list[Point]:
-    by_level = {key: value for key, value in overrides.items() if key not in (SCALE, KEY)}
-    return sweep(preset, {KEY: levels}, by_level, folder, fast)
+    return sweep(preset, {KEY: levels}, _by_level(overrides), folder, fast)
+
+
+def _by_level(overrides: dict) -> dict:
+    """Overrides without those that a level stands for."""
+    return {key: value for key, value in overrides.items() if key not in (SCALE, KEY)}
