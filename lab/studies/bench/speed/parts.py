@@ -139,7 +139,7 @@ def _limits(page: Page, rest: AtRest, most: Mapping[str, float]) -> None:
     moved = (alone["gather"] + alone["scatter"]) / sum(alone.values())
     page.say(f"""So a step takes {step / bounds["simple"]:.1f} times as long as its arithmetic at the core's peak,
         {step / bounds["slow"]:.1f} times as long as its roots and divisions, {step / bounds["near"]:.1f} times as long
-        as its bytes from where they fit. The laws are SIMD code on eight pairs at a time, {alone["laws"]:.1f} ns a
+        as its bytes from where they fit. The laws are SIMD code on a block of pairs at a time, {alone["laws"]:.1f} ns a
         pair; but the grains' numbers are read lane by lane from wherever the two grains stand
         ({alone["gather"]:.1f} ns a pair with the geometry), and forces are added up there lane by lane
         ({alone["scatter"]:.1f} ns), a sum waiting for the one before it where both are the same grain's. This
