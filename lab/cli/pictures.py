@@ -97,8 +97,9 @@ def render(recordings: tuple[Path, ...], out: Path | None, **wishes: object) -> 
     cargolab render renders/sloshing/quick --out waves.webp --width 480 --height 480
     cargolab render renders/shaking/sway-sweep --out films          each point of a sweep
     cargolab render "renders/**/barge*" --width 1920 --height 1080  all that match
-    Several are painted side by side, one process a core. Run again, it leaves out videos that are newer than their
-    recording and were made with the same options. If one cannot be painted, the others are, and it exits with 2.
+    A long one is painted in batches on all cores; several are painted side by side, one process a core. Run again,
+    it leaves out videos that are newer than their recording and were made with the same options. If one cannot be
+    painted, the others are, and it exits with 2.
     """
     from lab.paint.many import find_recordings
 
@@ -111,16 +112,24 @@ def render(recordings: tuple[Path, ...], out: Path | None, **wishes: object) -> 
 
 def _render_one(recording: Path, out: Path | None, wishes: dict) -> None:
     from lab.base.progress import Progress
-    from lab.paint.video import render_recording
+    from lab.paint.reel.batches import batches_for, paint_batches
+    from lab.paint.video import render_recording, target_of
+    from solvers.machine.runtime import available_cores
 
+    target = target_of(recording, out, bool(wishes["png"]))
+    batches, begun = batches_for(recording, target, wishes, available_cores()), []
     with Progress(quiet=False) as progress:
 
         def count(done: int, total: int) -> None:
-            if done == 1:  # not before, so that an error is printed as one line without a bar
+            if not begun:  # not before, so that an error is printed as one line without a bar
                 progress.start("painting", total)
+                begun.append(total)
             progress.reach(done)
 
-        path = render_recording(recording, out, progress=count, **wishes)
+        if batches > 1:
+            path = paint_batches(recording, target, batches, wishes, count)
+        else:
+            path = render_recording(recording, out, progress=count, **wishes)
     click.echo(path)
 
 

@@ -6,7 +6,7 @@ name is always a whole video: a full disk, or the end of either process, leaves 
 
 import os
 import subprocess
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from fractions import Fraction
 from pathlib import Path
@@ -51,18 +51,40 @@ def write_video(out: Path, pictures: Iterable[np.ndarray], rate: float, comment:
     return out
 
 
+def join_videos(pieces: Sequence[Path], out: Path, comment: str = "") -> Path:
+    """Join videos of one size and rate, as `write_video` writes them, without encoding them again; returns `out`.
+
+    Raises LabError if `out` cannot be written.
+    """
+    part, said = unfinished(out), pieces[0].with_suffix(".txt")
+    said.write_text("".join(f"file '{piece.name}'\n" for piece in pieces), encoding="utf-8")
+    joined = ("-f", "concat", "-safe", "0", "-i", f"file:{said.absolute()}", "-c", "copy", "-movflags", "+faststart")
+    told = ("-metadata", f"comment={comment}", f"file:{part.absolute()}")
+    try:
+        made = subprocess.run([_ffmpeg(), "-y", "-v", "error", *joined, *told], capture_output=True, text=True)
+        if made.returncode:
+            raise LabError(f"{out} cannot be written: {made.stderr.strip().splitlines()[-1:]}; make room there.")
+        return part.replace(out)
+    finally:
+        part.unlink(missing_ok=True)
+
+
 def unfinished(out: Path) -> Path:
     """The name of a video until it is complete."""
     return out.with_suffix(".part.mp4")
 
 
-def _begin(part: Path, shape: tuple[int, ...], rate: float, comment: str) -> subprocess.Popen:
+def _ffmpeg() -> str:
     from imageio_ffmpeg import get_ffmpeg_exe
 
     try:
-        program = get_ffmpeg_exe()
+        return get_ffmpeg_exe()
     except RuntimeError as error:
         raise LabError("there is no ffmpeg, which encodes the videos: install imageio-ffmpeg again.") from error
+
+
+def _begin(part: Path, shape: tuple[int, ...], rate: float, comment: str) -> subprocess.Popen:
+    program = _ffmpeg()
     height, width, _ = shape
     rational = str(Fraction(rate).limit_denominator())
     raw = ("-f", "rawvideo", "-vcodec", "rawvideo", "-s", f"{width}x{height}", "-pix_fmt", "rgb24", "-r", rational)

@@ -133,12 +133,15 @@ class Film:
         pairs = list(zip(self._beds, times, strict=True))
         if self._course:
             self._rows = [np.interp(time, bed.footage.time, np.arange(bed.frames)) for bed, time in pairs]
-            poses = [_pose_at(bed, time) for bed, time in pairs]
+            poses = [_between(bed, time, bed.footage.series_pose[:, bed.world]) for bed, time in pairs]
         else:
             self._rows = [_nearest(bed.footage.time, time) for bed, time in pairs]
             poses = [bed.pose[rows] for bed, rows in zip(self._beds, self._rows, strict=True)]
         self._pose = np.stack(poses, axis=1)
-        self._moved = np.stack([_motion(bed, self._pose[:, k]) for k, bed in enumerate(self._beds)], axis=1)
+        moved = [_motion(bed, self._pose[:, k]) for k, bed in enumerate(self._beds)]
+        if self._course:  # an axis that stands still between two samples, too
+            moved = [_between(bed, time, _motion(bed, bed.footage.series_pose[:, bed.world])) for bed, time in pairs]
+        self._moved = np.stack(moved, axis=1)
 
     def _lay_out(self, count: int, grains: object) -> None:
         look, moves = self._look, moving(self._moved)
@@ -240,11 +243,9 @@ class Film:
         texts.written["band"] = box
 
 
-def _pose_at(bed: Bed, time: np.ndarray) -> np.ndarray:
-    """Pose (F, 3) of a bed at these times, from the series, which is denser than the frames."""
-    footage = bed.footage
-    columns = footage.series_pose[:, bed.world].T
-    return np.column_stack([np.interp(time, footage.series_time, column) for column in columns])
+def _between(bed: Bed, time: np.ndarray, series: np.ndarray) -> np.ndarray:
+    """A series (T, 3) of a bed, which is denser than its frames, at these times (F,)."""
+    return np.column_stack([np.interp(time, bed.footage.series_time, column) for column in series.T])
 
 
 def _motion(bed: Bed, pose: np.ndarray) -> np.ndarray:

@@ -15,7 +15,9 @@ from lab.paint.raster.base import (
     whole,
 )
 from lab.paint.raster.grains import DIRECTIONS, Edges, paint_grains, to_discs
-from lab.paint.raster.walls import off_outline, paint_plate, paint_strokes, paint_tank
+from lab.paint.raster.lines import paint_strokes
+from lab.paint.raster.walls import off_outline, paint_plate, paint_tank
+from lab.paint.raster.water import paint_below, paint_lines
 
 __all__ = [
     "BAND",
@@ -31,7 +33,9 @@ __all__ = [
     "colour_of",
     "mix",
     "off_outline",
+    "paint_below",
     "paint_grains",
+    "paint_lines",
     "paint_plate",
     "paint_strokes",
     "paint_tank",

@@ -10,11 +10,11 @@ HOLD = (246, 247, 249)
 LOST = (190, 60, 20)
 FIXED = (158, 166, 175)
 PART = (128, 70, 27)
-SERIES = (  # curves and names of the beds: Okabe and Ito's colour-blind-safe palette, darkened to a contrast of 4.5
+SERIES = (  # curves and names of the beds: after Okabe and Ito, darkened to a contrast of 4.5, apart by lightness
     (0, 108, 170),
     (186, 76, 0),
     (0, 118, 86),
-    (160, 72, 128),
-    (134, 94, 0),
-    (84, 94, 106),
+    (166, 50, 134),
+    (96, 70, 0),
+    (44, 50, 58),
 )

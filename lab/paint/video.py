@@ -46,6 +46,7 @@ def render_recording(
     png: bool = False,
     sound: bool = False,
     hero: bool = False,
+    piece: tuple[int, int] = (0, 1),
     progress: Progress | None = None,
     **style: str | None,
 ) -> Path:
@@ -55,7 +56,8 @@ def render_recording(
     (default: pictures). hero: 60 pictures a second, 1920 x 1080 where no size is given, in slow motion at the event,
     with the result on the last still. style: theme, cargo, overlay and inset of [video]. Options that are None are
     taken from the preset's [video]. world: one bed, counted from 0; None: up to six side by side. sound: only the rows
-    before the first damaged one. progress(done, total) is called after each picture. Raises LabError.
+    before the first damaged one. piece (k, n): only the k-th, from 0, of n even parts of the pictures, which
+    `lab.paint.reel.batches` joins. progress(done, total) is called after each picture. Raises LabError.
     """
     initialise()
     wishes = {"colour": colour, "frame": frame, "width": width, "height": height, "speed": speed, **style}
@@ -66,7 +68,7 @@ def render_recording(
         beds, look = choose_beds(footage, world), choose_look(footage, **wishes)
         course = hero_course(beds[0], look.speed) if hero else None
         film = Film(beds, look, course=course)
-        return _write(_made(target_of(path, out, png)), film, look.speed, png, progress, comment)
+        return _write(_made(target_of(path, out, png)), film, look.speed, png, progress, comment, piece)
 
 
 def target_of(path: Path | str, out: Path | str | None, png: bool) -> Path:
@@ -222,17 +224,26 @@ def playback(time: np.ndarray, speed: float) -> tuple[float, int]:
     return round(wanted / stride, 3), stride
 
 
-def _write(out: Path, film: Film, speed: float, png: bool, progress: Progress | None, comment: str = "") -> Path:
+def _write(
+    out: Path,
+    film: Film,
+    speed: float,
+    png: bool,
+    progress: Progress | None,
+    comment: str = "",
+    piece: tuple[int, int] = (0, 1),
+) -> Path:
     rate, stride = (RATE, 1) if film.held else playback(film.time, speed)
-    if out.suffix in FORMATS and not png:
-        stride *= (less := stride_of(out.suffix, rate))
-        pictures = _counted(film, range(0, len(film.time), stride), progress)
-        still = round(HELD * rate / less) if film.lost and not film.held else 0
-        return write_animation(out, _held(pictures, still), rate / less)
-    pictures = _counted(film, range(0, len(film.time), stride), progress)
+    less = 1 if png or out.suffix not in FORMATS else stride_of(out.suffix, rate)
+    shown, last = range(0, len(film.time), stride * less), piece[0] == piece[1] - 1
+    shown = shown[len(shown) * piece[0] // piece[1] : len(shown) * (piece[0] + 1) // piece[1]]
+    pictures = _counted(film, shown, progress)
     if png:
-        return _write_folder(out, pictures, -(-len(film.time) // stride), comment)
-    return write_video(out, _held(pictures, round(HELD * rate) if film.lost and not film.held else 0), rate, comment)
+        return _write_folder(out, pictures, len(shown), comment if last else "")
+    still = round(HELD * rate / less) if film.lost and not film.held and last else 0
+    if out.suffix in FORMATS:
+        return write_animation(out, _held(pictures, still), rate / less)
+    return write_video(out, _held(pictures, still), rate, comment)
 
 
 def _held(pictures: Iterator[np.ndarray], times: int) -> Iterator[np.ndarray]:
@@ -263,7 +274,7 @@ def _made(out: Path) -> Path:
 
 
 def _write_folder(folder: Path, pictures: Iterator[np.ndarray], count: int, comment: str) -> Path:
-    """Write `count` pictures into a folder; the last one keeps the comment, so it tells that all are there."""
+    """Write `count` pictures into a folder; the last one keeps a comment, so it tells that all are there."""
     folder.mkdir(exist_ok=True)
     for old in folder.glob("picture_*.png"):
         old.unlink()
@@ -272,6 +283,6 @@ def _write_folder(folder: Path, pictures: Iterator[np.ndarray], count: int, comm
     for k, picture in enumerate(pictures):
         image, last = Image.fromarray(picture), k == count - 1
         part = folder / "picture.part"  # renamed when it is whole
-        image.save(part, "PNG", pnginfo=kept if last else None)
+        image.save(part, "PNG", pnginfo=kept if last and comment else None)
         part.replace(folder / f"picture_{k:05d}.png")
     return folder

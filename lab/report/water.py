@@ -18,6 +18,7 @@ from lab.recording import Recording
 from lab.report.numbers import count_of
 from solvers.fluid import given
 from solvers.fluid.timestep import kinematic
+from solvers.fluid.viscosity import LAMINAR
 from solvers.machine.limit import Limit
 from solvers.scene import Scene
 
@@ -46,7 +47,7 @@ def described(preset: Preset, scene: Scene) -> Rows:
 def models(scene: Scene) -> Rows:
     """What is compiled in for the water, each row a name and a text."""
     water = scene.water
-    strength = "" if water.viscosity == "laminar" else f", α {water.alpha:g}"
+    strength = "" if water.viscosity in LAMINAR else f", α {water.alpha:g}"
     return [
         ("kernel", f"{water.kernel}, h = {water.smoothing:g} spacings"),
         ("state", water.state),

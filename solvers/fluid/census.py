@@ -169,8 +169,8 @@ class Census:
                         out = [r[0] - c.get("pull_y"), r[1] - c.get("pull_z")]
                         sums[self.at.pulled] += 0.5 * m * c.get("pull") * dot(out, out)
                     if ti.static(c.tense):
-                        tension = p.stress[0][b, lane] ** 2 + p.stress[1][b, lane] ** 2
-                        sums[self.at.elastic] += 2.0 * self.order.weight(b) * p.volume[b, lane] * ti.sqrt(tension)
+                        tension = ti.cast(p.stress[0][b, lane] + p.stress[2][b, lane], self.exact)
+                        sums[self.at.elastic] += self.order.weight(b) * p.volume[b, lane] * tension
                     if ti.static(c.pressed):
                         self.add_background(sums, m, s, p.gas_at(b, lane))
                     is_water = p.gas_at(b, lane) < 0.5

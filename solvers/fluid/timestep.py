@@ -4,6 +4,7 @@ from dataclasses import replace
 from math import inf, pi, sqrt
 
 from solvers.fluid.given import VELOCITY_Y, VELOCITY_Z, Water
+from solvers.fluid.viscosity import LAMINAR
 from solvers.machine.limit import Limit
 
 COURANT = 0.8  # of the time in which sound and water cross h; 1.4 is the largest stable one (standing wave)
@@ -63,7 +64,7 @@ def kinematic(water) -> float:
 
     Monaghan (2005), eq. 8.8: the term α h c0 of pairs of neighbours is that of a liquid with this viscosity.
     """
-    if water.viscosity == "laminar":
+    if water.viscosity in LAMINAR:
         return water.kinematic
     return water.alpha * water.length * water.sound_speed / 8.0
 

@@ -1,7 +1,8 @@
 """The colours of a page, light and dark, in 0..255.
 
 Every text reaches a contrast of 4.5 on what it stands on (WCAG 2.2, success criterion 1.4.3). The colours of curves are
-after Okabe and Ito (2008), who chose theirs for the colour-blind, darkened or lightened for the paper.
+after Okabe and Ito (2008), who chose theirs for the colour-blind, darkened or lightened for the paper, so that
+they still differ as those see them who lack a kind of cones.
 """
 
 from collections.abc import Sequence
@@ -110,11 +111,11 @@ DARK = Theme(
     part=(206, 140, 92),
     series=(
         (96, 184, 240),
-        (255, 150, 74),
+        (255, 140, 64),
         (64, 204, 158),
-        (232, 152, 202),
-        (240, 200, 76),
-        (186, 196, 208),
+        (236, 150, 210),
+        (246, 214, 90),
+        (226, 232, 238),
     ),
 )
 THEMES = {"light": LIGHT, "dark": DARK}

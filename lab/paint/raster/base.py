@@ -74,6 +74,16 @@ def sort_into_bands(y: np.ndarray, reach: np.ndarray, height: int) -> tuple:
     return starts, members[order]
 
 
+def whole_numbers(*numbers: int) -> np.ndarray:
+    """Whole numbers, such as a box's, as an argument of a kernel; Taichi takes arrays far more quickly than vectors."""
+    return np.array(numbers, dtype=np.int32)
+
+
+def rows_of(*colours: tuple) -> np.ndarray:
+    """Colours (k, 3) as an argument of a kernel."""
+    return np.array(colours, dtype=float)
+
+
 @ti.func
 def put(picture: ti.template(), row, column, colour):
     for c in ti.static(range(3)):

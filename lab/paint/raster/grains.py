@@ -14,6 +14,7 @@ from lab.paint.raster.base import (
     Picture,
     Shares,
     Table,
+    box_around,
     colour_of,
     mix,
     put,
@@ -113,10 +114,15 @@ def paint_grains(
     else:
         which, radii = edges.which[seen].astype(np.int32), edges.radii
         reach = discs[:, 2] * radii.max(axis=1)[which]
-    starts, members = sort_into_bands(discs[:, 1], reach + 1.0, picture.shape[0])
+    if not len(discs):
+        return
+    _, top, _, bottom = box_around(picture, discs[:, :2], float(reach.max()) + 1.0)
+    part, boxed = picture[top:bottom], np.column_stack([discs, reach])  # the rows that hold grains
+    boxed[:, 1] -= top
+    starts, members = sort_into_bands(boxed[:, 1], reach + 1.0, bottom - top)
     if len(members):
-        covered, boxed = np.zeros(picture.shape[:2], dtype=np.float32), np.column_stack([discs, reach])
-        _paint_bands(picture, picture.copy(), covered, starts, members, boxed, paints, which, radii, edges is not None)
+        covered = np.zeros(part.shape[:2], dtype=np.float32)
+        _paint_bands(part, part.copy(), covered, starts, members, boxed, paints, which, radii, edges is not None)
 
 
 @ti.func

@@ -4,6 +4,8 @@ Hull, coaming and waterline are those of the preset. The superstructure stands b
 proportion to her breadth; a section whose outline is given has none.
 """
 
+from functools import cache
+
 import numpy as np
 
 from lab.paint.page.theme import Theme, blend
@@ -21,6 +23,7 @@ TIERS = 0.055, 0.125, 0.215  # heights of the rows of windows, in breadths
 WINDOWS = 0.62, 9  # half the length of such a row over half the breadth, and how many windows it has
 
 
+@cache
 def silhouette(ship: Ship) -> np.ndarray | None:
     """The corners (m, 2) of the superstructure in the hull's axes, m; None for a section with an outline of its own."""
     if ship.outline is not None:
@@ -34,19 +37,21 @@ def paint_superstructure(picture: np.ndarray, camera: Camera, ship: Ship, theme:
     corners = silhouette(ship)
     if corners is None:
         return
-    hold, breadth = np.array(ship.hold), ship.breadth
-    paint_tank(picture, camera, corners - hold, 0.0, theme.far, theme.far)
-    length, count = WINDOWS
-    starts = np.linspace(-length, length, count) * 0.5 * breadth
-    pane = 0.45 * (starts[1] - starts[0])
-    lines = [
-        [(y - 0.5 * pane, ship.deck_height + tier * breadth), (y + 0.5 * pane, ship.deck_height + tier * breadth)]
-        for tier in TIERS
-        for y in starts
-    ]
-    ends = camera.pixels(np.array(lines).reshape(-1, 2) - hold).reshape(-1, 2, 2)
+    breadth = ship.breadth
+    paint_tank(picture, camera, corners - np.array(ship.hold), 0.0, theme.far, theme.far)
+    ends = camera.pixels(_windows(ship)).reshape(-1, 2, 2)
     half = np.full(len(ends), 0.016 * breadth * camera.scale)
     paint_strokes(picture, np.column_stack([ends[:, 0], half, ends[:, 1], half]), blend(theme.far, theme.sky[0], 0.75))
+
+
+@cache
+def _windows(ship: Ship) -> np.ndarray:
+    """The ends (2 n, 2) of the windows in the tank's axes, m."""
+    length, count = WINDOWS
+    starts, deck, breadth = np.linspace(-length, length, count) * 0.5 * ship.breadth, ship.deck_height, ship.breadth
+    half = 0.225 * (starts[1] - starts[0])
+    ends = [(y + side * half, deck + tier * breadth) for tier in TIERS for y in starts for side in (-1, 1)]
+    return np.array(ends) - np.array(ship.hold)
 
 
 def paint_hull(picture: np.ndarray, camera: Camera, ship: Ship, thick: float, theme: Theme, unit: float = 0.0) -> None:
@@ -62,7 +67,7 @@ def paint_hull(picture: np.ndarray, camera: Camera, ship: Ship, thick: float, th
     if unit and len(below) > 2:
         top = [k for k in range(len(below)) if min(below[k, 1], below[(k + 1) % len(below), 1]) > level - 1e-9]
         paint_tank(picture, camera, below, thick, theme.bottom, theme.steel, top)
-        _paint_webs(picture, camera, hull, unit, theme)
+        _paint_webs(picture, camera, ship, unit, theme)
         _paint_waterline(picture, camera, below[below[:, 1] > level - 1e-9], thick, unit, theme)
     if ship.hatch:
         inside = hull[[HATCH + 2, HATCH - 1, HATCH, HATCH + 1]]
@@ -81,17 +86,24 @@ def clipped(corners: np.ndarray, level: float) -> np.ndarray:
     return np.array(found).reshape(-1, 2)
 
 
-def _paint_webs(picture: np.ndarray, camera: Camera, hull: np.ndarray, unit: float, theme: Theme) -> None:
+def _paint_webs(picture: np.ndarray, camera: Camera, ship: Ship, unit: float, theme: Theme) -> None:
     """Webs from keel to deck, and stringers from side to side, evenly spaced."""
+    ends = camera.pixels(_webs(ship)).reshape(-1, 2, 2)
+    half = np.full(len(ends), max(WEB * unit, 0.4))
+    paint_strokes(picture, np.column_stack([ends[:, 0], half, ends[:, 1], half]), blend(theme.steel, theme.hull, 0.3))
+
+
+@cache
+def _webs(ship: Ship) -> np.ndarray:
+    """The ends (2 n, 2) of webs and stringers in the tank's axes, m."""
+    hull = ship.corners - np.array(ship.hold)
     low, high = hull.min(axis=0), hull.max(axis=0)
     pitch = (high[0] - low[0]) / FRAMES
     lines = []
     for axis in (0, 1):
         for place in np.arange(low[axis] + pitch, high[axis] - 0.5 * pitch, pitch):
             lines += _spans(hull, axis, place)
-    ends = camera.pixels(np.array(lines).reshape(-1, 2)).reshape(-1, 2, 2)
-    half = np.full(len(ends), max(WEB * unit, 0.4))
-    paint_strokes(picture, np.column_stack([ends[:, 0], half, ends[:, 1], half]), blend(theme.steel, theme.hull, 0.3))
+    return np.array(lines).reshape(-1, 2)
 
 
 def _spans(corners: np.ndarray, axis: int, place: float) -> list[list[tuple[float, float]]]:

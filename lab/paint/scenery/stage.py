@@ -12,12 +12,12 @@ from lab.paint.footage import Bed
 from lab.paint.page.layout import Box
 from lab.paint.page.theme import Theme
 from lab.paint.painter import Camera, Edges, paint_grains, paint_plate, paint_tank, to_discs
+from lab.paint.scenery.afloat import Afloat
 from lab.paint.scenery.backdrop import paint_sky
 from lab.paint.scenery.cells import Cells, Room, lay_cells
 from lab.paint.scenery.drive import paint_arrow
 from lab.paint.scenery.overlay import Overlay
 from lab.paint.scenery.ship import silhouette
-from lab.paint.sea import LINE
 from lab.paint.water.gauges import Marks, hues_of
 from lab.paint.water.layer import WaterLayer
 
@@ -151,19 +151,13 @@ class Stage:
 
     def _paint_around(self, picture: np.ndarray, k: int, frame: int) -> None:
         """Sea and hull, or the tank."""
-        bed, camera, theme, unit = self.beds[k], self.cameras[k], self._theme, self._unit
-        carried = self.tank_camera(k, frame)
+        bed, camera, carried = self.beds[k], self.cameras[k], self.tank_camera(k, frame)
         if bed.footage.sea:
-            left, top, right, bottom = self._sea_box(k)
-            part = np.ascontiguousarray(picture[top:bottom, left:right])
-            moved = carried.shifted(left, top)
             across, up, _ = camera.scale * self._drift[frame, k]
-            still = camera.shifted(left + across, top - up)
+            still, thick = camera.shifted(across, -up), self._thick(bed.footage.sea.hull, camera)
             sea = bed.footage.sea_of(round(float(self._rows[k][frame])))
-            sea.paint_superstructure(part, moved, theme)
-            sea.paint_box(part, still, (0, 0, right - left, bottom - top), self._time[frame], LINE * unit, theme)
-            sea.paint_hull(part, moved, self._thick(sea.hull, camera), theme, unit)
-            picture[top:bottom, left:right] = part
+            afloat = Afloat(sea, carried, still, self._time[frame], thick, self._unit)
+            afloat.paint(picture, self._sea_box(k), self._theme)
         self._paint_tank(picture, bed, carried)
         self._paint_fixed(picture, bed, carried)
 

@@ -12,15 +12,19 @@ HELD = (
 ) / GAMMA  # energy there
 BORNE = 0.3  # of p_a: suction that air bears without being torn apart
 SHAKEN = 0.02  # of ρ c² of the water: from about 0.1 on a background pressure stirs it
+STEEPEST = 0.743  # of 1/h: the gradient of the phase in a plane surface, ∫ W along a line (Wendland C2)
+HOLDING = 3.0  # times what a surface under tension draws along itself: at 1 it tears, see docs/physics/air.md
 
 
 def background(air: Air, water: Water) -> float:
     """The pressure (Pa) that air and water bear besides: the air is then torn apart by no suction up to that.
 
-    At 0.7 p_a it would stir air at rest, at 0.1 ρ c² water.
+    At 0.7 p_a it would stir air at rest, at 0.1 ρ c² water. Tension σ draws the particles of a surface along it by
+    σ |∇C|, which grows as 1/h: it needs a multiple of that.
     """
     own = air.density * air.sound_speed**2 / GAMMA
-    return min(BORNE * own, SHAKEN * water.density * water.sound_speed**2)
+    drawn = HOLDING * STEEPEST * air.tension / water.length
+    return max(drawn, min(BORNE * own, SHAKEN * water.density * water.sound_speed**2))
 
 
 class Adiabatic:

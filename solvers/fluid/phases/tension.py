@@ -11,13 +11,14 @@ FAINT = 0.02  # of 1/(2 h): a smaller gradient of the phase is no surface
 
 @ti.data_oriented
 class Tension:
-    """m_i du_i/dt += Σ V_i V_j (Π_i + Π_j)·∇W, Π = σ (|∇C| I/2 − ∇C ∇C/|∇C|) (Hu & Adams 2006, eqs. 20 to 22).
+    """m_i du_i/dt += Σ V_i V_j (Π_i + Π_j)·∇W, Π = σ (|∇C| I − ∇C ∇C/|∇C|) (Lafaurie et al. 1994; Hu & Adams 2006).
 
     C is 0 in water and 1 in air, ∇C_i = Σ V_j (C_j − C_i) ∇W. Forces are equal and opposite. The stress is that of the
     step before. Dummies have no phase of their own: the surface stands on walls at a right angle.
 
-    The energy of the surface is σ Σ V_i |∇C_i|, twice the larger eigenvalue of Π_i each, since Π has no trace: the
-    isotropic part of the stress that follows from this energy is left to the pressure.
+    The energy of the surface is σ Σ V_i |∇C_i|, the trace of V Π. It is the whole stress that follows from this energy
+    (own derivation); that of Hu & Adams, eqs. 20 to 22, has |∇C| I/2 instead, and leaves a pressure of −σ |∇C|/2 to the
+    equation of state, which draws the particles of the surface apart.
 
     Limits: the surface is two smoothing lengths thick. Units: σ N/m.
     """
@@ -48,6 +49,6 @@ class Tension:
         size = ti.sqrt(dot(slope, slope))
         strength = ti.select(size * c.get("reach") > FAINT, p.ones() * c.get("tension"), p.zeros())
         least = ti.max(size, 1e-20)
-        p.store(p.stress[0], b, strength * (0.5 * size - slope[0] * slope[0] / least))
+        p.store(p.stress[0], b, strength * (size - slope[0] * slope[0] / least))
         p.store(p.stress[1], b, strength * (slope[0] * slope[1] / least) * (-1.0))
-        p.store(p.stress[2], b, strength * (0.5 * size - slope[1] * slope[1] / least))
+        p.store(p.stress[2], b, strength * (size - slope[1] * slope[1] / least))

@@ -3,5 +3,7 @@
 from solvers.fluid.viscosity.approaching import Approaching
 from solvers.fluid.viscosity.artificial import Artificial
 from solvers.fluid.viscosity.laminar import Laminar
+from solvers.fluid.viscosity.laminar_stress import LaminarStress
 
-VISCOSITY = {"artificial": Artificial, "approaching": Approaching, "laminar": Laminar}
+LAMINAR = {"laminar": Laminar, "laminar-stress": LaminarStress}  # those with a viscosity of their own
+VISCOSITY = {"artificial": Artificial, "approaching": Approaching, **LAMINAR}

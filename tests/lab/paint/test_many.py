@@ -3,14 +3,18 @@
 import os
 import signal
 
+import imageio_ffmpeg
 import numpy as np
 import pytest
+from PIL import Image
 
 from lab.base.errors import LabError
 from lab.base.progress import Progress
 from lab.paint import many
+from lab.paint.encoder import join_videos, says
 from lab.paint.many import Job, find_recordings, paint_all, plan
 from lab.paint.process import Painter
+from lab.paint.reel.batches import batches_for, join_folders, paint_batches
 from lab.paint.video import is_made, made_with, render_recording
 from tests.oracles.synthetic import frame, recorder, sample
 
@@ -142,3 +146,39 @@ def test_an_interrupt_ends_the_painters_and_leaves_no_torn_video(tmp_path, monke
     for pid in pids:
         with pytest.raises(ProcessLookupError):
             os.kill(pid, 0)
+
+
+def test_batches_join_to_the_pictures_of_one_process(tmp_path):
+    run, pieces = made(tmp_path / "run", frames=11), range(3)
+    whole = render_recording(run, tmp_path / "whole", png=True, **SMALL)
+    parts = [render_recording(run, tmp_path / f"{k}", png=True, piece=(k, 3), **SMALL) for k in pieces]
+    joined = join_folders(parts, tmp_path / "joined")
+    assert len(list(joined.iterdir())) == 11
+    for picture in whole.iterdir():
+        assert (joined / picture.name).read_bytes() == picture.read_bytes(), picture.name
+
+    films = [render_recording(run, tmp_path / f"{k}.mp4", piece=(k, 3), **SMALL) for k in pieces]
+    film = join_videos(films, tmp_path / "film.mp4", "with care")
+    reader = imageio_ffmpeg.read_frames(str(film))
+    told, shown = next(reader), [np.frombuffer(shot, np.uint8).reshape(180, 320, 3) for shot in reader]
+    assert len(shown) == 11 and told["fps"] == pytest.approx(25.0) and says(film, "with care")
+    for shot, picture in zip(shown, sorted(whole.iterdir()), strict=True):
+        with Image.open(picture) as image:
+            assert np.abs(shot.astype(float) - np.asarray(image)).mean() < 3.0
+
+
+def test_a_batch_is_for_two_cores_and_many_pictures(tmp_path):
+    run = made(tmp_path / "run", frames=700)
+    film, png = run / "video.mp4", {"png": True}
+    assert [batches_for(run, film, {}, cores) for cores in (1, 2, 4, 6, 64)] == [1, 1, 2, 3, 4]
+    assert batches_for(run, run / "film.gif", {}, 64) == 1 and batches_for(run, run / "film.gif", png, 64) == 4
+
+
+@pytest.mark.slow
+def test_batches_are_painted_by_processes_and_nothing_is_left_of_them(tmp_path):
+    run, told = made(tmp_path / "run", frames=9), []
+    film = paint_batches(run, run / "video.mp4", 2, SMALL, lambda done, total: told.append((done, total)))
+    assert told[-1] == (9, 9) and is_made(film, run / "recording.h5", False, made_with(**SMALL))
+    with pytest.raises(LabError, match="colour"):
+        paint_batches(run, run / "other.mp4", 2, SMALL | {"colour": "none"}, lambda done, total: None)
+    assert sorted(path.name for path in run.iterdir()) == ["recording.h5", "video.mp4"]

@@ -105,6 +105,32 @@ def test_scales_can_be_read_without_seeing_hues():
         assert (np.diff([luminance(colour) for colour in colours.ramp(stops)]) > 0.0).all()
 
 
+SEEN = {  # linear RGB as seen without long, middle or short cones (Machado, Oliveira & Fernandes 2009, table 1)
+    "all": np.eye(3),
+    "no long": [[0.1523, 1.0526, -0.2049], [0.1145, 0.7863, 0.0992], [-0.0039, -0.0481, 1.0520]],
+    "no middle": [[0.3673, 0.8607, -0.2280], [0.2801, 0.6725, 0.0474], [-0.0118, 0.0429, 0.9689]],
+    "no short": [[1.2555, -0.0767, -0.1788], [-0.0784, 0.9308, 0.1476], [0.0047, 0.6914, 0.3039]],
+}
+TOLD_APART = 9.0  # CIE 1976 colour difference; some two can just be seen side by side
+
+
+def in_lab(linear):
+    """CIE L*a*b* of linear RGB (n, 3) under D65."""
+    to_xyz = np.array([[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]])
+    x, y, z = np.cbrt((np.clip(linear, 0.0, 1.0) @ to_xyz.T / [0.9505, 1.0, 1.089]).T)
+    return np.column_stack([116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)])
+
+
+@pytest.mark.parametrize("seen", SEEN)
+@pytest.mark.parametrize("name", THEMES)
+def test_curves_differ_for_the_colour_blind(name, seen):
+    share = np.array(THEMES[name].series) / 255.0
+    linear = np.where(share <= 0.04045, share / 12.92, ((share + 0.055) / 1.055) ** 2.4)
+    places = in_lab(linear @ np.array(SEEN[seen]).T)
+    for one, other in combinations(places, 2):
+        assert np.linalg.norm(one - other) > TOLD_APART
+
+
 def rows_of(picture, colour):
     """Mean row of the pixels of a colour."""
     rows, _ = np.nonzero((np.abs(picture.astype(int) - colour).max(axis=2) <= 3)[:, :430])

@@ -90,7 +90,8 @@ def test_air_at_rest_is_in_balance_with_its_weight():
         ({"water__depth": "200 mm", "water__full": True}, "air"),
         ({"parts__gate": {"points": [["0 mm", "0 mm"], ["0 mm", "50 mm"]]}}, "air"),
         ({"water__shifting": "delta-plus-momentum"}, "water.shifting"),
-        ({"water__viscosity": "laminar", "water__kinematic_viscosity": "1e-5 m^2/s"}, "air.kinematic_viscosity"),
+        ({"water__viscosity": "laminar", "water__kinematic_viscosity": "1e-5 m^2/s"}, "water.viscosity"),
+        ({"water__viscosity": "laminar-stress", "water__kinematic_viscosity": "1e-5 m^2/s"}, "air.kinematic_viscosity"),
         ({"air__kinematic_viscosity": "1e-5 m^2/s"}, "air.kinematic_viscosity"),
         ({"air__density": "2000 kg/m^3"}, "air.density"),
         ({"air__sound_speed": "0.5 m/s"}, "air.sound_speed"),
@@ -111,3 +112,5 @@ def test_air_bears_suction_unless_the_preset_says_else():
     assert liquid(real).background == pytest.approx(0.02 * 1000.0 * 12.0**2)
     assert liquid(airy(water__background_pressure="0 Pa")).background == 0.0
     assert liquid(airy(air=False)).background == 0.0
+    taut = airy(air__surface_tension="1 N/m")
+    assert liquid(taut).background == pytest.approx(3.0 * 0.743 / liquid(taut).length, rel=1e-3)

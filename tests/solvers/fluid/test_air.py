@@ -1,9 +1,13 @@
 """Water and air as one fluid of two phases: a step against double sums, what is kept, rest, and closed air."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from solvers.fluid.given import EXCESS, GAS, VELOCITY_Y, VELOCITY_Z, Gauge, Level
+from solvers.fluid.given import EXCESS, GAS, VELOCITY_Y, VELOCITY_Z, Gauge, Level, Water
+from solvers.fluid.timestep import kinematic
+from solvers.fluid.viscosity import VISCOSITY
 from solvers.simulation import Simulation
 from tests.oracles.air import PlainBoth, both, filled
 from tests.oracles.water import GRAVITY
@@ -153,3 +157,10 @@ def test_air_flows_out_through_a_vent():
         assert run.observe()["air_mean_pressure"][0] == pytest.approx(pressure, abs=0.08 * stiff)
     run.advance(400)
     assert abs(run.observe()["air_mean_pressure"][0]) < 0.03 * stiff
+
+
+def test_a_laminar_stress_has_the_viscosity_that_it_says():
+    """As the artificial viscosity of α h c/8 has, of both phases."""
+    water = Water(0.01, 20.0, alpha=0.04, kinematic=0.04 * 0.02 * 20.0 / 8.0)
+    assert VISCOSITY["laminar-stress"].strength(water) == pytest.approx(VISCOSITY["artificial"].strength(water))
+    assert kinematic(water) == pytest.approx(kinematic(replace(water, viscosity="laminar-stress")))

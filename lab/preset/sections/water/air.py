@@ -30,7 +30,7 @@ class Air:
     ] = None
     kinematic_viscosity: Annotated[
         Annotated[float, Unit("m^2/s"), Interval(gt=0)] | None,
-        Doc('Viscosity of the air, for water.viscosity = "laminar".'),
+        Doc('Viscosity of the air, for water.viscosity = "laminar-stress".'),
     ] = None
     surface_tension: Annotated[
         Annotated[float, Unit("N/m"), Interval(ge=0)],

@@ -3,10 +3,11 @@
 import numpy as np
 
 from lab.base.errors import LabError
-from lab.preset.sections.water.air import sound_of_air
+from lab.preset.sections.water.air import Air, sound_of_air
 from lab.preset.sections.water.liquid import Wet, depth, liquid
 from lab.preset.units import needed, show
 from solvers.fluid.phases.adiabatic import GAMMA
+from solvers.fluid.viscosity import LAMINAR
 
 SLOWEST = 0.5  # of the air's speed of sound: what its own weight may lift over its height, √(0.4 g H)
 
@@ -26,13 +27,7 @@ def check_air(preset: Wet) -> None:
         raise LabError(
             'water.shifting: "delta-plus-momentum" is for water alone; take "delta-plus", or leave out [air].'
         )
-    laminar = liquid(preset).viscosity == "laminar"
-    if laminar and air.kinematic_viscosity is None:
-        raise LabError(f'air.kinematic_viscosity: missing for water.viscosity = "laminar"; {needed("m^2/s")}.')
-    if air.kinematic_viscosity is not None and not laminar:
-        raise LabError('air.kinematic_viscosity: goes with water.viscosity = "laminar"; leave out either.')
-    if laminar and air.alpha is not None:
-        raise LabError('air.alpha: goes with an artificial viscosity, not with water.viscosity = "laminar".')
+    _check_viscosity(air, liquid(preset).viscosity)
     if air.density > water.density:
         raise LabError(f"air.density: {show(air.density, 'kg/m^3')} is more than that of the water; take less.")
     room = tank.extent[1] - (depth(preset) if water.region is None else 0.0)
@@ -47,3 +42,19 @@ def check_air(preset: Wet) -> None:
             f"air.sound_speed: air of {show(sound, 'm/s')} would be compressed by its own weight; take at least "
             f"{show(slow, 'm/s')}."
         )
+
+
+def _check_viscosity(air: Air, viscosity: str) -> None:
+    """Raise LabError for air whose viscosity is not told, or not as that of the water is."""
+    laminar = viscosity in LAMINAR
+    if viscosity == "laminar":
+        raise LabError(
+            'water.viscosity: "laminar" is for water alone, since it misses a part of the stress where two liquids of '
+            'unequal viscosity meet; take "laminar-stress", or leave out [air].'
+        )
+    if laminar and air.kinematic_viscosity is None:
+        raise LabError(f'air.kinematic_viscosity: missing for water.viscosity = "{viscosity}"; {needed("m^2/s")}.')
+    if air.kinematic_viscosity is not None and not laminar:
+        raise LabError('air.kinematic_viscosity: goes with water.viscosity = "laminar-stress"; leave out either.')
+    if laminar and air.alpha is not None:
+        raise LabError(f'air.alpha: goes with an artificial viscosity, not with water.viscosity = "{viscosity}".')

@@ -12,6 +12,7 @@ from lab.preset.sections.water.schemes import SCHEMES
 from lab.preset.sections.water.section import Gauge, Water
 from lab.preset.sections.water.tanks import pools
 from lab.preset.units import needed, show
+from solvers.fluid.viscosity import LAMINAR
 
 MOST_PARTICLES = 20e6  # in a tank; what fits into the memory is checked as a scene is built
 MOST_GAUGES = 100
@@ -76,12 +77,12 @@ def _check_given(preset: Whole) -> None:
 def _check_models(water: Water) -> None:
     """Raise LabError for models whose numbers are missing, or numbers whose models are."""
     viscosity = water.viscosity or SCHEMES[water.scheme].viscosity
-    if viscosity == "laminar" and water.kinematic_viscosity is None:
-        raise LabError(f'water.kinematic_viscosity: missing for viscosity = "laminar"; {needed("m^2/s")}.')
-    if viscosity != "laminar" and water.kinematic_viscosity is not None:
+    if viscosity in LAMINAR and water.kinematic_viscosity is None:
+        raise LabError(f'water.kinematic_viscosity: missing for viscosity = "{viscosity}"; {needed("m^2/s")}.')
+    if viscosity not in LAMINAR and water.kinematic_viscosity is not None:
         raise LabError('water.kinematic_viscosity: goes with viscosity = "laminar"; leave out either.')
-    if viscosity == "laminar" and water.alpha is not None:
-        raise LabError('water.alpha: goes with an artificial viscosity, not with viscosity = "laminar".')
+    if viscosity in LAMINAR and water.alpha is not None:
+        raise LabError(f'water.alpha: goes with an artificial viscosity, not with viscosity = "{viscosity}".')
     if water.diffusion == "none" and water.delta:
         raise LabError('water.delta: there is no diffusion of density with diffusion = "none".')
 

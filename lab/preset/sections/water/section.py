@@ -80,7 +80,7 @@ class Water:
     ] = None
     kinematic_viscosity: Annotated[
         Annotated[float, Unit("m^2/s"), Interval(gt=0)] | None,
-        Doc('Viscosity of the liquid, for viscosity = "laminar".'),
+        Doc('Viscosity of the liquid, for viscosity = "laminar" or, beside air, "laminar-stress".'),
     ] = None
     slip: Annotated[bool, Doc("Whether water slides along walls; else it sticks to them.")] = True
     full: Annotated[bool, Doc("Whether the water fills the whole tank, so that walls may pull at it.")] = False

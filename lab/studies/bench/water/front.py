@@ -148,13 +148,13 @@ def figure(found: Mapping[tuple[str, int], Mapping[str, float]], best: list[bool
 
 def spread(wanted: Sequence[float], gap: float) -> np.ndarray:
     """Heights in the order of the wanted ones and at least a gap apart, as near to them as that lets, from 0 to 1."""
-    order = np.argsort(wanted, kind="stable")
-    found = np.array(wanted, dtype=float)[order]
-    for k in range(1, len(found)):
-        found[k] = max(found[k], found[k - 1] + gap)
-    found[-1] = min(found[-1], 1.0)
-    for k in range(len(found) - 2, -1, -1):
-        found[k] = min(found[k], found[k + 1] - gap)
-    placed = np.empty_like(found)
-    placed[order] = found
+    order, steps = np.argsort(wanted, kind="stable"), gap * np.arange(len(wanted))
+    pools: list[list[float]] = []  # of neighbours that want to be nearer: they share a mean (Barlow et al. 1972)
+    for height in np.array(wanted)[order] - steps:
+        pools.append([height])
+        while len(pools) > 1 and np.mean(pools[-2]) > np.mean(pools[-1]):
+            pools[-2:] = [pools[-2] + pools[-1]]
+    found = np.repeat([np.mean(pool) for pool in pools], [len(pool) for pool in pools]) + steps
+    placed = np.empty(len(wanted))
+    placed[order] = np.minimum(found, 1.0 - steps[::-1])
     return placed
