@@ -24,11 +24,13 @@ SEA = {
 }
 
 
-def test_half_an_hour_of_a_random_sea(tmp_path):
+def test_half_an_hour_of_a_random_sea(tmp_path, monkeypatch):
     """She rolls as the spectrum says that linear theory multiplies the sea's by, σ² = ∫ |H|² S dω.
 
-    A tenth, which is the scatter of a narrow band of 0.3 rad/s over 1800 s twice over. The recording stays small.
+    A tenth, which is twice the scatter of a band 0.3 rad/s wide over 1800 s; 2 % was found. The recording stays small.
     """
+    # Not asked: her roll with frozen water, which is stepped outside the kernels and takes longer than the run.
+    monkeypatch.setattr("lab.measures.ship_frozen.frozen", lambda recording: None)
     run_preset("ship/barge-two-tanks", SEA, tmp_path, video=False, plots=False, quiet=True)
     assert (tmp_path / FILE_NAME).stat().st_size < 30e6
     with open_recording(tmp_path) as recording:
@@ -38,5 +40,4 @@ def test_half_an_hour_of_a_random_sea(tmp_path):
     omega = np.linspace(0.5 * PEAK, 3.0 * PEAK, 4000)
     square = np.abs(linear_motion(preset, omega)[:, 2]) ** 2
     wanted = np.sqrt(np.trapezoid(square * jonswap(HEIGHT, PEAK, 2.0)(omega), omega))
-    print(roll[time > 60.0].std(), wanted)
     assert roll[time > 60.0].std() == pytest.approx(wanted, rel=0.1)
