@@ -10,6 +10,9 @@ from lab.paint.film import Film, choose_beds, choose_look
 from lab.paint.footage import open_footage
 from lab.paint.page.layout import Needs, lay_out, overlap, within
 from lab.paint.page.theme import THEMES, contrast, luminance
+from lab.paint.painter import Camera
+from lab.paint.scenery.afloat import Afloat
+from lab.paint.sea import Sea
 from lab.preset.find import load
 from lab.preset.recorded import to_table
 from solvers.machine.runtime import initialise
@@ -129,6 +132,24 @@ def test_curves_differ_for_the_colour_blind(name, seen):
     places = in_lab(linear @ np.array(SEEN[seen]).T)
     for one, other in combinations(places, 2):
         assert np.linalg.norm(one - other) > TOLD_APART
+
+
+def test_a_ship_beyond_her_box_is_cut_off_and_else_is_the_same(monkeypatch):
+    initialise()
+    sea, theme = Sea(load("ship/capsize-map").resolved), THEMES["light"]
+
+    def painted(box):
+        page = np.full((360, 640, 3), 7, dtype=np.uint8)
+        still = Camera(600.0, (300.0, 200.0))
+        afloat = Afloat(sea, still.carried(np.array([0.0, 0.0, 0.5])), still, 0.4, 4.0, 9.0)
+        afloat.paint(page, box, theme)
+        return page
+
+    free, cut = painted((10, 10, 600, 350)), painted((10, 10, 290, 350))
+    np.testing.assert_array_equal(cut[10:350, 10:290], free[10:350, 10:290])
+    assert (cut[:, 290:] == 7).all() and (free[10:350, 290:600] != 7).any()
+    monkeypatch.setattr(Afloat, "_keeps_within", lambda self, box: False)
+    np.testing.assert_array_equal(painted((10, 10, 600, 350)), free)
 
 
 def rows_of(picture, colour):

@@ -3,7 +3,17 @@
 import numpy as np
 import pytest
 
-from lab.paint.painter import Camera, Edges, paint_grains, paint_plate, paint_strokes, paint_tank, to_discs
+from lab.paint.painter import (
+    Camera,
+    Edges,
+    paint_below,
+    paint_grains,
+    paint_lines,
+    paint_plate,
+    paint_strokes,
+    paint_tank,
+    to_discs,
+)
 from solvers.grains.shapes.cargo import cargo, cargoes
 from solvers.grains.shapes.contour import Contour
 from solvers.machine.runtime import initialise
@@ -192,6 +202,17 @@ def test_lines_are_painted_once_where_they_cross_and_not_off_the_page():
     assert stroked(across, up) == pytest.approx(stroked(across) + stroked(up) - 9.0, abs=1e-3)
     assert stroked(across, across) == stroked(across)
     assert stroked([np.nan, 3.0, 1.0, 9.0, 9.0, 1.0], [200.0, 300.0, 1.0, 400.0, 300.0, 1.0]) == 0.0
+
+
+def test_the_sea_is_painted_below_its_surface_and_its_lines_are_as_thick_as_they_are():
+    picture, surface = np.full((64, 96, 3), 255, dtype=np.uint8), 30.3 + 5.0 * np.sin(0.1 * np.arange(96))
+    paint_below(picture, (8, 4, 88, 60), surface[8:88], np.zeros((56, 3)))
+    assert area(picture) == pytest.approx((60.0 - surface[8:88]).sum(), rel=1e-3)
+    picture[:] = 255
+    paint_lines(
+        picture, (8, 4, 88, 60), np.array([surface[8:88], surface[8:88] + 20.0]), [(3.0, 1.0), (2.0, 0.5)], (0,) * 3
+    )
+    assert area(picture) == pytest.approx(80 * (3.0 + 0.5 * 2.0), rel=5e-3)
 
 
 def test_a_slanted_hold_has_its_area():
