@@ -23,7 +23,8 @@ TEXTS = {
         pressure of presets, by −26 and −36 % without. Rows of particles slide along each other there under a pressure
         of 2 ρ g H, which holds them as teeth do: the stiffness of a square lattice against a slip is 0.0013 p/Δx, at 40
         layers up to 0.8 of what gravity resists the wave with. A wave a fifth as high is off by +20 % and decays by
-        1.2, a third of the background pressure leaves +3.3 %. Under air the surface has a hundredth of that pressure,
-        and nothing of this is seen. A drop and a bubble under tension need a background pressure above σ times the
-        gradient of the phase, and forces along the line between particles, see the manual's page on air.""",
+        1.2, a third of the background pressure leaves +3.3 %, h = 2.5 Δx leaves +3.9 %. Under air the surface has a
+        hundredth of that pressure, and nothing of this is seen. A drop and a bubble under tension need a background
+        pressure above σ times the gradient of the phase, and forces along the line between particles, see the manual's
+        page on air.""",
 }
