@@ -20,7 +20,7 @@ class Level:
     restitution: float  # largest relative error
     beyond: str  # what else is known of its error
     layers: int  # of particles over the depth of water, unless water.spacing is given
-    of_water: str  # errors of gentle water with so many layers: `cargolab bench water levels`
+    of_water: str  # most errors of gentle water with so many layers or with 60: `cargolab verify water`
 
     @property
     def error(self) -> str:
@@ -30,11 +30,11 @@ class Level:
 
 WAVES = "frequencies to {} %, waves at a Reynolds number of 500 damped {} % too much, pressure at rest to {} % of ρgH"
 LEVELS = {
-    "draft": Level(1e-3, 1.6, DRAFT_RESTITUTION, "beds may run out 3 % faster", 20, WAVES.format(1, 16, 0.7)),
+    "draft": Level(1e-3, 1.6, DRAFT_RESTITUTION, "beds may run out 3 % faster", 20, WAVES.format(1, 12, 0.8)),
     "standard": Level(
-        1e-2, 1.0, RESTITUTION, "no error of the softness found among 12 beds", 40, WAVES.format(0.4, 8, 0.3)
+        1e-2, 1.0, RESTITUTION, "no error of the softness found among 12 beds", 40, WAVES.format(0.4, 4, 0.3)
     ),
-    "reference": Level(1.0, 1.0, RESTITUTION, "the material's own stiffness", 80, WAVES.format(0.3, 5, 0.3)),
+    "reference": Level(1.0, 1.0, RESTITUTION, "the material's own stiffness", 80, WAVES.format(0.3, 3, 0.3)),
 }
 DEFAULT = "standard"
 

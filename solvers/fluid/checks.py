@@ -7,6 +7,7 @@ import numpy as np
 from solvers.fluid.constants import FASTEST
 from solvers.fluid.state import allowed
 from solvers.machine.errors import BadState, Unavailable
+from solvers.tank.tank import Tank
 
 CREATED = 0.1  # of the energy exchanged: what may be missing from the account before a run is stopped
 LEAST = 1e-3  # Mach number of water that has so little energy that none can be missed
@@ -16,8 +17,8 @@ REMEDY = "use a higher water.sound_speed, a smaller water.spacing, or check the 
 def refuse_state(world: int, particles: dict[str, np.ndarray], time: float, sound: float) -> None:
     """Raise BadState for a world whose particles made the watch stop it at `time` (s).
 
-    `particles` have their "place" (n, 2) m, "speed" (n,) m/s relative to the tank, "excess" (n,) of density and "span"
-    (n,); `sound` is c0 in m/s.
+    `particles` have their "place" (n, 2) m, "speed" (n,) m/s relative to the tank, "excess" (n,) of density, "span"
+    (n,) and "spilled" (n,), whether they are out of an open tank; `sound` is c0 in m/s.
     """
     place, speed, excess = (particles[name] for name in ("place", "speed", "excess"))
     bad = ~(np.isfinite(speed) & np.isfinite(excess) & np.isfinite(place).all(axis=1))
@@ -25,6 +26,14 @@ def refuse_state(world: int, particles: dict[str, np.ndarray], time: float, soun
         what, at = "the state of a particle of water is not a number", place[bad.argmax()]
     elif speed.max() >= FASTEST * sound:
         worst = speed.argmax()
+        if particles["spilled"][worst]:
+            share = 100.0 * particles["spilled"].mean()
+            raise BadState(
+                world,
+                f"{share:.2g} % of the water has left the open tank over its brim, and falls at "
+                f"{speed[worst]:.3g} m/s by t = {time:.4g} s; give the tank a lid or higher walls (tank.lid, "
+                "tank.height), or end the run before.",
+            )
         what, at = f"water moves at {speed[worst]:.3g} m/s, Mach {speed[worst] / sound:.2g},", place[worst]
     else:
         worst = (np.abs(excess) / allowed(particles["span"])).argmax()
@@ -45,6 +54,18 @@ def check_water(rows: dict[str, np.ndarray], start: np.ndarray | float, time: fl
     exchanged = np.abs(rows["water_work"]) + rows["water_viscous"] + rows["water_diffusive"] + rows["water_kinetic"]
     for w in np.flatnonzero(residual(rows, start) > CREATED * exchanged + 1e-3 * np.abs(start) + least):
         raise BadState(w, f"the water has gained energy from nothing by t = {time:.4g} s; {REMEDY}.")
+
+
+def outside(place: np.ndarray, tanks: Sequence[Tank], near: float) -> np.ndarray:
+    """Which of the places (n, 2) m are farther than `near` (m) beside or below the boxes round all tanks.
+
+    What is above a tank may still fall back into it.
+    """
+    out = np.ones(len(place), dtype=bool)
+    for tank in tanks:
+        (left, low), (right, _) = tank.outline.min(axis=0) - near, tank.outline.max(axis=0) + near
+        out &= (place[:, 0] < left) | (place[:, 0] > right) | (place[:, 1] < low)
+    return out
 
 
 def residual(rows: dict[str, np.ndarray], start: np.ndarray | float) -> np.ndarray:

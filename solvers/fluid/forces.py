@@ -122,6 +122,7 @@ class Forces:
         push = [p.zeros() for _ in ti.static(range(p.axes))]
         wall = [p.zeros() for _ in ti.static(range(p.axes))]
         own_push = [p.zeros() for _ in ti.static(range(p.axes))]  # of the dummies' own pressures
+        drag = [p.zeros() for _ in ti.static(range(p.axes))]  # of viscosity
         slope = [p.zeros() for _ in ti.static(range(p.axes))]
         shift = [p.zeros() for _ in ti.static(range(p.axes))]
         inwards = [p.zeros() for _ in ti.static(range(p.axes))]
@@ -162,13 +163,14 @@ class Forces:
                 nearing = [p.velocity[a][jb, lane] - speed[a] for a in ti.static(range(p.axes))]
                 if ti.static(c.viscosity.central):
                     closing = dot(nearing, apart)
-                    drag = heavy * c.viscosity.pull(closing, square + floor)
-                    along += strength * drag
-                    lost += drag * closing
-                else:
+                    pull = heavy * c.viscosity.pull(closing, square + floor)
+                    lost += pull * closing
                     for a in ti.static(range(p.axes)):
-                        push[a] += (strength * heavy) * nearing[a]
+                        drag[a] += pull * apart[a]
+                else:
                     lost += heavy * dot(nearing, nearing)
+                    for a in ti.static(range(p.axes)):
+                        drag[a] += heavy * nearing[a]
             if ti.static(c.two):  # from here on within a phase
                 weight *= 1.0 - other * other
             weighted = [(weight * apart[a]) for a in ti.static(range(p.axes))]
@@ -201,11 +203,12 @@ class Forces:
         factor, density = c.get("slope"), c.of("density", gas)
         lightness = (p.filled(b) * factor) / (density * (1.0 + s))
         for a in ti.static(range(p.axes)):
-            acceleration = lightness * (push[a] + wall[a])
+            acceleration = lightness * (push[a] + strength * drag[a] + wall[a])
             p.store(p.acceleration[a], b, acceleration)
             # Velocities are half a kick behind the places at which the dummies push.
             gain = acceleration + p.filled(b) * ti.cast(self.poses.felt[a][self.units.world(u)], p.real)
             held = held - own_push[a] * (speed[a] + (0.5 * kick) * gain)
+            lost = lost - drag[a] * ((0.5 * kick) * gain)
         if ti.static(c.tense):
             self.tension.note(b, [factor * inwards[a] for a in ti.static(range(p.axes))])
         if ti.static(c.shifting.acts):

@@ -6,7 +6,7 @@ import numpy as np
 import taichi as ti
 
 from solvers.fluid.census import Census, Pool
-from solvers.fluid.checks import LEAST, check_water, refuse_scene, refuse_state, residual
+from solvers.fluid.checks import LEAST, check_water, outside, refuse_scene, refuse_state, residual
 from solvers.fluid.constants import Constants
 from solvers.fluid.continuity import Continuity
 from solvers.fluid.forces import Forces
@@ -25,6 +25,7 @@ from solvers.fluid.walls.closing import Closing
 from solvers.fluid.walls.edges import Edges
 from solvers.fluid.walls.extrapolation import Extrapolation
 from solvers.fluid.walls.gauges import Gauges
+from solvers.fluid.walls.lean import Lean
 from solvers.machine.phase import Phase
 from solvers.machine.state import Axes
 from solvers.motion.carrier import per_slab
@@ -56,7 +57,8 @@ class WaterMatter(Matter):
         walls = (len(blocks) + self.bodies.rows) * lanes
         self.drops = scene.drops
         self.gas = scene.drops[..., GAS] if water.air else np.zeros(scene.drops.shape[:2])
-        self.puffs, shifting = int(self.gas[0].sum()), SHIFTING[water.shifting]  # particles of air, which come last
+        of_air, shifting = count - int(self.gas[0].sum()), SHIFTING[water.shifting]  # particles of air come last
+        self.phases = {"water": slice(0, of_air)} | ({"air": slice(of_air, None)} if water.air else {})
         self.particles = p = Particles(arrays, worlds, count, lanes, walls, grid.strips, shifting, water.air)
         self.units = units = setting.units(p.wet)
         self.load = setting.load(arrays.under("water"), units)
@@ -68,7 +70,8 @@ class WaterMatter(Matter):
         self.bodies.join(arrays, p, shares, self.poses, units)
         self.lists = Lists(arrays, units, self.order, shares, self.constants, first, self.bodies, setting.room)
         medium = Medium(units, p, shares, self.lists, self.constants, self.poses)
-        self.extrapolation = Extrapolation(arrays, medium)
+        lean = Lean(arrays, medium, behind.straight, dummy)
+        self.extrapolation = Extrapolation(arrays, medium, lean)
         self.forces = Forces(arrays, medium, self.extrapolation, self.load, tank.thickness)
         self.continuity, self.vent = Continuity(arrays, medium, self.forces), Vent(arrays, medium, water.air)
         self.mover = Mover(arrays, medium, self.extrapolation, self.vent)
@@ -242,8 +245,10 @@ class WaterMatter(Matter):
         p = self.particles
         found = p.read(*p.place, *p.velocity, *p.acceleration, p.excess, p.span)
         velocity = self.census.relative(time, found[0:2], found[2:4], found[4:6])[world]
+        place, open_top = np.stack(found[0:2], axis=-1)[world], self.water.walls and not self.census.closed
         particles = {
-            "place": np.stack([found[0][world], found[1][world]], axis=1),
+            "place": place,
+            "spilled": outside(place, self.scene.tanks, self.water.reach) & open_top,
             "speed": np.linalg.norm(velocity, axis=1),
             "excess": found[6][world],
             "span": found[7][world],
@@ -259,9 +264,7 @@ class WaterMatter(Matter):
             "velocity": self.census.relative(time, found[0:2], found[2:4], found[4:6]),
             "pressure": self.constants.pressures(found[6], self.gas),
         }
-        phases = {"water": slice(0, p.count - self.puffs), "air": slice(p.count - self.puffs, None)}
-        names = ("water", "air") if p.two else ("water",)
-        rows = {f"{phase}_{name}": values[:, phases[phase]] for phase in names for name, values in told.items()}
+        rows = {f"{phase}_{name}": told[name][:, part] for phase, part in self.phases.items() for name in told}
         return rows | self.bodies.places(time)
 
     def alter(self, scene) -> None:

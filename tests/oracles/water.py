@@ -58,6 +58,8 @@ class PlainWater:
         self.wall, self.wall_volume, _ = layers(scene.outline, scene.water.spacing, rows)
         off = self.wall - np.clip(self.wall, scene.outline.min(axis=0), scene.outline.max(axis=0))  # of a box
         self.along = np.stack([-off[:, 1], off[:, 0]], axis=1) / np.linalg.norm(off, axis=1)[:, None]
+        away = np.linalg.norm(self.wall[:, None] - scene.outline, axis=2).min(axis=1)
+        self.straight = self.along * (away > 1.5 * scene.water.reach)[:, None]
 
     def volume(self, mass: np.ndarray, s: np.ndarray) -> np.ndarray:
         """V = m/ρ."""
@@ -91,12 +93,22 @@ class PlainWater:
         _, _, _, at_wall = self.between(r, self.wall)
         push = np.maximum(pressure, 0.0)[:, None] + self.wall_pressure(r, mass, s)[None]
         walls = -((push * volume[:, None] * self.wall_volume[None])[..., None] * at_wall).sum(axis=1)
+        walls += self.along_walls(r, mass, s)
         matrix = np.einsum("j,ija,ijb->iab", volume, apart, gradient)
         raw = np.einsum("j,ij,ija->ia", volume, s[None] - s[:, None], gradient)
         regular = np.linalg.eigvalsh(matrix)[:, 0] > 0.05
         slope = np.zeros_like(r)
         slope[regular] = np.linalg.solve(matrix[regular], raw[regular][..., None])[..., 0]
         return (force + walls) / mass[:, None], slope, walls
+
+    def along_walls(self, r, mass, s) -> np.ndarray:
+        """What is taken from that, so that the dummies' own pressures do not push along straight walls in sum."""
+        volume = self.volume(mass, s) * self.liquid
+        _, _, value, gradient = self.between(r, self.wall)
+        seen = np.maximum(volume @ value, 1e-30)
+        leans = (np.einsum("i,iwa->wa", volume, gradient) * self.straight).sum(axis=1) / seen
+        strength = self.wall_volume * self.wall_pressure(r, mass, s) * leans
+        return volume[:, None] * (value @ (strength[:, None] * self.straight))
 
     def closing(self, r, u, s, mass, pressed) -> np.ndarray:
         """Minus what dummies that are `pressed` add to the divergence: the adjoint of their pressures' forces.

@@ -52,6 +52,7 @@ def suite_at(level: str) -> Suite:
     """The cases whose step a level of accuracy sets, with a page of their own."""
     longer = LEVELS[level].longer_steps
     about = f"""With the steps of the level {level}, {longer:g} times the derived ones. Tolerances are those of the
-    derived steps: what is due to the step may be {longer**2:.2g} times as large here, and its line then fails."""
+    derived steps: what is due to the step may be {longer**2:.2g} times as large here, and its line then fails. What a
+    case calls the derived step is the level's."""
     named = {"command": f"verify --level {level}", "title": f"The physics at the level {level}"}
     return replace(SUITE, **named, cases=BY_LEVEL, about=about, texts={}, file=f"verify-{level}")

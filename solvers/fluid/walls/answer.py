@@ -20,7 +20,8 @@ def answer_at_rest(scene, behind: Behind) -> np.ndarray:
 
         A = Σ_w (g_w; r_w × g_w) ⊗ (q_w; r_w × q_w),
 
-    exactly (own derivation): some 0.3 ρ h S of a wetted side S. Not clipped: at rest all dummies that see water push.
+    exactly (own derivation): some 0.3 ρ h S of a wetted side S. What is taken from g_w along straight faces (`Lean`)
+    acts where the water before the dummy is in the mean. Not clipped: at rest all dummies that see water push.
     """
     found = np.zeros((len(scene.vessels), 3, 3))
     if not len(found):
@@ -30,13 +31,16 @@ def answer_at_rest(scene, behind: Behind) -> np.ndarray:
         for tank, (first, end) in enumerate(pairwise(ends)):
             own = (behind.tanks == tank) & (behind.volumes > 0.0)
             if end > first:
-                of_tank = _answer(scene.water, scene.drops[w, first:end], behind.points[own], behind.volumes[own])
+                dummies = behind.points[own], behind.volumes[own], behind.straight[own]
+                of_tank = _answer(scene.water, scene.drops[w, first:end], *dummies)
                 found[w] += factor[w, first] * of_tank
     return found
 
 
-def _answer(water: Water, drops: np.ndarray, points: np.ndarray, volumes: np.ndarray) -> np.ndarray:
-    """A (3, 3) of the dummies of a tank at `points` (n, 2) m, per metre of slab."""
+def _answer(
+    water: Water, drops: np.ndarray, points: np.ndarray, volumes: np.ndarray, straight: np.ndarray
+) -> np.ndarray:
+    """A (3, 3) of the dummies of a tank at `points` (n, 2) m, with `straight_of` them, per metre of slab."""
     from scipy.spatial import cKDTree  # slow to import
 
     pairs = cKDTree(points).sparse_distance_matrix(cKDTree(drops[:, [Y, Z]]), water.reach, output_type="ndarray")
@@ -50,7 +54,9 @@ def _answer(water: Water, drops: np.ndarray, points: np.ndarray, volumes: np.nda
     seen = np.maximum(np.bincount(w, volume * value, len(points)), 1e-30)
     lever = _summed(w, (heavy * value)[:, None] * way, len(points)) / seen[:, None]
     push = _summed(w, (volume * steep)[:, None] * way, len(points)) * volumes[:, None]
-    return _turning(points, push).T @ _turning(points, lever)
+    along = (push * straight).sum(axis=1, keepdims=True) * straight
+    before = points - _summed(w, (volume * value)[:, None] * way, len(points)) / seen[:, None]
+    return (_turning(points, push) - _turning(before, along)).T @ _turning(points, lever)
 
 
 def _summed(owner: np.ndarray, values: np.ndarray, count: int) -> np.ndarray:

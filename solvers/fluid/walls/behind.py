@@ -8,6 +8,7 @@ from solvers.fluid.given import Water
 from solvers.fluid.kernels import KERNELS
 from solvers.fluid.walls.gauges import probes
 from solvers.fluid.walls.layers import edge_of, faces, firm, layers
+from solvers.fluid.walls.lean import straight_of
 from solvers.space.axes import NAMES
 from solvers.tank.tank import Tank
 
@@ -17,7 +18,8 @@ OF_NONE = -1  # the edge of probes, which are no part of a wall
 class Behind:
     """Dummies and probes of tanks: `points` (n, 2) m, `volumes` (n,) m², `edges` and `tanks` (n,) of each.
 
-    `along` (n, 2) are unit vectors along the faces before them (`faces`), zero of probes.
+    `along` (n, 2) are unit vectors along the faces before them (`faces`), zero of probes; `straight` (n, 2) are those
+    of straight faces alone (`straight_of`).
     An edge is named by its first corner; probes have no volume and no edge. `probes` are each gauge's, by their
     numbers, `open` what dummies leave of their kernels. Gauges are in the first tank that has water. `fills` are the
     numbers of particles in each tank; none stands behind a dry one.
@@ -28,12 +30,16 @@ class Behind:
         self.open: list[np.ndarray] = []
         self.points, self.volumes, self.firm = np.zeros((0, 2)), np.zeros(0), np.zeros(0)
         self.edges, self.tanks = np.zeros(0, dtype=int), np.zeros(0, dtype=int)
-        self.along = np.zeros((0, 2))
+        self.along = self.straight = np.zeros((0, 2))
         wet = [number for number, fill in enumerate(fills) if fill]
         for number in wet if water.walls else ():
             points, volumes, depths = _round(water, tanks[number])
             self._add(points, volumes, edge_of(points, tanks[number].outline), number)
-            self.along = np.concatenate([self.along, faces(points, tanks[number].outline)])
+            along = faces(points, tanks[number].outline)
+            straight = straight_of(points, along, tanks[number].outline, water)
+            self.along, self.straight = (
+                np.concatenate(pair) for pair in ((self.along, along), (self.straight, straight))
+            )
             hold = depths if water.air else firm(depths, water.spacing)  # each layer holds air, see `Constants`
             self.firm = np.append(self.firm, hold)
         if not len(self.points):
@@ -48,6 +54,7 @@ class Behind:
             none = np.zeros(len(of_gauge))
             self._add(of_gauge, none, np.full(len(of_gauge), OF_NONE), wet[0])
             self.firm, self.along = np.append(self.firm, none), np.concatenate([self.along, 0.0 * of_gauge])
+            self.straight = np.concatenate([self.straight, 0.0 * of_gauge])
 
     def _add(self, points: np.ndarray, volumes: np.ndarray, edges: np.ndarray, tank: int) -> None:
         self.points, self.volumes = np.concatenate([self.points, points]), np.append(self.volumes, volumes)

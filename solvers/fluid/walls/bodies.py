@@ -11,7 +11,7 @@ from solvers.fluid.walls.sight import COSINE, RATE, SINE, V_Y, V_Z, Sight, Y, Z
 from solvers.fluid.walls.solids import Solids
 from solvers.machine.state import Axis, State, padded, roomy
 from solvers.motion.moved import motions_of
-from solvers.motion.poses import AT_MIDDLE, AT_START, Poses
+from solvers.motion.poses import AT_START, Poses
 from solvers.motion.prescribed import Prescribed
 from solvers.space.axes import dot
 from solvers.tank.parts import Part
@@ -29,8 +29,7 @@ class Bodies:
     accelerated by A + ω' × R p − ω² R p, to which −2 Ω × v comes where the tank itself rolls at Ω. Dummies of bodies
     follow those of the tank in memory.
 
-    Limits: dummies take the whole acceleration of their part, that along a plate included, which water that slides
-    freely does not feel: near the ends of a gate that is torn up pressures are off by ρ a times the kernel's reach.
+    Water that slides freely (`slip`) is accelerated by the part of it across the face before a dummy alone.
 
     `impulse` (units, parts; N s/m, N s) is what the water did to each part since it was last taken, `work` (units,
     parts; J/m) what the parts have done on the water.
@@ -47,6 +46,7 @@ class Bodies:
             Prescribed(arrays.under(f"parts.{k}"), [motions_of(part)] * worlds, 0.0, 0.0)
             for k, part in enumerate(parts)
         ]
+        self.slips = water.slip
         self.moving = any(carrier.moving for carrier in self.carriers)
         if parts:
             self._declare(arrays.under("bodies"))
@@ -58,6 +58,9 @@ class Bodies:
         room = self.room
         self.rest = [
             own.holding(f"rest_{n}", padded(places[..., a], room), "row lane", own.place) for a, n in enumerate("yz")
+        ]
+        self.along = [
+            own.holding(f"along_{n}", padded(self.solids.along[..., a], room), "row lane") for a, n in enumerate("yz")
         ]
         self.radius = own.holding("radius", padded(self.solids.radius, room), "row")
         self.owner = own.holding("owner", padded(self.solids.owner, room), "row", ti.i32)
@@ -133,11 +136,11 @@ class Bodies:
                     p.velocity[1][b, lane] = ti.cast(v_z + rate * arm_y + turn * (o_y + arm_y), p.real)
 
     @ti.func
-    def turn(self, b, vector: ti.template()):
-        """Turn the vectors of a block of dummies, as their part is drawn, as it is in the middle of the step."""
+    def turn(self, b, vector: ti.template(), part: ti.template()):
+        """Turn the vectors of a block of dummies, as their part is drawn, as it is at a `part` of the step."""
         row = self.row(b)
         if row >= 0:
-            w, k, at = b // self.particles.stride, self.owner[row], ti.static(7 * AT_MIDDLE)
+            w, k, at = b // self.particles.stride, self.owner[row], ti.static(7 * part)
             cos = ti.cast(self.pose[w, k, at + COSINE], self.particles.real)
             sin = ti.cast(self.pose[w, k, at + SINE], self.particles.real)
             y, z = vector[0], vector[1]
@@ -162,8 +165,18 @@ class Bodies:
         of_turn, spin = ti.cast(turn, p.real), ti.cast(turn * rate, p.real)
         even_y, even_z = ti.cast(a_y, p.real), ti.cast(a_z, p.real)
         drift_y, drift_z = ti.cast(v_y, p.real), ti.cast(v_z, p.real)
-        felt[0] += of_up * z + (of_square + spin) * y + (of_turn * drift_z - even_y)
-        felt[1] += (of_square + spin) * z - of_up * y - (of_turn * drift_y + even_z)
+        back = [
+            of_up * z + (of_square + spin) * y + (of_turn * drift_z - even_y),
+            (of_square + spin) * z - of_up * y - (of_turn * drift_y + even_z),
+        ]
+        if ti.static(self.slips):
+            along = [p.load(self.along[a], ti.max(row, 0)) for a in ti.static(range(p.axes))]
+            self.turn(b, along, AT_START)
+            slid = dot(back, along)
+            for a in ti.static(range(p.axes)):
+                back[a] = back[a] - slid * along[a]
+        for a in ti.static(range(p.axes)):
+            felt[a] += back[a]
 
     @ti.func
     def note_built(self, u):

@@ -21,16 +21,16 @@ class Closing:
     or take energy (Cercos-Pita, Antuono, Colagrossi & Souto-Iglesias 2017), sound in a column is too slow by 2 % at 40
     layers, and with Antuono's diffusion it grows.
 
-    Deviation: U_w also slides with the water, by the mean of its velocity along the face, Σ V_f u_f W / Σ V_f W. Else
-    water that rises along a wall would be compressed near its surface, where the sum of ∇W leans. A dummy whose
-    pressure is cut off compresses nothing. Air has a wall pressure of its own, 2 p_i, and a wall's velocity of weight 2
-    as its adjoint, see `solvers.fluid.phases.interfaces`.
+    U_w also slides with the water, by the mean of its velocity along the face, Σ V_f u_f W / Σ V_f W. Else water that
+    rises along a wall would be compressed near its surface, where the sum of ∇W leans. The adjoint of this is `Lean`,
+    which takes the push along the face off. A dummy whose pressure is cut off compresses nothing. Air has a wall
+    pressure of its own, 2 p_i, and a wall's velocity of weight 2 as its adjoint, see
+    `solvers.fluid.phases.interfaces`.
 
     Limits: the compression is right in sum over the layers before a wall; in a single particle, a flow against a wall
     gives a divergence that is off by 1.7 % of its strain. What gravity adds to p_w has no adjoint and stays in `held`.
     Tanks without a free surface (`full`) do without: in one that was swayed for 20 000 steps particles crept by up to
-    four spacings with it. Waves lose more, since walls feed them less: a standing wave of 20 layers decays too fast by
-    15 % instead of 8 %, with 40 by 8 % instead of 6 %.
+    four spacings with it.
     """
 
     def __init__(self, arrays: State, medium: Medium, behind: Behind, slots: np.ndarray):
@@ -84,7 +84,7 @@ class Closing:
         # Unit vectors along the faces before the dummies, in the tank's axes.
         along = [p.load(self.along[a], b % p.stride - p.wet) for a in ti.static(range(p.axes))]
         if ti.static(self.bodies.moving):
-            self.bodies.turn(b, along)
+            self.bodies.turn(b, along, AT_MIDDLE)
         closed = closed - (few * dot(moved, along)) * dot(along, steep)
         # A pressure that is cut off, or of a dummy that sees no water, is exactly zero.
         pressure = p.load(p.pressure, b)

@@ -72,7 +72,8 @@ class Edges:
             jb, lane = lists.block_of(j), lists.lane_of(j)
             apart = lists.apart(b, own, origin, j, AT_START)
             square = dot(apart, apart)
-            weight = c.kernel.slope(ti.max(1.0 - ti.sqrt(square) * c.get("shrink"), 0.0))
+            t = ti.max(1.0 - ti.sqrt(square) * c.get("shrink"), 0.0)
+            weight = c.kernel.slope(t)
             gas = p.gas_at(jb, lane)
             push = c.clipped(p.pressure[jb, lane], gas)
             if ti.static(c.pressed):
@@ -86,6 +87,10 @@ class Edges:
             along = p.volume[jb, lane] * (along * weight + spring)
             for a in ti.static(range(p.axes)):
                 force[a] += along * apart[a]
+            if ti.static(self.walls.lean.acts):
+                by_wall = pressure * (p.volume[jb, lane] * c.kernel.value(t))
+                for a in ti.static(range(p.axes)):
+                    force[a] += by_wall * p.load(self.walls.lean.lean[a], b)
         for a in ti.static(range(p.axes)):
             p.store(self.force[a], b, (volume * c.get("slope")) * force[a])
 

@@ -3,6 +3,7 @@
 import taichi as ti
 
 from solvers.fluid.lists import Medium
+from solvers.fluid.walls.lean import Lean
 from solvers.fluid.walls.sliding import Sliding
 from solvers.machine.state import Axis, State
 from solvers.motion.poses import AT_START
@@ -23,12 +24,12 @@ class Extrapolation:
     Limits: the mean is of first order; what its push does to the energy is given back by `Closing`.
     """
 
-    def __init__(self, arrays: State, medium: Medium):
+    def __init__(self, arrays: State, medium: Medium, lean: Lean):
         self.units, self.particles, self.shares = medium.units, medium.particles, medium.shares
         self.lists, self.constants, self.poses = medium.lists, medium.constants, medium.poses
         self.bodies = medium.lists.bodies
         self.sticks = medium.constants.viscous and not medium.constants.slip
-        self.sliding = Sliding(arrays, medium)
+        self.sliding, self.lean = Sliding(arrays, medium), lean
         if self.sticks:
             own = arrays.under("water")
             p = self.particles
@@ -56,12 +57,16 @@ class Extrapolation:
         lever_of_air = [p.zeros() for _ in ti.static(range(p.axes))]
         moved = [p.zeros() for _ in ti.static(range(p.axes))]
         flow, inward = [p.zeros() for _ in ti.static(range(p.axes))], [p.zeros() for _ in ti.static(range(p.axes))]
+        steep = [p.zeros() for _ in ti.static(range(p.axes))]
         for k in range(begin, end):
             j = self.lists.facing.slots[u, k]
             jb, lane = self.lists.block_of(j), self.lists.lane_of(j)
             apart = self.lists.apart(b, own, origin, j, AT_START)
-            weight = c.kernel.value(ti.max(1.0 - ti.sqrt(dot(apart, apart)) * shrink, 0.0))
-            volume = p.volume[jb, lane]
+            t = ti.max(1.0 - ti.sqrt(dot(apart, apart)) * shrink, 0.0)
+            weight, volume = c.kernel.value(t), p.volume[jb, lane]
+            if ti.static(self.lean.acts):
+                for a in ti.static(range(p.axes)):
+                    steep[a] = steep[a] - (volume * c.kernel.slope(t)) * apart[a]
             massive = weight * p.mass[jb, lane]
             if ti.static(self.sticks):
                 for a in ti.static(range(p.axes)):
@@ -93,6 +98,8 @@ class Extrapolation:
                 pressure = ti.max(pressure, 0.0)
             p.store(p.pressure, b, ti.select(wet > SEEN, pressure, p.zeros()))
         p.store(p.span, b, wet)
+        if ti.static(self.lean.acts):
+            self.lean.note(b, seen, steep)
         if ti.static(self.sliding.acts):
             self.sliding.note(b, seen, flow, inward)
         if ti.static(self.sticks):

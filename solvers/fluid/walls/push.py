@@ -64,6 +64,14 @@ class WallPush:
                 more = along - (pressure * weight) * (1.0 + gas)
             for a in ti.static(range(p.axes)):
                 own_push[a] += more * apart[a]
+            if ti.static(self.walls.lean.acts):
+                by_wall = p.volume[jb, lane] * p.pressure[jb, lane] * c.kernel.value(t)
+                for a in ti.static(range(p.axes)):
+                    off = self.walls.lean.given(jb, lane, by_wall, a)
+                    wall[a] = wall[a] - off
+                    own_push[a] = own_push[a] - off
+                    if ti.static(self.poses.moving or self.bodies.moving):
+                        taken[1] = taken[1] - p.velocity[a][jb, lane] * off
             if ti.static(self.poses.moving or self.bodies.moving):
                 taken[1] += more * dot([p.velocity[a][jb, lane] for a in ti.static(range(p.axes))], apart)
             if ti.static(self.walls.sticks):

@@ -5,7 +5,7 @@ import pytest
 
 from solvers.fluid.given import EXCESS, VOLUME
 from solvers.fluid.start.parts import clear_of
-from solvers.motion.harmonic import Roll, Sway
+from solvers.motion.harmonic import Heave, Roll, Sway
 from solvers.scene import Scene
 from solvers.simulation import Simulation
 from solvers.tank.parts import Body
@@ -52,7 +52,7 @@ def test_water_tank_and_bodies_share_momentum_and_energy():
     np.testing.assert_allclose(after - before, steps * run.dt * (weight - load), atol=1e-12 * scale)
     taken = sum(end[name] - start[name] for name in ("water_viscous", "water_diffusive", "water_held"))
     work, gain = end["water_work"] - start["water_work"], end["water_total"] - start["water_total"]
-    assert np.abs(end["part_force"]).min() > 0.0 and work > 5.0  # else nothing was tried
+    assert np.abs(end["part_force"]).min() > 0.0 and work > 4.0  # else nothing was tried
     np.testing.assert_allclose(end["part_work"].sum(axis=1), work)
     np.testing.assert_allclose(gain + taken, work, rtol=0.02)
     turn = run.snapshot()["part_turn"][0]
@@ -135,3 +135,21 @@ def test_a_swaying_cylinder_has_the_added_mass_of_potential_theory():
     found = np.linalg.lstsq(waves, force[whole], rcond=None)[0][1] / (amplitude * (2.0 * np.pi * frequency) ** 2)
     wanted = 1000.0 * np.pi * inner**2 * (outer**2 + inner**2) / (outer**2 - inner**2)
     np.testing.assert_allclose(found, wanted, rtol=0.08)
+
+
+def test_a_plate_that_is_torn_up_along_itself_does_not_press_on_water_that_slides():
+    """Its ends' dummies have the pressure of the water before them, however it is accelerated: to 5 % of ρ a Δx.
+
+    Both plates are where they would be at rest; one is accelerated along itself, as water that slides does not feel.
+    """
+    frequency, amplitude, pressures = 20.0, 2e-5, []
+    for share in (1e-9, 1.0):
+        torn = Body(((0.0, 0.0), (0.0, HEIGHT)), motions=(Heave(share * amplitude, frequency, 0.5 * np.pi),))
+        run = Simulation(still(WIDTH, HEIGHT, DEPTH, ROWS, parts=(torn,)), threads=1, arch="cpu")
+        run.advance(1)
+        first = run.water.particles.wet + run.water.bodies.first[0]
+        pressures.append(run.water.particles.pressure.to_numpy()[first:])
+        run.close()
+    pull = amplitude * (2.0 * np.pi * frequency) ** 2
+    assert np.abs(pressures[0]).max() > 1000.0  # else nothing was tried
+    np.testing.assert_allclose(pressures[1], pressures[0], atol=0.05 * 1000.0 * pull * SPACING)
