@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from lab.paint.footage import Bed
 
 BY_ITSELF = "air"  # the colour by which water looks like water, and air shows its pressure
+DEEP = 0.9  # the water's level from which on no air is painted: beside a wall both would be mixed with it
 PAPER = (255, 255, 255)  # of the line round the air, which is none
 
 
@@ -50,7 +51,7 @@ def colouring_of_air(name: str, beds: Sequence[Bed], of_water: Colouring | None)
 def paint_air(
     picture: np.ndarray, camera: Camera, grid: Grid, bed: Bed, frame: int, colouring: Colouring, under: tuple
 ) -> None:
-    """Paint a bed's air over a picture, in place, also under its water, which is to be painted over it."""
+    """Paint a bed's air over a picture, in place, also under the water's surface; water is painted over it."""
     place, wet = bed.drops("air_place", frame), bed.water_place(frame)
     there, drops = np.isfinite(place).all(axis=1), np.isfinite(wet).all(axis=1)
     pool = bed.footage.water
@@ -59,6 +60,7 @@ def paint_air(
     sums = grid.sums(place[there], volume)
     tones = grid.sums(place[there], volume * share)
     tone = np.divide(tones, sums, out=np.zeros_like(sums), where=sums > 0.0)
-    level = grid.level(sums + grid.sums(wet[drops], of_water))
+    water = grid.sums(wet[drops], of_water)
+    here = (sums + water > 0.0) & (grid.level(water) < DEEP)
     paints = Paints(colouring.table, PAPER, PAPER, PAPER, under, 0.0, 0.0, False)
-    paint_surface(picture, camera, grid, np.where(level > 0.0, 1.0, 0.0), tone, paints)
+    paint_surface(picture, camera, grid, here.astype(float), tone, paints)
