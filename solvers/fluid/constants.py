@@ -48,6 +48,7 @@ class Constants:
             "background": water.background,
             "thinnest": float(self.state.excess(-water.background / (water.density * sound**2))),
             "spread": water.delta * length * sound,  # δ h c0, m²/s
+            "relief": sound / length,  # of a drop's pressure, 1/s
             "strength": strength,
             "hydrostatic": gravity / sound**2,  # g/c0², 1/m
             "spacing": water.spacing,
