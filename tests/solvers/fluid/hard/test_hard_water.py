@@ -105,7 +105,7 @@ def test_a_drop_falls_on_a_dry_floor():
     rows = course(scene, np.arange(1, 31) * 0.1)
     assert rows[-1]["water_centre"][0, 1] < 0.03
     assert rows[-1]["water_kinetic"][0] < 0.05 * rows[0]["water_total"][0]
-    assert np.abs(unaccounted(rows)).max() < 0.02
+    assert np.abs(unaccounted(rows)[-1]) < 0.01
 
 
 def test_a_tank_is_turned_upside_down():
