@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from solvers.fluid.given import VELOCITY_Y, VELOCITY_Z, Gauge, Level
+from solvers.fluid.given import EXCESS, VELOCITY_Y, VELOCITY_Z, VOLUME, Gauge, Level
 from solvers.simulation import Simulation
 from tests.oracles.water import GRAVITY, PlainWater, still
 
@@ -64,6 +64,19 @@ def test_the_load_is_what_the_water_loses(run):
     weight = np.array([0.0, -GRAVITY * mass.sum()])
     scale = steps * run.dt * np.abs(load).max()
     np.testing.assert_allclose(change, steps * run.dt * (weight - load), atol=1e-12 * scale)
+
+
+def test_a_drop_alone_falls_without_pressure():
+    """A pressed drop high above the water is relieved within a few h/c0 and falls as a stone does."""
+    scene = disturbed()
+    scene.drops[0, -1] = [0.0, 0.5, 0.0, 0.0, 0.02, scene.drops[0, -1, VOLUME]]
+    run = Simulation(scene, threads=1, arch="cpu")
+    run.advance(20)
+    places, speeds, s, *_ = held(run)
+    time = 20 * run.dt
+    assert 0.0 <= s[-1] < 1e-4 * scene.drops[0, -1, EXCESS]
+    assert places[-1] == pytest.approx([0.0, 0.5 - 0.5 * GRAVITY * time**2], abs=GRAVITY * time * run.dt)
+    assert speeds[-1] == pytest.approx([0.0, -GRAVITY * time], abs=GRAVITY * run.dt)
 
 
 def test_the_loads_on_all_edges_are_the_load_on_the_tank(run):
