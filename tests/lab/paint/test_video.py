@@ -12,7 +12,7 @@ from lab.base.errors import LabError
 from lab.paint.colours import MODES
 from lab.paint.film import Film, choose_beds, choose_look
 from lab.paint.footage import Bed, open_footage
-from lab.paint.page.theme import LIGHT
+from lab.paint.page.theme import LIGHT, luminance
 from lab.paint.video import playback, poster, render_grid, render_recording
 from lab.paint.water.colours import FIELDS
 from lab.preset.fields import taken_of
@@ -175,6 +175,19 @@ def test_every_colour_mode_has_one_scale_for_the_whole_film(four_beds):
         assert len(np.unique(layers)) == MODES["layer"](beds).high == 6
         assert MODES["layer"](beds).label == "starting layer (2 diameters)"
         assert MODES["size"](beds).values(beds[2], 4) == pytest.approx(2000 * footage.radius[2])
+
+
+def test_painted_grains_have_the_colours_of_their_values(four_beds):
+    """The further a grain has moved the darker it is, and grains at both ends of the scale are seen in its colours."""
+    (picture,) = pictures_of(four_beds, [5], world=0, colour="displacement", frame="tank")
+    with open_footage(four_beds) as footage:
+        bed = choose_beds(footage, 0)
+        moved = MODES["displacement"](bed)
+        values, tints = moved.values(bed[0], 5), moved.colours(bed[0], 5)
+    order = np.argsort(values)
+    assert (np.diff([luminance(tint) for tint in tints[order]]) <= 0.0).all()
+    for grain in order[[0, -1]]:
+        assert (np.abs(picture - tints[grain]).max(axis=2) < 12).sum() > 20
 
 
 def test_spin_is_coloured_in_turns_a_second(tmp_path):
