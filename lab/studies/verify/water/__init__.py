@@ -9,9 +9,7 @@ TEXTS = {
     rest.SECTION: """Forty layers rest only since dummies of walls compress the water that they take power from, see
         `solvers.fluid.walls.closing`. Before, the first mode of sound in a column grew out of nothing by 13 % a second,
         until the pressure swung by a good part of ρ g H: dummies pushed with the water's pressure, but stood still in
-        the balance of mass, so that force and divergence were not adjoint.
-        The standing wave was run anew with walls that do not push along their faces (`solvers.fluid.walls.lean`); the
-        other cases of water are of the scheme before.""",
+        the balance of mass, so that force and divergence were not adjoint.""",
     waves.SECTION: """Walls that push along their faces, where there is no friction, cost this wave: before
         `solvers.fluid.walls.lean` it decayed too fast by 15.5, 7.7 and 6.2 % with 20, 40 and 60 layers, at an order of
         0.9. At a fixed ratio of h and Δx second order is not to be expected: sums over a fixed number of disordered
