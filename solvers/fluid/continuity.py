@@ -17,7 +17,8 @@ class Continuity:
     Of two phases, the second sum is over the own phase, and pairs of both have the weight of `solvers.fluid.phases`.
     A drop under pressure with void all round is relieved by the rarefaction from its surface, at c0/h (own derivation):
     spray (Marrone et al. 2010) that no wall holds has −(c0/h)(ρ − ρ0) added to its rate, and the energy counts as
-    diffused. Without it spray keeps the pressure of the hit that made it, and stays up like a gas.
+    diffused. Without it spray keeps the pressure of the hit that made it, and stays up like a gas. Not beside air,
+    which presses on drops, nor in full tanks, which have no spray.
 
     `lost` (units,) J is the energy that diffusion has taken: −Σ m_i p_i/ρ_i² times its share of the rate (Antuono,
     Marrone, Colagrossi & Bouscasse 2015, eq. 22), by the water's pressure in the middle of the step. What the water
@@ -103,7 +104,8 @@ class Continuity:
                 weight = p.volume[jb, lane] * c.kernel.slope(t)
                 nearing = [p.velocity[a][jb, lane] - speed[a] for a in ti.static(range(p.axes))]
                 walled += weight * dot(nearing, apart)
-                leant += weight
+                if ti.static(self.relieves):
+                    leant += weight
                 if ti.static(self.closes):
                     closed += (p.volume[jb, lane] * p.rate[jb, lane]) * c.kernel.value(t)
                 if ti.static(self.sliding.acts):
