@@ -57,9 +57,10 @@ class Lists:
         few = 4 * particles.dry * particles.lanes // units.a_world + wet  # blocks beside walls
         slots = particles.worlds * particles.stride * particles.lanes
         below = slots if len(self.images) == 1 else 9 << PLACES  # an entry of periodic space has its image in front
-        self.near = Listing(arrays, units, "near", wet, crowd * wet, below)
-        self.beside = Listing(arrays, units, "beside", wet * self.pieces, room * (8 * few + 64), below)
-        self.facing = Listing(arrays, units, "facing", dry, crowd * dry, below)
+        ends = below, particles.stride * particles.lanes
+        self.near = Listing(arrays, units, "near", wet, crowd * wet, *ends)
+        self.beside = Listing(arrays, units, "beside", wet * self.pieces, room * (8 * few + 64), *ends)
+        self.facing = Listing(arrays, units, "facing", dry, crowd * dry, *ends)
         self.fixed_skin = SKIN[1] * order.grid.spacing  # m, of particles that move one by one
         self.travel = own.holding("travel", np.full(units.count, NEVER), "unit", kept=True)
         self.last, self.skin = own.reals((units.axis,), "last", "skin")
