@@ -76,9 +76,9 @@ class WallPush:
                     off = self.walls.lean.given(jb, lane, by_wall, a)
                     wall[a] = wall[a] - off
                     own_push[a] = own_push[a] - off
-                    if ti.static(self.poses.moving or self.bodies.moving):
+                    if ti.static(self.bodies.moving):
                         taken[1] = taken[1] - p.velocity[a][jb, lane] * off
-            if ti.static(self.poses.moving or self.bodies.moving):
+            if ti.static(self.bodies.moving):
                 taken[1] += more * dot([p.velocity[a][jb, lane] for a in ti.static(range(p.axes))], apart)
             if ti.static(self.walls.sticks):
                 slides = [self.walls.mirrored[a][jb, lane] - speed[a] for a in ti.static(range(p.axes))]
