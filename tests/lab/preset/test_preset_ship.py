@@ -26,6 +26,7 @@ from lab.report.plots import figures
 from lab.report.ship import describe
 from lab.runs.runner import run_preset
 from lab.sweeps.sweep import point_folder, run_sweep
+from solvers.machine.runtime import initialise
 from solvers.ship.hydrostatics import metacentric_height
 from solvers.ship.linear import oscillations
 from solvers.ship.motion import sail, start
@@ -217,6 +218,7 @@ SHIP = {
 
 def test_the_sea_in_a_picture():
     """Water below the wave that passes, deeper blue farther down, its line on it; the hull stands about the tank."""
+    initialise()
     waves = {"frequency": OMEGA, "amplitude": 0.02, "kind": "regular"}
     sea = Sea(from_table({**preset(), "ship": SHIP, "waves": waves}))
     assert sea.hull.min(axis=0) == pytest.approx([-0.17, -0.02])
