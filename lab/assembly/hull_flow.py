@@ -20,7 +20,7 @@ TO_STARBOARD = 0.5 * pi  # heading of waves that travel to starboard
 STEPS_A_WAVE = 6.0  # least number of panels in the length of a wave
 FREE = 0.8  # of the lowest frequency of standing waves inside the hull: below it there is no lid
 QUIET = {"_check_wavelength": False, "n_threads": 1}  # the mesh is as fine as the shortest wave asks
-LID = 0.2  # of the draught and of g/ω², depth of the lid; one at 0.4 disturbs roll (docs/physics/water.md)
+LID = 0.4  # of the draught and of g/ω², depth of the lid; it disturbs roll (docs/physics/water.md)
 
 
 def capytaine(key: str):
@@ -101,8 +101,7 @@ class Flow:
         """The hull, with a lid inside where standing waves within her would disturb the solution (John 1950).
 
         They are those of a surface of zero potential with water down to the hull, ω² = g k coth k T, and for a box
-        around her none is lower. Below the lid there are none; above it, at a depth d, none lower than √(g/d). A
-        lid at a third of the draught disturbs roll all the same.
+        around her none is lower. Below the lid there are none; above it, at a depth d, none lower than √(g/d).
         """
         length, breadth, draught = self.hull.box
         k = pi * np.hypot(1.0 / length, 1.0 / breadth)
