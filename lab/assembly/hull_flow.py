@@ -20,7 +20,7 @@ TO_STARBOARD = 0.5 * pi  # heading of waves that travel to starboard
 STEPS_A_WAVE = 6.0  # least number of panels in the length of a wave
 FREE = 0.8  # of the lowest frequency of standing waves inside the hull: below it there is no lid
 QUIET = {"_check_wavelength": False, "n_threads": 1}  # the mesh is as fine as the shortest wave asks
-LID = 0.4  # of the draught and of g/ω², depth of the lid; it disturbs roll (docs/physics/water.md)
+LID = 0.4  # of the draught and of g/ω², depth of the lid
 
 
 def capytaine(key: str):
