@@ -107,7 +107,8 @@ def swings(found: Found, swing: Sequence[float]) -> Figure:
         samples = round(CALM / (time[1] - time[0]))
         axes.plot(time, pressure, color=colour, lw=0.4, alpha=0.4)
         means = np.convolve(pressure, np.full(samples, 1.0 / samples), "valid")
-        axes.plot(time[samples // 2 :][: len(means)], means, color=colour, lw=1.2, label=f"{label}, means over {CALM} s")
+        middles = time[samples // 2 :][: len(means)]
+        axes.plot(middles, means, color=colour, lw=1.2, label=f"{label}, means over {CALM} s")
     time = np.linspace(0.0, 10.0, 400)
     size, phase, mean = swing
     for share in (0.9, 1.1):
