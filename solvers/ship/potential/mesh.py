@@ -19,7 +19,6 @@ KNUCKLE = np.radians(30.0)  # a sharper turn of the outline is kept as an edge b
 LEAST_PANELS = 4  # between two knuckles
 ROUND = 12  # panels in a right angle of a bilge: its roll is a small difference of large pressures
 SYMMETRIC = 1e-6  # of the hull's breadth
-INSIDE = 0.8  # of the hull's breadth and length: a lid whose edge lies within a panel of the hull disturbs the flow
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,10 +35,10 @@ class HullMesh:
     across: int
 
     def lid(self, depth: float) -> tuple[np.ndarray, np.ndarray]:
-        """Corners and panels of a level plane inside the hull, off its sides and ends, at a depth (m)."""
+        """Corners and panels of a level plane inside the hull at a depth (m)."""
         half = np.array([np.interp(-depth, ring[:, 1], ring[:, 0], left=0.0) for ring in self.rings])
-        y = INSIDE * half[:, None] * np.linspace(0.0, 1.0, self.across + 1)
-        place = np.broadcast_to(INSIDE * self.stations[:, None], y.shape)
+        y = half[:, None] * np.linspace(0.0, 1.0, self.across + 1)
+        place = np.broadcast_to(self.stations[:, None], y.shape)
         return _grid(np.stack([place, y, np.full(y.shape, -depth)], axis=-1), True)
 
     @property

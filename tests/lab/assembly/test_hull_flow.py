@@ -7,9 +7,7 @@ from math import pi
 import numpy as np
 import pytest
 
-from lab.assembly import hull_flow
 from lab.assembly.hull_flow import Flow
-from lab.assembly.hull_tables import whole_form
 from lab.assembly.scene import vessels
 from lab.assembly.ship import hull_table
 from lab.preset.find import load
@@ -104,18 +102,6 @@ def test_lid_takes_irregular_frequencies_away(library):
     damping = flow.table(frequency).damping[:, 2, 2]
     assert (damping > 0.0).all()
     assert (np.diff(damping) < 0.0).all()
-
-
-def test_a_lid_changes_nothing_where_there_is_nothing_to_take_away(library, monkeypatch):
-    """Roll of a hull with bilges, below its first irregular frequency: one that touched the hull put 7 % on damping."""
-    given = load("ship/anti-roll-tank", {"ship.hydrodynamics": "hull"}).resolved.ship
-    mesh, omega = (
-        hull_mesh(whole_form(given), given.draught, 0.65 * given.draught),
-        (WATER.gravity / given.draught) ** 0.5,
-    )
-    with_lid = Flow(mesh, 0.0, WATER).table([omega]).damping[0, 3, 3]
-    monkeypatch.setattr(hull_flow, "FREE", np.inf)
-    assert with_lid == pytest.approx(Flow(mesh, 0.0, WATER).table([omega]).damping[0, 3, 3], rel=0.02)
 
 
 def test_a_missing_library_is_told_in_one_sentence(monkeypatch):
