@@ -6,6 +6,7 @@ import taichi as ti
 from solvers.fluid.lists import Medium
 from solvers.fluid.phases.tension import Tension
 from solvers.fluid.state import INSIDE, SPRAY
+from solvers.fluid.surface.fullness import Fullness
 from solvers.fluid.walls.extrapolation import Extrapolation
 from solvers.fluid.walls.push import WallPush
 from solvers.machine.state import State
@@ -24,19 +25,31 @@ class Forces:
     Forces between pairs of particles are equal and opposite; those of dummies are booked on the tank. `lost` (units,)
     is the energy that viscosity has taken, `held` that which dummies have, `work` that which the walls have given, J
     per metre of thickness. What dummies have, they give back by compressing the water before them, see `Continuity`.
+    Powers are those of forces on the velocities of water and walls at the same time, that of the forces, so that each
+    is right to the second order of the step; velocities are kept up to half a step later, and `counted` adds that half.
     """
 
     def __init__(self, arrays: State, medium: Medium, walls: Extrapolation, load: Load, thickness: float):
         self.units, self.particles, self.shares = medium.units, medium.particles, medium.shares
         self.lists, self.constants, self.poses = medium.lists, medium.constants, medium.poses
-        self.beside, self.load, self.bodies = WallPush(medium, walls), load, medium.lists.bodies
+        self.fullness = Fullness(arrays, medium.particles, medium.constants)
+        self.beside, self.load = WallPush(medium, walls, self.fullness), load
+        self.bodies = medium.lists.bodies
         own = arrays.under("water.forces")
         self.counts = own.reals((medium.units.axis,), "lost", "held", "work", kind=own.exact)
         self.lost, self.held, self.work = self.counts
+        names = "lost_lately", "held_lately", "work_lately"  # the powers (W/m) of the last step
+        self.powers = own.reals((medium.units.axis,), *names, kind=own.exact)
+        self.sums = *self.counts, *self.powers
         self.order, self.outlines = medium.lists.order, medium.lists.order.layers
         self.tension = Tension(medium.particles, medium.constants)
         self.gradients = medium.constants.diffusion.renormalised
         self.thick = arrays.under("water").holding("thickness", np.array([thickness]), "one", own.exact)
+
+    def counted(self, behind: np.ndarray) -> list[np.ndarray]:
+        """`lost`, `held` and `work` (W,) J/m up to now, if the last kick was `behind` (W,) s ago."""
+        sums = [[f.to_numpy().reshape(len(behind), -1).sum(axis=1) for f in of] for of in (self.counts, self.powers)]
+        return [count + behind * power for count, power in zip(*sums, strict=True)]
 
     @ti.func
     def publish(self, u, t, kick, dt):
@@ -56,6 +69,8 @@ class Forces:
                 p.store(p.pressure, b, pressure)
             if ti.static(c.shifting.acts):
                 p.store(p.span_before, b, p.load(p.span, b))
+            if ti.static(c.tense):
+                self.tension.publish(b)
 
     @ti.func
     def publish_both(self, b, s):
@@ -87,10 +102,12 @@ class Forces:
         thick, during = self.thick[0], ti.cast(kick, self.particles.exact)
         self.lost[u] = self.lost[u] + shown[3] * during
         self.held[u] = self.held[u] + shown[4] * during
+        self.powers[0][u], self.powers[1][u] = shown[3], shown[4]
         if ti.static(self.poses.moving):
             w = self.units.world(u)
             power = dot([shown[0], shown[1], shown[2]], [self.poses.walls[3 + k][w] for k in ti.static(range(3))])
             self.work[u] = self.work[u] - power * during
+            self.powers[2][u] = 0.0 - power
         if ti.static(self.bodies.count > 0):
             for k in range(self.bodies.count):
                 load = [self.bodies.force[n][u, k] for n in ti.static(range(3))]
@@ -133,6 +150,7 @@ class Forces:
         if ti.static(c.shifting.acts):
             span = p.load(p.span_before, b)
         yy, yz, zz, lost, held = p.zeros(), p.zeros(), p.zeros(), p.zeros(), p.zeros()
+        fill = [p.zeros() for _ in ti.static(range(1 + p.axes))]  # Σ V ∇W of all, and the walls' trace, of `Fullness`
         for k in range(lists.near.first[u, listed], lists.near.first[u, listed + 1]):
             j = lists.near.slots[u, k]
             jb, lane = lists.block_of(j), lists.lane_of(j)
@@ -176,6 +194,8 @@ class Forces:
             weighted = [(weight * apart[a]) for a in ti.static(range(p.axes))]
             for a in ti.static(range(p.axes)):
                 push[a] += along * apart[a]
+                if ti.static(self.fullness.acts):
+                    fill[a] += weighted[a]
             if ti.static(self.gradients):
                 more = p.excess[jb, lane] - s
                 for a in ti.static(range(p.axes)):
@@ -188,12 +208,16 @@ class Forces:
             begin = listed * lists.pieces
             if ti.static(lists.pieces == 1):
                 ends = [lists.beside.first[u, begin], lists.beside.first[u, begin + 1]]
-                self.beside.push_off(u, b, ends, own, origin, speed, pressure, wall, own_push, shift, [lost, held])
+                self.beside.push_off(
+                    u, b, ends, own, origin, speed, pressure, wall, own_push, shift, fill, [lost, held]
+                )
             else:
                 for piece in range(lists.pieces):
                     ends = [lists.beside.first[u, begin + piece], lists.beside.first[u, begin + piece + 1]]
                     off = [p.zeros() for _ in ti.static(range(p.axes))]
-                    self.beside.push_off(u, b, ends, own, origin, speed, pressure, off, own_push, shift, [lost, held])
+                    self.beside.push_off(
+                        u, b, ends, own, origin, speed, pressure, off, own_push, shift, fill, [lost, held]
+                    )
                     for a in ti.static(range(p.axes)):
                         wall[a] += off[a]
                     if piece > 0 and ends[0] < ends[1]:
@@ -209,16 +233,32 @@ class Forces:
             gain = acceleration + p.filled(b) * ti.cast(self.poses.felt[a][self.units.world(u)], p.real)
             held = held - own_push[a] * (speed[a] + (0.5 * kick) * gain)
             lost = lost - drag[a] * ((0.5 * kick) * gain)
+        if ti.static(self.poses.moving and not self.bodies.moving):
+            wall_speed = self.walls_at(self.units.world(u), origin, own)
+            held += dot(own_push, wall_speed)
         if ti.static(c.tense):
             self.tension.note(b, [factor * inwards[a] for a in ti.static(range(p.axes))])
         if ti.static(c.shifting.acts):
             self.note_shift(b, shift, inwards, least, span)
         self.note_span(b, factor * yy, factor * yz, factor * zz, [factor * slope[a] for a in ti.static(range(p.axes))])
+        if ti.static(self.fullness.acts):
+            self.fullness.note(b, yy + zz + fill[p.axes], [fill[a] for a in ti.static(range(p.axes))])
         volume = p.load(p.volume, b) * factor
         total = self.beside.on_walls(b, origin, own, [volume * wall[a] for a in ti.static(range(p.axes))])
         total[3] = ti.cast((strength * volume * lost).sum(), p.exact)
         total[4] = ti.cast((volume * held).sum(), p.exact)
         return total
+
+    @ti.func
+    def walls_at(self, w, origin: ti.template(), own: ti.template()):
+        """The velocities (m/s) that the tank's wall would have at the places of a block, at the start of the step."""
+        p = self.particles
+        speed = [p.ones() * ti.cast(self.poses.walls[3 + a][w], p.real) for a in ti.static(range(p.axes))]
+        if ti.static(self.poses.rotating):
+            rate = ti.cast(self.poses.walls[5][w], p.real)
+            speed[0] = speed[0] - rate * (own[1] + ti.cast(origin[1], p.real))
+            speed[1] += rate * (own[0] + ti.cast(origin[0], p.real))
+        return speed
 
     @ti.func
     def note_shift(self, b, shift: ti.template(), inwards: ti.template(), least, span):

@@ -74,7 +74,7 @@ class WaterMatter(Matter):
         self.extrapolation = Extrapolation(arrays, medium, lean)
         self.forces = Forces(arrays, medium, self.extrapolation, self.load, tank.thickness)
         self.continuity, self.vent = Continuity(arrays, medium, self.forces), Vent(arrays, medium, water.air)
-        self.mover = Mover(arrays, medium, self.extrapolation, self.vent)
+        self.mover = Mover(arrays, medium, self.extrapolation, self.vent, self.forces.fullness)
         probes = [dummy[slot] + p.wet * lanes for slot in behind.probes]
         self.gauges = Gauges(arrays, p, self.constants, water.gauges, probes, behind.open)
         pool = Pool.of(scene, setting.walls, self.order)
@@ -192,7 +192,7 @@ class WaterMatter(Matter):
             whole = field.to_numpy().reshape(p.worlds, p.stride, p.lanes)
             whole[:, p.wet : p.wet + p.walls] = values
             field.from_numpy(whole.reshape(-1, p.lanes))
-        for field in (*self.forces.counts, self.continuity.lost, self.census.behind, self.lists.last):
+        for field in (*self.forces.sums, self.continuity.lost, self.census.behind, self.lists.last):
             field.fill(0.0)
         self.bodies.forget()
         self.lists.skin.fill(0.0)
@@ -210,8 +210,8 @@ class WaterMatter(Matter):
         now = [field.to_numpy() for field in self.census.now]
         down = np.stack(now[3:5], axis=1) / max(self.scene.gravity, 1e-300)
         potential = mass * self.scene.gravity * (now[5] - (centre * down).sum(axis=1)) + sums["pulled"]
-        counts = *self.forces.counts, self.continuity.lost
-        viscous, held, work, diffusive = (count.to_numpy().reshape(len(mass), -1).sum(axis=1) for count in counts)
+        viscous, held, work = self.forces.counted(self.census.behind.to_numpy())
+        diffusive = self.continuity.lost.to_numpy().reshape(len(mass), -1).sum(axis=1)
         rows = {
             **self.census.of_water(sums, mass, centre),
             "water_momentum": np.stack([sums["momentum_y"], sums["momentum_z"]], axis=1),

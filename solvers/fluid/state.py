@@ -89,7 +89,9 @@ class Particles:
             [self.span] if shifting.acts else []
         )  # of the step before, as the next one needs it
         if air and air.tension > 0.0:
-            self.stress = own.wide(each, "stress_yy", "stress_yz", "stress_zz")
+            stresses = "stress_yy", "stress_yz", "stress_zz"
+            self.stress = own.wide(each, *stresses)
+            self.stress_before = own.wide(each, *(f"{name}_before" for name in stresses), kept=False)
             self.noted += self.stress
         if self.two:
             (self.gas,) = own.wide(each, "gas")

@@ -70,7 +70,7 @@ def test_walls_work_on_the_water_of_a_moving_tank():
     work = end["water_work"] - start["water_work"]
     gain = end["water_total"] - start["water_total"]
     assert abs(work[0]) > 5.0 * abs(taken[0])  # else nothing was tried
-    np.testing.assert_allclose(gain + taken, work, atol=0.01 * abs(work[0]))
+    np.testing.assert_allclose(gain + taken, work, atol=2e-3 * abs(work[0]))
 
 
 def test_a_strained_drop_becomes_the_ellipse_of_theory():
