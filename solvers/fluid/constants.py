@@ -10,6 +10,7 @@ from solvers.fluid.phases.adiabatic import Adiabatic
 from solvers.fluid.phases.numbers import of_air
 from solvers.fluid.shifting import SHIFTING
 from solvers.fluid.states import STATES
+from solvers.fluid.surface.fullness import Fullness
 from solvers.fluid.viscosity import VISCOSITY
 from solvers.fluid.walls.layers import FIRM
 from solvers.machine.state import State
@@ -48,7 +49,6 @@ class Constants:
             "background": water.background,
             "thinnest": float(self.state.excess(-water.background / (water.density * sound**2))),
             "spread": water.delta * length * sound,  # δ h c0, m²/s
-            "relief": sound / length,  # of a drop's pressure, 1/s
             "strength": strength,
             "hydrostatic": gravity / sound**2,  # g/c0², 1/m
             "spacing": water.spacing,
@@ -62,6 +62,7 @@ class Constants:
             "pull_y": pull.centre[0] if pull else 0.0,
             "pull_z": pull.centre[1] if pull else 0.0,
         }
+        numbers |= Fullness.numbers(self.kernel, length, sound)
         self.two, self.gas = water.air is not None, Adiabatic()
         self.tense = self.two and water.air.tension > 0.0
         if self.two:

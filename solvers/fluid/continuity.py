@@ -4,7 +4,6 @@ import taichi as ti
 
 from solvers.fluid.forces import Forces
 from solvers.fluid.lists import Medium
-from solvers.fluid.state import SPRAY
 from solvers.machine.state import State
 from solvers.motion.poses import AT_MIDDLE
 from solvers.space.axes import dot
@@ -15,15 +14,12 @@ class Continuity:
     """dρ_i/dt = −ρ_i Σ V_j (u_j − u_i)·∇W + δ h c0 Σ V_j ψ·∇W (Antuono et al. 2010, eq. 6); the second sum over water.
 
     Of two phases, the second sum is over the own phase, and pairs of both have the weight of `solvers.fluid.phases`.
-    A drop under pressure with void all round is relieved by the rarefaction from its surface, at c0/h (own derivation):
-    spray (Marrone et al. 2010) that no wall holds has −(c0/h)(ρ − ρ0) added to its rate, and the energy counts as
-    diffused. Without it spray keeps the pressure of the hit that made it, and stays up like a gas. Not beside air,
-    which presses on drops, nor in full tanks, which have no spray.
+    Broken water bears no pressure, see `solvers.fluid.surface.fullness`.
 
-    `lost` (units,) J is the energy that diffusion has taken: −Σ m_i p_i/ρ_i² times its share of the rate (Antuono,
-    Marrone, Colagrossi & Bouscasse 2015, eq. 22), by the water's pressure in the middle of the step. What the water
-    before dummies takes (`Closing`), and what images of water take from air (`Sliding`), goes to `held` (units,) J. The
-    momentum that shifts carry is summed up over the same pairs.
+    `lost` (units,) J is the energy that diffusion and the relief of broken water have taken: −Σ m_i p_i/ρ_i² times
+    their share of the rate (Antuono, Marrone, Colagrossi & Bouscasse 2015, eq. 22), by the water's pressure in the
+    middle of the step. What the water before dummies takes (`Closing`), and what images of water take from air
+    (`Sliding`), goes to `held` (units,) J. The momentum that shifts carry is summed up over the same pairs.
     """
 
     def __init__(self, arrays: State, medium: Medium, forces: Forces):
@@ -32,7 +28,7 @@ class Continuity:
         own, self.sliding, self.held = arrays.under("water.continuity"), forces.beside.walls.sliding, forces.held
         (self.lost,) = own.reals((medium.units.axis,), "lost", kind=own.exact)
         self.closes = medium.particles.dry > 0 and not medium.constants.full
-        self.relieves = not (medium.constants.full or medium.constants.two)
+        self.fullness = forces.fullness
 
     @ti.func
     def expand(self, u, frame, kick, dt):
@@ -59,7 +55,7 @@ class Continuity:
         gas = p.gases(b)
         rest = [c.of("hydrostatic", gas) * self.down(w, a) for a in ti.static(range(p.axes))]
         opened, evened, walled, closed = p.zeros(), p.zeros(), p.zeros(), p.zeros()
-        slid, leant = p.zeros(), p.zeros()
+        slid = p.zeros()
         carried = [p.zeros() for _ in ti.static(range(p.axes))]
         shift = [p.zeros() for _ in ti.static(range(p.axes))]
         if ti.static(c.shifting.carries):
@@ -104,8 +100,6 @@ class Continuity:
                 weight = p.volume[jb, lane] * c.kernel.slope(t)
                 nearing = [p.velocity[a][jb, lane] - speed[a] for a in ti.static(range(p.axes))]
                 walled += weight * dot(nearing, apart)
-                if ti.static(self.relieves):
-                    leant += weight
                 if ti.static(self.closes):
                     closed += (p.volume[jb, lane] * p.rate[jb, lane]) * c.kernel.value(t)
                 if ti.static(self.sliding.acts):
@@ -116,9 +110,6 @@ class Continuity:
             closed = (1.0 - gas) * closed + gas * (c.get("slope") * slid)
         factor = c.get("slope")
         evened *= factor * c.of("spread", gas)
-        if ti.static(self.relieves):
-            pressed = ti.select(p.load(p.span, b) < SPRAY, ti.max(s, 0.0), p.zeros())
-            evened += -c.get("relief") * ti.select(leant * leant > 0.0, p.zeros(), pressed)
         rate, rate_of_walls = (1.0 + s) * (factor * opened) + evened, (1.0 + s) * (factor * walled + closed)
         p.store(p.rate, b, rate)
         p.store(p.rate_of_walls, b, rate_of_walls)
@@ -127,7 +118,11 @@ class Continuity:
             for a in ti.static(range(p.axes)):
                 p.store(p.carried[a], b, flux * carried[a])
         pressure, more = p.load(p.pressure, b), (0.5 * dt) * (rate + rate_of_walls)
-        if ti.static(c.two):
+        if ti.static(self.fullness.acts):
+            after = self.fullness.stepped(b, s, rate, rate_of_walls, p.ones() * dt)
+            evened += (after - s) * (1.0 / dt) - (rate + rate_of_walls)
+            pressure += (0.5 * c.get("stiffness")) * (c.state.share(after) - c.state.share(s))
+        elif ti.static(c.two):
             pressure += (1.0 - gas) * (c.get("stiffness") * more)
         else:
             pressure += c.get("stiffness") * (c.state.share(s + more) - c.state.share(s))

@@ -6,6 +6,7 @@ import taichi as ti
 from solvers.fluid.lists import Medium
 from solvers.fluid.phases.tension import Tension
 from solvers.fluid.state import INSIDE, SPRAY
+from solvers.fluid.surface.fullness import Fullness
 from solvers.fluid.walls.extrapolation import Extrapolation
 from solvers.fluid.walls.push import WallPush
 from solvers.machine.state import State
@@ -31,7 +32,9 @@ class Forces:
     def __init__(self, arrays: State, medium: Medium, walls: Extrapolation, load: Load, thickness: float):
         self.units, self.particles, self.shares = medium.units, medium.particles, medium.shares
         self.lists, self.constants, self.poses = medium.lists, medium.constants, medium.poses
-        self.beside, self.load, self.bodies = WallPush(medium, walls), load, medium.lists.bodies
+        self.fullness = Fullness(arrays, medium.particles, medium.constants)
+        self.beside, self.load = WallPush(medium, walls, self.fullness), load
+        self.bodies = medium.lists.bodies
         own = arrays.under("water.forces")
         self.counts = own.reals((medium.units.axis,), "lost", "held", "work", kind=own.exact)
         self.lost, self.held, self.work = self.counts
@@ -147,6 +150,7 @@ class Forces:
         if ti.static(c.shifting.acts):
             span = p.load(p.span_before, b)
         yy, yz, zz, lost, held = p.zeros(), p.zeros(), p.zeros(), p.zeros(), p.zeros()
+        fill = [p.zeros() for _ in ti.static(range(1 + p.axes))]  # Σ V ∇W of all, and the walls' trace, of `Fullness`
         for k in range(lists.near.first[u, listed], lists.near.first[u, listed + 1]):
             j = lists.near.slots[u, k]
             jb, lane = lists.block_of(j), lists.lane_of(j)
@@ -190,6 +194,8 @@ class Forces:
             weighted = [(weight * apart[a]) for a in ti.static(range(p.axes))]
             for a in ti.static(range(p.axes)):
                 push[a] += along * apart[a]
+                if ti.static(self.fullness.acts):
+                    fill[a] += weighted[a]
             if ti.static(self.gradients):
                 more = p.excess[jb, lane] - s
                 for a in ti.static(range(p.axes)):
@@ -202,12 +208,16 @@ class Forces:
             begin = listed * lists.pieces
             if ti.static(lists.pieces == 1):
                 ends = [lists.beside.first[u, begin], lists.beside.first[u, begin + 1]]
-                self.beside.push_off(u, b, ends, own, origin, speed, pressure, wall, own_push, shift, [lost, held])
+                self.beside.push_off(
+                    u, b, ends, own, origin, speed, pressure, wall, own_push, shift, fill, [lost, held]
+                )
             else:
                 for piece in range(lists.pieces):
                     ends = [lists.beside.first[u, begin + piece], lists.beside.first[u, begin + piece + 1]]
                     off = [p.zeros() for _ in ti.static(range(p.axes))]
-                    self.beside.push_off(u, b, ends, own, origin, speed, pressure, off, own_push, shift, [lost, held])
+                    self.beside.push_off(
+                        u, b, ends, own, origin, speed, pressure, off, own_push, shift, fill, [lost, held]
+                    )
                     for a in ti.static(range(p.axes)):
                         wall[a] += off[a]
                     if piece > 0 and ends[0] < ends[1]:
@@ -231,6 +241,8 @@ class Forces:
         if ti.static(c.shifting.acts):
             self.note_shift(b, shift, inwards, least, span)
         self.note_span(b, factor * yy, factor * yz, factor * zz, [factor * slope[a] for a in ti.static(range(p.axes))])
+        if ti.static(self.fullness.acts):
+            self.fullness.note(b, yy + zz + fill[p.axes], [fill[a] for a in ti.static(range(p.axes))])
         volume = p.load(p.volume, b) * factor
         total = self.beside.on_walls(b, origin, own, [volume * wall[a] for a in ti.static(range(p.axes))])
         total[3] = ti.cast((strength * volume * lost).sum(), p.exact)

@@ -74,7 +74,7 @@ class WaterMatter(Matter):
         self.extrapolation = Extrapolation(arrays, medium, lean)
         self.forces = Forces(arrays, medium, self.extrapolation, self.load, tank.thickness)
         self.continuity, self.vent = Continuity(arrays, medium, self.forces), Vent(arrays, medium, water.air)
-        self.mover = Mover(arrays, medium, self.extrapolation, self.vent)
+        self.mover = Mover(arrays, medium, self.extrapolation, self.vent, self.forces.fullness)
         probes = [dummy[slot] + p.wet * lanes for slot in behind.probes]
         self.gauges = Gauges(arrays, p, self.constants, water.gauges, probes, behind.open)
         pool = Pool.of(scene, setting.walls, self.order)

@@ -4,7 +4,8 @@ import taichi as ti
 
 from solvers.fluid.lists import Medium
 from solvers.fluid.phases.vent import Vent
-from solvers.fluid.state import DENSEST, DENSEST_AIR, DENSEST_SPRAY, INSIDE, SPRAY, THINNEST
+from solvers.fluid.state import DENSEST, DENSEST_AIR, DENSEST_SPRAY, INSIDE, THINNEST
+from solvers.fluid.surface.fullness import Fullness
 from solvers.fluid.walls.bodies import AT_END
 from solvers.fluid.walls.extrapolation import Extrapolation
 from solvers.machine.state import State
@@ -21,10 +22,10 @@ class Mover:
     (units,) m/s and `deviation` (units,), of the density, where DENSEST is the most, tell why a world was stopped.
     """
 
-    def __init__(self, arrays: State, medium: Medium, walls: Extrapolation, vent: Vent):
+    def __init__(self, arrays: State, medium: Medium, walls: Extrapolation, vent: Vent, fullness: Fullness):
         self.units, self.particles, self.shares = medium.units, medium.particles, medium.shares
         self.lists, self.constants, self.poses = medium.lists, medium.constants, medium.poses
-        self.walls, self.bodies, self.vent = walls, medium.lists.bodies, vent
+        self.walls, self.bodies, self.vent, self.fullness = walls, medium.lists.bodies, vent, fullness
         own = arrays.under("water.mover")
         self.fastest, self.deviation = own.reals((medium.units.axis,), "fastest", "deviation", kept=False)
 
@@ -65,10 +66,8 @@ class Mover:
         for b in range(first, end):
             filled = p.filled(b)
             gas = p.gases(b)
-            spray, step = p.load(p.span, b) + gas < SPRAY, dt * filled  # air is never spray
-            s = self.floored(spray, p.load(p.excess, b) + step * p.load(p.rate, b))
-            # Walls come last: spray that parts is still pushed off a wall that it nears.
-            s = self.floored(spray, s + step * p.load(p.rate_of_walls, b))
+            step = dt * filled
+            s = self.fullness.stepped(b, p.load(p.excess, b), p.load(p.rate, b), p.load(p.rate_of_walls, b), step)
             if ti.static(self.vent.acts):
                 s = self.vent.pass_through(w, b, gas, s)
             if ti.static(c.two):
@@ -101,20 +100,6 @@ class Mover:
         if not tame.sum() < 1e30:  # largest values may pass over what is no number, sums do not
             self.deviation[u] = tame.sum()
         return self.fastest[u] < c.get("fastest") and self.deviation[u] < DENSEST
-
-    @ti.func
-    def floored(self, spray, s):
-        """The excess of density, of spray at least that at which it bears no pressure; a full tank has no spray.
-
-        With the background's pressure p_b that is below the density at rest. There the elastic energy ∫ (p + p_b)/ρ² dρ
-        is least, so that what is floored gains none (own derivation); at ρ0 each step would give it p_b times the
-        volume by which it has spread.
-        """
-        found, c = s, self.constants
-        if ti.static(not c.full):
-            least = c.get("thinnest") if ti.static(c.pressed) else ti.cast(0.0, self.particles.real)
-            found = ti.select(spray, ti.max(s, least), s)
-        return found
 
     @ti.func
     def drift(self, w, b, filled, half, part: ti.template()):

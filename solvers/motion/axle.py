@@ -19,13 +19,14 @@ from solvers.motion.harmonic import soft_start
 from solvers.tank.load import Load
 
 OF_PERIOD = 2e-3  # of the shortest period: the longest step of an empty tank, to 7e-6 of that period
-APART = 16  # row length of arrays that are written for each world at each step
+APART = 32  # row length of arrays that are written for each world at each step
 # Entries of such a row: roll at the beginning of the next step, rate half a step before it, rate and acceleration then
 # as known from the last step; roll and rate in the middle of the step; roll, rate and acceleration that are felt at
 # its beginning; whether the tank has been let go; how far the mass has slid; work (J) of the load, of the slide,
-# against friction, against damping.
+# against friction, against damping, up to the last kick, half a step ago; what that half step adds to each.
 ROLL, RATE, RATE_NOW, RISE_NOW, MIDDLE, DURING, FELT, FELT_RATE, FELT_RISE, FREE, SLID, WORK = range(12)
 WORKS = 4
+LATELY = WORK + WORKS
 # Columns of the table of axles: the first nine are fields of `Axle`, the parameters of the slide follow.
 PLACE_Y, PLACE_Z, INERTIA, MOMENT, FRICTION, DAMPING, MASS, HEEL, RELEASE, SLIDE = range(10)
 
@@ -141,7 +142,7 @@ class OnAxle:
             "axle_moment": self.share * moment,
             "axle_slide": slid,
             "axle_energy": kinetic + potential,
-            "axle_works": state[:, WORK : WORK + WORKS],
+            "axle_works": state[:, WORK:LATELY] + state[:, LATELY : LATELY + WORKS],
         }
 
     @ti.func
@@ -223,6 +224,7 @@ class OnAxle:
         works = [during * pushed * mean, given, rubbed * mean, 2.0 * braked * mean * mean]
         for k in ti.static(range(WORKS)):
             self.row[w, WORK + k] = self.row[w, WORK + k] + works[k]
+            self.row[w, LATELY + k] = 0.5 * step / during * works[k]
 
     @ti.func
     def nothing(self):

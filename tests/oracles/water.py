@@ -123,6 +123,13 @@ class PlainWater:
         closed = np.where(pressed & (seen > 0.0), volume @ (over * gradient).sum(axis=2), 0.0)
         return self.liquid * (value @ (self.wall_volume * closed / np.maximum(seen, 1e-30)))
 
+    def fullness(self, r: np.ndarray, mass: np.ndarray, s: np.ndarray, plane: float) -> np.ndarray:
+        """½ Σ V (−W'/r) r² + b |Σ V ∇W| over water and dummies, b being `plane` (m)."""
+        both, volume = np.concatenate([r, self.wall]), np.append(self.volume(mass, s), self.wall_volume)
+        apart, _, _, gradient = self.between(r, both)
+        trace = (apart * gradient).sum(axis=2) @ volume
+        return 0.5 * trace + plane * np.linalg.norm(np.einsum("j,ija->ia", volume, gradient), axis=1)
+
     def rate(self, r, u, s, mass, slope, pressed) -> np.ndarray:
         """Rate of s, in the middle of a step at whose start dummies were `pressed`."""
         water, volume = self.water, self.volume(mass, s)

@@ -3,6 +3,7 @@
 import taichi as ti
 
 from solvers.fluid.lists import Medium
+from solvers.fluid.surface.fullness import Fullness
 from solvers.fluid.walls.extrapolation import Extrapolation
 from solvers.motion.poses import AT_START
 from solvers.space.axes import dot
@@ -12,9 +13,9 @@ from solvers.space.axes import dot
 class WallPush:
     """Forces of dummies on blocks of water, −Σ V_i V_w (p_i + p_w) ∇W and drag, whose reactions are the walls' load."""
 
-    def __init__(self, medium: Medium, walls: Extrapolation):
+    def __init__(self, medium: Medium, walls: Extrapolation, fullness: Fullness):
         self.particles, self.lists, self.constants = medium.particles, medium.lists, medium.constants
-        self.poses, self.bodies, self.walls = medium.poses, medium.lists.bodies, walls
+        self.poses, self.bodies, self.walls, self.fullness = medium.poses, medium.lists.bodies, walls, fullness
 
     @ti.func
     def push_off(
@@ -29,11 +30,12 @@ class WallPush:
         wall: ti.template(),
         own_push: ti.template(),
         shift: ti.template(),
+        fill: ti.template(),
         taken: ti.template(),
     ):
         """Add what the dummies of the entries between two `ends` of a list do to a block.
 
-        `taken` are the powers that viscosity and dummies take."""
+        `fill` are sums of `Fullness`, `taken` the powers that viscosity and dummies take."""
         p, c, lists = self.particles, self.constants, self.lists
         shrink, floor, strength, gas = c.get("shrink"), c.get("floor"), c.strength(), p.gases(b)
         squeezed = 1.0 + gas * p.load(p.excess, b)  # of air as heavy as before in less volume
@@ -53,6 +55,10 @@ class WallPush:
                 crowded = weight * c.shifting.crowded(c.get("shift_scale") * c.kernel.value(t))
                 for a in ti.static(range(p.axes)):
                     shift[a] += crowded * apart[a]
+            if ti.static(self.fullness.acts):
+                fill[p.axes] += weight * square
+                for a in ti.static(range(p.axes)):
+                    fill[a] += weight * apart[a]
             along = self.wall_pressure(jb, lane, gas, pressure) + c.clipped(pressure, gas)
             spring = p.volume[jb, lane] * c.hardness(square, p.firm[jb, lane], gas)
             if ti.static(c.two):

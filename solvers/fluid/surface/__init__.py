@@ -1,0 +1,1 @@
+"""What tells water that is packed from water that is broken."""

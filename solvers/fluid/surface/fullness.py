@@ -1,0 +1,107 @@
+"""Whether particles fill the room between them, and the pressure of those that do not."""
+
+import numpy as np
+import taichi as ti
+
+from solvers.fluid.state import SPRAY, Particles
+from solvers.machine.state import Axis, State
+from solvers.space.axes import dot
+
+PACKED = 0.93  # fullness from which on water bears pressure
+RAMP = 0.05  # of fullness, over which the relief grows to all of c0/h
+
+
+@ti.data_oriented
+class Fullness:
+    """F = ½ Σ V (−W'/r) r² + b |Σ V ∇W|, over water and dummies: 1 where water is packed, at its surface too.
+
+    The first sum is half the trace of the matrix of Randles & Libersky (1996); it is 1 within packed water and ½ at a
+    plane surface. What a plane cuts off is told by the second sum, and b, a length, is such that both are 1
+    together (own derivation). A drop alone has F = 0, a lattice that is stretched by 5 % in all directions 0.90.
+
+    Density that follows from the motion of neighbours keeps what a particle lacked when it parted: drops that come
+    together would count as pressed as soon as they are within 2 h, and stay that far apart. Water with voids bears
+    neither pressure nor suction, as cavitated water does not (Bleich & Sandler 1970): where F < PACKED, p is lost at
+    the rate c0/h, at which a void within reach relieves it (own derivation), all of it from F = PACKED − RAMP down, in
+    between in proportion. So it falls together until it is packed. The step is implicit, the energy counts as
+    diffused.
+    Spray (λ < SPRAY) bears no suction at all.
+
+    Limits: water that was broken is packed to within 1 − PACKED. A flat gap between two surfaces is not seen: both are
+    plane. Corners and tips, sharper than some 6 Δx, count as voids, though p is nearly zero there anyway. Not beside
+    air, which presses on drops, nor in full tanks, which have no voids.
+
+    Units: V m², W 1/m², r, b and h m.
+    """
+
+    def __init__(self, arrays: State, particles: Particles, constants):
+        self.particles, self.constants = particles, constants
+        self.acts = not (constants.full or constants.two)
+        if self.acts:
+            each = Axis("block", particles.worlds * particles.stride), Axis("lane", particles.lanes)
+            (self.fullness,) = arrays.under("water").wide(each, "fullness", kept=False)
+
+    @staticmethod
+    def numbers(kernel, length: float, sound: float) -> dict[str, float]:
+        """The constants of fullness, for a smoothing length (m) and a speed of sound (m/s)."""
+        return {
+            "relief": sound / length,
+            "plane": plane(kernel) * length,
+            "packed": PACKED,
+            "ramp": 1.0 / RAMP,
+        }
+
+    @ti.func
+    def note(self, b, trace, lean: ti.template()):
+        """Store the fullness of a block, from Σ V (−W'/r) r² and Σ V (−W'/r)(r_j − r_i) without the slope's factor."""
+        p, c = self.particles, self.constants
+        lacking = c.get("plane") * ti.sqrt(dot(lean, lean))
+        p.store(self.fullness, b, c.get("slope") * (0.5 * trace + lacking))
+
+    @ti.func
+    def stepped(self, b, s, rate, rate_of_walls, step):
+        """The excesses of density of a block after a `step` (s) with these rates (1/s)."""
+        p = self.particles
+        spray = p.load(p.span, b) + p.gases(b) < SPRAY  # air is never spray
+        # Walls come last: spray that parts is still pushed off a wall that it nears.
+        after = self.floored(spray, self.floored(spray, s + step * rate) + step * rate_of_walls)
+        if ti.static(self.acts):
+            rest = self.constants.get("thinnest") if ti.static(self.constants.pressed) else 0.0
+            after = after - self.share(b, step) * (after - rest)
+        return after
+
+    @ti.func
+    def share(self, b, step):
+        """The share of its pressure that a block loses in a step, implicitly."""
+        p, c = self.particles, self.constants
+        loose = ti.min(ti.max((c.get("packed") - p.load(self.fullness, b)) * c.get("ramp"), 0.0), 1.0)
+        lost = (c.get("relief") * loose) * step
+        return lost / (1.0 + lost)
+
+    @ti.func
+    def floored(self, spray, s):
+        """The excess of density, of spray at least that at which it bears no pressure; a full tank has no spray.
+
+        With the background's pressure p_b that is below the density at rest. There the elastic energy ∫ (p + p_b)/ρ² dρ
+        is least, so that what is floored gains none (own derivation); at ρ0 each step would give it p_b times the
+        volume by which it has spread.
+        """
+        found, c = s, self.constants
+        if ti.static(not c.full):
+            least = c.get("thinnest") if ti.static(c.pressed) else ti.cast(0.0, self.particles.real)
+            found = ti.select(spray, ti.max(s, least), s)
+        return found
+
+
+def plane(kernel) -> float:
+    """b/h: the mean, from a plane surface to the depth h, of what it makes half the trace lack over |Σ V ∇W|.
+
+    At a depth z it lacks ½ z w + ∫ w dz from z on, where w is the kernel's integral along the surface and |Σ V ∇W| = w.
+    """
+    step = 0.01
+    z = np.arange(0.0, 2.0 + step, step)
+    y = np.arange(-2.0, 2.0 + step, step)
+    across = step * kernel.printed(np.minimum(np.hypot(y[:, None], z[None]), 2.0), 1.0).sum(axis=0)
+    beyond = step * (across[::-1].cumsum()[::-1] - 0.5 * across)
+    shallow = z <= 1.0
+    return float((0.5 * z + beyond / np.maximum(across, 1e-30))[shallow].mean())
