@@ -170,8 +170,14 @@ class GrainMatter(Matter):
         check_state(rows["overlap"], rows["escaped"].astype(int), time)
 
     def refuse(self, world: int, time: float, dt: float) -> None:
-        """Raise BadState for a world that was stopped at `time` (s) since its grains are too fast for steps of dt."""
-        refuse_speed(world, self.grains.read()["velocity"][world], time, dt)
+        """Raise BadState for a world that was stopped at `time` (s) since its grains are too fast for steps of dt.
+
+        Beside water, which may have been the cause, only if they are.
+        """
+        velocity = self.grains.read()["velocity"][world]
+        fastest = np.linalg.norm(velocity, axis=1).max()
+        if self.scene.water is None or not fastest * dt < self.way_a_step.to_numpy()[0]:
+            refuse_speed(world, velocity, time, dt)
 
     def restlessness(self, rows: dict[str, np.ndarray]) -> np.ndarray:
         """Mean kinetic energy of a grain, spin included, in units of m g d, (W,)."""

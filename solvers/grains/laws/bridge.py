@@ -31,7 +31,7 @@ class Bridge(Capillary):
     Units: f₀ N, γ N/m, θ rad, R, s m, V m³, x a pure number.
     """
 
-    constants = ("bridge_pull", "bridge_range", "bridge_scale")
+    constants = ("bridge_pull", "bridge_range", "bridge_yield", "bridge_scale")
     needs = ("bridge_volume",)
 
     def range(self, between: Interface) -> float:
@@ -45,8 +45,8 @@ class Bridge(Capillary):
 
     @ti.func
     def prepare(self, c: ti.template(), stiffness, mass, radius, dt):
-        """f₀ (N), range (m), x/s (1/m)."""
-        return ti.Vector([c[0] * radius, c[1], c[2] * ti.sqrt(radius)])
+        """f₀ (N), range (m), 1/m_eff (1/kg), x/s (1/m)."""
+        return ti.Vector([c[0] * radius, c[1], 1.0 / mass, c[2] * ti.sqrt(radius)])
 
     @ti.func
     def profile(self, contacts: ti.template(), w, block, gap, reach):

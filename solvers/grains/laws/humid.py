@@ -39,7 +39,7 @@ class Humid(Capillary):
     Units: f₀ N, γ_s N/m, θ rad, R_eff, s, h and r_K m, V_m m³/mol, T K, H a pure number.
     """
 
-    constants = ("bridge_pull", "bridge_range")
+    constants = ("bridge_pull", "bridge_range", "bridge_yield")
     needs = ("humidity",)
 
     def range(self, between: Interface) -> float:
@@ -54,8 +54,8 @@ class Humid(Capillary):
 
     @ti.func
     def prepare(self, c: ti.template(), stiffness, mass, radius, dt):
-        """f₀ (N), range (m)."""
-        return ti.Vector([c[0] * radius, c[1]])
+        """f₀ (N), range (m), 1/m_eff (1/kg)."""
+        return ti.Vector([c[0] * radius, c[1], 1.0 / mass])
 
     @ti.func
     def profile(self, contacts: ti.template(), w, block, gap, reach):

@@ -13,7 +13,7 @@ from lab.studies.reproduce.estimates import Verdict
 from lab.studies.reproduce.runs import Outcome
 from lab.studies.reproduce.ships import low_sides
 from lab.studies.reproduce.ships.capsizes import swung
-from lab.studies.reproduce.ships.low_sides import low_ship, tell, tell_map
+from lab.studies.reproduce.ships.low_sides import low_ship, tell, tell_map, tell_tank
 from lab.studies.reproduce.ships.rolls import AMPLITUDE, FREQUENCY
 
 BREADTH, DRAUGHT, SIDE, HATCH = 0.34, 0.11, 0.03, 0.06  # m, SIDE above the water, half of the hatch
@@ -112,3 +112,15 @@ def test_survived_waves_above_capsizing_ones_are_named():
     assert low_sides._from([20.0, 30.0], [15.0, 25.0]) == "from 20 mm on, but for 25 mm"
     assert low_sides._from([20.0, 30.0], [15.0]) == "from 20 mm on"
     assert low_sides._from([], [15.0]) == "in none of these waves"
+
+
+def test_what_the_watch_stopped_is_neither_lost_nor_survived():
+    def run(size, status, flooded):
+        found = measures([np.nan], [flooded], np.nan)
+        return Outcome({AMPLITUDE: f"{size} mm", FREQUENCY: "4.4 rad/s"}, None, status, found, {})
+
+    runs = [run(15, "complete", np.nan), run(25, "stopped: too fast", np.nan), run(35, "complete", 5.0)]
+    told = tell_tank({"anti-roll tank": runs})
+    assert [row.ours for row in told.rows] == ["from 35 mm on; not known at 25 mm"]
+    points = [line for line in told.figure.axes[0].lines if len(line.get_xdata())]
+    assert [point.get_fillstyle() for point in points] == ["none", "left", "full"]

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import lab
-from lab.studies.reproduce.water import drag, measured, sinking, surfaces
+from lab.studies.reproduce.water import drag, measured, sinking, surfaces, wavemaker
 from tests.lab.studies.test_reproduce_water import judged, ran
 
 RECORD = "ciemito_flume/piston_motion.csv"
@@ -48,6 +48,27 @@ def test_the_surface_is_half_a_spacing_over_the_highest_particle_near():
     place = np.stack(np.meshgrid(side, 0.0019 + 0.0038 * np.arange(10)), axis=-1).reshape(1, -1, 2)
     one = ran("validation/wet-bed", frames_time=np.array([0.0]), frames_water_place=[place])
     np.testing.assert_allclose(surfaces.surface(one, 0, np.array([500.0, 900.0])), 38.0, atol=0.1)
+
+
+@pytest.mark.parametrize("kh", [0.2, 1.4, 4.0])
+def test_a_piston_makes_waves_of_the_height_that_the_closed_form_has(kh):
+    """Dean & Dalrymple (1991), eq. 6.26: far off 2 (cosh 2kh − 1)/(sinh 2kh + 2kh) of its way, with its speed."""
+    depth = 0.31
+    omega = np.sqrt(9.81 * kh / depth * np.tanh(kh))
+    far = 50.0 * depth
+    answer = wavemaker.transfer(np.array([omega]), depth, far)[0]
+    exact = 2.0 * (np.cosh(2.0 * kh) - 1.0) / (np.sinh(2.0 * kh) + 2.0 * kh)
+    np.testing.assert_allclose(answer * np.exp(1j * kh * far / depth), 1j * exact, rtol=1e-6)
+
+
+def test_water_that_a_piston_pushes_away_is_in_its_waves():
+    """Volume: a push by s raises s times the depth over the way that the wave has gone."""
+    depth, push = 0.31, 0.01
+    time = np.linspace(0.0, wavemaker.LONG, 2001)
+    moved = push * np.sin(0.5 * np.pi * np.clip(time / 2.0, 0.0, 1.0)) ** 2 * np.clip((40.0 - time) / 20.0, 0.0, 1.0)
+    distances = np.linspace(0.0, 12.0, 25)
+    rises = np.array([np.interp(5.0, *wavemaker.rise(time, moved, depth, one)) for one in distances])
+    assert np.trapezoid(rises, distances) == pytest.approx(np.interp(5.0, time, moved) * depth, rel=0.02)
 
 
 @given

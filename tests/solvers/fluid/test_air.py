@@ -9,9 +9,10 @@ from solvers.fluid.given import EXCESS, GAS, VELOCITY_Y, VELOCITY_Z, Air, Gauge,
 from solvers.fluid.phases.adiabatic import background
 from solvers.fluid.timestep import kinematic
 from solvers.fluid.viscosity import VISCOSITY
+from solvers.scene import Scene
 from solvers.simulation import Simulation
 from tests.oracles.air import PlainBoth, both, filled
-from tests.oracles.water import GRAVITY
+from tests.oracles.water import GRAVITY, box
 
 WIDTH, HEIGHT, DEPTH, ROWS = 0.32, 0.32, 0.16, 8
 TOLD = {"gauges": (Gauge((0.16, 0.0), 0.02), Gauge((-0.16, 0.28), 0.02)), "levels": (Level(0.0),), "edges": (0, 2)}
@@ -157,6 +158,22 @@ def test_other_ways_of_running_give_the_same(changes):
         other.close()
     tight = {"mixed": 5e-4, "f32": 3e-3}[changes["precision"]]
     np.testing.assert_allclose(place[1], place[0], atol=tight * made.water.spacing)
+
+
+@pytest.mark.slow
+def test_tension_keeps_momentum():
+    """A drop that is longer than wide, in periodic space: forces of both of a pair are of the same step."""
+    air = Air(100.0, 3.0, alpha=0.05, tension=1.0)
+    water = Water(1.0 / 24.0, 1.0, alpha=0.05, periodic=("y", "z"), air=air)
+    water = replace(water, background=background(air, water))
+    places = (np.indices((24, 24)).reshape(2, -1).T + 0.5) / 24.0
+    places[:, 0] -= 0.5
+    gas = np.hypot(places[:, 0] / 0.31, (places[:, 1] - 0.5) / 0.2) > 1.0
+    given = {"outline": box(1.0, 1.0), "gravity": 0.0, "water": water}
+    run = Simulation(Scene(np.zeros((1, 0)), **given, drops=filled(places, gas.astype(float), 1.0 / 576.0)), threads=1)
+    run.advance(300)
+    _, velocity, _, mass, *_ = held(run)
+    assert np.abs(mass @ velocity).max() < 1e-12 * (mass @ np.hypot(*velocity.T))
 
 
 @pytest.mark.slow

@@ -81,7 +81,31 @@ def test_contact_and_rupture_cost_the_work_of_the_bridge(elastic, share):
     assert np.all(rows["elastic"] == 0.0)
     for mass, effective, after in ((MASS / 2, RADIUS / 2, u[:, 1] - u[:, 0]), (MASS, RADIUS, v[:, 2])):
         lost = 0.5 * mass * (speed**2 - after**2)
-        assert lost == pytest.approx(work(law, effective), rel=1e-2 if share <= 1.0 else 5e-2)
+        assert lost == pytest.approx(work(law, effective), rel=1e-2 if share <= 1.0 else 5e-2, abs=0.0)
+        assert lost.mean() == pytest.approx(
+            work(law, effective), rel=8e-3, abs=0.0
+        )  # by predicted speeds 2 % too little
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("law", SLOW)
+def test_softened_grains_lose_the_work_of_a_bridge_in_the_mean(law):
+    """The way of a step is a hundred times the film, and 0.2 % of the energy is lost in it.
+
+    Ways by predicted speeds, which do not join where the speed changes, made a film yield more than twice its work.
+    """
+    speed = 2.5 * SLOW[law] if law == "humid" else SLOW[law]
+    laws = {"normal": "hertz", "tangential": "none", "gravity": 0.0, "cohesion": law, "stiffness_scale": 1e-3}
+    place = np.tile([[-2 * RADIUS, 0.5], [2 * RADIUS, 0.5], [0.3, 0.3]], (WORLDS, 1, 1))
+    run = simulation(place, RADIUS, box(1.0, 1.0), wet(), start_speed=speed, **laws)
+    launch(run, 2e-6 + np.arange(WORLDS) / WORLDS * speed * run.dt, speed, run.dt)
+    run.advance(int((4.0 * RANGE[law] / speed + 2e-6 / speed + 4e-3) / run.dt))
+    velocity = run.snapshot()["velocity"]
+    run.close()
+    pair, wall = velocity[:, 1, 0] - velocity[:, 0, 0], velocity[:, 2, 1]
+    for mass, effective, after in ((MASS / 2, RADIUS / 2, pair), (MASS, RADIUS, wall)):
+        lost = 0.5 * mass * (speed**2 - after**2)
+        assert lost.mean() == pytest.approx(work(law, effective), rel=5e-2, abs=0.0)
 
 
 def test_energy_is_conserved_while_a_bridge_exists(elastic):
@@ -140,7 +164,7 @@ def coefficients(**changes) -> list[float]:
 def test_asperities_prevent_bridges_in_dry_air():
     """Touching grains are at s = h on the line of smooth ones; drier than r_K = h they are dry."""
     smooth, reach = coefficients()
-    assert coefficients(asperities=0.6 * KELVIN) == pytest.approx([0.4 * smooth, 0.4 * reach])
+    assert coefficients(asperities=0.6 * KELVIN) == pytest.approx([0.4 * smooth, 0.4 * reach], rel=1e-6, abs=0.0)
     assert coefficients(asperities=1.01 * KELVIN) == [0.0, 0.0]
     assert coefficients(humidity=0.2)[0] == pytest.approx(smooth)  # as printed
 
@@ -183,7 +207,7 @@ def test_bridges_are_the_same_in_every_schedule_and_list(other, near):
     """To rounding; the short skin lists far less than a bridge reaches, and anew every few steps."""
     usual, found = clump(), clump(**other)
     assert np.abs(found["position"] - usual["position"]).max() < near
-    assert found["elastic"] == pytest.approx(usual["elastic"], rel=1e-7 if near < 1e-9 else 1e-2)
+    assert found["elastic"] == pytest.approx(usual["elastic"], rel=1e-7 if near < 1e-9 else 1e-2, abs=0.0)
 
 
 @pytest.mark.slow
@@ -220,4 +244,4 @@ def test_the_oscillation_on_a_bridge_bounds_the_step_of_tiny_grains(law):
     swings = [limit.step for limit in scene(tiny, law).step_limits() if "swing" in limit.reason]
     force, mass = pull(law, 0.0, tiny / 2), 0.5 * MASS * (tiny / RADIUS) ** 3
     depth = (force / hertz_stiffness(3.2e6 / (1 - 0.28**2) / 2, tiny / 2)) ** (2 / 3)
-    assert swings[0] == pytest.approx(2 * pi * sqrt(mass * depth / (1.5 * force)) / 36, rel=1e-9)
+    assert swings[0] == pytest.approx(2 * pi * sqrt(mass * depth / (1.5 * force)) / 36, rel=1e-9, abs=0.0)

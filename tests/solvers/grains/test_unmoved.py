@@ -1,8 +1,11 @@
 """Observations before the first step: they give the present state and do not change it."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from solvers.machine.errors import BadState
 from tests.oracles.scenes import box, material, simulation
 
 RADIUS, OVERLAP, SPEED = 3e-3, 2e-6, 0.05  # m, m, m/s
@@ -54,3 +57,17 @@ def test_observing_changes_nothing(pressed):
     *_, later, rest = pressed
     for name in rest.keys() - {"wall_force"}:  # a mean since the last look
         assert later[name].tobytes() == rest[name].tobytes(), name
+
+
+def test_grains_do_not_answer_for_water_that_stopped_a_world():
+    """Beside water they raise only if they are too fast; alone always."""
+    run = simulation([[[0.0, RADIUS]]], RADIUS, box(0.05, 0.05), material(young=1e7), velocity=[[[SPEED, 0.0]]])
+    grains, far = run.grains, RADIUS / SPEED
+    with pytest.raises(BadState, match="a grain moves at"):
+        grains.refuse(0, 0.0, run.dt)
+    grains.scene = replace(run.scene)
+    grains.scene.water = object()
+    grains.refuse(0, 0.0, run.dt)
+    with pytest.raises(BadState, match="a grain moves at"):
+        grains.refuse(0, 0.0, far)
+    run.close()

@@ -13,6 +13,11 @@ what its users take first. `mdbc`, its modified ones (English et al. 2022), extr
 the kernel reaches, at rest. Walls of later versions that slip freely are other templates, which not every build
 has; a build without them lets water fall freely.
 
+Built from its source by `make -f Makefile_cpu COMPILE_CHRONO=NO COMPILE_WAVEGEN=NO COMPILE_MOORDYNPLUS=NO
+USE_NATIVE_CPU_OPTIMIZATIONS=YES` (-O3 -ffast-math -march=native). `JSphCpu.cpp` alone makes some two thousand instances
+of its templates and compiles for the better part of an hour; of those that its `Interaction_Forces_ct` functions choose
+from, this case needs one kernel, one viscosity, no floating bodies, no shifting, `MDBC2_None`.
+
 Its time is the `Simulation Runtime` it prints, without loading; its processor time is the whole process's, in the
 same proportion.
 """

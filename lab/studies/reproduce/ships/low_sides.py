@@ -105,7 +105,7 @@ def tell_tank(found: Mapping[str, Sequence[Outcome]]) -> Told:
     figure, panels = canvas(WIDE, 1, len(found), sharey=True, squeeze=False)
     for axes, (name, runs) in zip(panels[0], found.items(), strict=True):
         for one in runs:
-            filled = "full" if _lost(one)[0] else "none"
+            filled = "full" if _lost(one)[0] else "left" if _cut(one) else "none"
             place = leading_number(one.setting[WAVES]), leading_number(one.setting[AMPLITUDE])
             axes.plot(*place, "o", ms=11, color=BLUE, fillstyle=filled)
             if when := _when(one):
@@ -115,10 +115,19 @@ def tell_tank(found: Mapping[str, Sequence[Outcome]]) -> Told:
         axes.margins(0.15)
         axes.grid(False)
     panels[0][0].set_ylabel("amplitude of the waves (mm)")
-    for label, filled in {"stands": "none", "lost, and when": "full"}.items():
+    for label, filled in {
+        "stands": "none",
+        "not known: stopped by the watch": "left",
+        "lost, and when": "full",
+    }.items():
         panels[0][0].plot([], [], "o", color=BLUE, fillstyle=filled, label=label)
-    figure.legend(loc=BELOW, ncols=2)
+    figure.legend(loc=BELOW, ncols=3)
     return Told(rows, figure)
+
+
+def _cut(one: Outcome) -> bool:
+    """Whether the watch has stopped her run before she was lost, so that it says nothing of that wave."""
+    return one.status != "complete" and not _lost(one)[0]
 
 
 def _when(one: Outcome) -> float | None:
@@ -128,13 +137,15 @@ def _when(one: Outcome) -> float | None:
 
 
 def _edge(runs: Sequence[Outcome], says: str) -> list[Row]:
-    """A row for each frequency: in which waves she is lost."""
+    """A row for each frequency: in which waves she is lost, and of which the watch has left nothing known."""
     rows = []
     for omega in sorted({leading_number(one.setting[WAVES]) for one in runs}):
         there = [one for one in runs if leading_number(one.setting[WAVES]) == omega]
         lost = [leading_number(one.setting[AMPLITUDE]) for one in there if _lost(one)[0] > 0]
-        stands = [size for one in there if (size := leading_number(one.setting[AMPLITUDE])) not in lost]
-        rows.append(observed(f"{omega:g} rad/s: {says}", "", _from(lost, stands), None))
+        cut = [leading_number(one.setting[AMPLITUDE]) for one in there if _cut(one)]
+        stands = [size for one in there if (size := leading_number(one.setting[AMPLITUDE])) not in (*lost, *cut)]
+        told = _from(lost, stands) + (f"; not known at {', '.join(f'{size:g}' for size in cut)} mm" if cut else "")
+        rows.append(observed(f"{omega:g} rad/s: {says}", "", told, None))
     return rows
 
 

@@ -16,6 +16,7 @@ from lab.report.plots import BELOW, BLUE, GREEN, VERMILION, canvas
 from lab.studies.reproduce.experiment import Found
 from lab.studies.reproduce.figures import SIZE
 from lab.studies.reproduce.runs import Outcome
+from lab.studies.reproduce.water import wavemaker
 from lab.studies.reproduce.water.measured import drawn, series
 
 BETWEEN = 0.0625  # s, two profiles
@@ -92,6 +93,32 @@ def crest_ratio(one: Outcome, asked: Sequence[float]) -> float:
     return float(np.mean(ours) / np.mean(_heights(read[0] - STARTED, read[2 + gauge], begin, end)))
 
 
+def crest_over_theory(one: Outcome, asked: Sequence[float]) -> float:
+    """The same over the heights that linear theory has for the piston's motion."""
+    gauge, begin, end = int(asked[0]), asked[1], asked[2]
+    time, depth = one.recording.series["time"], one.recording.series["level_depth"][:, 0, gauge]
+    ours = _heights(time, depth, begin, end)
+    return float(np.mean(ours) / np.mean(_heights(*linear(one, gauge), begin, end)))
+
+
+def theory_over_measured(one: Outcome, asked: Sequence[float]) -> float:
+    """Mean height of the waves of linear theory over the measured ones, as in `crest_ratio`."""
+    gauge, begin, end = int(asked[0]), asked[1], asked[2]
+    read = series(FLUME)
+    if read is None:
+        return np.nan
+    measured = _heights(read[0] - STARTED, read[2 + gauge], begin, end)
+    return float(np.mean(_heights(*linear(one, gauge), begin, end)) / np.mean(measured))
+
+
+def linear(one: Outcome, gauge: int) -> tuple[np.ndarray, np.ndarray]:
+    """Times (T,) s and rise (T,) m at a gauge by linear theory, of the piston as it moves in the run."""
+    preset, time = one.recording.preset, np.arange(0.0, 8.0, 0.01)
+    moved = preset.parts["piston"].history.history.motions["sway"].curve(time)
+    depth = float(np.asarray(preset.water.region)[:, 1].max())
+    return wavemaker.rise(time, moved, depth, list(preset.gauges.values())[gauge].y)
+
+
 def _heights(time: np.ndarray, rise: np.ndarray, begin: float, end: float) -> list[float]:
     edges = np.arange(begin, end + 1e-9, 1.0)
     return [float(np.ptp(rise[(time >= low) & (time < low + 1.0)])) for low in edges[:-1]]
@@ -101,6 +128,8 @@ NUMBERS = {
     "first_profile": ("s", first_time),
     "profile_off": ("mm", profile_off),
     "crest_ratio": ("1", crest_ratio),
+    "crest_over_theory": ("1", crest_over_theory),
+    "theory_over_measured": ("1", theory_over_measured),
 }
 
 
@@ -131,9 +160,11 @@ def waves(found: Found) -> Figure:
             rows = outcomes[0].recording.series
             depth = rows["level_depth"][:, 0, gauge]
             axes.plot(rows["time"], 1e3 * (depth - depth[0]), color=colour, lw=1.0, label=label)
+        when, rise = linear(next(iter(found.values()))[0], gauge)
+        axes.plot(when, 1e3 * rise, color="0.4", lw=0.8, ls="--", label="linear theory")
         if (read := drawn(axes, FLUME)) is not None:
             axes.plot(read[0] - STARTED, 1e3 * read[2 + gauge], "o", ms=1.8, color="black", label="measured")
         axes.set(xlim=(0.0, 7.0), ylabel=f"rise at L{gauge + 1} (mm)")
     panels[-1].set_xlabel("time (s)")
-    drawing.legend(*panels[0].get_legend_handles_labels(), loc=BELOW, ncols=3)
+    drawing.legend(*panels[0].get_legend_handles_labels(), loc=BELOW, ncols=4)
     return drawing

@@ -18,6 +18,7 @@ from lab.studies.reproduce.water.measured import drawn
 
 NEAR = 0.3  # s about a measured turn, where ours is sought
 EARLY = 0.8  # s: the first trough comes before
+CALM = 0.2  # s: means over it show the slow swing under the sound that rings in the tank
 GAUGE = 0  # the wall at which the water falls first, as in the experiment
 SWAY, PITCH = (
     "sloshing_sway_rectangular/faltinsen2000_h0.6_T1.3.csv",
@@ -102,7 +103,12 @@ def swings(found: Found, swing: Sequence[float]) -> Figure:
     """The pressure beside a sine of so many kPa, so many deg ahead of the tank, about so many kPa."""
     drawing, axes = canvas(SIZE)
     for (label, outcomes), colour in zip(found.items(), COLOURS, strict=False):
-        axes.plot(*_pressure(outcomes[0]), color=colour, lw=1.0, label=label)
+        time, pressure = _pressure(outcomes[0])
+        samples = round(CALM / (time[1] - time[0]))
+        axes.plot(time, pressure, color=colour, lw=0.4, alpha=0.4)
+        means = np.convolve(pressure, np.full(samples, 1.0 / samples), "valid")
+        middles = time[samples // 2 :][: len(means)]
+        axes.plot(middles, means, color=colour, lw=1.2, label=f"{label}, means over {CALM} s")
     time = np.linspace(0.0, 10.0, 400)
     size, phase, mean = swing
     for share in (0.9, 1.1):
