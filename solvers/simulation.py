@@ -64,7 +64,7 @@ class Simulation:
         # Per grain all worlds share a step, and one would depend on the others.
         alone = self.arch == "cpu" and (self.schedule_name != "per-grain" or worlds == 1)
         self.stretch = stretch if alone else 1
-        self.steps, self.room, self.vectors = 0, 1, wide.pays()
+        self.steps, self.room, self.vectors, self.among = 0, 1, wide.pays(), worlds  # `among`: worlds at the start
         self.simple = scene.shapes is None and scene.water is None  # short kernels
         self.origin, self.unkicked = 0.0, 0  # time (s) of the tank's motion at step 0; the first step since the launch
         self._build()
@@ -82,7 +82,7 @@ class Simulation:
         self.carrier = make_carrier(arrays, scene, self.dt)
         cut = self.units_a_world, self.schedule_name == "per-grain"
         pieces = len(scene.tanks) + len(scene.parts) + bool(len(scene.fixed))
-        lists = self.skin, self.room, self.stretch, self.vectors
+        lists = self.skin, self.room, self.stretch, self.vectors, self.among
         setting = Setting(arrays, worlds, *cut, self.walls, pieces, scene.shares, self.carrier, *lists)
         made = (make(scene, setting) for make in MATTERS)
         self.matters = {matter.name: matter for matter in made if matter}
@@ -302,7 +302,7 @@ class Simulation:
 
     def state(self) -> dict[str, np.ndarray]:
         """The complete state, from which `restore` continues bit for bit."""
-        cut = self.units_a_world, list(SCHEDULES).index(self.schedule_name), self.vectors
+        cut = self.units_a_world, list(SCHEDULES).index(self.schedule_name), self.vectors, self.among
         numbers = np.array([self.steps, self.room, self.unkicked, self.observed, *cut])
         own = {"numbers": numbers, "origin": np.array(self.origin)}
         return own | self._of_matters() | self.means | self.arrays.read()
@@ -311,18 +311,18 @@ class Simulation:
         """The axes of all that `state` tells, by its names."""
         world = Axis("world", self.scene.worlds)
         means = {name: (world, *(Axis("component", size) for size in m.shape[1:])) for name, m in self.means.items()}
-        own = {"numbers": (Axis("number", 7),), "origin": (), **means}
+        own = {"numbers": (Axis("number", 8),), "origin": (), **means}
         own |= {name: axes for matter in self.matters.values() for name, axes in matter.axes().items()}
         return own | self.arrays.axes()
 
     def restore(self, state: dict[str, np.ndarray]) -> None:
         """Restore what `state` returned in a simulation of the same scene, on whatever processor."""
         self.steps, room, self.unkicked, self.observed, *cut = (int(number) for number in state["numbers"])
-        units, schedule, vectors = (*cut, self.vectors)[:3]  # older states lack the last
+        units, schedule, vectors, among = (*cut, self.vectors, self.among)[:4]  # older states lack the last
         self.origin, self.means = float(state["origin"]), {name: np.array(state[name]) for name in self.means}
-        if (room, units, vectors) != (self.room, self.units_a_world, self.vectors):
+        if (room, units, vectors, among) != (self.room, self.units_a_world, self.vectors, self.among):
             self.arrays.release()
-            self.room, self.units_a_world, self.vectors = room, units, bool(vectors)
+            self.room, self.units_a_world, self.vectors, self.among = room, units, bool(vectors), among
             self.schedule_name = list(SCHEDULES)[schedule]
             self._build()
         self.arrays.write(state)

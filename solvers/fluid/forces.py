@@ -59,6 +59,8 @@ class Forces:
                 p.store(p.pressure, b, pressure)
             if ti.static(c.shifting.acts):
                 p.store(p.span_before, b, p.load(p.span, b))
+            if ti.static(c.tense):
+                self.tension.publish(b)
 
     @ti.func
     def publish_both(self, b, s):

@@ -55,11 +55,11 @@ class Lists:
         wet, dry = (-(-blocks // units.a_world) for blocks in (particles.wet, max(particles.dry, 1)))
         crowd = room * self._crowd(order.grid.lanes, constants.smoothing)
         few = 4 * particles.dry * particles.lanes // units.a_world + wet  # blocks beside walls
-        slots = particles.worlds * particles.stride * particles.lanes
-        below = slots if len(self.images) == 1 else 9 << PLACES  # an entry of periodic space has its image in front
-        self.near = Listing(arrays, units, "near", wet, crowd * wet, below)
-        self.beside = Listing(arrays, units, "beside", wet * self.pieces, room * (8 * few + 64), below)
-        self.facing = Listing(arrays, units, "facing", dry, crowd * dry, below)
+        slots = particles.stride * particles.lanes  # of a world
+        ends = particles.worlds * slots if len(self.images) == 1 else 9 << PLACES, slots  # an image stands in front
+        self.near = Listing(arrays, units, "near", wet, crowd * wet, *ends)
+        self.beside = Listing(arrays, units, "beside", wet * self.pieces, room * (8 * few + 64), *ends)
+        self.facing = Listing(arrays, units, "facing", dry, crowd * dry, *ends)
         self.fixed_skin = SKIN[1] * order.grid.spacing  # m, of particles that move one by one
         self.travel = own.holding("travel", np.full(units.count, NEVER), "unit", kept=True)
         self.last, self.skin = own.reals((units.axis,), "last", "skin")

@@ -44,7 +44,7 @@ class WaterMatter(Matter):
 
     def __init__(self, scene, setting: Setting):
         water: Water = scene.water
-        self.scene, self.water = scene, water
+        self.scene, self.water, self.drops = scene, water, scene.drops
         arrays, worlds, tank, count = setting.arrays, setting.worlds, scene.tanks[0], scene.drops.shape[1]
         alone = not scene.radius.shape[1]  # kernels that hold grains' as well cannot be on real vectors: Taichi aborts
         lanes = LANES if alone and not setting.per_particle else 1
@@ -55,11 +55,11 @@ class WaterMatter(Matter):
         self.bodies = Bodies(arrays, scene.parts, water, tank, worlds, lanes)
         self.nearing = self.bodies.fastest
         walls = (len(blocks) + self.bodies.rows) * lanes
-        self.drops = scene.drops
         self.gas = scene.drops[..., GAS] if water.air else np.zeros(scene.drops.shape[:2])
         of_air, shifting = count - int(self.gas[0].sum()), SHIFTING[water.shifting]  # particles of air come last
         self.phases = {"water": slice(0, of_air)} | ({"air": slice(of_air, None)} if water.air else {})
-        self.particles = p = Particles(arrays, worlds, count, lanes, walls, grid.strips, shifting, water.air)
+        sizes = worlds, count, lanes, walls, grid.strips
+        self.particles = p = Particles(arrays, *sizes, shifting, water.air, setting.among)
         self.units = units = setting.units(p.wet)
         self.load = setting.load(arrays.under("water"), units)
         self.load.lag(answer_at_rest(scene, behind), water.added_mass == "layer")

@@ -42,7 +42,8 @@ class Particles:
     of air, 0 for those of water, `span` is of the own phase, and dummies have the pressure that water sees in
     `pressure`, that which air sees in `pressure_of_air`, and the water's `share` of what they see.
 
-    With `lanes` 1, for processors that move each particle by a thread of its own, a block is a particle.
+    With `lanes` 1, for processors that move each particle by a thread of its own, a block is a particle. The usual room
+    is shared `among` so many worlds, 0: those that there are.
     """
 
     axes = PLANE
@@ -57,11 +58,12 @@ class Particles:
         strips: int,
         shifting,
         air: Air | None = None,
+        among: int = 0,
     ):
         self.worlds, self.count, self.lanes = worlds, count, lanes
         self.real, self.exact, self.where = arrays.real, arrays.exact, arrays.place
         sizes = count, count if lanes == 1 else int(SPARE * -(-count // lanes)) + 2 * strips, -(-walls // lanes)
-        self.wet = roomy(sizes[WET], roomy(1, ROOM // lanes // worlds))
+        self.wet = roomy(sizes[WET], roomy(1, ROOM // lanes // (among or worlds)))
         self.walls = sizes[DRY]
         self.dry = roomy(self.walls, roomy(1, int(BESIDE * (self.wet * lanes) ** 0.5) // lanes)) if walls else 0
         self.stride = self.wet + self.dry
@@ -87,7 +89,9 @@ class Particles:
             [self.span] if shifting.acts else []
         )  # of the step before, as the next one needs it
         if air and air.tension > 0.0:
-            self.stress = own.wide(each, "stress_yy", "stress_yz", "stress_zz")
+            stresses = "stress_yy", "stress_yz", "stress_zz"
+            self.stress = own.wide(each, *stresses)
+            self.stress_before = own.wide(each, *(f"{name}_before" for name in stresses), kept=False)
             self.noted += self.stress
         if self.two:
             (self.gas,) = own.wide(each, "gas")
@@ -250,10 +254,16 @@ class Shares:
 
 @ti.data_oriented
 class Listing:
-    """One list for each block of a unit: `slots[u, first[u, b]]` to `slots[u, first[u, b + 1] - 1]`, b from 0."""
+    """One list for each block of a unit: `slots[u, first[u, b]]` to `slots[u, first[u, b + 1] - 1]`, b from 0.
 
-    def __init__(self, arrays: State, units: Units, name: str, blocks: int, capacity: int, below: int):
+    What is saved of a world is counted from its first slot, so that it may go on under another number.
+    """
+
+    def __init__(
+        self, arrays: State, units: Units, name: str, blocks: int, capacity: int, below: int, slots_a_world: int
+    ):
         self.capacity = capacity
         own = arrays.under(f"water.{name}")
         (self.first,) = own.integers((units.axis, Axis("begin", blocks + 1)), "first", below=capacity + 1)
-        (self.slots,) = own.integers((units.axis, Axis("entry", capacity)), "slots", below=below)
+        base = slots_a_world * (np.arange(units.axis.length) // units.a_world)
+        (self.slots,) = own.integers((units.axis, Axis("entry", capacity)), "slots", below=below, base=base)

@@ -78,7 +78,7 @@ class Array:
     @property
     def offset(self) -> np.ndarray | int:
         """The base, in the shape in which `read` subtracts it."""
-        return 0 if self.base is None else self.base.astype(np.int32).reshape(-1, 1, 1)
+        return 0 if self.base is None else self.base.astype(np.int32).reshape(-1, *[1] * (len(self.shape) - 1))
 
 
 def roomy(wanted: int, usual: int) -> int:
@@ -111,11 +111,11 @@ class Scope:
         return [self._declare(name, Array(ti.field(kind or self.real), axes, kept=kept)) for name in self._free(names)]
 
     def integers(
-        self, axes: Axes, *names: str, across: bool = False, kept: bool = True, below: int | None = None
+        self, axes: Axes, *names: str, across: bool = False, kept: bool = True, below: int | None = None, base=None
     ) -> list[ti.Field]:
-        """Fields of 32-bit integers; indices into other arrays are less than `below`, which `write` checks."""
+        """Fields of 32-bit integers; indices into other arrays are `below`, and saved from their row's `base` on."""
         return [
-            self._declare(name, Array(ti.field(ti.i32), axes, across, kept, below=below)) for name in self._free(names)
+            self._declare(name, Array(ti.field(ti.i32), axes, across, kept, base, below)) for name in self._free(names)
         ]
 
     def vectors(
@@ -240,9 +240,9 @@ class State(Scope):
         """Restore what `read` returned from the same declarations. Raises KeyError for a missing array.
 
         Every index must lie in the array that it points into, since a kernel would access other memory otherwise. An
-        index vector may hold invalid entries that are not in use, in a world that was read under another number: these
-        are set to zero. An invalid index in a scalar field raises ValueError, as a wrong shape does, before anything is
-        written.
+        index vector, or a field with a base, may hold invalid entries that are not in use, in a world that was read
+        under another number: these are set to zero. An invalid index in another field raises ValueError, as a wrong
+        shape does, before anything is written.
         """
         whole = {name: self._checked(name, array, contents[name]) for name, array in self._kept()}
         for name, array in self._kept():
@@ -255,7 +255,7 @@ class State(Scope):
         places, below = np.ascontiguousarray(values + array.offset), array.below
         if below is None or not places.size or 0 <= places.min() <= places.max() < below:
             return places
-        if not hasattr(array.field, "n") and not array.blocks:
+        if not hasattr(array.field, "n") and not array.blocks and array.base is None:
             raise ValueError(f"array {name} has numbers that are no places")
         return np.where((places >= 0) & (places < below), places, 0).astype(places.dtype)
 

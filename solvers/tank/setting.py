@@ -16,7 +16,8 @@ class Setting:
 
     A world is cut into `bands`, or with `per_particle` into single particles. `shares` (W, pieces) are the factors with
     which the carrier responds to the load on each piece (`Load`). Lists have a `skin` (m) and `room` times the usual
-    length. Steps are up to `stretch` base steps long. `vectors`: blocks may be as wide as registers of 512 bits.
+    length, and what is usual of water is shared `among` so many worlds. Steps are up to `stretch` base steps long.
+    `vectors`: blocks may be as wide as registers of 512 bits.
     """
 
     arrays: State
@@ -31,6 +32,7 @@ class Setting:
     room: int = 1
     stretch: int = 1
     vectors: bool = False
+    among: int = 0
 
     def units(self, count: int, more: int = 0) -> Units:
         """The units of a matter of `count` particles in each world, and `more` that do not move."""

@@ -73,4 +73,5 @@ TELLS: Mapping[str, Callable[[Found], Told]] = {
     "map with a tank": low_sides.tell_tank,
     "convergence": prismatic.convergence,
     "thirty seconds": prismatic.thirty_seconds,
+    "repeated impacts": impact.repeats,
 }

@@ -27,18 +27,25 @@ class Tension:
         self.particles, self.constants = particles, constants
 
     @ti.func
+    def publish(self, b):
+        """Let the neighbours of a block see its stresses of the step before, while it notes those of this step."""
+        p = self.particles
+        for k in ti.static(range(3)):
+            p.store(p.stress_before[k], b, p.load(p.stress[k], b))
+
+    @ti.func
     def load(self, b, stress: ti.template()):
         """Add the stresses (N/m) of a block, yy, yz and zz, to `stress`."""
         for k in ti.static(range(3)):
-            stress[k] += self.particles.load(self.particles.stress[k], b)
+            stress[k] += self.particles.load(self.particles.stress_before[k], b)
 
     @ti.func
     def add(self, own: ti.template(), jb, lane, weight, apart: ti.template(), push: ti.template()):
         """Add what the stresses of a block, `own`, and of a neighbour do to the block's sums `push`."""
         p = self.particles
-        yy = own[0] + p.stress[0][jb, lane]
-        yz = own[1] + p.stress[1][jb, lane]
-        zz = own[2] + p.stress[2][jb, lane]
+        yy = own[0] + p.stress_before[0][jb, lane]
+        yz = own[1] + p.stress_before[1][jb, lane]
+        zz = own[2] + p.stress_before[2][jb, lane]
         push[0] = push[0] - weight * (yy * apart[0] + yz * apart[1])
         push[1] = push[1] - weight * (yz * apart[0] + zz * apart[1])
 

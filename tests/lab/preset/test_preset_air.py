@@ -1,6 +1,7 @@
 """Air in presets: what follows from its keys, how it lies over the water, and one sentence for what cannot be."""
 
 import tomllib
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from lab.preset.recorded import from_table, to_table
 from lab.preset.schema import Preset, resolve
 from lab.preset.sections.water.liquid import liquid
 from solvers.fluid.given import EXCESS, GAS, VOLUME, Y, Z
-from solvers.fluid.phases.adiabatic import Adiabatic
+from solvers.fluid.phases.adiabatic import Adiabatic, background
 from solvers.fluid.start.air import hydrostatic_air
 from tests.oracles.presets import error_of
 
@@ -105,11 +106,12 @@ def test_what_cannot_be_is_one_sentence_with_its_key(overrides, key):
 
 
 def test_air_bears_suction_unless_the_preset_says_else():
-    """A background pressure of 0.3 ρ c²/1.4 of the air, at most 0.02 ρ c² of the water; none without air."""
+    """A background pressure of 0.3 ρ c²/1.4 of the air, at most ρ U² or 0.02 ρ c² of the water; none without air."""
     sound = liquid(airy()).sound_speed
     assert liquid(airy()).background == pytest.approx(0.3 * 1.2 * sound**2 / 1.4)
     real = airy(air__sound_speed="real", water__sound_speed="12 m/s")
-    assert liquid(real).background == pytest.approx(0.02 * 1000.0 * 12.0**2)
+    assert liquid(real).background == pytest.approx(1000.0 * liquid(real).speed ** 2)
+    assert background(liquid(real).air, replace(liquid(real), speed=0.0)) == pytest.approx(0.02 * 1000.0 * 12.0**2)
     assert liquid(airy(water__background_pressure="0 Pa")).background == 0.0
     assert liquid(airy(air=False)).background == 0.0
     taut = airy(air__surface_tension="1 N/m")

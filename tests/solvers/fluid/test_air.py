@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from solvers.fluid.given import EXCESS, GAS, VELOCITY_Y, VELOCITY_Z, Gauge, Level, Water
+from solvers.fluid.given import EXCESS, GAS, VELOCITY_Y, VELOCITY_Z, Air, Gauge, Level, Water
+from solvers.fluid.phases.adiabatic import background
 from solvers.fluid.timestep import kinematic
 from solvers.fluid.viscosity import VISCOSITY
 from solvers.simulation import Simulation
@@ -101,6 +102,24 @@ def test_water_rests_under_air():
     middle = 0.5 * (state["water_place"][0, :, 1].max() + state["air_place"][0, :, 1].min())
     assert abs(middle - DEPTH) < 0.5 * spacing
     assert state["air_place"].shape[1] == gas.sum()
+
+
+def test_a_gauge_at_the_surface_does_not_show_the_background():
+    """Water sloshes under real air, its sound faster than it needs: a gauge at the still level shows no suction."""
+    air, speed = Air(sound_speed=343.0, alpha=0.1), np.sqrt(GRAVITY * DEPTH)
+    water = Water(DEPTH / ROWS, 46.5, air=air, speed=speed)
+    gauges = (*TOLD["gauges"], Gauge((-0.5 * WIDTH, DEPTH), 0.02))
+    more = {"sound_speed": 46.5, "speed": speed, "gauges": gauges, "background": background(air, water)}
+    made = scene(air={"sound_speed": 343.0, "alpha": 0.1}, **more)
+    k, (y, z) = np.pi / WIDTH, made.drops[0, :, :2].T
+    wet = made.drops[0, :, GAS] < 0.5
+    made.drops[0, wet, VELOCITY_Y] = 0.2 * (np.cos(k * y) * np.cosh(k * z) / np.sinh(k * DEPTH))[wet]
+    made.drops[0, wet, VELOCITY_Z] = 0.2 * (np.sin(k * y) * np.sinh(k * z) / np.sinh(k * DEPTH))[wet]
+    run, shown = Simulation(made, threads=1, arch="cpu"), []
+    for step in range(1, 7):
+        run.advance(round(0.02 * step / run.dt) - run.steps)
+        shown.append(run.observe()["gauge_pressure"][0])
+    assert np.min(shown, axis=0)[2] > -0.15 * 1000.0 * GRAVITY * DEPTH
 
 
 def test_closed_air_follows_water_and_walls():

@@ -6,6 +6,8 @@ import pytest
 from solvers.fluid.checks import residual
 from solvers.fluid.given import EXCESS, VELOCITY_Y, VELOCITY_Z, VOLUME, Gauge, Level
 from solvers.fluid.surface.fullness import PACKED, RAMP
+from solvers.machine.state import without_worlds
+from solvers.scene import Scene
 from solvers.simulation import Simulation
 from tests.oracles.water import GRAVITY, PlainWater, still
 
@@ -187,3 +189,19 @@ def test_tanks_of_other_sizes_share_compiled_kernels(run):
     assert shapes[0] == shapes[1]
     assert other.scene.particles != run.scene.particles
     other.close()
+
+
+def test_worlds_go_on_when_one_leaves():
+    """With the same bits, although they are counted anew and lists of neighbours hold places in all worlds."""
+    scenes = [disturbed(seed) for seed in (4, 5, 6)]
+    whole = Simulation(Scene.joined(scenes), threads=1, arch="cpu")
+    whole.advance(20)
+    state, axes = whole.state(), whole.axes()
+    whole.advance(15)
+    place = whole.snapshot()["water_place"]
+    whole.close()
+    left = Simulation(Scene.joined(scenes[1:]), threads=1, arch="cpu")
+    left.restore({name: without_worlds(values, axes[name], 3, slice(0, 1)) for name, values in state.items()})
+    left.advance(15)
+    np.testing.assert_array_equal(left.snapshot()["water_place"], place[1:])
+    left.close()

@@ -88,7 +88,7 @@ class Water:
         Annotated[float, Unit("Pa"), Interval(ge=0)] | None,
         Doc(
             "Pressure that water in a full tank, or water and air, bear besides, so that suction tears nothing apart; "
-            "without it 0.3 of the air's own pressure, and none where there is no air."
+            "without it 0.3 of the air's own pressure, at most ρ U², and none where there is no air."
         ),
     ] = None
     shifting: Annotated[Literal[*SHIFTING], Doc("How particles are shifted to even their distances.")] = "none"
