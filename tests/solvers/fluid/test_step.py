@@ -1,5 +1,8 @@
 """A step of water in a tank at rest: against double sums in plain numpy, and what it must conserve."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+
 import numpy as np
 import pytest
 
@@ -35,9 +38,23 @@ def held(run: Simulation) -> list[np.ndarray]:
     return [*pairs[:2], s[0], m[0], *pairs[2:]]
 
 
+@contextmanager
+def running(scene: Scene, **options) -> Iterator[Simulation]:
+    """A simulation that is closed at the end, so that the next one has its compiled kernels."""
+    run = Simulation(scene, **{"threads": 1, "arch": "cpu"} | options)
+    yield run
+    run.close()
+
+
 @pytest.fixture(scope="module")
 def run() -> Simulation:
     return Simulation(disturbed(), threads=1, arch="cpu")
+
+
+@pytest.fixture(scope="module")
+def done(run) -> None:
+    """The simulation that the first tests share is closed: the next one has its compiled kernels."""
+    run.close()
 
 
 def check_a_step(run: Simulation) -> np.ndarray:
@@ -67,24 +84,6 @@ def test_a_step_equals_double_sums(run):
     assert full.min() > PACKED  # at the surface and in corners, too
 
 
-def test_water_with_voids_loses_its_pressure():
-    """A lattice that is higher by a fifth bears none where it is not packed; its energy is accounted for."""
-    scene = disturbed()
-    scene.drops[0, :, 1] *= 1.2
-    scene.drops[0, :, EXCESS] = 0.01
-    run = Simulation(scene, threads=1, arch="cpu")
-    start = run.observe()
-    run.advance(1)
-    full = check_a_step(run)
-    assert np.median(full) < PACKED - RAMP
-    run.advance(10)
-    end = run.observe()
-    p = run.water.particles
-    full, s = (values[0] for values in p.read(run.water.forces.fullness.fullness, p.excess))
-    assert np.abs(s[full < PACKED - RAMP]).mean() < 0.2 * 0.01
-    assert abs(residual(end, residual(start, 0.0))[0]) < 0.03 * start["water_elastic"][0]
-
-
 def test_the_load_is_what_the_water_loses(run):
     """The momentum of the water changes by its weight and by minus the load on the tank, to rounding."""
     run.observe()
@@ -96,19 +95,6 @@ def test_the_load_is_what_the_water_loses(run):
     weight = np.array([0.0, -GRAVITY * mass.sum()])
     scale = steps * run.dt * np.abs(load).max()
     np.testing.assert_allclose(change, steps * run.dt * (weight - load), atol=1e-12 * scale)
-
-
-def test_a_drop_alone_falls_without_pressure():
-    """A pressed drop high above the water is relieved within a few h/c0 and falls as a stone does."""
-    scene = disturbed()
-    scene.drops[0, -1] = [0.0, 0.5, 0.0, 0.0, 0.02, scene.drops[0, -1, VOLUME]]
-    run = Simulation(scene, threads=1, arch="cpu")
-    run.advance(20)
-    places, speeds, s, *_ = held(run)
-    time = 20 * run.dt
-    assert 0.0 <= s[-1] < 1e-4 * scene.drops[0, -1, EXCESS]
-    assert places[-1] == pytest.approx([0.0, 0.5 - 0.5 * GRAVITY * time**2], abs=GRAVITY * time * run.dt)
-    assert speeds[-1] == pytest.approx([0.0, -GRAVITY * time], abs=GRAVITY * run.dt)
 
 
 def test_the_loads_on_all_edges_are_the_load_on_the_tank(run):
@@ -136,51 +122,6 @@ def test_energy_is_accounted_for(run):
     np.testing.assert_allclose(taken, lost, rtol=0.03)
 
 
-def test_gravity_may_change_while_water_runs():
-    """Under half of the gravity the water weighs half as much on its tank, and no energy counts as created."""
-    run = Simulation(still(WIDTH, HEIGHT, DEPTH, ROWS, **TOLD), threads=1, arch="cpu")
-    run.observe()
-    run.alter(gravity=0.5 * GRAVITY)
-    loads = []
-    for _ in range(40):  # over some ten times that sound takes through the depth
-        run.advance(20)
-        loads.append(run.observe()["wall_force"][0, 1])
-    weight = 0.5 * GRAVITY * held(run)[3].sum()
-    np.testing.assert_allclose(np.mean(loads[10:]), -weight, rtol=0.03)
-
-
-def test_water_at_rest_weighs_on_the_floor_and_its_gauges():
-    """From hydrostatic rest: pressures, levels and the load stay; c0 = 10 √(gH) compresses the water by up to 1 %."""
-    run = Simulation(still(WIDTH, HEIGHT, DEPTH, ROWS, **TOLD), threads=1, arch="cpu")
-    run.observe()
-    run.advance(600)
-    rows, mass = run.observe(), held(run)[3].sum()
-    np.testing.assert_allclose(rows["wall_force"][0], [0.0, -mass * GRAVITY, 0.0], atol=2e-3 * mass * GRAVITY)
-    deep = 1000.0 * GRAVITY * np.array([DEPTH - 0.06, DEPTH, 0.0])
-    np.testing.assert_allclose(rows["gauge_pressure"][0], deep, atol=0.02 * 1000.0 * GRAVITY * DEPTH)
-    np.testing.assert_allclose(rows["level_depth"][0], DEPTH, rtol=0.01)
-    assert rows["water_kinetic"][0] < 1e-4 * 1000.0 * GRAVITY * DEPTH * WIDTH * DEPTH
-    place, pressure = (run.snapshot()[name][0] for name in ("water_place", "water_pressure"))
-    wanted = 1000.0 * GRAVITY * (DEPTH - place[:, 1])
-    np.testing.assert_allclose(pressure, wanted, atol=0.5 * 1000.0 * GRAVITY * DEPTH / ROWS)  # half a layer
-
-
-@pytest.mark.parametrize(
-    "changes", [{"precision": "mixed"}, {"schedule": "per-band"}, {"schedule": "per-grain", "precision": "f32"}]
-)
-def test_other_ways_of_running_give_the_same_water(run, changes):
-    """Numbers of 32 bits, bands on threads, and particles one by one: the same course, to the rounding of each."""
-    units = {"units": 2} if changes == {"schedule": "per-band"} else {}
-    place = []
-    for more, cut in (({}, {}), (changes, units)):
-        other = Simulation(disturbed(3, **more), threads=1 + len(cut), arch="cpu", **cut)
-        other.advance(60)
-        place.append(other.snapshot()["water_place"][0])
-    spacing = other.scene.water.spacing
-    tight = {"f64": 1e-9, "mixed": 2e-5, "f32": 5e-4}[other.scene.precision]
-    np.testing.assert_allclose(place[1], place[0], atol=tight * spacing)
-
-
 def test_tanks_of_other_sizes_share_compiled_kernels(run):
     """All arrays of a tank twice as fine, wider and half as deep have the same shapes, for which kernels are made."""
     scene = still(2.0 * WIDTH, HEIGHT, 0.5 * DEPTH, 2 * ROWS // 3, gauges=GAUGES[:1], levels=(), edges=(0,))
@@ -191,7 +132,83 @@ def test_tanks_of_other_sizes_share_compiled_kernels(run):
     other.close()
 
 
-def test_worlds_go_on_when_one_leaves():
+def test_water_with_voids_loses_its_pressure(done):
+    """A lattice that is higher by a fifth bears none where it is not packed; its energy is accounted for."""
+    scene = disturbed()
+    scene.drops[0, :, 1] *= 1.2
+    scene.drops[0, :, EXCESS] = 0.01
+    with running(scene) as run:
+        start = run.observe()
+        run.advance(1)
+        full = check_a_step(run)
+        assert np.median(full) < PACKED - RAMP
+        run.advance(10)
+        end = run.observe()
+        p = run.water.particles
+        full, s = (values[0] for values in p.read(run.water.forces.fullness.fullness, p.excess))
+        assert np.abs(s[full < PACKED - RAMP]).mean() < 0.2 * 0.01
+        assert abs(residual(end, residual(start, 0.0))[0]) < 0.03 * start["water_elastic"][0]
+
+
+def test_a_drop_alone_falls_without_pressure(done):
+    """A pressed drop high above the water is relieved within a few h/c0 and falls as a stone does."""
+    scene = disturbed()
+    scene.drops[0, -1] = [0.0, 0.5, 0.0, 0.0, 0.02, scene.drops[0, -1, VOLUME]]
+    with running(scene) as run:
+        run.advance(20)
+        places, speeds, s, *_ = held(run)
+        time = 20 * run.dt
+        assert 0.0 <= s[-1] < 1e-4 * scene.drops[0, -1, EXCESS]
+        assert places[-1] == pytest.approx([0.0, 0.5 - 0.5 * GRAVITY * time**2], abs=GRAVITY * time * run.dt)
+        assert speeds[-1] == pytest.approx([0.0, -GRAVITY * time], abs=GRAVITY * run.dt)
+
+
+def test_gravity_may_change_while_water_runs(done):
+    """Under half of the gravity the water weighs half as much on its tank, and no energy counts as created."""
+    with running(still(WIDTH, HEIGHT, DEPTH, ROWS, **TOLD)) as run:
+        run.observe()
+        run.alter(gravity=0.5 * GRAVITY)
+        loads = []
+        for _ in range(40):  # over some ten times that sound takes through the depth
+            run.advance(20)
+            loads.append(run.observe()["wall_force"][0, 1])
+        weight = 0.5 * GRAVITY * held(run)[3].sum()
+        np.testing.assert_allclose(np.mean(loads[10:]), -weight, rtol=0.03)
+
+
+def test_water_at_rest_weighs_on_the_floor_and_its_gauges(done):
+    """From hydrostatic rest: pressures, levels and the load stay; c0 = 10 √(gH) compresses the water by up to 1 %."""
+    with running(still(WIDTH, HEIGHT, DEPTH, ROWS, **TOLD)) as run:
+        run.observe()
+        run.advance(600)
+        rows, mass = run.observe(), held(run)[3].sum()
+        np.testing.assert_allclose(rows["wall_force"][0], [0.0, -mass * GRAVITY, 0.0], atol=2e-3 * mass * GRAVITY)
+        deep = 1000.0 * GRAVITY * np.array([DEPTH - 0.06, DEPTH, 0.0])
+        np.testing.assert_allclose(rows["gauge_pressure"][0], deep, atol=0.02 * 1000.0 * GRAVITY * DEPTH)
+        np.testing.assert_allclose(rows["level_depth"][0], DEPTH, rtol=0.01)
+        assert rows["water_kinetic"][0] < 1e-4 * 1000.0 * GRAVITY * DEPTH * WIDTH * DEPTH
+        place, pressure = (run.snapshot()[name][0] for name in ("water_place", "water_pressure"))
+        wanted = 1000.0 * GRAVITY * (DEPTH - place[:, 1])
+        np.testing.assert_allclose(pressure, wanted, atol=0.5 * 1000.0 * GRAVITY * DEPTH / ROWS)  # half a layer
+
+
+@pytest.mark.parametrize(
+    "changes", [{"precision": "mixed"}, {"schedule": "per-band"}, {"schedule": "per-grain", "precision": "f32"}]
+)
+def test_other_ways_of_running_give_the_same_water(done, changes):
+    """Numbers of 32 bits, bands on threads, and particles one by one: the same course, to the rounding of each."""
+    units = {"units": 2} if changes == {"schedule": "per-band"} else {}
+    place = []
+    for more, cut in (({}, {}), (changes, units)):
+        with running(disturbed(3, **more), threads=1 + len(cut), **cut) as other:
+            other.advance(60)
+            place.append(other.snapshot()["water_place"][0])
+            spacing, precision = other.scene.water.spacing, other.scene.precision
+    tight = {"f64": 1e-9, "mixed": 2e-5, "f32": 5e-4}[precision]
+    np.testing.assert_allclose(place[1], place[0], atol=tight * spacing)
+
+
+def test_worlds_go_on_when_one_leaves(done):
     """With the same bits, although they are counted anew and lists of neighbours hold places in all worlds."""
     scenes = [disturbed(seed) for seed in (4, 5, 6)]
     whole = Simulation(Scene.joined(scenes), threads=1, arch="cpu")

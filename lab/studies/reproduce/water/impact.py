@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.figure import Figure
 
+from lab.report.numbers import plus_minus
 from lab.report.plots import BELOW, BLUE, GREY, VERMILION, canvas
 from lab.studies.reproduce.estimates import Verdict
 from lab.studies.reproduce.experiment import Found, Row, Told, observed
@@ -97,7 +98,7 @@ def _spread(values: Sequence[float], digits: int) -> str:
     """Mean and standard deviation as text; of one value itself, of none nothing."""
     if len(values) < 2:
         return "".join(f"{value:.{digits}f}" for value in values)
-    return f"{np.mean(values):.{digits}f} ± {np.std(values, ddof=1):.{digits}f}"
+    return plus_minus(float(np.mean(values)), float(np.std(values, ddof=1)))
 
 
 def _scatter(label: str, peaks: np.ndarray) -> Row:
