@@ -74,7 +74,7 @@ def test_the_scatter_of_repeated_impacts_is_that_of_their_peaks():
     of = {"wide": (3e3, 4e3, 5e3), "none": (4e3, 4e3, 4e3), "dry": (0.0, 0.0)}
     told = experiments("water")["impact-air"].tell({label: [hit(one) for one in peaks] for label, peaks in of.items()})
     assert [row.verdict for row in told.rows] == [Verdict.AGREES, Verdict.DIFFERS]
-    assert told.rows[0].ours.startswith("0.25 of 3") and told.table[1][-3] == "4.00 ± 1.00"
+    assert told.rows[0].ours.startswith("0.25 of 3") and told.table[1][-3] == "4.0 ± 1.0"
     assert told.table[3][5:] == ["0 of 2", "", "", "", ""]
 
 
