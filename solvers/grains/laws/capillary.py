@@ -8,9 +8,7 @@ from solvers.grains.laws.extremes import greater, lesser
 from solvers.grains.materials import Interface, hertz_stiffness
 
 STEPS = 36.0  # per period of two grains that oscillate about the balance of pull and elasticity
-ROUNDS = (
-    3  # in which a pull and the way of its step are found: a fourth changes the work of a film by some per cent at most
-)
+ROUNDS = 3  # in which a pull and the way of its step are found; a fourth changes a film's work by some per cent at most
 SHORTEST = 1e-3  # of the range: the least way per step over which the force is averaged
 NO_RANGE = 1e-15  # m; keeps divisions finite where there is no bridge
 
