@@ -7,6 +7,7 @@ import pytest
 
 from solvers.fluid.given import EXCESS, GAS, VELOCITY_Y, VELOCITY_Z, Air, Gauge, Level, Water
 from solvers.fluid.phases.adiabatic import background
+from solvers.fluid.phases.cohesion import Cohesion
 from solvers.fluid.timestep import kinematic
 from solvers.fluid.viscosity import VISCOSITY
 from solvers.scene import Scene
@@ -30,10 +31,9 @@ def held(run: Simulation) -> list[np.ndarray]:
     return [*pairs[:2], s[0], m[0], *pairs[2:]]
 
 
-@pytest.fixture(scope="module")
-def run() -> Simulation:
+def stirred(**of_air) -> Simulation:
     """Both phases displaced and set in motion at random, the air slower than the water's sound, with drops in it."""
-    made = scene(air={"sound_speed": 9.0, "alpha": 0.03}, background=60.0)
+    made = scene(air={"sound_speed": 9.0, "alpha": 0.03} | of_air, background=60.0)
     random, drops = np.random.default_rng(1), made.drops
     off_walls = (np.abs(drops[0, :, 0]) < 0.08) & (drops[0, :, 1] < 0.24)
     lone = np.flatnonzero(off_walls & (drops[0, :, GAS] > 0.5))[::7]
@@ -44,9 +44,19 @@ def run() -> Simulation:
     return Simulation(made, threads=1, arch="cpu")
 
 
+@pytest.fixture(scope="module")
+def run() -> Simulation:
+    return stirred()
+
+
 def test_a_step_equals_double_sums(run):
+    follows_double_sums(run)
+
+
+def follows_double_sums(run: Simulation, steps: int = 7) -> None:
+    """Some steps, and one more beside plain numpy."""
     plain, dt = PlainBoth(run.scene), run.dt
-    run.advance(7)
+    run.advance(steps)
     r, u, s, m, *_ = held(run)
     run.advance(1)
     push, slope, _ = plain.push(r, u, s, m)
@@ -158,6 +168,24 @@ def test_other_ways_of_running_give_the_same(changes):
         other.close()
     tight = {"mixed": 5e-4, "f32": 3e-3}[changes["precision"]]
     np.testing.assert_allclose(place[1], place[0], atol=tight * made.water.spacing)
+
+
+@pytest.mark.slow
+def test_a_step_with_cohesion_equals_double_sums():
+    follows_double_sums(stirred(interface="cohesion", cohesion=20.0), 1)  # air flies off from the disorder
+
+
+@pytest.mark.slow
+def test_water_rests_under_air_with_cohesion():
+    """The surface keeps its place to half a spacing, water its pressure to a tenth of X; the lid bears X besides."""
+    sound, pull = 60.0, Cohesion.pull(1000.0, 1.2, GRAVITY, DEPTH)
+    air = {"interface": "cohesion", "cohesion": pull, "sound_speed": 4.0 * sound, "alpha": 0.07}
+    run = Simulation(scene(sound_speed=sound, smoothing=1.34, alpha=0.07, air=air), threads=1, arch="cpu")
+    run.advance(round(1.0 / run.dt))
+    rows, state, spacing = run.observe(), run.snapshot(), run.scene.water.spacing
+    middle = 0.5 * (state["water_place"][0, :, 1].max() + state["air_place"][0, :, 1].min())
+    assert abs(middle - DEPTH) < 0.5 * spacing
+    assert rows["gauge_pressure"][0, 0] == pytest.approx(1000.0 * GRAVITY * DEPTH, abs=0.1 * pull)
 
 
 @pytest.mark.slow
