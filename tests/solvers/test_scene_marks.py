@@ -41,6 +41,7 @@ AGREE = {  # what they must agree in
     "gravity": 1.0,
     "soft_start": 1.0,
     "step": 2e-5,
+    "base_share": 0.9,
     "sizes": (1e-3, 3e-3),
     "others": (SOLID,),
     "fixed": np.array([[0.0, 0.0, 1e-3]]),
