@@ -59,7 +59,7 @@ class Scene:
     motions: Annotated[Sequence[Sequence], EachWorld(lambda scene: scene.kinds_of_motions), NotOfBed()] = ()
     soft_start: Annotated[float, NotOfBed()] = 0.0
     step: Annotated[float | None, NotOfBed()] = None
-    base_share: Annotated[float, NotOfBed()] = 1.0
+    base_share: Annotated[float, LargestOfWorlds(), NotOfBed()] = 1.0
     start_speed: Annotated[float, LargestOfWorlds(), NotOfBed()] = 0.0
     sizes: tuple[float, float] | None = None
     velocity: Annotated[np.ndarray | None, EachWorld(lambda scene: scene.velocity is None)] = None
