@@ -1,6 +1,6 @@
 """Hydrodynamic tables of whole hulls, per metre of the ship's length: by strips, or in space by Capytaine.
 
-In space the table is of the hull's mesh up to FINEST √(g/draught), with panels a sixth of the shortest wave there.
+In space the table is of the hull's mesh up to FINEST √(g/draught), with panels a tenth of the shortest wave there.
 Above, where waves are short beside the hull and strips are exact in the limit, damping and excitation are those of
 strips, and added mass is theirs less their limit at infinite frequency plus that in space. What is left of the
 difference where they join falls with the fourth power of the frequency.
@@ -32,7 +32,7 @@ from solvers.ship.section import Section
 from solvers.ship.water import Water
 
 FINEST = 1.2  # √(g/draught): the highest frequency that is solved in space
-PANEL = 0.65  # of the draught: a sixth of the length of waves of that frequency is 0.73
+PANEL = 0.45  # of the draught: a tenth of the length of waves of that frequency is 0.44
 MOST_PANELS = 2500.0  # of the half hull, on its bottom
 FADING = 4.0  # power of the frequency with which the difference of hull and strips at the join falls
 SAME = 0.02  # of the displacement, by which section and hull may differ

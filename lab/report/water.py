@@ -54,9 +54,14 @@ def models(scene: Scene) -> Rows:
         ("diffusion", f"{water.diffusion}, δ {water.delta:g}" if water.diffusion != "none" else "none"),
         ("viscosity", f"{water.viscosity}{strength}: that of {kinematic(water):.3g} m²/s"),
         ("shifting", water.shifting),
-        *([("surface", water.air.interface)] if water.air else []),
+        *([("surface", surface(water.air))] if water.air else []),
         ("at walls", f"{'free slip' if water.slip else 'no slip'}{', no free surface' if water.full else ''}"),
     ]
+
+
+def surface(air: given.Air) -> str:
+    """What acts between water and air."""
+    return f"{air.interface}, X = {show(air.cohesion, 'Pa')}" if air.cohesion else air.interface
 
 
 def accuracy(preset: Preset) -> Rows:

@@ -6,6 +6,7 @@ from dataclasses import fields, is_dataclass, replace
 from lab.preset.schema import Preset
 from lab.preset.sections.materials import Wall
 from lab.preset.sections.video import Video
+from lab.preset.sections.water.liquid import interface
 
 WORDS = ("title", "source", "reports", "based_on", "quick")
 NAMED = 3  # keys that a sentence names at most
@@ -44,12 +45,16 @@ def _filled(preset: Preset) -> tuple[object, ...]:
     water = preset.water
     if water and water.background_pressure is None and preset.air is None:
         water = replace(water, background_pressure=0.0)
+    air = preset.air
+    if air and air.interface is None:
+        air = replace(air, interface=interface(preset))
     plain = replace(
         preset,
         tank=tank,
         contact=contact,
         run=run,
         water=water,
+        air=air,
         wall=Wall(),
         video=Video(),
         **dict.fromkeys(WORDS, ""),

@@ -195,6 +195,10 @@ class Census:
         stiffness = ti.cast(c.get("air_stiffness"), self.exact)
         volume = m / ((1.0 + s) * c.get("air_density"))
         sums[self.at.elastic] += m * stiffness / c.get("air_density") * c.gas.energy(s)
+        if ti.static(c.coheres):
+            pull = ti.cast(c.get("cohesion"), self.exact)
+            sums[self.at.elastic] += m * pull / c.get("air_density") * c.cohesion.energy(s)
+            sums[self.at.air_pressed] += volume * pull * c.cohesion.share(s)
         sums[self.at.air_mass] += m
         sums[self.at.air_y] += m * r[0]
         sums[self.at.air_z] += m * r[1]

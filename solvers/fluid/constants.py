@@ -7,6 +7,7 @@ from solvers.fluid.diffusion import DIFFUSION
 from solvers.fluid.given import Water
 from solvers.fluid.kernels import KERNELS
 from solvers.fluid.phases.adiabatic import Adiabatic
+from solvers.fluid.phases.cohesion import Cohesion
 from solvers.fluid.phases.numbers import of_air
 from solvers.fluid.shifting import SHIFTING
 from solvers.fluid.states import STATES
@@ -65,6 +66,8 @@ class Constants:
         numbers |= Fullness.numbers(self.kernel, length, sound)
         self.two, self.gas = water.air is not None, Adiabatic()
         self.tense = self.two and water.air.tension > 0.0
+        self.coheres, self.cohesion = self.two and water.air.cohesion > 0.0, Cohesion()
+        self.accounted = not (self.tense or self.coheres)  # for whether all energy has a name
         if self.two:
             numbers |= of_air(water, gravity, numbers, self.viscosity)
             self.viscous = self.viscous or numbers["air_strength"] > 0.0
@@ -92,6 +95,14 @@ class Constants:
             return (1.0 - gas) * self.get(name) + gas * self.values[ti.static(self.at_air[name])]
         else:
             return self.get(name)
+
+    @ti.func
+    def pressure_of_air(self, s):
+        """The pressure (Pa) of air at an excess of density, a single number."""
+        pressure = self.get("air_stiffness") * self.gas.share(s)
+        if ti.static(self.coheres):
+            pressure += self.get("cohesion") * self.cohesion.share(s)
+        return pressure
 
     @ti.func
     def strength(self):
@@ -123,7 +134,9 @@ class Constants:
         water = self.numbers["stiffness"] * self.state.pressure(excess)
         if not self.two:
             return water
-        return np.where(gas > 0.5, self.numbers["air_stiffness"] * self.gas.pressure(np.maximum(excess, -0.999)), water)
+        thin = np.maximum(excess, -0.999)
+        air = self.numbers["air_stiffness"] * self.gas.pressure(thin)
+        return np.where(gas > 0.5, air + self.cohesion.pressure(self.numbers["cohesion"], thin), water)
 
     @ti.func
     def hardness(self, square, firm, gas: ti.template()):

@@ -80,7 +80,7 @@ class Forces:
         p.store(p.pressure, b, c.get("stiffness") * c.state.share(s) + c.get("background"))
         for lane in range(p.lanes):
             if p.gas[b, lane] > 0.5:
-                p.pressure[b, lane] = c.get("air_stiffness") * c.gas.share(p.excess[b, lane]) + c.get("background")
+                p.pressure[b, lane] = c.pressure_of_air(p.excess[b, lane]) + c.get("background")
 
     @ti.func
     def push(self, u, t, kick, dt):
@@ -125,10 +125,8 @@ class Forces:
 
     @ti.func
     def push_block(self, u, b, listed, kick):
-        """As `push`, for a block.
-
-        Returns its force (y, z; N/m) and moment (N) on the walls, viscous power, and the
-        power that dummies take (W/m)."""
+        """As `push`, for a block; returns its force (y, z; N/m) and moment (N) on the walls, and the powers (W/m) that
+        viscosity and dummies take."""
         p, c = self.particles, self.constants
         lists = self.lists
         origin = [p.place[a][b, 0] for a in ti.static(range(p.axes))]
@@ -171,6 +169,8 @@ class Forces:
             other, heavy = gas - p.gas_at(jb, lane), weight  # `heavy`: as strong as the viscosity of the two
             if ti.static(c.two):
                 along += (c.get("lean_of_pressure") * other) * (pressure - p.pressure[jb, lane]) * weight
+                if ti.static(c.coheres):
+                    along += (gas * c.get("cohesion")) * c.cohesion.push(s) * weight
                 heavy = weight * c.drag(gas, p.gas[jb, lane])
                 if ti.static(c.tense):
                     self.tension.add(stress, jb, lane, weight, apart, push)

@@ -45,7 +45,7 @@ class Air:
     `density` ρ_a (kg/m³) of air that is not compressed, `sound_speed` c_a (m/s), `alpha` the strength of its artificial
     viscosity or `kinematic` ν (m²/s) that of laminar flow, `tension` (N/m) of the surface between the phases;
     `vent`: the area (m²) of openings to the outside, a metre of thickness; `interface`: the name of what acts between
-    the phases.
+    the phases, and `cohesion` the pressure X (Pa) of that which has one.
     """
 
     density: float = 1.2
@@ -55,6 +55,7 @@ class Air:
     tension: float = 0.0
     vent: float = 0.0
     interface: str = "weighted"
+    cohesion: float = 0.0
 
 
 @dataclass(frozen=True)

@@ -235,9 +235,9 @@ class WaterMatter(Matter):
 
     def check(self, rows: dict[str, np.ndarray], time: float) -> None:
         """Raise BadState if the quantities at `time` (s) show an unphysical state."""
-        # A particle that goes round falls for ever; what a surface under tension holds, and vents take, is not known.
+        # A particle that goes round falls for ever; what tension and cohesion hold, and vents take, is not known.
         # At time zero no work is done yet, but velocities may have half a kick: m (g Δt/2)²/2 that nothing has given.
-        unknown = time == 0.0 or self.water.periodic or self.constants.tense or self.vent.acts
+        unknown = time == 0.0 or self.water.periodic or not self.constants.accounted or self.vent.acts
         check_water(rows, np.nan if unknown else self.start, time, self.least)
 
     def refuse(self, world: int, time: float, dt: float) -> None:

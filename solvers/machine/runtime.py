@@ -172,6 +172,11 @@ def take_in(state) -> None:
     _live.add(state)
 
 
+def live() -> tuple:
+    """The states whose memory is allocated."""
+    return tuple(_live)
+
+
 def let_go(state) -> bool:
     """Unregister a state; returns whether its memory is still allocated, since Taichi was not restarted."""
     held = state in _live

@@ -3,6 +3,7 @@
 import numpy as np
 
 from solvers.fluid.given import EXCESS, GAS, VOLUME, Air, Water, Y, Z
+from solvers.fluid.phases.interfaces import INTERFACES
 from solvers.fluid.start.air import air_above, with_air
 from solvers.fluid.start.rest import at_rest
 from solvers.scene import Scene
@@ -39,6 +40,7 @@ class PlainBoth(PlainWater):
         super().__init__(scene)
         water, air = scene.water, scene.water.air
         self.gas = scene.drops[0, :, GAS]
+        self.cohesion = air.cohesion * self.gas
         self.liquid = 1.0 - self.gas
 
         def of(of_water: float, of_air: float) -> np.ndarray:
@@ -48,7 +50,7 @@ class PlainBoth(PlainWater):
         mu = of(water.alpha * water.density * water.sound_speed, air.alpha * air.density * air.sound_speed)
         self.strength = water.length * 2.0 * mu[:, None] * mu / (mu[:, None] + mu)
         self.other = self.gas[:, None] - self.gas
-        self.lean = (water.density - air.density) / (water.density + air.density)
+        self.lean = INTERFACES[air.interface].leans(water.density, air.density)[0]
 
     def volume(self, mass, s):
         """V = m/ρ."""
@@ -58,7 +60,11 @@ class PlainBoth(PlainWater):
         """Linear of water; ρ c²/1.4 ((1 + s)^1.4 − 1) of air; and the background's."""
         of_air = self.density * self.sound**2 * ((1.0 + s) ** 1.4 - 1.0) / 1.4
         alone = np.where(self.gas > 0.5, of_air, self.density * self.sound**2 * s)
-        return alone + self.water.background
+        return alone + self.water.background - self.cohesion * s * (2.0 + s)
+
+    def extra(self, s):
+        """What air feels besides, of each of its neighbours: 2 a ρ² (Mokos et al. 2015)."""
+        return 2.0 * self.cohesion * (1.0 + s) ** 2
 
     def wall_pressure(self, r, mass, s, gas: float):
         """The dummies' pressures that one phase sees: Adami, Hu & Adams (2012), eq. 27, over that phase alone."""
@@ -86,6 +92,7 @@ class PlainBoth(PlainWater):
         self.flow = self.image(r, u, volume)
         apart, square, _, gradient = self.between(r, r)
         between = pressure[:, None] + pressure + self.lean * self.other * (pressure[:, None] - pressure)
+        between = between + self.extra(s)[:, None]
         pi = ((u[None] - u[:, None]) * apart).sum(axis=2) / (square + 1e-6 * self.water.length**2)
         pairs = (self.strength * pi - between) * volume[:, None] * volume
         force = (pairs[..., None] * gradient).sum(axis=1)
@@ -93,6 +100,7 @@ class PlainBoth(PlainWater):
         heavier = pressure[:, None] + (mass / volume)[:, None] * (to_wall @ self.gravity)
         seen = np.where(self.gas[:, None] > 0.5, heavier, self.wall_pressure(r, mass, s, 0.0)[None])
         own = np.where(self.gas > 0.5, pressure, np.maximum(pressure, 0.0))
+        own = own + self.extra(s)
         walls = -(((own[:, None] + seen) * volume[:, None] * self.wall_volume)[..., None] * at_wall).sum(axis=1)
         matrix = np.einsum("ij,j,ija,ijb->iab", same, volume, apart, gradient)
         raw = np.einsum("ij,j,ij,ija->ia", same, volume, s[None] - s[:, None], gradient)

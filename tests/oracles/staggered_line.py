@@ -51,3 +51,18 @@ def stepped(step: float, lasts: float, points: int | None) -> np.ndarray:
         x, v, a, tank = end, fast, after, moved
         found.append(x)
     return np.array(found)
+
+
+def steady(step: float, omega: float, points: int | None, bossak: float = BOSSAK) -> float:
+    """Amplitude of roll in steps, driven by the force e^(iωt) at their ends; the load as in `stepped`.
+
+    Newmark's averages and Bossak's equation with a_n = A zⁿ, z = e^(iωH); the water follows the motion exactly.
+    """
+    z, gamma, beta = np.exp(1j * omega * step), 0.5 - bossak, 0.25 * (1.0 - bossak) ** 2
+    speed = step * ((1.0 - gamma) + gamma * z) / (z - 1.0)  # over the acceleration
+    way = (step * speed + step**2 * ((0.5 - beta) + beta * z)) / (z - 1.0)
+    now = ((1.0 - bossak) * z + bossak) / z
+    load = SWINGING * TANK**2 * omega**2 / (TANK**2 - omega**2) * way - CARRIED * now
+    ahead = lagrange(points) @ z ** -np.arange(float(points)) if points else z
+    own = z * (now + 2.0 * DAMPING * OWN * speed + OWN**2 * way)
+    return float(abs(z * way / (own - ahead * load)))

@@ -16,20 +16,24 @@ STEEPEST = 0.743  # of 1/h: the gradient of the phase in a plane surface, ∫ W 
 HOLDING = 3.0  # times what a surface under tension draws along itself: at 1 it tears, see docs/physics/air.md
 
 
-def background(air: Air, water: Water) -> float:
+def background(air: Air, water: Water, weight: float = 0.0) -> float:
     """The pressure (Pa) that air and water bear besides: the air is then torn apart by no suction up to that.
 
     At 0.7 p_a it would stir air at rest, at 0.1 ρ c² water. Nor is it more than ρ U² of water whose highest speed U is
-    known, twice the suction of such a flow (Bernoulli): where the surface is strained, rows on both sides of it are not
+    known, twice the suction of such a flow (Bernoulli), or than the `weight` (Pa) of the air over the surface and
+    ρ_a U², the suction of a heavy one below its lid: where the surface is strained, rows on both sides of it are not
     as far apart as their volumes say, and the next of water have some per cent of the background for a pressure, which
     stiffens waves. Tension σ draws the particles of a surface along it by σ |∇C|, which grows as 1/h: it needs a
-    multiple of that.
+    multiple of that. Air with a cohesion bears what that draws itself.
     """
+    if air.cohesion > 0.0:
+        return 0.0
     own = air.density * air.sound_speed**2 / GAMMA
     drawn = HOLDING * STEEPEST * air.tension / water.length
     borne = min(BORNE * own, SHAKEN * water.density * water.sound_speed**2)
     if water.speed > 0.0:
-        borne = min(borne, water.density * water.speed**2)
+        lively = water.speed**2
+        borne = min(borne, max(water.density * lively, weight + air.density * lively))
     return max(drawn, borne)
 
 

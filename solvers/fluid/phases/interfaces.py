@@ -4,6 +4,8 @@ The pair's pressure is p_i + p_j + κ d (p_i − p_j), its velocity (1 + λ d) (
 water j, −1 for water i beside air j, 0 within a phase. Both are symmetric, so that forces are equal and opposite.
 """
 
+from solvers.fluid.phases.cohesion import Cohesion
+
 
 class Weighted:
     """κ = λ = (ρ_w − ρ_a)/(ρ_w + ρ_a): pressure and velocity at the face between two particles (Toro 2009, eq. 9.28).
@@ -52,4 +54,4 @@ class Plain:
         return 0.0, 0.0
 
 
-INTERFACES = {"weighted": Weighted, "hu-adams": HuAdams, "plain": Plain}
+INTERFACES = {"weighted": Weighted, "hu-adams": HuAdams, "plain": Plain, "cohesion": Cohesion}

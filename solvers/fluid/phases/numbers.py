@@ -34,6 +34,7 @@ def of_air(water: Water, gravity: float, numbers: dict[str, float], viscosity) -
         "lean_of_pressure": lean_of_pressure,
         "lean_of_speed": lean_of_speed,
         "tension": air.tension,
+        "cohesion": air.cohesion,
         "vent": CONTRACTED * air.vent,
         "air_pace": FASTEST[0] * water.sound_speed / (FASTEST[1] * air.sound_speed),
     }

@@ -64,6 +64,8 @@ class WallPush:
             if ti.static(c.two):
                 spring *= squeezed
                 along = along - dot(weighs, apart)
+                if ti.static(c.coheres):
+                    along += (gas * c.get("cohesion")) * c.cohesion.push(p.load(p.excess, b))
             along = along * weight + spring
             more = along - pressure * weight
             if ti.static(c.two):

@@ -18,6 +18,7 @@ from solvers.ship.section import Section
 KNUCKLE = np.radians(30.0)  # a sharper turn of the outline is kept as an edge between panels
 LEAST_PANELS = 4  # between two knuckles
 ROUND = 12  # panels in a right angle of a bilge: its roll is a small difference of large pressures
+INNER = 0.3  # points within the hull, along and across, per panel
 SYMMETRIC = 1e-6  # of the hull's breadth
 
 
@@ -34,18 +35,19 @@ class HullMesh:
     rings: np.ndarray
     across: int
 
-    def lid(self, depth: float) -> tuple[np.ndarray, np.ndarray]:
-        """Corners and panels of a level plane inside the hull at a depth (m)."""
-        half = np.array([np.interp(-depth, ring[:, 1], ring[:, 0], left=0.0) for ring in self.rings])
-        y = half[:, None] * np.linspace(0.0, 1.0, self.across + 1)
-        place = np.broadcast_to(self.stations[:, None], y.shape)
-        return _grid(np.stack([place, y, np.full(y.shape, -depth)], axis=-1), True)
+    def inner(self) -> np.ndarray:
+        """Points (k, 3) m of the starboard half of the waterplane, within the hull.
 
-    @property
-    def box(self) -> tuple[float, float, float]:
-        """Length, breadth and draught (m)."""
-        size = np.ptp(self.corners, axis=0)
-        return float(size[0]), 2.0 * float(size[1]), float(-self.corners[:, 2].min())
+        Gauss–Legendre points: their spacing matches no standing wave inside the hull. They are fewer than panels, since
+        a point nearer to the sides than a panel is long tells of the panel, not of the hull.
+        """
+        along = np.polynomial.legendre.leggauss(max(3, round(INNER * (len(self.stations) - 1))))[0]
+        across = np.polynomial.legendre.leggauss(2 * max(2, round(INNER * self.across)))[0]
+        low, high = self.stations.min(), self.stations.max()
+        order, x = np.argsort(self.stations), 0.5 * (low + high) + 0.5 * (high - low) * along
+        half = np.interp(x, self.stations[order], self.rings[order, -1, 0])
+        y = half[:, None] * across[across > 0.0]
+        return np.stack([np.broadcast_to(x[:, None], y.shape), y, 0.0 * y], axis=-1).reshape(-1, 3)
 
 
 def hull_mesh(form: Form, draught: float, size: float) -> HullMesh:

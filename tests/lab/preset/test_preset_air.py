@@ -13,6 +13,7 @@ from lab.preset.schema import Preset, resolve
 from lab.preset.sections.water.liquid import liquid
 from solvers.fluid.given import EXCESS, GAS, VOLUME, Y, Z
 from solvers.fluid.phases.adiabatic import Adiabatic, background
+from solvers.fluid.phases.cohesion import Cohesion
 from solvers.fluid.start.air import hydrostatic_air
 from tests.oracles.presets import error_of
 
@@ -97,6 +98,7 @@ def test_air_at_rest_is_in_balance_with_its_weight():
         ({"air__density": "2000 kg/m^3"}, "air.density"),
         ({"air__sound_speed": "0.5 m/s"}, "air.sound_speed"),
         ({"air__sound_speed": "fast"}, "air.sound_speed"),
+        ({"water__scheme": "as_P", "air__sound_speed": "30 m/s"}, "air.sound_speed"),
         ({"water": False}, "air"),
     ],
 )
@@ -105,13 +107,31 @@ def test_what_cannot_be_is_one_sentence_with_its_key(overrides, key):
     assert said.startswith(f"{key}:") and said.count("\n") == 0
 
 
+def test_the_source_scheme_has_air_with_cohesion():
+    """Smoothing of its two-phase runs, X = 1.5 g L (ρ_w − ρ_a) with the depth for L, no other background."""
+    made = liquid(airy(water__scheme="as_P", air__sound_speed="real"))
+    assert made.smoothing == 1.34 and liquid(airy(water__scheme="as_P", air=False)).smoothing == 1.70
+    assert made.air.interface == "cohesion" and made.background == 0.0
+    assert made.air.cohesion == pytest.approx(1.5 * 9.81 * 0.1 * (1000.0 - 1.2), rel=1e-3)
+    assert liquid(airy(water__scheme="as_P", air__interface="weighted")).air.cohesion == 0.0
+
+
+def test_cohesion_softens_air_and_bounds_its_sound():
+    """The pressure with X − a ρ² falls by 2 a ρ_a = 2 X/ρ_a of c² (numpy differences); its energy is ∫ p/ρ² dρ."""
+    pull, s = 700.0, np.linspace(-1e-3, 1e-3, 2001)
+    slope = np.gradient(Cohesion.pressure(pull, s), s)[1000]
+    assert slope == pytest.approx(-1.2 * Cohesion.slowest(pull, 1.2) ** 2, rel=1e-6)
+
+
 def test_air_bears_suction_unless_the_preset_says_else():
-    """A background pressure of 0.3 ρ c²/1.4 of the air, at most ρ U² or 0.02 ρ c² of the water; none without air."""
+    """0.3 ρ c²/1.4 of the air, at most ρ U² (or what a heavy one draws) or 0.02 ρ c² of the water; none without air."""
     sound = liquid(airy()).sound_speed
     assert liquid(airy()).background == pytest.approx(0.3 * 1.2 * sound**2 / 1.4)
     real = airy(air__sound_speed="real", water__sound_speed="12 m/s")
     assert liquid(real).background == pytest.approx(1000.0 * liquid(real).speed ** 2)
     assert background(liquid(real).air, replace(liquid(real), speed=0.0)) == pytest.approx(0.02 * 1000.0 * 12.0**2)
+    heavy = airy(tank__height="300 mm", air__density="500 kg/m^3")  # 0.2 m of it hang below the lid
+    assert liquid(heavy).background == pytest.approx(500.0 * (9.81 * 0.2 + liquid(heavy).speed ** 2), rel=1e-3)
     assert liquid(airy(water__background_pressure="0 Pa")).background == 0.0
     assert liquid(airy(air=False)).background == 0.0
     taut = airy(air__surface_tension="1 N/m")

@@ -36,6 +36,25 @@ def cup(tmp_path_factory):
         yield path
 
 
+def test_an_interrupted_run_goes_on_with_the_same_bits(cup, monkeypatch):
+    folder, pause, paused = cup.parent / "again", Batch._pause, []
+
+    def interrupted(batch, interrupt):
+        paused.append(pause(batch, interrupt))
+        if len(paused) == 20:
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr("lab.report.plots.write_plots", lambda *_: {})
+    with monkeypatch.context() as patch, pytest.raises(KeyboardInterrupt):
+        patch.setattr(Batch, "_pause", interrupted)
+        run_preset(cup, out=folder, video=False, quiet=True)
+    resume_run(folder, video=False, quiet=True)
+    with open_recording(cup.parent / "run") as one, open_recording(folder) as other:
+        assert one.status == other.status == "complete"
+        for name in ("air_place", "air_pressure", "water_place"):
+            assert one.frames[name][:].tobytes() == other.frames[name][:].tobytes(), name
+
+
 def test_both_phases_are_recorded_apart(cup):
     with open_recording(cup.parent / "run") as recording:
         series, frames = recording.series, recording.frames
@@ -69,22 +88,3 @@ def test_pictures_show_the_air_where_water_is_not(cup):
     assert blue.sum() > 1000 and changed.sum() > 1000
     assert (blue & changed).sum() < 0.1 * blue.sum()
     assert (np.abs(pressed - plain).sum(axis=2) > 30).sum() > changed.sum()
-
-
-def test_an_interrupted_run_goes_on_with_the_same_bits(cup, monkeypatch):
-    folder, pause, paused = cup.parent / "again", Batch._pause, []
-
-    def interrupted(batch, interrupt):
-        paused.append(pause(batch, interrupt))
-        if len(paused) == 20:
-            raise KeyboardInterrupt
-
-    monkeypatch.setattr("lab.report.plots.write_plots", lambda *_: {})
-    with monkeypatch.context() as patch, pytest.raises(KeyboardInterrupt):
-        patch.setattr(Batch, "_pause", interrupted)
-        run_preset(cup, out=folder, video=False, quiet=True)
-    resume_run(folder, video=False, quiet=True)
-    with open_recording(cup.parent / "run") as one, open_recording(folder) as other:
-        assert one.status == other.status == "complete"
-        for name in ("air_place", "air_pressure", "water_place"):
-            assert one.frames[name][:].tobytes() == other.frames[name][:].tobytes(), name

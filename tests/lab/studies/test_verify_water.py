@@ -145,6 +145,10 @@ def test_references_of_water_and_air():
     alone = np.sqrt(9.81 * np.pi * np.tanh(np.pi))
     assert air.Between(1e-9).rate == pytest.approx(alone, rel=1e-9)
     assert air.Between(1.2).rate == pytest.approx(alone * np.sqrt(998.8 / 1001.2), rel=1e-9)
+    assert waves.between(1000.0, 1e-9, waves.VISCOSITY) == pytest.approx(waves.viscous(), rel=1e-6)
+    thin, rate = 1e-3 * waves.VISCOSITY, air.Between(500.0).rate
+    layers = 2.0 * 0.5 / 1.5**2 * np.pi * np.sqrt(0.5 * rate * thin)
+    assert waves.between(1000.0, 500.0, thin) == pytest.approx(-layers + 1j * (rate - layers), rel=1e-4)
     place = np.array([[0.1, 0.3], [-0.2, 1.5]])
     below, above = (air.mode(np.array([[0.2, 1.0 + off]]))[0, 1] for off in (-1e-9, 1e-9))
     assert below == pytest.approx(above)  # neither parts from the other

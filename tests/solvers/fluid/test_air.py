@@ -7,6 +7,7 @@ import pytest
 
 from solvers.fluid.given import EXCESS, GAS, VELOCITY_Y, VELOCITY_Z, Air, Gauge, Level, Water
 from solvers.fluid.phases.adiabatic import background
+from solvers.fluid.phases.cohesion import Cohesion
 from solvers.fluid.timestep import kinematic
 from solvers.fluid.viscosity import VISCOSITY
 from solvers.scene import Scene
@@ -30,69 +31,14 @@ def held(run: Simulation) -> list[np.ndarray]:
     return [*pairs[:2], s[0], m[0], *pairs[2:]]
 
 
-@pytest.fixture(scope="module")
-def run() -> Simulation:
-    """Both phases displaced and set in motion at random, the air slower than the water's sound, with drops in it."""
-    made = scene(air={"sound_speed": 9.0, "alpha": 0.03}, background=60.0)
-    random, drops = np.random.default_rng(1), made.drops
-    off_walls = (np.abs(drops[0, :, 0]) < 0.08) & (drops[0, :, 1] < 0.24)
-    lone = np.flatnonzero(off_walls & (drops[0, :, GAS] > 0.5))[::7]
-    drops[0, lone, GAS], drops[0, lone, EXCESS] = 0.0, 0.0
-    made.drops = drops = drops[:, np.argsort(drops[0, :, GAS], kind="stable")]
-    drops[..., :2] += 0.1 * made.water.spacing * random.uniform(-1.0, 1.0, drops[..., :2].shape)
-    drops[..., [VELOCITY_Y, VELOCITY_Z]] = 0.2 * random.uniform(-1.0, 1.0, drops[..., :2].shape)
-    return Simulation(made, threads=1, arch="cpu")
-
-
-def test_a_step_equals_double_sums(run):
-    plain, dt = PlainBoth(run.scene), run.dt
-    run.advance(7)
-    r, u, s, m, *_ = held(run)
-    run.advance(1)
-    push, slope, _ = plain.push(r, u, s, m)
-    pressed = plain.wall_pressure(r, m, s, 0.0) > 0.0
-    u = u + dt * (push + plain.gravity)
-    middle = r + 0.5 * dt * u
-    s = plain.later(middle, u, s, m, slope, pressed, dt)
-    found = held(run)
-    np.testing.assert_allclose(found[4], push, atol=1e-9 * np.abs(push).max())
-    np.testing.assert_allclose(found[5], slope, atol=1e-8 * np.abs(slope).max())
-    np.testing.assert_allclose(found[2], s, atol=1e-9 * np.abs(s).max())
-    np.testing.assert_allclose(found[0], middle + 0.5 * dt * u, atol=1e-12)
-
-
-def test_the_load_is_what_both_phases_lose(run):
-    """The momentum of water and air changes by their weight and by minus the load on the tank, to rounding."""
-    run.advance(1)  # the first kick is half a step long
-    run.observe()
-    _, before, _, mass, *_ = held(run)
-    steps = 50
-    run.advance(steps)
-    load = run.observe()["wall_force"][0, :2]
-    change = mass @ (held(run)[1] - before)
-    weight = np.array([0.0, -GRAVITY * mass.sum()])
-    scale = steps * run.dt * np.abs(load).max()
-    np.testing.assert_allclose(change, steps * run.dt * (weight - load), atol=1e-12 * scale)
-
-
-def test_energy_is_accounted_for(run):
-    """What both phases lose goes to viscosity, diffusion and dummies: pairs of water and air make and take none."""
-    start = run.observe()
-    run.advance(400)
-    end = run.observe()
-    lost = start["water_total"] - end["water_total"]
-    taken = sum(end[name] - start[name] for name in ("water_viscous", "water_diffusive", "water_held"))
-    assert lost > 0.0
-    np.testing.assert_allclose(taken, lost, rtol=0.03)
-
-
 def test_water_rests_under_air():
     """From hydrostatic rest in both: pressures stay, the surface keeps its place to a quarter of a spacing."""
-    run = Simulation(scene(background=1.0), threads=1, arch="cpu")  # as above: one kernel
+    run = Simulation(scene(background=1.0), threads=1, arch="cpu")
     run.observe()
     run.advance(1500)
     rows, state, spacing = run.observe(), run.snapshot(), run.scene.water.spacing
     gas, mass = run.scene.drops[0, :, GAS] > 0.5, held(run)[3]
+    run.close()  # those that follow, up to the slow ones, have its kernels
     np.testing.assert_allclose(rows["wall_force"][0, 1], -GRAVITY * mass.sum(), rtol=3e-3)
     np.testing.assert_allclose(rows["gauge_pressure"][0, 0], 1000.0 * GRAVITY * DEPTH, rtol=0.03)
     # The surface settles by a part of a spacing, which squeezes the air of eight layers by some per cent.
@@ -120,6 +66,7 @@ def test_a_gauge_at_the_surface_does_not_show_the_background():
     for step in range(1, 7):
         run.advance(round(0.02 * step / run.dt) - run.steps)
         shown.append(run.observe()["gauge_pressure"][0])
+    run.close()
     assert np.min(shown, axis=0)[2] > -0.15 * 1000.0 * GRAVITY * DEPTH
 
 
@@ -137,10 +84,76 @@ def test_closed_air_follows_water_and_walls():
     upper = high[made.drops[0, :, GAS] > 0.5] > 0.5 * HEIGHT
     run.advance(200)
     rows, pressure = run.observe(), run.snapshot()["air_pressure"][0]
+    run.close()
     way = rows["water_centre"][0, 1] - 0.5 * HEIGHT
     assert 0.1 * long < way < 0.3 * long
     for part, side in ((upper, 1.0), (~upper, -1.0)):
         assert 1.0 + pressure[part].mean() / at_rest == pytest.approx((1.0 - side * way / long) ** -1.4, rel=0.01)
+
+
+def stirred(**of_air) -> Simulation:
+    """Both phases displaced and set in motion at random, the air slower than the water's sound, with drops in it."""
+    made = scene(air={"sound_speed": 9.0, "alpha": 0.03} | of_air, background=60.0)
+    random, drops = np.random.default_rng(1), made.drops
+    off_walls = (np.abs(drops[0, :, 0]) < 0.08) & (drops[0, :, 1] < 0.24)
+    lone = np.flatnonzero(off_walls & (drops[0, :, GAS] > 0.5))[::7]
+    drops[0, lone, GAS], drops[0, lone, EXCESS] = 0.0, 0.0
+    made.drops = drops = drops[:, np.argsort(drops[0, :, GAS], kind="stable")]
+    drops[..., :2] += 0.1 * made.water.spacing * random.uniform(-1.0, 1.0, drops[..., :2].shape)
+    drops[..., [VELOCITY_Y, VELOCITY_Z]] = 0.2 * random.uniform(-1.0, 1.0, drops[..., :2].shape)
+    return Simulation(made, threads=1, arch="cpu")
+
+
+@pytest.fixture(scope="module")
+def run() -> Simulation:
+    return stirred()
+
+
+def follows_double_sums(run: Simulation, steps: int = 7) -> None:
+    """Some steps, and one more beside plain numpy."""
+    plain, dt = PlainBoth(run.scene), run.dt
+    run.advance(steps)
+    r, u, s, m, *_ = held(run)
+    run.advance(1)
+    push, slope, _ = plain.push(r, u, s, m)
+    pressed = plain.wall_pressure(r, m, s, 0.0) > 0.0
+    u = u + dt * (push + plain.gravity)
+    middle = r + 0.5 * dt * u
+    s = plain.later(middle, u, s, m, slope, pressed, dt)
+    found = held(run)
+    np.testing.assert_allclose(found[4], push, atol=1e-9 * np.abs(push).max())
+    np.testing.assert_allclose(found[5], slope, atol=1e-8 * np.abs(slope).max())
+    np.testing.assert_allclose(found[2], s, atol=1e-9 * np.abs(s).max())
+    np.testing.assert_allclose(found[0], middle + 0.5 * dt * u, atol=1e-12)
+
+
+def test_a_step_equals_double_sums(run):
+    follows_double_sums(run)
+
+
+def test_the_load_is_what_both_phases_lose(run):
+    """The momentum of water and air changes by their weight and by minus the load on the tank, to rounding."""
+    run.advance(1)  # the first kick is half a step long
+    run.observe()
+    _, before, _, mass, *_ = held(run)
+    steps = 50
+    run.advance(steps)
+    load = run.observe()["wall_force"][0, :2]
+    change = mass @ (held(run)[1] - before)
+    weight = np.array([0.0, -GRAVITY * mass.sum()])
+    scale = steps * run.dt * np.abs(load).max()
+    np.testing.assert_allclose(change, steps * run.dt * (weight - load), atol=1e-12 * scale)
+
+
+def test_energy_is_accounted_for(run):
+    """What both phases lose goes to viscosity, diffusion and dummies: pairs of water and air make and take none."""
+    start = run.observe()
+    run.advance(400)
+    end = run.observe()
+    lost = start["water_total"] - end["water_total"]
+    taken = sum(end[name] - start[name] for name in ("water_viscous", "water_diffusive", "water_held"))
+    assert lost > 0.0
+    np.testing.assert_allclose(taken, lost, rtol=0.03)
 
 
 @pytest.mark.slow
@@ -158,6 +171,24 @@ def test_other_ways_of_running_give_the_same(changes):
         other.close()
     tight = {"mixed": 5e-4, "f32": 3e-3}[changes["precision"]]
     np.testing.assert_allclose(place[1], place[0], atol=tight * made.water.spacing)
+
+
+@pytest.mark.slow
+def test_a_step_with_cohesion_equals_double_sums():
+    follows_double_sums(stirred(interface="cohesion", cohesion=20.0), 1)  # air flies off from the disorder
+
+
+@pytest.mark.slow
+def test_water_rests_under_air_with_cohesion():
+    """The surface keeps its place to half a spacing, water its pressure to a tenth of X; the lid bears X besides."""
+    sound, pull = 60.0, Cohesion.pull(1000.0, 1.2, GRAVITY, DEPTH)
+    air = {"interface": "cohesion", "cohesion": pull, "sound_speed": 4.0 * sound, "alpha": 0.07}
+    run = Simulation(scene(sound_speed=sound, smoothing=1.34, alpha=0.07, air=air), threads=1, arch="cpu")
+    run.advance(round(1.0 / run.dt))
+    rows, state, spacing = run.observe(), run.snapshot(), run.scene.water.spacing
+    middle = 0.5 * (state["water_place"][0, :, 1].max() + state["air_place"][0, :, 1].min())
+    assert abs(middle - DEPTH) < 0.5 * spacing
+    assert rows["gauge_pressure"][0, 0] == pytest.approx(1000.0 * GRAVITY * DEPTH, abs=0.1 * pull)
 
 
 @pytest.mark.slow

@@ -106,3 +106,20 @@ def test_what_steps_of_10_and_5_ms_differ_by_is_bossaks(monkeypatch):
     exact = line.exact(0.01, 3.0)
     late = np.abs(0.01 * np.arange(len(exact)) * np.gradient(exact, 0.01)).max()
     assert apart(None) == pytest.approx((elongation(0.01 * line.OWN) - elongation(0.005 * line.OWN)) * late, rel=0.02)
+
+
+def test_what_steady_waves_of_10_and_5_ms_differ_by_is_bossaks():
+    """At 0.9, 1 and 1.3 of her frequency by 0.20, 0.31 and 0.37 %, of second order; five points add less than 1e-5.
+
+    With b = 0, the trapezoidal rule, it is a quarter less.
+    """
+    for omega, worst in ((0.9 * line.OWN, 2.04e-3), (line.OWN, -3.09e-3), (1.3 * line.OWN, -3.69e-3)):
+        apart = {}
+        for points in (None, 5):
+            rolls = [line.steady(step, omega, points) for step in (0.01, 0.005, 0.0025)]
+            apart[points] = rolls[0] / rolls[1] - 1.0
+            assert (rolls[0] - rolls[1]) / (rolls[1] - rolls[2]) == pytest.approx(4.0, rel=0.01)
+        assert apart[None] == pytest.approx(worst, rel=0.01)
+        assert apart[5] == pytest.approx(apart[None], abs=1e-5)
+        level = line.steady(0.01, omega, 5, bossak=0.0) / line.steady(0.005, omega, 5, bossak=0.0) - 1.0
+        assert level / apart[5] == pytest.approx((1.0 / 4.0 - 1.0 / 12.0) / (1.1**2 / 4.0 - 1.0 / 12.0), rel=0.02)

@@ -42,8 +42,9 @@ class Air:
         Doc("Area of openings through which air comes and goes; the tank is closed without it."),
     ] = 0.0
     interface: Annotated[
-        Literal[*INTERFACES], Doc("What acts between water and air, see `solvers.fluid.phases.interfaces`.")
-    ] = "weighted"
+        Literal[*INTERFACES] | None,
+        Doc("What acts between water and air, see `solvers.fluid.phases.interfaces`; by default the scheme's."),
+    ] = None
 
 
 def sound_of_air(air: Air, sound: float) -> float:

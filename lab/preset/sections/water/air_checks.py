@@ -3,12 +3,14 @@
 import numpy as np
 
 from lab.base.errors import LabError
-from lab.preset.sections.water.air import Air, sound_of_air
+from lab.preset.sections.water.air import Air
 from lab.preset.sections.water.liquid import Wet, depth, liquid
 from lab.preset.units import needed, show
 from solvers.fluid.phases.adiabatic import GAMMA
+from solvers.fluid.phases.cohesion import Cohesion
 from solvers.fluid.viscosity import LAMINAR
 
+COHERENT = 0.7  # of the air's speed of sound: what its cohesion may take of it
 SLOWEST = 0.5  # of the air's speed of sound: what its own weight may lift over its height, √(0.4 g H)
 
 
@@ -35,8 +37,20 @@ def check_air(preset: Wet) -> None:
         raise LabError(
             "air: the water leaves it no room of a particle's height; take less water, or smaller particles."
         )
+    _check_sound(preset)
+
+
+def _check_sound(preset: Wet) -> None:
+    """Raise LabError for air whose sound is so slow that its own weight or cohesion would compress it to nothing."""
+    air, room = preset.air, preset.tank.extent[1] - (depth(preset) if preset.water.region is None else 0.0)
     slow = float(np.sqrt((GAMMA - 1.0) * preset.run.gravity * room)) / SLOWEST
-    sound = sound_of_air(air, liquid(preset).sound_speed)
+    made = liquid(preset)
+    sound, pulled = made.air.sound_speed, Cohesion.slowest(made.air.cohesion, air.density) / COHERENT
+    if sound < pulled:
+        raise LabError(
+            f"air.sound_speed: {show(sound, 'm/s')} is too slow for the cohesion of this air; take at least "
+            f"{show(pulled, 'm/s')}, or another air.interface."
+        )
     if sound < slow:
         raise LabError(
             f"air.sound_speed: air of {show(sound, 'm/s')} would be compressed by its own weight; take at least "

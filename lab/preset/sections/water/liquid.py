@@ -20,6 +20,7 @@ from lab.preset.sections.water.section import Gauge, Water
 from lab.preset.sections.water.tanks import Tanked, pools
 from solvers.fluid import given
 from solvers.fluid.phases.adiabatic import background
+from solvers.fluid.phases.cohesion import Cohesion
 from solvers.fluid.walls.layers import edge_of
 
 FRONT = 2.0  # √(gH): the front of a column that collapses (Ritter 1892)
@@ -46,7 +47,7 @@ def liquid(preset: Wet) -> given.Water:
         spacing=spacing(preset),
         sound_speed=sound_speed(preset, scheme),
         density=water.density,
-        smoothing=water.smoothing or scheme.smoothing,
+        smoothing=water.smoothing or (preset.air and scheme.smoothing_with_air) or scheme.smoothing,
         kernel=water.kernel or scheme.kernel,
         state=water.state or scheme.state,
         diffusion=water.diffusion or scheme.diffusion,
@@ -69,13 +70,16 @@ def liquid(preset: Wet) -> given.Water:
         air=_air(preset, scheme) if preset.air is not None else None,
     )
     if made.air is not None and water.background_pressure is None:
-        made = replace(made, background=background(made.air, made))
+        over = max(z for _, z in preset.tank.corners) - bounds(preset)[1]
+        weight = made.air.density * preset.run.gravity * over
+        made = replace(made, background=background(made.air, made, weight))
     return made
 
 
 def _air(preset: Wet, scheme: Scheme) -> given.Air:
     """The air of a preset as the solver takes it."""
     air, alpha = preset.air, scheme.alpha if preset.water.alpha is None else preset.water.alpha
+    acts, heavy = interface(preset), preset.water.density
     return given.Air(
         density=air.density,
         sound_speed=sound_of_air(air, sound_speed(preset, scheme)),
@@ -83,8 +87,14 @@ def _air(preset: Wet, scheme: Scheme) -> given.Air:
         kinematic=air.kinematic_viscosity or 0.0,
         tension=air.surface_tension,
         vent=air.vent_area / preset.thickness,
-        interface=air.interface,
+        interface=acts,
+        cohesion=Cohesion.pull(heavy, air.density, preset.run.gravity, depth(preset)) if acts == "cohesion" else 0.0,
     )
+
+
+def interface(preset: Wet) -> str:
+    """What acts between water and air, by name: the preset's own, or that of its scheme."""
+    return preset.air.interface or SCHEMES[preset.water.scheme].interface
 
 
 def parted(gauges: dict[str, Gauge]) -> tuple[dict[str, Gauge], dict[str, Gauge], dict[str, Gauge]]:

@@ -88,6 +88,11 @@ def roll_left(one: Outcome, _: object) -> float:
     return float(np.abs(roll[time > let_go + LATER]).max() / np.abs(roll[np.searchsorted(time, let_go)]))
 
 
+def particle_steps(one: Outcome, _: object) -> float:
+    """Particles times steps of a run, its cost whatever the processor."""
+    return one.cost["grain_steps"]
+
+
 def order_of_roll(found: Found) -> list[Row]:
     """How roll changes with the particles' spacing: limit and order of r = r₀ − C Δx^p; through three runs exactly."""
     alike = [one for name, (one,) in found.items() if name.endswith(" mm") and "," not in name]
@@ -114,6 +119,7 @@ def limit_and_order(spacing: np.ndarray, value: np.ndarray) -> tuple[float, floa
 
 
 NUMBERS = {
+    "particle_steps": ("", particle_steps),
     "roll_left": ("", roll_left),
     "roll_per_wave": (ROLL_UNIT, roll_per_wave),
     "linear_roll": (ROLL_UNIT, linear_roll),

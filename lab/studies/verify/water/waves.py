@@ -65,6 +65,38 @@ def viscous() -> complex:
     return complex(*fsolve(unbalanced, [-2.0 * VISCOSITY * K**2 / RATE, 1.0], xtol=1e-12)) * RATE
 
 
+def between(lower: float, upper: float, viscosity: float) -> complex:
+    """As `viscous`, of the surface between two fluids of these densities (kg/m³), each DEPTH deep, alike in ν (m²/s).
+
+    In both there are sinh kz and sinh mz from floor and lid; at the surface velocities, shear and normal stress agree
+    (Harrison 1908). Where densities are near each other, layers of shear on both sides of the surface take
+    2 ρ ρ' k √(ων/2)/(ρ + ρ')² from the rate and add as much to the decay, for small ν and equal ν; waves under air have
+    nearly nothing of that.
+    """
+
+    def unbalanced(x: np.ndarray) -> list[float]:
+        s = complex(*x) * RATE
+        m = np.sqrt(K**2 + s / viscosity)
+        flow, layer = K / np.tanh(K * DEPTH), m / np.tanh(m * DEPTH)
+        buoyant = (lower - upper) * G / s
+        # Vertical speeds at the surface of flow and layer below, and of both above, in units of the whole below
+        rows = [
+            [1.0, 1.0, 0.0, 0.0],
+            [0.0, 0.0, 1.0, 1.0],
+            [flow, layer, flow, layer],
+            [2.0 * K**2 * lower, (m**2 + K**2) * lower, -2.0 * K**2 * upper, -(m**2 + K**2) * upper],
+        ]
+        below, thin, above, thin_above = np.linalg.solve(rows, [1.0, 1.0, 0.0, 0.0])
+        pressed = s * flow / K**2 * (lower * below + upper * above)
+        parted = lower * (flow * below + layer * thin) + upper * (flow * above + layer * thin_above)
+        stretched = 2.0 * viscosity * parted
+        balance = (buoyant + pressed + stretched) / (RATE * (lower + upper) / K)
+        return [balance.real, balance.imag]
+
+    inviscid = np.sqrt((lower - upper) / (lower + upper))
+    return complex(*fsolve(unbalanced, [-2.0 * viscosity * K**2 / RATE, inviscid], xtol=1e-12)) * RATE
+
+
 def mode(place: np.ndarray) -> np.ndarray:
     """Velocities (n, 2) of the first mode of a box, 1 at the surface at its sides."""
     y, z = place.T
