@@ -38,8 +38,8 @@ class Scene:
     - `motions[w]`: the tank's motions in world w, of the same kinds in every world; or `vessels` (W,): the ships whose
       holds the tanks are in, or `axles` (W,), about which they roll. `interval` (s) between updates of the forces of
       the sea, by default derived.
-    - `step` Δt in s, None: derived; `start_speed` (m/s): the highest closing speed of two grains, or of one and a wall,
-      at the start; `velocity` (W, n, 2) m/s and `spin` (W, n) rad/s at the start, None: at rest.
+    - `step` Δt in s, None: derived; `base_share`: see `share_to_lengthen`. At the start: `start_speed` (m/s), highest
+      closing speed of two grains, or of one and a wall; `velocity` (W, n, 2) m/s, `spin` (W, n) rad/s, None: at rest.
     - `water` and its particles `drops` (W, n, 6), columns as in `solvers.fluid.given`.
     - `shapes` of irregular grains, whose `radius` and `sizes` are those of discs of equal area; None for discs.
 
@@ -59,6 +59,7 @@ class Scene:
     motions: Annotated[Sequence[Sequence], EachWorld(lambda scene: scene.kinds_of_motions), NotOfBed()] = ()
     soft_start: Annotated[float, NotOfBed()] = 0.0
     step: Annotated[float | None, NotOfBed()] = None
+    base_share: Annotated[float, LargestOfWorlds(), NotOfBed()] = 1.0
     start_speed: Annotated[float, LargestOfWorlds(), NotOfBed()] = 0.0
     sizes: tuple[float, float] | None = None
     velocity: Annotated[np.ndarray | None, EachWorld(lambda scene: scene.velocity is None)] = None
@@ -217,11 +218,10 @@ class Scene:
         return speed
 
     def calm_speed(self, times: float) -> float:
-        """The highest closing speed (m/s) at which the grains' derived step is so many `times` as long; 0: never.
+        """The highest closing speed (m/s) at which the step may be so many `times` as long, by its bounds; 0: never.
 
-        The step lengthens as a collision does, as v^(−1/5), up to those bounds that do not depend on the speed.
-        """
-        wanted = times * self.step_limits()[0].step
+        A collision lasts as v^(−1/5); other bounds do not depend on the speed."""
+        wanted = times * self.base_share * self.step_limits()[0].step
         speeds = np.geomspace(SLOWEST, max(self.credible_speed(), SLOWEST), 60)
         allowed = [self.step_limits(speed)[0].step >= wanted for speed in speeds]
         return float(speeds[allowed].max(initial=0.0))

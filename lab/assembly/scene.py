@@ -12,6 +12,7 @@ from lab.assembly.water import most_drops, water_aboard, water_of
 from lab.preset.accuracy import LEVELS, check_forced
 from lab.preset.schema import Preset
 from lab.preset.sections.water.tanks import further_tanks
+from solvers.grains.timestep import SLOWEST, share_to_lengthen
 from solvers.motion.steered import Steered
 from solvers.scene import Scene
 from solvers.ship.vessel import Vessel
@@ -72,14 +73,21 @@ def stretch(preset: Preset) -> int:
     return LONGEST_STRIDE if preset.grains and preset.run.step == "auto" else 1
 
 
+def _base_share(scene: Scene, times: float) -> float:
+    """What to take of the derived step so that it may be so many `times` as long; 1 where steps never are."""
+    if times <= 1.0 or scene.answers or scene.water or scene.integrator == "gear":
+        return 1.0
+    return share_to_lengthen(scene.step_limits()[0].step, scene.step_limits(SLOWEST)[0].step, times)
+
+
 def _step(preset: Preset, scene: Scene) -> float:
     """The step (s): as given, else derived, else the sampling interval, which it divides in any case."""
     limits, run, interval = scene.step_limits(), preset.run, 1.0 / preset.record.series_rate
-    wanted = run.step
+    wanted, longest = run.step, stretch(preset)
     if run.step == "auto":
-        wanted = scene.longest_step(LEVELS[run.accuracy].longer_steps)
+        scene.base_share = _base_share(scene, longest)
+        wanted = scene.base_share * scene.longest_step(LEVELS[run.accuracy].longer_steps)
     elif limits:
         check_forced(wanted, limits[0].step, limits[0].reason, run.force_step)
     # Between two rows of the series lies a whole number of the longest steps.
-    longest = stretch(preset)
     return interval / (longest * max(1, ceil(interval / (longest * wanted) - 1e-9)))

@@ -61,7 +61,11 @@ def _longer_steps(simulation: Simulation) -> Rows:
     if not calm:
         return [("slow grains", "steps are never longer: they do not follow from the grains' speeds")]
     when = f"while no two grains may meet faster than {show(calm, 'm/s')}"
-    return [("slow grains", f"steps are {simulation.stretch} times as long {when}; the run time below counts none")]
+    share = simulation.scene.base_share
+    room = f", for which they are shortened to {share:.2f} of the derived one" if share < 1.0 else ""
+    return [
+        ("slow grains", f"steps are {simulation.stretch} times as long {when}{room}; the run time below counts none")
+    ]
 
 
 def accuracy(preset: Preset) -> Rows:

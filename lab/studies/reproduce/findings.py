@@ -9,6 +9,7 @@ from pathlib import Path
 
 from pydantic import TypeAdapter, ValidationError
 
+from lab.base.data import data_file
 from lab.base.errors import LabError
 from lab.preset.find import load
 from lab.report.kept import Made, write
@@ -44,7 +45,10 @@ FINDINGS = TypeAdapter(dict[str, Finding])
 
 
 def read_findings(path: Path, experiments: Mapping[str, Experiment], quick: bool) -> dict[str, Finding]:
-    """Read the findings of these experiments, except those whose runs have changed since. Raises LabError."""
+    """Read the findings of these experiments, except those whose runs have changed since. Raises LabError.
+
+    One whose measured series is not here is kept: its runs can be neither compared nor made again.
+    """
     try:
         found = FINDINGS.validate_json(path.read_bytes())
     except FileNotFoundError:
@@ -54,8 +58,12 @@ def read_findings(path: Path, experiments: Mapping[str, Experiment], quick: bool
     return {
         name: finding
         for name, finding in found.items()
-        if name in experiments and finding.asked == asked(experiments[name].batches(quick))
+        if name in experiments and _still_asked(experiments[name], finding, quick)
     }
+
+
+def _still_asked(one: Experiment, finding: Finding, quick: bool) -> bool:
+    return (bool(one.needs) and not data_file(one.needs)) or finding.asked == asked(one.batches(quick))
 
 
 def write_findings(path: Path, findings: Mapping[str, Finding]) -> None:

@@ -72,12 +72,30 @@ def test_the_accuracy_sets_stiffness_and_step_unless_the_preset_does():
     for level, sets in LEVELS.items():
         assert found[level, None].stiffness_scale == sets.stiffness_scale
         assert found[level, 3e-3].stiffness_scale == 3e-3
-        longest = found[level, 3e-3].step_limits()[0].step * sets.longer_steps
+        longest = found[level, 3e-3].step_limits()[0].step * found[level, 3e-3].base_share * sets.longer_steps
         assert 0.99 * longest < found[level, 3e-3].step <= longest
     steps = [found[level, None].step for level in ("draft", "standard", "reference")]
     assert steps == sorted(steps, reverse=True)
     given = build(resolved(run={"accuracy": "draft", "step": "1 us"}))[0]
     assert given.step == pytest.approx(1e-6)
+
+
+def test_a_step_that_cannot_be_doubled_for_want_of_a_tenth_is_shortened_by_it():
+    """The stiffer, the nearer Rayleigh's bound, which no slowness lifts; a collision lasts as v^(−1/5)."""
+    seen = set()
+    for scale in np.geomspace(1e-3, 1.0, 13):
+        scene = build(resolved(run={"accuracy": "standard"}, contact={"stiffness_scale": float(scale)}))[0]
+        derived, slowest = scene.step_limits()[0].step, scene.step_limits(0.0)[0].step
+        room, calm = slowest / derived, scene.calm_speed(2.0)
+        seen.add(np.digitize(room, (1.8, 2.0)))
+        if 1.8 <= room < 2.0:
+            assert 0.99 * slowest < 2.0 * scene.step <= slowest
+            assert calm == pytest.approx(scene.credible_speed() * room**-5, rel=0.2)
+        else:
+            assert scene.base_share == 1.0 and scene.step > 0.99 * derived and (calm > 0.0) == (room >= 2.0)
+    assert seen == {0, 1, 2}
+    afloat = build(load("ship/capsize-map", {"run.repeats": 1}).resolved)[0]
+    assert 1.8 < afloat.step_limits(0.0)[0].step / afloat.step_limits()[0].step < 2.0 and afloat.base_share == 1.0
 
 
 def test_the_shares_of_a_table_add_up_to_one_and_may_be_any_numbers():

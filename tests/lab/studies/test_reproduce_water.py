@@ -18,6 +18,7 @@ from lab.studies.reproduce.compare import Claim
 from lab.studies.reproduce.estimates import Verdict
 from lab.studies.reproduce.runs import Outcome, carry_out, outcomes
 from lab.studies.reproduce.water import dam_break, impact, measured, waves
+from lab.studies.reproduce.water.costs import cost
 
 PRESETS = Path(lab.__file__).parents[1] / "presets"
 ROLL = "spheric10_lateral_water/roll_motion.csv"
@@ -49,6 +50,12 @@ def claimed(name: str) -> dict[str, list[Claim]]:
     for claim in (Claim.model_validate(row) for raw in stated.rows for row in spread(raw)):
         found.setdefault(claim.of, []).append(claim)
     return found
+
+
+def test_an_empty_tank_has_no_steps_of_particles():
+    one = ran("sloshing/roll-damper-empty", time=np.arange(3.0))
+    one.recording.volume = np.zeros((1, 0))
+    assert cost("empty", one) == ["empty", "0", "none", "none", "1 s"]
 
 
 def test_an_impact_has_the_arrival_peak_and_impulse_of_its_pressure():

@@ -60,7 +60,7 @@ def test_moduli_follow_from_both_kinds_and_the_rest_from_the_pair():
     assert len(rows) == 9 + 3
     assert rows[1] == rows[3] and rows[5] == rows[7]  # symmetric
     soft, stiff, both = rows[4].young_modulus, rows[0].young_modulus, rows[1].young_modulus
-    assert 2.0 / both == pytest.approx(1.0 / soft + 1.0 / stiff)  # in series
+    assert 2.0 / both == pytest.approx(1.0 / soft + 1.0 / stiff, rel=1e-12, abs=0.0)  # in series
     assert [rows[k].friction for k in (0, 1, 2, 4, 5, 8)] == pytest.approx([0.2, 0.1, 0.3, 0.6, 0.5, 0.4])
     mass = KINDS[1].density * 4 / 3 * pi * RADIUS**3
     assert rows[10] == interface(KINDS[1], material(restitution=0.8), mass, RADIUS, 1.0)

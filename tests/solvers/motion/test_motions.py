@@ -195,11 +195,11 @@ def tilting():
 def test_tilt_reaches_its_angle_and_stays(tilting):
     # Eases up over 0.2 s, turns at 0.4 rad/s, eases down: 0.5 rad take 0.5/0.4 + 0.2 s.
     ends = 0.5 / 0.4 + 0.2
-    assert TILTS["long"].duration() == pytest.approx(ends, rel=1e-14)
-    assert TILTS["held"].duration() == pytest.approx(ends + 0.7, rel=1e-14)
+    assert TILTS["long"].duration() == pytest.approx(ends, rel=1e-14, abs=0.0)
+    assert TILTS["held"].duration() == pytest.approx(ends + 0.7, rel=1e-14, abs=0.0)
     for name in ("long", "held"):
         angle, rate, acceleration = tilting(name, [ends + 1e-9, ends + 0.5, 1e6])
-        assert np.allclose(angle, 0.5, rtol=1e-14)
+        assert np.allclose(angle, 0.5, rtol=1e-14, atol=0.0)
         assert np.all(rate == 0.0) and np.all(acceleration == 0.0)
 
 
@@ -207,8 +207,8 @@ def test_tilt_eases_into_its_rate(tilting):
     times = np.array([0.1, 0.2, 0.6, 0.5 / 0.4, 0.5 / 0.4 + 0.1])
     angle, rate, acceleration = tilting("long", times)
     # The ramp turns by ½ (0.4/0.2) t², then the tank lags a steady turn by half the ease.
-    assert np.allclose(angle, [0.01, 0.04, 0.4 * 0.5, 0.5 - 0.04, 0.5 - 0.01], rtol=1e-13)
-    assert np.allclose(rate, [0.2, 0.4, 0.4, 0.4, 0.2], rtol=1e-13)
+    assert np.allclose(angle, [0.01, 0.04, 0.4 * 0.5, 0.5 - 0.04, 0.5 - 0.01], rtol=1e-13, atol=0.0)
+    assert np.allclose(rate, [0.2, 0.4, 0.4, 0.4, 0.2], rtol=1e-13, atol=0.0)
     assert np.allclose(acceleration, [2.0, 2.0, 0.0, 0.0, -2.0], atol=1e-12)
     assert TILTS["long"].fastest(0.0) == 0.4
 
@@ -228,11 +228,11 @@ def test_tilt_goes_and_comes_back(tilting, name, top):
 def test_short_tilt_keeps_the_acceleration_and_never_reaches_its_rate(tilting):
     # A triangle of rates: up at 2 rad/s² for T s and down again, 2 T² = 0.03 rad.
     half = np.sqrt(0.03 / 2.0)
-    assert TILTS["short"].duration() == pytest.approx(2 * 2 * half + 0.1, rel=1e-13)
+    assert TILTS["short"].duration() == pytest.approx(2 * 2 * half + 0.1, rel=1e-13, abs=0.0)
     angle, rate, acceleration = tilting("short", [0.5 * half, half, 1.5 * half])
-    assert np.allclose(angle, [0.03 / 8, 0.03 / 2, 0.03 * 7 / 8], rtol=1e-12)
-    assert np.allclose(rate, [half, 2 * half, half], rtol=1e-12)
-    assert np.allclose(acceleration[[0, 2]], [2.0, -2.0], rtol=1e-12)
+    assert np.allclose(angle, [0.03 / 8, 0.03 / 2, 0.03 * 7 / 8], rtol=1e-12, atol=0.0)
+    assert np.allclose(rate, [half, 2 * half, half], rtol=1e-12, atol=0.0)
+    assert np.allclose(acceleration[[0, 2]], [2.0, -2.0], rtol=1e-12, atol=0.0)
 
 
 def test_a_zero_tilt_stays_upright(tilting):
@@ -314,7 +314,8 @@ def test_body_force_of_steady_turning_is_weight_and_centrifugal_force(probe):
         # In the tank's frame the centre of a turn is where it was at rest: the centrifugal force points away from it.
         weight = -GRAVITY * np.array([np.sin(phi), np.cos(phi)])
         for point in ([0.0, 0.0], [0.1, 0.05], [-0.3, 0.2]):
-            assert np.allclose(total_force(force, point), weight + rate**2 * (np.array(point) - centre), rtol=1e-12)
+            expected = weight + rate**2 * (np.array(point) - centre)
+            assert np.allclose(total_force(force, point), expected, rtol=1e-12, atol=0.0)
         assert force[2] == pytest.approx(rate) and force[3] == pytest.approx(0.0, abs=1e-12)
         assert hypot(speed_y, speed_z) == pytest.approx(rate * hypot(*centre), rel=1e-12)
 
@@ -328,7 +329,8 @@ def test_body_force_of_spinning_up_is_euler_force(probe):
     weight = -GRAVITY * np.array([np.sin(phi), np.cos(phi)])
     for point in ([0.0, 0.0], [0.1, 0.05]):
         y, z = arm = np.array(point) - centre
-        assert np.allclose(total_force(body, point), weight + rate**2 * arm + slope * np.array([z, -y]), rtol=1e-12)
+        expected = weight + rate**2 * arm + slope * np.array([z, -y])
+        assert np.allclose(total_force(body, point), expected, rtol=1e-12, atol=0.0)
 
 
 def test_body_force_of_shaking_is_inertia(probe):
@@ -338,7 +340,7 @@ def test_body_force_of_shaking_is_inertia(probe):
     for column, motion, weight in ((0, sway, 0.0), (1, heave, -GRAVITY)):
         omega = 2 * pi * motion.frequency
         inertia = motion.amplitude * omega**2 * np.sin(omega * times + motion.phase)
-        assert np.allclose(body[:, column], weight + inertia, rtol=1e-12)
+        assert np.allclose(body[:, column], weight + inertia, rtol=1e-12, atol=0.0)
     assert np.all(body[:, 2:] == 0.0)
 
 
@@ -352,7 +354,7 @@ def test_tank_at_rest_feels_weight_alone(probe):
 def test_a_negative_angle_tilts_to_starboard(probe, angle, to_starboard):
     body = probe([[Tilt(1.0, angle)]]).at([5.0])[3][0, 0]
     assert np.sign(body[0]) == to_starboard
-    assert np.allclose(body[:2], GRAVITY * np.array([-np.sin(angle), -np.cos(angle)]), rtol=1e-12)
+    assert np.allclose(body[:2], GRAVITY * np.array([-np.sin(angle), -np.cos(angle)]), rtol=1e-12, atol=0.0)
 
 
 def pulse(time, begin=0.5, end=3.5):

@@ -9,7 +9,7 @@ import numpy as np
 from lab.report.page import Page
 from lab.report.plots import BLUE, GREY, VERMILION, canvas
 from lab.studies.bench.accuracy.settled import settled_scene
-from lab.studies.bench.speed.workers import in_turn, timed
+from lab.studies.bench.speed.workers import in_turn, worked
 from lab.studies.verify.impacts.meetings import Meetings, Substance
 from solvers.grains.integrators import INTEGRATORS
 from solvers.simulation import Simulation
@@ -30,7 +30,7 @@ def study(page: Page, work: Path, fast: bool) -> None:
     page.section("Integrator and step: a collision")
     page.say(f"""Two grains meet head-on at {SPEED:g} m/s, the contact beginning at {len(PHASES)} moments of a step:
         largest relative error of the restitution (0.6) against the same law integrated by an 8th-order scheme.
-        The cost of a step is measured on a settled bed, runs in turn, relative to Verlet.""")
+        The cost of a step is its processor time on a settled bed, runs in turn, relative to Verlet.""")
     page.table(
         ["steps a collision", *errors],
         [[str(share), *(f"{errors[name][k]:.1e}" for name in errors)] for k, share in enumerate(steps)],
@@ -56,10 +56,10 @@ def worst_errors(integrator: str, steps: Sequence[int]) -> list[float]:
 
 
 def costs(turns: int = 5, steps: int = 4000) -> dict[str, float]:
-    """Times of a step by integrator on a settled bed, relative to Verlet: medians of runs in turn."""
+    """Processor times of a step by integrator on a settled bed, relative to Verlet: medians of runs in turn."""
     _, place = settled_scene("verlet")
     runs = {name: Simulation(settled_scene(name)[0], place, 1, arch="cpu") for name in INTEGRATORS}
-    speeds = in_turn({name: partial(timed, run, steps) for name, run in runs.items()}, turns)
+    speeds = in_turn({name: partial(worked, run, steps) for name, run in runs.items()}, turns)
     for run in runs.values():
         run.close()
     return {name: float(np.median(speeds["verlet"] / found)) for name, found in speeds.items()}

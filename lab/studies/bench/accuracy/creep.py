@@ -45,7 +45,7 @@ def study(page: Page, work: Path, fast: bool) -> None:
     page.table(["law", "drift (diameters a minute)", "interval of the mean"], rows)
     axes.set(xlabel="time held (s)", ylabel="shift downhill (d)", yscale="symlog")
     axes.set_yscale("symlog", linthresh=1e-3)
-    axes.legend()
+    axes.legend(ncols=2, loc="lower right", bbox_to_anchor=(1.0, 0.1))  # above the springs', below the others
     page.figure("creep", figure, "Shift of the centre of mass while a bed is held at an angle")
 
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from lab.report.page import Page
 from lab.studies.bench.accuracy.settled import settled_scene
-from lab.studies.bench.speed.workers import in_turn, timed
+from lab.studies.bench.speed.workers import in_turn, worked
 from solvers.simulation import SKIN, Simulation
 
 SKINS = (0.02, 0.05, 0.1, 0.2, 0.4)  # of the mean diameter
@@ -18,9 +18,9 @@ def study(page: Page, work: Path, fast: bool) -> None:
     """Add the section to the page."""
     still, swayed = _speeds(0.0), _speeds(0.5)
     page.section("Skin of the neighbour lists")
-    page.say(f"""Grain-steps a second relative to the default, {SKIN:g} of the mean diameter: medians of the ratios
-        of {TURNS} runs in turn, one core, on a bed at rest and on one thrown against the wall at 0.5 m/s. The forces
-        are the same.""")
+    page.say(f"""Grain-steps a second of processor time relative to the default, {SKIN:g} of the mean diameter: medians
+        of the ratios of {TURNS} runs in turn, one core, on a bed at rest and on one thrown against the wall at 0.5 m/s.
+        The forces are the same.""")
     rows = [[f"{skin:g}", f"{still[skin]:.2f}", f"{swayed[skin]:.2f}"] for skin in SKINS]
     page.table(["skin (d)", "at rest", "thrown"], rows)
 
@@ -33,7 +33,7 @@ def _speeds(push: float) -> dict[float, float]:
 
     def speed(run: Simulation) -> float:
         run.place(place, velocity)
-        return timed(run, STEPS)
+        return worked(run, STEPS)
 
     found = in_turn({skin: partial(speed, run) for skin, run in runs.items()}, TURNS)
     for run in runs.values():
