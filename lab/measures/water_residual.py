@@ -1,8 +1,8 @@
 """What is wrong with a run of water by its own account: the energy that nothing explains, and its compression.
 
 water_residual: the largest |E(t) − E(0) + viscous + diffusive + held − work| of the run, over the energy exchanged by
-then, |work| + viscous + diffusive + the largest kinetic energy. E is the kinetic, potential and elastic energy over the
-earth, `viscous` and `diffusive` are what viscosity and the diffusion of density have taken, `held` what the walls'
+then, |work| + viscous + |diffusive| + the largest kinetic energy. E is the kinetic, potential and elastic energy over
+the earth, `viscous` and `diffusive` are what viscosity and the diffusion of density have taken, `held` what the walls'
 dummy particles hold, `work` that of the walls (Antuono, Marrone, Colagrossi & Bouscasse 2015, for δ-SPH). It is zero
 up to the error of the time step.
 water_excess: the largest deviation of the density from that at rest. Up to some 1 % the water counts as incompressible;
@@ -30,7 +30,7 @@ def applies(recording: Recording) -> bool:
 def measure(recording: Recording) -> dict[str, Value]:
     """water_residual, water_excess and water_dense (%)."""
     series = recording.series
-    exchanged = np.abs(series["water_work"]) + sum(series[name] for name in TAKEN)
+    exchanged = sum(np.abs(series[name]) for name in ("water_work", *TAKEN))
     exchanged = exchanged + np.maximum.accumulate(series["water_kinetic"], axis=0)
     worst = np.abs(residual(recording)).max(axis=0)
     most = exchanged.max(axis=0)

@@ -137,7 +137,7 @@ def cautions(recording: Recording) -> Iterator[str]:
         )
     if not len(series["time"]):
         return
-    exchanged = np.abs(series["water_work"]) + series["water_viscous"] + series["water_diffusive"]
+    exchanged = sum(np.abs(series[f"water_{name}"]) for name in ("work", "viscous", "diffusive"))
     exchanged = (exchanged + series["water_kinetic"]).max()
     missing = np.abs(residual(recording)).max()
     if missing > UNEXPLAINED * exchanged:

@@ -51,7 +51,7 @@ def check_water(rows: dict[str, np.ndarray], start: np.ndarray | float, time: fl
         raise BadState(
             w, f"particle {int(rows['water_escaped'][w])} of the water left the tank by t = {time:.4g} s; {REMEDY}."
         )
-    exchanged = np.abs(rows["water_work"]) + rows["water_viscous"] + rows["water_diffusive"] + rows["water_kinetic"]
+    exchanged = sum(np.abs(rows[f"water_{name}"]) for name in ("work", "viscous", "diffusive", "kinetic"))
     for w in np.flatnonzero(residual(rows, start) > CREATED * exchanged + 1e-3 * np.abs(start) + least):
         raise BadState(w, f"the water has gained energy from nothing by t = {time:.4g} s; {REMEDY}.")
 

@@ -11,6 +11,7 @@ from solvers.fluid.phases.cohesion import Cohesion
 from solvers.fluid.phases.numbers import of_air
 from solvers.fluid.shifting import SHIFTING
 from solvers.fluid.states import STATES
+from solvers.fluid.surface.consistency import Consistency
 from solvers.fluid.surface.fullness import Fullness
 from solvers.fluid.viscosity import VISCOSITY
 from solvers.fluid.walls.layers import FIRM
@@ -63,7 +64,7 @@ class Constants:
             "pull_y": pull.centre[0] if pull else 0.0,
             "pull_z": pull.centre[1] if pull else 0.0,
         }
-        numbers |= Fullness.numbers(self.kernel, length, sound)
+        numbers |= Fullness.numbers(self.kernel, length, sound) | Consistency.numbers(self.kernel, water)
         self.two, self.gas = water.air is not None, Adiabatic()
         self.tense = self.two and water.air.tension > 0.0
         self.coheres, self.cohesion = self.two and water.air.cohesion > 0.0, Cohesion()

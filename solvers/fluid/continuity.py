@@ -14,12 +14,14 @@ class Continuity:
     """dρ_i/dt = −ρ_i Σ V_j (u_j − u_i)·∇W + δ h c0 Σ V_j ψ·∇W (Antuono et al. 2010, eq. 6); the second sum over water.
 
     Of two phases, the second sum is over the own phase, and pairs of both have the weight of `solvers.fluid.phases`.
-    Broken water bears no pressure, see `solvers.fluid.surface.fullness`.
+    Broken water bears no pressure, see `solvers.fluid.surface.fullness`; water keeps its volume, see
+    `solvers.fluid.surface.consistency`.
 
-    `lost` (units,) J is the energy that diffusion and the relief of broken water have taken: −Σ m_i p_i/ρ_i² times
-    their share of the rate (Antuono, Marrone, Colagrossi & Bouscasse 2015, eq. 22), by the water's pressure in the
-    middle of the step. What the water before dummies takes (`Closing`), and what images of water take from air
-    (`Sliding`), goes to `held` (units,) J. The momentum that shifts carry is summed up over the same pairs.
+    `lost` (units,) J is the energy that diffusion, the relief of broken water and the keeping of volume have taken:
+    −Σ m_i p_i/ρ_i² times their share of the rate (Antuono, Marrone, Colagrossi & Bouscasse 2015, eq. 22), by the
+    water's pressure in the middle of the step. What the water before dummies takes (`Closing`), and what images of
+    water take from air (`Sliding`), goes to `held` (units,) J. The momentum that shifts carry is summed up over the
+    same pairs.
     """
 
     def __init__(self, arrays: State, medium: Medium, forces: Forces):

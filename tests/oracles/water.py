@@ -123,12 +123,22 @@ class PlainWater:
         closed = np.where(pressed & (seen > 0.0), volume @ (over * gradient).sum(axis=2), 0.0)
         return self.liquid * (value @ (self.wall_volume * closed / np.maximum(seen, 1e-30)))
 
-    def fullness(self, r: np.ndarray, mass: np.ndarray, s: np.ndarray, plane: float) -> np.ndarray:
-        """½ Σ V (−W'/r) r² + b |Σ V ∇W| over water and dummies, b being `plane` (m)."""
+    def fullness(self, r: np.ndarray, mass: np.ndarray, s: np.ndarray, plane: float) -> tuple[np.ndarray, np.ndarray]:
+        """½ Σ V (−W'/r) r² + b |Σ V ∇W| over water and dummies, b being `plane` (m), and its second part alone."""
         both, volume = np.concatenate([r, self.wall]), np.append(self.volume(mass, s), self.wall_volume)
         apart, _, _, gradient = self.between(r, both)
         trace = (apart * gradient).sum(axis=2) @ volume
-        return 0.5 * trace + plane * np.linalg.norm(np.einsum("j,ija->ia", volume, gradient), axis=1)
+        lacking = plane * np.linalg.norm(np.einsum("j,ija->ia", volume, gradient), axis=1)
+        return 0.5 * trace + lacking, lacking
+
+    def keeping(self, fullness: np.ndarray, lacking: np.ndarray, s: np.ndarray) -> np.ndarray:
+        """Rate of s by which the density follows the room that is taken, in packed water away from the surface."""
+        water, n = self.water, np.arange(-8.0, 9.0)
+        apart = np.hypot(n[:, None], n[None]).ravel()
+        lattice = -0.5 * (kernel(apart, water.smoothing)[1] * apart**2).sum()
+        deep = np.where(fullness > 0.93, np.maximum(1.0 - lacking / 0.1, 0.0), 0.0)
+        rate = 0.01 * water.delta * water.sound_speed / water.length
+        return rate * deep * (1.0 + s) * (fullness / lattice - 1.0)
 
     def rate(self, r, u, s, mass, slope, pressed) -> np.ndarray:
         """Rate of s, in the middle of a step at whose start dummies were `pressed`."""

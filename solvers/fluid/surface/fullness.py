@@ -4,6 +4,7 @@ import numpy as np
 import taichi as ti
 
 from solvers.fluid.state import SPRAY, Particles
+from solvers.fluid.surface.consistency import Consistency
 from solvers.machine.state import Axis, State
 from solvers.space.axes import dot
 
@@ -37,6 +38,7 @@ class Fullness:
     def __init__(self, arrays: State, particles: Particles, constants):
         self.particles, self.constants = particles, constants
         self.acts = not (constants.full or constants.two)
+        self.consistency = Consistency(arrays, particles, constants)
         if self.acts:
             each = Axis("block", particles.worlds * particles.stride), Axis("lane", particles.lanes)
             (self.fullness,) = arrays.under("water").wide(each, "fullness", kept=False)
@@ -56,15 +58,21 @@ class Fullness:
         """Store the fullness of a block, from Σ V (−W'/r) r² and Σ V (−W'/r)(r_j − r_i) without the slope's factor."""
         p, c = self.particles, self.constants
         lacking = c.get("plane") * ti.sqrt(dot(lean, lean))
-        p.store(self.fullness, b, c.get("slope") * (0.5 * trace + lacking))
+        fullness = c.get("slope") * (0.5 * trace + lacking)
+        p.store(self.fullness, b, fullness)
+        if ti.static(self.consistency.acts):
+            self.consistency.note(b, fullness, c.get("slope") * lacking)
 
     @ti.func
     def stepped(self, b, s, rate, rate_of_walls, step):
         """The excesses of density of a block after a `step` (s) with these rates (1/s)."""
         p = self.particles
         spray = p.load(p.span, b) + p.gases(b) < SPRAY  # air is never spray
+        after = s + step * rate
+        if ti.static(self.consistency.acts):
+            after += step * self.consistency.rate(b, s)
         # Walls come last: spray that parts is still pushed off a wall that it nears.
-        after = self.floored(spray, self.floored(spray, s + step * rate) + step * rate_of_walls)
+        after = self.floored(spray, self.floored(spray, after) + step * rate_of_walls)
         if ti.static(self.acts):
             rest = self.constants.get("thinnest") if ti.static(self.constants.pressed) else 0.0
             after = after - self.share(b, step) * (after - rest)

@@ -147,28 +147,28 @@ def test_one_particle_of_depth():
 
 
 def test_half_an_hour_of_resonance():
-    """Mean level and mean energy of nine cycles stay, and the account closes to a thousandth of the work done."""
+    """Mean level and mean energy of nine cycles stay, and the account closes to a thousandth of the work done.
+
+    Single means of nine cycles scatter by 2.4 %: all of the tenth minute and of the last five are taken.
+    """
     width, depth, rows = 0.2, 0.08, 10
     wavenumber = np.pi / width
     frequency = np.sqrt(GRAVITY * wavenumber * np.tanh(wavenumber * depth)) / (2.0 * np.pi)
     scene = tank_of(box(width, 0.2), depth, rows, motions=[(Sway(2e-3, float(frequency)),)], soft_start=5.0)
     run, cycle = Simulation(scene, threads=1, arch="cpu"), 1.0 / frequency
     start = run.observe()
-    means = {}
-    for minute in (10.0, 25.0, 27.5, 30.0):
-        run.advance(round((60.0 * minute - 9.0 * cycle) / run.dt) - run.steps)
+    means = []
+    for begin, end in ((540.0, 600.0), (1500.0, 1800.0)):
+        run.advance(round(begin / run.dt) - run.steps)
         looks = []
-        for _ in range(9 * 16):
+        for _ in range(9 * int((end - begin) / (9.0 * cycle)) * 16):
             run.advance(max(1, round(cycle / 16.0 / run.dt)))
             looks.append(run.observe())
-        means[minute] = {
-            name: np.mean([row[name][0] for row in looks]) for name in ("water_kinetic", "water_potential")
-        }
-    energy = {minute: found["water_kinetic"] for minute, found in means.items()}
-    late = np.mean([energy[minute] for minute in (25.0, 27.5, 30.0)])
-    print(energy, residual(looks[-1], residual(start, 0.0)), looks[-1]["water_work"])
-    assert late == pytest.approx(energy[10.0], rel=0.02)
+        means.append({name: np.mean([row[name][0] for row in looks]) for name in ("water_kinetic", "water_potential")})
+    tenth, late = means
+    print(means, residual(looks[-1], residual(start, 0.0)), looks[-1]["water_work"])
+    assert late["water_kinetic"] == pytest.approx(tenth["water_kinetic"], rel=0.02)
     assert abs(residual(looks[-1], residual(start, 0.0))[0]) < 1e-3 * looks[-1]["water_work"][0]
     mass = 1000.0 * width * depth
-    rise = (means[30.0]["water_potential"] - means[10.0]["water_potential"]) / (mass * GRAVITY)
+    rise = 2.0 * (late["water_potential"] - tenth["water_potential"]) / (mass * GRAVITY)
     assert abs(rise) < 0.05 * depth / rows

@@ -1,0 +1,71 @@
+"""The density that a particle carries, kept in step with how close its neighbours are."""
+
+import numpy as np
+import taichi as ti
+
+from solvers.fluid.state import Particles
+from solvers.machine.state import Axis, State
+
+SLOW = 0.01  # of δ c0/h, the rate at which diffusion evens the densities of neighbours
+SEEN = 0.1  # of fullness that a surface takes off half the trace: from there on it is too near
+
+
+@ti.data_oriented
+class Consistency:
+    """dρ_i/dt has the term a_i ρ_i (F_i/F_0 − 1)/τ, F of `Fullness`, τ = 100 h/(δ c0): it keeps the volume of water.
+
+    Density that follows from the motion of neighbours is not tied to where they are. Errors of many cycles add up:
+    water ends packed too close at the density of rest, and its level sinks. Colagrossi & Landrini (2003) set the
+    density anew every 20 steps, from a sum of masses over neighbours, so that mass, density and the room that is taken
+    agree again. Here that is slow and steady (own derivation): F is the density by the places of neighbours over the
+    density that they carry, with their volumes m/ρ. F_0 is that of a square lattice of the run's h/Δx.
+
+    Sound and waves change both densities alike, so that the term does not feel them. τ is a hundred times that in
+    which diffusion evens neighbours (h/(δ c0)): what F is off in single particles comes to the pressure by a hundredth.
+    Near a surface F is not certain enough: with L = b |Σ V ∇W|, what it lacks there, a_i is 1 − L/SEEN, at least 0: at
+    rest nothing in the first two rows, three quarters in the third. Diffusion carries the term to the surface. In
+    broken water a_i is 0. The energy counts as diffused.
+
+    Limits: water that loses volume faster than in τ, or of two rows or less, is not kept. Not beside air
+    and in full tanks, see `Fullness`, nor without diffusion of density, which the term needs.
+
+    Units: ρ kg/m³, τ s, h m, c0 m/s.
+    """
+
+    def __init__(self, arrays: State, particles: Particles, constants):
+        self.particles, self.constants = particles, constants
+        self.acts = constants.diffusion.acts and not (constants.full or constants.two)
+        if self.acts:
+            each = Axis("block", particles.worlds * particles.stride), Axis("lane", particles.lanes)
+            (self.drift,) = arrays.under("water").wide(each, "drift", kept=False)
+
+    @staticmethod
+    def numbers(kernel, water) -> dict[str, float]:
+        """The constants of the term, for a scene's water."""
+        return {
+            "keeping": SLOW * water.delta * water.sound_speed / water.length,
+            "lattice": 1.0 / lattice(kernel, water.smoothing),
+            "seen": 1.0 / SEEN,
+        }
+
+    @ti.func
+    def note(self, b, fullness, lacking):
+        """Store a_i (F_i/F_0 − 1)/τ (1/s) of a block, from its fullness and what of it a surface makes it lack."""
+        p, c = self.particles, self.constants
+        deep = ti.select(fullness > c.get("packed"), ti.max(1.0 - c.get("seen") * lacking, 0.0), p.zeros())
+        p.store(self.drift, b, (c.get("keeping") * deep) * (c.get("lattice") * fullness - 1.0))
+
+    @ti.func
+    def rate(self, b, s):
+        """The rate (1/s) of a block's excesses of density s."""
+        return (1.0 + s) * self.particles.load(self.drift, b)
+
+
+def lattice(kernel, smoothing: float) -> float:
+    """F of a square lattice with h/Δx `smoothing`: ½ Σ V (−W'/r) r²."""
+    n = np.arange(-np.ceil(2.0 * smoothing), np.ceil(2.0 * smoothing) + 1.0)
+    r = np.hypot(n[:, None], n[None])
+    r = r[(r > 0.0) & (r < 2.0 * smoothing)]
+    step = 1e-6 * smoothing
+    drop = kernel.printed(r - step, smoothing) - kernel.printed(r + step, smoothing)
+    return float(0.5 * (r * drop).sum() / (2.0 * step))
