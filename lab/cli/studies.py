@@ -38,7 +38,7 @@ def verify(cases: tuple[str, ...], level: str | None, out: Path, fast: bool, pag
     \b
     cargolab verify                     all CASES, and a page with a table and figures; run again, it continues
     cargolab verify --fast
-    cargolab verify oblique incline     those whose names begin with these
+    cargolab verify oblique incline     these, or those whose names begin so
     cargolab verify --level draft       a page of its own
     """
     from lab.studies.verify import SUITE, suite_at
@@ -66,7 +66,7 @@ def reproduce(
     \b
     cargolab reproduce granular --quick
     cargolab reproduce granular                 hours on two cores; run again, it continues
-    cargolab reproduce granular tilt-fill stack EXPERIMENTS whose names begin with these
+    cargolab reproduce granular tilt-fill stack these EXPERIMENTS, or those whose names begin so
     cargolab reproduce shapes --quick           those with irregular grains
     cargolab reproduce ship --quick             those with ships in waves
     cargolab reproduce water --quick            those with water in tanks

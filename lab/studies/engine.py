@@ -21,14 +21,16 @@ Study = Callable[[Page, Path, bool], None]  # adds a section to a page; with a f
 def choose(names: Collection[str], known: Iterable[str], what: str, usual: Collection[str] | None = None) -> list[str]:
     """The known names that begin like one of `names`, in their order; without names the `usual` ones, or all.
 
-    Raises LabError, which lists all, for a name that begins none; `what` they are is part of its sentence.
+    A name that is known means itself alone, whatever else begins like it. Raises LabError, which lists all, for a name
+    that begins none; `what` they are is part of its sentence.
     """
     known = list(known)
     for name in names:
         if not any(one.startswith(name) for one in known):
             raise LabError(f"there is no {what} {name}; there are {', '.join(known)}.")
     if names:
-        return [one for one in known if one.startswith(tuple(names))]
+        begins = tuple(name for name in names if name not in known)
+        return [one for one in known if one in names or one.startswith(begins)]
     return [one for one in known if usual is None or one in usual]
 
 

@@ -31,7 +31,7 @@ def reproduce(
     cluster: str | None = None,
     page_only: bool = False,
 ) -> Path:
-    """Run a report's experiments whose names begin like one of `names`, or all, and write the report.
+    """Run a report's experiments of these `names`, or whose names begin so, or all, and write the report.
 
     Without names, an experiment that is in the report already is not run again, even if its runs have been removed.
     cluster: the address of a scheduler whose workers first run all that has not been begun. The report is rewritten

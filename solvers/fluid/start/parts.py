@@ -16,10 +16,11 @@ def cleared(points: np.ndarray, parts: Sequence[Part], close: float) -> np.ndarr
     """Which of the points (n, 2) m are outside of all bodies, and at least `close` (m) from their faces and plates."""
     free = np.ones(len(points), dtype=bool)
     for part in parts:
-        corners = np.array(part.points)
-        free &= from_edges(points, corners) >= close
+        corners, seen = np.array(part.points), 2.0 * close  # beyond that round its box all points are free
+        near = ((points >= corners.min(axis=0) - seen) & (points <= corners.max(axis=0) + seen)).all(axis=1)
+        free[near] &= from_edges(points[near], corners) >= close
         if is_solid(part):
-            free &= ~Tank(corners, 1.0).holds(points)
+            free[near] &= ~Tank(corners, 1.0).holds(points[near])
     return free
 
 

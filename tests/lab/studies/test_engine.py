@@ -16,6 +16,7 @@ def test_names_are_beginnings_and_without_names_the_usual_ones_are_taken():
     assert choose(["roll", "fall"], known, "case") == [*known]
     assert choose(["fall-n"], known, "case", {"roll"}) == ["fall-near"]
     assert choose([], known, "case", {"roll"}) == ["roll"]
+    assert choose(["fall", "roll"], ["fall", *known, "roll-far"], "case") == ["fall", "roll"]
     with pytest.raises(LabError, match=r"^there is no case spin; there are fall-far, fall-near, roll\.$"):
         choose(["roll", "spin"], known, "case")
 
