@@ -11,6 +11,7 @@ from solvers.tank.tank import Tank
 
 CREATED = 0.1  # of the energy exchanged: what may be missing from the account before a run is stopped
 LEAST = 1e-3  # Mach number of water that has so little energy that none can be missed
+SQUEEZED = "use a higher air.sound_speed, or a smaller water.spacing"
 REMEDY = "use a higher water.sound_speed, a smaller water.spacing, or check the motion's amplitude"
 
 
@@ -18,8 +19,9 @@ def refuse_state(world: int, particles: dict[str, np.ndarray], time: float, soun
     """Raise BadState for a world whose particles made the watch stop it at `time` (s).
 
     `particles` have their "place" (n, 2) m, "speed" (n,) m/s relative to the tank, "excess" (n,) of density, "span"
-    (n,) and "spilled" (n,), whether they are out of an open tank; `sound` is c0 in m/s.
+    (n,), "gas" (n,), 1 for air, and "spilled" (n,), whether they are out of an open tank; `sound` is c0 in m/s.
     """
+    remedy = REMEDY
     place, speed, excess = (particles[name] for name in ("place", "speed", "excess"))
     bad = ~(np.isfinite(speed) & np.isfinite(excess) & np.isfinite(place).all(axis=1))
     if bad.any():
@@ -37,8 +39,9 @@ def refuse_state(world: int, particles: dict[str, np.ndarray], time: float, soun
         what, at = f"water moves at {speed[worst]:.3g} m/s, Mach {speed[worst] / sound:.2g},", place[worst]
     else:
         worst = (np.abs(excess) / allowed(particles["span"])).argmax()
-        what, at = f"the water's density is off by {100.0 * excess[worst]:.3g} %", place[worst]
-    raise BadState(world, f"{what} at y = {at[0]:.4g} m, z = {at[1]:.4g} m, t = {time:.4g} s; {REMEDY}.")
+        whose, remedy = ("air", SQUEEZED) if particles["gas"][worst] else ("water", REMEDY)
+        what, at = f"the {whose}'s density is off by {100.0 * excess[worst]:.3g} %", place[worst]
+    raise BadState(world, f"{what} at y = {at[0]:.4g} m, z = {at[1]:.4g} m, t = {time:.4g} s; {remedy}.")
 
 
 def check_water(rows: dict[str, np.ndarray], start: np.ndarray | float, time: float, least: float = 0.0) -> None:

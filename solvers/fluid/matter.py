@@ -252,6 +252,7 @@ class WaterMatter(Matter):
             "speed": np.linalg.norm(velocity, axis=1),
             "excess": found[6][world],
             "span": found[7][world],
+            "gas": self.gas[world],
         }
         refuse_state(world, particles, time, self.water.sound_speed)
 

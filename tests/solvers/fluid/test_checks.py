@@ -1,4 +1,4 @@
-"""What is said of water that has left an open tank."""
+"""What is said of water that has left an open tank, and of what is squeezed."""
 
 import numpy as np
 import pytest
@@ -23,7 +23,12 @@ def test_water_beside_and_below_a_tank_is_outside():
 def test_spilled_water_that_falls_fast_is_told_as_such():
     """One sentence that says how much is out, and names the keys that keep it in."""
     spilled = outside(PLACES, [Tank(box(0.6, 0.6), 1.0, (2,))], NEAR)
-    particles = {"place": PLACES, "speed": np.array([0.0, 1.0, 3.0, 9.0, 0.0]), "excess": np.zeros(5)}
+    particles = {
+        "place": PLACES,
+        "speed": np.array([0.0, 1.0, 3.0, 9.0, 0.0]),
+        "excess": np.zeros(5),
+        "gas": np.zeros(5),
+    }
     with pytest.raises(BadState) as error:
         refuse_state(0, {**particles, "span": np.ones(5), "spilled": spilled}, 1.5, 17.0)
     said = str(error.value)
@@ -31,3 +36,17 @@ def test_spilled_water_that_falls_fast_is_told_as_such():
     assert "tank.lid" in said and said.count(". ") == 0
     with pytest.raises(BadState, match=r"Mach 0\.53"):
         refuse_state(0, {**particles, "span": np.ones(5), "spilled": np.zeros(5, dtype=bool)}, 1.5, 17.0)
+
+
+@pytest.mark.parametrize(
+    ("gas", "said"), [(1.0, r"air's density.*air\.sound_speed"), (0.0, r"water's density.*water\.sound_speed")]
+)
+def test_what_is_squeezed_is_named(gas, said):
+    particles = {
+        "place": PLACES,
+        "speed": np.zeros(5),
+        "excess": np.array([0.0, 0.1, 30.0, 0.0, 0.0]),
+        "span": np.ones(5),
+    }
+    with pytest.raises(BadState, match=said):
+        refuse_state(0, {**particles, "gas": np.full(5, gas), "spilled": np.zeros(5, dtype=bool)}, 1.5, 17.0)
