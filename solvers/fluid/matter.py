@@ -250,9 +250,7 @@ class WaterMatter(Matter):
             "place": place,
             "spilled": outside(place, self.scene.tanks, self.water.reach) & open_top,
             "speed": np.linalg.norm(velocity, axis=1),
-            "excess": found[6][world],
-            "span": found[7][world],
-            "gas": self.gas[world],
+            **{name: values[world] for name, values in (("excess", found[6]), ("span", found[7]), ("gas", self.gas))},
         }
         refuse_state(world, particles, time, self.water.sound_speed)
 
