@@ -1,5 +1,6 @@
 """What all tests share."""
 
+import gc
 import os
 
 # Workers share the cores; threads of numpy's that wait for each other by spinning would take all of a busy machine.
@@ -57,8 +58,8 @@ def own_cache(tmp_path_factory):
 
 @pytest.hookimpl(hookwrapper=True)
 def pytest_runtest_call(item):
-    """Close what a test leaves open: kernels are found in the cache only by a Taichi that has no arrays yet."""
-    before = set(runtime.live())
+    """Let go of what a test leaves behind: kernels are found in the cache only by a Taichi that has no arrays yet."""
+    before = runtime.states()
     yield
-    for state in set(runtime.live()) - before:
-        state.release()
+    if runtime.states() > before:
+        gc.collect()  # simulations refer to themselves in circles

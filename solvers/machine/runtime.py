@@ -172,9 +172,9 @@ def take_in(state) -> None:
     _live.add(state)
 
 
-def live() -> tuple:
-    """The states whose memory is allocated."""
-    return tuple(_live)
+def states() -> int:
+    """How many states have memory."""
+    return len(_live)
 
 
 def let_go(state) -> bool:
