@@ -54,9 +54,12 @@ def outcome(setting=None, **measures) -> Outcome:
 
 
 EXPERIMENTS = {name: one for part in reports() for name, one in experiments(part).items()}
+FINE = ("impact-air-fine", "prismatic-cost")  # the scenes of others, with so many particles that they take seconds
 
 
-@pytest.mark.parametrize("name", EXPERIMENTS)
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=pytest.mark.slow) if name in FINE else name for name in EXPERIMENTS]
+)
 def test_every_batch_of_every_experiment_can_be_built(name):
     if EXPERIMENTS[name].needs and not data_file(EXPERIMENTS[name].needs):
         pytest.skip(f"{name} needs {EXPERIMENTS[name].needs}; see CARGOLAB_DATA")

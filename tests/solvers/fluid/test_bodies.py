@@ -137,6 +137,7 @@ def test_a_swaying_cylinder_has_the_added_mass_of_potential_theory():
     np.testing.assert_allclose(found, wanted, rtol=0.08)
 
 
+@pytest.mark.slow
 def test_a_plate_that_is_torn_up_along_itself_does_not_press_on_water_that_slides():
     """Its ends' dummies have the pressure of the water before them, however it is accelerated: to 5 % of ρ a Δx.
 
