@@ -36,6 +36,7 @@ def cup(tmp_path_factory):
         yield path
 
 
+@pytest.mark.slow
 def test_an_interrupted_run_goes_on_with_the_same_bits(cup, monkeypatch):
     folder, pause, paused = cup.parent / "again", Batch._pause, []
 

@@ -59,6 +59,7 @@ def test_the_axes_that_a_drop_is_seen_from_do_not_matter():
     assert np.abs(seen - alone).max() > 0.01  # else nothing was tried
 
 
+@pytest.mark.slow
 def test_walls_work_on_the_water_of_a_moving_tank():
     """Momentum over the earth changes by weight and load, energy by the work of the walls, as the tank rolls."""
     scene = still(0.6, 0.6, 0.2, 10, motions=[MOTIONS[:1]], soft_start=0.1)

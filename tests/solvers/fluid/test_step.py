@@ -208,7 +208,12 @@ def test_water_at_rest_weighs_on_the_floor_and_its_gauges(done):
 
 
 @pytest.mark.parametrize(
-    "changes", [{"precision": "mixed"}, {"schedule": "per-band"}, {"schedule": "per-grain", "precision": "f32"}]
+    "changes",
+    [
+        pytest.param({"precision": "mixed"}, marks=pytest.mark.slow),
+        {"schedule": "per-band"},
+        {"schedule": "per-grain", "precision": "f32"},
+    ],
 )
 def test_other_ways_of_running_give_the_same_water(done, changes):
     """Numbers of 32 bits, bands on threads, and particles one by one: the same course, to the rounding of each."""
@@ -223,6 +228,7 @@ def test_other_ways_of_running_give_the_same_water(done, changes):
     np.testing.assert_allclose(place[1], place[0], atol=tight * spacing)
 
 
+@pytest.mark.slow
 def test_worlds_go_on_when_one_leaves(done):
     """With the same bits, although they are counted anew and lists of neighbours hold places in all worlds."""
     scenes = [disturbed(seed) for seed in (4, 5, 6)]
