@@ -40,7 +40,8 @@ class Scene:
       the sea, by default derived.
     - `step` Δt in s, None: derived; `base_share`: see `share_to_lengthen`. At the start: `start_speed` (m/s), highest
       closing speed of two grains, or of one and a wall; `velocity` (W, n, 2) m/s, `spin` (W, n) rad/s, None: at rest.
-    - `water` and its particles `drops` (W, n, 6), columns as in `solvers.fluid.given`.
+    - `water` and its particles `drops` (W, n, 6), columns as in `solvers.fluid.given`; its steps are `water_pace` of Δt
+      (in ships alone).
     - `shapes` of irregular grains, whose `radius` and `sizes` are those of discs of equal area; None for discs.
 
     The fields' marks say which may differ between the worlds of a launch, and from which a settled bed follows.
@@ -80,6 +81,7 @@ class Scene:
     length: float | None = None
     more_tanks: tuple[Tank, ...] = ()
     water: Water | None = None
+    water_pace: Annotated[int, NotOfBed()] = 1
     drops: Annotated[np.ndarray | None, EachWorld(lambda scene: scene.particles), NotOfBed()] = None
     integrator: str = "verlet"
     precision: str = "f64"
@@ -170,8 +172,8 @@ class Scene:
 
     @property
     def work(self) -> int:
-        """Relative cost of a step: the number of particles in all worlds, where an empty world counts as one."""
-        return max(self.worlds, self.radius.size + self.worlds * self.particles)
+        """Relative cost of a step: the number of particles that move in all worlds; an empty world counts as one."""
+        return max(self.worlds, self.radius.size + self.worlds * self.particles // self.water_pace)
 
     @property
     def span(self) -> float:
@@ -244,6 +246,17 @@ class Scene:
         """The step (s) `longer` times the derived one, within the bounds that are `firm`; ∞ without bounds."""
         steps = (limit.step if limit.firm else longer * limit.step for limit in self.step_limits())
         return min(steps, default=np.inf)
+
+    def longest_pace(self, step: float) -> int:
+        """How many base steps of `step` (s) a step of the water may be long: beside grains in a ship, by its bounds.
+
+        Not where a ship takes its water's answer on her own side, or takes long steps herself.
+        """
+        if not (self.water and self.radius.size and self.vessels):
+            return 1
+        if self.water.added_mass == "layer" or self.vessels[0].handover:
+            return 1
+        return max(1, int(min(limit.step for limit in limits_of_water(self)) / step))
 
     def deepest_overlap(self, speed: float) -> float:
         """Largest overlap, in radii of the smallest grain, as it hits the largest grain or a wall at a speed (m/s).

@@ -89,5 +89,8 @@ def _step(preset: Preset, scene: Scene) -> float:
         wanted = scene.base_share * scene.longest_step(LEVELS[run.accuracy].longer_steps)
     elif limits:
         check_forced(wanted, limits[0].step, limits[0].reason, run.force_step)
-    # Between two rows of the series lies a whole number of the longest steps.
-    return interval / (longest * max(1, ceil(interval / (longest * wanted) - 1e-9)))
+    # Between two rows of the series lies a whole number of the longest steps, of grains and of water.
+    count = longest * max(1, ceil(interval / (longest * wanted) - 1e-9))
+    of_water = ceil(count / scene.longest_pace(interval / count))
+    scene.water_pace = ceil(count / of_water)
+    return interval / (of_water * scene.water_pace)
