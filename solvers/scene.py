@@ -175,6 +175,10 @@ class Scene:
         """Relative cost of a step: the number of particles that move in all worlds; an empty world counts as one."""
         return max(self.worlds, self.radius.size + self.worlds * self.particles // self.water_pace)
 
+    def updates(self, steps: int) -> int:
+        """How often particles are moved, one by one, in so many base steps of all worlds."""
+        return steps * self.radius.size + steps // self.water_pace * self.worlds * self.particles
+
     @property
     def span(self) -> float:
         """Largest distance (m) of a corner of a tank from the tank's origin."""

@@ -262,7 +262,7 @@ class Batch:
         now, whole = time.perf_counter(), sum(run.scene.work for run in self.runs)
         for recorder, run in zip(self._recorders, self.runs, strict=True):
             recorder.wall_s += (now - self._counted) * run.scene.work / whole
-            recorder.grain_steps = self._simulation.steps * run.scene.worlds * particles(run.scene)
+            recorder.grain_steps = run.scene.updates(self._simulation.steps)
         self._counted = now
 
     def _worlds(self) -> Iterator[slice]:

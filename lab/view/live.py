@@ -152,7 +152,7 @@ class Live:
             part = self.simulation.part_places()
             more = {"part": part, **self._waves(), **self.simulation.snapshot()}
             self.recorder.frame({"time": now, "pose": rows["pose"], **more})
-        self.recorder.grain_steps = self.simulation.grain_steps
+        self.recorder.grain_steps = self.simulation.scene.updates(self.simulation.steps)
         return rows
 
     def _waves(self) -> dict[str, np.ndarray]:
