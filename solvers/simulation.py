@@ -144,15 +144,9 @@ class Simulation:
         """Model time (s); while settling, the time since settling began."""
         return self.steps * self.dt
 
-    @property
-    def grain_steps(self) -> int:
-        """Total number of grain updates so far: grains times steps, over all worlds."""
-        return self.steps * self.scene.radius.size
-
     def whole(self, steps: int) -> int:
         """The largest number of base steps, up to `steps`, that cuts no longer step; at least one such step."""
-        least = lcm(self.stretch, self.beat)
-        return least * max(1, steps // least)
+        return (least := lcm(self.stretch, self.beat)) * max(1, steps // least)
 
     def advance(self, steps: int) -> None:
         """Advance every world by `steps` base steps, as many as `whole` says where matters have steps of their own.

@@ -6,7 +6,7 @@ from dataclasses import replace
 from lab.assembly.grains import grain_count
 from lab.assembly.room import check_room
 from lab.assembly.scene import build, stretch
-from lab.assembly.water import most_drops, particles
+from lab.assembly.water import most_drops, particles, updates
 from lab.measures.ship_frozen import INTERVAL
 from lab.preset.fields import join, taken_by
 from lab.preset.find import LoadedPreset
@@ -180,7 +180,7 @@ def _cost(preset, scene, simulation: Simulation) -> list[tuple[str, str]]:
     settling = f"and at most {_span(_stepping(preset.run.settle_limit, preset, scene))} to settle a new bed"
     return [
         *(
-            [(f"{what}-steps", f"{scene.updates(round(steps)):.3g}{', and those of settling' * bool(preset.grains)}")]
+            [(f"{what}-steps", f"{updates(scene, round(steps)):.3g}{', and those of settling' * bool(preset.grains)}")]
             * bool(count)
         ),
         *([("steps", f"{steps:.3g}")] if not preset.grains else []),

@@ -14,7 +14,7 @@ import numpy as np
 
 from lab.assembly.drawn import classes
 from lab.assembly.scene import build, stretch
-from lab.assembly.water import air_volumes_of, particles, volumes_of
+from lab.assembly.water import air_volumes_of, particles, updates, volumes_of
 from lab.base.errors import Unusable
 from lab.base.interrupt import Interrupt
 from lab.base.progress import Progress
@@ -262,7 +262,7 @@ class Batch:
         now, whole = time.perf_counter(), sum(run.scene.work for run in self.runs)
         for recorder, run in zip(self._recorders, self.runs, strict=True):
             recorder.wall_s += (now - self._counted) * run.scene.work / whole
-            recorder.grain_steps = run.scene.updates(self._simulation.steps)
+            recorder.grain_steps = updates(run.scene, self._simulation.steps)
         self._counted = now
 
     def _worlds(self) -> Iterator[slice]:

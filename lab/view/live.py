@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from lab.assembly.scene import build, stretch
+from lab.assembly.water import updates
 from lab.base.errors import LabError
 from lab.base.progress import Progress
 from lab.preset.find import LoadedPreset
@@ -152,7 +153,7 @@ class Live:
             part = self.simulation.part_places()
             more = {"part": part, **self._waves(), **self.simulation.snapshot()}
             self.recorder.frame({"time": now, "pose": rows["pose"], **more})
-        self.recorder.grain_steps = self.simulation.scene.updates(self.simulation.steps)
+        self.recorder.grain_steps = updates(self.simulation.scene, self.simulation.steps)
         return rows
 
     def _waves(self) -> dict[str, np.ndarray]:

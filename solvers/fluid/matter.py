@@ -32,22 +32,20 @@ from solvers.motion.carrier import per_slab
 from solvers.motion.poses import Poses
 from solvers.ship.body import Body, frozen
 from solvers.tank.matter import Matter
+from solvers.tank.pace import Pace
 from solvers.tank.setting import Setting
 
 
 @ti.data_oriented
 class WaterMatter(Matter):
-    """Water: its dummies' pressures, its forces, then kick and drift, the rates of density, and drift.
-
-    Beside grains in a ship its steps are `pace` base steps long, and its lists are rebuilt only when they are stale.
-    """
+    """Water: its dummies' pressures, its forces, then kick and drift, the rates of density, and drift."""
 
     name = "water"
     of_contacts: ClassVar = ("gauge_pressure", "gauge_peak", "edge_force", "part_force")  # known only after a step
 
     def __init__(self, scene, setting: Setting):
         water: Water = scene.water
-        self.scene, self.water, self.drops, self.pace = scene, water, scene.drops, scene.water_pace
+        self.scene, self.water, self.drops = scene, water, scene.drops
         arrays, worlds, tank, count = setting.arrays, setting.worlds, scene.tanks[0], scene.drops.shape[1]
         alone = not scene.radius.shape[1]  # kernels that hold grains' as well cannot be on real vectors: Taichi aborts
         lanes = LANES if alone and not setting.per_particle else 1
@@ -64,20 +62,21 @@ class WaterMatter(Matter):
         sizes = worlds, count, lanes, walls, grid.strips
         self.particles = p = Particles(arrays, *sizes, shifting, water.air, setting.among)
         self.units = units = setting.units(p.wet)
-        self.load = setting.load(arrays.under("water"), units, self.pace)
+        self.load = setting.load(arrays.under("water"), units, scene.water_pace)
         self.load.lag(answer_at_rest(scene, behind), water.added_mass == "layer")
         self.dummies = dummy, blocks, behind.volumes, behind.firm
         shares, self.constants = Shares(p, units), Constants(arrays, water, scene.gravity)
-        self.poses = Poses(arrays, setting.carrier, worlds, self.pace > 1)
+        self.poses = Poses(arrays, setting.carrier, worlds, scene.water_pace > 1)
         self.order = Order(arrays, p, grid, Tanks.of(scene, p, dummy, behind.tanks))
         self.bodies.join(arrays, p, shares, self.poses, units)
         self.lists = Lists(arrays, units, self.order, shares, self.constants, first, self.bodies, setting.room)
+        self.pace = pace = Pace(arrays.under("water"), self.lists, scene.water_pace)
         medium = Medium(units, p, shares, self.lists, self.constants, self.poses)
         lean = Lean(arrays, medium, behind.straight, dummy)
         self.extrapolation = Extrapolation(arrays, medium, lean)
         self.forces = Forces(arrays, medium, self.extrapolation, self.load, tank.thickness)
         self.continuity, self.vent = Continuity(arrays, medium, self.forces), Vent(arrays, medium, water.air)
-        self.mover = Mover(arrays, medium, self.extrapolation, self.vent, self.forces.fullness)
+        self.mover = Mover(arrays, medium, self.extrapolation, self.vent, self.forces.fullness, pace)
         probes = [dummy[slot] + p.wet * lanes for slot in behind.probes]
         self.gauges = Gauges(arrays, p, self.constants, water.gauges, probes, behind.open)
         pool = Pool.of(scene, setting.walls, self.order)
@@ -88,27 +87,21 @@ class WaterMatter(Matter):
         self.start, self.thickness = np.full(worlds, np.nan), tank.thickness  # J, energy at the first look; m
         mass = water.density * scene.drops[..., VOLUME].sum(axis=1).max() * tank.thickness
         self.least = 0.5 * mass * (LEAST * water.sound_speed) ** 2  # J
-        if self.pace > 1:
-            world = (p.each_world,)
-            (self.during,) = arrays.under("water").reals(world, "during", kept=False)  # s, kick of the present step
-            (self.due,) = arrays.under("water").integers(world, "due", kept=False)  # whether lists are rebuilt
+        self.before, self.between = pace.first(self._before()), pace.last([Phase(self.note_passage)])
         closing = [Closing(arrays, medium, behind, dummy).close] if self.continuity.closes else []
-        acts = self.kick, *closing, self.continuity.expand, self.finish
-        self.before = tuple(Phase(*given, every=self.pace) for given in self._before())
-        self.between = (Phase(self.note_passage, every=self.pace, last=True),)
-        self.after = tuple(Phase(act, units, every=self.pace, last=True) for act in acts)
+        acts = self.mover.kick, *closing, self.continuity.expand, self.finish
+        self.after = pace.last(Phase(act, units) for act in acts)
 
-    def _before(self) -> list[tuple]:
-        """The functions that act before the carrier answers, each with its units; of worlds without."""
-        return [
-            (self.note_poses,),
-            (self.forces.publish, self.units),
-            *([(self.vent.sum, self.units), (self.vent.flow,)] if self.vent.acts else ()),
-            *([(self.extrapolation.press, self.units)] if self.particles.dry else ()),
-            *([(self.gauges.measure,)] if self.gauges.count else ()),
-            *([(self.edges.bear, self.units), (self.edges.add,)] if self.edges.wanted else ()),
-            (self.forces.push, self.units),
-        ]
+    def _before(self) -> tuple[Phase, ...]:
+        return (
+            Phase(self.note_poses),
+            Phase(self.forces.publish, self.units),
+            *([Phase(self.vent.sum, self.units), Phase(self.vent.flow)] if self.vent.acts else ()),
+            *([Phase(self.extrapolation.press, self.units)] if self.particles.dry else ()),
+            *([Phase(self.gauges.measure)] if self.gauges.count else ()),
+            *([Phase(self.edges.bear, self.units), Phase(self.edges.add)] if self.edges.wanted else ()),
+            Phase(self.forces.push, self.units),
+        )
 
     @property
     def extent(self) -> float:
@@ -127,8 +120,7 @@ class WaterMatter(Matter):
     def note_poses(self, w, t, kick, dt):
         """Note how the tank of a world and the parts in it move as the step begins."""
         self.poses.note_start(w, t, dt)
-        if ti.static(self.pace > 1):
-            self.during[w] = kick
+        self.pace.note(w, kick)
         if ti.static(self.bodies.count > 0):
             self.bodies.note(w, t, dt)
 
@@ -136,14 +128,6 @@ class WaterMatter(Matter):
     def note_passage(self, w, t, kick, dt):
         """Note how the tank moves through the step."""
         self.poses.note_passage(w, t, dt)
-
-    @ti.func
-    def kick(self, u, frame, kick, dt):
-        """Begin a unit's motion; the kick is that of the base step in which the forces were."""
-        during = kick
-        if ti.static(self.pace > 1):
-            during = self.during[self.units.world(u)]
-        return self.mover.kick(u, frame, during, dt)
 
     @ti.func
     def finish(self, u, frame, kick, dt):
@@ -179,24 +163,14 @@ class WaterMatter(Matter):
 
     @ti.func
     def sort(self, w):
-        """Sort the particles of a world; with a pace of its own only if its lists are stale, not those of grains."""
-        if ti.static(self.pace > 1):
-            self.due[w] = 0
-            for u in range(w * self.units.a_world, (w + 1) * self.units.a_world):
-                if self.lists.stale(u):
-                    self.due[w] = 1
-            if self.due[w] > 0:
-                self.order.sort_world(w)
-        else:
-            self.order.sort_world(w)
+        """Sort the particles of a world, if its own lists are due."""
+        self.pace.sort(w)
 
     @ti.func
     def make_lists(self, u, t, dt, whole):
         """List the neighbours of a unit anew; False where they do not fit."""
-        fits, due = True, whole
-        if ti.static(self.pace > 1):
-            due = due and self.due[self.units.world(u)] > 0
-        if due:
+        fits = True
+        if whole and self.pace.rebuilds(u):
             fits = self.lists.rebuild(u)
         return fits
 
@@ -223,13 +197,10 @@ class WaterMatter(Matter):
             field.from_numpy(whole.reshape(-1, p.lanes))
         for field in (*self.forces.sums, self.continuity.lost, self.census.behind, self.lists.last):
             field.fill(0.0)
-        self.bodies.forget()
         self.lists.skin.fill(0.0)
         self.lists.expire()
-        self.gauges.forget()
-        self.edges.forget()
-        self.load.forget()
-        self.poses.forget()
+        for noted in (self.bodies, self.gauges, self.edges, self.load, self.poses):
+            noted.forget()
         self.start[:] = np.nan
 
     def observe(self, time: float) -> dict[str, np.ndarray]:
