@@ -7,7 +7,7 @@ from lab.assembly.grains import grain_count
 from lab.assembly.room import check_room
 from lab.assembly.scene import build, stretch
 from lab.assembly.water import most_drops, particles, updates
-from lab.measures.ship_frozen import INTERVAL
+from lab.measures.ship_frozen import step_of
 from lab.preset.fields import join, taken_by
 from lab.preset.find import LoadedPreset
 from lab.preset.schema import Preset
@@ -229,7 +229,7 @@ def _floating(preset, simulation: Simulation) -> float:
     rounds = -(-len(simulation.scene.vessels) // simulation.threads)
     look = LOOK + LOOK_PAIR * states**2 + LOOK_WAVE * waves
     looks = preset.duration / (float(simulation.carrier.every[0]) * simulation.dt)
-    return rounds * looks * look + preset.duration / INTERVAL * FROZEN
+    return rounds * looks * look + preset.duration / step_of(simulation.scene.vessels[0]) * FROZEN
 
 
 def _span(seconds: float) -> str:
