@@ -155,9 +155,10 @@ def merge_repeats(wanted: bool) -> None:
 
     Its time grows as the square of a kernel's length, and LLVM finds much of the same. For discs it takes 3 of 7 s of
     compilation and makes kernels a fifth faster; for outlines 15 of 25 s, for non-convex ones 42 of 60 s, and gains 5
-    to 15 %; for water 7 of 13 s, and gains nothing (each measured side by side on one core).
+    to 15 %; for water 7 of 13 s, and gains nothing (each measured side by side on one core). It stays off where kernels
+    are to compile fast (`machine.compiling`).
     """
-    ti.lang.impl.current_cfg().opt_level = int(wanted)
+    ti.lang.impl.current_cfg().opt_level = int(wanted and not compiling.quick())
 
 
 def running_arch() -> str:
