@@ -19,6 +19,7 @@ from solvers.machine import address_space, compiling, kernel_cache, memory, sour
 from solvers.machine.errors import Unavailable
 
 ARCHES = ("auto", "cpu", "cuda", "vulkan")
+KERNELS = 256 * 2**20  # bytes of compiled kernels kept; one of water takes 2 MB, and Taichi's 100 MiB are soon full
 
 
 @dataclass(frozen=True)
@@ -126,6 +127,7 @@ def _start(threads: int, arch: str, real, options: dict) -> None:
         # Taichi warns at every intended cast of a 64-bit time to 32 bits, and when two processes share a cache.
         log_level=ti.ERROR,
         offline_cache=True,
+        offline_cache_max_size_of_files=KERNELS,
         **options,
     )
     _threads[:] = sorted(_own_threads() - before)
