@@ -148,7 +148,7 @@ class Forces:
         if ti.static(c.shifting.acts):
             span = p.load(p.span_before, b)
         yy, yz, zz, lost, held = p.zeros(), p.zeros(), p.zeros(), p.zeros(), p.zeros()
-        fill = [p.zeros() for _ in ti.static(range(1 + p.axes))]  # Σ V ∇W of all, and the walls' trace, of `Fullness`
+        fill = [p.zeros() for _ in ti.static(range(self.fullness.sums))]  # of `Fullness`
         for k in range(lists.near.first[u, listed], lists.near.first[u, listed + 1]):
             j = lists.near.slots[u, k]
             jb, lane = lists.block_of(j), lists.lane_of(j)
@@ -189,6 +189,11 @@ class Forces:
                     lost += heavy * dot(nearing, nearing)
                     for a in ti.static(range(p.axes)):
                         drag[a] += heavy * nearing[a]
+            if ti.static(self.fullness.dispersed.acts):
+                beside = (other * other) * p.volume[jb, lane] * c.kernel.value(t)
+                fill[p.axes + 1] += beside
+                fill[p.axes + 2] += beside * p.pressure[jb, lane]
+                fill[p.axes + 3] += (other * other) * weight * square
             if ti.static(c.two):  # from here on within a phase
                 weight *= 1.0 - other * other
             weighted = [(weight * apart[a]) for a in ti.static(range(p.axes))]
@@ -242,7 +247,7 @@ class Forces:
             self.note_shift(b, shift, inwards, least, span)
         self.note_span(b, factor * yy, factor * yz, factor * zz, [factor * slope[a] for a in ti.static(range(p.axes))])
         if ti.static(self.fullness.acts):
-            self.fullness.note(b, yy + zz + fill[p.axes], [fill[a] for a in ti.static(range(p.axes))])
+            self.fullness.note(b, yy + zz, fill)
         volume = p.load(p.volume, b) * factor
         total = self.beside.on_walls(b, origin, own, [volume * wall[a] for a in ti.static(range(p.axes))])
         total[3] = ti.cast((strength * volume * lost).sum(), p.exact)

@@ -110,14 +110,44 @@ class PlainBoth(PlainWater):
         slope[regular] = np.linalg.solve(matrix[regular], raw[regular][..., None])[..., 0]
         return (force + walls) / mass[:, None], slope, walls
 
-    def later(self, r, u, s, mass, slope, pressed, dt):
-        """The excess of density after a step, from its middle; water with few of its kind about bears no suction."""
-        spray = (self.span < 0.2) & (self.gas < 0.5)
-        least = -self.water.background / (self.water.density * self.water.sound_speed**2)
-        for rate in self.rates(r, u, s, mass, slope, pressed):
-            s = s + dt * rate
-            s = np.where(spray, np.maximum(s, least), s)
-        return s
+    def mixed(self, r, mass, s, plane: float):
+        """How full the own phase is, of water with walls; the rate of s that keeps volumes; the s that is borne."""
+        volume, same, wet = self.volume(mass, s), self.other == 0.0, self.gas < 0.5
+        apart, _, value, gradient = self.between(r, r)
+        to_wall, _, _, at_wall = self.between(r, self.wall)
+        trace, of_walls = (apart * gradient).sum(axis=2), (to_wall * at_wall).sum(axis=2) @ self.wall_volume
+        lean = np.einsum("j,ij,ija->ia", volume, same, gradient)
+        lean += wet[:, None] * np.einsum("j,ija->ia", self.wall_volume, at_wall)
+        lacking = plane * np.linalg.norm(lean, axis=1)
+        full = 0.5 * ((same * trace) @ volume + wet * of_walls) + lacking
+        keeping = self.keeping(full, lacking, s)
+        filled, alike = 0.5 * (trace @ volume + of_walls), np.zeros_like(s)
+        keeping = np.where(
+            wet, keeping, self.keeping(filled, alike, s) * self.water.air.sound_speed / self.water.sound_speed
+        )
+        seen, stiff = (~same * value) @ volume, self.density * self.sound**2
+        over = (~same * value) @ (volume * self.pressure(s)) / np.maximum(seen, 1e-30) - self.water.background
+        of_water = np.where(seen > 0.02, np.maximum(over / stiff, self.least), self.least)
+        return full, keeping, np.where(wet, of_water, (1.0 + 1.4 * np.maximum(over / stiff, 1.0)) ** (1.0 / 1.4) - 1.0)
+
+    @property
+    def least(self) -> float:
+        """The excess of density of water that bears the suction of the background."""
+        return -self.water.background / (self.water.density * self.water.sound_speed**2)
+
+    def later(self, r, u, s, mass, slope, pressed, dt, mixed=None):
+        """The excess of density after a step, from its middle; water with few of its kind about bears no suction.
+
+        `mixed`: what the method of that name gave at the start of the step; None where it does not act.
+        """
+        wet = self.gas < 0.5
+        spray = (self.span < 0.2) & wet
+        full, keeping, rest = mixed or (np.ones_like(s), 0.0, s)
+        for rate, more in zip(self.rates(r, u, s, mass, slope, pressed), (keeping, 0.0), strict=True):
+            s = s + dt * (rate + more)
+            s = np.where(spray, np.maximum(s, self.least), s)
+        loose = dt * self.sound / self.water.length * np.clip((np.where(wet, 0.93, 0.5) - full) / 0.05, 0.0, 1.0)
+        return s - loose / (1.0 + loose) * np.where(wet, s - rest, np.maximum(s - rest, 0.0))
 
     def rates(self, r, u, s, mass, slope, pressed):
         """Rates of s in the middle of a step, by the particles and by the walls."""

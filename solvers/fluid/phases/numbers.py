@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 from solvers.fluid.given import Water
+from solvers.fluid.phases.dispersed import ALONE
 from solvers.fluid.phases.interfaces import INTERFACES
 
 CONTRACTED = 0.6  # discharge coefficient of a sharp-edged opening
@@ -30,6 +31,9 @@ def of_air(water: Water, gravity: float, numbers: dict[str, float], viscosity) -
         "air_strength": strength,
         "both_strength": 2.0 * own * strength / max(own + strength, 1e-300),
         "air_hydrostatic": gravity / air.sound_speed**2,
+        "air_relief": air.sound_speed / water.length,
+        "air_packed": ALONE,
+        "air_keeping": numbers["keeping"] * air.sound_speed / water.sound_speed,
         "air_hard": FIRMER * numbers["hard"] * stiffness / numbers["stiffness"],
         "lean_of_pressure": lean_of_pressure,
         "lean_of_speed": lean_of_speed,

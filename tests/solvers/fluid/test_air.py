@@ -116,10 +116,12 @@ def follows_double_sums(run: Simulation, steps: int = 7) -> None:
     r, u, s, m, *_ = held(run)
     run.advance(1)
     push, slope, _ = plain.push(r, u, s, m)
+    fullness = run.water.forces.fullness
+    mixed = plain.mixed(r, m, s, run.water.constants.numbers["plane"]) if fullness.acts else None
     pressed = plain.wall_pressure(r, m, s, 0.0) > 0.0
     u = u + dt * (push + plain.gravity)
     middle = r + 0.5 * dt * u
-    s = plain.later(middle, u, s, m, slope, pressed, dt)
+    s = plain.later(middle, u, s, m, slope, pressed, dt, mixed)
     found = held(run)
     np.testing.assert_allclose(found[4], push, atol=1e-9 * np.abs(push).max())
     np.testing.assert_allclose(found[5], slope, atol=1e-8 * np.abs(slope).max())

@@ -1,0 +1,57 @@
+"""Drops in air and bubbles in water that particles do not resolve: the pressure that the other phase has about them."""
+
+import taichi as ti
+
+from solvers.fluid.phases.adiabatic import GAMMA
+from solvers.fluid.state import Particles
+from solvers.machine.state import Axis, State
+
+FAINT = 0.02  # of full coverage by the other phase: what sees less of it has none about it
+ALONE = 0.5  # fullness of air without walls below which it is such a bubble: four spacings across
+
+
+@ti.data_oriented
+class Dispersed:
+    """p_i → Σ V_j p_j W / Σ V_j W over the other phase j, at the rate c/h, where the own phase is broken.
+
+    A drop or a bubble below the spacing has no pressure of its own: that of both phases relaxes to one, as soon as
+    sound crosses it (Baer & Nunziato 1986; Saurel & Abgrall 1999, who relax at once). Broken is what `Fullness` says of
+    the own phase alone. Without, drops in air keep the density that followed from how water came near: a drop over a
+    pool counts as pressed from 2 h on, hovers on air that it cannot press out, and in time drops fill the air.
+
+    Air that is trapped takes its pressure from its own density, and relaxes only where that holds it no longer: under
+    more than ρ_a c² it is squeezed without bound (`Adiabatic`), each time water moves about it (own derivation). A
+    bubble (F < ALONE, walls not counted) is let out to the density at which p_a ((ρ/ρ_a)^1.4 − 1), without a bound, is
+    the water's pressure. To give bubbles that pressure altogether makes energy from nothing.
+
+    `rest` is the excess of density s with that pressure. Water that touches no air is in a void, and bears nothing.
+
+    Limits: drops and bubbles of up to four spacings; not with tension, whose drops are to be resolved, nor cohesion.
+
+    Units: p Pa, c m/s, h m, ρ kg/m³.
+    """
+
+    def __init__(self, arrays: State, particles: Particles, constants):
+        self.particles, self.constants = particles, constants
+        self.acts = constants.two and not (constants.full or constants.tense or constants.coheres)
+        if self.acts:
+            each = Axis("block", particles.worlds * particles.stride), Axis("lane", particles.lanes)
+            (self.rest,) = arrays.under("water").wide(each, "rest", kept=False)
+
+    @ti.func
+    def note(self, b, seen, pressed):
+        """Store `rest` of a block, from Σ V W and Σ V p W over the other phase, without the kernel's factor."""
+        p, c = self.particles, self.constants
+        touched, over = seen * c.get("value") > FAINT, pressed / ti.max(seen, 1e-30) - c.get("background")
+        of_water = ti.max(over * (1.0 / c.get("stiffness")), c.get("thinnest"))
+        p.store(self.rest, b, ti.select(touched, of_water, p.ones() * c.get("thinnest")))
+        for lane in range(p.lanes):
+            if p.gas[b, lane] > 0.5:
+                held = ti.max(over[lane] / c.get("air_stiffness"), 1.0)
+                self.rest[b, lane] = ti.pow(1.0 + GAMMA * held, 1.0 / GAMMA) - 1.0
+
+    @ti.func
+    def beyond(self, b, s):
+        """By how much the excesses of density `s` of a block are off `rest`; of air only what is too dense."""
+        more = s - self.particles.load(self.rest, b)
+        return more - self.particles.load(self.particles.gas, b) * ti.min(more, 0.0)
