@@ -80,7 +80,10 @@ class Forces:
         p.store(p.pressure, b, c.get("stiffness") * c.state.share(s) + c.get("background"))
         for lane in range(p.lanes):
             if p.gas[b, lane] > 0.5:
-                p.pressure[b, lane] = c.pressure_of_air(p.excess[b, lane]) + c.get("background")
+                pressure = c.pressure_of_air(p.excess[b, lane]) + c.get("background")
+                if ti.static(self.fullness.dispersed.acts):  # suction beyond that would tear it
+                    pressure = ti.max(pressure, 0.0)
+                p.pressure[b, lane] = pressure
 
     @ti.func
     def push(self, u, t, kick, dt):

@@ -60,7 +60,8 @@ class PlainBoth(PlainWater):
         """Linear of water; ρ c²/1.4 ((1 + s)^1.4 − 1) of air; and the background's."""
         of_air = self.density * self.sound**2 * ((1.0 + s) ** 1.4 - 1.0) / 1.4
         alone = np.where(self.gas > 0.5, of_air, self.density * self.sound**2 * s)
-        return alone + self.water.background - self.cohesion * s * (2.0 + s)
+        whole = alone + self.water.background - self.cohesion * s * (2.0 + s)
+        return np.where((self.gas > 0.5) & (self.cohesion == 0.0), np.maximum(whole, 0.0), whole)
 
     def extra(self, s):
         """What air feels besides, of each of its neighbours: 2 a ρ² (Mokos et al. 2015)."""
@@ -120,15 +121,14 @@ class PlainBoth(PlainWater):
         lean += wet[:, None] * np.einsum("j,ija->ia", self.wall_volume, at_wall)
         lacking = plane * np.linalg.norm(lean, axis=1)
         full = 0.5 * ((same * trace) @ volume + wet * of_walls) + lacking
-        keeping = self.keeping(full, lacking, s)
-        filled, alike = 0.5 * (trace @ volume + of_walls), np.zeros_like(s)
-        keeping = np.where(
-            wet, keeping, self.keeping(filled, alike, s) * self.water.air.sound_speed / self.water.sound_speed
-        )
+        filled, pace = 0.5 * (trace @ volume + of_walls), 0.01 * self.water.delta * self.water.air.sound_speed
+        of_air = pace / self.water.length * (1.0 + s) * np.maximum(self.over(filled), -0.1)
+        keeping = np.where(wet, self.keeping(full, lacking, s), of_air)
         seen, stiff = (~same * value) @ volume, self.density * self.sound**2
         over = (~same * value) @ (volume * self.pressure(s)) / np.maximum(seen, 1e-30) - self.water.background
         of_water = np.where(seen > 0.02, np.maximum(over / stiff, self.least), self.least)
-        return full, keeping, np.where(wet, of_water, (1.0 + 1.4 * np.maximum(over / stiff, 1.0)) ** (1.0 / 1.4) - 1.0)
+        of_air = np.minimum((1.0 + 1.4 * np.maximum(over / stiff, 1.0)) ** (1.0 / 1.4) - 1.0, 9.0)
+        return full, keeping, np.where(wet, of_water, of_air)
 
     @property
     def least(self) -> float:
@@ -142,12 +142,13 @@ class PlainBoth(PlainWater):
         """
         wet = self.gas < 0.5
         spray = (self.span < 0.2) & wet
-        full, keeping, rest = mixed or (np.ones_like(s), 0.0, s)
+        (full, keeping, rest), before = mixed or (np.ones_like(s), 0.0, s), s
         for rate, more in zip(self.rates(r, u, s, mass, slope, pressed), (keeping, 0.0), strict=True):
             s = s + dt * (rate + more)
             s = np.where(spray, np.maximum(s, self.least), s)
-        loose = dt * self.sound / self.water.length * np.clip((np.where(wet, 0.93, 0.5) - full) / 0.05, 0.0, 1.0)
-        return s - loose / (1.0 + loose) * np.where(wet, s - rest, np.maximum(s - rest, 0.0))
+        loose = np.clip((np.where(wet, 0.93, 0.5) - full) / 0.05, 0.0, 1.0)
+        share = 1.0 - 1.0 / (1.0 + loose * dt * self.water.sound_speed / self.water.length)
+        return s - np.where(wet, share * (s - rest), loose * np.maximum(s - np.maximum(rest, before), 0.0))
 
     def rates(self, r, u, s, mass, slope, pressed):
         """Rates of s in the middle of a step, by the particles and by the walls."""

@@ -7,6 +7,7 @@ from solvers.fluid.state import Particles
 from solvers.machine.state import Axis, State
 
 FAINT = 0.02  # of full coverage by the other phase: what sees less of it has none about it
+GONE = 9.0  # excess of density of a bubble of which nothing is left: a tenth of its volume
 ALONE = 0.5  # fullness of air without walls below which it is such a bubble: four spacings across
 
 
@@ -19,12 +20,14 @@ class Dispersed:
     the own phase alone. Without, drops in air keep the density that followed from how water came near: a drop over a
     pool counts as pressed from 2 h on, hovers on air that it cannot press out, and in time drops fill the air.
 
-    Air that is trapped takes its pressure from its own density, and relaxes only where that holds it no longer: under
-    more than ρ_a c² it is squeezed without bound (`Adiabatic`), each time water moves about it (own derivation). A
-    bubble (F < ALONE, walls not counted) is let out to the density at which p_a ((ρ/ρ_a)^1.4 − 1), without a bound, is
-    the water's pressure. To give bubbles that pressure altogether makes energy from nothing.
+    Air that is trapped keeps the pressure of its own density; that of bubbles made equal to the water's would make
+    energy from nothing. It holds no more than ρ_a c² (`Adiabatic`): in deeper water a bubble is squeezed without bound,
+    a little each time that water moves about it. So a bubble (F < ALONE, walls not counted) is squeezed to GONE at
+    most, or to the density at which p_a ((ρ/ρ_a)^1.4 − 1) is the water's pressure (own derivation).
 
-    `rest` is the excess of density s with that pressure. Water that touches no air is in a void, and bears nothing.
+    Nor does air bear more suction than the background's pressure: a void that a few particles of it are to fill would
+    throw them about (Monaghan 2000). `rest` is the excess of density s with the pressure of the other phase. Water that
+    touches no air is in a void, and bears nothing.
 
     Limits: drops and bubbles of up to four spacings; not with tension, whose drops are to be resolved, nor cohesion.
 
@@ -48,10 +51,10 @@ class Dispersed:
         for lane in range(p.lanes):
             if p.gas[b, lane] > 0.5:
                 held = ti.max(over[lane] / c.get("air_stiffness"), 1.0)
-                self.rest[b, lane] = ti.pow(1.0 + GAMMA * held, 1.0 / GAMMA) - 1.0
+                self.rest[b, lane] = ti.min(ti.pow(1.0 + GAMMA * held, 1.0 / GAMMA) - 1.0, GONE)
 
     @ti.func
-    def beyond(self, b, s):
-        """By how much the excesses of density `s` of a block are off `rest`; of air only what is too dense."""
-        more = s - self.particles.load(self.rest, b)
-        return more - self.particles.load(self.particles.gas, b) * ti.min(more, 0.0)
+    def off(self, b, s, after, loose, share):
+        """What excesses of density `s`, which are `after` a step, are to lose: water a share, air what is too much."""
+        rest, gas = self.particles.load(self.rest, b), self.particles.load(self.particles.gas, b)
+        return (1.0 - gas) * share * (after - rest) + gas * loose * ti.max(after - ti.max(rest, s), 0.0)

@@ -31,7 +31,6 @@ def of_air(water: Water, gravity: float, numbers: dict[str, float], viscosity) -
         "air_strength": strength,
         "both_strength": 2.0 * own * strength / max(own + strength, 1e-300),
         "air_hydrostatic": gravity / air.sound_speed**2,
-        "air_relief": air.sound_speed / water.length,
         "air_packed": ALONE,
         "air_keeping": numbers["keeping"] * air.sound_speed / water.sound_speed,
         "air_hard": FIRMER * numbers["hard"] * stiffness / numbers["stiffness"],

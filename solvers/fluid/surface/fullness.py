@@ -90,20 +90,21 @@ class Fullness:
         # Walls come last: spray that parts is still pushed off a wall that it nears.
         after = self.floored(spray, self.floored(spray, after) + step * rate_of_walls)
         if ti.static(self.acts):
+            loose = self.loose(b)
+            lost = (self.constants.get("relief") * loose) * step  # implicit
+            share = lost / (1.0 + lost)
             if ti.static(self.dispersed.acts):
-                after = after - self.share(b, step) * self.dispersed.beyond(b, after)
+                after = after - self.dispersed.off(b, s, after, loose, share)
             else:
                 rest = self.constants.get("thinnest") if ti.static(self.constants.pressed) else 0.0
-                after = after - self.share(b, step) * (after - rest)
+                after = after - share * (after - rest)
         return after
 
     @ti.func
-    def share(self, b, step):
-        """The share of its pressure that a block loses in a step, implicitly."""
+    def loose(self, b):
+        """How far a block is broken: 0 where packed, 1 from PACKED − RAMP down; of air beside ALONE."""
         p, c = self.particles, self.constants
-        loose = ti.min(ti.max((c.of("packed", p.gases(b)) - p.load(self.fullness, b)) * c.get("ramp"), 0.0), 1.0)
-        lost = (c.of("relief", p.gases(b)) * loose) * step
-        return lost / (1.0 + lost)
+        return ti.min(ti.max((c.of("packed", p.gases(b)) - p.load(self.fullness, b)) * c.get("ramp"), 0.0), 1.0)
 
     @ti.func
     def floored(self, spray, s):

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from solvers.fluid.given import EXCESS, GAS, VELOCITY_Y, VELOCITY_Z, Air, Gauge, Level, Water
+from solvers.fluid.given import EXCESS, GAS, VELOCITY_Y, VELOCITY_Z, VOLUME, Air, Gauge, Level, Water
 from solvers.fluid.phases.adiabatic import background
 from solvers.fluid.phases.cohesion import Cohesion
 from solvers.fluid.timestep import kinematic
@@ -89,6 +89,35 @@ def test_closed_air_follows_water_and_walls():
     assert 0.1 * long < way < 0.3 * long
     for part, side in ((upper, 1.0), (~upper, -1.0)):
         assert 1.0 + pressure[part].mean() / at_rest == pytest.approx((1.0 - side * way / long) ** -1.4, rel=0.01)
+
+
+def test_drops_fall_together_with_the_pool_below():
+    """Three particles of water that fall through air are part of the pool soon after, and do not hover over it."""
+    made = scene(background=40.0)
+    drops, spacing = made.drops[0], made.water.spacing
+    high = (np.abs(drops[:, 0]) < 2.0 * spacing) & (np.abs(drops[:, 1] - 0.25) < 0.5 * spacing)
+    drops[high, GAS], drops[high, EXCESS] = 0.0, 0.0
+    made.drops = drops[np.argsort(drops[:, GAS], kind="stable")][None]
+    run = Simulation(made, threads=1, arch="cpu")
+    run.advance(round(0.5 / run.dt))
+    place = run.snapshot()["water_place"][0]
+    run.close()
+    near = np.hypot(*(place[:, None] - place[None]).transpose(2, 0, 1)) < 1.5 * spacing
+    assert near.sum(axis=1).min() > 1
+    assert place[:, 1].max() < DEPTH + spacing
+
+
+def test_air_that_has_lost_volume_takes_it_again():
+    """Air of nine tenths of its mass at the density of rest: its volume comes back at the rate of 1/τ of what lacks."""
+    made = scene(background=40.0)
+    made.drops[..., VOLUME] *= 1.0 - 0.1 * made.drops[..., GAS]
+    run = Simulation(made, threads=1, arch="cpu")
+    rate = run.water.constants.numbers["air_keeping"]
+    before = run.observe()["air_volume"][0]
+    run.advance(300)
+    gained = run.observe()["air_volume"][0] / before - 1.0
+    run.close()
+    assert 0.5 < gained / (0.1 * rate * 300 * run.dt) < 1.3
 
 
 def stirred(step: float | None = None, **of_air) -> Simulation:
