@@ -80,10 +80,7 @@ class Forces:
         p.store(p.pressure, b, c.get("stiffness") * c.state.share(s) + c.get("background"))
         for lane in range(p.lanes):
             if p.gas[b, lane] > 0.5:
-                pressure = c.pressure_of_air(p.excess[b, lane]) + c.get("background")
-                if ti.static(self.fullness.dispersed.acts):  # suction beyond that would tear it
-                    pressure = ti.max(pressure, 0.0)
-                p.pressure[b, lane] = pressure
+                p.pressure[b, lane] = self.fullness.dispersed.borne(b, lane, c.pressure_of_air(p.excess[b, lane]))
 
     @ti.func
     def push(self, u, t, kick, dt):
@@ -192,11 +189,7 @@ class Forces:
                     lost += heavy * dot(nearing, nearing)
                     for a in ti.static(range(p.axes)):
                         drag[a] += heavy * nearing[a]
-            if ti.static(self.fullness.dispersed.acts):
-                beside = (other * other) * p.volume[jb, lane] * c.kernel.value(t)
-                fill[p.axes + 1] += beside
-                fill[p.axes + 2] += beside * p.pressure[jb, lane]
-                fill[p.axes + 3] += (other * other) * weight * square
+            self.fullness.dispersed.add(fill, other * other, t, weight * square, jb, lane)
             if ti.static(c.two):  # from here on within a phase
                 weight *= 1.0 - other * other
             weighted = [(weight * apart[a]) for a in ti.static(range(p.axes))]

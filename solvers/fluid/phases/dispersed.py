@@ -3,7 +3,7 @@
 import taichi as ti
 
 from solvers.fluid.phases.adiabatic import GAMMA
-from solvers.fluid.state import Particles
+from solvers.fluid.state import SPRAY, Particles
 from solvers.machine.state import Axis, State
 
 FAINT = 0.02  # of full coverage by the other phase: what sees less of it has none about it
@@ -25,9 +25,9 @@ class Dispersed:
     a little each time that water moves about it. So a bubble (F < ALONE, walls not counted) is squeezed to GONE at
     most, or to the density at which p_a ((ρ/ρ_a)^1.4 − 1) is the water's pressure (own derivation).
 
-    Nor does air bear more suction than the background's pressure: a void that a few particles of it are to fill would
-    throw them about (Monaghan 2000). `rest` is the excess of density s with the pressure of the other phase. Water that
-    touches no air is in a void, and bears nothing.
+    Nor does air of λ < SPRAY bear more suction than the background's pressure, as spray of water: a void that a few
+    particles are to fill would throw them about (Monaghan 2000). `rest` is the excess of density s with the pressure of
+    the other phase. Water that touches no air is in a void, and bears nothing.
 
     Limits: drops and bubbles of up to four spacings; not with tension, whose drops are to be resolved, nor cohesion.
 
@@ -40,6 +40,24 @@ class Dispersed:
         if self.acts:
             each = Axis("block", particles.worlds * particles.stride), Axis("lane", particles.lanes)
             (self.rest,) = arrays.under("water").wide(each, "rest", kept=False)
+
+    @ti.func
+    def add(self, sums: ti.template(), beside: ti.template(), t, trace, jb, lane):
+        """Add what a neighbour of the other phase, where `beside` is 1, gives to Σ V W, Σ V p W and the trace of it."""
+        p = self.particles
+        if ti.static(self.acts):
+            seen = beside * p.volume[jb, lane] * self.constants.kernel.value(t)
+            sums[p.axes + 1] += seen
+            sums[p.axes + 2] += seen * p.pressure[jb, lane]
+            sums[p.axes + 3] += beside * trace
+
+    @ti.func
+    def borne(self, b, lane, pressure):
+        """The pressure (Pa) of a particle of air with the background's, as far as it bears suction."""
+        p, found = self.particles, pressure + self.constants.get("background")
+        if ti.static(self.acts):
+            found = ti.select(p.span[b, lane] < SPRAY, ti.max(found, 0.0), found)
+        return found
 
     @ti.func
     def note(self, b, seen, pressed):
