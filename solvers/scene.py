@@ -32,15 +32,14 @@ class Scene:
     - `outline` (m, 2) m of the tank, counter-clockwise; `open_edges`: its edges without a wall, by their first corners;
       `parts`: plates that move in the tank; `fixed` (k, 3): y, z and radius in m of grains that never move.
     - `thickness` (m) of the tank, by default the mean grain diameter, without grains 1 m; `length` (m) along a ship,
-      by default the whole ship; `more_tanks` stand beside it. Parts and fixed grains belong to the first tank.
+      by default all; `more_tanks` stand beside it. Parts and fixed grains belong to the first tank.
     - `grain`, `wall`: materials, one or one per world, none without grains. `kind` (W, n) is 0 for grains of `grain`
       and counts on through `others`, None if there is one kind; `unlike`: the contact materials of pairs of kinds.
     - `motions[w]`: the tank's motions in world w, of the same kinds in every world; or `vessels` (W,): the ships whose
-      holds the tanks are in, or `axles` (W,), about which they roll. `interval` (s) between updates of the forces of
-      the sea, by default derived.
+      holds the tanks are in, or `axles` (W,), about which they roll. `interval` (s) between updates of sea forces.
     - `step` Δt in s, None: derived; `base_share`: see `share_to_lengthen`. At the start: `start_speed` (m/s), highest
-      closing speed of two grains, or of one and a wall; `velocity` (W, n, 2) m/s, `spin` (W, n) rad/s, None: at rest.
-    - `water` and its particles `drops` (W, n, 6), columns as in `solvers.fluid.given`.
+      closing speed of grains and walls; `velocity` (W, n, 2) m/s, `spin` (W, n) rad/s, None: at rest.
+    - `water`, its particles `drops` (W, n, 6), columns as in `solvers.fluid.given`, and its steps: `water_pace` of Δt.
     - `shapes` of irregular grains, whose `radius` and `sizes` are those of discs of equal area; None for discs.
 
     The fields' marks say which may differ between the worlds of a launch, and from which a settled bed follows.
@@ -80,6 +79,7 @@ class Scene:
     length: float | None = None
     more_tanks: tuple[Tank, ...] = ()
     water: Water | None = None
+    water_pace: Annotated[int, NotOfBed()] = 1  # more than 1 in ships alone
     drops: Annotated[np.ndarray | None, EachWorld(lambda scene: scene.particles), NotOfBed()] = None
     integrator: str = "verlet"
     precision: str = "f64"
@@ -170,8 +170,8 @@ class Scene:
 
     @property
     def work(self) -> int:
-        """Relative cost of a step: the number of particles in all worlds, where an empty world counts as one."""
-        return max(self.worlds, self.radius.size + self.worlds * self.particles)
+        """Relative cost of a step: the number of particles that move in all worlds; an empty world counts as one."""
+        return max(self.worlds, self.radius.size + self.worlds * self.particles // self.water_pace)
 
     @property
     def span(self) -> float:

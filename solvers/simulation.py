@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from collections.abc import Sequence as Several
 from dataclasses import replace
+from math import lcm
 
 import numpy as np
 
@@ -143,18 +144,17 @@ class Simulation:
         """Model time (s); while settling, the time since settling began."""
         return self.steps * self.dt
 
-    @property
-    def grain_steps(self) -> int:
-        """Total number of grain updates so far: grains times steps, over all worlds."""
-        return self.steps * self.scene.radius.size
+    def whole(self, steps: int) -> int:
+        """The largest number of base steps, up to `steps`, that cuts no longer step; at least one such step."""
+        return (least := lcm(self.stretch, self.beat)) * max(1, steps // least)
 
     def advance(self, steps: int) -> None:
-        """Advance every world by `steps` base steps.
+        """Advance every world by `steps` base steps, as many as `whole` says where matters have steps of their own.
 
         Raises BadState if the state check stops a world; the state is kept as it is.
         """
         self._moor()
-        target, often = self.steps + steps, max(1, round(LOOK_FOR_MIXING / self.dt))
+        target, often = self.steps + steps, self.whole(round(LOOK_FOR_MIXING / self.dt))
         mixing = [matter for matter in self.matters.values() if matter.mixes]
         while self.steps < target:
             if mixing and self.steps % often == 0:
@@ -189,17 +189,17 @@ class Simulation:
     def _observe_unmoved(self) -> dict[str, np.ndarray]:
         """Observe grains that have taken no step yet, so that no contacts are known.
 
-        One step builds the contact lists and sums the forces at its start; then it is undone, bit for bit.
+        One step of all matters builds the lists and sums the forces at its start; then it is undone, bit for bit.
         """
         rows, before = self._observe(), self.state()
         start = [(field, field.to_numpy()) for matter in self.matters.values() for field in matter.fields()]
         of_contacts = [name for matter in self.matters.values() for name in matter.of_contacts]
         try:
-            self.advance(1)
+            self.advance(self.beat)
             load = self._observe()
             for field, values in start:
                 field.from_numpy(values)
-            self.steps -= 1
+            self.steps -= self.beat
             touching = self._observe()
         finally:
             self.restore(before)

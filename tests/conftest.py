@@ -9,7 +9,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # numpy reads it when it is 
 import numpy as np
 import pytest
 
-from solvers.machine import runtime, wide
+from solvers.machine import runtime
 from solvers.simulation import Simulation
 
 ROUNDING = """stand in for a processor that rounds otherwise, in this process alone: strict compiles without fast-math;
@@ -20,6 +20,9 @@ AS_SHIPPED = """compile the kernels of discs as users have them: in nearly twice
 short tests do not win back; those of outlines are always compiled as here without it"""
 
 
+_of_file: list = [None]  # the file of the last test
+
+
 def pytest_addoption(parser):
     parser.addoption("--rounding", metavar="strict|NUMBER", help=ROUNDING)
     parser.addoption("--as-shipped", action="store_true", help=AS_SHIPPED)
@@ -27,10 +30,10 @@ def pytest_addoption(parser):
 
 def pytest_configure(config):
     """No verdict may hang on how a processor rounds; tests of exact places and of equal bits may see the last digit."""
-    if not config.getoption("--as-shipped"):
-        merge = runtime.merge_repeats
-        runtime.merge_repeats = lambda wanted: merge(False)
-        wide.pays = lambda: False  # they take twice as long to compile, too
+    if config.getoption("--as-shipped"):
+        os.environ.pop("CARGOLAB_COMPILE", None)
+    else:
+        os.environ["CARGOLAB_COMPILE"] = "quick"  # in processes that tests start, too: they find each other's kernels
     rounding = config.getoption("--rounding")
     if rounding == "strict":
         start = runtime._start
@@ -54,6 +57,20 @@ def own_cache(tmp_path_factory):
     """Tests neither read nor fill the cache of the person who runs them; workers side by side share one."""
     base = tmp_path_factory.getbasetemp()
     os.environ["CARGOLAB_CACHE"] = str((base.parent if "PYTEST_XDIST_WORKER" in os.environ else base) / "cache")
+
+
+def pytest_collection_finish():
+    """Look no more for garbage among the thousands of tests that are there now: that takes 0.25 s each time."""
+    gc.collect()
+    gc.freeze()
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_setup(item):
+    """Let go of what the fixtures of a file leave behind: they end after the last call."""
+    before, _of_file[0] = _of_file[0], item.path
+    if before != item.path and runtime.states():
+        gc.collect()
 
 
 @pytest.hookimpl(hookwrapper=True)

@@ -12,6 +12,7 @@ from lab.assembly.water import most_drops, water_aboard, water_of
 from lab.preset.accuracy import LEVELS, check_forced
 from lab.preset.schema import Preset
 from lab.preset.sections.water.tanks import further_tanks
+from solvers.fluid.timestep import longest_pace
 from solvers.grains.timestep import SLOWEST, share_to_lengthen
 from solvers.motion.steered import Steered
 from solvers.scene import Scene
@@ -89,5 +90,8 @@ def _step(preset: Preset, scene: Scene) -> float:
         wanted = scene.base_share * scene.longest_step(LEVELS[run.accuracy].longer_steps)
     elif limits:
         check_forced(wanted, limits[0].step, limits[0].reason, run.force_step)
-    # Between two rows of the series lies a whole number of the longest steps.
-    return interval / (longest * max(1, ceil(interval / (longest * wanted) - 1e-9)))
+    # Between two rows of the series lies a whole number of the longest steps, of grains and of water.
+    count = longest * max(1, ceil(interval / (longest * wanted) - 1e-9))
+    of_water = ceil(count / longest_pace(scene, interval / count))
+    scene.water_pace = ceil(count / of_water)
+    return interval / (of_water * scene.water_pace)

@@ -105,6 +105,11 @@ def _wet(drops: np.ndarray) -> int:
     return drops.shape[1] - (int(drops[0, :, GAS].sum()) if drops.shape[2] > GAS else 0)
 
 
+def updates(scene: Scene, steps: int) -> int:
+    """How often particles are moved, one by one, in so many base steps of all worlds."""
+    return steps * scene.radius.size + steps // scene.water_pace * scene.worlds * scene.particles
+
+
 def particles(scene: Scene) -> int:
     """Number of grains and of particles of water and air in a world."""
     return scene.radius.shape[1] + scene.particles

@@ -6,7 +6,9 @@ capsized_at, flooded_at, roll_amplitude and significant_roll of `ship_roll`. Err
 Her roll is drawn in the figures of `ship_roll`.
 """
 
+from dataclasses import replace
 from functools import lru_cache
+from math import ceil
 from pathlib import Path
 
 import numpy as np
@@ -27,8 +29,10 @@ from lab.recording.ship_end import End, end_of, ends
 from solvers.machine.errors import BadState, Unavailable
 from solvers.ship.hydrostatics import turned
 from solvers.ship.motion import Voyage, sail, start
+from solvers.ship.vessel import Vessel
 
 INTERVAL = 0.01  # s, between the samples of her roll
+STEPS = 40  # of the Runge–Kutta method in her shortest period: 1e-4 of the swing after ten of them
 
 
 def applies(recording: Recording) -> bool:
@@ -99,7 +103,32 @@ def _sailed(path: Path, duration: float) -> Voyage | None:
     ship = vessel.ship
     try:
         state = start(ship, vessel.heave(ship.body, vessel.heel), vessel.heel)
-        lasts, begin = duration - vessel.release, vessel.release
-        return sail(ship, state, INTERVAL, lasts, vessel.limits, begin, vessel.openings)
+        lasts, step = duration - vessel.release, step_of(vessel)
+        whole = step * ceil(lasts / step - 1e-9)
+        voyage = sail(ship, state, step, whole, vessel.limits, vessel.release, vessel.openings)
     except (Unavailable, BadState):
         return None
+    return _sampled(voyage, vessel, lasts)
+
+
+def step_of(vessel: Vessel) -> float:
+    """The step (s) in which a ship with frozen cargo is computed, a multiple of INTERVAL."""
+    return INTERVAL * max(1, int(vessel.shortest_period / STEPS / INTERVAL))
+
+
+def _sampled(voyage: Voyage, vessel: Vessel, lasts: float) -> Voyage:
+    """Poses and velocities of a voyage every INTERVAL, by cubics through its steps (Hermite), up to her loss."""
+    from scipy.interpolate import CubicHermiteSpline  # slow to import
+
+    path = CubicHermiteSpline(voyage.time, voyage.state[:, :3], voyage.state[:, 3:6])
+    count = round(min(lasts, voyage.time[-1] - voyage.time[0]) / INTERVAL)
+    time = voyage.time[0] + INTERVAL * np.arange(1 + count)
+    found = replace(voyage, time=time, state=np.hstack([path(time), path(time, 1)]))
+    if voyage.capsized is None and voyage.flooded is None:
+        return found
+    for k in np.flatnonzero(time > voyage.time[-2]):  # the step in which she is lost
+        flooded = vessel.openings and vessel.ship.load.depths(vessel.openings, found.state[k, :3], time[k]).max() > 0.0
+        if flooded or not vessel.limits[0] < found.roll[k] < vessel.limits[1]:
+            when = {"flooded" if voyage.capsized is None else "capsized": float(time[k])}
+            return replace(found, time=time[: k + 1], state=found.state[: k + 1], **when)
+    return found

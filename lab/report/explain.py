@@ -6,8 +6,8 @@ from dataclasses import replace
 from lab.assembly.grains import grain_count
 from lab.assembly.room import check_room
 from lab.assembly.scene import build, stretch
-from lab.assembly.water import most_drops, particles
-from lab.measures.ship_frozen import INTERVAL
+from lab.assembly.water import most_drops, particles, updates
+from lab.measures.ship_frozen import step_of
 from lab.preset.fields import join, taken_by
 from lab.preset.find import LoadedPreset
 from lab.preset.schema import Preset
@@ -148,7 +148,9 @@ def _motion(name: str, motion, soft_start: float) -> str:
 def _step(scene) -> list[tuple[str, str]]:
     limits = [f"{show(limit.step, 's')}: {limit.reason}" for limit in scene.step_limits()]
     limits = limits or ["the interval between samples: the tank's motion is exact at any time"]
-    return [("step", show(scene.step, "s")), *((f"limit {k + 1}", limit) for k, limit in enumerate(limits))]
+    pace = scene.water_pace
+    of_water = [("of the water", f"{show(pace * scene.step, 's')}, {pace} steps in one")] * (pace > 1)
+    return [("step", show(scene.step, "s")), *of_water, *((f"limit {k + 1}", limit) for k, limit in enumerate(limits))]
 
 
 def _parts(preset: Preset, simulation: Simulation) -> list[tuple[str, str]]:
@@ -178,7 +180,7 @@ def _cost(preset, scene, simulation: Simulation) -> list[tuple[str, str]]:
     settling = f"and at most {_span(_stepping(preset.run.settle_limit, preset, scene))} to settle a new bed"
     return [
         *(
-            [(f"{what}-steps", f"{worlds * count * steps:.3g}{', and those of settling' * bool(preset.grains)}")]
+            [(f"{what}-steps", f"{updates(scene, round(steps)):.3g}{', and those of settling' * bool(preset.grains)}")]
             * bool(count)
         ),
         *([("steps", f"{steps:.3g}")] if not preset.grains else []),
@@ -215,11 +217,10 @@ def cost_in_seconds(preset, scene, simulation: Simulation) -> dict[str, float]:
 
 def _stepping(duration: float, preset, scene) -> float:
     """Seconds of computation for the steps of grains or water over a duration (s)."""
-    worlds, count = scene.worlds, particles(scene)
-    rounds = -(-worlds // min(worlds, preset.run.threads or available_cores()))
+    rounds = -(-scene.worlds // min(scene.worlds, preset.run.threads or available_cores()))
     speed = OUTLINES_PER_CORE[scene.shapes.contact] if scene.shapes else GRAIN_STEPS_PER_CORE
-    speed = DROP_STEPS_PER_CORE if scene.water else speed
-    return rounds * duration / scene.step * (STEP + count / speed)
+    a_step = STEP + scene.radius.shape[1] / speed + scene.particles / scene.water_pace / DROP_STEPS_PER_CORE
+    return rounds * duration / scene.step * a_step
 
 
 def _floating(preset, simulation: Simulation) -> float:
@@ -228,7 +229,7 @@ def _floating(preset, simulation: Simulation) -> float:
     rounds = -(-len(simulation.scene.vessels) // simulation.threads)
     look = LOOK + LOOK_PAIR * states**2 + LOOK_WAVE * waves
     looks = preset.duration / (float(simulation.carrier.every[0]) * simulation.dt)
-    return rounds * looks * look + preset.duration / INTERVAL * FROZEN
+    return rounds * looks * look + preset.duration / step_of(simulation.scene.vessels[0]) * FROZEN
 
 
 def _span(seconds: float) -> str:

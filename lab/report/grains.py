@@ -55,7 +55,7 @@ def laws(preset: Preset, simulation: Simulation) -> Rows:
 
 def _longer_steps(simulation: Simulation) -> Rows:
     """When steps are longer than the step that is told, which the run time takes no account of."""
-    if not simulation.grains.paced:
+    if not (simulation.grains.paced and simulation.carrier.paced):
         return []
     calm = simulation.scene.calm_speed(float(simulation.stretch))
     if not calm:

@@ -13,8 +13,8 @@ from pathlib import Path
 import numpy as np
 
 from lab.assembly.drawn import classes
-from lab.assembly.scene import LONGEST_STRIDE, build, stretch
-from lab.assembly.water import air_volumes_of, particles, volumes_of
+from lab.assembly.scene import build, stretch
+from lab.assembly.water import air_volumes_of, particles, updates, volumes_of
 from lab.base.errors import Unusable
 from lab.base.interrupt import Interrupt
 from lab.base.progress import Progress
@@ -139,8 +139,7 @@ class Batch:
         self._duration, self._record = preset.duration, preset.record
         self._simulate = partial(Simulation, threads=preset.run.threads, arch=preset.run.arch, stretch=stretch(preset))
         self._settling = settling(preset)
-        a_call = GRAIN_STEPS_A_CALL * runs[0].scene.worlds // runs[0].scene.work
-        self._a_call = LONGEST_STRIDE * max(1, a_call // LONGEST_STRIDE)  # so that calls cut no step
+        self._a_call = GRAIN_STEPS_A_CALL * runs[0].scene.worlds // runs[0].scene.work
         self._saved = time.monotonic()
 
     def start(self, kept: Checkpoint | None) -> None:
@@ -220,8 +219,9 @@ class Batch:
         while self.runs:
             try:
                 self._simulation.advance(0)  # raises again if the watch has stopped another run, too
+                a_call = self._simulation.whole(self._a_call)
                 while self._simulation.steps < step:
-                    self._simulation.advance(min(self._a_call, step - self._simulation.steps))
+                    self._simulation.advance(min(a_call, step - self._simulation.steps))
                     pause()
                 return self._simulation.observe()
             except BadState as error:
@@ -262,7 +262,7 @@ class Batch:
         now, whole = time.perf_counter(), sum(run.scene.work for run in self.runs)
         for recorder, run in zip(self._recorders, self.runs, strict=True):
             recorder.wall_s += (now - self._counted) * run.scene.work / whole
-            recorder.grain_steps = self._simulation.steps * run.scene.worlds * particles(run.scene)
+            recorder.grain_steps = updates(run.scene, self._simulation.steps)
         self._counted = now
 
     def _worlds(self) -> Iterator[slice]:

@@ -13,7 +13,8 @@ from pathlib import Path
 
 import numpy as np
 
-from lab.assembly.scene import LONGEST_STRIDE, build, stretch
+from lab.assembly.scene import build, stretch
+from lab.assembly.water import updates
 from lab.base.errors import LabError
 from lab.base.progress import Progress
 from lab.preset.find import LoadedPreset
@@ -132,7 +133,7 @@ class Live:
         if self.swell and (vessel := self.swell.follow(length)):
             self.simulation.meet([vessel])
         begun, target = time.perf_counter(), self.simulation.steps + self.steps_a_piece
-        most = LONGEST_STRIDE * max(1, (most or self.steps_a_piece) // LONGEST_STRIDE)  # so that looks cut no step
+        most = self.simulation.whole(most or self.steps_a_piece)  # so that looks cut no step
         while self.simulation.steps < target:
             self.simulation.advance(min(most, target - self.simulation.steps))
             pause()
@@ -152,7 +153,7 @@ class Live:
             part = self.simulation.part_places()
             more = {"part": part, **self._waves(), **self.simulation.snapshot()}
             self.recorder.frame({"time": now, "pose": rows["pose"], **more})
-        self.recorder.grain_steps = self.simulation.grain_steps
+        self.recorder.grain_steps = updates(self.simulation.scene, self.simulation.steps)
         return rows
 
     def _waves(self) -> dict[str, np.ndarray]:

@@ -80,7 +80,7 @@ class Forces:
         p.store(p.pressure, b, c.get("stiffness") * c.state.share(s) + c.get("background"))
         for lane in range(p.lanes):
             if p.gas[b, lane] > 0.5:
-                p.pressure[b, lane] = self.fullness.dispersed.borne(b, lane, c.pressure_of_air(p.excess[b, lane]))
+                p.pressure[b, lane] = self.fullness.dispersed.borne(c.pressure_of_air(p.excess[b, lane]))
 
     @ti.func
     def push(self, u, t, kick, dt):

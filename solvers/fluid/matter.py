@@ -32,6 +32,7 @@ from solvers.motion.carrier import per_slab
 from solvers.motion.poses import Poses
 from solvers.ship.body import Body, frozen
 from solvers.tank.matter import Matter
+from solvers.tank.pace import Pace
 from solvers.tank.setting import Setting
 
 
@@ -61,20 +62,21 @@ class WaterMatter(Matter):
         sizes = worlds, count, lanes, walls, grid.strips
         self.particles = p = Particles(arrays, *sizes, shifting, water.air, setting.among)
         self.units = units = setting.units(p.wet)
-        self.load = setting.load(arrays.under("water"), units)
+        self.load = setting.load(arrays.under("water"), units, scene.water_pace)
         self.load.lag(answer_at_rest(scene, behind), water.added_mass == "layer")
         self.dummies = dummy, blocks, behind.volumes, behind.firm
         shares, self.constants = Shares(p, units), Constants(arrays, water, scene.gravity)
-        self.poses = Poses(arrays, setting.carrier, worlds)
+        self.poses = Poses(arrays, setting.carrier, worlds, scene.water_pace > 1)
         self.order = Order(arrays, p, grid, Tanks.of(scene, p, dummy, behind.tanks))
         self.bodies.join(arrays, p, shares, self.poses, units)
         self.lists = Lists(arrays, units, self.order, shares, self.constants, first, self.bodies, setting.room)
+        self.pace = pace = Pace(arrays.under("water"), self.lists, scene.water_pace)
         medium = Medium(units, p, shares, self.lists, self.constants, self.poses)
         lean = Lean(arrays, medium, behind.straight, dummy)
         self.extrapolation = Extrapolation(arrays, medium, lean)
         self.forces = Forces(arrays, medium, self.extrapolation, self.load, tank.thickness)
         self.continuity, self.vent = Continuity(arrays, medium, self.forces), Vent(arrays, medium, water.air)
-        self.mover = Mover(arrays, medium, self.extrapolation, self.vent, self.forces.fullness)
+        self.mover = Mover(arrays, medium, self.extrapolation, self.vent, self.forces.fullness, pace)
         probes = [dummy[slot] + p.wet * lanes for slot in behind.probes]
         self.gauges = Gauges(arrays, p, self.constants, water.gauges, probes, behind.open)
         pool = Pool.of(scene, setting.walls, self.order)
@@ -85,10 +87,10 @@ class WaterMatter(Matter):
         self.start, self.thickness = np.full(worlds, np.nan), tank.thickness  # J, energy at the first look; m
         mass = water.density * scene.drops[..., VOLUME].sum(axis=1).max() * tank.thickness
         self.least = 0.5 * mass * (LEAST * water.sound_speed) ** 2  # J
-        self.before, self.between = self._before(), (Phase(self.note_passage),)
+        self.before, self.between = pace.first(self._before()), pace.last([Phase(self.note_passage)])
         closing = [Closing(arrays, medium, behind, dummy).close] if self.continuity.closes else []
         acts = self.mover.kick, *closing, self.continuity.expand, self.finish
-        self.after = tuple(Phase(act, units) for act in acts)
+        self.after = pace.last(Phase(act, units) for act in acts)
 
     def _before(self) -> tuple[Phase, ...]:
         return (
@@ -117,7 +119,8 @@ class WaterMatter(Matter):
     @ti.func
     def note_poses(self, w, t, kick, dt):
         """Note how the tank of a world and the parts in it move as the step begins."""
-        self.poses.note_start(w, t)
+        self.poses.note_start(w, t, dt)
+        self.pace.note(w, kick)
         if ti.static(self.bodies.count > 0):
             self.bodies.note(w, t, dt)
 
@@ -160,14 +163,14 @@ class WaterMatter(Matter):
 
     @ti.func
     def sort(self, w):
-        """Sort the particles of a world."""
-        self.order.sort_world(w)
+        """Sort the particles of a world, if its own lists are due."""
+        self.pace.sort(w)
 
     @ti.func
     def make_lists(self, u, t, dt, whole):
         """List the neighbours of a unit anew; False where they do not fit."""
         fits = True
-        if whole:
+        if whole and self.pace.rebuilds(u):
             fits = self.lists.rebuild(u)
         return fits
 
@@ -194,12 +197,10 @@ class WaterMatter(Matter):
             field.from_numpy(whole.reshape(-1, p.lanes))
         for field in (*self.forces.sums, self.continuity.lost, self.census.behind, self.lists.last):
             field.fill(0.0)
-        self.bodies.forget()
         self.lists.skin.fill(0.0)
         self.lists.expire()
-        self.gauges.forget()
-        self.edges.forget()
-        self.load.forget()
+        for noted in (self.bodies, self.gauges, self.edges, self.load, self.poses):
+            noted.forget()
         self.start[:] = np.nan
 
     def observe(self, time: float) -> dict[str, np.ndarray]:

@@ -11,6 +11,7 @@ from solvers.fluid.walls.extrapolation import Extrapolation
 from solvers.machine.state import State
 from solvers.motion.poses import AT_MIDDLE, AT_START
 from solvers.space.axes import dot
+from solvers.tank.pace import Pace
 
 
 @ti.data_oriented
@@ -22,10 +23,11 @@ class Mover:
     (units,) m/s and `deviation` (units,), of the density, where DENSEST is the most, tell why a world was stopped.
     """
 
-    def __init__(self, arrays: State, medium: Medium, walls: Extrapolation, vent: Vent, fullness: Fullness):
+    def __init__(self, arrays: State, medium: Medium, walls: Extrapolation, vent: Vent, fullness: Fullness, pace: Pace):
         self.units, self.particles, self.shares = medium.units, medium.particles, medium.shares
         self.lists, self.constants, self.poses = medium.lists, medium.constants, medium.poses
         self.walls, self.bodies, self.vent, self.fullness = walls, medium.lists.bodies, vent, fullness
+        self.pace = pace
         own = arrays.under("water.mover")
         self.fastest, self.deviation = own.reals((medium.units.axis,), "fastest", "deviation", kept=False)
 
@@ -35,6 +37,7 @@ class Mover:
         p, c = self.particles, self.constants
         w = self.units.world(u)
         pull = [ti.cast(self.poses.felt[a][w], p.real) for a in ti.static(range(p.axes))]
+        during = self.pace.kick(w, kick)
         first, end = self.shares.wet(u)
         farthest = p.zeros()
         for b in range(first, end):
@@ -44,7 +47,7 @@ class Mover:
                 if ti.static(c.pulled):
                     centre = ti.cast(c.get("pull_y" if a == 0 else "pull_z"), p.where)
                     push = push - (c.get("pull") * filled) * p.offset(b, centre, a)
-                p.store(p.velocity[a], b, p.load(p.velocity[a], b) + kick * push)
+                p.store(p.velocity[a], b, p.load(p.velocity[a], b) + during * push)
             farthest = ti.max(farthest, self.drift(w, b, filled, 0.5 * dt, AT_START))
             if ti.static(self.poses.rotating and c.diffusion.renormalised):
                 slope = [p.load(p.slope[a], b) for a in ti.static(range(p.axes))]

@@ -53,6 +53,18 @@ def limits_of_water(scene) -> list[Limit]:
     return bounds
 
 
+def longest_pace(scene, step: float) -> int:
+    """How many base steps of `step` (s) a step of the water may be long: beside grains in a ship, by its own bounds.
+
+    Not where a ship takes its water's answer on her own side, or takes long steps herself.
+    """
+    if not (scene.water and scene.radius.size and scene.vessels):
+        return 1
+    if scene.water.added_mass == "layer" or scene.vessels[0].handover:
+        return 1
+    return max(1, int(min(limit.step for limit in limits_of_water(scene)) / step))
+
+
 def of_air(water: Water) -> Water:
     """The air beside a water, as if it were one."""
     air = water.air

@@ -62,9 +62,12 @@ class ContactList:
         self.memory += remembered.vectors(self.each, *more, **ways)
         for name, field in zip((*laws.constants, *memory), (*self.constants, *self.memory), strict=True):
             setattr(self, name, field)
-        self.memories = len(self.memory)
-        for name, field in zip(fleeting, arrays.under("fleeting").vectors(axes, *fleeting, **ways), strict=True):
+        self.memories, others = len(self.memory), arrays.under("fleeting").vectors(axes, *fleeting, **ways)
+        for name, field in zip(fleeting, others, strict=True):
             setattr(self, name, field)
+        self.whole = [self.grain, self.mate, self.stiffness, self.reach, self.share]  # all that is known of a contact
+        self.whole += [self.target] * self.has_targets + ([self.row] if laws.kinds > 1 else [])
+        self.whole += [*self.constants, *self.memory, *others]
         old, starts = arrays.under("old"), (units.axis, Axis("start", units.size + 1))
         (self.first,) = arrays.integers(starts, "first", across=across, below=self.capacity + 1)
         (self.old_first,) = old.integers(starts, "first", across=across, kept=False)
@@ -152,6 +155,12 @@ class ContactList:
         if ti.static(self.has_targets):
             enter(self.target, u, block, lane, before + target)
         self.clear(u, p)
+
+    @ti.func
+    def move(self, u, p, to):
+        """Write contact p over the contact `to`."""
+        for field in ti.static(self.whole):
+            enter(field, u, to // field.n, to % field.n, entry(field, u, p // field.n, p % field.n))
 
     @ti.func
     def clear(self, u, p):

@@ -17,12 +17,19 @@ class Phase:
     run units side by side and phases one after another, so a phase acting on one unit must not write what other units
     read in the same phase. `units` is None for a phase that acts on whole worlds.
 
-    The pace of a phase is one call `every` few base steps, over as many times dt and `kick`.
+    The pace of a phase is one call `every` few base steps, over as many times dt and `kick`: in the first of them, or
+    with `last` in the last one.
     """
 
     act: Callable
     units: Units | None = None
     every: int = 1
+    last: bool = False
+
+    @property
+    def due(self) -> int:
+        """The base step in which it is called, of `every` few."""
+        return self.every - 1 if self.last else 0
 
     @property
     def of_worlds(self) -> bool:

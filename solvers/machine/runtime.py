@@ -19,6 +19,7 @@ from solvers.machine import address_space, compiling, kernel_cache, memory, sour
 from solvers.machine.errors import Unavailable
 
 ARCHES = ("auto", "cpu", "cuda", "vulkan")
+KERNELS = 256 * 2**20  # bytes of compiled kernels kept; one of water takes 2 MB, and Taichi's 100 MiB are soon full
 
 
 @dataclass(frozen=True)
@@ -126,6 +127,7 @@ def _start(threads: int, arch: str, real, options: dict) -> None:
         # Taichi warns at every intended cast of a 64-bit time to 32 bits, and when two processes share a cache.
         log_level=ti.ERROR,
         offline_cache=True,
+        offline_cache_max_size_of_files=KERNELS,
         **options,
     )
     _threads[:] = sorted(_own_threads() - before)
@@ -155,9 +157,10 @@ def merge_repeats(wanted: bool) -> None:
 
     Its time grows as the square of a kernel's length, and LLVM finds much of the same. For discs it takes 3 of 7 s of
     compilation and makes kernels a fifth faster; for outlines 15 of 25 s, for non-convex ones 42 of 60 s, and gains 5
-    to 15 %; for water 7 of 13 s, and gains nothing (each measured side by side on one core).
+    to 15 %; for water 7 of 13 s, and gains nothing (each measured side by side on one core). It stays off where kernels
+    are to compile fast (`machine.compiling`).
     """
-    ti.lang.impl.current_cfg().opt_level = int(wanted)
+    ti.lang.impl.current_cfg().opt_level = int(wanted and not compiling.quick())
 
 
 def running_arch() -> str:

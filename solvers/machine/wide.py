@@ -16,6 +16,8 @@ from taichi.lang.expr import Expr
 from taichi.lang.impl import subscript
 from taichi.lang.matrix import make_matrix
 
+from solvers.machine import compiling
+
 
 @contextmanager
 def real_vectors(wanted: bool = True) -> Iterator[None]:
@@ -29,9 +31,14 @@ def real_vectors(wanted: bool = True) -> Iterator[None]:
         config.real_matrix_scalarize = before
 
 
-@cache
 def pays() -> bool:
-    """Whether the processor has registers of 512 bits (AVX-512), for which blocks of pairs of grains are made."""
+    """Whether the processor has AVX-512, for which blocks of pairs of grains are made, and they may take to compile."""
+    return has_wide_registers() and not compiling.quick()
+
+
+@cache
+def has_wide_registers() -> bool:
+    """Whether the processor has registers of 512 bits (AVX-512)."""
     with suppress(OSError):
         return "avx512f" in Path("/proc/cpuinfo").read_text(encoding="utf-8", errors="replace").split()
     return False

@@ -15,10 +15,14 @@ class Poses:
     A point at the earth's place x lies in the tank at r = R(φ)ᵀ (x − P). With the inertial velocity u in the tank's
     axes it drifts in a straight line over the earth: from a to b, τ later, r' = D (r + τ u) + e and u' = D u, with D =
     R(φ_a − φ_b) and e = R(φ_b)ᵀ (P_a − P_b). This is exact, and no fictitious force is needed.
+
+    With `long` steps, of several of the carrier's, the pose in the middle is the mean of those at the ends, and the
+    walls' velocities are the way between these over the step, to second order. So is the walls' acceleration, the
+    change of their velocity over the last long step: that of a single step of the carrier's has the knocks of grains.
     """
 
-    def __init__(self, arrays: State, carrier, worlds: int):
-        self.carrier, self.exact = carrier, arrays.exact
+    def __init__(self, arrays: State, carrier, worlds: int, long: bool = False):
+        self.carrier, self.exact, self.long = carrier, arrays.exact, long
         self.moving, self.rotating = carrier.moving, carrier.moving and carrier.rotating
         own, world = arrays.under("poses"), (Axis("world", worlds),)
         names = "pull_y", "pull_z", "felt_y", "felt_z", "rate", "rate_up"
@@ -28,10 +32,19 @@ class Poses:
         (self.drift,) = own.reals((*world, *halves), "drift", kind=own.exact, kept=False)
         names = "wall_y", "wall_z", "wall_rate", "start_y", "start_z", "start_rate"
         self.walls = own.reals(world, *names, kind=own.exact, kept=False)  # velocities in the middle, and at the start
+        if long:
+            names = "former_y", "former_z", "former_rate"
+            self.former = own.reals(world, *names, kind=own.exact)  # velocities at the start of the step before
+            (self.known,) = own.integers(world, "known")  # whether they are known
+
+    def forget(self) -> None:
+        """Forget the velocity of the walls in the step before."""
+        if self.long:
+            self.known.fill(0)
 
     @ti.func
-    def note_start(self, w, t):
-        """Note what the forces at the beginning of a step need, at time t (s).
+    def note_start(self, w, t, dt):
+        """Note what the forces at the beginning of a step of dt (s) need, at time t (s).
 
         The walls' acceleration is as the carrier knows it. One that answers to the load knows that of its last step.
         Only the layer of water before the walls, a smoothing length thick, feels it through the dummies' pressures. If
@@ -41,6 +54,12 @@ class Poses:
         gravity = self.carrier.gravity[0]
         if ti.static(self.moving):
             start = self.carrier.kinematics(w, t)
+            if ti.static(self.long):
+                for k in ti.static(range(3)):
+                    if self.known[w] > 0:
+                        start[6 + k] = (start[3 + k] - self.former[k][w]) / ti.cast(dt, self.exact)
+                    self.former[k][w] = start[3 + k]
+                self.known[w] = 1
             pull = turned(0.0, -gravity, -start[2])
             felt = turned(-start[6], -gravity - start[7], -start[2])
             self.felt[0][w], self.felt[1][w] = pull[0], pull[1]
@@ -54,12 +73,19 @@ class Poses:
 
     @ti.func
     def note_passage(self, w, t, dt):
-        """Note how the tank moves through the step of dt (s) from time t (s), once its carrier has answered."""
+        """Note how the tank moves through the step of dt (s) from time t (s), once its carrier has answered.
+
+        A long one ends with the carrier's present step.
+        """
         if ti.static(self.moving):
             found = self.carrier.passage(w, t, dt)
             start = ti.Vector([self.start[k][w] for k in ti.static(range(3))])
             middle = ti.Vector([found[k] for k in ti.static(range(6))])
             end = ti.Vector([found[6 + k] for k in ti.static(range(3))])
+            if ti.static(self.long):
+                for k in ti.static(range(3)):
+                    middle[k] = 0.5 * (start[k] + end[k])
+                    middle[3 + k] = (end[k] - start[k]) / ti.cast(dt, self.exact)
             self.note_half(w, AT_START, start, middle)
             self.note_half(w, AT_MIDDLE, middle, end)
             self.note_walls(w, 0, middle)

@@ -50,12 +50,16 @@ class Vessel:
         return min(LONGEST_INTERVAL, SHORTEST_MEMORY / max(fastest, 1e-9))
 
     @property
+    def shortest_period(self) -> float:
+        """The shortest period (s) of small motions about her rest in calm water, with whatever is fixed to her."""
+        rest = start(self.ship, self.heave(NOTHING, 0.0))
+        return 2.0 * np.pi / np.abs(oscillations(self.ship, rest)).max(initial=1e-9)
+
+    @property
     def step_limits(self) -> tuple[tuple[float, str], ...]:
         """Bounds (s) on the steps of a ship without cargo, each with its reason."""
-        rest = start(self.ship, self.heave(NOTHING, 0.0))
-        fastest = np.abs(oscillations(self.ship, rest)).max(initial=1e-9)
         return (
-            (2.0 * np.pi / fastest / STEPS_A_PERIOD, f"1/{STEPS_A_PERIOD} of the ship's shortest period"),
+            (self.shortest_period / STEPS_A_PERIOD, f"1/{STEPS_A_PERIOD} of the ship's shortest period"),
             (0.5 * self.interval, "half the interval between updates of the water's forces"),
         )
 

@@ -16,8 +16,9 @@ class Sequence:
 
     A step of a world at time t (s) is: every phase of `before`, in which matters compute their forces and book those on
     the tank; the carrier's, which responds to that load; every phase of `between`, in which matters note how the tank
-    will move; the carrier's frame; every phase of `after`, in which matters move. A phase with a longer pace
-    (`Phase.every`) is run at every few steps, and its matter's load stands in between.
+    will move; the carrier's frame; every phase of `after`, in which matters move. A matter with a longer pace
+    (`Phase.every`) computes its forces in the first of a few steps and moves in the last one, once it is known how the
+    tank has moved through all of them; its load stands in between (`Load`).
     A step is `stride` base steps long. The stride changes only when all lists are rebuilt, to the least that any
     matter or the carrier allows (`pace`), and never overshoots the target. Since a quiet world seldom rebuilds its
     lists, it is asked every BAR base steps whether it may take longer ones. What a matter must offer is in
@@ -42,7 +43,7 @@ class Sequence:
         """Run phase k of `before` on unit or world u at base step `step`, if it is due."""
         if ti.static(self.before[k].every == 1):
             self.before[k].act(u, t, kick, dt)
-        elif step % self.before[k].every == 0:
+        elif step % self.before[k].every == self.before[k].due:
             self.before[k].act(u, t, self.before[k].every * kick, self.before[k].every * dt)
 
     @ti.func
@@ -51,7 +52,7 @@ class Sequence:
         sound = True
         if ti.static(self.after[k].every == 1):
             sound = self.after[k].act(u, frame, kick, dt)
-        elif step % self.after[k].every == 0:
+        elif step % self.after[k].every == self.after[k].due:
             sound = self.after[k].act(u, frame, self.after[k].every * kick, self.after[k].every * dt)
         return sound
 

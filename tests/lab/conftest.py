@@ -4,6 +4,7 @@ import pytest
 
 from lab.assembly import ship_tables
 from lab.report import plots
+from solvers.fluid.start import packing
 
 PANELS = 32  # of 80: a tenth of the time; the tests of the potential flow say how it converges
 
@@ -22,3 +23,12 @@ def coarse_figures():
     with pytest.MonkeyPatch.context() as patch:
         patch.setitem(plots.STYLE, "savefig.dpi", 60)
         yield
+
+
+@pytest.fixture
+def roughly_packed(monkeypatch):
+    """Water that is not evened out before the start, for tests that only ask whether scenes can be built, and so on."""
+    packing._packed.cache_clear()
+    monkeypatch.setattr(packing, "STEPS", 2)
+    yield
+    packing._packed.cache_clear()

@@ -41,7 +41,6 @@ class PlainBoth(PlainWater):
         water, air = scene.water, scene.water.air
         self.gas = scene.drops[0, :, GAS]
         self.cohesion = air.cohesion * self.gas
-        self.torn = np.zeros(len(self.gas), dtype=bool)  # which air had no other about it in the step before
         self.liquid = 1.0 - self.gas
 
         def of(of_water: float, of_air: float) -> np.ndarray:
@@ -62,7 +61,7 @@ class PlainBoth(PlainWater):
         of_air = self.density * self.sound**2 * ((1.0 + s) ** 1.4 - 1.0) / 1.4
         alone = np.where(self.gas > 0.5, of_air, self.density * self.sound**2 * s)
         whole = alone + self.water.background - self.cohesion * s * (2.0 + s)
-        return np.where((self.gas > 0.5) & self.torn, np.maximum(whole, 0.0), whole)
+        return np.where((self.gas > 0.5) & (self.cohesion == 0.0), np.maximum(whole, 0.0), whole)
 
     def extra(self, s):
         """What air feels besides, of each of its neighbours: 2 a ρ² (Mokos et al. 2015)."""

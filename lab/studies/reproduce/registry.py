@@ -62,6 +62,7 @@ FIGURES: Mapping[str, Callable] = {
     "pressures at P1": prismatic.figure,
     "coupled response": coupled.figure,
     "coupled spectra": coupled.spectra,
+    "coupled heave and roll": coupled.heave_and_roll,
     "tank tuning": tuning.figure,
 }
 TELLS: Mapping[str, Callable[[Found], Told]] = {

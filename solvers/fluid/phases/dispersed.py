@@ -3,11 +3,12 @@
 import taichi as ti
 
 from solvers.fluid.phases.adiabatic import GAMMA
-from solvers.fluid.state import SPRAY, Particles
+from solvers.fluid.state import Particles
 from solvers.machine.state import Axis, State
 
 FAINT = 0.02  # of full coverage by the other phase: what sees less of it has none about it
 GONE = 9.0  # excess of density of a bubble of which nothing is left: a tenth of its volume
+LIGHT = 0.1  # of the water's density: a fluid that is heavier may hang below its lid, by suction
 ALONE = 0.5  # fullness of air without walls below which it is such a bubble: four spacings across
 
 
@@ -25,9 +26,9 @@ class Dispersed:
     a little each time that water moves about it. So a bubble (F < ALONE, walls not counted) is squeezed to GONE at
     most, or to the density at which p_a ((ρ/ρ_a)^1.4 − 1) is the water's pressure (own derivation).
 
-    Nor does air of λ < SPRAY bear more suction than the background's pressure, as spray of water: a void that a few
-    particles are to fill would throw them about (Monaghan 2000). `rest` is the excess of density s with the pressure of
-    the other phase. Water that touches no air is in a void, and bears nothing.
+    Nor does air bear more suction than the background's pressure, unless it is heavier than LIGHT: beyond that particles
+    attract each other, and a void that a few are to fill throws them about (Monaghan 2000). `rest` is the excess of
+    density s with the pressure of the other phase. Water that touches no air is in a void, and bears nothing.
 
     Limits: drops and bubbles of up to four spacings; not with tension, whose drops are to be resolved, nor cohesion.
 
@@ -52,11 +53,11 @@ class Dispersed:
             sums[p.axes + 3] += beside * trace
 
     @ti.func
-    def borne(self, b, lane, pressure):
+    def borne(self, pressure):
         """The pressure (Pa) of a particle of air with the background's, as far as it bears suction."""
-        p, found = self.particles, pressure + self.constants.get("background")
+        found = pressure + self.constants.get("background")
         if ti.static(self.acts):
-            found = ti.select(p.span[b, lane] < SPRAY, ti.max(found, 0.0), found)
+            found = ti.max(found, self.constants.get("least"))
         return found
 
     @ti.func

@@ -6,6 +6,7 @@ import taichi as ti
 
 from solvers.grains.laws.capillary import Capillary
 from solvers.grains.materials import Interface
+from solvers.machine.wide import entry
 
 LINEAR, SQUARE = 1.05, 2.5  # coefficients of x and x² in the decay of the force with the gap
 ROOT = (4.0 * SQUARE - LINEAR**2) ** 0.5
@@ -57,5 +58,5 @@ class Bridge(Capillary):
     @ti.func
     def stretch(self, contacts: ti.template(), w, block, lane, gap):
         """∫ p ds (m) up to a gap (m) of one contact."""
-        scale = contacts.bridge_scale[w, block][lane]
+        scale = entry(contacts.bridge_scale, w, block, lane)
         return (unwound(gap * scale) - unwound(0.0)) / scale

@@ -6,6 +6,7 @@ import taichi as ti
 
 from solvers.grains.laws.extremes import greater, lesser
 from solvers.grains.materials import Interface, hertz_stiffness
+from solvers.machine.wide import entry, minus, size
 
 STEPS = 36.0  # per period of two grains that oscillate about the balance of pull and elasticity
 ROUNDS = 3  # in which a pull and the way of its step are found; a fourth changes a film's work by some per cent at most
@@ -36,6 +37,7 @@ class Capillary:
     stretching it, f₀ ∫ p ds, which is lost at rupture.
     """
 
+    wide = True
     memory = ("bridged", "bridge_last")
     pulls = True
 
@@ -59,7 +61,8 @@ class Capillary:
             closing = rate + led * (force - foreseen)
             middle = approach + 0.5 * dt * led * force
             force, kept = self.averaged(contacts, w, block, middle, closing, held, dt)
-        contacts.bridged[w, block], contacts.bridge_last[w, block] = kept, force
+        contacts.bridged[w, block] = kept
+        contacts.bridge_last[w, block] = force
         return force
 
     @ti.func
@@ -69,12 +72,12 @@ class Capillary:
         `closing` is the mean speed (m/s) of the step, `held` 1 where there was a bridge before.
         """
         reach = greater(contacts.bridge_range[w, block], NO_RANGE)
-        way = greater(ti.abs(closing) * dt, SHORTEST * reach)
-        near, far = -middle - 0.5 * way, -middle + 0.5 * way
+        way = greater(size(closing) * dt, SHORTEST * reach)
+        near, far = minus(middle) - 0.5 * way, 0.5 * way - middle
         bridged = ti.select(near < 0.0, 1.0 + 0.0 * held, held)
         pulling = ti.select(closing < 0.0, bridged, held)  # a bridge forms when the overlap begins, not before
         begin, end = greater(lesser(near, reach), 0.0), greater(lesser(far, reach), 0.0)
-        overlapping = greater(lesser(-near, way), 0.0)
+        overlapping = greater(lesser(minus(near), way), 0.0)
         tail = pulling * (end - begin) * self.profile(contacts, w, block, 0.5 * (begin + end), reach)
         leaving = ti.select(closing < 0.0, far, near)
         kept = ti.select(leaving < reach, bridged, 0.0 * held)
@@ -83,10 +86,11 @@ class Capillary:
     @ti.func
     def energy(self, contacts: ti.template(), w, block, lane, approach):
         """Energy (J) of one contact's bridge; zero if there is none."""
-        pull, reach = contacts.bridge_pull[w, block][lane], contacts.bridge_range[w, block][lane]
+        pull, reach = entry(contacts.bridge_pull, w, block, lane), entry(contacts.bridge_range, w, block, lane)
         stored = -pull * approach
         if approach < 0.0:
             stored = 0.0 * pull
             if -approach < reach:
-                stored = contacts.bridged[w, block][lane] * pull * self.stretch(contacts, w, block, lane, -approach)
+                held = entry(contacts.bridged, w, block, lane)
+                stored = held * pull * self.stretch(contacts, w, block, lane, -approach)
         return stored

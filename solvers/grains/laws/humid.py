@@ -6,6 +6,7 @@ import taichi as ti
 
 from solvers.grains.laws.capillary import NO_RANGE, Capillary
 from solvers.grains.materials import Interface
+from solvers.machine.wide import entry
 
 MOLAR_VOLUME = 18.07e-6  # m³/mol of water at 25 °C
 THERMAL = 8.314 * 298.15  # R T, J/mol at 25 °C
@@ -65,4 +66,4 @@ class Humid(Capillary):
     @ti.func
     def stretch(self, contacts: ti.template(), w, block, lane, gap):
         """∫ p ds (m) up to a gap (m) of one contact."""
-        return gap - 0.5 * gap * gap / ti.max(contacts.bridge_range[w, block][lane], NO_RANGE)
+        return gap - 0.5 * gap * gap / ti.max(entry(contacts.bridge_range, w, block, lane), NO_RANGE)

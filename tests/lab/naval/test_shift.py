@@ -19,7 +19,7 @@ from solvers.ship.section import Section
 from tests.oracles.synthetic import frame, of_a_ship, recorder, sample
 
 SHIP = "ship/handysize-grain"
-COUNT, LASTS = 2312, 100.0
+COUNT, LASTS = 2312, 20.0
 ASIDE, UP, MOST = 0.3, 0.02, 0.5  # m: where the cargo lies at last, and the farthest aside on the way
 
 
@@ -34,8 +34,8 @@ def run(tmp_path_factory):
         folder, count=COUNT, preset=SHIP, resolved=to_table(preset), outline=outline, radius=np.full((1, COUNT), 0.125)
     ) as writer:
         for now in np.linspace(0.0, LASTS, 201):
-            aside = np.interp(now, [0.0, 30.0, 60.0, LASTS], [0.0, -MOST, ASIDE, ASIDE])
-            up = np.interp(now, [0.0, 60.0, LASTS], [0.0, UP, UP])
+            aside = np.interp(now, [0.0, 0.3 * LASTS, 0.6 * LASTS, LASTS], [0.0, -MOST, ASIDE, ASIDE])
+            up = np.interp(now, [0.0, 0.6 * LASTS, LASTS], [0.0, UP, UP])
             pose = np.array([[0.0, 0.0, -0.1 * np.sin(now)]])
             writer.sample(sample(now, pose=pose, centre_of_mass=np.add(settled, [[aside, up]]), **of_a_ship()))
         writer.frame(frame(0.0, count=COUNT))
@@ -92,7 +92,7 @@ def test_page_for_the_file_is_whole_and_signed(run):
 
 
 def test_list_is_drawn_at_every_time(measured):
-    """The list in calm water: starboard down, positive, at the end; to port when the cargo lay farthest, at 30 s."""
+    """The list in calm water: starboard down, positive, at the end; to port when the cargo lay farthest, at 6 s."""
     found = measured[1]
     lists = ship_grain.listed(found, np.array([0, 60, 200]))[:, 0]
     assert lists[0] == pytest.approx(0.0, abs=1e-6) and lists[1] == pytest.approx(-measured[0]["list_as_it_lay"].value)

@@ -83,6 +83,7 @@ def test_given_text_is_the_same_preset(name, tmp_path):
     assert again.resolved == on_its_own(preset.resolved)
 
 
+@pytest.mark.usefixtures("roughly_packed")
 @pytest.mark.parametrize("name", [name for name in NAMES if name.endswith(QUICK)])
 def test_a_quick_variant_states_its_differences_and_differs_only_in_cost(name):
     whole, quick = load(name.removesuffix(QUICK)).resolved, load(name).resolved

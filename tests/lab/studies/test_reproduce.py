@@ -57,6 +57,7 @@ EXPERIMENTS = {name: one for part in reports() for name, one in experiments(part
 FINE = ("impact-air-fine", "prismatic-cost")  # the scenes of others, with so many particles that they take seconds
 
 
+@pytest.mark.usefixtures("roughly_packed")
 @pytest.mark.parametrize(
     "name", [pytest.param(name, marks=pytest.mark.slow) if name in FINE else name for name in EXPERIMENTS]
 )

@@ -143,11 +143,9 @@ def follows_double_sums(run: Simulation, steps: int = 7) -> None:
     plain, dt = PlainBoth(run.scene), run.dt
     run.advance(steps)
     r, u, s, m, *_ = held(run)
-    fullness, p = run.water.forces.fullness, run.water.particles
-    plain.torn = (p.read(p.span)[0][0] < 0.2) & fullness.acts
     run.advance(1)
     push, slope, _ = plain.push(r, u, s, m)
-    mixed = plain.mixed(r, m, s, run.water.constants.numbers["plane"]) if fullness.acts else None
+    mixed = plain.mixed(r, m, s, run.water.constants.numbers["plane"]) if run.water.forces.fullness.acts else None
     pressed = plain.wall_pressure(r, m, s, 0.0) > 0.0
     u = u + dt * (push + plain.gravity)
     middle = r + 0.5 * dt * u

@@ -1,12 +1,15 @@
 """Water in tanks that move, and water that is free: frames, momentum, and drops with known motion."""
 
+from collections.abc import Iterator
+
 import numpy as np
 import pytest
 
 from solvers.fluid.given import EXCESS, VELOCITY_Y, VELOCITY_Z, VOLUME, Pull
 from solvers.motion.harmonic import Heave, Roll, Sway
+from solvers.scene import Scene
 from solvers.simulation import Simulation
-from tests.oracles.water import still
+from tests.oracles.water import again, still
 
 MOTIONS = (Roll(0.3, 0.8, centre=(0.1, 0.2)), Sway(0.05, 1.1), Heave(0.02, 0.9))
 DROP = {"walls": False, "gravity": 0.0, "sound_speed": 20.0, "alpha": 0.02}
@@ -30,11 +33,21 @@ def positions(scene, steps: int) -> tuple[Simulation, np.ndarray]:
     return run, run.snapshot()["water_place"][0]
 
 
-def test_a_free_drop_keeps_its_momentum_and_turning():
+STRAIN = 10.0  # 1/s
+
+
+@pytest.fixture(scope="module")
+def strained() -> Iterator[Simulation]:
+    run = Simulation(drop(STRAIN), threads=1, arch="cpu")
+    yield run
+    run.close()
+
+
+def test_a_free_drop_keeps_its_momentum_and_turning(strained):
     scene = drop(2.0)
     scene.drops[0, :, VELOCITY_Y] -= 3.0 * scene.drops[0, :, 1]  # it also turns
     scene.drops[0, :, VELOCITY_Z] += 3.0 * scene.drops[0, :, 0]
-    run = Simulation(scene, threads=1, arch="cpu")
+    run = again(strained, scene)
     p = run.water.particles
     sums = []
     for _ in range(2):
@@ -74,18 +87,18 @@ def test_walls_work_on_the_water_of_a_moving_tank():
     np.testing.assert_allclose(gain + taken, work, atol=2e-3 * abs(work[0]))
 
 
-def test_a_strained_drop_becomes_the_ellipse_of_theory():
+def test_a_strained_drop_becomes_the_ellipse_of_theory(strained):
     """u = σ (y, −z): σ' = σ² (b² − a²)/(a² + b²), a' = σ a, b' = −σ b (Monaghan 1994, eq. 4.4), to 2 % of the axis."""
-    rate, duration = 10.0, 0.06
-    run = Simulation(drop(rate), threads=1, arch="cpu")
-    run.advance(round(duration / run.dt))
+    duration, run = 0.06, again(strained, drop(STRAIN))
+    steps = round(duration / run.dt)
+    run.advance(steps)
     place = run.snapshot()["water_place"][0]
-    a, b, s, count = 0.1, 0.1, rate, 4000
-    dt = run.time / count
+    a, b, s, count = 0.1, 0.1, STRAIN, 4000
+    dt = steps * run.dt / count
     for _ in range(count):
         s += dt * s * s * (b * b - a * a) / (a * a + b * b)
         a, b = a * (1.0 + s * dt), b * (1.0 - s * dt)
-    start = drop(rate).drops[0, :, :2]
+    start = drop(STRAIN).drops[0, :, :2]
     found = 0.1 * np.sqrt((place**2).mean(axis=0) / (start**2).mean(axis=0))  # root mean squares grow as the axes
     np.testing.assert_allclose(found, [a, b], rtol=0.02)
 
@@ -107,17 +120,28 @@ def test_a_drop_that_is_pulled_to_a_point_swings_at_the_frequency_of_theory():
     np.testing.assert_allclose(crossing, np.pi / (np.sqrt(2.0) * 10.0), rtol=0.02)
 
 
-@pytest.mark.parametrize("deep", [0.15, 0.3, 0.45])
-def test_a_wall_pushes_back_what_has_come_through_its_face(deep):
-    """Single particles behind the face of a wall, anywhere between two dummies, and behind corners are pushed in."""
+def come_through(deep: float) -> Scene:
+    """Single particles, by so many spacings behind the face of a wall, between two dummies, and behind corners."""
     spacing = 0.01
     ways = (np.arange(9) + np.arange(9) / 9.0) * 6.0 * spacing  # six spacings apart: none sees another
     beside = np.stack([np.full(9, 0.5 + deep * spacing), 0.1 + ways], axis=1)
     corners = np.array([[-0.5 - deep * spacing, -deep * spacing], [-0.5 - deep * spacing, 1.0 + deep * spacing]])
     drops = np.zeros((1, 11, 6))
     drops[0, :, :2], drops[0, :, VOLUME] = np.concatenate([beside, corners]), spacing**2
-    scene = still(1.0, 1.0, 0.5, 50, drops=drops, gravity=0.0, sound_speed=10.0, step=1e-4)
-    run = Simulation(scene, threads=1, arch="cpu")
+    return still(1.0, 1.0, 0.5, 50, drops=drops, gravity=0.0, sound_speed=10.0, step=1e-4)
+
+
+@pytest.fixture(scope="module")
+def leaky() -> Iterator[Simulation]:
+    run = Simulation(come_through(0.15), threads=1, arch="cpu")
+    yield run
+    run.close()
+
+
+@pytest.mark.parametrize("deep", [0.15, 0.3, 0.45])
+def test_a_wall_pushes_back_what_has_come_through_its_face(leaky, deep):
+    """Anywhere behind it, those at the corners towards the middle."""
+    run = again(leaky, come_through(deep))
     run.advance(1)
     push = np.stack([values[0] for values in run.water.particles.read(*run.water.particles.acceleration)], axis=1)
     assert (push[:9, 0] < 0.0).all()

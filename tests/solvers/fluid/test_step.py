@@ -1,8 +1,5 @@
 """A step of water in a tank at rest: against double sums in plain numpy, and what it must conserve."""
 
-from collections.abc import Iterator
-from contextlib import contextmanager
-
 import numpy as np
 import pytest
 
@@ -12,7 +9,7 @@ from solvers.fluid.surface.fullness import PACKED, RAMP
 from solvers.machine.state import without_worlds
 from solvers.scene import Scene
 from solvers.simulation import Simulation
-from tests.oracles.water import GRAVITY, PlainWater, still
+from tests.oracles.water import GRAVITY, PlainWater, again, still
 
 WIDTH, HEIGHT, DEPTH, ROWS = 0.6, 0.6, 0.3, 15
 GAUGES = Gauge((-0.3, 0.06), 0.02), Gauge((0.1, 0.0), 0.02), Gauge((0.3, 0.5), 0.02)
@@ -38,23 +35,18 @@ def held(run: Simulation) -> list[np.ndarray]:
     return [*pairs[:2], s[0], m[0], *pairs[2:]]
 
 
-@contextmanager
-def running(scene: Scene, **options) -> Iterator[Simulation]:
-    """A simulation that is closed at the end, so that the next one has its compiled kernels."""
-    run = Simulation(scene, **{"threads": 1, "arch": "cpu"} | options)
-    yield run
-    run.close()
-
-
 @pytest.fixture(scope="module")
 def run() -> Simulation:
     return Simulation(disturbed(), threads=1, arch="cpu")
 
 
 @pytest.fixture(scope="module")
-def done(run) -> None:
-    """The simulation that the first tests share is closed: the next one has its compiled kernels."""
+def course(run) -> np.ndarray:
+    """The places that others must find. The shared simulation ends here, so that those after it find their kernels."""
+    again(run, disturbed(3)).advance(60)
+    place = run.snapshot()["water_place"][0]
     run.close()
+    return place
 
 
 def check_a_step(run: Simulation) -> np.ndarray:
@@ -132,79 +124,79 @@ def test_tanks_of_other_sizes_share_compiled_kernels(run):
     other.close()
 
 
-def test_water_with_voids_loses_its_pressure(done):
+def test_water_with_voids_loses_its_pressure(run):
     """A lattice that is higher by a fifth bears none where it is not packed; its energy is accounted for."""
     scene = disturbed()
     scene.drops[0, :, 1] *= 1.2
     scene.drops[0, :, EXCESS] = 0.01
-    with running(scene) as run:
-        start = run.observe()
-        run.advance(1)
-        full = check_a_step(run)
-        assert np.median(full) < PACKED - RAMP
-        run.advance(10)
-        end = run.observe()
-        p = run.water.particles
-        full, s = (values[0] for values in p.read(run.water.forces.fullness.fullness, p.excess))
-        assert np.abs(s[full < PACKED - RAMP]).mean() < 0.2 * 0.01
-        assert abs(residual(end, residual(start, 0.0))[0]) < 0.03 * start["water_elastic"][0]
+    again(run, scene)
+    start = run.observe()
+    run.advance(1)
+    full = check_a_step(run)
+    assert np.median(full) < PACKED - RAMP
+    run.advance(10)
+    end = run.observe()
+    p = run.water.particles
+    full, s = (values[0] for values in p.read(run.water.forces.fullness.fullness, p.excess))
+    assert np.abs(s[full < PACKED - RAMP]).mean() < 0.2 * 0.01
+    assert abs(residual(end, residual(start, 0.0))[0]) < 0.03 * start["water_elastic"][0]
 
 
-def test_water_that_is_packed_too_close_takes_its_room_again(done):
+def test_water_that_is_packed_too_close_takes_its_room_again(run):
     """Water at rest whose particles are 3 % too heavy for their room rises by as much, but for what its surface is."""
     scene = still(WIDTH, HEIGHT, DEPTH, ROWS, **TOLD)
     scene.drops[..., VOLUME] *= 1.03
-    with running(scene) as run:
-        start = run.observe()
-        run.advance(round(2.5 / (run.water.constants.numbers["keeping"] * run.dt)))
-        end = run.observe()
-        p = run.water.particles
-        full, span = (values[0] for values in p.read(run.water.forces.fullness.fullness, p.span))
-        assert full[span > 0.95].mean() == pytest.approx(1.0, abs=0.01)
-        assert 1.015 < end["water_potential"] / start["water_potential"] < 1.035
-        assert abs(residual(end, residual(start, 0.0))[0]) < 0.03 * abs(end["water_diffusive"][0])
+    again(run, scene)
+    start = run.observe()
+    run.advance(round(2.5 / (run.water.constants.numbers["keeping"] * run.dt)))
+    end = run.observe()
+    p = run.water.particles
+    full, span = (values[0] for values in p.read(run.water.forces.fullness.fullness, p.span))
+    assert full[span > 0.95].mean() == pytest.approx(1.0, abs=0.01)
+    assert 1.015 < end["water_potential"] / start["water_potential"] < 1.035
+    assert abs(residual(end, residual(start, 0.0))[0]) < 0.03 * abs(end["water_diffusive"][0])
 
 
-def test_a_drop_alone_falls_without_pressure(done):
+def test_a_drop_alone_falls_without_pressure(run):
     """A pressed drop high above the water is relieved within a few h/c0 and falls as a stone does."""
     scene = disturbed()
     scene.drops[0, -1] = [0.0, 0.5, 0.0, 0.0, 0.02, scene.drops[0, -1, VOLUME]]
-    with running(scene) as run:
-        run.advance(20)
-        places, speeds, s, *_ = held(run)
-        time = 20 * run.dt
-        assert 0.0 <= s[-1] < 1e-4 * scene.drops[0, -1, EXCESS]
-        assert places[-1] == pytest.approx([0.0, 0.5 - 0.5 * GRAVITY * time**2], abs=GRAVITY * time * run.dt)
-        assert speeds[-1] == pytest.approx([0.0, -GRAVITY * time], abs=GRAVITY * run.dt)
+    again(run, scene)
+    run.advance(20)
+    places, speeds, s, *_ = held(run)
+    time = 20 * run.dt
+    assert 0.0 <= s[-1] < 1e-4 * scene.drops[0, -1, EXCESS]
+    assert places[-1] == pytest.approx([0.0, 0.5 - 0.5 * GRAVITY * time**2], abs=GRAVITY * time * run.dt)
+    assert speeds[-1] == pytest.approx([0.0, -GRAVITY * time], abs=GRAVITY * run.dt)
 
 
-def test_gravity_may_change_while_water_runs(done):
+def test_gravity_may_change_while_water_runs(run):
     """Under half of the gravity the water weighs half as much on its tank, and no energy counts as created."""
-    with running(still(WIDTH, HEIGHT, DEPTH, ROWS, **TOLD)) as run:
-        run.observe()
-        run.alter(gravity=0.5 * GRAVITY)
-        loads = []
-        for _ in range(40):  # over some ten times that sound takes through the depth
-            run.advance(20)
-            loads.append(run.observe()["wall_force"][0, 1])
-        weight = 0.5 * GRAVITY * held(run)[3].sum()
-        np.testing.assert_allclose(np.mean(loads[10:]), -weight, rtol=0.03)
+    again(run, still(WIDTH, HEIGHT, DEPTH, ROWS, **TOLD))
+    run.observe()
+    run.alter(gravity=0.5 * GRAVITY)
+    loads = []
+    for _ in range(40):  # over some ten times that sound takes through the depth
+        run.advance(20)
+        loads.append(run.observe()["wall_force"][0, 1])
+    weight = 0.5 * GRAVITY * held(run)[3].sum()
+    np.testing.assert_allclose(np.mean(loads[10:]), -weight, rtol=0.03)
 
 
-def test_water_at_rest_weighs_on_the_floor_and_its_gauges(done):
+def test_water_at_rest_weighs_on_the_floor_and_its_gauges(run):
     """From hydrostatic rest: pressures, levels and the load stay; c0 = 10 √(gH) compresses the water by up to 1 %."""
-    with running(still(WIDTH, HEIGHT, DEPTH, ROWS, **TOLD)) as run:
-        run.observe()
-        run.advance(600)
-        rows, mass = run.observe(), held(run)[3].sum()
-        np.testing.assert_allclose(rows["wall_force"][0], [0.0, -mass * GRAVITY, 0.0], atol=2e-3 * mass * GRAVITY)
-        deep = 1000.0 * GRAVITY * np.array([DEPTH - 0.06, DEPTH, 0.0])
-        np.testing.assert_allclose(rows["gauge_pressure"][0], deep, atol=0.02 * 1000.0 * GRAVITY * DEPTH)
-        np.testing.assert_allclose(rows["level_depth"][0], DEPTH, rtol=0.01)
-        assert rows["water_kinetic"][0] < 1e-4 * 1000.0 * GRAVITY * DEPTH * WIDTH * DEPTH
-        place, pressure = (run.snapshot()[name][0] for name in ("water_place", "water_pressure"))
-        wanted = 1000.0 * GRAVITY * (DEPTH - place[:, 1])
-        np.testing.assert_allclose(pressure, wanted, atol=0.5 * 1000.0 * GRAVITY * DEPTH / ROWS)  # half a layer
+    again(run, still(WIDTH, HEIGHT, DEPTH, ROWS, **TOLD))
+    run.observe()
+    run.advance(600)
+    rows, mass = run.observe(), held(run)[3].sum()
+    np.testing.assert_allclose(rows["wall_force"][0], [0.0, -mass * GRAVITY, 0.0], atol=2e-3 * mass * GRAVITY)
+    deep = 1000.0 * GRAVITY * np.array([DEPTH - 0.06, DEPTH, 0.0])
+    np.testing.assert_allclose(rows["gauge_pressure"][0], deep, atol=0.02 * 1000.0 * GRAVITY * DEPTH)
+    np.testing.assert_allclose(rows["level_depth"][0], DEPTH, rtol=0.01)
+    assert rows["water_kinetic"][0] < 1e-4 * 1000.0 * GRAVITY * DEPTH * WIDTH * DEPTH
+    place, pressure = (run.snapshot()[name][0] for name in ("water_place", "water_pressure"))
+    wanted = 1000.0 * GRAVITY * (DEPTH - place[:, 1])
+    np.testing.assert_allclose(pressure, wanted, atol=0.5 * 1000.0 * GRAVITY * DEPTH / ROWS)  # half a layer
 
 
 @pytest.mark.parametrize(
@@ -215,21 +207,19 @@ def test_water_at_rest_weighs_on_the_floor_and_its_gauges(done):
         {"schedule": "per-grain", "precision": "f32"},
     ],
 )
-def test_other_ways_of_running_give_the_same_water(done, changes):
+def test_other_ways_of_running_give_the_same_water(course, changes):
     """Numbers of 32 bits, bands on threads, and particles one by one: the same course, to the rounding of each."""
     units = {"units": 2} if changes == {"schedule": "per-band"} else {}
-    place = []
-    for more, cut in (({}, {}), (changes, units)):
-        with running(disturbed(3, **more), threads=1 + len(cut), **cut) as other:
-            other.advance(60)
-            place.append(other.snapshot()["water_place"][0])
-            spacing, precision = other.scene.water.spacing, other.scene.precision
+    other = Simulation(disturbed(3, **changes), threads=1 + len(units), arch="cpu", **units)
+    other.advance(60)
+    place, spacing, precision = other.snapshot()["water_place"][0], other.scene.water.spacing, other.scene.precision
+    other.close()
     tight = {"f64": 1e-9, "mixed": 2e-5, "f32": 5e-4}[precision]
-    np.testing.assert_allclose(place[1], place[0], atol=tight * spacing)
+    np.testing.assert_allclose(place, course, atol=tight * spacing)
 
 
 @pytest.mark.slow
-def test_worlds_go_on_when_one_leaves(done):
+def test_worlds_go_on_when_one_leaves(course):
     """With the same bits, although they are counted anew and lists of neighbours hold places in all worlds."""
     scenes = [disturbed(seed) for seed in (4, 5, 6)]
     whole = Simulation(Scene.joined(scenes), threads=1, arch="cpu")

@@ -15,7 +15,10 @@ OTHERS = [
     {"normal": "hysteretic", "tangential": "viscous", "precision": "f32"},
     {"normal": "hertz", "tangential": "none", "integrator": "symplectic-euler"},
     {"tangential": "mindlin", "integrator": "gear", "precision": "mixed"},
+    {"tangential": "mindlin", "cohesion": "bridge"},
+    {"tangential": "haff-werner", "cohesion": "humid", "integrator": "symplectic-euler"},
 ]
+WET = {"humidity": 0.7, "bridge_volume": 1e-12, "contact_angle": 0.3, "surface_tension": 0.072}
 
 
 def thrown(pays, threads=1, **models):
@@ -42,7 +45,7 @@ def throw(pays, threads=1, **models):
     rng = np.random.default_rng(1)
     velocity, spin = rng.normal(0.0, 0.2, (2, len(place), 2)), rng.normal(0.0, 30.0, (2, len(place)))
     velocity[..., 1] -= 0.3
-    grain = material(rolling_friction=0.1, shear_damping=20.0)
+    grain = material(rolling_friction=0.1, shear_damping=20.0, **WET)
     radius = RADIUS * rng.uniform(0.9, 1.0, len(place))
     run = simulation(
         np.stack([place, place]), radius, box(WIDE, 40e-3), grain, velocity=velocity, spin=spin, threads=threads,
@@ -81,18 +84,18 @@ def test_real_vectors_give_the_same_bits_on_any_number_of_threads():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("pays", [True, False])
-def test_a_state_goes_on_with_the_same_bits_on_another_kind_of_processor(pays):
+@pytest.mark.parametrize(("pays", "cohesion"), [(True, "none"), (False, "none"), (True, "bridge"), (False, "bridge")])
+def test_a_state_goes_on_with_the_same_bits_on_another_kind_of_processor(pays, cohesion):
     """It tells whether it is of vectors; one that does not, as older ones, is taken for the processor's own."""
-    run = throw(pays, tangential="mindlin")
+    run = throw(pays, tangential="mindlin", cohesion=cohesion)
     run.advance(STEPS // 2)
     state, rest = run.state(), STEPS - STEPS // 2
     found = ended(run, rest)
-    elsewhere = throw(not pays, tangential="mindlin")
+    elsewhere = throw(not pays, tangential="mindlin", cohesion=cohesion)
     elsewhere.restore(state)
     assert elsewhere.wide == pays
     for name, values in ended(elsewhere, rest).items():
         np.testing.assert_array_equal(values, found[name], err_msg=name)
-    alike = throw(pays, tangential="mindlin")
+    alike = throw(pays, tangential="mindlin", cohesion=cohesion)
     alike.restore(state | {"numbers": state["numbers"][:-1]})
     np.testing.assert_array_equal(ended(alike, rest)["position"], found["position"])

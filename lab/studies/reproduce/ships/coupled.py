@@ -4,7 +4,10 @@ Beside the runs stands linear theory: the hull's coefficients by potential flow 
 one equation at each frequency, with the same damping.
 """
 
+from collections.abc import Mapping
+
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from lab.assembly.ship import make_water, make_waves
@@ -17,7 +20,7 @@ from lab.studies.reproduce.experiment import Found, Row
 from lab.studies.reproduce.figures import SIZE
 from lab.studies.reproduce.runs import Outcome
 
-ROLL = 2
+HEAVE, ROLL = 1, 2
 HALVES = 3e-2  # least amplitude of a packet's components, of the largest, at which a response is told
 FINER = 8  # zeros after a record, in its lengths, so that a peak lies between its lines
 LOW, HIGH, STEP = 2.5, 8.5, 0.005  # rad/s, of the linear response
@@ -88,6 +91,12 @@ def roll_left(one: Outcome, _: object) -> float:
     return float(np.abs(roll[time > let_go + LATER]).max() / np.abs(roll[np.searchsorted(time, let_go)]))
 
 
+def heave_per_wave(one: Outcome, _: object) -> float:
+    """Heave over wave, root mean square of the transfer function's size where the sea is strong enough."""
+    heard = met(one.recording, 0, HEAVE)
+    return float(np.sqrt(np.mean(np.abs(heard.ratio[heard.strong]) ** 2)))
+
+
 def particle_steps(one: Outcome, _: object) -> float:
     """Particles times steps of a run, its cost whatever the processor."""
     return one.cost["grain_steps"]
@@ -121,6 +130,7 @@ def limit_and_order(spacing: np.ndarray, value: np.ndarray) -> tuple[float, floa
 NUMBERS = {
     "particle_steps": ("", particle_steps),
     "roll_left": ("", roll_left),
+    "heave_per_wave": ("", heave_per_wave),
     "roll_per_wave": (ROLL_UNIT, roll_per_wave),
     "linear_roll": (ROLL_UNIT, linear_roll),
     "roll_peak": ("rad/s", nearest_peak),
@@ -149,18 +159,36 @@ def spectra(found: Found) -> Figure:
     The frequency domain (dashed) is drawn for the ship whose water is by linear theory in the run, too.
     """
     drawn, (upper, lower) = canvas((SIZE[0], 1.5 * SIZE[1]), 2, 1, sharex=True, height_ratios=(2, 1))
+    _draw_spectra(found, lower, {ROLL: upper})
+    drawn.legend(loc=BELOW, ncols=3)
+    return drawn
+
+
+def heave_and_roll(found: Found) -> Figure:
+    """As `spectra`, with heave for each metre of wave above."""
+    drawn, (top, middle, lower) = canvas((SIZE[0], 2.1 * SIZE[1]), 3, 1, sharex=True, height_ratios=(2, 2, 1))
+    _draw_spectra(found, lower, {HEAVE: top, ROLL: middle})
+    drawn.legend(loc=BELOW, ncols=3)
+    return drawn
+
+
+def _draw_spectra(found: Found, lower: Axes, panels: Mapping[int, Axes]) -> None:
+    """Motions over waves on the panel of each, and the coherence of roll, which is the last of them."""
     for colour, (label, (one, *_)) in zip((GREY, BLUE, VERMILION), found.items(), strict=False):
-        heard = met(one.recording, 0, ROLL)
-        omega, size, error = (values[heard.strong] for values in (heard.frequency, np.abs(heard.ratio), heard.error))
-        upper.plot(omega, size, color=colour, lw=1.3, label=label)
-        wide = half_width(1.0, MANY) * error
-        upper.fill_between(omega, np.maximum(size - wide, 0.0), size + wide, color=colour, alpha=0.2, lw=0)
-        lower.plot(omega, heard.coherence[heard.strong], color=colour)
-        if one.recording.preset.water.model == "linear":
-            upper.plot(*linear_response(one.recording.preset, omega[0], omega[-1]), color=colour, lw=1.0, ls="--")
-    upper.set_ylabel("roll per metre of wave\n(rad/m)")
+        for motion, axes in panels.items():
+            heard = met(one.recording, 0, motion)
+            kept, wide = heard.strong, half_width(1.0, MANY) * heard.error
+            omega, size = heard.frequency[kept], np.abs(heard.ratio)
+            axes.plot(omega, size[kept], color=colour, lw=1.3, label=label if motion == ROLL else None)
+            low, high = np.maximum(size - wide, 0.0)[kept], (size + wide)[kept]
+            axes.fill_between(omega, low, high, color=colour, alpha=0.2, lw=0)
+            if one.recording.preset.water.model == "linear":
+                domain = np.arange(omega[0], omega[-1], STEP)
+                exact = np.abs(linear_motion(one.recording.preset, domain)[:, motion])
+                axes.plot(domain, exact, color=colour, lw=1.0, ls="--")
+        lower.plot(omega, heard.coherence[kept], color=colour)
+    for motion, axes in panels.items():
+        axes.set_ylabel("roll per metre of wave\n(rad/m)" if motion == ROLL else "heave over wave")
     lower.set_ylabel("coherence")
     lower.set_ylim(0.0, 1.05)
     lower.set_xlabel("wave frequency (rad/s)")
-    drawn.legend(loc=BELOW, ncols=3)
-    return drawn

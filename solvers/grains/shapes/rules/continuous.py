@@ -65,7 +65,7 @@ class Continuous:
 
     def __init__(self, arrays: State, units: Units, walls: Walls, shapes: Shapes):
         self.units = units
-        outlines = with_disc(shapes)
+        self.outlines = outlines = with_disc(shapes)
         self.tables = Tables(arrays, outlines)
         self.tracked, self.walls = Tracked(self.tables), SeenWalls(arrays, walls)
         self.bent = not all(outline.convex for outline in shapes.outlines)

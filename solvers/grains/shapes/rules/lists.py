@@ -8,6 +8,7 @@ import taichi as ti
 from solvers.grains.laws.extremes import greater
 from solvers.grains.neighbours import NEVER, Neighbours
 from solvers.grains.shapes.rules.rest import STILL
+from solvers.grains.shapes.support import Support
 from solvers.machine.state import Axis
 
 BENT_PLACES = 4  # initial entries per pair if an outline is non-convex
@@ -18,8 +19,10 @@ class ShapedNeighbours(Neighbours):
     """Neighbour lists of grains whose bounding circles are near each other; a rule says how many contacts they have.
 
     Each listed pair gets a block of adjacent entries, as many as it may need, and its contacts are sought: with all
-    others when the lists are rebuilt, or separately when one of them is lost or new ones appear. The rule gets the two
-    grains of a pair in the order of their numbers, so that units that share a pair compute identical results.
+    others when the lists are rebuilt, or separately when one of them is lost or new ones appear. Pairs of which none is
+    found within the margin are left out until the next rebuild: bounding circles of long grains overlap where the
+    grains are far apart. The rule gets the two grains of a pair in the order of their numbers, so that units that share
+    a pair compute identical results.
     """
 
     def __init__(self, arrays, units, grains, walls, skin, bridges, early, reach, laws, modulus, room, rule):
@@ -28,6 +31,8 @@ class ShapedNeighbours(Neighbours):
         room *= (BENT_PLACES if rule.bent else 1) * ceil(grains.crowding - 0.01)
         super().__init__(arrays, units, grains, walls, skin, bridges, early, reach, laws, modulus, room, rule)
         self.rule = rule
+        if rule.most > 1:
+            self.support = Support(arrays, rule.outlines)
         for contacts in (self.pairs, self.contacts):
             # In a pair's first entry: whether its contacts must be searched for again.
             (contacts.wanted,) = contacts.arrays.vectors(contacts.each, "wanted", across=units.single)
@@ -67,13 +72,11 @@ class ShapedNeighbours(Neighbours):
         """Seek the contacts of all pairs marked `wanted`; returns False if a pair has more contacts than entries."""
         g, w, fits = self.grains, self.units.world(u), True
         shift = self.walls.shift(w, t)
-        for p in range(self.pairs.length[u], self.pairs.blocks(u) * self.pairs.lanes):
-            self.rule.rest.forget(self.pairs, u, p, False)
         for p in range(self.pairs.length[u]):
             if self.pairs.wanted[u, p][0] > 0.0:
                 i, j = self.pairs.first_of(u, p), self.pairs.second_of(u, p)
                 if not (whole and self.goes_on(u, p, i)):
-                    count = self.rule.seek_pair(g, w, ti.min(i, j), ti.max(i, j), self.margin[0], u)
+                    count = self.seek_pair(g, w, ti.min(i, j), ti.max(i, j), u)
                     fits = self.replace(self.pairs, u, p, i, j, count, whole) and fits
         for p in range(self.contacts.length[u]):
             if self.contacts.wanted[u, p][0] > 0.0:
@@ -85,7 +88,41 @@ class ShapedNeighbours(Neighbours):
             self.travel[u] = NEVER
             if whole:
                 self.put_back(u)
+        elif whole and ti.static(self.rule.most > 1):
+            self.leave_out(self.pairs, u)
+        for p in range(self.pairs.length[u], self.pairs.blocks(u) * self.pairs.lanes):
+            self.rule.rest.forget(self.pairs, u, p, False)
         return fits
+
+    @ti.func
+    def seek_pair(self, g: ti.template(), w, i, j, u):
+        """Have the rule find the contacts of two grains; returns their number."""
+        count, near = 0, True
+        if ti.static(self.rule.most > 1):
+            near = self.support.gap(g, w, i, j) < self.margin[0]
+        if near:
+            count = self.rule.seek_pair(g, w, i, j, self.margin[0], u)
+        return count
+
+    @ti.func
+    def leave_out(self, pairs: ti.template(), u):
+        """Close the gaps of pairs without a contact in the list of a unit that has just been built and sought."""
+        p, kept = 0, 0
+        for k in range(self.units.size):
+            end = pairs.first[u, k + 1]
+            pairs.first[u, k] = kept
+            while p < end:
+                after, mate, found = p, pairs.second_of(u, p), False
+                while after < end and pairs.second_of(u, ti.min(after, end - 1)) == mate:
+                    found = found or not self.rule.is_lost(pairs, u, after)
+                    after += 1
+                if found:
+                    for q in range(p, after):
+                        pairs.move(u, q, kept)
+                        kept += 1
+                p = after
+        pairs.first[u, self.units.size], pairs.length[u] = kept, kept
+        pairs.pad(u)
 
     @ti.func
     def goes_on(self, u, p, i):

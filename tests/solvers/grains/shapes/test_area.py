@@ -125,13 +125,14 @@ class Shared:
             self.contact[p, n] = contact[n]
 
 
-@cache
-def shared(nodes):
-    return Shared(nodes)
+@pytest.fixture(scope="module")
+def shared():
+    """Those with so many nodes, each made once; they end with this file, for others look for their kernels after it."""
+    return cache(Shared)
 
 
 @pytest.fixture(scope="module")
-def polygons():
+def polygons(shared):
     return shared(100)
 
 
@@ -212,7 +213,7 @@ def test_force_and_torque_are_the_gradient_of_the_area(polygons, pairs, wall):
     assert np.abs(overlaps + np.column_stack([contact[:, 1:3], turning]))[deep].max() < 1e-5
 
 
-def test_overlap_areas_converge_with_the_square_of_the_nodes(pairs):
+def test_overlap_areas_converge_with_the_square_of_the_nodes(shared, pairs):
     smooth = np.array([sum(one.area for one in area_contacts(*pairs.placed(OUTLINES, k))) for k in range(SOME)])
     error = [np.abs(shared(nodes).of(pairs)[0][:SOME, AREA] - smooth) for nodes in (200, 400)]
     # Of the mean, since an outline with 50 lobes is not seen by so few nodes; and of most that is 2.
@@ -220,7 +221,7 @@ def test_overlap_areas_converge_with_the_square_of_the_nodes(pairs):
     assert np.median(error[0]) / np.median(error[1]) == pytest.approx(4.0, rel=0.25)
 
 
-def test_discs_and_ellipses_against_closed_forms():
+def test_discs_and_ellipses_against_closed_forms(shared):
     """Overlap of discs, to 0.05 ξ/R and the nodes' square; area of an ellipse beyond a line, a circle's segment."""
     random = np.random.default_rng(5)
     way, angle = random.uniform(-np.pi, np.pi, COUNT), random.uniform(-np.pi, np.pi, (COUNT, 2))
