@@ -26,7 +26,7 @@ class Dispersed:
     a little each time that water moves about it. So a bubble (F < ALONE, walls not counted) is squeezed to GONE at
     most, or to the density at which p_a ((ρ/ρ_a)^1.4 − 1) is the water's pressure (own derivation).
 
-    Nor does air bear more suction than the background's pressure, unless it is heavier than LIGHT: beyond that particles
+    Nor does air lighter than LIGHT bear more suction than the background's pressure: beyond that particles
     attract each other, and a void that a few are to fill throws them about (Monaghan 2000). `rest` is the excess of
     density s with the pressure of the other phase. Water that touches no air is in a void, and bears nothing.
 
