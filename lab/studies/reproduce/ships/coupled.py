@@ -102,6 +102,11 @@ def particle_steps(one: Outcome, _: object) -> float:
     return one.cost["grain_steps"]
 
 
+def run_seconds(one: Outcome, _: object) -> float:
+    """Wall-clock time (s) of a run's steps."""
+    return one.cost["wall_s"]
+
+
 def order_of_roll(found: Found) -> list[Row]:
     """How roll changes with the particles' spacing: limit and order of r = r₀ − C Δx^p; through three runs exactly."""
     alike = [one for name, (one,) in found.items() if name.endswith(" mm") and "," not in name]
@@ -129,6 +134,7 @@ def limit_and_order(spacing: np.ndarray, value: np.ndarray) -> tuple[float, floa
 
 NUMBERS = {
     "particle_steps": ("", particle_steps),
+    "run_seconds": ("s", run_seconds),
     "roll_left": ("", roll_left),
     "heave_per_wave": ("", heave_per_wave),
     "roll_per_wave": (ROLL_UNIT, roll_per_wave),
