@@ -123,7 +123,8 @@ class Continuity:
         if ti.static(self.fullness.acts):
             after = self.fullness.stepped(b, s, rate, rate_of_walls, p.ones() * dt)
             evened += (after - s) * (1.0 / dt) - (rate + rate_of_walls)
-            pressure += (0.5 * c.get("stiffness")) * (c.state.share(after) - c.state.share(s))
+            change = (0.5 * c.get("stiffness")) * (c.state.share(after) - c.state.share(s))
+            pressure += (1.0 - gas) * change if ti.static(c.two) else change
         elif ti.static(c.two):
             pressure += (1.0 - gas) * (c.get("stiffness") * more)
         else:

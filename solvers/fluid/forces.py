@@ -80,7 +80,7 @@ class Forces:
         p.store(p.pressure, b, c.get("stiffness") * c.state.share(s) + c.get("background"))
         for lane in range(p.lanes):
             if p.gas[b, lane] > 0.5:
-                p.pressure[b, lane] = c.pressure_of_air(p.excess[b, lane]) + c.get("background")
+                p.pressure[b, lane] = self.fullness.dispersed.borne(c.pressure_of_air(p.excess[b, lane]))
 
     @ti.func
     def push(self, u, t, kick, dt):
@@ -148,7 +148,7 @@ class Forces:
         if ti.static(c.shifting.acts):
             span = p.load(p.span_before, b)
         yy, yz, zz, lost, held = p.zeros(), p.zeros(), p.zeros(), p.zeros(), p.zeros()
-        fill = [p.zeros() for _ in ti.static(range(1 + p.axes))]  # Σ V ∇W of all, and the walls' trace, of `Fullness`
+        fill = [p.zeros() for _ in ti.static(range(self.fullness.sums))]  # of `Fullness`
         for k in range(lists.near.first[u, listed], lists.near.first[u, listed + 1]):
             j = lists.near.slots[u, k]
             jb, lane = lists.block_of(j), lists.lane_of(j)
@@ -189,6 +189,7 @@ class Forces:
                     lost += heavy * dot(nearing, nearing)
                     for a in ti.static(range(p.axes)):
                         drag[a] += heavy * nearing[a]
+            self.fullness.dispersed.add(fill, other * other, t, weight * square, jb, lane)
             if ti.static(c.two):  # from here on within a phase
                 weight *= 1.0 - other * other
             weighted = [(weight * apart[a]) for a in ti.static(range(p.axes))]
@@ -242,7 +243,7 @@ class Forces:
             self.note_shift(b, shift, inwards, least, span)
         self.note_span(b, factor * yy, factor * yz, factor * zz, [factor * slope[a] for a in ti.static(range(p.axes))])
         if ti.static(self.fullness.acts):
-            self.fullness.note(b, yy + zz + fill[p.axes], [fill[a] for a in ti.static(range(p.axes))])
+            self.fullness.note(b, yy + zz, fill)
         volume = p.load(p.volume, b) * factor
         total = self.beside.on_walls(b, origin, own, [volume * wall[a] for a in ti.static(range(p.axes))])
         total[3] = ti.cast((strength * volume * lost).sum(), p.exact)

@@ -60,7 +60,8 @@ class PlainBoth(PlainWater):
         """Linear of water; ρ c²/1.4 ((1 + s)^1.4 − 1) of air; and the background's."""
         of_air = self.density * self.sound**2 * ((1.0 + s) ** 1.4 - 1.0) / 1.4
         alone = np.where(self.gas > 0.5, of_air, self.density * self.sound**2 * s)
-        return alone + self.water.background - self.cohesion * s * (2.0 + s)
+        whole = alone + self.water.background - self.cohesion * s * (2.0 + s)
+        return np.where((self.gas > 0.5) & (self.cohesion == 0.0), np.maximum(whole, 0.0), whole)
 
     def extra(self, s):
         """What air feels besides, of each of its neighbours: 2 a ρ² (Mokos et al. 2015)."""
@@ -110,14 +111,44 @@ class PlainBoth(PlainWater):
         slope[regular] = np.linalg.solve(matrix[regular], raw[regular][..., None])[..., 0]
         return (force + walls) / mass[:, None], slope, walls
 
-    def later(self, r, u, s, mass, slope, pressed, dt):
-        """The excess of density after a step, from its middle; water with few of its kind about bears no suction."""
-        spray = (self.span < 0.2) & (self.gas < 0.5)
-        least = -self.water.background / (self.water.density * self.water.sound_speed**2)
-        for rate in self.rates(r, u, s, mass, slope, pressed):
-            s = s + dt * rate
-            s = np.where(spray, np.maximum(s, least), s)
-        return s
+    def mixed(self, r, mass, s, plane: float):
+        """How full the own phase is, of water with walls; the rate of s that keeps volumes; the s that is borne."""
+        volume, same, wet = self.volume(mass, s), self.other == 0.0, self.gas < 0.5
+        apart, _, value, gradient = self.between(r, r)
+        to_wall, _, _, at_wall = self.between(r, self.wall)
+        trace, of_walls = (apart * gradient).sum(axis=2), (to_wall * at_wall).sum(axis=2) @ self.wall_volume
+        lean = np.einsum("j,ij,ija->ia", volume, same, gradient)
+        lean += wet[:, None] * np.einsum("j,ija->ia", self.wall_volume, at_wall)
+        lacking = plane * np.linalg.norm(lean, axis=1)
+        full = 0.5 * ((same * trace) @ volume + wet * of_walls) + lacking
+        filled, pace = 0.5 * (trace @ volume + of_walls), 0.01 * self.water.delta * self.water.air.sound_speed
+        of_air = pace / self.water.length * (1.0 + s) * np.maximum(self.over(filled), -0.1)
+        keeping = np.where(wet, self.keeping(full, lacking, s), of_air)
+        seen, stiff = (~same * value) @ volume, self.density * self.sound**2
+        over = (~same * value) @ (volume * self.pressure(s)) / np.maximum(seen, 1e-30) - self.water.background
+        of_water = np.where(seen > 0.02, np.maximum(over / stiff, self.least), self.least)
+        of_air = np.minimum((1.0 + 1.4 * np.maximum(over / stiff, 1.0)) ** (1.0 / 1.4) - 1.0, 9.0)
+        return full, keeping, np.where(wet, of_water, of_air)
+
+    @property
+    def least(self) -> float:
+        """The excess of density of water that bears the suction of the background."""
+        return -self.water.background / (self.water.density * self.water.sound_speed**2)
+
+    def later(self, r, u, s, mass, slope, pressed, dt, mixed=None):
+        """The excess of density after a step, from its middle; water with few of its kind about bears no suction.
+
+        `mixed`: what the method of that name gave at the start of the step; None where it does not act.
+        """
+        wet = self.gas < 0.5
+        spray = (self.span < 0.2) & wet
+        (full, keeping, rest), before = mixed or (np.ones_like(s), 0.0, s), s
+        for rate, more in zip(self.rates(r, u, s, mass, slope, pressed), (keeping, 0.0), strict=True):
+            s = s + dt * (rate + more)
+            s = np.where(spray, np.maximum(s, self.least), s)
+        loose = np.clip((np.where(wet, 0.93, 0.5) - full) / 0.05, 0.0, 1.0)
+        share = 1.0 - 1.0 / (1.0 + loose * dt * self.water.sound_speed / self.water.length)
+        return s - np.where(wet, share * (s - rest), loose * np.maximum(s - np.maximum(rest, before), 0.0))
 
     def rates(self, r, u, s, mass, slope, pressed):
         """Rates of s in the middle of a step, by the particles and by the walls."""

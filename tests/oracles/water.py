@@ -144,12 +144,23 @@ class PlainWater:
 
     def keeping(self, fullness: np.ndarray, lacking: np.ndarray, s: np.ndarray) -> np.ndarray:
         """Rate of s by which the density follows the room that is taken, in packed water away from the surface."""
-        water, n = self.water, np.arange(-8.0, 9.0)
-        apart = np.hypot(n[:, None], n[None]).ravel()
-        lattice = -0.5 * (kernel(apart, water.smoothing)[1] * apart**2).sum()
         deep = np.where(fullness > 0.93, np.maximum(1.0 - lacking / 0.1, 0.0), 0.0)
-        rate = 0.01 * water.delta * water.sound_speed / water.length
-        return rate * deep * (1.0 + s) * (fullness / lattice - 1.0)
+        return (
+            0.01
+            * self.water.delta
+            * self.water.sound_speed
+            / self.water.length
+            * deep
+            * (1.0 + s)
+            * self.over(fullness)
+        )
+
+    def over(self, fullness: np.ndarray) -> np.ndarray:
+        """By what share a fullness is over that of a square lattice."""
+        n = np.arange(-8.0, 9.0)
+        apart = np.hypot(n[:, None], n[None]).ravel()
+        lattice = -0.5 * (kernel(apart, self.water.smoothing)[1] * apart**2).sum()
+        return fullness / lattice - 1.0
 
     def rate(self, r, u, s, mass, slope, pressed) -> np.ndarray:
         """Rate of s, in the middle of a step at whose start dummies were `pressed`."""

@@ -3,8 +3,10 @@
 from dataclasses import replace
 
 from solvers.fluid.given import Water
+from solvers.fluid.phases.dispersed import ALONE, LIGHT
 from solvers.fluid.phases.interfaces import INTERFACES
 
+UNBOUNDED = 1e20  # Pa
 CONTRACTED = 0.6  # discharge coefficient of a sharp-edged opening
 FASTEST = 0.5, 2.0  # Mach numbers of water and air at which a run is stopped: impacts squeeze air out
 
@@ -30,6 +32,9 @@ def of_air(water: Water, gravity: float, numbers: dict[str, float], viscosity) -
         "air_strength": strength,
         "both_strength": 2.0 * own * strength / max(own + strength, 1e-300),
         "air_hydrostatic": gravity / air.sound_speed**2,
+        "air_packed": ALONE,
+        "least": 0.0 if air.density < LIGHT * water.density else -UNBOUNDED,  # Pa, with the background's
+        "air_keeping": numbers["keeping"] * air.sound_speed / water.sound_speed,
         "air_hard": FIRMER * numbers["hard"] * stiffness / numbers["stiffness"],
         "lean_of_pressure": lean_of_pressure,
         "lean_of_speed": lean_of_speed,

@@ -9,6 +9,8 @@ from solvers.machine.state import Axis, State
 SLOW = 0.01  # of δ c0/h, the rate at which diffusion evens the densities of neighbours
 SEEN = 0.1  # of fullness that a surface takes off half the trace: from there on it is too near
 
+VOID = -0.1  # what F of air may lack: to fill a void is left to the flow
+
 
 @ti.data_oriented
 class Consistency:
@@ -26,15 +28,18 @@ class Consistency:
     rest nothing in the first two rows, three quarters in the third. Diffusion carries the term to the surface. In
     broken water a_i is 0. The energy counts as diffused.
 
-    Limits: water that loses volume faster than in τ, or of two rows or less, is not kept. Not beside air
-    and in full tanks, see `Fullness`, nor without diffusion of density, which the term needs.
+    Air fills what water leaves, so that F of all that is about it, water and walls, is 1 wherever air is (own
+    derivation): there F is of both phases, a_i = 1, and τ has the air's speed of sound. F/F_0 − 1 counts down to VOID.
+
+    Limits: water that loses volume faster than in τ, or of two rows or less, is not kept. Not where `Fullness` does not
+    act, nor without diffusion of density, which the term needs.
 
     Units: ρ kg/m³, τ s, h m, c0 m/s.
     """
 
-    def __init__(self, arrays: State, particles: Particles, constants):
+    def __init__(self, arrays: State, particles: Particles, constants, acts: bool):
         self.particles, self.constants = particles, constants
-        self.acts = constants.diffusion.acts and not (constants.full or constants.two)
+        self.acts = acts and constants.diffusion.acts
         if self.acts:
             each = Axis("block", particles.worlds * particles.stride), Axis("lane", particles.lanes)
             (self.drift,) = arrays.under("water").wide(each, "drift", kept=False)
@@ -49,11 +54,15 @@ class Consistency:
         }
 
     @ti.func
-    def note(self, b, fullness, lacking):
+    def note(self, b, fullness, lacking, gas: ti.template()):
         """Store a_i (F_i/F_0 − 1)/τ (1/s) of a block, from its fullness and what of it a surface makes it lack."""
         p, c = self.particles, self.constants
         deep = ti.select(fullness > c.get("packed"), ti.max(1.0 - c.get("seen") * lacking, 0.0), p.zeros())
-        p.store(self.drift, b, (c.get("keeping") * deep) * (c.get("lattice") * fullness - 1.0))
+        off = c.get("lattice") * fullness - 1.0
+        if ti.static(c.two):
+            deep = (1.0 - gas) * deep + gas
+            off = ti.max(off, gas * VOID - (1.0 - gas))
+        p.store(self.drift, b, (c.of("keeping", gas) * deep) * off)
 
     @ti.func
     def rate(self, b, s):

@@ -3,6 +3,7 @@
 import numpy as np
 import taichi as ti
 
+from solvers.fluid.phases.dispersed import Dispersed
 from solvers.fluid.state import SPRAY, Particles
 from solvers.fluid.surface.consistency import Consistency
 from solvers.machine.state import Axis, State
@@ -18,7 +19,8 @@ class Fullness:
 
     The first sum is half the trace of the matrix of Randles & Libersky (1996); it is 1 within packed water and ½ at a
     plane surface. What a plane cuts off is told by the second sum, and b, a length, is such that both are 1
-    together (own derivation). A drop alone has F = 0, a lattice that is stretched by 5 % in all directions 0.90.
+    together (own derivation). A drop alone has F = 0, a lattice that is stretched by 5 % in all directions 0.90. Beside
+    air both sums are over the own phase.
 
     Density that follows from the motion of neighbours keeps what a particle lacked when it parted: drops that come
     together would count as pressed as soon as they are within 2 h, and stay that far apart. Water with voids bears
@@ -26,19 +28,22 @@ class Fullness:
     the rate c0/h, at which a void within reach relieves it (own derivation), all of it from F = PACKED − RAMP down, in
     between in proportion. So it falls together until it is packed. The step is implicit, the energy counts as
     diffused.
-    Spray (λ < SPRAY) bears no suction at all.
+    Spray (λ < SPRAY) bears no suction at all. Beside air it is the air's pressure that such water gets, see
+    `solvers.fluid.phases.dispersed`.
 
     Limits: water that was broken is packed to within 1 − PACKED. A flat gap between two surfaces is not seen: both are
-    plane. Corners and tips, sharper than some 6 Δx, count as voids, though p is nearly zero there anyway. Not beside
-    air, which presses on drops, nor in full tanks, which have no voids.
+    plane. Corners and tips, sharper than some 6 Δx, count as voids, though p is nearly zero there anyway. Not in
+    full tanks, which have no voids, nor beside air where its surface has tension or it coheres.
 
     Units: V m², W 1/m², r, b and h m.
     """
 
     def __init__(self, arrays: State, particles: Particles, constants):
         self.particles, self.constants = particles, constants
-        self.acts = not (constants.full or constants.two)
-        self.consistency = Consistency(arrays, particles, constants)
+        self.dispersed = Dispersed(arrays, particles, constants)
+        self.acts = self.dispersed.acts or not (constants.full or constants.two)
+        self.sums = 1 + particles.axes + (3 if self.dispersed.acts else 0)
+        self.consistency = Consistency(arrays, particles, constants, self.acts)
         if self.acts:
             each = Axis("block", particles.worlds * particles.stride), Axis("lane", particles.lanes)
             (self.fullness,) = arrays.under("water").wide(each, "fullness", kept=False)
@@ -54,14 +59,25 @@ class Fullness:
         }
 
     @ti.func
-    def note(self, b, trace, lean: ti.template()):
-        """Store the fullness of a block, from Σ V (−W'/r) r² and Σ V (−W'/r)(r_j − r_i) without the slope's factor."""
-        p, c = self.particles, self.constants
+    def note(self, b, trace, sums: ti.template()):
+        """Store the fullness of a block, from its sums without the slope's factor.
+
+        `trace` is Σ V (−W'/r) r² over the own phase; `sums` are Σ V (−W'/r)(r_j − r_i) over it and walls, of water, the
+        walls' trace, and of the other phase Σ V W, Σ V p W and its trace.
+        """
+        p, c, gas = self.particles, self.constants, self.particles.gases(b)
+        lean = [sums[a] for a in ti.static(range(p.axes))]
         lacking = c.get("plane") * ti.sqrt(dot(lean, lean))
-        fullness = c.get("slope") * (0.5 * trace + lacking)
+        both = trace + sums[p.axes]
+        own = both - gas * sums[p.axes] if ti.static(c.two) else both
+        fullness = c.get("slope") * (0.5 * own + lacking)
         p.store(self.fullness, b, fullness)
+        if ti.static(self.dispersed.acts):
+            self.dispersed.note(b, sums[p.axes + 1], sums[p.axes + 2])
+            whole = (0.5 * c.get("slope")) * (both + sums[p.axes + 3])
+            fullness, lacking = (1.0 - gas) * fullness + gas * whole, (1.0 - gas) * lacking
         if ti.static(self.consistency.acts):
-            self.consistency.note(b, fullness, c.get("slope") * lacking)
+            self.consistency.note(b, fullness, c.get("slope") * lacking, gas)
 
     @ti.func
     def stepped(self, b, s, rate, rate_of_walls, step):
@@ -74,17 +90,21 @@ class Fullness:
         # Walls come last: spray that parts is still pushed off a wall that it nears.
         after = self.floored(spray, self.floored(spray, after) + step * rate_of_walls)
         if ti.static(self.acts):
-            rest = self.constants.get("thinnest") if ti.static(self.constants.pressed) else 0.0
-            after = after - self.share(b, step) * (after - rest)
+            loose = self.loose(b)
+            lost = (self.constants.get("relief") * loose) * step  # implicit
+            share = lost / (1.0 + lost)
+            if ti.static(self.dispersed.acts):
+                after = after - self.dispersed.off(b, s, after, loose, share)
+            else:
+                rest = self.constants.get("thinnest") if ti.static(self.constants.pressed) else 0.0
+                after = after - share * (after - rest)
         return after
 
     @ti.func
-    def share(self, b, step):
-        """The share of its pressure that a block loses in a step, implicitly."""
+    def loose(self, b):
+        """How far a block is broken: 0 where packed, 1 from PACKED − RAMP down; of air beside ALONE."""
         p, c = self.particles, self.constants
-        loose = ti.min(ti.max((c.get("packed") - p.load(self.fullness, b)) * c.get("ramp"), 0.0), 1.0)
-        lost = (c.get("relief") * loose) * step
-        return lost / (1.0 + lost)
+        return ti.min(ti.max((c.of("packed", p.gases(b)) - p.load(self.fullness, b)) * c.get("ramp"), 0.0), 1.0)
 
     @ti.func
     def floored(self, spray, s):

@@ -58,7 +58,8 @@ class WallPush:
             if ti.static(self.fullness.acts):
                 fill[p.axes] += weight * square
                 for a in ti.static(range(p.axes)):
-                    fill[a] += weight * apart[a]
+                    off = weight * apart[a]
+                    fill[a] += (1.0 - gas) * off if ti.static(c.two) else off  # walls are no part of the air
             along = self.wall_pressure(jb, lane, gas, pressure) + c.clipped(pressure, gas)
             spring = p.volume[jb, lane] * c.hardness(square, p.firm[jb, lane], gas)
             if ti.static(c.two):

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from solvers.fluid.given import EXCESS, GAS, VELOCITY_Y, VELOCITY_Z, Air, Gauge, Level, Water
+from solvers.fluid.given import EXCESS, GAS, VELOCITY_Y, VELOCITY_Z, VOLUME, Air, Gauge, Level, Water
 from solvers.fluid.phases.adiabatic import background
 from solvers.fluid.phases.cohesion import Cohesion
 from solvers.fluid.timestep import kinematic
@@ -91,6 +91,35 @@ def test_closed_air_follows_water_and_walls():
         assert 1.0 + pressure[part].mean() / at_rest == pytest.approx((1.0 - side * way / long) ** -1.4, rel=0.01)
 
 
+def test_drops_fall_together_with_the_pool_below():
+    """Three particles of water that fall through air are part of the pool soon after, and do not hover over it."""
+    made = scene(background=40.0)
+    drops, spacing = made.drops[0], made.water.spacing
+    high = (np.abs(drops[:, 0]) < 2.0 * spacing) & (np.abs(drops[:, 1] - 0.25) < 0.5 * spacing)
+    drops[high, GAS], drops[high, EXCESS] = 0.0, 0.0
+    made.drops = drops[np.argsort(drops[:, GAS], kind="stable")][None]
+    run = Simulation(made, threads=1, arch="cpu")
+    run.advance(round(0.5 / run.dt))
+    place = run.snapshot()["water_place"][0]
+    run.close()
+    near = np.hypot(*(place[:, None] - place[None]).transpose(2, 0, 1)) < 1.5 * spacing
+    assert near.sum(axis=1).min() > 1
+    assert place[:, 1].max() < DEPTH + spacing
+
+
+def test_air_that_has_lost_volume_takes_it_again():
+    """Air of nine tenths of its mass at the density of rest: its volume comes back at the rate of 1/τ of what lacks."""
+    made = scene(background=40.0)
+    made.drops[..., VOLUME] *= 1.0 - 0.1 * made.drops[..., GAS]
+    run = Simulation(made, threads=1, arch="cpu")
+    rate = run.water.constants.numbers["air_keeping"]
+    before = run.observe()["air_volume"][0]
+    run.advance(300)
+    gained = run.observe()["air_volume"][0] / before - 1.0
+    run.close()
+    assert 0.5 < gained / (0.1 * rate * 300 * run.dt) < 1.3
+
+
 def stirred(step: float | None = None, **of_air) -> Simulation:
     """Both phases displaced and set in motion at random, the air slower than the water's sound, with drops in it."""
     made = scene(air={"sound_speed": 9.0, "alpha": 0.03} | of_air, background=60.0, step=step)
@@ -116,10 +145,11 @@ def follows_double_sums(run: Simulation, steps: int = 7) -> None:
     r, u, s, m, *_ = held(run)
     run.advance(1)
     push, slope, _ = plain.push(r, u, s, m)
+    mixed = plain.mixed(r, m, s, run.water.constants.numbers["plane"]) if run.water.forces.fullness.acts else None
     pressed = plain.wall_pressure(r, m, s, 0.0) > 0.0
     u = u + dt * (push + plain.gravity)
     middle = r + 0.5 * dt * u
-    s = plain.later(middle, u, s, m, slope, pressed, dt)
+    s = plain.later(middle, u, s, m, slope, pressed, dt, mixed)
     found = held(run)
     np.testing.assert_allclose(found[4], push, atol=1e-9 * np.abs(push).max())
     np.testing.assert_allclose(found[5], slope, atol=1e-8 * np.abs(slope).max())

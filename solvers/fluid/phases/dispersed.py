@@ -1,0 +1,79 @@
+"""Drops in air and bubbles in water that particles do not resolve: the pressure that the other phase has about them."""
+
+import taichi as ti
+
+from solvers.fluid.phases.adiabatic import GAMMA
+from solvers.fluid.state import Particles
+from solvers.machine.state import Axis, State
+
+FAINT = 0.02  # of full coverage by the other phase: what sees less of it has none about it
+GONE = 9.0  # excess of density of a bubble of which nothing is left: a tenth of its volume
+LIGHT = 0.1  # of the water's density: a fluid that is heavier may hang below its lid, by suction
+ALONE = 0.5  # fullness of air without walls below which it is such a bubble: four spacings across
+
+
+@ti.data_oriented
+class Dispersed:
+    """p_i → Σ V_j p_j W / Σ V_j W over the other phase j, at the rate c/h, where the own phase is broken.
+
+    A drop or a bubble below the spacing has no pressure of its own: that of both phases relaxes to one, as soon as
+    sound crosses it (Baer & Nunziato 1986; Saurel & Abgrall 1999, who relax at once). Broken is what `Fullness` says of
+    the own phase alone. Without, drops in air keep the density that followed from how water came near: a drop over a
+    pool counts as pressed from 2 h on, hovers on air that it cannot press out, and in time drops fill the air.
+
+    Air that is trapped keeps the pressure of its own density; that of bubbles made equal to the water's would make
+    energy from nothing. It holds no more than ρ_a c² (`Adiabatic`): in deeper water a bubble is squeezed without bound,
+    a little each time that water moves about it. So a bubble (F < ALONE, walls not counted) is squeezed to GONE at
+    most, or to the density at which p_a ((ρ/ρ_a)^1.4 − 1) is the water's pressure (own derivation).
+
+    Nor does air lighter than LIGHT bear more suction than the background's pressure: beyond that particles
+    attract each other, and a void that a few are to fill throws them about (Monaghan 2000). `rest` is the excess of
+    density s with the pressure of the other phase. Water that touches no air is in a void, and bears nothing.
+
+    Limits: drops and bubbles of up to four spacings; not with tension, whose drops are to be resolved, nor cohesion.
+
+    Units: p Pa, c m/s, h m, ρ kg/m³.
+    """
+
+    def __init__(self, arrays: State, particles: Particles, constants):
+        self.particles, self.constants = particles, constants
+        self.acts = constants.two and not (constants.full or constants.tense or constants.coheres)
+        if self.acts:
+            each = Axis("block", particles.worlds * particles.stride), Axis("lane", particles.lanes)
+            (self.rest,) = arrays.under("water").wide(each, "rest", kept=False)
+
+    @ti.func
+    def add(self, sums: ti.template(), beside: ti.template(), t, trace, jb, lane):
+        """Add what a neighbour of the other phase, where `beside` is 1, gives to Σ V W, Σ V p W and the trace of it."""
+        p = self.particles
+        if ti.static(self.acts):
+            seen = beside * p.volume[jb, lane] * self.constants.kernel.value(t)
+            sums[p.axes + 1] += seen
+            sums[p.axes + 2] += seen * p.pressure[jb, lane]
+            sums[p.axes + 3] += beside * trace
+
+    @ti.func
+    def borne(self, pressure):
+        """The pressure (Pa) of a particle of air with the background's, as far as it bears suction."""
+        found = pressure + self.constants.get("background")
+        if ti.static(self.acts):
+            found = ti.max(found, self.constants.get("least"))
+        return found
+
+    @ti.func
+    def note(self, b, seen, pressed):
+        """Store `rest` of a block, from Σ V W and Σ V p W over the other phase, without the kernel's factor."""
+        p, c = self.particles, self.constants
+        touched, over = seen * c.get("value") > FAINT, pressed / ti.max(seen, 1e-30) - c.get("background")
+        of_water = ti.max(over * (1.0 / c.get("stiffness")), c.get("thinnest"))
+        p.store(self.rest, b, ti.select(touched, of_water, p.ones() * c.get("thinnest")))
+        for lane in range(p.lanes):
+            if p.gas[b, lane] > 0.5:
+                held = ti.max(over[lane] / c.get("air_stiffness"), 1.0)
+                self.rest[b, lane] = ti.min(ti.pow(1.0 + GAMMA * held, 1.0 / GAMMA) - 1.0, GONE)
+
+    @ti.func
+    def off(self, b, s, after, loose, share):
+        """What excesses of density `s`, which are `after` a step, are to lose: water a share, air what is too much."""
+        rest, gas = self.particles.load(self.rest, b), self.particles.load(self.particles.gas, b)
+        return (1.0 - gas) * share * (after - rest) + gas * loose * ti.max(after - ti.max(rest, s), 0.0)
