@@ -174,7 +174,8 @@ def workers(tank, tmp_path):
     return process
 
 
-@pytest.mark.parametrize("at_once", [pytest.param(False, marks=pytest.mark.slow), True])
+@pytest.mark.slow  # of one process it is above
+@pytest.mark.parametrize("at_once", [False, True])
 def test_sigterm_to_a_process_with_workers_ends_them_all_cleanly(workers, tmp_path, at_once):
     """Sent to the process alone, or to all of them, as a batch system does."""
     for one in [*(workers_of(workers) if at_once else []), workers.pid]:

@@ -74,7 +74,7 @@ def killed(work: Path, first, again, code: str, kills: int, before: str = "") ->
 def test_a_run_killed_at_random_times_gives_the_same_results(tmp_path):
     """Without figures, which take as long as the rest of such a run, and with a law that compiles faster."""
     quick = [*RUN, *ANEW, "--set", "contact.tangential=none", "--out"]
-    killed(tmp_path, quick, RESUME, COMMAND, 2, NO_FIGURES)
+    killed(tmp_path, quick, RESUME, COMMAND, 1, NO_FIGURES)
 
 
 @pytest.mark.slow

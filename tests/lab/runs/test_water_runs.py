@@ -125,6 +125,7 @@ def test_a_recording_of_other_water_is_not_continued(cup, tmp_path, monkeypatch)
         resume_run(tmp_path / "run", video=False, quiet=True)
 
 
+@pytest.mark.slow  # that of grains is in `tests/lab/sweeps`
 def test_a_point_of_a_sweep_has_the_bits_of_the_run_alone(cup, swayed, tmp_path, monkeypatch):
     monkeypatch.setattr("lab.sweeps.report.render_grid", lambda *_, **__: None)
     done = run_sweep(cup, {"motion.sway.amplitude": "3, 1 mm"}, None, tmp_path / "s", video=False, quiet=True)

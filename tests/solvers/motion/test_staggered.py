@@ -28,6 +28,7 @@ def little(handover: float | None, model: str = "linear"):
     return replace(aboard(ship(release=0.05, handover=handover), model, step=1e-3), length=LITTLE * LENGTH)
 
 
+@pytest.mark.slow
 def test_an_extrapolated_load_is_of_second_order():
     """Against the load of each instant the error falls by four as the ship's step is halved.
 
