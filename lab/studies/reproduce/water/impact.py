@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.figure import Figure
+from scipy.special import chdtri
 
 from lab.report.numbers import plus_minus
 from lab.report.plots import BELOW, BLUE, GREY, VERMILION, canvas
@@ -102,11 +103,19 @@ def _spread(values: Sequence[float], digits: int) -> str:
 
 
 def _scatter(label: str, peaks: np.ndarray) -> Row:
-    """Whether peaks (n,) of runs scatter by about a fifth."""
-    share = float(peaks.std(ddof=1) / peaks.mean())
-    verdict = Verdict.AGREES if A_FIFTH[0] <= share <= A_FIFTH[1] else Verdict.DIFFERS
-    read = f"{A_FIFTH[0]:g} to {A_FIFTH[1]:g}"
-    return observed(f"scatter of first peaks, {label}", "a fifth", f"{share:.2f} of {len(peaks)} runs", verdict, read)
+    """Whether peaks (n,) of runs scatter by about a fifth, by the 95 % interval of a standard deviation.
+
+    That is s √((n − 1)/χ²), with the quantiles of χ² of n − 1 degrees of freedom.
+    """
+    share, freedom = float(peaks.std(ddof=1) / peaks.mean()), len(peaks) - 1
+    low, high = (share * float(np.sqrt(freedom / chdtri(freedom, tail))) for tail in (0.025, 0.975))
+    verdict = Verdict.CANNOT_TELL
+    if A_FIFTH[0] <= low and high <= A_FIFTH[1]:
+        verdict = Verdict.AGREES
+    elif high < A_FIFTH[0] or low > A_FIFTH[1]:
+        verdict = Verdict.DIFFERS
+    ours, read = f"{share:.2f} ({low:.2f} to {high:.2f}) of {len(peaks)} runs", f"{A_FIFTH[0]:g} to {A_FIFTH[1]:g}"
+    return observed(f"scatter of first peaks, {label}", "a fifth", ours, verdict, read)
 
 
 def figure(found: Found, arrivals: Sequence[float], peaks: Sequence[float]) -> Figure:
