@@ -9,7 +9,7 @@ from solvers.simulation import Simulation
 from tests.oracles.water import GRAVITY
 from tests.solvers.motion.test_water_aboard import aboard, momentum, ship
 
-PACE, LASTS, EVERY = 4, 1.0, 0.02  # s
+PACE, LASTS, EVERY = 8, 1.5, 0.02  # s
 
 
 def paced(step: float, pace: int) -> Simulation:
@@ -44,9 +44,9 @@ def test_what_the_water_loses_the_ship_gains_in_its_own_steps(run):
 
 @pytest.mark.slow
 def test_ship_and_water_on_steps_of_their_own():
-    """With the water's steps four times hers, she rolls as with both on hers, to a thousandth of the swing.
+    """With the water's steps eight times hers, she rolls as with both on hers, to 3e-4 of the swing (1e-4 found).
 
-    The load that stands is that of the middle of the water's step; that of its beginning would lag by half of it.
+    The load that stands is that of the middle of the water's step; that of its beginning lags by half of it: 8e-4.
     """
     step = aboard(ship()).step / PACE
     rolls = []
@@ -60,7 +60,7 @@ def test_ship_and_water_on_steps_of_their_own():
         one.close()
         rolls.append(np.array(found))
     assert np.ptp(rolls[1]) > 0.02
-    assert rolls[0] == pytest.approx(rolls[1], abs=1e-3 * np.ptp(rolls[1]))
+    assert rolls[0] == pytest.approx(rolls[1], abs=3e-4 * np.ptp(rolls[1]))
 
 
 def test_a_run_goes_on_with_the_same_bits(run):
