@@ -32,6 +32,7 @@ from solvers.ship.motion import Voyage, sail, start
 from solvers.ship.vessel import Vessel
 
 INTERVAL = 0.01  # s, between the samples of her roll
+LONGEST = 0.05  # s, of a step: also for ships that do not swing, whose waves and memory ask for some
 STEPS = 40  # of the Runge–Kutta method in her shortest period: 1e-4 of the swing after ten of them
 
 
@@ -113,7 +114,7 @@ def _sailed(path: Path, duration: float) -> Voyage | None:
 
 def step_of(vessel: Vessel) -> float:
     """The step (s) in which a ship with frozen cargo is computed, a multiple of INTERVAL."""
-    return INTERVAL * max(1, int(vessel.shortest_period / STEPS / INTERVAL))
+    return INTERVAL * max(1, int(min(vessel.shortest_period / STEPS, LONGEST) / INTERVAL + 1e-9))
 
 
 def _sampled(voyage: Voyage, vessel: Vessel, lasts: float) -> Voyage:

@@ -52,6 +52,8 @@ class Vessel:
     @property
     def shortest_period(self) -> float:
         """The shortest period (s) of small motions about her rest in calm water, with whatever is fixed to her."""
+        if not any(self.ship.free):
+            return np.inf
         rest = start(self.ship, self.heave(NOTHING, 0.0))
         return 2.0 * np.pi / np.abs(oscillations(self.ship, rest)).max(initial=1e-9)
 

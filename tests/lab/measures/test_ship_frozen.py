@@ -1,9 +1,11 @@
 """The ship with frozen cargo, computed in long steps and sampled in between."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from lab.measures.ship_frozen import INTERVAL, STEPS, _sampled, step_of
+from lab.measures.ship_frozen import INTERVAL, LONGEST, STEPS, _sampled, step_of
 from solvers.ship.motion import sail, start
 from tests.solvers.motion.test_water_aboard import ship
 
@@ -34,3 +36,12 @@ def test_she_is_lost_at_the_sample_not_at_the_end_of_the_step():
     assert exact.capsized is not None
     assert ours.capsized == pytest.approx(exact.capsized, abs=1.5 * INTERVAL)
     assert ours.roll[-1] < -0.02 <= ours.roll[:-1].min()
+
+
+def test_a_top_heavy_ship_that_does_not_swing_is_stepped_as_well():
+    """Free in roll alone, and without stability, she has no period; the step stays short."""
+    vessel = ship()
+    body = replace(vessel.ship.body, centre=(0.0, 1.0))
+    falls = replace(vessel, ship=replace(vessel.ship, body=body, free=(False, False, True)))
+    held = replace(vessel, ship=replace(vessel.ship, free=(False, False, False)))
+    assert [step_of(falls), step_of(held)] == pytest.approx([LONGEST, LONGEST])
