@@ -16,8 +16,8 @@ ROUNDING = """stand in for a processor that rounds otherwise, in this process al
 a number puts every grain one last digit beside its place, to sides that follow from the number"""
 
 
-AS_SHIPPED = """compile the kernels of discs as users have them: in nearly twice the time, for a fifth more speed, which
-short tests do not win back; those of outlines are always compiled as here without it"""
+AS_SHIPPED = """compile kernels as users have them: those of discs in nearly twice the time, for a fifth more speed,
+which short tests do not win back; those of water and outlines in a third more"""
 
 
 _of_file: list = [None]  # the file of the last test

@@ -5,6 +5,7 @@ Taichi 1.7.4 silently miscompiles reads of a local vector's element after the ve
 """
 
 import ctypes
+import gc
 import os
 import sys
 from contextlib import redirect_stdout, suppress
@@ -105,6 +106,8 @@ def initialise(threads: int = 0, arch: str = "cpu", precision: str = "f64", **op
     if kernel_cache.missing():
         raise Unavailable(kernel_cache.lacking())
     wanted = (threads or available_cores(), choose_arch(arch, precision), PRECISIONS[precision].real)
+    if _live:
+        gc.collect()  # a simulation that nobody uses any more refers to itself in circles
     if _running == wanted and not options and (_live or not _used):
         return
     for state in _live:
@@ -158,9 +161,13 @@ def merge_repeats(wanted: bool) -> None:
     Its time grows as the square of a kernel's length, and LLVM finds much of the same. For discs it takes 3 of 7 s of
     compilation and makes kernels a fifth faster; for outlines 15 of 25 s, for non-convex ones 42 of 60 s, and gains 5
     to 15 %; for water 7 of 13 s, and gains nothing (each measured side by side on one core). It stays off where kernels
-    are to compile fast (`machine.compiling`).
+    are to compile fast (`machine.compiling`). There long kernels, those for which it is off anyway, are not simplified
+    over and over, either: each statement that is replaced is a walk through the whole kernel, and these are half of the
+    rest. Of 11 s for water that takes 3.
     """
-    ti.lang.impl.current_cfg().opt_level = int(wanted and not compiling.quick())
+    config = ti.lang.impl.current_cfg()
+    config.opt_level = int(wanted and not compiling.quick())
+    config.advanced_optimization = wanted or not compiling.quick()
 
 
 def running_arch() -> str:

@@ -7,7 +7,9 @@ from solvers.fluid.phases.interfaces import INTERFACES
 from solvers.fluid.start.air import air_above, with_air
 from solvers.fluid.start.rest import at_rest
 from solvers.scene import Scene
+from solvers.simulation import Simulation
 from tests.oracles.water import GRAVITY, PlainWater, box, kernel
+from tests.oracles.water import again as placed_again
 
 
 def both(width: float, height: float, depth: float, rows: int, **changes) -> Scene:
@@ -31,6 +33,14 @@ def filled(places: np.ndarray, gas: np.ndarray, volume: float, excess: np.ndarra
     drops[0, :, [Y, Z]], drops[0, :, GAS], drops[0, :, VOLUME] = places[order].T, gas[order], volume
     drops[0, :, EXCESS] = np.broadcast_to(excess, gas.shape)[order]
     return drops
+
+
+def again(run: Simulation, scene: Scene) -> Simulation:
+    """As `tests.oracles.water.again`, with as many particles, of which others may be air."""
+    gas = scene.drops[..., GAS]
+    first = gas.shape[1] - int(gas[0].sum())
+    run.water.gas, run.water.phases = gas, {"water": slice(0, first), "air": slice(first, None)}
+    return placed_again(run, scene)
 
 
 class PlainBoth(PlainWater):

@@ -11,7 +11,6 @@ from functools import cached_property
 
 import numpy as np
 import taichi as ti
-from scipy.signal import fftconvolve
 
 from lab.paint.painter import BAND, PER_TASK, Index, Shares, Table, off_outline, sort_into_bands, whole
 
@@ -81,6 +80,8 @@ class Grid:
         wide = int(np.ceil(self.reach / self.distance))
         steps = np.arange(-wide, wide + 1) * self.distance / self.reach
         kernel = np.clip(1.0 - steps[:, None] ** 2 - steps**2, 0.0, None) ** 3
+        from scipy.signal import fftconvolve  # slow to import
+
         inside = fftconvolve(covered, kernel / kernel.sum(), mode="same")
         return np.maximum(inside, LEAST).astype(np.float32)
 

@@ -2,6 +2,7 @@
 
 import json
 from dataclasses import replace
+from shutil import copytree
 
 import numpy as np
 import pytest
@@ -26,6 +27,7 @@ tank = { width = "60 mm", height = "60 mm" }
 water = { depth = "24 mm", spacing = "6 mm", sound_speed = "12 m/s" }
 gauges.P1 = { place = ["-30 mm", "12 mm"] }
 gauges.L1 = { kind = "level", y = "25 mm" }
+gauges.F1 = { kind = "force", place = ["0 mm", "0 mm"] }  # as `tests/solvers/fluid/test_step.py` has some: one kernel
 motion.sway = { amplitude = "3 mm", frequency = "3 Hz" }
 run = { duration = "0.8 s", threads = 1, schedule = "per-world" }
 record.checkpoint_every = "0 s"
@@ -99,7 +101,9 @@ def test_explain_says_what_the_water_is_and_what_sets_the_step(cup):
     assert "grain" not in page and "settl" not in page
 
 
-def test_an_interrupted_run_goes_on_with_the_same_bits(cup, swayed, monkeypatch):
+@pytest.fixture(scope="module")
+def cut(cup):
+    """The folder of such a run that was interrupted."""
     folder, pause, paused = cup.parent / "again", Batch._pause, []
 
     def interrupted(batch, interrupt):
@@ -107,22 +111,24 @@ def test_an_interrupted_run_goes_on_with_the_same_bits(cup, swayed, monkeypatch)
         if len(paused) == 30:
             raise KeyboardInterrupt
 
-    with monkeypatch.context() as patch, pytest.raises(KeyboardInterrupt):
+    with pytest.MonkeyPatch.context() as patch, pytest.raises(KeyboardInterrupt):
         patch.setattr(Batch, "_pause", interrupted)
         run_preset(cup, out=folder, video=False, quiet=True)
-    resume_run(folder, video=False, quiet=True)
-    same(swayed, folder)
+    return folder
 
 
-def test_a_recording_of_other_water_is_not_continued(cup, tmp_path, monkeypatch):
+def test_a_recording_of_other_water_is_not_continued(cut, tmp_path, monkeypatch):
     """Such as after a change of how the particles are laid."""
-    with monkeypatch.context() as patch, pytest.raises(KeyboardInterrupt):
-        patch.setattr(Batch, "_pause", lambda *_: (_ for _ in ()).throw(KeyboardInterrupt))
-        run_preset(cup, out=tmp_path / "run", video=False, quiet=True)
+    copytree(cut, tmp_path / "run")
     usual = STARTS["packed"]
     monkeypatch.setitem(STARTS, "packed", lambda *of: usual(*of[:2], replace(of[2], spacing=0.8 * of[2].spacing)))
     with pytest.raises(Unusable, match="does not belong to the preset in it"):
         resume_run(tmp_path / "run", video=False, quiet=True)
+
+
+def test_an_interrupted_run_goes_on_with_the_same_bits(swayed, cut):
+    resume_run(cut, video=False, quiet=True)
+    same(swayed, cut)
 
 
 @pytest.mark.slow  # that of grains is in `tests/lab/sweeps`

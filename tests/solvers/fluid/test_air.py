@@ -1,5 +1,6 @@
 """Water and air as one fluid of two phases: a step against double sums, what is kept, rest, and closed air."""
 
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -10,13 +11,20 @@ from solvers.fluid.phases.adiabatic import background
 from solvers.fluid.phases.cohesion import Cohesion
 from solvers.fluid.timestep import kinematic
 from solvers.fluid.viscosity import VISCOSITY
+from solvers.motion.harmonic import Sway
 from solvers.scene import Scene
 from solvers.simulation import Simulation
-from tests.oracles.air import PlainBoth, both, filled
+from tests.oracles.air import PlainBoth, again, both, filled
 from tests.oracles.water import GRAVITY, box
 
 WIDTH, HEIGHT, DEPTH, ROWS = 0.32, 0.32, 0.16, 8
-TOLD = {"gauges": (Gauge((0.16, 0.0), 0.02), Gauge((-0.16, 0.28), 0.02)), "levels": (Level(0.0),), "edges": (0, 2)}
+# The same in all, and in a run of a preset (`tests/lab/runs/test_air_runs.py`): one kernel.
+TOLD = {
+    "gauges": (Gauge((0.16, 0.0), 0.02), Gauge((-0.16, 0.28), 0.02)),
+    "levels": (Level(0.0),),
+    "edges": (0, 2),
+    "motions": [[Sway(0.0, 1.0)]],
+}
 
 
 def scene(**changes):
@@ -31,24 +39,78 @@ def held(run: Simulation) -> list[np.ndarray]:
     return [*pairs[:2], s[0], m[0], *pairs[2:]]
 
 
-def test_water_rests_under_air():
+@pytest.fixture(scope="module")
+def pool() -> Iterator[Simulation]:
+    """Water and air at rest; some others place their water and air in it."""
+    made = Simulation(scene(background=40.0), threads=1, arch="cpu")
+    yield made
+    made.close()
+
+
+def test_water_rests_under_air(pool):
     """From hydrostatic rest in both: pressures stay, the surface keeps its place to a quarter of a spacing."""
-    run = Simulation(scene(background=1.0), threads=1, arch="cpu")
-    run.observe()
-    run.advance(1500)
-    rows, state, spacing = run.observe(), run.snapshot(), run.scene.water.spacing
-    gas, mass = run.scene.drops[0, :, GAS] > 0.5, held(run)[3]
-    run.close()  # those that follow, up to the slow ones, have its kernels
+    pool.observe()
+    pool.advance(1500)
+    rows, state, spacing = pool.observe(), pool.snapshot(), pool.scene.water.spacing
+    gas, mass = pool.scene.drops[0, :, GAS] > 0.5, held(pool)[3]
     np.testing.assert_allclose(rows["wall_force"][0, 1], -GRAVITY * mass.sum(), rtol=3e-3)
     np.testing.assert_allclose(rows["gauge_pressure"][0, 0], 1000.0 * GRAVITY * DEPTH, rtol=0.03)
     # The surface settles by a part of a spacing, which squeezes the air of eight layers by some per cent.
-    over, stiff = rows["gauge_pressure"][0, 1] + 1.2 * GRAVITY * 0.12, 1.2 * run.scene.water.air.sound_speed**2
+    over, stiff = rows["gauge_pressure"][0, 1] + 1.2 * GRAVITY * 0.12, 1.2 * pool.scene.water.air.sound_speed**2
     assert abs(over) < 0.03 * stiff
     np.testing.assert_allclose(rows["level_depth"][0], DEPTH, atol=0.25 * spacing)
     assert rows["air_volume"][0] == pytest.approx(WIDTH * (HEIGHT - DEPTH), rel=0.02)
     middle = 0.5 * (state["water_place"][0, :, 1].max() + state["air_place"][0, :, 1].min())
     assert abs(middle - DEPTH) < 0.5 * spacing
     assert state["air_place"].shape[1] == gas.sum()
+
+
+def test_closed_air_follows_water_and_walls(pool):
+    """Water flies at closed air and takes a fifth of it: the pressures of both sides follow p V^1.4 to 1 %."""
+    made, long = scene(background=40.0), 0.5 * (HEIGHT - 0.08)
+    spacing, sound = made.water.spacing, made.water.air.sound_speed
+    places = (np.indices((round(WIDTH / spacing), round(HEIGHT / spacing))).reshape(2, -1).T + 0.5) * spacing
+    places[:, 0] -= 0.5 * WIDTH
+    made.drops = filled(places, (np.abs(places[:, 1] - 0.5 * HEIGHT) > 0.04).astype(float), spacing**2)
+    high, at_rest = made.drops[0, :, 1], 1.2 * sound**2 / 1.4
+    made.drops[0, :, VELOCITY_Z] = 0.18 * np.minimum(1.0, np.minimum(high, HEIGHT - high) / long)
+    made.gravity = 0.0
+    run = again(pool, made)
+    upper = high[made.drops[0, :, GAS] > 0.5] > 0.5 * HEIGHT
+    run.advance(200)
+    rows, pressure = run.observe(), run.snapshot()["air_pressure"][0]
+    way = rows["water_centre"][0, 1] - 0.5 * HEIGHT
+    assert 0.1 * long < way < 0.3 * long
+    for part, side in ((upper, 1.0), (~upper, -1.0)):
+        assert 1.0 + pressure[part].mean() / at_rest == pytest.approx((1.0 - side * way / long) ** -1.4, rel=0.01)
+
+
+def test_drops_fall_together_with_the_pool_below(pool):
+    """Three particles of water that fall through air are part of the pool soon after, and do not hover over it."""
+    made = scene(background=40.0)
+    drops, spacing = made.drops[0], made.water.spacing
+    high = (np.abs(drops[:, 0]) < 2.0 * spacing) & (np.abs(drops[:, 1] - 0.25) < 0.5 * spacing)
+    drops[high, GAS], drops[high, EXCESS] = 0.0, 0.0
+    made.drops = drops[np.argsort(drops[:, GAS], kind="stable")][None]
+    run = again(pool, made)
+    run.advance(round(0.5 / run.dt))
+    place = run.snapshot()["water_place"][0]
+    near = np.hypot(*(place[:, None] - place[None]).transpose(2, 0, 1)) < 1.5 * spacing
+    assert near.sum(axis=1).min() > 1
+    assert place[:, 1].max() < DEPTH + spacing
+
+
+def test_air_that_has_lost_volume_takes_it_again(pool):
+    """Air of nine tenths of its mass at the density of rest: its volume comes back at the rate of 1/τ of what lacks."""
+    made = scene(background=40.0)
+    made.drops[..., VOLUME] *= 1.0 - 0.1 * made.drops[..., GAS]
+    run = again(pool, made)
+    rate = run.water.constants.numbers["air_keeping"]
+    before = run.observe()["air_volume"][0]
+    run.advance(300)
+    gained = run.observe()["air_volume"][0] / before - 1.0
+    run.close()  # those that follow, up to the slow ones, have its kernels
+    assert 0.5 < gained / (0.1 * rate * 300 * run.dt) < 1.3
 
 
 def test_a_gauge_at_the_surface_does_not_show_the_background():
@@ -68,56 +130,6 @@ def test_a_gauge_at_the_surface_does_not_show_the_background():
         shown.append(run.observe()["gauge_pressure"][0])
     run.close()
     assert np.min(shown, axis=0)[2] > -0.15 * 1000.0 * GRAVITY * DEPTH
-
-
-def test_closed_air_follows_water_and_walls():
-    """Water flies at closed air and takes a fifth of it: the pressures of both sides follow p V^1.4 to 1 %."""
-    made, long = scene(background=40.0), 0.5 * (HEIGHT - 0.08)
-    spacing, sound = made.water.spacing, made.water.air.sound_speed
-    places = (np.indices((round(WIDTH / spacing), round(HEIGHT / spacing))).reshape(2, -1).T + 0.5) * spacing
-    places[:, 0] -= 0.5 * WIDTH
-    made.drops = filled(places, (np.abs(places[:, 1] - 0.5 * HEIGHT) > 0.04).astype(float), spacing**2)
-    high, at_rest = made.drops[0, :, 1], 1.2 * sound**2 / 1.4
-    made.drops[0, :, VELOCITY_Z] = 0.18 * np.minimum(1.0, np.minimum(high, HEIGHT - high) / long)
-    made.gravity = 0.0
-    run = Simulation(made, threads=1, arch="cpu")
-    upper = high[made.drops[0, :, GAS] > 0.5] > 0.5 * HEIGHT
-    run.advance(200)
-    rows, pressure = run.observe(), run.snapshot()["air_pressure"][0]
-    run.close()
-    way = rows["water_centre"][0, 1] - 0.5 * HEIGHT
-    assert 0.1 * long < way < 0.3 * long
-    for part, side in ((upper, 1.0), (~upper, -1.0)):
-        assert 1.0 + pressure[part].mean() / at_rest == pytest.approx((1.0 - side * way / long) ** -1.4, rel=0.01)
-
-
-def test_drops_fall_together_with_the_pool_below():
-    """Three particles of water that fall through air are part of the pool soon after, and do not hover over it."""
-    made = scene(background=40.0)
-    drops, spacing = made.drops[0], made.water.spacing
-    high = (np.abs(drops[:, 0]) < 2.0 * spacing) & (np.abs(drops[:, 1] - 0.25) < 0.5 * spacing)
-    drops[high, GAS], drops[high, EXCESS] = 0.0, 0.0
-    made.drops = drops[np.argsort(drops[:, GAS], kind="stable")][None]
-    run = Simulation(made, threads=1, arch="cpu")
-    run.advance(round(0.5 / run.dt))
-    place = run.snapshot()["water_place"][0]
-    run.close()
-    near = np.hypot(*(place[:, None] - place[None]).transpose(2, 0, 1)) < 1.5 * spacing
-    assert near.sum(axis=1).min() > 1
-    assert place[:, 1].max() < DEPTH + spacing
-
-
-def test_air_that_has_lost_volume_takes_it_again():
-    """Air of nine tenths of its mass at the density of rest: its volume comes back at the rate of 1/τ of what lacks."""
-    made = scene(background=40.0)
-    made.drops[..., VOLUME] *= 1.0 - 0.1 * made.drops[..., GAS]
-    run = Simulation(made, threads=1, arch="cpu")
-    rate = run.water.constants.numbers["air_keeping"]
-    before = run.observe()["air_volume"][0]
-    run.advance(300)
-    gained = run.observe()["air_volume"][0] / before - 1.0
-    run.close()
-    assert 0.5 < gained / (0.1 * rate * 300 * run.dt) < 1.3
 
 
 def stirred(step: float | None = None, **of_air) -> Simulation:

@@ -7,20 +7,20 @@ from solvers.fluid.checks import residual
 from solvers.fluid.given import EXCESS, VELOCITY_Y, VELOCITY_Z, VOLUME, Gauge, Level
 from solvers.fluid.surface.fullness import PACKED, RAMP
 from solvers.machine.state import without_worlds
+from solvers.motion.harmonic import Sway
 from solvers.scene import Scene
 from solvers.simulation import Simulation
 from tests.oracles.water import GRAVITY, PlainWater, again, still
 
 WIDTH, HEIGHT, DEPTH, ROWS = 0.6, 0.6, 0.3, 15
 GAUGES = Gauge((-0.3, 0.06), 0.02), Gauge((0.1, 0.0), 0.02), Gauge((0.3, 0.5), 0.02)
-TOLD = {"gauges": GAUGES, "levels": (Level(0.0), Level(-0.3)), "edges": (0, 1, 2, 3)}  # the same in all: one kernel
+# The same in all, and in a run of a preset (`tests/lab/runs/test_water_runs.py`): one kernel.
+TOLD = {"gauges": GAUGES, "levels": (Level(0.0), Level(-0.3)), "edges": (0, 1, 2, 3), "motions": [[Sway(0.0, 1.0)]]}
 
 
 def disturbed(seed: int = 1, **changes):
     """A still tank whose particles were displaced and set in motion at random."""
-    scene = still(
-        WIDTH, HEIGHT, DEPTH, ROWS, gauges=GAUGES, levels=(Level(0.0), Level(-0.3)), edges=(0, 1, 2, 3), **changes
-    )
+    scene = still(WIDTH, HEIGHT, DEPTH, ROWS, **TOLD | changes)
     random, drops = np.random.default_rng(seed), scene.drops
     drops[..., :2] += 0.1 * scene.water.spacing * random.uniform(-1.0, 1.0, drops[..., :2].shape)
     drops[..., [VELOCITY_Y, VELOCITY_Z]] = 0.2 * random.uniform(-1.0, 1.0, drops[..., :2].shape)
@@ -116,7 +116,8 @@ def test_energy_is_accounted_for(run):
 
 def test_tanks_of_other_sizes_share_compiled_kernels(run):
     """All arrays of a tank twice as fine, wider and half as deep have the same shapes, for which kernels are made."""
-    scene = still(2.0 * WIDTH, HEIGHT, 0.5 * DEPTH, 2 * ROWS // 3, gauges=GAUGES[:1], levels=(), edges=(0,))
+    fewer = TOLD | {"gauges": GAUGES[:1], "levels": (), "edges": (0,)}
+    scene = still(2.0 * WIDTH, HEIGHT, 0.5 * DEPTH, 2 * ROWS // 3, **fewer)
     other = Simulation(scene, threads=1, arch="cpu")
     shapes = [{name: array.shape for name, array in one.arrays.arrays.items()} for one in (run, other)]
     assert shapes[0] == shapes[1]
@@ -197,6 +198,36 @@ def test_water_at_rest_weighs_on_the_floor_and_its_gauges(run):
     place, pressure = (run.snapshot()[name][0] for name in ("water_place", "water_pressure"))
     wanted = 1000.0 * GRAVITY * (DEPTH - place[:, 1])
     np.testing.assert_allclose(pressure, wanted, atol=0.5 * 1000.0 * GRAVITY * DEPTH / ROWS)  # half a layer
+
+
+def come_through(deep: float) -> Scene:
+    """Single particles, by so many spacings behind the face of a wall or the floor, between two dummies, or corners.
+
+    The rest is far from walls.
+    """
+    spacing = DEPTH / ROWS
+    out, ways = deep * spacing, (1.0 + 6.25 * np.arange(4)) * spacing  # over six spacings apart: none sees another
+    right = np.stack([np.full(4, 0.5 * WIDTH + out), 5.0 * spacing + ways], axis=1)
+    floor = np.stack([ways - 0.5 * WIDTH + 5.0 * spacing, np.full(4, -out)], axis=1)[:3]
+    corners = np.array([[-0.5 * WIDTH - out, -out], [-0.5 * WIDTH - out, HEIGHT + out]])
+    scene = still(WIDTH, HEIGHT, DEPTH, ROWS, gravity=0.0, **TOLD)
+    drops = scene.drops[0]
+    drops[:, EXCESS], drops[:, 1] = 0.0, drops[:, 1] + 0.5 * (HEIGHT - DEPTH)
+    drops[:, 0] *= 0.6
+    drops[:9, :2] = np.concatenate([right, floor, corners])
+    return scene
+
+
+@pytest.mark.parametrize("deep", [0.15, 0.3, 0.45])
+def test_a_wall_pushes_back_what_has_come_through_its_face(run, deep):
+    """Anywhere behind it, those at the corners towards the middle."""
+    again(run, come_through(deep))
+    run.advance(1)
+    push = held(run)[4]
+    inwards = np.append(-push[:4, 0], push[4:7, 1])
+    assert (inwards > 0.0).all()
+    assert inwards.min() > 0.4 * inwards.max()
+    assert (push[7:9, 0] > 0.0).all() and push[7, 1] > 0.0 > push[8, 1]
 
 
 @pytest.mark.parametrize(

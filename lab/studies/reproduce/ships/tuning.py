@@ -16,8 +16,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.figure import Figure
-from scipy.optimize import minimize
-from scipy.signal import lsim
 
 from lab.measures.driven_load import along_motion, between
 from lab.measures.steady import harmonics
@@ -71,6 +69,8 @@ def oscillator(own: float, damping: float, reach: float, roll: np.ndarray, time:
     """The moment (n,) that such an oscillator gives, for G = 1."""
     push = roll + reach * np.gradient(np.gradient(roll, time), time)
     way = np.array([[0.0, 1.0], [-(own**2), -2.0 * damping * own]])
+    from scipy.signal import lsim  # slow to import
+
     _, _, state = lsim((way, [[0.0], [own**2]], np.eye(2), np.zeros((2, 1))), push, time - time[0])
     return state[:, 0] + reach * (own**2 * push + state @ way[1])
 
@@ -83,6 +83,8 @@ def tuned(swings: Sequence[Swing], begin: float) -> tuple[float, float, float]:
         found, wanted = np.concatenate(shapes), np.concatenate([one.moment[1:] for one in swings])
         size = (found @ wanted) / (found @ found)
         return float(((wanted - size * found) ** 2).sum() / (wanted**2).sum())
+
+    from scipy.optimize import minimize  # slow to import
 
     best = minimize(left, (begin, GUESS, 0.0), method="Nelder-Mead", options={"xatol": 1e-4, "fatol": 1e-7})
     return float(best.x[0]), float(best.x[1]), float(best.fun)
