@@ -45,7 +45,10 @@ def strained() -> Iterator[Simulation]:
 
 def free(run: Simulation, scene: Scene) -> Simulation:
     """The same simulation with another drop, which is not pulled."""
-    again(run, scene).water.constants.set("pull", 0.0)
+    constants = again(run, scene).water.constants
+    values = constants.values.to_numpy()
+    values[constants.at["pull"]] = 0.0
+    constants.values.from_numpy(values)
     return run
 
 
@@ -114,7 +117,6 @@ def test_a_drop_that_is_pulled_to_a_point_swings_at_the_frequency_of_theory(stra
     scene = drop(0.2, pull=PULL)
     scene.drops[..., EXCESS] = 0.5 * 10.0**2 * (0.01 - (scene.drops[..., :2] ** 2).sum(axis=-1)) / 20.0**2
     run, wide, time = again(strained, scene), [], []
-    run.water.constants.set("pull", run.water.constants.numbers["pull"])
     for _ in range(60):
         run.advance(max(1, round(0.005 / run.dt)))
         square = (run.snapshot()["water_place"][0] ** 2).mean(axis=0)
