@@ -120,8 +120,8 @@ class Between:
         """Growth rate (1/s) with viscosity, see `between`."""
         return between(1000.0, self.density, VISCOSITY)
 
-    def waved(self, rows: int) -> Swing:
-        """The oscillation of the mode's momentum, from a level surface, with so many layers of each fluid."""
+    def made(self, rows: int) -> Scene:
+        """The wave on a level surface, with so many layers of each fluid."""
         spacing, sound = 1.0 / rows, 10.0 * np.sqrt(G)
         alpha = 8.0 * VISCOSITY / (self.smoothing * spacing * sound)
         speed = STEEP / K * self.rate  # of the water at the surface
@@ -129,8 +129,12 @@ class Between:
         water = bearing(Water(spacing, sound, smoothing=self.smoothing, alpha=alpha, speed=speed, air=air), 1.0)
         made = of_both(water, box(1.0, 2.0), 1.0)
         set_going(made.drops, lambda place: STEEP / K * self.rate * mode(place))
+        return made
+
+    def waved(self, rows: int) -> Swing:
+        """The oscillation of the mode's momentum, from a level surface, with so many layers of each fluid."""
         times, found = np.arange(1, round(PERIODS * A_PERIOD)) * 2.0 * np.pi / (self.rate * A_PERIOD), []
-        with simulated(made) as run:
+        with simulated(self.made(rows)) as run:
             for time in looks(run, times):
                 place, velocity, mass = kept(run)
                 shape = mode(place)
