@@ -22,7 +22,7 @@ WAYS: dict[str, tuple[Callable[[int], Scene], Callable[[int], Swing], Callable[[
     "water alone": (waves.made, lambda rows: waves.waved(rows).swing, waves.viscous),
     "under air": (UNDER_AIR.made, UNDER_AIR.waved, lambda: UNDER_AIR.viscous),
 }
-HEADER = ("wave", "layers", "particles", "M", "simulated s/s", "rate, %", "decay over theory's")
+HEADER = ("wave", "layers", "particles", "step, ms", "M", "simulated s/s", "rate, %", "decay over theory's")
 
 
 def study(page: Page, work: Path, fast: bool) -> None:
@@ -32,13 +32,13 @@ def study(page: Page, work: Path, fast: bool) -> None:
     page.say("""The standing wave of `cargolab verify water-wave` in water alone, and that of `water-air-wave` under
         as much air of equal speed of sound, 1.2 kg/m³: errors of rate and decay over eight periods beside linear
         theory with viscosity, and on one core millions of particle-steps and simulated seconds in a second of the
-        processor's time, the median of three, in turn. Steps are the same in both.""")
+        processor's time, the median of three, in turn.""")
     found = {(way, rows): errors(way, rows, work) for way in WAYS for rows in layers}
     for rows in layers:
         speeds = timed([WAYS[way][0](rows) for way in WAYS])
         for way, speed in zip(WAYS, speeds, strict=True):
             found[way, rows] |= speed
-    columns = "particles", "particle_steps", "seconds", "rate", "decay"
+    columns = "particles", "step", "particle_steps", "seconds", "rate", "decay"
     table = [[way, str(rows), *(one[column] for column in columns)] for (way, rows), one in found.items()]
     page.table(HEADER, table)
 
@@ -69,6 +69,7 @@ def timed(scenes: list[Scene]) -> list[dict[str, float | str]]:
         return [
             {
                 "particles": str(run.scene.particles),
+                "step": 1e3 * run.dt,
                 "particle_steps": LENGTH * run.scene.particles / np.median(told) / 1e6,
                 "seconds": LENGTH * run.dt / np.median(told),
             }
