@@ -80,6 +80,7 @@ class Scene:
     more_tanks: tuple[Tank, ...] = ()
     water: Water | None = None
     water_pace: Annotated[int, NotOfBed()] = 1  # more than 1 in ships alone
+    soft_stride: Annotated[int, NotOfBed()] = 1  # steps of the water in one, while its air is soft
     drops: Annotated[np.ndarray | None, EachWorld(lambda scene: scene.particles), NotOfBed()] = None
     integrator: str = "verlet"
     precision: str = "f64"
@@ -91,8 +92,7 @@ class Scene:
         self.outline = np.asarray(self.outline, dtype=np.float64)
         self.fixed = np.asarray(self.fixed, dtype=np.float64).reshape(-1, 3)
         self.grain, self.wall = self._a_world(self.grain), self._a_world(self.wall)
-        if not len(self.motions):
-            self.motions = [()] * self.worlds
+        self.motions = self.motions if len(self.motions) else [()] * self.worlds
         if self.sizes is None:
             self.sizes = (float(self.radius.min()), float(self.radius.max())) if self.radius.size else (0.0, 0.0)
         self.interfaces_of = [self._interfaces(*materials) for materials in zip(self.grain, self.wall, strict=True)]

@@ -23,6 +23,7 @@ from solvers.ship.vessel import Vessel
 from solvers.tank.setting import Setting
 from solvers.tank.walls import Walls
 from solvers.time import watch
+from solvers.time.changes import up_to_change
 from solvers.time.clock import Clock
 from solvers.time.schedules import SCHEDULES, choose_schedule, units_a_world
 from solvers.time.sequence import Sequence
@@ -64,7 +65,7 @@ class Simulation:
         self.skin = skin or (SKIN_OF_CONVEX if scene.shapes and scene.shapes.convex else SKIN) * 2.0 * scene.mean_radius
         # Per grain all worlds share a step, and one would depend on the others.
         alone = self.arch == "cpu" and (self.schedule_name != "per-grain" or worlds == 1)
-        self.stretch = stretch if alone else 1
+        self.stretch = max(stretch, scene.soft_stride) if alone else 1
         self.steps, self.room, self.vectors, self.among = 0, 1, wide.pays(), worlds  # `among`: worlds at the start
         self.simple = scene.shapes is None and scene.water is None  # short kernels
         self.origin, self.unkicked = 0.0, 0  # time (s) of the tank's motion at step 0; the first step since the launch
@@ -157,10 +158,9 @@ class Simulation:
         target, often = self.steps + steps, self.whole(round(LOOK_FOR_MIXING / self.dt))
         mixing = [matter for matter in self.matters.values() if matter.mixes]
         while self.steps < target:
-            if mixing and self.steps % often == 0:
-                for matter in mixing:  # before the steps: lists expire, which `observe` needs and steps rebuild
-                    matter.keep_order()
-            self.steps = min(target, often * (self.steps // often + 1)) if mixing else target
+            for matter in mixing if self.steps % often == 0 else ():
+                matter.keep_order()  # before the steps: lists expire, which `observe` needs and steps rebuild
+            self.steps = up_to_change(self, min(target, often * (self.steps // often + 1)) if mixing else target)
             self._reach_step()
 
     def _reach_step(self) -> None:

@@ -12,14 +12,16 @@ from lab.assembly.water import most_drops, water_aboard, water_of
 from lab.preset.accuracy import LEVELS, check_forced
 from lab.preset.schema import Preset
 from lab.preset.sections.water.tanks import further_tanks
-from solvers.fluid.timestep import longest_pace
+from solvers.fluid.timestep import longest_pace, soft_limit
 from solvers.grains.timestep import SLOWEST, share_to_lengthen
+from solvers.machine.runtime import choose_arch
 from solvers.motion.steered import Steered
 from solvers.scene import Scene
 from solvers.ship.vessel import Vessel
 
 # A step twice the derived one suits closing speeds of a 32nd; four times is more than the Rayleigh time ever allows.
 LONGEST_STRIDE = 2
+LARGEST_POWER = 5  # of two: of more base steps strides need not be powers of two (`solvers.time.sequence.BAR`)
 
 
 def build(preset: Preset, hands: Sequence[Steered] | None = None) -> tuple[Scene, np.ndarray]:
@@ -81,6 +83,23 @@ def _base_share(scene: Scene, times: float) -> float:
     return share_to_lengthen(scene.step_limits()[0].step, scene.step_limits(SLOWEST)[0].step, times)
 
 
+def _soft_stride(preset: Preset, scene: Scene, wanted: float) -> int:
+    """How many steps of the water are one while its air is soft: the power of two with the fewest steps in the run.
+
+    wanted: the longest step (s) under stiff air.
+    """
+    if choose_arch(preset.run.arch, preset.run.precision) != "cpu":
+        return 1  # particles that move one by one have steps of one length
+    interval, early = 1.0 / preset.record.series_rate, scene.water.air.stiff_from
+    longest = soft_limit(scene, LEVELS[preset.run.accuracy].longer_steps)
+
+    def steps(stride: int) -> float:
+        a_row = ceil(interval / min(longest, stride * wanted) - 1e-9)  # of long ones, between two rows of the series
+        return a_row * (early + stride * (preset.duration - early))
+
+    return min((2**k for k in range(LARGEST_POWER + 1)), key=steps)
+
+
 def _step(preset: Preset, scene: Scene) -> float:
     """The step (s): as given, else derived, else the sampling interval, which it divides in any case."""
     limits, run, interval = scene.step_limits(), preset.run, 1.0 / preset.record.series_rate
@@ -88,6 +107,9 @@ def _step(preset: Preset, scene: Scene) -> float:
     if run.step == "auto":
         scene.base_share = _base_share(scene, longest)
         wanted = scene.base_share * scene.longest_step(LEVELS[run.accuracy].longer_steps)
+        if scene.water and scene.water.air and scene.water.air.stiff_from > 0.0:
+            scene.soft_stride = longest = _soft_stride(preset, scene, wanted)
+            wanted = min(wanted, soft_limit(scene, LEVELS[run.accuracy].longer_steps) / longest)
     elif limits:
         check_forced(wanted, limits[0].step, limits[0].reason, run.force_step)
     # Between two rows of the series lies a whole number of the longest steps, of grains and of water.

@@ -13,6 +13,7 @@ from solvers.fluid.start.air import air_above, air_round, with_air
 from solvers.fluid.start.packing import below
 from solvers.fluid.start.parts import clear_of, free_share, surfaces
 from solvers.fluid.start.rest import at_rest, hydrostatic_excess
+from solvers.fluid.timestep import steps_of_water
 from solvers.scene import Scene
 from solvers.ship.body import Body, bolted
 from solvers.tank.outline import moments
@@ -107,7 +108,7 @@ def _wet(drops: np.ndarray) -> int:
 
 def updates(scene: Scene, steps: int) -> int:
     """How often particles are moved, one by one, in so many base steps of all worlds."""
-    return steps * scene.radius.size + steps // scene.water_pace * scene.worlds * scene.particles
+    return steps * scene.radius.size + steps_of_water(scene, steps) * scene.worlds * scene.particles
 
 
 def particles(scene: Scene) -> int:

@@ -14,6 +14,7 @@ from lab.preset.schema import Preset
 from lab.preset.units import show
 from lab.report import axle, coarse, grains, water
 from lab.report.ship import describe
+from solvers.fluid.timestep import steps_of_water
 from solvers.machine.runtime import available_cores, choose_arch
 from solvers.simulation import Simulation
 from solvers.time.schedules import choose_schedule, units_a_world
@@ -65,7 +66,7 @@ def explain(loaded: LoadedPreset) -> str:
         *([_section("Axle", axle.described(preset))] if preset.axle else []),
         *([_section("Accuracy", grains.accuracy(preset))] if preset.grains else []),
         *([_section("Accuracy", water.accuracy(preset))] if preset.water else []),
-        _section("Step", _step(scene)),
+        _section("Step", _step(simulation)),
         _section("Compiled in", _parts(preset, simulation)),
         _section("Cost", _cost(preset, scene, simulation)),
         "Preset in full\n" + "".join(f"    {line}\n" for line in _with_sentences(loaded.given_text)),
@@ -145,11 +146,14 @@ def _motion(name: str, motion, soft_start: float) -> str:
     return f"{name}, up to {show(speed, 'rad/s' if motion.coordinate == 'turn' else 'm/s')}"
 
 
-def _step(scene) -> list[tuple[str, str]]:
+def _step(simulation: Simulation) -> list[tuple[str, str]]:
+    scene = simulation.scene
     limits = [f"{show(limit.step, 's')}: {limit.reason}" for limit in scene.step_limits()]
     limits = limits or ["the interval between samples: the tank's motion is exact at any time"]
     pace = scene.water_pace
     of_water = [("of the water", f"{show(pace * scene.step, 's')}, {pace} steps in one")] * (pace > 1)
+    if scene.water and scene.water.softened is not scene.water:
+        of_water = [("while the air is soft", water.soft_step(scene, simulation.stretch))]
     return [("step", show(scene.step, "s")), *of_water, *((f"limit {k + 1}", limit) for k, limit in enumerate(limits))]
 
 
@@ -172,7 +176,8 @@ def _parts(preset: Preset, simulation: Simulation) -> list[tuple[str, str]]:
 
 def _cost(preset, scene, simulation: Simulation) -> list[tuple[str, str]]:
     worlds, count, what = preset.run.repeats, particles(scene), "grain" if preset.grains else "particle"
-    steps = preset.duration / scene.step
+    base = round(preset.duration / scene.step)
+    steps = _steps(scene, preset.duration)
     frames = preset.duration * preset.record.picture_rate
     seconds = cost_in_seconds(preset, scene, simulation)
     parts = ", ".join(f"{_span(spent)} {what}" for what, spent in seconds.items() if spent >= 0.5)
@@ -180,7 +185,7 @@ def _cost(preset, scene, simulation: Simulation) -> list[tuple[str, str]]:
     settling = f"and at most {_span(_stepping(preset.run.settle_limit, preset, scene))} to settle a new bed"
     return [
         *(
-            [(f"{what}-steps", f"{updates(scene, round(steps)):.3g}{', and those of settling' * bool(preset.grains)}")]
+            [(f"{what}-steps", f"{updates(scene, base):.3g}{', and those of settling' * bool(preset.grains)}")]
             * bool(count)
         ),
         *([("steps", f"{steps:.3g}")] if not preset.grains else []),
@@ -215,12 +220,18 @@ def cost_in_seconds(preset, scene, simulation: Simulation) -> dict[str, float]:
     return found | {"of figures": REPORTING, "of pictures": duration * record.picture_rate * PICTURE}
 
 
+def _steps(scene, duration: float) -> float:
+    """How many steps a duration (s) takes, long ones of soft air counted as one."""
+    steps = duration / scene.step
+    return steps if scene.soft_stride == 1 else steps_of_water(scene, round(steps))
+
+
 def _stepping(duration: float, preset, scene) -> float:
     """Seconds of computation for the steps of grains or water over a duration (s)."""
     rounds = -(-scene.worlds // min(scene.worlds, preset.run.threads or available_cores()))
     speed = OUTLINES_PER_CORE[scene.shapes.contact] if scene.shapes else GRAIN_STEPS_PER_CORE
     a_step = STEP + scene.radius.shape[1] / speed + scene.particles / scene.water_pace / DROP_STEPS_PER_CORE
-    return rounds * duration / scene.step * a_step
+    return rounds * _steps(scene, duration) * a_step
 
 
 def _floating(preset, simulation: Simulation) -> float:

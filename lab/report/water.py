@@ -17,9 +17,8 @@ from lab.preset.units import show
 from lab.recording import Recording
 from lab.report.numbers import count_of
 from solvers.fluid import given
-from solvers.fluid.timestep import kinematic
+from solvers.fluid.timestep import kinematic, steps_of_water, stiff_step
 from solvers.fluid.viscosity import LAMINAR
-from solvers.machine.limit import Limit
 from solvers.scene import Scene
 
 COMPRESSED = 0.03  # of the density: more is said
@@ -92,8 +91,12 @@ def in_tank(recording: Recording) -> Iterator[str]:
     yield _sound(preset, water)
     if water.air:
         yield f"over it {recording.air_volume.shape[1]} particles of air, as far apart"
-    yield f"{_steps(recording)} steps of {show(recording.step, 's')}"
-    yield from (f"limit of the step, {show(limit.step, 's')}: {limit.reason}" for limit in _limits(preset))
+    scene = _scene(preset)
+    yield f"{_steps(recording, scene)} steps of {show(recording.step, 's')}"
+    if scene and scene.soft_stride > 1:
+        yield f"longer steps while the air is soft: {soft_step(scene, scene.soft_stride)}"
+    limits = scene.step_limits() if scene else []
+    yield from (f"limit of the step, {show(limit.step, 's')}: {limit.reason}" for limit in limits)
     if preset.water.scheme != "lab":
         yield f"models as {preset.water.scheme} has them, as far as the solver does"
     time = recording.series["time"]
@@ -104,15 +107,15 @@ def in_tank(recording: Recording) -> Iterator[str]:
 
 def facts(recording: Recording) -> dict[str, object]:
     """The numbers of a summary for programs, in SI."""
-    water, names = liquid(recording.preset), pressure_gauges(recording)
+    water, names, scene = liquid(recording.preset), pressure_gauges(recording), _scene(recording.preset)
     found = len(recording.series["time"])
     peaks = {name: _peak(recording, k) for k, name in enumerate(names)} if found else {}
     return {
         "particles": recording.volume.shape[1],
         "spacing_m": water.spacing,
         "sound_speed_m_s": water.sound_speed,
-        "steps": _steps(recording),
-        "limits": [asdict(limit) for limit in _limits(recording.preset)],
+        "steps": _steps(recording, scene),
+        "limits": [asdict(limit) for limit in scene.step_limits()] if scene else [],
         "largest_excess": float(recording.series["water_excess"].max(initial=0.0)),
         "energy_residual_J": float(np.abs(residual(recording)).max(initial=0.0)) if found else 0.0,
         "peaks": {name: {"pressure_Pa": value, "time_s": when} for name, (value, when) in peaks.items()},
@@ -164,20 +167,33 @@ def _air(scene: Scene) -> str:
         text += f": {softer:.0f} times softer than real air where it is trapped"
     if air.sound_speed > water.sound_speed:
         text += f", for which steps are {air.sound_speed / water.sound_speed:.3g} times shorter than the water's"
+    if air.stiff_from > 0.0:
+        times = (REAL_SOUND / air.soft_speed) ** 2
+        text += (
+            f"; until {show(air.stiff_from, 's')} {show(air.soft_speed, 'm/s')}: {times:.0f} times softer than real air"
+        )
     return text
 
 
-def _steps(recording: Recording) -> int:
+def soft_step(scene: Scene, stride: int) -> str:
+    """The step while the air is soft, of so many base steps, and until when that is."""
+    until = show(stiff_step(scene) * scene.step, "s")
+    return f"{show(stride * scene.step, 's')} until {until}" + f", {stride} steps in one" * (stride > 1)
+
+
+def _steps(recording: Recording, scene: Scene | None) -> int:
+    """How many steps the water has taken; long ones of soft air are one."""
     time = recording.series["time"]
-    return round(float(time[-1]) / recording.step) if len(time) else 0
+    steps = round(float(time[-1]) / recording.step) if len(time) else 0
+    return steps_of_water(scene, steps) if scene and scene.soft_stride > 1 else steps
 
 
-def _limits(preset: Preset) -> list[Limit]:
-    """The bounds on the step of a preset's water; none if this machine cannot hold the scene."""
+def _scene(preset: Preset) -> Scene | None:
+    """The scene of a tank of a preset's; None if this machine cannot hold it."""
     try:
-        return build(replace(preset, run=replace(preset.run, repeats=1)))[0].step_limits()
+        return build(replace(preset, run=replace(preset.run, repeats=1)))[0]
     except LabError:
-        return []
+        return None
 
 
 def _peak(recording: Recording, gauge: int) -> tuple[float, float]:

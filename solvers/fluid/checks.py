@@ -15,6 +15,20 @@ SQUEEZED = "use a higher air.sound_speed, or a smaller water.spacing"
 REMEDY = "use a higher water.sound_speed, a smaller water.spacing, or check the motion's amplitude"
 
 
+def suspects(matter, world: int, time: float) -> dict[str, np.ndarray]:
+    """What `refuse_state` asks of the particles in a world of a `solvers.fluid.matter.WaterMatter` at `time` (s)."""
+    p = matter.particles
+    found = p.read(*p.place, *p.velocity, *p.acceleration, p.excess, p.span)
+    velocity = matter.census.relative(time, found[0:2], found[2:4], found[4:6])[world]
+    place, open_top = np.stack(found[0:2], axis=-1)[world], matter.water.walls and not matter.census.closed
+    return {
+        "place": place,
+        "spilled": outside(place, matter.scene.tanks, matter.water.reach) & open_top,
+        "speed": np.linalg.norm(velocity, axis=1),
+        **{name: values[world] for name, values in (("excess", found[6]), ("span", found[7]), ("gas", matter.gas))},
+    }
+
+
 def refuse_state(world: int, particles: dict[str, np.ndarray], time: float, sound: float) -> None:
     """Raise BadState for a world whose particles made the watch stop it at `time` (s).
 

@@ -34,13 +34,23 @@ class Constants:
         self.kernel, self.state = KERNELS[water.kernel](), STATES[water.state]()
         self.diffusion, self.viscosity = DIFFUSION[water.diffusion](), VISCOSITY[water.viscosity]()
         self.shifting = SHIFTING[water.shifting]()
-        length, sound = water.length, water.sound_speed
-        value, slope = self.kernel.factors(length)
-        strength = self.viscosity.strength(water)
-        self.viscous, self.slip, self.full = strength > 0.0, water.slip, water.full
-        self.pressed = water.background > 0.0
+        self.slip, self.full, self.pressed = water.slip, water.full, water.background > 0.0
         self.smoothing = water.smoothing  # h/Δx
-        pull = water.pull
+        self.two, self.gas, self.cohesion = water.air is not None, Adiabatic(), Cohesion()
+        self.tense = self.two and water.air.tension > 0.0
+        self.coheres = self.two and water.air.cohesion > 0.0
+        self.accounted = not (self.tense or self.coheres)  # for whether all energy has a name
+        self.pulled = water.pull is not None
+        self.numbers = numbers = self.numbers_of(water, gravity)
+        self.viscous = numbers["strength"] > 0.0 or (self.two and numbers["air_strength"] > 0.0)
+        self.at = {name: place for place, name in enumerate(numbers)}
+        self.at_air = {name[len(AIR) :]: place for name, place in self.at.items() if name.startswith(AIR)}
+        self.values = arrays.under("water").holding("constants", np.array(list(numbers.values())), "number")
+
+    def numbers_of(self, water: Water, gravity: float) -> dict[str, float]:
+        """The numbers (SI) of a scene's water by name, those of its air after its own."""
+        length, sound, pull = water.length, water.sound_speed, water.pull
+        value, slope = self.kernel.factors(length)
         numbers = {
             "shrink": 0.5 / length,  # 1/(2h): t = 1 − r/(2h)
             "value": value,
@@ -51,7 +61,7 @@ class Constants:
             "background": water.background,
             "thinnest": float(self.state.excess(-water.background / (water.density * sound**2))),
             "spread": water.delta * length * sound,  # δ h c0, m²/s
-            "strength": strength,
+            "strength": self.viscosity.strength(water),
             "hydrostatic": gravity / sound**2,  # g/c0², 1/m
             "spacing": water.spacing,
             "reach": water.reach,
@@ -65,24 +75,12 @@ class Constants:
             "pull_z": pull.centre[1] if pull else 0.0,
         }
         numbers |= Fullness.numbers(self.kernel, length, sound) | Consistency.numbers(self.kernel, water)
-        self.two, self.gas = water.air is not None, Adiabatic()
-        self.tense = self.two and water.air.tension > 0.0
-        self.coheres, self.cohesion = self.two and water.air.cohesion > 0.0, Cohesion()
-        self.accounted = not (self.tense or self.coheres)  # for whether all energy has a name
-        if self.two:
-            numbers |= of_air(water, gravity, numbers, self.viscosity)
-            self.viscous = self.viscous or numbers["air_strength"] > 0.0
-        self.numbers = numbers
-        self.at = {name: place for place, name in enumerate(numbers)}
-        self.at_air = {name[len(AIR) :]: place for name, place in self.at.items() if name.startswith(AIR)}
-        self.pulled = pull is not None
-        self.values = arrays.under("water").holding("constants", np.array(list(numbers.values())), "number")
+        return numbers | (of_air(water, gravity, numbers, self.viscosity) if self.two else {})
 
-    def set(self, name: str, value: float) -> None:
-        """Change the constant of that name."""
-        values = self.values.to_numpy()
-        values[self.at[name]] = value
-        self.values.from_numpy(values)
+    def become(self, water: Water, gravity: float) -> None:
+        """Take the numbers of another water with the same models."""
+        self.numbers = self.numbers_of(water, gravity)
+        self.values.from_numpy(np.array(list(self.numbers.values())))
 
     @ti.func
     def get(self, name: ti.template()):

@@ -1,6 +1,6 @@
 """What a scene says of its water: the liquid, the particles' size, the models by name, and the gauges."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated
 
 from solvers.machine.marks import Doc, Interval, Unit
@@ -42,8 +42,9 @@ class Pull:
 class Air:
     """The air in a tank with water, the second phase of its fluid; SI units.
 
-    `density` ρ_a (kg/m³) of air that is not compressed, `sound_speed` c_a (m/s), `alpha` the strength of its artificial
-    viscosity or `kinematic` ν (m²/s) that of laminar flow, `tension` (N/m) of the surface between the phases;
+    `density` ρ_a (kg/m³) of air that is not compressed, `sound_speed` c_a (m/s), which until `stiff_from` (s) is
+    `soft_speed`; `alpha` the strength of its artificial viscosity or `kinematic` ν (m²/s) that of laminar flow,
+    `tension` (N/m) of the surface between the phases;
     `vent`: the area (m²) of openings to the outside, a metre of thickness; `interface`: the name of what acts between
     the phases, and `cohesion` the pressure X (Pa) of that which has one.
     """
@@ -56,6 +57,8 @@ class Air:
     vent: float = 0.0
     interface: str = "weighted"
     cohesion: float = 0.0
+    soft_speed: float = 0.0
+    stiff_from: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -106,6 +109,14 @@ class Water:
     swing_damping: float = 0.0
     added_mass: str = "none"
     air: Air | None = None
+
+    @property
+    def softened(self) -> "Water":
+        """As it is at the start, until its air is stiff; itself if its air does not change."""
+        air = self.air
+        if air is None or air.stiff_from <= 0.0:
+            return self
+        return replace(self, air=replace(air, sound_speed=air.soft_speed, stiff_from=0.0))
 
     @property
     def length(self) -> float:

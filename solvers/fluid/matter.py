@@ -6,7 +6,7 @@ import numpy as np
 import taichi as ti
 
 from solvers.fluid.census import Census, Pool
-from solvers.fluid.checks import LEAST, check_water, outside, refuse_scene, refuse_state, residual
+from solvers.fluid.checks import LEAST, check_water, refuse_scene, refuse_state, residual, suspects
 from solvers.fluid.constants import Constants
 from solvers.fluid.continuity import Continuity
 from solvers.fluid.forces import Forces
@@ -15,9 +15,10 @@ from solvers.fluid.grid import grid_round
 from solvers.fluid.lists import Lists, Medium
 from solvers.fluid.mover import Mover
 from solvers.fluid.order import Order, Tanks
+from solvers.fluid.phases.stiffening import Stiffening
 from solvers.fluid.phases.vent import Vent
 from solvers.fluid.shifting import SHIFTING
-from solvers.fluid.state import LANES, UNUSED, Particles, Shares
+from solvers.fluid.state import LANES, Particles, Shares
 from solvers.fluid.walls.answer import answer_at_rest
 from solvers.fluid.walls.behind import OF_NONE, Behind
 from solvers.fluid.walls.bodies import Bodies
@@ -44,7 +45,7 @@ class WaterMatter(Matter):
     of_contacts: ClassVar = ("gauge_pressure", "gauge_peak", "edge_force", "part_force")  # known only after a step
 
     def __init__(self, scene, setting: Setting):
-        water: Water = scene.water
+        water: Water = scene.water.softened
         self.scene, self.water, self.drops = scene, water, scene.drops
         arrays, worlds, tank, count = setting.arrays, setting.worlds, scene.tanks[0], scene.drops.shape[1]
         alone = not scene.radius.shape[1]  # kernels that hold grains' as well cannot be on real vectors: Taichi aborts
@@ -70,11 +71,13 @@ class WaterMatter(Matter):
         self.order = Order(arrays, p, grid, Tanks.of(scene, p, dummy, behind.tanks))
         self.bodies.join(arrays, p, shares, self.poses, units)
         self.lists = Lists(arrays, units, self.order, shares, self.constants, first, self.bodies, setting.room)
-        self.pace = pace = Pace(arrays.under("water"), self.lists, scene.water_pace)
+        self.long = pace = Pace(arrays.under("water"), self.lists, scene.water_pace)
         medium = Medium(units, p, shares, self.lists, self.constants, self.poses)
         lean = Lean(arrays, medium, behind.straight, dummy)
         self.extrapolation = Extrapolation(arrays, medium, lean)
         self.forces = Forces(arrays, medium, self.extrapolation, self.load, tank.thickness)
+        self.stiffening = Stiffening(arrays, p, self.constants, scene, setting.stretch)
+        self.paced = self.stiffening.paced
         self.continuity, self.vent = Continuity(arrays, medium, self.forces), Vent(arrays, medium, water.air)
         self.mover = Mover(arrays, medium, self.extrapolation, self.vent, self.forces.fullness, pace)
         probes = [dummy[slot] + p.wet * lanes for slot in behind.probes]
@@ -120,7 +123,7 @@ class WaterMatter(Matter):
     def note_poses(self, w, t, kick, dt):
         """Note how the tank of a world and the parts in it move as the step begins."""
         self.poses.note_start(w, t, dt)
-        self.pace.note(w, kick)
+        self.long.note(w, kick)
         if ti.static(self.bodies.count > 0):
             self.bodies.note(w, t, dt)
 
@@ -164,15 +167,31 @@ class WaterMatter(Matter):
     @ti.func
     def sort(self, w):
         """Sort the particles of a world, if its own lists are due."""
-        self.pace.sort(w)
+        self.long.sort(w)
 
     @ti.func
     def make_lists(self, u, t, dt, whole):
         """List the neighbours of a unit anew; False where they do not fit."""
         fits = True
-        if whole and self.pace.rebuilds(u):
+        if whole and self.long.rebuilds(u):
             fits = self.lists.rebuild(u)
         return fits
+
+    @ti.func
+    def pace(self, w):
+        """Largest stride of a world, in base steps: more than 1 while its air is soft."""
+        return self.stiffening.pace()
+
+    @property
+    def changes(self) -> int:
+        """The base step before which the air is to become stiff."""
+        return self.stiffening.next
+
+    def change(self) -> None:
+        """Go on with stiff air; the energy that it loses counts as diffused."""
+        lost = self.continuity.lost.to_numpy().reshape(self.particles.worlds, -1)
+        lost[:, 0] += self.stiffening.change(self.scene.gravity)
+        self.continuity.lost.from_numpy(lost.reshape(-1))
 
     def as_rigid(self) -> list[Body]:
         """The water of each world as one rigid body, per metre of the ship's length, in the tank's frame."""
@@ -183,18 +202,9 @@ class WaterMatter(Matter):
     def place(self) -> None:
         """Place the particles as the scene says, and the dummies; all that was noted is forgotten."""
         p = self.particles
+        self.stiffening.take(False, self.scene.gravity)
         p.put(self.drops, self.drops[..., [VELOCITY_Y, VELOCITY_Z]], self.water)
-        (slots, blocks, *of_walls), solids = self.dummies, self.bodies.solids
-        wall, firm, number = (np.zeros(len(blocks) * p.lanes, kind) for kind in (float, float, int))
-        number[:] = UNUSED
-        wall[slots], firm[slots], number[slots] = *of_walls, np.arange(len(slots))
-        both = (blocks, solids.places), (wall, solids.volumes), (firm, solids.firm), (number, solids.numbers)
-        places, *held = (np.concatenate([tank.reshape(-1, *body.shape[1:]), body]) for tank, body in both)
-        fields = *p.place, p.volume, p.firm, p.number
-        for field, values in zip(fields, [*np.moveaxis(places, 2, 0), *held], strict=True):
-            whole = field.to_numpy().reshape(p.worlds, p.stride, p.lanes)
-            whole[:, p.wet : p.wet + p.walls] = values
-            field.from_numpy(whole.reshape(-1, p.lanes))
+        p.put_walls(*self.dummies, self.bodies.solids)
         for field in (*self.forces.sums, self.continuity.lost, self.census.behind, self.lists.last):
             field.fill(0.0)
         self.lists.skin.fill(0.0)
@@ -243,17 +253,7 @@ class WaterMatter(Matter):
 
     def refuse(self, world: int, time: float, dt: float) -> None:
         """Raise BadState for a world that was stopped at `time` (s)."""
-        p = self.particles
-        found = p.read(*p.place, *p.velocity, *p.acceleration, p.excess, p.span)
-        velocity = self.census.relative(time, found[0:2], found[2:4], found[4:6])[world]
-        place, open_top = np.stack(found[0:2], axis=-1)[world], self.water.walls and not self.census.closed
-        particles = {
-            "place": place,
-            "spilled": outside(place, self.scene.tanks, self.water.reach) & open_top,
-            "speed": np.linalg.norm(velocity, axis=1),
-            **{name: values[world] for name, values in (("excess", found[6]), ("span", found[7]), ("gas", self.gas))},
-        }
-        refuse_state(world, particles, time, self.water.sound_speed)
+        refuse_state(world, suspects(self, world, time), time, self.water.sound_speed)
 
     def snapshot(self, time: float) -> dict[str, np.ndarray]:
         """Places, velocities relative to the tank (W, n, 2) and pressures (W, n) at `time` (s), which must be now."""
@@ -270,9 +270,7 @@ class WaterMatter(Matter):
     def alter(self, scene) -> None:
         """Go on with another gravity; the account of energy begins anew."""
         self.scene = scene
-        self.constants.set("hydrostatic", scene.gravity / self.water.sound_speed**2)
-        if self.particles.two:
-            self.constants.set("air_hydrostatic", scene.gravity / self.water.air.sound_speed**2)
+        self.constants.become(self.stiffening.now, scene.gravity)
         self.start[:] = np.nan
 
     def fields(self) -> list[ti.Field]:
@@ -281,15 +279,16 @@ class WaterMatter(Matter):
 
     def state(self) -> dict[str, np.ndarray]:
         """What `restore` continues from, beside the arrays."""
-        return {"water_start": self.start.copy()}
+        return {"water_start": self.start.copy()} | self.stiffening.state()
 
     def axes(self) -> dict[str, Axes]:
         """The axes of the arrays of `state`, by name."""
-        return {"water_start": (self.particles.each_world,)}
+        return {"water_start": (self.particles.each_world,)} | self.stiffening.axes()
 
     def restore(self, state: dict[str, np.ndarray]) -> None:
         """Restore what `state` returned."""
         self.start = np.array(state["water_start"])
+        self.stiffening.restore(state, self.scene.gravity)
 
 
 def make_water(scene, setting: Setting) -> WaterMatter | None:

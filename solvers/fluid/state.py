@@ -134,6 +134,19 @@ class Particles:
             field.fill(0.0)
         self.used.fill(-(-self.count // self.lanes))
 
+    def put_walls(self, slots: np.ndarray, blocks: np.ndarray, volume: np.ndarray, firm: np.ndarray, solids) -> None:
+        """Place dummies of tanks in these `slots` of their `blocks`, and after them those of the `solids` in them."""
+        held = [np.zeros(len(blocks) * self.lanes, kind) for kind in (float, float, int)]
+        held[2][:] = UNUSED
+        held[0][slots], held[1][slots], held[2][slots] = volume, firm, np.arange(len(slots))
+        both = zip((blocks, *held), (solids.places, solids.volumes, solids.firm, solids.numbers), strict=True)
+        places, *rest = (np.concatenate([tank.reshape(-1, *body.shape[1:]), body]) for tank, body in both)
+        fields = *self.place, self.volume, self.firm, self.number
+        for field, values in zip(fields, [*np.moveaxis(places, 2, 0), *rest], strict=True):
+            whole = field.to_numpy().reshape(self.worlds, self.stride, self.lanes)
+            whole[:, self.wet : self.wet + self.walls] = values
+            field.from_numpy(whole.reshape(-1, self.lanes))
+
     def by_world(self, values: np.ndarray) -> np.ndarray:
         """The lanes of each world in a row, (W, stride · lanes)."""
         return values.reshape(self.worlds, self.stride * self.lanes)

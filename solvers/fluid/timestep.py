@@ -65,6 +65,22 @@ def longest_pace(scene, step: float) -> int:
     return max(1, int(min(limit.step for limit in limits_of_water(scene)) / step))
 
 
+def soft_limit(scene, longer: float) -> float:
+    """The step (s) `longer` times the derived one, within its firm bounds, while the air of a scene is soft."""
+    return replace(scene, water=scene.water.softened).longest_step(longer)
+
+
+def stiff_step(scene) -> int:
+    """The base step at which the air of a scene becomes stiff: a whole number of the long ones before."""
+    return scene.soft_stride * max(1, round(scene.water.air.stiff_from / scene.time_step()) // scene.soft_stride)
+
+
+def steps_of_water(scene, steps: int) -> int:
+    """How many steps the water takes in so many base steps of a scene."""
+    soft = min(steps, stiff_step(scene)) if scene.soft_stride > 1 else 0
+    return soft // scene.soft_stride + (steps - soft) // scene.water_pace
+
+
 def of_air(water: Water) -> Water:
     """The air beside a water, as if it were one."""
     air = water.air

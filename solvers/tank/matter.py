@@ -23,7 +23,8 @@ class Matter:
     says when these are `stale`, `worn` or `asked` for in part, and rebuilds them (`sort`, `make_lists`). `of_contacts`
     are those of its quantities that are known only after a step. If it `mixes`, its particles are renumbered now and
     then. If its kernels work on real vectors (`machine.wide`), it is `wide`. `extent` (m) is how far from the tank's
-    origin a particle may be, `nearing` (m/s) how fast parts of the tank come at particles.
+    origin a particle may be, `nearing` (m/s) how fast parts of the tank come at particles, `changes` the base step of
+    the clock before which it is to `change`.
     """
 
     name: str
@@ -38,6 +39,7 @@ class Matter:
     of_contacts: ClassVar[Sequence[str]] = ()
     extent = 0.0
     nearing = 0.0
+    changes = 2**31 - 1  # never
 
     def observe(self, time: float) -> dict[str, np.ndarray]:
         """The quantities of every world at its time (s): (W, *shape) of each by name."""
@@ -65,6 +67,9 @@ class Matter:
 
     def alter(self, scene) -> None:
         """Go on with the materials of a scene that equals the present one in everything else."""
+
+    def change(self) -> None:
+        """Go on with other numbers from now on; `changes` is never then."""
 
     def snapshot(self, time: float) -> dict[str, np.ndarray]:
         """What is known of each particle at `time` (s), which is now, in the tank's frame: (W, n, …) by name."""

@@ -10,6 +10,7 @@ FULL = 2.4 ** (1.0 / GAMMA) - 1.0  # excess of density at which p = ρ_a c², be
 HELD = (
     (1.0 + FULL) ** (GAMMA - 1.0) / (GAMMA - 1.0) + 1.0 / (1.0 + FULL) - GAMMA / (GAMMA - 1.0)
 ) / GAMMA  # energy there
+NEAR = 1e-2  # excess of density below which the energy is told by its series
 BORNE = 0.3  # of p_a: suction that air bears without being torn apart
 SHAKEN = 0.02  # of ρ c² of the water: from about 0.1 on a background pressure stirs it
 STEEPEST = 0.743  # of 1/h: the gradient of the phase in a plane surface, ∫ W along a line (Wendland C2)
@@ -66,6 +67,15 @@ class Adiabatic:
         return np.expm1(np.log1p(GAMMA * np.asarray(share, dtype=float)) / GAMMA)
 
     @staticmethod
+    def held(s: np.ndarray) -> np.ndarray:
+        """As `energy`, of an array."""
+        s = np.asarray(s, dtype=float)
+        low = np.minimum(s, FULL)
+        whole = ((1.0 + low) ** (GAMMA - 1.0) / (GAMMA - 1.0) + 1.0 / (1.0 + low) - GAMMA / (GAMMA - 1.0)) / GAMMA
+        series = s * s * (0.5 - s * (0.6 - s * (0.64 - s * 0.6608)))
+        return np.where(np.abs(s) < NEAR, series, whole + 1.0 / (1.0 + low) - 1.0 / (1.0 + s))
+
+    @staticmethod
     @ti.func
     def energy(s):
         """Elastic energy per mass in units of c², ∫ p/(ρ² c²) dρ = ((1 + s)^0.4/0.4 + 1/(1 + s) − 3.5)/1.4.
@@ -73,7 +83,7 @@ class Adiabatic:
         By its series where s is small, since the terms cancel.
         """
         energy = (ti.pow(1.0 + s, GAMMA - 1.0) / (GAMMA - 1.0) + 1.0 / (1.0 + s) - GAMMA / (GAMMA - 1.0)) / GAMMA
-        if ti.abs(s) < 1e-2:
+        if ti.abs(s) < NEAR:
             energy = s * s * (0.5 - s * (0.6 - s * (0.64 - s * 0.6608)))
         if s > FULL:
             energy = HELD + 1.0 / (1.0 + FULL) - 1.0 / (1.0 + s)

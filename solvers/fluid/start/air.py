@@ -22,6 +22,18 @@ def hydrostatic_air(height: np.ndarray, gravity: float, sound: float) -> np.ndar
     return share ** (1.0 / (GAMMA - 1.0)) - 1.0
 
 
+def excess_at_rest(height: np.ndarray, volume: np.ndarray, water: Water, gravity: float) -> np.ndarray:
+    """As `hydrostatic_air`, of particles (n,) with volumes (m²); air that is soft at first has its mass when stiff.
+
+    Soft air is lighter by its own weight. If it kept that, it would be under suction in a closed tank once it is
+    stiff; so its density is higher by as much everywhere, which lifts its pressure by half its weight at most.
+    """
+    soft = hydrostatic_air(height, gravity, water.softened.air.sound_speed)
+    if water.softened is not water:
+        soft += np.average(hydrostatic_air(height, gravity, water.air.sound_speed) - soft, weights=volume)
+    return soft
+
+
 def air_above(polygon: np.ndarray, level: float, water: Water, gravity: float) -> np.ndarray:
     """The particles (n, 7) of the air at rest that fills a polygon (m, 2) m over a `level` (m).
 
@@ -35,7 +47,7 @@ def air_above(polygon: np.ndarray, level: float, water: Water, gravity: float) -
         points, volume = packing.points, packing.volume
     drops = np.zeros((len(points), 7))
     drops[:, [Y, Z]], drops[:, VOLUME], drops[:, GAS] = points * [1.0, -1.0], volume, 1.0
-    drops[:, EXCESS] = hydrostatic_air(drops[:, Z] - level, gravity, water.air.sound_speed)
+    drops[:, EXCESS] = excess_at_rest(drops[:, Z] - level, drops[:, VOLUME], water, gravity)
     return drops
 
 
@@ -49,7 +61,7 @@ def air_round(polygon: np.ndarray, region: np.ndarray, water: Water, gravity: fl
     packing = packed(polygon, top, whole, [region])
     drops = np.zeros((len(packing.points), 7))
     drops[:, [Y, Z]], drops[:, VOLUME], drops[:, GAS] = packing.points, packing.volume, 1.0
-    drops[:, EXCESS] = hydrostatic_air(drops[:, Z] - level, gravity, water.air.sound_speed)
+    drops[:, EXCESS] = excess_at_rest(drops[:, Z] - level, drops[:, VOLUME], water, gravity)
     return drops
 
 

@@ -6,7 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from lab.assembly.water import air_volumes_of, drops_of, volumes_of
+from lab.assembly.scene import build
+from lab.assembly.water import air_volumes_of, drops_of, updates, volumes_of
 from lab.preset.merge import merged, nested
 from lab.preset.recorded import from_table, to_table
 from lab.preset.schema import Preset, resolve
@@ -33,6 +34,9 @@ duration = "1 s"
 COLUMN = [["-200 mm", "0 mm"], ["-100 mm", "0 mm"], ["-100 mm", "150 mm"], ["-200 mm", "150 mm"]]
 
 
+REAL = {"air__sound_speed": "real"}
+
+
 def airy(**overrides) -> Preset:
     """The tank with dotted keys (double underscores for dots) over it."""
     dotted = {key.replace("__", "."): value for key, value in overrides.items()}
@@ -50,6 +54,36 @@ def test_the_air_has_the_sound_of_the_water_or_its_own():
     assert liquid(airy(air__sound_speed="50 m/s")).air.sound_speed == 50.0
     assert liquid(airy(air=False)).air is None
     assert liquid(airy(water__alpha=0.03)).air.alpha == 0.03
+
+
+def test_air_that_becomes_stiff_begins_with_the_sound_of_the_water():
+    """Both have one background, that of the softer, and the soft air has the mass of the stiff one."""
+    late = {**REAL, "air__stiff_from": "0.75 s"}
+    water = liquid(airy(**late))
+    assert (water.air.sound_speed, water.air.soft_speed, water.air.stiff_from) == (343.0, water.sound_speed, 0.75)
+    assert water.softened.air.sound_speed == water.sound_speed
+    assert water.background == liquid(airy()).background < liquid(airy(**REAL)).background
+    masses = [drops[:, VOLUME] @ ((1.0 + drops[:, EXCESS]) * drops[:, GAS]) for drops in map(drops_of, made(late))]
+    assert masses[0] == pytest.approx(masses[1], rel=1e-9) and masses[2] < (1.0 - 1e-3) * masses[1]
+
+
+def made(late: dict) -> tuple[Preset, Preset, Preset]:
+    """The tank with air that becomes stiff, with real air, and with soft air."""
+    return airy(**late), airy(**REAL), airy()
+
+
+def test_steps_are_long_while_air_is_soft():
+    """A power of two of the stiff air's steps, within the bounds of both, with the fewest steps in all."""
+    late = airy(**REAL, air__stiff_from="0.75 s", run__precision="mixed")
+    scene, stiff, soft = (build(preset)[0] for preset in (late, airy(**REAL), airy()))
+    assert scene.soft_stride in (16, 32)  # 343 over 9.9 m/s is 35
+    assert scene.step <= stiff.step_limits()[0].step and scene.soft_stride * scene.step <= soft.step_limits()[0].step
+    rows = round(1.0 / late.record.series_rate / scene.step)
+    assert rows % scene.soft_stride == 0
+    taken = updates(scene, round(1.0 / scene.step)) / scene.particles
+    assert 1.0 / soft.step < taken < 0.36 / stiff.step
+    forced = build(airy(**REAL, air__stiff_from="0.75 s", run__step=f"{1e6 * stiff.step} us"))[0]
+    assert forced.soft_stride == 1 and forced.step == pytest.approx(stiff.step)
 
 
 def test_a_preset_with_air_comes_back_from_its_table():
@@ -99,6 +133,12 @@ def test_air_at_rest_is_in_balance_with_its_weight():
         ({"air__sound_speed": "0.5 m/s"}, "air.sound_speed"),
         ({"air__sound_speed": "fast"}, "air.sound_speed"),
         ({"water__scheme": "as_P", "air__sound_speed": "30 m/s"}, "air.sound_speed"),
+        ({"air__stiff_from": "0.5 s"}, "air.stiff_from"),
+        ({**REAL, "air__stiff_from": "-0.5 s"}, "air.stiff_from"),
+        ({**REAL, "air__stiff_from": "0 s"}, "air.stiff_from"),
+        ({**REAL, "air__stiff_from": "1 s"}, "air.stiff_from"),
+        ({**REAL, "air__stiff_from": "0.5 s", "water__scheme": "as_P"}, "air.stiff_from"),
+        ({**REAL, "air__stiff_from": "0.5 s", "water__sound_speed": "0.5 m/s"}, "water.sound_speed"),
         ({"water": False}, "air"),
     ],
 )

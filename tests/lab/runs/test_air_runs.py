@@ -37,20 +37,41 @@ def cup(tmp_path_factory):
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("pauses", [20, 180])
+def test_an_interrupted_run_goes_on_over_the_moment_at_which_its_air_becomes_stiff(cup, monkeypatch, pauses):
+    """From a checkpoint before it, and from one after it; the summary tells the long steps."""
+    late = cup.parent / "late.toml"
+    late.write_text(CUP.replace("air = {}", 'air = { sound_speed = "96 m/s", stiff_from = "0.2 s" }'))
+    if not (late.parent / "run-late").exists():
+        monkeypatch.setattr("lab.report.plots.write_plots", lambda *_: {})
+        run_preset(late, out=late.parent / "run-late", video=False, quiet=True)
+    goes_on(late, late.parent / "run-late", late.parent / f"again-{pauses}", monkeypatch, pauses)
+    text = (late.parent / f"again-{pauses}" / "summary.md").read_text()
+    assert "longer steps while the air is soft" in text and "8 steps in one" in text
+
+
+@pytest.mark.slow
 def test_an_interrupted_run_goes_on_with_the_same_bits(cup, monkeypatch):
-    folder, pause, paused = cup.parent / "again", Batch._pause, []
+    goes_on(cup, cup.parent / "run", cup.parent / "again", monkeypatch, 20)
+
+
+def goes_on(path, whole, folder, monkeypatch, pauses: int) -> None:
+    """Interrupt a run after so many calls and resume it: it ends with the bits of the `whole` one."""
+    pause, paused = Batch._pause, []
 
     def interrupted(batch, interrupt):
         paused.append(pause(batch, interrupt))
-        if len(paused) == 20:
+        if len(paused) == pauses:
             raise KeyboardInterrupt
 
     monkeypatch.setattr("lab.report.plots.write_plots", lambda *_: {})
     with monkeypatch.context() as patch, pytest.raises(KeyboardInterrupt):
         patch.setattr(Batch, "_pause", interrupted)
-        run_preset(cup, out=folder, video=False, quiet=True)
+        run_preset(path, out=folder, video=False, quiet=True)
+    with open_recording(folder) as stopped:
+        assert stopped.status != "complete"
     resume_run(folder, video=False, quiet=True)
-    with open_recording(cup.parent / "run") as one, open_recording(folder) as other:
+    with open_recording(whole) as one, open_recording(folder) as other:
         assert one.status == other.status == "complete"
         for name in ("air_place", "air_pressure", "water_place"):
             assert one.frames[name][:].tobytes() == other.frames[name][:].tobytes(), name

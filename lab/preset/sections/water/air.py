@@ -24,6 +24,13 @@ class Air:
             "real, 343 m/s, with as much shorter steps; or a number."
         ),
     ] = "equal"
+    stiff_from: Annotated[
+        Annotated[float, Unit("s"), Interval(gt=0)] | None,
+        Doc(
+            "Time from which the air has this speed of sound. Until then it is soft, with the water's speed of sound, "
+            "and steps are as long as the water's; without it the air is the same throughout."
+        ),
+    ] = None
     alpha: Annotated[
         Annotated[float, Interval(ge=0, le=1)] | None,
         Doc("Strength of the air's artificial viscosity; the water's without it."),

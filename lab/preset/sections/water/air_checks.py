@@ -1,8 +1,11 @@
 """Consistency checks of the air in a preset; each error is one sentence that names the key."""
 
+from typing import Protocol
+
 import numpy as np
 
 from lab.base.errors import LabError
+from lab.preset.sections.axle import Axle
 from lab.preset.sections.water.air import Air
 from lab.preset.sections.water.liquid import Wet, depth, liquid
 from lab.preset.units import needed, show
@@ -14,7 +17,17 @@ COHERENT = 0.7  # of the air's speed of sound: what its cohesion may take of it
 SLOWEST = 0.5  # of the air's speed of sound: what its own weight may lift over its height, √(0.4 g H)
 
 
-def check_air(preset: Wet) -> None:
+class Whole(Wet, Protocol):
+    """The sections of a preset with air, what carries its tank, and how long that takes."""
+
+    axle: Axle | None
+
+    @property
+    def duration(self) -> float:
+        """How long the run is (s)."""
+
+
+def check_air(preset: Whole) -> None:
     """Raise LabError for air that cannot be: in an open tank, over water that leaves it no room, beside parts."""
     air, water, tank = preset.air, preset.water, preset.tank
     if air is None:
@@ -37,14 +50,38 @@ def check_air(preset: Wet) -> None:
         raise LabError(
             "air: the water leaves it no room of a particle's height; take less water, or smaller particles."
         )
+    if air.stiff_from is not None:
+        _check_stiffening(preset)
     _check_sound(preset)
+
+
+def _check_stiffening(preset: Whole) -> None:
+    """Raise LabError for air that cannot become stiff: is so already, never will be, or is not in a tank by itself."""
+    air, made, key = preset.air, liquid(preset), f"air.stiff_from: {show(preset.air.stiff_from, 's')}"
+    if made.air.sound_speed <= made.sound_speed:
+        raise LabError(
+            "air.stiff_from: the air is no stiffer then, since its speed of sound is not above the water's, "
+            f'{show(made.sound_speed, "m/s")}; set air.sound_speed = "real", or leave out air.stiff_from.'
+        )
+    if air.stiff_from >= preset.duration:
+        raise LabError(f"{key} is not before the end of the run, {show(preset.duration, 's')}; give an earlier time.")
+    if made.air.cohesion > 0.0:
+        raise LabError(
+            'air.stiff_from: air with cohesion has another equation of state; take air.interface = "weighted", or '
+            "leave out air.stiff_from."
+        )
+    if preset.axle is not None:
+        raise LabError(
+            "air.stiff_from: a tank on an axle answers to its load in steps of one length; leave out air.stiff_from or "
+            "[axle]."
+        )
 
 
 def _check_sound(preset: Wet) -> None:
     """Raise LabError for air whose sound is so slow that its own weight or cohesion would compress it to nothing."""
     air, room = preset.air, preset.tank.extent[1] - (depth(preset) if preset.water.region is None else 0.0)
     slow = float(np.sqrt((GAMMA - 1.0) * preset.run.gravity * room)) / SLOWEST
-    made = liquid(preset)
+    made = liquid(preset).softened
     sound, pulled = made.air.sound_speed, Cohesion.slowest(made.air.cohesion, air.density) / COHERENT
     if sound < pulled:
         raise LabError(
@@ -52,8 +89,9 @@ def _check_sound(preset: Wet) -> None:
             f"{show(pulled, 'm/s')}, or another air.interface."
         )
     if sound < slow:
+        key = "air.sound_speed" if air.stiff_from is None else "water.sound_speed"
         raise LabError(
-            f"air.sound_speed: air of {show(sound, 'm/s')} would be compressed by its own weight; take at least "
+            f"{key}: air of {show(sound, 'm/s')} would be compressed by its own weight; take at least "
             f"{show(slow, 'm/s')}."
         )
 

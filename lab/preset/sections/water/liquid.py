@@ -72,23 +72,25 @@ def liquid(preset: Wet) -> given.Water:
     if made.air is not None and water.background_pressure is None:
         over = max(z for _, z in preset.tank.corners) - bounds(preset)[1]
         weight = made.air.density * preset.run.gravity * over
-        made = replace(made, background=background(made.air, made, weight))
+        made = replace(made, background=background(made.softened.air, made, weight))
     return made
 
 
 def _air(preset: Wet, scheme: Scheme) -> given.Air:
     """The air of a preset as the solver takes it."""
     air, alpha = preset.air, scheme.alpha if preset.water.alpha is None else preset.water.alpha
-    acts, heavy = interface(preset), preset.water.density
+    acts, heavy, sound = interface(preset), preset.water.density, sound_speed(preset, scheme)
     return given.Air(
         density=air.density,
-        sound_speed=sound_of_air(air, sound_speed(preset, scheme)),
+        sound_speed=sound_of_air(air, sound),
         alpha=alpha if air.alpha is None else air.alpha,
         kinematic=air.kinematic_viscosity or 0.0,
         tension=air.surface_tension,
         vent=air.vent_area / preset.thickness,
         interface=acts,
         cohesion=Cohesion.pull(heavy, air.density, preset.run.gravity, depth(preset)) if acts == "cohesion" else 0.0,
+        soft_speed=0.0 if air.stiff_from is None else sound,
+        stiff_from=air.stiff_from or 0.0,
     )
 
 
